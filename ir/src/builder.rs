@@ -1,0 +1,384 @@
+//! Builds functions. The builder is itself a [`Domain`]: code written over `Domain` and run on it becomes instructions.
+//!
+//! Two things happen on the way, always:
+//!
+//! * **Hash-consing.** An instruction that exists already where it can be seen is not written again.
+//! * **Hoisting.** An instruction goes into the outermost open block that has all its operands, so whatever does not depend on
+//!   the row or the accumulators of a fold is computed outside of it.
+//!
+//! ```
+//! use jbt_ir::{Domain, FunctionBuilder, Reduction, Schema, verify};
+//!
+//! // The sum of the x column of a table, added to the input.
+//! let mut b = FunctionBuilder::new("f", &["x"]);
+//! let schema = Schema { name: "numbers".into(), columns: vec!["x".into()], parent: None, slots: vec![] };
+//! let t = b.table(schema);
+//! let x = b.input(0);
+//! let acc = b.begin_fold(t, Reduction::Sum, &[x])[0];
+//! let column = b.column(t, 0);
+//! let next = b.add(acc, column);
+//! let sum = b.end_fold(&[next])[0];
+//! verify(b.finish(&[("sum".to_owned(), sum)])).unwrap();
+//! ```
+
+use rustc_hash::FxHashMap as HashMap;
+
+use crate::entity::{Block, Entity, Inst, Table, Value};
+use crate::function::{BlockData, Fold, Function, InstData, InstKind, Reduction, Schema};
+use crate::op::{Domain, Op, Type};
+use crate::origin::Origin;
+
+/// What makes two instructions the same.
+#[derive(Clone, PartialEq, Eq, Hash)]
+enum Key {
+    Input(usize),
+    Constant(u32),
+    BitsConstant(u32),
+    Column(Table, usize),
+    Op(Op, [Option<Value>; 3]),
+}
+
+/// A block that is still being written.
+struct OpenBlock {
+    block: Block,
+    /// The table of its fold; `None` for the function's body.
+    fold: Option<(Table, Reduction, Vec<Value>)>,
+    /// What can be found while this block is open.
+    known: Vec<Key>,
+}
+
+/// Writes a [`Function`]. See the module for the idea.
+pub struct FunctionBuilder {
+    function: Function,
+    open: Vec<OpenBlock>,
+    known: HashMap<Key, Value>,
+    /// For each value, how many blocks enclose its definition: 0 is the function's body.
+    depth: Vec<usize>,
+    /// For each value, the instruction that defines it; accumulators have none.
+    definition: Vec<Option<Inst>>,
+    origin: Origin,
+}
+
+impl FunctionBuilder {
+    /// Starts a function with these input planes.
+    #[must_use]
+    pub fn new(name: &str, inputs: &[&str]) -> Self {
+        let function = Function::new(name, inputs);
+        let open = vec![OpenBlock { block: function.body, fold: None, known: Vec::new() }];
+        Self {
+            function,
+            open,
+            known: HashMap::default(),
+            depth: Vec::new(),
+            definition: Vec::new(),
+            origin: Origin::SHARED,
+        }
+    }
+
+    /// Starts a function with the planes and tables of another one, to write a changed version of it.
+    #[must_use]
+    pub fn like(function: &Function) -> Self {
+        let inputs: Vec<&str> = function.inputs.iter().map(String::as_str).collect();
+        let mut builder = Self::new(&function.name, &inputs);
+        builder.function.tables = function.tables.clone();
+        builder
+    }
+
+    /// Declares a table.
+    pub fn table(&mut self, schema: Schema) -> Table {
+        self.function.tables.push(schema)
+    }
+
+    /// Adds a column to a table and returns its index. Lowering learns the columns of a row while it writes the body.
+    pub fn add_column(&mut self, table: Table, name: &str) -> usize {
+        let columns = &mut self.function.tables[table].columns;
+        columns.push(name.to_owned());
+        columns.len() - 1
+    }
+
+    /// Adds a leaf slot to a table.
+    pub fn add_slot(&mut self, table: Table, slot: u32) {
+        self.function.tables[table].slots.push(slot);
+    }
+
+    /// Sets the origin of the instructions that follow, and returns the one before.
+    pub fn set_origin(&mut self, origin: Origin) -> Origin {
+        std::mem::replace(&mut self.origin, origin)
+    }
+
+    /// The origin of the instructions that follow.
+    #[must_use]
+    pub fn origin(&self) -> Origin {
+        self.origin
+    }
+
+    /// Changes the origin of the instruction that defines `value`.
+    pub fn mark(&mut self, value: Value, origin: Origin) {
+        if let Some(inst) = self.definition[value.index()] {
+            self.function.insts[inst].origin = origin;
+        }
+    }
+
+    /// The function so far: types of values, tables, definitions.
+    #[must_use]
+    pub fn function(&self) -> &Function {
+        &self.function
+    }
+
+    /// How many folds are open.
+    #[must_use]
+    pub fn fold_depth(&self) -> usize {
+        self.open.len() - 1
+    }
+
+    /// What computes the value; `None` for an accumulator, which its block binds.
+    #[must_use]
+    pub fn definition(&self, value: Value) -> Option<&InstKind> {
+        Some(&self.function.insts[self.definition[value.index()]?].kind)
+    }
+
+    /// The number, if the value is a constant.
+    #[must_use]
+    pub fn as_constant(&self, value: Value) -> Option<f32> {
+        match self.function.insts[self.definition[value.index()]?].kind {
+            InstKind::Constant(number) => Some(number),
+            InstKind::Input(_)
+            | InstKind::BitsConstant(_)
+            | InstKind::Column { .. }
+            | InstKind::Op { .. }
+            | InstKind::Fold(_) => None,
+        }
+    }
+
+    /// An input plane.
+    pub fn input(&mut self, index: usize) -> Value {
+        self.insert(Key::Input(index), 0, InstKind::Input(index), Type::Real)
+    }
+
+    /// A column of the current row of a table, whose fold must be open.
+    pub fn column(&mut self, table: Table, column: usize) -> Value {
+        let depth = self
+            .open
+            .iter()
+            .rposition(|open| open.fold.as_ref().is_some_and(|(of, ..)| *of == table))
+            .expect("a column is read inside the fold over its table");
+        self.insert(Key::Column(table, column), depth, InstKind::Column { table, column }, Type::Real)
+    }
+
+    /// Any op.
+    pub fn op(&mut self, op: Op, args: &[Value]) -> Value {
+        let mut key = [None; 3];
+        for (place, &arg) in key.iter_mut().zip(args) {
+            *place = Some(arg);
+        }
+        let depth = args.iter().map(|arg| self.depth[arg.index()]).max().unwrap_or(0);
+        self.insert(Key::Op(op, key), depth, InstKind::Op { op, args: args.to_vec() }, op.result())
+    }
+
+    /// Opens a fold over `table` and returns its accumulators; what follows is its body, up to [`end_fold`](Self::end_fold).
+    pub fn begin_fold(&mut self, table: Table, reduction: Reduction, initial: &[Value]) -> Vec<Value> {
+        let depth = self.open.len();
+        let params: Vec<Value> =
+            initial.iter().map(|&value| self.new_value(self.function.values[value], depth)).collect();
+        let block = self.function.blocks.push(BlockData { params: params.clone(), ..BlockData::default() });
+        let fold = Some((table, reduction, initial.to_vec()));
+        self.open.push(OpenBlock { block, fold, known: Vec::new() });
+        params
+    }
+
+    /// Closes the innermost fold with the next accumulators, and returns the final ones.
+    pub fn end_fold(&mut self, next: &[Value]) -> Vec<Value> {
+        let open = self.open.pop().expect("begin_fold came first");
+        for key in open.known {
+            self.known.remove(&key);
+        }
+        let (table, reduction, initial) = open.fold.expect("begin_fold came first");
+        let depth = self.open.len() - 1;
+        let results: Vec<Value> =
+            initial.iter().map(|&value| self.new_value(self.function.values[value], depth)).collect();
+        self.function.blocks[open.block].results = next.to_vec();
+        let fold = Fold { table, reduction, initial, body: open.block };
+        self.append(depth, InstKind::Fold(fold), results.clone());
+        results
+    }
+
+    /// Ends the function: these are its output planes.
+    #[must_use]
+    pub fn finish(mut self, outputs: &[(String, Value)]) -> Function {
+        assert_eq!(self.open.len(), 1, "every fold is closed");
+        let body = self.function.body;
+        self.function.outputs = outputs.iter().map(|(name, _)| name.clone()).collect();
+        self.function.blocks[body].results = outputs.iter().map(|&(_, value)| value).collect();
+        self.function
+    }
+
+    fn new_value(&mut self, type_: Type, depth: usize) -> Value {
+        self.depth.push(depth);
+        self.definition.push(None);
+        self.function.values.push(type_)
+    }
+
+    fn append(&mut self, depth: usize, kind: InstKind, results: Vec<Value>) -> Inst {
+        let definition = self.function.insts.next_key();
+        for result in &results {
+            self.definition[result.index()] = Some(definition);
+        }
+        let inst = self.function.insts.push(InstData { kind, results, origin: self.origin });
+        self.function.blocks[self.open[depth].block].insts.push(inst);
+        inst
+    }
+
+    fn insert(&mut self, key: Key, depth: usize, kind: InstKind, type_: Type) -> Value {
+        if let Some(&value) = self.known.get(&key) {
+            return value;
+        }
+        let value = self.new_value(type_, depth);
+        self.append(depth, kind, vec![value]);
+        self.open[depth].known.push(key.clone());
+        self.known.insert(key, value);
+        value
+    }
+}
+
+/// Emitting: every op becomes an instruction, or the one that exists already.
+impl Domain for FunctionBuilder {
+    type Real = Value;
+    type Mask = Value;
+    type Bits = Value;
+
+    fn constant(&mut self, value: f32) -> Value {
+        self.insert(Key::Constant(value.to_bits()), 0, InstKind::Constant(value), Type::Real)
+    }
+
+    fn bits_constant(&mut self, value: u32) -> Value {
+        self.insert(Key::BitsConstant(value), 0, InstKind::BitsConstant(value), Type::Bits)
+    }
+
+    fn add(&mut self, a: Value, b: Value) -> Value {
+        self.op(Op::Add, &[a, b])
+    }
+
+    fn sub(&mut self, a: Value, b: Value) -> Value {
+        self.op(Op::Sub, &[a, b])
+    }
+
+    fn mul(&mut self, a: Value, b: Value) -> Value {
+        self.op(Op::Mul, &[a, b])
+    }
+
+    fn div(&mut self, a: Value, b: Value) -> Value {
+        self.op(Op::Div, &[a, b])
+    }
+
+    fn fma(&mut self, a: Value, b: Value, c: Value) -> Value {
+        self.op(Op::Fma, &[a, b, c])
+    }
+
+    fn neg(&mut self, a: Value) -> Value {
+        self.op(Op::Neg, &[a])
+    }
+
+    fn abs(&mut self, a: Value) -> Value {
+        self.op(Op::Abs, &[a])
+    }
+
+    fn sqrt(&mut self, a: Value) -> Value {
+        self.op(Op::Sqrt, &[a])
+    }
+
+    fn min(&mut self, a: Value, b: Value) -> Value {
+        self.op(Op::Min, &[a, b])
+    }
+
+    fn max(&mut self, a: Value, b: Value) -> Value {
+        self.op(Op::Max, &[a, b])
+    }
+
+    fn lt(&mut self, a: Value, b: Value) -> Value {
+        self.op(Op::Lt, &[a, b])
+    }
+
+    fn le(&mut self, a: Value, b: Value) -> Value {
+        self.op(Op::Le, &[a, b])
+    }
+
+    fn eq(&mut self, a: Value, b: Value) -> Value {
+        self.op(Op::Eq, &[a, b])
+    }
+
+    fn both(&mut self, a: Value, b: Value) -> Value {
+        self.op(Op::Both, &[a, b])
+    }
+
+    fn either(&mut self, a: Value, b: Value) -> Value {
+        self.op(Op::Either, &[a, b])
+    }
+
+    fn not(&mut self, a: Value) -> Value {
+        self.op(Op::Not, &[a])
+    }
+
+    fn select(&mut self, condition: Value, a: Value, b: Value) -> Value {
+        self.op(Op::Select, &[condition, a, b])
+    }
+
+    fn to_bits(&mut self, a: Value) -> Value {
+        self.op(Op::ToBits, &[a])
+    }
+
+    fn from_bits(&mut self, a: Value) -> Value {
+        self.op(Op::FromBits, &[a])
+    }
+
+    fn bit_and(&mut self, a: Value, b: Value) -> Value {
+        self.op(Op::BitAnd, &[a, b])
+    }
+
+    fn bit_or(&mut self, a: Value, b: Value) -> Value {
+        self.op(Op::BitOr, &[a, b])
+    }
+
+    fn bit_xor(&mut self, a: Value, b: Value) -> Value {
+        self.op(Op::BitXor, &[a, b])
+    }
+
+    fn int_add(&mut self, a: Value, b: Value) -> Value {
+        self.op(Op::IntAdd, &[a, b])
+    }
+
+    fn int_sub(&mut self, a: Value, b: Value) -> Value {
+        self.op(Op::IntSub, &[a, b])
+    }
+
+    fn shl(&mut self, a: Value, by: Value) -> Value {
+        self.op(Op::Shl, &[a, by])
+    }
+
+    fn shr(&mut self, a: Value, by: Value) -> Value {
+        self.op(Op::Shr, &[a, by])
+    }
+
+    fn sin(&mut self, a: Value) -> Value {
+        self.op(Op::Sin, &[a])
+    }
+
+    fn cos(&mut self, a: Value) -> Value {
+        self.op(Op::Cos, &[a])
+    }
+
+    fn exp(&mut self, a: Value) -> Value {
+        self.op(Op::Exp, &[a])
+    }
+
+    fn ln(&mut self, a: Value) -> Value {
+        self.op(Op::Ln, &[a])
+    }
+
+    fn pow(&mut self, a: Value, b: Value) -> Value {
+        self.op(Op::Pow, &[a, b])
+    }
+
+    fn hold(&mut self, a: Value) -> Value {
+        self.op(Op::Hold, &[a])
+    }
+}

@@ -1,0 +1,388 @@
+//! Counts instead of computing: how many ops a point takes, and how many evaluations each leaf of the model.
+//!
+//! [`Counting`] is a meaning of the ops in which a value is nothing and an op is one more of its kind. It runs every row, so it
+//! is for tests and for people. [`evaluations`] gives its sums for the distances without running anything, in a time
+//! that grows with the active rows and not with what they cost.
+
+use std::collections::{BTreeMap, HashMap};
+
+use crate::entity::{Block, Table};
+use crate::function::{Function, InstKind};
+use crate::op::{Domain, Op};
+use crate::origin::Part;
+use crate::table::Tables;
+use crate::verify::Verified;
+
+/// The counting domain: run a function in it ([`crate::interpret::run`]) to learn what one point costs.
+///
+/// Constants, inputs and columns cost nothing. An op that stands in a fold counts once for each time that its body runs.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Counting {
+    counts: [u64; Op::ALL.len()],
+}
+
+impl Counting {
+    /// Nothing has been counted.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { counts: [0; Op::ALL.len()] }
+    }
+
+    /// How often an op was executed.
+    #[must_use]
+    pub const fn count(&self, op: Op) -> u64 {
+        self.counts[op as usize]
+    }
+
+    /// All ops that were executed, by name, in the order of the op table.
+    pub fn by_name(&self) -> impl Iterator<Item = (&'static str, u64)> {
+        Op::ALL.iter().map(|&op| (op.name(), self.count(op))).filter(|&(_, count)| count > 0)
+    }
+
+    /// How many ops were executed.
+    #[must_use]
+    pub fn total(&self) -> u64 {
+        self.counts.iter().sum()
+    }
+
+    const fn add_one(&mut self, op: Op) {
+        self.counts[op as usize] += 1;
+    }
+}
+
+impl Default for Counting {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// How often the distances to skeletons are computed for one point.
+#[derive(Clone, PartialEq, Eq, Default, Debug)]
+pub struct Evaluations {
+    /// By tree node, as [`Rows::nodes`](crate::table::Rows::nodes) names them. A node that is not evaluated is not here.
+    pub per_node: BTreeMap<u32, u64>,
+    /// All of them.
+    pub total: u64,
+}
+
+/// How often each leaf of a model is evaluated for one point: how often the instructions run whose origin is the
+/// [distance](Part::Distance) of a leaf slot. `tables` fit the function ([`Tables::check`]).
+///
+/// An instruction runs as often as the block that it stands in, and it counts for the leaf that stands in its slot: for that
+/// of the current row of the slot's table. Where it was hoisted out of the fold over that table, because it depends on nothing in the
+/// row, it runs once for all the rows, and counts once, for the leaf of the first active row that it serves; if none
+/// is active, it still runs, and counts only in the total. Constants and columns cost nothing and do not count.
+///
+/// Counts saturate at 2^64 - 1.
+#[must_use]
+pub fn evaluations(function: &Verified, tables: &Tables) -> Evaluations {
+    let function = function.function();
+    let homes = homes_of_slots(function);
+    let mut result = Evaluations::default();
+    for (chain, slots) in distances(function) {
+        let chain = Chain::new(function, tables, chain);
+        // Most slots of a block belong to one table, whose rows are gone through once for all of them.
+        let mut by_table: BTreeMap<Option<Table>, Vec<(usize, u64)>> = BTreeMap::new();
+        for (slot, count) in slots {
+            let home = homes.get(&slot);
+            by_table
+                .entry(home.map(|&(table, _)| table))
+                .or_default()
+                .push((home.map_or(0, |&(_, at)| at), count));
+        }
+        for (table, slots) in by_table {
+            let counts: u64 = slots.iter().map(|&(_, count)| count).sum();
+            result.total = result.total.saturating_add(chain.runs().saturating_mul(counts));
+            let Some(table) = table else { continue };
+            let width = function.tables[table].slots.len();
+            for (row, runs) in chain.runs_by_row(table).into_iter().enumerate().filter(|&(_, runs)| runs > 0)
+            {
+                for &(at, count) in &slots {
+                    let node = tables.tables[table].nodes[row * width + at];
+                    let sum = result.per_node.entry(node).or_default();
+                    *sum = sum.saturating_add(runs.saturating_mul(count));
+                }
+            }
+        }
+    }
+    result
+}
+
+/// The table of each leaf slot, and the slot's position in a row.
+fn homes_of_slots(function: &Function) -> HashMap<u32, (Table, usize)> {
+    let of_table = |(table, schema): (Table, &'_ crate::function::Schema)| {
+        schema.slots.iter().enumerate().map(|(at, &slot)| (slot, (table, at))).collect::<Vec<_>>()
+    };
+    function.tables.iter().flat_map(of_table).collect()
+}
+
+/// The blocks that compute distances: the tables of the folds around each, from the outermost, and how many instructions compute
+/// the distance of each slot.
+fn distances(function: &Function) -> Vec<(Vec<Table>, BTreeMap<u32, u64>)> {
+    let mut found = Vec::new();
+    let mut waiting: Vec<(Block, Vec<Table>)> = vec![(function.body, Vec::new())];
+    while let Some((block, chain)) = waiting.pop() {
+        let mut slots: BTreeMap<u32, u64> = BTreeMap::new();
+        for &inst in &function.blocks[block].insts {
+            let data = &function.insts[inst];
+            match &data.kind {
+                InstKind::Op { .. } => {
+                    if let (Some(slot), Part::Distance) = (data.origin.slot, data.origin.part) {
+                        *slots.entry(slot).or_default() += 1;
+                    }
+                }
+                InstKind::Fold(fold) => {
+                    waiting.push((fold.body, chain.iter().copied().chain([fold.table]).collect()));
+                }
+                InstKind::Input(_)
+                | InstKind::Constant(_)
+                | InstKind::BitsConstant(_)
+                | InstKind::Column { .. } => {}
+            }
+        }
+        if !slots.is_empty() {
+            found.push((chain, slots));
+        }
+    }
+    found
+}
+
+/// The folds around a block. The rows that one of them runs depend on the current row of its parent only, so that the folds are
+/// a forest, and the number of combinations of rows is a product over siblings of sums over rows.
+struct Chain<'a> {
+    function: &'a Function,
+    tables: &'a Tables,
+    /// The tables of the folds, from the outermost; parents come before their children.
+    chain: Vec<Table>,
+    /// For each fold, by the row of its table: how often the folds below it run together.
+    below: HashMap<Table, Vec<u64>>,
+}
+
+impl<'a> Chain<'a> {
+    fn new(function: &'a Function, tables: &'a Tables, chain: Vec<Table>) -> Self {
+        let mut result = Self { function, tables, chain, below: HashMap::new() };
+        for at in (0..result.chain.len()).rev() {
+            let table = result.chain[at];
+            let rows = 0..tables.tables[table].len();
+            let products = rows.map(|row| result.product(Some(table), None, row)).collect();
+            result.below.insert(table, products);
+        }
+        result
+    }
+
+    /// How often the block runs.
+    fn runs(&self) -> u64 {
+        self.product(None, None, 0)
+    }
+
+    /// For each row of `table`, how often the block runs with it as the current row. If there is no fold over `table` around the
+    /// block, the runs count for the first active row that they serve.
+    fn runs_by_row(&self, table: Table) -> Vec<u64> {
+        // The tables from the outermost ancestor to this one.
+        let mut path = vec![table];
+        while let Some(parent) = self.function.tables[path[path.len() - 1]].parent {
+            path.push(parent);
+        }
+        path.reverse();
+        let inside = path.iter().take_while(|of| self.chain.contains(of)).count();
+
+        // From the outermost: how often the folds that are no descendants of the current table run, by its row.
+        let mut runs = vec![1_u64];
+        for (at, &of) in path[..inside].iter().enumerate() {
+            let parent = at.checked_sub(1).map(|at| path[at]);
+            let outside: Vec<u64> = (runs.iter().enumerate())
+                .map(|(row, &runs)| runs.saturating_mul(self.product(parent, Some(of), row)))
+                .collect();
+            runs = self.hand_down(of, &outside);
+        }
+        let last = inside.checked_sub(1).map(|at| path[at]);
+        for (row, runs) in runs.iter_mut().enumerate() {
+            *runs = runs.saturating_mul(self.product(last, None, row));
+        }
+        self.first_rows(&path[inside..], runs)
+    }
+
+    /// How often the children of `parent`, all but one, run together while `row` is its current row.
+    fn product(&self, parent: Option<Table>, except: Option<Table>, row: usize) -> u64 {
+        let children =
+            self.chain.iter().filter(|&&of| self.function.tables[of].parent == parent && Some(of) != except);
+        children.fold(1, |product: u64, child| {
+            let rows = self.tables.tables[*child].range(row).iter();
+            product.saturating_mul(
+                rows.fold(0, |sum: u64, &row| sum.saturating_add(self.below[child][row as usize])),
+            )
+        })
+    }
+
+    /// Gives each active row the runs of the parent's rows that own it.
+    fn hand_down(&self, table: Table, runs: &[u64]) -> Vec<u64> {
+        let rows = &self.tables.tables[table];
+        let mut result = vec![0_u64; rows.len()];
+        for (parent, &runs) in runs.iter().enumerate() {
+            for &row in rows.range(parent) {
+                result[row as usize] = result[row as usize].saturating_add(runs);
+            }
+        }
+        result
+    }
+
+    /// Gives the runs of each row to the first active row of the last table on the path that it leads to.
+    fn first_rows(&self, path: &[Table], runs: Vec<u64>) -> Vec<u64> {
+        let Some(&last) = path.last() else { return runs };
+        let mut first: Vec<Option<u32>> = (0..self.tables.tables[last].len())
+            .map(|row| Some(u32::try_from(row).expect("active rows are named by 32 bits")))
+            .collect();
+        let mut result = vec![0_u64; first.len()];
+        for (at, &table) in path.iter().enumerate().rev() {
+            let parents = at.checked_sub(1).map_or(runs.len(), |at| self.tables.tables[path[at]].len());
+            let rows = &self.tables.tables[table];
+            first = (0..parents)
+                .map(|parent| rows.range(parent).iter().find_map(|&row| first[row as usize]))
+                .collect();
+        }
+        for (row, runs) in first.into_iter().zip(runs) {
+            if let Some(row) = row {
+                result[row as usize] = result[row as usize].saturating_add(runs);
+            }
+        }
+        result
+    }
+}
+
+impl Domain for Counting {
+    type Real = ();
+    type Mask = ();
+    type Bits = ();
+
+    fn constant(&mut self, _value: f32) {}
+
+    fn bits_constant(&mut self, _value: u32) {}
+
+    fn add(&mut self, (): (), (): ()) {
+        self.add_one(Op::Add);
+    }
+
+    fn sub(&mut self, (): (), (): ()) {
+        self.add_one(Op::Sub);
+    }
+
+    fn mul(&mut self, (): (), (): ()) {
+        self.add_one(Op::Mul);
+    }
+
+    fn div(&mut self, (): (), (): ()) {
+        self.add_one(Op::Div);
+    }
+
+    fn fma(&mut self, (): (), (): (), (): ()) {
+        self.add_one(Op::Fma);
+    }
+
+    fn neg(&mut self, (): ()) {
+        self.add_one(Op::Neg);
+    }
+
+    fn abs(&mut self, (): ()) {
+        self.add_one(Op::Abs);
+    }
+
+    fn sqrt(&mut self, (): ()) {
+        self.add_one(Op::Sqrt);
+    }
+
+    fn min(&mut self, (): (), (): ()) {
+        self.add_one(Op::Min);
+    }
+
+    fn max(&mut self, (): (), (): ()) {
+        self.add_one(Op::Max);
+    }
+
+    fn lt(&mut self, (): (), (): ()) {
+        self.add_one(Op::Lt);
+    }
+
+    fn le(&mut self, (): (), (): ()) {
+        self.add_one(Op::Le);
+    }
+
+    fn eq(&mut self, (): (), (): ()) {
+        self.add_one(Op::Eq);
+    }
+
+    fn both(&mut self, (): (), (): ()) {
+        self.add_one(Op::Both);
+    }
+
+    fn either(&mut self, (): (), (): ()) {
+        self.add_one(Op::Either);
+    }
+
+    fn not(&mut self, (): ()) {
+        self.add_one(Op::Not);
+    }
+
+    fn select(&mut self, (): (), (): (), (): ()) {
+        self.add_one(Op::Select);
+    }
+
+    fn to_bits(&mut self, (): ()) {
+        self.add_one(Op::ToBits);
+    }
+
+    fn from_bits(&mut self, (): ()) {
+        self.add_one(Op::FromBits);
+    }
+
+    fn bit_and(&mut self, (): (), (): ()) {
+        self.add_one(Op::BitAnd);
+    }
+
+    fn bit_or(&mut self, (): (), (): ()) {
+        self.add_one(Op::BitOr);
+    }
+
+    fn bit_xor(&mut self, (): (), (): ()) {
+        self.add_one(Op::BitXor);
+    }
+
+    fn int_add(&mut self, (): (), (): ()) {
+        self.add_one(Op::IntAdd);
+    }
+
+    fn int_sub(&mut self, (): (), (): ()) {
+        self.add_one(Op::IntSub);
+    }
+
+    fn shl(&mut self, (): (), (): ()) {
+        self.add_one(Op::Shl);
+    }
+
+    fn shr(&mut self, (): (), (): ()) {
+        self.add_one(Op::Shr);
+    }
+
+    fn sin(&mut self, (): ()) {
+        self.add_one(Op::Sin);
+    }
+
+    fn cos(&mut self, (): ()) {
+        self.add_one(Op::Cos);
+    }
+
+    fn exp(&mut self, (): ()) {
+        self.add_one(Op::Exp);
+    }
+
+    fn ln(&mut self, (): ()) {
+        self.add_one(Op::Ln);
+    }
+
+    fn pow(&mut self, (): (), (): ()) {
+        self.add_one(Op::Pow);
+    }
+
+    fn hold(&mut self, (): ()) {
+        self.add_one(Op::Hold);
+    }
+}

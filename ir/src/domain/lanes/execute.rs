@@ -1,0 +1,179 @@
+//! Runs a tape: for each block of points, step after step.
+//!
+//! Everything here is inlined into one function per [`Level`](super::level::Level), and so is every op's loop.
+
+use crate::entity::Entity;
+use crate::op::{Domain, Op};
+use crate::table::Tables;
+
+use super::assign::Place;
+use super::ops::{Handle, Lanes, WIDTH};
+use super::tape::{FoldStep, OpStep, OpenFold, Scratch, Step, Tape};
+
+/// What to run, on what. Planes and scratch have been checked against the tape.
+pub(super) struct Job<'a, 'o> {
+    pub tape: &'a Tape,
+    pub tables: &'a Tables,
+    pub inputs: &'a [&'a [f32]],
+    pub outputs: &'a mut [&'o mut [f32]],
+    pub scratch: &'a mut Scratch,
+    /// The length of every plane.
+    pub points: usize,
+}
+
+/// Runs all blocks.
+#[inline(always)]
+pub(super) fn execute(job: Job<'_, '_>) {
+    let Job { tape, tables, inputs, outputs, scratch, points } = job;
+    let Scratch { file, splats, rows, open } = scratch;
+    let mut start = 0;
+    while start < points {
+        let count = (points - start).min(tape.block());
+        // The last block has only the chunks that it needs.
+        let chunks = count.div_ceil(WIDTH);
+        let mut block = Block {
+            tape,
+            tables,
+            lanes: Lanes { file: &mut file[..chunks * tape.stride()], stride: tape.stride(), result: 0 },
+            splats,
+            rows,
+            open,
+        };
+        block.run(inputs, start, count);
+        for (&place, output) in tape.outputs.iter().zip(outputs.iter_mut()) {
+            block.store(place, &mut output[start..start + count]);
+        }
+        start += count;
+    }
+}
+
+/// One block of points.
+struct Block<'a> {
+    tape: &'a Tape,
+    tables: &'a Tables,
+    lanes: Lanes<'a>,
+    splats: &'a mut [u32],
+    rows: &'a mut [u32],
+    open: &'a mut Vec<OpenFold>,
+}
+
+impl Block<'_> {
+    #[inline(always)]
+    fn run(&mut self, inputs: &[&[f32]], start: usize, count: usize) {
+        let mut at = 0;
+        while let Some(&step) = self.tape.steps.get(at) {
+            at += 1;
+            match step {
+                Step::Input { plane, register } => {
+                    self.lanes.load(register as usize, &inputs[plane as usize][start..start + count]);
+                }
+                Step::Move { from, to } => self.copy(from, to),
+                Step::Ops { first, end } => {
+                    for op in &self.tape.ops[first as usize..end as usize] {
+                        self.op(op);
+                    }
+                }
+                Step::Begin { fold } => {
+                    let fold = &self.tape.folds[fold as usize];
+                    let rows = &self.tables.tables[fold.table];
+                    let parent = fold.parent.map_or(0, |parent| self.rows[parent.index()] as usize);
+                    self.open.push(OpenFold { next: rows.starts[parent], end: rows.starts[parent + 1] });
+                    at = self.next_row(fold);
+                }
+                Step::End { fold } => at = self.next_row(&self.tape.folds[fold as usize]),
+            }
+        }
+    }
+
+    /// Makes the innermost fold's next active row the current one. Returns the position of the next step.
+    #[inline(always)]
+    fn next_row(&mut self, fold: &FoldStep) -> usize {
+        let open = self.open.last_mut().expect("a fold begins before it ends");
+        if open.next == open.end {
+            self.open.pop();
+            return fold.after;
+        }
+        let rows = &self.tables.tables[fold.table];
+        let row = rows.active[open.next as usize];
+        open.next += 1;
+        self.rows[fold.table.index()] = row;
+        let numbers = rows.row(row as usize);
+        for &(column, splat) in &fold.columns {
+            self.splats[splat as usize] = numbers[column as usize].to_bits();
+        }
+        fold.body
+    }
+
+    #[inline(always)]
+    fn handle(&self, place: Place) -> Handle {
+        if place.is_splat() {
+            Handle::Splat(self.splats[place.index()])
+        } else {
+            Handle::Block(place.index())
+        }
+    }
+
+    #[inline(always)]
+    fn copy(&mut self, from: Place, to: Place) {
+        let from = self.handle(from);
+        match from {
+            Handle::Splat(bits) if to.is_splat() => self.splats[to.index()] = bits,
+            Handle::Splat(_) | Handle::Block(_) => self.lanes.copy(from, to.index()),
+        }
+    }
+
+    /// Copies the first points of a register, or a splat, to an output plane.
+    #[inline(always)]
+    fn store(&self, place: Place, output: &mut [f32]) {
+        match self.handle(place) {
+            Handle::Splat(bits) => output.fill(f32::from_bits(bits)),
+            Handle::Block(register) => self.lanes.store(register, output),
+        }
+    }
+
+    /// The method of an op. What [`apply`](crate::op::apply) does, without looking at types that the verifier has checked.
+    #[inline(always)]
+    fn op(&mut self, step: &OpStep) {
+        let [a, b, c] = step.args;
+        let [a, b, c] = [self.handle(a), self.handle(b), self.handle(c)];
+        self.lanes.result = step.result.index();
+        let lanes = &mut self.lanes;
+        let result = match step.op {
+            Op::Add => lanes.add(a, b),
+            Op::Sub => lanes.sub(a, b),
+            Op::Mul => lanes.mul(a, b),
+            Op::Div => lanes.div(a, b),
+            Op::Fma => lanes.fma(a, b, c),
+            Op::Neg => lanes.neg(a),
+            Op::Abs => lanes.abs(a),
+            Op::Sqrt => lanes.sqrt(a),
+            Op::Min => lanes.min(a, b),
+            Op::Max => lanes.max(a, b),
+            Op::Lt => lanes.lt(a, b),
+            Op::Le => lanes.le(a, b),
+            Op::Eq => lanes.eq(a, b),
+            Op::Both => lanes.both(a, b),
+            Op::Either => lanes.either(a, b),
+            Op::Not => lanes.not(a),
+            Op::Select => lanes.select(a, b, c),
+            Op::ToBits => lanes.to_bits(a),
+            Op::FromBits => lanes.from_bits(a),
+            Op::BitAnd => lanes.bit_and(a, b),
+            Op::BitOr => lanes.bit_or(a, b),
+            Op::BitXor => lanes.bit_xor(a, b),
+            Op::IntAdd => lanes.int_add(a, b),
+            Op::IntSub => lanes.int_sub(a, b),
+            Op::Shl => lanes.shl(a, b),
+            Op::Shr => lanes.shr(a, b),
+            Op::Sin => lanes.sin(a),
+            Op::Cos => lanes.cos(a),
+            Op::Exp => lanes.exp(a),
+            Op::Ln => lanes.ln(a),
+            Op::Pow => lanes.pow(a, b),
+            Op::Hold => lanes.hold(a),
+        };
+        if let Handle::Splat(bits) = result {
+            self.splats[step.result.index()] = bits;
+        }
+    }
+}

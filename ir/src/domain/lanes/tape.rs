@@ -1,0 +1,270 @@
+//! The compiled form of a function for the lanes interpreter, and the door to running it.
+
+use crate::entity::{Inst, Table};
+use crate::function::InstKind;
+use crate::op::Op;
+use crate::table::Tables;
+use crate::verify::Verified;
+
+use super::assign::Place;
+use super::compile::compile;
+use super::execute::Job;
+use super::level::{self, Level};
+use super::ops::{Chunk, WIDTH};
+
+/// A function that is ready to run on blocks of points. It never changes, so threads may share it, each with its own
+/// [`Scratch`].
+///
+/// ```
+/// use jbt_ir::domain::lanes::{Scratch, Tape};
+/// use jbt_ir::{Domain, FunctionBuilder, Tables, verify};
+///
+/// let mut b = FunctionBuilder::new("square", &["x"]);
+/// let x = b.input(0);
+/// let square = b.mul(x, x);
+/// let function = b.finish(&[("field".to_owned(), square)]);
+/// let tape = Tape::new(&verify(function).unwrap()).unwrap();
+///
+/// let mut field = [0.0; 3];
+/// let (x, mut scratch) = ([1.0, 2.0, 3.0], Scratch::new());
+/// tape.run(&Tables::default(), &[&x], &mut [&mut field], &mut scratch).unwrap();
+/// assert_eq!(field, [1.0, 4.0, 9.0]);
+/// ```
+#[derive(Clone, Debug)]
+pub struct Tape {
+    /// Number of input planes.
+    pub(super) inputs: usize,
+    /// What each output plane is a copy of.
+    pub(super) outputs: Vec<Place>,
+    /// The program.
+    pub(super) steps: Vec<Step>,
+    /// The ops, in the order of the steps that run them.
+    pub(super) ops: Vec<OpStep>,
+    /// The folds, by the number in their steps.
+    pub(super) folds: Vec<FoldStep>,
+    /// The bits of the first splats, which nothing writes.
+    pub(super) constants: Vec<u32>,
+    /// Number of splats.
+    pub(super) splats: usize,
+    /// Number of registers.
+    pub(super) registers: usize,
+    /// Number of tables.
+    pub(super) tables: usize,
+}
+
+/// One step of a tape.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Step {
+    /// Reads the block's points of an input plane into a register.
+    Input { plane: u32, register: u32 },
+    /// Copies, or spreads a splat out.
+    Move { from: Place, to: Place },
+    /// Runs these ops, one after the other.
+    Ops { first: u32, end: u32 },
+    /// Makes the first active row the current one, or steps behind the end of the fold if there is none.
+    Begin { fold: u32 },
+    /// Makes the next active row the current one and steps back to the beginning of the body, if there is one.
+    End { fold: u32 },
+}
+
+/// One op.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) struct OpStep {
+    pub op: Op,
+    /// As many as the op has operands, then anything.
+    pub args: [Place; 3],
+    pub result: Place,
+}
+
+/// One fold.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub(super) struct FoldStep {
+    pub table: Table,
+    /// The table whose current row owns the rows.
+    pub parent: Option<Table>,
+    /// The position of the first step of the body.
+    pub body: usize,
+    /// The position behind the fold's end.
+    pub after: usize,
+    /// Columns that are read, and the splats that they go to.
+    pub columns: Vec<(u32, u32)>,
+}
+
+/// An op that the lanes interpreter leaves to the pass that expands it.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, thiserror::Error)]
+#[error("{inst}: {} must be expanded before the function is interpreted", .op.name())]
+pub struct NotLegalized {
+    /// The first such instruction.
+    pub inst: Inst,
+    /// Its op.
+    pub op: Op,
+}
+
+/// Why planes do not fit a tape.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, thiserror::Error)]
+pub enum RunError {
+    /// Another number of input planes.
+    #[error("the function has {expected} input planes, {given} were given")]
+    Inputs {
+        /// What the function has.
+        expected: usize,
+        /// What was given.
+        given: usize,
+    },
+    /// Another number of output planes.
+    #[error("the function has {expected} output planes, {given} were given")]
+    Outputs {
+        /// What the function has.
+        expected: usize,
+        /// What was given.
+        given: usize,
+    },
+    /// Planes of different lengths.
+    #[error("the first plane has {expected} points, another one has {given}")]
+    Length {
+        /// The length of the first input plane; of the first output plane, where there are no inputs.
+        expected: usize,
+        /// The length of the first plane that differs.
+        given: usize,
+    },
+}
+
+/// The memory of a run: registers and splats. It grows to what the largest tape needs, and then is used again and again.
+#[derive(Clone, Default, Debug)]
+pub struct Scratch {
+    pub(super) file: Vec<Chunk>,
+    pub(super) splats: Vec<u32>,
+    /// The current row of each table.
+    pub(super) rows: Vec<u32>,
+    pub(super) open: Vec<OpenFold>,
+}
+
+/// A fold that is running: what is left of its active rows, as positions in the list of active rows.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct OpenFold {
+    pub next: u32,
+    pub end: u32,
+}
+
+impl Scratch {
+    /// Nothing yet: the first run makes room.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+}
+
+/// Bytes for the registers of a block: three quarters of a common first-level cache, for rows and the program live there too.
+const FILE_BYTES: usize = 24 << 10;
+/// Fewer chunks than this, and an op costs more to find than to do: a wide function rather leaves the first-level cache.
+const MIN_CHUNKS: usize = 2;
+/// More chunks than this gain nothing.
+const MAX_CHUNKS: usize = 24;
+
+impl Tape {
+    /// Compiles a function.
+    ///
+    /// # Errors
+    /// The first op that the `legalize` pass would have expanded.
+    pub fn new(function: &Verified) -> Result<Self, NotLegalized> {
+        let function = function.function();
+        for (inst, data) in function.insts.iter() {
+            if let InstKind::Op { op, .. } = data.kind
+                && op.is_expanded()
+            {
+                return Err(NotLegalized { inst, op });
+            }
+        }
+        Ok(compile(function))
+    }
+
+    /// Number of registers: as many blocks of points are alive at once.
+    #[must_use]
+    pub const fn registers(&self) -> usize {
+        self.registers
+    }
+
+    /// Number of points that run together: a multiple of [`WIDTH`](super::WIDTH). The last block of a plane is shorter: it has the points
+    /// that are left, rounded up to a multiple of `WIDTH`.
+    #[must_use]
+    pub fn block(&self) -> usize {
+        (FILE_BYTES / (self.stride() * size_of::<Chunk>())).clamp(MIN_CHUNKS, MAX_CHUNKS) * WIDTH
+    }
+
+    /// Chunks from one register's points to its next ones. It is odd, so that the chunks of one register are spread over
+    /// all sets of the cache.
+    pub(super) const fn stride(&self) -> usize {
+        self.registers | 1
+    }
+
+    /// Runs the function: output planes from input planes, point by point the same bits as the scalar domain.
+    ///
+    /// All planes have one length, any length. `tables` fit the function: call [`Tables::check`] when they change. (Tables that do not
+    /// fit give wrong numbers or a panic, nothing worse.) The floating-point environment of the caller does not matter: the
+    /// run has its own, with subnormals and round to nearest, and restores the caller's.
+    ///
+    /// # Errors
+    /// When the planes are not as many as the function's, or differ in length.
+    pub fn run(
+        &self,
+        tables: &Tables,
+        inputs: &[&[f32]],
+        outputs: &mut [&mut [f32]],
+        scratch: &mut Scratch,
+    ) -> Result<(), RunError> {
+        self.run_at(Level::best(), tables, inputs, outputs, scratch)
+    }
+
+    /// Like [`run`](Self::run), at a chosen level of the instruction set. The bits are the same at every level.
+    ///
+    /// # Errors
+    /// Those of [`run`](Self::run).
+    pub fn run_at(
+        &self,
+        level: Level,
+        tables: &Tables,
+        inputs: &[&[f32]],
+        outputs: &mut [&mut [f32]],
+        scratch: &mut Scratch,
+    ) -> Result<(), RunError> {
+        let points = self.check_planes(inputs, outputs)?;
+        scratch.reserve(self);
+        level::run(level, Job { tape: self, tables, inputs, outputs, scratch, points });
+        Ok(())
+    }
+
+    /// The common length of all planes.
+    fn check_planes(&self, inputs: &[&[f32]], outputs: &[&mut [f32]]) -> Result<usize, RunError> {
+        if inputs.len() != self.inputs {
+            return Err(RunError::Inputs { expected: self.inputs, given: inputs.len() });
+        }
+        if outputs.len() != self.outputs.len() {
+            return Err(RunError::Outputs { expected: self.outputs.len(), given: outputs.len() });
+        }
+        let mut lengths =
+            inputs.iter().map(|plane| plane.len()).chain(outputs.iter().map(|plane| plane.len()));
+        let expected = lengths.next().unwrap_or(0);
+        match lengths.find(|&given| given != expected) {
+            Some(given) => Err(RunError::Length { expected, given }),
+            None => Ok(expected),
+        }
+    }
+}
+
+impl Scratch {
+    /// Makes room for a tape, and writes its constants.
+    fn reserve(&mut self, tape: &Tape) {
+        let chunks = tape.block() / WIDTH * tape.stride();
+        if self.file.len() < chunks {
+            self.file.resize(chunks, Chunk::ZERO);
+        }
+        if self.splats.len() < tape.splats {
+            self.splats.resize(tape.splats, 0);
+        }
+        if self.rows.len() < tape.tables {
+            self.rows.resize(tape.tables, 0);
+        }
+        self.splats[..tape.constants.len()].copy_from_slice(&tape.constants);
+        self.open.clear();
+    }
+}

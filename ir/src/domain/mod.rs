@@ -1,0 +1,13 @@
+//! The meanings of the ops: one `impl Domain` in one file each.
+//!
+//! | file | a real is | for |
+//! |---|---|---|
+//! | [`scalar`] | an `f32` | the reference |
+//! | [`counting`] | nothing | what a point costs |
+//! | [`lanes`] | a block of `f32`, or one for all points | the interpreter |
+//! | [`tangent`] | a value and its tangent, emitted | the gradient |
+
+pub mod counting;
+pub mod lanes;
+pub mod scalar;
+pub mod tangent;

@@ -1,0 +1,228 @@
+//! A function: inputs and outputs are named planes, the body is SSA with one structured loop, the [`Fold`].
+//!
+//! ```text
+//! function "sum" (x, y, z) -> (field) {
+//!     table t0 "point" (x, y, z, neg_inv_r2) slots (0)
+//! block0:
+//!     v0 = input x
+//!     ...
+//!     v3 = const 0.0
+//!     v4 = fold t0 sum (v3) block1(v5):
+//!         v6 = column t0.x @0.position
+//!         v7 = sub v0, v6 @0.position
+//!         ...
+//!         yield v20
+//!     yield v4
+//! }
+//! ```
+//!
+//! [`crate::text`] defines this form.
+//!
+//! There are no calls, traps or stores. A fold runs its body once for each *active row* of a table, in ascending row
+//! order; the body sees the row's columns (the same in all lanes), every value of the enclosing blocks, and the
+//! accumulators. If the table has a parent, the fold stands in the parent's body and runs over the rows that the parent's
+//! current row owns.
+
+use std::fmt;
+
+use crate::entity::{Block, Entity, Inst, Store, Table, Value};
+use crate::op::{Op, Type};
+use crate::origin::Origin;
+
+/// What a fold does with its rows, for whoever wants to drop some of them.
+///
+/// The body says how rows are combined; the reduction says what dropping a row does to the result.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum Reduction {
+    /// Sum of fields: a row with a zero field is neutral.
+    Sum,
+    /// Ricci blend with a running scale: a row with a zero field is neutral.
+    Ricci,
+    /// Largest field: a dropped row counts as zero.
+    Union,
+    /// Smallest field: one dropped row makes the node zero.
+    Intersection,
+    /// One row, whose answer passes through: a guard around one child. If it is dropped, its initial values stand.
+    Only,
+}
+
+impl Reduction {
+    /// All reductions.
+    pub const ALL: [Self; 5] = [Self::Sum, Self::Ricci, Self::Union, Self::Intersection, Self::Only];
+
+    /// The name in the text form.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Sum => "sum",
+            Self::Ricci => "ricci",
+            Self::Union => "union",
+            Self::Intersection => "intersection",
+            Self::Only => "only",
+        }
+    }
+}
+
+impl fmt::Display for Reduction {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// The columns of a table, and where it hangs.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Schema {
+    /// The shape of its rows, for people.
+    pub name: String,
+    /// Column names, for people; a column is named by its index.
+    pub columns: Vec<String>,
+    /// The table whose rows own ranges of this one.
+    pub parent: Option<Table>,
+    /// The leaf slots that one row fills, in the order of [`crate::table::Rows::nodes`].
+    pub slots: Vec<u32>,
+}
+
+/// The loop over the active rows of a table.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Fold {
+    /// The table.
+    pub table: Table,
+    /// What dropping a row does.
+    pub reduction: Reduction,
+    /// Accumulators before the first row.
+    pub initial: Vec<Value>,
+    /// The body: its parameters are the accumulators, its results their next values.
+    pub body: Block,
+}
+
+/// What an instruction does.
+#[derive(Clone, PartialEq, Debug)]
+pub enum InstKind {
+    /// Reads the input plane with this index.
+    Input(usize),
+    /// The same number in every lane. Constants are told apart by their bits.
+    Constant(f32),
+    /// The same bits in every lane.
+    BitsConstant(u32),
+    /// A column of the current row of a table whose fold encloses this.
+    Column {
+        /// The table.
+        table: Table,
+        /// The index of the column.
+        column: usize,
+    },
+    /// An op on one to three values.
+    Op {
+        /// The op.
+        op: Op,
+        /// Its operands.
+        args: Vec<Value>,
+    },
+    /// The loop over a table.
+    Fold(Fold),
+}
+
+impl InstKind {
+    /// The type of what this defines. For a fold it is only the usual one: its accumulators have the types of its initial values.
+    #[must_use]
+    pub const fn result_type(&self) -> Type {
+        match self {
+            Self::Input(_) | Self::Constant(_) | Self::Column { .. } | Self::Fold(_) => Type::Real,
+            Self::BitsConstant(_) => Type::Bits,
+            Self::Op { op, .. } => op.result(),
+        }
+    }
+}
+
+/// An instruction.
+#[derive(Clone, PartialEq, Debug)]
+pub struct InstData {
+    /// What it does.
+    pub kind: InstKind,
+    /// What it defines: one value, or the final accumulators of a fold.
+    pub results: Vec<Value>,
+    /// Where it comes from.
+    pub origin: Origin,
+}
+
+/// A list of instructions.
+#[derive(Clone, PartialEq, Eq, Debug, Default)]
+pub struct BlockData {
+    /// What the block binds: the accumulators of a fold; nothing for the function's body.
+    pub params: Vec<Value>,
+    /// Its instructions, in order of execution.
+    pub insts: Vec<Inst>,
+    /// What it yields: the next accumulators, or the function's outputs.
+    pub results: Vec<Value>,
+}
+
+/// A program: points in, answers out.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Function {
+    /// A name for people.
+    pub name: String,
+    /// Names of the input planes.
+    pub inputs: Vec<String>,
+    /// Names of the output planes, in the order of the body's results.
+    pub outputs: Vec<String>,
+    /// The tables that it folds.
+    pub tables: Store<Table, Schema>,
+    /// The type of every value.
+    pub values: Store<Value, Type>,
+    /// All instructions.
+    pub insts: Store<Inst, InstData>,
+    /// All blocks.
+    pub blocks: Store<Block, BlockData>,
+    /// The body.
+    pub body: Block,
+}
+
+impl Function {
+    /// A function without instructions.
+    #[must_use]
+    pub fn new(name: &str, inputs: &[&str]) -> Self {
+        let mut blocks = Store::new();
+        let body = blocks.push(BlockData::default());
+        Self {
+            name: name.to_owned(),
+            inputs: inputs.iter().map(|&input| input.to_owned()).collect(),
+            outputs: Vec::new(),
+            tables: Store::new(),
+            values: Store::new(),
+            insts: Store::new(),
+            blocks,
+            body,
+        }
+    }
+
+    /// The values that an instruction reads in its own block: operands, or a fold's initial accumulators.
+    #[must_use]
+    pub fn operands(&self, inst: Inst) -> &[Value] {
+        match &self.insts[inst].kind {
+            InstKind::Input(_)
+            | InstKind::Constant(_)
+            | InstKind::BitsConstant(_)
+            | InstKind::Column { .. } => &[],
+            InstKind::Op { args, .. } => args,
+            InstKind::Fold(fold) => &fold.initial,
+        }
+    }
+
+    /// The fold over each table, by table. `None` where a table is not folded.
+    #[must_use]
+    pub fn folds(&self) -> Vec<Option<Inst>> {
+        let mut folds = vec![None; self.tables.len()];
+        for (inst, data) in self.insts.iter() {
+            if let InstKind::Fold(fold) = &data.kind {
+                folds[fold.table.index()] = Some(inst);
+            }
+        }
+        folds
+    }
+
+    /// The position of the output plane with this name.
+    #[must_use]
+    pub fn output(&self, name: &str) -> Option<usize> {
+        self.outputs.iter().position(|output| output == name)
+    }
+}

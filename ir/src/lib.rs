@@ -1,0 +1,31 @@
+//! What a program means: the intermediate representation of jbt.
+//!
+//! A [`Function`] takes planes of numbers (x, y, z) to planes of answers (field, gradient, attributes). It is SSA over three
+//! lane types, and its only control flow is the fold over the rows of a table. This crate knows no trees and no machine.
+
+#![deny(unsafe_code)]
+
+pub mod builder;
+pub mod domain;
+pub mod entity;
+pub mod environment;
+pub mod function;
+pub mod interpret;
+pub mod limits;
+pub mod math;
+pub mod op;
+pub mod origin;
+pub mod pass;
+pub mod table;
+pub mod text;
+pub mod translate;
+pub mod verify;
+
+pub use builder::FunctionBuilder;
+pub use entity::{Block, Entity, Inst, Store, Table, Value};
+pub use function::{BlockData, Fold, Function, InstData, InstKind, Reduction, Schema};
+pub use op::{Any, Domain, Op, Type, apply};
+pub use origin::{Origin, Part};
+pub use table::{Rows, TableError, Tables};
+pub use text::{ParseError, parse};
+pub use verify::{Place, Verified, VerifyError, verify};

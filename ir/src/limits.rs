@@ -1,0 +1,42 @@
+//! Every limit of the project, in one place. Each is documented with what it protects, and tested at its value and one past it.
+//!
+//! A limit is reached by hostile input long before it is reached by a model that somebody drew; reaching one is an error with
+//! a place, never a panic and never a long silence.
+
+/// Bytes of one scene file. A larger one is refused before it is read.
+pub const MAX_SCENE_BYTES: usize = 64 << 20;
+/// Errors that are kept for one file; the rest are counted.
+pub const MAX_ERRORS: usize = 50;
+/// Operators and parentheses of one number expression that wait for their operands.
+pub const MAX_EXPRESSION_DEPTH: usize = 1 << 20;
+/// Nodes of one tree, shared ones counted once.
+pub const MAX_NODES: usize = 4_000_000;
+/// Uses of nodes, counted along every path from the root: what is left when no subtree is shared.
+pub const MAX_OCCURRENCES: usize = 4_000_000;
+/// Reals of one attribute group.
+pub const MAX_ATTRIBUTE_WIDTH: usize = 4;
+/// Attribute groups of one model, colour included.
+pub const MAX_ATTRIBUTES: usize = 32;
+/// The largest exponent of a Ricci blend; the smallest is 1.
+pub const MAX_RICCI_EXPONENT: f64 = 1024.0;
+/// The largest magnitude of any number in a model. Its square is still a finite f32.
+pub const MAX_NUMBER: f64 = 1e15;
+/// The smallest support radius, smallest scale and so on. The inverse of its square is still a finite f32.
+pub const MIN_LENGTH: f64 = 1e-15;
+/// Tables of one function. More shapes than this is a generated model that needs another formulation.
+pub const MAX_TABLES: usize = 100_000;
+/// Folds inside folds.
+pub const MAX_FOLD_DEPTH: usize = 64;
+/// Values of one function, of any engine and after any pass.
+pub const MAX_VALUES: usize = 1_000_000;
+/// Values of a function that is compiled to machine code; a larger one is interpreted.
+pub const MAX_JIT_VALUES: usize = 60_000;
+/// Values that may be alive at once in machine code (a frame costs 16 bytes each per vector); beyond it the function is interpreted.
+pub const MAX_JIT_LIVE_VALUES: usize = 4_000;
+/// Bytes of stack that one call of machine code may take: a fraction of the smallest stacks that threads are given. A function that
+/// needs more is interpreted.
+pub const MAX_JIT_FRAME_BYTES: usize = 512 << 10;
+/// Lattice points of one mesh: the field of each is kept, 4 bytes a point.
+pub const MAX_LATTICE_POINTS: usize = 1 << 30;
+/// Cells along one axis of a lattice.
+pub const MAX_RESOLUTION: usize = 1 << 20;

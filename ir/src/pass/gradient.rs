@@ -1,0 +1,181 @@
+//! Adds the gradient of the first output along the first three inputs: outputs `gx`, `gy` and `gz`, right behind it. A zero
+//! component is +0.
+//!
+//! The function is run once in the [`Tangent`] domain. Primal instructions are shared with the derivatives, so nothing is computed
+//! twice. A fold gets three more accumulators for each accumulator that moves; which ones do is found beforehand, because an
+//! accumulator can begin to move only in the body.
+//!
+//! ```text
+//! (s) = fold t0 sum (0) (acc): ... yield next
+//!     becomes
+//! (s, sx, sy, sz) = fold t0 sum (0, 0, 0, 0) (acc, ax, ay, az): ... yield next, nx, ny, nz
+//! ```
+
+use crate::builder::FunctionBuilder;
+use crate::domain::tangent::{Dual, Tangent, Vector};
+use crate::entity::{Block, Entity, Value};
+use crate::function::{Fold, Function, InstKind};
+use crate::op::{Any, Domain, Op, Type, apply};
+
+/// Names of the outputs that the pass adds.
+pub const GRADIENT_OUTPUTS: [&str; 3] = ["gx", "gy", "gz"];
+
+/// The function with the gradient of its first output.
+#[must_use]
+pub fn gradient(function: &Function) -> Function {
+    let mut pass = Pass {
+        function,
+        moves: moving(function),
+        tangent: Tangent::new(FunctionBuilder::like(function)),
+        values: vec![None; function.values.len()],
+    };
+    pass.block(function.body);
+    let body = &function.blocks[function.body];
+    let mut outputs = Vec::new();
+    for (index, (name, &value)) in function.outputs.iter().zip(&body.results).enumerate() {
+        let dual = pass.value(value).real();
+        outputs.push((name.clone(), dual.value));
+        if index == 0 {
+            let slope = pass.tangent.components(dual.slope);
+            let zero = pass.tangent.builder.constant(0.0);
+            for (name, component) in GRADIENT_OUTPUTS.iter().zip(pass.with_zeros(slope)) {
+                // The sign of a zero may depend on rows that add nothing; no answer shows it.
+                let component = pass.tangent.builder.add(component, zero);
+                outputs.push(((*name).to_owned(), component));
+            }
+        }
+    }
+    pass.tangent.builder.finish(&outputs)
+}
+
+/// Which values move with the inputs. Accumulators need a fixed point: one that stands still at first may be moved by the body.
+fn moving(function: &Function) -> Vec<bool> {
+    let mut moves = vec![false; function.values.len()];
+    loop {
+        let before = moves.iter().filter(|&&m| m).count();
+        for inst in function.insts.values() {
+            match &inst.kind {
+                InstKind::Input(index) => moves[inst.results[0].index()] = *index < 3,
+                InstKind::Constant(_) | InstKind::BitsConstant(_) | InstKind::Column { .. } => {}
+                InstKind::Op { op, args } => {
+                    let held = *op == Op::Hold || op.result() != Type::Real;
+                    moves[inst.results[0].index()] = !held && args.iter().any(|arg| moves[arg.index()]);
+                }
+                InstKind::Fold(fold) => {
+                    let body = &function.blocks[fold.body];
+                    for (place, result) in inst.results.iter().enumerate() {
+                        let moved = moves[fold.initial[place].index()] || moves[body.results[place].index()];
+                        moves[body.params[place].index()] |= moved;
+                        moves[result.index()] |= moved;
+                    }
+                }
+            }
+        }
+        if moves.iter().filter(|&&m| m).count() == before {
+            return moves;
+        }
+    }
+}
+
+struct Pass<'a> {
+    function: &'a Function,
+    moves: Vec<bool>,
+    tangent: Tangent,
+    values: Vec<Option<Any<Tangent>>>,
+}
+
+impl Pass<'_> {
+    fn value(&self, value: Value) -> Any<Tangent> {
+        self.values[value.index()].expect("a verified function defines values before it uses them")
+    }
+
+    fn with_zeros(&mut self, vector: Vector) -> [Value; 3] {
+        vector.map(|component| component.unwrap_or_else(|| self.tangent.builder.constant(0.0)))
+    }
+
+    fn block(&mut self, block: Block) {
+        for &inst in &self.function.blocks[block].insts {
+            let data = &self.function.insts[inst];
+            self.tangent.builder.set_origin(data.origin);
+            let result = match &data.kind {
+                InstKind::Input(index) => Any::Real(self.input(*index)),
+                InstKind::Constant(number) => Any::Real(self.tangent.constant(*number)),
+                InstKind::BitsConstant(bits) => Any::Bits(self.tangent.bits_constant(*bits)),
+                InstKind::Column { table, column } => {
+                    Any::Real(Tangent::still(self.tangent.builder.column(*table, *column)))
+                }
+                InstKind::Op { op, args } => {
+                    let args: Vec<Any<Tangent>> = args.iter().map(|&arg| self.value(arg)).collect();
+                    apply(&mut self.tangent, *op, &args)
+                }
+                InstKind::Fold(fold) => {
+                    self.fold(fold, &data.results);
+                    continue;
+                }
+            };
+            self.values[data.results[0].index()] = Some(result);
+        }
+    }
+
+    fn input(&mut self, index: usize) -> Dual {
+        let value = self.tangent.builder.input(index);
+        if index >= 3 {
+            return Tangent::still(value);
+        }
+        let one = self.tangent.builder.constant(1.0);
+        let axis = std::array::from_fn(|axis| (axis == index).then_some(one));
+        self.tangent.moving(value, axis)
+    }
+
+    /// The fold, with three accumulators more for each that moves.
+    fn fold(&mut self, fold: &Fold, results: &[Value]) {
+        let origin = self.tangent.builder.origin();
+        let body = &self.function.blocks[fold.body];
+        let initial = self.flatten(&fold.initial, &body.params);
+        let params = self.tangent.builder.begin_fold(fold.table, fold.reduction, &initial);
+        self.unflatten(&body.params, &params);
+        self.block(fold.body);
+        let next = self.flatten(&body.results, &body.params);
+        self.tangent.builder.set_origin(origin);
+        let finals = self.tangent.builder.end_fold(&next);
+        self.unflatten(results, &finals);
+    }
+
+    /// Values, each followed by its tangent where the accumulator in its place moves.
+    fn flatten(&mut self, values: &[Value], accumulators: &[Value]) -> Vec<Value> {
+        let mut flat = Vec::new();
+        for (&value, accumulator) in values.iter().zip(accumulators) {
+            match self.value(value) {
+                Any::Mask(mask) => flat.push(mask),
+                Any::Bits(bits) => flat.push(bits),
+                Any::Real(dual) => {
+                    flat.push(dual.value);
+                    if self.moves[accumulator.index()] {
+                        let slope = self.tangent.components(dual.slope);
+                        flat.extend(self.with_zeros(slope));
+                    }
+                }
+            }
+        }
+        flat
+    }
+
+    /// Gives `values` what [`flatten`](Self::flatten) laid out.
+    fn unflatten(&mut self, values: &[Value], flat: &[Value]) {
+        let mut flat = flat.iter().copied();
+        let mut next = || flat.next().expect("the layout is that of flatten");
+        for &value in values {
+            let primal = next();
+            let any = match self.function.values[value] {
+                Type::Mask => Any::Mask(primal),
+                Type::Bits => Any::Bits(primal),
+                Type::Real if self.moves[value.index()] => {
+                    let slope = [Some(next()), Some(next()), Some(next())];
+                    Any::Real(self.tangent.moving(primal, slope))
+                }
+                Type::Real => Any::Real(Tangent::still(primal)),
+            };
+            self.values[value.index()] = Some(any);
+        }
+    }
+}

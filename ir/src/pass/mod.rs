@@ -1,0 +1,106 @@
+//! The passes, from a lowered function to one that an engine runs: one list, [`PIPELINE`].
+//!
+//! A pass takes a function that obeys the verifier's rules and gives another one that computes the same bits (any NaN equals any
+//! NaN). Between any two passes the observer of [`run_pipeline`] can print the function, verify it, or run it.
+//!
+//! ```text
+//! lowered ─► (gradient) ─► legalize ─► constant-folding ─► simplify ─► cse ─► dce ─► schedule ─► verify ─► engine
+//! ```
+//!
+//! The gradient changes what is computed, and only for a query that asks for it; so it is not in the list but goes before it:
+//! `run_pipeline(f, [&GRADIENT].into_iter().chain(PIPELINE), ..)`. It needs the transcendentals whole, hence before `legalize`.
+
+mod dce;
+mod fold_constants;
+mod gradient;
+mod legalize;
+mod liveness;
+mod schedule;
+mod simplify;
+
+pub use dce::dce;
+pub use fold_constants::fold_constants;
+pub use gradient::{GRADIENT_OUTPUTS, gradient};
+pub use legalize::legalize;
+pub use liveness::max_live;
+pub use schedule::schedule;
+pub use simplify::simplify;
+
+use crate::builder::FunctionBuilder;
+use crate::function::Function;
+use crate::translate::rewrite;
+
+/// A step from a function to another one.
+#[derive(Clone, Copy, Debug)]
+pub struct Pass {
+    /// Its name, as `--stage` takes it.
+    pub name: &'static str,
+    /// What it does, in one sentence.
+    pub what: &'static str,
+    /// Does it.
+    pub run: fn(&Function) -> Function,
+}
+
+/// The pass that goes before the others where the gradient is asked for.
+pub const GRADIENT: Pass = Pass {
+    name: "gradient",
+    what: "Adds the gradient of the first output, by forward differentiation.",
+    run: gradient,
+};
+
+/// Every pass that each function goes through, in order.
+pub const PIPELINE: &[Pass] = &[
+    Pass {
+        name: "legalize",
+        what: "Expands the transcendentals into the ops that machines have, and drops `hold`.",
+        run: legalize,
+    },
+    Pass {
+        name: "constant-folding",
+        what: "Computes ops on constants, and decides selections whose mask is known.",
+        run: fold_constants,
+    },
+    Pass {
+        name: "simplify",
+        what: "Replaces ops by cheaper ones that give the same bits for every operand.",
+        run: simplify,
+    },
+    Pass {
+        name: "cse",
+        what: "Shares equal instructions and moves what does not depend on the row out of the folds.",
+        run: share,
+    },
+    Pass {
+        name: "dce",
+        what: "Removes instructions, accumulators and folds that no output needs.",
+        run: dce,
+    },
+    Pass {
+        name: "schedule",
+        what: "Orders the instructions of each block so that few values are alive at once.",
+        run: schedule,
+    },
+];
+
+/// Runs the passes in order. The observer sees each pass's name and what the pass made.
+#[must_use]
+pub fn run_pipeline<'a>(
+    function: Function,
+    passes: impl IntoIterator<Item = &'a Pass>,
+    observer: &mut dyn FnMut(&str, &Function),
+) -> Function {
+    passes.into_iter().fold(function, |function, pass| {
+        let function = (pass.run)(&function);
+        observer(pass.name, &function);
+        function
+    })
+}
+
+/// Shares equal instructions and hoists: a plain rewrite, for the builder does both.
+///
+/// Every pass that rewrites does it too. This one stands in the list because simplification makes operands equal which the
+/// instructions written before them did not know.
+#[must_use]
+pub fn share(function: &Function) -> Function {
+    rewrite(function, FunctionBuilder::op)
+}
