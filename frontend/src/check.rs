@@ -1,0 +1,461 @@
+//! The check: the only door from a model to a program.
+//!
+//! ```text
+//! Model ── the iso-value, the attribute groups ──┐
+//!   └── root ── every node once, children first ─┴─► every error, or a CheckedTree
+//! ```
+//!
+//! What holds of a [`CheckedTree`], so that nothing behind it has to ask again:
+//!
+//! * Every number is finite and at most [`limits::MAX_NUMBER`] in magnitude; radii are at least [`limits::MIN_LENGTH`], and each
+//!   parameter is what its [`FieldKind`] says.
+//! * Leaves have no children, maps and attributes have one, combinators at least one. A Ricci exponent is in
+//!   [1, [`limits::MAX_RICCI_EXPONENT`]].
+//! * Every affine map can be undone, and the numbers of its inverse are finite in f32.
+//! * The first attribute group is `color` with three reals; names are unique; attribute nodes name a group and fit its width.
+//! * There are at most [`limits::MAX_NODES`] nodes and [`limits::MAX_OCCURRENCES`] paths from the root to leaves.
+
+use std::collections::{BTreeMap, HashMap, HashSet};
+use std::sync::Arc;
+
+use glam::{DAffine3, DMat3};
+use jbt_ir::limits;
+
+use crate::affine;
+use crate::attribute::AttributeGroup;
+use crate::bounds::Bounds;
+use crate::combine::Combinator;
+use crate::diagnostic::{Diagnostic, Span};
+use crate::field::{Field, FieldKind, FieldValue};
+use crate::model::Model;
+use crate::report::{Report, clip, nearest};
+use crate::tree::{Node, NodeKind, Primitive};
+
+/// The name of a node of a checked tree: its place in [`CheckedTree::nodes`].
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub struct NodeId(pub u32);
+
+/// A node of a checked tree.
+#[derive(Clone, PartialEq, Debug)]
+pub struct CheckedNode {
+    /// What it does.
+    pub kind: NodeKind,
+    /// Its children, in order. They come before it in the arena.
+    pub children: Vec<NodeId>,
+    /// Where it stands in its source text.
+    pub span: Option<Span>,
+}
+
+/// A model that makes sense, as an arena: children before parents, shared nodes once, the root last.
+#[derive(Clone, PartialEq, Debug)]
+pub struct CheckedTree {
+    iso: f64,
+    attributes: Vec<AttributeGroup>,
+    nodes: Arc<[CheckedNode]>,
+}
+
+impl CheckedTree {
+    /// The field value of the surface.
+    #[must_use]
+    pub fn iso(&self) -> f64 {
+        self.iso
+    }
+
+    /// The attribute groups, `color` first.
+    #[must_use]
+    pub fn attributes(&self) -> &[AttributeGroup] {
+        &self.attributes
+    }
+
+    /// All nodes.
+    #[must_use]
+    pub fn nodes(&self) -> &[CheckedNode] {
+        &self.nodes
+    }
+
+    /// A node.
+    #[must_use]
+    pub fn node(&self, id: NodeId) -> &CheckedNode {
+        &self.nodes[id.0 as usize]
+    }
+
+    /// The root.
+    #[must_use]
+    pub fn root(&self) -> NodeId {
+        NodeId(self.nodes.len() as u32 - 1)
+    }
+}
+
+impl Model {
+    /// The model as a tree that makes sense, or everything that is wrong with it.
+    ///
+    /// Cost: linear in the number of nodes, shared ones counted once.
+    ///
+    /// # Errors
+    ///
+    /// All errors, in the order of their places in the text; after [`limits::MAX_ERRORS`] of them, one more that counts the rest.
+    pub fn check(&self) -> Result<CheckedTree, Vec<Diagnostic>> {
+        self.check_within(limits::MAX_NODES, limits::MAX_OCCURRENCES)
+    }
+
+    fn check_within(&self, max_nodes: usize, max_occurrences: usize) -> Result<CheckedTree, Vec<Diagnostic>> {
+        let mut report = Report::default();
+        check_number(&mut report, None, "the iso-value", self.iso, 0.0);
+        if (0.0..limits::MIN_LENGTH).contains(&self.iso) {
+            let message = format!("the iso-value is {:?}", self.iso);
+            report.add(|| {
+                Diagnostic::error(None, message)
+                    .expected(format!("a number of at least {:e}", limits::MIN_LENGTH))
+            });
+        }
+        check_groups(&mut report, &self.attributes);
+        let nodes = self.arena(max_nodes, &mut report);
+        if report.is_empty() {
+            check_occurrences(&mut report, &nodes, max_occurrences);
+        }
+        if !report.is_empty() {
+            report.sort();
+            return Err(report.finish());
+        }
+        Ok(CheckedTree { iso: self.iso, attributes: self.attributes.clone(), nodes: nodes.into() })
+    }
+
+    /// All nodes, children before parents, each checked by itself.
+    fn arena(&self, max_nodes: usize, report: &mut Report) -> Vec<CheckedNode> {
+        let groups: BTreeMap<&str, usize> = self.attributes.iter().map(|g| (&*g.name, g.width())).collect();
+        let mut nodes: Vec<CheckedNode> = Vec::new();
+        let mut ids: HashMap<usize, NodeId> = HashMap::new();
+        // Each entry is a node, and whether its children are done.
+        let mut stack = vec![(&self.root, false)];
+        while let Some((tree, done)) = stack.pop() {
+            if ids.contains_key(&tree.identity()) {
+                continue;
+            }
+            let node = tree.node();
+            if !done {
+                stack.push((tree, true));
+                stack.extend(node.children().iter().rev().map(|child| (child, false)));
+                continue;
+            }
+            if nodes.len() == max_nodes {
+                let message = format!("the tree has more than {max_nodes} nodes");
+                report.add_last(Diagnostic::limit(node.span(), message));
+                break;
+            }
+            check_node(report, node, &groups);
+            let children = node.children().iter().map(|child| ids[&child.identity()]).collect();
+            ids.insert(tree.identity(), NodeId(nodes.len() as u32));
+            nodes.push(CheckedNode { kind: node.kind().clone(), children, span: node.span() });
+        }
+        nodes
+    }
+}
+
+impl CheckedTree {
+    /// A box that holds the support of the field: outside of it the field is exactly zero. Empty if the field is zero everywhere.
+    ///
+    /// Its sides may be infinite. Cost: linear in the number of nodes, shared ones counted once.
+    #[must_use]
+    pub fn support(&self) -> Bounds {
+        // Of each node: its box, and whether its field is negative anywhere.
+        let mut done: Vec<(Bounds, bool)> = Vec::with_capacity(self.nodes.len());
+        for node in &*self.nodes {
+            let children: Vec<_> = node.children.iter().map(|id| done[id.0 as usize]).collect();
+            done.push(node_support(&node.kind, &children));
+        }
+        done.last().map_or(Bounds::EMPTY, |root| root.0)
+    }
+}
+
+/// The box of a node and whether its field may be negative, from those of its children.
+fn node_support(kind: &NodeKind, children: &[(Bounds, bool)]) -> (Bounds, bool) {
+    let hull = || children.iter().fold(Bounds::EMPTY, |all, child| all.hull(child.0));
+    let negative = children.iter().any(|child| child.1);
+    match kind {
+        NodeKind::Primitive(leaf) => (leaf.skeleton.bounds().grown(leaf.radius), leaf.strength < 0.0),
+        NodeKind::Combine(Combinator::Sum | Combinator::Union) => (hull(), negative),
+        NodeKind::Combine(Combinator::Ricci(n)) => (hull(), negative && *n == 1.0),
+        // The smaller of a negative field and zero is the negative field: then it reaches out of the other children.
+        NodeKind::Combine(Combinator::Intersection) if negative => (hull(), true),
+        NodeKind::Combine(Combinator::Intersection) => {
+            let common = children.iter().map(|child| child.0).reduce(Bounds::intersection);
+            (common.filter(|bounds| !bounds.is_empty()).unwrap_or(Bounds::EMPTY), false)
+        }
+        NodeKind::Combine(Combinator::Difference) => children[0],
+        NodeKind::Affine(map) => (affine::map_bounds(map, children[0].0), negative),
+        NodeKind::Warp(warp) => (warp.forward_bounds(children[0].0), negative),
+        NodeKind::Attribute { .. } => children[0],
+    }
+}
+
+/// The smallest reciprocal condition number of an affine map's linear part: below it, the map counts as singular.
+///
+/// It is `1 / (|A| |A^-1|)` in the largest column sum norm, computed in f64: 1 for a rotation at best, 0 for a singular map, and
+/// unchanged by uniform scale. At 1e-12, an f64 inverse is still right to about four digits.
+pub const MIN_RECIPROCAL_CONDITION: f64 = 1e-12;
+
+/// Whether `value` is finite, at least `least` and not too large; an error otherwise.
+fn check_number(report: &mut Report, span: Option<Span>, what: &str, value: f64, least: f64) -> bool {
+    let fault = if !value.is_finite() {
+        "a finite number".to_owned()
+    } else if value.abs() > limits::MAX_NUMBER {
+        format!("a number of at most {:e}", limits::MAX_NUMBER)
+    } else if value < least {
+        if least == 0.0 {
+            "a number of at least 0".to_owned()
+        } else {
+            format!("a number of at least {least:e}")
+        }
+    } else {
+        return true;
+    };
+    report
+        .add(|| Diagnostic::error(span, format!("{what} is {value}")).expected(format!("expected {fault}")));
+    false
+}
+
+/// Three numbers, or an error that shows all of them.
+fn check_numbers(report: &mut Report, span: Option<Span>, what: &str, values: &[f64], least: f64) {
+    let good = |x: &f64| x.is_finite() && x.abs() <= limits::MAX_NUMBER && *x >= least;
+    if !values.iter().all(good) {
+        let shown: Vec<String> = values.iter().map(f64::to_string).collect();
+        let at_least = if least == 0.0 { " of at least 0" } else { "" };
+        report.add(|| {
+            Diagnostic::error(span, format!("{what} is ({})", shown.join(" "))).expected(format!(
+                "expected finite numbers{at_least}, at most {:e} in magnitude",
+                limits::MAX_NUMBER
+            ))
+        });
+    }
+}
+
+fn check_groups(report: &mut Report, groups: &[AttributeGroup]) {
+    if groups.first().is_none_or(|group| &*group.name != "color" || group.width() != 3) {
+        report.add(|| Diagnostic::error(None, "the first attribute is not `color` with 3 reals"));
+    }
+    if groups.len() > limits::MAX_ATTRIBUTES {
+        let message = format!("{} attributes; there may be {}", groups.len(), limits::MAX_ATTRIBUTES);
+        report.add(|| Diagnostic::limit(None, message));
+    }
+    let mut seen = HashSet::new();
+    for group in groups {
+        let name = &group.name;
+        if !is_identifier(name) {
+            report.add(|| {
+                Diagnostic::error(None, format!("an attribute is called `{name}`"))
+                    .expected("expected letters, digits and underscores, beginning with a letter")
+            });
+        } else if RESERVED.contains(&&**name) {
+            let message = format!("an attribute is called `{name}`, like another answer at a point");
+            report.add(|| Diagnostic::error(None, message));
+        }
+        if !seen.insert(name) {
+            report.add(|| Diagnostic::error(None, format!("two attributes are called `{name}`")));
+        }
+        let width = group.width();
+        if width == 0 {
+            report.add(|| Diagnostic::error(None, format!("the attribute `{name}` has no reals")));
+        } else if width > limits::MAX_ATTRIBUTE_WIDTH {
+            let most = limits::MAX_ATTRIBUTE_WIDTH;
+            report.add(|| {
+                Diagnostic::limit(
+                    None,
+                    format!("the attribute `{name}` has {width} reals; it may have {most}"),
+                )
+            });
+        }
+        let what = format!("the default of `{name}`");
+        check_numbers(report, None, &what, &group.default, f64::NEG_INFINITY);
+    }
+}
+
+/// What tables of samples call the other answers.
+const RESERVED: [&str; 7] = ["x", "y", "z", "field", "gx", "gy", "gz"];
+
+fn is_identifier(name: &str) -> bool {
+    name.starts_with(|c: char| c.is_ascii_alphabetic())
+        && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+}
+
+fn check_node(report: &mut Report, node: &Node, groups: &BTreeMap<&str, usize>) {
+    let (span, count) = (node.span(), node.children().len());
+    let fits = match node.kind() {
+        NodeKind::Primitive(leaf) => {
+            check_primitive(report, span, leaf);
+            (count == 0, "no children")
+        }
+        NodeKind::Combine(combinator) => {
+            if let Combinator::Ricci(n) = combinator {
+                check_exponent(report, span, *n);
+            }
+            (count >= 1, "at least one child")
+        }
+        NodeKind::Affine(map) => {
+            check_affine(report, span, map);
+            (count == 1, "one child")
+        }
+        NodeKind::Warp(warp) => {
+            check_fields(report, span, warp.kind().name(), warp.kind().fields(), &warp.to_fields());
+            (count == 1, "one child")
+        }
+        NodeKind::Attribute { name, values } => {
+            check_attribute(report, span, name, values, groups);
+            (count == 1, "one child")
+        }
+    };
+    if let (false, expected) = fits {
+        let message = format!("{} has {count} children", describe(node.kind()));
+        report.add(|| Diagnostic::error(span, message).expected(format!("expected {expected}")));
+    }
+}
+
+/// A node's kind in words.
+fn describe(kind: &NodeKind) -> String {
+    match kind {
+        NodeKind::Primitive(leaf) => format!("a {}", leaf.skeleton.kind().name()),
+        NodeKind::Combine(combinator) => format!("a node `{}`", combinator.name()),
+        NodeKind::Affine(_) => "an affine map".to_owned(),
+        NodeKind::Warp(warp) => format!("a {}", warp.kind().name()),
+        NodeKind::Attribute { name, .. } => format!("the attribute node `{name}`"),
+    }
+}
+
+fn check_primitive(report: &mut Report, span: Option<Span>, leaf: &Primitive) {
+    let kind = leaf.skeleton.kind();
+    check_fields(report, span, kind.name(), kind.fields(), &leaf.skeleton.to_fields());
+    check_number(report, span, "the radius", leaf.radius, limits::MIN_LENGTH);
+    check_number(report, span, "the strength", leaf.strength, f64::NEG_INFINITY);
+}
+
+/// The parameters of a skeleton or a warp, each by its kind.
+fn check_fields(
+    report: &mut Report,
+    span: Option<Span>,
+    owner: &str,
+    fields: &[Field],
+    values: &[FieldValue],
+) {
+    for (field, value) in fields.iter().zip(values) {
+        let what = format!("the `{}` of the {owner}", field.name);
+        match field.kind {
+            FieldKind::Real => {
+                check_number(report, span, &what, value.real(), f64::NEG_INFINITY);
+            }
+            FieldKind::Positive => {
+                check_number(report, span, &what, value.real(), limits::MIN_LENGTH);
+            }
+            FieldKind::NonNegative => {
+                check_number(report, span, &what, value.real(), 0.0);
+            }
+            FieldKind::Extents => check_numbers(report, span, &what, &value.vector(), 0.0),
+            FieldKind::Position => check_numbers(report, span, &what, &value.vector(), f64::NEG_INFINITY),
+            FieldKind::Direction | FieldKind::Axis => {
+                check_numbers(report, span, &what, &value.vector(), f64::NEG_INFINITY);
+                if value.vector() == [0.0; 3] {
+                    report.add(|| {
+                        Diagnostic::error(span, format!("{what} is (0 0 0)")).expected("expected a direction")
+                    });
+                }
+            }
+        }
+    }
+}
+
+fn check_exponent(report: &mut Report, span: Option<Span>, n: f64) {
+    if !(1.0..=limits::MAX_RICCI_EXPONENT).contains(&n) {
+        report.add(|| {
+            Diagnostic::error(span, format!("the exponent of the Ricci blend is {n}"))
+                .expected(format!("expected a number from 1 to {}", limits::MAX_RICCI_EXPONENT))
+        });
+    }
+}
+
+fn check_attribute(
+    report: &mut Report,
+    span: Option<Span>,
+    name: &str,
+    values: &[f64],
+    groups: &BTreeMap<&str, usize>,
+) {
+    match groups.get(name).copied() {
+        None => report.add(|| {
+            let help = match nearest(name, groups.keys().copied()) {
+                Some(other) => format!("perhaps `{other}` was meant"),
+                None => "declare it with its default first".to_owned(),
+            };
+            Diagnostic::error(span, format!("there is no attribute `{}`", clip(name))).expected(help)
+        }),
+        Some(width) if width != values.len() => {
+            let message = format!("the attribute `{name}` has width {width}, not {}", values.len());
+            let plural = if width == 1 { "" } else { "s" };
+            report
+                .add(|| Diagnostic::error(span, message).expected(format!("expected {width} real{plural}")));
+        }
+        Some(_) => {}
+    }
+    check_numbers(report, span, &format!("the attribute `{name}`"), values, f64::NEG_INFINITY);
+}
+
+/// An affine map has to have an inverse, in numbers that f32 can hold.
+fn check_affine(report: &mut Report, span: Option<Span>, map: &DAffine3) {
+    let numbers = map.to_cols_array();
+    if !numbers.iter().all(|x| x.is_finite() && x.abs() <= limits::MAX_NUMBER) {
+        check_numbers(report, span, "the affine map (by columns)", &numbers, f64::NEG_INFINITY);
+        return;
+    }
+    let size = largest(map.matrix3);
+    let inverse = (map.matrix3 * (1.0 / size)).inverse();
+    // A singular matrix has an inverse of infinities and NaNs.
+    let condition = if inverse.is_finite() { 1.0 / (norm(map.matrix3) / size * norm(inverse)) } else { 0.0 };
+    if condition < MIN_RECIPROCAL_CONDITION {
+        let message = format!("the affine map is singular: its reciprocal condition is {condition:.1e}");
+        let least = MIN_RECIPROCAL_CONDITION;
+        report.add(|| Diagnostic::error(span, message).expected(format!("expected at least {least:e}")));
+        return;
+    }
+    // With |t| <= MAX_NUMBER this bounds the inverse's translation too, at 3e30: finite in f32.
+    let least = limits::MIN_LENGTH;
+    if largest(inverse) / size > 1.0 / least {
+        let message = format!("the affine map shrinks {:.1e} times", largest(inverse) / size);
+        report.add(|| {
+            Diagnostic::error(span, message).expected(format!("expected a scale of at least {least:e}"))
+        });
+    }
+}
+
+/// The largest magnitude of a matrix's numbers.
+fn largest(m: DMat3) -> f64 {
+    m.to_cols_array().iter().fold(0.0, |most, x| most.max(x.abs()))
+}
+
+/// The largest sum of magnitudes of a column.
+fn norm(m: DMat3) -> f64 {
+    [m.x_axis, m.y_axis, m.z_axis].iter().map(|column| column.abs().element_sum()).fold(0.0, f64::max)
+}
+
+/// Counts the paths from the root to all nodes: what lowering may have to go through, and rows in the end.
+fn check_occurrences(report: &mut Report, nodes: &[CheckedNode], most: usize) {
+    let mut paths = vec![0u64; nodes.len()];
+    let mut uses = 0u64;
+    if let Some(root) = paths.last_mut() {
+        *root = 1;
+    }
+    for (i, node) in nodes.iter().enumerate().rev() {
+        for child in &node.children {
+            let child = child.0 as usize;
+            paths[child] = paths[child].saturating_add(paths[i]);
+        }
+        uses = uses.saturating_add(paths[i]);
+    }
+    if uses > most as u64 {
+        let span = nodes.last().and_then(|root| root.span);
+        let count = if uses == u64::MAX { "more than 10^19".to_owned() } else { uses.to_string() };
+        report.add(|| {
+            Diagnostic::limit(span, format!("unfolded, the tree has {count} nodes; it may have {most}"))
+                .expected("share fewer subtrees")
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,147 @@
+//! Ricci's blend (Ricci 1973): `F = (sum max(f_i, 0)^n)^(1/n)`; with n = 1 the plain sum, negative fields included.
+//!
+//! Scaled by the largest operand, no exponent overflows: `F = m (sum (f_i / m)^n)^(1/n)`. The weight of a child is `f_i^n`.
+//!
+//! The compiler meets the operands one at a time and does not know the largest beforehand, so it keeps the largest so far, `m`, and the
+//! sum relative to it, `S = sum (f_i / m)^n`. A larger operand f rescales: `S (m / f)^n + 1`. Either way it takes one power:
+//!
+//! ```text
+//! p = (min(f, m) / max(f, m))^n
+//! S = f > m ? S p + 1 : S + p        m = max(f, m)        in the end F = m S^(1/n)
+//! ```
+//!
+//! F does not depend on m, so m is held: its tangent would cancel. The 1 is `(f / f)^n` and has the tangent `n f' / f`.
+
+use jbt_ir::Domain;
+
+pub(super) fn field(fields: &[f64], n: f64) -> f64 {
+    if n == 1.0 {
+        return super::sum::field(fields);
+    }
+    let largest = fields.iter().fold(0.0f64, |m, &f| m.max(f));
+    if largest == 0.0 {
+        return 0.0;
+    }
+    largest * weights(fields, n).iter().sum::<f64>().powf(1.0 / n)
+}
+
+pub(super) fn weights(fields: &[f64], n: f64) -> Vec<f64> {
+    let largest = fields.iter().fold(0.0f64, |m, &f| m.max(f));
+    if n == 1.0 || largest == 0.0 {
+        return super::sum::weights(fields);
+    }
+    fields.iter().map(|f| (f.max(0.0) / largest).powf(n)).collect()
+}
+
+/// Operands below this count as zero, so that the reciprocal of the largest one is finite: about 8e-31.
+const FLOOR: f32 = 1.0 / (1u128 << 100) as f32;
+
+/// An exponent, as the compiler has it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Exponent<R> {
+    /// A whole number: products.
+    Integer(u32),
+    /// Any number of at least 1, and its reciprocal.
+    General(R, R),
+}
+
+/// The largest operand so far, and the sum of powers relative to it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Scaled<R> {
+    /// The largest operand so far; held.
+    pub(crate) largest: R,
+    /// Sum of `(f / largest)^n`.
+    pub(crate) sum: R,
+}
+
+/// What a step does to sums that are kept relative to the largest operand.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Step<R> {
+    /// The accumulators after it.
+    pub(crate) next: Scaled<R>,
+    /// What sums so far have to be multiplied with.
+    pub(crate) rescale: R,
+    /// The weight of the operand: `(f / largest)^n`.
+    pub(crate) weight: R,
+}
+
+/// One operand more, over the ops. `moving`: the result will be differentiated.
+pub(crate) fn step<D: Domain>(
+    d: &mut D,
+    so_far: Scaled<D::Real>,
+    field: D::Real,
+    exponent: Exponent<D::Real>,
+    moving: bool,
+) -> Step<D::Real> {
+    let (zero, one, floor) = (d.constant(0.0), d.constant(1.0), d.constant(FLOOR));
+    let counts = d.lt(floor, field);
+    let field = d.select(counts, field, zero);
+    let larger = d.lt(so_far.largest, field);
+    let largest = d.select(larger, field, so_far.largest);
+    let largest = d.hold(largest);
+    let smaller = d.select(larger, so_far.largest, field);
+    let ratio = d.div(smaller, largest);
+    let any = d.lt(zero, largest);
+    let ratio = d.select(any, ratio, zero);
+    let power = power(d, ratio, exponent);
+    let first = if moving { unit(d, field, largest, exponent) } else { one };
+    let rescaled = d.fma(so_far.sum, power, first);
+    let added = d.add(so_far.sum, power);
+    let sum = d.select(larger, rescaled, added);
+    Step {
+        next: Scaled { largest, sum },
+        rescale: d.select(larger, power, one),
+        weight: d.select(larger, one, power),
+    }
+}
+
+/// `F = largest * sum^(1/n)`, over the ops.
+pub(crate) fn finish<D: Domain>(d: &mut D, scaled: Scaled<D::Real>, exponent: Exponent<D::Real>) -> D::Real {
+    let root = match exponent {
+        Exponent::Integer(2) => d.sqrt(scaled.sum),
+        Exponent::Integer(4) => {
+            let root = d.sqrt(scaled.sum);
+            d.sqrt(root)
+        }
+        Exponent::Integer(n) => {
+            let inverse = d.constant(1.0 / n as f32);
+            d.pow(scaled.sum, inverse)
+        }
+        Exponent::General(_, inverse) => d.pow(scaled.sum, inverse),
+    };
+    d.mul(scaled.largest, root)
+}
+
+/// 1, with the tangent of `(field / largest)^n` where the two are equal.
+fn unit<D: Domain>(d: &mut D, field: D::Real, largest: D::Real, exponent: Exponent<D::Real>) -> D::Real {
+    let (zero, one) = (d.constant(0.0), d.constant(1.0));
+    let any = d.lt(zero, largest);
+    let inverse = d.div(one, largest);
+    let inverse = d.select(any, inverse, zero);
+    let quotient = d.mul(field, inverse);
+    let held = d.hold(quotient);
+    let still = d.sub(quotient, held);
+    let n = match exponent {
+        Exponent::Integer(n) => d.constant(n as f32),
+        Exponent::General(n, _) => n,
+    };
+    d.fma(n, still, one)
+}
+
+/// `x^n` for x in [0, 1].
+fn power<D: Domain>(d: &mut D, x: D::Real, exponent: Exponent<D::Real>) -> D::Real {
+    match exponent {
+        Exponent::General(n, _) => d.pow(x, n),
+        Exponent::Integer(n) => {
+            // Square and multiply, from the highest bit.
+            let mut result = x;
+            for bit in (0..n.ilog2()).rev() {
+                result = d.mul(result, result);
+                if n >> bit & 1 == 1 {
+                    result = d.mul(result, x);
+                }
+            }
+            result
+        }
+    }
+}

@@ -1,0 +1,202 @@
+//! Messages about a model, with the place in the text that earns them.
+//!
+//! ```text
+//! hero.jbt:7:12: error: the radius is 0
+//!   7 |     radius 0
+//!     |            ^ expected a number of at least 1e-15
+//! ```
+
+use std::fmt::Write as _;
+
+/// A range of bytes of a source text.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, PartialOrd, Ord, Hash)]
+pub struct Span {
+    /// The first byte.
+    pub start: u32,
+    /// One past the last byte.
+    pub end: u32,
+}
+
+impl Span {
+    /// The range between two byte offsets of a text of at most [`jbt_ir::limits::MAX_SCENE_BYTES`].
+    #[must_use]
+    pub const fn new(start: usize, end: usize) -> Self {
+        Self { start: start as u32, end: end as u32 }
+    }
+}
+
+/// How much a diagnostic matters.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Severity {
+    /// The model cannot be used.
+    Error,
+    /// The model can be used, and is perhaps not what was meant.
+    Warning,
+    /// The model is larger than a limit allows.
+    Limit,
+}
+
+impl Severity {
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Error => "error",
+            Self::Warning => "warning",
+            Self::Limit => "limit",
+        }
+    }
+}
+
+/// A message about a model.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Diagnostic {
+    /// How much it matters.
+    pub severity: Severity,
+    /// Where, if the model came from a text.
+    pub span: Option<Span>,
+    /// What is wrong, with the numbers in it. Words of the file may stand in it as they are: rendering escapes them.
+    pub message: String,
+    /// What was expected instead, or what to do.
+    pub help: Option<String>,
+}
+
+impl Diagnostic {
+    /// An error.
+    #[must_use]
+    pub fn error(span: Option<Span>, message: impl Into<String>) -> Self {
+        Self { severity: Severity::Error, span, message: message.into(), help: None }
+    }
+
+    /// A limit that was reached.
+    #[must_use]
+    pub fn limit(span: Option<Span>, message: impl Into<String>) -> Self {
+        Self { severity: Severity::Limit, ..Self::error(span, message) }
+    }
+
+    /// A warning.
+    #[must_use]
+    pub fn warning(span: Option<Span>, message: impl Into<String>) -> Self {
+        Self { severity: Severity::Warning, ..Self::error(span, message) }
+    }
+
+    /// The same with what was expected.
+    #[must_use]
+    pub fn expected(self, help: impl Into<String>) -> Self {
+        Self { help: Some(help.into()), ..self }
+    }
+}
+
+/// A source text and its name, for showing diagnostics.
+#[derive(Clone, Copy, Debug)]
+pub struct Source<'a> {
+    /// The file's name, or something like `<stdin>`.
+    pub name: &'a str,
+    /// The text. Bytes, not characters: a stranger's file need not be UTF-8.
+    pub text: &'a [u8],
+}
+
+/// The longest excerpt of a line that is shown, in characters.
+const EXCERPT: usize = 96;
+
+impl Source<'_> {
+    /// Line and column of a byte, counted from 1. The column counts characters; bytes that are not UTF-8 count one each.
+    #[must_use]
+    pub fn position(&self, byte: usize) -> (usize, usize) {
+        let before = &self.text[..byte.min(self.text.len())];
+        let line = before.iter().filter(|&&b| b == b'\n').count() + 1;
+        let start = before.iter().rposition(|&b| b == b'\n').map_or(0, |newline| newline + 1);
+        (line, characters(&before[start..]) + 1)
+    }
+
+    /// The diagnostic as people read it: place, message, the line, a caret. Control characters of the file are escaped.
+    #[must_use]
+    pub fn render(&self, diagnostic: &Diagnostic) -> String {
+        let mut out = String::new();
+        let message = escape(&diagnostic.message);
+        let severity = diagnostic.severity.name();
+        let Some(span) = diagnostic.span else {
+            let _ = write!(out, "{}: {severity}: {message}", escape(self.name));
+            if let Some(help) = &diagnostic.help {
+                let _ = write!(out, "\n  {}", escape(help));
+            }
+            return out;
+        };
+        let (line, column) = self.position(span.start as usize);
+        let _ = writeln!(out, "{}:{line}:{column}: {severity}: {message}", escape(self.name));
+        let (excerpt, before, under) = self.excerpt(span);
+        let number = line.to_string();
+        let margin = " ".repeat(number.len());
+        let _ = writeln!(out, "  {number} | {excerpt}");
+        let _ = write!(out, "  {margin} | {}{}", " ".repeat(before), "^".repeat(under.max(1)));
+        if let Some(help) = &diagnostic.help {
+            let _ = write!(out, " {}", escape(help));
+        }
+        out
+    }
+
+    /// The part of the span's line to show, the width of what stands before the span, and the width of the span.
+    fn excerpt(&self, span: Span) -> (String, usize, usize) {
+        let start = (span.start as usize).min(self.text.len());
+        let end = (span.end as usize).clamp(start, self.text.len());
+        let line_start =
+            self.text[..start].iter().rposition(|&b| b == b'\n').map_or(0, |newline| newline + 1);
+        let line_end =
+            self.text[start..].iter().position(|&b| b == b'\n').map_or(self.text.len(), |n| start + n);
+        let from = line_start.max(start.saturating_sub(EXCERPT / 2));
+        let to = line_end.min(from + EXCERPT);
+        let show = |range: &[u8]| escape(&String::from_utf8_lossy(range));
+        let before = show(&self.text[from..start]);
+        let under = show(&self.text[start..end.clamp(start, to.max(start))]);
+        let after = show(&self.text[end.clamp(start, to.max(start))..to.max(start)]);
+        (
+            format!("{before}{under}{after}").trim_end().to_owned(),
+            before.chars().count(),
+            under.chars().count(),
+        )
+    }
+}
+
+fn characters(bytes: &[u8]) -> usize {
+    String::from_utf8_lossy(bytes).chars().count()
+}
+
+/// The text with every control character (terminal escapes, bidirectional overrides) written as `\u{..}`, and tabs as a space.
+#[must_use]
+pub fn escape(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '\t' => out.push(' '),
+            c if c.is_control()
+                || matches!(c, '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{feff}') =>
+            {
+                let _ = write!(out, "\\u{{{:x}}}", c as u32);
+            }
+            c => out.push(c),
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn place_caret_and_escapes() {
+        let source = Source { name: "a.jbt", text: b"jbt 1\n  radius \x1b[31m0\n" };
+        let shown =
+            source.render(&Diagnostic::error(Some(Span::new(15, 21)), "bad \x1b[2J").expected("a number"));
+        assert_eq!(
+            shown,
+            "a.jbt:2:10: error: bad \\u{1b}[2J\n  2 |   radius \\u{1b}[31m0\n    |          ^^^^^^^^^^^ a number"
+        );
+    }
+
+    #[test]
+    fn a_span_past_the_end_is_harmless() {
+        let source = Source { name: "a.jbt", text: b"" };
+        assert!(
+            source.render(&Diagnostic::limit(Some(Span::new(7, 3)), "m")).starts_with("a.jbt:1:1: limit: m")
+        );
+    }
+}

@@ -1,0 +1,38 @@
+//! The cubic falloff `(1 - s)^3`, used by Galin, Blender and others under Wyvill's name.
+
+use jbt_ir::Domain;
+
+use super::FalloffMember;
+
+/// The Wyvill cubic. Text: `wyvill`.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Wyvill;
+
+impl FalloffMember for Wyvill {
+    const NAME: &'static str = "wyvill";
+
+    fn value(s: f64) -> f64 {
+        if s >= 1.0 { 0.0 } else { (1.0 - s).powi(3) }
+    }
+
+    fn inverse(level: f64) -> f64 {
+        1.0 - level.cbrt()
+    }
+
+    fn emit<D: Domain>(d: &mut D, u: D::Real) -> D::Real {
+        let square = d.mul(u, u);
+        d.mul(square, u)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn published_values() {
+        assert!((Wyvill::inverse(0.5).sqrt() - 0.454_202_0).abs() < 5e-8);
+        assert!((Wyvill::value(0.454_202_0f64.powi(2)) - 0.5).abs() < 1e-6);
+        assert_eq!(Wyvill::value(1.0), 0.0);
+    }
+}

@@ -1,0 +1,75 @@
+//! Named parameters of the members of the open sets (skeletons, falloffs, warps): one description serves the text
+//! parser, the printer, the check and the documentation.
+
+/// What a parameter may be.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum FieldKind {
+    /// Any finite number.
+    Real,
+    /// A finite number of at least [`jbt_ir::limits::MIN_LENGTH`].
+    Positive,
+    /// A finite number of at least 0.
+    NonNegative,
+    /// Three finite numbers: a position.
+    Position,
+    /// Three finite numbers of at least 0: sizes along the axes.
+    Extents,
+    /// Three finite numbers, not all zero: a direction, normalised before use.
+    Direction,
+    /// One of the words x, y, z; stored as the unit vector of that axis.
+    Axis,
+}
+
+/// A parameter of a member.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Field {
+    /// Its name in the text format.
+    pub name: &'static str,
+    /// What it may be.
+    pub kind: FieldKind,
+    /// What it is when it is not written; `None`: it has to be written.
+    pub default: Option<FieldValue>,
+}
+
+/// The value of a parameter.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum FieldValue {
+    /// One number.
+    Real(f64),
+    /// Three numbers.
+    Vector([f64; 3]),
+}
+
+impl FieldValue {
+    /// The number. Panics on a vector: the kind of the field has excluded it.
+    #[must_use]
+    pub fn real(self) -> f64 {
+        match self {
+            Self::Real(value) => value,
+            Self::Vector(_) => panic!("the field is a number by its kind"),
+        }
+    }
+
+    /// The vector. Panics on a number: the kind of the field has excluded it.
+    #[must_use]
+    pub fn vector(self) -> [f64; 3] {
+        match self {
+            Self::Vector(value) => value,
+            Self::Real(_) => panic!("the field is a vector by its kind"),
+        }
+    }
+}
+
+/// What every member of an open set has: a name, and parameters that can be written and read back.
+pub trait Member: Sized {
+    /// The word of the text format.
+    const NAME: &'static str;
+    /// The parameters, in the order in which they print.
+    const FIELDS: &'static [Field];
+
+    /// The member with these parameters: one value for each of [`FIELDS`](Self::FIELDS), of its kind.
+    fn from_fields(values: &[FieldValue]) -> Self;
+
+    /// The parameters: what [`from_fields`](Self::from_fields) was given.
+    fn to_fields(&self) -> Vec<FieldValue>;
+}

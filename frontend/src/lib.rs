@@ -1,0 +1,27 @@
+//! What a model is: BlobTrees, how they are written, checked and lowered to programs.
+//!
+//! ```text
+//! text | builder | importer  ->  Model  ->  check: CheckedTree  ->  lower: ir::Function + Tables
+//! ```
+//!
+//! This crate knows no lanes and no machine code; it writes its formulas over [`jbt_ir::Domain`].
+
+pub mod affine;
+pub mod attribute;
+pub mod bounds;
+pub mod builder;
+pub mod check;
+pub mod combine;
+pub mod diagnostic;
+pub mod falloff;
+pub mod field;
+pub mod lower;
+pub mod model;
+pub mod query;
+mod report;
+pub mod scene;
+pub mod skeleton;
+pub mod traverse;
+pub mod tree;
+pub mod walk;
+pub mod warp;

@@ -1,0 +1,371 @@
+//! The accumulators of an operator: its field, and its attributes in the same traversal.
+//!
+//! An operator either *weighs* its operands (sum, Ricci) or lets one *win* (union, intersection).
+//!
+//! ```text
+//! weighs   blend:     A = sum w a            in the end A / W, W = sum w
+//!          dominant:  the a with the largest w * share, share being the part of w that the leaf behind a has in its operand
+//! wins     both:      the a of the winner, and its share
+//! ```
+
+use std::rc::Rc;
+
+use jbt_ir::{Domain, FunctionBuilder, Value};
+
+use super::shape::ReducerCode;
+use crate::attribute::Mixing;
+use crate::combine::{intersection, ricci, sum, union};
+
+/// One attribute group of an answer.
+#[derive(Clone, Debug)]
+pub(super) struct GroupAnswer {
+    pub(super) channels: Vec<Value>,
+    /// For dominant groups: the part of the answer's weight that belongs to the leaf behind it; `None` is all of it.
+    pub(super) share: Option<Value>,
+    /// Whether the channels are numbers of a row: finite in every lane.
+    pub(super) numbers: bool,
+}
+
+/// What a subtree answers at a point.
+#[derive(Clone, Debug)]
+pub(super) struct Answer {
+    pub(super) field: Value,
+    pub(super) groups: Vec<GroupAnswer>,
+}
+
+/// What an operator is, to its accumulators.
+#[derive(Clone, Debug)]
+pub(super) struct Operator {
+    pub(super) code: ReducerCode,
+    pub(super) exponent: Option<ricci::Exponent<Value>>,
+    /// Whether no operand can be negative.
+    pub(super) non_negative: bool,
+    /// Whether operands come in several groups: then ties need their order in the file.
+    pub(super) ordered: bool,
+    /// Whether the field will be differentiated.
+    pub(super) moving: bool,
+    /// How each attribute group of the query mixes.
+    pub(super) mixing: Rc<[Mixing]>,
+}
+
+impl Operator {
+    const fn weighs(&self) -> bool {
+        match self.code {
+            ReducerCode::Sum | ReducerCode::RicciInteger(_) | ReducerCode::RicciGeneral => true,
+            ReducerCode::Union | ReducerCode::Intersection => false,
+        }
+    }
+
+    /// Whether operands need their place in the file: something is decided among several groups, and somebody sees by whom.
+    pub(super) fn wants_order(&self) -> bool {
+        wants_order(self.code, self.ordered, self.moving, &self.mixing)
+    }
+}
+
+/// See [`Operator::wants_order`].
+pub(super) fn wants_order(code: ReducerCode, ordered: bool, moving: bool, mixing: &[Mixing]) -> bool {
+    let decides = match code {
+        ReducerCode::Sum | ReducerCode::RicciInteger(_) | ReducerCode::RicciGeneral => {
+            mixing.contains(&Mixing::Dominant)
+        }
+        ReducerCode::Union | ReducerCode::Intersection => moving || !mixing.is_empty(),
+    };
+    ordered && decides
+}
+
+/// The accumulators of one attribute group.
+#[derive(Clone, Debug)]
+struct GroupState {
+    channels: Vec<Value>,
+    /// Dominant groups: the largest weight so far if the operator weighs, the winner's share if it lets one win.
+    best: Option<Value>,
+    /// The place in the file of the operand behind `best`, where it matters.
+    order: Option<Value>,
+}
+
+/// The accumulators of an operator.
+#[derive(Clone, Debug)]
+pub(super) struct State {
+    /// Sum: the sum. Ricci: the largest operand and the relative sum. Union and intersection: the best field.
+    field: Vec<Value>,
+    /// The place in the file of the winner, where it matters.
+    order: Option<Value>,
+    /// The sum of weights, where it is not among `field`.
+    total: Option<Value>,
+    groups: Vec<GroupState>,
+}
+
+impl State {
+    /// The accumulators before the first operand. `defaults` are the channels of every group.
+    pub(super) fn new(d: &mut FunctionBuilder, operator: &Operator, defaults: &[Vec<Value>]) -> Self {
+        let zero = d.constant(0.0);
+        let field = match operator.code {
+            ReducerCode::Sum => vec![zero],
+            ReducerCode::RicciInteger(_) | ReducerCode::RicciGeneral => vec![zero, zero],
+            ReducerCode::Union => vec![d.constant(f32::NEG_INFINITY)],
+            ReducerCode::Intersection => vec![d.constant(f32::INFINITY)],
+        };
+        let weighs = operator.weighs();
+        let wants_attributes = !defaults.is_empty();
+        let separate_total = operator.code == ReducerCode::Sum && !operator.non_negative && wants_attributes;
+        let groups = defaults
+            .iter()
+            .zip(operator.mixing.iter())
+            .map(|(default, mixing)| match mixing {
+                Mixing::Blend => GroupState {
+                    channels: if weighs { vec![zero; default.len()] } else { default.clone() },
+                    best: None,
+                    order: None,
+                },
+                Mixing::Dominant => GroupState {
+                    channels: default.clone(),
+                    best: Some(zero),
+                    order: (weighs && operator.wants_order()).then_some(zero),
+                },
+            })
+            .collect();
+        Self {
+            field,
+            order: (!weighs && operator.wants_order()).then_some(zero),
+            total: separate_total.then_some(zero),
+            groups,
+        }
+    }
+
+    /// All accumulators, in a fixed order.
+    pub(super) fn values(&mut self) -> Vec<Value> {
+        let mut values = Vec::new();
+        self.each(|value| values.push(*value));
+        values
+    }
+
+    /// Other values for the same accumulators.
+    pub(super) fn replace(&mut self, values: &[Value]) {
+        let mut next = values.iter();
+        self.each(|value| *value = *next.next().expect("as many as there are accumulators"));
+    }
+
+    fn each(&mut self, mut visit: impl FnMut(&mut Value)) {
+        self.field.iter_mut().for_each(&mut visit);
+        self.order.iter_mut().for_each(&mut visit);
+        self.total.iter_mut().for_each(&mut visit);
+        for group in &mut self.groups {
+            group.channels.iter_mut().for_each(&mut visit);
+            group.best.iter_mut().for_each(&mut visit);
+            group.order.iter_mut().for_each(&mut visit);
+        }
+    }
+
+    /// One operand more. `order` is its place in the file, where the operator is ordered.
+    pub(super) fn step(
+        &mut self,
+        d: &mut FunctionBuilder,
+        operator: &Operator,
+        operand: &Answer,
+        order: Option<Value>,
+    ) {
+        match operator.code {
+            ReducerCode::Sum => {
+                self.field[0] = sum::step(d, self.field[0], operand.field);
+                if !self.groups.is_empty() {
+                    let weight = sum::weight(d, operand.field, operator.non_negative);
+                    if let Some(total) = &mut self.total {
+                        *total = d.add(*total, weight);
+                    }
+                    self.weigh(d, weight, None, operand, order);
+                }
+            }
+            ReducerCode::RicciInteger(_) | ReducerCode::RicciGeneral => {
+                let exponent = operator.exponent.expect("a Ricci blend has an exponent");
+                let so_far = ricci::Scaled { largest: self.field[0], sum: self.field[1] };
+                let step = ricci::step(d, so_far, operand.field, exponent, operator.moving);
+                self.field = vec![step.next.largest, step.next.sum];
+                if !self.groups.is_empty() {
+                    self.weigh(d, step.weight, Some(step.rescale), operand, order);
+                }
+            }
+            ReducerCode::Union => {
+                let beats = union::beats::<FunctionBuilder>;
+                self.win(d, (union::step::<FunctionBuilder>, beats), operand, order);
+            }
+            ReducerCode::Intersection => {
+                let beats = intersection::beats::<FunctionBuilder>;
+                self.win(d, (intersection::step::<FunctionBuilder>, beats), operand, order);
+            }
+        }
+    }
+
+    /// Adds a weighted operand's attributes.
+    fn weigh(
+        &mut self,
+        d: &mut FunctionBuilder,
+        weight: Value,
+        rescale: Option<Value>,
+        operand: &Answer,
+        order: Option<Value>,
+    ) {
+        let zero = d.constant(0.0);
+        for (state, answer) in self.groups.iter_mut().zip(&operand.groups) {
+            let Some(best) = state.best else {
+                for (sum, &channel) in state.channels.iter_mut().zip(&answer.channels) {
+                    let so_far = rescale.map_or(*sum, |rescale| d.mul(*sum, rescale));
+                    let added = d.fma(weight, channel, so_far);
+                    // A row without weight leaves the sum alone, whatever is in its channels: 0 * NaN must not get in.
+                    *sum = if answer.numbers {
+                        added
+                    } else {
+                        let counts = d.lt(zero, weight);
+                        d.select(counts, added, so_far)
+                    };
+                }
+                continue;
+            };
+            let candidate = answer.share.map_or(weight, |share| d.mul(weight, share));
+            let best = rescale.map_or(best, |rescale| d.mul(best, rescale));
+            let takes = takes(d, union::beats::<FunctionBuilder>, best, candidate, state.order.zip(order));
+            state.best = Some(d.select(takes, candidate, best));
+            state.take(d, takes, answer, order);
+        }
+    }
+
+    /// Lets the operand win, where it does.
+    fn win(
+        &mut self,
+        d: &mut FunctionBuilder,
+        (step, beats): (StepFn, BeatsFn),
+        operand: &Answer,
+        order: Option<Value>,
+    ) {
+        let best = self.field[0];
+        if self.order.is_none() && self.groups.is_empty() {
+            self.field[0] = step(d, best, operand.field);
+            return;
+        }
+        let takes = takes(d, beats, best, operand.field, self.order.zip(order));
+        self.field[0] = match (self.order, order) {
+            (Some(so_far), Some(order)) => {
+                self.order = Some(d.select(takes, order, so_far));
+                d.select(takes, operand.field, best)
+            }
+            _ => step(d, best, operand.field),
+        };
+        for (state, answer) in self.groups.iter_mut().zip(&operand.groups) {
+            if let Some(share) = state.best {
+                let one = d.constant(1.0);
+                state.best = Some(d.select(takes, answer.share.unwrap_or(one), share));
+            }
+            state.take(d, takes, answer, None);
+        }
+    }
+
+    /// The operator's answer.
+    pub(super) fn finish(
+        &self,
+        d: &mut FunctionBuilder,
+        operator: &Operator,
+        defaults: &[Vec<Value>],
+    ) -> Answer {
+        let (field, total) = match operator.code {
+            ReducerCode::Sum => (self.field[0], self.total.unwrap_or(self.field[0])),
+            ReducerCode::RicciInteger(_) | ReducerCode::RicciGeneral => {
+                let exponent = operator.exponent.expect("a Ricci blend has an exponent");
+                let scaled = ricci::Scaled { largest: self.field[0], sum: self.field[1] };
+                (ricci::finish(d, scaled, exponent), self.field[1])
+            }
+            ReducerCode::Union | ReducerCode::Intersection => (self.field[0], self.field[0]),
+        };
+        let groups = self.groups.iter().zip(defaults).map(|(state, default)| {
+            if operator.weighs() {
+                state.normalised(d, total, default)
+            } else {
+                let channels = where_positive(d, field, &state.channels, default);
+                GroupAnswer { channels, share: state.best, numbers: false }
+            }
+        });
+        Answer { field, groups: groups.collect() }
+    }
+}
+
+impl GroupState {
+    /// Takes the operand's channels where `takes`.
+    fn take(&mut self, d: &mut FunctionBuilder, takes: Value, answer: &GroupAnswer, order: Option<Value>) {
+        for (channel, &taken) in self.channels.iter_mut().zip(&answer.channels) {
+            *channel = d.select(takes, taken, *channel);
+        }
+        if let (Some(so_far), Some(order)) = (self.order, order) {
+            self.order = Some(d.select(takes, order, so_far));
+        }
+    }
+
+    /// The group's answer once all weights are in; the default where their sum is zero.
+    ///
+    /// Divided, and not multiplied with a reciprocal: that is infinite for subnormal sums, and mixes like values inexactly.
+    fn normalised(&self, d: &mut FunctionBuilder, total: Value, default: &[Value]) -> GroupAnswer {
+        let zero = d.constant(0.0);
+        let any = d.lt(zero, total);
+        let channels = self.channels.iter().zip(default).map(|(&channel, &default)| {
+            let mixed = if self.best.is_some() { channel } else { d.div(channel, total) };
+            d.select(any, mixed, default)
+        });
+        let channels = channels.collect();
+        let share = self.best.map(|best| d.div(best, total));
+        GroupAnswer { channels, share, numbers: false }
+    }
+}
+
+type StepFn = fn(&mut FunctionBuilder, Value, Value) -> Value;
+type BeatsFn = fn(&mut FunctionBuilder, Value, Value) -> Value;
+
+/// Whether a candidate takes over: it beats what is there, or equals it and comes earlier in the file.
+fn takes(
+    d: &mut FunctionBuilder,
+    beats: BeatsFn,
+    so_far: Value,
+    candidate: Value,
+    orders: Option<(Value, Value)>,
+) -> Value {
+    let better = beats(d, so_far, candidate);
+    let Some((order_so_far, order)) = orders else { return better };
+    let equal = d.eq(so_far, candidate);
+    let earlier = d.lt(order, order_so_far);
+    let tie = d.both(equal, earlier);
+    d.either(better, tie)
+}
+
+/// The channels of whoever decided; the default where the field that was decided on has no weight.
+fn where_positive(
+    d: &mut FunctionBuilder,
+    field: Value,
+    channels: &[Value],
+    default: &[Value],
+) -> Vec<Value> {
+    let zero = d.constant(0.0);
+    let weighs = d.lt(zero, field);
+    channels.iter().zip(default).map(|(&channel, &default)| d.select(weighs, channel, default)).collect()
+}
+
+/// The answer of the left child of a difference, or of the subtracted one where that decides.
+pub(super) fn difference(
+    d: &mut FunctionBuilder,
+    left: &Answer,
+    right: &Answer,
+    iso2: Value,
+    defaults: &[Vec<Value>],
+) -> Answer {
+    let (field, cuts) = crate::combine::difference::emit(d, left.field, right.field, iso2);
+    let one = d.constant(1.0);
+    let groups = left.groups.iter().zip(&right.groups).zip(defaults).map(|((left, right), default)| {
+        let decided: Vec<Value> =
+            left.channels.iter().zip(&right.channels).map(|(&l, &r)| d.select(cuts, r, l)).collect();
+        GroupAnswer {
+            channels: where_positive(d, field, &decided, default),
+            share: match (left.share, right.share) {
+                (None, None) => None,
+                (l, r) => Some(d.select(cuts, r.unwrap_or(one), l.unwrap_or(one))),
+            },
+            numbers: left.numbers && right.numbers,
+        }
+    });
+    let groups = groups.collect();
+    Answer { field, groups }
+}

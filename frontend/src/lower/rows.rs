@@ -1,0 +1,245 @@
+//! The numbers of a scene: for every row, what its code asks for, in the order in which it asks.
+//!
+//! This goes through the occurrences as [`super::emit`] does, but through all members of a group and not the first alone, and writes
+//! numbers where that declares columns. Numbers are derived in f64 and rounded once.
+
+use jbt_ir::{Entity, Rows, Store, Table, Tables};
+
+use super::emit::{Code, groups};
+use super::mixing::wants_order;
+use super::occurrence::{FieldId, OccurrenceId, OccurrenceKind, Scene, SpaceId};
+use super::position::MapKind;
+use super::shape::{LeafMap, Lift, ReducerCode, Shapes, code, place};
+use crate::attribute::Mixing;
+use crate::check::NodeId;
+use crate::diagnostic::Diagnostic;
+use crate::query::Query;
+use crate::tree::NodeKind;
+
+/// Writes the numbers.
+pub(super) fn rows(
+    scene: &Scene<'_>,
+    shapes: &Shapes,
+    query: Query,
+    code: &Code,
+) -> Result<Tables, Vec<Diagnostic>> {
+    let mut writer = Writer::new(scene, shapes, query, code);
+    for table in code.function.tables.keys() {
+        for row in 0..writer.members[table.index()].len() {
+            writer.row(table, row);
+        }
+        let columns = code.function.tables[table].columns.len();
+        assert_eq!(
+            writer.tables[table.index()].numbers.len(),
+            columns * writer.members[table.index()].len(),
+            "rows and code agree on the columns of {table}"
+        );
+    }
+    if !writer.errors.is_empty() {
+        return Err(writer.errors);
+    }
+    let mut tables = Store::new();
+    for rows in writer.tables {
+        tables.push(rows);
+    }
+    Ok(Tables { tables })
+}
+
+enum Task {
+    Use(OccurrenceId),
+    Define(OccurrenceId),
+    Order(u32),
+    LiftField(FieldId),
+    /// The members of a folded group become rows of the next child table.
+    Rows(OccurrenceId, usize),
+}
+
+struct Writer<'a> {
+    scene: &'a Scene<'a>,
+    shapes: &'a Shapes,
+    code: &'a Code,
+    query: Query,
+    mixing: Vec<Mixing>,
+    tables: Vec<Rows>,
+    /// The occurrence behind each row of each table, and its place in the order of its operator, where that is a column.
+    members: Vec<Vec<(OccurrenceId, Option<u32>)>>,
+    errors: Vec<Diagnostic>,
+    row: Vec<f64>,
+    nodes: Vec<u32>,
+}
+
+impl<'a> Writer<'a> {
+    fn new(scene: &'a Scene<'a>, shapes: &'a Shapes, query: Query, code: &'a Code) -> Self {
+        let count = code.function.tables.len();
+        let mut tables = vec![Rows::default(); count];
+        for (rows, schema) in tables.iter_mut().zip(code.function.tables.values()) {
+            rows.stride = schema.columns.len();
+            rows.starts.push(0);
+        }
+        let mut members = vec![Vec::new(); count];
+        members[0].push((scene.root, None));
+        tables[0].active.push(0);
+        tables[0].starts.push(1);
+        let attributes = &scene.tree.attributes()[..groups(scene, query)];
+        let mixing = attributes.iter().map(|group| group.mixing).collect();
+        Self {
+            scene,
+            shapes,
+            code,
+            query,
+            mixing,
+            tables,
+            members,
+            errors: Vec::new(),
+            row: Vec::new(),
+            nodes: Vec::new(),
+        }
+    }
+
+    /// Writes one row, and hands the rows of the tables under it out.
+    fn row(&mut self, table: Table, index: usize) {
+        let (member, order) = self.members[table.index()][index];
+        let mut tasks = vec![Task::Use(member)];
+        if table.index() == 0 {
+            self.start(&mut tasks);
+        }
+        if let Some(order) = order {
+            self.row.push(f64::from(order));
+        }
+        let mut children = self.code.children[table.index()].iter();
+        while let Some(task) = tasks.pop() {
+            match task {
+                Task::Use(id)
+                    if self.scene.occurrence(id).uses > 1 && !(table.index() > 0 && id == member) => {}
+                Task::Use(id) | Task::Define(id) => self.define(id, &mut tasks),
+                Task::Order(order) => self.row.push(f64::from(order)),
+                Task::LiftField(field) => self.leaf(field),
+                Task::Rows(id, group) => {
+                    let child = *children.next().expect("the code has a table for each folded group");
+                    self.hand_out(child, id, group);
+                }
+            }
+        }
+        self.flush(table, member);
+    }
+
+    /// The numbers of the scene itself.
+    fn start(&mut self, tasks: &mut Vec<Task>) {
+        self.row.push(2.0 * self.scene.tree.iso());
+        for group in &self.scene.tree.attributes()[..self.mixing.len()] {
+            self.row.extend(&group.default);
+        }
+        self.enter_space(SpaceId(0), tasks);
+    }
+
+    fn enter_space(&self, space: SpaceId, tasks: &mut Vec<Task>) {
+        for lift in self.shapes.lifts(space).iter().rev() {
+            tasks.push(match lift {
+                Lift::Field(field) => Task::LiftField(*field),
+                Lift::Occurrence(id) => Task::Define(*id),
+            });
+        }
+    }
+
+    fn define(&mut self, id: OccurrenceId, tasks: &mut Vec<Task>) {
+        let occurrence = self.scene.occurrence(id);
+        match &occurrence.kind {
+            OccurrenceKind::Leaf { field, bindings } => {
+                if self.scene.field(*field).uses == 1 {
+                    self.leaf(*field);
+                }
+                let bindings = self.scene.bindings(*bindings);
+                for (group, binding) in self.scene.tree.attributes()[..self.mixing.len()].iter().zip(bindings)
+                {
+                    self.row.extend(binding.map_or(&group.default[..], |node| self.attribute(node)));
+                }
+            }
+            OccurrenceKind::Warp { position, inside, child } => {
+                let map = self.scene.position(*position).map;
+                MapKind::of(&map).push_columns(&map, &mut self.row);
+                self.scene.warp(occurrence).columns(&mut self.row);
+                tasks.push(Task::Use(*child));
+                self.enter_space(*inside, tasks);
+            }
+            OccurrenceKind::Difference { left, right } => {
+                tasks.extend([Task::Use(*right), Task::Use(*left)]);
+            }
+            OccurrenceKind::Reduce { reducer, .. } => {
+                let code = code(*reducer);
+                if let (super::occurrence::Reducer::Ricci(n), ReducerCode::RicciGeneral) = (reducer, code) {
+                    self.row.extend([*n, 1.0 / n]);
+                }
+                let groups = self.shapes.groups(id);
+                let ordered = wants_order(code, groups.len() > 1, self.query.gradient, &self.mixing);
+                for (index, group) in groups.iter().enumerate().rev() {
+                    if group.folded {
+                        tasks.push(Task::Rows(id, index));
+                        continue;
+                    }
+                    for &(member, order) in group.members.iter().rev() {
+                        tasks.push(Task::Use(member));
+                        if ordered {
+                            tasks.push(Task::Order(order));
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// Makes the members of a group rows of `child`, owned by the row in progress.
+    fn hand_out(&mut self, child: Table, id: OccurrenceId, group: usize) {
+        let OccurrenceKind::Reduce { reducer, .. } = &self.scene.occurrence(id).kind else {
+            unreachable!("only operators have groups")
+        };
+        let groups = self.shapes.groups(id);
+        let ordered = wants_order(code(*reducer), groups.len() > 1, self.query.gradient, &self.mixing);
+        let (rows, members) = (&mut self.tables[child.index()], &mut self.members[child.index()]);
+        for &(member, order) in &groups[group].members {
+            rows.active.push(members.len() as u32);
+            members.push((member, ordered.then_some(order)));
+        }
+        rows.starts.push(rows.active.len() as u32);
+    }
+
+    fn leaf(&mut self, field: FieldId) {
+        self.nodes.push(self.scene.field(field).node.0);
+        let primitive = self.scene.primitive(field);
+        let (map, skeleton, radius) = place(self.scene, field);
+        if let LeafMap::Mapped(kind) = map {
+            let map = self.scene.position(self.scene.field(field).position).map;
+            kind.push_columns(&map, &mut self.row);
+        }
+        skeleton.columns(&mut self.row);
+        self.row.push(-1.0 / (radius * radius));
+        if primitive.strength != 1.0 {
+            self.row.push(primitive.strength);
+        }
+    }
+
+    fn attribute(&self, node: NodeId) -> &'a [f64] {
+        match &self.scene.tree.node(node).kind {
+            NodeKind::Attribute { values, .. } => values,
+            NodeKind::Primitive(_) | NodeKind::Combine(_) | NodeKind::Affine(_) | NodeKind::Warp(_) => {
+                unreachable!("bindings name attribute nodes")
+            }
+        }
+    }
+
+    /// Rounds the row and appends it to its table.
+    fn flush(&mut self, table: Table, member: OccurrenceId) {
+        let rows = &mut self.tables[table.index()];
+        rows.count += 1;
+        rows.nodes.append(&mut self.nodes);
+        for number in self.row.drain(..) {
+            let rounded = number as f32;
+            if !rounded.is_finite() && self.errors.len() < jbt_ir::limits::MAX_ERRORS {
+                let node = self.scene.tree.node(self.scene.occurrence(member).node);
+                let message = format!("a number derived from this part leaves the range of f32: {number:e}");
+                let help = "the part is too small, too large or too far away once all transforms are applied";
+                self.errors.push(Diagnostic::error(node.span, message).expected(help));
+            }
+            rows.numbers.push(rounded);
+        }
+    }
+}

@@ -1,0 +1,311 @@
+//! Which occurrences are alike: same node kinds, different numbers.
+//!
+//! A shape is what selects code. Nested operators of a kind flatten into one; an occurrence with several uses is *lifted*: computed
+//! once, where its space begins, and seen by the others as a value. The children of an operator form groups, one for each shape; a
+//! group is the rows of one table, unless its shape holds tables of its own and there is one such child: that one is written out.
+
+use rustc_hash::FxHashMap as HashMap;
+
+use super::occurrence::{FieldId, OccurrenceId, OccurrenceKind, Reducer, Scene, SpaceId};
+use super::position::MapKind;
+use crate::affine::Similarity;
+use crate::falloff::Falloff;
+use crate::skeleton::{Skeleton, SkeletonKind};
+use crate::warp::WarpKind;
+
+/// The name of a shape.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, PartialOrd, Ord)]
+pub(super) struct ShapeId(u32);
+
+/// How a leaf's row brings the point to the skeleton.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub(super) enum LeafMap {
+    /// The skeleton was moved to the point's space instead.
+    Absorbed,
+    /// The point is mapped.
+    Mapped(MapKind),
+}
+
+/// What an exponent is as code.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub(super) enum ReducerCode {
+    Sum,
+    /// An integer exponent is code: a chain of products.
+    RicciInteger(u32),
+    /// Any other exponent is a number of the row.
+    RicciGeneral,
+    Union,
+    Intersection,
+}
+
+impl ReducerCode {
+    const fn of(reducer: Reducer) -> Self {
+        match reducer {
+            Reducer::Sum => Self::Sum,
+            Reducer::Ricci(n) if n == (n as u32) as f64 => Self::RicciInteger(n as u32),
+            Reducer::Ricci(_) => Self::RicciGeneral,
+            Reducer::Union => Self::Union,
+            Reducer::Intersection => Self::Intersection,
+        }
+    }
+}
+
+#[derive(Clone, PartialEq, Eq, Hash, Debug)]
+enum ShapeKey {
+    Leaf {
+        map: LeafMap,
+        skeleton: SkeletonKind,
+        falloff: Falloff,
+        strong: bool,
+    },
+    /// A lifted field with attributes of its own.
+    LeafOf(FieldId),
+    Warp {
+        map: MapKind,
+        warp: WarpKind,
+        child: ShapeId,
+        pinned: Option<SpaceId>,
+    },
+    Reduce {
+        code: ReducerCode,
+        non_negative: bool,
+        groups: Vec<(ShapeId, usize)>,
+    },
+    Difference {
+        left: ShapeId,
+        right: ShapeId,
+    },
+    Lifted(OccurrenceId),
+}
+
+/// The children of an operator that have one shape.
+#[derive(Clone, Debug)]
+pub(super) struct Group {
+    /// Whether they are rows of a table; otherwise they are written out one after the other.
+    pub(super) folded: bool,
+    /// Children, each with its place in the order of the file.
+    pub(super) members: Vec<(OccurrenceId, u32)>,
+}
+
+/// What has to be computed at the start of a space, in this order.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Lift {
+    Field(FieldId),
+    Occurrence(OccurrenceId),
+}
+
+/// The shapes of a scene.
+pub(super) struct Shapes {
+    /// Groups of each operator that has not been flattened into another.
+    groups: HashMap<OccurrenceId, Vec<Group>>,
+    lifts: HashMap<SpaceId, Vec<Lift>>,
+}
+
+impl Shapes {
+    /// Finds the shape of every occurrence.
+    pub(super) fn new(scene: &Scene<'_>) -> Self {
+        Classifier::new(scene).run()
+    }
+
+    /// The groups of an operator, in the order of their code.
+    pub(super) fn groups(&self, id: OccurrenceId) -> &[Group] {
+        &self.groups[&id]
+    }
+
+    /// What is lifted to the start of a space.
+    pub(super) fn lifts(&self, space: SpaceId) -> &[Lift] {
+        self.lifts.get(&space).map_or(&[], Vec::as_slice)
+    }
+}
+
+/// The skeleton of a leaf in the space in which it is asked, and what is left to do to the point.
+pub(super) fn place(scene: &Scene<'_>, field: FieldId) -> (LeafMap, Skeleton, f64) {
+    let primitive = scene.primitive(field);
+    let map = scene.position(scene.field(field).position).map;
+    let moved = Similarity::from_affine(&map)
+        .and_then(|similarity| Some((primitive.skeleton.moved(&similarity)?, similarity.scale())));
+    match moved {
+        Some((skeleton, scale)) => (LeafMap::Absorbed, skeleton, primitive.radius * scale),
+        None => (LeafMap::Mapped(MapKind::of(&map)), primitive.skeleton.clone(), primitive.radius),
+    }
+}
+
+/// The code of an operator.
+pub(super) fn code(reducer: Reducer) -> ReducerCode {
+    ReducerCode::of(reducer)
+}
+
+struct Classifier<'a> {
+    scene: &'a Scene<'a>,
+    names: HashMap<ShapeKey, ShapeId>,
+    /// For each shape, whether a use of it has to be written out: it holds tables, or is a lifted value.
+    written_out: Vec<bool>,
+    /// The shape of each occurrence, as its user sees it.
+    shapes: Vec<ShapeId>,
+    /// Whether an operator dissolves into its only user.
+    flattened: Vec<bool>,
+    result: Shapes,
+}
+
+impl<'a> Classifier<'a> {
+    fn new(scene: &'a Scene<'a>) -> Self {
+        let result = Shapes { groups: HashMap::default(), lifts: HashMap::default() };
+        let flattened = flattened(scene);
+        Self {
+            scene,
+            names: HashMap::default(),
+            written_out: Vec::new(),
+            shapes: Vec::new(),
+            flattened,
+            result,
+        }
+    }
+
+    fn run(mut self) -> Shapes {
+        for (index, field) in self.scene.fields.iter().enumerate() {
+            if field.uses > 1 {
+                let space = self.scene.position(field.position).space;
+                self.result.lifts.entry(space).or_default().push(Lift::Field(FieldId(index as u32)));
+            }
+        }
+        for index in 0..self.scene.occurrences.len() {
+            let id = OccurrenceId(index as u32);
+            let shape = self.shape(id);
+            let occurrence = self.scene.occurrence(id);
+            let shape = if occurrence.uses > 1 {
+                self.result.lifts.entry(occurrence.space).or_default().push(Lift::Occurrence(id));
+                self.name(ShapeKey::Lifted(id), true)
+            } else {
+                shape
+            };
+            self.shapes.push(shape);
+        }
+        self.result
+    }
+
+    fn name(&mut self, key: ShapeKey, written_out: bool) -> ShapeId {
+        let next = ShapeId(self.written_out.len() as u32);
+        let id = *self.names.entry(key).or_insert(next);
+        if id == next {
+            self.written_out.push(written_out);
+        }
+        id
+    }
+
+    fn of(&self, id: OccurrenceId) -> (ShapeId, bool) {
+        let shape = self.shapes[id.0 as usize];
+        (shape, self.written_out[shape.0 as usize])
+    }
+
+    /// The shape of an occurrence whose children have theirs.
+    fn shape(&mut self, id: OccurrenceId) -> ShapeId {
+        let occurrence = self.scene.occurrence(id);
+        match &occurrence.kind {
+            OccurrenceKind::Leaf { field, .. } if self.scene.field(*field).uses > 1 => {
+                self.name(ShapeKey::LeafOf(*field), true)
+            }
+            OccurrenceKind::Leaf { field, .. } => {
+                let primitive = self.scene.primitive(*field);
+                let (map, skeleton, _) = place(self.scene, *field);
+                let strong = primitive.strength != 1.0;
+                let key =
+                    ShapeKey::Leaf { map, skeleton: skeleton.kind(), falloff: primitive.falloff, strong };
+                self.name(key, false)
+            }
+            OccurrenceKind::Warp { position, inside, child } => {
+                let (child, written_out) = self.of(*child);
+                // What is lifted to the start of this space has to be visible to all of it, so the warp stands alone.
+                let pinned = self.result.lifts.contains_key(inside).then_some(*inside);
+                let map = MapKind::of(&self.scene.position(*position).map);
+                let warp = self.scene.warp(occurrence).kind();
+                let key = ShapeKey::Warp { map, warp, child, pinned };
+                self.name(key, written_out || pinned.is_some())
+            }
+            OccurrenceKind::Difference { left, right } => {
+                let ((left, left_out), (right, right_out)) = (self.of(*left), self.of(*right));
+                self.name(ShapeKey::Difference { left, right }, left_out || right_out)
+            }
+            OccurrenceKind::Reduce { .. } if self.flattened[id.0 as usize] => {
+                // Its user asks for its children; nobody asks for its shape.
+                self.name(ShapeKey::Lifted(id), true)
+            }
+            OccurrenceKind::Reduce { reducer, .. } => {
+                let groups = self.group(id);
+                let key = ShapeKey::Reduce {
+                    code: code(*reducer),
+                    // Only a sum does something else with operands that may be negative.
+                    non_negative: occurrence.non_negative || *reducer != Reducer::Sum,
+                    groups: groups
+                        .iter()
+                        .map(|group| {
+                            let (shape, _) = self.of(group.members[0].0);
+                            (shape, if group.folded { 0 } else { group.members.len() })
+                        })
+                        .collect(),
+                };
+                self.result.groups.insert(id, groups);
+                self.name(key, true)
+            }
+        }
+    }
+
+    /// The operands of an operator, those of flattened ones among them, by shape.
+    fn group(&self, id: OccurrenceId) -> Vec<Group> {
+        let mut by_shape: HashMap<ShapeId, Vec<(OccurrenceId, u32)>> = HashMap::default();
+        let mut stack = vec![id];
+        let mut order = 0;
+        while let Some(next) = stack.pop() {
+            match &self.scene.occurrence(next).kind {
+                OccurrenceKind::Reduce { children, .. } if next == id || self.flattened[next.0 as usize] => {
+                    stack.extend(children.iter().rev());
+                }
+                OccurrenceKind::Reduce { .. }
+                | OccurrenceKind::Leaf { .. }
+                | OccurrenceKind::Warp { .. }
+                | OccurrenceKind::Difference { .. } => {
+                    by_shape.entry(self.of(next).0).or_default().push((next, order));
+                    order += 1;
+                }
+            }
+        }
+        let mut by_shape: Vec<_> = by_shape.into_iter().collect();
+        by_shape.sort_unstable_by_key(|(shape, _)| *shape);
+        by_shape
+            .into_iter()
+            .map(|(_, members)| {
+                let first = members[0].0;
+                let lifted = self.scene.occurrence(first).uses > 1;
+                let written_out = self.of(first).1;
+                Group {
+                    folded: !written_out || (members.len() > 1 && !lifted && !self.is_leaf(first)),
+                    members,
+                }
+            })
+            .collect()
+    }
+
+    fn is_leaf(&self, id: OccurrenceId) -> bool {
+        matches!(self.scene.occurrence(id).kind, OccurrenceKind::Leaf { .. })
+    }
+}
+
+/// Which operators dissolve into the operator that uses them: same kind, one use, and the same answers either way.
+///
+/// A sum of sums mixes attributes in the same way only if no partial sum can be negative: a negative one has no weight as a whole.
+fn flattened(scene: &Scene<'_>) -> Vec<bool> {
+    let mut flattened = vec![false; scene.occurrences.len()];
+    for occurrence in &scene.occurrences {
+        let OccurrenceKind::Reduce { reducer, children } = &occurrence.kind else { continue };
+        for child in children {
+            let inner = scene.occurrence(*child);
+            if let OccurrenceKind::Reduce { reducer: inner_reducer, children: operands } = &inner.kind {
+                let safe = match reducer {
+                    Reducer::Sum => operands.iter().all(|id| scene.occurrence(*id).non_negative),
+                    Reducer::Ricci(_) | Reducer::Union | Reducer::Intersection => true,
+                };
+                flattened[child.0 as usize] = inner_reducer == reducer && inner.uses == 1 && safe;
+            }
+        }
+    }
+    flattened
+}

@@ -1,0 +1,115 @@
+//! The disc: the skeleton of a coin with round rims.
+
+use glam::DVec3;
+use jbt_ir::Domain;
+
+use super::SkeletonMember;
+use crate::affine::Similarity;
+use crate::bounds::Bounds;
+use crate::field::{Field, FieldKind, FieldValue, Member};
+
+/// A filled circle. With radius 0 it is a point.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Disc {
+    /// Its middle.
+    pub center: DVec3,
+    /// The direction that it faces, of any length but 0; either of the two.
+    pub normal: DVec3,
+    /// How far it reaches from the middle.
+    pub radius: f64,
+}
+
+impl Member for Disc {
+    const NAME: &'static str = "disc";
+    const FIELDS: &'static [Field] = &[
+        Field { name: "center", kind: FieldKind::Position, default: Some(FieldValue::Vector([0.0; 3])) },
+        Field { name: "normal", kind: FieldKind::Direction, default: Some(FieldValue::Vector([0.0, 0.0, 1.0])) },
+        Field { name: "radius", kind: FieldKind::NonNegative, default: None },
+    ];
+
+    fn from_fields(values: &[FieldValue]) -> Self {
+        Self { center: values[0].vector().into(), normal: values[1].vector().into(), radius: values[2].real() }
+    }
+
+    fn to_fields(&self) -> Vec<FieldValue> {
+        vec![
+            FieldValue::Vector(self.center.into()),
+            FieldValue::Vector(self.normal.into()),
+            FieldValue::Real(self.radius),
+        ]
+    }
+}
+
+impl SkeletonMember for Disc {
+    const COLUMNS: &'static [&'static str] = &["x", "y", "z", "nx", "ny", "nz", "radius"];
+
+    fn bounds(&self) -> Bounds {
+        let reach = super::circle_reach(super::unit(self.normal), self.radius);
+        Bounds::new(self.center - reach, self.center + reach)
+    }
+
+    fn distance_squared(&self, p: DVec3) -> f64 {
+        let (h, rho) = super::cylindrical(p - self.center, super::unit(self.normal));
+        h * h + (rho - self.radius).max(0.0).powi(2)
+    }
+
+    fn decision(&self, _p: DVec3) -> f64 {
+        f64::INFINITY
+    }
+
+    fn moved(&self, similarity: &Similarity) -> Option<Self> {
+        Some(Self {
+            center: similarity.point(self.center),
+            normal: similarity.direction(super::unit(self.normal)),
+            radius: similarity.scale() * self.radius,
+        })
+    }
+
+    fn columns(&self, row: &mut Vec<f64>) {
+        row.extend(self.center.to_array());
+        row.extend(super::unit(self.normal).to_array());
+        row.push(self.radius);
+    }
+
+    fn emit<D: Domain>(d: &mut D, p: [D::Real; 3], row: &[D::Real]) -> D::Real {
+        let v = super::difference(d, p, [row[0], row[1], row[2]]);
+        let (h, rho) = super::emit_cylindrical(d, v, [row[3], row[4], row[5]]);
+        let beyond = d.sub(rho, row[6]);
+        let outside = super::positive_part(d, beyond);
+        super::sum_of_squares(d, outside, h)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::skeleton::testing;
+
+    #[test]
+    fn known_distances() {
+        let disc = Disc { center: DVec3::new(0.0, 0.0, 1.0), normal: DVec3::new(0.0, 0.0, -7.0), radius: 2.0 };
+        for (p, expected) in [([1.0, 0.5, 4.0], 9.0), ([5.0, 0.0, 5.0], 25.0), ([0.0, 0.0, 1.0], 0.0), ([0.0, 2.0, 1.0], 0.0)] {
+            testing::same_everywhere(&disc, p.into(), expected);
+        }
+    }
+
+    #[test]
+    fn radius_zero_is_a_point() {
+        let disc = Disc { center: DVec3::ZERO, normal: DVec3::Y, radius: 0.0 };
+        testing::same_everywhere(&disc, DVec3::new(2.0, 3.0, 6.0), 49.0);
+        testing::same_everywhere(&disc, DVec3::ZERO, 0.0);
+    }
+
+    #[test]
+    fn agrees_with_samples_of_the_set() {
+        testing::judge(0.2, |rng| {
+            let disc =
+                Disc { center: testing::position(rng), normal: testing::direction(rng) * 3.0, radius: 4.0 * rng.f64() };
+            let (e1, e2) = disc.normal.normalize().any_orthonormal_pair();
+            let samples = testing::polar(60, 180)
+                .map(|(r, turn)| disc.center + disc.radius * r * (turn.cos() * e1 + turn.sin() * e2))
+                .collect();
+            (disc, samples)
+        });
+    }
+}

@@ -1,0 +1,195 @@
+//! Skeletons: the sets that primitives measure their distance to. One file per member, one list.
+//!
+//! A file has the same parts in the same order: what the skeleton is, its parameters, its text fields, its bounds, the plain
+//! formula in f64 (the oracle), the same formula over [`Domain`] (the compiler), tests. To add one: write its file, add its
+//! line to the list below.
+
+use glam::DVec3;
+use jbt_ir::Domain;
+
+use crate::affine::Similarity;
+use crate::bounds::Bounds;
+use crate::field::{Field, FieldValue, Member};
+
+/// What a skeleton states about itself.
+///
+/// Coordinates are those of the primitive's own space. The squared distance is Euclidean.
+pub trait SkeletonMember: Member {
+    /// Names of the columns that [`columns`](Self::columns) fills, in order.
+    const COLUMNS: &'static [&'static str];
+
+    /// The smallest box that holds the skeleton itself (not the support of its field).
+    fn bounds(&self) -> Bounds;
+
+    /// The squared distance from `p`, plainly.
+    fn distance_squared(&self, p: DVec3) -> f64;
+
+    /// How far `p` is from where the gradient of the squared distance jumps; infinity if it never does.
+    fn decision(&self, p: DVec3) -> f64;
+
+    /// The skeleton after `similarity`, if it is still of this kind: then the primitive needs no transform of its own.
+    fn moved(&self, similarity: &Similarity) -> Option<Self>;
+
+    /// The numbers of a row, derived from the parameters in f64: one for each of [`COLUMNS`](Self::COLUMNS).
+    fn columns(&self, row: &mut Vec<f64>);
+
+    /// The squared distance from `p`, over the ops; `row` holds the columns.
+    fn emit<D: Domain>(d: &mut D, p: [D::Real; 3], row: &[D::Real]) -> D::Real;
+}
+
+macro_rules! skeletons {
+    ($($module:ident :: $name:ident),+ $(,)?) => {
+        $( mod $module; pub use $module::$name; )+
+
+        /// A skeleton of any kind.
+        #[derive(Clone, PartialEq, Debug)]
+        pub enum Skeleton { $( #[doc = concat!("See [`", stringify!($name), "`](struct@", stringify!($name), ").")] $name($name), )+ }
+
+        /// The kind of a skeleton: what selects code.
+        #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, PartialOrd, Ord)]
+        pub enum SkeletonKind { $( #[doc = concat!("See [`", stringify!($name), "`](struct@", stringify!($name), ").")] $name, )+ }
+
+        $( impl From<$name> for Skeleton { fn from(skeleton: $name) -> Self { Self::$name(skeleton) } } )+
+
+        impl SkeletonKind {
+            /// Every kind, in the order of the list.
+            pub const ALL: &'static [Self] = &[ $( Self::$name, )+ ];
+
+            /// The word of the text format.
+            #[must_use]
+            pub const fn name(self) -> &'static str { match self { $( Self::$name => $name::NAME, )+ } }
+
+            /// The parameters.
+            #[must_use]
+            pub const fn fields(self) -> &'static [Field] { match self { $( Self::$name => $name::FIELDS, )+ } }
+
+            /// The names of the columns of a row.
+            #[must_use]
+            pub const fn columns(self) -> &'static [&'static str] { match self { $( Self::$name => $name::COLUMNS, )+ } }
+
+            /// The skeleton of this kind with these parameters.
+            #[must_use]
+            pub fn from_fields(self, values: &[FieldValue]) -> Skeleton {
+                match self { $( Self::$name => Skeleton::$name($name::from_fields(values)), )+ }
+            }
+
+            /// The squared distance over the ops.
+            pub fn emit<D: Domain>(self, d: &mut D, p: [D::Real; 3], row: &[D::Real]) -> D::Real {
+                match self { $( Self::$name => $name::emit(d, p, row), )+ }
+            }
+        }
+
+        impl Skeleton {
+            /// The kind.
+            #[must_use]
+            pub const fn kind(&self) -> SkeletonKind { match self { $( Self::$name(_) => SkeletonKind::$name, )+ } }
+
+            /// The parameters, in the order of [`SkeletonKind::fields`].
+            #[must_use]
+            pub fn to_fields(&self) -> Vec<FieldValue> { match self { $( Self::$name(s) => s.to_fields(), )+ } }
+
+            /// See [`SkeletonMember::bounds`].
+            #[must_use]
+            pub fn bounds(&self) -> Bounds { match self { $( Self::$name(s) => s.bounds(), )+ } }
+
+            /// See [`SkeletonMember::distance_squared`].
+            #[must_use]
+            pub fn distance_squared(&self, p: DVec3) -> f64 { match self { $( Self::$name(s) => s.distance_squared(p), )+ } }
+
+            /// See [`SkeletonMember::decision`].
+            #[must_use]
+            pub fn decision(&self, p: DVec3) -> f64 { match self { $( Self::$name(s) => s.decision(p), )+ } }
+
+            /// See [`SkeletonMember::moved`].
+            #[must_use]
+            pub fn moved(&self, similarity: &Similarity) -> Option<Self> {
+                match self { $( Self::$name(s) => s.moved(similarity).map(Self::$name), )+ }
+            }
+
+            /// See [`SkeletonMember::columns`].
+            pub fn columns(&self, row: &mut Vec<f64>) { match self { $( Self::$name(s) => s.columns(row), )+ } }
+        }
+    };
+}
+
+skeletons! {
+    point::Point,
+    segment::Segment,
+    disc::Disc,
+    ring::Ring,
+    cylinder::Cylinder,
+    r#box::Box,
+    triangle::Triangle,
+}
+
+#[cfg(test)]
+mod testing;
+
+/// `v` with length 1, whatever its length was; zero stays zero.
+fn unit(v: DVec3) -> DVec3 {
+    let size = v.abs().max_element();
+    if size == 0.0 { DVec3::ZERO } else { (v / size).normalize() }
+}
+
+/// Height along the unit vector `n`, and distance from its line.
+fn cylindrical(v: DVec3, n: DVec3) -> (f64, f64) {
+    let h = v.dot(n);
+    (h, (v - h * n).length())
+}
+
+/// How far a circle about the unit vector `n` reaches along each axis.
+fn circle_reach(n: DVec3, radius: f64) -> DVec3 {
+    radius * DVec3::new(n.y.hypot(n.z), n.z.hypot(n.x), n.x.hypot(n.y))
+}
+
+/// `a - b`.
+fn difference<D: Domain>(d: &mut D, a: [D::Real; 3], b: [D::Real; 3]) -> [D::Real; 3] {
+    [d.sub(a[0], b[0]), d.sub(a[1], b[1]), d.sub(a[2], b[2])]
+}
+
+/// `v - t u`, fused.
+fn step_back<D: Domain>(d: &mut D, v: [D::Real; 3], t: D::Real, u: [D::Real; 3]) -> [D::Real; 3] {
+    let minus_t = d.neg(t);
+    [d.fma(minus_t, u[0], v[0]), d.fma(minus_t, u[1], v[1]), d.fma(minus_t, u[2], v[2])]
+}
+
+/// Height along the unit vector `n`, and distance from its line.
+///
+/// The distance is the length of what is left of `v`: `sqrt(|v|^2 - h^2)` would lose all digits near the line.
+fn emit_cylindrical<D: Domain>(d: &mut D, v: [D::Real; 3], n: [D::Real; 3]) -> (D::Real, D::Real) {
+    let h = dot(d, v, n);
+    let q = step_back(d, v, h, n);
+    let square = length_squared(d, q);
+    (h, d.sqrt(square))
+}
+
+/// How far `x` is outside of `[-half, half]`: `max(|x| - half, 0)`.
+fn beyond<D: Domain>(d: &mut D, x: D::Real, half: D::Real) -> D::Real {
+    let size = d.abs(x);
+    let past = d.sub(size, half);
+    positive_part(d, past)
+}
+
+/// `a^2 + b^2`, with one fused step.
+fn sum_of_squares<D: Domain>(d: &mut D, a: D::Real, b: D::Real) -> D::Real {
+    let square = d.mul(a, a);
+    d.fma(b, b, square)
+}
+
+/// `|v|^2`, with two fused steps.
+pub(crate) fn length_squared<D: Domain>(d: &mut D, v: [D::Real; 3]) -> D::Real {
+    dot(d, v, v)
+}
+
+/// `a . b`, with two fused steps.
+pub(crate) fn dot<D: Domain>(d: &mut D, a: [D::Real; 3], b: [D::Real; 3]) -> D::Real {
+    let x = d.mul(a[0], b[0]);
+    let xy = d.fma(a[1], b[1], x);
+    d.fma(a[2], b[2], xy)
+}
+
+/// `max(x, 0)`: zero for NaN, and never -0.
+pub(crate) fn positive_part<D: Domain>(d: &mut D, x: D::Real) -> D::Real {
+    let zero = d.constant(0.0);
+    d.max(x, zero)
+}

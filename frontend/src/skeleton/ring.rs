@@ -1,0 +1,111 @@
+//! The ring: the skeleton of a torus.
+
+use glam::DVec3;
+use jbt_ir::Domain;
+
+use super::SkeletonMember;
+use crate::affine::Similarity;
+use crate::bounds::Bounds;
+use crate::field::{Field, FieldKind, FieldValue, Member};
+
+/// A circle, not filled. With radius 0 it is a point.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Ring {
+    /// Its middle.
+    pub center: DVec3,
+    /// The direction of its axis, of any length but 0; either of the two.
+    pub normal: DVec3,
+    /// Its distance from the middle.
+    pub radius: f64,
+}
+
+impl Member for Ring {
+    const NAME: &'static str = "ring";
+    const FIELDS: &'static [Field] = &[
+        Field { name: "center", kind: FieldKind::Position, default: Some(FieldValue::Vector([0.0; 3])) },
+        Field { name: "normal", kind: FieldKind::Direction, default: Some(FieldValue::Vector([0.0, 0.0, 1.0])) },
+        Field { name: "radius", kind: FieldKind::NonNegative, default: None },
+    ];
+
+    fn from_fields(values: &[FieldValue]) -> Self {
+        Self { center: values[0].vector().into(), normal: values[1].vector().into(), radius: values[2].real() }
+    }
+
+    fn to_fields(&self) -> Vec<FieldValue> {
+        vec![
+            FieldValue::Vector(self.center.into()),
+            FieldValue::Vector(self.normal.into()),
+            FieldValue::Real(self.radius),
+        ]
+    }
+}
+
+impl SkeletonMember for Ring {
+    const COLUMNS: &'static [&'static str] = &["x", "y", "z", "nx", "ny", "nz", "radius"];
+
+    fn bounds(&self) -> Bounds {
+        let reach = super::circle_reach(super::unit(self.normal), self.radius);
+        Bounds::new(self.center - reach, self.center + reach)
+    }
+
+    fn distance_squared(&self, p: DVec3) -> f64 {
+        let (h, rho) = super::cylindrical(p - self.center, super::unit(self.normal));
+        h * h + (rho - self.radius).powi(2)
+    }
+
+    /// All points of the ring are equally near to a point of its axis: there the gradient jumps.
+    fn decision(&self, p: DVec3) -> f64 {
+        if self.radius == 0.0 { f64::INFINITY } else { super::cylindrical(p - self.center, super::unit(self.normal)).1 }
+    }
+
+    fn moved(&self, similarity: &Similarity) -> Option<Self> {
+        Some(Self {
+            center: similarity.point(self.center),
+            normal: similarity.direction(super::unit(self.normal)),
+            radius: similarity.scale() * self.radius,
+        })
+    }
+
+    fn columns(&self, row: &mut Vec<f64>) {
+        row.extend(self.center.to_array());
+        row.extend(super::unit(self.normal).to_array());
+        row.push(self.radius);
+    }
+
+    fn emit<D: Domain>(d: &mut D, p: [D::Real; 3], row: &[D::Real]) -> D::Real {
+        let v = super::difference(d, p, [row[0], row[1], row[2]]);
+        let (h, rho) = super::emit_cylindrical(d, v, [row[3], row[4], row[5]]);
+        let off = d.sub(rho, row[6]);
+        super::sum_of_squares(d, off, h)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::skeleton::testing;
+
+    #[test]
+    fn known_distances() {
+        let ring = Ring { center: DVec3::ZERO, normal: DVec3::X, radius: 3.0 };
+        // The last is on the axis: radius^2 + height^2.
+        for (p, expected) in [([0.0, 3.0, 0.0], 0.0), ([0.0, 1.0, 0.0], 4.0), ([4.0, 0.0, 6.0], 25.0), ([4.0, 0.0, 0.0], 25.0)] {
+            testing::same_everywhere(&ring, p.into(), expected);
+        }
+        assert_eq!(ring.decision(DVec3::new(9.0, 0.0, 0.0)), 0.0);
+        assert_eq!(ring.decision(DVec3::new(9.0, 3.0, 4.0)), 5.0);
+    }
+
+    #[test]
+    fn agrees_with_samples_of_the_set() {
+        testing::judge(2e-2, |rng| {
+            let ring = Ring { center: testing::position(rng), normal: testing::direction(rng), radius: 4.0 * rng.f64() };
+            let (e1, e2) = ring.normal.any_orthonormal_pair();
+            let samples = (0..2000)
+                .map(|i| f64::from(i) / 2000.0 * std::f64::consts::TAU)
+                .map(|turn| ring.center + ring.radius * (turn.cos() * e1 + turn.sin() * e2))
+                .collect();
+            (ring, samples)
+        });
+    }
+}

@@ -1,0 +1,109 @@
+//! The segment: the skeleton of a capsule.
+
+use glam::DVec3;
+use jbt_ir::Domain;
+
+use super::SkeletonMember;
+use crate::affine::Similarity;
+use crate::bounds::Bounds;
+use crate::field::{Field, FieldKind, FieldValue, Member};
+
+/// The straight line between two points. Equal ends are a point.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Segment {
+    /// One end.
+    pub from: DVec3,
+    /// The other end.
+    pub to: DVec3,
+}
+
+impl Member for Segment {
+    const NAME: &'static str = "segment";
+    const FIELDS: &'static [Field] = &[
+        Field { name: "from", kind: FieldKind::Position, default: None },
+        Field { name: "to", kind: FieldKind::Position, default: None },
+    ];
+
+    fn from_fields(values: &[FieldValue]) -> Self {
+        Self { from: values[0].vector().into(), to: values[1].vector().into() }
+    }
+
+    fn to_fields(&self) -> Vec<FieldValue> {
+        vec![FieldValue::Vector(self.from.into()), FieldValue::Vector(self.to.into())]
+    }
+}
+
+impl SkeletonMember for Segment {
+    // A unit direction and a length: no division, and nothing special where the ends are equal (then both are zero).
+    const COLUMNS: &'static [&'static str] = &["x", "y", "z", "ux", "uy", "uz", "length"];
+
+    fn bounds(&self) -> Bounds {
+        Bounds::around([self.from, self.to])
+    }
+
+    fn distance_squared(&self, p: DVec3) -> f64 {
+        segment_distance_squared(p, self.from, self.to)
+    }
+
+    fn decision(&self, _p: DVec3) -> f64 {
+        f64::INFINITY
+    }
+
+    fn moved(&self, similarity: &Similarity) -> Option<Self> {
+        Some(Self { from: similarity.point(self.from), to: similarity.point(self.to) })
+    }
+
+    fn columns(&self, row: &mut Vec<f64>) {
+        let along = self.to - self.from;
+        row.extend(self.from.to_array());
+        row.extend(super::unit(along).to_array());
+        row.push(along.length());
+    }
+
+    fn emit<D: Domain>(d: &mut D, p: [D::Real; 3], row: &[D::Real]) -> D::Real {
+        let v = super::difference(d, p, [row[0], row[1], row[2]]);
+        let u = [row[3], row[4], row[5]];
+        let along = super::dot(d, v, u);
+        let ahead = super::positive_part(d, along);
+        let foot = d.min(ahead, row[6]);
+        let q = super::step_back(d, v, foot, u);
+        super::length_squared(d, q)
+    }
+}
+
+/// The squared distance of `p` from the segment between `from` and `to`, plainly.
+pub(super) fn segment_distance_squared(p: DVec3, from: DVec3, to: DVec3) -> f64 {
+    let (v, along) = (p - from, to - from);
+    let square = along.length_squared();
+    let t = if square > 0.0 { (v.dot(along) / square).clamp(0.0, 1.0) } else { 0.0 };
+    (v - t * along).length_squared()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::skeleton::testing;
+
+    #[test]
+    fn known_distances() {
+        let segment = Segment { from: DVec3::ZERO, to: DVec3::new(4.0, 0.0, 0.0) };
+        for (p, expected) in [([2.0, 3.0, 0.0], 9.0), ([-3.0, 0.0, 4.0], 25.0), ([7.0, 4.0, 0.0], 25.0), ([1.0, 0.0, 0.0], 0.0)] {
+            testing::same_everywhere(&segment, p.into(), expected);
+        }
+    }
+
+    #[test]
+    fn equal_ends_are_a_point() {
+        let at = DVec3::new(1.0, 2.0, 3.0);
+        testing::same_everywhere(&Segment { from: at, to: at }, DVec3::new(1.0, 5.0, 7.0), 25.0);
+    }
+
+    #[test]
+    fn agrees_with_samples_of_the_set() {
+        testing::judge(2e-2, |rng| {
+            let (from, to) = (testing::position(rng), testing::position(rng));
+            let samples = (0..=1000).map(|i| from.lerp(to, f64::from(i) / 1000.0)).collect();
+            (Segment { from, to }, samples)
+        });
+    }
+}

@@ -1,0 +1,230 @@
+//! The triangle: the skeleton of plates and of solids made of them.
+//!
+//! The compiler's form works in the triangle's plane, in coordinates that put the longest side on the x axis, from 0 to b, and
+//! the third corner below it. Then
+//!
+//! ```text
+//!     A ─────────────── B        d^2 = h^2 + (inside ? 0 : the nearest of three sides)
+//!       \           /            side:   |s| beyond its half length, squared, + q^2
+//!          \    /                s, q:   along the side from its middle, and outwards from it
+//!             C
+//! ```
+//!
+//! A point is inside where all three q are negative, and |s| of the longest side is within its half length. The last condition
+//! follows from the others, except by rounding in a very flat triangle: it keeps the error to the size of the rounding.
+
+use glam::DVec3;
+use jbt_ir::Domain;
+
+use super::SkeletonMember;
+use super::segment::segment_distance_squared;
+use crate::affine::Similarity;
+use crate::bounds::Bounds;
+use crate::field::{Field, FieldKind, FieldValue, Member};
+
+/// A filled triangle. Corners on a line make it a segment, equal ones a point.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Triangle {
+    /// A corner.
+    pub a: DVec3,
+    /// A corner.
+    pub b: DVec3,
+    /// A corner.
+    pub c: DVec3,
+}
+
+/// Columns of one of the two shorter sides: outward normal (x, y), offsets of s and q, half length.
+const SIDE: usize = 5;
+
+impl Triangle {
+    /// The corners in an order that puts the longest side first, from the first corner to the second.
+    fn longest_first(&self) -> [DVec3; 3] {
+        let turns =
+            [[self.a, self.b, self.c], [self.b, self.c, self.a], [self.c, self.a, self.b]];
+        let side = |corners: &[DVec3; 3]| corners[0].distance_squared(corners[1]);
+        turns.into_iter().reduce(|best, next| if side(&next) > side(&best) { next } else { best }).unwrap_or(turns[0])
+    }
+}
+
+impl Member for Triangle {
+    const NAME: &'static str = "triangle";
+    const FIELDS: &'static [Field] = &[
+        Field { name: "a", kind: FieldKind::Position, default: None },
+        Field { name: "b", kind: FieldKind::Position, default: None },
+        Field { name: "c", kind: FieldKind::Position, default: None },
+    ];
+
+    fn from_fields(values: &[FieldValue]) -> Self {
+        Self { a: values[0].vector().into(), b: values[1].vector().into(), c: values[2].vector().into() }
+    }
+
+    fn to_fields(&self) -> Vec<FieldValue> {
+        [self.a, self.b, self.c].map(|corner| FieldValue::Vector(corner.into())).to_vec()
+    }
+}
+
+impl SkeletonMember for Triangle {
+    const COLUMNS: &'static [&'static str] = &[
+        "x", "y", "z", "e1x", "e1y", "e1z", "e2x", "e2y", "e2z", "nx", "ny", "nz", "half", //
+        "bc_nx", "bc_ny", "bc_s", "bc_q", "bc_half", "ca_nx", "ca_ny", "ca_s", "ca_q", "ca_half",
+    ];
+
+    fn bounds(&self) -> Bounds {
+        Bounds::around([self.a, self.b, self.c])
+    }
+
+    fn distance_squared(&self, p: DVec3) -> f64 {
+        let sides = [(self.a, self.b), (self.b, self.c), (self.c, self.a)];
+        let n = (self.b - self.a).cross(self.c - self.a);
+        let longest = sides.iter().map(|(from, to)| from.distance_squared(*to)).fold(0.0, f64::max);
+        // A triangle flatter than rounding has no plane; its sides are all there is of it.
+        let flat = n.length() <= 1e-12 * longest;
+        let inside = !flat && sides.iter().all(|(from, to)| (to - from).cross(p - from).dot(n) >= 0.0);
+        if inside {
+            return (p - self.a).dot(n.normalize()).powi(2);
+        }
+        sides.iter().map(|(from, to)| segment_distance_squared(p, *from, *to)).fold(f64::INFINITY, f64::min)
+    }
+
+    fn decision(&self, _p: DVec3) -> f64 {
+        f64::INFINITY
+    }
+
+    fn moved(&self, similarity: &Similarity) -> Option<Self> {
+        let [a, b, c] = [self.a, self.b, self.c].map(|corner| similarity.point(corner));
+        Some(Self { a, b, c })
+    }
+
+    fn columns(&self, row: &mut Vec<f64>) {
+        let [a, b, c] = self.longest_first();
+        let e1 = super::unit(b - a);
+        let e1 = if e1 == DVec3::ZERO { DVec3::X } else { e1 };
+        // Up is away from the third corner; in a flat triangle, any way off the line.
+        // Twice, because what is left of a flat one is mostly rounding.
+        let off_line = |v: DVec3| v - v.dot(e1) * e1;
+        let down = off_line(off_line(c - a));
+        let flat = down.length() <= 1e-12 * b.distance(a);
+        let e2 = if flat { e1.any_orthonormal_vector() } else { -super::unit(down) };
+        row.extend(a.to_array());
+        row.extend(e1.to_array());
+        row.extend(e2.to_array());
+        row.extend(e1.cross(e2).to_array());
+        row.push(0.5 * b.distance(a));
+        // In the plane, B -> C -> A goes clockwise: outwards is to the left.
+        let in_plane = |corner: DVec3| ((corner - a).dot(e1), (corner - a).dot(e2));
+        for (from, to) in [(in_plane(b), in_plane(c)), (in_plane(c), in_plane(a))] {
+            let along = DVec3::new(to.0 - from.0, to.1 - from.1, 0.0);
+            let u = super::unit(along);
+            // A side without length has no direction; any will do, since only its ends count.
+            let u = if u == DVec3::ZERO { DVec3::NEG_X } else { u };
+            let middle = DVec3::new(0.5 * (from.0 + to.0), 0.5 * (from.1 + to.1), 0.0);
+            let n = DVec3::new(-u.y, u.x, 0.0);
+            row.extend([n.x, n.y, -u.dot(middle), -n.dot(middle), 0.5 * along.length()]);
+        }
+    }
+
+    fn emit<D: Domain>(d: &mut D, p: [D::Real; 3], row: &[D::Real]) -> D::Real {
+        let v = super::difference(d, p, [row[0], row[1], row[2]]);
+        let [x, y, h] = [3, 6, 9].map(|i| super::dot(d, v, [row[i], row[i + 1], row[i + 2]]));
+        let zero = d.constant(0.0);
+        let from_middle = d.sub(x, row[12]);
+        let length = d.abs(from_middle);
+        let past = d.sub(length, row[12]);
+        let past_ends = d.max(past, zero);
+        let mut nearest = super::sum_of_squares(d, past_ends, y);
+        let mut outwards = d.max(past, y);
+        for side in row[13..].chunks_exact(SIDE) {
+            let (square, q) = emit_side(d, [x, y], side);
+            nearest = d.min(square, nearest);
+            outwards = d.max(q, outwards);
+        }
+        let inside = d.lt(outwards, zero);
+        let in_plane = d.select(inside, zero, nearest);
+        d.fma(h, h, in_plane)
+    }
+}
+
+/// The squared distance of (x, y) from a side, and how far out it is from the side's line.
+fn emit_side<D: Domain>(d: &mut D, [x, y]: [D::Real; 2], side: &[D::Real]) -> (D::Real, D::Real) {
+    let &[nx, ny, s_offset, q_offset, half] = side else { panic!("a side has {SIDE} columns") };
+    // The side's direction is (ny, -nx).
+    let minus_nx = d.neg(nx);
+    let s = d.fma(x, ny, s_offset);
+    let s = d.fma(y, minus_nx, s);
+    let q = d.fma(x, nx, q_offset);
+    let q = d.fma(y, ny, q);
+    let past_ends = super::beyond(d, s, half);
+    (super::sum_of_squares(d, past_ends, q), q)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::skeleton::testing;
+
+    fn corner(x: f64, y: f64) -> DVec3 {
+        DVec3::new(x, y, 0.0)
+    }
+
+    #[test]
+    fn known_distances() {
+        let triangle = Triangle { a: corner(0.0, 0.0), b: corner(4.0, 0.0), c: corner(0.0, 3.0) };
+        for (p, expected) in [
+            ([1.0, 1.0, 2.0], 4.0),   // above the inside
+            ([2.0, -3.0, 4.0], 25.0), // beside AB
+            ([-3.0, -4.0, 0.0], 25.0),
+            ([7.0, -4.0, 0.0], 25.0),
+            ([0.0, 8.0, 0.0], 25.0),
+        ] {
+            testing::same_everywhere(&triangle, p.into(), expected);
+        }
+        // The hypotenuse is 3x + 4y = 12; 5 units along its normal from its middle.
+        testing::same_everywhere(&triangle, DVec3::new(2.0 + 3.0, 1.5 + 4.0, 0.0), 25.0);
+    }
+
+    #[test]
+    fn flat_ones_are_segments_and_points() {
+        let (o, e, m) = (corner(0.0, 0.0), corner(8.0, 0.0), corner(2.0, 0.0));
+        for [a, b, c] in [[o, e, m], [e, m, o], [m, o, e], [o, o, e], [o, e, o], [e, o, o]] {
+            let flat = Triangle { a, b, c };
+            for (p, expected) in
+                [([5.0, 3.0, 0.0], 9.0), ([5.0, 0.0, -3.0], 9.0), ([11.0, 0.0, 4.0], 25.0), ([-3.0, 0.0, 0.0], 9.0)]
+            {
+                testing::same_everywhere(&flat, p.into(), expected);
+            }
+        }
+        testing::same_everywhere(&Triangle { a: m, b: m, c: m }, DVec3::new(2.0, 3.0, 4.0), 25.0);
+    }
+
+    #[test]
+    fn slivers_agree_with_their_longest_side() {
+        let mut rng = fastrand::Rng::with_seed(7);
+        for _ in 0..300 {
+            let (a, b) = (testing::position(&mut rng), testing::position(&mut rng));
+            let height = 10f64.powf(-4.0 - 6.0 * rng.f64());
+            let c = a.lerp(b, rng.f64()) + height * (b - a).normalize().any_orthonormal_vector();
+            let sliver = Triangle { a: b, b: c, c: a };
+            let row = testing::row(&sliver);
+            for i in 0..100 {
+                // Half of them in line with the sliver, where it is hard to say what is inside.
+                let p = if i % 2 == 0 { a.lerp(b, 4.0 * rng.f64() - 2.0) } else { testing::position(&mut rng) };
+                let p = p.as_vec3().as_dvec3();
+                let expected = segment_distance_squared(p, a, b).sqrt();
+                let got = f64::from(testing::emitted::<Triangle>(p, &row)).sqrt();
+                assert!((got - expected).abs() <= height + 1.5e-5, "{sliver:?} at {p}: {got}, not {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn agrees_with_samples_of_the_set() {
+        testing::judge(0.5, |rng| {
+            let [a, b, c] = std::array::from_fn(|_| testing::position(rng));
+            let samples = (0..=60)
+                .flat_map(|i| (0..=60 - i).map(move |j| (f64::from(i) / 60.0, f64::from(j) / 60.0)))
+                .map(|(s, t)| a + s * (b - a) + t * (c - a))
+                .collect();
+            (Triangle { a, b, c }, samples)
+        });
+    }
+}

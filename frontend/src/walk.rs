@@ -1,0 +1,216 @@
+//! The oracle: a plain walk over a tree in f64, one point at a time, by each node's plain formula.
+//!
+//! ```text
+//! walk(node, p):   primitive    strength * falloff(d^2(p) / radius^2), with the attributes of the way down
+//!                  combinator   walk each child at p; combine fields, mix attributes by weights
+//!                  map          walk the child at map^-1(p)
+//!                  attribute    walk the child, its leaves having this attribute
+//! ```
+//!
+//! It judges the compiler, so it shares no code with it. It is too simple to be fast: every primitive is evaluated once for each
+//! path that leads to it, for each question again.
+
+use std::rc::Rc;
+
+use glam::DVec3;
+
+use crate::attribute::{AttributeGroup, Mixing};
+use crate::check::{CheckedTree, NodeId};
+use crate::combine::Combinator;
+use crate::tree::{NodeKind, Primitive};
+
+/// The answers at a point.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Sample {
+    /// The field.
+    pub field: f64,
+    /// The value of each attribute group, in the order of [`CheckedTree::attributes`].
+    pub attributes: Vec<Vec<f64>>,
+    /// How far the point is from anything that is decided: a tie of a union, the rim of a support, the axis of a ring, a total
+    /// weight of zero, a tie of dominance. In units of the fields, weights and lengths that it compares; infinity if nothing is decided.
+    ///
+    /// Where this is small, gradients and attributes of another engine may differ: it may have decided otherwise.
+    pub decision: f64,
+}
+
+/// The values of all attribute groups at a leaf.
+type Values = Rc<[Vec<f64>]>;
+
+/// What is known at a node.
+#[derive(Clone)]
+struct Answer {
+    field: f64,
+    decision: f64,
+    /// The field is zero around the point, not only at it: all leaves that matter are out of reach.
+    silent: bool,
+    /// The mean of the leaves' values, for each group.
+    mean: Values,
+    /// The values of the leaf with the largest share of the weight.
+    dominant: Values,
+    /// The share of that leaf.
+    share: f64,
+    /// The second largest share of a leaf.
+    second: f64,
+}
+
+/// The work that is left.
+enum Task {
+    /// Ask a node, at a point of its parent's space, its leaves having these values.
+    Ask(NodeId, DVec3, Values),
+    /// Combine the answers of the children of a node.
+    Combine(NodeId),
+}
+
+/// The answers at `p`. Cost: all paths of the tree.
+#[must_use]
+pub fn walk(tree: &CheckedTree, p: [f64; 3]) -> Sample {
+    let defaults: Values = tree.attributes().iter().map(|group| group.default.clone()).collect();
+    let mut tasks = vec![Task::Ask(tree.root(), p.into(), defaults.clone())];
+    let mut answers: Vec<Answer> = Vec::new();
+    while let Some(task) = tasks.pop() {
+        match task {
+            Task::Ask(id, p, values) => {
+                let node = tree.node(id);
+                match &node.kind {
+                    NodeKind::Primitive(leaf) => answers.push(primitive(leaf, p, values)),
+                    NodeKind::Combine(_) => {
+                        tasks.push(Task::Combine(id));
+                        tasks.extend(
+                            node.children.iter().rev().map(|&child| Task::Ask(child, p, values.clone())),
+                        );
+                    }
+                    NodeKind::Affine(map) => {
+                        tasks.push(Task::Ask(node.children[0], map.inverse().transform_point3(p), values));
+                    }
+                    NodeKind::Warp(warp) => tasks.push(Task::Ask(node.children[0], warp.inverse(p), values)),
+                    NodeKind::Attribute { name, values: here } => {
+                        // Nearer to the leaves than whatever was said above: it replaces it.
+                        let mut values = values.to_vec();
+                        for (group, value) in tree.attributes().iter().zip(&mut values) {
+                            if group.name == *name {
+                                value.clone_from(here);
+                            }
+                        }
+                        tasks.push(Task::Ask(node.children[0], p, values.into()));
+                    }
+                }
+            }
+            Task::Combine(id) => {
+                let node = tree.node(id);
+                let children = answers.split_off(answers.len() - node.children.len());
+                if let NodeKind::Combine(combinator) = node.kind {
+                    answers.push(combine(combinator, tree.iso(), &children, &defaults));
+                }
+            }
+        }
+    }
+    finish(tree, &answers.pop().expect("the root has an answer"))
+}
+
+/// The gradient of the field at `p` by central differences: `step` to both sides along each axis.
+#[must_use]
+pub fn walk_gradient(tree: &CheckedTree, p: [f64; 3], step: f64) -> [f64; 3] {
+    std::array::from_fn(|axis| {
+        let at = |offset: f64| {
+            let mut q = p;
+            q[axis] += offset;
+            walk(tree, q).field
+        };
+        (at(step) - at(-step)) / (2.0 * step)
+    })
+}
+
+fn primitive(leaf: &Primitive, p: DVec3, values: Values) -> Answer {
+    let s = leaf.skeleton.distance_squared(p) / (leaf.radius * leaf.radius);
+    let field = leaf.strength * leaf.falloff.value(s);
+    let silent = s >= 1.0 || leaf.strength == 0.0;
+    let rim = if leaf.strength == 0.0 { f64::INFINITY } else { (1.0 - s).abs() };
+    let decision = if silent { rim } else { rim.min(leaf.skeleton.decision(p)) };
+    Answer { field, decision, silent, mean: values.clone(), dominant: values, share: 1.0, second: 0.0 }
+}
+
+fn combine(combinator: Combinator, iso: f64, children: &[Answer], defaults: &Values) -> Answer {
+    if let (1, Combinator::Union | Combinator::Intersection | Combinator::Difference) =
+        (children.len(), combinator)
+    {
+        // There is nothing to decide.
+        return children[0].clone();
+    }
+    let fields: Vec<f64> = children.iter().map(|child| child.field).collect();
+    let field = combinator.field(&fields, iso);
+    let weights = combinator.weights(&fields, iso);
+    let total: f64 = weights.iter().sum();
+    let (decision, silent) = decide(combinator, iso, children, combinator.winner(&fields, iso), field);
+    if total <= 0.0 {
+        let (mean, dominant) = (defaults.clone(), defaults.clone());
+        return Answer { field, decision, silent, mean, dominant, share: 1.0, second: 0.0 };
+    }
+    let mut mean: Vec<Vec<f64>> = defaults.iter().map(|default| vec![0.0; default.len()]).collect();
+    let mut dominant = defaults;
+    let (mut share, mut second) = (0.0, 0.0f64);
+    for (child, weight) in children.iter().zip(&weights) {
+        let part = weight / total;
+        for (sums, values) in mean.iter_mut().zip(child.mean.iter()) {
+            for (sum, value) in sums.iter_mut().zip(values) {
+                *sum += part * value;
+            }
+        }
+        // Strictly: of equals the first in the file stays.
+        if part * child.share > share {
+            second = second.max(share);
+            (dominant, share) = (&child.dominant, part * child.share);
+        } else {
+            second = second.max(part * child.share);
+        }
+        second = second.max(part * child.second);
+    }
+    Answer { field, decision, silent, mean: mean.into(), dominant: dominant.clone(), share, second }
+}
+
+/// How far a node is from any decision that reaches its answer, and whether its field is zero all around.
+fn decide(
+    combinator: Combinator,
+    iso: f64,
+    children: &[Answer],
+    winner: Option<usize>,
+    field: f64,
+) -> (f64, bool) {
+    let nearest = |d: f64, child: &Answer| d.min(child.decision);
+    if children.iter().all(|child| child.silent) {
+        return (children.iter().fold(f64::INFINITY, nearest), true);
+    }
+    match combinator {
+        Combinator::Sum | Combinator::Ricci(_) => {
+            // Where the total weight falls to zero, attributes jump to their defaults.
+            let heard = || children.iter().filter(|child| !child.silent).map(|child| child.field);
+            let largest = heard().fold(f64::NEG_INFINITY, f64::max);
+            (children.iter().fold(largest.abs(), nearest), false)
+        }
+        Combinator::Union | Combinator::Intersection | Combinator::Difference => {
+            let winner = &children[winner.unwrap_or(0)];
+            // A tie of children that are zero all around is none: the first of them wins, whatever the engine.
+            let first = usize::from(combinator == Combinator::Difference);
+            let quiet = children.iter().skip(first).position(|child| child.silent).map(|i| i + first);
+            let rivals: Vec<f64> = (0..children.len())
+                .filter(|&i| i < first || !children[i].silent || Some(i) == quiet)
+                .map(|i| children[i].field)
+                .collect();
+            let silent = winner.silent && field == 0.0;
+            // Where the field falls to zero, attributes jump to their defaults.
+            let fading = if silent { f64::INFINITY } else { field.abs() };
+            (combinator.decision(&rivals, iso).min(winner.decision).min(fading), silent)
+        }
+    }
+}
+
+fn finish(tree: &CheckedTree, root: &Answer) -> Sample {
+    let values = root.mean.iter().zip(root.dominant.iter());
+    let pick = |(group, (mean, dominant)): (&AttributeGroup, (&Vec<f64>, &Vec<f64>))| match group.mixing {
+        Mixing::Blend => mean.clone(),
+        Mixing::Dominant => dominant.clone(),
+    };
+    let attributes = tree.attributes().iter().zip(values).map(pick).collect();
+    let dominance = tree.attributes().iter().any(|group| group.mixing == Mixing::Dominant);
+    let lead = if dominance { root.share - root.second } else { f64::INFINITY };
+    Sample { field: root.field, attributes, decision: root.decision.min(lead) }
+}
