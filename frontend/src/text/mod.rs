@@ -1,0 +1,155 @@
+//! The text format `.jbt`: reading and writing models.
+//!
+//! ```text
+//! jbt 1
+//! iso 0.5
+//! param bulge = 0.6
+//!
+//! let arm = segment { from (0 0 0) to (1 0 0) radius bulge falloff soft }
+//!
+//! blend ricci 4 {
+//!     color (1 0.3 0.1) { use arm }
+//!     rotate axis z degrees 90 { color (0.1 0.4 1) { use arm } }
+//! }
+//! ```
+//!
+//! # Grammar
+//!
+//! ```text
+//! file       = "jbt" "1" { statement } ;                     exactly one statement is a node: the root
+//! statement  = "iso" expression                              before all nodes; 0.5 if not written
+//!            | "param" NAME "=" expression                   its default; options may set another value
+//!            | "attribute" NAME width [ "default" values ] [ "blend" | "dominant" ]
+//!            | "let" NAME "=" node
+//!            | node ;
+//! node       = primitive | operator "{" { node } "}" | map "{" node "}" | "use" NAME ;
+//! primitive  = SKELETON "{" { parameter } "}" ;              in any order, each once
+//! parameter  = FIELD value
+//!            | "radius" expression                           where the field reaches zero
+//!            | "surface_radius" expression                   where the primitive alone meets the iso-value
+//!            | "falloff" FALLOFF                             soft if not written
+//!            | "strength" expression ;                       1 if not written
+//! operator   = "sum" | "union" | "intersection" | "difference" | [ "blend" ] "ricci" expression ;
+//! map        = "translate" vector
+//!            | "rotate" "axis" value ( "degrees" | "radians" ) expression
+//!            | "scale" ( expression | vector )
+//!            | "affine" vector                               12 numbers: the rows of a 3x4 matrix, child to parent
+//!            | WARP { FIELD value }
+//!            | [ "with" ] NAME values ;                      a declared attribute; "with" if its name is a word of the format
+//! value      = expression | vector | "x" | "y" | "z" ;       as the field's kind asks
+//! values     = vector | expression ;                         as many as the group is wide
+//! vector     = "(" expression { [ "," ] expression } ")" ;
+//! expression = NUMBER | NAME | "pi" | "-" expression | "+" expression | "(" expression ")"
+//!            | expression ( "+" | "-" | "*" | "/" | "^" ) expression
+//!            | FUNCTION "(" expression { "," expression } ")" ;
+//! FUNCTION   = "sqrt" | "sin" | "cos" | "abs" | "exp" | "ln" | "min" | "max" | "pow" ;
+//! NAME       = letter { letter | digit | "_" } ;
+//! ```
+//!
+//! SKELETON, FALLOFF, WARP and FIELD are the names that the members of [`skeleton`](crate::skeleton),
+//! [`falloff`](crate::falloff) and [`warp`](crate::warp) give themselves. Where a skeleton's own parameter is called like one
+//! that every primitive has, the skeleton's name goes before it: a disc has a `disc_radius`, and a `radius` around it.
+//!
+//! * `#` and `//` begin a comment that ends with the line. Line ends are blanks like others.
+//! * Names are defined before they are used, and once. `color` is declared in every file (3 reals, white, blend) and may be
+//!   declared again to change its default or its mixing.
+//! * Angles of functions are radians. `^` goes to the right and binds before a minus sign: `-2^2` is -4.
+//! * **Directly inside a vector, a `+` or `-` with a blank before it and none after it begins the next number**:
+//!   `(1 -2 3)` are three numbers, `(1 - 2 3)`, `(1-2 3)` and `((1 -2) 3)` are two.
+//!
+//! # Promises
+//!
+//! `parse(print(model)) == model` for every model that passes the check, with the same bits in every number, and with the same
+//! subtrees shared, as long as its text is not longer than [`jbt_ir::limits::MAX_SCENE_BYTES`]. Reading is iterative, takes
+//! memory for the model and not for the text, and reports every error with its place.
+
+mod expression;
+mod lex;
+mod node;
+mod parse;
+mod primitive;
+mod print;
+mod value;
+
+use std::borrow::Cow;
+
+use crate::diagnostic::Diagnostic;
+use crate::field::{Field, FieldKind};
+use crate::model::Model;
+use crate::skeleton::SkeletonKind;
+
+pub use print::print;
+
+/// What is set from outside a text.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct Options {
+    /// Values of parameters, by name; the last one of a name counts.
+    pub parameters: Vec<(String, f64)>,
+}
+
+/// A parameter of a text.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Parameter {
+    /// Its name.
+    pub name: String,
+    /// The value of its expression.
+    pub default: f64,
+    /// Its value: the default, unless the options set another one.
+    pub value: f64,
+}
+
+/// A model, and the parameters of its text.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Scene {
+    /// The model.
+    pub model: Model,
+    /// The parameters, in the order of their declarations.
+    pub parameters: Vec<Parameter>,
+}
+
+/// The model of a text.
+///
+/// ```
+/// use jbt_frontend::text::{Options, parse, print};
+/// let model = parse(b"jbt 1 point { surface_radius 2 - 1 }", &Options::default()).unwrap();
+/// assert_eq!(parse(print(&model).as_bytes(), &Options::default()).unwrap(), model);
+/// ```
+///
+/// # Errors
+///
+/// All that is wrong with the text, in its order, up to [`jbt_ir::limits::MAX_ERRORS`] and a count of the others. Whether the
+/// model makes sense, [`check`](crate::check) says.
+pub fn parse(text: &[u8], options: &Options) -> Result<Model, Vec<Diagnostic>> {
+    parse_scene(text, options).map(|scene| scene.model)
+}
+
+/// The model of a text, with the parameters that it declares.
+///
+/// # Errors
+///
+/// See [`parse`].
+pub fn parse_scene(text: &[u8], options: &Options) -> Result<Scene, Vec<Diagnostic>> {
+    parse::read(text, options)
+}
+
+/// The word before the name of an attribute group that is called like a word of the format.
+const GROUP_NODE: &str = "with";
+
+/// The parameters that every primitive has.
+const OWN_FIELDS: [&str; 4] = ["radius", "surface_radius", "falloff", "strength"];
+
+/// The parameters of `rotate`: the axis, and one of the others.
+const ROTATE: &[Field] = &[
+    Field { name: "axis", kind: FieldKind::Direction, default: None },
+    Field { name: "degrees", kind: FieldKind::Real, default: None },
+    Field { name: "radians", kind: FieldKind::Real, default: None },
+];
+
+/// The word for a parameter of a skeleton: its name, after the skeleton's where every primitive has one of that name.
+fn field_word(kind: SkeletonKind, field: &Field) -> Cow<'static, str> {
+    if OWN_FIELDS.contains(&field.name) {
+        Cow::Owned(format!("{}_{}", kind.name(), field.name))
+    } else {
+        Cow::Borrowed(field.name)
+    }
+}

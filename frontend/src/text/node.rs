@@ -1,0 +1,440 @@
+//! Nodes of a text: a stack of open blocks, and one of finished subtrees.
+
+use glam::{DAffine3, DMat3, DVec3};
+use jbt_ir::limits::MAX_NODES;
+
+use super::lex::{Token, TokenKind};
+use super::parse::{Parser, is_statement};
+use super::primitive::Slots;
+use super::{GROUP_NODE, ROTATE};
+use crate::affine::{rotation, sin_cos_degrees};
+use crate::combine::Combinator;
+use crate::diagnostic::{Diagnostic, Span};
+use crate::report::{clip, nearest};
+use crate::skeleton::SkeletonKind;
+use crate::tree::{NodeKind, Tree};
+use crate::warp::WarpKind;
+
+/// The combinators without parameters.
+const COMBINATORS: [Combinator; 4] =
+    [Combinator::Sum, Combinator::Union, Combinator::Intersection, Combinator::Difference];
+
+/// The other words that begin a node.
+const OTHERS: [&str; 8] = ["use", "blend", "ricci", "translate", "rotate", "scale", "affine", GROUP_NODE];
+
+/// Whether a word begins a node, or a statement, in every file: a group of this name needs the word `with` before it.
+pub(super) fn is_reserved(word: &str) -> bool {
+    is_statement(word) || fixed_words().any(|fixed| fixed == word)
+}
+
+/// The words that begin a node in every file.
+fn fixed_words() -> impl Iterator<Item = &'static str> {
+    let members = SkeletonKind::ALL.iter().map(|kind| kind.name());
+    let warps = WarpKind::ALL.iter().map(|kind| kind.name());
+    members.chain(warps).chain(COMBINATORS.iter().map(|c| c.name())).chain(OTHERS)
+}
+
+/// What an open block becomes.
+enum Head {
+    Combine(Combinator),
+    /// Boxed, so that a million open blocks are small.
+    Unary(Box<NodeKind>),
+    /// The head has an error; the block is read for its own errors.
+    Broken,
+}
+
+/// An open block.
+struct Frame {
+    head: Head,
+    /// Its first child on the stack of finished subtrees.
+    first: u32,
+    /// The node's words before the block.
+    span: Span,
+    /// The byte of the opening brace.
+    open: u32,
+    /// Something in the block could not be read: its children are not counted.
+    incomplete: bool,
+}
+
+/// What begins with a word.
+enum Begun {
+    /// A whole subtree.
+    Leaf(Tree),
+    /// A block is open.
+    Block(Frame),
+    /// Nothing: the word was skipped.
+    Nothing,
+}
+
+impl<'a> Parser<'a> {
+    /// Whether a word begins a node of this file.
+    pub(super) fn begins_node(&self, word: &str) -> bool {
+        fixed_words().any(|fixed| fixed == word) || self.group(word).is_some()
+    }
+
+    /// All words that begin a node of this file.
+    fn node_words(&self) -> impl Iterator<Item = &str> {
+        let fixed = fixed_words().map(|word| -> &str { word });
+        fixed.chain(self.attributes.iter().map(|group| &*group.name))
+    }
+
+    /// A node with everything below it.
+    pub(super) fn tree(&mut self) -> Tree {
+        let mut frames: Vec<Frame> = Vec::new();
+        let mut finished: Vec<Tree> = Vec::new();
+        loop {
+            let token = self.peek();
+            let word = self.peek_word();
+            match token.kind {
+                TokenKind::Word if !word.is_some_and(is_statement) => match self.begin() {
+                    Begun::Leaf(tree) => finished.push(tree),
+                    Begun::Block(frame) => {
+                        frames.push(Frame { first: finished.len() as u32, ..frame });
+                        continue;
+                    }
+                    Begun::Nothing => {}
+                },
+                TokenKind::Mark(b'}') if let Some(frame) = frames.pop() => {
+                    self.find_place();
+                    self.next();
+                    let children = finished.drain(frame.first as usize..).collect();
+                    let tree = self.close(frame, children);
+                    finished.push(tree);
+                }
+                TokenKind::Word | TokenKind::End => {
+                    match frames.last() {
+                        Some(frame) => self.unclosed(frame.open, token),
+                        None => self.expected_at(token, "expected a node"),
+                    }
+                    return self.broken.clone();
+                }
+                TokenKind::Mark(_) | TokenKind::Number | TokenKind::Unknown => {
+                    let Some(frame) = frames.last_mut() else {
+                        self.expected_at(token, "expected a node");
+                        return self.broken.clone();
+                    };
+                    frame.incomplete = true;
+                    self.expected_at(token, "expected a node or `}`");
+                    self.skip_token();
+                }
+            }
+            if frames.is_empty() {
+                return finished.pop().unwrap_or_else(|| self.broken.clone());
+            }
+        }
+    }
+
+    /// Past the next token, or past the whole block that it opens.
+    pub(super) fn skip_token(&mut self) {
+        if self.peek().is(b'{') {
+            self.skip_block();
+        } else {
+            self.next();
+        }
+    }
+
+    /// Past the block that is next, whatever is in it.
+    pub(super) fn skip_block(&mut self) {
+        let open = self.peek();
+        let mut depth = 0usize;
+        loop {
+            let token = self.next();
+            match token.kind {
+                TokenKind::Mark(b'{') => depth += 1,
+                TokenKind::Mark(b'}') => depth -= 1,
+                TokenKind::End => {
+                    self.find_place();
+                    self.unclosed(open.start as u32, token);
+                    return;
+                }
+                TokenKind::Mark(_) | TokenKind::Word | TokenKind::Number | TokenKind::Unknown => {}
+            }
+            if depth == 0 {
+                return;
+            }
+        }
+    }
+
+    /// Reports a brace that is not closed where `token` stands.
+    pub(super) fn unclosed(&mut self, open: u32, token: Token) {
+        // Only the innermost of the braces that the end of the file leaves open.
+        if token.kind == TokenKind::End && std::mem::replace(&mut self.ended, true) {
+            return;
+        }
+        let found = self.describe(token);
+        self.report(|| {
+            Diagnostic::error(Some(Span { start: open, end: open + 1 }), "this `{` is not closed")
+                .expected(format!("expected `}}` before {found}"))
+        });
+    }
+
+    /// Counts a node.
+    pub(super) fn count_node(&mut self, span: Span) {
+        self.nodes += 1;
+        if self.nodes > MAX_NODES {
+            self.give_up(Diagnostic::limit(Some(span), format!("more than {MAX_NODES} nodes")));
+        }
+    }
+
+    /// What begins with the word that is next.
+    fn begin(&mut self) -> Begun {
+        let start = self.next();
+        let word = self.text(start);
+        if self.is_lost() {
+            if !self.begins_node(word) {
+                return Begun::Nothing;
+            }
+            self.find_place();
+        }
+        if let Some(kind) = SkeletonKind::ALL.iter().copied().find(|kind| kind.name() == word) {
+            self.count_node(start.span());
+            return Begun::Leaf(self.primitive(kind, start));
+        }
+        if let Some(combinator) = COMBINATORS.iter().copied().find(|combinator| combinator.name() == word) {
+            return self.block(start, Head::Combine(combinator));
+        }
+        if let Some(kind) = WarpKind::ALL.iter().copied().find(|kind| kind.name() == word) {
+            let values = self.slots(kind.fields(), "a warp").complete(self, start, kind.name());
+            let head = values.map(|values| NodeKind::Warp(kind.from_fields(&values)));
+            return self.unary(start, head);
+        }
+        match word {
+            "use" => Begun::Leaf(self.use_node()),
+            "ricci" => self.ricci(start),
+            "blend" => {
+                if !self.accept_word("ricci") {
+                    self.expected_at(
+                        self.peek(),
+                        "expected `ricci` and its exponent; `sum` is the plain blend",
+                    );
+                    return self.block(start, Head::Broken);
+                }
+                self.ricci(start)
+            }
+            "translate" => {
+                let [x, y, z] = self.vector();
+                self.affine(start, DAffine3::from_translation(DVec3::new(x, y, z)))
+            }
+            "rotate" => self.rotate(start),
+            "scale" => self.scale(start),
+            "affine" => {
+                let [xx, xy, xz, x, yx, yy, yz, y, zx, zy, zz, z] = self.vector();
+                let linear = DMat3::from_cols_array(&[xx, yx, zx, xy, yy, zy, xz, yz, zz]);
+                self.affine(start, DAffine3 { matrix3: linear, translation: DVec3::new(x, y, z) })
+            }
+            GROUP_NODE => match self.peek_word() {
+                Some(name) => {
+                    let at = self.next();
+                    self.attribute(start, at, name)
+                }
+                None => {
+                    self.expected_at(self.peek(), "expected an attribute's name");
+                    self.block(start, Head::Broken)
+                }
+            },
+            _ if self.group(word).is_some() => self.attribute(start, start, word),
+            _ => self.unknown_node(start, word),
+        }
+    }
+
+    /// The block of a node whose head has been read.
+    fn block(&mut self, start: Token, head: Head) -> Begun {
+        let span = Span::new(start.start, self.previous_end());
+        self.count_node(span);
+        match self.open() {
+            Some(open) => {
+                Begun::Block(Frame { head, first: 0, span, open: open.start as u32, incomplete: false })
+            }
+            None => Begun::Leaf(self.broken.clone()),
+        }
+    }
+
+    /// The opening brace of a node, after an error also a later one that must be meant.
+    pub(super) fn open(&mut self) -> Option<Token> {
+        if !self.peek().is(b'{') {
+            self.expected_at(self.peek(), "expected `{`");
+            while let token = self.peek()
+                && !token.is(b'{')
+            {
+                let word = self.peek_word();
+                let found = word.is_some_and(|word| is_statement(word) || self.begins_node(word));
+                if found || token.is(b'}') || token.kind == TokenKind::End {
+                    return None;
+                }
+                self.next();
+            }
+        }
+        self.find_place();
+        self.accept(b'{')
+    }
+
+    fn unary(&mut self, start: Token, kind: Option<NodeKind>) -> Begun {
+        self.block(start, kind.map_or(Head::Broken, |kind| Head::Unary(Box::new(kind))))
+    }
+
+    fn affine(&mut self, start: Token, map: DAffine3) -> Begun {
+        self.unary(start, Some(NodeKind::Affine(map)))
+    }
+
+    /// The node of a block that has been closed.
+    fn close(&mut self, frame: Frame, children: Vec<Tree>) -> Tree {
+        let kind = match frame.head {
+            Head::Broken => return self.broken.clone(),
+            Head::Combine(combinator) => NodeKind::Combine(combinator),
+            Head::Unary(kind) => {
+                let count = children.len();
+                if count != 1 && !frame.incomplete {
+                    let word = self.source(frame.span).split_ascii_whitespace().next().unwrap_or_default();
+                    self.report(|| {
+                        let error = |what: &str| {
+                            Diagnostic::error(Some(frame.span), format!("`{}` has {what}", clip(word)))
+                        };
+                        match count {
+                            0 => error("no node in its block").expected("expected one"),
+                            _ => error(&format!("{count} nodes in its block"))
+                                .expected("expected one; `sum { .. }` around them makes them one"),
+                        }
+                    });
+                }
+                *kind
+            }
+        };
+        Tree::at(frame.span, kind, children)
+    }
+
+    fn ricci(&mut self, start: Token) -> Begun {
+        let exponent = self.expression(super::expression::Place::Alone).value;
+        self.block(start, Head::Combine(Combinator::Ricci(exponent)))
+    }
+
+    fn use_node(&mut self) -> Tree {
+        let token = self.peek();
+        let Some(name) = self.peek_word() else {
+            self.expected_at(token, "expected the name of a `let`");
+            return self.broken.clone();
+        };
+        if let Some(tree) = self.lets.get(name).cloned() {
+            self.next();
+            return tree;
+        }
+        if self.begins_node(name) || is_statement(name) {
+            self.report(|| {
+                Diagnostic::error(Some(token.span()), format!("`use` has no name before `{name}`"))
+                    .expected("expected the name of a `let`")
+            });
+            return self.broken.clone();
+        }
+        self.next();
+        self.report_with(|parser| {
+            let error =
+                Diagnostic::error(Some(token.span()), format!("no `let {}` stands above", clip(name)));
+            match nearest(name, parser.lets.keys().copied()) {
+                Some(near) => error.expected(format!("perhaps `{near}`")),
+                None => error,
+            }
+        });
+        self.broken.clone()
+    }
+
+    fn rotate(&mut self, start: Token) -> Begun {
+        let slots = self.slots(ROTATE, "`rotate`");
+        let [axis, degrees, radians] = [0, 1, 2].map(|index| slots.get(index));
+        let span = Span::new(start.start, self.previous_end());
+        let angle = match (degrees, radians) {
+            (Some(degrees), None) => sin_cos_degrees(degrees.real()),
+            (None, Some(radians)) => radians.real().sin_cos(),
+            _ => {
+                self.lose_place(|| {
+                    Diagnostic::error(Some(span), "`rotate` has no angle, or two")
+                        .expected("expected one of `degrees` and `radians`")
+                });
+                return self.block(start, Head::Broken);
+            }
+        };
+        let Some(axis) = axis else {
+            self.lose_place(|| {
+                Diagnostic::error(Some(span), "`rotate` has no axis")
+                    .expected("expected `axis x`, `axis y`, `axis z` or `axis (a b c)`")
+            });
+            return self.block(start, Head::Broken);
+        };
+        let axis = DVec3::from(axis.vector());
+        let unit = axis.normalize_or_zero();
+        if unit == DVec3::ZERO && !axis.is_nan() {
+            self.report(|| Diagnostic::error(Some(span), "the axis has no direction"));
+        }
+        self.affine(start, DAffine3::from_mat3(rotation(unit, angle)))
+    }
+
+    fn scale(&mut self, start: Token) -> Begun {
+        let factors = match self.number_or_elements() {
+            None => DVec3::NAN,
+            Some(all) if all.count == 1 => DVec3::splat(all.numbers[0]),
+            Some(all) => DVec3::from(self.sized::<3>(&all)),
+        };
+        self.affine(start, DAffine3::from_scale(factors))
+    }
+
+    fn attribute(&mut self, start: Token, at: Token, name: &str) -> Begun {
+        let group = self.attributes.iter().find(|group| &*group.name == name);
+        let Some((name, width)) = group.map(|group| (group.name.clone(), group.width())) else {
+            self.report_with(|parser| {
+                Diagnostic::error(Some(at.span()), format!("no attribute is named `{}`", clip(name)))
+                    .expected(parser.known_groups())
+            });
+            self.number_or_elements();
+            return self.block(start, Head::Broken);
+        };
+        let values = self.group_values(Some(width));
+        self.unary(start, Some(NodeKind::Attribute { name, values }))
+    }
+
+    fn known_groups(&self) -> String {
+        let names: Vec<&str> = self.attributes.iter().map(|group| &*group.name).collect();
+        format!("declared are {}", names.join(", "))
+    }
+
+    /// A word that begins nothing. A block with values before it is read as that of a misspelt attribute, others are skipped.
+    fn unknown_node(&mut self, start: Token, word: &'a str) -> Begun {
+        let valued = self.peek().is(b'(') || self.peek().kind == TokenKind::Number;
+        self.report_with(|parser| {
+            let known = parser.node_words();
+            let error = Diagnostic::error(Some(start.span()), format!("no node is called `{}`", clip(word)));
+            if parser.lets.contains_key(word) {
+                return error.expected(format!("perhaps `use {word}`"));
+            }
+            match nearest(word, known) {
+                Some(near) => error.expected(format!("perhaps `{near}`")),
+                None if valued => error.expected(parser.known_groups()),
+                None => error,
+            }
+        });
+        if valued {
+            self.number_or_elements();
+            return self.block(start, Head::Broken);
+        }
+        self.stay_lost();
+        if self.peek().is(b'{') {
+            self.skip_block();
+            self.find_place();
+        }
+        Begun::Leaf(self.broken.clone())
+    }
+}
+
+impl Slots {
+    /// All values, with defaults; nothing if one is missing or wrong, after a message.
+    fn complete(
+        self,
+        parser: &mut Parser<'_>,
+        start: Token,
+        name: &str,
+    ) -> Option<Vec<crate::field::FieldValue>> {
+        let span = Span::new(start.start, parser.previous_end());
+        let missing = self.missing();
+        if !missing.is_empty() && !parser.is_lost() {
+            parser.report(|| super::primitive::missing_error(span, name, &missing));
+        }
+        self.values()
+    }
+}

@@ -1,0 +1,478 @@
+//! The parser: what it knows, how it reports, and the statements of a file. Nodes are in `node`, values in `value`.
+//!
+//! Tokens are taken one at a time and nothing recurses, so that memory is bounded by the model and not by the text. After an
+//! error that has lost the place, tokens are skipped in silence until a word, a brace or a statement says where we are again.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use jbt_ir::limits::{MAX_ATTRIBUTE_WIDTH, MAX_ATTRIBUTES, MAX_SCENE_BYTES};
+
+use super::expression::{Place, is_builtin};
+use super::lex::{Lexer, Token, TokenKind};
+use super::{Options, Parameter, Scene};
+use crate::attribute::{AttributeGroup, Mixing};
+use crate::combine::Combinator;
+use crate::diagnostic::{Diagnostic, Span};
+use crate::model::Model;
+use crate::report::{Report, clip, nearest};
+use crate::tree::{NodeKind, Tree};
+
+/// The words that begin a statement.
+const STATEMENTS: [&str; 5] = ["jbt", "iso", "param", "attribute", "let"];
+
+/// Whether a word begins a statement.
+pub(super) fn is_statement(word: &str) -> bool {
+    STATEMENTS.contains(&word)
+}
+
+/// The state of reading one text.
+pub(super) struct Parser<'a> {
+    lexer: Lexer<'a>,
+    whole: &'a str,
+    report: Report,
+    /// The place is lost: messages are withheld until it is found again.
+    lost: bool,
+    /// Reading has stopped for good.
+    stopped: bool,
+    options: &'a Options,
+    parameters: Vec<Parameter>,
+    /// The value of each parameter; NaN for one whose expression has an error.
+    values: HashMap<&'a str, f64>,
+    pub(super) lets: HashMap<&'a str, Tree>,
+    pub(super) attributes: Vec<AttributeGroup>,
+    pub(super) iso: f64,
+    iso_at: Option<Span>,
+    /// Nodes so far, shared ones once.
+    pub(super) nodes: usize,
+    root: Option<Tree>,
+    /// A brace that the end of the file leaves open has been reported.
+    pub(super) ended: bool,
+    /// Stands for every node that could not be read.
+    pub(super) broken: Tree,
+}
+
+/// The scene of a text, or everything that is wrong with it.
+pub(super) fn read(text: &[u8], options: &Options) -> Result<Scene, Vec<Diagnostic>> {
+    if text.len() > MAX_SCENE_BYTES {
+        let message = format!("the file has {} bytes; at most {MAX_SCENE_BYTES} are read", text.len());
+        return Err(vec![Diagnostic::limit(None, message)]);
+    }
+    let whole = std::str::from_utf8(text).map_err(|error| {
+        let at = error.valid_up_to();
+        let end = error.error_len().map_or(text.len(), |length| at + length);
+        vec![
+            Diagnostic::error(Some(Span::new(at, end)), "this is not UTF-8")
+                .expected("expected a text file, in the encoding UTF-8"),
+        ]
+    })?;
+    let mut parser = Parser::new(whole, options);
+    parser.file();
+    parser.finish()
+}
+
+impl<'a> Parser<'a> {
+    fn new(whole: &'a str, options: &'a Options) -> Self {
+        Self {
+            lexer: Lexer::new(whole),
+            whole,
+            report: Report::default(),
+            lost: false,
+            stopped: false,
+            options,
+            parameters: Vec::new(),
+            values: HashMap::new(),
+            lets: HashMap::new(),
+            attributes: vec![AttributeGroup::color()],
+            iso: Model::DEFAULT_ISO,
+            iso_at: None,
+            nodes: 0,
+            root: None,
+            ended: false,
+            broken: Tree::new(NodeKind::Combine(Combinator::Sum), Vec::new()),
+        }
+    }
+
+    // The tokens.
+
+    pub(super) fn peek(&self) -> Token {
+        self.lexer.peek()
+    }
+
+    pub(super) fn next(&mut self) -> Token {
+        self.lexer.next()
+    }
+
+    pub(super) fn leans_right(&self) -> bool {
+        self.lexer.leans_right()
+    }
+
+    /// Where the last taken token ended.
+    pub(super) fn previous_end(&self) -> usize {
+        self.lexer.previous_end()
+    }
+
+    pub(super) fn text(&self, token: Token) -> &'a str {
+        self.lexer.text(token)
+    }
+
+    pub(super) fn source(&self, span: Span) -> &'a str {
+        &self.whole[span.start as usize..span.end as usize]
+    }
+
+    /// The next token, if it is a word.
+    pub(super) fn peek_word(&self) -> Option<&'a str> {
+        let token = self.peek();
+        (token.kind == TokenKind::Word).then(|| self.text(token))
+    }
+
+    /// Takes the next token if it is this mark.
+    pub(super) fn accept(&mut self, mark: u8) -> Option<Token> {
+        self.peek().is(mark).then(|| self.next())
+    }
+
+    /// Takes the next token if it is this word.
+    pub(super) fn accept_word(&mut self, word: &str) -> bool {
+        let found = self.peek_word() == Some(word);
+        if found {
+            self.next();
+        }
+        found
+    }
+
+    // Messages.
+
+    /// Reports, wherever we are.
+    pub(super) fn report(&mut self, make: impl FnOnce() -> Diagnostic) {
+        if !self.stopped {
+            self.report.add(make);
+        }
+    }
+
+    /// Reports what `make` finds out from the parser's state.
+    pub(super) fn report_with(&mut self, make: impl FnOnce(&Self) -> Diagnostic) {
+        let made = (!self.stopped && !self.report.is_full()).then(|| make(self));
+        self.report(|| made.unwrap_or_else(|| Diagnostic::error(None, "")));
+    }
+
+    /// Reports, unless the place is lost already, and loses it.
+    pub(super) fn lose_place(&mut self, make: impl FnOnce() -> Diagnostic) {
+        if !self.lost {
+            self.report(make);
+        }
+        self.lost = true;
+    }
+
+    /// Loses the place after an error that has been reported.
+    pub(super) fn stay_lost(&mut self) {
+        self.lost = true;
+    }
+
+    /// We know again where we are.
+    pub(super) fn find_place(&mut self) {
+        self.lost = false;
+    }
+
+    pub(super) fn is_lost(&self) -> bool {
+        self.lost
+    }
+
+    /// Loses the place at a token that is not what was expected.
+    pub(super) fn expected_at(&mut self, token: Token, expected: &str) {
+        let found = if self.lost { String::new() } else { self.describe(token) };
+        self.lose_place(|| {
+            Diagnostic::error(Some(token.span()), format!("unexpected {found}")).expected(expected)
+        });
+    }
+
+    /// A token in words.
+    pub(super) fn describe(&self, token: Token) -> String {
+        match token.kind {
+            TokenKind::End => "end of the file".to_owned(),
+            TokenKind::Word | TokenKind::Number | TokenKind::Mark(_) | TokenKind::Unknown => {
+                format!("`{}`", clip(self.text(token)))
+            }
+        }
+    }
+
+    /// Reports a limit and stops reading.
+    pub(super) fn give_up(&mut self, limit: Diagnostic) {
+        if !self.stopped {
+            self.report.add_last(limit);
+        }
+        self.stopped = true;
+        self.lost = true;
+        self.lexer.finish();
+    }
+
+    // Parameters.
+
+    pub(super) fn parameter(&self, name: &str) -> Option<f64> {
+        self.values.get(name).copied()
+    }
+
+    pub(super) fn parameter_names(&self) -> impl Iterator<Item = &str> {
+        self.parameters.iter().map(|parameter| parameter.name.as_str())
+    }
+
+    // Statements.
+
+    fn file(&mut self) {
+        self.header();
+        loop {
+            let token = self.peek();
+            match token.kind {
+                TokenKind::End => return,
+                TokenKind::Word => {
+                    let word = self.text(token);
+                    if is_statement(word) {
+                        self.find_place();
+                        self.next();
+                        self.statement(word, token.span());
+                    } else if self.is_lost() && !self.begins_node(word) {
+                        self.next();
+                    } else {
+                        self.find_place();
+                        self.root(token);
+                    }
+                }
+                TokenKind::Mark(b'{') => {
+                    self.expected_at(token, "expected a node's name before it");
+                    self.skip_block();
+                }
+                TokenKind::Mark(b'}') => {
+                    self.expected_at(token, "no block is open here");
+                    self.next();
+                }
+                TokenKind::Mark(_) | TokenKind::Number | TokenKind::Unknown => {
+                    self.expected_at(token, "expected a statement or a node");
+                    self.next();
+                }
+            }
+        }
+    }
+
+    fn header(&mut self) {
+        let token = self.peek();
+        if !self.accept_word("jbt") {
+            let span = Span::new(
+                token.start,
+                token.start + self.whole[token.start..].chars().take(1).map(char::len_utf8).sum::<usize>(),
+            );
+            self.report(|| {
+                Diagnostic::error(Some(span), "the file does not begin with `jbt 1`")
+                    .expected("expected the format and its version first")
+            });
+            return;
+        }
+        let version = self.peek();
+        if version.kind != TokenKind::Number {
+            self.expected_at(version, "expected the version: jbt 1");
+        } else if self.text(version) == "1" {
+            self.next();
+        } else {
+            let found = clip(self.text(version));
+            self.give_up(
+                Diagnostic::error(Some(version.span()), format!("the file has version {found}"))
+                    .expected("expected version 1: jbt 1"),
+            );
+        }
+    }
+
+    fn statement(&mut self, word: &str, span: Span) {
+        match word {
+            "iso" => self.iso_statement(span),
+            "param" => self.param_statement(),
+            "attribute" => self.attribute_statement(),
+            "let" => self.let_statement(),
+            _ => {
+                self.report(|| {
+                    Diagnostic::error(Some(span), "a second `jbt`")
+                        .expected("expected it once, at the beginning")
+                });
+                self.next();
+            }
+        }
+    }
+
+    fn iso_statement(&mut self, span: Span) {
+        let value = self.expression(Place::Alone).value;
+        if self.iso_at.is_some() {
+            self.report(|| Diagnostic::error(Some(span), "a second `iso`").expected("expected it once"));
+        } else if self.nodes > 0 {
+            self.report(|| {
+                Diagnostic::error(Some(span), "`iso` stands after a node")
+                    .expected("expected it before all nodes, since it gives `surface_radius` its meaning")
+            });
+        }
+        self.iso_at = Some(span);
+        self.iso = value;
+    }
+
+    /// A name that is being defined.
+    fn name(&mut self, what: &str) -> Option<(&'a str, Span)> {
+        let token = self.peek();
+        if token.kind != TokenKind::Word {
+            self.expected_at(token, &format!("expected the {what}'s name"));
+            return None;
+        }
+        self.next();
+        Some((self.text(token), token.span()))
+    }
+
+    fn equals(&mut self) {
+        if self.accept(b'=').is_none() {
+            self.expected_at(self.peek(), "expected `=`");
+        }
+    }
+
+    fn param_statement(&mut self) {
+        let Some((name, span)) = self.name("parameter") else {
+            return;
+        };
+        self.equals();
+        let default = if self.is_lost() { f64::NAN } else { self.expression(Place::Alone).value };
+        if is_builtin(name) {
+            self.report(|| Diagnostic::error(Some(span), format!("`{name}` means something else already")));
+        } else if self.values.contains_key(name) {
+            self.report(|| Diagnostic::error(Some(span), format!("a second parameter `{}`", clip(name))));
+        } else {
+            let set = self.options.parameters.iter().rev().find(|(set, _)| set == name);
+            let value = set.map_or(default, |&(_, value)| value);
+            self.values.insert(name, value);
+            self.parameters.push(Parameter { name: name.to_owned(), default, value });
+        }
+    }
+
+    fn attribute_statement(&mut self) {
+        let Some((name, span)) = self.name("attribute") else {
+            return;
+        };
+        let width_at = self.peek();
+        let width = self.expression(Place::Alone);
+        let right = width.value.fract() == 0.0 && (1.0..=MAX_ATTRIBUTE_WIDTH as f64).contains(&width.value);
+        if !right && !width.value.is_nan() {
+            self.report(|| {
+                Diagnostic::error(
+                    Some(width.span),
+                    format!("the width of `{}` is not 1 to {MAX_ATTRIBUTE_WIDTH}", clip(name)),
+                )
+                .expected("expected the number of its reals")
+            });
+        }
+        let width = right.then_some(width.value as usize);
+        let mut default = None;
+        if !self.is_lost() && self.accept_word("default") {
+            default = Some(self.group_values(width));
+        }
+        let mixing = Mixing::ALL.into_iter().find(|mixing| self.accept_word(mixing.name()));
+        if self.is_lost() || width_at.kind == TokenKind::End {
+            return;
+        }
+        let width = width.unwrap_or(1);
+        let group = AttributeGroup {
+            name: Arc::from(name),
+            default: default.unwrap_or_else(|| vec![if name == "color" { 1.0 } else { 0.0 }; width]),
+            mixing: mixing.unwrap_or(Mixing::Blend),
+        };
+        self.declare(group, span);
+    }
+
+    fn declare(&mut self, group: AttributeGroup, span: Span) {
+        let name = Arc::clone(&group.name);
+        if &*name == "color" {
+            if group.width() != 3 {
+                self.report(|| {
+                    Diagnostic::error(Some(span), "`color` has 3 reals: red, green and blue")
+                        .expected("expected width 3")
+                });
+            }
+            self.attributes[0] = group;
+        } else if self.group(&name).is_some() {
+            self.report(|| Diagnostic::error(Some(span), format!("a second attribute `{}`", clip(&name))));
+        } else if self.attributes.len() == MAX_ATTRIBUTES {
+            let message = format!("more than {MAX_ATTRIBUTES} attributes, `color` included");
+            self.report(|| Diagnostic::limit(Some(span), message));
+        } else {
+            self.attributes.push(group);
+        }
+    }
+
+    /// The width of a declared group.
+    pub(super) fn group(&self, name: &str) -> Option<usize> {
+        self.attributes.iter().find(|group| &*group.name == name).map(AttributeGroup::width)
+    }
+
+    fn let_statement(&mut self) {
+        let Some((name, span)) = self.name("subtree") else {
+            return;
+        };
+        self.equals();
+        if self.peek_word().is_some_and(|word| self.begins_node(word)) {
+            self.find_place();
+        }
+        if self.is_lost() {
+            self.lets.entry(name).or_insert_with(|| self.broken.clone());
+            return;
+        }
+        let tree = self.tree();
+        if self.lets.insert(name, tree).is_some() {
+            self.report(|| Diagnostic::error(Some(span), format!("a second `let {}`", clip(name))));
+        }
+    }
+
+    fn root(&mut self, token: Token) {
+        let tree = self.tree();
+        if self.root.is_none() {
+            self.root = Some(tree);
+        } else if tree.identity() != self.broken.identity() {
+            self.report(|| {
+                Diagnostic::error(Some(token.span()), "a second root")
+                    .expected("expected one node; `sum { .. }` or `union { .. }` around both makes them one")
+            });
+        }
+    }
+
+    // The end.
+
+    fn finish(mut self) -> Result<Scene, Vec<Diagnostic>> {
+        self.check_options();
+        if self.root.is_none() {
+            let end = Span::new(self.whole.len(), self.whole.len());
+            self.report(|| {
+                Diagnostic::error(Some(end), "the file has no node").expected("expected the tree")
+            });
+        }
+        let report = std::mem::take(&mut self.report);
+        match self.root {
+            Some(root) if report.is_empty() => Ok(Scene {
+                model: Model { iso: self.iso, attributes: self.attributes, root },
+                parameters: self.parameters,
+            }),
+            _ => Err(report.finish()),
+        }
+    }
+
+    /// Values from outside are for parameters that exist, and are numbers.
+    fn check_options(&mut self) {
+        for (name, value) in &self.options.parameters {
+            if !self.values.contains_key(name.as_str()) {
+                self.report_with(|parser| {
+                    let error =
+                        Diagnostic::error(None, format!("the file has no parameter `{}` to set", clip(name)));
+                    let known: Vec<&str> = parser.parameter_names().take(20).collect();
+                    let near = nearest(name, parser.parameter_names());
+                    error.expected(match (near, known.len()) {
+                        (_, 0) => "it has none".to_owned(),
+                        (Some(near), _) => format!("perhaps `{near}`; it has {}", known.join(", ")),
+                        (None, _) => format!("it has {}", known.join(", ")),
+                    })
+                });
+            } else if !value.is_finite() {
+                self.report(|| {
+                    Diagnostic::error(None, format!("the value of `{}` is not finite", clip(name)))
+                });
+            }
+        }
+    }
+}

@@ -1,0 +1,231 @@
+//! The printer: a model as text that reads back as the same model.
+//!
+//! Subtrees with several parents are printed once, as `let`, children first: a text is as long as its graph, however many
+//! paths the graph has.
+//! Maps and attributes stand on one line with their child; operators open a line for each child, down to a depth where the
+//! indentation would outweigh the text.
+
+use std::collections::HashMap;
+use std::fmt::Write as _;
+
+use glam::DAffine3;
+
+use super::{GROUP_NODE, field_word};
+use crate::attribute::AttributeGroup;
+use crate::combine::Combinator;
+use crate::falloff::Falloff;
+use crate::field::{Field, FieldKind, FieldValue};
+use crate::model::Model;
+use crate::tree::{NodeKind, Primitive, Tree};
+
+/// Operators below this depth are printed on one line.
+const DEEPEST: usize = 12;
+
+/// The model as text. See [`parse`](super::parse) for the promise.
+#[must_use]
+pub fn print(model: &Model) -> String {
+    let mut out = format!("jbt 1\niso {}\n", number(model.iso));
+    for group in &model.attributes {
+        if *group != AttributeGroup::color() {
+            declaration(&mut out, group);
+        }
+    }
+    out.push('\n');
+    let (order, names) = shared(&model.root);
+    let printer = Printer { names };
+    for tree in order {
+        let _ = write!(out, "let n{} = ", printer.names[&tree.identity()]);
+        printer.tree(&mut out, tree);
+        out.push_str("\n\n");
+    }
+    printer.tree(&mut out, &model.root);
+    out.push('\n');
+    out
+}
+
+/// The shortest text of a finite number that reads back as the same bits.
+pub(super) fn number(value: f64) -> String {
+    let mut text = format!("{value:?}");
+    if text.ends_with(".0") {
+        text.truncate(text.len() - 2);
+    }
+    text
+}
+
+fn vector(values: &[f64]) -> String {
+    let numbers: Vec<String> = values.iter().map(|&value| number(value)).collect();
+    format!("({})", numbers.join(" "))
+}
+
+/// The values of an attribute: one number without parentheses.
+fn group_values(values: &[f64]) -> String {
+    match values {
+        [value] => number(*value),
+        values => vector(values),
+    }
+}
+
+fn declaration(out: &mut String, group: &AttributeGroup) {
+    let (width, default, mixing) = (group.width(), group_values(&group.default), group.mixing.name());
+    let _ = writeln!(out, "attribute {} {width} default {default} {mixing}", group.name);
+}
+
+/// The subtrees with more than one use, children before parents, and the number of each by its identity.
+fn shared(root: &Tree) -> (Vec<&Tree>, HashMap<usize, usize>) {
+    let mut uses: HashMap<usize, usize> = HashMap::new();
+    let mut finished = Vec::new();
+    // A node is on the stack once before its children (false) and once after them (true).
+    let mut stack = vec![(root, false)];
+    while let Some((tree, done)) = stack.pop() {
+        if done {
+            finished.push(tree);
+            continue;
+        }
+        let count = uses.entry(tree.identity()).or_default();
+        *count += 1;
+        if *count == 1 {
+            stack.push((tree, true));
+            stack.extend(tree.node().children().iter().rev().map(|child| (child, false)));
+        }
+    }
+    finished.retain(|tree| uses[&tree.identity()] > 1);
+    let names = finished.iter().enumerate().map(|(i, tree)| (tree.identity(), i + 1)).collect();
+    (finished, names)
+}
+
+/// What is left to print.
+enum Item<'a> {
+    Tree(&'a Tree, usize),
+    Text(&'static str),
+    Line(usize),
+}
+
+struct Printer {
+    names: HashMap<usize, usize>,
+}
+
+impl Printer {
+    /// A subtree, also if it has a name itself.
+    fn tree(&self, out: &mut String, root: &Tree) {
+        let mut stack = Vec::new();
+        Self::open(out, &mut stack, root, 0);
+        while let Some(item) = stack.pop() {
+            match item {
+                Item::Text(text) => out.push_str(text),
+                Item::Line(depth) if depth <= DEEPEST => {
+                    out.push('\n');
+                    out.extend(std::iter::repeat_n("    ", depth));
+                }
+                Item::Line(_) => out.push(' '),
+                Item::Tree(tree, depth) => match self.names.get(&tree.identity()) {
+                    Some(name) => {
+                        let _ = write!(out, "use n{name}");
+                    }
+                    None => Self::open(out, &mut stack, tree, depth),
+                },
+            }
+        }
+    }
+
+    /// Prints a node's head and leaves the rest of it on the stack.
+    fn open<'a>(out: &mut String, stack: &mut Vec<Item<'a>>, tree: &'a Tree, depth: usize) {
+        head(out, tree.node().kind());
+        let children = tree.node().children();
+        match tree.node().kind() {
+            NodeKind::Primitive(_) => {}
+            NodeKind::Combine(_) => {
+                out.push_str(" {");
+                stack.push(Item::Text("}"));
+                stack.push(Item::Line(depth));
+                for child in children.iter().rev() {
+                    stack.push(Item::Tree(child, depth + 1));
+                    stack.push(Item::Line(depth + 1));
+                }
+            }
+            NodeKind::Affine(_) | NodeKind::Warp(_) | NodeKind::Attribute { .. } => {
+                out.push_str(" { ");
+                stack.push(Item::Text(" }"));
+                stack.extend(children.iter().rev().map(|child| Item::Tree(child, depth)));
+            }
+        }
+    }
+}
+
+/// What stands before a node's block; of a primitive, all of it.
+fn head(out: &mut String, kind: &NodeKind) {
+    match kind {
+        NodeKind::Primitive(leaf) => primitive(out, leaf),
+        NodeKind::Combine(Combinator::Ricci(exponent)) => {
+            let _ = write!(out, "blend ricci {}", number(*exponent));
+        }
+        NodeKind::Combine(combinator) => out.push_str(combinator.name()),
+        NodeKind::Affine(map) => affine(out, map),
+        NodeKind::Warp(warp) => {
+            out.push_str(warp.kind().name());
+            for (described, value) in warp.kind().fields().iter().zip(warp.to_fields()) {
+                field(out, described.name, described, value);
+            }
+        }
+        NodeKind::Attribute { name, values } => {
+            if super::node::is_reserved(name) {
+                let _ = write!(out, "{GROUP_NODE} ");
+            }
+            let _ = write!(out, "{name} {}", group_values(values));
+        }
+    }
+}
+
+fn primitive(out: &mut String, leaf: &Primitive) {
+    let kind = leaf.skeleton.kind();
+    let _ = write!(out, "{} {{", kind.name());
+    for (described, value) in kind.fields().iter().zip(leaf.skeleton.to_fields()) {
+        field(out, &field_word(kind, described), described, value);
+    }
+    let _ = write!(out, " radius {}", number(leaf.radius));
+    if leaf.falloff != Falloff::Soft {
+        let _ = write!(out, " falloff {}", leaf.falloff.name());
+    }
+    if leaf.strength.to_bits() != 1f64.to_bits() {
+        let _ = write!(out, " strength {}", number(leaf.strength));
+    }
+    out.push_str(" }");
+}
+
+/// A parameter, unless it has its default.
+fn field(out: &mut String, word: &str, described: &Field, value: FieldValue) {
+    if described.default.is_some_and(|default| same_bits(default, value)) {
+        return;
+    }
+    let _ = match (described.kind, value) {
+        (FieldKind::Axis, FieldValue::Vector(axis)) => {
+            let index = axis.iter().position(|&x| x != 0.0).unwrap_or(2);
+            write!(out, " {word} {}", ["x", "y", "z"][index])
+        }
+        (_, FieldValue::Real(value)) => write!(out, " {word} {}", number(value)),
+        (_, FieldValue::Vector(values)) => write!(out, " {word} {}", vector(&values)),
+    };
+}
+
+fn same_bits(a: FieldValue, b: FieldValue) -> bool {
+    match (a, b) {
+        (FieldValue::Real(a), FieldValue::Real(b)) => a.to_bits() == b.to_bits(),
+        (FieldValue::Vector(a), FieldValue::Vector(b)) => a.map(f64::to_bits) == b.map(f64::to_bits),
+        (FieldValue::Real(_), FieldValue::Vector(_)) | (FieldValue::Vector(_), FieldValue::Real(_)) => false,
+    }
+}
+
+/// An affine map in its simplest form that gives the same bits.
+fn affine(out: &mut String, map: &DAffine3) {
+    let bits = |map: &DAffine3| map.to_cols_array().map(f64::to_bits);
+    let diagonal = glam::DVec3::new(map.matrix3.x_axis.x, map.matrix3.y_axis.y, map.matrix3.z_axis.z);
+    let _ = if bits(map) == bits(&DAffine3::from_translation(map.translation)) {
+        write!(out, "translate {}", vector(&map.translation.to_array()))
+    } else if bits(map) != bits(&DAffine3::from_scale(diagonal)) {
+        let [xx, yx, zx, xy, yy, zy, xz, yz, zz, x, y, z] = map.to_cols_array();
+        write!(out, "affine {}", vector(&[xx, xy, xz, x, yx, yy, yz, y, zx, zy, zz, z]))
+    } else if diagonal.x.to_bits() == diagonal.y.to_bits() && diagonal.x.to_bits() == diagonal.z.to_bits() {
+        write!(out, "scale {}", number(diagonal.x))
+    } else {
+        write!(out, "scale {}", vector(&diagonal.to_array()))
+    };
+}

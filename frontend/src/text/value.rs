@@ -1,0 +1,175 @@
+//! Values of parameters: numbers, vectors, axes, words.
+
+use super::OWN_FIELDS;
+use super::expression::{Operand, Place};
+use super::lex::TokenKind;
+use super::parse::Parser;
+use crate::diagnostic::{Diagnostic, Span};
+use crate::field::{FieldKind, FieldValue};
+
+/// The most elements that a vector may have: a 3x4 matrix.
+const LONGEST: usize = 12;
+
+/// The elements of a vector.
+pub(super) struct Elements {
+    /// The first ones, at most [`LONGEST`].
+    pub(super) numbers: Vec<f64>,
+    /// How many there are.
+    pub(super) count: usize,
+    pub(super) span: Span,
+}
+
+impl Elements {
+    fn one(operand: Operand) -> Self {
+        Self { numbers: vec![operand.value], count: 1, span: operand.span }
+    }
+}
+
+impl Parser<'_> {
+    /// `( a b c )`, with blanks or commas between. Nothing after an error.
+    pub(super) fn elements(&mut self) -> Option<Elements> {
+        let open = self.peek();
+        if self.accept(b'(').is_none() {
+            self.expected_at(open, "expected a vector: ( .. )");
+            return None;
+        }
+        let mut all = Elements { numbers: Vec::new(), count: 0, span: open.span() };
+        while !self.peek().is(b')') {
+            if self.vector_is_cut_off() {
+                self.lose_place(|| Diagnostic::error(Some(open.span()), "this `(` is not closed"));
+                return None;
+            }
+            if all.count > 0 {
+                self.accept(b',');
+            }
+            let element = self.expression(Place::Element);
+            if self.is_lost() {
+                self.skip_to_close();
+                return None;
+            }
+            all.count += 1;
+            if all.count <= LONGEST {
+                all.numbers.push(element.value);
+            }
+        }
+        all.span.end = self.next().end as u32;
+        Some(all)
+    }
+
+    /// A number, or a vector. A vector of one element is a number in parentheses, which an operator may follow.
+    pub(super) fn number_or_elements(&mut self) -> Option<Elements> {
+        if !self.peek().is(b'(') {
+            let operand = self.expression(Place::Alone);
+            return (!self.is_lost()).then(|| Elements::one(operand));
+        }
+        let all = self.elements()?;
+        let &[value] = all.numbers.as_slice() else {
+            return Some(all);
+        };
+        let first = Operand { value, span: all.span };
+        let operand = self.expression_from(Place::Alone, Some(first));
+        (!self.is_lost()).then(|| Elements::one(operand))
+    }
+
+    /// Whether what is next belongs to what stands around a vector, so that its `)` must be missing.
+    fn vector_is_cut_off(&self) -> bool {
+        let token = self.peek();
+        let brace = token.is(b'{') || token.is(b'}');
+        let field =
+            self.peek_word().is_some_and(|word| OWN_FIELDS.contains(&word) && self.parameter(word).is_none());
+        brace || field || token.kind == TokenKind::End
+    }
+
+    /// Past the `)` of a vector that has an error, if it comes before the end of the block.
+    fn skip_to_close(&mut self) {
+        let mut depth = 0usize;
+        loop {
+            match self.peek().kind {
+                TokenKind::Mark(b'(') => depth += 1,
+                TokenKind::Mark(b')') if depth == 0 => {
+                    self.next();
+                    self.find_place();
+                    return;
+                }
+                TokenKind::Mark(b')') => depth -= 1,
+                TokenKind::Mark(b'{' | b'}') | TokenKind::End => return,
+                TokenKind::Mark(_) | TokenKind::Word | TokenKind::Number | TokenKind::Unknown => {}
+            }
+            self.next();
+        }
+    }
+
+    /// A vector of `N` elements; NaNs after an error.
+    pub(super) fn vector<const N: usize>(&mut self) -> [f64; N] {
+        let Some(all) = self.elements() else {
+            return [f64::NAN; N];
+        };
+        self.sized(&all)
+    }
+
+    /// The elements, if they are `N`; else a message and NaNs.
+    pub(super) fn sized<const N: usize>(&mut self, all: &Elements) -> [f64; N] {
+        if let Ok(numbers) = <[f64; N]>::try_from(all.numbers.as_slice())
+            && all.count == N
+        {
+            return numbers;
+        }
+        self.wrong_count(all, N);
+        [f64::NAN; N]
+    }
+
+    pub(super) fn wrong_count(&mut self, all: &Elements, expected: usize) {
+        let plural = if all.count == 1 { "" } else { "s" };
+        let wanted = if expected == 1 { "" } else { "s" };
+        self.report(|| {
+            Diagnostic::error(Some(all.span), format!("{} number{plural}", all.count))
+                .expected(format!("expected {expected} number{wanted}"))
+        });
+    }
+
+    /// The values of an attribute group; zeros after an error. The width is nothing if it has an error itself.
+    pub(super) fn group_values(&mut self, width: Option<usize>) -> Vec<f64> {
+        let zeros = vec![0.0; width.unwrap_or(1)];
+        let Some(all) = self.number_or_elements() else {
+            return zeros;
+        };
+        match width {
+            Some(width) if all.count == width => all.numbers,
+            Some(width) => {
+                self.wrong_count(&all, width);
+                zeros
+            }
+            None => zeros,
+        }
+    }
+
+    /// The value of a parameter of this kind; NaN after an error.
+    pub(super) fn field_value(&mut self, kind: FieldKind) -> FieldValue {
+        match kind {
+            FieldKind::Real | FieldKind::Positive | FieldKind::NonNegative => {
+                FieldValue::Real(self.expression(Place::Alone).value)
+            }
+            FieldKind::Position | FieldKind::Extents => FieldValue::Vector(self.vector()),
+            FieldKind::Direction => match self.axis_word() {
+                Some(axis) => FieldValue::Vector(axis),
+                None => FieldValue::Vector(self.vector()),
+            },
+            FieldKind::Axis => FieldValue::Vector(self.axis_word().unwrap_or_else(|| {
+                self.expected_at(self.peek(), "expected one of x, y, z");
+                [f64::NAN; 3]
+            })),
+        }
+    }
+
+    /// The unit vector of the axis that is named next.
+    fn axis_word(&mut self) -> Option<[f64; 3]> {
+        let axis = match self.peek_word()? {
+            "x" => [1.0, 0.0, 0.0],
+            "y" => [0.0, 1.0, 0.0],
+            "z" => [0.0, 0.0, 1.0],
+            _ => return None,
+        };
+        self.next();
+        Some(axis)
+    }
+}

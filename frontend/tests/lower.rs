@@ -1,0 +1,75 @@
+//! What lowering makes of small scenes: golden files with the scene, the program and the numbers.
+//!
+//! `golden/lower/NAME.jbt` lowers, for all answers, to `golden/lower/NAME.ir`. `BLESS=1` writes what is found.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use jbt_frontend::lower::{Lowered, lower};
+use jbt_frontend::query::Query;
+use jbt_frontend::text::{Options, parse};
+
+fn shown(scene: &[u8], query: Query) -> String {
+    let tree = parse(scene, &Options::default()).unwrap().check().unwrap();
+    let Lowered { function, tables } = lower(&tree, query).unwrap();
+    tables.check(&function).unwrap();
+    jbt_ir::verify(function.clone()).unwrap();
+    let mut out = function.to_string();
+    for (table, rows) in tables.tables.iter() {
+        let _ = writeln!(out, "\n{table}: {} rows, starts {:?}", rows.len(), rows.starts);
+        for row in 0..rows.len() {
+            let _ = writeln!(out, "  {:?}", rows.row(row));
+        }
+    }
+    out
+}
+
+#[test]
+fn programs_are_as_expected() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/lower");
+    let mut scenes = 0;
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_none_or(|extension| extension != "jbt") {
+            continue;
+        }
+        scenes += 1;
+        let found = shown(&std::fs::read(&path).unwrap(), Query::ATTRIBUTES);
+        let golden = path.with_extension("ir");
+        if std::env::var_os("BLESS").is_some() {
+            std::fs::write(&golden, &found).unwrap();
+        }
+        let expected = std::fs::read_to_string(&golden).unwrap_or_default();
+        assert_eq!(expected, found, "{} differs; BLESS=1 accepts what was found", golden.display());
+    }
+    assert!(scenes >= 5);
+}
+
+/// Shapes, and not counts or numbers, make code: what the golden files cannot say.
+#[test]
+fn alike_models_have_one_program() {
+    let function = |scene: &str| {
+        let tree = parse(scene.as_bytes(), &Options::default()).unwrap().check().unwrap();
+        lower(&tree, Query::ALL).unwrap().function
+    };
+    let five =
+        function("jbt 1 union { sum { point { radius 1 } point { radius 2 } } sum { point { radius 3 } } }");
+    let other = function(
+        "jbt 1 union { sum { point { radius 1 } } color (1 0 0) { sum { point { at (1 2 3) radius 2 } point { radius 1 } } }
+         sum { translate (1 0 0) { point { radius 9 } } rotate axis x degrees 10 { scale 2 { point { radius 1 } } } } }",
+    );
+    assert_eq!(five, other, "sums of different numbers of points, moved by similarities");
+    let strong = function(
+        "jbt 1 union { sum { point { radius 1 strength 2 } } sum { point { radius 1 strength 3 } } }",
+    );
+    assert_ne!(five, strong, "a strength is work");
+    let ricci =
+        |n: &str| function(&format!("jbt 1 blend ricci {n} {{ point {{ radius 1 }} point {{ radius 2 }} }}"));
+    assert_eq!(ricci("2.5"), ricci("3.7"), "an exponent is a number of the row");
+    assert_ne!(ricci("2"), ricci("3"), "an integer exponent is code");
+    assert_eq!(
+        ricci("1"),
+        function("jbt 1 sum { point { radius 1 } point { radius 2 } }"),
+        "exponent 1 is the sum"
+    );
+}

@@ -1,0 +1,123 @@
+//! Random models: every member that the lists hold, every kind of number, shared subtrees.
+
+use std::sync::Arc;
+
+use fastrand::Rng;
+use glam::{DAffine3, DMat3, DVec3};
+use jbt_frontend::attribute::{AttributeGroup, Mixing};
+use jbt_frontend::combine::Combinator;
+use jbt_frontend::falloff::Falloff;
+use jbt_frontend::field::{Field, FieldKind, FieldValue};
+use jbt_frontend::model::Model;
+use jbt_frontend::skeleton::{Point, SkeletonKind};
+use jbt_frontend::tree::{NodeKind, Primitive, Tree};
+use jbt_frontend::warp::WarpKind;
+
+/// A point of radius 1.
+pub fn point() -> Tree {
+    let skeleton = Point { at: DVec3::ZERO }.into();
+    let leaf = Primitive { skeleton, falloff: Falloff::Soft, radius: 1.0, strength: 1.0 };
+    Tree::new(NodeKind::Primitive(leaf), Vec::new())
+}
+
+/// A finite number: often a simple one, sometimes any bits.
+fn number(rng: &mut Rng) -> f64 {
+    match rng.u8(..6) {
+        0 => 0.0,
+        1 => -0.0,
+        2 => f64::from(rng.i32(-9..10)),
+        3 => rng.f64() - 0.5,
+        4 => *rng.choice(&[1.0, 1e15, -1e-15, f64::MIN_POSITIVE, 5e-324, f64::MAX, 0.1]).unwrap(),
+        _ => Some(f64::from_bits(rng.u64(..))).filter(|x| x.is_finite()).unwrap_or(0.5),
+    }
+}
+
+fn numbers<const N: usize>(rng: &mut Rng) -> [f64; N] {
+    std::array::from_fn(|_| number(rng))
+}
+
+fn fields(rng: &mut Rng, fields: &[Field]) -> Vec<FieldValue> {
+    let value = |field: &Field| match (field.kind, field.default) {
+        (_, Some(default)) if rng.u8(..4) == 0 => default,
+        (FieldKind::Real, _) => FieldValue::Real(number(rng)),
+        (FieldKind::Positive | FieldKind::NonNegative, _) => FieldValue::Real(number(rng).abs()),
+        (FieldKind::Position | FieldKind::Direction, _) => FieldValue::Vector(numbers(rng)),
+        (FieldKind::Extents, _) => FieldValue::Vector(numbers(rng).map(f64::abs)),
+        (FieldKind::Axis, _) => FieldValue::Vector(DVec3::AXES[rng.usize(..3)].to_array()),
+    };
+    fields.iter().map(value).collect()
+}
+
+fn leaf(rng: &mut Rng) -> Tree {
+    let kind = *rng.choice(SkeletonKind::ALL).unwrap();
+    let leaf = Primitive {
+        skeleton: kind.from_fields(&fields(rng, kind.fields())),
+        falloff: *rng.choice(Falloff::ALL).unwrap(),
+        radius: number(rng),
+        strength: if rng.bool() { 1.0 } else { number(rng) },
+    };
+    Tree::new(NodeKind::Primitive(leaf), Vec::new())
+}
+
+fn affine(rng: &mut Rng) -> DAffine3 {
+    match rng.u8(..5) {
+        0 => DAffine3::from_translation(numbers(rng).into()),
+        1 => DAffine3::from_scale(DVec3::splat(number(rng))),
+        2 => DAffine3::from_scale(numbers(rng).into()),
+        3 => DAffine3::from_rotation_z(rng.f64()),
+        _ => DAffine3 { matrix3: DMat3::from_cols_array(&numbers(rng)), translation: numbers(rng).into() },
+    }
+}
+
+/// A model of up to some 30 nodes, built upwards from leaves; nodes that were used once may be used again.
+pub fn model(rng: &mut Rng) -> Model {
+    let mut groups = vec![AttributeGroup::color()];
+    for name in ["rough", "uv", "scale", "n1", "color2"] {
+        if rng.bool() {
+            let default = (0..rng.usize(1..5)).map(|_| number(rng)).collect();
+            groups.push(AttributeGroup {
+                name: name.into(),
+                default,
+                mixing: *rng.choice(Mixing::ALL.iter()).unwrap(),
+            });
+        }
+    }
+    if rng.bool() {
+        groups[0].default = vec![0.5, -0.0, 1.0];
+        groups[0].mixing = Mixing::Dominant;
+    }
+    let mut trees = vec![leaf(rng)];
+    for _ in 0..rng.usize(..30) {
+        let pick = |rng: &mut Rng| {
+            let recent = trees.len().saturating_sub(4);
+            trees[if rng.bool() { rng.usize(recent..trees.len()) } else { rng.usize(..trees.len()) }].clone()
+        };
+        let tree = match rng.u8(..5) {
+            0 => leaf(rng),
+            1 => Tree::new(NodeKind::Affine(affine(rng)), vec![pick(rng)]),
+            2 => {
+                let kind = *rng.choice(WarpKind::ALL).unwrap();
+                Tree::new(NodeKind::Warp(kind.from_fields(&fields(rng, kind.fields()))), vec![pick(rng)])
+            }
+            3 => {
+                let group = rng.choice(&groups).unwrap();
+                let values = (0..group.width()).map(|_| number(rng)).collect();
+                Tree::new(NodeKind::Attribute { name: Arc::clone(&group.name), values }, vec![pick(rng)])
+            }
+            _ => {
+                let combinator = match rng.u8(..5) {
+                    0 => Combinator::Sum,
+                    1 => Combinator::Ricci(number(rng)),
+                    2 => Combinator::Union,
+                    3 => Combinator::Intersection,
+                    _ => Combinator::Difference,
+                };
+                let children = (0..rng.usize(1..5)).map(|_| pick(rng)).collect();
+                Tree::new(NodeKind::Combine(combinator), children)
+            }
+        };
+        trees.push(tree);
+    }
+    let root = trees.pop().unwrap_or_else(point);
+    Model { iso: number(rng), attributes: groups, root }
+}
