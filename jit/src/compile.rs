@@ -1,0 +1,224 @@
+//! From a verified function to code: the limits, the choice of settings, and the errors.
+
+use std::panic::{self, AssertUnwindSafe};
+
+use jbt_ir::limits::{MAX_JIT_LIVE_VALUES, MAX_JIT_VALUES};
+use jbt_ir::{Function, Inst, InstKind, Op, Verified};
+
+use crate::memory::Code;
+use crate::{isa, lower, pressure};
+
+/// Vectors of 4 lanes for each value.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum VectorCount {
+    /// Blocks of 4 points.
+    One,
+    /// Blocks of 8 points.
+    Two,
+    /// Blocks of 16 points.
+    Four,
+}
+
+impl VectorCount {
+    /// All counts.
+    pub const ALL: [Self; 3] = [Self::One, Self::Two, Self::Four];
+
+    /// Points in a block.
+    #[must_use]
+    pub const fn lanes(self) -> usize {
+        match self {
+            Self::One => 4,
+            Self::Two => 8,
+            Self::Four => 16,
+        }
+    }
+}
+
+/// How hard Cranelift tries to improve the code. The passes of the IR have done most of it already.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
+pub enum OptLevel {
+    /// Hardly: the fastest way to good code, since common subexpressions are gone already.
+    #[default]
+    None,
+    /// For speed. Compile time grows faster than the function.
+    Speed,
+    /// For speed and size.
+    SpeedAndSize,
+}
+
+impl OptLevel {
+    /// All levels.
+    pub const ALL: [Self; 3] = [Self::None, Self::Speed, Self::SpeedAndSize];
+
+    /// The value of Cranelift's flag.
+    pub(crate) const fn flag(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Speed => "speed",
+            Self::SpeedAndSize => "speed_and_size",
+        }
+    }
+}
+
+/// How values are given registers.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum Allocator {
+    /// Well. Compile time grows with the square of the number of vectors that are alive at once.
+    Backtracking,
+    /// In one pass, in linear time. Code whose values would fit the registers runs at half the speed.
+    SinglePass,
+}
+
+impl Allocator {
+    /// All allocators.
+    pub const ALL: [Self; 2] = [Self::Backtracking, Self::SinglePass];
+
+    /// The value of Cranelift's flag.
+    pub(crate) const fn flag(self) -> &'static str {
+        match self {
+            Self::Backtracking => "backtracking",
+            Self::SinglePass => "single_pass",
+        }
+    }
+}
+
+/// Settings of the compiler. What is `None` is chosen by the size of the function.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub struct Options {
+    /// Vectors for each value.
+    pub vectors: Option<VectorCount>,
+    /// Effort.
+    pub opt_level: OptLevel,
+    /// Register allocator.
+    pub allocator: Option<Allocator>,
+}
+
+/// Why there is no machine code for a function. An interpreter can run it all the same.
+#[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
+pub enum CompileError {
+    /// The processor is not one that we make code for.
+    #[error("machine code needs a processor with {missing}")]
+    Processor {
+        /// What it lacks.
+        missing: &'static str,
+    },
+    /// The function has too many values.
+    #[error("the function has {values} values, machine code is made for at most {limit}")]
+    Values {
+        /// Values of the function.
+        values: usize,
+        /// Values that are allowed.
+        limit: usize,
+    },
+    /// Too many values are alive at once.
+    #[error("{live} values are alive at once, machine code is made for at most {limit}")]
+    LiveValues {
+        /// Values alive at once.
+        live: usize,
+        /// Values that are allowed.
+        limit: usize,
+    },
+    /// The code would take too much of the stack.
+    #[error("the code needs {bytes} bytes of stack, at most {limit} are allowed")]
+    Frame {
+        /// Bytes that it needs.
+        bytes: usize,
+        /// Bytes that are allowed.
+        limit: usize,
+    },
+    /// The function has an op that the legalize pass has to expand first.
+    #[error("{inst}: {} has no machine instruction and is expanded before", op.name())]
+    Op {
+        /// The op.
+        op: Op,
+        /// The first instruction that has it.
+        inst: Inst,
+    },
+    /// The system refuses executable memory.
+    #[error("the system refuses memory for machine code: {0}")]
+    Memory(String),
+    /// Cranelift fails.
+    #[error("the code generator fails: {0}")]
+    Cranelift(String),
+}
+
+/// Up to this many live values the code is faster for having 16 points in a block.
+const FOUR_VECTORS_UP_TO: usize = 12;
+/// Up to this many live values 8 points are as fast as 16, and compile in half the time.
+const TWO_VECTORS_UP_TO: usize = 24;
+/// Up to this many live values a good choice of registers is worth its time. Beyond, nearly everything lives in the frame
+/// whichever allocator chose, and the code of both runs at the same speed.
+const BACKTRACKING_UP_TO: usize = 100;
+/// A function with more values than this is straight-line code for the most part: it is compiled in the cheapest way.
+const LONG_FUNCTION: usize = 10_000;
+
+impl Options {
+    /// Fills in what is open, for a function of this many values of which so many are alive at once.
+    fn choose(&self, values: usize, live: usize) -> (VectorCount, Allocator) {
+        let long = values > LONG_FUNCTION;
+        let vectors = if live <= FOUR_VECTORS_UP_TO && !long {
+            VectorCount::Four
+        } else if live <= TWO_VECTORS_UP_TO && !long {
+            VectorCount::Two
+        } else if live <= BACKTRACKING_UP_TO || long {
+            VectorCount::One
+        } else {
+            VectorCount::Four
+        };
+        let allocator =
+            if live <= BACKTRACKING_UP_TO && !long { Allocator::Backtracking } else { Allocator::SinglePass };
+        (self.vectors.unwrap_or(vectors), self.allocator.unwrap_or(allocator))
+    }
+}
+
+/// Compiles a function.
+pub(crate) fn compile(function: &Verified, options: &Options) -> Result<(Code, VectorCount), CompileError> {
+    let live = check(function.function())?;
+    let (vectors, allocator) = options.choose(function.function().values.len(), live);
+    let isa = isa::host(options.opt_level, allocator)?;
+    let code = guard(|| Code::new(lower::lower(function, vectors), isa))??;
+    Ok((code, vectors))
+}
+
+/// The Cranelift IR that [`crate::Kernel::compile`] makes of a function, as text. Needs no particular processor.
+///
+/// # Errors
+/// When the function is beyond our limits.
+pub fn clif(function: &Verified) -> Result<String, CompileError> {
+    let live = check(function.function())?;
+    let (vectors, _) = Options::default().choose(function.function().values.len(), live);
+    guard(|| lower::lower(function, vectors).into_function().display().to_string())
+}
+
+/// Looks for whatever we decline, and returns the number of values that are alive at once.
+fn check(function: &Function) -> Result<usize, CompileError> {
+    let values = function.values.len();
+    if values > MAX_JIT_VALUES {
+        return Err(CompileError::Values { values, limit: MAX_JIT_VALUES });
+    }
+    for (inst, data) in function.insts.iter() {
+        match data.kind {
+            InstKind::Op { op, .. } if op.is_expanded() => return Err(CompileError::Op { op, inst }),
+            InstKind::Op { .. }
+            | InstKind::Input(_)
+            | InstKind::Constant(_)
+            | InstKind::BitsConstant(_)
+            | InstKind::Column { .. }
+            | InstKind::Fold(_) => {}
+        }
+    }
+    let live = pressure::live_values(function);
+    if live > MAX_JIT_LIVE_VALUES {
+        return Err(CompileError::LiveValues { live, limit: MAX_JIT_LIVE_VALUES });
+    }
+    Ok(live)
+}
+
+/// Cranelift panics where one of its own limits is exceeded. Ours are below those; this is for the case that they are not.
+fn guard<T>(work: impl FnOnce() -> T) -> Result<T, CompileError> {
+    panic::catch_unwind(AssertUnwindSafe(work)).map_err(|panic| {
+        let text = panic.downcast_ref::<String>().map(String::as_str);
+        let text = text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("no message");
+        CompileError::Cranelift(text.to_owned())
+    })
+}

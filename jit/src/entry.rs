@@ -1,0 +1,262 @@
+//! The door: what the machine code is given, and the checks that make it safe to give.
+//!
+//! ```text
+//! fn(planes, bytes, tables)
+//!   planes  one pointer for each input plane, then one for each output plane
+//!   bytes   of one plane; a multiple of the block, and not 0
+//!   tables  one view for each table:  numbers | active | starts   (three pointers)
+//! ```
+//!
+//! The code follows every pointer and index blindly. So the tables are checked once, when a [`Kernel`] is bound to them,
+//! and the planes at each [`run`](BoundKernel::run), which costs nothing beside the run.
+
+use std::fmt;
+use std::mem::offset_of;
+use std::sync::Arc;
+
+use jbt_ir::{Function, TableError, Tables, Verified};
+
+use crate::compile::{self, CompileError, Options};
+use crate::memory::Code;
+
+/// Where the rows of one table are.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub(crate) struct TableView {
+    numbers: *const f32,
+    active: *const u32,
+    starts: *const u32,
+}
+
+impl TableView {
+    /// The offset of the pointer to the numbers.
+    pub(crate) const NUMBERS: usize = offset_of!(Self, numbers);
+    /// The offset of the pointer to the active rows.
+    pub(crate) const ACTIVE: usize = offset_of!(Self, active);
+    /// The offset of the pointer to the starts.
+    pub(crate) const STARTS: usize = offset_of!(Self, starts);
+}
+
+/// Everything that one call of a kernel is given. Made by [`BoundKernel::run`] alone, from what it has checked.
+pub(crate) struct Arguments<'a> {
+    /// Input planes, then output planes.
+    pub(crate) planes: &'a [*const f32],
+    /// Bytes of each plane.
+    pub(crate) bytes: usize,
+    /// One view for each table.
+    pub(crate) tables: &'a [TableView],
+}
+
+/// What one kernel and its handles share.
+struct Shared {
+    code: Code,
+    lanes: usize,
+    /// The function without its instructions: planes and tables.
+    interface: Function,
+}
+
+/// Machine code for one function. Cloning gives another handle; the code is freed with the last one.
+#[derive(Clone)]
+pub struct Kernel {
+    shared: Arc<Shared>,
+}
+
+impl Kernel {
+    /// A multiple of [`lanes`](Self::lanes) of every kernel: planes padded to a multiple of this suit them all.
+    pub const MAX_LANES: usize = 16;
+
+    /// Compiles a function, with the settings that measurements favour for one of its size.
+    ///
+    /// # Errors
+    /// When the processor, a limit or the system forbids it; an interpreter then gives the same bits, and needs more time.
+    pub fn compile(function: &Verified) -> Result<Self, CompileError> {
+        Self::compile_with(function, &Options::default())
+    }
+
+    /// Compiles a function with given settings. They change the time that compiling and running takes, and no bit of an answer.
+    ///
+    /// # Errors
+    /// As for [`compile`](Self::compile).
+    pub fn compile_with(function: &Verified, options: &Options) -> Result<Self, CompileError> {
+        let (code, vectors) = compile::compile(function, options)?;
+        let mut interface = Function::new(&function.function().name, &[]);
+        interface.inputs.clone_from(&function.function().inputs);
+        interface.outputs.clone_from(&function.function().outputs);
+        interface.tables.clone_from(&function.function().tables);
+        Ok(Self { shared: Arc::new(Shared { code, lanes: vectors.lanes(), interface }) })
+    }
+
+    /// Points in one block: the length of planes must be a multiple of it.
+    #[must_use]
+    pub fn lanes(&self) -> usize {
+        self.shared.lanes
+    }
+
+    /// Bytes of machine code, its constants included.
+    #[must_use]
+    pub fn code_bytes(&self) -> usize {
+        self.shared.code.bytes()
+    }
+
+    /// Bytes of stack that a run takes.
+    #[must_use]
+    pub fn frame_bytes(&self) -> usize {
+        self.shared.code.frame_bytes()
+    }
+
+    /// Where the code is, for a look at the memory's rights.
+    #[cfg(test)]
+    pub(crate) fn code_address(&self) -> *const u8 {
+        self.shared.code.address()
+    }
+
+    /// Gives the kernel the rows that it will run over. Costs one look at every active row, so do it once for many runs.
+    ///
+    /// # Errors
+    /// When the tables do not fit the function that the kernel was compiled from.
+    pub fn bind(&self, tables: Arc<Tables>) -> Result<BoundKernel, TableError> {
+        tables.check(&self.shared.interface)?;
+        let view = |rows: &jbt_ir::Rows| TableView {
+            numbers: rows.numbers.as_ptr(),
+            active: rows.active.as_ptr(),
+            starts: rows.starts.as_ptr(),
+        };
+        let views = Views(tables.tables.values().map(view).collect());
+        Ok(BoundKernel { kernel: self.clone(), tables, views: Arc::new(views) })
+    }
+}
+
+impl fmt::Debug for Kernel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Kernel")
+            .field("function", &self.shared.interface.name)
+            .field("lanes", &self.lanes())
+            .field("code_bytes", &self.code_bytes())
+            .finish_non_exhaustive()
+    }
+}
+
+/// Where the rows of all tables are. Kept beside the tables that it points into, which nobody can change meanwhile.
+pub(crate) struct Views(Box<[TableView]>);
+
+/// A kernel together with rows that fit it: the thing that runs. Cloning is cheap.
+#[derive(Clone)]
+pub struct BoundKernel {
+    kernel: Kernel,
+    tables: Arc<Tables>,
+    views: Arc<Views>,
+}
+
+/// Why planes do not fit a kernel.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, thiserror::Error)]
+pub enum RunError {
+    /// The number of input planes is not the function's.
+    #[error("{given} input planes for a function of {expected}")]
+    Inputs {
+        /// Planes of the function.
+        expected: usize,
+        /// Planes of this call.
+        given: usize,
+    },
+    /// The number of output planes is not the function's.
+    #[error("{given} output planes for a function of {expected}")]
+    Outputs {
+        /// Planes of the function.
+        expected: usize,
+        /// Planes of this call.
+        given: usize,
+    },
+    /// A plane is not as long as the first one.
+    #[error("plane {plane} (inputs first) has {given} numbers, the first one has {expected}")]
+    Length {
+        /// Position of the plane, inputs first.
+        plane: usize,
+        /// Length of the first plane.
+        expected: usize,
+        /// Length of this plane.
+        given: usize,
+    },
+    /// The planes end inside a block.
+    #[error("planes of {length} numbers do not fill blocks of {lanes}")]
+    Partial {
+        /// Length of the planes.
+        length: usize,
+        /// Numbers in a block.
+        lanes: usize,
+    },
+}
+
+/// Planes up to which a call needs no allocation.
+const SMALL: usize = 48;
+
+impl BoundKernel {
+    /// The kernel.
+    #[must_use]
+    pub fn kernel(&self) -> &Kernel {
+        &self.kernel
+    }
+
+    /// The rows.
+    #[must_use]
+    pub fn tables(&self) -> &Arc<Tables> {
+        &self.tables
+    }
+
+    /// Answers for all points: `inputs[plane][point]` to `outputs[plane][point]`.
+    ///
+    /// Any number is fine as an input, NaN and infinities included. Allocates nothing for up to 48 planes.
+    ///
+    /// # Errors
+    /// When the planes are not as many as the function's, not of one length, or that length is not a multiple of
+    /// [`Kernel::lanes`]. Nothing is written then.
+    pub fn run(&self, inputs: &[&[f32]], outputs: &mut [&mut [f32]]) -> Result<(), RunError> {
+        let length = self.check(inputs, outputs)?;
+        if length == 0 {
+            return Ok(());
+        }
+        let count = inputs.len() + outputs.len();
+        let mut small = [std::ptr::null(); SMALL];
+        let mut large = Vec::new();
+        let planes = if count <= SMALL {
+            &mut small[..count]
+        } else {
+            large.resize(count, std::ptr::null());
+            large.as_mut_slice()
+        };
+        let inputs = inputs.iter().map(|plane| plane.as_ptr());
+        let outputs = outputs.iter_mut().map(|plane| plane.as_mut_ptr().cast_const());
+        for (place, plane) in planes.iter_mut().zip(inputs.chain(outputs)) {
+            *place = plane;
+        }
+        let bytes = length * size_of::<f32>();
+        self.kernel.shared.code.call(&Arguments { planes, bytes, tables: &self.views.0 });
+        Ok(())
+    }
+
+    /// The common length of the planes.
+    fn check(&self, inputs: &[&[f32]], outputs: &[&mut [f32]]) -> Result<usize, RunError> {
+        let Shared { lanes, interface, .. } = &*self.kernel.shared;
+        if inputs.len() != interface.inputs.len() {
+            return Err(RunError::Inputs { expected: interface.inputs.len(), given: inputs.len() });
+        }
+        if outputs.len() != interface.outputs.len() {
+            return Err(RunError::Outputs { expected: interface.outputs.len(), given: outputs.len() });
+        }
+        let mut lengths =
+            inputs.iter().map(|plane| plane.len()).chain(outputs.iter().map(|plane| plane.len())).enumerate();
+        let (_, expected) = lengths.next().unwrap_or_default();
+        if let Some((plane, given)) = lengths.find(|&(_, given)| given != expected) {
+            return Err(RunError::Length { plane, expected, given });
+        }
+        if !expected.is_multiple_of(*lanes) {
+            return Err(RunError::Partial { length: expected, lanes: *lanes });
+        }
+        Ok(expected)
+    }
+}
+
+impl fmt::Debug for BoundKernel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("BoundKernel").field("kernel", &self.kernel).finish_non_exhaustive()
+    }
+}

@@ -1,0 +1,56 @@
+//! Machine code for jbt programs, by Cranelift.
+//!
+//! A verified function goes in, a [`Kernel`] comes out. Bound to the rows of its tables it takes planes of numbers to
+//! planes of answers, and every lane has the bits that the scalar reference gives (a NaN for a NaN).
+//!
+//! ```text
+//!   Verified ──► pressure ──► lower ─────────► memory ──────────► Kernel ──bind(Tables)──► BoundKernel
+//!                how many     Cranelift IR,    machine code in                              run(inputs, outputs)
+//!                are alive    by `vectors`     pages of its own
+//! ```
+//!
+//! What the code does, in pseudo-code, with a block of K vectors of 4 points:
+//!
+//! ```text
+//! for offset in (0 .. points).step_by(4 * K):
+//!     x = inputs[0][offset..], y = ..., z = ...                 K vectors each
+//!     acc = initial                                             K vectors each
+//!     for row in active[starts[parent row] .. starts[parent row + 1]]:
+//!         column = broadcast(numbers[row * stride + index])     one vector, read where it is needed
+//!         acc = body(row, acc)
+//!     outputs[0][offset..] = acc
+//! ```
+//!
+//! ```
+//! use std::sync::Arc;
+//! use jbt_ir::{Domain, FunctionBuilder, Tables, verify};
+//! use jbt_jit::{CompileError, Kernel};
+//!
+//! let mut b = FunctionBuilder::new("twice", &["x"]);
+//! let x = b.input(0);
+//! let sum = b.add(x, x);
+//! let function = verify(b.finish(&[("sum".to_owned(), sum)])).unwrap();
+//!
+//! let kernel = match Kernel::compile(&function) {
+//!     Ok(kernel) => kernel,
+//!     Err(CompileError::Processor { .. }) => return, // then interpret it
+//!     Err(error) => panic!("{error}"),
+//! };
+//! let mut out = vec![0.0; Kernel::MAX_LANES];
+//! let kernel = kernel.bind(Arc::new(Tables::default())).unwrap();
+//! kernel.run(&[&[1.5; Kernel::MAX_LANES]], &mut [&mut out]).unwrap();
+//! assert!(out.iter().all(|&number| number == 3.0));
+//! ```
+
+#![deny(unsafe_code)]
+
+mod compile;
+mod entry;
+mod isa;
+mod lower;
+mod memory;
+mod pressure;
+mod vectors;
+
+pub use compile::{Allocator, CompileError, OptLevel, Options, VectorCount, clif};
+pub use entry::{BoundKernel, Kernel, RunError};

@@ -1,0 +1,256 @@
+//! Executable memory: the one home of `unsafe`.
+//!
+//! ```text
+//! Pages   owns a Cranelift module: its memory is freed when it goes, on every path
+//! Code    Pages with finished code, and the address of its one function
+//! ```
+//!
+//! No page is writable and executable at once: the module writes the code, then finalizing takes the right to write away
+//! and gives the right to execute.
+#![allow(unsafe_code)]
+
+use cranelift_codegen::Context;
+use cranelift_codegen::isa::OwnedTargetIsa;
+use cranelift_jit::{JITBuilder, JITModule};
+use cranelift_module::{Linkage, Module, ModuleError, default_libcall_names};
+
+use jbt_ir::limits;
+
+use crate::compile::CompileError;
+use crate::entry::{Arguments, TableView, Views};
+use crate::lower::Lowered;
+
+/// A module whose memory goes with it. The module's own drop would leak it.
+struct Pages(Option<JITModule>);
+
+impl Drop for Pages {
+    fn drop(&mut self) {
+        if let Some(module) = self.0.take() {
+            // SAFETY: the address of the code is kept in `Code` alone, beside these pages, and is used in `Code::call`
+            // alone, which borrows the `Code`. So nothing runs in these pages now, and nothing will.
+            unsafe { module.free_memory() };
+        }
+    }
+}
+
+/// Finished machine code.
+///
+/// Contract: `address` is a function in `pages` which was compiled from a [`Lowered`], so it keeps to the ABI of
+/// [`crate::entry`]; the pages are executable, are not writable, and stay until the `Code` is dropped.
+pub(crate) struct Code {
+    address: *const u8,
+    bytes: usize,
+    frame_bytes: usize,
+    /// Never looked at again: kept so that the code stays where it is.
+    _pages: Pages,
+}
+
+// SAFETY: the module is `Send`, and the address is that of memory which belongs to it.
+unsafe impl Send for Code {}
+// SAFETY: through a shared reference one can only read the numbers and call the code, which changes no memory but what its
+// arguments name. The module, which is not `Sync`, cannot be reached.
+unsafe impl Sync for Code {}
+
+// SAFETY: these pointers are only read, by the code, while the tables that they point into are kept beside them.
+unsafe impl Send for Views {}
+// SAFETY: as above; nobody writes through them.
+unsafe impl Sync for Views {}
+
+impl Code {
+    /// Compiles a function and makes it executable.
+    pub(crate) fn new(lowered: Lowered, isa: OwnedTargetIsa) -> Result<Self, CompileError> {
+        let builder = JITBuilder::with_isa(isa, default_libcall_names());
+        let mut pages = Pages(Some(JITModule::new(builder)));
+        let module = pages.0.as_mut().expect("the module stays until the pages are dropped");
+        let mut context = Context::for_function(lowered.into_function());
+        let function = module.declare_function("kernel", Linkage::Export, &context.func.signature)?;
+        module.define_function(function, &mut context)?;
+        let compiled = context.compiled_code().expect("the function has just been compiled");
+        let bytes = compiled.code_info().total_size as usize;
+        let frame_bytes = compiled.buffer.frame_layout().map_or(0, |frame| frame.frame_to_fp_offset as usize);
+        if frame_bytes > limits::MAX_JIT_FRAME_BYTES {
+            return Err(CompileError::Frame { bytes: frame_bytes, limit: limits::MAX_JIT_FRAME_BYTES });
+        }
+        module.finalize_definitions()?;
+        let address = module.get_finalized_function(function);
+        Ok(Self { address, bytes, frame_bytes, _pages: pages })
+    }
+
+    /// Bytes of code and constants.
+    pub(crate) fn bytes(&self) -> usize {
+        self.bytes
+    }
+
+    /// Bytes of stack.
+    pub(crate) fn frame_bytes(&self) -> usize {
+        self.frame_bytes
+    }
+
+    /// Where the code is.
+    #[cfg(test)]
+    pub(crate) fn address(&self) -> *const u8 {
+        self.address
+    }
+
+    /// Runs the code. The arguments were made for the function that this is compiled from, see [`Arguments`].
+    pub(crate) fn call(&self, arguments: &Arguments<'_>) {
+        let Arguments { planes, bytes, tables } = arguments;
+        // SAFETY: the contract of `Code` says that this is a function of the ABI that `enter` expects. `Arguments` come from
+        // `BoundKernel::run`: there is a plane of this many bytes for each input and output, at least one block long and whole
+        // blocks; outputs come from exclusive borrows, so that no other plane overlaps them; the tables have been
+        // checked against the function, are kept by the caller, and cannot change while it has them.
+        unsafe { enter(self.address, planes.as_ptr(), *bytes, tables.as_ptr()) };
+    }
+}
+
+/// The floating-point environment of a new thread: round to nearest, subnormals kept, all exceptions masked.
+#[cfg(target_arch = "x86_64")]
+static DEFAULT_MXCSR: u32 = 0x1F80;
+
+/// Calls code in the default floating-point environment, and puts the caller's back.
+///
+/// All of it is one piece of assembly, because Rust promises nothing about code of its own that runs in another environment.
+/// The upper halves of the vector registers are cleared first: Cranelift writes its moves in the legacy encoding, which
+/// waits for whatever the caller has left there.
+///
+/// # Safety
+/// `code` is a System V function of these three parameters, which may do what it does with these arguments, does not
+/// unwind, and leaves the floating-point environment as it is.
+#[cfg(target_arch = "x86_64")]
+unsafe fn enter(code: *const u8, planes: *const *const f32, bytes: usize, tables: *const TableView) {
+    let mut saved = 0_u32;
+    // SAFETY: the stack is aligned for a call, as it is wherever assembly may use it. r12 and r13 survive the call by its
+    // convention, and they point at two words that live here. Everything that the convention lets a callee change is
+    // named, and the environment, with its exception flags, is what it was.
+    unsafe {
+        std::arch::asm!(
+            "vzeroupper",
+            "stmxcsr [r12]",
+            "ldmxcsr [r13]",
+            "call {code}",
+            "ldmxcsr [r12]",
+            code = in(reg) code,
+            in("rdi") planes,
+            in("rsi") bytes,
+            in("rdx") tables,
+            in("r12") &raw mut saved,
+            in("r13") &raw const DEFAULT_MXCSR,
+            clobber_abi("sysv64"),
+        );
+    }
+}
+
+/// There is no code to call on this processor: [`crate::isa`] declines it.
+///
+/// # Safety
+/// None is needed.
+#[cfg(not(target_arch = "x86_64"))]
+unsafe fn enter(_: *const u8, _: *const *const f32, _: usize, _: *const TableView) {
+    unreachable!("isa::host declines this processor");
+}
+
+impl From<ModuleError> for CompileError {
+    fn from(error: ModuleError) -> Self {
+        match error {
+            // The memory provider's only errors are those of mmap and mprotect.
+            ModuleError::Allocation { .. } | ModuleError::Backend(_) => Self::Memory(error.to_string()),
+            ModuleError::Undeclared(_)
+            | ModuleError::IncompatibleDeclaration(_)
+            | ModuleError::IncompatibleSignature(..)
+            | ModuleError::DuplicateDefinition(_)
+            | ModuleError::InvalidImportDefinition(_)
+            | ModuleError::Compilation(_)
+            | ModuleError::Flag(_) => Self::Cranelift(error.to_string()),
+        }
+    }
+}
+
+#[cfg(all(test, target_arch = "x86_64", target_os = "linux"))]
+mod tests {
+    use std::arch::asm;
+    use std::process::Command;
+    use std::sync::Arc;
+
+    use jbt_ir::{Domain, FunctionBuilder, Tables, Verified, verify};
+
+    use crate::{CompileError, Kernel};
+
+    /// `x * y` and `x / y`.
+    fn arithmetic() -> Verified {
+        let mut b = FunctionBuilder::new("arithmetic", &["x", "y"]);
+        let (x, y) = (b.input(0), b.input(1));
+        let outputs = [b.mul(x, y), b.div(x, y)];
+        verify(b.finish(&[("product".to_owned(), outputs[0]), ("quotient".to_owned(), outputs[1])]))
+            .expect("it obeys the rules")
+    }
+
+    fn mxcsr() -> u32 {
+        let mut word = 0_u32;
+        // SAFETY: writes the word.
+        unsafe { asm!("stmxcsr [{}]", in(reg) &raw mut word) };
+        word
+    }
+
+    fn set_mxcsr(word: u32) {
+        // SAFETY: the test does no arithmetic until it has put the default back.
+        unsafe { asm!("ldmxcsr [{}]", in(reg) &raw const word) };
+    }
+
+    #[test]
+    fn a_kernel_runs_in_the_default_environment_and_leaves_that_of_its_caller() {
+        let Ok(kernel) = Kernel::compile(&arithmetic()) else { return };
+        let kernel = kernel.bind(Arc::new(Tables::default())).expect("there are no tables");
+        let (subnormal, third) = (vec![1e-40_f32; 16], vec![3.0_f32; 16]);
+        let (mut product, mut quotient) = (vec![0.0; 16], vec![0.0; 16]);
+        // Flush to zero, subnormals are zeros, round toward zero; all exceptions masked, one flag raised.
+        let odd = 0x1F80 | 1 << 15 | 1 << 6 | 0b11 << 13 | 1;
+        let before = mxcsr();
+        set_mxcsr(odd);
+        let done = kernel.run(&[&subnormal, &third], &mut [&mut product, &mut quotient]);
+        let after = mxcsr();
+        set_mxcsr(before);
+        done.expect("the planes fit");
+        assert_eq!(after, odd);
+        assert!(product.iter().all(|&number| number.to_bits() == (1e-40_f32 * 3.0).to_bits()));
+        assert!(quotient.iter().all(|&number| number.to_bits() == (1e-40_f32 / 3.0).to_bits()));
+    }
+
+    #[test]
+    fn code_is_executable_and_not_writable() {
+        let Ok(kernel) = Kernel::compile(&arithmetic()) else { return };
+        let address = kernel.code_address().addr();
+        let maps = std::fs::read_to_string("/proc/self/maps").expect("Linux lists the mappings");
+        let holds_the_code = |line: &&str| {
+            let (from, to) = line.split(' ').next().and_then(|range| range.split_once('-')).expect("a range");
+            let [from, to] = [from, to].map(|end| usize::from_str_radix(end, 16).expect("an address"));
+            (from..to).contains(&address)
+        };
+        let line = maps.lines().find(holds_the_code).expect("the code is mapped");
+        assert_eq!(line.split(' ').nth(1), Some("r-xp"));
+    }
+
+    /// Runs itself in another process, whose memory is then never made executable by the system.
+    #[test]
+    fn refused_memory_is_an_error() {
+        const CHILD: &str = "JBT_TEST_REFUSE_EXECUTABLE_MEMORY";
+        if std::env::var_os(CHILD).is_none() {
+            let program = std::env::current_exe().expect("the test has a path");
+            let name = "memory::tests::refused_memory_is_an_error";
+            let child = Command::new(program).args(["--exact", name]).env(CHILD, "1").output();
+            let child = child.expect("the test can run itself");
+            assert!(child.status.success(), "{}", String::from_utf8_lossy(&child.stdout));
+            return;
+        }
+        let (prctl, set_mdwe, refuse_gain) = (157_usize, 65_usize, 1_usize);
+        let mut result = prctl;
+        // SAFETY: prctl with numbers only; it forbids this process to make memory executable.
+        unsafe {
+            asm!("syscall", inout("rax") result, in("rdi") set_mdwe, in("rsi") refuse_gain, in("rdx") 0, in("r10") 0,
+                in("r8") 0, out("rcx") _, out("r11") _);
+        }
+        // An older kernel does not know the request, and an older processor gets another error first.
+        if result == 0 && !matches!(Kernel::compile(&arithmetic()), Err(CompileError::Processor { .. })) {
+            assert!(matches!(Kernel::compile(&arithmetic()), Err(CompileError::Memory(_))));
+        }
+    }
+}

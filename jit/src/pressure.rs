@@ -1,0 +1,163 @@
+//! How many values are alive at once, before any code is made.
+//!
+//! A value is alive from its definition to its last use. A use inside a fold counts until the fold ends if the value
+//! comes from outside, because the next row reads it again. Constants and columns are read anew in each block that
+//! uses them and do not count.
+//!
+//! ```text
+//! v1 = input x          ┐
+//! v2 = mul v1, v1       │ ┐
+//! fold t0 (v2):         │ ┴
+//!     v4 = add v3, v1   │          used in the loop: alive to its end
+//!     yield v4          ┘
+//! ```
+
+use jbt_ir::{Block, Entity, Function, InstKind, Value};
+
+/// The walk over all instructions in order of execution.
+struct Walk<'a> {
+    function: &'a Function,
+    /// Instructions and block ends so far.
+    position: usize,
+    /// How many folds enclose the definition of each value.
+    depth: Vec<usize>,
+    /// From where to where each value is alive; empty where it does not count.
+    alive: Vec<(usize, usize)>,
+    /// For each fold that is being walked, what it reads from the block that it stands in.
+    captured: Vec<Vec<Value>>,
+}
+
+/// The largest number of values that are alive at the same time.
+pub(crate) fn live_values(function: &Function) -> usize {
+    let values = function.values.len();
+    let mut walk =
+        Walk { function, position: 0, depth: vec![0; values], alive: vec![(0, 0); values], captured: vec![] };
+    walk.block(function.body);
+    let mut change = vec![0_isize; walk.position + 2];
+    for (from, to) in walk.alive.into_iter().filter(|(from, to)| from < to) {
+        change[from] += 1;
+        change[to] -= 1;
+    }
+    let mut alive = 0;
+    let most = change.into_iter().map(|change| {
+        alive += change;
+        alive
+    });
+    most.max().unwrap_or(0).unsigned_abs()
+}
+
+impl Walk<'_> {
+    fn block(&mut self, block: Block) {
+        let data = &self.function.blocks[block];
+        for &param in &data.params {
+            self.define(param);
+        }
+        for &inst in &data.insts {
+            self.position += 1;
+            for &operand in self.function.operands(inst) {
+                self.read(operand);
+            }
+            let data = &self.function.insts[inst];
+            match &data.kind {
+                InstKind::Constant(_) | InstKind::BitsConstant(_) | InstKind::Column { .. } => continue,
+                InstKind::Input(_) | InstKind::Op { .. } => {}
+                InstKind::Fold(fold) => self.fold(fold.body),
+            }
+            for &result in &data.results {
+                self.define(result);
+            }
+        }
+        self.position += 1;
+        for &result in &data.results {
+            self.read(result);
+        }
+    }
+
+    fn fold(&mut self, body: Block) {
+        self.captured.push(Vec::new());
+        self.block(body);
+        for value in self.captured.pop().into_iter().flatten() {
+            self.alive[value.index()].1 = self.position + 1;
+        }
+    }
+
+    fn define(&mut self, value: Value) {
+        self.depth[value.index()] = self.captured.len();
+        // Never 0, so that (0, 0) keeps its meaning.
+        self.alive[value.index()] = (self.position + 1, self.position + 1);
+    }
+
+    fn read(&mut self, value: Value) {
+        let alive = &mut self.alive[value.index()];
+        if alive.0 == 0 {
+            return;
+        }
+        alive.1 = self.position + 1;
+        if let Some(captured) = self.captured.get_mut(self.depth[value.index()]) {
+            captured.push(value);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use jbt_ir::{Domain, FunctionBuilder, Reduction, Schema, Value};
+
+    use super::live_values;
+
+    fn count(b: FunctionBuilder, out: Value) -> usize {
+        live_values(&b.finish(&[("out".to_owned(), out)]))
+    }
+
+    #[test]
+    fn a_value_is_alive_to_its_last_use() {
+        let mut b = FunctionBuilder::new("chain", &["x", "y"]);
+        let (x, y) = (b.input(0), b.input(1));
+        let one = b.constant(1.0);
+        let mut last = b.add(x, one);
+        for _ in 0..10 {
+            last = b.mul(last, y);
+        }
+        // x dies in the first addition; from then on there are y and the last product.
+        assert_eq!(count(b, last), 2);
+    }
+
+    #[test]
+    fn values_that_wait_are_alive() {
+        let mut b = FunctionBuilder::new("wait", &["x"]);
+        let mut values = vec![b.input(0)];
+        for index in 1..20 {
+            let next = b.sqrt(values[index - 1]);
+            values.push(next);
+        }
+        // The last root is alive together with the 19 before it, which are added up in the order in which they were made.
+        let first = values[0];
+        let sum = values.iter().skip(1).fold(first, |sum, &value| b.add(sum, value));
+        assert_eq!(count(b, sum), 20);
+    }
+
+    #[test]
+    fn what_a_fold_reads_from_outside_is_alive_to_its_end() {
+        let mut b = FunctionBuilder::new("fold", &["x", "y", "z"]);
+        let columns = vec!["c".to_owned()];
+        let t = b.table(Schema { name: "t".to_owned(), columns, parent: None, slots: Vec::new() });
+        let outside = [b.input(0), b.input(1), b.input(2)];
+        let zero = b.constant(0.0);
+        let acc = b.begin_fold(t, Reduction::Sum, &[zero]);
+        let c = b.column(t, 0);
+        // Each value from outside is read once, and for the last time in its row, but the next row reads it again.
+        let mut next = b.add(acc[0], c);
+        for value in outside {
+            next = b.fma(value, c, next);
+        }
+        let out = b.end_fold(&[next]);
+        assert_eq!(count(b, out[0]), 4);
+    }
+
+    #[test]
+    fn nothing_is_alive_in_nothing() {
+        let mut b = FunctionBuilder::new("constant", &[]);
+        let one = b.constant(1.0);
+        assert_eq!(count(b, one), 0);
+    }
+}

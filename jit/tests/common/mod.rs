@@ -1,0 +1,164 @@
+//! What the tests share: tables by hand, numbers that break things, and the comparison with the scalar reference.
+#![allow(dead_code)] // Each test binary uses a part of it.
+
+use std::sync::Arc;
+
+use jbt_ir::domain::scalar::Scalar;
+use jbt_ir::{
+    Function, FunctionBuilder, Rows, Schema, Store, Table, Tables, Value, Verified, interpret, verify,
+};
+use jbt_jit::{Allocator, Kernel, OptLevel, Options, VectorCount};
+
+/// Numbers on which engines have been seen to differ.
+pub const SPICE: [f32; 22] = [
+    0.0,
+    -0.0,
+    1.0,
+    -1.0,
+    0.5,
+    -1.5,
+    3.0,
+    f32::MIN_POSITIVE,
+    -f32::MIN_POSITIVE,
+    1e-45,
+    -1e-45,
+    1.1e-38,
+    -5e-39,
+    f32::MAX,
+    f32::MIN,
+    1e30,
+    -1e30,
+    1.000_000_1,
+    f32::INFINITY,
+    f32::NEG_INFINITY,
+    f32::NAN,
+    -f32::NAN,
+];
+
+/// Spicy numbers and random encodings.
+pub fn spicy_plane(seed: u64, length: usize) -> Vec<f32> {
+    let mut random = fastrand::Rng::with_seed(seed);
+    let mut number = || match random.u32(0..4) {
+        0 => SPICE[random.usize(0..SPICE.len())],
+        1 => f32::from_bits(random.u32(..)),
+        _ => random.f32() * 4.0 - 2.0,
+    };
+    (0..length).map(|_| number()).collect()
+}
+
+/// Points in a box around the origin.
+pub fn tame_plane(seed: u64, length: usize) -> Vec<f32> {
+    let mut random = fastrand::Rng::with_seed(seed);
+    (0..length).map(|_| random.f32() * 4.0 - 2.0).collect()
+}
+
+/// Declares a table with this many columns.
+pub fn table(b: &mut FunctionBuilder, parent: Option<Table>, columns: usize) -> Table {
+    let columns = (0..columns).map(|column| format!("c{column}")).collect();
+    b.table(Schema { name: "rows".to_owned(), columns, parent, slots: Vec::new() })
+}
+
+/// Rows from a closure of row and column.
+pub fn rows(
+    stride: usize,
+    count: usize,
+    active: &[u32],
+    starts: &[u32],
+    number: impl Fn(usize, usize) -> f32,
+) -> Rows {
+    let numbers = (0..count).flat_map(|row| (0..stride).map(move |column| (row, column)));
+    Rows {
+        count,
+        stride,
+        numbers: numbers.map(|(row, column)| number(row, column)).collect(),
+        active: active.to_vec(),
+        starts: starts.to_vec(),
+        nodes: Vec::new(),
+    }
+}
+
+/// Tables of these rows, in order.
+pub fn tables(rows: impl IntoIterator<Item = Rows>) -> Tables {
+    let mut tables = Store::new();
+    for rows in rows {
+        tables.push(rows);
+    }
+    Tables { tables }
+}
+
+/// Ends and verifies a function with outputs `o0`, `o1`, ...
+pub fn finish(b: FunctionBuilder, outputs: &[Value]) -> Verified {
+    let outputs: Vec<_> = outputs.iter().enumerate().map(|(i, &value)| (format!("o{i}"), value)).collect();
+    verified(b.finish(&outputs))
+}
+
+/// Verifies a function.
+pub fn verified(function: Function) -> Verified {
+    verify(function).expect("the test's function obeys the rules")
+}
+
+/// What the scalar reference gives, by output plane.
+pub fn reference(function: &Verified, tables: &Tables, inputs: &[Vec<f32>]) -> Vec<Vec<f32>> {
+    let mut outputs = vec![Vec::new(); function.function().outputs.len()];
+    for point in 0..inputs[0].len() {
+        let inputs: Vec<f32> = inputs.iter().map(|plane| plane[point]).collect();
+        let answers = interpret::run(function, tables, &mut Scalar, &inputs);
+        for (plane, answer) in outputs.iter_mut().zip(answers) {
+            plane.push(answer);
+        }
+    }
+    outputs
+}
+
+/// What a kernel gives, by output plane.
+pub fn run(kernel: &Kernel, tables: &Arc<Tables>, inputs: &[Vec<f32>], outputs: usize) -> Vec<Vec<f32>> {
+    let length = inputs[0].len();
+    let mut planes = vec![vec![-7.0_f32; length]; outputs];
+    let inputs: Vec<&[f32]> = inputs.iter().map(Vec::as_slice).collect();
+    let mut views: Vec<&mut [f32]> = planes.iter_mut().map(Vec::as_mut_slice).collect();
+    let bound = kernel.bind(Arc::clone(tables)).expect("the test's tables fit");
+    bound.run(&inputs, &mut views).expect("the test's planes fit");
+    planes
+}
+
+/// Asserts equal bits, where a NaN equals any NaN.
+pub fn assert_same_bits(expected: &[Vec<f32>], given: &[Vec<f32>], what: &str) {
+    assert_eq!(expected.len(), given.len());
+    for (plane, (expected, given)) in expected.iter().zip(given).enumerate() {
+        assert_eq!(expected.len(), given.len());
+        for (point, (&expected, &given)) in expected.iter().zip(given).enumerate() {
+            let same = expected.to_bits() == given.to_bits() || expected.is_nan() && given.is_nan();
+            assert!(
+                same,
+                "{what}: output {plane} of point {point} is {given:e}, the reference has {expected:e}"
+            );
+        }
+    }
+}
+
+/// All settings of the compiler.
+pub fn all_options() -> Vec<Options> {
+    let mut all = vec![Options::default()];
+    for vectors in VectorCount::ALL {
+        for opt_level in OptLevel::ALL {
+            for allocator in Allocator::ALL {
+                all.push(Options { vectors: Some(vectors), opt_level, allocator: Some(allocator) });
+            }
+        }
+    }
+    all
+}
+
+/// Asserts that every setting of the compiler gives the reference's bits. Inputs are cut to whole blocks.
+pub fn check(function: &Verified, tables: &Tables, mut inputs: Vec<Vec<f32>>) {
+    for plane in &mut inputs {
+        plane.truncate(plane.len() / Kernel::MAX_LANES * Kernel::MAX_LANES);
+        assert!(!plane.is_empty(), "a test without points tests nothing");
+    }
+    let expected = reference(function, tables, &inputs);
+    let tables = Arc::new(tables.clone());
+    for options in all_options() {
+        let kernel = Kernel::compile_with(function, &options).expect("the test's function compiles");
+        assert_same_bits(&expected, &run(&kernel, &tables, &inputs, expected.len()), &format!("{options:?}"));
+    }
+}

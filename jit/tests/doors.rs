@@ -1,0 +1,251 @@
+//! What a kernel refuses, and how a handle behaves.
+
+// Elsewhere there is no machine code, and `Kernel::compile` says so.
+#![cfg(target_arch = "x86_64")]
+
+mod common;
+
+use std::sync::Arc;
+
+use common::{assert_same_bits, finish, reference, rows, run, spicy_plane, table, tables};
+use jbt_ir::limits::{MAX_JIT_LIVE_VALUES, MAX_JIT_VALUES};
+use jbt_ir::{Domain, FunctionBuilder, Reduction, Tables, Value, Verified};
+use jbt_jit::{Allocator, CompileError, Kernel, Options, RunError, VectorCount, clif};
+
+/// The sum over rows of `c0 * x`, and `y`.
+fn function() -> Verified {
+    let mut b = FunctionBuilder::new("doors", &["x", "y"]);
+    let t = table(&mut b, None, 1);
+    let (x, y, zero) = (b.input(0), b.input(1), b.constant(0.0));
+    let acc = b.begin_fold(t, Reduction::Sum, &[zero]);
+    let c = b.column(t, 0);
+    let next = b.fma(c, x, acc[0]);
+    let out = b.end_fold(&[next]);
+    finish(b, &[out[0], y])
+}
+
+fn three_rows() -> Tables {
+    tables([rows(1, 3, &[0, 1, 2], &[0, 3], |row, _| row as f32 + 0.5)])
+}
+
+#[test]
+fn planes_that_do_not_fit_are_refused_and_nothing_is_written() {
+    let options = Options { vectors: Some(VectorCount::Two), ..Options::default() };
+    let kernel = Kernel::compile_with(&function(), &options).expect("it compiles");
+    assert_eq!(kernel.lanes(), 8);
+    let kernel = kernel.bind(Arc::new(three_rows())).expect("the tables fit");
+    let plane = [1.0_f32; 24];
+    let (mut a, mut b) = ([7.0_f32; 24], [7.0_f32; 24]);
+    let errors = [
+        (kernel.run(&[&plane], &mut [&mut a, &mut b]), RunError::Inputs { expected: 2, given: 1 }),
+        (
+            kernel.run(&[&plane, &plane, &plane], &mut [&mut a, &mut b]),
+            RunError::Inputs { expected: 2, given: 3 },
+        ),
+        (kernel.run(&[&plane, &plane], &mut [&mut a]), RunError::Outputs { expected: 2, given: 1 }),
+        (kernel.run(&[&plane, &plane], &mut []), RunError::Outputs { expected: 2, given: 0 }),
+        (
+            kernel.run(&[&plane, &plane[..16]], &mut [&mut a, &mut b]),
+            RunError::Length { plane: 1, expected: 24, given: 16 },
+        ),
+        (
+            kernel.run(&[&plane, &plane], &mut [&mut a, &mut b[..8]]),
+            RunError::Length { plane: 3, expected: 24, given: 8 },
+        ),
+        (
+            kernel.run(&[&plane[..12], &plane[..12]], &mut [&mut a[..12], &mut b[..12]]),
+            RunError::Partial { length: 12, lanes: 8 },
+        ),
+    ];
+    for (given, expected) in errors {
+        assert_eq!(given, Err(expected));
+    }
+    assert_eq!((a, b), ([7.0; 24], [7.0; 24]));
+    assert_eq!(kernel.run(&[&[], &[]], &mut [&mut [], &mut []]), Ok(()));
+}
+
+#[test]
+fn planes_may_begin_anywhere_and_nothing_beside_them_is_written() {
+    let function = function();
+    for vectors in VectorCount::ALL {
+        let options = Options { vectors: Some(vectors), ..Options::default() };
+        let kernel = Kernel::compile_with(&function, &options).expect("it compiles");
+        let bound = kernel.bind(Arc::new(three_rows())).expect("the tables fit");
+        let length = 3 * kernel.lanes();
+        let (x, y) = (spicy_plane(1, length + 8), spicy_plane(2, length + 8));
+        for start in 0..4 {
+            let (mut a, mut b) = (vec![7.0; length + 8], vec![7.0; length + 8]);
+            let inputs = [&x[start..start + length], &y[3 - start..3 - start + length]];
+            bound
+                .run(&inputs, &mut [&mut a[start + 1..start + 1 + length], &mut b[..length]])
+                .expect("the planes fit");
+            let expected = reference(&function, &three_rows(), &inputs.map(<[f32]>::to_vec));
+            assert_same_bits(
+                &expected,
+                &[a[start + 1..start + 1 + length].to_vec(), b[..length].to_vec()],
+                "inside",
+            );
+            assert!(
+                a[..=start].iter().chain(&a[start + 1 + length..]).chain(&b[length..]).all(|&n| n == 7.0)
+            );
+        }
+    }
+}
+
+#[test]
+fn tables_that_do_not_fit_are_refused() {
+    let kernel = Kernel::compile(&function()).expect("it compiles");
+    let bad = [
+        Tables::default(),
+        tables([rows(2, 3, &[0], &[0, 1], |_, _| 0.0)]),
+        tables([rows(1, 3, &[3], &[0, 1], |_, _| 0.0)]),
+        tables([rows(1, 3, &[0], &[0, 2], |_, _| 0.0)]),
+        tables([rows(1, 3, &[0], &[1, 1], |_, _| 0.0)]),
+        tables([rows(1, 3, &[0, 1], &[0, 2], |_, _| 0.0), rows(1, 3, &[0], &[0, 1], |_, _| 0.0)]),
+    ];
+    for tables in bad {
+        assert!(kernel.bind(Arc::new(tables)).is_err());
+    }
+    assert!(kernel.bind(Arc::new(three_rows())).is_ok());
+}
+
+/// Other rows need no other code.
+#[test]
+fn one_kernel_runs_over_many_tables() {
+    let function = function();
+    let kernel = Kernel::compile(&function).expect("it compiles");
+    let inputs = [spicy_plane(3, 32), spicy_plane(4, 32)];
+    for count in [0_u32, 1, 5, 40] {
+        let active: Vec<u32> = (0..count).collect();
+        let numbers = |row: usize, _| (row as f32).sin() * 3.0;
+        let tables = tables([rows(1, count as usize, &active, &[0, count], numbers)]);
+        let expected = reference(&function, &tables, &inputs);
+        assert_same_bits(&expected, &run(&kernel, &Arc::new(tables), &inputs, 2), "other rows");
+    }
+}
+
+#[test]
+fn a_kernel_runs_on_many_threads_and_outlives_its_first_handle() {
+    let function = function();
+    let bound = {
+        let kernel = Kernel::compile(&function).expect("it compiles");
+        kernel.bind(Arc::new(three_rows())).expect("the tables fit")
+    };
+    std::thread::scope(|scope| {
+        for seed in 0..8 {
+            let (bound, function) = (bound.clone(), &function);
+            scope.spawn(move || {
+                let inputs = [spicy_plane(seed, 480), spicy_plane(seed + 100, 480)];
+                let expected = reference(function, &three_rows(), &inputs);
+                for _ in 0..20 {
+                    let (mut a, mut b) = (vec![0.0; 480], vec![0.0; 480]);
+                    bound.run(&[&inputs[0], &inputs[1]], &mut [&mut a, &mut b]).expect("the planes fit");
+                    assert_same_bits(&expected, &[a, b], "a thread");
+                }
+            });
+        }
+    });
+}
+
+#[test]
+fn more_planes_than_the_stack_holds_are_fine() {
+    let mut b = FunctionBuilder::new("planes", &["x"]);
+    let x = b.input(0);
+    let outputs: Vec<Value> = (0..100)
+        .map(|index| {
+            let c = b.constant(index as f32);
+            b.mul(x, c)
+        })
+        .collect();
+    let function = finish(b, &outputs);
+    let kernel = Kernel::compile(&function).expect("it compiles");
+    let inputs = [spicy_plane(5, 16)];
+    let expected = reference(&function, &Tables::default(), &inputs);
+    assert_same_bits(&expected, &run(&kernel, &Arc::default(), &inputs, 100), "100 planes");
+}
+
+/// A chain: as many values as it says, two of which are alive.
+fn chain(values: usize) -> Verified {
+    let mut b = FunctionBuilder::new("chain", &["x"]);
+    let x = b.input(0);
+    let mut last = x;
+    for _ in 1..values {
+        last = b.add(last, x);
+    }
+    finish(b, &[last])
+}
+
+/// As many values alive at once as it says.
+fn crowd(live: usize) -> Verified {
+    let mut b = FunctionBuilder::new("crowd", &["x"]);
+    let x = b.input(0);
+    let mut values = vec![x];
+    for _ in 1..live {
+        let next = b.sqrt(values[values.len() - 1]);
+        values.push(next);
+    }
+    let last = values[live - 1];
+    let sum = values.iter().skip(1).fold(x, |sum, &value| b.add(sum, value));
+    let sum = b.add(sum, last);
+    finish(b, &[sum])
+}
+
+#[test]
+fn the_limit_of_values_compiles_and_one_more_does_not() {
+    assert!(Kernel::compile(&chain(MAX_JIT_VALUES)).is_ok());
+    let error = Kernel::compile(&chain(MAX_JIT_VALUES + 1)).expect_err("it is too long");
+    assert_eq!(error, CompileError::Values { values: MAX_JIT_VALUES + 1, limit: MAX_JIT_VALUES });
+    assert!(clif(&chain(MAX_JIT_VALUES + 1)).is_err());
+}
+
+#[test]
+fn the_limit_of_live_values_compiles_and_one_more_does_not() {
+    let kernel = Kernel::compile(&crowd(MAX_JIT_LIVE_VALUES)).expect("it is within the limit");
+    assert!(kernel.frame_bytes() > 16 * MAX_JIT_LIVE_VALUES, "so many values need a frame");
+    let inputs = [vec![0.5; 16]];
+    let expected = reference(&crowd(MAX_JIT_LIVE_VALUES), &Tables::default(), &inputs);
+    assert_same_bits(&expected, &run(&kernel, &Arc::default(), &inputs, 1), "a crowd");
+    let error = Kernel::compile(&crowd(MAX_JIT_LIVE_VALUES + 1)).expect_err("it is too crowded");
+    assert_eq!(error, CompileError::LiveValues { live: MAX_JIT_LIVE_VALUES + 1, limit: MAX_JIT_LIVE_VALUES });
+}
+
+/// Accumulators that pass through many loops, each value with a place of its own where the allocator takes one pass.
+#[test]
+fn a_frame_that_is_too_large_is_refused() {
+    let mut b = FunctionBuilder::new("frame", &["x"]);
+    let mut values = vec![b.input(0); 50];
+    for _ in 0..100 {
+        let t = table(&mut b, None, 1);
+        let acc = b.begin_fold(t, Reduction::Sum, &values);
+        let c = b.column(t, 0);
+        let next: Vec<Value> = acc.iter().map(|&value| b.add(value, c)).collect();
+        values = b.end_fold(&next);
+    }
+    let function = finish(b, &values);
+    let vectors = Some(VectorCount::Four);
+    let options = Options { vectors, allocator: Some(Allocator::SinglePass), ..Options::default() };
+    let error = Kernel::compile_with(&function, &options).expect_err("the frame is too large");
+    assert!(matches!(error, CompileError::Frame { bytes, limit } if bytes > limit), "{error}");
+}
+
+#[test]
+fn the_text_shows_the_loop_over_rows() {
+    let text = clif(&function()).expect("it is within the limits");
+    for part in ["fma", "f32x4", "uload32", "brif", "splat"] {
+        assert!(text.contains(part), "{part} is missing in\n{text}");
+    }
+}
+
+#[test]
+fn every_block_divides_the_padding() {
+    for vectors in VectorCount::ALL {
+        assert!(Kernel::MAX_LANES.is_multiple_of(vectors.lanes()));
+    }
+}
+
+#[test]
+fn handles_cross_threads() {
+    fn crosses<T: Send + Sync + Clone>() {}
+    crosses::<Kernel>();
+    crosses::<jbt_jit::BoundKernel>();
+}

@@ -1,0 +1,160 @@
+//! Every op against the scalar reference, bit for bit, on the numbers where engines differ.
+
+// Elsewhere there is no machine code, and `Kernel::compile` says so.
+#![cfg(target_arch = "x86_64")]
+
+mod common;
+
+use common::{SPICE, check, finish, spicy_plane};
+use jbt_ir::{Domain, FunctionBuilder, Op, Tables, Type};
+use jbt_jit::{CompileError, Kernel};
+
+/// Ops that are expanded before code is made.
+const EXPANDED: [Op; 5] = [Op::Sin, Op::Cos, Op::Exp, Op::Ln, Op::Pow];
+
+/// All triples of spicy numbers, then random ones, as three planes.
+fn triples() -> Vec<Vec<f32>> {
+    let mut planes = vec![Vec::new(); 3];
+    for a in SPICE {
+        for b in SPICE {
+            for c in SPICE {
+                for (plane, number) in planes.iter_mut().zip([a, b, c]) {
+                    plane.push(number);
+                }
+            }
+        }
+    }
+    for (seed, plane) in (1..).zip(&mut planes) {
+        plane.extend(spicy_plane(seed, 4096));
+    }
+    planes
+}
+
+/// An operand of each type made of an input plane.
+fn operand(b: &mut FunctionBuilder, plane: usize, type_: Type) -> jbt_ir::Value {
+    let real = b.input(plane);
+    match type_ {
+        Type::Real => real,
+        Type::Mask => {
+            let zero = b.constant(0.25);
+            b.lt(real, zero)
+        }
+        Type::Bits => b.to_bits(real),
+    }
+}
+
+/// The op's result as reals.
+fn as_outputs(b: &mut FunctionBuilder, value: jbt_ir::Value, type_: Type) -> Vec<jbt_ir::Value> {
+    match type_ {
+        Type::Real => vec![value],
+        Type::Mask => {
+            let (one, zero) = (b.constant(1.0), b.constant(-0.0));
+            vec![b.select(value, one, zero)]
+        }
+        // Bits that happen to be a NaN may come back as another one when compared as reals: look at the halves.
+        Type::Bits => {
+            let (low, high, by) =
+                (b.bits_constant(0xFFFF), b.bits_constant(0x3F80_0000), b.bits_constant(16));
+            let low = b.bit_and(value, low);
+            let up = b.shr(value, by);
+            [low, up].map(|half| b.bit_or(half, high)).map(|half| b.from_bits(half)).to_vec()
+        }
+    }
+}
+
+#[test]
+fn every_op_has_the_bits_of_the_reference() {
+    for &op in Op::ALL {
+        if EXPANDED.contains(&op) {
+            continue;
+        }
+        let amounts: &[u32] =
+            if matches!(op, Op::Shl | Op::Shr) { &[0, 1, 9, 23, 31, 32, 47, u32::MAX] } else { &[0] };
+        for &amount in amounts {
+            let mut b = FunctionBuilder::new(op.name(), &["a", "b", "c"]);
+            let mut args: Vec<_> = op
+                .operands()
+                .iter()
+                .enumerate()
+                .map(|(plane, &type_)| operand(&mut b, plane, type_))
+                .collect();
+            if matches!(op, Op::Shl | Op::Shr) {
+                args[1] = b.bits_constant(amount);
+            }
+            let result = b.op(op, &args);
+            let outputs = as_outputs(&mut b, result, op.result());
+            check(&finish(b, &outputs), &Tables::default(), triples());
+        }
+    }
+}
+
+#[test]
+fn constant_operands_are_operands() {
+    for &number in &SPICE {
+        let mut b = FunctionBuilder::new("constants", &["a", "b", "c"]);
+        let (a, other) = (b.input(0), b.input(1));
+        let c = b.constant(number);
+        let outputs = [
+            b.add(a, c),
+            b.sub(c, a),
+            b.mul(c, a),
+            b.div(c, a),
+            b.fma(c, a, other),
+            b.fma(a, other, c),
+            b.min(a, c),
+            b.min(c, a),
+            b.max(a, c),
+            b.max(c, a),
+            b.neg(c),
+            b.abs(c),
+            b.sqrt(c),
+            b.mul(c, c),
+            b.max(c, c),
+        ];
+        check(&finish(b, &outputs), &Tables::default(), triples());
+    }
+}
+
+/// Sequences that an optimiser knows how to make shorter, and may only where no bit changes.
+#[test]
+fn nothing_is_fused_folded_or_reordered() {
+    let mut b = FunctionBuilder::new("tempting", &["a", "b", "c"]);
+    let (x, y, z) = (b.input(0), b.input(1), b.input(2));
+    let (zero, one) = (b.constant(0.0), b.constant(1.0));
+    let product = b.mul(x, y);
+    let negative = b.neg(x);
+    let less = b.lt(x, y);
+    let more = b.lt(y, x);
+    let not_less = b.not(less);
+    let outputs = [
+        b.add(product, z),
+        b.sub(product, z),
+        b.add(x, zero),
+        b.sub(x, zero),
+        b.mul(x, zero),
+        b.mul(x, one),
+        b.div(x, one),
+        b.sub(x, x),
+        b.div(x, x),
+        b.neg(negative),
+        b.fma(negative, y, z),
+        b.abs(negative),
+        b.select(less, x, y),
+        b.select(more, x, y),
+        b.select(less, y, x),
+        b.select(not_less, x, z),
+    ];
+    check(&finish(b, &outputs), &Tables::default(), triples());
+}
+
+#[test]
+fn an_op_that_is_not_expanded_is_an_error_that_names_it() {
+    for op in EXPANDED {
+        let mut b = FunctionBuilder::new("raw", &["a", "b"]);
+        let args = [b.input(0), b.input(1)];
+        let result = b.op(op, &args[..op.operands().len()]);
+        let error = Kernel::compile(&finish(b, &[result])).expect_err("it has no instruction");
+        assert!(matches!(error, CompileError::Op { op: named, .. } if named == op));
+        assert!(error.to_string().contains(op.name()));
+    }
+}
