@@ -1,0 +1,197 @@
+//! Points and samples, as structures of arrays: one plane of numbers for each coordinate and each answer.
+
+use jbt_frontend::attribute::AttributeGroup;
+
+/// Points in space: three planes of equal length.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Points {
+    x: Vec<f32>,
+    y: Vec<f32>,
+    z: Vec<f32>,
+}
+
+impl Points {
+    /// No points.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Points from their planes.
+    ///
+    /// # Errors
+    /// The lengths, if they differ.
+    pub fn from_planes(x: Vec<f32>, y: Vec<f32>, z: Vec<f32>) -> Result<Self, LengthError> {
+        if x.len() != y.len() || x.len() != z.len() {
+            return Err(LengthError { lengths: [x.len(), y.len(), z.len()] });
+        }
+        Ok(Self { x, y, z })
+    }
+
+    /// Adds a point.
+    pub fn push(&mut self, [x, y, z]: [f32; 3]) {
+        self.x.push(x);
+        self.y.push(y);
+        self.z.push(z);
+    }
+
+    /// Number of points.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.x.len()
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.x.is_empty()
+    }
+
+    /// The planes of x, y and z.
+    #[must_use]
+    pub fn planes(&self) -> [&[f32]; 3] {
+        [&self.x, &self.y, &self.z]
+    }
+
+    /// One point. Panics if there are not as many.
+    #[must_use]
+    pub fn get(&self, index: usize) -> [f32; 3] {
+        [self.x[index], self.y[index], self.z[index]]
+    }
+}
+
+impl FromIterator<[f32; 3]> for Points {
+    fn from_iter<I: IntoIterator<Item = [f32; 3]>>(iter: I) -> Self {
+        let mut points = Self::new();
+        for point in iter {
+            points.push(point);
+        }
+        points
+    }
+}
+
+/// Planes of different lengths were given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the planes of x, y and z have {}, {} and {} points", lengths[0], lengths[1], lengths[2])]
+pub struct LengthError {
+    /// The lengths of x, y and z.
+    pub lengths: [usize; 3],
+}
+
+/// Which plane holds what: the field first, then the gradient, then the attributes, as far as they were asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Layout {
+    names: Vec<String>,
+    gradient: bool,
+    groups: Vec<(AttributeGroup, usize)>,
+}
+
+impl Layout {
+    /// The layout of a query's answers.
+    pub(crate) fn new(gradient: bool, attributes: &[AttributeGroup]) -> Self {
+        let mut names = vec!["field".to_owned()];
+        if gradient {
+            names.extend(["gx", "gy", "gz"].map(str::to_owned));
+        }
+        let mut groups = Vec::new();
+        for group in attributes {
+            groups.push((group.clone(), names.len()));
+            names.extend((0..group.width()).map(|channel| group.channel(channel)));
+        }
+        Self { names, gradient, groups }
+    }
+
+    /// Names of the planes: `field`, `gx`, `gy`, `gz`, `color.r`, ...
+    #[must_use]
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    /// Whether there is a gradient.
+    #[must_use]
+    pub fn has_gradient(&self) -> bool {
+        self.gradient
+    }
+
+    /// Names of the attribute groups, their first plane and their number of planes.
+    pub fn attributes(&self) -> impl Iterator<Item = (&str, usize, usize)> {
+        self.groups.iter().map(|(group, plane)| (&*group.name, *plane, group.width()))
+    }
+
+    /// The first plane of an attribute group and its number of planes.
+    #[must_use]
+    pub fn attribute(&self, name: &str) -> Option<(usize, usize)> {
+        self.attributes().find(|(group, ..)| *group == name).map(|(_, plane, width)| (plane, width))
+    }
+}
+
+/// The answers at points: one plane for each, in the order of a [`Layout`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Samples {
+    layout: Layout,
+    planes: Vec<Vec<f32>>,
+}
+
+impl Samples {
+    /// Room for answers of this layout; empty so far.
+    #[must_use]
+    pub fn new(layout: Layout) -> Self {
+        let planes = vec![Vec::new(); layout.names.len()];
+        Self { layout, planes }
+    }
+
+    /// Makes room for this many points. Keeps what is allocated.
+    pub fn resize(&mut self, points: usize) {
+        for plane in &mut self.planes {
+            plane.resize(points, 0.0);
+        }
+    }
+
+    /// Number of points.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.planes[0].len()
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.planes[0].is_empty()
+    }
+
+    /// Which plane holds what.
+    #[must_use]
+    pub fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    /// All planes, in the order of the layout's names.
+    #[must_use]
+    pub fn planes(&self) -> &[Vec<f32>] {
+        &self.planes
+    }
+
+    /// All planes, to be written.
+    pub(crate) fn planes_mut(&mut self) -> Vec<&mut [f32]> {
+        self.planes.iter_mut().map(Vec::as_mut_slice).collect()
+    }
+
+    /// The field at every point.
+    #[must_use]
+    pub fn field(&self) -> &[f32] {
+        &self.planes[0]
+    }
+
+    /// The gradient of the field at every point, by components; `None` if it was not asked for.
+    #[must_use]
+    pub fn gradient(&self) -> Option<[&[f32]; 3]> {
+        self.layout.gradient.then(|| [&self.planes[1][..], &self.planes[2], &self.planes[3]])
+    }
+
+    /// The channels of an attribute group at every point; `None` if there is no such group or it was not asked for.
+    #[must_use]
+    pub fn attribute(&self, name: &str) -> Option<&[Vec<f32>]> {
+        let (plane, width) = self.layout.attribute(name)?;
+        Some(&self.planes[plane..plane + width])
+    }
+}

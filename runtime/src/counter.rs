@@ -1,0 +1,48 @@
+//! Counters: how much work was done.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// What an evaluator has done so far. A snapshot: see [`crate::Evaluator::counters`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counters {
+    /// Calls of the kernel.
+    pub calls: u64,
+    /// Points that were asked for.
+    pub points: u64,
+    /// Points that were computed: the last block of a call is filled up.
+    pub lanes: u64,
+    /// Distances to skeletons that were computed, for the points asked for.
+    pub primitive_evaluations: u64,
+    /// Distances that separate walks for the field, for the normal by differences (4 walks) and for the attributes would have computed
+    /// on top of these.
+    pub evaluations_avoided: u64,
+}
+
+/// The counters of an evaluator, shared by threads.
+#[derive(Debug, Default)]
+pub(crate) struct Tally {
+    calls: AtomicU64,
+    points: AtomicU64,
+    lanes: AtomicU64,
+}
+
+impl Tally {
+    pub(crate) fn add(&self, points: usize, lanes: usize) {
+        self.calls.fetch_add(1, Ordering::Relaxed);
+        self.points.fetch_add(points as u64, Ordering::Relaxed);
+        self.lanes.fetch_add(lanes as u64, Ordering::Relaxed);
+    }
+
+    /// The counters, for a program that computes `evaluations` distances a point where separate walks compute `separate`.
+    pub(crate) fn snapshot(&self, evaluations: u64, separate: u64) -> Counters {
+        let points = self.points.load(Ordering::Relaxed);
+        let primitive_evaluations = points.saturating_mul(evaluations);
+        Counters {
+            calls: self.calls.load(Ordering::Relaxed),
+            points,
+            lanes: self.lanes.load(Ordering::Relaxed),
+            primitive_evaluations,
+            evaluations_avoided: points.saturating_mul(separate).saturating_sub(primitive_evaluations),
+        }
+    }
+}

@@ -1,0 +1,47 @@
+//! Why a model has no evaluator.
+
+use jbt_frontend::diagnostic::Diagnostic;
+use jbt_ir::VerifyError;
+
+/// Why a model could not be compiled.
+#[derive(Clone, Debug, thiserror::Error)]
+pub enum CompileError {
+    /// The model is beyond a limit, or its numbers leave the range of f32: located messages for its author.
+    #[error("{}", .0.first().map_or("the model cannot be compiled", |first| first.message.as_str()))]
+    Model(Vec<Diagnostic>),
+    /// The engine that was asked for by name cannot be had on this machine.
+    #[error("the engine `{engine}` is not available: {reason}")]
+    Engine {
+        /// Its name.
+        engine: &'static str,
+        /// Why.
+        reason: String,
+    },
+    /// The compiler made a program that breaks its own rules: a defect of jbt.
+    #[error("the compiler broke its own rules: {}", .0.first().map_or(String::new(), ToString::to_string))]
+    Internal(Vec<VerifyError>),
+}
+
+/// Why points were not evaluated.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum EvalError {
+    /// The planes of x, y and z differ in length, or from a plane of answers.
+    #[error("the first plane has {expected} points, another one has {given}")]
+    Length {
+        /// The length of the plane of x.
+        expected: usize,
+        /// The length of the first plane that differs.
+        given: usize,
+    },
+    /// Another number of planes than the query has answers.
+    #[error("the query has {expected} planes of answers, {given} were given")]
+    Planes {
+        /// Number of answers.
+        expected: usize,
+        /// What was given.
+        given: usize,
+    },
+    /// The buffer was made for another query or model.
+    #[error("the samples were made for another query or model")]
+    Layout,
+}

@@ -1,0 +1,233 @@
+//! The evaluator: a model and a query become a kernel once; points become samples many times.
+
+use std::sync::{Arc, Mutex};
+
+use jbt_frontend::check::CheckedTree;
+use jbt_frontend::lower::{Lowered, lower};
+use jbt_frontend::query::Query;
+use jbt_ir::domain::counting::{Evaluations, evaluations};
+use jbt_ir::{Function, Tables, Verified};
+
+use crate::buffer::{Layout, Points, Samples};
+use crate::counter::{Counters, Tally};
+use crate::error::{CompileError, EvalError};
+use crate::kernel::{Bound, Engine, Kernel, optimise};
+use crate::probe::Probe;
+
+/// Makes evaluators, and remembers the code of every shape that it has met: models of one shape share it.
+///
+/// Cloning gives another handle to the same memory.
+#[derive(Clone, Default)]
+pub struct Compiler {
+    engine: Option<Engine>,
+    known: Arc<Mutex<Vec<Known>>>,
+}
+
+/// The code of a shape, for a query.
+struct Known {
+    query: Query,
+    kernel: Arc<Kernel>,
+}
+
+/// Shapes that a compiler remembers; the oldest one goes first.
+const REMEMBERED: usize = 64;
+
+impl Compiler {
+    /// A compiler for the best engine that this machine has: machine code, or the SIMD interpreter with one warning in the log.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// A compiler for one engine.
+    #[must_use]
+    pub fn for_engine(engine: Engine) -> Self {
+        Self { engine: Some(engine), ..Self::default() }
+    }
+
+    /// An evaluator for a model and a query.
+    ///
+    /// # Errors
+    /// The model is beyond a limit, or the engine cannot be had.
+    pub fn evaluator(&self, tree: &CheckedTree, query: Query) -> Result<Evaluator, CompileError> {
+        let (kernel, tables) = self.compile(tree, query, None)?;
+        Ok(Evaluator::new(self.clone(), kernel, tables, tree, query))
+    }
+
+    /// The kernel and the numbers of a model. `present` is a kernel for the same query, tried first.
+    fn compile(
+        &self,
+        tree: &CheckedTree,
+        query: Query,
+        present: Option<&Arc<Kernel>>,
+    ) -> Result<(Arc<Kernel>, Tables), CompileError> {
+        let Lowered { function, tables } = lower(tree, query).map_err(CompileError::Model)?;
+        let present = present.filter(|kernel| kernel.lowered == function).cloned();
+        if let Some(kernel) = present.or_else(|| self.find(query, &function)) {
+            return Ok((kernel, tables));
+        }
+        let verified = optimise(function.clone(), query.gradient, &mut |_, _| {})?;
+        let kernel = Arc::new(Kernel::new(function, verified, self.engine)?);
+        if let Ok(mut known) = self.known.lock() {
+            if known.len() == REMEMBERED {
+                known.remove(0);
+            }
+            known.push(Known { query, kernel: Arc::clone(&kernel) });
+        }
+        Ok((kernel, tables))
+    }
+
+    fn find(&self, query: Query, function: &Function) -> Option<Arc<Kernel>> {
+        let known = self.known.lock().ok()?;
+        let found = known.iter().find(|known| known.query == query && known.kernel.lowered == *function)?;
+        Some(Arc::clone(&found.kernel))
+    }
+}
+
+/// What an update of an evaluator took.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Update {
+    /// Only numbers were written.
+    Numbers,
+    /// The shape had changed: code was compiled.
+    Code,
+}
+
+/// A compiled model: answers one query at any points.
+///
+/// It is `Send + Sync`: threads may share it and evaluate at once. The code is freed with the last evaluator of its shape.
+pub struct Evaluator {
+    compiler: Compiler,
+    bound: Bound,
+    query: Query,
+    layout: Layout,
+    evaluations: u64,
+    tally: Tally,
+}
+
+impl Evaluator {
+    /// An evaluator on the best engine that this machine has. To share code between models, use a [`Compiler`].
+    ///
+    /// # Errors
+    /// Those of [`Compiler::evaluator`].
+    pub fn compile(tree: &CheckedTree, query: Query) -> Result<Self, CompileError> {
+        Compiler::new().evaluator(tree, query)
+    }
+
+    fn new(
+        compiler: Compiler,
+        kernel: Arc<Kernel>,
+        tables: Tables,
+        tree: &CheckedTree,
+        query: Query,
+    ) -> Self {
+        let attributes = if query.attributes { tree.attributes() } else { &[] };
+        let layout = Layout::new(query.gradient, attributes);
+        debug_assert_eq!(
+            layout.names(),
+            kernel.function.function().outputs,
+            "planes are named alike everywhere"
+        );
+        let evaluations = evaluations(&kernel.function, &tables).total;
+        let bound = kernel.bind(Arc::new(tables));
+        Self { compiler, bound, query, layout, evaluations, tally: Tally::default() }
+    }
+
+    /// Takes another model, usually an edited one. If it has the shape of the present one, only numbers are written.
+    ///
+    /// # Errors
+    /// Those of [`Compiler::evaluator`]; the evaluator stays as it was.
+    pub fn update(&mut self, tree: &CheckedTree) -> Result<Update, CompileError> {
+        let (kernel, tables) = self.compiler.compile(tree, self.query, Some(&self.bound.kernel))?;
+        let same = Arc::ptr_eq(&kernel, &self.bound.kernel);
+        let next = Self::new(self.compiler.clone(), kernel, tables, tree, self.query);
+        *self = Self { tally: std::mem::take(&mut self.tally), ..next };
+        Ok(if same { Update::Numbers } else { Update::Code })
+    }
+
+    /// The query that it answers.
+    #[must_use]
+    pub fn query(&self) -> Query {
+        self.query
+    }
+
+    /// What runs it.
+    #[must_use]
+    pub fn engine(&self) -> Engine {
+        self.bound.kernel.engine()
+    }
+
+    /// Which plane of the samples holds what.
+    #[must_use]
+    pub fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    /// An empty buffer for its answers.
+    #[must_use]
+    pub fn samples(&self) -> Samples {
+        Samples::new(self.layout.clone())
+    }
+
+    /// The answers at all points. `samples` is resized; keep it for the next call to save the allocation.
+    ///
+    /// # Errors
+    /// If `samples` was made for another query or model.
+    pub fn eval(&self, points: &Points, samples: &mut Samples) -> Result<(), EvalError> {
+        if *samples.layout() != self.layout {
+            return Err(EvalError::Layout);
+        }
+        samples.resize(points.len());
+        self.eval_planes(points.planes(), &mut samples.planes_mut())
+    }
+
+    /// The answers at all points, into planes of the caller: one for each name of the [`layout`](Self::layout), as long as those of x, y and z.
+    ///
+    /// Any length will do; a multiple of 16 is fastest.
+    ///
+    /// # Errors
+    /// If there are too many or too few planes, or their lengths differ.
+    pub fn eval_planes(&self, points: [&[f32]; 3], answers: &mut [&mut [f32]]) -> Result<(), EvalError> {
+        let lanes = self.bound.run(points, answers)?;
+        self.tally.add(points[0].len(), lanes);
+        Ok(())
+    }
+
+    /// Begins to ask about one point: see [`Probe`].
+    #[must_use]
+    pub fn probe(&self, point: [f32; 3]) -> Probe<'_> {
+        Probe::new(self, point)
+    }
+
+    /// What it has done so far.
+    #[must_use]
+    pub fn counters(&self) -> Counters {
+        // Separate walks: one for the field, four for a normal by differences, one for the attributes.
+        let walks = 1 + 4 * u64::from(self.query.gradient) + u64::from(self.query.attributes);
+        self.tally.snapshot(self.evaluations, walks * self.evaluations)
+    }
+
+    /// How many distances to skeletons one point takes.
+    #[must_use]
+    pub fn evaluations_per_point(&self) -> u64 {
+        self.evaluations
+    }
+
+    /// How many distances one point takes, by tree node.
+    #[must_use]
+    pub fn evaluations_by_node(&self) -> Evaluations {
+        evaluations(&self.bound.kernel.function, &self.bound.tables)
+    }
+
+    /// The program that runs.
+    #[must_use]
+    pub fn program(&self) -> &Verified {
+        &self.bound.kernel.function
+    }
+
+    /// The numbers that it runs on.
+    #[must_use]
+    pub fn tables(&self) -> &Tables {
+        &self.bound.tables
+    }
+}

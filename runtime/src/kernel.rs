@@ -1,0 +1,267 @@
+//! A program on an engine: verified instructions, and whatever runs them.
+//!
+//! | engine | what it is |
+//! |---|---|
+//! | `scalar` | the reference: one point after the other, in the simplest way |
+//! | `lanes` | the SIMD interpreter |
+//! | `jit` | machine code by Cranelift |
+//!
+//! All give the same bits.
+
+use std::sync::Arc;
+use std::sync::Mutex;
+
+use jbt_frontend::diagnostic::Diagnostic;
+use jbt_ir::domain::lanes::{Scratch, Tape};
+use jbt_ir::domain::scalar::Scalar;
+use jbt_ir::pass::{GRADIENT, PIPELINE, Pass, run_pipeline};
+use jbt_ir::{Function, Tables, Verified, interpret, limits, verify};
+
+use crate::error::{CompileError, EvalError};
+
+/// What runs a program.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum Engine {
+    /// The reference: one point after the other.
+    Scalar,
+    /// The SIMD interpreter.
+    Lanes,
+    /// Machine code.
+    Jit,
+}
+
+impl Engine {
+    /// All engines.
+    pub const ALL: [Self; 3] = [Self::Scalar, Self::Lanes, Self::Jit];
+
+    /// The word of the command line.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Scalar => "scalar",
+            Self::Lanes => "lanes",
+            Self::Jit => "jit",
+        }
+    }
+}
+
+/// The passes that a function goes through: the gradient first, where it is asked for.
+pub fn passes(gradient: bool) -> impl Iterator<Item = &'static Pass> {
+    gradient.then_some(&GRADIENT).into_iter().chain(PIPELINE)
+}
+
+/// Runs the passes and verifies. The observer sees what every pass made.
+///
+/// # Errors
+/// A function that a pass makes larger than [`limits::MAX_VALUES`]; broken rules, which are a defect of the compiler.
+pub fn optimise(
+    mut function: Function,
+    gradient: bool,
+    observer: &mut dyn FnMut(&str, &Function),
+) -> Result<Verified, CompileError> {
+    for pass in passes(gradient) {
+        function = run_pipeline(function, [pass], observer);
+        let values = function.values.len();
+        if values > limits::MAX_VALUES {
+            let most = limits::MAX_VALUES;
+            let message = format!(
+                "after the pass {}, the model's program has {values} values; it may have {most}",
+                pass.name
+            );
+            return Err(CompileError::Model(vec![Diagnostic::limit(None, message)]));
+        }
+    }
+    verify(function).map_err(CompileError::Internal)
+}
+
+enum Code {
+    Scalar,
+    Lanes(Tape),
+    #[cfg(feature = "jit")]
+    Jit(jbt_jit::Kernel),
+}
+
+/// A program that is ready to run on any numbers that fit it.
+pub(crate) struct Kernel {
+    /// The function as it was lowered: what tells whether another model has the same shape.
+    pub(crate) lowered: Function,
+    pub(crate) function: Arc<Verified>,
+    code: Code,
+}
+
+impl Kernel {
+    /// Prepares a function for an engine. Without an engine in mind, machine code is tried first and the interpreter then.
+    pub(crate) fn new(
+        lowered: Function,
+        function: Verified,
+        engine: Option<Engine>,
+    ) -> Result<Self, CompileError> {
+        let code = match engine {
+            Some(Engine::Scalar) => Code::Scalar,
+            Some(Engine::Lanes) => lanes(&function)?,
+            Some(Engine::Jit) => jit(&function)
+                .map_err(|reason| CompileError::Engine { engine: Engine::Jit.name(), reason })?,
+            None => match jit(&function) {
+                Ok(code) => code,
+                Err(reason) => {
+                    warn_once(&reason);
+                    lanes(&function)?
+                }
+            },
+        };
+        Ok(Self { lowered, function: Arc::new(function), code })
+    }
+
+    pub(crate) fn engine(&self) -> Engine {
+        match &self.code {
+            Code::Scalar => Engine::Scalar,
+            Code::Lanes(_) => Engine::Lanes,
+            #[cfg(feature = "jit")]
+            Code::Jit(_) => Engine::Jit,
+        }
+    }
+
+    /// Points that run together.
+    pub(crate) fn block(&self) -> usize {
+        match &self.code {
+            Code::Scalar => 1,
+            Code::Lanes(_) => jbt_ir::domain::lanes::WIDTH,
+            #[cfg(feature = "jit")]
+            Code::Jit(kernel) => kernel.lanes(),
+        }
+    }
+
+    /// Gives the kernel its numbers.
+    pub(crate) fn bind(self: &Arc<Self>, tables: Arc<Tables>) -> Bound {
+        // Lowering made both, so they fit; the check is what the engines' safety rests on.
+        let checked = tables.check(self.function.function());
+        assert_eq!(checked, Ok(()), "lowering gives tables that fit their function");
+        #[cfg(feature = "jit")]
+        let machine = match &self.code {
+            Code::Scalar | Code::Lanes(_) => None,
+            Code::Jit(kernel) => {
+                Some(kernel.bind(Arc::clone(&tables)).expect("the tables have just been checked"))
+            }
+        };
+        Bound {
+            kernel: Arc::clone(self),
+            tables,
+            #[cfg(feature = "jit")]
+            machine,
+            scratch: Mutex::new(Vec::new()),
+        }
+    }
+}
+
+fn lanes(function: &Verified) -> Result<Code, CompileError> {
+    let failed = |error: jbt_ir::domain::lanes::NotLegalized| CompileError::Engine {
+        engine: Engine::Lanes.name(),
+        reason: error.to_string(),
+    };
+    Tape::new(function).map(Code::Lanes).map_err(failed)
+}
+
+#[cfg(feature = "jit")]
+fn jit(function: &Verified) -> Result<Code, String> {
+    jbt_jit::Kernel::compile(function).map(Code::Jit).map_err(|error| error.to_string())
+}
+
+#[cfg(not(feature = "jit"))]
+fn jit(_function: &Verified) -> Result<Code, String> {
+    Err("this build has no JIT (cargo feature `jit`)".to_owned())
+}
+
+/// Says once for each process that there is no machine code, and why.
+fn warn_once(reason: &str) {
+    static WARNED: std::sync::Once = std::sync::Once::new();
+    WARNED.call_once(|| log::warn!("interpreting, because the JIT declined: {reason}"));
+}
+
+/// A kernel with its numbers: the thing that runs.
+pub(crate) struct Bound {
+    pub(crate) kernel: Arc<Kernel>,
+    pub(crate) tables: Arc<Tables>,
+    #[cfg(feature = "jit")]
+    machine: Option<jbt_jit::BoundKernel>,
+    /// Memory of interpreter runs, one for each thread that runs at once.
+    scratch: Mutex<Vec<Scratch>>,
+}
+
+/// The most points that fill up a last block.
+#[cfg(feature = "jit")]
+const MAX_BLOCK: usize = 256;
+
+impl Bound {
+    /// Runs all points; returns how many lanes were computed.
+    pub(crate) fn run(&self, inputs: [&[f32]; 3], outputs: &mut [&mut [f32]]) -> Result<usize, EvalError> {
+        let points = self.check(inputs, outputs)?;
+        match &self.kernel.code {
+            Code::Scalar => self.run_scalar(inputs, outputs),
+            Code::Lanes(tape) => {
+                let mut scratch =
+                    self.scratch.lock().map(|mut pool| pool.pop()).ok().flatten().unwrap_or_default();
+                let ran = tape.run(&self.tables, &inputs, outputs, &mut scratch);
+                debug_assert_eq!(ran, Ok(()), "the planes have been checked");
+                if let Ok(mut pool) = self.scratch.lock() {
+                    pool.push(scratch);
+                }
+            }
+            #[cfg(feature = "jit")]
+            Code::Jit(kernel) => self.run_machine(kernel.lanes(), inputs, outputs),
+        }
+        Ok(points.next_multiple_of(self.kernel.block()))
+    }
+
+    fn check(&self, inputs: [&[f32]; 3], outputs: &[&mut [f32]]) -> Result<usize, EvalError> {
+        let expected = self.kernel.function.function().outputs.len();
+        if outputs.len() != expected {
+            return Err(EvalError::Planes { expected, given: outputs.len() });
+        }
+        let expected = inputs[0].len();
+        let mut lengths = inputs.iter().map(|p| p.len()).chain(outputs.iter().map(|p| p.len()));
+        match lengths.find(|&given| given != expected) {
+            Some(given) => Err(EvalError::Length { expected, given }),
+            None => Ok(expected),
+        }
+    }
+
+    fn run_scalar(&self, inputs: [&[f32]; 3], outputs: &mut [&mut [f32]]) {
+        let _environment = jbt_ir::environment::Standard::enter();
+        for point in 0..inputs[0].len() {
+            let at = inputs.map(|plane| plane[point]);
+            let answers = interpret::run(&self.kernel.function, &self.tables, &mut Scalar, &at);
+            for (plane, answer) in outputs.iter_mut().zip(answers) {
+                plane[point] = answer;
+            }
+        }
+    }
+
+    /// Whole blocks straight from the caller's planes; what is left goes through a block that is filled up with its last point.
+    #[cfg(feature = "jit")]
+    fn run_machine(&self, lanes: usize, inputs: [&[f32]; 3], outputs: &mut [&mut [f32]]) {
+        let machine = self.machine.as_ref().expect("machine code was bound");
+        let points = inputs[0].len();
+        let whole = points - points % lanes;
+        if whole > 0 {
+            let inputs = inputs.map(|plane| &plane[..whole]);
+            let mut outputs: Vec<&mut [f32]> = outputs.iter_mut().map(|plane| &mut plane[..whole]).collect();
+            machine.run(&inputs, &mut outputs).expect("the planes have been checked");
+        }
+        if whole == points {
+            return;
+        }
+        assert!(lanes <= MAX_BLOCK, "blocks of machine code are small");
+        let mut padded = [[0.0; MAX_BLOCK]; 3];
+        for (block, plane) in padded.iter_mut().zip(inputs) {
+            block[..points - whole].copy_from_slice(&plane[whole..]);
+            block[points - whole..].fill(plane[points - 1]);
+        }
+        let padded: [&[f32]; 3] = [&padded[0][..lanes], &padded[1][..lanes], &padded[2][..lanes]];
+        let mut answers = vec![0.0; lanes * outputs.len()];
+        let mut blocks: Vec<&mut [f32]> = answers.chunks_mut(lanes).collect();
+        machine.run(&padded, &mut blocks).expect("the blocks are whole");
+        for (plane, block) in outputs.iter_mut().zip(blocks) {
+            plane[whole..].copy_from_slice(&block[..points - whole]);
+        }
+    }
+}

@@ -1,0 +1,72 @@
+//! jbt compiles **BlobTrees** to SIMD machine code: the field, its gradient and its attributes come out of one evaluation of each
+//! primitive.
+//!
+//! A BlobTree is a graph of skeletal implicit surfaces: primitives (a skeleton, and a falloff of the distance to it), blends, CSG,
+//! warps, affine maps, attributes. Inside means `field >= iso`.
+//!
+//! ```
+//! use jbt::build::{Axis, point};
+//! use jbt::{Evaluator, Model, Points, Query};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let orange = point([0.0, 0.4, 0.0], 1.0).color([1.0, 0.6, 0.1]);
+//! let blue = point([0.0, -0.4, 0.0], 1.0).color([0.1, 0.4, 1.0]);
+//! let tree = Model::new((orange + blue).twist(Axis::Y, 0.5)).check().expect("a good model");
+//!
+//! let evaluator = Evaluator::compile(&tree, Query::ALL)?; // once; threads may share it
+//! let points: Points = [[0.0, 0.1, 0.0], [0.3, 0.0, 0.0]].into_iter().collect();
+//! let mut samples = evaluator.samples();
+//! evaluator.eval(&points, &mut samples)?; // many times
+//!
+//! // The published figures of this peanut: fields 0.794976 and 1/2, and the colours mixed by them.
+//! assert!((samples.field()[0] - 1.294976).abs() < 1e-6);
+//! let red = &samples.attribute("color").expect("asked for")[0];
+//! assert!((red[0] - (0.613892 * 1.0 + 0.386108 * 0.1)).abs() < 1e-5);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! ```text
+//! Model ──check──► CheckedTree ──Compiler, Query──► Evaluator ──points──► samples
+//!   ▲                                                   │
+//! text, build, import                              Polygonize ──► Mesh ──► export
+//! ```
+//!
+//! * [`build`], [`text`] and [`import`] make a [`Model`]; [`Model::check`] says everything that is wrong with it.
+//! * An [`Evaluator`] answers one [`Query`] at any points, on the [`Engine`] that the machine has; all engines give the same bits.
+//!   A [`Probe`] asks about a single point, in any order, for one evaluation.
+//! * [`Polygonize`] meshes a model; [`export`] writes meshes.
+//! * [`Counters`] say what was done, and what separate walks would have done.
+
+mod buffer;
+mod counter;
+mod error;
+mod evaluator;
+pub mod kernel;
+mod probe;
+
+pub use jbt_ir as ir;
+#[cfg(feature = "jit")]
+pub use jbt_jit as jit;
+
+pub use jbt_frontend::attribute::{AttributeGroup, Mixing};
+pub use jbt_frontend::builder as build;
+pub use jbt_frontend::check::CheckedTree;
+pub use jbt_frontend::combine::Combinator;
+pub use jbt_frontend::diagnostic;
+pub use jbt_frontend::falloff::Falloff;
+pub use jbt_frontend::import;
+pub use jbt_frontend::model::Model;
+pub use jbt_frontend::query::Query;
+pub use jbt_frontend::scene::Scene;
+pub use jbt_frontend::text;
+pub use jbt_frontend::tree::Tree;
+pub use jbt_frontend::walk;
+pub use jbt_ir::limits;
+
+pub use buffer::{Layout, LengthError, Points, Samples};
+pub use counter::Counters;
+pub use error::{CompileError, EvalError};
+pub use evaluator::{Compiler, Evaluator, Update};
+pub use kernel::Engine;
+pub use probe::Probe;

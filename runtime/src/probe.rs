@@ -1,0 +1,74 @@
+//! Asking about one point, in any order, for one evaluation.
+
+use std::cell::OnceCell;
+
+use crate::evaluator::Evaluator;
+
+/// One point of a model: what is asked was declared by the evaluator's query, and everything is computed by the first question.
+///
+/// ```
+/// # use jbt::{Evaluator, Model, Query, build::point};
+/// # let tree = Model::new(point([0.0; 3], 1.0).color([1.0, 0.0, 0.0])).check().unwrap();
+/// let evaluator = Evaluator::compile(&tree, Query::ALL).unwrap();
+/// let probe = evaluator.probe([0.5, 0.0, 0.0]);
+/// assert_eq!(probe.value(), 0.5);
+/// assert_eq!(probe.normal(), Some([1.0, 0.0, 0.0]));
+/// assert_eq!(probe.color(), Some([1.0, 0.0, 0.0]));
+/// assert_eq!(evaluator.counters().points, 1);
+/// ```
+pub struct Probe<'a> {
+    evaluator: &'a Evaluator,
+    point: [f32; 3],
+    answers: OnceCell<Vec<f32>>,
+}
+
+impl<'a> Probe<'a> {
+    pub(crate) fn new(evaluator: &'a Evaluator, point: [f32; 3]) -> Self {
+        Self { evaluator, point, answers: OnceCell::new() }
+    }
+
+    fn answers(&self) -> &[f32] {
+        self.answers.get_or_init(|| {
+            let mut answers = vec![0.0; self.evaluator.layout().names().len()];
+            let [x, y, z] = &self.point;
+            let planes = [x, y, z].map(std::slice::from_ref);
+            let mut out: Vec<&mut [f32]> = answers.iter_mut().map(std::slice::from_mut).collect();
+            self.evaluator.eval_planes(planes, &mut out).expect("one point fits planes of one");
+            answers
+        })
+    }
+
+    /// The field.
+    #[must_use]
+    pub fn value(&self) -> f32 {
+        self.answers()[0]
+    }
+
+    /// The gradient of the field; `None` if the query has none.
+    #[must_use]
+    pub fn gradient(&self) -> Option<[f32; 3]> {
+        let answers = self.answers();
+        self.evaluator.layout().has_gradient().then(|| [answers[1], answers[2], answers[3]])
+    }
+
+    /// The unit normal, away from the inside; `None` if the query has no gradient or it vanishes here.
+    #[must_use]
+    pub fn normal(&self) -> Option<[f32; 3]> {
+        let gradient = self.gradient()?.map(f64::from);
+        let length = gradient.iter().map(|g| g * g).sum::<f64>().sqrt();
+        (length > 0.0 && length.is_finite()).then(|| gradient.map(|g| (-g / length + 0.0) as f32))
+    }
+
+    /// The channels of an attribute group; `None` if there is no such group or it was not asked for.
+    #[must_use]
+    pub fn attribute(&self, name: &str) -> Option<&[f32]> {
+        let (plane, width) = self.evaluator.layout().attribute(name)?;
+        Some(&self.answers()[plane..plane + width])
+    }
+
+    /// The colour.
+    #[must_use]
+    pub fn color(&self) -> Option<[f32; 3]> {
+        self.attribute("color")?.try_into().ok()
+    }
+}

@@ -1,0 +1,184 @@
+//! Random models: a shape from one seed, its numbers from another, so that one shape can be tried with many sets of numbers.
+#![allow(dead_code, reason = "each test file uses its own part")]
+#![allow(clippy::print_stderr, reason = "a skipped test says so")]
+
+use std::sync::Arc;
+
+use fastrand::Rng;
+use jbt::Model;
+use jbt_frontend::affine::scale_rotate_translate;
+use jbt_frontend::attribute::{AttributeGroup, Mixing};
+use jbt_frontend::combine::Combinator;
+use jbt_frontend::falloff::Falloff;
+use jbt_frontend::field::{Field, FieldKind, FieldValue};
+use jbt_frontend::skeleton::SkeletonKind;
+use jbt_frontend::tree::{NodeKind, Primitive, Tree};
+use jbt_frontend::warp::WarpKind;
+
+/// The seeds of a model: what selects code comes from `shape`, everything else from `numbers`.
+pub struct Random {
+    shape: Rng,
+    numbers: Rng,
+    /// Trees that may be used once more.
+    done: Vec<Tree>,
+}
+
+impl Random {
+    /// The generator of a shape and a set of numbers.
+    pub fn new(shape: u64, numbers: u64) -> Self {
+        Self { shape: Rng::with_seed(shape), numbers: Rng::with_seed(numbers), done: Vec::new() }
+    }
+
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.numbers.f64()
+    }
+
+    fn vector(&mut self, size: f64) -> [f64; 3] {
+        std::array::from_fn(|_| self.between(-size, size))
+    }
+
+    /// A model of about `leaves` leaves, with colours and some other groups.
+    pub fn model(mut self, leaves: usize) -> Model {
+        let mut attributes = vec![AttributeGroup::color()];
+        for index in 0..self.shape.usize(0..3) {
+            attributes.push(AttributeGroup {
+                name: format!("group{index}").into(),
+                default: (0..self.shape.usize(1..5)).map(|_| self.between(-1.0, 1.0)).collect(),
+                mixing: if self.shape.bool() { Mixing::Blend } else { Mixing::Dominant },
+            });
+        }
+        let root = self.tree(leaves, &attributes, 0);
+        Model { iso: self.between(0.3, 0.6), attributes, root }
+    }
+
+    fn tree(&mut self, leaves: usize, attributes: &[AttributeGroup], depth: usize) -> Tree {
+        if !self.done.is_empty() && self.shape.u8(0..10) == 0 {
+            let again = self.done[self.shape.usize(0..self.done.len())].clone();
+            return self.unary(again, attributes);
+        }
+        let tree = if leaves <= 1 || depth > 6 {
+            self.leaf()
+        } else {
+            let parts = self.shape.usize(1..leaves.min(5) + 1);
+            let children = (0..parts).map(|_| self.tree(leaves / parts, attributes, depth + 1)).collect();
+            let combinator = match self.shape.u8(0..8) {
+                0 | 1 => Combinator::Sum,
+                2 => Combinator::Ricci(f64::from(self.shape.u32(1..20))),
+                3 => Combinator::Ricci(if self.shape.bool() { self.between(1.01, 9.9) } else { 1024.0 }),
+                4 => Combinator::Intersection,
+                5 => Combinator::Difference,
+                _ => Combinator::Union,
+            };
+            Tree::new(NodeKind::Combine(combinator), children)
+        };
+        let tree = self.unary(tree, attributes);
+        self.done.push(tree.clone());
+        tree
+    }
+
+    fn leaf(&mut self) -> Tree {
+        let kind = SkeletonKind::ALL[self.shape.usize(0..SkeletonKind::ALL.len())];
+        let skeleton = kind.from_fields(&self.fields(kind.fields()));
+        let strength = match self.shape.u8(0..8) {
+            0 => -self.between(0.1, 0.8),
+            1 | 2 => self.between(0.5, 1.7),
+            _ => 1.0,
+        };
+        let falloff = Falloff::ALL[self.shape.usize(0..Falloff::ALL.len())];
+        let radius = self.between(0.5, 1.5);
+        Tree::new(NodeKind::Primitive(Primitive { skeleton, falloff, radius, strength }), Vec::new())
+    }
+
+    fn fields(&mut self, fields: &[Field]) -> Vec<FieldValue> {
+        let mut values = Vec::new();
+        for field in fields {
+            values.push(match field.kind {
+                FieldKind::Real => FieldValue::Real(self.between(-1.5, 1.5)),
+                FieldKind::Positive | FieldKind::NonNegative => FieldValue::Real(self.between(0.1, 1.0)),
+                FieldKind::Position => FieldValue::Vector(self.vector(1.0)),
+                FieldKind::Extents => FieldValue::Vector(self.vector(1.0).map(f64::abs)),
+                FieldKind::Direction => FieldValue::Vector(self.vector(1.0)),
+                FieldKind::Axis => {
+                    let axis = self.shape.usize(0..3);
+                    FieldValue::Vector(std::array::from_fn(|k| if k == axis { 1.0 } else { 0.0 }))
+                }
+            });
+        }
+        values
+    }
+
+    /// The tree under up to two unary nodes.
+    fn unary(&mut self, mut tree: Tree, attributes: &[AttributeGroup]) -> Tree {
+        for _ in 0..self.shape.usize(0..3) {
+            let kind = match self.shape.u8(0..10) {
+                0..3 => {
+                    let group = &attributes[self.shape.usize(0..attributes.len())];
+                    let values = (0..group.width()).map(|_| self.between(0.0, 1.0)).collect();
+                    NodeKind::Attribute { name: Arc::clone(&group.name), values }
+                }
+                3 => {
+                    let kind = WarpKind::ALL[self.shape.usize(0..WarpKind::ALL.len())];
+                    NodeKind::Warp(kind.from_fields(&self.fields(kind.fields())))
+                }
+                _ => self.affine(),
+            };
+            tree = Tree::new(kind, vec![tree]);
+        }
+        tree
+    }
+
+    fn affine(&mut self) -> NodeKind {
+        let translation = glam(self.vector(0.7));
+        let turned = {
+            let [x, y, z] = self.vector(1.0);
+            glam::DQuat::from_xyzw(x, y, z, 0.4).normalize()
+        };
+        let still = glam::DQuat::IDENTITY;
+        let size = self.between(0.6, 1.4);
+        let even = glam::DVec3::splat(size);
+        let uneven = glam(self.vector(0.4)) + even;
+        NodeKind::Affine(match self.shape.u8(0..6) {
+            0 => scale_rotate_translate(glam::DVec3::ONE, still, translation),
+            1 => scale_rotate_translate(even, still, translation),
+            2 => scale_rotate_translate(even, turned, translation),
+            3 => scale_rotate_translate(-even, turned, translation),
+            _ => scale_rotate_translate(uneven, turned, translation),
+        })
+    }
+}
+
+fn glam(vector: [f64; 3]) -> glam::DVec3 {
+    vector.into()
+}
+
+/// Points that hurt: zeros of both signs, subnormals, huge numbers, infinities, NaN.
+pub const SPICE: [f32; 12] =
+    [0.0, -0.0, 1.0, -0.5, 1e-45, -1e-39, 1e30, -1e30, f32::MAX, f32::INFINITY, f32::NEG_INFINITY, f32::NAN];
+
+/// Ordinary points within `size` of the origin, with spicy ones among them.
+pub fn points(rng: &mut Rng, count: usize, size: f32) -> jbt::Points {
+    (0..count)
+        .map(|_| {
+            let mut point = std::array::from_fn(|_| (2.0 * rng.f32() - 1.0) * size);
+            if rng.u8(0..4) == 0 {
+                for _ in 0..rng.usize(1..4) {
+                    point[rng.usize(0..3)] = SPICE[rng.usize(0..SPICE.len())];
+                }
+            }
+            point
+        })
+        .collect()
+}
+
+/// The folder with sample scenes that are not part of the project; `None`, with a message, where it is missing.
+pub fn samples(folder: &str) -> Option<std::path::PathBuf> {
+    let root = std::env::var_os("JBT_SAMPLES")
+        .map(std::path::PathBuf::from)
+        .unwrap_or_else(|| std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/samples"));
+    let path = root.join(folder);
+    if path.is_dir() {
+        return Some(path);
+    }
+    eprintln!("skipped: no sample scenes at {} (set JBT_SAMPLES)", path.display());
+    None
+}

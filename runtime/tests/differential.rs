@@ -1,0 +1,204 @@
+//! The strongest test there is: random shapes, each with many sets of numbers, at friendly and at hostile points.
+//!
+//! * scalar = lanes = machine code, **bit for bit**, for every query and every length of the last block (a NaN equals any NaN);
+//! * the field has the same bits whatever else is asked;
+//! * a new set of numbers compiles nothing;
+//! * field, attributes and gradient agree with the f64 oracle `walk`, which shares no code with the compiler.
+//!
+//! `JBT_DIFFERENTIAL_SHAPES` sets the number of shapes, `JBT_DIFFERENTIAL_SEED` the first seed. A failure prints the model.
+#![allow(clippy::print_stdout, reason = "a test may show its figures")]
+
+mod common;
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use common::{Random, points};
+use jbt::{Compiler, Engine, Evaluator, Model, Points, Query, Samples, Update};
+use jbt_frontend::check::CheckedTree;
+use jbt_frontend::text::print;
+use jbt_frontend::walk::{walk, walk_gradient};
+use rayon::prelude::*;
+
+const SHAPES: u64 = 1000;
+const SETS: u64 = 10;
+
+/// What the oracle allows: f32 rounding of coordinates, rows and sums, times how steep the field may be.
+const FIELD_BOUND: f64 = 4e-5;
+const GRADIENT_BOUND: f64 = 2e-3;
+const ATTRIBUTE_BOUND: f64 = 2e-3;
+
+fn setting(name: &str, default: u64) -> u64 {
+    std::env::var(name).ok().and_then(|value| value.parse().ok()).unwrap_or(default)
+}
+
+#[derive(Default)]
+struct Tally {
+    without_surface: AtomicU64,
+    compared: AtomicU64,
+    gradients: AtomicU64,
+}
+
+#[test]
+fn engines_agree_to_the_bit_and_with_the_oracle() {
+    let (shapes, seed) = (setting("JBT_DIFFERENTIAL_SHAPES", SHAPES), setting("JBT_DIFFERENTIAL_SEED", 0));
+    let tally = Tally::default();
+    (seed..seed + shapes).into_par_iter().for_each(|shape| try_shape(shape, &tally));
+    let without = tally.without_surface.load(Ordering::Relaxed);
+    let compared = tally.compared.load(Ordering::Relaxed);
+    let gradients = tally.gradients.load(Ordering::Relaxed);
+    println!(
+        "{shapes} shapes, {without} sets of numbers without surface, {compared} points against the oracle, {gradients} gradients"
+    );
+    assert!(without * 2 < shapes * SETS, "most models have a surface where they are tried");
+    assert!(gradients * 4 > compared, "most gradients are compared");
+}
+
+/// All evaluators of one shape: for each query, for each engine.
+fn evaluators(tree: &CheckedTree) -> Vec<Vec<Evaluator>> {
+    let of = |query| {
+        let compile =
+            |engine| Compiler::for_engine(engine).evaluator(tree, query).expect("the model compiles");
+        Engine::ALL.map(compile).into_iter().collect()
+    };
+    Query::EVERY.map(of).into_iter().collect()
+}
+
+fn try_shape(shape: u64, tally: &Tally) {
+    let leaves = 1 + (shape % 13) as usize;
+    let mut all: Option<Vec<Vec<Evaluator>>> = None;
+    for set in 0..SETS {
+        let model = Random::new(shape, shape ^ (set + 1) << 32).model(leaves);
+        let Ok(tree) = model.check() else {
+            panic!(
+                "shape {shape}, set {set}: a random model is a good model\n{}\n{:?}",
+                print(&model),
+                model.check()
+            )
+        };
+        match &mut all {
+            None => all = Some(evaluators(&tree)),
+            Some(all) => {
+                for evaluator in all.iter_mut().flatten() {
+                    let update = evaluator.update(&tree).expect("the model compiles");
+                    assert_eq!(update, Update::Numbers, "shape {shape}, set {set}\n{}", print(&model));
+                }
+            }
+        }
+        let mut rng = fastrand::Rng::with_seed(shape * SETS + set);
+        // Every length of a last block comes up, with and without whole blocks before it.
+        let points = points(&mut rng, 1 + (shape + 7 * set) as usize % 45, 1.6);
+        let what = format!("shape {shape}, set {set}");
+        let answers = compare_engines(&what, &model, all.as_ref().expect("made above"), &points);
+        compare_oracle(&what, &model, &tree, &points, &answers, tally);
+    }
+}
+
+/// The scalar answers to the full query, once all engines and queries agree on them.
+fn compare_engines(what: &str, model: &Model, all: &[Vec<Evaluator>], points: &Points) -> Samples {
+    let mut full = None;
+    let mut field: Option<Vec<f32>> = None;
+    for (query, engines) in Query::EVERY.iter().zip(all) {
+        let mut reference: Option<Samples> = None;
+        for evaluator in engines {
+            let mut samples = evaluator.samples();
+            evaluator.eval(points, &mut samples).expect("the buffers fit");
+            let Some(reference) = &reference else {
+                reference = Some(samples);
+                continue;
+            };
+            for ((name, old), new) in
+                samples.layout().names().iter().zip(reference.planes()).zip(samples.planes())
+            {
+                same_bits(
+                    &format!("{what}, {} of {}", name, query.name()),
+                    evaluator.engine().name(),
+                    model,
+                    points,
+                    old,
+                    new,
+                );
+            }
+        }
+        let reference = reference.expect("there are engines");
+        if let Some(field) = &field {
+            same_bits(
+                &format!("{what}, field of {}", query.name()),
+                "query",
+                model,
+                points,
+                field,
+                reference.field(),
+            );
+        }
+        field = Some(reference.field().to_vec());
+        full = Some(reference);
+    }
+    full.expect("there are queries")
+}
+
+fn same_bits(what: &str, engine: &str, model: &Model, points: &Points, old: &[f32], new: &[f32]) {
+    for (index, (old, new)) in old.iter().zip(new).enumerate() {
+        let same = old.to_bits() == new.to_bits() || (old.is_nan() && new.is_nan());
+        let point = points.get(index);
+        assert!(
+            same,
+            "{what}: {old:e} became {new:e} by {engine}, point {index} {point:?} of {}\n{}",
+            points.len(),
+            print(model)
+        );
+    }
+}
+
+fn compare_oracle(
+    what: &str,
+    model: &Model,
+    tree: &CheckedTree,
+    points: &Points,
+    answers: &Samples,
+    tally: &Tally,
+) {
+    let (mut inside, mut outside) = (false, false);
+    for index in 0..points.len() {
+        let point = points.get(index);
+        if point.iter().any(|x| !x.is_finite() || x.abs() > 1e6) {
+            continue;
+        }
+        let point = point.map(f64::from);
+        let oracle = walk(tree, point);
+        let field = f64::from(answers.field()[index]);
+        inside |= field >= tree.iso();
+        outside |= field < tree.iso();
+        let close = |value: f64, expected: f64, bound: f64, name: &str| {
+            assert!(
+                (value - expected).abs() <= bound,
+                "{what}: {name} is {value}, the oracle has {expected} (decision {:e}) at {point:?}\n{}",
+                oracle.decision,
+                print(model)
+            );
+        };
+        let gradient = answers.gradient().expect("asked for").map(|plane| f64::from(plane[index]));
+        let steep = gradient.iter().fold(1.0, |steep: f64, g| steep.max(g.abs()));
+        close(field, oracle.field, FIELD_BOUND * steep, "the field");
+        tally.compared.fetch_add(1, Ordering::Relaxed);
+        if oracle.decision < 1e-4 * steep || field < 1e-3 {
+            continue;
+        }
+        let differences = walk_gradient(tree, point, 1e-6);
+        let coarse = walk_gradient(tree, point, 1e-5);
+        let size = differences.iter().fold(1.0, |size: f64, g| size.max(g.abs()));
+        if differences.iter().zip(coarse).all(|(fine, coarse)| (fine - coarse).abs() < 1e-4 * size) {
+            tally.gradients.fetch_add(1, Ordering::Relaxed);
+            for axis in 0..3 {
+                close(gradient[axis], differences[axis], GRADIENT_BOUND * size, "the gradient");
+            }
+        }
+        for ((name, first, width), expected) in answers.layout().attributes().zip(&oracle.attributes) {
+            for (plane, &expected) in answers.planes()[first..first + width].iter().zip(expected) {
+                close(f64::from(plane[index]), expected, ATTRIBUTE_BOUND * steep, name);
+            }
+        }
+    }
+    if !(inside && outside) {
+        tally.without_surface.fetch_add(1, Ordering::Relaxed);
+    }
+}

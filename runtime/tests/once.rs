@@ -1,0 +1,102 @@
+//! One distance for each occurrence and point, whatever is asked.
+
+use jbt::{Compiler, Engine, Query};
+use jbt_frontend::check::CheckedTree;
+use jbt_frontend::text;
+
+/// Every scene of the examples folder.
+fn examples() -> Vec<(String, CheckedTree)> {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples");
+    let mut scenes: Vec<_> = std::fs::read_dir(folder)
+        .expect("the project has examples")
+        .map(|entry| entry.expect("a readable folder").path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "jbt"))
+        .map(|path| {
+            let name = path.file_name().expect("a file").to_string_lossy().into_owned();
+            let bytes = std::fs::read(&path).expect("a readable file");
+            let model = text::parse(&bytes, &text::Options::default()).expect("examples are good models");
+            (name, model.check().expect("examples are good models"))
+        })
+        .collect();
+    scenes.sort_by(|a, b| a.0.cmp(&b.0));
+    scenes
+}
+
+/// Distances by an independent count: every path from the root to a leaf with the map that it goes through, each pair once.
+fn occurrences(tree: &CheckedTree) -> u64 {
+    use jbt_frontend::tree::NodeKind;
+    let mut found = std::collections::HashSet::new();
+    let mut stack = vec![(tree.root(), String::new(), glam::DAffine3::IDENTITY)];
+    while let Some((id, mut warps, mut map)) = stack.pop() {
+        let node = tree.node(id);
+        match &node.kind {
+            NodeKind::Affine(inner) => map *= *inner,
+            NodeKind::Warp(_) => {
+                warps = format!("{warps}/{id:?}{:?}", map.to_cols_array());
+                map = glam::DAffine3::IDENTITY;
+            }
+            NodeKind::Primitive(_) => {
+                found.insert(format!("{warps}|{id:?}|{:?}", map.to_cols_array().map(|x| x + 0.0)));
+            }
+            NodeKind::Combine(_) | NodeKind::Attribute { .. } => {}
+        }
+        stack.extend(node.children.iter().map(|&child| (child, warps.clone(), map)));
+    }
+    found.len() as u64
+}
+
+#[test]
+fn each_occurrence_is_evaluated_once_for_any_query() {
+    let scenes = examples();
+    assert!(scenes.len() >= 5, "there are examples");
+    for (name, tree) in scenes {
+        let expected = occurrences(&tree);
+        for query in Query::EVERY {
+            let evaluator =
+                Compiler::for_engine(Engine::Lanes).evaluator(&tree, query).expect("examples compile");
+            let evaluations = evaluator.evaluations_by_node();
+            assert_eq!(evaluations.total, expected, "{name}, {}", query.name());
+            assert_eq!(evaluations.per_node.values().sum::<u64>(), expected, "{name}, {}", query.name());
+        }
+        let counters = {
+            let evaluator =
+                Compiler::for_engine(Engine::Lanes).evaluator(&tree, Query::ALL).expect("examples compile");
+            let _ = evaluator.probe([0.1, 0.2, 0.3]).value();
+            evaluator.counters()
+        };
+        assert_eq!(counters.primitive_evaluations, expected);
+        assert_eq!(
+            counters.primitive_evaluations + counters.evaluations_avoided,
+            6 * expected,
+            "separate walks take six"
+        );
+    }
+}
+
+/// What the test is worth: a program that computes a leaf twice is seen.
+#[test]
+fn a_leaf_that_is_computed_twice_is_counted_twice() {
+    use jbt::ir::domain::counting::evaluations;
+    let (_, tree) = examples().swap_remove(0);
+    let lowered = jbt_frontend::lower::lower(&tree, Query::FIELD).expect("examples compile");
+    let function = jbt::ir::verify(lowered.function).expect("lowering keeps the rules");
+    let before = evaluations(&function, &lowered.tables).total;
+    // Running a row twice is what a lowering that forgets about sharing does.
+    let mut tables = lowered.tables.clone();
+    let table = tables
+        .tables
+        .keys()
+        .find(|&t| function.function().tables[t].slots.len() == 1)
+        .expect("a table of leaves");
+    let rows = &mut tables.tables[table];
+    let row = rows.row(0).to_vec();
+    rows.count += 1;
+    rows.numbers.extend(row);
+    rows.nodes.push(rows.nodes[0]);
+    rows.active.insert(rows.starts[1] as usize, rows.nodes.len() as u32 - 1);
+    for start in &mut rows.starts[1..] {
+        *start += 1;
+    }
+    assert_eq!(tables.check(function.function()), Ok(()));
+    assert_eq!(evaluations(&function, &tables).total, before + 1);
+}
