@@ -42,7 +42,10 @@ mod buffer;
 mod counter;
 mod error;
 mod evaluator;
+pub mod export;
 pub mod kernel;
+pub mod mesh;
+mod polygonize;
 mod probe;
 
 pub use jbt_ir as ir;
@@ -69,4 +72,5 @@ pub use counter::Counters;
 pub use error::{CompileError, EvalError};
 pub use evaluator::{Compiler, Evaluator, Update};
 pub use kernel::Engine;
+pub use polygonize::{Fineness, Polygonize, PolygonizeError, Polygonized};
 pub use probe::Probe;

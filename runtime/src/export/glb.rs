@@ -1,0 +1,143 @@
+//! GLB: binary glTF 2.0 (Khronos Group 2021).
+//!
+//! ```text
+//!     "glTF" 2 length | length "JSON" text, padded by spaces | length "BIN" positions normals color others indices
+//! ```
+//!
+//! One mesh of one primitive with one white, rough, non-metallic material. Colours are linear, as glTF takes them, in `COLOR_0`;
+//! every other attribute is `_NAME` in capitals, as glTF wants application-specific ones. Accessors must not be empty, so a mesh
+//! without triangles is a scene without nodes.
+
+use std::io::Write;
+
+use serde_json::{Map, Value, json};
+
+use super::{ExportError, Format, Named, clamp_color, colors, others, write_reals};
+use crate::mesh::Mesh;
+
+const HEADER_BYTES: u64 = 12;
+const CHUNK_HEADER_BYTES: u64 = 8;
+
+/// A buffer view's target: what a vertex is made of, or which vertices a triangle has.
+const ARRAY_BUFFER: u32 = 34962;
+const ELEMENT_ARRAY_BUFFER: u32 = 34963;
+/// An accessor's component type.
+const FLOAT: u32 = 5126;
+const UNSIGNED_INT: u32 = 5125;
+
+pub(super) fn write(mesh: &Mesh, out: &mut impl Write) -> Result<(), ExportError> {
+    let attributes = others(mesh, &[], |stem, _| vec![format!("_{}", stem.to_ascii_uppercase())]);
+    let (json, binary) = describe(mesh, &attributes);
+    // Printing a JSON value cannot fail.
+    let mut text = json.to_string().into_bytes();
+    text.resize(text.len().next_multiple_of(4), b' ');
+    let chunk = |bytes: u64| if bytes == 0 { 0 } else { CHUNK_HEADER_BYTES + bytes };
+    let size = HEADER_BYTES + chunk(text.len() as u64) + chunk(binary);
+    let Ok(length) = u32::try_from(size) else {
+        return Err(ExportError::TooLarge { format: Format::Glb, size });
+    };
+
+    // Every length below is smaller than that of the file, which fits.
+    out.write_all(b"glTF")?;
+    out.write_all(&2_u32.to_le_bytes())?;
+    out.write_all(&length.to_le_bytes())?;
+    out.write_all(&(text.len() as u32).to_le_bytes())?;
+    out.write_all(b"JSON")?;
+    out.write_all(&text)?;
+    if binary > 0 {
+        out.write_all(&(binary as u32).to_le_bytes())?;
+        out.write_all(b"BIN\0")?;
+        write_binary(mesh, &attributes, out)?;
+    }
+    Ok(())
+}
+
+fn write_binary(mesh: &Mesh, attributes: &[Named<'_>], out: &mut impl Write) -> Result<(), ExportError> {
+    write_reals(out, mesh.positions.iter().flatten().copied())?;
+    write_reals(out, mesh.normals.iter().flatten().copied())?;
+    if let Some(colors) = colors(mesh) {
+        write_reals(out, colors.iter().map(|&value| clamp_color(value)))?;
+    }
+    for Named { attribute, .. } in attributes {
+        // glTF forbids infinities and NaN.
+        write_reals(out, attribute.values.iter().map(|&v| if v.is_finite() { v } else { 0.0 }))?;
+    }
+    for vertex in mesh.triangles.iter().flatten() {
+        out.write_all(&vertex.to_le_bytes())?;
+    }
+    Ok(())
+}
+
+/// The accessors and buffer views, one of each for every plane of numbers, in the order of the bytes.
+#[derive(Default)]
+struct Layout {
+    accessors: Vec<Value>,
+    views: Vec<Value>,
+    bytes: u64,
+}
+
+impl Layout {
+    /// Adds `count` elements of `width` four-byte numbers. Returns the index of the accessor.
+    fn add(&mut self, target: u32, component: u32, width: usize, count: usize) -> usize {
+        let length = 4 * width as u64 * count as u64;
+        let index = self.accessors.len();
+        let kind = ["SCALAR", "VEC2", "VEC3", "VEC4"][width - 1];
+        self.views
+            .push(json!({ "buffer": 0, "byteOffset": self.bytes, "byteLength": length, "target": target }));
+        self.accessors
+            .push(json!({ "bufferView": index, "componentType": component, "count": count, "type": kind }));
+        self.bytes += length;
+        index
+    }
+}
+
+/// The JSON text, and how many bytes the binary chunk has.
+fn describe(mesh: &Mesh, attributes: &[Named<'_>]) -> (Value, u64) {
+    let asset = json!({ "version": "2.0", "generator": "jbt" });
+    if mesh.triangles.is_empty() {
+        return (json!({ "asset": asset, "scene": 0, "scenes": [{}] }), 0);
+    }
+    let count = mesh.positions.len();
+    let mut layout = Layout::default();
+    let mut vertex = Map::new();
+    let positions = layout.add(ARRAY_BUFFER, FLOAT, 3, count);
+    let (low, high) = bounds(&mesh.positions);
+    layout.accessors[positions]["min"] = json!(low);
+    layout.accessors[positions]["max"] = json!(high);
+    vertex.insert("POSITION".to_owned(), json!(positions));
+    vertex.insert("NORMAL".to_owned(), json!(layout.add(ARRAY_BUFFER, FLOAT, 3, count)));
+    if colors(mesh).is_some() {
+        vertex.insert("COLOR_0".to_owned(), json!(layout.add(ARRAY_BUFFER, FLOAT, 3, count)));
+    }
+    for Named { names, attribute } in attributes {
+        let accessor = layout.add(ARRAY_BUFFER, FLOAT, attribute.width, count);
+        vertex.extend(names.iter().map(|name| (name.clone(), json!(accessor))));
+    }
+    let indices = layout.add(ELEMENT_ARRAY_BUFFER, UNSIGNED_INT, 1, 3 * mesh.triangles.len());
+    let json = json!({
+        "asset": asset,
+        "scene": 0,
+        "scenes": [{ "nodes": [0] }],
+        "nodes": [{ "mesh": 0 }],
+        "meshes": [{ "primitives": [{ "attributes": vertex, "indices": indices, "material": 0 }] }],
+        "materials": [{ "pbrMetallicRoughness": {
+            "baseColorFactor": [1.0, 1.0, 1.0, 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.7
+        } }],
+        "accessors": layout.accessors,
+        "bufferViews": layout.views,
+        "buffers": [{ "byteLength": layout.bytes }],
+    });
+    (json, layout.bytes)
+}
+
+/// The exact bounds of the positions. In f64, so that their decimals are those of the same numbers in any parser.
+fn bounds(positions: &[[f32; 3]]) -> ([f64; 3], [f64; 3]) {
+    let mut bounds = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for position in positions {
+        for (axis, &coordinate) in position.iter().enumerate() {
+            bounds.0[axis] = bounds.0[axis].min(f64::from(coordinate));
+            bounds.1[axis] = bounds.1[axis].max(f64::from(coordinate));
+        }
+    }
+    bounds
+}

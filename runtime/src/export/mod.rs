@@ -1,0 +1,281 @@
+//! Mesh files: GLB, PLY, OBJ and STL.
+//!
+//! | format | positions | normals | colour | other attributes |
+//! | --- | --- | --- | --- | --- |
+//! | GLB (glTF 2.0, binary) | yes | yes | yes, linear | yes, as `_NAME` |
+//! | PLY (binary) | yes | yes | 8 bits, linear | yes, as properties |
+//! | OBJ (text) | yes | yes | yes, linear | no |
+//! | STL (binary) | yes | of the triangles | no | no |
+//!
+//! The colour is the attribute named `color` with three reals; values are never converted, and are clamped to 0 .. 1 where
+//! a format asks for it. [`write()`] writes to anything; [`save`] writes a file under a temporary name and renames it, so that nobody
+//! ever sees half a file.
+
+mod glb;
+mod obj;
+mod ply;
+mod stl;
+
+use std::collections::HashSet;
+use std::fmt;
+use std::fs;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use jbt_ir::limits::MAX_ATTRIBUTE_WIDTH;
+use tempfile::NamedTempFile;
+use thiserror::Error;
+
+use crate::mesh::{Attribute, Mesh};
+
+/// Bytes that are collected before they go to a file.
+const BUFFER: usize = 1 << 18;
+
+/// A kind of mesh file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Format {
+    /// Binary glTF 2.0.
+    Glb,
+    /// Polygon file format, binary little-endian.
+    Ply,
+    /// Wavefront OBJ.
+    Obj,
+    /// Stereolithography, binary.
+    Stl,
+}
+
+impl Format {
+    /// Every format.
+    pub const ALL: [Format; 4] = [Format::Glb, Format::Ply, Format::Obj, Format::Stl];
+
+    /// The extension of its files, without a dot.
+    pub fn extension(self) -> &'static str {
+        match self {
+            Format::Glb => "glb",
+            Format::Ply => "ply",
+            Format::Obj => "obj",
+            Format::Stl => "stl",
+        }
+    }
+
+    /// The format that the extension of a path names, in any case.
+    ///
+    /// # Errors
+    /// [`ExportError::Extension`].
+    pub fn of(path: &Path) -> Result<Self, ExportError> {
+        let extension = path.extension().unwrap_or_default();
+        let format =
+            Format::ALL.into_iter().find(|format| extension.eq_ignore_ascii_case(format.extension()));
+        format.ok_or_else(|| ExportError::Extension { path: path.to_owned() })
+    }
+}
+
+impl fmt::Display for Format {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.extension())
+    }
+}
+
+/// Why a mesh was not written.
+#[derive(Debug, Error)]
+pub enum ExportError {
+    /// The extension of the path names no format.
+    #[error("the name of a mesh file ends in .glb, .ply, .obj or .stl, and not like {path:?}")]
+    Extension {
+        /// The path.
+        path: PathBuf,
+    },
+    /// The file could not be written. No temporary file is left behind.
+    #[error("{path:?} cannot be written")]
+    File {
+        /// The path.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// The writer failed.
+    #[error("the mesh cannot be written")]
+    Write(#[from] io::Error),
+    /// The parts of the mesh do not fit each other, or a position or normal is not finite.
+    #[error("the mesh is malformed: {0}")]
+    Malformed(String),
+    /// The format counts in 32 bits, and this is more.
+    #[error("a {format} file holds at most {} bytes or triangles, and this one would need {size}", u32::MAX)]
+    TooLarge {
+        /// The format.
+        format: Format,
+        /// Bytes of a GLB, triangles of an STL.
+        size: u64,
+    },
+}
+
+/// Writes a mesh.
+///
+/// # Errors
+/// [`ExportError::Malformed`] and [`ExportError::TooLarge`] before anything is written; [`ExportError::Write`] later.
+pub fn write(mesh: &Mesh, format: Format, out: &mut impl Write) -> Result<(), ExportError> {
+    check(mesh)?;
+    let mut out = BufWriter::with_capacity(BUFFER, out);
+    match format {
+        Format::Glb => glb::write(mesh, &mut out)?,
+        Format::Ply => ply::write(mesh, &mut out)?,
+        Format::Obj => obj::write(mesh, &mut out)?,
+        Format::Stl => stl::write(mesh, &mut out)?,
+    }
+    out.flush()?;
+    Ok(())
+}
+
+/// Writes a mesh to a file, in the format that the extension names.
+///
+/// The file appears whole or not at all: it is written beside its place under a temporary name and then renamed. A file that is
+/// there already is replaced and keeps its permissions; a new one gets those that files usually get. A link is followed. What is not a
+/// file but can be written to (a pipe, a device) is written to.
+///
+/// # Errors
+/// As [`write()`], with [`ExportError::File`] for whatever the system refuses, and [`ExportError::Extension`].
+pub fn save(path: &Path, mesh: &Mesh) -> Result<(), ExportError> {
+    save_as(path, mesh, Format::of(path)?)
+}
+
+/// As [`save`], in a given format.
+///
+/// # Errors
+/// As [`save`].
+pub fn save_as(path: &Path, mesh: &Mesh, format: Format) -> Result<(), ExportError> {
+    check(mesh)?;
+    let at_path = |source| ExportError::File { path: path.to_owned(), source };
+    let located = |error| match error {
+        ExportError::Write(source) => at_path(source),
+        other @ (ExportError::Extension { .. }
+        | ExportError::File { .. }
+        | ExportError::Malformed(_)
+        | ExportError::TooLarge { .. }) => other,
+    };
+    // The file itself is replaced, and not a link to it.
+    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    let existing = match fs::metadata(&target) {
+        Ok(existing) => Some(existing),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => None,
+        Err(error) => return Err(at_path(error)),
+    };
+    if existing.as_ref().is_some_and(|existing| !existing.is_file()) {
+        let mut out = fs::OpenOptions::new().write(true).open(&target).map_err(at_path)?;
+        return write(mesh, format, &mut out).map_err(located);
+    }
+    let folder = match target.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        Some(_) | None => Path::new("."),
+    };
+    let mut file = temporary(folder).map_err(at_path)?;
+    write(mesh, format, file.as_file_mut()).map_err(located)?;
+    if let Some(existing) = existing {
+        file.as_file().set_permissions(existing.permissions()).map_err(at_path)?;
+    }
+    // Dropping the temporary file, also when this fails, removes it.
+    file.persist(&target).map_err(|error| at_path(error.error))?;
+    Ok(())
+}
+
+/// A temporary file with the permissions of an ordinary new one.
+fn temporary(folder: &Path) -> io::Result<NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".jbt-").suffix(".tmp");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        // The system takes the umask away from this, as for every file; the default here would be private (0600).
+        builder.permissions(fs::Permissions::from_mode(0o666));
+    }
+    builder.tempfile_in(folder)
+}
+
+/// Checks what every writer relies on.
+fn check(mesh: &Mesh) -> Result<(), ExportError> {
+    let malformed = |what: String| Err(ExportError::Malformed(what));
+    let count = mesh.positions.len();
+    if count > u32::MAX as usize {
+        return malformed(format!("{count} vertices cannot be numbered in 32 bits"));
+    }
+    if mesh.normals.len() != count {
+        return malformed(format!("{count} positions and {} normals", mesh.normals.len()));
+    }
+    for Attribute { name, width, values } in &mesh.attributes {
+        if !(1..=MAX_ATTRIBUTE_WIDTH).contains(width) {
+            return malformed(format!(
+                "the attribute {name:?} has {width} reals; 1 to {MAX_ATTRIBUTE_WIDTH} are allowed"
+            ));
+        }
+        if values.len() != width * count {
+            let found = values.len();
+            return malformed(format!(
+                "the attribute {name:?} has {found} reals for {count} vertices of {width}"
+            ));
+        }
+    }
+    if let Some(triangle) = mesh.triangles.iter().flatten().position(|&vertex| vertex as usize >= count) {
+        return malformed(format!("triangle {} names a vertex that does not exist", triangle / 3));
+    }
+    if let Some(index) = mesh.positions.iter().flatten().position(|c| !c.is_finite()) {
+        return malformed(format!("the position of vertex {} is not finite", index / 3));
+    }
+    if let Some(index) = mesh.normals.iter().flatten().position(|c| !c.is_finite()) {
+        return malformed(format!("the normal of vertex {} is not finite", index / 3));
+    }
+    Ok(())
+}
+
+/// The colours of a mesh, if it has the attribute `color` of width 3: as many chunks of three as vertices.
+fn colors(mesh: &Mesh) -> Option<&[f32]> {
+    mesh.attributes.iter().find(|attribute| is_color(attribute)).map(|attribute| attribute.values.as_slice())
+}
+
+fn is_color(attribute: &Attribute) -> bool {
+    attribute.name == "color" && attribute.width == 3
+}
+
+/// A real of a colour, in 0 .. 1. What is no number is black.
+fn clamp_color(value: f32) -> f32 {
+    if value.is_nan() { 0.0 } else { value.clamp(0.0, 1.0) }
+}
+
+/// An attribute and the names that a file has for it.
+struct Named<'a> {
+    names: Vec<String>,
+    attribute: &'a Attribute,
+}
+
+/// The attributes besides the colour. `spell` turns a stem of ASCII letters, digits and underscores, and a width, into the
+/// names that the file needs; a number after the stem keeps them apart from the names of the others and from reserved ones.
+fn others<'a>(mesh: &'a Mesh, reserved: &[&str], spell: fn(&str, usize) -> Vec<String>) -> Vec<Named<'a>> {
+    let color = mesh.attributes.iter().position(is_color);
+    let mut taken: HashSet<String> = reserved.iter().map(|&name| name.to_owned()).collect();
+    let mut named = Vec::new();
+    for (index, attribute) in mesh.attributes.iter().enumerate() {
+        if Some(index) == color {
+            continue;
+        }
+        let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
+        let stem = match attribute.name.as_str() {
+            "" => "attribute".to_owned(),
+            name => name.chars().map(plain).collect(),
+        };
+        let mut names = spell(&stem, attribute.width);
+        let mut number = 2;
+        while names.iter().any(|name| taken.contains(name)) {
+            names = spell(&format!("{stem}_{number}"), attribute.width);
+            number += 1;
+        }
+        taken.extend(names.iter().cloned());
+        named.push(Named { names, attribute });
+    }
+    named
+}
+
+/// Writes reals as little-endian bytes.
+fn write_reals(out: &mut impl Write, values: impl IntoIterator<Item = f32>) -> io::Result<()> {
+    values.into_iter().try_for_each(|value| out.write_all(&value.to_le_bytes()))
+}
+
+#[cfg(test)]
+mod tests;

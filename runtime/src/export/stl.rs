@@ -1,0 +1,35 @@
+//! Binary STL: triangles and nothing else. The normal of a facet follows from its corners, and is zero if it has no area.
+
+use std::io::Write;
+
+use super::{ExportError, Format, write_reals};
+use crate::mesh::{Mesh, facet_normal};
+
+/// Readers take a file for text if it begins with "solid"; this does not.
+const HEADER: [u8; 80] = {
+    let mut header = [b' '; 80];
+    let text = b"binary STL by jbt";
+    let mut i = 0;
+    while i < text.len() {
+        header[i] = text[i];
+        i += 1;
+    }
+    header
+};
+
+pub(super) fn write(mesh: &Mesh, out: &mut impl Write) -> Result<(), ExportError> {
+    let size = mesh.triangles.len() as u64;
+    let Ok(count) = u32::try_from(size) else {
+        return Err(ExportError::TooLarge { format: Format::Stl, size });
+    };
+    out.write_all(&HEADER)?;
+    out.write_all(&count.to_le_bytes())?;
+    for triangle in &mesh.triangles {
+        let corners = triangle.map(|vertex| mesh.positions[vertex as usize]);
+        let normal = facet_normal(corners).unwrap_or([0.0; 3]);
+        write_reals(out, normal.into_iter().chain(corners.into_iter().flatten()))?;
+        // The attribute byte count, which has no agreed meaning.
+        out.write_all(&[0, 0])?;
+    }
+    Ok(())
+}

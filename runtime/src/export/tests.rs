@@ -1,0 +1,311 @@
+//! Files are parsed back by hand, by the words of their specifications.
+
+use super::*;
+
+/// A tetrahedron with awkward colours and attributes.
+fn tetrahedron() -> Mesh {
+    let attribute = |name: &str, width, values: &[f32]| Attribute {
+        name: name.to_owned(),
+        width,
+        values: values.to_vec(),
+    };
+    let third = 1.0_f32 / 3.0;
+    Mesh {
+        positions: vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.1], [0.0, 1.0, 0.0], [-0.0, third, 1e-7]],
+        normals: vec![[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        attributes: vec![
+            attribute("wear & tear", 1, &[0.25, -7.0, f32::NAN, 3.0]),
+            attribute("color", 3, &[0.0, 0.5, 1.0, -1.0, 2.0, f32::NAN, 0.2, 0.4, 0.6, 1.0, 1.0, 1.0]),
+            attribute("wear_&_tear", 2, &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]),
+            attribute("x", 4, &[0.5; 16]),
+            attribute("x", 1, &[0.75; 4]),
+            attribute("x_1", 1, &[1.5; 4]),
+            attribute("", 1, &[2.5; 4]),
+        ],
+        triangles: vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]],
+    }
+}
+
+fn bytes(mesh: &Mesh, format: Format) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    write(mesh, format, &mut bytes).unwrap();
+    bytes
+}
+
+fn u32_at(bytes: &[u8], place: usize) -> u32 {
+    u32::from_le_bytes(bytes[place..place + 4].try_into().unwrap())
+}
+
+fn reals(bytes: &[u8]) -> Vec<f32> {
+    bytes.chunks_exact(4).map(|chunk| f32::from_le_bytes(chunk.try_into().unwrap())).collect()
+}
+
+/// The JSON and the binary chunk of a GLB, with all lengths checked.
+fn parse_glb(bytes: &[u8]) -> (serde_json::Value, &[u8]) {
+    assert_eq!(&bytes[..4], b"glTF");
+    assert_eq!(u32_at(bytes, 4), 2);
+    assert_eq!(u32_at(bytes, 8) as usize, bytes.len());
+    let text = u32_at(bytes, 12) as usize;
+    assert_eq!(text % 4, 0);
+    assert_eq!(&bytes[16..20], b"JSON");
+    let json = serde_json::from_slice(&bytes[20..20 + text]).unwrap();
+    let rest = &bytes[20 + text..];
+    if rest.is_empty() {
+        return (json, rest);
+    }
+    assert_eq!(u32_at(rest, 0) as usize, rest.len() - 8);
+    assert_eq!(&rest[4..8], b"BIN\0");
+    (json, &rest[8..])
+}
+
+#[test]
+fn glb_says_what_it_holds() {
+    let mesh = tetrahedron();
+    let file = bytes(&mesh, Format::Glb);
+    let (json, binary) = parse_glb(&file);
+    assert_eq!(json["asset"]["version"], "2.0");
+    assert_eq!(json["asset"]["generator"], "jbt");
+    assert_eq!(json["buffers"][0]["byteLength"], binary.len());
+    let primitive = &json["meshes"][0]["primitives"][0];
+    let read = |accessor: &serde_json::Value, kind: &str, component: u32, target: u32| {
+        let accessor = &json["accessors"][accessor.as_u64().unwrap() as usize];
+        assert_eq!(accessor["type"], kind);
+        assert_eq!(accessor["componentType"], component);
+        let view = &json["bufferViews"][accessor["bufferView"].as_u64().unwrap() as usize];
+        assert_eq!(view["target"], target);
+        let start = view["byteOffset"].as_u64().unwrap() as usize;
+        let length = view["byteLength"].as_u64().unwrap() as usize;
+        assert_eq!(start % 4, 0);
+        let width = ["SCALAR", "VEC2", "VEC3", "VEC4"].iter().position(|k| *k == kind).unwrap() + 1;
+        assert_eq!(accessor["count"].as_u64().unwrap() as usize * width * 4, length);
+        &binary[start..start + length]
+    };
+    let attributes = primitive["attributes"].as_object().unwrap();
+    let plane = |name: &str, kind| reals(read(&attributes[name], kind, 5126, 34962));
+    assert_eq!(plane("POSITION", "VEC3"), mesh.positions.concat());
+    assert_eq!(plane("NORMAL", "VEC3"), mesh.normals.concat());
+    assert_eq!(plane("COLOR_0", "VEC3"), [0.0, 0.5, 1.0, 0.0, 1.0, 0.0, 0.2, 0.4, 0.6, 1.0, 1.0, 1.0]);
+    assert_eq!(plane("_WEAR___TEAR", "SCALAR"), [0.25, -7.0, 0.0, 3.0]);
+    assert_eq!(plane("_WEAR___TEAR_2", "VEC2"), mesh.attributes[2].values);
+    assert_eq!(plane("_X", "VEC4"), [0.5; 16]);
+    assert_eq!(plane("_X_2", "SCALAR"), [0.75; 4]);
+    assert_eq!(plane("_X_1", "SCALAR"), [1.5; 4]);
+    assert_eq!(plane("_ATTRIBUTE", "SCALAR"), [2.5; 4]);
+    assert_eq!(attributes.len(), 9);
+    let indices = read(&primitive["indices"], "SCALAR", 5125, 34963);
+    let indices: Vec<u32> = indices.chunks_exact(4).map(|chunk| u32_at(chunk, 0)).collect();
+    assert_eq!(indices, mesh.triangles.concat());
+    let position = &json["accessors"][attributes["POSITION"].as_u64().unwrap() as usize];
+    assert_eq!(position["max"][2].as_f64().unwrap(), f64::from(0.1_f32));
+    assert_eq!(position["min"], serde_json::json!([0.0, 0.0, 0.0]));
+}
+
+#[test]
+fn glb_of_an_empty_mesh_is_an_empty_scene() {
+    let mut empty = Mesh::default();
+    empty.attributes.push(Attribute { name: "color".to_owned(), width: 3, values: Vec::new() });
+    let file = bytes(&empty, Format::Glb);
+    let (json, binary) = parse_glb(&file);
+    assert!(binary.is_empty());
+    for part in ["nodes", "meshes", "accessors", "bufferViews", "buffers"] {
+        assert!(json.get(part).is_none(), "{part}");
+    }
+}
+
+#[test]
+fn ply_has_the_size_that_its_header_says() {
+    let mesh = tetrahedron();
+    let file = bytes(&mesh, Format::Ply);
+    let end = b"end_header\n";
+    let header = file.windows(end.len()).position(|w| w == end).unwrap() + end.len();
+    let text = std::str::from_utf8(&file[..header]).unwrap();
+    assert!(text.starts_with("ply\nformat binary_little_endian 1.0\n"));
+    assert!(text.lines().any(|line| line.starts_with("comment") && line.contains("linear")));
+    let properties: Vec<&str> = text.lines().filter_map(|line| line.strip_prefix("property ")).collect();
+    assert_eq!(
+        properties.join(", "),
+        "float x, float y, float z, float nx, float ny, float nz, uchar red, uchar green, uchar blue, \
+         float wear___tear, float wear___tear_0, float wear___tear_1, \
+         float x_0, float x_1, float x_2, float x_3, float x_4, float x_1_2, float attribute, list uchar uint vertex_indices"
+    );
+    assert!(text.contains("\nelement vertex 4\n") && text.contains("\nelement face 4\n"));
+    let vertex = 6 * 4 + 3 + 10 * 4;
+    let body = &file[header..];
+    assert_eq!(body.len(), 4 * vertex + 4 * 13);
+    assert_eq!(reals(&body[vertex..vertex + 24]), [1.0, 0.0, 0.1, 1.0, 0.0, 0.0]);
+    assert_eq!(body[24..27], [0, 128, 255]);
+    assert_eq!(body[vertex + 24..vertex + 27], [0, 255, 0]);
+    assert_eq!(body[2 * vertex + 24..2 * vertex + 27], [51, 102, 153]);
+    assert_eq!(reals(&body[27..31]), [0.25]);
+    let face = &body[4 * vertex + 13..4 * vertex + 26];
+    assert_eq!((face[0], u32_at(face, 1), u32_at(face, 5), u32_at(face, 9)), (3, 0, 1, 3));
+}
+
+#[test]
+fn obj_gives_every_number_back() {
+    let mesh = tetrahedron();
+    let text = String::from_utf8(bytes(&mesh, Format::Obj)).unwrap();
+    let lines = |word: &str| -> Vec<Vec<String>> {
+        let words = text.lines().map(|line| line.split(' ').map(str::to_owned).collect::<Vec<_>>());
+        words.filter(|words| words[0] == word).collect()
+    };
+    let numbers =
+        |words: &[String]| words[1..].iter().map(|word| word.parse().unwrap()).collect::<Vec<f32>>();
+    for (line, position) in lines("v").iter().zip(&mesh.positions) {
+        let parsed = numbers(line);
+        assert_eq!(parsed.len(), 6);
+        assert!(parsed.iter().zip(position).all(|(a, b)| a.to_bits() == b.to_bits()));
+        assert!(parsed[3..].iter().all(|c| (0.0..=1.0).contains(c)));
+    }
+    let normals: Vec<f32> = lines("vn").iter().flat_map(|line| numbers(line)).collect();
+    assert_eq!(normals, mesh.normals.concat());
+    assert_eq!(lines("f")[1], ["f", "1//1", "2//2", "4//4"]);
+    assert_eq!((lines("v").len(), lines("f").len()), (4, 4));
+
+    let plain = Mesh { attributes: Vec::new(), ..mesh };
+    assert!(String::from_utf8(bytes(&plain, Format::Obj)).unwrap().contains("\nv 1 0 0.1\n"));
+}
+
+#[test]
+fn stl_has_facets_with_normals() {
+    let mut mesh = tetrahedron();
+    mesh.triangles.push([0, 0, 1]);
+    let file = bytes(&mesh, Format::Stl);
+    assert_eq!(file.len(), 84 + 50 * 5);
+    assert!(!file.starts_with(b"solid"));
+    assert_eq!(u32_at(&file, 80), 5);
+    let facet = |index: usize| reals(&file[84 + 50 * index..84 + 50 * index + 48]);
+    // (0, 0, 0), (0, 1, 0), (1, 0, 0.1), from below.
+    let length = 1.01_f64.sqrt();
+    let expected = [0.1 / length, 0.0, -1.0 / length];
+    assert!(facet(0).iter().zip(expected).all(|(&n, expected)| (f64::from(n) - expected).abs() < 1e-6));
+    assert_eq!(facet(0)[3..], [0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0, 0.1]);
+    assert_eq!(facet(4)[..3], [0.0; 3]);
+}
+
+#[test]
+fn empty_meshes_are_written() {
+    let empty = Mesh::default();
+    assert_eq!(bytes(&empty, Format::Stl).len(), 84);
+    assert!(bytes(&empty, Format::Ply).ends_with(b"end_header\n"));
+    assert_eq!(bytes(&empty, Format::Obj), b"# jbt\n");
+}
+
+#[test]
+fn malformed_meshes_are_refused() {
+    let refused = |change: fn(&mut Mesh)| {
+        let mut mesh = tetrahedron();
+        change(&mut mesh);
+        for format in Format::ALL {
+            let mut out = Vec::new();
+            let error = write(&mesh, format, &mut out).unwrap_err();
+            assert!(matches!(error, ExportError::Malformed(_)), "{error}");
+            assert!(out.is_empty());
+        }
+    };
+    refused(|mesh| mesh.triangles[2][1] = 4);
+    refused(|mesh| mesh.normals.truncate(3));
+    refused(|mesh| mesh.positions[1][1] = f32::NAN);
+    refused(|mesh| mesh.normals[1][1] = f32::INFINITY);
+    refused(|mesh| mesh.attributes[0].width = 5);
+    refused(|mesh| mesh.attributes[0].width = 0);
+    refused(|mesh| mesh.attributes[1].values.truncate(11));
+}
+
+#[test]
+fn the_extension_is_the_format() {
+    for format in Format::ALL {
+        assert_eq!(Format::of(&PathBuf::from(format!("a.b/c.{format}"))).unwrap(), format);
+    }
+    assert_eq!(Format::of(Path::new("A.GLB")).unwrap(), Format::Glb);
+    for path in ["a", "glb", ".glb", "a.glbx", "a.glb/b", ""] {
+        assert!(matches!(Format::of(Path::new(path)), Err(ExportError::Extension { .. })), "{path}");
+    }
+}
+
+/// What a folder holds.
+fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).unwrap();
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn saving_replaces_whole_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.ply");
+    save(&path, &tetrahedron()).unwrap();
+    assert_eq!(fs::read(&path).unwrap(), bytes(&tetrahedron(), Format::Ply));
+    save(&path, &Mesh::default()).unwrap();
+    assert_eq!(fs::read(&path).unwrap(), bytes(&Mesh::default(), Format::Ply));
+    save_as(&path, &Mesh::default(), Format::Stl).unwrap();
+    assert_eq!(fs::read(&path).unwrap().len(), 84);
+    assert_eq!(names(folder.path()), ["a.ply"]);
+}
+
+#[test]
+fn a_failure_leaves_nothing_behind() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.glb");
+    fs::write(&path, "old").unwrap();
+    let mut broken = tetrahedron();
+    broken.normals.clear();
+    assert!(matches!(save(&path, &broken), Err(ExportError::Malformed(_))));
+    assert_eq!(fs::read(&path).unwrap(), b"old");
+    assert!(matches!(save(&folder.path().join("no/a.glb"), &tetrahedron()), Err(ExportError::File { .. })));
+    // A folder of that name is in the way.
+    let taken = folder.path().join("b.glb");
+    fs::create_dir(&taken).unwrap();
+    assert!(matches!(save(&taken, &tetrahedron()), Err(ExportError::File { .. })));
+    assert_eq!(names(folder.path()), ["a.glb", "b.glb"]);
+}
+
+#[test]
+fn an_error_of_the_writer_is_handed_on() {
+    struct Full;
+    impl Write for Full {
+        fn write(&mut self, _: &[u8]) -> io::Result<usize> {
+            Err(io::ErrorKind::StorageFull.into())
+        }
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+    for format in Format::ALL {
+        let error = write(&tetrahedron(), format, &mut Full).unwrap_err();
+        assert!(matches!(error, ExportError::Write(error) if error.kind() == io::ErrorKind::StorageFull));
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn permissions_links_and_devices() {
+    use std::os::unix::fs::{PermissionsExt, symlink};
+    let folder = tempfile::tempdir().unwrap();
+    let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode() & 0o777;
+
+    // A new file gets what any new file gets.
+    let (path, other) = (folder.path().join("a.stl"), folder.path().join("other"));
+    fs::write(&other, "").unwrap();
+    save(&path, &tetrahedron()).unwrap();
+    assert_eq!(mode(&path), mode(&other));
+
+    // A replaced one keeps its own.
+    fs::set_permissions(&path, fs::Permissions::from_mode(0o640)).unwrap();
+    save(&path, &Mesh::default()).unwrap();
+    assert_eq!(mode(&path), 0o640);
+
+    // A link stays a link.
+    let link = folder.path().join("link.stl");
+    symlink(&path, &link).unwrap();
+    save(&link, &tetrahedron()).unwrap();
+    assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+    assert_eq!(fs::read(&path).unwrap(), bytes(&tetrahedron(), Format::Stl));
+
+    // A device stays a device.
+    save_as(Path::new("/dev/null"), &tetrahedron(), Format::Stl).unwrap();
+    assert!(!fs::metadata("/dev/null").unwrap().is_file());
+    assert_eq!(names(folder.path()), ["a.stl", "link.stl", "other"]);
+}

@@ -1,0 +1,284 @@
+//! One cell: which of its edges the surface crosses, and how the crossings join into sheets.
+//!
+//! ```text
+//!        6-------7        corner = x + 2 y + 4 z
+//!       /|      /|        edge   = 4 axis + b + 2 c, where (b, c) is its place along the two axes
+//!      4-------5 |                 that follow its own (x: y z, y: z x, z: x y)
+//!      | 2-----|-3        face   = 2 axis + side
+//!      |/      |/
+//!      0-------1          z up, y into the page, x to the right
+//! ```
+//!
+//! A face of the cell is crossed on none, two or all four of its edges. Two crossings are joined by a segment. Four are an
+//! *ambiguous* face, the corners of which alternate: two segments join them in one of two ways, each of which cuts off a pair
+//! of opposite corners. The default cuts off the corners inside (so it keeps their neighbourhoods separate); a *flipped*
+//! face cuts off those outside. Every crossed edge lies on two faces and so has two segments: the segments make cycles, and
+//! each cycle bounds one *sheet* of the surface in this cell (Nielson 2004, "Dual marching cubes").
+//!
+//! All 256 cases follow from these sentences and are computed when this crate is compiled.
+
+/// Marks an edge that the surface does not cross.
+const NO_SHEET: u8 = u8::MAX;
+
+/// The two corners of an edge, the lower one first.
+pub(crate) const EDGE_CORNERS: [[usize; 2]; 12] = {
+    let mut corners = [[0; 2]; 12];
+    let mut edge = 0;
+    while edge < 12 {
+        let axis = edge / 4;
+        let low = ((edge & 1) << ((axis + 1) % 3)) | (((edge >> 1) & 1) << ((axis + 2) % 3));
+        corners[edge] = [low, low | (1 << axis)];
+        edge += 1;
+    }
+    corners
+};
+
+/// The corners of a face, in the order of a walk around it.
+const fn ring(face: usize) -> [usize; 4] {
+    let axis = face / 2;
+    let start = (face & 1) << axis;
+    let (b, c) = (1 << ((axis + 1) % 3), 1 << ((axis + 2) % 3));
+    [start, start | b, start | b | c, start | c]
+}
+
+/// The edge between two corners that differ along one axis.
+const fn edge_between(p: usize, q: usize) -> usize {
+    let axis = (p ^ q).trailing_zeros() as usize;
+    4 * axis + ((p >> ((axis + 1) % 3)) & 1) + 2 * ((p >> ((axis + 2) % 3)) & 1)
+}
+
+/// The four edges of a face; edge `i` lies between corners `i` and `i + 1` of its [`ring`].
+const fn ring_edges(face: usize) -> [usize; 4] {
+    let [p, q, r, s] = ring(face);
+    [edge_between(p, q), edge_between(q, r), edge_between(r, s), edge_between(s, p)]
+}
+
+const fn inside(signs: u8, corner: usize) -> bool {
+    signs >> corner & 1 == 1
+}
+
+/// Whether the corners of a face alternate between inside and outside.
+const fn ambiguous(signs: u8, face: usize) -> bool {
+    let [p, q, r, s] = ring(face);
+    inside(signs, p) == inside(signs, r)
+        && inside(signs, q) == inside(signs, s)
+        && inside(signs, p) != inside(signs, q)
+}
+
+/// The sheets of the surface in one cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Sheets {
+    /// The sheet that each edge belongs to, or [`NO_SHEET`].
+    of_edge: [u8; 12],
+    /// How many sheets: from 0 to 4. They are numbered in the order of their first edges.
+    count: u8,
+    /// Ambiguous faces (a bit each) both segments of which lie on one sheet.
+    pinched: u8,
+}
+
+impl Sheets {
+    /// How many sheets.
+    pub(crate) fn count(&self) -> u32 {
+        u32::from(self.count)
+    }
+
+    /// The sheet of an edge that the surface crosses.
+    pub(crate) fn of_edge(&self, edge: usize) -> Option<u32> {
+        let sheet = self.of_edge[edge];
+        (sheet != NO_SHEET).then_some(u32::from(sheet))
+    }
+
+    /// Whether a face is ambiguous and both of its segments lie on one sheet. If that is so on both of its sides, the two
+    /// sheets would meet in one edge of the mesh twice, which would then have four triangles.
+    pub(crate) fn pinched(&self, face: usize) -> bool {
+        self.pinched >> face & 1 == 1
+    }
+
+    /// From the corners that are inside (a bit each) and the faces that are flipped (a bit each; it matters on ambiguous faces).
+    const fn new(signs: u8, flips: u8) -> Sheets {
+        // Every crossed edge starts alone, and each segment joins the groups of its ends under the smaller number.
+        let mut group = [NO_SHEET; 12];
+        let mut edge = 0;
+        while edge < 12 {
+            let [low, high] = EDGE_CORNERS[edge];
+            if inside(signs, low) != inside(signs, high) {
+                group[edge] = edge as u8;
+            }
+            edge += 1;
+        }
+        let mut face = 0;
+        while face < 6 {
+            group = join_face(group, signs, face, flips >> face & 1 == 1);
+            face += 1;
+        }
+        let mut pinched = 0;
+        face = 0;
+        while face < 6 {
+            let [p, q, r, s] = ring_edges(face);
+            if ambiguous(signs, face) && group[p] == group[q] && group[q] == group[r] && group[r] == group[s]
+            {
+                pinched |= 1 << face;
+            }
+            face += 1;
+        }
+        number(group, pinched)
+    }
+}
+
+/// Joins the crossings of one face by its segments.
+const fn join_face(group: [u8; 12], signs: u8, face: usize, flipped: bool) -> [u8; 12] {
+    let (corners, edges) = (ring(face), ring_edges(face));
+    let mut group = group;
+    if ambiguous(signs, face) {
+        let mut i = 0;
+        while i < 4 {
+            if inside(signs, corners[i]) != flipped {
+                group = join(group, edges[(i + 3) % 4], edges[i]);
+            }
+            i += 1;
+        }
+    } else {
+        let mut first = None;
+        let mut i = 0;
+        while i < 4 {
+            if group[edges[i]] != NO_SHEET {
+                match first {
+                    None => first = Some(edges[i]),
+                    Some(other) => group = join(group, other, edges[i]),
+                }
+            }
+            i += 1;
+        }
+    }
+    group
+}
+
+const fn join(group: [u8; 12], a: usize, b: usize) -> [u8; 12] {
+    let mut group = group;
+    let (low, high) = if group[a] < group[b] { (group[a], group[b]) } else { (group[b], group[a]) };
+    let mut edge = 0;
+    while edge < 12 {
+        if group[edge] == high {
+            group[edge] = low;
+        }
+        edge += 1;
+    }
+    group
+}
+
+/// Numbers the groups from 0. A group is called by its first edge, which is met first.
+const fn number(group: [u8; 12], pinched: u8) -> Sheets {
+    let mut of_edge = [NO_SHEET; 12];
+    let mut count = 0;
+    let mut edge = 0;
+    while edge < 12 {
+        if group[edge] as usize == edge {
+            of_edge[edge] = count;
+            count += 1;
+        } else if group[edge] != NO_SHEET {
+            of_edge[edge] = of_edge[group[edge] as usize];
+        }
+        edge += 1;
+    }
+    Sheets { of_edge, count, pinched }
+}
+
+/// The sheets of every case without flipped faces.
+static DEFAULT: [Sheets; 256] = {
+    let mut sheets = [Sheets { of_edge: [NO_SHEET; 12], count: 0, pinched: 0 }; 256];
+    let mut signs = 0;
+    while signs < 256 {
+        sheets[signs] = Sheets::new(signs as u8, 0);
+        signs += 1;
+    }
+    sheets
+};
+
+/// The sheets of a cell, from its corners inside and its flipped faces, a bit each.
+pub(crate) fn sheets(signs: u8, flips: u8) -> Sheets {
+    // Flipped faces are rare, and a table of them would be 64 times as large as this one.
+    if flips == 0 { DEFAULT[usize::from(signs)] } else { Sheets::new(signs, flips) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ambiguous_faces(signs: u8) -> u8 {
+        (0..6).filter(|&face| ambiguous(signs, face)).fold(0, |mask, face| mask | 1 << face)
+    }
+
+    #[test]
+    fn edges_and_faces_agree_about_their_corners() {
+        for (edge, [low, high]) in EDGE_CORNERS.into_iter().enumerate() {
+            assert_eq!(high - low, 1 << (edge / 4));
+            assert_eq!(edge_between(low, high), edge);
+            assert_eq!(edge_between(high, low), edge);
+            let faces = (0..6).filter(|&face| ring_edges(face).contains(&edge)).count();
+            assert_eq!(faces, 2);
+        }
+    }
+
+    #[test]
+    fn known_cases() {
+        assert_eq!(sheets(0, 0).count(), 0);
+        assert_eq!(sheets(255, 0).count(), 0);
+        assert_eq!(sheets(0b0000_0001, 0).count(), 1);
+        // Two opposite corners of a face: apart by default, one sheet when the face is flipped (face 4 is z = 0).
+        assert_eq!(sheets(0b0000_1001, 0).count(), 2);
+        assert_eq!(sheets(0b0000_1001, 1 << 4).count(), 1);
+        // The checkerboard: four corners cut off, of the one or of the other kind.
+        assert_eq!(sheets(0b0110_1001, 0).count(), 4);
+        assert_eq!(sheets(0b0110_1001, 0b11_1111).count(), 4);
+        assert_eq!(sheets(0b1001_0110, 0).count(), 4);
+        // The complement of two opposite corners of a face: a tunnel, which pinches that face.
+        let tunnel = sheets(!0b0000_1001, 0);
+        assert_eq!(tunnel.count(), 1);
+        assert!(tunnel.pinched(4));
+        assert_eq!(sheets(!0b0000_1001, 1 << 4).count(), 2);
+    }
+
+    #[test]
+    fn a_cell_and_its_complement_agree_when_all_faces_flip() {
+        for signs in 0..=255_u8 {
+            assert_eq!(sheets(signs, 0), sheets(!signs, ambiguous_faces(signs)), "{signs:08b}");
+        }
+    }
+
+    #[test]
+    fn flipping_a_pinched_face_splits_one_sheet_in_two() {
+        let mut seen = 0;
+        for signs in 0..=255_u8 {
+            let ambiguous = ambiguous_faces(signs);
+            for flips in (0..64).filter(|flips| flips & !ambiguous == 0) {
+                let before = sheets(signs, flips);
+                for face in (0..6).filter(|&face| before.pinched(face)) {
+                    let after = sheets(signs, flips ^ 1 << face);
+                    assert_eq!(after.count(), before.count() + 1);
+                    assert!(!after.pinched(face));
+                    // Nothing merges: edges together afterwards were together before.
+                    for a in 0..12 {
+                        for b in 0..12 {
+                            assert!(
+                                after.of_edge[a] != after.of_edge[b]
+                                    || before.of_edge[a] == before.of_edge[b]
+                            );
+                        }
+                    }
+                    seen += 1;
+                }
+            }
+        }
+        assert!(seen > 100);
+    }
+
+    #[test]
+    fn sheets_have_at_least_three_edges() {
+        for signs in 0..=255_u8 {
+            let sheets = sheets(signs, 0);
+            for sheet in 0..sheets.count() {
+                assert!((0..12).filter(|&edge| sheets.of_edge(edge) == Some(sheet)).count() >= 3);
+            }
+        }
+    }
+}

@@ -1,0 +1,140 @@
+//! Vertices that Newton's steps left off the surface: at a crease two surfaces take turns in pulling.
+//!
+//! ```text
+//! a stray goes on being pulled; what it passes on the way is remembered:
+//!     the position nearest to the iso-value, one position inside, one position outside
+//! if it has never been on one side, the nearest corner of the cell there takes the place
+//! between the two sides lies the surface: halve the way from one to the other
+//! the best position wins; it is within the cell, as everything on the way was
+//! ```
+
+use super::Field;
+use super::vertex::pull;
+
+/// Pulls that a stray gets on top.
+const ROUNDS: usize = 6;
+/// Halvings of the way between a position inside and one outside.
+const HALVINGS: usize = 10;
+/// A vertex strays when its distance to the surface, by its own gradient, is more than this part of its cell.
+const TOLERANCE: f32 = 1e-3;
+
+/// Where a vertex may be.
+#[derive(Clone, Copy)]
+pub(super) struct Place {
+    /// The low and the high corner of its cell.
+    pub(super) bounds: [[f32; 3]; 2],
+    /// The corners that its sheet separates: those outside and those inside, a bit for each corner.
+    pub(super) corners: [u8; 2],
+}
+
+impl Place {
+    /// The nearest of the corners on one side of the sheet.
+    fn corner(&self, inside: bool, from: [f32; 3]) -> Option<[f32; 3]> {
+        let mask = self.corners[usize::from(inside)];
+        let corners = (0..8).filter(|corner| mask >> corner & 1 == 1);
+        let position = |corner: usize| [0, 1, 2].map(|axis| self.bounds[corner >> axis & 1][axis]);
+        let distance = |p: &[f32; 3]| (0..3).map(|axis| (p[axis] - from[axis]).powi(2)).sum::<f32>();
+        corners.map(position).min_by(|a, b| distance(a).total_cmp(&distance(b)))
+    }
+}
+
+/// A vertex off the surface.
+pub(super) struct Stray {
+    /// Its place in the batch.
+    pub(super) index: usize,
+    place: Place,
+    position: [f32; 3],
+    value: f32,
+    gradient: [f32; 3],
+    best: [f32; 3],
+    error: f32,
+    inside: Option<[f32; 3]>,
+    outside: Option<[f32; 3]>,
+}
+
+impl Stray {
+    /// The vertex as a stray, if it is one.
+    pub(super) fn new(
+        iso: f32,
+        index: usize,
+        place: Place,
+        position: [f32; 3],
+        value: f32,
+        gradient: [f32; 3],
+    ) -> Option<Self> {
+        let error = (value - iso).abs();
+        let steep = gradient.iter().map(|g| g * g).sum::<f32>().sqrt();
+        let edge = place.bounds[1][0] - place.bounds[0][0];
+        let mut stray = Self {
+            index,
+            place,
+            position,
+            value,
+            gradient,
+            best: position,
+            error,
+            inside: None,
+            outside: None,
+        };
+        stray.note(iso);
+        (error > TOLERANCE * edge * steep && steep.is_finite()).then_some(stray)
+    }
+
+    /// Where it is best put.
+    pub(super) fn best(&self) -> [f32; 3] {
+        self.best
+    }
+
+    /// Remembers the present position.
+    fn note(&mut self, iso: f32) {
+        let error = (self.value - iso).abs();
+        if error < self.error {
+            (self.best, self.error) = (self.position, error);
+        }
+        let side = if self.value >= iso { &mut self.inside } else { &mut self.outside };
+        *side = Some(self.position);
+    }
+}
+
+/// Brings strays nearer to the surface. Returns at how many points the gradient was asked.
+pub(super) fn settle<F: Field>(field: &F, iso: f32, strays: &mut [Stray]) -> Result<u64, F::Error> {
+    if strays.is_empty() {
+        return Ok(0);
+    }
+    let plane = vec![0.0f32; strays.len()];
+    let mut values = plane.clone();
+    let mut gradient = [plane.clone(), plane.clone(), plane];
+    let at = |strays: &[Stray]| {
+        [0, 1, 2].map(|axis| strays.iter().map(|s| s.position[axis]).collect::<Vec<f32>>())
+    };
+    for _ in 0..ROUNDS {
+        for stray in &mut *strays {
+            stray.position = pull(iso, stray.position, stray.value, stray.gradient, stray.place.bounds);
+        }
+        let [x, y, z] = at(strays);
+        field.gradient(&x, &y, &z, &mut values, gradient.each_mut().map(Vec::as_mut_slice))?;
+        for (i, stray) in strays.iter_mut().enumerate() {
+            stray.value = values[i];
+            stray.gradient = gradient.each_ref().map(|plane| plane[i]);
+            stray.note(iso);
+        }
+    }
+    for stray in &mut *strays {
+        stray.inside = stray.inside.or_else(|| stray.place.corner(true, stray.best));
+        stray.outside = stray.outside.or_else(|| stray.place.corner(false, stray.best));
+    }
+    for _ in 0..HALVINGS {
+        for stray in &mut *strays {
+            if let (Some(inside), Some(outside)) = (stray.inside, stray.outside) {
+                stray.position = [0, 1, 2].map(|axis| 0.5 * (inside[axis] + outside[axis]));
+            }
+        }
+        let [x, y, z] = at(strays);
+        field.gradient(&x, &y, &z, &mut values, gradient.each_mut().map(Vec::as_mut_slice))?;
+        for (stray, &value) in strays.iter_mut().zip(&values) {
+            stray.value = value;
+            stray.note(iso);
+        }
+    }
+    Ok((strays.len() * (ROUNDS + HALVINGS)) as u64)
+}

@@ -1,0 +1,267 @@
+//! From a model to a mesh in one call: three kernels, a lattice over the model's support, and the mesher.
+//!
+//! ```text
+//!   CheckedTree ──Compiler──► field kernel ────► every lattice point, once
+//!                        ├──► gradient kernel ─► every vertex, a few times, to pull it onto the surface
+//!                        └──► full kernel ─────► every vertex, once: normal and attributes
+//! ```
+
+use std::time::{Duration, Instant};
+
+use jbt_frontend::check::CheckedTree;
+use jbt_frontend::query::Query;
+
+use crate::error::{CompileError, EvalError};
+use crate::evaluator::{Compiler, Evaluator};
+use crate::kernel::Engine;
+use crate::mesh::{self, Field, Lattice, LatticeError, Mesh, MeshError, Report};
+
+/// How fine a lattice is.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum Fineness {
+    /// The edge of a cell, in units of the model. Greater than zero.
+    Cell(f64),
+    /// Cells along the longest side of the region. At least 1.
+    Resolution(usize),
+}
+
+impl Default for Fineness {
+    /// 128 cells along the longest side.
+    fn default() -> Self {
+        Self::Resolution(128)
+    }
+}
+
+/// What to mesh of a model, and how finely.
+///
+/// ```
+/// use jbt::text::{Options, parse};
+/// use jbt::{Compiler, Polygonize};
+/// let model = parse(b"jbt 1 point { surface_radius 1 }", &Options::default()).unwrap();
+/// let tree = model.check().unwrap();
+/// let made = Polygonize::default().run(&Compiler::new(), &tree, &mut |_| true).unwrap();
+/// assert!(made.report.closed);
+/// ```
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub struct Polygonize {
+    /// The smallest and the largest corner of the box to mesh; `None` is the model's support, grown a little.
+    pub region: Option<([f64; 3], [f64; 3])>,
+    /// How fine.
+    pub fineness: Fineness,
+}
+
+/// A mesh, and what it took.
+#[derive(Clone, Debug)]
+pub struct Polygonized {
+    /// The mesh.
+    pub mesh: Mesh,
+    /// Whether it is closed, and the evaluations by kind.
+    pub report: Report,
+    /// Where the field was asked.
+    pub lattice: Lattice,
+    /// What ran the kernels.
+    pub engine: Engine,
+    /// Distances to skeletons that were computed.
+    pub primitive_evaluations: u64,
+    /// Time to lower and compile the three kernels.
+    pub compile_time: Duration,
+}
+
+/// Why there is no mesh.
+#[derive(Debug, thiserror::Error)]
+pub enum PolygonizeError {
+    /// The model's field is zero everywhere.
+    #[error("the model is empty: its field is zero everywhere")]
+    Empty,
+    /// The model's field may differ from zero arbitrarily far away, and no region was given.
+    #[error("the model is unbounded: its mesh needs a region")]
+    Unbounded,
+    /// The lattice is impossible or beyond a limit.
+    #[error(transparent)]
+    Lattice(#[from] LatticeError),
+    /// The model could not be compiled.
+    #[error(transparent)]
+    Compile(#[from] CompileError),
+    /// The mesher stopped.
+    #[error(transparent)]
+    Mesh(#[from] MeshError<EvalError>),
+}
+
+/// The part of the support's longest side by which the default region exceeds it, so that rounded coordinates of the
+/// lattice's sides are outside.
+const MARGIN: f64 = 1.0 / 512.0;
+
+impl Polygonize {
+    /// The region to mesh: its smallest and its largest corner.
+    ///
+    /// # Errors
+    /// No region was given, and the model's support is empty or unbounded.
+    pub fn region(&self, tree: &CheckedTree) -> Result<([f64; 3], [f64; 3]), PolygonizeError> {
+        if let Some(region) = self.region {
+            return Ok(region);
+        }
+        let support = tree.support();
+        if support.is_empty() {
+            return Err(PolygonizeError::Empty);
+        }
+        if !support.is_finite() {
+            return Err(PolygonizeError::Unbounded);
+        }
+        let grown = support.grown(support.longest_side() * MARGIN);
+        Ok((grown.low(), grown.high()))
+    }
+
+    /// The lattice over the region.
+    ///
+    /// # Errors
+    /// Those of [`region`](Self::region), and a lattice that cannot be or is beyond a limit.
+    pub fn lattice(&self, tree: &CheckedTree) -> Result<Lattice, PolygonizeError> {
+        let (low, high) = self.region(tree)?;
+        Ok(match self.fineness {
+            Fineness::Cell(cell) => Lattice::covering(low, high, cell)?,
+            Fineness::Resolution(cells) => Lattice::with_resolution(low, high, cells)?,
+        })
+    }
+
+    /// Meshes a model, on the threads of the rayon pool in which this is called.
+    ///
+    /// The hook is told how far the work is, from 0 to 1, and cancels it by returning false.
+    ///
+    /// # Errors
+    /// See [`PolygonizeError`].
+    pub fn run(
+        &self,
+        compiler: &Compiler,
+        tree: &CheckedTree,
+        hook: &mut (dyn FnMut(f32) -> bool + Send),
+    ) -> Result<Polygonized, PolygonizeError> {
+        let lattice = self.lattice(tree)?;
+        let start = Instant::now();
+        let kernels = Kernels::new(compiler, tree)?;
+        let compile_time = start.elapsed();
+        let options = mesh::Options { iso: tree.iso() as f32, ..mesh::Options::default() };
+        let (mesh, report) = mesh::extract_with_progress(&kernels, &lattice, &options, hook)?;
+        Ok(Polygonized {
+            mesh,
+            report,
+            lattice,
+            engine: kernels.field.engine(),
+            primitive_evaluations: kernels.primitive_evaluations(),
+            compile_time,
+        })
+    }
+}
+
+/// The three kernels of a mesh.
+struct Kernels {
+    field: Evaluator,
+    gradient: Evaluator,
+    all: Evaluator,
+}
+
+impl Kernels {
+    fn new(compiler: &Compiler, tree: &CheckedTree) -> Result<Self, CompileError> {
+        Ok(Self {
+            field: compiler.evaluator(tree, Query::FIELD)?,
+            gradient: compiler.evaluator(tree, Query::GRADIENT)?,
+            all: compiler.evaluator(tree, Query::ALL)?,
+        })
+    }
+
+    fn primitive_evaluations(&self) -> u64 {
+        [&self.field, &self.gradient, &self.all].iter().map(|e| e.counters().primitive_evaluations).sum()
+    }
+}
+
+impl Field for Kernels {
+    type Error = EvalError;
+
+    fn attributes(&self) -> Vec<(String, usize)> {
+        self.all.layout().attributes().map(|(name, _, width)| (name.to_owned(), width)).collect()
+    }
+
+    fn field(&self, x: &[f32], y: &[f32], z: &[f32], field: &mut [f32]) -> Result<(), EvalError> {
+        self.field.eval_planes([x, y, z], &mut [field])
+    }
+
+    fn gradient(
+        &self,
+        x: &[f32],
+        y: &[f32],
+        z: &[f32],
+        field: &mut [f32],
+        [gx, gy, gz]: [&mut [f32]; 3],
+    ) -> Result<(), EvalError> {
+        self.gradient.eval_planes([x, y, z], &mut [field, gx, gy, gz])
+    }
+
+    fn all(
+        &self,
+        x: &[f32],
+        y: &[f32],
+        z: &[f32],
+        field: &mut [f32],
+        [gx, gy, gz]: [&mut [f32]; 3],
+        attributes: &mut [&mut [f32]],
+    ) -> Result<(), EvalError> {
+        let mut planes: Vec<&mut [f32]> = vec![field, gx, gy, gz];
+        planes.extend(attributes.iter_mut().map(|plane| &mut **plane));
+        self.all.eval_planes([x, y, z], &mut planes)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use jbt_frontend::text::{Options, parse};
+
+    use super::*;
+
+    fn tree(text: &str) -> CheckedTree {
+        parse(text.as_bytes(), &Options::default()).unwrap().check().unwrap()
+    }
+
+    #[test]
+    fn the_default_region_is_the_support_and_a_little_more() {
+        let tree = tree("jbt 1 translate (1 2 3) { point { radius 2 } }");
+        let (low, high) = Polygonize::default().region(&tree).unwrap();
+        for axis in 0..3 {
+            let centre = [1.0, 2.0, 3.0][axis];
+            assert!(low[axis] < centre - 2.0 && low[axis] > centre - 2.1, "{low:?}");
+            assert!(high[axis] > centre + 2.0 && high[axis] < centre + 2.1, "{high:?}");
+        }
+        assert_eq!(Polygonize::default().lattice(&tree).unwrap().cells(), [128; 3]);
+    }
+
+    #[test]
+    fn an_empty_model_says_so_unless_a_region_is_given() {
+        let tree = tree("jbt 1 intersection { point { radius 1 } translate (5 0 0) { point { radius 1 } } }");
+        assert!(matches!(Polygonize::default().region(&tree), Err(PolygonizeError::Empty)));
+        let here = Polygonize { region: Some(([0.0; 3], [1.0; 3])), fineness: Fineness::Resolution(4) };
+        let made = here.run(&Compiler::for_engine(Engine::Scalar), &tree, &mut |_| true).unwrap();
+        assert!(made.mesh.triangles.is_empty() && made.report.closed);
+        // A point of the lattice takes both distances, whatever they amount to.
+        assert_eq!(made.primitive_evaluations, 2 * 125);
+    }
+
+    /// A sphere of radius 1: every vertex lies on it, and the volume is near 4 pi / 3.
+    #[test]
+    fn a_point_becomes_a_sphere() {
+        let tree = tree("jbt 1 point { surface_radius 1 }");
+        let settings = Polygonize { fineness: Fineness::Cell(0.1), ..Polygonize::default() };
+        let made = settings.run(&Compiler::for_engine(Engine::Lanes), &tree, &mut |_| true).unwrap();
+        assert!(made.report.closed);
+        let length = |p: &[f32; 3]| p.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>().sqrt();
+        assert!(made.mesh.positions.iter().all(|p| (length(p) - 1.0).abs() < 1e-5));
+        let corner = |v: u32| made.mesh.positions[v as usize].map(f64::from);
+        let volume: f64 = made
+            .mesh
+            .triangles
+            .iter()
+            .map(|t| {
+                let [[ax, ay, az], [bx, by, bz], [cx, cy, cz]] = t.map(corner);
+                (ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)) / 6.0
+            })
+            .sum();
+        assert!((volume / (4.0 / 3.0 * std::f64::consts::PI) - 1.0).abs() < 0.01, "{volume}");
+    }
+}
