@@ -1,0 +1,295 @@
+//! The command line: what can be asked, and how it is written.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use jbt::{Engine, Query};
+
+/// Compiles BlobTrees to SIMD machine code, and makes meshes and values of them.
+#[derive(Parser, Debug)]
+#[command(name = "jbt", version, max_term_width = 100, after_help = EXIT_CODES)]
+pub struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+    /// Print no summaries, warnings or progress: errors alone.
+    #[arg(long, short, global = true)]
+    pub quiet: bool,
+}
+
+const EXIT_CODES: &str = "\
+A SCENE is a .jbt text or a ParsIP scene (.blob, .scene); `-` reads it from the standard input.
+
+Exit codes: 0 done, 1 the scene has errors, 2 usage, 3 a limit was hit, 4 a file could not be read or written.
+
+Examples:
+  jbt mesh examples/hero.jbt -o hero.glb
+  jbt mesh train.scene --cell 0.13 -o train.glb --json
+  jbt eval hero.jbt --points points.csv --query all -o answers.csv
+  jbt show hero.jbt --stage ir
+  jbt count hero.jbt
+  jbt check hero.jbt";
+
+/// The commands.
+#[derive(Subcommand, Debug)]
+pub enum Command {
+    /// Write the surface of a scene as a triangle mesh
+    Mesh(MeshArguments),
+    /// Evaluate a scene at the points of a CSV file
+    Eval(EvalArguments),
+    /// Print a scene as one of the stages that it goes through on its way to machine code
+    Show(ShowArguments),
+    /// Count the evaluations of primitives that a point takes
+    Count(CountArguments),
+    /// Report everything that is wrong with a scene
+    Check(CheckArguments),
+}
+
+/// The scene, and what its text leaves open.
+#[derive(Args, Debug)]
+pub struct SceneArguments {
+    /// The scene: a .jbt text or a ParsIP .blob or .scene; `-` is the standard input
+    #[arg(value_name = "SCENE")]
+    pub path: PathBuf,
+    /// Set a parameter of a .jbt text
+    #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = definition)]
+    pub definitions: Vec<(String, f64)>,
+}
+
+/// What `jbt mesh` takes.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+The format is that of OUT's extension: .glb, .ply, .obj or .stl. Without --region the mesh covers the support of the
+model: where its field can differ from zero.
+
+Examples:
+  jbt mesh hero.jbt -o hero.glb
+  jbt mesh hero.jbt --resolution 200 -D radius=2 -o hero.ply
+  jbt mesh hero.jbt --cell 0.05 --region -1,-1,-1,1,1,1 -o corner.stl --json
+  cat hero.jbt | jbt mesh - -o - --format obj | less")]
+pub struct MeshArguments {
+    /// What to mesh.
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// The file to write; `-` is the standard output and needs --format
+    #[arg(short, long, value_name = "OUT")]
+    pub output: PathBuf,
+    /// The file format, if the extension does not say it
+    #[arg(long, value_enum)]
+    pub format: Option<FormatName>,
+    /// Edge of a cell of the grid, in units of the scene
+    #[arg(long, value_name = "H", conflicts_with = "resolution", allow_negative_numbers = true)]
+    pub cell: Option<f64>,
+    /// Cells along the longest side of the region [default: 128]
+    #[arg(long, value_name = "N")]
+    pub resolution: Option<usize>,
+    /// The box to mesh: its smallest and its largest corner [default: the support of the model]
+    #[arg(long, value_name = "X0,Y0,Z0,X1,Y1,Z1", value_parser = region, allow_hyphen_values = true)]
+    pub region: Option<Region>,
+    /// What evaluates the field: all engines give the same bits
+    #[arg(long, value_enum, default_value_t = EngineName::Jit)]
+    pub engine: EngineName,
+    /// Number of threads; the mesh does not depend on it [default: one for each processor]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+    /// Print one JSON object instead of a summary
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// What `jbt eval` takes.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+The points are read from the columns x, y and z, found by the header; other columns are ignored. The answers keep their
+order. Columns: x,y,z,field, then gx,gy,gz, then color.r,color.g,color.b and the other attributes of the scene.
+
+Examples:
+  jbt eval hero.jbt --points points.csv --query all -o answers.csv
+  jbt eval hero.jbt --points - --query field -o - < points.csv")]
+pub struct EvalArguments {
+    /// What to evaluate.
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// CSV file of the points; `-` is the standard input
+    #[arg(long, value_name = "FILE.csv")]
+    pub points: PathBuf,
+    /// The answers wanted
+    #[arg(long, value_enum, default_value_t = QueryName::Field)]
+    pub query: QueryName,
+    /// What evaluates the field: all engines give the same bits
+    #[arg(long, value_enum, default_value_t = EngineName::Jit)]
+    pub engine: EngineName,
+    /// CSV file to write; `-` is the standard output
+    #[arg(short, long, value_name = "OUT.csv")]
+    pub output: PathBuf,
+}
+
+/// What `jbt show` takes.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Stages: `tree` (the scene as .jbt text), `ir` (the lowered program), the name of a pass (the program after it), and `clif`
+(Cranelift's own language, where machine code is built in). A wrong name lists them all.
+
+Examples:
+  jbt show train.scene --stage tree > train.jbt
+  jbt show hero.jbt --stage schedule --query field")]
+pub struct ShowArguments {
+    /// What to show.
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// The stage to print
+    #[arg(long, value_name = "STAGE")]
+    pub stage: String,
+    /// The answers that the program gives
+    #[arg(long, value_enum, default_value_t = QueryName::All)]
+    pub query: QueryName,
+}
+
+/// What `jbt count` takes.
+#[derive(Args, Debug)]
+pub struct CountArguments {
+    /// What to count.
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// Count for one query only
+    #[arg(long, value_enum)]
+    pub query: Option<QueryName>,
+    /// Print one JSON object instead of a table
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// What `jbt check` takes.
+#[derive(Args, Debug)]
+pub struct CheckArguments {
+    /// What to check.
+    #[command(flatten)]
+    pub scene: SceneArguments,
+}
+
+/// The words for engines.
+#[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
+pub enum EngineName {
+    /// The reference: one point after the other
+    Scalar,
+    /// The SIMD interpreter
+    Lanes,
+    /// Machine code; the SIMD interpreter, with a warning, where that cannot be had
+    Jit,
+}
+
+impl EngineName {
+    /// The engine to insist on; machine code is not insisted on.
+    pub fn required(self) -> Option<Engine> {
+        match self {
+            Self::Scalar => Some(Engine::Scalar),
+            Self::Lanes => Some(Engine::Lanes),
+            Self::Jit => None,
+        }
+    }
+}
+
+/// The words for queries.
+#[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
+pub enum QueryName {
+    /// The field
+    Field,
+    /// Field and gradient
+    Gradient,
+    /// Field and attributes
+    Attributes,
+    /// Field, gradient and attributes
+    All,
+}
+
+impl QueryName {
+    /// The query.
+    pub fn query(self) -> Query {
+        match self {
+            Self::Field => Query::FIELD,
+            Self::Gradient => Query::GRADIENT,
+            Self::Attributes => Query::ATTRIBUTES,
+            Self::All => Query::ALL,
+        }
+    }
+}
+
+/// The words for mesh formats, which are also the extensions of their files.
+#[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
+pub enum FormatName {
+    /// glTF, binary: normals and colours
+    Glb,
+    /// Stanford triangles, binary: normals and colours
+    Ply,
+    /// Wavefront text: normals
+    Obj,
+    /// Stereolithography, binary: triangles alone
+    Stl,
+}
+
+/// A box: its smallest and its largest corner.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Region {
+    /// The smallest corner.
+    pub low: [f64; 3],
+    /// The largest corner.
+    pub high: [f64; 3],
+}
+
+fn definition(text: &str) -> Result<(String, f64), String> {
+    let (name, value) = text.split_once('=').ok_or("expected NAME=VALUE")?;
+    let name = name.trim();
+    if name.is_empty() {
+        return Err("expected a name before `=`".to_owned());
+    }
+    let value: f64 = value.trim().parse().map_err(|_| format!("expected a number after `{name}=`"))?;
+    if value.is_finite() { Ok((name.to_owned(), value)) } else { Err("expected a finite number".to_owned()) }
+}
+
+fn region(text: &str) -> Result<Region, String> {
+    let numbers: Vec<f64> = text
+        .split(',')
+        .map(|word| word.trim().parse().map_err(|_| format!("`{}` is not a number", word.trim())))
+        .collect::<Result<_, _>>()?;
+    let Ok([x0, y0, z0, x1, y1, z1]) = <[f64; 6]>::try_from(numbers) else {
+        return Err("expected six numbers, as X0,Y0,Z0,X1,Y1,Z1".to_owned());
+    };
+    let region = Region { low: [x0, y0, z0], high: [x1, y1, z1] };
+    // Written so that a NaN is refused as well.
+    let proper = (0..3).all(|axis| {
+        region.low[axis] < region.high[axis] && (region.high[axis] - region.low[axis]).is_finite()
+    });
+    if proper {
+        Ok(region)
+    } else {
+        Err("every number of the first corner must be below that of the second".to_owned())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        use clap::CommandFactory as _;
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn regions_and_definitions() {
+        let unit = Region { low: [0.0; 3], high: [1.0; 3] };
+        assert_eq!(region("0,0,0,1,1,1"), Ok(unit));
+        assert_eq!(region(" 0, 0,0, 1,1 ,1"), Ok(unit));
+        for bad in
+            ["", "0,0,0,1,1", "0,0,0,1,1,1,1", "0,0,0,1,1,nan", "0,0,0,0,1,1", "0,0,0,1,1,x", "0,0,0,1,1,inf"]
+        {
+            assert!(region(bad).is_err(), "{bad}");
+        }
+        assert_eq!(definition("r=2"), Ok(("r".to_owned(), 2.0)));
+        assert_eq!(definition("r = -1e3"), Ok(("r".to_owned(), -1000.0)));
+        for bad in ["r", "=2", "r=", "r=x", "r=inf"] {
+            assert!(definition(bad).is_err(), "{bad}");
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! `jbt eval`: points of a CSV file in, answers out, in the same order.
+
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, Write as _};
+
+use jbt::{Evaluator, Points, Samples};
+
+use crate::arguments::EvalArguments;
+use crate::failure::Failure;
+use crate::output::Output;
+use crate::points::PointReader;
+use crate::progress::Progress;
+use crate::scene::{Scene, is_standard};
+
+/// Points that are kept in memory at once.
+const BATCH: usize = 1 << 14;
+
+/// Runs the command.
+pub fn run(arguments: &EvalArguments, quiet: bool) -> Result<(), Failure> {
+    if is_standard(&arguments.points) && is_standard(&arguments.scene.path) {
+        return Err(Failure::Usage(
+            "the scene and the points cannot both come from the standard input".to_owned(),
+        ));
+    }
+    let scene = Scene::load(&arguments.scene)?;
+    scene.warn(quiet);
+    let tree = scene.check()?;
+    let evaluator = scene.evaluator(&tree, arguments.query.query(), arguments.engine.required())?;
+    if is_standard(&arguments.points) {
+        return stream(
+            &evaluator,
+            PointReader::new(io::stdin().lock(), "<stdin>".to_owned())?,
+            None,
+            arguments,
+            quiet,
+        );
+    }
+    let name = arguments.points.display().to_string();
+    let fail = |error| Failure::io("read", &name, error);
+    let file = File::open(&arguments.points).map_err(fail)?;
+    let length = file.metadata().map_err(fail)?.len();
+    let points = PointReader::new(BufReader::with_capacity(1 << 16, file), name)?;
+    stream(&evaluator, points, Some(length), arguments, quiet)
+}
+
+/// Evaluates batch after batch.
+fn stream(
+    evaluator: &Evaluator,
+    mut points: PointReader<impl BufRead>,
+    length: Option<u64>,
+    arguments: &EvalArguments,
+    quiet: bool,
+) -> Result<(), Failure> {
+    let mut output = Output::open(&arguments.output)?;
+    let mut progress = Progress::new("evaluating", quiet);
+    let mut samples = evaluator.samples();
+    let names = evaluator.layout().names().join(",");
+    writeln!(output, "x,y,z,{names}").map_err(|error| output.failure(error))?;
+    loop {
+        let batch = points.batch(BATCH)?;
+        if batch.is_empty() {
+            return output.finish();
+        }
+        evaluator.eval(&batch, &mut samples).map_err(|error| Failure::Defect(error.to_string()))?;
+        write(&mut output, &batch, &samples).map_err(|error| output.failure(error))?;
+        if let Some(length) = length {
+            progress.set(points.bytes() as f32 / length.max(1) as f32);
+        }
+    }
+}
+
+/// One line for each point. Numbers are the shortest decimals that read back as the same f32.
+fn write(output: &mut Output, points: &Points, samples: &Samples) -> io::Result<()> {
+    for index in 0..points.len() {
+        let [x, y, z] = points.get(index);
+        write!(output, "{x},{y},{z}")?;
+        for plane in samples.planes() {
+            write!(output, ",{}", plane[index])?;
+        }
+        writeln!(output)?;
+    }
+    Ok(())
+}

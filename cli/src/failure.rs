@@ -1,0 +1,108 @@
+//! Why a command ends without having done its work, and the exit code that says so to scripts.
+//!
+//! | code | meaning |
+//! |---|---|
+//! | 0 | the work is done |
+//! | 1 | the scene has errors, or the points have |
+//! | 2 | the command line makes no sense |
+//! | 3 | a limit was hit |
+//! | 4 | a file could not be read or written |
+
+use std::fmt;
+use std::io;
+
+use jbt::CompileError;
+use jbt_frontend::diagnostic::{Diagnostic, Severity, Source, escape};
+
+/// Why a command did not do its work.
+#[derive(Debug)]
+pub enum Failure {
+    /// Located messages about a file, rendered one by one, with what they amount to.
+    Input {
+        /// How much each matters, and its text.
+        messages: Vec<(Severity, String)>,
+    },
+    /// The options contradict each other or the scene.
+    Usage(String),
+    /// Something is larger than a limit allows.
+    Limit(String),
+    /// A file could not be read or written.
+    Io {
+        /// The file, and what was tried.
+        what: String,
+        /// What the system said.
+        error: io::Error,
+    },
+    /// A defect of jbt itself.
+    Defect(String),
+    /// Whoever read our output has had enough of it: no error.
+    BrokenPipe,
+}
+
+impl Failure {
+    /// A failure to read or write a file. Names may be any text of the command line: printing escapes them.
+    pub fn io(verb: &str, name: impl fmt::Display, error: io::Error) -> Self {
+        Self::Io { what: format!("cannot {verb} {name}"), error }
+    }
+
+    /// A failure to write to the standard output. A reader that went away is not one.
+    pub fn stdout(error: io::Error) -> Self {
+        if error.kind() == io::ErrorKind::BrokenPipe {
+            Self::BrokenPipe
+        } else {
+            Self::io("write to", "the standard output", error)
+        }
+    }
+
+    /// Messages about a file.
+    pub fn diagnostics(source: &Source<'_>, diagnostics: &[Diagnostic]) -> Self {
+        Self::Input { messages: diagnostics.iter().map(|d| (d.severity, source.render(d))).collect() }
+    }
+
+    /// A model that could not be compiled.
+    pub fn compile(source: &Source<'_>, error: &CompileError) -> Self {
+        match error {
+            CompileError::Model(diagnostics) => Self::diagnostics(source, diagnostics),
+            CompileError::Engine { .. } => Self::Limit(error.to_string()),
+            CompileError::Internal(_) => Self::Defect(error.to_string()),
+        }
+    }
+
+    /// The exit code.
+    pub fn code(&self) -> u8 {
+        match self {
+            Self::BrokenPipe => 0,
+            // A file with both is wrong first and large second.
+            Self::Input { messages } if messages.iter().any(|(severity, _)| *severity == Severity::Error) => {
+                1
+            }
+            Self::Input { messages } if messages.iter().any(|(severity, _)| *severity == Severity::Limit) => {
+                3
+            }
+            Self::Input { .. } | Self::Defect(_) => 1,
+            Self::Usage(_) => 2,
+            Self::Limit(_) => 3,
+            Self::Io { .. } => 4,
+        }
+    }
+}
+
+impl fmt::Display for Failure {
+    /// What to tell people, without a severity in front; rendered messages have their own.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Input { messages } => {
+                for (index, (_, message)) in messages.iter().enumerate() {
+                    write!(f, "{}{message}", if index == 0 { "" } else { "\n" })?;
+                }
+                Ok(())
+            }
+            Self::Usage(message) | Self::Limit(message) | Self::Defect(message) => {
+                let lines: Vec<String> = message.lines().map(escape).collect();
+                f.write_str(&lines.join("\n"))
+            }
+            Self::Io { what, error } => write!(f, "{}: {error}", escape(what)),
+            Self::BrokenPipe => f.write_str("the reader of the output went away"),
+        }
+    }
+}

@@ -1,0 +1,72 @@
+//! The `jbt` command: scenes to meshes and values.
+//!
+//! | file | what it does |
+//! |---|---|
+//! | [`arguments`] | what can be asked |
+//! | [`scene`], [`points`] | reading |
+//! | [`mesh`], [`eval`], [`show`], [`count`], [`check`] | one command each |
+//! | [`output`], [`progress`], [`logger`] | what comes out, and where |
+//! | [`failure`] | what went wrong, and the exit code for it |
+
+mod arguments;
+mod check;
+mod count;
+mod eval;
+mod failure;
+mod logger;
+mod mesh;
+mod output;
+mod points;
+mod progress;
+mod scene;
+mod show;
+
+use std::process::ExitCode;
+use std::time::Instant;
+
+use clap::Parser as _;
+
+use arguments::{Arguments, Command};
+use failure::Failure;
+
+fn main() -> ExitCode {
+    let start = Instant::now();
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => return usage(&error),
+    };
+    let quiet = arguments.quiet;
+    logger::install(quiet);
+    match run(&arguments.command, quiet, start) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            output::report(&failure);
+            ExitCode::from(failure.code())
+        }
+    }
+}
+
+fn run(command: &Command, quiet: bool, start: Instant) -> Result<(), Failure> {
+    match command {
+        Command::Mesh(arguments) => mesh::run(arguments, quiet, start),
+        Command::Eval(arguments) => eval::run(arguments, quiet),
+        Command::Show(arguments) => show::run(arguments, quiet),
+        Command::Count(arguments) => count::run(arguments, quiet),
+        Command::Check(arguments) => check::run(arguments, quiet),
+    }
+}
+
+/// Help, the version, or what is wrong with the command line.
+fn usage(error: &clap::Error) -> ExitCode {
+    let hostile = std::env::args_os().any(|word| word.to_string_lossy().chars().any(char::is_control));
+    if error.use_stderr() && hostile {
+        // The message repeats words of the command line, which a script may have taken from anywhere.
+        let text = error.render().to_string();
+        let lines: Vec<String> = text.trim_end().lines().map(jbt_frontend::diagnostic::escape).collect();
+        output::tell(&lines.join("\n"));
+    } else {
+        // A reader of the help may go away before its end.
+        let _ = error.print();
+    }
+    ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2))
+}

@@ -1,0 +1,238 @@
+//! `jbt mesh`: the surface of a scene as a file of triangles, and what it took.
+
+use std::time::{Duration, Instant};
+
+use jbt::export::{self, ExportError, Format};
+use jbt::mesh::{LatticeError, MeshError};
+use jbt::{Compiler, Fineness, Polygonize, PolygonizeError, Polygonized};
+use jbt_frontend::diagnostic::{Diagnostic, escape};
+use serde_json::json;
+
+use crate::arguments::{FormatName, MeshArguments};
+use crate::failure::Failure;
+use crate::output::{Output, grouped, plural, print, tell, warn};
+use crate::progress::Progress;
+use crate::scene::{Scene, is_standard};
+
+/// Runs the command. `start` is when the process began, for the total time.
+pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(), Failure> {
+    let to_stdout = is_standard(&arguments.output);
+    if to_stdout && arguments.json {
+        let message = "the mesh and the JSON report cannot both go to the standard output";
+        return Err(Failure::Usage(message.to_owned()));
+    }
+    let format = format(arguments)?;
+    let settings = settings(arguments)?;
+    let scene = Scene::load(&arguments.scene)?;
+    scene.warn(quiet);
+    let tree = scene.check()?;
+    let compiler = arguments.engine.required().map_or_else(Compiler::new, Compiler::for_engine);
+
+    let mut progress = Progress::new("meshing", quiet);
+    let mut work = || {
+        settings.run(&compiler, &tree, &mut |fraction| {
+            progress.set(fraction);
+            true
+        })
+    };
+    let made = in_pool(arguments.threads, &mut work)?.map_err(|error| failure(&scene, error))?;
+    drop(progress);
+
+    let mut output = Output::open(&arguments.output)?;
+    export::write(&made.mesh, format, &mut output).map_err(|error| match error {
+        ExportError::Write(error) => output.failure(error),
+        ExportError::TooLarge { .. } => Failure::Limit(error.to_string()),
+        ExportError::Extension { .. } | ExportError::File { .. } | ExportError::Malformed(_) => {
+            Failure::Defect(error.to_string())
+        }
+    })?;
+    output.finish()?;
+
+    let mut warnings = warnings(&made);
+    if !quiet {
+        warnings.iter().for_each(|warning| warn(warning));
+    }
+    warnings.splice(0..0, scene.warnings);
+    let report = Report { made: &made, warnings: &warnings, total: start.elapsed() };
+    if arguments.json {
+        return print(&format!("{}", report.json()));
+    }
+    match (quiet, to_stdout) {
+        (true, _) => Ok(()),
+        (false, true) => {
+            tell(&report.text("<stdout>"));
+            Ok(())
+        }
+        (false, false) => print(&report.text(&arguments.output.display().to_string())),
+    }
+}
+
+/// The format by option, else by extension.
+fn format(arguments: &MeshArguments) -> Result<Format, Failure> {
+    if let Some(name) = arguments.format {
+        return Ok(match name {
+            FormatName::Glb => Format::Glb,
+            FormatName::Ply => Format::Ply,
+            FormatName::Obj => Format::Obj,
+            FormatName::Stl => Format::Stl,
+        });
+    }
+    if is_standard(&arguments.output) {
+        return Err(Failure::Usage(
+            "a mesh on the standard output needs --format glb, ply, obj or stl".to_owned(),
+        ));
+    }
+    Format::of(&arguments.output).map_err(|_| {
+        let name = escape(&arguments.output.display().to_string());
+        Failure::Usage(format!(
+            "{name} does not end with .glb, .ply, .obj or .stl; --format says what to write"
+        ))
+    })
+}
+
+/// What the options say about the lattice.
+fn settings(arguments: &MeshArguments) -> Result<Polygonize, Failure> {
+    let fineness = match (arguments.cell, arguments.resolution) {
+        (Some(cell), _) if cell.is_nan() || cell <= 0.0 => {
+            return Err(Failure::Usage(format!(
+                "the edge of a cell must be greater than zero, and it is {cell}"
+            )));
+        }
+        (Some(cell), _) => Fineness::Cell(cell),
+        (None, Some(0)) => return Err(Failure::Usage("a mesh needs at least one cell".to_owned())),
+        (None, Some(cells)) => Fineness::Resolution(cells),
+        (None, None) => Fineness::default(),
+    };
+    Ok(Polygonize { region: arguments.region.map(|region| (region.low, region.high)), fineness })
+}
+
+/// Runs the work on so many threads; on one for each processor if no number is given.
+fn in_pool<T: Send>(threads: Option<u16>, work: &mut (impl FnMut() -> T + Send)) -> Result<T, Failure> {
+    let Some(threads) = threads else { return Ok(work()) };
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(usize::from(threads))
+        .build()
+        .map_err(|error| Failure::Limit(format!("{threads} threads cannot be had: {error}")))?;
+    Ok(pool.install(work))
+}
+
+/// Whose fault it is that there is no mesh.
+fn failure(scene: &Scene, error: PolygonizeError) -> Failure {
+    match error {
+        PolygonizeError::Empty => {
+            Failure::diagnostics(&scene.source(), &[Diagnostic::error(None, error.to_string())])
+        }
+        PolygonizeError::Unbounded => Failure::Usage(format!("{error}; --region gives it one")),
+        PolygonizeError::Compile(error) => Failure::compile(&scene.source(), &error),
+        PolygonizeError::Lattice(error) => match error {
+            LatticeError::NotFinite | LatticeError::Spacing { .. } | LatticeError::EmptyRegion { .. } => {
+                Failure::Usage(error.to_string())
+            }
+            LatticeError::Cells { .. }
+            | LatticeError::TooManyPoints { .. }
+            | LatticeError::TooFine { .. } => Failure::Limit(error.to_string()),
+        },
+        PolygonizeError::Mesh(error) => match error {
+            MeshError::Memory { .. } | MeshError::TooManyVertices { .. } => Failure::Limit(error.to_string()),
+            MeshError::Field(_)
+            | MeshError::Cancelled
+            | MeshError::Iso { .. }
+            | MeshError::Brick { .. }
+            | MeshError::Pulls { .. }
+            | MeshError::Width { .. } => Failure::Defect(error.to_string()),
+        },
+    }
+}
+
+/// What may not be as people expect.
+fn warnings(made: &Polygonized) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if made.mesh.triangles.is_empty() {
+        warnings
+            .push("the mesh is empty: no cell is crossed by the surface; cells may be too large".to_owned());
+    }
+    if made.report.cut_sides.any() {
+        warnings.push(format!(
+            "the region cuts the surface at its sides {}: the mesh is open there",
+            made.report.cut_sides
+        ));
+    } else if !made.report.closed {
+        warnings.push("the mesh is not closed".to_owned());
+    }
+    warnings
+}
+
+/// What is told about a mesh.
+struct Report<'a> {
+    made: &'a Polygonized,
+    warnings: &'a [String],
+    total: Duration,
+}
+
+impl Report<'_> {
+    /// For machines.
+    fn json(&self) -> serde_json::Value {
+        let Polygonized { mesh, report, lattice, .. } = self.made;
+        let (low, high) = corners(self.made);
+        json!({
+            "triangles": mesh.triangles.len(),
+            "vertices": mesh.positions.len(),
+            "closed": report.closed,
+            "cut_sides": report.cut_sides.to_string(),
+            "field_evaluations": report.field_evaluations,
+            "gradient_evaluations": report.gradient_evaluations,
+            "full_evaluations": report.full_evaluations,
+            "primitive_evaluations": self.made.primitive_evaluations,
+            "crossing_cells": report.crossing_cells,
+            "engine": self.made.engine.name(),
+            "region": [low[0], low[1], low[2], high[0], high[1], high[2]],
+            "cell": lattice.spacing(),
+            "cells": lattice.cells(),
+            "compile_ms": milliseconds(self.made.compile_time),
+            "total_ms": milliseconds(self.total),
+            "warnings": self.warnings,
+        })
+    }
+
+    /// For people.
+    fn text(&self, name: &str) -> String {
+        let Polygonized { mesh, report, lattice, .. } = self.made;
+        let closed = if report.closed {
+            "closed".to_owned()
+        } else if report.cut_sides.any() {
+            format!("open (cut at {})", report.cut_sides)
+        } else {
+            "not closed".to_owned()
+        };
+        let ([x0, y0, z0], [x1, y1, z1]) = corners(self.made);
+        let [nx, ny, nz] = lattice.cells();
+        format!(
+            "{}: {}, {}, {closed}\n\
+             \x20 lattice      {nx} x {ny} x {nz} cells of {:.6}, from ({x0:.4} {y0:.4} {z0:.4}) to ({x1:.4} {y1:.4} {z1:.4})\n\
+             \x20 evaluations  {} of the field, {} with gradient, {} with everything\n\
+             \x20 primitives   {} evaluated, by engine {}\n\
+             \x20 time         {:.1} ms to compile, {:.1} ms in total",
+            escape(name),
+            plural(mesh.triangles.len() as u64, "triangle", "triangles"),
+            plural(mesh.positions.len() as u64, "vertex", "vertices"),
+            lattice.spacing(),
+            grouped(report.field_evaluations),
+            grouped(report.gradient_evaluations),
+            grouped(report.full_evaluations),
+            grouped(self.made.primitive_evaluations),
+            self.made.engine.name(),
+            milliseconds(self.made.compile_time),
+            milliseconds(self.total),
+        )
+    }
+}
+
+/// The first and the last corner of the lattice.
+fn corners(made: &Polygonized) -> ([f64; 3], [f64; 3]) {
+    let (low, cells) = (made.lattice.origin(), made.lattice.cells());
+    (low, std::array::from_fn(|axis| low[axis] + made.lattice.spacing() * cells[axis] as f64))
+}
+
+fn milliseconds(time: Duration) -> f64 {
+    time.as_secs_f64() * 1e3
+}

@@ -1,0 +1,233 @@
+//! Where results go: files that are replaced as a whole, the standard output, and what people read on a terminal.
+
+use std::fs::{self, File};
+use std::io::{self, BufWriter, IsTerminal as _, Stdout, Write};
+use std::path::{Path, PathBuf};
+
+use clap::builder::styling::{AnsiColor, Style};
+use jbt_frontend::diagnostic::{Severity, escape};
+use tempfile::{NamedTempFile, TempPath};
+
+use crate::failure::Failure;
+use crate::scene::is_standard;
+
+/// A place for results. A file keeps its old contents until [`Output::finish`].
+pub struct Output {
+    writer: BufWriter<Target>,
+    name: String,
+}
+
+enum Target {
+    Standard(Stdout),
+    /// A pipe or a device: it is written as it comes.
+    Direct(File),
+    /// The new contents of a file, under a temporary name beside it.
+    Replacement {
+        file: File,
+        temporary: TempPath,
+        path: PathBuf,
+    },
+}
+
+impl Write for Target {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match self {
+            Self::Standard(stdout) => stdout.write(bytes),
+            Self::Direct(file) | Self::Replacement { file, .. } => file.write(bytes),
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match self {
+            Self::Standard(stdout) => stdout.flush(),
+            Self::Direct(file) | Self::Replacement { file, .. } => file.flush(),
+        }
+    }
+}
+
+impl Output {
+    /// Opens a path of the command line; `-` is the standard output.
+    pub fn open(path: &Path) -> Result<Self, Failure> {
+        let name = path.display().to_string();
+        let target = if is_standard(path) {
+            Target::Standard(io::stdout())
+        } else {
+            open_file(path).map_err(|error| Failure::io("write", &name, error))?
+        };
+        Ok(Self { writer: BufWriter::with_capacity(1 << 16, target), name })
+    }
+
+    /// Says which file could not be written. A reader that went away is no error.
+    pub fn failure(&self, error: io::Error) -> Failure {
+        match self.writer.get_ref() {
+            Target::Standard(_) => Failure::stdout(error),
+            Target::Direct(_) | Target::Replacement { .. } => Failure::io("write", &self.name, error),
+        }
+    }
+
+    /// Writes what is left, and puts a file in the place of its old one.
+    pub fn finish(mut self) -> Result<(), Failure> {
+        self.writer.flush().map_err(|error| self.failure(error))?;
+        let Self { writer, name } = self;
+        // Everything has been flushed.
+        let (target, _) = writer.into_parts();
+        match target {
+            Target::Standard(_) | Target::Direct(_) => Ok(()),
+            Target::Replacement { file, temporary, path } => file
+                .sync_all()
+                .and_then(|()| temporary.persist(path).map_err(|error| error.error))
+                .map_err(|error| Failure::io("write", name, error)),
+        }
+    }
+}
+
+impl Write for Output {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.writer.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.writer.flush()
+    }
+}
+
+fn open_file(path: &Path) -> io::Result<Target> {
+    // Through a link it is the file behind it that is replaced; the link stays.
+    let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    let old = fs::metadata(&path).ok();
+    if old.as_ref().is_some_and(|old| !old.is_file()) {
+        return File::options().write(true).open(path).map(Target::Direct);
+    }
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let (file, temporary) = temporary(folder)?.into_parts();
+    if let Some(old) = old {
+        file.set_permissions(old.permissions())?;
+    }
+    Ok(Target::Replacement { file, temporary, path })
+}
+
+/// A new file with the permissions that the process gives to any new file.
+fn temporary(folder: &Path) -> io::Result<NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".jbt-");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt as _;
+        builder.permissions(fs::Permissions::from_mode(0o666));
+    }
+    builder.tempfile_in(folder)
+}
+
+/// Prints a report to the standard output.
+pub fn print(text: &str) -> Result<(), Failure> {
+    let mut stdout = io::stdout().lock();
+    writeln!(stdout, "{text}").and_then(|()| stdout.flush()).map_err(Failure::stdout)
+}
+
+/// Tells people something. Where nobody listens there is nothing to do about it.
+pub fn tell(text: &str) {
+    let _ = writeln!(io::stderr().lock(), "{text}");
+}
+
+/// Warns people about something; the text may come from a stranger's file.
+pub fn warn(text: &str) {
+    tell(&format!("{}: {}", paint("jbt: warning", Severity::Warning), escape(text)));
+}
+
+/// Tells why a command has ended.
+pub fn report(failure: &Failure) {
+    let label = match failure {
+        Failure::BrokenPipe => return,
+        Failure::Input { messages } => {
+            for (severity, message) in messages {
+                tell(&highlight(message, *severity));
+            }
+            return;
+        }
+        Failure::Usage(_) | Failure::Io { .. } => "jbt: error",
+        Failure::Limit(_) => "jbt: limit",
+        Failure::Defect(_) => "jbt: defect",
+    };
+    tell(&format!("{}: {failure}", paint(label, Severity::Error)));
+}
+
+/// A rendered message with its severity in colour.
+pub fn highlight(message: &str, severity: Severity) -> String {
+    let word = match severity {
+        Severity::Error => "error",
+        Severity::Warning => "warning",
+        Severity::Limit => "limit",
+    };
+    match message.split_once(&format!(": {word}: ")) {
+        Some((place, rest)) => format!("{place}: {}: {rest}", paint(word, severity)),
+        None => message.to_owned(),
+    }
+}
+
+fn paint(word: &str, severity: Severity) -> String {
+    if !colours() {
+        return word.to_owned();
+    }
+    let colour = match severity {
+        Severity::Error | Severity::Limit => AnsiColor::Red,
+        Severity::Warning => AnsiColor::Yellow,
+    };
+    let style = Style::new().bold().fg_color(Some(colour.into()));
+    format!("{style}{word}{style:#}")
+}
+
+/// Whether messages are coloured: on a terminal, unless NO_COLOR says otherwise (<https://no-color.org>).
+fn colours() -> bool {
+    io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty())
+}
+
+/// A count as people read it: `1,670,000`.
+pub fn grouped(count: u64) -> String {
+    let digits = count.to_string();
+    let mut out = String::with_capacity(digits.len() * 4 / 3);
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
+            out.push(',');
+        }
+        out.push(digit);
+    }
+    out
+}
+
+/// `1 triangle`, `2,000 triangles`.
+pub fn plural(count: u64, one: &str, many: &str) -> String {
+    format!("{} {}", grouped(count), if count == 1 { one } else { many })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_for_people() {
+        assert_eq!(grouped(0), "0");
+        assert_eq!(grouped(999), "999");
+        assert_eq!(grouped(1000), "1,000");
+        assert_eq!(grouped(u64::MAX), "18,446,744,073,709,551,615");
+        assert_eq!(plural(1, "leaf", "leaves"), "1 leaf");
+        assert_eq!(plural(0, "leaf", "leaves"), "0 leaves");
+    }
+
+    #[test]
+    fn a_file_keeps_its_contents_until_the_end() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a");
+        fs::write(&path, "old").unwrap();
+        let mut output = Output::open(&path).unwrap();
+        output.write_all(b"half").unwrap();
+        output.flush().unwrap();
+        drop(output);
+        assert_eq!(fs::read(&path).unwrap(), b"old");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "nothing is left behind");
+        let mut output = Output::open(&path).unwrap();
+        output.write_all(b"new").unwrap();
+        output.finish().unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"new");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+}

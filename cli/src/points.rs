@@ -1,0 +1,211 @@
+//! Points from CSV text, a batch at a time, with the place of whatever is wrong with them.
+//!
+//! The first line names the columns; `x`, `y` and `z` are taken wherever they stand. Fields may be quoted, but a quoted field
+//! does not go over the end of its line. Blank lines mean nothing.
+
+use std::io::{self, BufRead, Read as _};
+
+use jbt::Points;
+use jbt_frontend::diagnostic::{Severity, escape};
+
+use crate::failure::Failure;
+
+/// The longest line that is read, in bytes: a file without line ends is not kept in memory.
+const MAX_LINE: usize = 1 << 20;
+
+/// A reader of points.
+pub struct PointReader<R> {
+    reader: R,
+    name: String,
+    buffer: Vec<u8>,
+    line: u64,
+    bytes: u64,
+    columns: [usize; 3],
+}
+
+/// A field of a line: its text without quotes, and the byte where it begins.
+struct Word {
+    text: Vec<u8>,
+    start: usize,
+}
+
+impl<R: BufRead> PointReader<R> {
+    /// Reads the header.
+    pub fn new(reader: R, name: String) -> Result<Self, Failure> {
+        let mut points = Self { reader, name, buffer: Vec::new(), line: 0, bytes: 0, columns: [0; 3] };
+        if !points.next_line()? {
+            return Err(points.error(0, "there is no header; expected one with the columns x, y and z"));
+        }
+        if points.buffer.starts_with(b"\xef\xbb\xbf") {
+            points.buffer.drain(..3);
+        }
+        let header = points.words()?;
+        for (column, name) in points.columns.iter_mut().zip(["x", "y", "z"]) {
+            let mut found =
+                header.iter().enumerate().filter(|(_, word)| word.text.trim_ascii() == name.as_bytes());
+            match (found.next(), found.next()) {
+                (Some((index, _)), None) => *column = index,
+                (Some(_), Some((_, again))) => {
+                    let start = again.start;
+                    return Err(points.error(start, &format!("there is another column `{name}`")));
+                }
+                (None, _) => return Err(points.error(0, &format!("there is no column `{name}`"))),
+            }
+        }
+        Ok(points)
+    }
+
+    /// Bytes read so far.
+    pub fn bytes(&self) -> u64 {
+        self.bytes
+    }
+
+    /// The next points, at most `limit`; none at the end.
+    pub fn batch(&mut self, limit: usize) -> Result<Points, Failure> {
+        let mut points = Points::new();
+        while points.len() < limit && self.next_line()? {
+            points.push(self.point()?);
+        }
+        Ok(points)
+    }
+
+    /// The point of the line in the buffer.
+    fn point(&self) -> Result<[f32; 3], Failure> {
+        let words = self.words()?;
+        let mut point = [0.0; 3];
+        for (axis, (number, &column)) in point.iter_mut().zip(&self.columns).enumerate() {
+            let axis = ["x", "y", "z"][axis];
+            let Some(word) = words.get(column) else {
+                let message = format!("the line ends before its column `{axis}`");
+                return Err(self.error(self.buffer.len(), &message));
+            };
+            let text = String::from_utf8_lossy(word.text.trim_ascii());
+            *number = text.parse().map_err(|_| {
+                let shown: String = text.chars().take(40).collect();
+                self.error(word.start, &format!("`{shown}` is not a number, for {axis}"))
+            })?;
+        }
+        Ok(point)
+    }
+
+    /// Brings the next line that is not blank into the buffer, without its end; false at the end of the text.
+    fn next_line(&mut self) -> Result<bool, Failure> {
+        loop {
+            self.buffer.clear();
+            let mut bounded = (&mut self.reader).take(MAX_LINE as u64 + 1);
+            let read = bounded
+                .read_until(b'\n', &mut self.buffer)
+                .map_err(|error: io::Error| Failure::io("read", &self.name, error))?;
+            if read == 0 {
+                return Ok(false);
+            }
+            self.line += 1;
+            self.bytes += read as u64;
+            if read > MAX_LINE {
+                let place = format!("{}:{}", escape(&self.name), self.line);
+                return Err(Failure::Limit(format!("{place}: a line is longer than {MAX_LINE} bytes")));
+            }
+            while let Some(b'\n' | b'\r') = self.buffer.last() {
+                self.buffer.pop();
+            }
+            if !self.buffer.trim_ascii().is_empty() {
+                return Ok(true);
+            }
+        }
+    }
+
+    /// The fields of the line in the buffer.
+    fn words(&self) -> Result<Vec<Word>, Failure> {
+        let line = &self.buffer;
+        let mut words = Vec::new();
+        let mut at = 0;
+        loop {
+            let start = at;
+            let mut text = Vec::new();
+            if line.get(at) == Some(&b'"') {
+                at += 1;
+                loop {
+                    match (line.get(at), line.get(at + 1)) {
+                        (Some(b'"'), Some(b'"')) => {
+                            text.push(b'"');
+                            at += 2;
+                        }
+                        (Some(b'"'), _) => break,
+                        (Some(&byte), _) => {
+                            text.push(byte);
+                            at += 1;
+                        }
+                        (None, _) => return Err(self.error(start, "the quote is not closed on this line")),
+                    }
+                }
+                at += 1;
+            }
+            let end = line[at.min(line.len())..]
+                .iter()
+                .position(|&byte| byte == b',')
+                .map_or(line.len(), |n| at + n);
+            text.extend_from_slice(&line[at.min(end)..end]);
+            words.push(Word { text, start });
+            if end == line.len() {
+                return Ok(words);
+            }
+            at = end + 1;
+        }
+    }
+
+    /// A located error in the line of the buffer.
+    fn error(&self, byte: usize, message: &str) -> Failure {
+        let before = &self.buffer[..byte.min(self.buffer.len())];
+        let column = String::from_utf8_lossy(before).chars().count() + 1;
+        let message =
+            format!("{}:{}:{column}: error: {}", escape(&self.name), self.line.max(1), escape(message));
+        Failure::Input { messages: vec![(Severity::Error, message)] }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Result<Vec<[f32; 3]>, String> {
+        let all = || {
+            let mut reader = PointReader::new(text.as_bytes(), "p.csv".to_owned())?;
+            let mut all = Vec::new();
+            loop {
+                let batch = reader.batch(2)?;
+                if batch.is_empty() {
+                    return Ok(all);
+                }
+                all.extend((0..batch.len()).map(|index| batch.get(index)));
+            }
+        };
+        all().map_err(|failure: Failure| failure.to_string())
+    }
+
+    #[test]
+    fn columns_are_found_by_name_and_order_is_kept() {
+        let text = "\u{feff}z,\"a,b\", y ,x\r\n3,\"q\"\"\",2,1\r\n\n-0,,1e-45,+.5\n1,2,3,inf";
+        let points = read(text).unwrap();
+        assert_eq!(points, [[1.0, 2.0, 3.0], [0.5, 1e-45, 0.0], [f32::INFINITY, 3.0, 1.0]]);
+        assert!(points[1][2].is_sign_negative());
+        assert_eq!(read("x,y,z\n"), Ok(vec![]));
+    }
+
+    #[test]
+    fn errors_have_a_place() {
+        let error = |text: &str| read(text).unwrap_err();
+        assert!(error("").starts_with("p.csv:1:1: error: there is no header"));
+        assert_eq!(error("x,z\n"), "p.csv:1:1: error: there is no column `y`");
+        assert_eq!(error("x,y,z,y\n"), "p.csv:1:7: error: there is another column `y`");
+        assert_eq!(error("x,y,z\n\n1,2,\u{1b}[2J"), "p.csv:3:5: error: `\\u{1b}[2J` is not a number, for z");
+        assert_eq!(error("é,x,y,z\né,1,é,3"), "p.csv:2:5: error: `é` is not a number, for y");
+        assert_eq!(error("x,y,z\n1,2"), "p.csv:2:4: error: the line ends before its column `z`");
+        assert_eq!(error("x,y,z\n1,\"2,3"), "p.csv:2:3: error: the quote is not closed on this line");
+    }
+
+    #[test]
+    fn a_line_without_end_is_not_kept() {
+        let reader = io::BufReader::new(io::repeat(b','));
+        assert!(matches!(PointReader::new(reader, "p".to_owned()), Err(Failure::Limit(_))));
+    }
+}

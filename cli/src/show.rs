@@ -1,0 +1,77 @@
+//! `jbt show`: a scene as one of the stages on its way to machine code.
+
+use jbt::kernel::{optimise, passes};
+use jbt::{CompileError, Query};
+use jbt_frontend::diagnostic::escape;
+use jbt_frontend::lower::lower;
+use jbt_frontend::text;
+
+use crate::arguments::ShowArguments;
+use crate::failure::Failure;
+use crate::output::print;
+use crate::scene::Scene;
+
+/// The stages that are not passes.
+const TREE: &str = "tree";
+const IR: &str = "ir";
+const CLIF: &str = "clif";
+
+/// Runs the command.
+pub fn run(arguments: &ShowArguments, quiet: bool) -> Result<(), Failure> {
+    let query = arguments.query.query();
+    let stage = arguments.stage.as_str();
+    if !stages(query).any(|(name, _)| name == stage) {
+        return Err(Failure::Usage(unknown(stage, query)));
+    }
+    let scene = Scene::load(&arguments.scene)?;
+    scene.warn(quiet);
+    let tree = scene.check()?;
+    if stage == TREE {
+        return print(text::print(&scene.model).trim_end());
+    }
+    let fail = |error: &CompileError| Failure::compile(&scene.source(), error);
+    let lowered =
+        lower(&tree, query).map_err(|diagnostics| Failure::diagnostics(&scene.source(), &diagnostics))?;
+    if stage == IR {
+        return print(lowered.function.to_string().trim_end());
+    }
+    let mut shown = None;
+    let verified = optimise(lowered.function, query.gradient, &mut |pass, function| {
+        if pass == stage {
+            shown = Some(function.to_string());
+        }
+    })
+    .map_err(|error| fail(&error))?;
+    match shown {
+        Some(text) => print(text.trim_end()),
+        None => print(clif(&verified)?.trim_end()),
+    }
+}
+
+#[cfg(feature = "jit")]
+fn clif(function: &jbt::ir::Verified) -> Result<String, Failure> {
+    jbt::jit::clif(function).map_err(|error| Failure::Limit(error.to_string()))
+}
+
+#[cfg(not(feature = "jit"))]
+fn clif(_function: &jbt::ir::Verified) -> Result<String, Failure> {
+    Err(Failure::Usage("this build has no machine code (cargo feature `jit`)".to_owned()))
+}
+
+/// All stages for a query, in order, and what each shows.
+fn stages(query: Query) -> impl Iterator<Item = (&'static str, &'static str)> {
+    let first = [(TREE, "The scene as .jbt text."), (IR, "The lowered program, before any pass.")];
+    let last = cfg!(feature = "jit").then_some((CLIF, "The program in Cranelift's language."));
+    first.into_iter().chain(passes(query.gradient).map(|pass| (pass.name, pass.what))).chain(last)
+}
+
+/// The message about an unknown stage, with those that there are.
+fn unknown(stage: &str, query: Query) -> String {
+    let list: Vec<String> = stages(query).map(|(name, what)| format!("  {name:<18}{what}")).collect();
+    format!(
+        "the query `{}` has no stage `{}`; its stages are:\n{}",
+        query.name(),
+        escape(stage),
+        list.join("\n")
+    )
+}

@@ -1,0 +1,279 @@
+//! Every command does what its help says.
+
+use crate::folder::{BLOB, Folder, SCENE};
+
+fn folder() -> Folder {
+    Folder::new().with("scene.jbt", SCENE).with("scene.blob", BLOB).with("points.csv", points())
+}
+
+/// Points on a grid, in columns that stand anywhere.
+fn points() -> String {
+    let mut text = "name,z,y,x\n".to_owned();
+    for index in 0..300 {
+        let at = |step: usize| (index * step % 17) as f32 / 8.0 - 1.0;
+        text += &format!("\"p, {index}\",{},{},{}\n", at(1), at(3), at(5));
+    }
+    text
+}
+
+#[test]
+fn mesh_writes_every_format_and_says_what_it_took() {
+    let folder = folder();
+    for (name, magic) in [("a.glb", "glTF"), ("a.ply", "ply\n"), ("a.obj", ""), ("a.STL", "")] {
+        let ran = folder.jbt(&["mesh", "scene.jbt", "-o", name, "--resolution", "24"]).code(0);
+        assert!(ran.stdout().starts_with(&format!("{name}: ")), "{}", ran.stdout());
+        for word in ["triangles", "vertices", "closed", "evaluations", "compile", "total"] {
+            assert!(ran.stdout().contains(word), "{word}: {}", ran.stdout());
+        }
+        assert_eq!(ran.stderr(), "");
+        assert!(folder.read(name).starts_with(magic.as_bytes()));
+        assert!(folder.read(name).len() > 1000);
+    }
+    let quiet = folder.jbt(&["mesh", "scene.jbt", "-o", "b.glb", "--resolution", "24", "--quiet"]).code(0);
+    assert_eq!((quiet.stdout(), quiet.stderr()), (String::new(), String::new()));
+    assert_eq!(folder.read("a.glb"), folder.read("b.glb"));
+}
+
+#[test]
+fn mesh_reports_for_machines() {
+    let ran =
+        folder().jbt(&["mesh", "scene.jbt", "-o", "a.ply", "--cell", "0.1", "--engine", "lanes", "--json"]);
+    let ran = ran.code(0);
+    let report = ran.json();
+    for key in ["triangles", "vertices", "field_evaluations", "gradient_evaluations", "full_evaluations"] {
+        assert!(report[key].as_u64().is_some_and(|count| count > 0), "{key}");
+    }
+    for key in ["compile_ms", "total_ms"] {
+        assert!(report[key].as_f64().is_some_and(|time| time > 0.0), "{key}");
+    }
+    assert_eq!(report["closed"], true);
+    assert_eq!(report["cut_sides"], "none");
+    assert_eq!(report["engine"], "lanes");
+    assert_eq!(report["cell"], 0.1);
+    assert_eq!(report["warnings"], serde_json::json!([]));
+    assert_eq!(report["region"].as_array().map(Vec::len), Some(6));
+    // Three leaves stand in this scene at different places; everything is evaluated once at a vertex.
+    let points = ["field_evaluations", "gradient_evaluations", "full_evaluations"];
+    let points: u64 = points.iter().filter_map(|key| report[key].as_u64()).sum();
+    assert_eq!(report["primitive_evaluations"].as_u64(), Some(3 * points));
+    assert_eq!(report["full_evaluations"], report["vertices"]);
+    // Euler: a closed surface has an even number of triangles, and two for each vertex but for its genus.
+    let count = |key: &str| report[key].as_i64().unwrap();
+    assert_eq!((count("triangles") - 2 * count("vertices")) % 4, 0);
+}
+
+#[test]
+fn a_region_that_cuts_the_surface_is_told() {
+    let folder = folder();
+    let arguments = ["mesh", "scene.jbt", "-o", "a.obj", "--cell", "0.1", "--region", "-2,-2,-2,0.5,2,2"];
+    let ran =
+        folder.jbt(&arguments).code(0).says("jbt: warning: the region cuts the surface at its sides +x");
+    assert!(ran.stdout().contains("open (cut at +x)"));
+    let json = folder.jbt(&[&arguments[..], &["--json"]].concat()).code(0).json();
+    assert_eq!((&json["closed"], &json["cut_sides"]), (&false.into(), &"+x".into()));
+    assert_eq!(json["warnings"].as_array().map(Vec::len), Some(1));
+    let far =
+        folder.jbt(&["mesh", "scene.jbt", "-o", "b.obj", "--region", "8,8,8,9,9,9", "--resolution", "4"]);
+    far.code(0).says("the mesh is empty");
+}
+
+#[test]
+fn threads_and_engines_give_equal_meshes() {
+    let folder = folder();
+    let runs = [["1", "jit"], ["2", "jit"], ["7", "jit"], ["2", "lanes"], ["2", "scalar"]];
+    let meshes = runs.map(|[threads, engine]| {
+        let ran = folder.jbt(&[
+            "mesh",
+            "scene.jbt",
+            "-o",
+            "a.glb",
+            "--resolution",
+            "20",
+            "--threads",
+            threads,
+            "--engine",
+            engine,
+        ]);
+        ran.code(0);
+        folder.read("a.glb")
+    });
+    for (mesh, run) in meshes.iter().zip(runs) {
+        assert!(*mesh == meshes[0], "{run:?}");
+    }
+}
+
+#[test]
+fn streams_instead_of_files() {
+    let folder = folder();
+    folder.jbt(&["mesh", "scene.jbt", "-o", "a.obj", "--resolution", "16"]).code(0);
+    let piped = ["mesh", "-", "-o", "-", "--format", "obj", "--resolution", "16"];
+    let ran = folder.jbt_with_input(&piped, SCENE.as_bytes()).code(0).says("triangles");
+    assert!(ran.stdout_bytes() == folder.read("a.obj"));
+
+    folder.jbt(&["eval", "scene.blob", "--points", "points.csv", "-o", "a.csv"]).code(0);
+    let from_stdin = ["eval", "-", "--points", "points.csv", "-o", "-"];
+    let ran = folder.jbt_with_input(&from_stdin, BLOB.as_bytes()).code(0);
+    assert!(ran.stdout_bytes() == folder.read("a.csv"));
+    let ran = folder.jbt_with_input(&["eval", "scene.blob", "--points", "-", "-o", "-"], points().as_bytes());
+    assert!(ran.code(0).stdout_bytes() == folder.read("a.csv"));
+}
+
+#[test]
+fn eval_answers_in_order_and_engines_agree() {
+    let folder = folder();
+    for query in ["field", "gradient", "attributes", "all"] {
+        let answers = ["scalar", "lanes", "jit"].map(|engine| {
+            let arguments = ["eval", "scene.jbt", "--points", "points.csv", "--query", query];
+            folder.jbt(&[&arguments[..], &["--engine", engine, "-o", "a.csv"]].concat()).code(0);
+            String::from_utf8(folder.read("a.csv")).unwrap()
+        });
+        assert!(answers.iter().all(|answer| *answer == answers[0]), "{query}");
+        let header = match query {
+            "field" => "x,y,z,field",
+            "gradient" => "x,y,z,field,gx,gy,gz",
+            "attributes" => "x,y,z,field,color.r,color.g,color.b,rough",
+            _ => "x,y,z,field,gx,gy,gz,color.r,color.g,color.b,rough",
+        };
+        let mut lines = answers[0].lines();
+        assert_eq!(lines.next(), Some(header));
+        let rows: Vec<Vec<f32>> =
+            lines.map(|line| line.split(',').map(|number| number.parse().unwrap()).collect()).collect();
+        assert_eq!(rows.len(), 300);
+        for (index, row) in rows.iter().enumerate() {
+            let at = |step: usize| (index * step % 17) as f32 / 8.0 - 1.0;
+            assert_eq!(row[..3], [at(5), at(3), at(1)]);
+            assert_eq!(row.len(), header.split(',').count());
+        }
+    }
+}
+
+/// The falloff of a ParsIP point is (1 - d^2)^3: 1 at its centre, 27/64 half way.
+#[test]
+fn eval_gives_known_values() {
+    let folder = folder().with("p.csv", "x,y,z\n0.25,0,0\n-0,0,5\n");
+    let ran = folder.jbt(&["eval", "scene.blob", "--points", "p.csv", "--query", "all", "-o", "-"]).code(0);
+    let stdout = ran.stdout();
+    let rows: Vec<Vec<f32>> =
+        stdout.lines().skip(1).map(|line| line.split(',').map(|n| n.parse().unwrap()).collect()).collect();
+    assert!((rows[0][3] - 2.0 * (15.0_f32 / 16.0).powi(3)).abs() < 1e-6, "{stdout}");
+    assert!(rows[0][4].abs() < 1e-6 && rows[0][5] == 0.0 && rows[0][6] == 0.0, "{stdout}");
+    assert!((rows[0][7] - 0.5).abs() < 1e-6 && (rows[0][9] - 0.5).abs() < 1e-6, "{stdout}");
+    assert_eq!(rows[1][3..7], [0.0; 4], "far away");
+    assert!(stdout.lines().nth(2).is_some_and(|line| line.starts_with("-0,0,5,0,")), "{stdout}");
+}
+
+#[test]
+fn eval_of_many_points_and_of_none() {
+    let many: String = (0..40_000).map(|index| format!("{index},0,0\n")).collect();
+    let folder = folder().with("many.csv", format!("x,y,z\n{many}")).with("none.csv", "x,y,z\n");
+    let ran = folder.jbt(&["eval", "scene.jbt", "--points", "many.csv", "-o", "-"]).code(0);
+    assert_eq!(ran.stdout().lines().count(), 40_001);
+    assert!(ran.stdout().lines().last().is_some_and(|line| line == "39999,0,0,0"));
+    let ran = folder.jbt(&["eval", "scene.jbt", "--points", "none.csv", "-o", "-"]).code(0);
+    assert_eq!(ran.stdout(), "x,y,z,field\n");
+}
+
+#[test]
+fn definitions_set_parameters() {
+    let folder = folder().with("p.csv", "x,y,z\n0.5,0,0.6\n");
+    let eval = |extra: &[&str]| {
+        let arguments = ["eval", "scene.jbt", "--points", "p.csv", "-o", "-"];
+        folder.jbt(&[&arguments[..], extra].concat()).code(0).stdout()
+    };
+    assert_ne!(eval(&[]), eval(&["-D", "bulge=0.9"]));
+    assert_eq!(
+        eval(&["-D", "bulge=0.9"]),
+        eval(&["-Dbulge=2", "--define", "bulge=0.9"]),
+        "the last one counts"
+    );
+}
+
+#[test]
+fn show_prints_every_stage() {
+    let folder = folder();
+    let tree = folder.jbt(&["show", "scene.blob", "--stage", "tree"]).code(0).stdout();
+    let again = Folder::new().with("tree.jbt", &tree);
+    assert_eq!(again.jbt(&["show", "tree.jbt", "--stage", "tree"]).code(0).stdout(), tree);
+    let stages = ["ir", "gradient", "legalize", "constant-folding", "simplify", "cse", "dce", "schedule"];
+    for stage in stages {
+        let text = folder.jbt(&["show", "scene.jbt", "--stage", stage]).code(0).stdout();
+        assert!(text.starts_with("function "), "{stage}: {text}");
+        assert_eq!(text.contains("gx"), stage != "ir", "{stage}");
+    }
+    let field =
+        folder.jbt(&["show", "scene.jbt", "--stage", "schedule", "--query", "field"]).code(0).stdout();
+    assert!(field.contains("(x, y, z) -> (field)"), "{field}");
+    if cfg!(feature = "jit") {
+        let clif = folder.jbt(&["show", "scene.jbt", "--stage", "clif"]).code(0).stdout();
+        assert!(clif.contains("f32x4"), "{clif}");
+    }
+    let unknown =
+        folder.jbt(&["show", "scene.jbt", "--stage", "nonsense"]).code(2).says("has no stage `nonsense`");
+    for stage in stages {
+        assert!(unknown.stderr().contains(stage), "{stage}");
+    }
+    folder
+        .jbt(&["show", "scene.jbt", "--stage", "gradient", "--query", "field"])
+        .code(2)
+        .says("has no stage");
+}
+
+#[test]
+fn count_compares_with_separate_walks() {
+    let folder = folder();
+    let report = folder.jbt(&["count", "scene.jbt", "--json"]).code(0).json();
+    assert_eq!(report["occurrences"], 3);
+    let queries = report["queries"].as_array().unwrap();
+    let found: Vec<_> = queries
+        .iter()
+        .map(|q| {
+            (q["query"].as_str().unwrap(), q["separate"].as_u64().unwrap(), q["fused"].as_u64().unwrap())
+        })
+        .collect();
+    assert_eq!(found, [("field", 3, 3), ("gradient", 15, 3), ("attributes", 6, 3), ("all", 18, 3)]);
+    let leaves = report["leaves"].as_array().unwrap();
+    assert_eq!(leaves.len(), 2, "the segment is one leaf that is used twice");
+    assert_eq!(
+        (&leaves[0]["kind"], &leaves[0]["line"], &leaves[0]["uses"]),
+        (&"segment".into(), &4.into(), &2.into())
+    );
+    assert_eq!(leaves[0]["evaluations"]["all"], 2);
+    assert_eq!(
+        (&leaves[1]["kind"], &leaves[1]["line"], &leaves[1]["uses"]),
+        (&"point".into(), &8.into(), &1.into())
+    );
+
+    let table = folder.jbt(&["count", "scene.jbt", "--query", "all"]).code(0).stdout();
+    assert!(
+        table.contains("4:11") && table.contains("6.00") && table.contains("separate = walks x"),
+        "{table}"
+    );
+    assert!(!table.contains("attributes  "), "one query only: {table}");
+}
+
+#[test]
+fn check_summarises_a_good_scene() {
+    let folder = folder();
+    let text = folder.jbt(&["check", "scene.jbt"]).code(0).stdout();
+    for words in [
+        "scene.jbt: no errors",
+        "leaves       2",
+        "occurrences  3",
+        "bounds       (",
+        "rough (1 x f32, dominant)",
+    ] {
+        assert!(text.contains(words), "{words}: {text}");
+    }
+    let quiet = folder.jbt(&["check", "scene.blob", "-q"]).code(0);
+    assert_eq!((quiet.stdout(), quiet.stderr()), (String::new(), String::new()));
+}
+
+#[test]
+fn help_and_version() {
+    let folder = Folder::new();
+    assert_eq!(folder.jbt(&["--version"]).code(0).stdout(), concat!("jbt ", env!("CARGO_PKG_VERSION"), "\n"));
+    for command in ["mesh", "eval", "show", "count", "check"] {
+        assert!(folder.jbt(&["--help"]).code(0).stdout().contains(command));
+        assert!(folder.jbt(&[command, "--help"]).code(0).stdout().contains("SCENE"));
+    }
+}
