@@ -1,0 +1,83 @@
+//! The absences that ARCHITECTURE.md states: who depends on whom, and where `unsafe` lives.
+
+use std::path::{Path, PathBuf};
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// Rust files of a crate's sources.
+fn sources(name: &str) -> Vec<(PathBuf, String)> {
+    let mut files = Vec::new();
+    let mut folders = vec![root().join(name).join("src")];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(&folder).expect("a readable folder") {
+            let path = entry.expect("a readable folder").path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|extension| extension == "rs") {
+                let text = std::fs::read_to_string(&path).expect("a readable file");
+                files.push((path, text));
+            }
+        }
+    }
+    files
+}
+
+fn dependencies(name: &str) -> String {
+    let manifest = std::fs::read_to_string(root().join(name).join("Cargo.toml")).expect("a manifest");
+    let start = manifest.find("[dependencies]").expect("dependencies");
+    let end = manifest[start + 1..].find("\n[").map_or(manifest.len(), |end| start + 1 + end);
+    manifest[start..end].to_owned()
+}
+
+#[test]
+fn crates_depend_downwards() {
+    for (name, absent) in [
+        ("ir", &["jbt-", "cranelift", "glam", "rayon"][..]),
+        ("frontend", &["jbt-jit", "cranelift", "rayon"]),
+        ("jit", &["jbt-frontend", "glam", "rayon"]),
+        ("runtime", &["cranelift"]),
+    ] {
+        let dependencies = dependencies(name);
+        for word in absent {
+            let found = dependencies.lines().any(|line| line.starts_with(word));
+            assert!(!found, "{name} does not depend on {word}");
+        }
+    }
+}
+
+#[test]
+fn unsafe_code_has_its_homes() {
+    let homes = ["jit/src/memory.rs", "ir/src/environment.rs", "ir/src/domain/lanes/level.rs"];
+    for name in ["frontend", "ir", "jit", "runtime", "cli"] {
+        for (path, text) in sources(name) {
+            let at_home = homes.iter().any(|home| path.ends_with(home));
+            let code = text.lines().filter(|line| !line.trim_start().starts_with("//"));
+            let has = code.into_iter().any(|line| {
+                line.contains("unsafe {") || line.contains("unsafe fn") || line.contains("unsafe impl")
+            });
+            assert!(at_home || !has, "{} has unsafe code", path.display());
+        }
+    }
+}
+
+#[test]
+fn every_file_says_what_it_is() {
+    for name in ["frontend", "ir", "jit", "runtime", "cli", "benches"] {
+        for (path, text) in sources(name) {
+            assert!(text.starts_with("//! "), "{} begins with a sentence", path.display());
+        }
+    }
+}
+
+#[test]
+fn nothing_is_left_for_later() {
+    for name in ["frontend", "ir", "jit", "runtime", "cli", "benches"] {
+        for (path, text) in sources(name) {
+            for word in ["todo!(", "unimplemented!(", "dbg!("] {
+                assert!(!text.contains(word), "{} has {word}", path.display());
+            }
+        }
+    }
+}
