@@ -4,7 +4,7 @@ use jbt::{Compiler, Engine, Query};
 use jbt_frontend::check::CheckedTree;
 use jbt_frontend::text;
 
-/// Every scene of the examples folder.
+/// Every scene of the examples folder, and one that shares what none of them does.
 fn examples() -> Vec<(String, CheckedTree)> {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples");
     let mut scenes: Vec<_> = std::fs::read_dir(folder)
@@ -19,6 +19,10 @@ fn examples() -> Vec<(String, CheckedTree)> {
         })
         .collect();
     scenes.sort_by(|a, b| a.0.cmp(&b.0));
+    // One leaf at one place with two colours: the field is shared, the attributes are not.
+    let two = b"jbt 1 let a = point { radius 1 } sum { color (1 0 0) { use a } union { color (0 1 0) { use a } box { half (1 1 1) radius 1 } } }";
+    let model = text::parse(two, &text::Options::default()).expect("it reads");
+    scenes.push(("two colours".to_owned(), model.check().expect("it is a good model")));
     scenes
 }
 
