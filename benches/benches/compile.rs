@@ -4,14 +4,15 @@ use std::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use jbt::{Compiler, Engine, Query};
-use jbt_benches::{blobs, check, cube};
+use jbt_benches::check;
+use jbt_benches::model::{blobs, cube, tree};
 
 fn compile(c: &mut Criterion) {
     let mut group = c.benchmark_group("compile");
     for count in [20, 200, 2000] {
-        let tree = blobs(count, 1);
+        let tree = tree(&blobs(count, 1));
         let points = cube(1000, 2);
-        check(&tree, &Compiler::new().evaluator(&tree, Query::FIELD).expect("blobs compile"), &points);
+        check::field(&tree, &Compiler::new().evaluator(&tree, Query::FIELD).expect("blobs compile"), &points);
         for query in [Query::FIELD, Query::ALL] {
             for engine in [Engine::Lanes, Engine::Jit] {
                 let name = format!("{}/{}", engine.name(), query.name());
@@ -23,7 +24,7 @@ fn compile(c: &mut Criterion) {
             }
         }
         group.bench_with_input(BenchmarkId::new("edit", count), &tree, |b, tree| {
-            let other = blobs(count, 3);
+            let other = self::tree(&blobs(count, 3));
             let mut evaluator = Compiler::new().evaluator(tree, Query::ALL).expect("blobs compile");
             b.iter(|| {
                 assert_eq!(evaluator.update(black_box(&other)).expect("blobs compile"), jbt::Update::Numbers);
