@@ -127,8 +127,8 @@ pub struct EvalArguments {
 /// What `jbt show` takes.
 #[derive(Args, Debug)]
 #[command(after_help = "\
-Stages: `tree` (the scene as .jbt text), `ir` (the lowered program), the name of a pass (the program after it), and `clif`
-(Cranelift's own language, where machine code is built in). A wrong name lists them all.
+Stages: `tree` (the scene as .jbt text), `ir` (the lowered program), the name of a pass (the program after it), and, where
+machine code is built in, `clif` (Cranelift's own language) and `asm` (the machine's instructions). A wrong name lists them all.
 
 Examples:
   jbt show train.scene --stage tree > train.jbt

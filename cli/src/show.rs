@@ -15,6 +15,7 @@ use crate::scene::Scene;
 const TREE: &str = "tree";
 const IR: &str = "ir";
 const CLIF: &str = "clif";
+const ASM: &str = "asm";
 
 /// Runs the command.
 pub fn run(arguments: &ShowArguments, quiet: bool) -> Result<(), Failure> {
@@ -44,24 +45,34 @@ pub fn run(arguments: &ShowArguments, quiet: bool) -> Result<(), Failure> {
     .map_err(|error| fail(&error))?;
     match shown {
         Some(text) => print(text.trim_end()),
-        None => print(clif(&verified)?.trim_end()),
+        None => print(machine(&verified, stage)?.trim_end()),
     }
 }
 
+/// The program as the code generator has it.
 #[cfg(feature = "jit")]
-fn clif(function: &jbt::ir::Verified) -> Result<String, Failure> {
-    jbt::jit::clif(function).map_err(|error| Failure::Limit(error.to_string()))
+fn machine(function: &jbt::ir::Verified, stage: &str) -> Result<String, Failure> {
+    let text = if stage == CLIF {
+        jbt::jit::clif(function)
+    } else {
+        jbt::jit::asm(function, &jbt::jit::Options::default())
+    };
+    text.map_err(|error| Failure::Limit(error.to_string()))
 }
 
 #[cfg(not(feature = "jit"))]
-fn clif(_function: &jbt::ir::Verified) -> Result<String, Failure> {
+fn machine(_function: &jbt::ir::Verified, _stage: &str) -> Result<String, Failure> {
     Err(Failure::Usage("this build has no machine code (cargo feature `jit`)".to_owned()))
 }
 
 /// All stages for a query, in order, and what each shows.
 fn stages(query: Query) -> impl Iterator<Item = (&'static str, &'static str)> {
     let first = [(TREE, "The scene as .jbt text."), (IR, "The lowered program, before any pass.")];
-    let last = cfg!(feature = "jit").then_some((CLIF, "The program in Cranelift's language."));
+    let last = [
+        (CLIF, "The program in Cranelift's language."),
+        (ASM, "The machine's instructions, registers chosen."),
+    ];
+    let last = last.into_iter().filter(|_| cfg!(feature = "jit"));
     first.into_iter().chain(passes(query.gradient).map(|pass| (pass.name, pass.what))).chain(last)
 }
 

@@ -2,6 +2,8 @@
 
 use std::panic::{self, AssertUnwindSafe};
 
+use cranelift_codegen::Context;
+use cranelift_codegen::control::ControlPlane;
 use jbt_ir::limits::{MAX_JIT_LIVE_VALUES, MAX_JIT_VALUES};
 use jbt_ir::{Function, Inst, InstKind, Op, Verified};
 
@@ -188,6 +190,23 @@ pub fn clif(function: &Verified) -> Result<String, CompileError> {
     let live = check(function.function())?;
     let (vectors, _) = Options::default().choose(function.function().values.len(), live);
     guard(|| lower::lower(function, vectors).into_function().display().to_string())
+}
+
+/// The machine instructions that [`crate::Kernel::compile_with`] makes of a function, registers chosen, as text.
+///
+/// # Errors
+/// Those of [`crate::Kernel::compile_with`].
+pub fn asm(function: &Verified, options: &Options) -> Result<String, CompileError> {
+    let live = check(function.function())?;
+    let (vectors, allocator) = options.choose(function.function().values.len(), live);
+    let isa = isa::host(options.opt_level, allocator)?;
+    guard(|| {
+        let mut context = Context::for_function(lower::lower(function, vectors).into_function());
+        context.set_disasm(true);
+        let compiled = context.compile(&*isa, &mut ControlPlane::default());
+        let compiled = compiled.map_err(|error| CompileError::Cranelift(error.inner.to_string()))?;
+        Ok(compiled.vcode.clone().unwrap_or_default())
+    })?
 }
 
 /// Looks for whatever we decline, and returns the number of values that are alive at once.

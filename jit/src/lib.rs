@@ -52,5 +52,5 @@ mod memory;
 mod pressure;
 mod vectors;
 
-pub use compile::{Allocator, CompileError, OptLevel, Options, VectorCount, clif};
+pub use compile::{Allocator, CompileError, OptLevel, Options, VectorCount, asm, clif};
 pub use entry::{BoundKernel, Kernel, RunError};

@@ -206,6 +206,8 @@ fn show_prints_every_stage() {
     if cfg!(feature = "jit") {
         let clif = folder.jbt(&["show", "scene.jbt", "--stage", "clif"]).code(0).stdout();
         assert!(clif.contains("f32x4"), "{clif}");
+        let asm = folder.jbt(&["show", "scene.jbt", "--stage", "asm"]).code(0).stdout();
+        assert!(asm.contains("vfmadd"), "{asm}");
     }
     let unknown =
         folder.jbt(&["show", "scene.jbt", "--stage", "nonsense"]).code(2).says("has no stage `nonsense`");
