@@ -56,6 +56,8 @@ pub struct FunctionBuilder {
     depth: Vec<usize>,
     /// For each value, the instruction that defines it; accumulators have none.
     definition: Vec<Option<Inst>>,
+    /// For each value, whether it is the same at all points of a row.
+    uniform: Vec<bool>,
     origin: Origin,
 }
 
@@ -71,6 +73,7 @@ impl FunctionBuilder {
             known: HashMap::default(),
             depth: Vec::new(),
             definition: Vec::new(),
+            uniform: Vec::new(),
             origin: Origin::SHARED,
         }
     }
@@ -150,6 +153,12 @@ impl FunctionBuilder {
         }
     }
 
+    /// Whether the value is the same at all points, for given rows: made of constants and columns alone. Engines compute it once for a row.
+    #[must_use]
+    pub fn is_uniform(&self, value: Value) -> bool {
+        self.uniform[value.index()]
+    }
+
     /// An input plane.
     pub fn input(&mut self, index: usize) -> Value {
         self.insert(Key::Input(index), 0, InstKind::Input(index), Type::Real)
@@ -215,6 +224,7 @@ impl FunctionBuilder {
     fn new_value(&mut self, type_: Type, depth: usize) -> Value {
         self.depth.push(depth);
         self.definition.push(None);
+        self.uniform.push(false);
         self.function.values.push(type_)
     }
 
@@ -233,6 +243,11 @@ impl FunctionBuilder {
             return value;
         }
         let value = self.new_value(type_, depth);
+        self.uniform[value.index()] = match &kind {
+            InstKind::Constant(_) | InstKind::BitsConstant(_) | InstKind::Column { .. } => true,
+            InstKind::Op { args, .. } => args.iter().all(|&arg| self.is_uniform(arg)),
+            InstKind::Input(_) | InstKind::Fold(_) => false,
+        };
         self.append(depth, kind, vec![value]);
         self.open[depth].known.push(key.clone());
         self.known.insert(key, value);

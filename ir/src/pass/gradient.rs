@@ -2,8 +2,8 @@
 //! component is +0.
 //!
 //! The function is run once in the [`Tangent`] domain. Primal instructions are shared with the derivatives, so nothing is computed
-//! twice. A fold gets three more accumulators for each accumulator that moves; which ones do is found beforehand, because an
-//! accumulator can begin to move only in the body.
+//! twice. A fold gets three more accumulators for each accumulator that moves and that the first output depends on; which ones do is
+//! found beforehand, because an accumulator can begin to move only in the body.
 //!
 //! ```text
 //! (s) = fold t0 sum (0) (acc): ... yield next
@@ -48,8 +48,59 @@ pub fn gradient(function: &Function) -> Function {
     pass.tangent.builder.finish(&outputs)
 }
 
-/// Which values move with the inputs. Accumulators need a fixed point: one that stands still at first may be moved by the body.
+/// What the first output depends on.
+fn wanted(function: &Function) -> Vec<bool> {
+    let mut wanted = vec![false; function.values.len()];
+    let mut waiting: Vec<Value> =
+        function.blocks[function.body].results.first().copied().into_iter().collect();
+    // What a value is made of: its operands; for what a fold yields or binds, the accumulator's beginning and next value.
+    let mut sources: Vec<Vec<Value>> = vec![Vec::new(); function.values.len()];
+    for inst in function.insts.values() {
+        match &inst.kind {
+            InstKind::Input(_)
+            | InstKind::Constant(_)
+            | InstKind::BitsConstant(_)
+            | InstKind::Column { .. } => {}
+            InstKind::Op { args, .. } => sources[inst.results[0].index()].clone_from(args),
+            InstKind::Fold(fold) => {
+                let body = &function.blocks[fold.body];
+                for (place, result) in inst.results.iter().enumerate() {
+                    let of = vec![fold.initial[place], body.results[place]];
+                    sources[body.params[place].index()].clone_from(&of);
+                    sources[result.index()] = of;
+                }
+            }
+        }
+    }
+    while let Some(value) = waiting.pop() {
+        if !std::mem::replace(&mut wanted[value.index()], true) {
+            waiting.extend(&sources[value.index()]);
+        }
+    }
+    wanted
+}
+
+/// Which values move with the inputs and move the first output.
 fn moving(function: &Function) -> Vec<bool> {
+    let mut moves = moved(function);
+    for (moves, wanted) in moves.iter_mut().zip(wanted(function)) {
+        *moves &= wanted;
+    }
+    // An accumulator may be wanted in the body alone, or behind the fold alone: its tangent is there in both.
+    for inst in function.insts.values() {
+        if let InstKind::Fold(fold) = &inst.kind {
+            for (&param, &result) in function.blocks[fold.body].params.iter().zip(&inst.results) {
+                let either = moves[param.index()] || moves[result.index()];
+                moves[param.index()] = either;
+                moves[result.index()] = either;
+            }
+        }
+    }
+    moves
+}
+
+/// Which values move with the inputs. Accumulators need a fixed point: one that stands still at first may be moved by the body.
+fn moved(function: &Function) -> Vec<bool> {
     let mut moves = vec![false; function.values.len()];
     loop {
         let before = moves.iter().filter(|&&m| m).count();
@@ -89,6 +140,14 @@ impl Pass<'_> {
         self.values[value.index()].expect("a verified function defines values before it uses them")
     }
 
+    /// An operand; as one that stands still, if nobody wants to know how the result moves.
+    fn operand(&self, value: Value, moves: bool) -> Any<Tangent> {
+        match self.value(value) {
+            Any::Real(dual) if !moves => Any::Real(Tangent::still(dual.value)),
+            operand => operand,
+        }
+    }
+
     fn with_zeros(&mut self, vector: Vector) -> [Value; 3] {
         vector.map(|component| component.unwrap_or_else(|| self.tangent.builder.constant(0.0)))
     }
@@ -105,7 +164,8 @@ impl Pass<'_> {
                     Any::Real(Tangent::still(self.tangent.builder.column(*table, *column)))
                 }
                 InstKind::Op { op, args } => {
-                    let args: Vec<Any<Tangent>> = args.iter().map(|&arg| self.value(arg)).collect();
+                    let moves = self.moves[data.results[0].index()];
+                    let args: Vec<Any<Tangent>> = args.iter().map(|&arg| self.operand(arg, moves)).collect();
                     apply(&mut self.tangent, *op, &args)
                 }
                 InstKind::Fold(fold) => {

@@ -4,10 +4,10 @@
 //! there already, and the tangents after them. A tangent is kept as a product,
 //!
 //! ```text
-//! constant * factor * (bx, by, bz)
+//! constant * factors * (bx, by, bz)
 //! ```
 //!
-//! because along a chain of one variable (a squared distance, its falloff, a strength) only the scalar factor changes: the
+//! because along a chain of one variable (a squared distance, its falloff, a strength) only the scalar factors change: the
 //! derivative of a falloff is computed once and not three times. Components that are zero are not there at all, and squares keep
 //! their 2 in the constant, so that the gradient of `|p - c|^2` is `2 * (dx, dy, dz)` and costs nothing.
 
@@ -17,24 +17,11 @@ use crate::builder::FunctionBuilder;
 use crate::entity::Value;
 use crate::op::{Domain, Op};
 
-/// Three components; `None` is an exact zero.
-pub type Vector = [Option<Value>; 3];
+mod slope;
 
-/// The tangent of a real.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub enum Slope {
-    /// It does not move.
-    Zero,
-    /// `constant * factor * base`; no factor means 1.
-    Scaled {
-        /// A number that is known while compiling.
-        constant: f32,
-        /// A number for each lane.
-        factor: Option<Value>,
-        /// The name of a base vector of the domain.
-        base: usize,
-    },
-}
+pub use slope::{Factors, Slope, Vector};
+
+use slope::Factor;
 
 /// A real and its tangent.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -50,14 +37,22 @@ pub struct Tangent {
     /// Where the instructions go.
     pub builder: FunctionBuilder,
     bases: Vec<Vector>,
-    names: HashMap<Vector, usize>,
+    base_names: HashMap<Vector, usize>,
+    lists: Vec<Vec<Factor>>,
+    list_names: HashMap<Vec<Factor>, usize>,
 }
 
 impl Tangent {
     /// Emits into this builder.
     #[must_use]
     pub fn new(builder: FunctionBuilder) -> Self {
-        Self { builder, bases: Vec::new(), names: HashMap::default() }
+        Self {
+            builder,
+            bases: Vec::new(),
+            base_names: HashMap::default(),
+            lists: vec![Vec::new()],
+            list_names: HashMap::from_iter([(Vec::new(), 0)]),
+        }
     }
 
     /// A value that does not move.
@@ -68,176 +63,7 @@ impl Tangent {
 
     /// A value with this tangent.
     pub fn moving(&mut self, value: Value, tangent: Vector) -> Dual {
-        Dual { value, slope: self.vector(1.0, None, tangent) }
-    }
-
-    /// The tangent as three values.
-    pub fn components(&mut self, slope: Slope) -> Vector {
-        let Slope::Scaled { constant, factor, base } = slope else { return [None; 3] };
-        let scale = self.scale(constant, factor);
-        let base = self.bases[base];
-        base.map(|component| component.map(|value| self.times(scale, value)))
-    }
-
-    /// `constant * factor * vector` as a slope.
-    fn vector(&mut self, constant: f32, factor: Option<Value>, vector: Vector) -> Slope {
-        if vector == [None; 3] || constant == 0.0 {
-            return Slope::Zero;
-        }
-        let next = self.bases.len();
-        let base = *self.names.entry(vector).or_insert(next);
-        if base == next {
-            self.bases.push(vector);
-        }
-        Slope::Scaled { constant, factor, base }
-    }
-
-    /// `constant * factor` as one value.
-    fn scale(&mut self, constant: f32, factor: Option<Value>) -> Value {
-        let number = self.builder.constant(constant);
-        factor.map_or(number, |factor| self.times(number, factor))
-    }
-
-    /// `a * b`, where 1 is not multiplied.
-    fn times(&mut self, a: Value, b: Value) -> Value {
-        if self.builder.as_constant(a) == Some(1.0) {
-            b
-        } else if self.builder.as_constant(b) == Some(1.0) {
-            a
-        } else {
-            self.builder.mul(a, b)
-        }
-    }
-
-    /// `by * slope`.
-    fn scaled(&mut self, slope: Slope, by: Value) -> Slope {
-        let Slope::Scaled { constant, factor, base } = slope else { return Slope::Zero };
-        if let Some(number) = self.builder.as_constant(by) {
-            return Self::multiplied(slope, number);
-        }
-        let factor = factor.map_or(by, |factor| self.times(factor, by));
-        Slope::Scaled { constant, factor: Some(factor), base }
-    }
-
-    /// `by * slope`, for a number.
-    fn multiplied(slope: Slope, by: f32) -> Slope {
-        match slope {
-            Slope::Zero => Slope::Zero,
-            Slope::Scaled { .. } if by == 0.0 => Slope::Zero,
-            Slope::Scaled { constant, factor, base } => {
-                Slope::Scaled { constant: constant * by, factor, base }
-            }
-        }
-    }
-
-    /// `a + b`.
-    fn sum(&mut self, a: Slope, b: Slope) -> Slope {
-        let (
-            Slope::Scaled { constant: ca, factor: fa, base: ba },
-            Slope::Scaled { constant: cb, factor: fb, base: bb },
-        ) = (a, b)
-        else {
-            return if a == Slope::Zero { b } else { a };
-        };
-        if ba == bb {
-            return self.sum_of_factors((ca, fa), (cb, fb), ba);
-        }
-        // One constant for both leaves the factors to the components, where one fused step each adds them.
-        let common = if ca.abs() == cb.abs() { ca } else { 1.0 };
-        if common == 1.0 && fa == fb && ca == cb {
-            let vector = self.sum_of_vectors(None, ba, None, bb);
-            return self.vector(1.0, fa, vector);
-        }
-        let fa = (ca / common != 1.0 || fa.is_some()).then(|| self.scale(ca / common, fa));
-        let fb = (cb / common != 1.0 || fb.is_some()).then(|| self.scale(cb / common, fb));
-        let vector = self.sum_of_vectors(fa, ba, fb, bb);
-        self.vector(common, None, vector)
-    }
-
-    /// `(ca fa + cb fb) * base`.
-    fn sum_of_factors(&mut self, a: (f32, Option<Value>), b: (f32, Option<Value>), base: usize) -> Slope {
-        if a.1 == b.1 {
-            let constant = a.0 + b.0;
-            return if constant == 0.0 { Slope::Zero } else { Slope::Scaled { constant, factor: a.1, base } };
-        }
-        // The first constant is taken out of the sum: ca (fa + (cb / ca) fb).
-        let one = self.builder.constant(1.0);
-        let first = a.1.unwrap_or(one);
-        let second = b.1.unwrap_or(one);
-        let ratio = b.0 / a.0;
-        let sum = if ratio == 1.0 {
-            self.builder.add(first, second)
-        } else {
-            let ratio = self.builder.constant(ratio);
-            self.builder.fma(ratio, second, first)
-        };
-        Slope::Scaled { constant: a.0, factor: Some(sum), base }
-    }
-
-    /// `fa * a + fb * b` by components; no factor means 1.
-    fn sum_of_vectors(&mut self, fa: Option<Value>, a: usize, fb: Option<Value>, b: usize) -> Vector {
-        let (a, b) = (self.bases[a], self.bases[b]);
-        std::array::from_fn(|axis| match (a[axis], b[axis]) {
-            (None, None) => None,
-            (Some(a), None) => Some(fa.map_or(a, |f| self.times(f, a))),
-            (None, Some(b)) => Some(fb.map_or(b, |f| self.times(f, b))),
-            (Some(a), Some(b)) => Some(match (fa, fb) {
-                (None, None) => self.builder.add(a, b),
-                (Some(fa), None) => self.multiply_add(fa, a, b),
-                (None, Some(fb)) => self.multiply_add(fb, b, a),
-                (Some(fa), Some(fb)) => {
-                    let product = self.times(fa, a);
-                    self.multiply_add(fb, b, product)
-                }
-            }),
-        })
-    }
-
-    fn multiply_add(&mut self, a: Value, b: Value, c: Value) -> Value {
-        if self.builder.as_constant(a) == Some(1.0) {
-            self.builder.add(b, c)
-        } else if self.builder.as_constant(b) == Some(1.0) {
-            self.builder.add(a, c)
-        } else {
-            self.builder.fma(a, b, c)
-        }
-    }
-
-    /// The slope of `condition ? a : b`.
-    fn choice(&mut self, condition: Value, a: Slope, b: Slope) -> Slope {
-        if a == b {
-            return a;
-        }
-        let zero = self.builder.constant(0.0);
-        match (a, b) {
-            (Slope::Zero, Slope::Zero) => Slope::Zero,
-            (Slope::Scaled { constant, factor, base }, Slope::Zero) => {
-                let factor = factor.unwrap_or_else(|| self.builder.constant(1.0));
-                let factor = self.builder.select(condition, factor, zero);
-                Slope::Scaled { constant, factor: Some(factor), base }
-            }
-            (Slope::Zero, Slope::Scaled { constant, factor, base }) => {
-                let factor = factor.unwrap_or_else(|| self.builder.constant(1.0));
-                let factor = self.builder.select(condition, zero, factor);
-                Slope::Scaled { constant, factor: Some(factor), base }
-            }
-            (
-                Slope::Scaled { constant: ca, factor: fa, base: ba },
-                Slope::Scaled { constant: cb, factor: fb, base: bb },
-            ) => {
-                if ba == bb {
-                    let (a, b) = (self.scale(ca, fa), self.scale(cb, fb));
-                    let factor = self.builder.select(condition, a, b);
-                    return Slope::Scaled { constant: 1.0, factor: Some(factor), base: ba };
-                }
-                let (a, b) = (self.components(a), self.components(b));
-                let vector = std::array::from_fn(|axis| match (a[axis], b[axis]) {
-                    (None, None) => None,
-                    (a, b) => Some(self.builder.select(condition, a.unwrap_or(zero), b.unwrap_or(zero))),
-                });
-                self.vector(1.0, None, vector)
-            }
-        }
+        Dual { value, slope: self.vector(1.0, Factors::default(), tangent) }
     }
 
     /// The slope of a product of two reals.
