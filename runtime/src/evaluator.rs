@@ -1,6 +1,6 @@
 //! The evaluator: a model and a query become a kernel once; points become samples many times.
 
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, OnceLock};
 
 use jbt_frontend::check::CheckedTree;
 use jbt_frontend::lower::{Lowered, lower};
@@ -101,7 +101,8 @@ pub struct Evaluator {
     bound: Bound,
     query: Query,
     layout: Layout,
-    evaluations: u64,
+    /// Distances for a point, once somebody has asked.
+    evaluations: OnceLock<u64>,
     tally: Tally,
 }
 
@@ -128,9 +129,8 @@ impl Evaluator {
             kernel.function.function().outputs,
             "planes are named alike everywhere"
         );
-        let evaluations = evaluations(&kernel.function, &tables).total;
         let bound = kernel.bind(Arc::new(tables));
-        Self { compiler, bound, query, layout, evaluations, tally: Tally::default() }
+        Self { compiler, bound, query, layout, evaluations: OnceLock::new(), tally: Tally::default() }
     }
 
     /// Takes another model, usually an edited one. If it has the shape of the present one, only numbers are written.
@@ -204,13 +204,14 @@ impl Evaluator {
     pub fn counters(&self) -> Counters {
         // Separate walks: one for the field, four for a normal by differences, one for the attributes.
         let walks = 1 + 4 * u64::from(self.query.gradient) + u64::from(self.query.attributes);
-        self.tally.snapshot(self.evaluations, walks * self.evaluations)
+        let evaluations = self.evaluations_per_point();
+        self.tally.snapshot(evaluations, walks * evaluations)
     }
 
     /// How many distances to skeletons one point takes.
     #[must_use]
     pub fn evaluations_per_point(&self) -> u64 {
-        self.evaluations
+        *self.evaluations.get_or_init(|| self.evaluations_by_node().total)
     }
 
     /// How many distances one point takes, by tree node.

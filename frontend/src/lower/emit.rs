@@ -19,10 +19,11 @@ use jbt_ir::{
 };
 
 use super::mixing::{Answer, GroupAnswer, Operator, State, difference};
-use super::occurrence::{FieldId, OccurrenceId, OccurrenceKind, Scene, SpaceId};
+use super::occurrence::{FieldId, LeafField, LeafMap, OccurrenceId, OccurrenceKind, Scene, SpaceId};
 use super::position::MapKind;
-use super::shape::{LeafMap, Lift, ReducerCode, Shapes, code, place};
+use super::shape::{Lift, ReducerCode, Shapes};
 use crate::attribute::{AttributeGroup, Mixing};
+use crate::check::CheckedTree;
 use crate::combine::ricci::Exponent;
 use crate::diagnostic::Diagnostic;
 use crate::query::Query;
@@ -34,9 +35,9 @@ pub(super) struct Code {
     pub(super) children: Vec<Vec<Table>>,
 }
 
-/// The attribute groups that a query asks for.
-pub(super) fn groups(scene: &Scene<'_>, query: Query) -> usize {
-    if query.attributes { scene.tree.attributes().len() } else { 0 }
+/// How many attribute groups a query asks for.
+pub(super) fn groups(tree: &CheckedTree, query: Query) -> usize {
+    if query.attributes { tree.attributes().len() } else { 0 }
 }
 
 /// Writes the code.
@@ -100,7 +101,7 @@ struct Emitter<'a> {
 
 impl<'a> Emitter<'a> {
     fn new(scene: &'a Scene<'a>, shapes: &'a Shapes, query: Query) -> Self {
-        let attributes = &scene.tree.attributes()[..groups(scene, query)];
+        let attributes = &scene.tree.attributes()[..groups(scene.tree, query)];
         Self {
             scene,
             shapes,
@@ -268,7 +269,7 @@ impl<'a> Emitter<'a> {
             unreachable!("only operators are reduced")
         };
         let groups = self.shapes.groups(id);
-        let code = code(*reducer);
+        let code = ReducerCode::of(*reducer);
         let exponent = match code {
             ReducerCode::RicciInteger(n) => Some(Exponent::Integer(n)),
             ReducerCode::RicciGeneral => {
@@ -346,7 +347,7 @@ impl Emitter<'_> {
                 self.scene.warp(self.scene.occurrence(id)).kind().name().to_owned()
             }
             OccurrenceKind::Difference { .. } => "difference".to_owned(),
-            OccurrenceKind::Reduce { reducer, .. } => match code(*reducer) {
+            OccurrenceKind::Reduce { reducer, .. } => match ReducerCode::of(*reducer) {
                 ReducerCode::Sum => "sum".to_owned(),
                 ReducerCode::RicciInteger(_) | ReducerCode::RicciGeneral => "ricci".to_owned(),
                 ReducerCode::Union => "union".to_owned(),
@@ -380,7 +381,7 @@ impl Emitter<'_> {
         let slot = self.slots;
         self.slots += 1;
         self.builder.add_slot(*self.rows.last().expect("the scene's row is open"), slot);
-        let (map, skeleton, _) = place(self.scene, field);
+        let LeafField { map, skeleton, .. } = self.scene.field(field);
         let mut point = *self.points.last().expect("a space is open");
         self.builder.set_origin(Origin::leaf(slot, Part::Position));
         if let LeafMap::Mapped(map) = map {

@@ -45,7 +45,7 @@ pub struct Lowered {
 /// Located diagnostics: numbers that leave the range of f32 once all transforms are applied, or a program beyond
 /// [`jbt_ir::limits`].
 pub fn lower(tree: &CheckedTree, query: Query) -> Result<Lowered, Vec<Diagnostic>> {
-    let scene = occurrence::Scene::new(tree);
+    let scene = occurrence::Scene::new(tree, emit::groups(tree, query));
     let shapes = shape::Shapes::new(&scene);
     let code = emit::emit(&scene, &shapes, query)?;
     let tables = rows::rows(&scene, &shapes, query, &code)?;

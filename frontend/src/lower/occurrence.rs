@@ -7,8 +7,11 @@ use rustc_hash::FxHashMap as HashMap;
 
 use glam::DAffine3;
 
+use super::position::MapKind;
+use crate::affine::Similarity;
 use crate::check::{CheckedTree, NodeId};
 use crate::combine::Combinator;
+use crate::skeleton::Skeleton;
 use crate::tree::{NodeKind, Primitive};
 use crate::warp::Warp;
 
@@ -39,6 +42,15 @@ pub(super) struct Position {
     pub(super) map: DAffine3,
 }
 
+/// How a leaf's row brings the point to the skeleton.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub(super) enum LeafMap {
+    /// The skeleton was moved to the point's space instead.
+    Absorbed,
+    /// The point is mapped.
+    Mapped(MapKind),
+}
+
 /// A leaf at a position.
 #[derive(Clone, Debug)]
 pub(super) struct LeafField {
@@ -46,6 +58,12 @@ pub(super) struct LeafField {
     pub(super) position: PositionId,
     /// How many occurrences, with different attributes, have this field.
     pub(super) uses: u32,
+    /// What is left to do to the point.
+    pub(super) map: LeafMap,
+    /// The skeleton, in the space in which it is asked if the map was absorbed.
+    pub(super) skeleton: Skeleton,
+    /// The support radius, there.
+    pub(super) radius: f64,
 }
 
 /// An operator whose operands are alike: any number of them, in any order but for ties.
@@ -92,9 +110,10 @@ pub(super) struct Scene<'a> {
 type Key = (NodeId, PositionId, BindingsId);
 
 impl<'a> Scene<'a> {
-    /// Finds every occurrence, without recursion.
-    pub(super) fn new(tree: &'a CheckedTree) -> Self {
-        Finder::new(tree).run()
+    /// Finds every occurrence, without recursion. Only the first `groups` attribute groups count: nodes that differ in others alone
+    /// are one occurrence.
+    pub(super) fn new(tree: &'a CheckedTree, groups: usize) -> Self {
+        Finder::new(tree, groups).run()
     }
 
     pub(super) fn occurrence(&self, id: OccurrenceId) -> &Occurrence {
@@ -152,11 +171,14 @@ struct Finder<'a> {
     bindings_names: HashMap<Vec<Option<NodeId>>, BindingsId>,
     field_names: HashMap<(NodeId, PositionId), FieldId>,
     known: HashMap<Key, OccurrenceId>,
+    /// For each node, whether one path leads to it from the root: then it is met once, and nothing has to be remembered of it.
+    once: Vec<bool>,
+    groups: usize,
     stack: Vec<Frame>,
 }
 
 impl<'a> Finder<'a> {
-    fn new(tree: &'a CheckedTree) -> Self {
+    fn new(tree: &'a CheckedTree, groups: usize) -> Self {
         let scene = Scene {
             tree,
             occurrences: Vec::new(),
@@ -172,13 +194,15 @@ impl<'a> Finder<'a> {
             bindings_names: HashMap::default(),
             field_names: HashMap::default(),
             known: HashMap::default(),
+            once: once(tree),
+            groups,
             stack: Vec::new(),
         }
     }
 
     fn run(mut self) -> Scene<'a> {
         let world = self.name_position(Position { space: SpaceId(0), map: DAffine3::IDENTITY });
-        let unbound = self.name_bindings(vec![None; self.scene.tree.attributes().len()]);
+        let unbound = self.name_bindings(vec![None; self.groups]);
         let root = self.resolve((self.scene.tree.root(), world, unbound));
         let mut done = self.enter(root);
         while let Some(frame) = self.stack.last_mut() {
@@ -194,8 +218,11 @@ impl<'a> Finder<'a> {
                 }
                 None => {
                     let frame = self.stack.pop().expect("the loop looked at it");
-                    let id = self.close(&frame);
-                    self.known.insert(frame.key, id);
+                    let key = frame.key;
+                    let id = self.close(frame);
+                    if !self.once[key.0.0 as usize] {
+                        self.known.insert(key, id);
+                    }
                     done = Some(id);
                 }
             }
@@ -218,10 +245,11 @@ impl<'a> Finder<'a> {
                     moved = true;
                 }
                 NodeKind::Attribute { name, .. } => {
-                    let groups = self.scene.tree.attributes();
-                    let group = groups.iter().position(|group| group.name == *name);
-                    let bound = bound.get_or_insert_with(|| self.scene.bindings(bindings).to_vec());
-                    bound[group.expect("the check knows every group")] = Some(node);
+                    let groups = &self.scene.tree.attributes()[..self.groups];
+                    if let Some(group) = groups.iter().position(|group| group.name == *name) {
+                        let bound = bound.get_or_insert_with(|| self.scene.bindings(bindings).to_vec());
+                        bound[group] = Some(node);
+                    }
                 }
                 NodeKind::Combine(Combinator::Union | Combinator::Intersection | Combinator::Difference)
                     if data.children.len() == 1 => {}
@@ -237,7 +265,9 @@ impl<'a> Finder<'a> {
 
     /// The occurrence, if it is known; otherwise it goes on the stack.
     fn enter(&mut self, key: Key) -> Option<OccurrenceId> {
-        if let Some(&known) = self.known.get(&key) {
+        if !self.once[key.0.0 as usize]
+            && let Some(&known) = self.known.get(&key)
+        {
             return Some(known);
         }
         let inside = matches!(self.scene.tree.node(key.0).kind, NodeKind::Warp(_)).then(|| {
@@ -250,36 +280,52 @@ impl<'a> Finder<'a> {
     }
 
     /// Makes an occurrence of a node whose children are done.
-    fn close(&mut self, frame: &Frame) -> OccurrenceId {
+    fn close(&mut self, frame: Frame) -> OccurrenceId {
         let (node, position, bindings) = frame.key;
         let kind = match &self.scene.tree.node(node).kind {
-            NodeKind::Primitive(_) => {
-                let next = FieldId(self.scene.fields.len() as u32);
-                let field = *self.field_names.entry((node, position)).or_insert(next);
-                if field == next {
-                    self.scene.fields.push(LeafField { node, position, uses: 0 });
-                }
-                self.scene.fields[field.0 as usize].uses += 1;
-                OccurrenceKind::Leaf { field, bindings }
+            NodeKind::Primitive(primitive) => {
+                OccurrenceKind::Leaf { field: self.field(node, primitive, position), bindings }
             }
             NodeKind::Warp(_) => {
                 let (inside, _) = frame.inside.expect("a warp's frame has its inside");
                 OccurrenceKind::Warp { position, inside, child: frame.children[0] }
             }
             NodeKind::Combine(combinator) => {
-                let reduce = |reducer| OccurrenceKind::Reduce { reducer, children: frame.children.clone() };
-                match combinator {
-                    Combinator::Sum => reduce(Reducer::Sum),
-                    Combinator::Ricci(n) if *n == 1.0 => reduce(Reducer::Sum),
-                    Combinator::Ricci(n) => reduce(Reducer::Ricci(*n)),
-                    Combinator::Union => reduce(Reducer::Union),
-                    Combinator::Intersection => reduce(Reducer::Intersection),
-                    Combinator::Difference => self.difference(node, position, &frame.children),
+                let reducer = match combinator {
+                    Combinator::Sum => Some(Reducer::Sum),
+                    Combinator::Ricci(n) if *n == 1.0 => Some(Reducer::Sum),
+                    Combinator::Ricci(n) => Some(Reducer::Ricci(*n)),
+                    Combinator::Union => Some(Reducer::Union),
+                    Combinator::Intersection => Some(Reducer::Intersection),
+                    Combinator::Difference => None,
+                };
+                match reducer {
+                    Some(reducer) => OccurrenceKind::Reduce { reducer, children: frame.children },
+                    None => self.difference(node, position, &frame.children),
                 }
             }
             NodeKind::Affine(_) | NodeKind::Attribute { .. } => unreachable!("resolve walks through these"),
         };
         self.push(node, position, kind)
+    }
+
+    /// The field of a leaf at a position.
+    fn field(&mut self, node: NodeId, primitive: &Primitive, position: PositionId) -> FieldId {
+        let next = FieldId(self.scene.fields.len() as u32);
+        let once = self.once[node.0 as usize];
+        let id = if once { next } else { *self.field_names.entry((node, position)).or_insert(next) };
+        if id == next {
+            let map = self.scene.position(position).map;
+            let moved = Similarity::from_affine(&map)
+                .and_then(|similarity| Some((primitive.skeleton.moved(&similarity)?, similarity.scale())));
+            let (map, skeleton, radius) = match moved {
+                Some((skeleton, scale)) => (LeafMap::Absorbed, skeleton, primitive.radius * scale),
+                None => (LeafMap::Mapped(MapKind::of(&map)), primitive.skeleton.clone(), primitive.radius),
+            };
+            self.scene.fields.push(LeafField { node, position, uses: 0, map, skeleton, radius });
+        }
+        self.scene.fields[id.0 as usize].uses += 1;
+        id
     }
 
     /// The first child without the union of the others.
@@ -335,13 +381,28 @@ impl<'a> Finder<'a> {
     }
 
     fn name_bindings(&mut self, bindings: Vec<Option<NodeId>>) -> BindingsId {
-        let next = BindingsId(self.scene.bindings.len() as u32);
-        let id = *self.bindings_names.entry(bindings.clone()).or_insert(next);
-        if id == next {
-            self.scene.bindings.push(bindings);
+        if let Some(&known) = self.bindings_names.get(&bindings) {
+            return known;
         }
-        id
+        let next = BindingsId(self.scene.bindings.len() as u32);
+        self.scene.bindings.push(bindings.clone());
+        self.bindings_names.insert(bindings, next);
+        next
     }
+}
+
+/// For each node, whether exactly one path leads to it from the root. Children come before their parents.
+fn once(tree: &CheckedTree) -> Vec<bool> {
+    let mut paths = vec![0_u8; tree.nodes().len()];
+    paths[tree.root().0 as usize] = 1;
+    for (index, node) in tree.nodes().iter().enumerate().rev() {
+        for child in &node.children {
+            let child = child.0 as usize;
+            // Two are as good as many.
+            paths[child] = paths[child].saturating_add(paths[index]).min(2);
+        }
+    }
+    paths.into_iter().map(|paths| paths == 1).collect()
 }
 
 /// The occurrences that one asks for.

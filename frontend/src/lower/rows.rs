@@ -7,9 +7,9 @@ use jbt_ir::{Entity, Rows, Store, Table, Tables};
 
 use super::emit::{Code, groups};
 use super::mixing::wants_order;
-use super::occurrence::{FieldId, OccurrenceId, OccurrenceKind, Scene, SpaceId};
+use super::occurrence::{FieldId, LeafField, LeafMap, OccurrenceId, OccurrenceKind, Reducer, Scene, SpaceId};
 use super::position::MapKind;
-use super::shape::{LeafMap, Lift, ReducerCode, Shapes, code, place};
+use super::shape::{Lift, ReducerCode, Shapes};
 use crate::attribute::Mixing;
 use crate::check::NodeId;
 use crate::diagnostic::Diagnostic;
@@ -66,6 +66,8 @@ struct Writer<'a> {
     errors: Vec<Diagnostic>,
     row: Vec<f64>,
     nodes: Vec<u32>,
+    /// Empty between rows.
+    tasks: Vec<Task>,
 }
 
 impl<'a> Writer<'a> {
@@ -80,7 +82,7 @@ impl<'a> Writer<'a> {
         members[0].push((scene.root, None));
         tables[0].active.push(0);
         tables[0].starts.push(1);
-        let attributes = &scene.tree.attributes()[..groups(scene, query)];
+        let attributes = &scene.tree.attributes()[..groups(scene.tree, query)];
         let mixing = attributes.iter().map(|group| group.mixing).collect();
         Self {
             scene,
@@ -93,13 +95,15 @@ impl<'a> Writer<'a> {
             errors: Vec::new(),
             row: Vec::new(),
             nodes: Vec::new(),
+            tasks: Vec::new(),
         }
     }
 
     /// Writes one row, and hands the rows of the tables under it out.
     fn row(&mut self, table: Table, index: usize) {
         let (member, order) = self.members[table.index()][index];
-        let mut tasks = vec![Task::Use(member)];
+        let mut tasks = std::mem::take(&mut self.tasks);
+        tasks.push(Task::Use(member));
         if table.index() == 0 {
             self.start(&mut tasks);
         }
@@ -120,6 +124,7 @@ impl<'a> Writer<'a> {
                 }
             }
         }
+        self.tasks = tasks;
         self.flush(table, member);
     }
 
@@ -165,8 +170,8 @@ impl<'a> Writer<'a> {
                 tasks.extend([Task::Use(*right), Task::Use(*left)]);
             }
             OccurrenceKind::Reduce { reducer, .. } => {
-                let code = code(*reducer);
-                if let (super::occurrence::Reducer::Ricci(n), ReducerCode::RicciGeneral) = (reducer, code) {
+                let code = ReducerCode::of(*reducer);
+                if let (Reducer::Ricci(n), ReducerCode::RicciGeneral) = (reducer, code) {
                     self.row.extend([*n, 1.0 / n]);
                 }
                 let groups = self.shapes.groups(id);
@@ -193,7 +198,8 @@ impl<'a> Writer<'a> {
             unreachable!("only operators have groups")
         };
         let groups = self.shapes.groups(id);
-        let ordered = wants_order(code(*reducer), groups.len() > 1, self.query.gradient, &self.mixing);
+        let ordered =
+            wants_order(ReducerCode::of(*reducer), groups.len() > 1, self.query.gradient, &self.mixing);
         let (rows, members) = (&mut self.tables[child.index()], &mut self.members[child.index()]);
         for &(member, order) in &groups[group].members {
             rows.active.push(members.len() as u32);
@@ -205,9 +211,9 @@ impl<'a> Writer<'a> {
     fn leaf(&mut self, field: FieldId) {
         self.nodes.push(self.scene.field(field).node.0);
         let primitive = self.scene.primitive(field);
-        let (map, skeleton, radius) = place(self.scene, field);
+        let LeafField { position, map, skeleton, radius, .. } = self.scene.field(field);
         if let LeafMap::Mapped(kind) = map {
-            let map = self.scene.position(self.scene.field(field).position).map;
+            let map = self.scene.position(*position).map;
             kind.push_columns(&map, &mut self.row);
         }
         skeleton.columns(&mut self.row);

@@ -6,25 +6,15 @@
 
 use rustc_hash::FxHashMap as HashMap;
 
-use super::occurrence::{FieldId, OccurrenceId, OccurrenceKind, Reducer, Scene, SpaceId};
+use super::occurrence::{FieldId, LeafMap, OccurrenceId, OccurrenceKind, Reducer, Scene, SpaceId};
 use super::position::MapKind;
-use crate::affine::Similarity;
 use crate::falloff::Falloff;
-use crate::skeleton::{Skeleton, SkeletonKind};
+use crate::skeleton::SkeletonKind;
 use crate::warp::WarpKind;
 
 /// The name of a shape.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, PartialOrd, Ord)]
 pub(super) struct ShapeId(u32);
-
-/// How a leaf's row brings the point to the skeleton.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-pub(super) enum LeafMap {
-    /// The skeleton was moved to the point's space instead.
-    Absorbed,
-    /// The point is mapped.
-    Mapped(MapKind),
-}
 
 /// What an exponent is as code.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
@@ -39,7 +29,8 @@ pub(super) enum ReducerCode {
 }
 
 impl ReducerCode {
-    const fn of(reducer: Reducer) -> Self {
+    /// The code of an operator.
+    pub(super) const fn of(reducer: Reducer) -> Self {
         match reducer {
             Reducer::Sum => Self::Sum,
             Reducer::Ricci(n) if n == (n as u32) as f64 => Self::RicciInteger(n as u32),
@@ -118,23 +109,6 @@ impl Shapes {
     }
 }
 
-/// The skeleton of a leaf in the space in which it is asked, and what is left to do to the point.
-pub(super) fn place(scene: &Scene<'_>, field: FieldId) -> (LeafMap, Skeleton, f64) {
-    let primitive = scene.primitive(field);
-    let map = scene.position(scene.field(field).position).map;
-    let moved = Similarity::from_affine(&map)
-        .and_then(|similarity| Some((primitive.skeleton.moved(&similarity)?, similarity.scale())));
-    match moved {
-        Some((skeleton, scale)) => (LeafMap::Absorbed, skeleton, primitive.radius * scale),
-        None => (LeafMap::Mapped(MapKind::of(&map)), primitive.skeleton.clone(), primitive.radius),
-    }
-}
-
-/// The code of an operator.
-pub(super) fn code(reducer: Reducer) -> ReducerCode {
-    ReducerCode::of(reducer)
-}
-
 struct Classifier<'a> {
     scene: &'a Scene<'a>,
     names: HashMap<ShapeKey, ShapeId>,
@@ -206,10 +180,13 @@ impl<'a> Classifier<'a> {
             }
             OccurrenceKind::Leaf { field, .. } => {
                 let primitive = self.scene.primitive(*field);
-                let (map, skeleton, _) = place(self.scene, *field);
-                let strong = primitive.strength != 1.0;
-                let key =
-                    ShapeKey::Leaf { map, skeleton: skeleton.kind(), falloff: primitive.falloff, strong };
+                let field = self.scene.field(*field);
+                let key = ShapeKey::Leaf {
+                    map: field.map,
+                    skeleton: field.skeleton.kind(),
+                    falloff: primitive.falloff,
+                    strong: primitive.strength != 1.0,
+                };
                 self.name(key, false)
             }
             OccurrenceKind::Warp { position, inside, child } => {
@@ -232,7 +209,7 @@ impl<'a> Classifier<'a> {
             OccurrenceKind::Reduce { reducer, .. } => {
                 let groups = self.group(id);
                 let key = ShapeKey::Reduce {
-                    code: code(*reducer),
+                    code: ReducerCode::of(*reducer),
                     // Only a sum does something else with operands that may be negative.
                     non_negative: occurrence.non_negative || *reducer != Reducer::Sum,
                     groups: groups
