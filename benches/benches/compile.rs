@@ -1,38 +1,69 @@
-//! Does compiling take longer when a model has more primitives of one shape? (It should not: 2,000 as 20, but for their rows.)
+//! How long does each stage of compiling take, by number of primitives and by number of shapes? (Primitives of one shape should cost their
+//! rows alone; shapes cost code.)
 
 use std::hint::black_box;
+use std::time::Duration;
 
-use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use jbt::{Compiler, Engine, Query};
+use criterion::measurement::WallTime;
+use criterion::{BatchSize, BenchmarkGroup, BenchmarkId, Criterion, criterion_group, criterion_main};
+use jbt::ir::domain::lanes::Tape;
+use jbt::ir::pass::run_pipeline;
+use jbt::ir::verify;
+use jbt::{CheckedTree, Compiler, Query, Update};
 use jbt_benches::check;
-use jbt_benches::model::{blobs, cube, tree};
+use jbt_benches::model::{cube, varied};
+use jbt_frontend::lower::lower;
 
 fn compile(c: &mut Criterion) {
     let mut group = c.benchmark_group("compile");
+    group.warm_up_time(Duration::from_millis(100)).measurement_time(Duration::from_millis(350));
+    group.sample_size(10);
     for count in [20, 200, 2000] {
-        let tree = tree(&blobs(count, 1));
-        let points = cube(1000, 2);
-        check::field(&tree, &Compiler::new().evaluator(&tree, Query::FIELD).expect("blobs compile"), &points);
-        for query in [Query::FIELD, Query::ALL] {
-            for engine in [Engine::Lanes, Engine::Jit] {
-                let name = format!("{}/{}", engine.name(), query.name());
-                group.bench_with_input(BenchmarkId::new(name, count), &tree, |b, tree| {
-                    b.iter(|| {
-                        Compiler::for_engine(engine).evaluator(black_box(tree), query).expect("blobs compile")
-                    });
-                });
-            }
+        for shapes in [1, 4, 16] {
+            let tree = varied(count, shapes, 1);
+            let evaluator = Compiler::new().evaluator(&tree, Query::ALL).expect("the model compiles");
+            check::answers(&tree, &evaluator, &cube(200, 2));
+            stages(&mut group, &format!("{count} primitives, {shapes} shapes"), &tree);
         }
-        group.bench_with_input(BenchmarkId::new("edit", count), &tree, |b, tree| {
-            let other = self::tree(&blobs(count, 3));
-            let mut evaluator = Compiler::new().evaluator(tree, Query::ALL).expect("blobs compile");
-            b.iter(|| {
-                assert_eq!(evaluator.update(black_box(&other)).expect("blobs compile"), jbt::Update::Numbers);
-                evaluator.update(black_box(tree)).expect("blobs compile")
-            });
-        });
+        edit(&mut group, count);
     }
     group.finish();
+}
+
+/// The stages on the way to an evaluator of everything, each on what the one before it made.
+fn stages(group: &mut BenchmarkGroup<'_, WallTime>, name: &str, tree: &CheckedTree) {
+    group.bench_function(BenchmarkId::new("lower", name), |b| {
+        b.iter(|| lower(black_box(tree), Query::ALL).expect("the model lowers"));
+    });
+    let lowered = lower(tree, Query::ALL).expect("the model lowers").function;
+    let passes = |function| run_pipeline(function, jbt::kernel::passes(true), &mut |_, _| {});
+    group.bench_function(BenchmarkId::new("passes", name), |b| {
+        b.iter_batched(|| lowered.clone(), passes, BatchSize::SmallInput);
+    });
+    let function = passes(lowered.clone());
+    group.bench_function(BenchmarkId::new("verify", name), |b| {
+        b.iter_batched(|| function.clone(), verify, BatchSize::SmallInput);
+    });
+    let verified = verify(function).expect("passes keep the rules");
+    group.bench_function(BenchmarkId::new("lanes tape", name), |b| {
+        b.iter(|| Tape::new(black_box(&verified)).expect("the program is legalized"));
+    });
+    group.bench_function(BenchmarkId::new("machine code", name), |b| {
+        b.iter(|| jbt::jit::Kernel::compile(black_box(&verified)).expect("this machine has a JIT"));
+    });
+}
+
+/// The same shape with other numbers: an update, which compiles nothing.
+fn edit(group: &mut BenchmarkGroup<'_, WallTime>, count: usize) {
+    let [one, other] = [1, 3].map(|seed| varied(count, 1, seed));
+    let mut evaluator = Compiler::new().evaluator(&one, Query::ALL).expect("the model compiles");
+    let mut next = [&other, &one].into_iter().cycle();
+    group.bench_function(BenchmarkId::new("edit", format!("{count} primitives, 1 shapes")), |b| {
+        b.iter(|| {
+            let tree = next.next().expect("it goes round");
+            assert_eq!(evaluator.update(black_box(tree)).expect("the model compiles"), Update::Numbers);
+        });
+    });
 }
 
 criterion_group!(benches, compile);

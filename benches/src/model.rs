@@ -1,10 +1,10 @@
 //! Models and points that benches ask about.
 
-use jbt::{Model, Points};
+use jbt::{Model, Points, text};
 use jbt_frontend::check::CheckedTree;
 use jbt_frontend::combine::Combinator;
 use jbt_frontend::falloff::Falloff;
-use jbt_frontend::skeleton::Point;
+use jbt_frontend::skeleton::{Box, Cylinder, Disc, Point, Ring, Segment, Skeleton, Triangle};
 use jbt_frontend::tree::{NodeKind, Primitive, Tree};
 
 /// A soft-object point (Wyvill, McPheeters and Wyvill 1986) with a colour. Its numbers are f32, so that every contestant is given the same.
@@ -64,4 +64,70 @@ pub fn tree(blobs: &[Blob]) -> CheckedTree {
 pub fn cube(count: usize, seed: u64) -> Points {
     let mut random = fastrand::Rng::with_seed(seed);
     (0..count).map(|_| std::array::from_fn(|_| 2.0 * random.f32() - 1.0)).collect()
+}
+
+/// The bundled octopus: one twisted tentacle in eight places, 80 primitives.
+pub const HERO: &str = include_str!("../../examples/hero.jbt");
+/// The bundled goblet: every skeleton once.
+pub const GOBLET: &str = include_str!("../../examples/goblet.jbt");
+
+/// A bundled scene.
+#[must_use]
+pub fn example(scene: &str) -> CheckedTree {
+    let model = text::parse(scene.as_bytes(), &text::Options::default()).expect("bundled scenes read");
+    model.check().expect("bundled scenes are good models")
+}
+
+/// The most shapes of [`varied`].
+pub const MAX_SHAPES: usize = 28;
+
+/// A sum of `count` coloured primitives of `shapes` different shapes, from 1 to [`MAX_SHAPES`]: of every skeleton with every falloff, plain and
+/// with a strength. They are about as large, and overlap about as much, as [`blobs`].
+#[must_use]
+pub fn varied(count: usize, shapes: usize, seed: u64) -> CheckedTree {
+    assert!((1..=MAX_SHAPES).contains(&shapes), "there are {MAX_SHAPES} shapes");
+    let leaf = |(index, blob): (usize, &Blob)| {
+        let shape = index % shapes;
+        let primitive = Primitive {
+            skeleton: skeleton(shape % 7, blob),
+            falloff: Falloff::ALL[shape / 7 % 2],
+            radius: f64::from(blob.radius),
+            strength: if shape < 14 { 1.0 } else { 0.75 },
+        };
+        let leaf = Tree::new(NodeKind::Primitive(primitive), Vec::new());
+        leaf.color(blob.color.map(f64::from))
+    };
+    let blobs = blobs(count, seed);
+    let sum = Tree::combine(Combinator::Sum, blobs.iter().enumerate().map(leaf));
+    Model::new(sum).check().expect("primitives are a good model")
+}
+
+/// A skeleton of each kind, smaller than the support of a blob at its centre.
+fn skeleton(kind: usize, blob: &Blob) -> Skeleton {
+    let size = 0.3 * f64::from(blob.radius);
+    let at = blob.center.map(f64::from);
+    let beside = |axis: usize| {
+        let mut p = at;
+        p[axis] += size;
+        p.into()
+    };
+    let (center, normal) = (at.into(), [0.6, 0.0, 0.8].into());
+    match kind {
+        0 => Point { at: center }.into(),
+        1 => Segment { from: center, to: beside(0) }.into(),
+        2 => Disc { center, normal, radius: size }.into(),
+        3 => Ring { center, normal, radius: size }.into(),
+        4 => Cylinder { from: center, to: beside(1), radius: 0.5 * size }.into(),
+        5 => Box { center, half: [size, 0.5 * size, 0.25 * size].into() }.into(),
+        _ => Triangle { a: center, b: beside(0), c: beside(2) }.into(),
+    }
+}
+
+/// Points uniform in the box of a model's support.
+#[must_use]
+pub fn inside(tree: &CheckedTree, count: usize, seed: u64) -> Points {
+    let mut random = fastrand::Rng::with_seed(seed);
+    let (low, high) = (tree.support().low(), tree.support().high());
+    let along = |random: &mut fastrand::Rng, axis: usize| low[axis] + (high[axis] - low[axis]) * random.f64();
+    (0..count).map(|_| std::array::from_fn(|axis| along(&mut random, axis) as f32)).collect()
 }

@@ -39,7 +39,7 @@ pub enum Command {
     Eval(EvalArguments),
     /// Print a scene as one of the stages that it goes through on its way to machine code
     Show(ShowArguments),
-    /// Count the evaluations of primitives that a point takes
+    /// Count the evaluations of primitives that a point and a lattice take, and how many matter
     Count(CountArguments),
     /// Report everything that is wrong with a scene
     Check(CheckArguments),
@@ -77,15 +77,9 @@ pub struct MeshArguments {
     /// The file format, if the extension does not say it
     #[arg(long, value_enum)]
     pub format: Option<FormatName>,
-    /// Edge of a cell of the grid, in units of the scene
-    #[arg(long, value_name = "H", conflicts_with = "resolution", allow_negative_numbers = true)]
-    pub cell: Option<f64>,
-    /// Cells along the longest side of the region [default: 128]
-    #[arg(long, value_name = "N")]
-    pub resolution: Option<usize>,
-    /// The box to mesh: its smallest and its largest corner [default: the support of the model]
-    #[arg(long, value_name = "X0,Y0,Z0,X1,Y1,Z1", value_parser = region, allow_hyphen_values = true)]
-    pub region: Option<Region>,
+    /// Where the field is asked.
+    #[command(flatten)]
+    pub lattice: LatticeArguments,
     /// What evaluates the field: all engines give the same bits
     #[arg(long, value_enum, default_value_t = EngineName::Jit)]
     pub engine: EngineName,
@@ -95,6 +89,27 @@ pub struct MeshArguments {
     /// Print one JSON object instead of a summary
     #[arg(long)]
     pub json: bool,
+}
+
+/// The lattice of points that a mesh asks the field at.
+#[derive(Args, Debug)]
+pub struct LatticeArguments {
+    /// Edge of a cell of the lattice, in units of the scene
+    #[arg(long, value_name = "H", conflicts_with = "resolution", allow_negative_numbers = true)]
+    pub cell: Option<f64>,
+    /// Cells along the longest side of the region [default: 128]
+    #[arg(long, value_name = "N")]
+    pub resolution: Option<usize>,
+    /// The box that the lattice fills: its smallest and its largest corner [default: the support of the model]
+    #[arg(long, value_name = "X0,Y0,Z0,X1,Y1,Z1", value_parser = region, allow_hyphen_values = true)]
+    pub region: Option<Region>,
+}
+
+impl LatticeArguments {
+    /// Whether any of it was asked for.
+    pub fn given(&self) -> bool {
+        self.cell.is_some() || self.resolution.is_some() || self.region.is_some()
+    }
 }
 
 /// What `jbt eval` takes.
@@ -147,6 +162,7 @@ pub struct ShowArguments {
 
 /// What `jbt count` takes.
 #[derive(Args, Debug)]
+#[command(after_help = COUNT_HELP)]
 pub struct CountArguments {
     /// What to count.
     #[command(flatten)]
@@ -154,10 +170,36 @@ pub struct CountArguments {
     /// Count for one query only
     #[arg(long, value_enum)]
     pub query: Option<QueryName>,
+    /// The points of the totals.
+    #[command(flatten)]
+    pub lattice: LatticeArguments,
     /// Print one JSON object instead of a table
     #[arg(long)]
     pub json: bool,
 }
+
+const COUNT_HELP: &str = "\
+An evaluation is the distance to one skeleton at one place. It is counted for one point, and for the lattice that `jbt
+mesh` would take with the same options.
+
+  separate  a walk of the tree for the field, four for the gradient by differences (the point and a step along each
+            axis), one for the attributes; each meets a shared leaf again at every use
+  cached    the same walks with a memory for each point: a leaf at a position once for each of the four places
+  fused     what the compiled program evaluates
+  waste     evaluations of the field on the lattice for each pair of a point and a primitive whose support the point
+            is inside of; 1 is none
+
+Keys of --json. For one point:
+  formula, occurrences, uses, queries: [{query, walks, separate, cached, fused, total: {separate, cached, fused}}],
+  leaves: [{node, kind, line, column, uses, evaluations: {QUERY: count}, pairs_in_support}]
+For the lattice (`total` and `pairs_in_support` too):
+  lattice: {region: [x0, y0, z0, x1, y1, z1], cell, cells: [nx, ny, nz]}, points, evaluations (of primitives, for the
+  field), interval_evaluations (of primitives over boxes), pairs_in_support, waste, warnings
+A model that is empty or unbounded has no lattice without --region: `lattice` and `waste` are null, and the counts are 0.
+
+Examples:
+  jbt count hero.jbt
+  jbt count train.scene --cell 0.13 --json";
 
 /// What `jbt check` takes.
 #[derive(Args, Debug)]

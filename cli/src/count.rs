@@ -1,35 +1,43 @@
-//! `jbt count`: how many distances to skeletons a point takes, for every query and from every leaf.
+//! `jbt count`: how many distances to skeletons a point takes, for every query and from every leaf; how many a lattice takes, and how
+//! many of these matter.
 //!
 //! ```text
-//! query       walks  separate     fused   ratio
-//! field           1        95        95    1.00
-//! all             6       570        95    6.00
+//! query       walks  separate    cached     fused   ratio
+//! field           1       127        95        95    1.34
+//! all             6       762       380        95    8.02
 //!
-//! line      leaf      uses     field       all
-//!    4:12   segment      2         2         2
+//! line      leaf      uses     field       all   in support
+//!    4:12   segment      2         2         2       12,345
 //! ```
 //!
 //! *Fused* counts the instructions of the program that runs. *Separate* is what an evaluator does that walks the tree once for the
-//! field, four times for a normal by differences (the point and a step along each axis), and once for the attributes.
+//! field, four times for a normal by differences (the point and a step along each axis), and once for the attributes; a walk meets a
+//! shared leaf again at each of its uses. *Cached* is such an evaluator with a memory for each point. `jbt::statistics` counts.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use jbt::{Engine, Query};
+use jbt::mesh::Lattice;
+use jbt::statistics::{PerPoint, Statistics, Supports, SupportsError, walks};
+use jbt::{Compiler, Engine, PolygonizeError, Query};
 use jbt_frontend::check::CheckedTree;
 use jbt_frontend::tree::NodeKind;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use crate::arguments::CountArguments;
 use crate::failure::Failure;
-use crate::output::{grouped, plural, print};
+use crate::lattice;
+use crate::output::{grouped, plural, print, warn};
+use crate::progress::Progress;
 use crate::scene::Scene;
 
-/// How the walks of separate evaluations add up.
-const FORMULA: &str = "separate = walks x evaluations of the field; walks = 1 (field) + 4 (gradient, by differences) + 1 (attributes)";
+/// How the evaluations of separate walks add up.
+const FORMULA: &str = "separate = walks x uses of leaves; walks = 1 (field) + 4 (gradient, by differences) + 1 (attributes); \
+                       cached = places x occurrences of leaves; places = 1 (the point) + 3 (the steps of the differences)";
 
 /// Runs the command.
 pub fn run(arguments: &CountArguments, quiet: bool) -> Result<(), Failure> {
+    let settings = lattice::settings(&arguments.lattice)?;
     let scene = Scene::load(&arguments.scene)?;
     scene.warn(quiet);
     let tree = scene.check()?;
@@ -37,36 +45,86 @@ pub fn run(arguments: &CountArguments, quiet: bool) -> Result<(), Failure> {
         Some(name) => vec![name.query()],
         None => Query::EVERY.to_vec(),
     };
-    let field = fused(&scene, &tree, Query::FIELD)?;
+    let statistics = Statistics::new(&tree);
+    let field = Count::new(&scene, &tree, &statistics, Query::FIELD)?;
     let counts = queries
         .into_iter()
-        .map(|query| {
-            let fused = if query == Query::FIELD { field.clone() } else { fused(&scene, &tree, query)? };
-            let walks = walks(query);
-            Ok(Count { query, walks, separate: walks.saturating_mul(field.total), fused })
-        })
-        .collect::<Result<Vec<_>, Failure>>()?;
-    let leaves = leaves(&scene, &tree);
-    if arguments.json {
-        print(&format!("{}", json_report(&counts, &leaves, field.total)))
-    } else {
-        print(&table(&counts, &leaves, field.total))
+        .map(|query| Count::new(&scene, &tree, &statistics, query))
+        .collect::<Result<_, _>>()?;
+    let mut warnings = Vec::new();
+    let lattice = match settings.lattice(&tree) {
+        Ok(lattice) => Some(lattice),
+        // Nobody asked for it: what a point takes can be told all the same.
+        Err(error) if !arguments.lattice.given() => {
+            warnings.push(without_lattice(&error));
+            None
+        }
+        Err(error) => return Err(lattice::failure(&scene, error)),
+    };
+    let supports =
+        lattice.as_ref().map(|lattice| supports(&scene, &statistics, lattice, quiet)).transpose()?;
+    if !quiet {
+        warnings.iter().for_each(|warning| warn(warning));
     }
+    warnings.splice(0..0, scene.warnings.iter().cloned());
+    let report = Report {
+        counts,
+        leaves: leaves(&scene, &tree),
+        uses: statistics.uses(),
+        occurrences: statistics.occurrences(),
+        evaluations: field.evaluations.fused,
+        lattice: lattice.zip(supports),
+        warnings,
+    };
+    if arguments.json { print(&report.json().to_string()) } else { print(&report.text()) }
 }
 
-/// The evaluations of a program.
-#[derive(Clone)]
-struct Fused {
-    total: u64,
-    by_node: BTreeMap<u32, u64>,
+/// Why nothing is counted on a lattice.
+fn without_lattice(error: &PolygonizeError) -> String {
+    format!("nothing is counted on a lattice: {error}; --region and --cell give one")
+}
+
+/// Counts what matters on a lattice.
+fn supports(
+    scene: &Scene,
+    statistics: &Statistics<'_>,
+    lattice: &Lattice,
+    quiet: bool,
+) -> Result<Supports, Failure> {
+    let mut progress = Progress::new("counting", quiet);
+    let counted = statistics.supports(&Compiler::new(), lattice, &mut |fraction| {
+        progress.set(fraction);
+        true
+    });
+    counted.map_err(|error| match error {
+        SupportsError::Compile(error) => Failure::compile(&scene.source(), &error),
+        SupportsError::Cancelled => Failure::Defect(error.to_string()),
+    })
 }
 
 /// The evaluations for one query.
 struct Count {
     query: Query,
-    walks: u64,
-    separate: u64,
-    fused: Fused,
+    evaluations: PerPoint,
+    by_node: BTreeMap<u32, u64>,
+}
+
+impl Count {
+    fn new(
+        scene: &Scene,
+        tree: &CheckedTree,
+        statistics: &Statistics<'_>,
+        query: Query,
+    ) -> Result<Self, Failure> {
+        // All engines run the same program; this one needs no compilation.
+        let evaluator = scene.evaluator(tree, query, Some(Engine::Scalar))?;
+        let by_node = evaluator.evaluations_by_node().per_node;
+        Ok(Self { query, evaluations: statistics.per_point(&evaluator), by_node })
+    }
+
+    fn of(&self, leaf: &Leaf) -> u64 {
+        self.by_node.get(&leaf.node).copied().unwrap_or(0)
+    }
 }
 
 /// A leaf of the tree.
@@ -78,18 +136,8 @@ struct Leaf {
     uses: u64,
 }
 
-fn fused(scene: &Scene, tree: &CheckedTree, query: Query) -> Result<Fused, Failure> {
-    // All engines run the same program; this one needs no compilation.
-    let evaluations = scene.evaluator(tree, query, Some(Engine::Scalar))?.evaluations_by_node();
-    Ok(Fused { total: evaluations.total, by_node: evaluations.per_node })
-}
-
-fn walks(query: Query) -> u64 {
-    1 + if query.gradient { 4 } else { 0 } + u64::from(query.attributes)
-}
-
 fn leaves(scene: &Scene, tree: &CheckedTree) -> Vec<Leaf> {
-    let uses = uses(tree);
+    let uses = tree.uses();
     let lines = Lines::new(scene.source().text);
     let leaf = |(index, node): (usize, &jbt_frontend::check::CheckedNode)| match &node.kind {
         NodeKind::Primitive(primitive) => Some(Leaf {
@@ -103,21 +151,6 @@ fn leaves(scene: &Scene, tree: &CheckedTree) -> Vec<Leaf> {
     let mut leaves: Vec<Leaf> = tree.nodes().iter().enumerate().filter_map(leaf).collect();
     leaves.sort_by_key(|leaf| (leaf.place, leaf.node));
     leaves
-}
-
-/// How often each node is met from the root. Children come before their parents in the arena.
-fn uses(tree: &CheckedTree) -> Vec<u64> {
-    let mut uses = vec![0_u64; tree.nodes().len()];
-    if let Some(root) = uses.last_mut() {
-        *root = 1;
-    }
-    for (index, node) in tree.nodes().iter().enumerate().rev() {
-        for child in &node.children {
-            let child = child.0 as usize;
-            uses[child] = uses[child].saturating_add(uses[index]);
-        }
-    }
-    uses
 }
 
 /// Line starts of a text: places of many nodes without reading the text again for each.
@@ -141,64 +174,153 @@ impl<'a> Lines<'a> {
     }
 }
 
-/// For people.
-fn table(counts: &[Count], leaves: &[Leaf], occurrences: u64) -> String {
-    let mut out = format!(
-        "{} in the tree, {} evaluated for a point\n\n",
-        plural(leaves.len() as u64, "leaf", "leaves"),
-        plural(occurrences, "occurrence", "occurrences")
-    );
-    let _ = writeln!(out, "{:<12}{:>6}{:>16}{:>16}{:>8}", "query", "walks", "separate", "fused", "ratio");
-    for Count { query, walks, separate, fused } in counts {
-        let ratio = *separate as f64 / fused.total.max(1) as f64;
-        let (separate, fused) = (grouped(*separate), grouped(fused.total));
-        let _ = writeln!(out, "{:<12}{walks:>6}{separate:>16}{fused:>16}{ratio:>8.2}", query.name());
-    }
-    let _ = writeln!(out, "{FORMULA}\n");
-    let _ = write!(out, "{:<14}{:<12}{:>12}", "line", "leaf", "uses");
-    for count in counts {
-        let _ = write!(out, "{:>12}", count.query.name());
-    }
-    for leaf in leaves {
-        let place = leaf
-            .place
-            .map_or_else(|| format!("node {}", leaf.node), |(line, column)| format!("{line}:{column}"));
-        let _ = write!(out, "\n{place:<14}{:<12}{:>12}", leaf.kind, grouped(leaf.uses));
-        for count in counts {
-            let evaluations = count.fused.by_node.get(&leaf.node).copied().unwrap_or(0);
-            let _ = write!(out, "{:>12}", grouped(evaluations));
-        }
-    }
-    out
+/// What is told.
+struct Report {
+    counts: Vec<Count>,
+    leaves: Vec<Leaf>,
+    uses: u64,
+    occurrences: u64,
+    /// Evaluations that the field of one point takes.
+    evaluations: u64,
+    lattice: Option<(Lattice, Supports)>,
+    warnings: Vec<String>,
 }
 
-/// For machines.
-fn json_report(counts: &[Count], leaves: &[Leaf], occurrences: u64) -> serde_json::Value {
-    let queries: Vec<_> = counts
-        .iter()
-        .map(|Count { query, walks, separate, fused }| {
-            json!({ "query": query.name(), "walks": walks, "separate": separate, "fused": fused.total })
+impl Report {
+    /// Points of the lattice.
+    fn points(&self) -> u64 {
+        self.lattice.as_ref().map_or(0, |(_, supports)| supports.points)
+    }
+
+    /// Evaluations that the field of the whole lattice takes.
+    fn field_of_lattice(&self) -> u64 {
+        self.evaluations.saturating_mul(self.points())
+    }
+
+    /// Evaluations of primitives over boxes: nothing is asked about boxes yet.
+    fn interval_evaluations(&self) -> u64 {
+        0
+    }
+
+    fn waste(&self) -> Option<f64> {
+        let (_, supports) = self.lattice.as_ref()?;
+        supports.waste(self.field_of_lattice())
+    }
+
+    fn pairs_of(&self, leaf: &Leaf) -> u64 {
+        self.lattice.as_ref().and_then(|(_, supports)| supports.by_node.get(&leaf.node).copied()).unwrap_or(0)
+    }
+
+    /// For people.
+    fn text(&self) -> String {
+        let mut out = format!(
+            "{} in the tree, {} of them along all paths, {} at different places\n\n",
+            plural(self.leaves.len() as u64, "leaf", "leaves"),
+            plural(self.uses, "use", "uses"),
+            plural(self.occurrences, "occurrence", "occurrences")
+        );
+        self.write_queries(&mut out, 1);
+        let _ = writeln!(out, "{}\n", FORMULA.replace("; cached", "\ncached"));
+        if let Some((lattice, supports)) = &self.lattice {
+            let points = plural(supports.points, "point", "points");
+            let _ = writeln!(out, "lattice: {points}, {}\n", lattice::describe(lattice));
+            self.write_queries(&mut out, supports.points);
+            let waste =
+                self.waste().map_or("no pair".to_owned(), |waste| format!("{waste:.2} for each pair"));
+            let _ = writeln!(
+                out,
+                "{} of a point and a primitive whose support it is inside of\n\
+                 {} of the field, {} over boxes: {waste}\n",
+                plural(supports.pairs, "pair", "pairs"),
+                plural(self.field_of_lattice(), "evaluation", "evaluations"),
+                grouped(self.interval_evaluations()),
+            );
+        }
+        self.write_leaves(&mut out);
+        out
+    }
+
+    /// The evaluations of all queries, for so many points.
+    fn write_queries(&self, out: &mut String, points: u64) {
+        let _ = writeln!(
+            out,
+            "{:<12}{:>6}{:>20}{:>20}{:>20}{:>8}",
+            "query", "walks", "separate", "cached", "fused", "ratio"
+        );
+        for Count { query, evaluations: PerPoint { separate, cached, fused }, .. } in &self.counts {
+            let ratio = *separate as f64 / (*fused).max(1) as f64;
+            let [separate, cached, fused] =
+                [separate, cached, fused].map(|count| grouped(count.saturating_mul(points)));
+            let (name, walks) = (query.name(), walks(*query));
+            let _ = writeln!(out, "{name:<12}{walks:>6}{separate:>20}{cached:>20}{fused:>20}{ratio:>8.2}");
+        }
+    }
+
+    fn write_leaves(&self, out: &mut String) {
+        let _ = write!(out, "{:<14}{:<12}{:>12}", "line", "leaf", "uses");
+        for count in &self.counts {
+            let _ = write!(out, "{:>12}", count.query.name());
+        }
+        let _ = write!(out, "{:>16}", "in support");
+        for leaf in &self.leaves {
+            let place = leaf
+                .place
+                .map_or_else(|| format!("node {}", leaf.node), |(line, column)| format!("{line}:{column}"));
+            let _ = write!(out, "\n{place:<14}{:<12}{:>12}", leaf.kind, grouped(leaf.uses));
+            for count in &self.counts {
+                let _ = write!(out, "{:>12}", grouped(count.of(leaf)));
+            }
+            let _ = write!(out, "{:>16}", grouped(self.pairs_of(leaf)));
+        }
+    }
+
+    /// For machines.
+    fn json(&self) -> Value {
+        let lattice = self.lattice.as_ref().map(|(lattice, _)| {
+            let (low, high) = lattice::corners(lattice);
+            let region = [low, high].concat();
+            json!({ "region": region, "cell": lattice.spacing(), "cells": lattice.cells() })
+        });
+        json!({
+            "formula": FORMULA,
+            "occurrences": self.occurrences,
+            "uses": self.uses,
+            "queries": self.counts.iter().map(|count| self.json_query(count)).collect::<Vec<_>>(),
+            "leaves": self.leaves.iter().map(|leaf| self.json_leaf(leaf)).collect::<Vec<_>>(),
+            "lattice": lattice,
+            "points": self.points(),
+            "evaluations": self.field_of_lattice(),
+            "interval_evaluations": self.interval_evaluations(),
+            "pairs_in_support": self.lattice.as_ref().map_or(0, |(_, supports)| supports.pairs),
+            "waste": self.waste(),
+            "warnings": self.warnings,
         })
-        .collect();
-    let leaves: Vec<_> = leaves
-        .iter()
-        .map(|leaf| {
-            let evaluations: serde_json::Map<_, _> = counts
-                .iter()
-                .map(|count| {
-                    let evaluations = count.fused.by_node.get(&leaf.node).copied().unwrap_or(0);
-                    (count.query.name().to_owned(), evaluations.into())
-                })
-                .collect();
-            json!({
-                "node": leaf.node,
-                "kind": leaf.kind,
-                "line": leaf.place.map(|(line, _)| line),
-                "column": leaf.place.map(|(_, column)| column),
-                "uses": leaf.uses,
-                "evaluations": evaluations,
-            })
+    }
+
+    fn json_query(&self, count: &Count) -> Value {
+        let PerPoint { separate, cached, fused } = count.evaluations;
+        let total = |evaluations: u64| evaluations.saturating_mul(self.points());
+        json!({
+            "query": count.query.name(),
+            "walks": walks(count.query),
+            "separate": separate,
+            "cached": cached,
+            "fused": fused,
+            "total": { "separate": total(separate), "cached": total(cached), "fused": total(fused) },
         })
-        .collect();
-    json!({ "formula": FORMULA, "occurrences": occurrences, "queries": queries, "leaves": leaves })
+    }
+
+    fn json_leaf(&self, leaf: &Leaf) -> Value {
+        let evaluations: serde_json::Map<_, _> =
+            self.counts.iter().map(|count| (count.query.name().to_owned(), count.of(leaf).into())).collect();
+        json!({
+            "node": leaf.node,
+            "kind": leaf.kind,
+            "line": leaf.place.map(|(line, _)| line),
+            "column": leaf.place.map(|(_, column)| column),
+            "uses": leaf.uses,
+            "evaluations": evaluations,
+            "pairs_in_support": self.pairs_of(leaf),
+        })
+    }
 }

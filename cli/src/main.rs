@@ -13,6 +13,7 @@ mod check;
 mod count;
 mod eval;
 mod failure;
+mod lattice;
 mod logger;
 mod mesh;
 mod output;

@@ -3,13 +3,13 @@
 use std::time::{Duration, Instant};
 
 use jbt::export::{self, ExportError, Format};
-use jbt::mesh::{LatticeError, MeshError};
-use jbt::{Compiler, Fineness, Polygonize, PolygonizeError, Polygonized};
-use jbt_frontend::diagnostic::{Diagnostic, escape};
+use jbt::{Compiler, Polygonized};
+use jbt_frontend::diagnostic::escape;
 use serde_json::json;
 
 use crate::arguments::{FormatName, MeshArguments};
 use crate::failure::Failure;
+use crate::lattice;
 use crate::output::{Output, grouped, plural, print, tell, warn};
 use crate::progress::Progress;
 use crate::scene::{Scene, is_standard};
@@ -22,7 +22,7 @@ pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(),
         return Err(Failure::Usage(message.to_owned()));
     }
     let format = format(arguments)?;
-    let settings = settings(arguments)?;
+    let settings = lattice::settings(&arguments.lattice)?;
     let scene = Scene::load(&arguments.scene)?;
     scene.warn(quiet);
     let tree = scene.check()?;
@@ -35,7 +35,7 @@ pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(),
             true
         })
     };
-    let made = in_pool(arguments.threads, &mut work)?.map_err(|error| failure(&scene, error))?;
+    let made = in_pool(arguments.threads, &mut work)?.map_err(|error| lattice::failure(&scene, error))?;
     drop(progress);
 
     let mut output = Output::open(&arguments.output)?;
@@ -90,22 +90,6 @@ fn format(arguments: &MeshArguments) -> Result<Format, Failure> {
     })
 }
 
-/// What the options say about the lattice.
-fn settings(arguments: &MeshArguments) -> Result<Polygonize, Failure> {
-    let fineness = match (arguments.cell, arguments.resolution) {
-        (Some(cell), _) if cell.is_nan() || cell <= 0.0 => {
-            return Err(Failure::Usage(format!(
-                "the edge of a cell must be greater than zero, and it is {cell}"
-            )));
-        }
-        (Some(cell), _) => Fineness::Cell(cell),
-        (None, Some(0)) => return Err(Failure::Usage("a mesh needs at least one cell".to_owned())),
-        (None, Some(cells)) => Fineness::Resolution(cells),
-        (None, None) => Fineness::default(),
-    };
-    Ok(Polygonize { region: arguments.region.map(|region| (region.low, region.high)), fineness })
-}
-
 /// Runs the work on so many threads; on one for each processor if no number is given.
 fn in_pool<T: Send>(threads: Option<u16>, work: &mut (impl FnMut() -> T + Send)) -> Result<T, Failure> {
     let Some(threads) = threads else { return Ok(work()) };
@@ -114,34 +98,6 @@ fn in_pool<T: Send>(threads: Option<u16>, work: &mut (impl FnMut() -> T + Send))
         .build()
         .map_err(|error| Failure::Limit(format!("{threads} threads cannot be had: {error}")))?;
     Ok(pool.install(work))
-}
-
-/// Whose fault it is that there is no mesh.
-fn failure(scene: &Scene, error: PolygonizeError) -> Failure {
-    match error {
-        PolygonizeError::Empty => {
-            Failure::diagnostics(&scene.source(), &[Diagnostic::error(None, error.to_string())])
-        }
-        PolygonizeError::Unbounded => Failure::Usage(format!("{error}; --region gives it one")),
-        PolygonizeError::Compile(error) => Failure::compile(&scene.source(), &error),
-        PolygonizeError::Lattice(error) => match error {
-            LatticeError::NotFinite | LatticeError::Spacing { .. } | LatticeError::EmptyRegion { .. } => {
-                Failure::Usage(error.to_string())
-            }
-            LatticeError::Cells { .. }
-            | LatticeError::TooManyPoints { .. }
-            | LatticeError::TooFine { .. } => Failure::Limit(error.to_string()),
-        },
-        PolygonizeError::Mesh(error) => match error {
-            MeshError::Memory { .. } | MeshError::TooManyVertices { .. } => Failure::Limit(error.to_string()),
-            MeshError::Field(_)
-            | MeshError::Cancelled
-            | MeshError::Iso { .. }
-            | MeshError::Brick { .. }
-            | MeshError::Pulls { .. }
-            | MeshError::Width { .. } => Failure::Defect(error.to_string()),
-        },
-    }
 }
 
 /// What may not be as people expect.
@@ -173,7 +129,7 @@ impl Report<'_> {
     /// For machines.
     fn json(&self) -> serde_json::Value {
         let Polygonized { mesh, report, lattice, .. } = self.made;
-        let (low, high) = corners(self.made);
+        let (low, high) = lattice::corners(lattice);
         json!({
             "triangles": mesh.triangles.len(),
             "vertices": mesh.positions.len(),
@@ -204,18 +160,16 @@ impl Report<'_> {
         } else {
             "not closed".to_owned()
         };
-        let ([x0, y0, z0], [x1, y1, z1]) = corners(self.made);
-        let [nx, ny, nz] = lattice.cells();
         format!(
             "{}: {}, {}, {closed}\n\
-             \x20 lattice      {nx} x {ny} x {nz} cells of {:.6}, from ({x0:.4} {y0:.4} {z0:.4}) to ({x1:.4} {y1:.4} {z1:.4})\n\
+             \x20 lattice      {}\n\
              \x20 evaluations  {} of the field, {} with gradient, {} with everything\n\
              \x20 primitives   {} evaluated, by engine {}\n\
              \x20 time         {:.1} ms to compile, {:.1} ms in total",
             escape(name),
             plural(mesh.triangles.len() as u64, "triangle", "triangles"),
             plural(mesh.positions.len() as u64, "vertex", "vertices"),
-            lattice.spacing(),
+            lattice::describe(lattice),
             grouped(report.field_evaluations),
             grouped(report.gradient_evaluations),
             grouped(report.full_evaluations),
@@ -225,12 +179,6 @@ impl Report<'_> {
             milliseconds(self.total),
         )
     }
-}
-
-/// The first and the last corner of the lattice.
-fn corners(made: &Polygonized) -> ([f64; 3], [f64; 3]) {
-    let (low, cells) = (made.lattice.origin(), made.lattice.cells());
-    (low, std::array::from_fn(|axis| low[axis] + made.lattice.spacing() * cells[axis] as f64))
 }
 
 fn milliseconds(time: Duration) -> f64 {

@@ -84,6 +84,24 @@ impl CheckedTree {
     pub fn root(&self) -> NodeId {
         NodeId(self.nodes.len() as u32 - 1)
     }
+
+    /// How often each node is met from the root, along every path: 1 for the root, more below shared subtrees. In the order of
+    /// [`nodes`](Self::nodes).
+    #[must_use]
+    pub fn uses(&self) -> Vec<u64> {
+        paths(&self.nodes)
+    }
+
+    /// A leaf under maps, the nearest first. They are those of a checked tree, or products of them, so they are not checked again.
+    pub(crate) fn leaf_under(leaf: Primitive, maps: impl IntoIterator<Item = NodeKind>) -> Self {
+        let mut nodes =
+            vec![CheckedNode { kind: NodeKind::Primitive(leaf), children: Vec::new(), span: None }];
+        for kind in maps {
+            let below = NodeId(nodes.len() as u32 - 1);
+            nodes.push(CheckedNode { kind, children: vec![below], span: None });
+        }
+        Self { iso: Model::DEFAULT_ISO, attributes: vec![AttributeGroup::color()], nodes: nodes.into() }
+    }
 }
 
 impl Model {
@@ -433,20 +451,24 @@ fn norm(m: DMat3) -> f64 {
     [m.x_axis, m.y_axis, m.z_axis].iter().map(|column| column.abs().element_sum()).fold(0.0, f64::max)
 }
 
-/// Counts the paths from the root to all nodes: what lowering may have to go through, and rows in the end.
-fn check_occurrences(report: &mut Report, nodes: &[CheckedNode], most: usize) {
-    let mut paths = vec![0u64; nodes.len()];
-    let mut uses = 0u64;
+/// The number of paths from the root to each node. Children come before their parents.
+fn paths(nodes: &[CheckedNode]) -> Vec<u64> {
+    let mut paths = vec![0_u64; nodes.len()];
     if let Some(root) = paths.last_mut() {
         *root = 1;
     }
-    for (i, node) in nodes.iter().enumerate().rev() {
+    for (index, node) in nodes.iter().enumerate().rev() {
         for child in &node.children {
             let child = child.0 as usize;
-            paths[child] = paths[child].saturating_add(paths[i]);
+            paths[child] = paths[child].saturating_add(paths[index]);
         }
-        uses = uses.saturating_add(paths[i]);
     }
+    paths
+}
+
+/// Counts the paths from the root to all nodes: what lowering may have to go through, and rows in the end.
+fn check_occurrences(report: &mut Report, nodes: &[CheckedNode], most: usize) {
+    let uses = paths(nodes).into_iter().fold(0, u64::saturating_add);
     if uses > most as u64 {
         let span = nodes.last().and_then(|root| root.span);
         let count = if uses == u64::MAX { "more than 10^19".to_owned() } else { uses.to_string() };

@@ -13,8 +13,8 @@ pub struct Counters {
     pub lanes: u64,
     /// Distances to skeletons that were computed, for the points asked for.
     pub primitive_evaluations: u64,
-    /// Distances that separate walks for the field, for the normal by differences (4 walks) and for the attributes would have computed
-    /// on top of these.
+    /// Distances that [separate walks](crate::statistics::walks) of the tree would have computed on top of these: for the field, for the
+    /// normal by differences and for the attributes, a shared subtree again at each use.
     pub evaluations_avoided: u64,
 }
 

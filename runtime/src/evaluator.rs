@@ -13,6 +13,7 @@ use crate::counter::{Counters, Tally};
 use crate::error::{CompileError, EvalError};
 use crate::kernel::{Bound, Engine, Kernel, optimise};
 use crate::probe::Probe;
+use crate::statistics::{leaf_uses, walks};
 
 /// Makes evaluators, and remembers the code of every shape that it has met: models of one shape share it.
 ///
@@ -103,6 +104,8 @@ pub struct Evaluator {
     layout: Layout,
     /// Distances for a point, once somebody has asked.
     evaluations: OnceLock<u64>,
+    /// What separate walks would compute at a point.
+    separate: u64,
     tally: Tally,
 }
 
@@ -129,8 +132,17 @@ impl Evaluator {
             kernel.function.function().outputs,
             "planes are named alike everywhere"
         );
+        let separate = walks(query).saturating_mul(leaf_uses(tree));
         let bound = kernel.bind(Arc::new(tables));
-        Self { compiler, bound, query, layout, evaluations: OnceLock::new(), tally: Tally::default() }
+        Self {
+            compiler,
+            bound,
+            query,
+            layout,
+            evaluations: OnceLock::new(),
+            separate,
+            tally: Tally::default(),
+        }
     }
 
     /// Takes another model, usually an edited one. If it has the shape of the present one, only numbers are written.
@@ -202,10 +214,7 @@ impl Evaluator {
     /// What it has done so far.
     #[must_use]
     pub fn counters(&self) -> Counters {
-        // Separate walks: one for the field, four for a normal by differences, one for the attributes.
-        let walks = 1 + 4 * u64::from(self.query.gradient) + u64::from(self.query.attributes);
-        let evaluations = self.evaluations_per_point();
-        self.tally.snapshot(evaluations, walks * evaluations)
+        self.tally.snapshot(self.evaluations_per_point(), self.separate)
     }
 
     /// How many distances to skeletons one point takes.

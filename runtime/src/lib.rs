@@ -36,7 +36,7 @@
 //! * An [`Evaluator`] answers one [`Query`] at any points, on the [`Engine`] that the machine has; all engines give the same bits.
 //!   A [`Probe`] asks about a single point, in any order, for one evaluation.
 //! * [`Polygonize`] meshes a model; [`export`] writes meshes.
-//! * [`Counters`] say what was done, and what separate walks would have done.
+//! * [`Counters`] say what was done, and what separate walks would have done; [`statistics`] foretell it, and say how much of it matters.
 
 mod buffer;
 mod counter;
@@ -47,6 +47,7 @@ pub mod kernel;
 pub mod mesh;
 mod polygonize;
 mod probe;
+pub mod statistics;
 
 pub use jbt_ir as ir;
 #[cfg(feature = "jit")]

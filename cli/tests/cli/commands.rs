@@ -246,11 +246,55 @@ fn count_compares_with_separate_walks() {
     );
 
     let table = folder.jbt(&["count", "scene.jbt", "--query", "all"]).code(0).stdout();
-    assert!(
-        table.contains("4:11") && table.contains("6.00") && table.contains("separate = walks x"),
-        "{table}"
-    );
+    for words in ["4:11", "6.00", "separate = walks x uses", "lattice: ", "in support", "for each pair"] {
+        assert!(table.contains(words), "{words}: {table}");
+    }
     assert!(!table.contains("attributes  "), "one query only: {table}");
+}
+
+/// One ball on a lattice that anybody can count: what `jbt mesh` asks, and the points that are nearer than its radius.
+#[test]
+fn count_tells_what_matters_on_the_lattice_of_mesh() {
+    let ball = "jbt 1 let ball = point { radius 0.95 } union { use ball color (1 0 0) { use ball } }";
+    let folder = folder().with("ball.jbt", ball);
+    let lattice = ["--cell", "0.25", "--region", "-1,-1,-1,1,1,2"];
+    let report = folder.jbt(&[&["count", "ball.jbt", "--json"][..], &lattice].concat()).code(0).json();
+    let axis = |last: i32| (-4..=last).map(|index| f64::from(index) / 4.0);
+    let all = axis(4).flat_map(|x| axis(4).flat_map(move |y| axis(8).map(move |z| x * x + y * y + z * z)));
+    let inside = all.clone().filter(|square| *square < 0.95 * 0.95).count() as u64;
+    let points = all.count() as u64;
+    assert_eq!((&report["points"], &report["pairs_in_support"]), (&points.into(), &inside.into()));
+    assert_eq!((&report["uses"], &report["occurrences"]), (&2.into(), &1.into()));
+    assert_eq!((&report["evaluations"], &report["interval_evaluations"]), (&points.into(), &0.into()));
+    assert_eq!(report["waste"].as_f64(), Some(points as f64 / inside as f64));
+    assert_eq!(report["lattice"]["cells"], serde_json::json!([8, 8, 12]));
+    assert_eq!(report["leaves"][0]["pairs_in_support"].as_u64(), Some(inside));
+    let all = &report["queries"][3];
+    let counts = ["walks", "separate", "cached", "fused"].map(|key| all[key].as_u64().unwrap());
+    assert_eq!(counts, [6, 12, 4, 1]);
+    let totals = ["separate", "cached", "fused"].map(|key| all["total"][key].as_u64().unwrap());
+    assert_eq!(totals, [12 * points, 4 * points, points]);
+
+    let mesh = [&["mesh", "ball.jbt", "-o", "a.obj", "--json", "--resolution", "20"][..]].concat();
+    let mesh = folder.jbt(&mesh).code(0).json();
+    let report = folder.jbt(&["count", "ball.jbt", "--json", "--resolution", "20"]).code(0).json();
+    assert_eq!(report["points"], mesh["field_evaluations"]);
+    assert_eq!(report["lattice"]["region"], mesh["region"]);
+}
+
+#[test]
+fn count_needs_no_lattice() {
+    let empty = "jbt 1 intersection { point { radius 1 } translate (5 0 0) { point { radius 1 } } }";
+    let folder = folder().with("empty.jbt", empty);
+    let ran = folder.jbt(&["count", "empty.jbt", "--json"]).code(0).says("nothing is counted on a lattice");
+    let report = ran.json();
+    assert_eq!((&report["points"], &report["pairs_in_support"]), (&0.into(), &0.into()));
+    assert!(report["waste"].is_null() && report["lattice"].is_null());
+    assert_eq!(report["queries"][0]["fused"], 2);
+    // What was asked for has to be possible.
+    folder.jbt(&["count", "empty.jbt", "--cell", "0.1"]).code(1).says("the model is empty");
+    folder.jbt(&["count", "scene.jbt", "--cell", "-1"]).code(2).says("greater than zero");
+    folder.jbt(&["count", "scene.jbt", "--resolution", "0"]).code(2).says("at least one cell");
 }
 
 #[test]

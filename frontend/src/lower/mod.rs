@@ -16,6 +16,7 @@
 //! The program's body is a fold over the one row of the table `scene`, which holds the numbers of whatever is there once.
 
 mod emit;
+mod leaves;
 mod mixing;
 mod occurrence;
 mod position;
@@ -27,6 +28,8 @@ use jbt_ir::{Function, Tables};
 use crate::check::CheckedTree;
 use crate::diagnostic::Diagnostic;
 use crate::query::Query;
+
+pub use leaves::LeafOccurrences;
 
 /// A program, before any pass, and its numbers.
 #[derive(Clone, Debug)]

@@ -1,0 +1,68 @@
+//! The lattice of the command line: what its options mean, and whose fault it is when there is none.
+
+use jbt::mesh::{Lattice, LatticeError, MeshError};
+use jbt::{Fineness, Polygonize, PolygonizeError};
+use jbt_frontend::diagnostic::Diagnostic;
+
+use crate::arguments::LatticeArguments;
+use crate::failure::Failure;
+use crate::scene::Scene;
+
+/// What the options say.
+pub fn settings(arguments: &LatticeArguments) -> Result<Polygonize, Failure> {
+    let fineness = match (arguments.cell, arguments.resolution) {
+        (Some(cell), _) if cell.is_nan() || cell <= 0.0 => {
+            return Err(Failure::Usage(format!(
+                "the edge of a cell must be greater than zero, and it is {cell}"
+            )));
+        }
+        (Some(cell), _) => Fineness::Cell(cell),
+        (None, Some(0)) => return Err(Failure::Usage("a lattice needs at least one cell".to_owned())),
+        (None, Some(cells)) => Fineness::Resolution(cells),
+        (None, None) => Fineness::default(),
+    };
+    Ok(Polygonize { region: arguments.region.map(|region| (region.low, region.high)), fineness })
+}
+
+/// Whose fault it is that there is no lattice or mesh.
+pub fn failure(scene: &Scene, error: PolygonizeError) -> Failure {
+    match error {
+        PolygonizeError::Empty => {
+            Failure::diagnostics(&scene.source(), &[Diagnostic::error(None, error.to_string())])
+        }
+        PolygonizeError::Unbounded => Failure::Usage(format!("{error}; --region gives it one")),
+        PolygonizeError::Compile(error) => Failure::compile(&scene.source(), &error),
+        PolygonizeError::Lattice(error) => match error {
+            LatticeError::NotFinite | LatticeError::Spacing { .. } | LatticeError::EmptyRegion { .. } => {
+                Failure::Usage(error.to_string())
+            }
+            LatticeError::Cells { .. }
+            | LatticeError::TooManyPoints { .. }
+            | LatticeError::TooFine { .. } => Failure::Limit(error.to_string()),
+        },
+        PolygonizeError::Mesh(error) => match error {
+            MeshError::Memory { .. } | MeshError::TooManyVertices { .. } => Failure::Limit(error.to_string()),
+            MeshError::Field(_)
+            | MeshError::Cancelled
+            | MeshError::Iso { .. }
+            | MeshError::Brick { .. }
+            | MeshError::Pulls { .. }
+            | MeshError::Width { .. } => Failure::Defect(error.to_string()),
+        },
+    }
+}
+
+/// The first and the last corner of a lattice.
+pub fn corners(lattice: &Lattice) -> ([f64; 3], [f64; 3]) {
+    let (low, cells) = (lattice.origin(), lattice.cells());
+    (low, std::array::from_fn(|axis| low[axis] + lattice.spacing() * cells[axis] as f64))
+}
+
+/// A lattice in words: `40 x 40 x 20 cells of 0.100000, from (0.0000 0.0000 0.0000) to (4.0000 4.0000 2.0000)`.
+pub fn describe(lattice: &Lattice) -> String {
+    let ([x0, y0, z0], [x1, y1, z1]) = corners(lattice);
+    let ([nx, ny, nz], spacing) = (lattice.cells(), lattice.spacing());
+    format!(
+        "{nx} x {ny} x {nz} cells of {spacing:.6}, from ({x0:.4} {y0:.4} {z0:.4}) to ({x1:.4} {y1:.4} {z1:.4})"
+    )
+}

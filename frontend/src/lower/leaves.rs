@@ -1,0 +1,107 @@
+//! Every leaf where it stands, each as a model of its own: what statistics ask about one primitive at a time.
+
+use super::occurrence::{FieldId, OccurrenceKind, PositionId, Scene};
+use crate::check::{CheckedTree, NodeId};
+use crate::tree::{NodeKind, Primitive};
+
+/// The leaves of a tree at their positions: one for each leaf and way of coordinates to it, whatever the attributes. A leaf that
+/// several parents share under the same maps is there once.
+///
+/// ```
+/// use jbt_frontend::builder::point;
+/// use jbt_frontend::lower::LeafOccurrences;
+/// use jbt_frontend::model::Model;
+/// use jbt_frontend::walk::walk;
+///
+/// let ball = point([0.0; 3], 1.0);
+/// let tree = Model::new((&ball + &ball) | ball.translate([5.0, 0.0, 0.0])).check().unwrap();
+/// let leaves = LeafOccurrences::new(&tree);
+/// assert_eq!(leaves.len(), 2, "three uses, two of them at one place");
+/// assert_eq!(walk(&leaves.alone(1), [5.0, 0.0, 0.0]).field, 1.0);
+/// ```
+pub struct LeafOccurrences<'a> {
+    scene: Scene<'a>,
+    /// The warp that each space is the inside of, and where the warp stands; `None` for the world.
+    warps: Vec<Option<(NodeId, PositionId)>>,
+}
+
+impl<'a> LeafOccurrences<'a> {
+    /// Finds them. Cost: all paths of the tree at worst.
+    #[must_use]
+    pub fn new(tree: &'a CheckedTree) -> Self {
+        // Without attributes: they do not tell leaves apart.
+        let scene = Scene::new(tree, 0);
+        let mut warps = vec![None; scene.spaces as usize];
+        for occurrence in &scene.occurrences {
+            if let OccurrenceKind::Warp { position, inside, .. } = occurrence.kind {
+                warps[inside.0 as usize] = Some((occurrence.node, position));
+            }
+        }
+        Self { scene, warps }
+    }
+
+    /// How many there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.scene.fields.len()
+    }
+
+    /// Whether there are none. No tree is without leaves.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.scene.fields.is_empty()
+    }
+
+    /// The node of one of them. Panics if there are not as many.
+    #[must_use]
+    pub fn node(&self, index: usize) -> NodeId {
+        self.scene.field(FieldId(index as u32)).node
+    }
+
+    /// A model of this leaf alone, where it stands in the whole, with strength 1: its field is above zero exactly inside the
+    /// primitive's support. Its numbers are, to the bit, those that it has in the program of the whole model. Panics if there are not as many.
+    #[must_use]
+    pub fn alone(&self, index: usize) -> CheckedTree {
+        let field = FieldId(index as u32);
+        let leaf = Primitive { strength: 1.0, ..self.scene.primitive(field).clone() };
+        let mut maps = Vec::new();
+        let mut position = self.scene.position(self.scene.field(field).position);
+        loop {
+            maps.push(NodeKind::Affine(position.map));
+            let Some((warp, outside)) = self.warps[position.space.0 as usize] else { break };
+            maps.push(self.scene.tree.node(warp).kind.clone());
+            position = self.scene.position(outside);
+        }
+        CheckedTree::leaf_under(leaf, maps)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::text::{Options, parse};
+
+    fn leaves(text: &str, p: [f64; 3]) -> Vec<f64> {
+        let tree = parse(text.as_bytes(), &Options::default()).unwrap().check().unwrap();
+        let leaves = LeafOccurrences::new(&tree);
+        (0..leaves.len()).map(|index| crate::walk::walk(&leaves.alone(index), p).field).collect()
+    }
+
+    #[test]
+    fn a_leaf_alone_stands_where_it_stood() {
+        let text = "jbt 1 rotate axis z degrees 90 { twist axis z rate 1 { translate (1 0 1) { scale 2 {
+            sum { point { radius 1 strength -3 } point { at (0 0 1) radius 0.5 strength 0 } } } } } }";
+        // Undone: from (x, y) = (-sin 1, cos 1) back by a quarter, then by the twist's angle 1 at z = 1.
+        let (sin, cos) = 1.0_f64.sin_cos();
+        let found = leaves(text, [-sin, cos, 1.0]);
+        assert!((found[0] - 1.0).abs() < 1e-12, "{found:?}");
+        assert_eq!(found[1], 0.0);
+    }
+
+    #[test]
+    fn attributes_make_no_other_leaf() {
+        let text = "jbt 1 let a = twist axis x rate 1 { point { at (0 1 0) radius 1 } }
+            sum { color (1 0 0) { use a } color (0 1 0) { use a } rotate axis y degrees 180 { use a } }";
+        assert_eq!(leaves(text, [0.0, 1.0, 0.0]), [1.0, 1.0]);
+    }
+}

@@ -1,0 +1,228 @@
+//! Statistics: how many evaluations of primitives a question takes, in old ways and in ours, and how many of them matter.
+//!
+//! ```text
+//! separate   walks(query) x uses of leaves           each walk goes down every path: shared subtrees again at each use
+//! cached     places(query) x occurrences of leaves   a memory for each point: a leaf at a position once for each place asked
+//! fused      what the compiled program evaluates
+//! matters    pairs of a point and an occurrence where the point is inside of the primitive's support
+//! ```
+//!
+//! An *evaluation* is one distance to one skeleton at one place. A *use* of a leaf is a path from the root to it; an *occurrence* is a leaf
+//! at a position, whatever the number of paths that lead there.
+
+use std::collections::BTreeMap;
+
+use jbt_frontend::check::CheckedTree;
+use jbt_frontend::lower::LeafOccurrences;
+use jbt_frontend::query::Query;
+use jbt_frontend::tree::NodeKind;
+use rayon::prelude::*;
+
+use crate::error::CompileError;
+use crate::evaluator::{Compiler, Evaluator};
+use crate::mesh::Lattice;
+
+/// Walks of the tree that separate evaluations take: 1 for the field; 4 more for the gradient by forward differences, at the point and a
+/// step along each axis; 1 more for the attributes.
+#[must_use]
+pub fn walks(query: Query) -> u64 {
+    1 + 4 * u64::from(query.gradient) + u64::from(query.attributes)
+}
+
+/// Different places that those walks ask about: the point, and the ends of the three steps of a gradient by differences.
+#[must_use]
+pub fn places(query: Query) -> u64 {
+    1 + 3 * u64::from(query.gradient)
+}
+
+/// Uses of leaves: paths from the root to a leaf.
+#[must_use]
+pub fn leaf_uses(tree: &CheckedTree) -> u64 {
+    let of = |(node, uses): (&jbt_frontend::check::CheckedNode, u64)| match node.kind {
+        NodeKind::Primitive(_) => uses,
+        NodeKind::Combine(_) | NodeKind::Affine(_) | NodeKind::Warp(_) | NodeKind::Attribute { .. } => 0,
+    };
+    tree.nodes().iter().zip(tree.uses()).map(of).fold(0, u64::saturating_add)
+}
+
+/// Evaluations of primitives for one point.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct PerPoint {
+    /// By separate walks of the tree.
+    pub separate: u64,
+    /// By separate walks that remember, for each point, the field of every leaf at every position.
+    pub cached: u64,
+    /// By the compiled program.
+    pub fused: u64,
+}
+
+/// What is known about the leaves of a model.
+pub struct Statistics<'a> {
+    uses: u64,
+    occurrences: LeafOccurrences<'a>,
+}
+
+/// How far around a leaf's support lattice points are tried, as a part of the largest coordinate: more than f32 is off by.
+const ROUNDING: f64 = 1.0 / (1 << 18) as f64;
+/// Points that are evaluated at once.
+const BATCH: usize = 1 << 13;
+/// Occurrences between two reports of progress.
+const STRIDE: usize = 64;
+
+impl<'a> Statistics<'a> {
+    /// The statistics of a model. Cost: all paths of the tree at worst.
+    #[must_use]
+    pub fn new(tree: &'a CheckedTree) -> Self {
+        Self { uses: leaf_uses(tree), occurrences: LeafOccurrences::new(tree) }
+    }
+
+    /// Uses of leaves: paths from the root to a leaf.
+    #[must_use]
+    pub fn uses(&self) -> u64 {
+        self.uses
+    }
+
+    /// Occurrences of leaves: a leaf at a position once.
+    #[must_use]
+    pub fn occurrences(&self) -> u64 {
+        self.occurrences.len() as u64
+    }
+
+    /// The evaluations for one point of the query of an evaluator for this model.
+    #[must_use]
+    pub fn per_point(&self, evaluator: &Evaluator) -> PerPoint {
+        let query = evaluator.query();
+        PerPoint {
+            separate: walks(query).saturating_mul(self.uses),
+            cached: places(query).saturating_mul(self.occurrences()),
+            fused: evaluator.evaluations_per_point(),
+        }
+    }
+
+    /// Counts the pairs of a lattice point and an occurrence where the point is inside of the primitive's support, nearer to its skeleton
+    /// than its radius.
+    ///
+    /// Every point near the box of a support is tried by the compiled field of that leaf alone, in the same f32 arithmetic as in the
+    /// whole model; points far from the box are outside. Maps and warps are those above the leaf; operators and strengths, which may
+    /// silence a leaf, do not count. Runs on the threads of the rayon pool in which this is called; the answer does not
+    /// depend on them.
+    ///
+    /// The hook is told how far the work is, from 0 to 1, and cancels it by returning false.
+    ///
+    /// # Errors
+    /// The hook cancelled, or a leaf could not be compiled.
+    pub fn supports(
+        &self,
+        compiler: &Compiler,
+        lattice: &Lattice,
+        hook: &mut dyn FnMut(f32) -> bool,
+    ) -> Result<Supports, SupportsError> {
+        let axes = lattice.axes();
+        let mut supports =
+            Supports { points: lattice.point_count() as u64, pairs: 0, by_node: BTreeMap::new() };
+        let count = self.occurrences.len();
+        for start in (0..count).step_by(STRIDE) {
+            if !hook(start as f32 / count as f32) {
+                return Err(SupportsError::Cancelled);
+            }
+            let some = start..count.min(start + STRIDE);
+            let pairs: Vec<u64> = some
+                .clone()
+                .into_par_iter()
+                .map(|index| inside(compiler, &self.occurrences.alone(index), lattice.spacing(), &axes))
+                .collect::<Result<_, _>>()?;
+            for (index, pairs) in some.zip(pairs) {
+                supports.pairs += pairs;
+                *supports.by_node.entry(self.occurrences.node(index).0).or_default() += pairs;
+            }
+        }
+        Ok(supports)
+    }
+}
+
+/// What matters on a lattice: how many points are inside of supports.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Supports {
+    /// Points of the lattice.
+    pub points: u64,
+    /// Pairs of a point and an occurrence whose support it is inside of.
+    pub pairs: u64,
+    /// The pairs by tree node: every leaf is here, with all its occurrences.
+    pub by_node: BTreeMap<u32, u64>,
+}
+
+impl Supports {
+    /// The waste: the evaluations that were done for each one that matters, 1 at best; `None` if none matters.
+    #[must_use]
+    pub fn waste(&self, evaluations: u64) -> Option<f64> {
+        (self.pairs > 0).then(|| evaluations as f64 / self.pairs as f64)
+    }
+}
+
+/// Why supports were not counted.
+#[derive(Clone, Debug, thiserror::Error)]
+pub enum SupportsError {
+    /// A leaf could not be compiled.
+    #[error(transparent)]
+    Compile(#[from] CompileError),
+    /// The hook said to stop.
+    #[error("cancelled")]
+    Cancelled,
+}
+
+/// Lattice points inside of the support of a model of one leaf.
+fn inside(
+    compiler: &Compiler,
+    leaf: &CheckedTree,
+    spacing: f64,
+    axes: &[Vec<f32>; 3],
+) -> Result<u64, CompileError> {
+    let support = leaf.support();
+    let [low, high] = [support.low(), support.high()];
+    let farthest = low.iter().chain(&high).fold(0.0, |most: f64, side| most.max(side.abs()));
+    let margin = spacing + ROUNDING * farthest;
+    let [xs, ys, zs]: [&[f32]; 3] = std::array::from_fn(|axis| {
+        let below = |side: f64| axes[axis].partition_point(|&at| f64::from(at) < side);
+        // An infinite side has an infinite margin, and their difference would be no number.
+        let side = |side: f64, margin: f64| if side.is_finite() { side + margin } else { side };
+        let first = below(side(low[axis], -margin));
+        &axes[axis][first..below(side(high[axis], margin)).max(first)]
+    });
+    if xs.is_empty() || ys.is_empty() || zs.is_empty() {
+        return Ok(0);
+    }
+    let evaluator = compiler.evaluator(leaf, Query::FIELD)?;
+    let slabs = zs.par_iter().map_init(Planes::default, |planes, &z| planes.count(&evaluator, xs, ys, z));
+    Ok(slabs.sum())
+}
+
+/// Points and their fields.
+#[derive(Default)]
+struct Planes {
+    x: Vec<f32>,
+    y: Vec<f32>,
+    z: Vec<f32>,
+    field: Vec<f32>,
+}
+
+impl Planes {
+    /// The points with a positive field among `xs` x `ys` x {z}.
+    fn count(&mut self, evaluator: &Evaluator, xs: &[f32], ys: &[f32], z: f32) -> u64 {
+        let mut found = 0;
+        for ys in ys.chunks((BATCH / xs.len()).max(1)) {
+            self.x.clear();
+            self.y.clear();
+            for &y in ys {
+                self.x.extend_from_slice(xs);
+                self.y.resize(self.x.len(), y);
+            }
+            self.z.clear();
+            self.z.resize(self.x.len(), z);
+            self.field.resize(self.x.len(), 0.0);
+            let planes = [&self.x[..], &self.y, &self.z];
+            evaluator.eval_planes(planes, &mut [&mut self.field]).expect("the planes are equally long");
+            found += self.field.iter().filter(|&&field| field > 0.0).count() as u64;
+        }
+        found
+    }
+}
