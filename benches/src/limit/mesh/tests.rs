@@ -1,0 +1,81 @@
+//! Meshes by hand against the oracle and against the compiler's mesher.
+
+use jbt::mesh::check_manifold;
+use jbt::{Compiler, Fineness, Polygonize};
+use jbt_frontend::walk::{walk, walk_gradient};
+
+use crate::model::{ISO, blobs, tree};
+
+use super::{Lattice, Mesh, mesh};
+
+/// A lattice around all blobs. Its last bricks are not whole.
+fn lattice(cells: usize) -> Lattice {
+    Lattice { origin: [-1.5; 3], cell: 3.0 / cells as f32, counts: [cells + 1; 3] }
+}
+
+fn in_pool(threads: usize, make: impl FnOnce() -> Mesh + Send) -> Mesh {
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads").install(make)
+}
+
+#[test]
+fn a_mesh_is_a_closed_manifold_also_where_faces_are_flipped() {
+    let mut flipped = 0;
+    for (count, cells) in [(1, 12), (64, 50), (512, 40), (4096, 70)] {
+        let mesh = mesh(&blobs(count, 1), &lattice(cells), ISO);
+        assert!(!mesh.triangles.is_empty());
+        assert_eq!(check_manifold(mesh.positions.len(), &mesh.triangles), Ok(()), "{count} blobs");
+        flipped += mesh.statistics.flipped_faces;
+    }
+    assert!(flipped > 0, "some model has a face to flip");
+}
+
+#[test]
+fn vertices_are_on_the_surface_with_its_normals_and_colours() {
+    let model = blobs(64, 2);
+    let (tree, mesh) = (tree(&model), mesh(&model, &lattice(64), ISO));
+    assert_eq!((mesh.normals.len(), mesh.colors.len()), (mesh.positions.len(), mesh.positions.len()));
+    let mut errors = Vec::new();
+    for index in (0..mesh.positions.len()).step_by(7) {
+        let p = mesh.positions[index].map(f64::from);
+        let (expected, slope) = (walk(&tree, p), walk_gradient(&tree, p, 1e-5));
+        errors.push((expected.field - f64::from(ISO)).abs());
+        let length = slope.iter().map(|slope| slope * slope).sum::<f64>().sqrt();
+        for (axis, slope) in slope.into_iter().enumerate() {
+            let normal = f64::from(mesh.normals[index][axis]);
+            assert!((normal + slope / length).abs() < 1e-3, "the normal {normal} at {p:?}");
+            let color = f64::from(mesh.colors[index][axis]);
+            assert!((color - expected.attributes[0][axis]).abs() < 1e-3, "the colour {color} at {p:?}");
+        }
+    }
+    errors.sort_by(f64::total_cmp);
+    // Where the surface leaves a cell through an edge, its vertex may be held at the side of the cell.
+    assert!(errors[errors.len() * 99 / 100] < 1e-4 && errors[errors.len() - 1] < 0.02, "{errors:?}");
+}
+
+#[test]
+fn the_mesh_does_not_depend_on_the_threads() {
+    let (model, lattice) = (blobs(512, 3), lattice(70));
+    let one = in_pool(1, || mesh(&model, &lattice, ISO));
+    assert_eq!(one, in_pool(2, || mesh(&model, &lattice, ISO)));
+}
+
+#[test]
+fn the_compiler_makes_as_many_triangles() {
+    let (model, cells) = (blobs(64, 4), 64);
+    let by_hand = mesh(&model, &lattice(cells), ISO);
+    let settings =
+        Polygonize { region: Some(([-1.5; 3], [1.5; 3])), fineness: Fineness::Cell(3.0 / cells as f64) };
+    let compiled = settings.run(&Compiler::new(), &tree(&model), &mut |_| true).expect("blobs have a mesh");
+    // A corner that is on the surface to within rounding may be inside for one of them only.
+    assert!(by_hand.triangles.len().abs_diff(compiled.mesh.triangles.len()) <= 8);
+}
+
+#[test]
+fn where_there_is_no_surface_there_is_no_mesh() {
+    assert_eq!(mesh(&[], &lattice(20), ISO).triangles, [[0; 3]; 0]);
+    assert_eq!(mesh(&blobs(64, 1), &lattice(20), 1e6).triangles, [[0; 3]; 0]);
+    // All of it is inside.
+    let tiny = Lattice { origin: blobs(1, 1)[0].center, cell: 1e-3, counts: [10; 3] };
+    let inside = mesh(&blobs(1, 1), &tiny, ISO);
+    assert_eq!((inside.triangles.len(), inside.statistics.bricks), (0, 0));
+}
