@@ -70,3 +70,31 @@ pub fn mesh(tree: &CheckedTree, made: &Polygonized) {
 fn some(length: usize, count: usize) -> impl Iterator<Item = usize> {
     (0..length).step_by(length.div_ceil(count).max(1))
 }
+
+/// A value that is not what it should be.
+#[derive(Clone, Copy, PartialEq, Debug, thiserror::Error)]
+#[error("answer {index} is {value}, expected {expected}")]
+pub struct Disagreement {
+    /// Which of the answers.
+    pub index: usize,
+    /// The answer.
+    pub value: f32,
+    /// What another engine or the oracle has there.
+    pub expected: f32,
+}
+
+/// Compares answers with expected ones, within `tolerance` of `1 + |expected|`.
+///
+/// # Errors
+/// The first answer that is off. A NaN is; so is the first one that is missing on either side.
+pub fn agree(values: &[f32], expected: &[f32], tolerance: f32) -> Result<(), Disagreement> {
+    for index in 0..values.len().max(expected.len()) {
+        let of = |slice: &[f32]| slice.get(index).copied().unwrap_or(f32::NAN);
+        let (value, expected) = (of(values), of(expected));
+        let near = (value - expected).abs() <= tolerance * (1.0 + expected.abs());
+        if !near {
+            return Err(Disagreement { index, value, expected });
+        }
+    }
+    Ok(())
+}

@@ -1,5 +1,10 @@
 //! How fast, compared with what: models, the checks that answers have to pass before anything is timed, and what we compare with.
 
 pub mod check;
+#[cfg(feature = "peers")]
+pub mod compare;
 pub mod limit;
 pub mod model;
+pub mod naive;
+#[cfg(feature = "peers")]
+pub mod peers;

@@ -41,6 +41,31 @@ pub fn scaled_blobs(count: usize, scale: f64, seed: u64) -> Vec<Blob> {
     (0..count).map(blob).collect()
 }
 
+/// About `count` particles of one size in a ball about the origin, on a jittered grid: what a fluid simulation hands over. Every
+/// one's field reaches two grid steps, and all fields end within [-1, 1]^3.
+#[must_use]
+pub fn particles(count: usize, seed: u64) -> Vec<Blob> {
+    let mut random = fastrand::Rng::with_seed(seed);
+    // A ball of radius r has 4/3 pi (r / step)^3 places; the outermost fields end two and a half steps further out.
+    let steps = (count as f64 * 0.75 / std::f64::consts::PI).cbrt();
+    let step = 1.0 / (steps + 2.5);
+    let reach = steps.ceil() as i32;
+    let mut particles = Vec::with_capacity(count);
+    for (i, j, k) in (-reach..=reach)
+        .flat_map(|k| (-reach..=reach).flat_map(move |j| (-reach..=reach).map(move |i| (i, j, k))))
+    {
+        let place = [i, j, k].map(f64::from);
+        if place.iter().map(|x| x * x).sum::<f64>() <= steps * steps {
+            particles.push(Blob {
+                center: place.map(|x| (step * (x + 0.4 * (random.f64() - 0.5))) as f32),
+                radius: (2.0 * step) as f32,
+                color: std::array::from_fn(|_| random.f32()),
+            });
+        }
+    }
+    particles
+}
+
 /// The sum of blobs as a BlobTree.
 #[must_use]
 pub fn tree(blobs: &[Blob]) -> CheckedTree {

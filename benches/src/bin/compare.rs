@@ -1,0 +1,85 @@
+//! `compare`: ours against the physical limit and other people's libraries, in one run.
+//!
+//! ```text
+//! cargo run --release -p jbt-benches --features peers --bin compare -- [CASE ...] [--json] [--quick] [--threads N]
+//! ```
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "it is a program")]
+
+use std::process::ExitCode;
+
+use clap::Parser;
+use jbt_benches::compare::{Case, Options, heading, line};
+
+/// Times the compiler, the hand-written limit and the peers on the same work, one after the other, and prints the medians.
+#[derive(Parser, Debug)]
+#[command(after_help = after_help())]
+struct Arguments {
+    /// Cases to run; all of them if none is named
+    #[arg(value_name = "CASE")]
+    cases: Vec<String>,
+
+    /// One JSON object per line
+    #[arg(long)]
+    json: bool,
+
+    /// Less of everything: about a minute for all cases; mesh-4096 without the peers
+    #[arg(long)]
+    quick: bool,
+
+    /// Threads of the cases that mesh; all others run on one
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: u16,
+}
+
+fn after_help() -> String {
+    format!(
+        "Cases:\n{}\n\
+Every contestant is checked against the f64 oracle before it is timed; who disagrees is named under `check` and has no time.
+Times are medians: of at least 5 runs for ours and for the limit, of 1 run for others that take more than 2 s.
+
+Keys of --json: case, primitives, points, unit (what the times are of), and for each contestant NAME_ns and, where it has several
+forms, NAME_form, the fastest. NAME is one of:
+  ours        the compiler, on its best engine (key engine); the lanes interpreter for the case interpreter
+  limit       hand-written loops for sums of points (key limit_level: their instruction set)
+  fidget_jit  fidget's machine code          fidget_vm  its interpreter
+  splashsurf  another surface of the same particles
+  walk        a tree walker                  separate   separate walks for every answer
+ratio_limit is ours / limit, ratio_fidget is fidget / ours; checksum is ok, or says who disagrees.",
+        list()
+    )
+}
+
+fn list() -> String {
+    Case::ALL.iter().map(|case| format!("  {:<16}{}\n", case.name, case.what)).collect()
+}
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let mut cases = Vec::new();
+    for name in &arguments.cases {
+        match Case::named(name) {
+            Some(case) => cases.push(case),
+            None => {
+                eprintln!("error: there is no case `{}`; the cases are:\n{}", name.escape_debug(), list());
+                return ExitCode::from(2);
+            }
+        }
+    }
+    if cases.is_empty() {
+        cases.extend(Case::ALL);
+    }
+    let options = Options { quick: arguments.quick, threads: usize::from(arguments.threads) };
+    if !arguments.json {
+        println!("{}", heading());
+    }
+    let mut fine = true;
+    for row in cases.into_iter().flat_map(|case| case.run(options)) {
+        fine &= row.checksum() == "ok";
+        if arguments.json {
+            println!("{}", row.json());
+        } else {
+            println!("{}", line(&row));
+        }
+    }
+    if fine { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+}

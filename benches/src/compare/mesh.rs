@@ -1,0 +1,164 @@
+//! From blobs to a mesh: everything from the model on counts, code included. Ours and the limit make normals and colours as well; the
+//! peers make positions alone.
+
+use jbt::{Compiler, Polygonize, Polygonized};
+use jbt_frontend::check::CheckedTree;
+use jbt_frontend::walk::walk;
+use serde_json::json;
+
+use super::Options;
+use super::contest::{Contest, Contestant};
+use super::oracle::{Oracle, Tolerance};
+use super::report::Row;
+use crate::limit;
+use crate::model::{self, Blob, ISO};
+use crate::peers::Threads;
+use crate::peers::fidget::{FidgetModel, Gate, JitFunction};
+use crate::peers::splashsurf::{Division, Particles};
+
+/// Cells along an axis of the lattice over [-1, 1]^3.
+const CELLS: usize = 128;
+/// The depth of an octree with as many.
+const DEPTH: u8 = 7;
+/// How far from `iso` the field may be at a vertex, on average and at most. Its gradients are up to 50.
+const VERTICES_OFF: (f64, f64) = (2e-3, 1e-1);
+/// How much the numbers of triangles of two meshes of one surface may differ.
+const TRIANGLES_OFF: f64 = 0.01;
+
+/// What is meshed, and on which threads.
+struct Task {
+    blobs: Vec<Blob>,
+    tree: CheckedTree,
+    cells: usize,
+    pool: rayon::ThreadPool,
+}
+
+impl Task {
+    fn new(blobs: Vec<Blob>, cells: usize, options: Options) -> Self {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build();
+        let tree = model::tree(&blobs);
+        Self { blobs, tree, cells, pool: pool.expect("threads can be made") }
+    }
+
+    fn ours(&self) -> Polygonized {
+        let region = Some(([-1.0; 3], [1.0; 3]));
+        let polygonize = Polygonize { region, fineness: jbt::Fineness::Resolution(self.cells) };
+        let run = || polygonize.run(&Compiler::new(), &self.tree, &mut |_| true);
+        self.pool.install(run).expect("blobs have a mesh")
+    }
+
+    fn limit(&self) -> limit::mesh::Mesh {
+        let cell = 2.0 / self.cells as f32;
+        let lattice = limit::mesh::Lattice { origin: [-1.0; 3], cell, counts: [self.cells + 1; 3] };
+        self.pool.install(|| limit::mesh::mesh(&self.blobs, &lattice, ISO))
+    }
+
+    /// Whether the field at vertices is the iso-value, as far as a step or two of Newton's can bring it there.
+    fn check(&self, positions: &[[f32; 3]]) -> Result<(), String> {
+        let step = positions.len().div_ceil(500).max(1);
+        let offs: Vec<f64> = (positions.iter().step_by(step))
+            .map(|position| (walk(&self.tree, position.map(f64::from)).field - f64::from(ISO)).abs())
+            .collect();
+        let mean = offs.iter().sum::<f64>() / offs.len() as f64;
+        let most = offs.iter().fold(0.0, |most: f64, &off| most.max(off));
+        if mean <= VERTICES_OFF.0 && most <= VERTICES_OFF.1 {
+            return Ok(());
+        }
+        Err(format!(
+            "vertices are off the surface: the field is {mean:.1e} from the iso-value, {most:.1e} at worst"
+        ))
+    }
+
+    /// Enters ours and the limit, which make one mesh. Returns the number of triangles and the engine.
+    fn enter<'a>(&'a self, contest: &mut Contest<'a>) -> (usize, &'static str) {
+        let (ours, limit) = (self.ours(), self.limit());
+        contest.enter(Contestant::Ours, "", self.check(&ours.mesh.positions), || self.ours());
+        let (triangles, others) = (ours.mesh.triangles.len(), limit.triangles.len());
+        let mut checked = self.check(&limit.positions);
+        if (others as f64 - triangles as f64).abs() > TRIANGLES_OFF * triangles as f64 {
+            checked = Err(format!("{others} triangles, ours are {triangles}"));
+        }
+        contest.enter(Contestant::Limit, "", checked, || self.limit());
+        (triangles, ours.engine.name())
+    }
+
+    fn row(
+        &self,
+        case: &'static str,
+        contest: Contest<'_>,
+        (triangles, engine): (usize, &str),
+        options: Options,
+    ) -> Row {
+        Row {
+            case,
+            primitives: self.blobs.len(),
+            points: (self.cells + 1).pow(3),
+            unit: "run",
+            units: 1.0,
+            standings: contest.run(options.effort()),
+            extra: vec![
+                ("engine", json!(engine)),
+                ("limit_level", json!(limit::level())),
+                ("threads", json!(options.threads)),
+                ("triangles", json!(triangles)),
+            ],
+        }
+    }
+}
+
+fn peer_threads(options: Options) -> Threads {
+    if options.threads == 1 { Threads::One } else { Threads::All }
+}
+
+/// Blobs in a cube.
+pub(super) fn blobs(count: usize, case: &'static str, options: Options) -> Vec<Row> {
+    let task = Task::new(model::blobs(count, 1), CELLS, options);
+    let mut contest = Contest::new();
+    let made = task.enter(&mut contest);
+    if !(options.quick && count > 1_000) {
+        let points = model::cube(2_000, 2);
+        let oracle = Oracle::new(&task.tree, &points);
+        for gate in gates(count) {
+            let mut field = vec![f32::NAN; points.len()];
+            FidgetModel::<JitFunction>::new(&task.blobs, *gate).field().eval(points.planes(), &mut field);
+            let checked = oracle.check(&[&field], Tolerance::EXACT);
+            contest.enter(Contestant::FidgetJit, gate.name(), checked, || {
+                FidgetModel::<JitFunction>::new(&task.blobs, *gate).mesh(DEPTH, peer_threads(options))
+            });
+        }
+    }
+    vec![task.row(case, contest, made, options)]
+}
+
+/// The gates worth trying: without one nothing falls away, which takes minutes for thousands of blobs.
+fn gates(count: usize) -> &'static [Gate] {
+    if count <= 100 { &Gate::ALL } else { &[Gate::If, Gate::And] }
+}
+
+/// A ball of particles of one size. splashsurf computes another surface of the same particles, with the same reach and cells.
+pub(super) fn particles(options: Options) -> Vec<Row> {
+    let counts: &[usize] = if options.quick { &[2_000] } else { &[2_000, 10_000] };
+    let row = |&count: &usize| {
+        let particles = model::particles(count, 1);
+        let cells = (2.0 * CELLS_IN_REACH / f64::from(particles[0].radius)).round() as usize;
+        let task = Task::new(particles, cells, options);
+        let mut contest = Contest::new();
+        let made = task.enter(&mut contest);
+        let cell = 2.0 / cells as f32;
+        for (division, form) in [(Division::None, "one grid"), (Division::Subdomains, "subdomains")] {
+            let peer = Particles::new(&task.blobs, cell, division, peer_threads(options));
+            let checked = peer.as_ref().map_err(ToString::to_string).and_then(|peer| {
+                let made = peer.mesh().map_err(|error| error.to_string())?;
+                if made.triangles > 0 { Ok(()) } else { Err("no triangles".to_owned()) }
+            });
+            contest.enter(Contestant::Splashsurf, form, checked, move || {
+                peer.as_ref().map(Particles::mesh).is_ok_and(|made| made.is_ok())
+            });
+        }
+        task.row("particles", contest, made, options)
+    };
+    counts.iter().map(row).collect()
+}
+
+/// Cells from a particle to where its field ends.
+const CELLS_IN_REACH: f64 = 8.0;

@@ -1,0 +1,112 @@
+//! Ours against the physical limit and the peers: cases, each a contest over one kind of work.
+//!
+//! ```text
+//! Case ──► models, points ──► Oracle checks every contestant ──► Contest runs them in turn ──► Row: medians, ratios
+//! ```
+//!
+//! All contestants of a case are given the same numbers and run on as many threads. Whoever's answers are off is named in the row and not timed.
+
+mod contest;
+mod dense;
+mod mesh;
+mod oracle;
+mod report;
+mod rows;
+mod train;
+
+use std::time::Duration;
+
+pub use contest::{Contestant, Effort, Standing, Standings};
+pub use report::{Row, heading, line};
+
+/// What applies to every case.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Options {
+    /// Less of everything: a minute for all cases.
+    pub quick: bool,
+    /// Threads of meshing cases; the others run on one.
+    pub threads: usize,
+}
+
+impl Options {
+    /// How long to measure.
+    fn effort(self) -> Effort {
+        if self.quick {
+            Effort { budget: Duration::from_millis(300), patience: Duration::from_millis(150) }
+        } else {
+            Effort { budget: Duration::from_secs(2), patience: Duration::from_secs(2) }
+        }
+    }
+}
+
+/// A case.
+#[derive(Clone, Copy)]
+pub struct Case {
+    /// The word of the command line.
+    pub name: &'static str,
+    /// What is measured, for people.
+    pub what: &'static str,
+    run: fn(Options) -> Vec<Row>,
+}
+
+impl Case {
+    /// All cases, in the order of the table.
+    pub const ALL: &'static [Self] = &[
+        Self { name: "dense-field", what: "the field of 200 points, no culling", run: dense::field },
+        Self { name: "dense-gradient", what: "field and gradient of 200 points", run: dense::gradient },
+        Self { name: "dense-full", what: "field, gradient and colour of 200 points", run: dense::full },
+        Self {
+            name: "interpreter",
+            what: "the field by interpreters, no machine code",
+            run: dense::interpreter,
+        },
+        Self {
+            name: "compile",
+            what: "from a model to its kernel, by number of primitives",
+            run: rows::compile,
+        },
+        Self {
+            name: "mesh-64",
+            what: "blobs to a mesh, 129^3 lattice",
+            run: |options| mesh::blobs(64, "mesh-64", options),
+        },
+        Self {
+            name: "mesh-512",
+            what: "the same, 512 blobs",
+            run: |options| mesh::blobs(512, "mesh-512", options),
+        },
+        Self {
+            name: "mesh-4096",
+            what: "the same, 4,096 blobs",
+            run: |options| mesh::blobs(4096, "mesh-4096", options),
+        },
+        Self { name: "particles", what: "a ball of particles to a mesh", run: mesh::particles },
+        Self {
+            name: "train",
+            what: "the field of the ParsIP train on its lattice, cell 0.13",
+            run: train::train,
+        },
+        Self {
+            name: "scaling",
+            what: "the field at 4,096 points, by number of primitives",
+            run: dense::scaling,
+        },
+        Self {
+            name: "edit",
+            what: "change a number of 512 points, evaluate the field at 4,096",
+            run: rows::edit,
+        },
+    ];
+
+    /// The case of this name.
+    #[must_use]
+    pub fn named(name: &str) -> Option<&'static Self> {
+        Self::ALL.iter().find(|case| case.name == name)
+    }
+
+    /// Runs it.
+    #[must_use]
+    pub fn run(&self, options: Options) -> Vec<Row> {
+        (self.run)(options)
+    }
+}

@@ -1,0 +1,82 @@
+//! A real scene: the locomotive of ParsIP (95 leaves, 31 operators) at every point of the lattice that it was published with.
+
+use std::path::{Path, PathBuf};
+
+use jbt::{Compiler, Points, Query};
+use jbt_frontend::check::CheckedTree;
+use jbt_frontend::import;
+use serde_json::json;
+
+use super::Options;
+use super::contest::{Contest, Contestant, Standings};
+use super::oracle::{Oracle, Tolerance};
+use super::report::Row;
+use crate::naive::Walker;
+
+/// The edge of a cell.
+const CELL: f64 = 0.13;
+/// What ParsIP's authors report: field evaluations per second and core, with AVX (Shirazian, Wyvill and Duprat 2012).
+const PUBLISHED: f64 = 2.6e6;
+
+/// The scene, if it is here: in the folder that `JBT_SAMPLES` names, or beside the repository.
+fn scene() -> Result<CheckedTree, String> {
+    let root = std::env::var_os("JBT_SAMPLES")
+        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/samples"), PathBuf::from);
+    let path = root.join("parsip/train_corrected.scene");
+    let bytes = std::fs::read(&path)
+        .map_err(|error| format!("no scene at {} (set JBT_SAMPLES): {error}", path.display()))?;
+    let imported = import::parsip(&bytes).map_err(|_| "the scene has errors".to_owned())?;
+    imported.model.check().map_err(|_| "the model has errors".to_owned())
+}
+
+/// All points of the lattice.
+fn lattice(tree: &CheckedTree) -> Points {
+    let polygonize = jbt::Polygonize { region: None, fineness: jbt::Fineness::Cell(CELL) };
+    let lattice = polygonize.lattice(tree).expect("the train is bounded");
+    let [nx, ny, nz] = lattice.points();
+    let at = |axis, index| lattice.coordinate(axis, index);
+    (0..nx * ny * nz).map(|i| [at(0, i % nx), at(1, i / nx % ny), at(2, i / nx / ny)]).collect()
+}
+
+/// The field on the lattice, unpruned, on one core.
+pub(super) fn train(options: Options) -> Vec<Row> {
+    let row = |primitives, points: usize, standings, extra| Row {
+        case: "train",
+        primitives,
+        points,
+        unit: "evaluation",
+        units: points as f64,
+        standings,
+        extra,
+    };
+    let tree = match scene() {
+        Ok(tree) => tree,
+        Err(reason) => {
+            let standings = Standings { standings: Vec::new(), disagreements: vec![reason] };
+            return vec![row(0, 0, standings, Vec::new())];
+        }
+    };
+    let points = lattice(&tree);
+    let oracle = Oracle::new(&tree, &points);
+    let mut contest = Contest::new();
+    let evaluator = Compiler::new().evaluator(&tree, Query::FIELD).expect("the train compiles");
+    let (primitives, engine) = (evaluator.evaluations_per_point(), evaluator.engine().name());
+    let mut samples = evaluator.samples();
+    evaluator.eval(&points, &mut samples).expect("the buffers fit");
+    let all = &points;
+    contest.enter(Contestant::Ours, "", oracle.check(&[samples.field()], Tolerance::EXACT), move || {
+        evaluator.eval(all, &mut samples).expect("the buffers fit");
+    });
+    let walker = Walker::new(&tree);
+    let mut field = vec![f32::NAN; points.len()];
+    walker.field(points.planes(), &mut field);
+    let checked = oracle.check(&[&field], Tolerance::EXACT);
+    contest.enter(Contestant::Walk, "", checked, move || walker.field(all.planes(), &mut field));
+    let standings = contest.run(options.effort());
+    let mut row = row(primitives as usize, points.len(), standings, vec![("engine", json!(engine))]);
+    if let Some(nanoseconds) = row.nanoseconds(Contestant::Ours) {
+        row.extra.push(("evaluations_per_second", json!((1e9 / nanoseconds).round())));
+        row.extra.push(("published_evaluations_per_second", json!(PUBLISHED)));
+    }
+    vec![row]
+}
