@@ -10,8 +10,8 @@ use crate::bounds::Bounds;
 /// A similarity: rotation (or reflection), uniform scale, translation. It multiplies all distances by `scale`.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Similarity {
-    map: DAffine3,
     scale: f64,
+    rigid: DAffine3,
 }
 
 impl Similarity {
@@ -21,19 +21,13 @@ impl Similarity {
         let gram = map.matrix3.transpose() * map.matrix3;
         let square = (gram.x_axis.x + gram.y_axis.y + gram.z_axis.z) / 3.0;
         let near = gram.abs_diff_eq(DMat3::from_diagonal(DVec3::splat(square)), 1e-12 * square);
-        (near && square > 0.0).then(|| Self { map: *map, scale: square.sqrt() })
-    }
-
-    /// What it does to a position.
-    #[must_use]
-    pub fn point(&self, p: DVec3) -> DVec3 {
-        self.map.transform_point3(p)
-    }
-
-    /// What it does to a direction; the length stays.
-    #[must_use]
-    pub fn direction(&self, v: DVec3) -> DVec3 {
-        self.map.transform_vector3(v) / self.scale
+        (near && square > 0.0).then(|| {
+            let scale = square.sqrt();
+            Self {
+                scale,
+                rigid: DAffine3::from_mat3_translation(map.matrix3 * (1.0 / scale), map.translation),
+            }
+        })
     }
 
     /// The factor of all lengths.
@@ -42,10 +36,10 @@ impl Similarity {
         self.scale
     }
 
-    /// Whether it leaves every axis in place: no rotation, no reflection.
+    /// What is left when everything is scaled first, about the origin: a rotation (or reflection) and a translation.
     #[must_use]
-    pub fn keeps_axes(&self) -> bool {
-        self.map.matrix3.abs_diff_eq(DMat3::from_diagonal(DVec3::splat(self.scale)), 1e-12 * self.scale)
+    pub fn rigid(&self) -> &DAffine3 {
+        &self.rigid
     }
 }
 

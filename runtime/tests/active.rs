@@ -53,12 +53,17 @@ fn reduced(evaluator: &Evaluator, point: [f32; 3]) -> (Tables, usize) {
         for &row in &all {
             let numbers = rows.row(row as usize).to_vec();
             let get = |name: &str| column(name).map_or(0.0, |index| f64::from(numbers[index]));
-            // The nearest point of the segment; a point has no length.
-            let (from, unit, length) = (["x", "y", "z"].map(get), ["ux", "uy", "uz"].map(get), get("length"));
-            let v: [f64; 3] = std::array::from_fn(|k| f64::from(point[k]) - from[k]);
-            let along: f64 = v.iter().zip(unit).map(|(v, u)| v * u).sum();
-            let foot = along.clamp(0.0, length);
-            let square: f64 = v.iter().zip(unit).map(|(v, u)| (v - foot * u).powi(2)).sum();
+            // The point in the pose of the skeleton, which lies along the z axis; a point has no length.
+            let p = point.map(f64::from);
+            let row_of = |axis: &str| ["x", "y", "z", "t"].map(|of| get(&format!("{axis}{of}")));
+            let there: [f64; 3] = if column("xx").is_some() {
+                ["x", "y", "z"].map(row_of).map(|[x, y, z, t]| x * p[0] + y * p[1] + z * p[2] + t)
+            } else {
+                let at = ["tx", "ty", "tz"].map(get);
+                std::array::from_fn(|k| p[k] - at[k])
+            };
+            let [x, y, z] = there;
+            let square = x * x + y * y + (z.abs() - get("half")).max(0.0).powi(2);
             if 1.0 + square * get("neg_inv_r2") > -1e-3 {
                 rows.active.push(row);
             } else {

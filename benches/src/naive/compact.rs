@@ -10,7 +10,6 @@
 use std::rc::Rc;
 
 use glam::{DAffine3, Mat3, Vec3};
-use jbt_frontend::affine::Similarity;
 use jbt_frontend::check::{CheckedTree, NodeId};
 use jbt_frontend::combine::Combinator;
 use jbt_frontend::falloff::Falloff;
@@ -33,7 +32,7 @@ pub(super) struct Leaf {
     pub(super) falloff: Falloff,
     pub(super) inverse_square_radius: f32,
     pub(super) strength: f32,
-    /// The place of the map to the leaf's space in [`Compact::maps`], unless the leaf itself was moved.
+    /// The place of the map to the leaf's space in [`Compact::maps`], unless that is the identity.
     pub(super) map: Option<u32>,
     /// Which part of [`Compact::values`] holds its attributes: the `values`-th, of the tree's width.
     pub(super) values: u32,
@@ -141,18 +140,13 @@ impl Compact {
     }
 
     fn leaf(&mut self, primitive: &Primitive, map: &DAffine3, values: &[f32]) {
-        let moved = Similarity::from_affine(map)
-            .and_then(|similarity| Some((primitive.skeleton.moved(&similarity)?, similarity.scale())));
-        let (skeleton, radius, map) = match moved {
-            Some((skeleton, scale)) => (Skeleton::new(&skeleton), scale * primitive.radius, None),
-            None => (Skeleton::new(&primitive.skeleton), primitive.radius, self.map(map)),
-        };
+        let map = self.map(map);
         let number = self.values.len() / values.len();
         self.values.extend_from_slice(values);
         self.steps.push(Step::Leaf(Leaf {
-            skeleton,
+            skeleton: Skeleton::new(&primitive.skeleton),
             falloff: primitive.falloff,
-            inverse_square_radius: (1.0 / (radius * radius)) as f32,
+            inverse_square_radius: primitive.radius.powi(-2) as f32,
             strength: primitive.strength as f32,
             map,
             values: number as u32,

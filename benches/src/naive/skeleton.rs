@@ -18,7 +18,7 @@ pub(super) struct Segment {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Round {
     middle: Vec3,
-    /// A unit vector; zero for a cylinder without length.
+    /// A unit vector.
     axis: Vec3,
     radius: f32,
 }
@@ -54,8 +54,10 @@ impl Skeleton {
             skeleton::Skeleton::Ring(ring) => Self::Ring(Round::new(ring.center, ring.normal, ring.radius)),
             skeleton::Skeleton::Cylinder(cylinder) => {
                 let along = cylinder.to - cylinder.from;
+                let half = (0.5 * along.length()) as f32;
+                let along = if along == DVec3::ZERO { DVec3::Z } else { along };
                 let round = Round::new(cylinder.from.midpoint(cylinder.to), along, cylinder.radius);
-                Self::Cylinder { round, half: (0.5 * along.length()) as f32 }
+                Self::Cylinder { round, half }
             }
             skeleton::Skeleton::Box(cuboid) => {
                 Self::Box { middle: cuboid.center.as_vec3(), half: cuboid.half.as_vec3() }

@@ -10,6 +10,7 @@
 //! S = f > m ? S p + 1 : S + p        m = max(f, m)        in the end F = m S^(1/n)
 //! ```
 //!
+//! m begins at a number so small that an operand below it counts for nothing; so it is never 0, and no quotient needs a guard.
 //! F does not depend on m, so m is held: its tangent would cancel. The 1 is `(f / f)^n` and has the tangent `n f' / f`.
 
 use jbt_ir::Domain;
@@ -33,8 +34,11 @@ pub(super) fn weights(fields: &[f64], n: f64) -> Vec<f64> {
     fields.iter().map(|f| (f.max(0.0) / largest).powf(n)).collect()
 }
 
-/// Operands below this count as zero, so that the reciprocal of the largest one is finite: about 8e-31.
-const FLOOR: f32 = 1.0 / (1u128 << 100) as f32;
+/// What the largest operand is before there is one: about 8e-31. Its reciprocal is finite.
+pub(crate) const FLOOR: f32 = 1.0 / (1u128 << 100) as f32;
+
+/// Roots of a power of two up to this exponent are taken by square roots: more of them take longer than a power.
+const MOST_SQUARE_ROOTS: u32 = 16;
 
 /// An exponent, as the compiler has it.
 #[derive(Clone, Copy, Debug)]
@@ -65,24 +69,22 @@ pub(crate) struct Step<R> {
     pub(crate) weight: R,
 }
 
-/// One operand more, over the ops. `moving`: the result will be differentiated.
+/// One operand more, over the ops. `non_negative`: no operand can be below 0. `moving`: the result will be differentiated.
 pub(crate) fn step<D: Domain>(
     d: &mut D,
     so_far: Scaled<D::Real>,
     field: D::Real,
     exponent: Exponent<D::Real>,
-    moving: bool,
+    (non_negative, moving): (bool, bool),
 ) -> Step<D::Real> {
-    let (zero, one, floor) = (d.constant(0.0), d.constant(1.0), d.constant(FLOOR));
-    let counts = d.lt(floor, field);
-    let field = d.select(counts, field, zero);
+    let (zero, one) = (d.constant(0.0), d.constant(1.0));
+    let field = if non_negative { field } else { d.max(field, zero) };
     let larger = d.lt(so_far.largest, field);
-    let largest = d.select(larger, field, so_far.largest);
+    let largest = d.max(field, so_far.largest);
     let largest = d.hold(largest);
-    let smaller = d.select(larger, so_far.largest, field);
+    // In this order: of equals the operand, whose tangent counts.
+    let smaller = d.min(so_far.largest, field);
     let ratio = d.div(smaller, largest);
-    let any = d.lt(zero, largest);
-    let ratio = d.select(any, ratio, zero);
     let power = power(d, ratio, exponent);
     let first = if moving { unit(d, field, largest, exponent) } else { one };
     let rescaled = d.fma(so_far.sum, power, first);
@@ -98,10 +100,8 @@ pub(crate) fn step<D: Domain>(
 /// `F = largest * sum^(1/n)`, over the ops.
 pub(crate) fn finish<D: Domain>(d: &mut D, scaled: Scaled<D::Real>, exponent: Exponent<D::Real>) -> D::Real {
     let root = match exponent {
-        Exponent::Integer(2) => d.sqrt(scaled.sum),
-        Exponent::Integer(4) => {
-            let root = d.sqrt(scaled.sum);
-            d.sqrt(root)
+        Exponent::Integer(n) if n.is_power_of_two() && n <= MOST_SQUARE_ROOTS => {
+            (0..n.ilog2()).fold(scaled.sum, |root, _| d.sqrt(root))
         }
         Exponent::Integer(n) => {
             let inverse = d.constant(1.0 / n as f32);
@@ -114,10 +114,8 @@ pub(crate) fn finish<D: Domain>(d: &mut D, scaled: Scaled<D::Real>, exponent: Ex
 
 /// 1, with the tangent of `(field / largest)^n` where the two are equal.
 fn unit<D: Domain>(d: &mut D, field: D::Real, largest: D::Real, exponent: Exponent<D::Real>) -> D::Real {
-    let (zero, one) = (d.constant(0.0), d.constant(1.0));
-    let any = d.lt(zero, largest);
+    let one = d.constant(1.0);
     let inverse = d.div(one, largest);
-    let inverse = d.select(any, inverse, zero);
     let quotient = d.mul(field, inverse);
     let held = d.hold(quotient);
     let still = d.sub(quotient, held);

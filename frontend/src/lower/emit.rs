@@ -19,9 +19,9 @@ use jbt_ir::{
 };
 
 use super::mixing::{Answer, GroupAnswer, Operator, State, difference};
-use super::occurrence::{FieldId, LeafField, LeafMap, OccurrenceId, OccurrenceKind, Scene, SpaceId};
+use super::occurrence::{FieldId, OccurrenceId, OccurrenceKind, Scene, SpaceId};
 use super::position::MapKind;
-use super::shape::{Lift, ReducerCode, Shapes};
+use super::shape::{Lift, ReducerCode, Shapes, non_negative};
 use crate::attribute::{AttributeGroup, Mixing};
 use crate::check::CheckedTree;
 use crate::combine::ricci::Exponent;
@@ -283,7 +283,7 @@ impl<'a> Emitter<'a> {
         let operator = Operator {
             code,
             exponent,
-            non_negative: occurrence.non_negative,
+            non_negative: non_negative(self.scene, *reducer, groups),
             ordered: groups.len() > 1,
             moving: self.query.gradient,
             mixing: Rc::clone(&self.mixing),
@@ -381,15 +381,14 @@ impl Emitter<'_> {
         let slot = self.slots;
         self.slots += 1;
         self.builder.add_slot(*self.rows.last().expect("the scene's row is open"), slot);
-        let LeafField { map, skeleton, .. } = self.scene.field(field);
-        let mut point = *self.points.last().expect("a space is open");
+        let map = MapKind::of_leaf(&self.scene.field(field).map);
+        let skeleton = primitive.skeleton.kind();
+        let outer = *self.points.last().expect("a space is open");
         self.builder.set_origin(Origin::leaf(slot, Part::Position));
-        if let LeafMap::Mapped(map) = map {
-            let row = self.columns(map.columns());
-            point = map.emit(&mut self.builder, point, &row);
-        }
-        let row = self.columns(skeleton.kind().columns());
-        let square = skeleton.kind().emit(&mut self.builder, point, &row);
+        let row = self.columns(map.columns());
+        let point = map.emit(&mut self.builder, outer, &row);
+        let row = self.columns(skeleton.columns());
+        let square = skeleton.emit(&mut self.builder, point, &row);
         self.builder.mark(square, Origin::leaf(slot, Part::Distance));
 
         self.builder.set_origin(Origin::leaf(slot, Part::Falloff));

@@ -101,7 +101,7 @@ impl State {
         let zero = d.constant(0.0);
         let field = match operator.code {
             ReducerCode::Sum => vec![zero],
-            ReducerCode::RicciInteger(_) | ReducerCode::RicciGeneral => vec![zero, zero],
+            ReducerCode::RicciInteger(_) | ReducerCode::RicciGeneral => vec![d.constant(ricci::FLOOR), zero],
             ReducerCode::Union => vec![d.constant(f32::NEG_INFINITY)],
             ReducerCode::Intersection => vec![d.constant(f32::INFINITY)],
         };
@@ -178,7 +178,8 @@ impl State {
             ReducerCode::RicciInteger(_) | ReducerCode::RicciGeneral => {
                 let exponent = operator.exponent.expect("a Ricci blend has an exponent");
                 let so_far = ricci::Scaled { largest: self.field[0], sum: self.field[1] };
-                let step = ricci::step(d, so_far, operand.field, exponent, operator.moving);
+                let step =
+                    ricci::step(d, so_far, operand.field, exponent, (operator.non_negative, operator.moving));
                 self.field = vec![step.next.largest, step.next.sum];
                 if !self.groups.is_empty() {
                     self.weigh(d, step.weight, Some(step.rescale), operand, order);

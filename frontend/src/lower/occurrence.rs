@@ -7,11 +7,9 @@ use rustc_hash::FxHashMap as HashMap;
 
 use glam::DAffine3;
 
-use super::position::MapKind;
 use crate::affine::Similarity;
 use crate::check::{CheckedTree, NodeId};
 use crate::combine::Combinator;
-use crate::skeleton::Skeleton;
 use crate::tree::{NodeKind, Primitive};
 use crate::warp::Warp;
 
@@ -42,15 +40,6 @@ pub(super) struct Position {
     pub(super) map: DAffine3,
 }
 
-/// How a leaf's row brings the point to the skeleton.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-pub(super) enum LeafMap {
-    /// The skeleton was moved to the point's space instead.
-    Absorbed,
-    /// The point is mapped.
-    Mapped(MapKind),
-}
-
 /// A leaf at a position.
 #[derive(Clone, Debug)]
 pub(super) struct LeafField {
@@ -58,12 +47,10 @@ pub(super) struct LeafField {
     pub(super) position: PositionId,
     /// How many occurrences, with different attributes, have this field.
     pub(super) uses: u32,
-    /// What is left to do to the point.
-    pub(super) map: LeafMap,
-    /// The skeleton, in the space in which it is asked if the map was absorbed.
-    pub(super) skeleton: Skeleton,
-    /// The support radius, there.
-    pub(super) radius: f64,
+    /// The map from the skeleton's pose, scaled, to the space in which it is asked.
+    pub(super) map: DAffine3,
+    /// How many times as large as it was written the skeleton is in its pose. A similarity ends up here; other maps leave it at 1.
+    pub(super) scale: f64,
 }
 
 /// An operator whose operands are alike: any number of them, in any order but for ties.
@@ -316,13 +303,16 @@ impl<'a> Finder<'a> {
         let id = if once { next } else { *self.field_names.entry((node, position)).or_insert(next) };
         if id == next {
             let map = self.scene.position(position).map;
-            let moved = Similarity::from_affine(&map)
-                .and_then(|similarity| Some((primitive.skeleton.moved(&similarity)?, similarity.scale())));
-            let (map, skeleton, radius) = match moved {
-                Some((skeleton, scale)) => (LeafMap::Absorbed, skeleton, primitive.radius * scale),
-                None => (LeafMap::Mapped(MapKind::of(&map)), primitive.skeleton.clone(), primitive.radius),
+            let (pose, symmetry) = (primitive.skeleton.pose(), primitive.skeleton.kind().symmetry());
+            let (map, scale) = match Similarity::from_affine(&map) {
+                Some(similarity) => {
+                    let turn = similarity.rigid().matrix3 * pose.matrix3;
+                    let at = map.transform_point3(pose.translation);
+                    (DAffine3::from_mat3_translation(symmetry.simplest(turn), at), similarity.scale())
+                }
+                None => (map * pose, 1.0),
             };
-            self.scene.fields.push(LeafField { node, position, uses: 0, map, skeleton, radius });
+            self.scene.fields.push(LeafField { node, position, uses: 0, map, scale });
         }
         self.scene.fields[id.0 as usize].uses += 1;
         id

@@ -4,7 +4,6 @@
 //!
 //! | map | numbers | work |
 //! |---|---|---|
-//! | absorbed | 0 | none: a similarity moves most skeletons into the outer space |
 //! | identity | 0 | none |
 //! | translation | 3 | 3 subtractions |
 //! | scaling | 4 | 3 fused steps |
@@ -36,6 +35,15 @@ impl MapKind {
             Self::Translation
         } else {
             Self::Identity
+        }
+    }
+
+    /// The kind for a leaf, which is at least a translation: a primitive that passes the origin keeps its code.
+    pub(super) fn of_leaf(map: &DAffine3) -> Self {
+        match Self::of(map) {
+            Self::Identity | Self::Translation => Self::Translation,
+            Self::Scaling => Self::Scaling,
+            Self::Full => Self::Full,
         }
     }
 

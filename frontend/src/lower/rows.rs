@@ -7,7 +7,7 @@ use jbt_ir::{Entity, Rows, Store, Table, Tables};
 
 use super::emit::{Code, groups};
 use super::mixing::wants_order;
-use super::occurrence::{FieldId, LeafField, LeafMap, OccurrenceId, OccurrenceKind, Reducer, Scene, SpaceId};
+use super::occurrence::{FieldId, LeafField, OccurrenceId, OccurrenceKind, Reducer, Scene, SpaceId};
 use super::position::MapKind;
 use super::shape::{Lift, ReducerCode, Shapes};
 use crate::attribute::Mixing;
@@ -211,13 +211,10 @@ impl<'a> Writer<'a> {
     fn leaf(&mut self, field: FieldId) {
         self.nodes.push(self.scene.field(field).node.0);
         let primitive = self.scene.primitive(field);
-        let LeafField { position, map, skeleton, radius, .. } = self.scene.field(field);
-        if let LeafMap::Mapped(kind) = map {
-            let map = self.scene.position(*position).map;
-            kind.push_columns(&map, &mut self.row);
-        }
-        skeleton.columns(&mut self.row);
-        self.row.push(-1.0 / (radius * radius));
+        let LeafField { map, scale, .. } = self.scene.field(field);
+        MapKind::of_leaf(map).push_columns(map, &mut self.row);
+        primitive.skeleton.columns(*scale, &mut self.row);
+        self.row.push(-(scale * primitive.radius).powi(-2));
         if primitive.strength != 1.0 {
             self.row.push(primitive.strength);
         }

@@ -6,7 +6,7 @@
 
 use rustc_hash::FxHashMap as HashMap;
 
-use super::occurrence::{FieldId, LeafMap, OccurrenceId, OccurrenceKind, Reducer, Scene, SpaceId};
+use super::occurrence::{FieldId, OccurrenceId, OccurrenceKind, Reducer, Scene, SpaceId};
 use super::position::MapKind;
 use crate::falloff::Falloff;
 use crate::skeleton::SkeletonKind;
@@ -44,7 +44,7 @@ impl ReducerCode {
 #[derive(Clone, PartialEq, Eq, Hash, Debug)]
 enum ShapeKey {
     Leaf {
-        map: LeafMap,
+        map: MapKind,
         skeleton: SkeletonKind,
         falloff: Falloff,
         strong: bool,
@@ -180,10 +180,9 @@ impl<'a> Classifier<'a> {
             }
             OccurrenceKind::Leaf { field, .. } => {
                 let primitive = self.scene.primitive(*field);
-                let field = self.scene.field(*field);
                 let key = ShapeKey::Leaf {
-                    map: field.map,
-                    skeleton: field.skeleton.kind(),
+                    map: MapKind::of_leaf(&self.scene.field(*field).map),
+                    skeleton: primitive.skeleton.kind(),
                     falloff: primitive.falloff,
                     strong: primitive.strength != 1.0,
                 };
@@ -210,8 +209,7 @@ impl<'a> Classifier<'a> {
                 let groups = self.group(id);
                 let key = ShapeKey::Reduce {
                     code: ReducerCode::of(*reducer),
-                    // Only a sum does something else with operands that may be negative.
-                    non_negative: occurrence.non_negative || *reducer != Reducer::Sum,
+                    non_negative: non_negative(self.scene, *reducer, &groups),
                     groups: groups
                         .iter()
                         .map(|group| {
@@ -263,6 +261,15 @@ impl<'a> Classifier<'a> {
 
     fn is_leaf(&self, id: OccurrenceId) -> bool {
         matches!(self.scene.occurrence(id).kind, OccurrenceKind::Leaf { .. })
+    }
+}
+
+/// Whether no operand can be negative; true for operators that do nothing else with those that are.
+pub(super) fn non_negative(scene: &Scene<'_>, reducer: Reducer, groups: &[Group]) -> bool {
+    let mut members = groups.iter().flat_map(|group| &group.members);
+    match reducer {
+        Reducer::Sum | Reducer::Ricci(_) => members.all(|(member, _)| scene.occurrence(*member).non_negative),
+        Reducer::Union | Reducer::Intersection => true,
     }
 }
 

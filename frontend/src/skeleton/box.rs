@@ -1,10 +1,9 @@
 //! The box: a solid one, along the axes of its own space.
 
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use jbt_ir::Domain;
 
-use super::SkeletonMember;
-use crate::affine::Similarity;
+use super::{SkeletonMember, Symmetry};
 use crate::bounds::Bounds;
 use crate::field::{Field, FieldKind, FieldValue, Member};
 
@@ -34,7 +33,8 @@ impl Member for Box {
 }
 
 impl SkeletonMember for Box {
-    const COLUMNS: &'static [&'static str] = &["x", "y", "z", "half_x", "half_y", "half_z"];
+    const COLUMNS: &'static [&'static str] = &["half_x", "half_y", "half_z"];
+    const SYMMETRY: Symmetry = Symmetry::None;
 
     fn bounds(&self) -> Bounds {
         Bounds::new(self.center - self.half, self.center + self.half)
@@ -48,27 +48,22 @@ impl SkeletonMember for Box {
         f64::INFINITY
     }
 
-    fn moved(&self, similarity: &Similarity) -> Option<Self> {
-        let moved = Self { center: similarity.point(self.center), half: similarity.scale() * self.half };
-        similarity.keeps_axes().then_some(moved)
+    fn pose(&self) -> DAffine3 {
+        DAffine3::from_translation(self.center)
     }
 
-    fn columns(&self, row: &mut Vec<f64>) {
-        row.extend(self.center.to_array());
-        row.extend(self.half.to_array());
+    fn columns(&self, scale: f64, row: &mut Vec<f64>) {
+        row.extend((scale * self.half).to_array());
     }
 
     fn emit<D: Domain>(d: &mut D, p: [D::Real; 3], row: &[D::Real]) -> D::Real {
-        let v = super::difference(d, p, [row[0], row[1], row[2]]);
-        let outside = [0, 1, 2].map(|k| super::beyond(d, v[k], row[3 + k]));
+        let outside = [0, 1, 2].map(|k| super::beyond(d, p[k], row[k]));
         super::length_squared(d, outside)
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use glam::{DAffine3, DQuat};
-
     use super::*;
     use crate::skeleton::testing;
 
@@ -80,13 +75,6 @@ mod tests {
         {
             testing::same_everywhere(&cuboid, p.into(), expected);
         }
-    }
-
-    #[test]
-    fn a_turned_box_keeps_its_transform() {
-        let cuboid = Box { center: DVec3::ZERO, half: DVec3::ONE };
-        let turned = Similarity::from_affine(&DAffine3::from_quat(DQuat::from_rotation_z(0.3))).unwrap();
-        assert_eq!(cuboid.moved(&turned), None);
     }
 
     #[test]

@@ -1,16 +1,15 @@
 //! The cylinder: a solid one, with flat ends.
 
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use jbt_ir::Domain;
 
-use super::SkeletonMember;
-use crate::affine::Similarity;
+use super::{SkeletonMember, Symmetry};
 use crate::bounds::Bounds;
 use crate::field::{Field, FieldKind, FieldValue, Member};
 
 /// A solid cylinder: the points within `radius` of its axis and between the planes of its ends.
 ///
-/// With radius 0 it is a segment. Equal ends give no direction for the planes: then it is the ball of this radius.
+/// With radius 0 it is a segment. Equal ends make it a disc, whose axis is z since they say nothing else.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Cylinder {
     /// One end of the axis.
@@ -22,10 +21,10 @@ pub struct Cylinder {
 }
 
 impl Cylinder {
-    /// The middle of the axis, its direction (zero if the ends are equal) and half its length.
-    fn axis(&self) -> (DVec3, DVec3, f64) {
-        let along = self.to - self.from;
-        (self.from.midpoint(self.to), super::unit(along), 0.5 * along.length())
+    /// The direction of the axis.
+    fn direction(&self) -> DVec3 {
+        let direction = super::unit(self.to - self.from);
+        if direction == DVec3::ZERO { DVec3::Z } else { direction }
     }
 }
 
@@ -48,21 +47,18 @@ impl Member for Cylinder {
 
 impl SkeletonMember for Cylinder {
     // Measured from the middle, both ends are one comparison.
-    const COLUMNS: &'static [&'static str] = &["x", "y", "z", "ux", "uy", "uz", "half", "radius"];
+    const COLUMNS: &'static [&'static str] = &["half", "radius"];
+    const SYMMETRY: Symmetry = Symmetry::Axis;
 
     fn bounds(&self) -> Bounds {
-        let direction = self.axis().1;
-        let reach = super::circle_reach(direction, self.radius);
-        let reach = if direction == DVec3::ZERO { DVec3::splat(self.radius) } else { reach };
+        let reach = super::circle_reach(self.direction(), self.radius);
         let ends = Bounds::around([self.from, self.to]);
         Bounds::new(ends.min - reach, ends.max + reach)
     }
 
     fn distance_squared(&self, p: DVec3) -> f64 {
-        let along = self.to - self.from;
-        let length = along.length();
-        let (h, rho) = super::cylindrical(p - self.from, super::unit(along));
-        let a = h - h.clamp(0.0, length);
+        let (h, rho) = super::cylindrical(p - self.from, self.direction());
+        let a = h - h.clamp(0.0, self.from.distance(self.to));
         a * a + (rho - self.radius).max(0.0).powi(2)
     }
 
@@ -70,26 +66,19 @@ impl SkeletonMember for Cylinder {
         f64::INFINITY
     }
 
-    fn moved(&self, similarity: &Similarity) -> Option<Self> {
-        Some(Self {
-            from: similarity.point(self.from),
-            to: similarity.point(self.to),
-            radius: similarity.scale() * self.radius,
-        })
+    // Measured from the middle, both ends are one comparison.
+    fn pose(&self) -> DAffine3 {
+        DAffine3::from_mat3_translation(super::along(self.direction()), self.from.midpoint(self.to))
     }
 
-    fn columns(&self, row: &mut Vec<f64>) {
-        let (middle, direction, half) = self.axis();
-        row.extend(middle.to_array());
-        row.extend(direction.to_array());
-        row.extend([half, self.radius]);
+    fn columns(&self, scale: f64, row: &mut Vec<f64>) {
+        row.extend([0.5 * scale * self.from.distance(self.to), scale * self.radius]);
     }
 
     fn emit<D: Domain>(d: &mut D, p: [D::Real; 3], row: &[D::Real]) -> D::Real {
-        let v = super::difference(d, p, [row[0], row[1], row[2]]);
-        let (h, rho) = super::emit_cylindrical(d, v, [row[3], row[4], row[5]]);
-        let past_ends = super::beyond(d, h, row[6]);
-        let off = d.sub(rho, row[7]);
+        let rho = super::emit_off_axis(d, p);
+        let past_ends = super::beyond(d, p[2], row[0]);
+        let off = d.sub(rho, row[1]);
         let past_side = super::positive_part(d, off);
         super::sum_of_squares(d, past_side, past_ends)
     }
@@ -120,9 +109,9 @@ mod tests {
         let axis = [DVec3::new(0.0, 0.0, 1.0), DVec3::new(0.0, 0.0, 3.0)];
         let thin = Cylinder { from: axis[0], to: axis[1], radius: 0.0 };
         testing::same_everywhere(&thin, DVec3::new(3.0, 0.0, 7.0), 25.0);
-        let ball = Cylinder { from: axis[0], to: axis[0], radius: 2.0 };
-        testing::same_everywhere(&ball, DVec3::new(0.0, 6.0, 1.0), 16.0);
-        assert_eq!(ball.bounds(), Bounds::new(DVec3::new(-2.0, -2.0, -1.0), DVec3::new(2.0, 2.0, 3.0)));
+        let disc = Cylinder { from: axis[0], to: axis[0], radius: 2.0 };
+        testing::same_everywhere(&disc, DVec3::new(0.0, 5.0, 5.0), 25.0);
+        assert_eq!(disc.bounds(), Bounds::new(DVec3::new(-2.0, -2.0, 1.0), DVec3::new(2.0, 2.0, 1.0)));
     }
 
     #[test]

@@ -1,10 +1,9 @@
 //! The disc: the skeleton of a coin with round rims.
 
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use jbt_ir::Domain;
 
-use super::SkeletonMember;
-use crate::affine::Similarity;
+use super::{SkeletonMember, Symmetry};
 use crate::bounds::Bounds;
 use crate::field::{Field, FieldKind, FieldValue, Member};
 
@@ -41,7 +40,8 @@ impl Member for Disc {
 }
 
 impl SkeletonMember for Disc {
-    const COLUMNS: &'static [&'static str] = &["x", "y", "z", "nx", "ny", "nz", "radius"];
+    const COLUMNS: &'static [&'static str] = &["radius"];
+    const SYMMETRY: Symmetry = Symmetry::Axis;
 
     fn bounds(&self) -> Bounds {
         let reach = super::circle_reach(super::unit(self.normal), self.radius);
@@ -57,26 +57,19 @@ impl SkeletonMember for Disc {
         f64::INFINITY
     }
 
-    fn moved(&self, similarity: &Similarity) -> Option<Self> {
-        Some(Self {
-            center: similarity.point(self.center),
-            normal: similarity.direction(super::unit(self.normal)),
-            radius: similarity.scale() * self.radius,
-        })
+    fn pose(&self) -> DAffine3 {
+        DAffine3::from_mat3_translation(super::along(self.normal), self.center)
     }
 
-    fn columns(&self, row: &mut Vec<f64>) {
-        row.extend(self.center.to_array());
-        row.extend(super::unit(self.normal).to_array());
-        row.push(self.radius);
+    fn columns(&self, scale: f64, row: &mut Vec<f64>) {
+        row.push(scale * self.radius);
     }
 
     fn emit<D: Domain>(d: &mut D, p: [D::Real; 3], row: &[D::Real]) -> D::Real {
-        let v = super::difference(d, p, [row[0], row[1], row[2]]);
-        let (h, rho) = super::emit_cylindrical(d, v, [row[3], row[4], row[5]]);
-        let beyond = d.sub(rho, row[6]);
+        let rho = super::emit_off_axis(d, p);
+        let beyond = d.sub(rho, row[0]);
         let outside = super::positive_part(d, beyond);
-        super::sum_of_squares(d, outside, h)
+        super::sum_of_squares(d, outside, p[2])
     }
 }
 

@@ -1,13 +1,16 @@
 //! Skeletons: the sets that primitives measure their distance to. One file per member, one list.
 //!
 //! A file has the same parts in the same order: what the skeleton is, its parameters, its text fields, its bounds, the plain
-//! formula in f64 (the oracle), the same formula over [`Domain`] (the compiler), tests. To add one: write its file, add its
+//! formula in f64 (the oracle), its pose and the same formula over [`Domain`] (the compiler), tests. To add one: write its file, add its
 //! line to the list below.
+//!
+//! The plain formula sees the skeleton where it is. The compiler's form sees it in its **pose**: about the origin, along the z axis. A row
+//! brings the point there, by the one matrix that it often needs anyway, and the formula has no directions left: a cylinder's
+//! distance is made of `|z|` and `sqrt(x^2 + y^2)`.
 
-use glam::DVec3;
+use glam::{DAffine3, DMat3, DVec3};
 use jbt_ir::Domain;
 
-use crate::affine::Similarity;
 use crate::bounds::Bounds;
 use crate::field::{Field, FieldValue, Member};
 
@@ -18,6 +21,9 @@ pub trait SkeletonMember: Member {
     /// Names of the columns that [`columns`](Self::columns) fills, in order.
     const COLUMNS: &'static [&'static str];
 
+    /// Its symmetry in its pose.
+    const SYMMETRY: Symmetry;
+
     /// The smallest box that holds the skeleton itself (not the support of its field).
     fn bounds(&self) -> Bounds;
 
@@ -27,14 +33,39 @@ pub trait SkeletonMember: Member {
     /// How far `p` is from where the gradient of the squared distance jumps; infinity if it never does.
     fn decision(&self, p: DVec3) -> f64;
 
-    /// The skeleton after `similarity`, if it is still of this kind: then the primitive needs no transform of its own.
-    fn moved(&self, similarity: &Similarity) -> Option<Self>;
+    /// The rigid motion from the pose to where the skeleton is.
+    fn pose(&self) -> DAffine3;
 
-    /// The numbers of a row, derived from the parameters in f64: one for each of [`COLUMNS`](Self::COLUMNS).
-    fn columns(&self, row: &mut Vec<f64>);
+    /// The numbers of a row, derived from the parameters in f64: one for each of [`COLUMNS`](Self::COLUMNS). They are lengths,
+    /// of a skeleton that is `scale` times as large.
+    fn columns(&self, scale: f64, row: &mut Vec<f64>);
 
-    /// The squared distance from `p`, over the ops; `row` holds the columns.
+    /// The squared distance from `p`, over the ops, of the skeleton in its pose; `row` holds the columns.
     fn emit<D: Domain>(d: &mut D, p: [D::Real; 3], row: &[D::Real]) -> D::Real;
+}
+
+/// Which rotations a skeleton in its pose does not feel: they need not be done.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Symmetry {
+    /// All.
+    Ball,
+    /// Those about the z axis, and turning it round.
+    Axis,
+    /// None.
+    None,
+}
+
+impl Symmetry {
+    /// A rotation (or reflection) that does the same to such a skeleton as `turn`; the identity, if that will do.
+    #[must_use]
+    pub fn simplest(self, turn: DMat3) -> DMat3 {
+        let simplest = match self {
+            Self::Ball => DMat3::IDENTITY,
+            Self::Axis => along(turn.z_axis),
+            Self::None => turn,
+        };
+        if simplest.abs_diff_eq(DMat3::IDENTITY, 1e-12) { DMat3::IDENTITY } else { simplest }
+    }
 }
 
 macro_rules! skeletons {
@@ -73,7 +104,11 @@ macro_rules! skeletons {
                 match self { $( Self::$name => Skeleton::$name($name::from_fields(values)), )+ }
             }
 
-            /// The squared distance over the ops.
+            /// See [`SkeletonMember::SYMMETRY`].
+            #[must_use]
+            pub const fn symmetry(self) -> Symmetry { match self { $( Self::$name => $name::SYMMETRY, )+ } }
+
+            /// The squared distance over the ops, in the pose.
             pub fn emit<D: Domain>(self, d: &mut D, p: [D::Real; 3], row: &[D::Real]) -> D::Real {
                 match self { $( Self::$name => $name::emit(d, p, row), )+ }
             }
@@ -100,14 +135,14 @@ macro_rules! skeletons {
             #[must_use]
             pub fn decision(&self, p: DVec3) -> f64 { match self { $( Self::$name(s) => s.decision(p), )+ } }
 
-            /// See [`SkeletonMember::moved`].
+            /// See [`SkeletonMember::pose`].
             #[must_use]
-            pub fn moved(&self, similarity: &Similarity) -> Option<Self> {
-                match self { $( Self::$name(s) => s.moved(similarity).map(Self::$name), )+ }
-            }
+            pub fn pose(&self) -> DAffine3 { match self { $( Self::$name(s) => s.pose(), )+ } }
 
             /// See [`SkeletonMember::columns`].
-            pub fn columns(&self, row: &mut Vec<f64>) { match self { $( Self::$name(s) => s.columns(row), )+ } }
+            pub fn columns(&self, scale: f64, row: &mut Vec<f64>) {
+                match self { $( Self::$name(s) => s.columns(scale, row), )+ }
+            }
         }
     };
 }
@@ -142,25 +177,20 @@ fn circle_reach(n: DVec3, radius: f64) -> DVec3 {
     radius * DVec3::new(n.y.hypot(n.z), n.z.hypot(n.x), n.x.hypot(n.y))
 }
 
-/// `a - b`.
-fn difference<D: Domain>(d: &mut D, a: [D::Real; 3], b: [D::Real; 3]) -> [D::Real; 3] {
-    [d.sub(a[0], b[0]), d.sub(a[1], b[1]), d.sub(a[2], b[2])]
+/// The rotation that takes the z axis to the direction of `v`, or against it: the identity if it need not move, or if `v` is zero.
+fn along(v: DVec3) -> DMat3 {
+    let z = unit(v);
+    if z == DVec3::ZERO || z.z.abs() == 1.0 {
+        return DMat3::IDENTITY;
+    }
+    let (x, y) = z.any_orthonormal_pair();
+    DMat3::from_cols(x, y, z)
 }
 
-/// `v - t u`, fused.
-fn step_back<D: Domain>(d: &mut D, v: [D::Real; 3], t: D::Real, u: [D::Real; 3]) -> [D::Real; 3] {
-    let minus_t = d.neg(t);
-    [d.fma(minus_t, u[0], v[0]), d.fma(minus_t, u[1], v[1]), d.fma(minus_t, u[2], v[2])]
-}
-
-/// Height along the unit vector `n`, and distance from its line.
-///
-/// The distance is the length of what is left of `v`: `sqrt(|v|^2 - h^2)` would lose all digits near the line.
-fn emit_cylindrical<D: Domain>(d: &mut D, v: [D::Real; 3], n: [D::Real; 3]) -> (D::Real, D::Real) {
-    let h = dot(d, v, n);
-    let q = step_back(d, v, h, n);
-    let square = length_squared(d, q);
-    (h, d.sqrt(square))
+/// The distance from the z axis.
+fn emit_off_axis<D: Domain>(d: &mut D, p: [D::Real; 3]) -> D::Real {
+    let square = sum_of_squares(d, p[0], p[1]);
+    d.sqrt(square)
 }
 
 /// How far `x` is outside of `[-half, half]`: `max(|x| - half, 0)`.
@@ -177,15 +207,9 @@ fn sum_of_squares<D: Domain>(d: &mut D, a: D::Real, b: D::Real) -> D::Real {
 }
 
 /// `|v|^2`, with two fused steps.
-pub(crate) fn length_squared<D: Domain>(d: &mut D, v: [D::Real; 3]) -> D::Real {
-    dot(d, v, v)
-}
-
-/// `a . b`, with two fused steps.
-pub(crate) fn dot<D: Domain>(d: &mut D, a: [D::Real; 3], b: [D::Real; 3]) -> D::Real {
-    let x = d.mul(a[0], b[0]);
-    let xy = d.fma(a[1], b[1], x);
-    d.fma(a[2], b[2], xy)
+pub(crate) fn length_squared<D: Domain>(d: &mut D, [x, y, z]: [D::Real; 3]) -> D::Real {
+    let square = sum_of_squares(d, x, y);
+    d.fma(z, z, square)
 }
 
 /// `max(x, 0)`: zero for NaN, and never -0.

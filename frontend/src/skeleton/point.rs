@@ -1,10 +1,9 @@
 //! The point: the skeleton of a ball.
 
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use jbt_ir::Domain;
 
-use super::SkeletonMember;
-use crate::affine::Similarity;
+use super::{SkeletonMember, Symmetry};
 use crate::bounds::Bounds;
 use crate::field::{Field, FieldKind, FieldValue, Member};
 
@@ -30,7 +29,8 @@ impl Member for Point {
 }
 
 impl SkeletonMember for Point {
-    const COLUMNS: &'static [&'static str] = &["x", "y", "z"];
+    const COLUMNS: &'static [&'static str] = &[];
+    const SYMMETRY: Symmetry = Symmetry::Ball;
 
     fn bounds(&self) -> Bounds {
         Bounds::new(self.at, self.at)
@@ -44,17 +44,14 @@ impl SkeletonMember for Point {
         f64::INFINITY
     }
 
-    fn moved(&self, similarity: &Similarity) -> Option<Self> {
-        Some(Self { at: similarity.point(self.at) })
+    fn pose(&self) -> DAffine3 {
+        DAffine3::from_translation(self.at)
     }
 
-    fn columns(&self, row: &mut Vec<f64>) {
-        row.extend(self.at.to_array());
-    }
+    fn columns(&self, _scale: f64, _row: &mut Vec<f64>) {}
 
-    fn emit<D: Domain>(d: &mut D, p: [D::Real; 3], row: &[D::Real]) -> D::Real {
-        let v = super::difference(d, p, [row[0], row[1], row[2]]);
-        super::length_squared(d, v)
+    fn emit<D: Domain>(d: &mut D, p: [D::Real; 3], _row: &[D::Real]) -> D::Real {
+        super::length_squared(d, p)
     }
 }
 

@@ -1,10 +1,9 @@
 //! The ring: the skeleton of a torus.
 
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use jbt_ir::Domain;
 
-use super::SkeletonMember;
-use crate::affine::Similarity;
+use super::{SkeletonMember, Symmetry};
 use crate::bounds::Bounds;
 use crate::field::{Field, FieldKind, FieldValue, Member};
 
@@ -41,7 +40,8 @@ impl Member for Ring {
 }
 
 impl SkeletonMember for Ring {
-    const COLUMNS: &'static [&'static str] = &["x", "y", "z", "nx", "ny", "nz", "radius"];
+    const COLUMNS: &'static [&'static str] = &["radius"];
+    const SYMMETRY: Symmetry = Symmetry::Axis;
 
     fn bounds(&self) -> Bounds {
         let reach = super::circle_reach(super::unit(self.normal), self.radius);
@@ -58,25 +58,18 @@ impl SkeletonMember for Ring {
         if self.radius == 0.0 { f64::INFINITY } else { super::cylindrical(p - self.center, super::unit(self.normal)).1 }
     }
 
-    fn moved(&self, similarity: &Similarity) -> Option<Self> {
-        Some(Self {
-            center: similarity.point(self.center),
-            normal: similarity.direction(super::unit(self.normal)),
-            radius: similarity.scale() * self.radius,
-        })
+    fn pose(&self) -> DAffine3 {
+        DAffine3::from_mat3_translation(super::along(self.normal), self.center)
     }
 
-    fn columns(&self, row: &mut Vec<f64>) {
-        row.extend(self.center.to_array());
-        row.extend(super::unit(self.normal).to_array());
-        row.push(self.radius);
+    fn columns(&self, scale: f64, row: &mut Vec<f64>) {
+        row.push(scale * self.radius);
     }
 
     fn emit<D: Domain>(d: &mut D, p: [D::Real; 3], row: &[D::Real]) -> D::Real {
-        let v = super::difference(d, p, [row[0], row[1], row[2]]);
-        let (h, rho) = super::emit_cylindrical(d, v, [row[3], row[4], row[5]]);
-        let off = d.sub(rho, row[6]);
-        super::sum_of_squares(d, off, h)
+        let rho = super::emit_off_axis(d, p);
+        let off = d.sub(rho, row[0]);
+        super::sum_of_squares(d, off, p[2])
     }
 }
 

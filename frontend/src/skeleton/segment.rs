@@ -1,10 +1,9 @@
 //! The segment: the skeleton of a capsule.
 
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use jbt_ir::Domain;
 
-use super::SkeletonMember;
-use crate::affine::Similarity;
+use super::{SkeletonMember, Symmetry};
 use crate::bounds::Bounds;
 use crate::field::{Field, FieldKind, FieldValue, Member};
 
@@ -35,7 +34,9 @@ impl Member for Segment {
 
 impl SkeletonMember for Segment {
     // A unit direction and a length: no division, and nothing special where the ends are equal (then both are zero).
-    const COLUMNS: &'static [&'static str] = &["x", "y", "z", "ux", "uy", "uz", "length"];
+    // Measured from the middle, both ends are one comparison.
+    const COLUMNS: &'static [&'static str] = &["half"];
+    const SYMMETRY: Symmetry = Symmetry::Axis;
 
     fn bounds(&self) -> Bounds {
         Bounds::around([self.from, self.to])
@@ -49,25 +50,17 @@ impl SkeletonMember for Segment {
         f64::INFINITY
     }
 
-    fn moved(&self, similarity: &Similarity) -> Option<Self> {
-        Some(Self { from: similarity.point(self.from), to: similarity.point(self.to) })
+    fn pose(&self) -> DAffine3 {
+        DAffine3::from_mat3_translation(super::along(self.to - self.from), self.from.midpoint(self.to))
     }
 
-    fn columns(&self, row: &mut Vec<f64>) {
-        let along = self.to - self.from;
-        row.extend(self.from.to_array());
-        row.extend(super::unit(along).to_array());
-        row.push(along.length());
+    fn columns(&self, scale: f64, row: &mut Vec<f64>) {
+        row.push(0.5 * scale * self.from.distance(self.to));
     }
 
-    fn emit<D: Domain>(d: &mut D, p: [D::Real; 3], row: &[D::Real]) -> D::Real {
-        let v = super::difference(d, p, [row[0], row[1], row[2]]);
-        let u = [row[3], row[4], row[5]];
-        let along = super::dot(d, v, u);
-        let ahead = super::positive_part(d, along);
-        let foot = d.min(ahead, row[6]);
-        let q = super::step_back(d, v, foot, u);
-        super::length_squared(d, q)
+    fn emit<D: Domain>(d: &mut D, [x, y, z]: [D::Real; 3], row: &[D::Real]) -> D::Real {
+        let past_ends = super::beyond(d, z, row[0]);
+        super::length_squared(d, [x, y, past_ends])
     }
 }
 

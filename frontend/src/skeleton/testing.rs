@@ -2,11 +2,10 @@
 
 use std::fmt::Debug;
 
-use glam::{DAffine3, DMat3, DQuat, DVec3};
+use glam::{DMat3, DQuat, DVec3};
 use jbt_ir::domain::scalar::Scalar;
 
 use super::SkeletonMember;
-use crate::affine::Similarity;
 use crate::bounds::Bounds;
 
 /// A position within 5 of the origin along each axis.
@@ -31,17 +30,20 @@ pub fn polar(rings: u32, spokes: u32) -> impl Iterator<Item = (f64, f64)> {
         .flat_map(move |r| (0..spokes).map(move |s| (f64::from(r) / f64::from(rings), f64::from(s) * turn)))
 }
 
-/// The row of a skeleton as the compiler stores it: derived in f64, rounded once.
-pub fn row<S: SkeletonMember>(skeleton: &S) -> Vec<f32> {
-    let mut row = Vec::new();
-    skeleton.columns(&mut row);
-    assert_eq!(row.len(), S::COLUMNS.len(), "one number for each column");
-    row.into_iter().map(|x| x as f32).collect()
+/// The compiler's form in f32: numbers are derived in f64 and rounded once. The point is brought to the pose in f64, so that it
+/// is the form alone that is judged.
+pub fn emitted<S: SkeletonMember>(skeleton: &S, p: DVec3) -> f32 {
+    emitted_scaled(skeleton, 1.0, p)
 }
 
-/// The compiler's form in f32.
-pub fn emitted<S: SkeletonMember>(p: DVec3, row: &[f32]) -> f32 {
-    S::emit(&mut Scalar, p.as_vec3().to_array(), row)
+/// The same of a skeleton that is `scale` times as large, asked at `scale * p`.
+fn emitted_scaled<S: SkeletonMember>(skeleton: &S, scale: f64, p: DVec3) -> f32 {
+    let mut row = Vec::new();
+    skeleton.columns(scale, &mut row);
+    assert_eq!(row.len(), S::COLUMNS.len(), "one number for each column");
+    let row: Vec<f32> = row.into_iter().map(|x| x as f32).collect();
+    let p = scale * skeleton.pose().inverse().transform_point3(p);
+    S::emit(&mut Scalar, p.as_vec3().to_array(), &row)
 }
 
 /// Both forms give a known squared distance.
@@ -51,7 +53,7 @@ pub fn same_everywhere<S: SkeletonMember + Debug>(skeleton: &S, p: DVec3, expect
         (plain - expected).abs() <= 1e-14 * (1.0 + expected),
         "{skeleton:?} at {p}: {plain}, not {expected}"
     );
-    let got = f64::from(emitted::<S>(p, &row(skeleton)));
+    let got = f64::from(emitted(skeleton, p));
     assert!(
         (got - expected).abs() <= 1e-6 * (1.0 + expected),
         "{skeleton:?} at {p}: {got} in f32, not {expected}"
@@ -69,7 +71,6 @@ where
         assert_eq!(S::from_fields(&skeleton.to_fields()), skeleton);
         assert_eq!(skeleton.to_fields().len(), S::FIELDS.len());
         bounds_hold(&skeleton, &samples, spacing);
-        let row = row(&skeleton);
         for i in 0..50 {
             let near =
                 samples[rng.usize(..samples.len())] + direction(&mut rng) * 10f64.powf(1.0 - 6.0 * rng.f64());
@@ -86,12 +87,12 @@ where
                 sampled <= distance + spacing,
                 "{skeleton:?} at {p}: {distance}, but no sample within {sampled}"
             );
-            let got = f64::from(emitted::<S>(p, &row)).sqrt();
+            let got = f64::from(emitted(&skeleton, p)).sqrt();
             assert!(
                 (got - distance).abs() <= 1e-6 * 10.0,
                 "{skeleton:?} at {p}: {got} in f32, {distance} in f64"
             );
-            moves(&skeleton, p, &mut rng);
+            scales(&skeleton, p, &mut rng);
         }
         for sample in samples.iter().step_by(97) {
             assert!(skeleton.distance_squared(*sample) < 1e-20, "{skeleton:?} does not hold {sample}");
@@ -109,19 +110,30 @@ fn bounds_hold<S: SkeletonMember + Debug>(skeleton: &S, samples: &[DVec3], spaci
     }
 }
 
-/// A moved skeleton is as far from a moved point, up to the scale. The map may mirror; some skeletons need it straight.
-fn moves<S: SkeletonMember + Debug>(skeleton: &S, p: DVec3, rng: &mut fastrand::Rng) {
+/// A skeleton in its pose may be scaled, and be turned as its symmetry says.
+fn scales<S: SkeletonMember + Debug>(skeleton: &S, p: DVec3, rng: &mut fastrand::Rng) {
+    let pose = skeleton.pose();
+    assert!(
+        (pose.matrix3.transpose() * pose.matrix3).abs_diff_eq(DMat3::IDENTITY, 1e-12),
+        "the pose is rigid"
+    );
     let scale = 10f64.powf(2.0 * rng.f64() - 1.0);
-    let mirror = DMat3::from_diagonal(DVec3::new(if rng.bool() { 1.0 } else { -1.0 }, 1.0, 1.0));
+    let (expected, got) = (skeleton.distance_squared(p).sqrt(), emitted_scaled(skeleton, scale, p).sqrt());
+    assert!(
+        (f64::from(got) - scale * expected).abs() <= 1e-5 * scale,
+        "{skeleton:?} at {p}, {scale} times as large"
+    );
+
     let turn = DMat3::from_quat(DQuat::from_axis_angle(direction(rng), 6.0 * rng.f64()));
-    let linear = if rng.bool() { turn * mirror } else { DMat3::IDENTITY };
-    let map = DAffine3::from_mat3_translation(scale * linear, position(rng));
-    let similarity = Similarity::from_affine(&map).expect("a similarity by construction");
-    let Some(moved) = skeleton.moved(&similarity) else {
-        assert!(!similarity.keeps_axes(), "every skeleton can be shifted and scaled");
-        return;
-    };
-    let (here, there) =
-        (skeleton.distance_squared(p).sqrt(), moved.distance_squared(similarity.point(p)).sqrt());
-    assert!((there - scale * here).abs() <= 1e-9 * scale * (1.0 + here), "{skeleton:?} became {moved:?}");
+    let mirror = DMat3::from_diagonal(DVec3::new(if rng.bool() { 1.0 } else { -1.0 }, 1.0, 1.0));
+    let turn = turn * mirror;
+    let simplest = S::SYMMETRY.simplest(turn);
+    // What is p's place in the skeleton's own pose, if it was turned in the one way or in the other?
+    let there = pose.inverse().transform_point3(p);
+    let other = (turn.transpose() * simplest) * there;
+    let same = skeleton.distance_squared(pose.transform_point3(other));
+    assert!(
+        (same.sqrt() - expected).abs() <= 1e-9 * (1.0 + expected),
+        "{skeleton:?} feels {turn} and not {simplest}"
+    );
 }

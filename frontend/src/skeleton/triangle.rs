@@ -1,10 +1,10 @@
 //! The triangle: the skeleton of plates and of solids made of them.
 //!
-//! The compiler's form works in the triangle's plane, in coordinates that put the longest side on the x axis, from 0 to b, and
-//! the third corner below it. Then
+//! The pose puts the triangle into the plane z = 0, the longest side on the x axis with its middle at the origin, and the third corner
+//! below it. Then
 //!
 //! ```text
-//!     A ─────────────── B        d^2 = h^2 + (inside ? 0 : the nearest of three sides)
+//!     A ─────────────── B        d^2 = z^2 + (inside ? 0 : the nearest of three sides)
 //!       \           /            side:   |s| beyond its half length, squared, + q^2
 //!          \    /                s, q:   along the side from its middle, and outwards from it
 //!             C
@@ -13,12 +13,11 @@
 //! A point is inside where all three q are negative, and |s| of the longest side is within its half length. The last condition
 //! follows from the others, except by rounding in a very flat triangle: it keeps the error to the size of the rounding.
 
-use glam::DVec3;
+use glam::{DAffine3, DMat3, DVec3};
 use jbt_ir::Domain;
 
-use super::SkeletonMember;
+use super::{SkeletonMember, Symmetry};
 use super::segment::segment_distance_squared;
-use crate::affine::Similarity;
 use crate::bounds::Bounds;
 use crate::field::{Field, FieldKind, FieldValue, Member};
 
@@ -65,9 +64,10 @@ impl Member for Triangle {
 
 impl SkeletonMember for Triangle {
     const COLUMNS: &'static [&'static str] = &[
-        "x", "y", "z", "e1x", "e1y", "e1z", "e2x", "e2y", "e2z", "nx", "ny", "nz", "half", //
+        "half", //
         "bc_nx", "bc_ny", "bc_s", "bc_q", "bc_half", "ca_nx", "ca_ny", "ca_s", "ca_q", "ca_half",
     ];
+    const SYMMETRY: Symmetry = Symmetry::None;
 
     fn bounds(&self) -> Bounds {
         Bounds::around([self.a, self.b, self.c])
@@ -90,12 +90,7 @@ impl SkeletonMember for Triangle {
         f64::INFINITY
     }
 
-    fn moved(&self, similarity: &Similarity) -> Option<Self> {
-        let [a, b, c] = [self.a, self.b, self.c].map(|corner| similarity.point(corner));
-        Some(Self { a, b, c })
-    }
-
-    fn columns(&self, row: &mut Vec<f64>) {
+    fn pose(&self) -> DAffine3 {
         let [a, b, c] = self.longest_first();
         let e1 = super::unit(b - a);
         let e1 = if e1 == DVec3::ZERO { DVec3::X } else { e1 };
@@ -105,42 +100,41 @@ impl SkeletonMember for Triangle {
         let down = off_line(off_line(c - a));
         let flat = down.length() <= 1e-12 * b.distance(a);
         let e2 = if flat { e1.any_orthonormal_vector() } else { -super::unit(down) };
-        row.extend(a.to_array());
-        row.extend(e1.to_array());
-        row.extend(e2.to_array());
-        row.extend(e1.cross(e2).to_array());
-        row.push(0.5 * b.distance(a));
-        // In the plane, B -> C -> A goes clockwise: outwards is to the left.
-        let in_plane = |corner: DVec3| ((corner - a).dot(e1), (corner - a).dot(e2));
-        for (from, to) in [(in_plane(b), in_plane(c)), (in_plane(c), in_plane(a))] {
-            let along = DVec3::new(to.0 - from.0, to.1 - from.1, 0.0);
+        DAffine3::from_mat3_translation(DMat3::from_cols(e1, e2, e1.cross(e2)), a.midpoint(b))
+    }
+
+    fn columns(&self, scale: f64, row: &mut Vec<f64>) {
+        let corners = self.longest_first();
+        let to_pose = self.pose().inverse();
+        let [a, b, c] = corners.map(|corner| scale * to_pose.transform_point3(corner));
+        row.push(0.5 * scale * corners[0].distance(corners[1]));
+        // B -> C -> A goes clockwise: outwards is to the left.
+        for (from, to) in [(b, c), (c, a)] {
+            let along = DVec3::new(to.x - from.x, to.y - from.y, 0.0);
             let u = super::unit(along);
             // A side without length has no direction; any will do, since only its ends count.
             let u = if u == DVec3::ZERO { DVec3::NEG_X } else { u };
-            let middle = DVec3::new(0.5 * (from.0 + to.0), 0.5 * (from.1 + to.1), 0.0);
+            let middle = DVec3::new(0.5 * (from.x + to.x), 0.5 * (from.y + to.y), 0.0);
             let n = DVec3::new(-u.y, u.x, 0.0);
             row.extend([n.x, n.y, -u.dot(middle), -n.dot(middle), 0.5 * along.length()]);
         }
     }
 
-    fn emit<D: Domain>(d: &mut D, p: [D::Real; 3], row: &[D::Real]) -> D::Real {
-        let v = super::difference(d, p, [row[0], row[1], row[2]]);
-        let [x, y, h] = [3, 6, 9].map(|i| super::dot(d, v, [row[i], row[i + 1], row[i + 2]]));
+    fn emit<D: Domain>(d: &mut D, [x, y, z]: [D::Real; 3], row: &[D::Real]) -> D::Real {
         let zero = d.constant(0.0);
-        let from_middle = d.sub(x, row[12]);
-        let length = d.abs(from_middle);
-        let past = d.sub(length, row[12]);
+        let length = d.abs(x);
+        let past = d.sub(length, row[0]);
         let past_ends = d.max(past, zero);
         let mut nearest = super::sum_of_squares(d, past_ends, y);
         let mut outwards = d.max(past, y);
-        for side in row[13..].chunks_exact(SIDE) {
+        for side in row[1..].chunks_exact(SIDE) {
             let (square, q) = emit_side(d, [x, y], side);
             nearest = d.min(square, nearest);
             outwards = d.max(q, outwards);
         }
         let inside = d.lt(outwards, zero);
         let in_plane = d.select(inside, zero, nearest);
-        d.fma(h, h, in_plane)
+        d.fma(z, z, in_plane)
     }
 }
 
@@ -204,13 +198,12 @@ mod tests {
             let height = 10f64.powf(-4.0 - 6.0 * rng.f64());
             let c = a.lerp(b, rng.f64()) + height * (b - a).normalize().any_orthonormal_vector();
             let sliver = Triangle { a: b, b: c, c: a };
-            let row = testing::row(&sliver);
             for i in 0..100 {
                 // Half of them in line with the sliver, where it is hard to say what is inside.
                 let p = if i % 2 == 0 { a.lerp(b, 4.0 * rng.f64() - 2.0) } else { testing::position(&mut rng) };
                 let p = p.as_vec3().as_dvec3();
                 let expected = segment_distance_squared(p, a, b).sqrt();
-                let got = f64::from(testing::emitted::<Triangle>(p, &row)).sqrt();
+                let got = f64::from(testing::emitted(&sliver, p)).sqrt();
                 assert!((got - expected).abs() <= height + 1.5e-5, "{sliver:?} at {p}: {got}, not {expected}");
             }
         }
