@@ -20,11 +20,68 @@ fn examples() -> Vec<(String, CheckedTree)> {
         })
         .collect();
     scenes.sort_by(|a, b| a.0.cmp(&b.0));
-    // One leaf at one place with two colours: the field is shared, the attributes are not.
-    let two = b"jbt 1 let a = point { radius 1 } sum { color (1 0 0) { use a } union { color (0 1 0) { use a } box { half (1 1 1) radius 1 } } }";
-    let model = text::parse(two, &text::Options::default()).expect("it reads");
-    scenes.push(("two colours".to_owned(), model.check().expect("it is a good model")));
+    for (name, text) in COLOURED {
+        let model = text::parse(text.as_bytes(), &text::Options::default()).expect("it reads");
+        scenes.push((name.to_owned(), model.check().expect("it is a good model")));
+    }
     scenes
+}
+
+/// Parts at one place with several colours: their fields are shared, their attributes are not.
+const COLOURED: [(&str, &str); 4] = [
+    (
+        "a leaf",
+        "jbt 1 let a = point { radius 1 } sum { color (1 0 0) { use a } union { color (0 1 0) { use a } box { half (1 1 1) radius 1 } } }",
+    ),
+    (
+        "a warp",
+        "jbt 1 let t = twist axis z rate 1 { point { at (0.2 0 0.1) radius 1 } } sum { color (1 0 0) { use t } color (0 1 0) { use t } }",
+    ),
+    (
+        "a warp in operators of all kinds",
+        "jbt 1 let t = twist axis x rate 2 { sum { point { radius 0.7 } segment { from (0 0.2 0) to (0 0.4 1) radius 0.5 } } }
+         union {
+             color (1 0 0) { use t }
+             translate (0.3 0 0) { color (0 1 0) { use t } }
+             blend ricci 3 { color (0 0 1) { use t } point { at (0.5 0 0) radius 0.6 } }
+             blend ricci 3 { color (0 1 1) { use t } point { at (0 0.5 0) radius 0.6 } }
+             difference { color (1 1 0) { use t } box { half (0.1 0.1 0.1) radius 0.5 } }
+         }",
+    ),
+    (
+        "warps in warps",
+        "jbt 1 let a = twist axis x rate 1 { point { at (0 0.3 0.2) radius 0.8 } }
+         let b = twist axis z rate 2 { sum { color (1 0 0) { use a } color (0 1 0) { use a } point { at (0.4 0 0) radius 0.5 } } }
+         sum { use b color (0 0 1) { use b } rotate axis y degrees 30 { sum { color (1 1 1) { use b } use a } } }",
+    ),
+];
+
+#[test]
+fn coloured_parts_have_the_values_of_the_oracle() {
+    let mut rng = fastrand::Rng::with_seed(3);
+    for (name, tree) in examples().iter().rev().take(COLOURED.len()) {
+        let evaluator =
+            Compiler::for_engine(Engine::Scalar).evaluator(tree, Query::ALL).expect("it compiles");
+        let points: jbt::Points = (0..300).map(|_| std::array::from_fn(|_| 2.0 * rng.f32() - 1.0)).collect();
+        let mut samples = evaluator.samples();
+        evaluator.eval(&points, &mut samples).expect("the buffers fit");
+        let colors = samples.attribute("color").expect("it has colours");
+        let mut compared = 0;
+        for index in 0..points.len() {
+            let oracle = jbt_frontend::walk::walk(tree, points.get(index).map(f64::from));
+            let field = f64::from(samples.field()[index]);
+            assert!((field - oracle.field).abs() < 1e-4, "{name}: {field}, not {}", oracle.field);
+            if oracle.decision < 1e-3 || field < 1e-3 {
+                continue;
+            }
+            compared += 1;
+            for (plane, expected) in colors.iter().zip(&oracle.attributes[0]) {
+                let off = (f64::from(plane[index]) - expected).abs();
+                assert!(off < 2e-3, "{name} at {index}: {}, not {expected}", plane[index]);
+            }
+        }
+        assert!(compared > 50, "{name}: {compared} points say something");
+    }
 }
 
 /// Distances by an independent count: every path from the root to a leaf with the map that it goes through, each pair once.

@@ -59,6 +59,8 @@ enum Task {
     /// What was computed here is what all uses see.
     Keep(OccurrenceId),
     LiftField(FieldId),
+    /// The point in a space is what all uses see.
+    LiftSpace(SpaceId),
     LeaveSpace,
     OpenFold,
     CloseFold,
@@ -94,6 +96,7 @@ struct Emitter<'a> {
     reduces: Vec<Reduce>,
     kept: HashMap<OccurrenceId, Answer>,
     kept_fields: HashMap<FieldId, Value>,
+    kept_points: HashMap<SpaceId, [Value; 3]>,
     slots: u32,
     iso2: Option<Value>,
     defaults: Vec<Vec<Value>>,
@@ -116,6 +119,7 @@ impl<'a> Emitter<'a> {
             reduces: Vec::new(),
             kept: HashMap::default(),
             kept_fields: HashMap::default(),
+            kept_points: HashMap::default(),
             slots: 0,
             iso2: None,
             defaults: Vec::new(),
@@ -194,6 +198,11 @@ impl<'a> Emitter<'a> {
                 let value = self.leaf(field);
                 self.kept_fields.insert(field, value);
             }
+            Task::LiftSpace(space) => {
+                self.tasks.push(Task::LeaveSpace);
+                self.enter_warp(space);
+                self.kept_points.insert(space, *self.points.last().expect("the warp has been entered"));
+            }
             Task::LeaveSpace => {
                 self.points.pop();
             }
@@ -233,18 +242,12 @@ impl<'a> Emitter<'a> {
                 let groups = self.leaf_attributes();
                 self.answers.push(Answer { field: value, groups });
             }
-            OccurrenceKind::Warp { position, inside, child } => {
-                let occurrence = self.scene.occurrence(id);
-                let map = MapKind::of(&self.scene.position(*position).map);
-                let outer = *self.points.last().expect("a space is open");
-                let row = self.columns(map.columns());
-                let point = map.emit(&mut self.builder, outer, &row);
-                let kind = self.scene.warp(occurrence).kind();
-                let row = self.columns(kind.columns());
-                let point = kind.emit(&mut self.builder, point, &row);
-                self.points.push(point);
+            OccurrenceKind::Warp { inside, child, .. } => {
                 self.tasks.extend([Task::LeaveSpace, Task::Use(*child)]);
-                self.enter_space(*inside);
+                match self.kept_points.get(inside) {
+                    Some(&point) => self.points.push(point),
+                    None => self.enter_warp(*inside),
+                }
             }
             OccurrenceKind::Difference { left, right } => {
                 self.tasks.extend([Task::Difference, Task::Use(*right), Task::Use(*left)]);
@@ -253,11 +256,26 @@ impl<'a> Emitter<'a> {
         }
     }
 
+    /// Computes the point inside a warp, and what is lifted to the start of its space.
+    fn enter_warp(&mut self, space: SpaceId) {
+        let inside = self.scene.inside(space).expect("the world is no warp's inside");
+        let map = MapKind::of(&self.scene.position(inside.position).map);
+        let outer = *self.points.last().expect("a space is open");
+        let row = self.columns(map.columns());
+        let point = map.emit(&mut self.builder, outer, &row);
+        let kind = self.scene.warp(inside.warp).kind();
+        let row = self.columns(kind.columns());
+        let point = kind.emit(&mut self.builder, point, &row);
+        self.points.push(point);
+        self.enter_space(space);
+    }
+
     /// Puts what is lifted to the start of a space on top of the tasks.
     fn enter_space(&mut self, space: SpaceId) {
         for lift in self.shapes.lifts(space).iter().rev() {
             match lift {
                 Lift::Field(field) => self.tasks.push(Task::LiftField(*field)),
+                Lift::Space(space) => self.tasks.push(Task::LiftSpace(*space)),
                 Lift::Occurrence(id) => self.tasks.extend([Task::Keep(*id), Task::Define(*id)]),
             }
         }
@@ -344,7 +362,7 @@ impl Emitter<'_> {
                 self.scene.primitive(*field).skeleton.kind().name().to_owned()
             }
             OccurrenceKind::Warp { .. } => {
-                self.scene.warp(self.scene.occurrence(id)).kind().name().to_owned()
+                self.scene.warp(self.scene.occurrence(id).node).kind().name().to_owned()
             }
             OccurrenceKind::Difference { .. } => "difference".to_owned(),
             OccurrenceKind::Reduce { reducer, .. } => match ReducerCode::of(*reducer) {

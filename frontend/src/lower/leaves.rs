@@ -1,6 +1,6 @@
 //! Every leaf where it stands, each as a model of its own: what statistics ask about one primitive at a time.
 
-use super::occurrence::{FieldId, OccurrenceKind, PositionId, Scene};
+use super::occurrence::{FieldId, Scene};
 use crate::check::{CheckedTree, NodeId};
 use crate::tree::{NodeKind, Primitive};
 
@@ -21,8 +21,6 @@ use crate::tree::{NodeKind, Primitive};
 /// ```
 pub struct LeafOccurrences<'a> {
     scene: Scene<'a>,
-    /// The warp that each space is the inside of, and where the warp stands; `None` for the world.
-    warps: Vec<Option<(NodeId, PositionId)>>,
 }
 
 impl<'a> LeafOccurrences<'a> {
@@ -31,13 +29,7 @@ impl<'a> LeafOccurrences<'a> {
     pub fn new(tree: &'a CheckedTree) -> Self {
         // Without attributes: they do not tell leaves apart.
         let scene = Scene::new(tree, 0);
-        let mut warps = vec![None; scene.spaces as usize];
-        for occurrence in &scene.occurrences {
-            if let OccurrenceKind::Warp { position, inside, .. } = occurrence.kind {
-                warps[inside.0 as usize] = Some((occurrence.node, position));
-            }
-        }
-        Self { scene, warps }
+        Self { scene }
     }
 
     /// How many there are.
@@ -68,9 +60,9 @@ impl<'a> LeafOccurrences<'a> {
         let mut position = self.scene.position(self.scene.field(field).position);
         loop {
             maps.push(NodeKind::Affine(position.map));
-            let Some((warp, outside)) = self.warps[position.space.0 as usize] else { break };
-            maps.push(self.scene.tree.node(warp).kind.clone());
-            position = self.scene.position(outside);
+            let Some(inside) = self.scene.inside(position.space) else { break };
+            maps.push(self.scene.tree.node(inside.warp).kind.clone());
+            position = self.scene.position(inside.position);
         }
         CheckedTree::leaf_under(leaf, maps)
     }

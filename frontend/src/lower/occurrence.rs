@@ -40,6 +40,16 @@ pub(super) struct Position {
     pub(super) map: DAffine3,
 }
 
+/// The inside of a warp.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Inside {
+    pub(super) warp: NodeId,
+    /// Where the warp stands.
+    pub(super) position: PositionId,
+    /// How many occurrences, with different attributes, lead into it.
+    pub(super) uses: u32,
+}
+
 /// A leaf at a position.
 #[derive(Clone, Debug)]
 pub(super) struct LeafField {
@@ -90,7 +100,8 @@ pub(super) struct Scene<'a> {
     pub(super) root: OccurrenceId,
     positions: Vec<Position>,
     bindings: Vec<Vec<Option<NodeId>>>,
-    pub(super) spaces: u32,
+    /// By the numbers of spaces without that of the world, which is 0.
+    pub(super) insides: Vec<Inside>,
 }
 
 /// A node and what its ancestors say about it.
@@ -129,14 +140,24 @@ impl<'a> Scene<'a> {
         }
     }
 
-    pub(super) fn warp(&self, occurrence: &Occurrence) -> &'a Warp {
-        match &self.tree.node(occurrence.node).kind {
+    /// What a space is the inside of; `None` for the world.
+    pub(super) fn inside(&self, space: SpaceId) -> Option<&Inside> {
+        self.insides.get((space.0 as usize).checked_sub(1)?)
+    }
+
+    /// Whether several occurrences lead into a space: then its points are computed once, for all of them.
+    pub(super) fn is_shared(&self, space: SpaceId) -> bool {
+        self.inside(space).is_some_and(|inside| inside.uses > 1)
+    }
+
+    pub(super) fn warp(&self, node: NodeId) -> &'a Warp {
+        match &self.tree.node(node).kind {
             NodeKind::Warp(warp) => warp,
             NodeKind::Combine(_)
             | NodeKind::Affine(_)
             | NodeKind::Primitive(_)
             | NodeKind::Attribute { .. } => {
-                unreachable!("warp occurrences are made of warps")
+                unreachable!("spaces are the insides of warps")
             }
         }
     }
@@ -157,6 +178,7 @@ struct Finder<'a> {
     position_names: std::collections::HashMap<(SpaceId, [u64; 12]), PositionId>,
     bindings_names: HashMap<Vec<Option<NodeId>>, BindingsId>,
     field_names: HashMap<(NodeId, PositionId), FieldId>,
+    inside_names: HashMap<(NodeId, PositionId), (SpaceId, PositionId)>,
     known: HashMap<Key, OccurrenceId>,
     /// For each node, whether one path leads to it from the root: then it is met once, and nothing has to be remembered of it.
     once: Vec<bool>,
@@ -173,13 +195,14 @@ impl<'a> Finder<'a> {
             root: OccurrenceId(0),
             positions: Vec::new(),
             bindings: Vec::new(),
-            spaces: 1,
+            insides: Vec::new(),
         };
         Self {
             scene,
             position_names: std::collections::HashMap::new(),
             bindings_names: HashMap::default(),
             field_names: HashMap::default(),
+            inside_names: HashMap::default(),
             known: HashMap::default(),
             once: once(tree),
             groups,
@@ -257,11 +280,8 @@ impl<'a> Finder<'a> {
         {
             return Some(known);
         }
-        let inside = matches!(self.scene.tree.node(key.0).kind, NodeKind::Warp(_)).then(|| {
-            let space = SpaceId(self.scene.spaces);
-            self.scene.spaces += 1;
-            (space, self.name_position(Position { space, map: DAffine3::IDENTITY }))
-        });
+        let is_warp = matches!(self.scene.tree.node(key.0).kind, NodeKind::Warp(_));
+        let inside = is_warp.then(|| self.name_inside(key.0, key.1));
         self.stack.push(Frame { key, children: Vec::new(), inside });
         None
     }
@@ -357,6 +377,22 @@ impl<'a> Finder<'a> {
                 Reducer::Union => children.iter().any(of),
             },
         }
+    }
+
+    /// The space inside a warp at a position, and the position of the warp's child there.
+    fn name_inside(&mut self, warp: NodeId, position: PositionId) -> (SpaceId, PositionId) {
+        let once = self.once[warp.0 as usize];
+        if !once && let Some(&(space, inside)) = self.inside_names.get(&(warp, position)) {
+            self.scene.insides[space.0 as usize - 1].uses += 1;
+            return (space, inside);
+        }
+        self.scene.insides.push(Inside { warp, position, uses: 1 });
+        let space = SpaceId(self.scene.insides.len() as u32);
+        let inside = self.name_position(Position { space, map: DAffine3::IDENTITY });
+        if !once {
+            self.inside_names.insert((warp, position), (space, inside));
+        }
+        (space, inside)
     }
 
     fn name_position(&mut self, position: Position) -> PositionId {

@@ -50,6 +50,7 @@ enum Task {
     Define(OccurrenceId),
     Order(u32),
     LiftField(FieldId),
+    LiftSpace(SpaceId),
     /// The members of a folded group become rows of the next child table.
     Rows(OccurrenceId, usize),
 }
@@ -118,6 +119,7 @@ impl<'a> Writer<'a> {
                 Task::Use(id) | Task::Define(id) => self.define(id, &mut tasks),
                 Task::Order(order) => self.row.push(f64::from(order)),
                 Task::LiftField(field) => self.leaf(field),
+                Task::LiftSpace(space) => self.enter_warp(space, &mut tasks),
                 Task::Rows(id, group) => {
                     let child = *children.next().expect("the code has a table for each folded group");
                     self.hand_out(child, id, group);
@@ -137,10 +139,19 @@ impl<'a> Writer<'a> {
         self.enter_space(SpaceId(0), tasks);
     }
 
+    fn enter_warp(&mut self, space: SpaceId, tasks: &mut Vec<Task>) {
+        let inside = self.scene.inside(space).expect("the world is no warp's inside");
+        let map = self.scene.position(inside.position).map;
+        MapKind::of(&map).push_columns(&map, &mut self.row);
+        self.scene.warp(inside.warp).columns(&mut self.row);
+        self.enter_space(space, tasks);
+    }
+
     fn enter_space(&self, space: SpaceId, tasks: &mut Vec<Task>) {
         for lift in self.shapes.lifts(space).iter().rev() {
             tasks.push(match lift {
                 Lift::Field(field) => Task::LiftField(*field),
+                Lift::Space(space) => Task::LiftSpace(*space),
                 Lift::Occurrence(id) => Task::Define(*id),
             });
         }
@@ -159,12 +170,11 @@ impl<'a> Writer<'a> {
                     self.row.extend(binding.map_or(&group.default[..], |node| self.attribute(node)));
                 }
             }
-            OccurrenceKind::Warp { position, inside, child } => {
-                let map = self.scene.position(*position).map;
-                MapKind::of(&map).push_columns(&map, &mut self.row);
-                self.scene.warp(occurrence).columns(&mut self.row);
+            OccurrenceKind::Warp { inside, child, .. } => {
                 tasks.push(Task::Use(*child));
-                self.enter_space(*inside, tasks);
+                if !self.scene.is_shared(*inside) {
+                    self.enter_warp(*inside, tasks);
+                }
             }
             OccurrenceKind::Difference { left, right } => {
                 tasks.extend([Task::Use(*right), Task::Use(*left)]);

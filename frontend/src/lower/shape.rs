@@ -66,6 +66,11 @@ enum ShapeKey {
         left: ShapeId,
         right: ShapeId,
     },
+    /// A use of a space that several lead into.
+    Inside {
+        space: SpaceId,
+        child: ShapeId,
+    },
     Lifted(OccurrenceId),
 }
 
@@ -82,6 +87,8 @@ pub(super) struct Group {
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Lift {
     Field(FieldId),
+    /// The point in a space that several lead into, and what is lifted to its start.
+    Space(SpaceId),
     Occurrence(OccurrenceId),
 }
 
@@ -142,6 +149,13 @@ impl<'a> Classifier<'a> {
                 self.result.lifts.entry(space).or_default().push(Lift::Field(FieldId(index as u32)));
             }
         }
+        for (index, inside) in self.scene.insides.iter().enumerate() {
+            let space = SpaceId(index as u32 + 1);
+            if self.scene.is_shared(space) {
+                let outside = self.scene.position(inside.position).space;
+                self.result.lifts.entry(outside).or_default().push(Lift::Space(space));
+            }
+        }
         for index in 0..self.scene.occurrences.len() {
             let id = OccurrenceId(index as u32);
             let shape = self.shape(id);
@@ -190,10 +204,13 @@ impl<'a> Classifier<'a> {
             }
             OccurrenceKind::Warp { position, inside, child } => {
                 let (child, written_out) = self.of(*child);
+                if self.scene.is_shared(*inside) {
+                    return self.name(ShapeKey::Inside { space: *inside, child }, true);
+                }
                 // What is lifted to the start of this space has to be visible to all of it, so the warp stands alone.
                 let pinned = self.result.lifts.contains_key(inside).then_some(*inside);
                 let map = MapKind::of(&self.scene.position(*position).map);
-                let warp = self.scene.warp(occurrence).kind();
+                let warp = self.scene.warp(occurrence.node).kind();
                 let key = ShapeKey::Warp { map, warp, child, pinned };
                 self.name(key, written_out || pinned.is_some())
             }
