@@ -144,10 +144,11 @@ pub enum CompileError {
     Cranelift(String),
 }
 
-/// Up to this many live values the code is faster for having 16 points in a block.
-const FOUR_VECTORS_UP_TO: usize = 12;
-/// Up to this many live values 8 points are as fast as 16, and compile in half the time.
-const TWO_VECTORS_UP_TO: usize = 24;
+/// Up to this many live values the code is faster for having 16 points in a block: what is spilled costs less than reading every
+/// number of a row four times.
+const FOUR_VECTORS_UP_TO: usize = 17;
+/// Up to this many live values 8 points are faster than 16; beyond, than 4 by so little that compiling twice as much is a waste.
+const TWO_VECTORS_UP_TO: usize = 30;
 /// Up to this many live values a good choice of registers is worth its time. Beyond, nearly everything lives in the frame
 /// whichever allocator chose, and the code of both runs at the same speed.
 const BACKTRACKING_UP_TO: usize = 100;
