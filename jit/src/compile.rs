@@ -146,9 +146,11 @@ pub enum CompileError {
 
 /// Up to this many live values the code is faster for having 16 points in a block: what is spilled costs less than reading every
 /// number of a row four times.
-const FOUR_VECTORS_UP_TO: usize = 17;
+const FOUR_VECTORS_UP_TO: usize = 14;
+/// But only where loops carry this many: a field, and not a gradient or attributes.
+const FOUR_VECTORS_CARRY: usize = 3;
 /// Up to this many live values 8 points are faster than 16; beyond, than 4 by so little that compiling twice as much is a waste.
-const TWO_VECTORS_UP_TO: usize = 30;
+const TWO_VECTORS_UP_TO: usize = 27;
 /// Up to this many live values a good choice of registers is worth its time. Beyond, nearly everything lives in the frame
 /// whichever allocator chose, and the code of both runs at the same speed.
 const BACKTRACKING_UP_TO: usize = 100;
@@ -156,10 +158,11 @@ const BACKTRACKING_UP_TO: usize = 100;
 const LONG_FUNCTION: usize = 10_000;
 
 impl Options {
-    /// Fills in what is open, for a function of this many values of which so many are alive at once.
-    fn choose(&self, values: usize, live: usize) -> (VectorCount, Allocator) {
-        let long = values > LONG_FUNCTION;
-        let vectors = if live <= FOUR_VECTORS_UP_TO && !long {
+    /// Fills in what is open, for a function of which so many values are alive at once.
+    fn choose(&self, function: &Function, live: usize) -> (VectorCount, Allocator) {
+        let long = function.values.len() > LONG_FUNCTION;
+        let carried = pressure::carried_values(function);
+        let vectors = if live <= FOUR_VECTORS_UP_TO && carried <= FOUR_VECTORS_CARRY && !long {
             VectorCount::Four
         } else if live <= TWO_VECTORS_UP_TO && !long {
             VectorCount::Two
@@ -177,7 +180,7 @@ impl Options {
 /// Compiles a function.
 pub(crate) fn compile(function: &Verified, options: &Options) -> Result<(Code, VectorCount), CompileError> {
     let live = check(function.function())?;
-    let (vectors, allocator) = options.choose(function.function().values.len(), live);
+    let (vectors, allocator) = options.choose(function.function(), live);
     let isa = isa::host(options.opt_level, allocator)?;
     let code = guard(|| Code::new(lower::lower(function, vectors), isa))??;
     Ok((code, vectors))
@@ -189,7 +192,7 @@ pub(crate) fn compile(function: &Verified, options: &Options) -> Result<(Code, V
 /// When the function is beyond our limits.
 pub fn clif(function: &Verified) -> Result<String, CompileError> {
     let live = check(function.function())?;
-    let (vectors, _) = Options::default().choose(function.function().values.len(), live);
+    let (vectors, _) = Options::default().choose(function.function(), live);
     guard(|| lower::lower(function, vectors).into_function().display().to_string())
 }
 
@@ -199,7 +202,7 @@ pub fn clif(function: &Verified) -> Result<String, CompileError> {
 /// Those of [`crate::Kernel::compile_with`].
 pub fn asm(function: &Verified, options: &Options) -> Result<String, CompileError> {
     let live = check(function.function())?;
-    let (vectors, allocator) = options.choose(function.function().values.len(), live);
+    let (vectors, allocator) = options.choose(function.function(), live);
     let isa = isa::host(options.opt_level, allocator)?;
     guard(|| {
         let mut context = Context::for_function(lower::lower(function, vectors).into_function());

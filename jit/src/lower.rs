@@ -18,9 +18,9 @@
 //!     brif offset + 16 K < bytes, points(offset + 16 K), done
 //! ```
 //!
-//! Constants and columns are not kept alive from where the IR defines them: each Cranelift block that uses one reads it
-//! again, at the first use. A constant is a 16 byte load and a column a broadcast load, which is what a spilled value would
-//! cost, and they leave the registers to the values that have to be computed.
+//! Inputs, constants and columns are not kept alive from where the IR defines them: each Cranelift block that uses one reads it
+//! again, at the first use. An input or a constant is a 16 byte load and a column a broadcast load, which is what a spilled value would
+//! cost, and they leave the registers to the values that have to be computed. An input that a block uses once is an operand in memory.
 
 use std::collections::HashMap;
 
@@ -83,6 +83,8 @@ enum Place<'f, const K: usize> {
     Bits(u32),
     /// To be read where it is used.
     Column(Table, usize),
+    /// To be read where it is used.
+    Input(usize),
 }
 
 /// The current row of a table, inside its fold.
@@ -116,6 +118,8 @@ struct Lowering<'f, const K: usize> {
     made: HashMap<Value, Any<Vectors<'f, K>>>,
     /// The current row of each table whose fold is open.
     rows: Vec<Option<Row>>,
+    /// Where the current block of points of each input plane is, once it has been read.
+    input_addresses: Vec<Option<ir::Value>>,
 }
 
 impl<'f, const K: usize> Lowering<'f, K> {
@@ -139,6 +143,7 @@ impl<'f, const K: usize> Lowering<'f, K> {
             places: function.values.values().map(|_| None).collect(),
             made: HashMap::new(),
             rows: vec![None; function.tables.len()],
+            input_addresses: vec![None; function.inputs.len()],
         }
     }
 
@@ -176,7 +181,10 @@ impl<'f, const K: usize> Lowering<'f, K> {
     fn inst(&mut self, inst: Inst) {
         let data = &self.function.insts[inst];
         let place = match &data.kind {
-            InstKind::Input(index) => Place::Computed(Any::Real(self.input(*index))),
+            InstKind::Input(index) => {
+                self.input_address(*index);
+                Place::Input(*index)
+            }
             InstKind::Constant(number) => Place::Constant(*number),
             InstKind::BitsConstant(bits) => Place::Bits(*bits),
             InstKind::Column { table, column } => Place::Column(*table, *column),
@@ -204,12 +212,15 @@ impl<'f, const K: usize> Lowering<'f, K> {
         let place = self.places[value.index()].as_ref();
         let made = match *place.expect("a verified function defines values before it uses them") {
             Place::Computed(computed) => return computed,
-            Place::Constant(_) | Place::Bits(_) | Place::Column(..) if self.made.contains_key(&value) => {
+            Place::Constant(_) | Place::Bits(_) | Place::Column(..) | Place::Input(_)
+                if self.made.contains_key(&value) =>
+            {
                 return self.made[&value];
             }
             Place::Constant(number) => Any::Real(self.vectors.constant(number)),
             Place::Bits(bits) => Any::Bits(self.vectors.bits_constant(bits)),
             Place::Column(table, column) => Any::Real(self.column(table, column)),
+            Place::Input(index) => Any::Real(self.input(index)),
         };
         self.made.insert(value, made);
         made
@@ -228,10 +239,20 @@ impl<'f, const K: usize> Lowering<'f, K> {
         self.vectors.builder.ins().iadd(start, self.frame.offset)
     }
 
+    /// The address of the current block of points of an input plane. Made where the IR reads the plane, which all uses come after.
+    fn input_address(&mut self, index: usize) -> ir::Value {
+        assert!(index < self.function.inputs.len(), "a verified function reads the inputs that it has");
+        if let Some(address) = self.input_addresses[index] {
+            return address;
+        }
+        let address = self.plane(index);
+        self.input_addresses[index] = Some(address);
+        address
+    }
+
     /// Loads the current block of points of an input plane.
     fn input(&mut self, index: usize) -> [ir::Value; K] {
-        assert!(index < self.function.inputs.len(), "a verified function reads the inputs that it has");
-        let address = self.plane(index);
+        let address = self.input_address(index);
         std::array::from_fn(|vector| {
             self.vectors.builder.ins().load(F32X4, PLANE, address, offset(vector, VECTOR_BYTES))
         })

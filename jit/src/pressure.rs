@@ -1,18 +1,18 @@
 //! How many values are alive at once, before any code is made.
 //!
 //! A value is alive from its definition to its last use. A use inside a fold counts until the fold ends if the value
-//! comes from outside, because the next row reads it again. Constants and columns are read anew in each block that
+//! comes from outside, because the next row reads it again. Inputs, constants and columns are read anew in each block that
 //! uses them and do not count.
 //!
 //! ```text
-//! v1 = input x          ┐
-//! v2 = mul v1, v1       │ ┐
-//! fold t0 (v2):         │ ┴
-//!     v4 = add v3, v1   │          used in the loop: alive to its end
-//!     yield v4          ┘
+//! v2 = sqrt v1          ┐
+//! v3 = mul v2, v2       │ ┐
+//! fold t0 (v3):         │ ┴
+//!     v5 = add v4, v2   │          used in the loop: alive to its end
+//!     yield v5          ┘
 //! ```
 
-use jbt_ir::{Block, Entity, Function, InstKind, Value};
+use jbt_ir::{Block, Entity, Function, InstData, InstKind, Value};
 
 /// The walk over all instructions in order of execution.
 struct Walk<'a> {
@@ -46,6 +46,13 @@ pub(crate) fn live_values(function: &Function) -> usize {
     most.max().unwrap_or(0).unsigned_abs()
 }
 
+/// The largest number of values that a loop hands from row to row: they compete for registers with all that its body computes.
+pub(crate) fn carried_values(function: &Function) -> usize {
+    let carried =
+        |inst: &InstData| if let InstKind::Fold(fold) = &inst.kind { fold.initial.len() } else { 0 };
+    function.insts.values().map(carried).max().unwrap_or(0)
+}
+
 impl Walk<'_> {
     fn block(&mut self, block: Block) {
         let data = &self.function.blocks[block];
@@ -59,8 +66,11 @@ impl Walk<'_> {
             }
             let data = &self.function.insts[inst];
             match &data.kind {
-                InstKind::Constant(_) | InstKind::BitsConstant(_) | InstKind::Column { .. } => continue,
-                InstKind::Input(_) | InstKind::Op { .. } => {}
+                InstKind::Input(_)
+                | InstKind::Constant(_)
+                | InstKind::BitsConstant(_)
+                | InstKind::Column { .. } => continue,
+                InstKind::Op { .. } => {}
                 InstKind::Fold(fold) => self.fold(fold.body),
             }
             for &result in &data.results {
@@ -103,7 +113,7 @@ impl Walk<'_> {
 mod tests {
     use jbt_ir::{Domain, FunctionBuilder, Reduction, Schema, Value};
 
-    use super::live_values;
+    use super::{carried_values, live_values};
 
     fn count(b: FunctionBuilder, out: Value) -> usize {
         live_values(&b.finish(&[("out".to_owned(), out)]))
@@ -118,8 +128,8 @@ mod tests {
         for _ in 0..10 {
             last = b.mul(last, y);
         }
-        // x dies in the first addition; from then on there are y and the last product.
-        assert_eq!(count(b, last), 2);
+        // x and y are read where they are used; there is the last product.
+        assert_eq!(count(b, last), 1);
     }
 
     #[test]
@@ -130,10 +140,10 @@ mod tests {
             let next = b.sqrt(values[index - 1]);
             values.push(next);
         }
-        // The last root is alive together with the 19 before it, which are added up in the order in which they were made.
+        // The last root is alive together with the 18 before it, which are added up in the order in which they were made.
         let first = values[0];
         let sum = values.iter().skip(1).fold(first, |sum, &value| b.add(sum, value));
-        assert_eq!(count(b, sum), 20);
+        assert_eq!(count(b, sum), 19);
     }
 
     #[test]
@@ -141,7 +151,10 @@ mod tests {
         let mut b = FunctionBuilder::new("fold", &["x", "y", "z"]);
         let columns = vec!["c".to_owned()];
         let t = b.table(Schema { name: "t".to_owned(), columns, parent: None, slots: Vec::new() });
-        let outside = [b.input(0), b.input(1), b.input(2)];
+        let outside = [0, 1, 2].map(|index| {
+            let input = b.input(index);
+            b.sqrt(input)
+        });
         let zero = b.constant(0.0);
         let acc = b.begin_fold(t, Reduction::Sum, &[zero]);
         let c = b.column(t, 0);
@@ -151,7 +164,9 @@ mod tests {
             next = b.fma(value, c, next);
         }
         let out = b.end_fold(&[next]);
-        assert_eq!(count(b, out[0]), 4);
+        let function = b.finish(&[("out".to_owned(), out[0])]);
+        assert_eq!(live_values(&function), 4);
+        assert_eq!(carried_values(&function), 1);
     }
 
     #[test]

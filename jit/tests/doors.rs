@@ -179,13 +179,14 @@ fn chain(values: usize) -> Verified {
 fn crowd(live: usize) -> Verified {
     let mut b = FunctionBuilder::new("crowd", &["x"]);
     let x = b.input(0);
-    let mut values = vec![x];
+    let first = b.sqrt(x);
+    let mut values = vec![first];
     for _ in 1..live {
         let next = b.sqrt(values[values.len() - 1]);
         values.push(next);
     }
     let last = values[live - 1];
-    let sum = values.iter().skip(1).fold(x, |sum, &value| b.add(sum, value));
+    let sum = values.iter().skip(1).fold(first, |sum, &value| b.add(sum, value));
     let sum = b.add(sum, last);
     finish(b, &[sum])
 }
