@@ -22,7 +22,8 @@ struct Arguments {
     #[arg(long)]
     json: bool,
 
-    /// Less of everything: about a minute for all cases; mesh-4096 without the peers
+    /// Less of everything: a minute for all cases. What takes more than 5 s runs once, ours and the limit too; mesh-4096 without the
+    /// peers, fidget's other meshes by its fastest formulation alone
     #[arg(long)]
     quick: bool,
 
@@ -34,17 +35,22 @@ struct Arguments {
 fn after_help() -> String {
     format!(
         "Cases:\n{}\n\
-Every contestant is checked against the f64 oracle before it is timed; who disagrees is named under `check` and has no time.
-Times are medians: of at least 5 runs for ours and for the limit, of 1 run for others that take more than 2 s.
+Every contestant is checked against the f64 oracle before any time is reported; who disagrees is named under `check` and has no time.
+Times are medians: of at least 5 runs for ours and for the limit, of 1 run for others that take more than 2 s. With --quick, others run
+once if they take more than 0.04 s, and all do if they take more than 5 s.
 
-Keys of --json: case, primitives, points, unit (what the times are of), and for each contestant NAME_ns and, where it has several
+Keys of --json: case, what (it measures), primitives, points, unit (what the times are of), and for each contestant NAME_ns and, where it has several
 forms, NAME_form, the fastest. NAME is one of:
   ours        the compiler, on its best engine (key engine); the lanes interpreter for the case interpreter
   limit       hand-written loops for sums of points (key limit_level: their instruction set)
   fidget_jit  fidget's machine code          fidget_vm  its interpreter
   splashsurf  another surface of the same particles
-  walk        a tree walker                  separate   separate walks for every answer
-ratio_limit is ours / limit, ratio_fidget is fidget / ours; checksum is ok, or says who disagrees.",
+  walk        a tree walker                  separate   a walk for each answer; gradients by differences
+ratio_limit is ours / limit, ratio_fidget is fidget / ours; checksum is ok, or says who disagrees. Cases that mesh have threads and
+triangles, too; the train has evaluations_per_second, and what its authors published. Its scene is not bundled: the environment
+variable JBT_SAMPLES names a folder that has it as parsip/train_corrected.scene.
+
+Exit codes: 0 fine, 1 somebody disagrees or a scene is missing, 2 usage.",
         list()
     )
 }

@@ -64,14 +64,18 @@ pub struct Effort {
     pub budget: Duration,
     /// Who is not ours and takes longer than this runs once.
     pub patience: Duration,
+    /// Whoever takes longer than this runs once, ours and the limit too.
+    pub endurance: Duration,
 }
 
-/// Fewest runs of ours and of the limit.
+/// Fewest runs of ours and of the limit, unless they take longer than [`Effort::endurance`].
 const LEAST_ROUNDS: usize = 5;
 /// More rounds say nothing more.
 const MOST_ROUNDS: usize = 51;
 /// A measurement takes at least this long: what is faster is run several times.
 const SAMPLE: Duration = Duration::from_millis(1);
+/// A first run of at least this long counts: warming up is a small part of it.
+const LONG: Duration = Duration::from_millis(100);
 
 /// Somebody's way of doing the work.
 struct Entry<'a> {
@@ -79,6 +83,8 @@ struct Entry<'a> {
     /// Which of the contestant's ways.
     form: &'static str,
     run: Box<dyn FnMut() + 'a>,
+    /// The time of the first run, if there was one: its answer was checked.
+    first: Option<Duration>,
     /// Runs in a measurement.
     batch: u32,
     samples: Vec<Duration>,
@@ -93,24 +99,37 @@ impl Entry<'_> {
         start.elapsed() / self.batch
     }
 
-    /// The first run: it warms caches up, and tells how often the others may run. It counts where it takes long.
+    /// The first run, unless the check was: it warms caches up, and tells how often the others may run. It counts where it takes long.
     fn begin(&mut self) {
-        let first = self.measure();
-        if first >= SAMPLE * 100 {
+        let first = self.first.unwrap_or_else(|| self.measure());
+        if first >= LONG {
             self.samples.push(first);
-        }
-        let batch = SAMPLE.as_nanos().div_ceil(first.as_nanos().max(1));
-        self.batch = u32::try_from(batch).unwrap_or(u32::MAX).clamp(1, 100_000);
-        if self.samples.is_empty() && self.batch == 1 {
             return;
         }
-        if self.samples.is_empty() {
+        if first < SAMPLE {
+            self.batch = batch(first);
             // The first run may have been slow for being the first.
-            let again = self.measure();
-            let batch = SAMPLE.as_nanos().div_ceil(again.as_nanos().max(1));
-            self.batch = u32::try_from(batch).unwrap_or(u32::MAX).clamp(1, 100_000);
+            self.batch = batch(self.measure());
         }
     }
+
+    /// Whether another round is needed; `over` once the contest has gone on for long enough.
+    fn goes_on(&self, effort: Effort, over: bool) -> bool {
+        let Some(&first) = self.samples.first() else { return true };
+        if first > effort.endurance {
+            return false;
+        }
+        if first <= effort.patience {
+            return !over;
+        }
+        self.contestant.is_measured_well() && self.samples.len() < LEAST_ROUNDS
+    }
+}
+
+/// How many runs of this time make a measurement.
+fn batch(run: Duration) -> u32 {
+    let batch = SAMPLE.as_nanos().div_ceil(run.as_nanos().max(1));
+    u32::try_from(batch).unwrap_or(u32::MAX).clamp(1, 100_000)
 }
 
 /// The median of a contestant, in its fastest form.
@@ -147,12 +166,42 @@ impl<'a> Contest<'a> {
         Self::default()
     }
 
-    /// Enters a contestant, or notes why it does not take part: its answers are not what they should be.
+    /// Enters a contestant whose answers were checked, or notes why it does not take part: they are not what they should be.
     pub fn enter<T>(
         &mut self,
         contestant: Contestant,
         form: &'static str,
         checked: Result<(), String>,
+        run: impl FnMut() -> T + 'a,
+    ) {
+        self.admit(contestant, form, checked, None, run);
+    }
+
+    /// Enters a contestant that takes long: it runs here for the first time, that run is timed and its answer checked. The
+    /// run counts where it is long, so that nothing runs for its check alone.
+    pub fn enter_checked<T>(
+        &mut self,
+        contestant: Contestant,
+        form: &'static str,
+        mut run: impl FnMut() -> T + 'a,
+        check: impl FnOnce(&T) -> Result<(), String>,
+    ) {
+        let start = Instant::now();
+        let answer = black_box(run());
+        let made = start.elapsed();
+        let checked = check(&answer);
+        // Other runs drop what they made while they are timed.
+        let start = Instant::now();
+        drop(answer);
+        self.admit(contestant, form, checked, Some(made + start.elapsed()), run);
+    }
+
+    fn admit<T>(
+        &mut self,
+        contestant: Contestant,
+        form: &'static str,
+        checked: Result<(), String>,
+        first: Option<Duration>,
         mut run: impl FnMut() -> T + 'a,
     ) {
         if let Err(reason) = checked {
@@ -163,7 +212,7 @@ impl<'a> Contest<'a> {
         let run = Box::new(move || {
             black_box(run());
         });
-        self.entries.push(Entry { contestant, form, run, batch: 1, samples: Vec::new() });
+        self.entries.push(Entry { contestant, form, run, first, batch: 1, samples: Vec::new() });
     }
 
     /// Lets all run in turn.
@@ -177,13 +226,7 @@ impl<'a> Contest<'a> {
             let over = round >= LEAST_ROUNDS && start.elapsed() >= effort.budget;
             let mut ran = false;
             for entry in &mut self.entries {
-                let slow = entry.samples.first().is_some_and(|&first| first > effort.patience);
-                let done = if entry.contestant.is_measured_well() {
-                    over || (slow && entry.samples.len() >= LEAST_ROUNDS)
-                } else {
-                    over || slow
-                };
-                if !done {
+                if entry.goes_on(effort, over) {
                     let sample = entry.measure();
                     entry.samples.push(sample);
                     ran = true;
@@ -225,7 +268,18 @@ mod tests {
     use super::*;
     use std::cell::Cell;
 
-    const EFFORT: Effort = Effort { budget: Duration::from_millis(5), patience: Duration::from_millis(120) };
+    const EFFORT: Effort = Effort {
+        budget: Duration::from_millis(5),
+        patience: Duration::from_millis(120),
+        endurance: Duration::from_millis(600),
+    };
+
+    /// Counts a call, and takes this many milliseconds.
+    fn work(calls: &Cell<u32>, millis: u64) -> u32 {
+        calls.set(calls.get() + 1);
+        std::thread::sleep(Duration::from_millis(millis));
+        calls.get()
+    }
 
     #[test]
     fn medians() {
@@ -235,18 +289,74 @@ mod tests {
     }
 
     #[test]
-    fn ours_runs_five_times_however_long_it_takes_and_others_once() {
+    fn ours_runs_five_times_though_it_takes_long_and_others_once() {
         let (ours, walk) = (Cell::new(0), Cell::new(0));
-        let count = |counter: &Cell<u32>| {
-            counter.set(counter.get() + 1);
-            std::thread::sleep(Duration::from_millis(130));
-        };
         let mut contest = Contest::new();
-        contest.enter(Contestant::Ours, "", Ok(()), || count(&ours));
-        contest.enter(Contestant::Walk, "", Ok(()), || count(&walk));
+        contest.enter(Contestant::Ours, "", Ok(()), || work(&ours, 130));
+        contest.enter(Contestant::Walk, "", Ok(()), || work(&walk, 130));
         let standings = contest.run(EFFORT);
         assert_eq!((ours.get(), walk.get()), (5, 1));
         assert_eq!(standings.standings.len(), 2);
+    }
+
+    #[test]
+    fn beyond_endurance_all_run_once() {
+        let calls = Cell::new(0);
+        let mut contest = Contest::new();
+        contest.enter(Contestant::Ours, "", Ok(()), || work(&calls, 610));
+        let standings = contest.run(EFFORT).standings;
+        assert_eq!(calls.get(), 1);
+        assert!(standings[0].median >= Duration::from_millis(610));
+    }
+
+    #[test]
+    fn a_long_first_run_is_checked_and_counts() {
+        let (ours, walk, limit) = (Cell::new(0), Cell::new(0), Cell::new(0));
+        let mut seen = 0;
+        let mut contest = Contest::new();
+        let see = |answer: &u32| {
+            seen = *answer;
+            Ok(())
+        };
+        contest.enter_checked(Contestant::Ours, "", || work(&ours, 130), see);
+        contest.enter_checked(Contestant::Walk, "", || work(&walk, 130), |_| Ok(()));
+        contest.enter_checked(Contestant::Limit, "", || work(&limit, 610), |_| Ok(()));
+        let standings = contest.run(EFFORT).standings;
+        assert_eq!((ours.get(), walk.get(), limit.get()), (5, 1, 1));
+        assert_eq!(seen, 1);
+        for (standing, millis) in standings.iter().zip([130, 610, 130]) {
+            assert!(standing.median >= Duration::from_millis(millis), "{standing:?}");
+        }
+    }
+
+    #[test]
+    fn a_short_first_run_is_checked_and_does_not_count() {
+        let calls = Cell::new(0);
+        let mut contest = Contest::new();
+        let slow_at_first = || {
+            let first = calls.get() == 0;
+            work(&calls, if first { 40 } else { 2 })
+        };
+        contest.enter_checked(Contestant::Ours, "", slow_at_first, |_| Ok(()));
+        let standings = contest.run(EFFORT).standings;
+        assert!(calls.get() > 5, "{}", calls.get());
+        assert!(standings[0].median < Duration::from_millis(40), "{standings:?}");
+    }
+
+    #[test]
+    fn who_disagrees_on_the_first_run_does_not_run_again() {
+        let calls = Cell::new(0);
+        let mut contest = Contest::new();
+        contest.enter_checked(
+            Contestant::FidgetJit,
+            "if",
+            || work(&calls, 1),
+            |answer| Err(format!("{answer} is not 2")),
+        );
+        let Standings { standings, disagreements } = contest.run(EFFORT);
+        assert_eq!(calls.get(), 1);
+        assert_eq!(disagreements, ["fidget_jit (if): 1 is not 2"]);
+        assert!(standings.is_empty());
     }
 
     #[test]

@@ -10,7 +10,7 @@ use super::oracle::{Oracle, Tolerance};
 use super::report::Row;
 use crate::limit;
 use crate::model::{Blob, blobs, cube, tree};
-use crate::naive::{Walker, separate};
+use crate::naive::{Walker, differences, separate};
 use crate::peers::fidget::{FidgetModel, FieldTape, Gate, GradientTape, JitFunction, VmFunction};
 
 const PRIMITIVES: usize = 200;
@@ -147,11 +147,14 @@ pub(super) fn field(options: Options) -> Vec<Row> {
 /// Field and gradient.
 pub(super) fn gradient(options: Options) -> Vec<Row> {
     let task = Task::new(PRIMITIVES, POINTS);
-    let limit = limit::Blobs::new(&task.blobs);
+    let (limit, walker) = (limit::Blobs::new(&task.blobs), Walker::new(&task.tree));
     let mut contest = Contest::new();
     let engine = task.ours(&mut contest, Query::GRADIENT, None);
     task.enter(&mut contest, Contestant::Limit, "", Tolerance::EXACT, |points, out| {
-        limit.gradient(points, out)
+        limit.gradient(points, out);
+    });
+    task.enter(&mut contest, Contestant::Separate, "", Tolerance::DIFFERENCES, |points, out| {
+        differences(&walker, points, out);
     });
     for gate in Gate::ALL {
         let mut tape = GradientTape::new(&FidgetModel::<JitFunction>::compile(&expression(&task, gate)));

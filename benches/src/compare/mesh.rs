@@ -71,15 +71,21 @@ impl Task {
 
     /// Enters ours and the limit, which make one mesh. Returns the number of triangles and the engine.
     fn enter<'a>(&'a self, contest: &mut Contest<'a>) -> (usize, &'static str) {
-        let (ours, limit) = (self.ours(), self.limit());
-        contest.enter(Contestant::Ours, "", self.check(&ours.mesh.positions), || self.ours());
-        let (triangles, others) = (ours.mesh.triangles.len(), limit.triangles.len());
-        let mut checked = self.check(&limit.positions);
-        if (others as f64 - triangles as f64).abs() > TRIANGLES_OFF * triangles as f64 {
-            checked = Err(format!("{others} triangles, ours are {triangles}"));
-        }
-        contest.enter(Contestant::Limit, "", checked, || self.limit());
-        (triangles, ours.engine.name())
+        let (mut triangles, mut engine) = (0, "");
+        let see = |ours: &Polygonized| {
+            (triangles, engine) = (ours.mesh.triangles.len(), ours.engine.name());
+            self.check(&ours.mesh.positions)
+        };
+        contest.enter_checked(Contestant::Ours, "", || self.ours(), see);
+        let see = |limit: &limit::mesh::Mesh| {
+            let others = limit.triangles.len();
+            if (others as f64 - triangles as f64).abs() > TRIANGLES_OFF * triangles as f64 {
+                return Err(format!("{others} triangles, ours are {triangles}"));
+            }
+            self.check(&limit.positions)
+        };
+        contest.enter_checked(Contestant::Limit, "", || self.limit(), see);
+        (triangles, engine)
     }
 
     fn row(
@@ -118,7 +124,7 @@ pub(super) fn blobs(count: usize, case: &'static str, options: Options) -> Vec<R
     if !(options.quick && count > 1_000) {
         let points = model::cube(2_000, 2);
         let oracle = Oracle::new(&task.tree, &points);
-        for gate in gates(count) {
+        for gate in gates(count, options) {
             let mut field = vec![f32::NAN; points.len()];
             FidgetModel::<JitFunction>::new(&task.blobs, *gate).field().eval(points.planes(), &mut field);
             let checked = oracle.check(&[&field], Tolerance::EXACT);
@@ -130,9 +136,13 @@ pub(super) fn blobs(count: usize, case: &'static str, options: Options) -> Vec<R
     vec![task.row(case, contest, made, options)]
 }
 
-/// The gates worth trying: without one nothing falls away, which takes minutes for thousands of blobs.
-fn gates(count: usize) -> &'static [Gate] {
-    if count <= 100 { &Gate::ALL } else { &[Gate::If, Gate::And] }
+/// The gates worth trying: `if` has always been the fastest, and without one nothing falls away, which takes minutes for thousands of blobs.
+fn gates(count: usize, options: Options) -> &'static [Gate] {
+    match count {
+        _ if options.quick => &[Gate::If],
+        0..=100 => &Gate::ALL,
+        _ => &[Gate::If, Gate::And],
+    }
 }
 
 /// A ball of particles of one size. splashsurf computes another surface of the same particles, with the same reach and cells.
@@ -147,12 +157,11 @@ pub(super) fn particles(options: Options) -> Vec<Row> {
         let cell = 2.0 / cells as f32;
         for (division, form) in [(Division::None, "one grid"), (Division::Subdomains, "subdomains")] {
             let peer = Particles::new(&task.blobs, cell, division, peer_threads(options));
-            let checked = peer.as_ref().map_err(ToString::to_string).and_then(|peer| {
-                let made = peer.mesh().map_err(|error| error.to_string())?;
-                if made.triangles > 0 { Ok(()) } else { Err("no triangles".to_owned()) }
-            });
-            contest.enter(Contestant::Splashsurf, form, checked, move || {
-                peer.as_ref().map(Particles::mesh).is_ok_and(|made| made.is_ok())
+            let mesh = move || peer.as_ref().map_err(Clone::clone).and_then(Particles::mesh);
+            contest.enter_checked(Contestant::Splashsurf, form, mesh, |made| match made {
+                Ok(made) if made.triangles > 0 => Ok(()),
+                Ok(_) => Err("no triangles".to_owned()),
+                Err(error) => Err(error.to_string()),
             });
         }
         task.row("particles", contest, made, options)

@@ -31,11 +31,12 @@ pub struct Options {
 impl Options {
     /// How long to measure.
     fn effort(self) -> Effort {
-        if self.quick {
-            Effort { budget: Duration::from_millis(300), patience: Duration::from_millis(150) }
+        let (budget, patience, endurance) = if self.quick {
+            (Duration::from_millis(200), Duration::from_millis(40), Duration::from_secs(5))
         } else {
-            Effort { budget: Duration::from_secs(2), patience: Duration::from_secs(2) }
-        }
+            (Duration::from_secs(2), Duration::from_secs(2), Duration::MAX)
+        };
+        Effort { budget, patience, endurance }
     }
 }
 

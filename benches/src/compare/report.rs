@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use serde_json::{Map, Value, json};
 
+use super::Case;
 use super::contest::{Contestant, Standings};
 
 /// One row of results.
@@ -64,6 +65,9 @@ impl Row {
     pub fn json(&self) -> Value {
         let mut object = Map::new();
         object.insert("case".to_owned(), json!(self.case));
+        if let Some(case) = Case::named(self.case) {
+            object.insert("what".to_owned(), json!(case.what));
+        }
         object.insert("primitives".to_owned(), json!(self.primitives));
         object.insert("points".to_owned(), json!(self.points));
         object.insert("unit".to_owned(), json!(self.unit));
@@ -90,11 +94,7 @@ impl Row {
 
 /// Four digits: more are noise.
 fn rounded(number: f64) -> f64 {
-    if number == 0.0 || !number.is_finite() {
-        return number;
-    }
-    let scale = 10_f64.powf(3.0 - number.abs().log10().floor());
-    (number * scale).round() / scale
+    format!("{number:.3e}").parse().unwrap_or(number)
 }
 
 /// Widths of the table's columns: the first ones, then one for each contestant, then the ratios.
@@ -177,7 +177,7 @@ mod tests {
     #[test]
     fn json_has_the_documented_keys() {
         let expected = json!({
-            "case": "dense-field", "primitives": 200, "points": 1000, "unit": "primitive and point", "ours_ns": 0.5, "limit_ns": 0.2,
+            "case": "dense-field", "what": "the field of 200 points, no culling", "primitives": 200, "points": 1000, "unit": "primitive and point", "ours_ns": 0.5, "limit_ns": 0.2,
             "fidget_jit_ns": 0.75, "fidget_jit_form": "and", "ratio_limit": 2.5, "ratio_fidget": 1.5, "level": "avx2", "checksum": "ok",
         });
         assert_eq!(row().json(), expected);
@@ -190,6 +190,13 @@ mod tests {
         assert_eq!(row.json()["checksum"], "walk: 1 is not 2");
         assert!(line(&row).ends_with("  walk: 1 is not 2"));
         assert!(row.json().get("walk_ns").is_none());
+    }
+
+    #[test]
+    fn numbers_have_four_digits() {
+        for (number, text) in [(832_312_345.6, "832300000.0"), (0.0, "0.0"), (0.000_123_456, "0.0001235")] {
+            assert_eq!(json!(rounded(number)).to_string(), text);
+        }
     }
 
     #[test]

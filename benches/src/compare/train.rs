@@ -1,5 +1,6 @@
 //! A real scene: the locomotive of ParsIP (95 leaves, 31 operators) at every point of the lattice that it was published with.
 
+use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 
 use jbt::{Compiler, Points, Query};
@@ -15,6 +16,8 @@ use crate::naive::Walker;
 
 /// The edge of a cell.
 const CELL: f64 = 0.13;
+/// The file, in the folder of samples.
+const SCENE: &str = "parsip/train_corrected.scene";
 /// What ParsIP's authors report: field evaluations per second and core, with AVX (Shirazian, Wyvill and Duprat 2012).
 const PUBLISHED: f64 = 2.6e6;
 
@@ -22,9 +25,8 @@ const PUBLISHED: f64 = 2.6e6;
 fn scene() -> Result<CheckedTree, String> {
     let root = std::env::var_os("JBT_SAMPLES")
         .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/samples"), PathBuf::from);
-    let path = root.join("parsip/train_corrected.scene");
-    let bytes = std::fs::read(&path)
-        .map_err(|error| format!("no scene at {} (set JBT_SAMPLES): {error}", path.display()))?;
+    let bytes = std::fs::read(root.join(SCENE))
+        .map_err(|error| format!("no {SCENE} in the folder that JBT_SAMPLES names: {error}"))?;
     let imported = import::parsip(&bytes).map_err(|_| "the scene has errors".to_owned())?;
     imported.model.check().map_err(|_| "the model has errors".to_owned())
 }
@@ -58,20 +60,19 @@ pub(super) fn train(options: Options) -> Vec<Row> {
     };
     let points = lattice(&tree);
     let oracle = Oracle::new(&tree, &points);
-    let mut contest = Contest::new();
     let evaluator = Compiler::new().evaluator(&tree, Query::FIELD).expect("the train compiles");
     let (primitives, engine) = (evaluator.evaluations_per_point(), evaluator.engine().name());
-    let mut samples = evaluator.samples();
-    evaluator.eval(&points, &mut samples).expect("the buffers fit");
-    let all = &points;
-    contest.enter(Contestant::Ours, "", oracle.check(&[samples.field()], Tolerance::EXACT), move || {
-        evaluator.eval(all, &mut samples).expect("the buffers fit");
-    });
     let walker = Walker::new(&tree);
-    let mut field = vec![f32::NAN; points.len()];
-    walker.field(points.planes(), &mut field);
-    let checked = oracle.check(&[&field], Tolerance::EXACT);
-    contest.enter(Contestant::Walk, "", checked, move || walker.field(all.planes(), &mut field));
+    let samples = RefCell::new(evaluator.samples());
+    let field = RefCell::new(vec![f32::NAN; points.len()]);
+
+    let mut contest = Contest::new();
+    let ours = || evaluator.eval(&points, &mut samples.borrow_mut()).expect("the buffers fit");
+    let check = |(): &()| oracle.check(&[samples.borrow().field()], Tolerance::EXACT);
+    contest.enter_checked(Contestant::Ours, "", ours, check);
+    let walk = || walker.field(points.planes(), &mut field.borrow_mut());
+    let check = |(): &()| oracle.check(&[&field.borrow()], Tolerance::EXACT);
+    contest.enter_checked(Contestant::Walk, "", walk, check);
     let standings = contest.run(options.effort());
     let mut row = row(primitives as usize, points.len(), standings, vec![("engine", json!(engine))]);
     if let Some(nanoseconds) = row.nanoseconds(Contestant::Ours) {

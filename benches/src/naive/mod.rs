@@ -9,7 +9,7 @@ mod separate;
 mod skeleton;
 mod walk;
 
-pub use separate::{STEP, WALKS, separate};
+pub use separate::{STEP, WALKS, differences, separate};
 pub use walk::Walker;
 
 #[cfg(test)]

@@ -19,11 +19,16 @@ pub const WALKS: usize = 5;
 
 /// Field, gradient and attributes at points: planes as for [`Walker::full`]. Panics where that does.
 pub fn separate(walker: &Walker, points: [&[f32]; 3], outs: &mut [&mut [f32]]) {
-    let (first, channels) = outs.split_at_mut(4);
-    let (field, gradient) = first.split_at_mut(1);
-    walker.field(points, field[0]);
+    let [field, x, y, z, channels @ ..] = outs else { panic!("field and gradient have four planes") };
+    differences(walker, points, [field, x, y, z]);
+    walker.attributes(points, channels);
+}
+
+/// Field and gradient, by four walks: `outs` are the planes of the field and of the gradient's x, y and z. Panics if lengths differ.
+pub fn differences(walker: &Walker, points: [&[f32]; 3], [field, gradient @ ..]: [&mut [f32]; 4]) {
+    walker.field(points, field);
     let mut moved = Vec::new();
-    for (axis, slope) in gradient.iter_mut().enumerate() {
+    for (axis, slope) in gradient.into_iter().enumerate() {
         moved.clear();
         moved.extend(points[axis].iter().map(|x| x + STEP));
         let mut ahead = points;
@@ -31,8 +36,7 @@ pub fn separate(walker: &Walker, points: [&[f32]; 3], outs: &mut [&mut [f32]]) {
         walker.field(ahead, slope);
         for (i, slope) in slope.iter_mut().enumerate() {
             // The step that was really made, after rounding.
-            *slope = (*slope - field[0][i]) / (moved[i] - points[axis][i]);
+            *slope = (*slope - field[i]) / (moved[i] - points[axis][i]);
         }
     }
-    walker.attributes(points, channels);
 }
