@@ -56,14 +56,19 @@ fn without_a_field_the_colour_is_the_default() {
 }
 
 #[test]
-fn a_plain_cpu_has_the_same_answers_but_for_rounding() {
+fn other_cpus_have_the_same_answers_but_for_rounding() {
+    plain_agrees::<8>();
+    plain_agrees::<16>();
+}
+
+fn plain_agrees<const N: usize>() {
     let (rows, points) = (Blobs::new(&blobs(200, 3)), cube(99, 5));
     let mut here = [[f32::NAN; 99]; 7];
     rows.full(points.planes(), here.each_mut().map(|plane| &mut plane[..]));
     let mut plain = [[f32::NAN; 99]; 7];
     let answers = plain.each_mut().map(|plane| &mut plane[..]);
-    run_plain(Dense { rows: &rows.rows, points: points.planes(), answers, which: Full });
+    run_plain::<N, _>(Dense { rows: &rows.rows, points: points.planes(), answers, which: Full });
     for (here, plain) in here.iter().flatten().zip(plain.iter().flatten()) {
-        assert!((here - plain).abs() <= 1e-4 * here.abs().max(1.0), "{here} and {plain}");
+        assert!((here - plain).abs() <= 1e-4 * here.abs().max(1.0), "{here} and {plain}, {N} lanes");
     }
 }

@@ -73,32 +73,32 @@ pub(super) fn dispatch<J: Job>(job: J) -> J::Output {
             return unsafe { x86::run_avx2(job) };
         }
     }
-    job.run::<Plain>()
+    job.run::<Plain<8>>()
 }
 
-/// Runs a job as on a CPU without any of the instructions.
+/// Runs a job as on a CPU without any of the instructions, in registers of 8 reals as AVX2 has them, or of 16 as AVX-512.
 #[cfg(test)]
-pub(super) fn run_plain<J: Job>(job: J) -> J::Output {
-    job.run::<Plain>()
+pub(super) fn run_plain<const N: usize, J: Job>(job: J) -> J::Output {
+    job.run::<Plain<N>>()
 }
 
-/// Eight reals in loops, for CPUs without the instructions. Its fused operations are not fused, for fusing in software is slow.
+/// Reals in loops, for CPUs without the instructions. Its fused operations are not fused, for fusing in software is slow.
 #[derive(Clone, Copy)]
-struct Plain([f32; 8]);
+struct Plain<const N: usize>([f32; N]);
 
-impl Plain {
+impl<const N: usize> Plain<N> {
     #[inline(always)]
     fn zip(self, other: Self, operation: impl Fn(f32, f32) -> f32) -> Self {
         Self(std::array::from_fn(|lane| operation(self.0[lane], other.0[lane])))
     }
 }
 
-impl Vector for Plain {
-    const LANES: usize = 8;
+impl<const N: usize> Vector for Plain<N> {
+    const LANES: usize = N;
 
     #[inline(always)]
     fn splat(value: f32) -> Self {
-        Self([value; 8])
+        Self([value; N])
     }
     #[inline(always)]
     fn load(from: &[f32]) -> Self {
@@ -106,7 +106,7 @@ impl Vector for Plain {
     }
     #[inline(always)]
     fn store(self, to: &mut [f32]) {
-        to[..8].copy_from_slice(&self.0);
+        to[..N].copy_from_slice(&self.0);
     }
     #[inline(always)]
     fn add(self, other: Self) -> Self {
@@ -146,7 +146,7 @@ impl Vector for Plain {
     }
     #[inline(always)]
     fn at_least(self, other: Self) -> u32 {
-        (0..8).fold(0, |mask, lane| mask | u32::from(self.0[lane] >= other.0[lane]) << lane)
+        (0..N).fold(0, |mask, lane| mask | u32::from(self.0[lane] >= other.0[lane]) << lane)
     }
 }
 

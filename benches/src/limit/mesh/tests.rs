@@ -6,6 +6,12 @@ use jbt_frontend::walk::{walk, walk_gradient};
 
 use crate::model::{ISO, blobs, tree};
 
+use crate::limit::dense::Row;
+use crate::limit::vector::run_plain;
+
+use super::cull::{Candidates, Cull};
+use super::finish::{Finish, Starts, Vertices};
+use super::sample::{CORNERS, Sample, Samples};
 use super::{Lattice, Mesh, mesh};
 
 /// A lattice around all blobs. Its last bricks are not whole.
@@ -78,4 +84,43 @@ fn where_there_is_no_surface_there_is_no_mesh() {
     let tiny = Lattice { origin: blobs(1, 1)[0].center, cell: 1e-3, counts: [10; 3] };
     let inside = mesh(&blobs(1, 1), &tiny, ISO);
     assert_eq!((inside.triangles.len(), inside.statistics.bricks), (0, 0));
+}
+
+/// What registers of N reals find out about a brick: the rows that reach it, its samples, and its vertices.
+fn brick<const N: usize>() -> (Vec<u32>, Samples, Vertices) {
+    let rows: Vec<Row> = blobs(200, 6).iter().map(Row::new).collect();
+    let (low, high) = ([-0.3; 3], [0.3; 3]);
+    let mut reached = Candidates::default();
+    let from = &Candidates::all(&rows);
+    let bounds = run_plain::<N, _>(Cull { from, to: &mut reached, low, high });
+    assert!(bounds.lower < ISO && bounds.upper > ISO);
+    let rows: Vec<Row> = reached.indices.iter().map(|&index| rows[index as usize]).collect();
+    let axis = std::array::from_fn(|n| -0.3 + 0.075 * n as f32);
+    let mut samples = Samples::new();
+    run_plain::<N, _>(Sample { rows: &rows, axes: [axis; 3], iso: ISO, samples: &mut samples });
+    let mut starts = Starts::new();
+    for n in 0..37 {
+        let corner = [n % 8, n / 8 % 8, n / 64].map(|at| axis[at]);
+        starts.push(corner.map(|x| x + 0.03), corner, corner.map(|x| x + 0.075));
+    }
+    let mut vertices = Vertices::default();
+    run_plain::<N, _>(Finish { rows: &rows, iso: ISO, starts: &mut starts, vertices: &mut vertices });
+    (reached.indices, samples, vertices)
+}
+
+#[test]
+fn registers_of_any_width_make_one_mesh() {
+    let ((rows, samples, vertices), (wide_rows, wide_samples, wide_vertices)) = (brick::<8>(), brick::<16>());
+    assert!(rows.len() > 20, "many blobs reach the brick");
+    assert_eq!(rows, wide_rows);
+    assert!(samples.is_crossed());
+    for layer in 0..CORNERS {
+        assert_eq!(
+            samples.values[layer][..CORNERS * CORNERS],
+            wide_samples.values[layer][..CORNERS * CORNERS]
+        );
+    }
+    assert_eq!(vertices.len(), 37);
+    assert_eq!((vertices.positions, vertices.normals), (wide_vertices.positions, wide_vertices.normals));
+    assert_eq!(vertices.colors, wide_vertices.colors);
 }
