@@ -218,9 +218,9 @@ def table(path):
     comments, rows = load_record(path)
     name = shown(path)
     lines = [
-        f"From [`{name}`]({name}), on: {comments.get('cpu', 'an unknown CPU')}",
-        "",
-        f"    {comments.get('command', 'an unknown command')}",
+        f"Record: [`{name}`]({name})  ",
+        f"CPU: {comments.get('cpu', 'unknown')}  ",
+        f"Command: `{comments.get('command', 'unknown')}`",
         "",
         f"|{HEAD}|",
         f"|{ALIGN}|",

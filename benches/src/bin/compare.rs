@@ -3,6 +3,9 @@
 //! ```text
 //! cargo run --release -p jbt-benches --features peers --bin compare -- [CASE ...] [--json] [--quick] [--threads N]
 //! ```
+//!
+//! Everybody is built alike, with the workspace's `[profile.release]`: `opt-level = 3`, `codegen-units = 1`, no link-time optimisation, for
+//! any CPU of the architecture. Vector instructions beyond that are chosen when the program runs, by those who can.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "it is a program")]
 
 use std::process::ExitCode;
@@ -49,6 +52,8 @@ forms, NAME_form, the fastest. NAME is one of:
 ratio_limit is ours / limit, ratio_fidget is fidget / ours; checksum is ok, or says who disagrees. Cases that mesh have threads and
 triangles, too; the train has evaluations_per_second, and what its authors published. Its scene is not bundled: the environment
 variable JBT_SAMPLES names a folder that has it as parsip/train_corrected.scene.
+
+All are built alike: opt-level 3, one codegen unit for each crate, no link-time optimisation, for any CPU of the architecture.
 
 Exit codes: 0 fine, 1 somebody disagrees or a scene is missing, 2 usage.",
         list()
