@@ -7,11 +7,12 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 use crate::bounds::Bounds;
 
-/// A similarity: rotation (or reflection), uniform scale, translation. It multiplies all distances by `scale`.
+/// The linear part of a similarity, which is a rotation (or reflection), uniform scale and translation: it multiplies all distances by
+/// `scale`.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Similarity {
     scale: f64,
-    rigid: DAffine3,
+    turn: DMat3,
 }
 
 impl Similarity {
@@ -23,10 +24,7 @@ impl Similarity {
         let near = gram.abs_diff_eq(DMat3::from_diagonal(DVec3::splat(square)), 1e-12 * square);
         (near && square > 0.0).then(|| {
             let scale = square.sqrt();
-            Self {
-                scale,
-                rigid: DAffine3::from_mat3_translation(map.matrix3 * (1.0 / scale), map.translation),
-            }
+            Self { scale, turn: map.matrix3 * (1.0 / scale) }
         })
     }
 
@@ -36,10 +34,10 @@ impl Similarity {
         self.scale
     }
 
-    /// What is left when everything is scaled first, about the origin: a rotation (or reflection) and a translation.
+    /// The rotation or reflection, with the scale taken out.
     #[must_use]
-    pub fn rigid(&self) -> &DAffine3 {
-        &self.rigid
+    pub fn turn(&self) -> &DMat3 {
+        &self.turn
     }
 }
 

@@ -19,8 +19,9 @@
 //! ```
 //!
 //! Inputs, constants and columns are not kept alive from where the IR defines them: each Cranelift block that uses one reads it
-//! again, at the first use. An input or a constant is a 16 byte load and a column a broadcast load, which is what a spilled value would
-//! cost, and they leave the registers to the values that have to be computed. An input that a block uses once is an operand in memory.
+//! again, at the first use. An input or a constant is a 16 byte load, which is what a spilled value would cost, and a column a load and a
+//! broadcast; they leave the registers to the values that have to be computed. (Cranelift makes no memory operand of such a load
+//! unless nothing that follows from it is used twice, which is rare.)
 
 use std::collections::HashMap;
 

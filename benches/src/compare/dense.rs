@@ -1,5 +1,7 @@
 //! Every primitive at every point: nobody may leave anything out, so this compares code with code.
 
+use fidget::eval::MathFunction;
+use fidget::render::RenderHints;
 use jbt::{Compiler, Engine, Points, Query};
 use jbt_frontend::check::CheckedTree;
 use serde_json::json;
@@ -11,7 +13,7 @@ use super::report::Row;
 use crate::limit;
 use crate::model::{Blob, blobs, cube, tree};
 use crate::naive::{Walker, differences, separate};
-use crate::peers::fidget::{FidgetModel, FieldTape, Gate, GradientTape, JitFunction, VmFunction};
+use crate::peers::fidget::{Expression, FidgetModel, FieldTape, Gate, GradientTape, JitFunction, VmFunction};
 
 const PRIMITIVES: usize = 200;
 const POINTS: usize = 16_384;
@@ -87,32 +89,21 @@ impl Task {
         });
     }
 
-    fn fidget_field<'a>(&'a self, contest: &mut Contest<'a>, jit: bool) {
+    /// fidget on one of its engines, with each gate.
+    fn fidget_field<'a, F: MathFunction + RenderHints + 'a>(
+        &'a self,
+        contest: &mut Contest<'a>,
+        contestant: Contestant,
+    ) {
         for gate in Gate::ALL {
-            if jit {
-                let mut tape = FieldTape::new(&FidgetModel::<JitFunction>::compile(&expression(self, gate)));
-                self.enter(
-                    contest,
-                    Contestant::FidgetJit,
-                    gate.name(),
-                    Tolerance::EXACT,
-                    move |p, [field]| {
-                        tape.eval(p, field);
-                    },
-                );
-            } else {
-                let mut tape = FieldTape::new(&FidgetModel::<VmFunction>::compile(&expression(self, gate)));
-                self.enter(
-                    contest,
-                    Contestant::FidgetVm,
-                    gate.name(),
-                    Tolerance::EXACT,
-                    move |p, [field]| {
-                        tape.eval(p, field);
-                    },
-                );
-            }
+            let mut tape = FieldTape::new(&FidgetModel::<F>::compile(&self.expression(gate)));
+            let run = move |points: [&[f32]; 3], [field]: [&mut [f32]; 1]| tape.eval(points, field);
+            self.enter(contest, contestant, gate.name(), Tolerance::EXACT, run);
         }
+    }
+
+    fn expression(&self, gate: Gate) -> Expression {
+        Expression::new(&self.blobs, gate)
     }
 
     /// The row of a contest whose unit is a primitive at a point.
@@ -129,17 +120,13 @@ impl Task {
     }
 }
 
-fn expression(task: &Task, gate: Gate) -> crate::peers::fidget::Expression {
-    crate::peers::fidget::Expression::new(&task.blobs, gate)
-}
-
 /// The field.
 pub(super) fn field(options: Options) -> Vec<Row> {
     let task = Task::new(PRIMITIVES, POINTS);
     let mut contest = Contest::new();
     let engine = task.ours(&mut contest, Query::FIELD, None);
     task.limit_field(&mut contest);
-    task.fidget_field(&mut contest, true);
+    task.fidget_field::<JitFunction>(&mut contest, Contestant::FidgetJit);
     task.walk_field(&mut contest);
     vec![task.row("dense-field", engine, contest, options)]
 }
@@ -157,7 +144,7 @@ pub(super) fn gradient(options: Options) -> Vec<Row> {
         differences(&walker, points, out);
     });
     for gate in Gate::ALL {
-        let mut tape = GradientTape::new(&FidgetModel::<JitFunction>::compile(&expression(&task, gate)));
+        let mut tape = GradientTape::new(&FidgetModel::<JitFunction>::compile(&task.expression(gate)));
         let run = move |points: [&[f32]; 3], out: [&mut [f32]; 4]| tape.eval(points, out);
         task.enter(&mut contest, Contestant::FidgetJit, gate.name(), Tolerance::EXACT, run);
     }
@@ -187,7 +174,7 @@ pub(super) fn interpreter(options: Options) -> Vec<Row> {
     let mut contest = Contest::new();
     let engine = task.ours(&mut contest, Query::FIELD, Some(Engine::Lanes));
     task.limit_field(&mut contest);
-    task.fidget_field(&mut contest, false);
+    task.fidget_field::<VmFunction>(&mut contest, Contestant::FidgetVm);
     task.walk_field(&mut contest);
     vec![task.row("interpreter", engine, contest, options)]
 }
@@ -202,7 +189,7 @@ pub(super) fn scaling(options: Options) -> Vec<Row> {
         task.limit_field(&mut contest);
         if count <= 2_000 {
             // Beyond, fidget compiles for seconds.
-            task.fidget_field(&mut contest, true);
+            task.fidget_field::<JitFunction>(&mut contest, Contestant::FidgetJit);
         }
         task.walk_field(&mut contest);
         let row = task.row("scaling", engine, contest, options);

@@ -204,7 +204,7 @@ impl<'a> Finder<'a> {
             field_names: HashMap::default(),
             inside_names: HashMap::default(),
             known: HashMap::default(),
-            once: once(tree),
+            once: tree.uses().into_iter().map(|uses| uses == 1).collect(),
             groups,
             stack: Vec::new(),
         }
@@ -326,7 +326,7 @@ impl<'a> Finder<'a> {
             let (pose, symmetry) = (primitive.skeleton.pose(), primitive.skeleton.kind().symmetry());
             let (map, scale) = match Similarity::from_affine(&map) {
                 Some(similarity) => {
-                    let turn = similarity.rigid().matrix3 * pose.matrix3;
+                    let turn = *similarity.turn() * pose.matrix3;
                     let at = map.transform_point3(pose.translation);
                     (DAffine3::from_mat3_translation(symmetry.simplest(turn), at), similarity.scale())
                 }
@@ -415,20 +415,6 @@ impl<'a> Finder<'a> {
         self.bindings_names.insert(bindings, next);
         next
     }
-}
-
-/// For each node, whether exactly one path leads to it from the root. Children come before their parents.
-fn once(tree: &CheckedTree) -> Vec<bool> {
-    let mut paths = vec![0_u8; tree.nodes().len()];
-    paths[tree.root().0 as usize] = 1;
-    for (index, node) in tree.nodes().iter().enumerate().rev() {
-        for child in &node.children {
-            let child = child.0 as usize;
-            // Two are as good as many.
-            paths[child] = paths[child].saturating_add(paths[index]).min(2);
-        }
-    }
-    paths.into_iter().map(|paths| paths == 1).collect()
 }
 
 /// The occurrences that one asks for.
