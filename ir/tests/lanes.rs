@@ -8,7 +8,8 @@ use jbt_ir::domain::scalar::Scalar;
 use jbt_ir::interpret;
 use jbt_ir::pass::{PIPELINE, legalize, run_pipeline};
 use jbt_ir::{
-    Domain, Function, FunctionBuilder, Op, Reduction, Rows, Schema, Table, Tables, Value, Verified, verify,
+    Domain, Function, FunctionBuilder, Op, Reduction, Rows, Schema, Selection, Table, Tables, Value,
+    Verified, verify,
 };
 
 fn same(a: f32, b: f32) -> bool {
@@ -24,11 +25,16 @@ fn verified(function: Function) -> Verified {
 }
 
 /// The output planes, each point on its own in the scalar domain.
-fn reference(function: &Verified, tables: &Tables, inputs: &[Vec<f32>]) -> Vec<Vec<f32>> {
+fn reference(
+    function: &Verified,
+    (tables, selection): (&Tables, &Selection),
+    inputs: &[Vec<f32>],
+) -> Vec<Vec<f32>> {
     let mut planes = vec![Vec::new(); function.function().outputs.len()];
     for point in 0..inputs.first().map_or(1, Vec::len) {
         let at: Vec<f32> = inputs.iter().map(|plane| plane[point]).collect();
-        for (plane, answer) in planes.iter_mut().zip(interpret::run(function, tables, &mut Scalar, &at)) {
+        let answers = interpret::run_selected(function, tables, selection, &mut Scalar, &at);
+        for (plane, answer) in planes.iter_mut().zip(answers) {
             plane.push(answer);
         }
     }
@@ -39,7 +45,7 @@ fn reference(function: &Verified, tables: &Tables, inputs: &[Vec<f32>]) -> Vec<V
 fn lanes(
     level: Level,
     tape: &Tape,
-    tables: &Tables,
+    rows: (&Tables, &Selection),
     inputs: &[Vec<f32>],
     outputs: usize,
     scratch: &mut Scratch,
@@ -48,16 +54,33 @@ fn lanes(
     let mut planes = vec![vec![-77.0; points]; outputs];
     let inputs: Vec<&[f32]> = inputs.iter().map(Vec::as_slice).collect();
     let mut views: Vec<&mut [f32]> = planes.iter_mut().map(Vec::as_mut_slice).collect();
-    tape.run_at(level, tables, &inputs, &mut views, scratch).expect("the planes fit");
+    tape.run_at(level, rows, &inputs, &mut views, scratch).expect("the planes fit");
     planes
 }
 
 #[track_caller]
 fn check(what: &str, function: &Verified, tables: &Tables, inputs: &[Vec<f32>], scratch: &mut Scratch) {
-    let expected = reference(function, tables, inputs);
+    let all = Selection::new(function.function(), tables);
+    check_selected(what, function, (tables, &all), inputs, scratch);
+    // Without every third row.
+    let mut masks: Vec<u8> = (0..all.len()).map(|row| u8::from(row % 3 != 1)).collect();
+    let mut some = [Selection::default()];
+    all.narrow(&mut masks, &mut some);
+    check_selected(what, function, (tables, &some[0]), inputs, scratch);
+}
+
+#[track_caller]
+fn check_selected(
+    what: &str,
+    function: &Verified,
+    rows: (&Tables, &Selection),
+    inputs: &[Vec<f32>],
+    scratch: &mut Scratch,
+) {
+    let expected = reference(function, rows, inputs);
     let tape = tape(function);
     for level in Level::available() {
-        let given = lanes(level, &tape, tables, inputs, expected.len(), scratch);
+        let given = lanes(level, &tape, rows, inputs, expected.len(), scratch);
         for (plane, (given, expected)) in given.iter().zip(&expected).enumerate() {
             for (point, (given, expected)) in given.iter().zip(expected).enumerate() {
                 assert!(
@@ -144,6 +167,7 @@ fn sum_of_squares() -> Verified {
 fn all_lengths_around_the_block() {
     let function = sum_of_squares();
     let tables = rows(&[(1, &[1.0, 100.0, 3.0, 5.0], &[0, 2, 3], &[0, 3])]);
+    let all = Selection::new(function.function(), &tables);
     let tape = tape(&function);
     let mut scratch = Scratch::new();
     let x: Vec<f32> = (0..2 * tape.block() + 1).map(|i| i as f32 / 4.0).collect();
@@ -152,7 +176,7 @@ fn all_lengths_around_the_block() {
     let expected: Vec<f32> = x.iter().map(|x| square(x - 1.0) + square(x - 3.0) + square(x - 5.0)).collect();
     for level in Level::available().into_iter().rev() {
         for length in 0..=x.len() {
-            let given = lanes(level, &tape, &tables, &[x[..length].to_vec()], 1, &mut scratch);
+            let given = lanes(level, &tape, (&tables, &all), &[x[..length].to_vec()], 1, &mut scratch);
             assert_eq!(given[0], expected[..length], "{length} points at {}", level.name());
         }
     }
@@ -186,7 +210,8 @@ fn a_sum_of_sums_carries_one_accumulator() {
     tables.check(function.function()).expect("the rows fit");
     let x = vec![vec![0.0, 1.0, -2.0, 0.5]];
     check("sum of sums", &function, &tables, &x, &mut Scratch::new());
-    assert_eq!(reference(&function, &tables, &x)[0], [0.0, 10111.0, -20222.0, 5055.5]);
+    let all = Selection::new(function.function(), &tables);
+    assert_eq!(reference(&function, (&tables, &all), &x)[0], [0.0, 10111.0, -20222.0, 5055.5]);
 }
 
 #[test]
@@ -210,7 +235,8 @@ fn columns_of_an_outer_row_are_seen_in_the_inner_body() {
         rows(&[(1, &[2.0, 3.0], &[0, 1], &[0, 2]), (1, &[1.0, 10.0, 7.0, 100.0], &[0, 1, 3], &[0, 2, 3])]);
     let x = vec![vec![1.0, 4.0]];
     check("scaled", &function, &tables, &x, &mut Scratch::new());
-    assert_eq!(reference(&function, &tables, &x)[0], [322.0, 1288.0]);
+    let all = Selection::new(function.function(), &tables);
+    assert_eq!(reference(&function, (&tables, &all), &x)[0], [322.0, 1288.0]);
 }
 
 #[test]
@@ -232,10 +258,11 @@ fn accumulators_may_swap_and_rotate() {
         check(&format!("{count} rounds"), &function, &tables, &inputs, &mut Scratch::new());
     }
     let tables = rows(&[(1, &numbers, &all[..7], &[0, 7])]);
+    let selection = Selection::new(function.function(), &tables);
     let given = lanes(
         Level::best(),
         &tape(&function),
-        &tables,
+        (&tables, &selection),
         &[vec![1.0], vec![1.0], vec![3.0]],
         8,
         &mut Scratch::new(),
@@ -247,7 +274,8 @@ fn accumulators_may_swap_and_rotate() {
 fn a_fold_without_rows_gives_its_initial_values() {
     let function = sum_of_squares();
     let tables = rows(&[(1, &[5.0], &[], &[0, 0])]);
-    let given = lanes(Level::best(), &tape(&function), &tables, &[vec![1.0; 40]], 1, &mut Scratch::new());
+    let rows = (&tables, &Selection::new(function.function(), &tables));
+    let given = lanes(Level::best(), &tape(&function), rows, &[vec![1.0; 40]], 1, &mut Scratch::new());
     assert_eq!(given, [vec![0.0; 40]]);
 }
 
@@ -271,7 +299,8 @@ fn a_function_without_inputs_fills_its_planes() {
     let product = b.mul(two, three);
     let function = finish(b, &[product]);
     let mut plane = [0.0; 5];
-    tape(&function).run(&Tables::default(), &[], &mut [&mut plane], &mut Scratch::new()).unwrap();
+    let nothing = (&Tables::default(), &Selection::default());
+    tape(&function).run(nothing, &[], &mut [&mut plane], &mut Scratch::new()).unwrap();
     assert_eq!(plane, [6.0; 5]);
 }
 
@@ -334,7 +363,8 @@ fn a_long_chain_of_folds_compiles() {
     let function = finish(b, &[sum]);
     let tape = tape(&function);
     assert_eq!(tape.registers(), 2);
-    let given = lanes(Level::best(), &tape, &tables, &[vec![2.0]], 1, &mut Scratch::new());
+    let all = Selection::new(function.function(), &tables);
+    let given = lanes(Level::best(), &tape, (&tables, &all), &[vec![2.0]], 1, &mut Scratch::new());
     assert_eq!(given[0][0], count as f32);
 }
 
@@ -356,13 +386,14 @@ fn planes_that_do_not_fit_are_refused() {
     let function = sum_of_squares();
     let tape = tape(&function);
     let tables = rows(&[(1, &[], &[], &[0, 0])]);
-    let mut scratch = Scratch::new();
+    let (all, mut scratch) = (Selection::new(function.function(), &tables), Scratch::new());
+    let tables = (&tables, &all);
     let (x, mut out, mut more) = ([0.0; 4], [0.0; 4], [0.0; 5]);
-    let none = tape.run(&tables, &[], &mut [&mut out], &mut scratch);
+    let none = tape.run(tables, &[], &mut [&mut out], &mut scratch);
     assert_eq!(none, Err(RunError::Inputs { expected: 1, given: 0 }));
-    let two = tape.run(&tables, &[&x], &mut [&mut out, &mut more], &mut scratch);
+    let two = tape.run(tables, &[&x], &mut [&mut out, &mut more], &mut scratch);
     assert_eq!(two, Err(RunError::Outputs { expected: 1, given: 2 }));
-    let longer = tape.run(&tables, &[&x], &mut [&mut more], &mut scratch);
+    let longer = tape.run(tables, &[&x], &mut [&mut more], &mut scratch);
     assert_eq!(longer, Err(RunError::Length { expected: 4, given: 5 }));
     assert_eq!(longer.unwrap_err().to_string(), "the first plane has 4 points, another one has 5");
 }
@@ -417,8 +448,8 @@ fn the_environment_of_the_caller_changes_nothing_and_is_restored() {
         let (mut scratch, mut products, mut sums) = (Scratch::new(), [0.0; 4], [0.0; 4]);
         let before = read();
         write(flush_and_round_up);
-        let ran =
-            tape.run_at(level, &Tables::default(), &[&x, &y], &mut [&mut products, &mut sums], &mut scratch);
+        let nothing = (&Tables::default(), &Selection::default());
+        let ran = tape.run_at(level, nothing, &[&x, &y], &mut [&mut products, &mut sums], &mut scratch);
         let after = read();
         write(before);
         assert_eq!(ran, Ok(()));

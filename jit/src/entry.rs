@@ -7,14 +7,16 @@
 //!   tables  one view for each table:  numbers | active | starts   (three pointers)
 //! ```
 //!
-//! The code follows every pointer and index blindly. So the tables are checked once, when a [`Kernel`] is bound to them,
-//! and the planes at each [`run`](BoundKernel::run), which costs nothing beside the run.
+//! The code follows every pointer and index blindly. So the tables are checked once, when a [`Kernel`] is bound to them;
+//! a [`Selection`] leads only to rows that exist by the way it is made, if it was made for as many; and the planes are checked at each
+//! [`run`](BoundKernel::run), which costs nothing beside the run.
 
 use std::fmt;
 use std::mem::offset_of;
 use std::sync::Arc;
 
-use jbt_ir::{Function, TableError, Tables, Verified};
+use jbt_ir::selection::Extent;
+use jbt_ir::{Function, Selection, TableError, Tables, Verified};
 
 use crate::compile::{self, CompileError, Options};
 use crate::memory::Code;
@@ -29,6 +31,9 @@ pub(crate) struct TableView {
 }
 
 impl TableView {
+    /// What is there before a view is written.
+    const NOWHERE: Self =
+        Self { numbers: std::ptr::null(), active: std::ptr::null(), starts: std::ptr::null() };
     /// The offset of the pointer to the numbers.
     pub(crate) const NUMBERS: usize = offset_of!(Self, numbers);
     /// The offset of the pointer to the active rows.
@@ -116,13 +121,8 @@ impl Kernel {
     /// When the tables do not fit the function that the kernel was compiled from.
     pub fn bind(&self, tables: Arc<Tables>) -> Result<BoundKernel, TableError> {
         tables.check(&self.shared.interface)?;
-        let view = |rows: &jbt_ir::Rows| TableView {
-            numbers: rows.numbers.as_ptr(),
-            active: rows.active.as_ptr(),
-            starts: rows.starts.as_ptr(),
-        };
-        let views = Views(tables.tables.values().map(view).collect());
-        Ok(BoundKernel { kernel: self.clone(), tables, views: Arc::new(views) })
+        let all = Arc::new(Selection::new(&self.shared.interface, &tables));
+        Ok(BoundKernel { kernel: self.clone(), tables, all })
     }
 }
 
@@ -136,15 +136,13 @@ impl fmt::Debug for Kernel {
     }
 }
 
-/// Where the rows of all tables are. Kept beside the tables that it points into, which nobody can change meanwhile.
-pub(crate) struct Views(Box<[TableView]>);
-
 /// A kernel together with rows that fit it: the thing that runs. Cloning is cheap.
 #[derive(Clone)]
 pub struct BoundKernel {
     kernel: Kernel,
     tables: Arc<Tables>,
-    views: Arc<Views>,
+    /// All rows that are active.
+    all: Arc<Selection>,
 }
 
 /// Why planes do not fit a kernel.
@@ -176,6 +174,9 @@ pub enum RunError {
         /// Length of this plane.
         given: usize,
     },
+    /// The selection was made from rows of other tables.
+    #[error("the selection was made for tables with other numbers of rows")]
+    Selection,
     /// The planes end inside a block.
     #[error("planes of {length} numbers do not fill blocks of {lanes}")]
     Partial {
@@ -186,8 +187,17 @@ pub enum RunError {
     },
 }
 
-/// Planes up to which a call needs no allocation.
+/// Planes and tables up to which a call needs no allocation.
 const SMALL: usize = 48;
+
+/// `count` places, in `small` if they fit, else in `large`.
+fn places<'a, T: Copy>(small: &'a mut [T; SMALL], large: &'a mut Vec<T>, count: usize) -> &'a mut [T] {
+    if count <= SMALL {
+        return &mut small[..count];
+    }
+    large.resize(count, small[0]);
+    large
+}
 
 impl BoundKernel {
     /// The kernel.
@@ -202,34 +212,58 @@ impl BoundKernel {
         &self.tables
     }
 
+    /// What selections are made from: those of other kernels fit if their tables have as many rows.
+    #[must_use]
+    pub fn extent(&self) -> &Arc<Extent> {
+        self.all.extent()
+    }
+
     /// Answers for all points: `inputs[plane][point]` to `outputs[plane][point]`.
     ///
-    /// Any number is fine as an input, NaN and infinities included. Allocates nothing for up to 48 planes.
+    /// Any number is fine as an input, NaN and infinities included. Allocates nothing for up to 48 planes and tables.
     ///
     /// # Errors
     /// When the planes are not as many as the function's, not of one length, or that length is not a multiple of
     /// [`Kernel::lanes`]. Nothing is written then.
     pub fn run(&self, inputs: &[&[f32]], outputs: &mut [&mut [f32]]) -> Result<(), RunError> {
+        self.run_selected(&self.all, inputs, outputs)
+    }
+
+    /// As [`run`](Self::run), with the rows of a selection.
+    ///
+    /// # Errors
+    /// As for [`run`](Self::run), and when the selection was made for other numbers of rows.
+    pub fn run_selected(
+        &self,
+        selection: &Selection,
+        inputs: &[&[f32]],
+        outputs: &mut [&mut [f32]],
+    ) -> Result<(), RunError> {
+        if !selection.fits(self.extent()) {
+            return Err(RunError::Selection);
+        }
         let length = self.check(inputs, outputs)?;
         if length == 0 {
             return Ok(());
         }
-        let count = inputs.len() + outputs.len();
-        let mut small = [std::ptr::null(); SMALL];
-        let mut large = Vec::new();
-        let planes = if count <= SMALL {
-            &mut small[..count]
-        } else {
-            large.resize(count, std::ptr::null());
-            large.as_mut_slice()
-        };
+        let (mut small, mut large) = ([std::ptr::null(); SMALL], Vec::new());
+        let planes = places(&mut small, &mut large, inputs.len() + outputs.len());
         let inputs = inputs.iter().map(|plane| plane.as_ptr());
         let outputs = outputs.iter_mut().map(|plane| plane.as_mut_ptr().cast_const());
         for (place, plane) in planes.iter_mut().zip(inputs.chain(outputs)) {
             *place = plane;
         }
+        let (mut small, mut large) = ([TableView::NOWHERE; SMALL], Vec::new());
+        let views = places(&mut small, &mut large, self.tables.tables.len());
+        for (view, (table, rows)) in views.iter_mut().zip(self.tables.tables.iter()) {
+            *view = TableView {
+                numbers: rows.numbers.as_ptr(),
+                active: selection.active(table).as_ptr(),
+                starts: selection.starts(table).as_ptr(),
+            };
+        }
         let bytes = length * size_of::<f32>();
-        self.kernel.shared.code.call(&Arguments { planes, bytes, tables: &self.views.0 });
+        self.kernel.shared.code.call(&Arguments { planes, bytes, tables: views });
         Ok(())
     }
 

@@ -91,10 +91,23 @@ enum Place<'f, const K: usize> {
 /// The current row of a table, inside its fold.
 #[derive(Clone, Copy)]
 struct Row {
-    /// Its index.
-    index: ir::Value,
+    /// Bytes from the table's first active row to it: what leads to the rows that it owns.
+    position: ir::Value,
     /// The address of its first number.
     numbers: ir::Value,
+}
+
+/// The active rows of a table that the current row of its parent owns: addresses.
+#[derive(Clone, Copy)]
+struct Active {
+    /// Of the first number of the table.
+    numbers: ir::Value,
+    /// Of the first active row of the whole table.
+    first: ir::Value,
+    /// Of the first one that is owned.
+    begin: ir::Value,
+    /// Behind the last one that is owned.
+    end: ir::Value,
 }
 
 /// The parameters of the code, and where it is in the planes.
@@ -279,7 +292,7 @@ impl<'f, const K: usize> Lowering<'f, K> {
     /// Emits the loop over the active rows that the parent's row owns, and returns the final accumulators.
     fn fold(&mut self, fold: &Fold) -> Vec<Any<Vectors<'f, K>>> {
         let initial = self.operands(&fold.initial);
-        let (numbers, begin, end) = self.active(fold.table);
+        let Active { numbers, first, begin, end } = self.active(fold.table);
         let builder = &mut self.vectors.builder;
         let [header, body, exit] = [(); 3].map(|()| builder.create_block());
         let cursor = builder.append_block_param(header, I64);
@@ -296,7 +309,7 @@ impl<'f, const K: usize> Lowering<'f, K> {
         for (&param, &accumulator) in self.function.blocks[fold.body].params.iter().zip(&accumulators) {
             self.places[param.index()] = Some(Place::Computed(accumulator));
         }
-        self.rows[fold.table.index()] = Some(self.read_row(fold.table, numbers, cursor));
+        self.rows[fold.table.index()] = Some(self.read_row(fold.table, numbers, first, cursor));
         let next = self.block(fold.body);
         self.rows[fold.table.index()] = None;
         let builder = &mut self.vectors.builder;
@@ -308,8 +321,8 @@ impl<'f, const K: usize> Lowering<'f, K> {
     }
 
     /// The address of a table's numbers, and where its active rows begin and end for the parent's current row.
-    fn active(&mut self, table: Table) -> (ir::Value, ir::Value, ir::Value) {
-        let parent = self.function.tables[table].parent.map(|parent| self.row(parent).index);
+    fn active(&mut self, table: Table) -> Active {
+        let parent = self.function.tables[table].parent.map(|parent| self.row(parent).position);
         let view = self.frame.tables;
         let builder = &mut self.vectors.builder;
         let mut field = |field| {
@@ -318,27 +331,28 @@ impl<'f, const K: usize> Lowering<'f, K> {
             builder.ins().load(I64, READ, view, at)
         };
         let numbers = field(TableView::NUMBERS);
-        let active = field(TableView::ACTIVE);
+        let first = field(TableView::ACTIVE);
         let mut starts = field(TableView::STARTS);
         if let Some(parent) = parent {
-            let skipped = builder.ins().imul_imm_s(parent, size_of::<u32>() as i64);
-            starts = builder.ins().iadd(starts, skipped);
+            // A start is as long as an active row, so the bytes are the same.
+            starts = builder.ins().iadd(starts, parent);
         }
         let [begin, end] = [0, 1].map(|which| {
             let position = builder.ins().uload32(READ, starts, offset(which, size_of::<u32>()));
             let skipped = builder.ins().imul_imm_s(position, size_of::<u32>() as i64);
-            builder.ins().iadd(active, skipped)
+            builder.ins().iadd(first, skipped)
         });
-        (numbers, begin, end)
+        Active { numbers, first, begin, end }
     }
 
     /// The row that the cursor points at.
-    fn read_row(&mut self, table: Table, numbers: ir::Value, cursor: ir::Value) -> Row {
+    fn read_row(&mut self, table: Table, numbers: ir::Value, first: ir::Value, cursor: ir::Value) -> Row {
         let row_bytes = self.function.tables[table].columns.len() * size_of::<f32>();
         let builder = &mut self.vectors.builder;
         let index = builder.ins().uload32(READ, cursor, 0);
         let skipped = builder.ins().imul_imm_s(index, row_bytes as i64);
-        Row { index, numbers: builder.ins().iadd(numbers, skipped) }
+        let numbers = builder.ins().iadd(numbers, skipped);
+        Row { position: builder.ins().isub(cursor, first), numbers }
     }
 }
 

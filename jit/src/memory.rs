@@ -17,7 +17,7 @@ use cranelift_module::{Linkage, Module, ModuleError, default_libcall_names};
 use jbt_ir::limits;
 
 use crate::compile::CompileError;
-use crate::entry::{Arguments, TableView, Views};
+use crate::entry::{Arguments, TableView};
 use crate::lower::Lowered;
 
 /// A module whose memory goes with it. The module's own drop would leak it.
@@ -50,11 +50,6 @@ unsafe impl Send for Code {}
 // SAFETY: through a shared reference one can only read the numbers and call the code, which changes no memory but what its
 // arguments name. The module, which is not `Sync`, cannot be reached.
 unsafe impl Sync for Code {}
-
-// SAFETY: these pointers are only read, by the code, while the tables that they point into are kept beside them.
-unsafe impl Send for Views {}
-// SAFETY: as above; nobody writes through them.
-unsafe impl Sync for Views {}
 
 impl Code {
     /// Compiles a function and makes it executable.
@@ -98,7 +93,7 @@ impl Code {
         // SAFETY: the contract of `Code` says that this is a function of the ABI that `enter` expects. `Arguments` come from
         // `BoundKernel::run`: there is a plane of this many bytes for each input and output, at least one block long and whole
         // blocks; outputs come from exclusive borrows, so that no other plane overlaps them; the tables have been
-        // checked against the function, are kept by the caller, and cannot change while it has them.
+        // checked against the function, the selection fits them, and both are borrowed by the caller.
         unsafe { enter(self.address, planes.as_ptr(), *bytes, tables.as_ptr()) };
     }
 }

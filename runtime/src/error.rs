@@ -41,6 +41,9 @@ pub enum EvalError {
         /// What was given.
         given: usize,
     },
+    /// The rows were selected from a model with other numbers of rows.
+    #[error("the region was made for another model")]
+    Selection,
     /// The buffer was made for another query or model.
     #[error("the samples were made for another query or model")]
     Layout,

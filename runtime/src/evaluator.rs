@@ -200,7 +200,7 @@ impl Evaluator {
     /// # Errors
     /// If there are too many or too few planes, or their lengths differ.
     pub fn eval_planes(&self, points: [&[f32]; 3], answers: &mut [&mut [f32]]) -> Result<(), EvalError> {
-        let lanes = self.bound.run(points, answers)?;
+        let lanes = self.bound.run(&self.bound.all, &points, answers)?;
         self.tally.add(points[0].len(), lanes);
         Ok(())
     }

@@ -15,7 +15,7 @@ use jbt_frontend::diagnostic::Diagnostic;
 use jbt_ir::domain::lanes::{Scratch, Tape};
 use jbt_ir::domain::scalar::Scalar;
 use jbt_ir::pass::{GRADIENT, PIPELINE, Pass, run_pipeline};
-use jbt_ir::{Function, Tables, Verified, interpret, limits, verify};
+use jbt_ir::{Function, Selection, Tables, Verified, interpret, limits, verify};
 
 use crate::error::{CompileError, EvalError};
 
@@ -143,9 +143,11 @@ impl Kernel {
                 Some(kernel.bind(Arc::clone(&tables)).expect("the tables have just been checked"))
             }
         };
+        let all = Arc::new(Selection::new(self.function.function(), &tables));
         Bound {
             kernel: Arc::clone(self),
             tables,
+            all,
             #[cfg(feature = "jit")]
             machine,
             scratch: Mutex::new(Vec::new()),
@@ -181,6 +183,8 @@ fn warn_once(reason: &str) {
 pub(crate) struct Bound {
     pub(crate) kernel: Arc<Kernel>,
     pub(crate) tables: Arc<Tables>,
+    /// All rows that are active.
+    pub(crate) all: Arc<Selection>,
     #[cfg(feature = "jit")]
     machine: Option<jbt_jit::BoundKernel>,
     /// Memory of interpreter runs, one for each thread that runs at once.
@@ -189,33 +193,49 @@ pub(crate) struct Bound {
 
 /// The most points that fill up a last block.
 #[cfg(feature = "jit")]
-const MAX_BLOCK: usize = 256;
+const MAX_BLOCK: usize = 16;
+/// The most input planes: a range along each axis.
+#[cfg(feature = "jit")]
+const MAX_INPUTS: usize = 6;
 
 impl Bound {
-    /// Runs all points; returns how many lanes were computed.
-    pub(crate) fn run(&self, inputs: [&[f32]; 3], outputs: &mut [&mut [f32]]) -> Result<usize, EvalError> {
-        let points = self.check(inputs, outputs)?;
+    /// Runs all points with the rows of a selection from these tables; returns how many lanes were computed.
+    pub(crate) fn run(
+        &self,
+        selection: &Selection,
+        inputs: &[&[f32]],
+        outputs: &mut [&mut [f32]],
+    ) -> Result<usize, EvalError> {
+        let points = self.check(selection, inputs, outputs)?;
         match &self.kernel.code {
-            Code::Scalar => self.run_scalar(inputs, outputs),
+            Code::Scalar => self.run_scalar(selection, inputs, outputs),
             Code::Lanes(tape) => {
                 let mut scratch =
                     self.scratch.lock().map(|mut pool| pool.pop()).ok().flatten().unwrap_or_default();
-                let ran = tape.run(&self.tables, &inputs, outputs, &mut scratch);
+                let ran = tape.run((&self.tables, selection), inputs, outputs, &mut scratch);
                 debug_assert_eq!(ran, Ok(()), "the planes have been checked");
                 if let Ok(mut pool) = self.scratch.lock() {
                     pool.push(scratch);
                 }
             }
             #[cfg(feature = "jit")]
-            Code::Jit(kernel) => self.run_machine(kernel.lanes(), inputs, outputs),
+            Code::Jit(kernel) => self.run_machine(kernel.lanes(), selection, inputs, outputs),
         }
         Ok(points.next_multiple_of(self.kernel.block()))
     }
 
-    fn check(&self, inputs: [&[f32]; 3], outputs: &[&mut [f32]]) -> Result<usize, EvalError> {
-        let expected = self.kernel.function.function().outputs.len();
-        if outputs.len() != expected {
-            return Err(EvalError::Planes { expected, given: outputs.len() });
+    fn check(
+        &self,
+        selection: &Selection,
+        inputs: &[&[f32]],
+        outputs: &[&mut [f32]],
+    ) -> Result<usize, EvalError> {
+        let function = self.kernel.function.function();
+        if !selection.fits(self.all.extent()) {
+            return Err(EvalError::Selection);
+        }
+        if (inputs.len(), outputs.len()) != (function.inputs.len(), function.outputs.len()) {
+            return Err(EvalError::Planes { expected: function.outputs.len(), given: outputs.len() });
         }
         let expected = inputs[0].len();
         let mut lengths = inputs.iter().map(|p| p.len()).chain(outputs.iter().map(|p| p.len()));
@@ -225,11 +245,12 @@ impl Bound {
         }
     }
 
-    fn run_scalar(&self, inputs: [&[f32]; 3], outputs: &mut [&mut [f32]]) {
+    fn run_scalar(&self, selection: &Selection, inputs: &[&[f32]], outputs: &mut [&mut [f32]]) {
         let _environment = jbt_ir::environment::Standard::enter();
         for point in 0..inputs[0].len() {
-            let at = inputs.map(|plane| plane[point]);
-            let answers = interpret::run(&self.kernel.function, &self.tables, &mut Scalar, &at);
+            let at: Vec<f32> = inputs.iter().map(|plane| plane[point]).collect();
+            let function = &self.kernel.function;
+            let answers = interpret::run_selected(function, &self.tables, selection, &mut Scalar, &at);
             for (plane, answer) in outputs.iter_mut().zip(answers) {
                 plane[point] = answer;
             }
@@ -238,28 +259,40 @@ impl Bound {
 
     /// Whole blocks straight from the caller's planes; what is left goes through a block that is filled up with its last point.
     #[cfg(feature = "jit")]
-    fn run_machine(&self, lanes: usize, inputs: [&[f32]; 3], outputs: &mut [&mut [f32]]) {
+    fn run_machine(
+        &self,
+        lanes: usize,
+        selection: &Selection,
+        inputs: &[&[f32]],
+        outputs: &mut [&mut [f32]],
+    ) {
         let machine = self.machine.as_ref().expect("machine code was bound");
         let points = inputs[0].len();
         let whole = points - points % lanes;
-        if whole > 0 {
-            let inputs = inputs.map(|plane| &plane[..whole]);
-            let mut outputs: Vec<&mut [f32]> = outputs.iter_mut().map(|plane| &mut plane[..whole]).collect();
-            machine.run(&inputs, &mut outputs).expect("the planes have been checked");
-        }
         if whole == points {
+            machine.run_selected(selection, inputs, outputs).expect("the planes have been checked");
             return;
         }
-        assert!(lanes <= MAX_BLOCK, "blocks of machine code are small");
-        let mut padded = [[0.0; MAX_BLOCK]; 3];
+        assert!(lanes <= MAX_BLOCK && inputs.len() <= MAX_INPUTS, "blocks of machine code are small");
+        if whole > 0 {
+            let mut starts: [&[f32]; MAX_INPUTS] = [&[]; MAX_INPUTS];
+            for (start, plane) in starts.iter_mut().zip(inputs) {
+                *start = &plane[..whole];
+            }
+            let mut outputs: Vec<&mut [f32]> = outputs.iter_mut().map(|plane| &mut plane[..whole]).collect();
+            let ran = machine.run_selected(selection, &starts[..inputs.len()], &mut outputs);
+            ran.expect("the planes have been checked");
+        }
+        let mut padded = [[0.0; MAX_BLOCK]; MAX_INPUTS];
         for (block, plane) in padded.iter_mut().zip(inputs) {
             block[..points - whole].copy_from_slice(&plane[whole..]);
             block[points - whole..].fill(plane[points - 1]);
         }
-        let padded: [&[f32]; 3] = [&padded[0][..lanes], &padded[1][..lanes], &padded[2][..lanes]];
+        let padded = padded.each_ref().map(|block| &block[..lanes]);
         let mut answers = vec![0.0; lanes * outputs.len()];
         let mut blocks: Vec<&mut [f32]> = answers.chunks_mut(lanes).collect();
-        machine.run(&padded, &mut blocks).expect("the blocks are whole");
+        let ran = machine.run_selected(selection, &padded[..inputs.len()], &mut blocks);
+        ran.expect("the blocks are whole");
         for (plane, block) in outputs.iter_mut().zip(blocks) {
             plane[whole..].copy_from_slice(&block[..points - whole]);
         }

@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use jbt_ir::domain::scalar::Scalar;
 use jbt_ir::{
-    Function, FunctionBuilder, Rows, Schema, Store, Table, Tables, Value, Verified, interpret, verify,
+    Function, FunctionBuilder, Rows, Schema, Selection, Store, Table, Tables, Value, Verified, interpret,
+    verify,
 };
 use jbt_jit::{Allocator, Kernel, OptLevel, Options, VectorCount};
 
@@ -97,12 +98,31 @@ pub fn verified(function: Function) -> Verified {
     verify(function).expect("the test's function obeys the rules")
 }
 
+/// A selection without every third row.
+pub fn thinned(function: &Verified, tables: &Tables) -> Selection {
+    let all = Selection::new(function.function(), tables);
+    let mut masks: Vec<u8> = (0..all.len()).map(|row| u8::from(row % 3 != 1)).collect();
+    let mut parts = [Selection::default()];
+    all.narrow(&mut masks, &mut parts);
+    let [part] = parts;
+    part
+}
+
 /// What the scalar reference gives, by output plane.
 pub fn reference(function: &Verified, tables: &Tables, inputs: &[Vec<f32>]) -> Vec<Vec<f32>> {
+    reference_selected(function, (tables, &Selection::new(function.function(), tables)), inputs)
+}
+
+/// What the scalar reference gives with the rows of a selection, by output plane.
+pub fn reference_selected(
+    function: &Verified,
+    (tables, selection): (&Tables, &Selection),
+    inputs: &[Vec<f32>],
+) -> Vec<Vec<f32>> {
     let mut outputs = vec![Vec::new(); function.function().outputs.len()];
     for point in 0..inputs[0].len() {
         let inputs: Vec<f32> = inputs.iter().map(|plane| plane[point]).collect();
-        let answers = interpret::run(function, tables, &mut Scalar, &inputs);
+        let answers = interpret::run_selected(function, tables, selection, &mut Scalar, &inputs);
         for (plane, answer) in outputs.iter_mut().zip(answers) {
             plane.push(answer);
         }
@@ -112,12 +132,27 @@ pub fn reference(function: &Verified, tables: &Tables, inputs: &[Vec<f32>]) -> V
 
 /// What a kernel gives, by output plane.
 pub fn run(kernel: &Kernel, tables: &Arc<Tables>, inputs: &[Vec<f32>], outputs: usize) -> Vec<Vec<f32>> {
+    let mut planes = vec![vec![-7.0_f32; inputs[0].len()]; outputs];
+    let inputs: Vec<&[f32]> = inputs.iter().map(Vec::as_slice).collect();
+    let mut views: Vec<&mut [f32]> = planes.iter_mut().map(Vec::as_mut_slice).collect();
+    let bound = kernel.bind(Arc::clone(tables)).expect("the test's tables fit");
+    bound.run(&inputs, &mut views).expect("the test's planes fit");
+    planes
+}
+
+/// What a kernel gives with the rows of a selection, by output plane.
+pub fn run_selected(
+    kernel: &Kernel,
+    (tables, selection): (&Arc<Tables>, &Selection),
+    inputs: &[Vec<f32>],
+    outputs: usize,
+) -> Vec<Vec<f32>> {
     let length = inputs[0].len();
     let mut planes = vec![vec![-7.0_f32; length]; outputs];
     let inputs: Vec<&[f32]> = inputs.iter().map(Vec::as_slice).collect();
     let mut views: Vec<&mut [f32]> = planes.iter_mut().map(Vec::as_mut_slice).collect();
     let bound = kernel.bind(Arc::clone(tables)).expect("the test's tables fit");
-    bound.run(&inputs, &mut views).expect("the test's planes fit");
+    bound.run_selected(selection, &inputs, &mut views).expect("the test's planes fit");
     planes
 }
 
@@ -155,10 +190,15 @@ pub fn check(function: &Verified, tables: &Tables, mut inputs: Vec<Vec<f32>>) {
         plane.truncate(plane.len() / Kernel::MAX_LANES * Kernel::MAX_LANES);
         assert!(!plane.is_empty(), "a test without points tests nothing");
     }
-    let expected = reference(function, tables, &inputs);
+    let selections = [Selection::new(function.function(), tables), thinned(function, tables)];
+    let expected =
+        selections.each_ref().map(|selection| reference_selected(function, (tables, selection), &inputs));
     let tables = Arc::new(tables.clone());
     for options in all_options() {
         let kernel = Kernel::compile_with(function, &options).expect("the test's function compiles");
-        assert_same_bits(&expected, &run(&kernel, &tables, &inputs, expected.len()), &format!("{options:?}"));
+        for (selection, expected) in selections.iter().zip(&expected) {
+            let given = run_selected(&kernel, (&tables, selection), &inputs, expected.len());
+            assert_same_bits(expected, &given, &format!("{options:?}, {} rows", selection.len()));
+        }
     }
 }

@@ -4,6 +4,7 @@
 
 use crate::entity::Entity;
 use crate::op::{Domain, Op};
+use crate::selection::Selection;
 use crate::table::Tables;
 
 use super::assign::Place;
@@ -14,6 +15,7 @@ use super::tape::{FoldStep, OpStep, OpenFold, Scratch, Step, Tape};
 pub(super) struct Job<'a, 'o> {
     pub tape: &'a Tape,
     pub tables: &'a Tables,
+    pub selection: &'a Selection,
     pub inputs: &'a [&'a [f32]],
     pub outputs: &'a mut [&'o mut [f32]],
     pub scratch: &'a mut Scratch,
@@ -24,8 +26,8 @@ pub(super) struct Job<'a, 'o> {
 /// Runs all blocks.
 #[inline(always)]
 pub(super) fn execute(job: Job<'_, '_>) {
-    let Job { tape, tables, inputs, outputs, scratch, points } = job;
-    let Scratch { file, splats, rows, open } = scratch;
+    let Job { tape, tables, selection, inputs, outputs, scratch, points } = job;
+    let Scratch { file, splats, positions, open } = scratch;
     let mut start = 0;
     while start < points {
         let count = (points - start).min(tape.block());
@@ -34,9 +36,10 @@ pub(super) fn execute(job: Job<'_, '_>) {
         let mut block = Block {
             tape,
             tables,
+            selection,
             lanes: Lanes { file: &mut file[..chunks * tape.stride()], stride: tape.stride(), result: 0 },
             splats,
-            rows,
+            positions,
             open,
         };
         block.run(inputs, start, count);
@@ -51,9 +54,10 @@ pub(super) fn execute(job: Job<'_, '_>) {
 struct Block<'a> {
     tape: &'a Tape,
     tables: &'a Tables,
+    selection: &'a Selection,
     lanes: Lanes<'a>,
     splats: &'a mut [u32],
-    rows: &'a mut [u32],
+    positions: &'a mut [u32],
     open: &'a mut Vec<OpenFold>,
 }
 
@@ -75,9 +79,9 @@ impl Block<'_> {
                 }
                 Step::Begin { fold } => {
                     let fold = &self.tape.folds[fold as usize];
-                    let rows = &self.tables.tables[fold.table];
-                    let parent = fold.parent.map_or(0, |parent| self.rows[parent.index()] as usize);
-                    self.open.push(OpenFold { next: rows.starts[parent], end: rows.starts[parent + 1] });
+                    let starts = self.selection.starts(fold.table);
+                    let parent = fold.parent.map_or(0, |parent| self.positions[parent.index()] as usize);
+                    self.open.push(OpenFold { next: starts[parent], end: starts[parent + 1] });
                     at = self.next_row(fold);
                 }
                 Step::End { fold } => at = self.next_row(&self.tape.folds[fold as usize]),
@@ -93,11 +97,10 @@ impl Block<'_> {
             self.open.pop();
             return fold.after;
         }
-        let rows = &self.tables.tables[fold.table];
-        let row = rows.active[open.next as usize];
+        let row = self.selection.active(fold.table)[open.next as usize];
+        self.positions[fold.table.index()] = open.next;
         open.next += 1;
-        self.rows[fold.table.index()] = row;
-        let numbers = rows.row(row as usize);
+        let numbers = self.tables.tables[fold.table].row(row as usize);
         for &(column, splat) in &fold.columns {
             self.splats[splat as usize] = numbers[column as usize].to_bits();
         }

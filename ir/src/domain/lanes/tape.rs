@@ -3,6 +3,7 @@
 use crate::entity::{Inst, Table};
 use crate::function::InstKind;
 use crate::op::Op;
+use crate::selection::Selection;
 use crate::table::Tables;
 use crate::verify::Verified;
 
@@ -17,7 +18,7 @@ use super::ops::{Chunk, WIDTH};
 ///
 /// ```
 /// use jbt_ir::domain::lanes::{Scratch, Tape};
-/// use jbt_ir::{Domain, FunctionBuilder, Tables, verify};
+/// use jbt_ir::{Domain, FunctionBuilder, Selection, Tables, verify};
 ///
 /// let mut b = FunctionBuilder::new("square", &["x"]);
 /// let x = b.input(0);
@@ -27,7 +28,7 @@ use super::ops::{Chunk, WIDTH};
 ///
 /// let mut field = [0.0; 3];
 /// let (x, mut scratch) = ([1.0, 2.0, 3.0], Scratch::new());
-/// tape.run(&Tables::default(), &[&x], &mut [&mut field], &mut scratch).unwrap();
+/// tape.run((&Tables::default(), &Selection::default()), &[&x], &mut [&mut field], &mut scratch).unwrap();
 /// assert_eq!(field, [1.0, 4.0, 9.0]);
 /// ```
 #[derive(Clone, Debug)]
@@ -134,8 +135,8 @@ pub enum RunError {
 pub struct Scratch {
     pub(super) file: Vec<Chunk>,
     pub(super) splats: Vec<u32>,
-    /// The current row of each table.
-    pub(super) rows: Vec<u32>,
+    /// The position of the current row of each table among its active rows.
+    pub(super) positions: Vec<u32>,
     pub(super) open: Vec<OpenFold>,
 }
 
@@ -199,20 +200,20 @@ impl Tape {
 
     /// Runs the function: output planes from input planes, point by point the same bits as the scalar domain.
     ///
-    /// All planes have one length, any length. `tables` fit the function: call [`Tables::check`] when they change. (Tables that do not
-    /// fit give wrong numbers or a panic, nothing worse.) The floating-point environment of the caller does not matter: the
+    /// All planes have one length, any length. `tables` fit the function: call [`Tables::check`] when they change; `selection` says which of their
+    /// rows run. (What does not fit gives wrong numbers or a panic, nothing worse.) The floating-point environment of the caller does not matter: the
     /// run has its own, with subnormals and round to nearest, and restores the caller's.
     ///
     /// # Errors
     /// When the planes are not as many as the function's, or differ in length.
     pub fn run(
         &self,
-        tables: &Tables,
+        (tables, selection): (&Tables, &Selection),
         inputs: &[&[f32]],
         outputs: &mut [&mut [f32]],
         scratch: &mut Scratch,
     ) -> Result<(), RunError> {
-        self.run_at(Level::best(), tables, inputs, outputs, scratch)
+        self.run_at(Level::best(), (tables, selection), inputs, outputs, scratch)
     }
 
     /// Like [`run`](Self::run), at a chosen level of the instruction set. The bits are the same at every level.
@@ -222,14 +223,14 @@ impl Tape {
     pub fn run_at(
         &self,
         level: Level,
-        tables: &Tables,
+        (tables, selection): (&Tables, &Selection),
         inputs: &[&[f32]],
         outputs: &mut [&mut [f32]],
         scratch: &mut Scratch,
     ) -> Result<(), RunError> {
         let points = self.check_planes(inputs, outputs)?;
         scratch.reserve(self);
-        level::run(level, Job { tape: self, tables, inputs, outputs, scratch, points });
+        level::run(level, Job { tape: self, tables, selection, inputs, outputs, scratch, points });
         Ok(())
     }
 
@@ -261,8 +262,8 @@ impl Scratch {
         if self.splats.len() < tape.splats {
             self.splats.resize(tape.splats, 0);
         }
-        if self.rows.len() < tape.tables {
-            self.rows.resize(tape.tables, 0);
+        if self.positions.len() < tape.tables {
+            self.positions.resize(tape.tables, 0);
         }
         self.splats[..tape.constants.len()].copy_from_slice(&tape.constants);
         self.open.clear();

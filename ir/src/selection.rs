@@ -1,0 +1,285 @@
+//! Which rows run: for each table a list of active rows, as engines read it.
+//!
+//! [`Tables`] say which rows a model has; a selection says which of them are run this time. In a part of space most rows add
+//! exactly nothing, so a selection for that part leaves them out, and the answers keep their bits.
+//!
+//! ```text
+//!    starts of t1, by the position of its parent's row in the parent's list      active rows of t1
+//!    [0, 2, 4]                                                                   [0, 3, 7, 8]
+//!     first active row of the parent runs active[0..2]: rows 0 and 3; the second one runs rows 7 and 8
+//! ```
+//!
+//! Starts are kept by *position* and not by row, so that a selection is as long as what it selects, however many rows there are.
+//!
+//! Engines follow these lists blindly. So a selection is made in two ways only: from tables ([`Selection::new`]), and from
+//! another selection by leaving rows out ([`Selection::narrow`]). Both keep this:
+//!
+//! * active rows exist in their table, and ascend in the range of one row of the parent;
+//! * a table has one start for each active row of its parent (for the one imaginary row, if it has no parent), from 0, and the end.
+
+use std::sync::Arc;
+
+use crate::entity::{Entity, Table};
+use crate::function::Function;
+use crate::table::Tables;
+
+/// What a selection selects from: the number of rows of each table, and its parent.
+#[derive(Clone, PartialEq, Eq, Debug, Default)]
+pub struct Extent {
+    counts: Vec<u32>,
+    parents: Vec<Option<Table>>,
+}
+
+impl Extent {
+    /// The extent of tables that fit a function.
+    #[must_use]
+    pub fn new(function: &Function, tables: &Tables) -> Self {
+        let count = |rows: &crate::table::Rows| u32::try_from(rows.len()).expect("rows are named by 32 bits");
+        Self {
+            counts: tables.tables.values().map(count).collect(),
+            parents: function.tables.values().map(|schema| schema.parent).collect(),
+        }
+    }
+}
+
+/// Where the lists of a table are among the words.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+struct Span {
+    /// The first start.
+    starts: u32,
+    /// The first active row; the starts end here.
+    active: u32,
+    /// Behind the last active row.
+    end: u32,
+}
+
+/// The active rows of every table. See the module.
+#[derive(Clone, PartialEq, Eq, Debug, Default)]
+pub struct Selection {
+    extent: Arc<Extent>,
+    /// For each table its starts, then its active rows.
+    words: Vec<u32>,
+    spans: Vec<Span>,
+}
+
+/// Selections that [`Selection::narrow`] makes at once: a bit each.
+pub const MAX_PARTS: usize = 8;
+
+impl Selection {
+    /// All rows that are active in the tables, which fit the function ([`Tables::check`]).
+    #[must_use]
+    pub fn new(function: &Function, tables: &Tables) -> Self {
+        let mut result = Self { extent: Arc::new(Extent::new(function, tables)), ..Self::default() };
+        for (table, rows) in tables.tables.iter() {
+            let starts = result.words.len();
+            let parents = match function.tables[table].parent {
+                None => vec![0],
+                Some(parent) => result.active(parent).to_vec(),
+            };
+            result.words.resize(starts + parents.len() + 1, 0);
+            let active = result.words.len();
+            for (position, &parent) in parents.iter().enumerate() {
+                result.words.extend_from_slice(rows.range(parent as usize));
+                result.words[starts + position + 1] = word(result.words.len() - active);
+            }
+            result.spans.push(Span {
+                starts: word(starts),
+                active: word(active),
+                end: word(result.words.len()),
+            });
+        }
+        result
+    }
+
+    /// What it selects from.
+    #[must_use]
+    pub fn extent(&self) -> &Arc<Extent> {
+        &self.extent
+    }
+
+    /// Whether it selects from rows of this extent.
+    #[inline]
+    #[must_use]
+    pub fn fits(&self, extent: &Arc<Extent>) -> bool {
+        Arc::ptr_eq(&self.extent, extent) || self.extent == *extent
+    }
+
+    /// Number of tables.
+    #[must_use]
+    pub fn tables(&self) -> usize {
+        self.spans.len()
+    }
+
+    /// The active rows of a table, those of all rows of its parent one after the other.
+    #[inline]
+    #[must_use]
+    pub fn active(&self, table: Table) -> &[u32] {
+        let span = self.spans[table.index()];
+        &self.words[span.active as usize..span.end as usize]
+    }
+
+    /// Where the rows of each active row of the parent begin among [`active`](Self::active), and the end.
+    #[inline]
+    #[must_use]
+    pub fn starts(&self, table: Table) -> &[u32] {
+        let span = self.spans[table.index()];
+        &self.words[span.starts as usize..span.active as usize]
+    }
+
+    /// Active rows of all tables.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.spans.iter().map(|span| (span.end - span.active) as usize).sum()
+    }
+
+    /// Whether no table has an active row.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Makes shorter selections, at most [`MAX_PARTS`] at once: `masks` has a byte for each active row, in the order of the tables and of
+    /// [`active`](Self::active), whose bit `i` keeps the row in `parts[i]`. A row that hangs under one that is left out goes with it:
+    /// its bit is cleared.
+    ///
+    /// What is in `parts` before is forgotten, its memory used again. Panics if there are too many parts or too few masks.
+    pub fn narrow(&self, masks: &mut [u8], parts: &mut [Self]) {
+        assert!(parts.len() <= MAX_PARTS, "a bit for each part");
+        for part in parts.iter_mut() {
+            part.extent.clone_from(&self.extent);
+            part.words.clear();
+            part.spans.clear();
+        }
+        // Where the masks of each table begin.
+        let mut firsts = Vec::with_capacity(self.spans.len());
+        let mut first = 0;
+        for index in 0..self.spans.len() {
+            let table = Table::new(index);
+            let (before, rest) = masks.split_at_mut(first);
+            let mine = &mut rest[..self.active(table).len()];
+            let all = [u8::MAX >> (MAX_PARTS - parts.len())];
+            let above = match self.extent.parents[index] {
+                None => &all[..],
+                Some(parent) => &before[firsts[parent.index()]..][..self.active(parent).len()],
+            };
+            self.narrow_table(table, above, mine, parts);
+            firsts.push(first);
+            first += mine.len();
+        }
+    }
+
+    /// The lists of one table. `above` are the masks of the active rows of its parent.
+    fn narrow_table(&self, table: Table, above: &[u8], masks: &mut [u8], parts: &mut [Self]) {
+        let (starts, active) = (self.starts(table), self.active(table));
+        // For each part, where its next start goes, and where its active rows begin.
+        let mut places = [(0, 0); MAX_PARTS];
+        for (bit, part) in parts.iter_mut().enumerate() {
+            let parents = above.iter().filter(|&&mask| mask >> bit & 1 == 1).count();
+            let at = part.words.len();
+            part.words.resize(at + parents + 1, 0);
+            places[bit] = (at + 1, part.words.len());
+            part.spans.push(Span { starts: word(at), active: word(part.words.len()), end: 0 });
+        }
+        for (&above, range) in above.iter().zip(starts.windows(2)) {
+            let range = range[0] as usize..range[1] as usize;
+            for (&row, mask) in active[range.clone()].iter().zip(&mut masks[range]) {
+                *mask &= above;
+                for bit in bits(*mask) {
+                    parts[bit].words.push(row);
+                }
+            }
+            for bit in bits(above) {
+                let (next, first) = &mut places[bit];
+                let words = &mut parts[bit].words;
+                words[*next] = word(words.len() - *first);
+                *next += 1;
+            }
+        }
+        for part in parts.iter_mut() {
+            let end = word(part.words.len());
+            part.spans.last_mut().expect("it was pushed above").end = end;
+        }
+    }
+}
+
+/// The places of the ones in a mask, ascending.
+#[inline]
+fn bits(mut mask: u8) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let bit = mask.trailing_zeros() as usize;
+        mask &= mask.wrapping_sub(1);
+        (bit < MAX_PARTS).then_some(bit)
+    })
+}
+
+/// A length as engines read it.
+fn word(length: usize) -> u32 {
+    u32::try_from(length)
+        .expect("a selection has fewer than 2^32 words: limits::MAX_OCCURRENCES bounds its rows")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::entity::Store;
+    use crate::function::Schema;
+    use crate::table::Rows;
+
+    /// A table of three rows, and one under it: rows 0 and 1, none, rows 2, 3 and 4. Row 3 is not active.
+    fn family() -> (Function, Tables) {
+        let mut function = Function::new("family", &[]);
+        let schema = |parent| Schema { name: "rows".into(), columns: vec![], parent, slots: vec![] };
+        let parent = function.tables.push(schema(None));
+        function.tables.push(schema(Some(parent)));
+        let mut tables = Store::new();
+        tables.push(Rows { count: 3, active: vec![0, 1, 2], starts: vec![0, 3], ..Rows::default() });
+        tables.push(Rows { count: 5, active: vec![0, 1, 2, 4], starts: vec![0, 2, 2, 4], ..Rows::default() });
+        let tables = Tables { tables };
+        tables.check(&function).expect("they fit");
+        (function, tables)
+    }
+
+    #[test]
+    fn all_rows_that_are_active() {
+        let (function, mut tables) = family();
+        let [parent, child] = [0, 1].map(Table::new);
+        let all = Selection::new(&function, &tables);
+        assert_eq!((all.active(parent), all.starts(parent)), (&[0, 1, 2][..], &[0, 3][..]));
+        assert_eq!((all.active(child), all.starts(child)), (&[0, 1, 2, 4][..], &[0, 2, 2, 4][..]));
+        assert_eq!(all.len(), 7);
+        // The rows under a row that is not active are not there.
+        tables.tables[parent].active = vec![1, 2];
+        tables.tables[parent].starts = vec![0, 2];
+        let some = Selection::new(&function, &tables);
+        assert_eq!((some.active(child), some.starts(child)), (&[2, 4][..], &[0, 0, 2][..]));
+        assert!(some.fits(all.extent()), "the rows are the same, whichever run");
+    }
+
+    #[test]
+    fn rows_go_with_the_row_above() {
+        let (function, tables) = family();
+        let all = Selection::new(&function, &tables);
+        let mut parts = vec![Selection::default(), all.clone()];
+        // Part 0 keeps the rows 0 and 2 of the parent, part 1 row 1; both would keep all rows below but 4.
+        let mut masks = [1, 2, 1, 3, 3, 3, 0];
+        all.narrow(&mut masks, &mut parts);
+        let [parent, child] = [0, 1].map(Table::new);
+        assert_eq!((parts[0].active(parent), parts[0].starts(parent)), (&[0, 2][..], &[0, 2][..]));
+        assert_eq!((parts[0].active(child), parts[0].starts(child)), (&[0, 1, 2][..], &[0, 2, 3][..]));
+        assert_eq!((parts[1].active(parent), parts[1].starts(parent)), (&[1][..], &[0, 1][..]));
+        assert_eq!((parts[1].active(child), parts[1].starts(child)), (&[][..], &[0, 0][..]));
+        assert_eq!(masks, [1, 2, 1, 1, 1, 1, 0]);
+        // And again from the shorter one.
+        let mut again = vec![Selection::default()];
+        parts[0].narrow(&mut [0, 1, 1, 1, 1], &mut again);
+        assert_eq!((again[0].active(child), again[0].starts(child)), (&[2][..], &[0, 1][..]));
+    }
+
+    #[test]
+    fn other_rows_do_not_fit() {
+        let (function, mut tables) = family();
+        let all = Selection::new(&function, &tables);
+        tables.tables[Table::new(1)].count = 6;
+        assert!(!all.fits(&Arc::new(Extent::new(&function, &tables))));
+    }
+}
