@@ -40,3 +40,7 @@ pub const MAX_JIT_FRAME_BYTES: usize = 512 << 10;
 pub const MAX_LATTICE_POINTS: usize = 1 << 30;
 /// Cells along one axis of a lattice.
 pub const MAX_RESOLUTION: usize = 1 << 20;
+/// How often a box may be split on the way to a part of it. Halving f32 coordinates along three axes ends before.
+pub const MAX_DIVISION_DEPTH: usize = 96;
+/// Boxes of one division: each keeps about 64 bytes.
+pub const MAX_DIVISION_BOXES: u64 = 1 << 24;

@@ -12,7 +12,7 @@
 //! Starts are kept by *position* and not by row, so that a selection is as long as what it selects, however many rows there are.
 //!
 //! Engines follow these lists blindly. So a selection is made in two ways only: from tables ([`Selection::new`]), and from
-//! another selection by leaving rows out ([`Selection::narrow`]). Both keep this:
+//! another selection by leaving rows out ([`Selection::narrow`]) or by giving them other numbers ([`Selection::shifted`]). All keep this:
 //!
 //! * active rows exist in their table, and ascend in the range of one row of the parent;
 //! * a table has one start for each active row of its parent (for the one imaginary row, if it has no parent), from 0, and the end.
@@ -60,6 +60,15 @@ pub struct Selection {
     /// For each table its starts, then its active rows.
     words: Vec<u32>,
     spans: Vec<Span>,
+}
+
+/// Which rows of a table have other numbers now.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub struct Shift {
+    /// The first one.
+    pub from: u32,
+    /// How far each went. Rows keep their order.
+    pub by: i32,
 }
 
 /// Selections that [`Selection::narrow`] makes at once: a bit each.
@@ -168,6 +177,24 @@ impl Selection {
         }
     }
 
+    /// The same rows in other tables of the same family, where some rows have other numbers: for each table, where they begin to, and
+    /// by how much. Panics if a row is not there.
+    #[must_use]
+    pub fn shifted(&self, extent: &Arc<Extent>, shifts: &[Shift]) -> Self {
+        assert_eq!(extent.parents, self.extent.parents, "rows stay under their rows");
+        let mut result =
+            Self { extent: Arc::clone(extent), words: self.words.clone(), spans: self.spans.clone() };
+        for ((span, shift), &count) in self.spans.iter().zip(shifts).zip(&extent.counts) {
+            for row in &mut result.words[span.active as usize..span.end as usize] {
+                if *row >= shift.from {
+                    *row = row.wrapping_add_signed(shift.by);
+                }
+                assert!(*row < count, "the row is in the table");
+            }
+        }
+        result
+    }
+
     /// The lists of one table. `above` are the masks of the active rows of its parent.
     fn narrow_table(&self, table: Table, above: &[u8], masks: &mut [u8], parts: &mut [Self]) {
         let (starts, active) = (self.starts(table), self.active(table));
@@ -273,6 +300,20 @@ mod tests {
         let mut again = vec![Selection::default()];
         parts[0].narrow(&mut [0, 1, 1, 1, 1], &mut again);
         assert_eq!((again[0].active(child), again[0].starts(child)), (&[2][..], &[0, 1][..]));
+    }
+
+    #[test]
+    fn rows_may_have_other_numbers_later() {
+        let (function, mut tables) = family();
+        let some = Selection::new(&function, &tables);
+        let [parent, child] = [0, 1].map(Table::new);
+        tables.tables[child].count = 6;
+        let extent = Arc::new(Extent::new(&function, &tables));
+        let shifts = [Shift::default(), Shift { from: 2, by: 1 }];
+        let later = some.shifted(&extent, &shifts);
+        assert_eq!((later.active(parent), later.active(child)), (&[0, 1, 2][..], &[0, 1, 3, 5][..]));
+        assert_eq!(later.starts(child), some.starts(child));
+        assert!(later.fits(&extent) && !some.fits(&extent));
     }
 
     #[test]

@@ -40,6 +40,7 @@
 
 mod buffer;
 mod counter;
+pub mod divide;
 mod error;
 mod evaluator;
 pub mod export;
@@ -47,6 +48,7 @@ pub mod kernel;
 pub mod mesh;
 mod polygonize;
 mod probe;
+pub mod region;
 pub mod statistics;
 
 pub use jbt_ir as ir;
@@ -75,3 +77,4 @@ pub use evaluator::{Compiler, Evaluator, Update};
 pub use kernel::Engine;
 pub use polygonize::{Fineness, Polygonize, PolygonizeError, Polygonized};
 pub use probe::Probe;
+pub use region::{Box3, Range};

@@ -6,10 +6,11 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use crate::entity::{Block, Table};
+use crate::entity::{Block, Entity, Table};
 use crate::function::{Function, InstKind};
 use crate::op::{Domain, Op};
 use crate::origin::Part;
+use crate::selection::Selection;
 use crate::table::Tables;
 use crate::verify::Verified;
 
@@ -106,6 +107,29 @@ pub fn evaluations(function: &Verified, tables: &Tables) -> Evaluations {
         }
     }
     result
+}
+
+/// For each table, the distances that one run of the body of its fold computes, without those of folds inside. Times the active rows of a
+/// [`Selection`], and added up, these are the evaluations that a point takes, if each active row runs once: as in lowered
+/// functions, where the fold over a table stands in the body of the fold over its parent.
+#[must_use]
+pub fn evaluations_per_row(function: &Function) -> Vec<u64> {
+    let mut rows = vec![0; function.tables.len()];
+    for (chain, slots) in distances(function) {
+        if let Some(table) = chain.last() {
+            rows[table.index()] += slots.values().sum::<u64>();
+        }
+    }
+    rows
+}
+
+/// The evaluations that a point takes with the rows of a selection; `per_row` is what [`evaluations_per_row`] gives.
+#[must_use]
+pub fn selected_evaluations(per_row: &[u64], selection: &Selection) -> u64 {
+    let of = |(table, &each): (usize, &u64)| {
+        if each == 0 { 0 } else { each.saturating_mul(selection.active(Table::new(table)).len() as u64) }
+    };
+    per_row.iter().enumerate().map(of).fold(0, u64::saturating_add)
 }
 
 /// The table of each leaf slot, and the slot's position in a row.

@@ -1,0 +1,107 @@
+//! Recursive division of a box: what is asked where, is decided where it is asked.
+//!
+//! ```text
+//! divide(box, decide):    decide(box) = split   divide the parts, each with the rows that reach it
+//!                                       leaf    somebody wants to look at this box: its region is kept
+//!                                       stop    nobody does
+//! +-------------+------+--+--+
+//! |             |      |  |  |
+//! |    stop     | stop +--+--+        sampling, meshing, measuring, tracing are deciders;
+//! |             |      |  |//|        users write theirs
+//! |             +------+--+--+
+//! |             |      |//|//|
+//! +-------------+------+--+--+
+//! ```
+//!
+//! After Bowyer's svLis (1999), where a decision procedure divides a set-theoretic model. A decision sees the box, a range of the field, and how
+//! much of the model is left there; both are found when they are asked for, and not before. Parts are in a fixed order (x fastest, then y, then z), so a division is the same
+//! for every number of threads, and its leaves are in the order of a walk down the tree.
+//!
+//! After an edit, [`Division::redivide`] asks again only where rows or numbers have changed.
+
+mod cell;
+mod edit;
+mod node;
+mod run;
+
+pub use cell::Cell;
+pub use edit::Edit;
+pub use node::{Division, Node, Outcome, Tally};
+pub use run::{DivideError, Limits};
+
+use std::sync::atomic::AtomicU64;
+
+use run::Run;
+
+use crate::region::{Box3, Divisible};
+
+/// What to do with a box. `D` is what the decider gives each box on its way down.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum Decision<D> {
+    /// Two parts, below and above a place strictly inside the box.
+    Split {
+        /// 0, 1 or 2.
+        axis: usize,
+        /// The coordinate that both parts have.
+        at: f32,
+        /// What the parts carry: below, above.
+        data: [D; 2],
+    },
+    /// Eight parts around a point strictly inside the box.
+    Octants {
+        /// The corner that all parts have.
+        at: [f32; 3],
+        /// What the parts carry: x fastest, then y, then z.
+        data: [D; 8],
+    },
+    /// The box is kept, with its region.
+    Leaf,
+    /// The box is done with.
+    Stop,
+}
+
+/// What decides about each box, from the box and what it carries.
+pub type Decide<'a, F, D> =
+    dyn Fn(&Cell<'_, F>, &D) -> Result<Decision<D>, <F as Divisible>::Error> + Sync + 'a;
+
+/// Divides a box.
+///
+/// `decide` is asked once for each box, on the threads of the rayon pool in which this is called. If it depends on the cell and the data
+/// alone, so does the division.
+///
+/// ```
+/// use jbt::divide::{Decision, Limits, divide};
+/// use jbt::{Box3, Pruner};
+/// # let tree = jbt::text::parse(b"jbt 1 point { radius 2 }", &Default::default()).unwrap().check().unwrap();
+/// let pruner = Pruner::new(&jbt::Compiler::new(), &tree).unwrap();
+/// // Halve along the longest side, down to a quarter, where the surface may be.
+/// let halves = divide(&pruner, Box3::new([-2.0; 3], [2.0; 3]), (), &Limits::default(), &|cell, ()| {
+///     let bounds = cell.bounds();
+///     let [low, high] = cell.range()?;
+///     if high < 0.5 || low >= 0.5 {
+///         return Ok(Decision::Stop);
+///     }
+///     if bounds.longest_side() <= 0.25 {
+///         return Ok(Decision::Leaf);
+///     }
+///     let side = |axis: &usize| bounds.high[*axis] - bounds.low[*axis];
+///     let axis = (0..3).max_by(|a, b| side(a).total_cmp(&side(b))).unwrap();
+///     Ok(Decision::Split { axis, at: bounds.middle(axis), data: [(), ()] })
+/// })
+/// .unwrap();
+/// assert!(halves.leaves().all(|(node, _)| node.range.unwrap()[0] < 0.5));
+/// ```
+///
+/// # Errors
+/// A box that is not finite or not in order; a place that is not strictly inside its box; more boxes or depth than the limits allow, which
+/// is what becomes of a decider that never stops; and whatever the field or the decider report.
+pub fn divide<F: Divisible, D: Send + Sync>(
+    field: &F,
+    bounds: Box3,
+    data: D,
+    limits: &Limits,
+    decide: &Decide<'_, F, D>,
+) -> Result<Division<F::Region, D>, DivideError<F::Error>> {
+    let run = Run { field, limits: limits.capped(), decide, boxes: AtomicU64::new(0), previous: None };
+    run.start(bounds, data)
+}

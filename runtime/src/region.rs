@@ -1,0 +1,97 @@
+//! Boxes of space, and what a field knows about them: what division, meshing and sampling rest on.
+
+use std::error::Error;
+
+/// A closed axis-aligned box: its sides belong to it. Corners are finite and in order where a function says so.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub struct Box3 {
+    /// The smallest corner.
+    pub low: [f32; 3],
+    /// The largest corner.
+    pub high: [f32; 3],
+}
+
+impl Box3 {
+    /// The box between two corners.
+    #[must_use]
+    pub const fn new(low: [f32; 3], high: [f32; 3]) -> Self {
+        Self { low, high }
+    }
+
+    /// Whether its corners are finite, and in order along each axis; a box may be flat.
+    #[must_use]
+    pub fn is_proper(&self) -> bool {
+        (0..3).all(|axis| {
+            let (low, high) = (self.low[axis], self.high[axis]);
+            low.is_finite() && high.is_finite() && low <= high
+        })
+    }
+
+    /// Whether a point is in it, sides included.
+    #[must_use]
+    pub fn contains(&self, point: [f32; 3]) -> bool {
+        (0..3).all(|axis| (self.low[axis]..=self.high[axis]).contains(&point[axis]))
+    }
+
+    /// Whether two boxes have a point in common.
+    #[must_use]
+    pub fn meets(&self, other: &Self) -> bool {
+        (0..3).all(|axis| self.low[axis] <= other.high[axis] && other.low[axis] <= self.high[axis])
+    }
+
+    /// Its longest side.
+    #[must_use]
+    pub fn longest_side(&self) -> f32 {
+        (0..3).fold(0.0, |longest: f32, axis| longest.max(self.high[axis] - self.low[axis]))
+    }
+
+    /// The middle of its side along an axis: strictly inside, unless no f32 is.
+    #[must_use]
+    pub fn middle(&self, axis: usize) -> f32 {
+        0.5 * self.low[axis] + 0.5 * self.high[axis]
+    }
+}
+
+/// What is known of the values in a box: an enclosing interval. `[-inf, inf]` says nothing, and admits NaN; any other range promises
+/// numbers.
+pub type Range = [f32; 2];
+
+/// The range that says nothing.
+pub const ANYTHING: Range = [f32::NEG_INFINITY, f32::INFINITY];
+
+/// Boxes that are asked about at once.
+pub const MAX_PARTS: usize = 8;
+
+/// A field that can be asked about boxes.
+///
+/// A *region* is what is known of a box: which parts of the model matter in it. The region of a part is found from that of the whole,
+/// which is cheaper than from nothing.
+pub trait Divisible: Sync {
+    /// What can go wrong with an evaluation.
+    type Error: Error + Send + 'static;
+    /// What is known of a box. `()` for a field that knows nothing.
+    type Region: Send + Sync;
+
+    /// The region of a proper box.
+    ///
+    /// # Errors
+    /// Whatever the field reports.
+    fn region(&self, bounds: Box3) -> Result<Self::Region, Self::Error>;
+
+    /// For each of up to [`MAX_PARTS`] proper boxes inside a region, a range of the field.
+    ///
+    /// # Errors
+    /// Whatever the evaluation reports.
+    fn ranges(&self, region: &Self::Region, boxes: &[Box3], ranges: &mut [Range]) -> Result<(), Self::Error>;
+
+    /// The regions of up to [`MAX_PARTS`] proper boxes inside a region, appended to `parts`.
+    ///
+    /// # Errors
+    /// Whatever the evaluation reports.
+    fn narrow(
+        &self,
+        region: &Self::Region,
+        boxes: &[Box3],
+        parts: &mut Vec<Self::Region>,
+    ) -> Result<(), Self::Error>;
+}
