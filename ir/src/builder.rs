@@ -87,6 +87,11 @@ impl FunctionBuilder {
         builder
     }
 
+    /// Gives the function other input planes. None has been read yet.
+    pub(crate) fn set_inputs(&mut self, inputs: Vec<String>) {
+        self.function.inputs = inputs;
+    }
+
     /// Declares a table.
     pub fn table(&mut self, schema: Schema) -> Table {
         self.function.tables.push(schema)

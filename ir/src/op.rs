@@ -12,7 +12,7 @@
 //! ```text
 //!                 op table ──► enum Op ──► text, verifier, passes
 //!                     │
-//!                     └──► trait Domain ◄── scalar, lanes, tangent, counting, FunctionBuilder, Cranelift
+//!                     └──► trait Domain ◄── scalar, lanes, interval, tangent, counting, FunctionBuilder, Cranelift
 //! ```
 //!
 //! All arithmetic is IEEE 754 binary32, round to nearest even, subnormals kept, no traps. "Gives NaN" means some NaN:

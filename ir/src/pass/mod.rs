@@ -4,15 +4,17 @@
 //! NaN). Between any two passes the observer of [`run_pipeline`] can print the function, verify it, or run it.
 //!
 //! ```text
-//! lowered ─► (gradient) ─► legalize ─► constant-folding ─► simplify ─► cse ─► dce ─► schedule ─► verify ─► engine
+//! lowered ─► (gradient) ─► (interval) ─► legalize ─► constant-folding ─► simplify ─► cse ─► dce ─► schedule ─► verify ─► engine
 //! ```
 //!
-//! The gradient changes what is computed, and only for a query that asks for it; so it is not in the list but goes before it:
-//! `run_pipeline(f, [&GRADIENT].into_iter().chain(PIPELINE), ..)`. It needs the transcendentals whole, hence before `legalize`.
+//! The gradient and the interval change what is computed, and only for a query that asks for them; so they are not in the list but go
+//! before it: `run_pipeline(f, [&GRADIENT, &INTERVAL].into_iter().chain(PIPELINE), ..)`. They need the transcendentals whole, hence before
+//! `legalize`.
 
 mod dce;
 mod fold_constants;
 mod gradient;
+mod interval;
 mod legalize;
 mod liveness;
 mod schedule;
@@ -21,6 +23,7 @@ mod simplify;
 pub use dce::dce;
 pub use fold_constants::fold_constants;
 pub use gradient::{GRADIENT_OUTPUTS, gradient};
+pub use interval::{BOUND_SUFFIXES, interval};
 pub use legalize::legalize;
 pub use liveness::max_live;
 pub use schedule::schedule;
@@ -46,6 +49,13 @@ pub const GRADIENT: Pass = Pass {
     name: "gradient",
     what: "Adds the gradient of the first output, by forward differentiation.",
     run: gradient,
+};
+
+/// The pass that goes before the others, and behind the gradient, where ranges are asked for.
+pub const INTERVAL: Pass = Pass {
+    name: "interval",
+    what: "Replaces every input and output by a low and a high bound, by interval arithmetic.",
+    run: interval,
 };
 
 /// Every pass that each function goes through, in order.

@@ -1,0 +1,225 @@
+//! What is known of a range before there are any numbers: from the op that made it, and from what is known of its operands.
+//!
+//! Facts make programs small: an end of a product of ranges that are not negative takes one op, not four products and their smallest.
+//! They are found in one place, from ops alone, so that an emitted program and the scalar meaning take the same forms
+//! and give the same bounds.
+//!
+//! An accumulator has the facts that its initial value has and that every next value keeps. [`accumulators`] finds them: it begins with
+//! those of the initial values and goes through the function, dropping what the next values do not have, until nothing is dropped.
+
+use crate::entity::{Block, Entity, Value};
+use crate::function::{Function, InstKind};
+use crate::op::Op;
+
+/// The signs of both bounds.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub(super) enum Sign {
+    /// Nothing is known.
+    #[default]
+    Unknown,
+    /// Each bound is at least 0, or NaN; where the low one is NaN, the high one is NaN or inf.
+    NonNegative,
+    /// Each bound is at most 0, or NaN; where the high one is NaN, the low one is NaN or -inf.
+    NonPositive,
+}
+
+impl Sign {
+    pub(super) const fn opposite(self) -> Self {
+        match self {
+            Self::Unknown => Self::Unknown,
+            Self::NonNegative => Self::NonPositive,
+            Self::NonPositive => Self::NonNegative,
+        }
+    }
+
+    /// Of a sum, or of either of two.
+    const fn and(self, other: Self) -> Self {
+        match (self, other) {
+            (Self::NonNegative, Self::NonNegative) => Self::NonNegative,
+            (Self::NonPositive, Self::NonPositive) => Self::NonPositive,
+            (Self::Unknown | Self::NonNegative | Self::NonPositive, _) => Self::Unknown,
+        }
+    }
+
+    const fn times(self, other: Self) -> Self {
+        match self {
+            Self::Unknown => Self::Unknown,
+            Self::NonNegative => other,
+            Self::NonPositive => other.opposite(),
+        }
+    }
+}
+
+/// What is known of a value of any type.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub(super) struct Facts {
+    /// The value itself is there, bit for bit: both bounds of a real are that value, a mask is decided, bits are known.
+    pub(super) point: bool,
+    /// The number, where the program has it; never NaN.
+    pub(super) constant: Option<f32>,
+    /// Of a real.
+    pub(super) sign: Sign,
+    /// Of a real: where the low bound is NaN, the high one is NaN or inf; where the high one is, the low one is NaN or -inf.
+    pub(super) paired: bool,
+}
+
+impl Facts {
+    /// The value itself, of which nothing else is known.
+    pub(super) const POINT: Self = Self { point: true, constant: None, sign: Sign::Unknown, paired: true };
+
+    /// A constant.
+    pub(super) const fn constant(number: f32) -> Self {
+        if number.is_nan() {
+            return Self::POINT;
+        }
+        let sign = if number >= 0.0 { Sign::NonNegative } else { Sign::NonPositive };
+        Self { constant: Some(number), sign, ..Self::POINT }
+    }
+
+    /// What holds for both.
+    fn join(self, other: Self) -> Self {
+        Self {
+            point: self.point && other.point,
+            constant: None,
+            sign: self.sign.and(other.sign),
+            paired: self.paired && other.paired,
+        }
+    }
+
+    /// The result of `op`; `same` says that its first two operands are one value.
+    pub(super) fn of(op: Op, args: &[Self], same: bool) -> Self {
+        let point = args.iter().all(|arg| arg.point);
+        let paired = match op {
+            Op::Add | Op::Sub => args[0].paired && args[1].paired,
+            Op::Neg => args[0].paired,
+            Op::Hold => return args[0],
+            Op::FromBits => true,
+            Op::Mul | Op::Div | Op::Fma | Op::Abs | Op::Sqrt | Op::Min | Op::Max | Op::Select => false,
+            Op::Sin | Op::Cos | Op::Exp | Op::Ln | Op::Pow => false,
+            Op::Lt | Op::Le | Op::Eq | Op::Both | Op::Either | Op::Not => false,
+            Op::ToBits | Op::BitAnd | Op::BitOr | Op::BitXor => false,
+            Op::IntAdd | Op::IntSub | Op::Shl | Op::Shr => false,
+        };
+        Self { point, constant: None, sign: sign(op, args, same), paired: point || paired }
+    }
+
+    /// Whether it is a constant other than a zero.
+    fn is_nonzero(self) -> bool {
+        self.constant.is_some_and(|number| number != 0.0)
+    }
+}
+
+/// The sign of the result of an op.
+fn sign(op: Op, args: &[Facts], same: bool) -> Sign {
+    let of = |place: usize| args[place].sign;
+    match op {
+        Op::Add => of(0).and(of(1)),
+        Op::Sub => of(0).and(of(1).opposite()),
+        Op::Mul => product(args, same),
+        Op::Fma => product(args, same).and(of(2)),
+        // A divisor that is the value itself may be -0, and then the quotient has the other sign.
+        Op::Div if args[1].point && !args[1].is_nonzero() => Sign::Unknown,
+        Op::Div => of(0).times(of(1)),
+        Op::Neg => of(0).opposite(),
+        Op::Abs | Op::Sqrt | Op::Exp | Op::Pow => Sign::NonNegative,
+        Op::Min => extreme(args, Sign::NonPositive),
+        Op::Max => extreme(args, Sign::NonNegative),
+        Op::Select => of(1).and(of(2)),
+        Op::Hold => of(0),
+        Op::Sin | Op::Cos | Op::Ln | Op::FromBits => Sign::Unknown,
+        Op::Lt | Op::Le | Op::Eq | Op::Both | Op::Either | Op::Not => Sign::Unknown,
+        Op::ToBits | Op::BitAnd | Op::BitOr | Op::BitXor => Sign::Unknown,
+        Op::IntAdd | Op::IntSub | Op::Shl | Op::Shr => Sign::Unknown,
+    }
+}
+
+fn product(args: &[Facts], same: bool) -> Sign {
+    if same { Sign::NonNegative } else { args[0].sign.times(args[1].sign) }
+}
+
+/// The sign of `max`, where `beyond` is [`Sign::NonNegative`], or of `min`, where it is the other one.
+///
+/// The second operand alone brings it, because it is the result where an operand is NaN. As a point it might be NaN itself.
+fn extreme(args: &[Facts], beyond: Sign) -> Sign {
+    if args[1].sign != beyond {
+        return args[0].sign.and(args[1].sign);
+    }
+    let sure = args[0].point || !args[1].point || args[1].constant.is_some();
+    if sure { beyond } else { Sign::Unknown }
+}
+
+/// Rounds of [`accumulators`] after which it gives up what is left. Two or three are usual; each drops a fact at least.
+const MAX_ROUNDS: usize = 32;
+
+/// The facts of every accumulator, by its value in the body of its fold; the final value has them, too.
+pub(super) fn accumulators(function: &Function) -> Vec<Facts> {
+    let none = vec![None; function.values.len()];
+    let mut search = Search { function, facts: none.clone(), accumulators: none, changed: false };
+    for _ in 0..MAX_ROUNDS {
+        search.changed = false;
+        search.block(function.body);
+        if !search.changed {
+            return search.accumulators.into_iter().map(Option::unwrap_or_default).collect();
+        }
+    }
+    vec![Facts::default(); function.values.len()]
+}
+
+/// A search for a fixed point, from above.
+struct Search<'a> {
+    function: &'a Function,
+    /// Of each value that has been met.
+    facts: Vec<Option<Facts>>,
+    /// Of each accumulator that has been met.
+    accumulators: Vec<Option<Facts>>,
+    changed: bool,
+}
+
+impl Search<'_> {
+    fn of(&self, value: Value) -> Facts {
+        self.facts[value.index()].expect("a verified function defines values before it uses them")
+    }
+
+    /// Lowers the facts of an accumulator to those that `value` has, too.
+    fn meet(&mut self, accumulator: Value, value: Value) {
+        let new = self.of(value);
+        let place = &mut self.accumulators[accumulator.index()];
+        let met = place.map_or(Facts { constant: None, ..new }, |old| old.join(new));
+        if *place != Some(met) {
+            *place = Some(met);
+            self.changed = true;
+        }
+    }
+
+    fn block(&mut self, block: Block) {
+        let function = self.function;
+        for &inst in &function.blocks[block].insts {
+            let data = &function.insts[inst];
+            let facts = match &data.kind {
+                InstKind::Input(_) => Facts { paired: true, ..Facts::default() },
+                InstKind::Constant(number) => Facts::constant(*number),
+                InstKind::BitsConstant(_) | InstKind::Column { .. } => Facts::POINT,
+                InstKind::Op { op, args } => {
+                    let same = args.len() > 1 && args[0] == args[1];
+                    let args: Vec<Facts> = args.iter().map(|&arg| self.of(arg)).collect();
+                    Facts::of(*op, &args, same)
+                }
+                InstKind::Fold(fold) => {
+                    let body = &function.blocks[fold.body];
+                    for (&param, &initial) in body.params.iter().zip(&fold.initial) {
+                        self.meet(param, initial);
+                        self.facts[param.index()] = self.accumulators[param.index()];
+                    }
+                    self.block(fold.body);
+                    for ((&param, &next), &result) in body.params.iter().zip(&body.results).zip(&data.results)
+                    {
+                        self.meet(param, next);
+                        self.facts[result.index()] = self.accumulators[param.index()];
+                    }
+                    continue;
+                }
+            };
+            self.facts[data.results[0].index()] = Some(facts);
+        }
+    }
+}

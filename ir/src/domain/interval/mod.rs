@@ -1,0 +1,358 @@
+//! Ranges as a meaning of the ops: every real is a range that encloses what it can be while the inputs stay in theirs.
+//!
+//! [`Interval<D>`] stands on another domain `D`, in which the bounds are computed. On `Scalar` it is interval arithmetic; on
+//! `FunctionBuilder` it *emits* another function, whose inputs and outputs are bounds: the pass
+//! [`interval`](crate::pass::interval()). Both are this one implementation, take the same forms and give the same bounds.
+//!
+//! # What a range is
+//!
+//! At the doors (the inputs and outputs of [`enclose`] and of the pass) a range is two numbers, low <= high. **(-inf, inf) admits
+//! anything, NaN too. Every other range promises: the value is not NaN, and low <= value <= high.** There is no empty range; two inputs
+//! that are none, because low > high or a bound is NaN, count as (-inf, inf). -0 and +0 are the same bound.
+//!
+//! Between the doors less is promised, so that no op has to tidy up behind itself:
+//!
+//! > *Whenever the value is a number, it is not below `low` and not above `high`. If both bounds are finite, it is a number.*
+//!
+//! So a bound that is NaN bounds nothing on its side, and a bound that is not finite says that the value may be NaN. With that, the plain
+//! ops on the bounds do most of the work: NaN comes from NaN, `inf - inf`, `0 * inf` and the like, hence only from ranges with a bound that is not
+//! finite, and sums, differences and products of such a bound are not finite either. Where a form would lose it
+//! (`max(x, 0)`, a square), the bound is *guarded*: `fma(other, 0, bound)` is the bound, or NaN where the other one is not finite.
+//! The outputs are tidy again: two finite bounds, or (-inf, inf).
+//!
+//! A mask is what is certain of it: that it holds, that it does not, or neither. Bits are known exactly or not at all.
+//!
+//! # What is promised
+//!
+//! Enclosure of every `f32` that *the function's own ops* compute at points whose inputs are in the ranges. Rounding to nearest is
+//! monotone, so the ops at the ends enclose, and nothing is rounded outwards. The transcendentals are the exception: their
+//! approximations need not be monotone, so their bounds are widened by 4 units in the last place, more than twice the error that
+//! [`crate::math`] states. A *point*, a value that depends on no input, is computed as it is, in one op.
+//!
+//! # What makes it sharp
+//!
+//! * Every result has an identity, so `x * x` and `fma(x, x, c)` are known to be squares. Two ranges with equal bounds are not one value;
+//!   one value that is used twice is.
+//! * Facts that are known before there are numbers, signs above all, choose short forms.
+
+mod arithmetic;
+mod facts;
+mod order;
+mod transcendental;
+mod walk;
+
+#[cfg(test)]
+mod tests;
+
+pub use walk::enclose;
+pub(crate) use walk::{Ground, Walk};
+
+use facts::{Facts, Sign};
+
+use crate::op::{Domain, Op};
+
+/// A real: two bounds, what is known of them, and which value they belong to.
+pub struct Range<D: Domain> {
+    /// No number that the value can be is below this.
+    pub low: D::Real,
+    /// No number that the value can be is above this.
+    pub high: D::Real,
+    facts: Facts,
+    identity: usize,
+}
+
+/// A mask: at most one of both holds.
+pub struct Certainty<D: Domain> {
+    /// It certainly holds.
+    pub yes: D::Mask,
+    /// It certainly does not.
+    pub no: D::Mask,
+    /// One of both holds, always.
+    decided: bool,
+}
+
+/// Bits, if they are known.
+pub struct Known<D: Domain>(Option<D::Bits>);
+
+macro_rules! copies {
+    ($($name:ident)+) => { $(
+        impl<D: Domain> Clone for $name<D> {
+            fn clone(&self) -> Self {
+                *self
+            }
+        }
+        impl<D: Domain> Copy for $name<D> {}
+    )+ };
+}
+
+copies!(Range Certainty Known);
+
+/// The interval domain over `D`.
+pub struct Interval<D: Domain> {
+    /// Where bounds are computed.
+    pub domain: D,
+    /// The identity of the next result.
+    next: usize,
+}
+
+/// Ranges at the doors.
+impl<D: Domain> Interval<D> {
+    /// Computes bounds in this domain.
+    #[must_use]
+    pub const fn new(domain: D) -> Self {
+        Self { domain, next: 0 }
+    }
+
+    /// A range from outside, which may be none.
+    pub fn input(&mut self, low: D::Real, high: D::Real) -> Range<D> {
+        let d = &mut self.domain;
+        let ascending = d.le(low, high);
+        let (lowest, highest) = (d.constant(f32::NEG_INFINITY), d.constant(f32::INFINITY));
+        let low = d.select(ascending, low, lowest);
+        let high = d.select(ascending, high, highest);
+        self.range(low, high, Facts { paired: true, ..Facts::default() })
+    }
+
+    /// A number that is the same whatever the inputs are.
+    pub fn point(&mut self, value: D::Real) -> Range<D> {
+        self.range(value, value, Facts::POINT)
+    }
+
+    /// The bounds for the outside: both finite, or (-inf, inf).
+    pub fn output(&mut self, range: Range<D>) -> [D::Real; 2] {
+        let finite = self.finite(range);
+        let d = &mut self.domain;
+        let (lowest, highest) = (d.constant(f32::NEG_INFINITY), d.constant(f32::INFINITY));
+        [d.select(finite, range.low, lowest), d.select(finite, range.high, highest)]
+    }
+}
+
+/// What the ops are made of.
+impl<D: Domain> Interval<D> {
+    /// A new value.
+    fn range(&mut self, low: D::Real, high: D::Real, facts: Facts) -> Range<D> {
+        let identity = self.next;
+        self.next += 1;
+        Range { low, high, facts, identity }
+    }
+
+    /// A new value with these bounds; of a point only the low one is computed.
+    fn bounds(
+        &mut self,
+        facts: Facts,
+        low: impl FnOnce(&mut D) -> D::Real,
+        high: impl FnOnce(&mut D) -> D::Real,
+    ) -> Range<D> {
+        let low = low(&mut self.domain);
+        let high = if facts.point { low } else { high(&mut self.domain) };
+        self.range(low, high, facts)
+    }
+
+    /// What may be anything.
+    fn anything(&mut self) -> Range<D> {
+        let nan = self.domain.constant(f32::NAN);
+        self.range(nan, nan, Facts { paired: true, ..Facts::default() })
+    }
+
+    /// `value`, or NaN where `by` is not finite.
+    fn guarded(&mut self, value: D::Real, by: D::Real) -> D::Real {
+        let zero = self.domain.constant(0.0);
+        self.domain.fma(by, zero, value)
+    }
+
+    /// Whether both bounds are finite.
+    fn finite(&mut self, a: Range<D>) -> D::Mask {
+        let d = &mut self.domain;
+        let (lowest, highest) = (d.constant(f32::NEG_INFINITY), d.constant(f32::INFINITY));
+        let above = d.lt(lowest, a.low);
+        let below = d.lt(a.high, highest);
+        d.both(above, below)
+    }
+
+    /// A mask that `holds` decides.
+    fn decided(&mut self, holds: D::Mask) -> Certainty<D> {
+        Certainty { yes: holds, no: self.domain.not(holds), decided: true }
+    }
+
+    /// Bits made of two, if both are known.
+    fn bits(
+        &mut self,
+        a: Known<D>,
+        b: Known<D>,
+        op: impl FnOnce(&mut D, D::Bits, D::Bits) -> D::Bits,
+    ) -> Known<D> {
+        Known(a.0.zip(b.0).map(|(a, b)| op(&mut self.domain, a, b)))
+    }
+}
+
+fn same<D: Domain>(a: Range<D>, b: Range<D>) -> bool {
+    a.identity == b.identity
+}
+
+/// The facts of the result of a binary op.
+fn of_both<D: Domain>(op: Op, a: Range<D>, b: Range<D>) -> Facts {
+    Facts::of(op, &[a.facts, b.facts], same(a, b))
+}
+
+/// The facts of the result of a unary op.
+fn of_one<D: Domain>(op: Op, a: Range<D>) -> Facts {
+    Facts::of(op, &[a.facts], false)
+}
+
+impl<D: Domain> Domain for Interval<D> {
+    type Real = Range<D>;
+    type Mask = Certainty<D>;
+    type Bits = Known<D>;
+
+    fn constant(&mut self, value: f32) -> Range<D> {
+        let number = self.domain.constant(value);
+        self.range(number, number, Facts::constant(value))
+    }
+
+    fn bits_constant(&mut self, value: u32) -> Known<D> {
+        Known(Some(self.domain.bits_constant(value)))
+    }
+
+    fn add(&mut self, a: Range<D>, b: Range<D>) -> Range<D> {
+        self.bounds(of_both(Op::Add, a, b), |d| d.add(a.low, b.low), |d| d.add(a.high, b.high))
+    }
+
+    fn sub(&mut self, a: Range<D>, b: Range<D>) -> Range<D> {
+        self.bounds(of_both(Op::Sub, a, b), |d| d.sub(a.low, b.high), |d| d.sub(a.high, b.low))
+    }
+
+    fn mul(&mut self, a: Range<D>, b: Range<D>) -> Range<D> {
+        self.product(a, b)
+    }
+
+    fn div(&mut self, a: Range<D>, b: Range<D>) -> Range<D> {
+        self.quotient(a, b)
+    }
+
+    fn fma(&mut self, a: Range<D>, b: Range<D>, c: Range<D>) -> Range<D> {
+        self.fused(a, b, c)
+    }
+
+    fn neg(&mut self, a: Range<D>) -> Range<D> {
+        self.bounds(of_one(Op::Neg, a), |d| d.neg(a.high), |d| d.neg(a.low))
+    }
+
+    fn abs(&mut self, a: Range<D>) -> Range<D> {
+        self.magnitude(a)
+    }
+
+    fn sqrt(&mut self, a: Range<D>) -> Range<D> {
+        self.square_root(a)
+    }
+
+    fn min(&mut self, a: Range<D>, b: Range<D>) -> Range<D> {
+        self.extreme(order::Side::Lowest, a, b)
+    }
+
+    fn max(&mut self, a: Range<D>, b: Range<D>) -> Range<D> {
+        self.extreme(order::Side::Highest, a, b)
+    }
+
+    fn lt(&mut self, a: Range<D>, b: Range<D>) -> Certainty<D> {
+        self.less(a, b)
+    }
+
+    fn le(&mut self, a: Range<D>, b: Range<D>) -> Certainty<D> {
+        self.less_or_equal(a, b)
+    }
+
+    fn eq(&mut self, a: Range<D>, b: Range<D>) -> Certainty<D> {
+        self.equal(a, b)
+    }
+
+    fn both(&mut self, a: Certainty<D>, b: Certainty<D>) -> Certainty<D> {
+        let yes = self.domain.both(a.yes, b.yes);
+        if a.decided && b.decided {
+            return self.decided(yes);
+        }
+        Certainty { yes, no: self.domain.either(a.no, b.no), decided: false }
+    }
+
+    fn either(&mut self, a: Certainty<D>, b: Certainty<D>) -> Certainty<D> {
+        let yes = self.domain.either(a.yes, b.yes);
+        if a.decided && b.decided {
+            return self.decided(yes);
+        }
+        Certainty { yes, no: self.domain.both(a.no, b.no), decided: false }
+    }
+
+    fn not(&mut self, a: Certainty<D>) -> Certainty<D> {
+        Certainty { yes: a.no, no: a.yes, decided: a.decided }
+    }
+
+    fn select(&mut self, condition: Certainty<D>, a: Range<D>, b: Range<D>) -> Range<D> {
+        self.choice(condition, a, b)
+    }
+
+    fn to_bits(&mut self, a: Range<D>) -> Known<D> {
+        Known(a.facts.point.then(|| self.domain.to_bits(a.low)))
+    }
+
+    fn from_bits(&mut self, a: Known<D>) -> Range<D> {
+        match a.0 {
+            Some(bits) => {
+                let value = self.domain.from_bits(bits);
+                self.point(value)
+            }
+            None => self.anything(),
+        }
+    }
+
+    fn bit_and(&mut self, a: Known<D>, b: Known<D>) -> Known<D> {
+        self.bits(a, b, D::bit_and)
+    }
+
+    fn bit_or(&mut self, a: Known<D>, b: Known<D>) -> Known<D> {
+        self.bits(a, b, D::bit_or)
+    }
+
+    fn bit_xor(&mut self, a: Known<D>, b: Known<D>) -> Known<D> {
+        self.bits(a, b, D::bit_xor)
+    }
+
+    fn int_add(&mut self, a: Known<D>, b: Known<D>) -> Known<D> {
+        self.bits(a, b, D::int_add)
+    }
+
+    fn int_sub(&mut self, a: Known<D>, b: Known<D>) -> Known<D> {
+        self.bits(a, b, D::int_sub)
+    }
+
+    fn shl(&mut self, a: Known<D>, by: Known<D>) -> Known<D> {
+        self.bits(a, by, D::shl)
+    }
+
+    fn shr(&mut self, a: Known<D>, by: Known<D>) -> Known<D> {
+        self.bits(a, by, D::shr)
+    }
+
+    fn sin(&mut self, a: Range<D>) -> Range<D> {
+        self.wave(a, transcendental::SIN)
+    }
+
+    fn cos(&mut self, a: Range<D>) -> Range<D> {
+        self.wave(a, transcendental::COS)
+    }
+
+    fn exp(&mut self, a: Range<D>) -> Range<D> {
+        self.exponential(a)
+    }
+
+    fn ln(&mut self, a: Range<D>) -> Range<D> {
+        self.logarithm(a)
+    }
+
+    fn pow(&mut self, a: Range<D>, b: Range<D>) -> Range<D> {
+        self.power(a, b)
+    }
+
+    /// The same value, so it keeps its identity.
+    fn hold(&mut self, a: Range<D>) -> Range<D> {
+        a
+    }
+}

@@ -1,0 +1,158 @@
+//! Comparisons of ranges, and choices between them.
+//!
+//! `max(a, b)` is b where either is NaN. So where a may be NaN, the result may be b alone, and the low bound is that of b; and where
+//! b may be NaN, the result may be NaN, and a bound has to say so. `min` is its mirror image.
+
+use super::{Certainty, Interval, Range, Sign, of_both, same};
+use crate::op::{Domain, Op};
+
+use super::facts::Facts;
+
+/// Of two numbers.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Side {
+    /// The smaller one.
+    Lowest,
+    /// The larger one.
+    Highest,
+}
+
+impl Side {
+    fn of<D: Domain>(self, d: &mut D, a: D::Real, b: D::Real) -> D::Real {
+        match self {
+            Self::Lowest => d.min(a, b),
+            Self::Highest => d.max(a, b),
+        }
+    }
+
+    /// The bound that lies away from this side, and the one towards it.
+    const fn inner_and_outer<D: Domain>(self, a: Range<D>) -> (D::Real, D::Real) {
+        match self {
+            Self::Lowest => (a.high, a.low),
+            Self::Highest => (a.low, a.high),
+        }
+    }
+
+    /// The sign beyond zero on this side.
+    const fn beyond(self) -> Sign {
+        match self {
+            Self::Lowest => Sign::NonPositive,
+            Self::Highest => Sign::NonNegative,
+        }
+    }
+
+    const fn op(self) -> Op {
+        match self {
+            Self::Lowest => Op::Min,
+            Self::Highest => Op::Max,
+        }
+    }
+}
+
+impl<D: Domain> Interval<D> {
+    /// `min` or `max`. The inner bound is limited by both operands, the outer one reaches as far as either.
+    pub(super) fn extreme(&mut self, side: Side, a: Range<D>, b: Range<D>) -> Range<D> {
+        let facts = of_both(side.op(), a, b);
+        let (a_inner, a_outer) = side.inner_and_outer(a);
+        let (b_inner, b_outer) = side.inner_and_outer(b);
+        if facts.point {
+            let value = side.of(&mut self.domain, a.low, b.low);
+            return self.range(value, value, facts);
+        }
+        // Where a may be NaN this is NaN, and then only b counts.
+        let limit = if a.facts.point { a_inner } else { self.guarded(a_inner, a_outer) };
+        let mut inner = side.of(&mut self.domain, limit, b_inner);
+        let outer = if b.facts.point {
+            side.of(&mut self.domain, b_outer, a_outer)
+        } else {
+            // The op gives its second operand where either is NaN, so both have to be asked.
+            let reach = self.guarded(b_outer, b_inner);
+            if a.facts.point {
+                side.of(&mut self.domain, a_outer, reach)
+            } else {
+                let both = side.of(&mut self.domain, reach, a_outer);
+                self.guarded(both, reach)
+            }
+        };
+        if facts.sign == side.beyond().opposite() {
+            // The fact wants a NaN of the outer bound, which is nearer to 0, to show in the other one.
+            inner = self.guarded(inner, outer);
+        }
+        match side {
+            Side::Lowest => self.range(outer, inner, facts),
+            Side::Highest => self.range(inner, outer, facts),
+        }
+    }
+
+    /// The bound of `a` that a comparison is certain of: NaN where the value may be NaN.
+    fn sure_low(&mut self, a: Range<D>) -> D::Real {
+        if a.facts.point { a.low } else { self.guarded(a.low, a.high) }
+    }
+
+    fn sure_high(&mut self, a: Range<D>) -> D::Real {
+        if a.facts.point { a.high } else { self.guarded(a.high, a.low) }
+    }
+
+    pub(super) fn less(&mut self, a: Range<D>, b: Range<D>) -> Certainty<D> {
+        if a.facts.point && b.facts.point {
+            let holds = self.domain.lt(a.low, b.low);
+            return self.decided(holds);
+        }
+        let (high, low) = (self.sure_high(a), self.sure_low(b));
+        let yes = self.domain.lt(high, low);
+        // With a NaN it does not hold, so this is certain whether the values are numbers or not.
+        let no = self.domain.le(b.high, a.low);
+        Certainty { yes, no, decided: false }
+    }
+
+    pub(super) fn less_or_equal(&mut self, a: Range<D>, b: Range<D>) -> Certainty<D> {
+        if a.facts.point && b.facts.point {
+            let holds = self.domain.le(a.low, b.low);
+            return self.decided(holds);
+        }
+        let (high, low) = (self.sure_high(a), self.sure_low(b));
+        let yes = self.domain.le(high, low);
+        let no = self.domain.lt(b.high, a.low);
+        Certainty { yes, no, decided: false }
+    }
+
+    pub(super) fn equal(&mut self, a: Range<D>, b: Range<D>) -> Certainty<D> {
+        if a.facts.point && b.facts.point {
+            let holds = self.domain.eq(a.low, b.low);
+            return self.decided(holds);
+        }
+        let (a_high, b_high) = (self.sure_high(a), self.sure_high(b));
+        let d = &mut self.domain;
+        let not_above = d.le(a_high, b.low);
+        let not_below = d.le(b_high, a.low);
+        let yes = d.both(not_above, not_below);
+        let below = d.lt(a.high, b.low);
+        let above = d.lt(b.high, a.low);
+        Certainty { yes, no: d.either(below, above), decided: false }
+    }
+
+    /// One of two, or what encloses both.
+    pub(super) fn choice(&mut self, condition: Certainty<D>, a: Range<D>, b: Range<D>) -> Range<D> {
+        if same(a, b) {
+            return a;
+        }
+        let mask = Facts { point: condition.decided, ..Facts::default() };
+        let facts = Facts::of(Op::Select, &[mask, a.facts, b.facts], false);
+        if condition.decided {
+            let yes = condition.yes;
+            return self.bounds(facts, |d| d.select(yes, a.low, b.low), |d| d.select(yes, a.high, b.high));
+        }
+        let low = self.either_bound(Side::Lowest, condition, a.low, b.low);
+        let high = self.either_bound(Side::Highest, condition, a.high, b.high);
+        self.range(low, high, facts)
+    }
+
+    /// The bound of what may be chosen: that of a, that of b, or the one further out.
+    fn either_bound(&mut self, side: Side, condition: Certainty<D>, a: D::Real, b: D::Real) -> D::Real {
+        let first = self.domain.select(condition.no, b, a);
+        let second = self.domain.select(condition.yes, a, b);
+        let bound = side.of(&mut self.domain, first, second);
+        // A NaN of the second shows by itself.
+        self.guarded(bound, first)
+    }
+}

@@ -1,0 +1,96 @@
+//! Turns a function of numbers into a function of ranges: inputs `x`, `y` become `x.low`, `x.high`, `y.low`, `y.high`, an output `field`
+//! becomes `field.low`, `field.high`.
+//!
+//! The function is run once in the [interval domain](crate::domain::interval), which says what a range is, over a builder. Tables,
+//! columns and origins stay, so the rows of the one function are those of the other.
+//!
+//! ```text
+//! (s) = fold t0 sum (0) (acc): ... yield next
+//!     becomes
+//! (s.low, s.high) = fold t0 sum (0, 0) (acc.low, acc.high): ... yield next.low, next.high
+//! ```
+//!
+//! A mask accumulator becomes two masks: it certainly holds, it certainly does not. An accumulator that no input moves stays one
+//! value.
+//!
+//! The transcendentals have to be whole, so it goes before `legalize`; behind `gradient`, it gives the ranges of the gradient.
+
+use crate::builder::FunctionBuilder;
+use crate::domain::interval::{Ground, Walk};
+use crate::entity::{Table, Value};
+use crate::function::{Fold, Function, InstKind};
+use crate::op::Any;
+use crate::origin::{Origin, Part};
+
+/// What the names of low and of high bounds end with, in their order.
+pub const BOUND_SUFFIXES: [&str; 2] = [".low", ".high"];
+
+/// The function of ranges. Its inputs and outputs are those of `function`, two for each: `2 i` is the low bound of plane i and `2 i + 1`
+/// the high one.
+#[must_use]
+pub fn interval(function: &Function) -> Function {
+    let mut bounds = FunctionBuilder::like(function);
+    bounds.set_inputs(function.inputs.iter().flat_map(|name| both(name)).collect());
+    let mut walk = Walk::new(function, bounds, Emitting);
+    let outputs = walk.outputs();
+    let names = function.outputs.iter().flat_map(|name| both(name));
+    let outputs: Vec<(String, Value)> = names.zip(outputs.into_iter().flatten()).collect();
+    walk.interval.domain.finish(&outputs)
+}
+
+/// The names of the bounds of a plane.
+fn both(name: &str) -> [String; 2] {
+    BOUND_SUFFIXES.map(|suffix| format!("{name}{suffix}"))
+}
+
+/// The ground of the pass: bounds are emitted, and folds are written.
+struct Emitting;
+
+impl Ground for Emitting {
+    type Bound = FunctionBuilder;
+
+    /// A distance is one value, for the counters: the high bound, which [`end`](Self::end) marks. What else it takes goes before it.
+    fn begin(&mut self, bounds: &mut FunctionBuilder, origin: Origin) {
+        let part = if origin.part == Part::Distance { Part::Position } else { origin.part };
+        bounds.set_origin(Origin { slot: origin.slot, part });
+    }
+
+    fn end(&mut self, bounds: &mut FunctionBuilder, origin: Origin, high: Value) {
+        let computed = matches!(bounds.definition(high), Some(InstKind::Op { .. }));
+        if computed && origin.part == Part::Distance {
+            bounds.mark(high, origin);
+        }
+    }
+
+    fn input(&mut self, bounds: &mut FunctionBuilder, index: usize) -> [Value; 2] {
+        [bounds.input(2 * index), bounds.input(2 * index + 1)]
+    }
+
+    fn column(&mut self, bounds: &mut FunctionBuilder, table: Table, column: usize) -> Value {
+        bounds.column(table, column)
+    }
+
+    fn fold(
+        walk: &mut Walk<'_, Self>,
+        fold: &Fold,
+        origin: Origin,
+        initial: Vec<Any<FunctionBuilder>>,
+    ) -> Vec<Any<FunctionBuilder>> {
+        let (types, initial): (Vec<_>, Vec<Value>) = initial.into_iter().map(split).unzip();
+        let params = walk.interval.domain.begin_fold(fold.table, fold.reduction, &initial);
+        let params = types.iter().zip(params).map(|(wrap, value)| wrap(value)).collect();
+        let next: Vec<Value> = walk.body(fold, params).into_iter().map(|any| split(any).1).collect();
+        walk.interval.domain.set_origin(origin);
+        let finals = walk.interval.domain.end_fold(&next);
+        types.iter().zip(finals).map(|(wrap, value)| wrap(value)).collect()
+    }
+}
+
+/// A value, and what wraps another one of its type.
+fn split(any: Any<FunctionBuilder>) -> (fn(Value) -> Any<FunctionBuilder>, Value) {
+    match any {
+        Any::Real(value) => (Any::Real, value),
+        Any::Mask(value) => (Any::Mask, value),
+        Any::Bits(value) => (Any::Bits, value),
+    }
+}
