@@ -19,7 +19,7 @@ fn mesh(c: &mut Criterion) {
             let run = || settings.run(&compiler, &tree, &mut |_| true).expect("the model has a surface");
             let made = run();
             check::mesh(&tree, &made);
-            group.throughput(Throughput::Elements(made.lattice.point_count() as u64));
+            group.throughput(Throughput::Elements(made.lattice.point_count()));
             group.bench_function(BenchmarkId::from_parameter(cells), |b| b.iter(run));
         }
         group.finish();

@@ -98,6 +98,7 @@ fn supports(
     });
     counted.map_err(|error| match error {
         SupportsError::Compile(error) => Failure::compile(&scene.source(), &error),
+        SupportsError::Lattice(error) => Failure::Limit(error.to_string()),
         SupportsError::Cancelled => Failure::Defect(error.to_string()),
     })
 }

@@ -41,7 +41,9 @@ pub fn failure(scene: &Scene, error: PolygonizeError) -> Failure {
             | LatticeError::TooFine { .. } => Failure::Limit(error.to_string()),
         },
         PolygonizeError::Mesh(error) => match error {
-            MeshError::Memory { .. } | MeshError::TooManyVertices { .. } => Failure::Limit(error.to_string()),
+            MeshError::TooManyBricks { .. } | MeshError::Memory { .. } | MeshError::TooManyVertices { .. } => {
+                Failure::Limit(error.to_string())
+            }
             MeshError::Field(_)
             | MeshError::Cancelled
             | MeshError::Iso { .. }

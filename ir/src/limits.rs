@@ -36,8 +36,10 @@ pub const MAX_JIT_LIVE_VALUES: usize = 4_000;
 /// Bytes of stack that one call of machine code may take: a fraction of the smallest stacks that threads are given. A function that
 /// needs more is interpreted.
 pub const MAX_JIT_FRAME_BYTES: usize = 512 << 10;
-/// Lattice points of one mesh: the field of each is kept, 4 bytes a point.
+/// Lattice points that are all visited, as when supports are counted. A mesh has no such limit.
 pub const MAX_LATTICE_POINTS: usize = 1 << 30;
+/// Bricks of one mesh: the field is kept at all points of each, 4 bytes a point.
+pub const MAX_BRICKS: usize = 1 << 22;
 /// Cells along one axis of a lattice.
 pub const MAX_RESOLUTION: usize = 1 << 20;
 /// How often a box may be split on the way to a part of it. Halving f32 coordinates along three axes ends before.

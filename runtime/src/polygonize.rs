@@ -1,20 +1,23 @@
 //! From a model to a mesh in one call: three kernels, a lattice over the model's support, and the mesher.
 //!
 //! ```text
-//!   CheckedTree ──Compiler──► field kernel ────► every lattice point, once
+//!   CheckedTree ──Compiler──► field kernel ────► every lattice point of a brick, once
 //!                        ├──► gradient kernel ─► every vertex, a few times, to pull it onto the surface
 //!                        └──► full kernel ─────► every vertex, once: normal and attributes
 //! ```
 
+mod kernels;
+
 use std::time::{Duration, Instant};
 
 use jbt_frontend::check::CheckedTree;
-use jbt_frontend::query::Query;
 
 use crate::error::{CompileError, EvalError};
-use crate::evaluator::{Compiler, Evaluator};
+use crate::evaluator::Compiler;
 use crate::kernel::Engine;
-use crate::mesh::{self, Field, Lattice, LatticeError, Mesh, MeshError, Report};
+use crate::mesh::{self, Lattice, LatticeError, Mesh, MeshError, Report};
+
+use kernels::Kernels;
 
 /// How fine a lattice is.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -145,68 +148,10 @@ impl Polygonize {
             mesh,
             report,
             lattice,
-            engine: kernels.field.engine(),
+            engine: kernels.engine(),
             primitive_evaluations: kernels.primitive_evaluations(),
             compile_time,
         })
-    }
-}
-
-/// The three kernels of a mesh.
-struct Kernels {
-    field: Evaluator,
-    gradient: Evaluator,
-    all: Evaluator,
-}
-
-impl Kernels {
-    fn new(compiler: &Compiler, tree: &CheckedTree) -> Result<Self, CompileError> {
-        Ok(Self {
-            field: compiler.evaluator(tree, Query::FIELD)?,
-            gradient: compiler.evaluator(tree, Query::GRADIENT)?,
-            all: compiler.evaluator(tree, Query::ALL)?,
-        })
-    }
-
-    fn primitive_evaluations(&self) -> u64 {
-        [&self.field, &self.gradient, &self.all].iter().map(|e| e.counters().primitive_evaluations).sum()
-    }
-}
-
-impl Field for Kernels {
-    type Error = EvalError;
-
-    fn attributes(&self) -> Vec<(String, usize)> {
-        self.all.layout().attributes().map(|(name, _, width)| (name.to_owned(), width)).collect()
-    }
-
-    fn field(&self, x: &[f32], y: &[f32], z: &[f32], field: &mut [f32]) -> Result<(), EvalError> {
-        self.field.eval_planes([x, y, z], &mut [field])
-    }
-
-    fn gradient(
-        &self,
-        x: &[f32],
-        y: &[f32],
-        z: &[f32],
-        field: &mut [f32],
-        [gx, gy, gz]: [&mut [f32]; 3],
-    ) -> Result<(), EvalError> {
-        self.gradient.eval_planes([x, y, z], &mut [field, gx, gy, gz])
-    }
-
-    fn all(
-        &self,
-        x: &[f32],
-        y: &[f32],
-        z: &[f32],
-        field: &mut [f32],
-        [gx, gy, gz]: [&mut [f32]; 3],
-        attributes: &mut [&mut [f32]],
-    ) -> Result<(), EvalError> {
-        let mut planes: Vec<&mut [f32]> = vec![field, gx, gy, gz];
-        planes.extend(attributes.iter_mut().map(|plane| &mut **plane));
-        self.all.eval_planes([x, y, z], &mut planes)
     }
 }
 

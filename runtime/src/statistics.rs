@@ -20,7 +20,7 @@ use rayon::prelude::*;
 
 use crate::error::CompileError;
 use crate::evaluator::{Compiler, Evaluator};
-use crate::mesh::Lattice;
+use crate::mesh::{Lattice, LatticeError};
 
 /// Walks of the tree that separate evaluations take: 1 for the field; 4 more for the gradient by forward differences, at the point and a
 /// step along each axis; 1 more for the attributes.
@@ -110,16 +110,16 @@ impl<'a> Statistics<'a> {
     /// The hook is told how far the work is, from 0 to 1, and cancels it by returning false.
     ///
     /// # Errors
-    /// The hook cancelled, or a leaf could not be compiled.
+    /// The hook cancelled, a leaf could not be compiled, or the lattice has too many points to visit all.
     pub fn supports(
         &self,
         compiler: &Compiler,
         lattice: &Lattice,
         hook: &mut dyn FnMut(f32) -> bool,
     ) -> Result<Supports, SupportsError> {
+        lattice.check_points()?;
         let axes = lattice.axes();
-        let mut supports =
-            Supports { points: lattice.point_count() as u64, pairs: 0, by_node: BTreeMap::new() };
+        let mut supports = Supports { points: lattice.point_count(), pairs: 0, by_node: BTreeMap::new() };
         let count = self.occurrences.len();
         for start in (0..count).step_by(STRIDE) {
             if !hook(start as f32 / count as f32) {
@@ -165,6 +165,9 @@ pub enum SupportsError {
     /// A leaf could not be compiled.
     #[error(transparent)]
     Compile(#[from] CompileError),
+    /// The lattice has too many points.
+    #[error(transparent)]
+    Lattice(#[from] LatticeError),
     /// The hook said to stop.
     #[error("cancelled")]
     Cancelled,

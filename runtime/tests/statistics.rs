@@ -44,7 +44,7 @@ fn a_ball_holds_the_points_nearer_than_its_radius() {
     for lattice in [&whole, &cut, &far] {
         let found = supports(&tree, lattice);
         let pairs = count(lattice, ball);
-        assert_eq!((found.points, found.pairs), (lattice.point_count() as u64, pairs));
+        assert_eq!((found.points, found.pairs), (lattice.point_count(), pairs));
         assert_eq!(found.by_node.into_iter().collect::<Vec<_>>(), [(0, pairs)]);
     }
     // 4 pi r^3 / 3 in units of cells, to within the cells of its surface.

@@ -33,6 +33,18 @@ pub(crate) const EDGE_CORNERS: [[usize; 2]; 12] = {
     corners
 };
 
+/// The two faces that each edge lies on, a bit each.
+const EDGE_FACES: [u8; 12] = {
+    let mut faces = [0; 12];
+    let mut edge = 0;
+    while edge < 12 {
+        let (b, c) = ((edge / 4 + 1) % 3, (edge / 4 + 2) % 3);
+        faces[edge] = 1 << (2 * b + (edge & 1)) | 1 << (2 * c + (edge >> 1 & 1));
+        edge += 1;
+    }
+    faces
+};
+
 /// The corners of a face, in the order of a walk around it.
 const fn ring(face: usize) -> [usize; 4] {
     let axis = face / 2;
@@ -88,10 +100,42 @@ impl Sheets {
         (sheet != NO_SHEET).then_some(u32::from(sheet))
     }
 
+    /// The sheet of an edge that the surface crosses and that has a quad.
+    #[inline(always)]
+    pub(crate) fn of_crossed_edge(&self, edge: usize) -> u32 {
+        u32::from(self.of_edge[edge])
+    }
+
     /// Whether a face is ambiguous and both of its segments lie on one sheet. If that is so on both of its sides, the two
     /// sheets would meet in one edge of the mesh twice, which would then have four triangles.
     pub(crate) fn pinched(&self, face: usize) -> bool {
         self.pinched >> face & 1 == 1
+    }
+
+    /// Whether any low face is so.
+    pub(crate) fn pinched_low(&self) -> bool {
+        self.pinched & 0b01_0101 != 0
+    }
+
+    /// The edges of a sheet, a bit each.
+    pub(crate) fn edges(&self, sheet: u32) -> u16 {
+        (0..12).fold(0, |edges, edge| edges | u16::from(self.of_edge(edge) == Some(sheet)) << edge)
+    }
+
+    /// The sheets that have quads, where the cell touches these sides of the lattice (a bit for each face): an edge on a side has
+    /// no cells all around it.
+    fn with_quads(self, sides: u8) -> Sheets {
+        let mut names = [NO_SHEET; 4];
+        let mut count = 0;
+        for sheet in 0..self.count {
+            let edges = (0..12).filter(|&edge| self.of_edge[edge] == sheet);
+            if edges.into_iter().any(|edge| EDGE_FACES[edge] & sides == 0) {
+                names[usize::from(sheet)] = count;
+                count += 1;
+            }
+        }
+        let name = |sheet: u8| if sheet == NO_SHEET { NO_SHEET } else { names[usize::from(sheet)] };
+        Sheets { of_edge: self.of_edge.map(name), count, ..self }
     }
 
     /// From the corners that are inside (a bit each) and the faces that are flipped (a bit each; it matters on ambiguous faces).
@@ -195,9 +239,109 @@ static DEFAULT: [Sheets; 256] = {
 };
 
 /// The sheets of a cell, from its corners inside and its flipped faces, a bit each.
+#[inline]
 pub(crate) fn sheets(signs: u8, flips: u8) -> Sheets {
     // Flipped faces are rare, and a table of them would be 64 times as large as this one.
     if flips == 0 { DEFAULT[usize::from(signs)] } else { Sheets::new(signs, flips) }
+}
+
+/// The sheets of a cell without flipped faces.
+#[inline]
+pub(crate) fn default_sheets(signs: u8) -> &'static Sheets {
+    &DEFAULT[usize::from(signs)]
+}
+
+/// The sheets that become vertices of a cell that touches these sides of the lattice.
+pub(crate) fn sheets_with_quads(signs: u8, flips: u8, sides: u8) -> Sheets {
+    let sheets = sheets(signs, flips);
+    if sides == 0 { sheets } else { sheets.with_quads(sides) }
+}
+
+/// Some edges of a cell, made ready for [`mean_crossing`].
+#[derive(Clone, Copy)]
+pub(crate) struct Edges {
+    /// A bit for each edge.
+    mask: u16,
+    /// For each axis: how many of the edges along the others lie on the high side of the cell.
+    high: [f32; 3],
+    /// One for each edge.
+    part: f32,
+}
+
+impl Edges {
+    /// From a bit for each edge.
+    pub(crate) const fn new(mask: u16) -> Self {
+        let mut high = [0.0; 3];
+        let mut edge = 0;
+        while edge < 12 {
+            let mut axis = 0;
+            while axis < 3 {
+                let is_high = mask >> edge & 1 == 1 && EDGE_FACES[edge] >> (2 * axis + 1) & 1 == 1;
+                high[axis] += is_high as u8 as f32;
+                axis += 1;
+            }
+            edge += 1;
+        }
+        Self { mask, high, part: 1.0 / mask.count_ones() as f32 }
+    }
+}
+
+/// The crossed edges of every case.
+pub(crate) static CROSSED_EDGES: [Edges; 256] = {
+    let mut crossed = [Edges::new(0); 256];
+    let mut signs = 0;
+    while signs < 256 {
+        let (mut mask, mut edge) = (0, 0);
+        while edge < 12 {
+            let [low, high] = EDGE_CORNERS[edge];
+            mask |= ((inside(signs as u8, low) != inside(signs as u8, high)) as u16) << edge;
+            edge += 1;
+        }
+        crossed[signs] = Edges::new(mask);
+        signs += 1;
+    }
+    crossed
+};
+
+/// The mean of the crossings on some edges of a cell (at least one), in units of the cell: each coordinate is from 0 to 1, or
+/// a little more by rounding.
+///
+/// The four edges along an axis are done together, whether they are crossed or not: that is quicker than to ask.
+#[inline]
+pub(crate) fn mean_crossing(iso: f32, corners: &[f32; 8], edges: &Edges) -> [f32; 3] {
+    std::array::from_fn(|axis| {
+        let ends =
+            |end: usize| -> [f32; 4] { std::array::from_fn(|n| corners[EDGE_CORNERS[4 * axis + n][end]]) };
+        let (low, high) = (ends(0), ends(1));
+        let t: [f32; 4] = std::array::from_fn(|n| crossing(iso, low[n], high[n]));
+        let chosen = &CHOSEN[usize::from(edges.mask >> (4 * axis) & 15)];
+        let t: [f32; 4] = std::array::from_fn(|n| t[n] * chosen[n]);
+        (edges.high[axis] + ((t[0] + t[1]) + (t[2] + t[3]))) * edges.part
+    })
+}
+
+/// For each choice of four edges, a bit each: 1 for those that are chosen, and 0 for the others.
+static CHOSEN: [[f32; 4]; 16] = {
+    let mut chosen = [[0.0; 4]; 16];
+    let mut choice = 0;
+    while choice < 16 {
+        let mut edge = 0;
+        while edge < 4 {
+            chosen[choice][edge] = (choice >> edge & 1) as f32;
+            edge += 1;
+        }
+        choice += 1;
+    }
+    chosen
+};
+
+/// Where along an edge the surface crosses, from 0 to 1, if the field is linear there; the middle if that is no number.
+#[inline(always)]
+fn crossing(iso: f32, low: f32, high: f32) -> f32 {
+    let rise = high - low;
+    let t = (iso - low) / rise;
+    // Without jumps, so that four are done at once.
+    if (t >= 0.0) & (t <= 1.0) & (rise.abs() < f32::INFINITY) { t } else { 0.5 }
 }
 
 #[cfg(test)]
@@ -270,6 +414,47 @@ mod tests {
             }
         }
         assert!(seen > 100);
+    }
+
+    #[test]
+    fn a_crossing_is_on_its_edge() {
+        assert_eq!(crossing(0.5, 0.0, 1.0), 0.5);
+        assert_eq!(crossing(0.5, 1.0, 0.0), 0.5);
+        assert_eq!(crossing(0.25, 0.0, 1.0), 0.25);
+        assert_eq!(crossing(0.5, 0.5, 0.0), 0.0);
+        assert_eq!(crossing(0.5, f32::NAN, 0.9), 0.5);
+        assert_eq!(crossing(0.5, f32::NEG_INFINITY, 0.9), 0.5);
+        assert_eq!(crossing(0.5, 0.0, f32::INFINITY), 0.5);
+        assert_eq!(crossing(0.5, f32::MIN, f32::MAX), 0.5);
+    }
+
+    #[test]
+    fn the_mean_of_crossings_is_where_they_are() {
+        // Corner 0 alone is inside: a quarter along each of its edges.
+        let mut corners = [0.0; 8];
+        corners[0] = 1.0;
+        let [x, y, z] = mean_crossing(0.75, &corners, &CROSSED_EDGES[1]);
+        assert!([x, y, z].iter().all(|c| (c - 0.25 / 3.0).abs() < 1e-6));
+        // The same at the opposite corner.
+        corners.rotate_left(1);
+        let [x, y, z] = mean_crossing(0.75, &corners, &CROSSED_EDGES[128]);
+        assert!([x, y, z].iter().all(|c| (c - (1.0 - 0.25 / 3.0)).abs() < 1e-6));
+        for signs in 1..255_u8 {
+            let sheets = sheets(signs, 0);
+            let all = (0..sheets.count()).fold(0, |all, sheet| all | sheets.edges(sheet));
+            assert_eq!(all, CROSSED_EDGES[usize::from(signs)].mask);
+        }
+    }
+
+    #[test]
+    fn sheets_at_the_side_of_the_lattice_may_have_no_quads() {
+        // Corner 0 is cut off by the edges 0, 4 and 8, each of which lies on two of the low faces.
+        assert_eq!(sheets_with_quads(1, 0, 0).count(), 1);
+        assert_eq!(sheets_with_quads(1, 0, 0b00_0001).count(), 1);
+        assert_eq!(sheets_with_quads(1, 0, 0b00_0101).count(), 0);
+        // Opposite corners 0 and 7: one sheet is left, and it is the first.
+        let left = sheets_with_quads(0b1000_0001, 0, 0b01_0101);
+        assert_eq!((left.count(), left.of_edge(0), left.of_edge(3)), (1, None, Some(0)));
     }
 
     #[test]

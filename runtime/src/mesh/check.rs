@@ -112,40 +112,83 @@ impl Edges {
 /// Whether every edge of these triangles has exactly two of them, in opposite directions. `vertices` is how many vertices
 /// the triangles may name. No triangles are closed; a triangle with an index out of range or a repeated vertex is not.
 ///
-/// Linear in triangles and vertices, as long as no vertex has very many triangles.
+/// Linear in triangles and vertices, as long as few vertices have very many triangles.
 pub fn is_closed(vertices: usize, triangles: &[[u32; 3]]) -> bool {
-    // The edges are sorted by their smaller ends, by counting; each is its larger end and a bit for the direction.
-    let edges = || triangles.iter().flat_map(|&[p, q, r]| [(p, q), (q, r), (r, p)]);
-    let mut starts = vec![0_usize; vertices + 1];
-    for (from, to) in edges() {
-        if from.max(to) as usize >= vertices {
-            return false;
+    let Some(forward) = Forward::new(vertices, triangles) else { return false };
+    forward.has_opposites(triangles)
+}
+
+/// Ends of edges that are kept with each vertex; more than half of all meshes' vertices have three.
+const SLOTS: usize = 8;
+
+/// The edges that go up, from a vertex to one with a larger number.
+struct Forward {
+    /// For each vertex the ends of its first edges.
+    slots: Vec<[u32; SLOTS]>,
+    /// How many slots each vertex uses.
+    used: Vec<u8>,
+    /// The edges of vertices without a slot left.
+    rest: Vec<[u32; 2]>,
+}
+
+/// The edges of triangles, directed as they go around.
+fn edges(triangles: &[[u32; 3]]) -> impl Iterator<Item = [u32; 2]> {
+    triangles.iter().flat_map(|&[p, q, r]| [[p, q], [q, r], [r, p]])
+}
+
+impl Forward {
+    /// Collects the edges that go up; fails if a triangle names a vertex that does not exist, or one twice.
+    fn new(vertices: usize, triangles: &[[u32; 3]]) -> Option<Self> {
+        let (mut slots, mut used) = (vec![[0; SLOTS]; vertices], vec![0_u8; vertices]);
+        let mut rest = Vec::new();
+        for [from, to] in edges(triangles) {
+            let (low, high) = (from.min(to), from.max(to));
+            if high as usize >= vertices || low == high {
+                return None;
+            }
+            let used = &mut used[low as usize];
+            let is_up = from < to;
+            if usize::from(*used) == SLOTS {
+                if is_up {
+                    rest.push([from, to]);
+                }
+                continue;
+            }
+            // An edge that goes down is overwritten by the next one: that is quicker than to jump half of the time.
+            slots[low as usize][usize::from(*used) % SLOTS] = high;
+            *used += u8::from(is_up);
         }
-        starts[from.min(to) as usize + 1] += 1;
+        Some(Self { slots, used, rest })
     }
-    for vertex in 0..vertices {
-        starts[vertex + 1] += starts[vertex];
+
+    /// Whether the edges that go down are these, turned around, and none of either is there twice.
+    fn has_opposites(mut self, triangles: &[[u32; 3]]) -> bool {
+        let mut seen = vec![0_u8; self.used.len()];
+        let mut is_good = true;
+        let mut rest = Vec::new();
+        for [from, to] in edges(triangles) {
+            let (low, high) = (from.min(to), from.max(to));
+            let slots = &self.slots[low as usize];
+            let used = (1_u32 << self.used[low as usize]) - 1;
+            let is_down = from > to;
+            let found = (0..SLOTS).fold(0, |mask, slot| mask | u32::from(slots[slot] == high) << slot) & used;
+            if found == 0 && usize::from(self.used[low as usize]) == SLOTS {
+                if is_down {
+                    rest.push([to, from]);
+                }
+                continue;
+            }
+            let seen = &mut seen[low as usize];
+            // Just one place, and not for the second time.
+            let is_new = found.is_power_of_two() & (u32::from(*seen) & found == 0);
+            is_good &= is_new | !is_down;
+            *seen |= found as u8 & u8::from(is_down).wrapping_neg();
+        }
+        self.rest.sort_unstable();
+        rest.sort_unstable();
+        let all_seen = seen.iter().zip(&self.used).all(|(seen, used)| seen.count_ones() == u32::from(*used));
+        is_good && all_seen && self.rest == rest && rest.array_windows().all(|[a, b]| a != b)
     }
-    let mut next = starts.clone();
-    let mut ends = vec![0_u64; 3 * triangles.len()];
-    for (from, to) in edges() {
-        let place = &mut next[from.min(to) as usize];
-        ends[*place] = u64::from(from.max(to)) << 1 | u64::from(from > to);
-        *place += 1;
-    }
-    // Sorted, the two directions of each edge stand side by side, and nothing else does.
-    starts
-        .par_windows(2)
-        .with_min_len(1024)
-        .map_init(Vec::new, |sorted: &mut Vec<u64>, range| {
-            sorted.clear();
-            sorted.extend_from_slice(&ends[range[0]..range[1]]);
-            sorted.sort_unstable();
-            let (pairs, rest) = sorted.as_chunks::<2>();
-            rest.is_empty()
-                && pairs.iter().all(|&[forward, backward]| forward & 1 == 0 && backward == forward + 1)
-        })
-        .all(|closed| closed)
 }
 
 /// Checks that triangles form a closed manifold: they are closed as in [`is_closed`], and the triangles at each vertex form
@@ -186,6 +229,56 @@ mod tests {
         assert!(!is_closed(2, &[[0, 0, 1], [0, 1, 0]]));
         let twice = [TETRAHEDRON, TETRAHEDRON].concat();
         assert!(!is_closed(4, &twice));
+    }
+
+    /// Two cones on a ring of vertices, which are more than there are slots: the first vertex is a tip, and has edges up to all others.
+    fn cones(ring: u32) -> Vec<[u32; 3]> {
+        let at = |n: u32| 1 + n % ring;
+        (0..ring).flat_map(|n| [[0, at(n), at(n + 1)], [ring + 1, at(n + 1), at(n)]]).collect()
+    }
+
+    #[test]
+    fn vertices_with_many_triangles_are_checked() {
+        for ring in 3..40 {
+            let cones = cones(ring);
+            let vertices = ring as usize + 2;
+            assert!(is_closed(vertices, &cones));
+            assert_eq!(check_manifold(vertices, &cones), Ok(()));
+            for triangle in 0..cones.len() {
+                let mut other = cones.clone();
+                other[triangle].reverse();
+                assert!(!is_closed(vertices, &other));
+                other.remove(triangle);
+                assert!(!is_closed(vertices, &other));
+                other.push(other[0]);
+                assert!(!is_closed(vertices, &other));
+            }
+            assert!(!is_closed(vertices, &[&cones[..], &cones].concat()));
+        }
+    }
+
+    /// Against the count of every edge.
+    #[test]
+    fn random_triangles_are_closed_if_their_edges_pair() {
+        let mut random = fastrand::Rng::with_seed(7);
+        let mut closed = 0;
+        for _ in 0..20_000 {
+            let mut triangles = TETRAHEDRON.to_vec();
+            for _ in 0..random.usize(0..3) {
+                let (a, b) = (random.usize(0..4), random.usize(0..3));
+                triangles[a][b] = random.u32(0..4);
+            }
+            if random.bool() {
+                triangles
+                    .extend_from_slice(&TETRAHEDRON.map(|triangle| triangle.map(|v| v + random.u32(3..5))));
+            }
+            let count = |edge: [u32; 2]| edges(&triangles).filter(|&other| other == edge).count();
+            let expected = edges(&triangles)
+                .all(|[from, to]| from != to && count([from, to]) == 1 && count([to, from]) == 1);
+            assert_eq!(is_closed(9, &triangles), expected, "{triangles:?}");
+            closed += usize::from(expected);
+        }
+        assert!((100..19_900).contains(&closed), "{closed}");
     }
 
     #[test]

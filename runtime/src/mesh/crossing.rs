@@ -3,204 +3,303 @@
 //! An ambiguous face on which, in both of its cells, both segments lie on one sheet would give an edge of the mesh with four
 //! triangles. Flipping that face re-pairs two segments of one oriented cycle, which always splits the cycle, in both cells.
 //! A flip never joins two sheets, so a face that is good stays good, and one pass over the faces that are bad by default
-//! ends with all faces good. The pass is sequential and in the order of the lattice; such faces are rare.
-
-use std::collections::HashMap;
+//! ends with all faces good. The pass is sequential and in the order of the cells; such faces are rare.
 
 use rayon::prelude::*;
 
-use super::cell::sheets;
-use super::sample::Grid;
+use super::Sides;
+use super::brick::{Bricks, NONE, cell_sides, direction, number, place, split, starts};
+use super::cell::{default_sheets, sheets, sheets_with_quads};
+use super::sample::Samples;
 
 /// A cell that the surface crosses.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cell {
-    /// Its place along x; y and z follow from the row and the layer that it is in.
-    pub(crate) x: u32,
-    /// The vertex of its first sheet; those of the others follow.
+    /// The vertex of its first sheet, counted from the first one of its brick; those of the others follow.
     pub(crate) vertex: u32,
+    /// Its number in its brick, in Morton order.
+    pub(crate) number: u16,
     /// Which corners are inside, a bit each.
     pub(crate) signs: u8,
     /// Which faces are flipped, a bit each.
     pub(crate) flips: u8,
 }
 
-/// The crossing cells with one z.
-pub(crate) struct Layer {
-    /// Where the row of each y begins in `cells`, and where the last one ends.
-    starts: Vec<u32>,
-    /// In the order of y, then x.
-    pub(crate) cells: Vec<Cell>,
-    /// How many vertices are in this layer.
-    pub(crate) vertices: usize,
-}
-
-impl Layer {
-    /// The crossing cells of one y, by ascending x.
-    pub(crate) fn row(&self, y: usize) -> &[Cell] {
-        &self.cells[self.starts[y] as usize..self.starts[y + 1] as usize]
-    }
-
-    fn row_mut(&mut self, y: usize) -> &mut [Cell] {
-        &mut self.cells[self.starts[y] as usize..self.starts[y + 1] as usize]
-    }
-
-    /// The rows, which are as many as there are cells along y.
-    pub(crate) fn rows(&self) -> usize {
-        self.starts.len() - 1
-    }
-}
-
-/// All crossing cells.
+/// All crossing cells, in Morton order.
 pub(crate) struct Crossings {
-    /// One for each z.
-    pub(crate) layers: Vec<Layer>,
-    /// The vertices of all layers. Those of a cell are numbered in 32 bits, which is right only if this fits.
-    pub(crate) vertex_count: u64,
+    pub(crate) cells: Vec<Cell>,
+    /// Where the cells of each brick begin, and where the last ones end.
+    pub(crate) starts: Vec<usize>,
+    /// The same for vertices.
+    pub(crate) vertices: Vec<usize>,
+    /// The same for quads.
+    pub(crate) quads: Vec<usize>,
     /// How many faces are flipped.
     pub(crate) flipped_faces: u64,
+    /// The sides of the lattice with a point inside.
+    pub(crate) cut: Sides,
 }
 
 impl Crossings {
-    /// How many cells the surface crosses.
-    pub(crate) fn cell_count(&self) -> u64 {
-        self.layers.iter().map(|layer| layer.cells.len() as u64).sum()
-    }
-}
-
-/// A face between two cells: the low face of `cell` along `axis`.
-struct Face {
-    cell: [usize; 3],
-    axis: usize,
-}
-
-impl Face {
-    /// The cell below the face.
-    fn neighbour(&self) -> [usize; 3] {
-        let mut cell = self.cell;
-        cell[self.axis] -= 1;
-        cell
+    /// The cells of a brick.
+    pub(crate) fn of(&self, brick: usize) -> &[Cell] {
+        &self.cells[self.starts[brick]..self.starts[brick + 1]]
     }
 
-    /// The number of this face in the upper and in the lower cell.
-    fn sides(&self) -> [usize; 2] {
-        [2 * self.axis, 2 * self.axis + 1]
+    /// How many vertices there are.
+    pub(crate) fn vertex_count(&self) -> usize {
+        self.vertices[self.vertices.len() - 1]
+    }
+
+    /// How many quads there are.
+    pub(crate) fn quad_count(&self) -> usize {
+        self.quads[self.quads.len() - 1]
     }
 }
 
 /// Finds the crossing cells, flips faces, and numbers the vertices.
-pub(crate) fn find(grid: &Grid) -> Crossings {
-    let (mut layers, suspects): (Vec<Layer>, Vec<Vec<Face>>) =
-        (0..grid.cells()[2]).into_par_iter().map(|z| find_layer(grid, z)).unzip();
-    let (flips, flipped_faces) = flip(grid, suspects.into_iter().flatten());
-    for ([x, y, z], mask) in flips {
-        let row = layers[z].row_mut(y);
-        // A flipped face is crossed, and so are the cells on both of its sides.
-        if let Ok(place) = row.binary_search_by_key(&x, |cell| cell.x as usize) {
-            row[place].flips = mask;
-        }
-    }
-    let vertex_count = number(&mut layers);
-    Crossings { layers, vertex_count, flipped_faces }
-}
-
-/// The crossing cells of one layer, and the faces that are bad by default.
-fn find_layer(grid: &Grid, z: usize) -> (Layer, Vec<Face>) {
-    let [_, ny, _] = grid.cells();
-    let mut starts = Vec::with_capacity(ny + 1);
-    let (mut cells, mut suspects) = (Vec::new(), Vec::new());
-    let mut columns = vec![0_u8; grid.points(0)];
-    starts.push(0);
-    for y in 0..ny {
-        find_columns(grid, y, z, &mut columns);
-        for (x, signs) in crossing_signs(&columns) {
-            cells.push(Cell { x: x as u32, vertex: 0, signs, flips: 0 });
-            let cell = [x, y, z];
-            let faces = (0..3).filter(|&axis| cell[axis] > 0).map(|axis| Face { cell, axis });
-            suspects.extend(faces.filter(|face| is_bad_by_default(grid, signs, face)));
-        }
-        // At most MAX_LATTICE_POINTS cells, which is below 2^32.
-        starts.push(cells.len() as u32);
-    }
-    (Layer { starts, cells, vertices: 0 }, suspects)
-}
-
-/// The signs of the points (x, y, z), (x, y + 1, z), (x, y, z + 1) and (x, y + 1, z + 1), in the bits 0, 2, 4 and 6: where the
-/// corners with the low x of a cell stand.
-fn find_columns(grid: &Grid, y: usize, z: usize, columns: &mut [u8]) {
-    let iso = grid.iso;
-    let near = grid.row(y, z).iter().zip(grid.row(y + 1, z));
-    let far = grid.row(y, z + 1).iter().zip(grid.row(y + 1, z + 1));
-    for ((column, (p, q)), (r, s)) in columns.iter_mut().zip(near).zip(far) {
-        *column = u8::from(*p >= iso)
-            | u8::from(*q >= iso) << 2
-            | u8::from(*r >= iso) << 4
-            | u8::from(*s >= iso) << 6;
-    }
-}
-
-/// The cells of a row that the surface crosses, each with its x and its signs.
-fn crossing_signs(columns: &[u8]) -> impl Iterator<Item = (usize, u8)> {
-    /// The signs of a column with all of its points inside.
-    const FULL: u8 = 0b0101_0101;
-    /// Most of a lattice is far from the surface, and is passed in runs of this many cells.
-    const RUN: usize = 16;
-    let cells = columns.len() - 1;
-    let runs = (0..cells).step_by(RUN).map(move |start| (start, &columns[start..=cells.min(start + RUN)]));
-    let mixed = runs.filter(|(_, run)| {
-        let (any, all) = run.iter().fold((0, FULL), |(any, all), column| (any | column, all & column));
-        any != 0 && all != FULL
-    });
-    mixed.flat_map(|(start, run)| {
-        let signs = run.windows(2).map(|pair| pair[0] | pair[1] << 1).enumerate();
-        signs.filter(|&(_, signs)| signs != 0 && signs != u8::MAX).map(move |(x, signs)| (start + x, signs))
-    })
-}
-
-fn is_bad_by_default(grid: &Grid, signs: u8, face: &Face) -> bool {
-    let [upper, lower] = face.sides();
-    sheets(signs, 0).pinched(upper) && sheets(grid.signs(face.neighbour()), 0).pinched(lower)
-}
-
-/// Flips faces until none is bad. Returns the flipped faces of each cell that has any, and how many faces were flipped.
-fn flip(grid: &Grid, suspects: impl Iterator<Item = Face>) -> (HashMap<[usize; 3], u8>, u64) {
-    let mut flips = HashMap::<[usize; 3], u8>::new();
-    let mut count = 0;
-    for face in suspects {
-        let both = [face.cell, face.neighbour()].into_iter().zip(face.sides());
-        // An earlier flip may have split one of the sheets already.
-        let is_bad = both.clone().all(|(cell, side)| {
-            sheets(grid.signs(cell), flips.get(&cell).copied().unwrap_or(0)).pinched(side)
-        });
-        if is_bad {
-            for (cell, side) in both {
-                *flips.entry(cell).or_insert(0) |= 1 << side;
+pub(crate) fn find(bricks: &Bricks, samples: &Samples, iso: f32) -> Crossings {
+    let group = bricks.group();
+    let groups = bricks.len().div_ceil(group);
+    let found = (0..groups).into_par_iter().map_init(
+        || Signs::new(bricks),
+        |signs, index| {
+            let mut found = Found::default();
+            for brick in index * group..bricks.len().min((index + 1) * group) {
+                signs.find(bricks, samples, iso, brick, &mut found);
             }
-            count += 1;
-        }
+            found
+        },
+    );
+    let found: Vec<Found> = found.collect();
+    let mut cells = Vec::with_capacity(found.iter().map(|found| found.cells.len()).sum());
+    let (mut counts, mut suspects, mut cut) = (Vec::new(), Vec::new(), Sides::default());
+    for found in found {
+        suspects.extend(
+            found.suspects.iter().map(|&(brick, cell)| (brick as usize, cells.len() + cell as usize)),
+        );
+        cells.extend_from_slice(&found.cells);
+        counts.extend_from_slice(&found.counts);
+        cut.add(found.cut);
     }
-    (flips, count)
+    let starts = starts(counts.into_iter());
+    let flipped_faces = flip(bricks, &starts, &mut cells, &suspects);
+    let (vertices, quads) = number_vertices(bricks, &starts, &mut cells);
+    Crossings { cells, starts, vertices, quads, flipped_faces, cut }
 }
 
-/// Numbers the vertices in the order of the cells. Returns how many there are.
-fn number(layers: &mut [Layer]) -> u64 {
-    layers.par_iter_mut().for_each(|layer| {
-        let counts = layer.cells.iter().map(|cell| sheets(cell.signs, cell.flips).count() as usize);
-        layer.vertices = counts.sum();
-    });
-    let mut firsts = Vec::with_capacity(layers.len());
-    let mut total = 0_u64;
-    for layer in &*layers {
-        firsts.push(total);
-        total += layer.vertices as u64;
+/// The crossing cells of some bricks.
+#[derive(Default)]
+struct Found {
+    cells: Vec<Cell>,
+    /// How many each brick has.
+    counts: Vec<usize>,
+    /// Cells with a low face that is pinched by default: their bricks, and which of the cells found they are.
+    suspects: Vec<(u32, u32)>,
+    cut: Sides,
+}
+
+/// Room for the signs of one brick.
+struct Signs {
+    table: Vec<f32>,
+    /// For each point of the table a bit: whether it is inside. Then, step by step, those of the points beside it.
+    points: Vec<u8>,
+    pairs: Vec<u8>,
+    /// For each point the signs of the cell above it.
+    cells: Vec<u8>,
+}
+
+impl Signs {
+    fn new(bricks: &Bricks) -> Self {
+        let points = bricks.table_len();
+        let padded = vec![0; points + bricks.stride().pow(2)];
+        Self { table: vec![0.0; points], points: padded.clone(), pairs: padded.clone(), cells: padded }
     }
-    layers.par_iter_mut().zip(firsts).for_each(|(layer, first)| {
-        // It wraps only if the total does not fit, and then the numbers are not used.
-        let mut next = first as u32;
-        for cell in &mut layer.cells {
-            cell.vertex = next;
-            next = next.wrapping_add(sheets(cell.signs, cell.flips).count());
+
+    /// Appends the crossing cells of a brick.
+    fn find(&mut self, bricks: &Bricks, samples: &Samples, iso: f32, brick: usize, found: &mut Found) {
+        samples.gather(bricks, brick, &mut self.table);
+        for (bit, value) in self.points.iter_mut().zip(&self.table) {
+            *bit = u8::from(*value >= iso);
         }
+        let (extent, sides) = (bricks.extent(brick), bricks.sides(brick));
+        if sides != 0 {
+            self.find_cut(bricks, extent, sides, &mut found.cut);
+        }
+        let is_cut = extent.iter().any(|&cells| cells < bricks.edge);
+        let before = found.cells.len();
+        if is_cut || self.is_mixed() {
+            self.join(bricks.stride());
+            if is_cut {
+                self.clear_beyond(bricks.stride(), extent);
+            }
+            self.push_cells(bricks, brick, found);
+        }
+        found.counts.push(found.cells.len() - before);
+    }
+
+    /// Whether some points are inside and some are not.
+    fn is_mixed(&self) -> bool {
+        let points = &self.points[..self.table.len()];
+        let (any, all) = points.iter().fold((0, 1), |(any, all), bit| (any | bit, all & bit));
+        any != all
+    }
+
+    /// The signs of all cells, from those of the points: first pairs along x, then squares, then cubes.
+    fn join(&mut self, stride: usize) {
+        let count = self.table.len();
+        join::<1>(&self.points, 1, &mut self.cells[..count]);
+        join::<2>(&self.cells, stride, &mut self.pairs[..count]);
+        join::<4>(&self.pairs, stride * stride, &mut self.cells[..count]);
+    }
+
+    /// Where the lattice ends there are no cells.
+    fn clear_beyond(&mut self, stride: usize, extent: [usize; 3]) {
+        for (index, signs) in self.cells.iter_mut().enumerate() {
+            let place = [index % stride, index / stride % stride, index / (stride * stride)];
+            if (0..3).any(|axis| place[axis] >= extent[axis]) {
+                *signs = 0;
+            }
+        }
+    }
+
+    /// The sides of the lattice on which this brick has a point inside.
+    fn find_cut(&self, bricks: &Bricks, extent: [usize; 3], sides: u8, cut: &mut Sides) {
+        let stride = bricks.stride();
+        for axis in 0..3 {
+            let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
+            let steps = [1, stride, stride * stride];
+            let any = |index: usize| {
+                (0..=extent[c]).any(|k| {
+                    (0..=extent[b])
+                        .any(|j| self.points[index * steps[axis] + j * steps[b] + k * steps[c]] == 1)
+                })
+            };
+            cut.low[axis] |= sides >> (2 * axis) & 1 == 1 && any(0);
+            cut.high[axis] |= sides >> (2 * axis + 1) & 1 == 1 && any(extent[axis]);
+        }
+    }
+
+    fn push_cells(&self, bricks: &Bricks, brick: usize, found: &mut Found) {
+        let stride = bricks.stride();
+        let layer = stride * stride;
+        for (octet, &base) in bricks.octets().iter().enumerate() {
+            let cells = &self.cells[base as usize..][..layer + stride + 2];
+            let pairs = [0, stride, layer, layer + stride]
+                .map(|at| u64::from(u16::from_le_bytes([cells[at], cells[at + 1]])));
+            let signs = pairs[0] | pairs[1] << 16 | pairs[2] << 32 | pairs[3] << 48;
+            // Most cells are on one side of the surface, and so are the seven beside them.
+            if signs == 0 || signs == u64::MAX {
+                continue;
+            }
+            for (rest, signs) in (0..).zip(signs.to_le_bytes()) {
+                if signs == 0 || signs == u8::MAX {
+                    continue;
+                }
+                if default_sheets(signs).pinched_low() {
+                    found.suspects.push((brick as u32, found.cells.len() as u32));
+                }
+                let number = (octet as u16) << 3 | rest;
+                found.cells.push(Cell { vertex: 0, number, signs, flips: 0 });
+            }
+        }
+    }
+}
+
+/// Joins to the bits at each place, of which there are `WIDTH`, those at the place a step further on.
+fn join<const WIDTH: usize>(bits: &[u8], step: usize, joined: &mut [u8]) {
+    for ((joined, near), far) in joined.iter_mut().zip(bits).zip(&bits[step..]) {
+        *joined = near | far << WIDTH;
+    }
+}
+
+/// Flips faces until none is bad. Returns how many were flipped.
+fn flip(bricks: &Bricks, starts: &[usize], cells: &mut [Cell], suspects: &[(usize, usize)]) -> u64 {
+    let mut count = 0;
+    for &(brick, upper) in suspects {
+        for axis in 0..3 {
+            // An earlier flip may have split one of the sheets already.
+            let pinched = |cells: &[Cell], cell: usize, face: usize| {
+                let Cell { signs, flips, .. } = cells[cell];
+                sheets(signs, flips).pinched(face)
+            };
+            if !pinched(cells, upper, 2 * axis) {
+                continue;
+            }
+            let Some(lower) = below(bricks, starts, cells, brick, upper, axis) else { continue };
+            if pinched(cells, lower, 2 * axis + 1) {
+                cells[upper].flips |= 1 << (2 * axis);
+                cells[lower].flips |= 1 << (2 * axis + 1);
+                count += 1;
+            }
+        }
+    }
+    count
+}
+
+/// The crossing cell below a crossing cell of a brick, if the lattice goes on there and the surface crosses it.
+fn below(
+    bricks: &Bricks,
+    starts: &[usize],
+    cells: &[Cell],
+    brick: usize,
+    cell: usize,
+    axis: usize,
+) -> Option<usize> {
+    let mut place = place(cells[cell].number);
+    let mut brick = brick;
+    if place[axis] == 0 {
+        let mut step = [0; 3];
+        step[axis] = -1;
+        let other = bricks.neighbours[brick][direction(step)];
+        if other == NONE {
+            return None;
+        }
+        (brick, place[axis]) = (other as usize, bricks.edge);
+    }
+    place[axis] -= 1;
+    let range = starts[brick]..starts[brick + 1];
+    let found = cells[range.clone()].binary_search_by_key(&number(place), |cell| cell.number);
+    found.ok().map(|index| range.start + index)
+}
+
+/// Numbers the vertices of each brick in the order of its cells. Returns where the vertices and the quads of bricks begin.
+fn number_vertices(
+    bricks: &Bricks,
+    starts_of_cells: &[usize],
+    cells: &mut [Cell],
+) -> (Vec<usize>, Vec<usize>) {
+    let group = bricks.group();
+    let groups = split(cells, starts_of_cells, group, 1);
+    let counts = groups.into_par_iter().enumerate().flat_map_iter(|(index, mut cells)| {
+        let first = index * group;
+        (first..bricks.len().min(first + group)).map(move |brick| {
+            let count = starts_of_cells[brick + 1] - starts_of_cells[brick];
+            let (mine, rest) = std::mem::take(&mut cells).split_at_mut(count);
+            cells = rest;
+            number_brick(bricks, brick, mine)
+        })
     });
-    total
+    let (vertices, quads): (Vec<usize>, Vec<usize>) = counts.unzip();
+    (starts(vertices.into_iter()), starts(quads.into_iter()))
+}
+
+/// Numbers the vertices of a brick, and counts them and the quads.
+fn number_brick(bricks: &Bricks, brick: usize, cells: &mut [Cell]) -> (usize, usize) {
+    let (sides, extent) = (bricks.sides(brick), bricks.extent(brick));
+    let (mut vertices, mut quads) = (0, 0);
+    for cell in cells {
+        cell.vertex = vertices;
+        let differs = |corner: u8| usize::from((cell.signs ^ cell.signs >> corner) & 1);
+        if sides == 0 && cell.flips == 0 {
+            vertices += default_sheets(cell.signs).count();
+            quads += differs(1) + differs(2) + differs(4);
+            continue;
+        }
+        let sides = cell_sides(sides, extent, place(cell.number));
+        vertices += sheets_with_quads(cell.signs, cell.flips, sides).count();
+        let [x, y, z] = [0, 2, 4].map(|side| usize::from(sides >> side & 1 == 0));
+        quads += differs(1) * y * z + differs(2) * z * x + differs(4) * x * y;
+    }
+    (vertices as usize, quads)
 }

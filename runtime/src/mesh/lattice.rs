@@ -41,7 +41,7 @@ pub enum LatticeError {
         /// The number that was asked for; `usize::MAX` stands for more than that.
         cells: usize,
     },
-    /// More points than [`MAX_LATTICE_POINTS`].
+    /// More points than [`MAX_LATTICE_POINTS`], where all are to be visited.
     #[error("{} x {} x {} cells have more than {MAX_LATTICE_POINTS} corners", cells[0], cells[1], cells[2])]
     TooManyPoints {
         /// Cells along x, y and z.
@@ -65,8 +65,7 @@ fn axis_name(axis: usize) -> &'static str {
 
 /// A box of equal cubic cells, `cells[0] x cells[1] x cells[2]`, with its first corner at `origin`.
 ///
-/// A value of this type is within every limit: at most [`MAX_RESOLUTION`] cells along an axis, at most
-/// [`MAX_LATTICE_POINTS`] corners, and strictly increasing finite f32 coordinates.
+/// A value of this type has at most [`MAX_RESOLUTION`] cells along an axis, and strictly increasing finite f32 coordinates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lattice {
     origin: [f64; 3],
@@ -92,10 +91,6 @@ impl Lattice {
             }
         }
         let lattice = Lattice { origin, spacing, cells };
-        let points = cells.iter().try_fold(1_usize, |product, cells| product.checked_mul(cells + 1));
-        if points.is_none_or(|points| points > MAX_LATTICE_POINTS) {
-            return Err(LatticeError::TooManyPoints { cells });
-        }
         for axis in 0..3 {
             lattice.check_axis(axis)?;
         }
@@ -150,9 +145,18 @@ impl Lattice {
         self.cells.map(|cells| cells + 1)
     }
 
-    /// All corners.
-    pub fn point_count(&self) -> usize {
-        self.points().iter().product()
+    /// All corners: up to about 2^60.
+    pub fn point_count(&self) -> u64 {
+        self.points().iter().map(|&points| points as u64).product()
+    }
+
+    /// Whether all corners may be visited.
+    ///
+    /// # Errors
+    /// [`LatticeError::TooManyPoints`] if there are more than [`MAX_LATTICE_POINTS`].
+    pub fn check_points(&self) -> Result<(), LatticeError> {
+        let few = self.point_count() <= MAX_LATTICE_POINTS as u64;
+        if few { Ok(()) } else { Err(LatticeError::TooManyPoints { cells: self.cells }) }
     }
 
     /// The coordinate of the corners with this index along an axis (0, 1 or 2).
@@ -169,6 +173,11 @@ impl Lattice {
         let mut last = self.coordinate(axis, 0);
         if !last.is_finite() || !self.coordinate(axis, self.cells[axis]).is_finite() {
             return Err(LatticeError::NotFinite);
+        }
+        // Neighbours that are at least two steps of f32 apart, where its steps are widest, are still apart when both are rounded.
+        let farthest = last.abs().max(self.coordinate(axis, self.cells[axis]).abs());
+        if self.spacing >= 2.0 * f64::from(farthest.next_up() - farthest) {
+            return Ok(());
         }
         for index in 1..=self.cells[axis] {
             let coordinate = self.coordinate(axis, index);
@@ -201,6 +210,7 @@ mod tests {
         assert_eq!(lattice.cells(), [10, 11, 16]);
         assert_eq!(lattice.points(), [11, 12, 17]);
         assert_eq!(lattice.point_count(), 11 * 12 * 17);
+        assert!(lattice.check_points().is_ok());
         assert_eq!(lattice.coordinate(0, 0), -1.0);
         assert_eq!(Lattice::with_resolution([0.0; 3], [1.0, 3.0, 2.0], 30).unwrap().cells(), [10, 30, 20]);
     }
@@ -208,17 +218,19 @@ mod tests {
     #[test]
     fn limits_hold_at_their_value_and_one_past_it() {
         let cells = |cells| Lattice::new([0.0; 3], 0.5, cells).map(|lattice| lattice.point_count());
-        assert_eq!(cells([1023; 3]), Ok(MAX_LATTICE_POINTS));
-        assert_eq!(cells([1024, 1023, 1023]), Err(LatticeError::TooManyPoints { cells: [1024, 1023, 1023] }));
+        assert_eq!(cells([4096; 3]), Ok(4097_u64.pow(3)));
+        let checked = |cells| Lattice::new([0.0; 3], 0.5, cells).and_then(|lattice| lattice.check_points());
+        assert_eq!(checked([1023; 3]), Ok(()));
+        assert_eq!(
+            checked([1024, 1023, 1023]),
+            Err(LatticeError::TooManyPoints { cells: [1024, 1023, 1023] })
+        );
         assert!(cells([MAX_RESOLUTION, 1, 1]).is_ok());
         let error = LatticeError::Cells { axis: 1, cells: MAX_RESOLUTION + 1 };
         assert_eq!(cells([1, MAX_RESOLUTION + 1, 1]), Err(error));
         assert_eq!(cells([1, 1, usize::MAX]), Err(LatticeError::Cells { axis: 2, cells: usize::MAX }));
         assert_eq!(cells([1, 1, 0]), Err(LatticeError::Cells { axis: 2, cells: 0 }));
-        assert_eq!(
-            cells([MAX_RESOLUTION; 3]),
-            Err(LatticeError::TooManyPoints { cells: [MAX_RESOLUTION; 3] })
-        );
+        assert_eq!(cells([MAX_RESOLUTION; 3]), Ok((MAX_RESOLUTION as u64 + 1).pow(3)));
     }
 
     #[test]

@@ -11,26 +11,36 @@
 //! In pseudo-code:
 //!
 //! ```text
-//!     field  = evaluate every lattice point once, brick by brick                            (sample)
+//!     bricks = divide the lattice; drop boxes that are inside or outside as a whole         (divide)
+//!     field  = evaluate every point of a brick once, also those that bricks share           (brick, sample)
 //!     cells  = the cells that the surface crosses, from their eight signs                   (crossing)
 //!     faces  = flip the few ambiguous faces that would pinch the mesh                       (crossing, cell)
-//!     quads  = one for each crossed edge, through the four cells around it                  (surface)
 //!     vertex = mean of its sheet's crossings, pulled onto the surface by Newton's step,
-//!              kept in its cell; then normal and attributes, once                           (vertex)
-//!     split each quad along its shorter diagonal; check that the mesh is closed             (surface, check)
+//!              kept in its cell; normal and attributes                                      (vertex, pull)
+//!              those that a crease keeps off the surface are brought onto it                (settle)
+//!     quads  = one for each crossed edge, through the four cells around it,
+//!              split along its shorter diagonal                                             (surface)
+//!     check that the mesh is closed                                                         (check)
 //! ```
+//!
+//! No point is evaluated twice, and nothing is asked about a box without surface but its range. So time and memory grow with
+//! the surface, and not with the lattice: one of 4096^3 cells takes about 16 times as long as one of 1024^3.
 //!
 //! A cell that two sheets pass through has two vertices (Nielson 2004), so they do not touch there. What remains is a face
 //! that both neighbours see twice from one sheet; such a face is resolved the other way, which splits both sheets (after the
 //! rule of Wenger 2013, "Isosurfaces", for manifold dual contours). The mesh is closed and manifold wherever the surface stays inside
 //! the lattice, for any field, also for one that is noise. The result is the same to the bit for every thread count and
-//! every brick size.
+//! every brick size: cells are in Morton order, in which bricks of any power of two stand one after the other.
 
+mod brick;
 mod cell;
 mod check;
 mod crossing;
+mod divide;
+mod field;
 mod lattice;
 mod progress;
+mod pull;
 mod sample;
 mod settle;
 mod surface;
@@ -39,66 +49,25 @@ mod vertex;
 use std::error::Error;
 use std::fmt;
 
-use jbt_ir::limits::MAX_ATTRIBUTE_WIDTH;
+use jbt_ir::limits::{MAX_ATTRIBUTE_WIDTH, MAX_BRICKS};
 use thiserror::Error;
 
 pub use check::{Defect, check_manifold, is_closed};
+pub use field::Field;
 pub use lattice::{Lattice, LatticeError};
 
 pub(crate) use surface::facet_normal;
 
+use divide::Division;
 use progress::Progress;
+use vertex::Source;
 
+/// The smallest [`Options::brick`].
+pub const MIN_BRICK: usize = 2;
 /// The largest [`Options::brick`].
-pub const MAX_BRICK: usize = 128;
+pub const MAX_BRICK: usize = 32;
 /// The largest [`Options::pulls`]. Newton's step has converged long before.
 pub const MAX_PULLS: usize = 64;
-
-/// What the mesher asks of a field. All slices of one call have the same length, which is at least 1 and otherwise free.
-///
-/// The mesher calls from many threads at once. An answer must depend on its own point only, and not on the points beside it;
-/// then the mesh does not depend on how the points were grouped.
-pub trait Field: Sync {
-    /// What can go wrong with an evaluation.
-    type Error: Error + Send + 'static;
-
-    /// The names and widths (1 to 4 reals) of the attributes that [`Field::all`] answers, in its order.
-    fn attributes(&self) -> Vec<(String, usize)>;
-
-    /// The field at each point. Inside is `field >= iso`; NaN is outside.
-    ///
-    /// # Errors
-    /// Whatever the evaluation reports; the mesher stops and hands it on.
-    fn field(&self, x: &[f32], y: &[f32], z: &[f32], field: &mut [f32]) -> Result<(), Self::Error>;
-
-    /// The field and its gradient at each point, to pull vertices onto the surface.
-    ///
-    /// # Errors
-    /// As [`Field::field`].
-    fn gradient(
-        &self,
-        x: &[f32],
-        y: &[f32],
-        z: &[f32],
-        field: &mut [f32],
-        gradient: [&mut [f32]; 3],
-    ) -> Result<(), Self::Error>;
-
-    /// The field, its gradient and every attribute at each point: once for each vertex. There is one plane for each real of
-    /// each attribute, in the order of [`Field::attributes`].
-    ///
-    /// # Errors
-    /// As [`Field::field`].
-    fn all(
-        &self,
-        x: &[f32],
-        y: &[f32],
-        z: &[f32],
-        field: &mut [f32],
-        gradient: [&mut [f32]; 3],
-        attributes: &mut [&mut [f32]],
-    ) -> Result<(), Self::Error>;
-}
 
 /// How to mesh. The number of threads is that of the rayon pool in which [`extract`] is called.
 #[derive(Clone, Debug, PartialEq)]
@@ -108,14 +77,15 @@ pub struct Options {
     /// Newton steps that pull each vertex onto the surface, 0 to [`MAX_PULLS`]. Each costs a gradient per vertex and about
     /// squares the distance that is left, in units of the radius of curvature; two suffice for a smooth field.
     pub pulls: usize,
-    /// Lattice points along the edge of the bricks in which the field is asked, 1 to [`MAX_BRICK`]. It changes the speed only.
+    /// Cells along the edge of the bricks at which division ends: a power of two from [`MIN_BRICK`] to [`MAX_BRICK`]. Small ones waste fewer points
+    /// far from the surface, large ones fewer calls. It changes what is evaluated, but no bit of the mesh.
     pub brick: usize,
 }
 
 impl Default for Options {
-    /// Iso 0.5, two pulls, bricks of 16.
+    /// Iso 0.5, two pulls, bricks of 8^3 cells.
     fn default() -> Self {
-        Options { iso: 0.5, pulls: 2, brick: 16 }
+        Options { iso: 0.5, pulls: 2, brick: 8 }
     }
 }
 
@@ -153,6 +123,13 @@ pub struct Sides {
 }
 
 impl Sides {
+    fn add(&mut self, other: Self) {
+        for axis in 0..3 {
+            self.low[axis] |= other.low[axis];
+            self.high[axis] |= other.high[axis];
+        }
+    }
+
     /// Whether any side is among them.
     pub fn any(self) -> bool {
         self.low.iter().chain(&self.high).any(|&side| side)
@@ -184,12 +161,20 @@ pub struct Report {
     pub closed: bool,
     /// The sides of the lattice that cut the body: some lattice point on that side is inside. Without any, the mesh is closed.
     pub cut_sides: Sides,
-    /// Points at which the field alone was evaluated: the points of the lattice, once each.
+    /// Boxes whose range was asked, to find the bricks.
+    pub boxes: u64,
+    /// Those that were dropped because they are inside as a whole.
+    pub boxes_inside: u64,
+    /// Those that were dropped because they are outside as a whole.
+    pub boxes_outside: u64,
+    /// Bricks that were left and sampled.
+    pub bricks: u64,
+    /// Points at which the field alone was evaluated: the lattice points of the bricks, once each.
     pub field_evaluations: u64,
-    /// Points at which field and gradient were evaluated: with any pulls, one more than that for each
-    /// vertex, and some more for those that a crease keeps off the surface.
+    /// Points at which field and gradient were evaluated: at each vertex once for each pull, and some more for those that a crease keeps off the surface.
     pub gradient_evaluations: u64,
-    /// Points at which everything was evaluated: once for each vertex.
+    /// Points at which everything was evaluated: once for each vertex, and once more for those that a crease has kept off
+    /// the surface.
     pub full_evaluations: u64,
     /// Cells that the surface crosses.
     pub crossing_cells: u64,
@@ -212,8 +197,10 @@ pub enum MeshError<E: Error + 'static> {
         /// What was asked for.
         iso: f32,
     },
-    /// A brick of no points, or of more than [`MAX_BRICK`] along an edge.
-    #[error("a brick has from 1 to {MAX_BRICK} points along an edge, and {brick} were asked for")]
+    /// The edge of a brick is no power of two, or not from [`MIN_BRICK`] to [`MAX_BRICK`].
+    #[error(
+        "the edge of a brick is a power of two from {MIN_BRICK} to {MAX_BRICK}, and {brick} was asked for"
+    )]
     Brick {
         /// What was asked for.
         brick: usize,
@@ -232,10 +219,16 @@ pub enum MeshError<E: Error + 'static> {
         /// Its width.
         width: usize,
     },
-    /// The memory for the field on the lattice (4 bytes a point) is not to be had.
+    /// More bricks, or boxes of one larger size, than [`MAX_BRICKS`].
+    #[error("the surface passes through more than {limit} bricks of the lattice")]
+    TooManyBricks {
+        /// How many there may be.
+        limit: usize,
+    },
+    /// The memory for the field at the points of the bricks (4 bytes a point) is not to be had.
     #[error("there is no memory for the field at {points} lattice points")]
     Memory {
-        /// The points of the lattice.
+        /// How many points there are.
         points: usize,
     },
     /// More vertices than a u32 can number.
@@ -248,10 +241,14 @@ pub enum MeshError<E: Error + 'static> {
 
 /// Meshes the surface `field = iso` over a lattice.
 ///
-/// Vertices are in the order of their cells (x fastest, then y, then z), and a vertex stays in its closed cell.
+/// Vertices are in the order of their cells, which is Morton order (the bits of z, y and x interleaved, that of x lowest); triangles are in the order of the
+/// last cell that they touch. A vertex stays in its closed cell.
 ///
 /// # Errors
 /// See [`MeshError`].
+///
+/// # Panics
+/// If the field does not keep its promises: that it gives each box a region, and that it is within its ranges.
 pub fn extract<F: Field>(
     field: &F,
     lattice: &Lattice,
@@ -275,38 +272,49 @@ pub fn extract_with_progress<F: Field>(
 ) -> Result<(Mesh, Report), MeshError<F::Error>> {
     check_options(options)?;
     let progress = Progress::new(hook);
-    let grid = sample::sample(field, lattice, options, &progress)?;
-    let crossings = crossing::find(&grid);
-    let cut_sides = grid.cut_sides();
-    let mut report = Report {
-        cut_sides,
-        field_evaluations: lattice.point_count() as u64,
-        crossing_cells: crossings.cell_count(),
-        flipped_faces: crossings.flipped_faces,
-        ..Report::default()
-    };
-    let count = crossings.vertex_count;
-    if count > u64::from(u32::MAX) {
-        return Err(MeshError::TooManyVertices { vertices: count });
-    }
-
-    let mut quads = surface::quads(&crossings);
-    let mut vertices = vertex::start(&grid, &crossings);
-    if cut_sides.any() {
-        // Where the lattice cuts the body, a sheet may have lost all of its quads.
-        surface::drop_unused(&mut vertices, &mut quads);
-    }
-    let axes = grid.axes;
-    drop((grid.field, crossings));
-
-    report.full_evaluations = vertices.len() as u64;
-    let (mut mesh, gradient_evaluations) = vertex::finish(field, &axes, options, vertices, &progress)?;
-    report.gradient_evaluations = gradient_evaluations;
-    mesh.triangles = surface::triangles(&mesh.positions, &quads);
-    drop(quads);
-    surface::repair_normals(&mut mesh);
+    let division = divide::divide(field, lattice.axes(), options, MAX_BRICKS, &progress)?;
+    let (mesh, mut report) = polygonize(field, &division, options, &progress)?;
+    drop(division);
     report.closed = is_closed(mesh.positions.len(), &mesh.triangles);
     progress.finish()?;
+    Ok((mesh, report))
+}
+
+/// Meshes the bricks of a lattice.
+fn polygonize<F: Field>(
+    field: &F,
+    division: &Division<F::Region>,
+    options: &Options,
+    progress: &Progress<'_>,
+) -> Result<(Mesh, Report), MeshError<F::Error>> {
+    let Division { bricks, regions, boxes } = division;
+    let samples = sample::sample(field, bricks, regions, progress)?;
+    let crossings = crossing::find(bricks, &samples, options.iso);
+    let count = crossings.vertex_count();
+    if u32::try_from(count).is_err() {
+        return Err(MeshError::TooManyVertices { vertices: count as u64 });
+    }
+    let source = Source { field, options, bricks, regions, samples: &samples, crossings: &crossings };
+    let (mut mesh, done) = vertex::finish(&source, progress)?;
+    let mut report = Report {
+        cut_sides: crossings.cut,
+        boxes: boxes.examined,
+        boxes_inside: boxes.inside,
+        boxes_outside: boxes.outside,
+        bricks: bricks.len() as u64,
+        field_evaluations: samples.len() as u64,
+        gradient_evaluations: done.gradient_evaluations,
+        full_evaluations: done.full_evaluations,
+        crossing_cells: crossings.cells.len() as u64,
+        flipped_faces: crossings.flipped_faces,
+        closed: false,
+    };
+    report.cut_sides.add(boxes.cut);
+    drop(samples);
+    mesh.triangles = surface::triangles(bricks, &crossings, &mesh.positions);
+    if done.lacks_normals {
+        surface::repair_normals(&mut mesh);
+    }
     Ok((mesh, report))
 }
 
@@ -315,7 +323,7 @@ fn check_options<E: Error + 'static>(options: &Options) -> Result<(), MeshError<
     if !iso.is_finite() {
         return Err(MeshError::Iso { iso });
     }
-    if brick == 0 || brick > MAX_BRICK {
+    if !brick.is_power_of_two() || !(MIN_BRICK..=MAX_BRICK).contains(&brick) {
         return Err(MeshError::Brick { brick });
     }
     if pulls > MAX_PULLS {

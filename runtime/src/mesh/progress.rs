@@ -5,16 +5,26 @@ use std::sync::{Mutex, PoisonError};
 
 use super::MeshError;
 
-/// The share of the lattice in the whole work; the vertices are the rest. A guess, for a progress bar.
-const LATTICE_SHARE: f32 = 0.8;
-
-/// The two parts of the work that take long and are divided among threads.
+/// The parts of the work that take long and are divided among threads.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Phase {
-    /// The field at the lattice points.
+    /// The boxes of the lattice.
+    Divide,
+    /// The field at the points of bricks.
     Lattice,
     /// Everything at the vertices.
     Vertices,
+}
+
+impl Phase {
+    /// Where it begins and ends in the whole work. A guess, for a progress bar.
+    fn span(self) -> [f32; 2] {
+        match self {
+            Phase::Divide => [0.0, 0.1],
+            Phase::Lattice => [0.1, 0.6],
+            Phase::Vertices => [0.6, 1.0],
+        }
+    }
 }
 
 /// Counts finished pieces of work and tells the hook.
@@ -26,11 +36,13 @@ pub(crate) struct Progress<'a> {
 struct State<'a> {
     hook: &'a mut (dyn FnMut(f32) -> bool + Send),
     done: usize,
+    fraction: f32,
     cancelled: bool,
 }
 
 impl State<'_> {
     fn tell<E: Error + 'static>(&mut self, fraction: f32) -> Result<(), MeshError<E>> {
+        self.fraction = fraction;
         // A hook that has said to stop is not asked again.
         self.cancelled = self.cancelled || !(self.hook)(fraction);
         if self.cancelled { Err(MeshError::Cancelled) } else { Ok(()) }
@@ -39,34 +51,37 @@ impl State<'_> {
 
 impl<'a> Progress<'a> {
     pub(crate) fn new(hook: &'a mut (dyn FnMut(f32) -> bool + Send)) -> Self {
-        Progress { state: Mutex::new(State { hook, done: 0, cancelled: false }) }
+        Progress { state: Mutex::new(State { hook, done: 0, fraction: 0.0, cancelled: false }) }
+    }
+
+    fn with<T>(&self, act: impl FnOnce(&mut State<'a>) -> T) -> T {
+        act(&mut self.state.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
     /// Begins a part of the work.
     pub(crate) fn begin<E: Error + 'static>(&self, phase: Phase) -> Result<(), MeshError<E>> {
-        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
-        state.done = 0;
-        state.tell(fraction(phase, 0, 1))
+        self.with(|state| {
+            state.done = 0;
+            state.tell(phase.span()[0])
+        })
     }
 
     /// Counts one more finished piece out of `total` of this part.
     pub(crate) fn advance<E: Error + 'static>(&self, phase: Phase, total: usize) -> Result<(), MeshError<E>> {
-        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
-        state.done += 1;
-        let done = state.done;
-        state.tell(fraction(phase, done, total))
+        self.with(|state| {
+            state.done += 1;
+            let [start, end] = phase.span();
+            state.tell(start + (end - start) * (state.done as f32 / total as f32))
+        })
+    }
+
+    /// Asks whether to go on, where no number of pieces is known.
+    pub(crate) fn check<E: Error + 'static>(&self) -> Result<(), MeshError<E>> {
+        self.with(|state| state.tell(state.fraction))
     }
 
     /// All is done.
     pub(crate) fn finish<E: Error + 'static>(&self) -> Result<(), MeshError<E>> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner).tell(1.0)
-    }
-}
-
-fn fraction(phase: Phase, done: usize, total: usize) -> f32 {
-    let part = done as f32 / total as f32;
-    match phase {
-        Phase::Lattice => LATTICE_SHARE * part,
-        Phase::Vertices => LATTICE_SHARE + (1.0 - LATTICE_SHARE) * part,
+        self.with(|state| state.tell(1.0))
     }
 }

@@ -1,97 +1,160 @@
-//! The field at every lattice point, once each, in bricks and on all threads.
+//! The field at the points of bricks, each once: who owns a point that bricks share, and how the others get it.
+//!
+//! ```text
+//!     +-------+-------+          A point on the sides of bricks touches up to eight of them. Its owner is the first that
+//!     |       |       |          is there: the brick above it along every axis; then the others in a fixed order.
+//!     |   c   p   d   |
+//!     |       |       |          Here p belongs to d; or to c, if d was dropped. So a brick owns all points of its
+//!     +-------q-------+          half-open box, and those on its high sides that are nobody else's: its rim.
+//!     |       |       |
+//!     |   a   |   b   |          q belongs to d, else to c, b, a.
+//!     +-------+-------+
+//! ```
+//!
+//! On each axis a point of a brick is low (the first), in the middle, or high (the first of the next brick). That makes 27 *classes* of
+//! points, for each of which the order of preference is known when this crate is compiled.
 
 use rayon::prelude::*;
 
+use super::MeshError;
+use super::brick::{Bricks, NONE, SELF, direction, split, starts};
+use super::field::Field;
 use super::progress::{Phase, Progress};
-use super::{Field, Lattice, MeshError, Options, Sides};
 
-/// The field on a lattice.
-pub(crate) struct Grid {
-    /// The coordinates of the points along x, y and z.
-    pub(crate) axes: [Vec<f32>; 3],
-    /// The field at the points, x fastest, then y, then z.
-    pub(crate) field: Vec<f32>,
-    /// Inside is `field >= iso`.
-    pub(crate) iso: f32,
+/// Marks a class of points that a brick does not own.
+const FOREIGN: u16 = u16::MAX;
+
+/// Low, middle or high along each axis.
+type Kinds = [u8; 3];
+const LOW: u8 = 0;
+const MIDDLE: u8 = 1;
+const HIGH: u8 = 2;
+
+/// A brick that may own the points of a class: where it is, and what the points are for it.
+#[derive(Clone, Copy)]
+struct Candidate {
+    direction: u8,
+    kinds: Kinds,
 }
 
-impl Grid {
-    /// Points along an axis.
-    pub(crate) fn points(&self, axis: usize) -> usize {
-        self.axes[axis].len()
-    }
+/// Points of a brick with one kind along each axis.
+#[derive(Clone, Copy)]
+struct Class {
+    kinds: Kinds,
+    /// In the order of preference, up to the brick itself.
+    candidates: [Candidate; 8],
+    count: usize,
+    /// The directions of all candidates but the brick itself, a bit each.
+    before: u32,
+}
 
-    /// Cells along x, y and z.
-    pub(crate) fn cells(&self) -> [usize; 3] {
-        [0, 1, 2].map(|axis| self.points(axis) - 1)
+/// All classes; that of kinds `(a, b, c)` is `a + 3 b + 9 c`.
+static CLASSES: [Class; 27] = {
+    let itself = Candidate { direction: SELF as u8, kinds: [LOW; 3] };
+    let empty = Class { kinds: [LOW; 3], candidates: [itself; 8], count: 0, before: 0 };
+    let mut classes = [empty; 27];
+    let mut number = 0;
+    while number < 27 {
+        classes[number] = class([(number % 3) as u8, (number / 3 % 3) as u8, (number / 9) as u8], empty);
+        number += 1;
     }
+    classes
+};
 
-    /// The field along the points (., y, z).
-    pub(crate) fn row(&self, y: usize, z: usize) -> &[f32] {
-        let length = self.points(0);
-        let start = (z * self.points(1) + y) * length;
-        &self.field[start..start + length]
-    }
-
-    /// The field at the corners of a cell; corner `a + 2 b + 4 c` is `cell + [a, b, c]`.
-    pub(crate) fn corners(&self, [x, y, z]: [usize; 3]) -> [f32; 8] {
-        let [p, q, r, s] = [self.row(y, z), self.row(y + 1, z), self.row(y, z + 1), self.row(y + 1, z + 1)];
-        [p[x], p[x + 1], q[x], q[x + 1], r[x], r[x + 1], s[x], s[x + 1]]
-    }
-
-    /// Which corners of a cell are inside, a bit each.
-    pub(crate) fn signs(&self, cell: [usize; 3]) -> u8 {
-        let corners = self.corners(cell).into_iter().enumerate();
-        corners.fold(0, |signs, (corner, field)| signs | u8::from(field >= self.iso) << corner)
-    }
-
-    /// The sides of the lattice with a point inside.
-    pub(crate) fn cut_sides(&self) -> Sides {
-        let [_, ny, nz] = self.cells();
-        let mut sides = Sides::default();
-        for z in 0..=nz {
-            for y in 0..=ny {
-                let row = self.row(y, z);
-                sides.low[0] |= row[0] >= self.iso;
-                sides.high[0] |= row[row.len() - 1] >= self.iso;
-                if y == 0 || y == ny || z == 0 || z == nz {
-                    let any = row.iter().any(|&field| field >= self.iso);
-                    sides.low[1] |= any && y == 0;
-                    sides.high[1] |= any && y == ny;
-                    sides.low[2] |= any && z == 0;
-                    sides.high[2] |= any && z == nz;
-                }
+const fn class(kinds: Kinds, empty: Class) -> Class {
+    let mut class = Class { kinds, ..empty };
+    // The brick above along every axis comes first; a bit of `below` takes the one below along an axis instead.
+    let mut below = 0;
+    while below < 8 {
+        let (mut steps, mut seen, mut exists) = ([0_i8; 3], kinds, true);
+        let mut axis = 0;
+        while axis < 3 {
+            let is_below = below >> axis & 1 == 1;
+            match kinds[axis] {
+                LOW if is_below => (steps[axis], seen[axis]) = (-1, HIGH),
+                HIGH if !is_below => (steps[axis], seen[axis]) = (1, LOW),
+                MIDDLE if is_below => exists = false,
+                _ => {}
             }
+            axis += 1;
         }
-        sides
+        if exists {
+            let direction = direction(steps);
+            class.candidates[class.count] = Candidate { direction: direction as u8, kinds: seen };
+            class.count += 1;
+            if direction == SELF {
+                break;
+            }
+            class.before |= 1 << direction;
+        }
+        below += 1;
+    }
+    class
+}
+
+const fn class_number(kinds: Kinds) -> usize {
+    kinds[0] as usize + 3 * kinds[1] as usize + 9 * kinds[2] as usize
+}
+
+/// For each set of axes: the classes that are high on just those, which the brick in that direction owns if it is there.
+static SIDES: [(usize, &[usize]); 7] = [
+    (direction([1, 0, 0]), &[2, 5, 11, 14]),
+    (direction([0, 1, 0]), &[6, 7, 15, 16]),
+    (direction([1, 1, 0]), &[8, 17]),
+    (direction([0, 0, 1]), &[18, 19, 21, 22]),
+    (direction([1, 0, 1]), &[20, 23]),
+    (direction([0, 1, 1]), &[24, 25]),
+    (direction([1, 1, 1]), &[26]),
+];
+
+/// The first index of a kind in a brick with this many cells along the axis, and how many indices there are.
+fn span(kind: u8, cells: usize) -> (usize, usize) {
+    match kind {
+        LOW => (0, 1),
+        MIDDLE => (1, cells - 1),
+        _ => (cells, 1),
     }
 }
 
-/// A row of bricks along x, which is what a thread takes at a time: a range of y, a range of z, and the field there.
-struct Beam<'a> {
-    y: usize,
-    z: usize,
-    /// For each z of the beam, the rows of its y.
-    slices: Vec<&'a mut [f32]>,
+/// The field at the points of all bricks.
+pub(crate) struct Samples {
+    /// Brick by brick: its half-open box, x fastest, then y, then z; then the classes of its rim.
+    values: Vec<f32>,
+    /// Where the values of each brick begin, and where the last ones end.
+    starts: Vec<usize>,
+    /// For each brick where the classes of its rim begin, counted from its start.
+    rims: Vec<[u16; 27]>,
 }
 
-/// Evaluates the field at every point of a lattice.
+/// Evaluates the field at every point of every brick, once.
 pub(crate) fn sample<F: Field>(
     field: &F,
-    lattice: &Lattice,
-    options: &Options,
+    bricks: &Bricks,
+    regions: &[F::Region],
     progress: &Progress<'_>,
-) -> Result<Grid, MeshError<F::Error>> {
-    let axes = lattice.axes();
-    let mut values = allocate(lattice.point_count())?;
-    let beams = beams(&mut values, &axes, options.brick);
-    let total = beams.len();
+) -> Result<Samples, MeshError<F::Error>> {
+    let (rims, counts): (Vec<[u16; 27]>, Vec<usize>) =
+        (0..bricks.len()).into_par_iter().with_min_len(64).map(|brick| rim(bricks, brick)).unzip();
+    let starts = starts(counts.into_iter());
+    let mut values = allocate(starts[bricks.len()])?;
+    let group = bricks.group();
+    let groups = split(&mut values, &starts, group, 1);
+    let total = groups.len();
     progress.begin(Phase::Lattice)?;
-    beams.into_par_iter().try_for_each_init(Scratch::default, |scratch, beam| {
-        sample_beam(field, &axes, options.brick, beam, scratch)?;
+    let work = groups.into_par_iter().enumerate();
+    work.try_for_each_init(Points::default, |points, (index, mut values)| {
+        let first = index * group;
+        for brick in first..bricks.len().min(first + group) {
+            let count = starts[brick + 1] - starts[brick];
+            let (mine, rest) = values.split_at_mut(count);
+            values = rest;
+            points.collect(bricks, brick, &rims[brick]);
+            let Points { x, y, z } = &*points;
+            field.field(&regions[brick], x, y, z, mine).map_err(MeshError::Field)?;
+        }
         progress.advance(Phase::Lattice, total)
     })?;
-    Ok(Grid { axes, field: values, iso: options.iso })
+    Ok(Samples { values, starts, rims })
 }
 
 /// Zeros, or an error where the allocator would have aborted.
@@ -104,60 +167,241 @@ fn allocate<E: std::error::Error + 'static>(points: usize) -> Result<Vec<f32>, M
     Ok(vec![0.0; points])
 }
 
-/// Divides the field among beams.
-fn beams<'a>(values: &'a mut [f32], axes: &[Vec<f32>; 3], brick: usize) -> Vec<Beam<'a>> {
-    let [nx, ny, nz] = [axes[0].len(), axes[1].len(), axes[2].len()];
-    let mut beams: Vec<Beam<'a>> = Vec::with_capacity(ny.div_ceil(brick) * nz.div_ceil(brick));
-    for (z, plane) in values.chunks_exact_mut(nx * ny).enumerate() {
-        let layer = z / brick * ny.div_ceil(brick);
-        for (block, slice) in plane.chunks_mut(nx * brick).enumerate() {
-            if z % brick == 0 {
-                beams.push(Beam { y: block * brick, z, slices: Vec::with_capacity(brick.min(nz - z)) });
+/// Where the classes that a brick owns on its rim begin among its values, and how many points it owns.
+fn rim(bricks: &Bricks, brick: usize) -> ([u16; 27], usize) {
+    let neighbours = &bricks.neighbours[brick];
+    let there = neighbours.iter().rev().fold(0_u32, |mask, &other| mask << 1 | u32::from(other != NONE));
+    let extent = bricks.extent(brick);
+    let box_points: usize = extent.iter().product();
+    let (mut rim, mut count) = ([FOREIGN; 27], 0);
+    for (direction, classes) in SIDES {
+        if there >> direction & 1 == 1 {
+            continue;
+        }
+        for &class in classes {
+            if there & CLASSES[class].before == 0 {
+                // At most 3 * 33^2, with bricks of the largest edge.
+                rim[class] = count as u16;
+                let kinds = CLASSES[class].kinds;
+                count += (0..3).map(|axis| span(kinds[axis], extent[axis]).1).product::<usize>();
             }
-            beams[layer + block].slices.push(slice);
         }
     }
-    beams
+    (rim, box_points + count)
 }
 
-/// The points and the answers of one brick.
+/// The points of a brick.
 #[derive(Default)]
-struct Scratch {
+struct Points {
     x: Vec<f32>,
     y: Vec<f32>,
     z: Vec<f32>,
-    field: Vec<f32>,
 }
 
-fn sample_beam<F: Field>(
-    field: &F,
-    axes: &[Vec<f32>; 3],
-    brick: usize,
-    beam: Beam<'_>,
-    scratch: &mut Scratch,
-) -> Result<(), MeshError<F::Error>> {
-    let Beam { y, z, mut slices } = beam;
-    let nx = axes[0].len();
-    let (rows, planes) = (slices[0].len() / nx, slices.len());
-    for start in (0..nx).step_by(brick) {
-        let xs = &axes[0][start..nx.min(start + brick)];
-        let Scratch { x: px, y: py, z: pz, field: values } = &mut *scratch;
-        px.clear();
-        py.clear();
-        pz.clear();
-        for &z in &axes[2][z..z + planes] {
-            for &y in &axes[1][y..y + rows] {
-                px.extend_from_slice(xs);
-                py.resize(px.len(), y);
-            }
-            pz.resize(px.len(), z);
-        }
-        values.resize(px.len(), 0.0);
-        field.field(px, py, pz, values).map_err(MeshError::Field)?;
-        let targets = slices.iter_mut().flat_map(|slice| slice.chunks_exact_mut(nx));
-        for (target, source) in targets.zip(values.chunks_exact(xs.len())) {
-            target[start..start + xs.len()].copy_from_slice(source);
+impl Points {
+    /// The points that a brick owns, in the order of its values.
+    fn collect(&mut self, bricks: &Bricks, brick: usize, rim: &[u16; 27]) {
+        self.x.clear();
+        self.y.clear();
+        self.z.clear();
+        let (origin, extent) = (bricks.origin(brick), bricks.extent(brick));
+        let axes: [&[f32]; 3] =
+            [0, 1, 2].map(|axis| &bricks.axes[axis][origin[axis]..=origin[axis] + extent[axis]]);
+        self.push([0, 1, 2].map(|axis| &axes[axis][..extent[axis]]));
+        for class in SIDES.iter().flat_map(|(_, classes)| *classes).filter(|&&class| rim[class] != FOREIGN) {
+            let kinds = CLASSES[*class].kinds;
+            self.push([0, 1, 2].map(|axis| {
+                let (first, count) = span(kinds[axis], extent[axis]);
+                &axes[axis][first..first + count]
+            }));
         }
     }
-    Ok(())
+
+    /// All points with these coordinates, x fastest, then y, then z.
+    fn push(&mut self, [xs, ys, zs]: [&[f32]; 3]) {
+        let layer = xs.len() * ys.len();
+        self.x.extend_from_slice(xs);
+        repeat(&mut self.x, xs.len(), ys.len() * zs.len());
+        for &y in ys {
+            self.y.resize(self.y.len() + xs.len(), y);
+        }
+        repeat(&mut self.y, layer, zs.len());
+        for &z in zs {
+            self.z.resize(self.z.len() + layer, z);
+        }
+    }
+}
+
+/// Repeats the last `length` numbers, so that they stand there `times` times.
+fn repeat(numbers: &mut Vec<f32>, length: usize, times: usize) {
+    if length == 0 || times == 0 {
+        numbers.truncate(numbers.len() - length);
+        return;
+    }
+    let start = numbers.len() - length;
+    let end = start + length * times;
+    while numbers.len() < end {
+        let more = (numbers.len() - start).min(end - numbers.len());
+        numbers.extend_from_within(start..start + more);
+    }
+}
+
+/// Where a box of points is in a list of numbers: its first one, and the distances of rows and of layers.
+#[derive(Clone, Copy)]
+struct Block {
+    start: usize,
+    row: usize,
+    layer: usize,
+}
+
+impl Samples {
+    /// How many points were sampled.
+    pub(crate) fn len(&self) -> usize {
+        self.values.len()
+    }
+
+    /// The field at all points of a brick's closed box, into a table (x fastest, then y, then z, in rows and layers of
+    /// [`Bricks::stride`]). Where the lattice cuts the brick, the rest of the table stays as it is.
+    pub(crate) fn gather(&self, bricks: &Bricks, brick: usize, table: &mut [f32]) {
+        let (extent, stride) = (bricks.extent(brick), bricks.stride());
+        let neighbours = &bricks.neighbours[brick];
+        let own = self.block(extent, brick, [0; 3]);
+        let target = Block { start: 0, row: stride, layer: stride * stride };
+        copy(&self.values, own, table, target, extent);
+        for (direction, classes) in SIDES {
+            let last = &CLASSES[classes[classes.len() - 1]].kinds;
+            let is_high = [0, 1, 2].map(|axis| last[axis] == HIGH);
+            if neighbours[direction] != NONE {
+                // All of them are in the half-open box of one brick.
+                let first = [0, 1, 2].map(|axis| if is_high[axis] { extent[axis] } else { 0 });
+                let counts = [0, 1, 2].map(|axis| if is_high[axis] { 1 } else { extent[axis] });
+                let other = neighbours[direction] as usize;
+                let from = self.block(bricks.extent(other), other, [0; 3]);
+                copy(&self.values, from, table, target.at(first), counts);
+                continue;
+            }
+            for &class in classes {
+                let kinds = CLASSES[class].kinds;
+                let spans = [0, 1, 2].map(|axis| span(kinds[axis], extent[axis]));
+                let from = self.class(bricks, brick, class);
+                copy(
+                    &self.values,
+                    from,
+                    table,
+                    target.at(spans.map(|(first, _)| first)),
+                    spans.map(|(_, n)| n),
+                );
+            }
+        }
+    }
+
+    /// The values of a brick's half-open box from a point on.
+    fn block(&self, extent: [usize; 3], brick: usize, first: [usize; 3]) -> Block {
+        Block { start: self.starts[brick], row: extent[0], layer: extent[0] * extent[1] }.at(first)
+    }
+
+    /// Where the values of a class of a brick's points are.
+    fn class(&self, bricks: &Bricks, brick: usize, class: usize) -> Block {
+        let Class { candidates, count, .. } = &CLASSES[class];
+        let neighbours = &bricks.neighbours[brick];
+        let is_there = |candidate: &&Candidate| neighbours[usize::from(candidate.direction)] != NONE;
+        let owner = candidates[..*count].iter().find(is_there).expect("a brick is there for itself");
+        let other = neighbours[usize::from(owner.direction)] as usize;
+        let extent = bricks.extent(other);
+        let spans = [0, 1, 2].map(|axis| span(owner.kinds[axis], extent[axis]));
+        if owner.kinds.iter().all(|&kind| kind != HIGH) {
+            return self.block(extent, other, spans.map(|(first, _)| first));
+        }
+        let box_points: usize = extent.iter().product();
+        let start =
+            self.starts[other] + box_points + usize::from(self.rims[other][class_number(owner.kinds)]);
+        Block { start, row: spans[0].1, layer: spans[0].1 * spans[1].1 }
+    }
+}
+
+impl Block {
+    /// The same, from another point on.
+    fn at(self, first: [usize; 3]) -> Self {
+        Self { start: self.start + first[0] + self.row * first[1] + self.layer * first[2], ..self }
+    }
+}
+
+/// Copies a box of numbers.
+fn copy(source: &[f32], from: Block, target: &mut [f32], to: Block, counts: [usize; 3]) {
+    // Rows of whole bricks, and columns: their lengths are known, so that no function is called for each.
+    match counts[0] {
+        1 => copy_rows::<1>(source, from, target, to, counts),
+        2 => copy_rows::<2>(source, from, target, to, counts),
+        4 => copy_rows::<4>(source, from, target, to, counts),
+        8 => copy_rows::<8>(source, from, target, to, counts),
+        16 => copy_rows::<16>(source, from, target, to, counts),
+        length => rows(source, from, target, to, counts, |source, target| {
+            target[..length].copy_from_slice(&source[..length]);
+        }),
+    }
+}
+
+/// Copies rows of one length.
+fn copy_rows<const LENGTH: usize>(
+    source: &[f32],
+    from: Block,
+    target: &mut [f32],
+    to: Block,
+    counts: [usize; 3],
+) {
+    rows(source, from, target, to, counts, |source, target| {
+        target[..LENGTH].copy_from_slice(&source[..LENGTH]);
+    });
+}
+
+/// Does something with each pair of rows.
+#[inline(always)]
+fn rows(
+    source: &[f32],
+    from: Block,
+    target: &mut [f32],
+    to: Block,
+    [_, ny, nz]: [usize; 3],
+    act: impl Fn(&[f32], &mut [f32]),
+) {
+    for z in 0..nz {
+        let (source, target) =
+            (&source[from.start + z * from.layer..], &mut target[to.start + z * to.layer..]);
+        for y in 0..ny {
+            act(&source[y * from.row..], &mut target[y * to.row..]);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn classes_stand_with_the_axes_that_they_are_high_on() {
+        let mut seen = 0_u32;
+        for (side, classes) in SIDES {
+            for &class in classes {
+                let Class { kinds, candidates, count, before } = CLASSES[class];
+                let steps = kinds.map(|kind| i8::from(kind == HIGH));
+                assert_eq!((direction(steps), class_number(kinds)), (side, class));
+                // The half-open owner comes first, the brick itself last.
+                assert_eq!(usize::from(candidates[0].direction), side);
+                assert_eq!(usize::from(candidates[count - 1].direction), SELF);
+                assert_eq!(candidates[count - 1].kinds, kinds);
+                assert_eq!(before.count_ones() as usize, count - 1);
+                seen |= 1 << class;
+            }
+        }
+        assert_eq!(seen.count_ones(), 27 - 8);
+    }
+
+    #[test]
+    fn numbers_repeat() {
+        let mut numbers = vec![9.0, 1.0, 2.0];
+        repeat(&mut numbers, 2, 3);
+        assert_eq!(numbers, [9.0, 1.0, 2.0, 1.0, 2.0, 1.0, 2.0]);
+        repeat(&mut numbers, 2, 0);
+        assert_eq!(numbers, [9.0, 1.0, 2.0, 1.0, 2.0]);
+    }
 }

@@ -9,7 +9,7 @@
 //! ```
 
 use super::Field;
-use super::vertex::pull;
+use super::pull::pull;
 
 /// Pulls that a stray gets on top.
 const ROUNDS: usize = 6;
@@ -17,6 +17,13 @@ const ROUNDS: usize = 6;
 const HALVINGS: usize = 10;
 /// A vertex strays when its distance to the surface, by its own gradient, is more than this part of its cell.
 const TOLERANCE: f32 = 1e-3;
+
+/// Whether a vertex strays, in a cell with this edge. Where the gradient is no number nothing can be said, and it does not.
+#[inline(always)]
+pub(super) fn strays(iso: f32, edge: f32, value: f32, gradient: [f32; 3]) -> bool {
+    let steep = gradient.iter().map(|g| g * g).sum::<f32>().sqrt();
+    (value - iso).abs() > TOLERANCE * edge * steep && steep < f32::INFINITY
+}
 
 /// Where a vertex may be.
 #[derive(Clone, Copy)]
@@ -53,7 +60,7 @@ pub(super) struct Stray {
 }
 
 impl Stray {
-    /// The vertex as a stray, if it is one.
+    /// A vertex with its field and gradient as a stray.
     pub(super) fn new(
         iso: f32,
         index: usize,
@@ -61,10 +68,8 @@ impl Stray {
         position: [f32; 3],
         value: f32,
         gradient: [f32; 3],
-    ) -> Option<Self> {
+    ) -> Self {
         let error = (value - iso).abs();
-        let steep = gradient.iter().map(|g| g * g).sum::<f32>().sqrt();
-        let edge = place.bounds[1][0] - place.bounds[0][0];
         let mut stray = Self {
             index,
             place,
@@ -77,7 +82,7 @@ impl Stray {
             outside: None,
         };
         stray.note(iso);
-        (error > TOLERANCE * edge * steep && steep.is_finite()).then_some(stray)
+        stray
     }
 
     /// Where it is best put.
@@ -96,11 +101,13 @@ impl Stray {
     }
 }
 
-/// Brings strays nearer to the surface. Returns at how many points the gradient was asked.
-pub(super) fn settle<F: Field>(field: &F, iso: f32, strays: &mut [Stray]) -> Result<u64, F::Error> {
-    if strays.is_empty() {
-        return Ok(0);
-    }
+/// Brings strays, of which there are some, nearer to the surface. Returns at how many points the gradient was asked.
+pub(super) fn settle<F: Field>(
+    field: &F,
+    region: &F::Region,
+    iso: f32,
+    strays: &mut [Stray],
+) -> Result<u64, F::Error> {
     let plane = vec![0.0f32; strays.len()];
     let mut values = plane.clone();
     let mut gradient = [plane.clone(), plane.clone(), plane];
@@ -112,7 +119,7 @@ pub(super) fn settle<F: Field>(field: &F, iso: f32, strays: &mut [Stray]) -> Res
             stray.position = pull(iso, stray.position, stray.value, stray.gradient, stray.place.bounds);
         }
         let [x, y, z] = at(strays);
-        field.gradient(&x, &y, &z, &mut values, gradient.each_mut().map(Vec::as_mut_slice))?;
+        field.gradient(region, &x, &y, &z, &mut values, gradient.each_mut().map(Vec::as_mut_slice))?;
         for (i, stray) in strays.iter_mut().enumerate() {
             stray.value = values[i];
             stray.gradient = gradient.each_ref().map(|plane| plane[i]);
@@ -130,7 +137,7 @@ pub(super) fn settle<F: Field>(field: &F, iso: f32, strays: &mut [Stray]) -> Res
             }
         }
         let [x, y, z] = at(strays);
-        field.gradient(&x, &y, &z, &mut values, gradient.each_mut().map(Vec::as_mut_slice))?;
+        field.gradient(region, &x, &y, &z, &mut values, gradient.each_mut().map(Vec::as_mut_slice))?;
         for (stray, &value) in strays.iter_mut().zip(&values) {
             stray.value = value;
             stray.note(iso);

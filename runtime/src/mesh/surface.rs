@@ -1,132 +1,170 @@
-//! Quads around the crossed edges of the lattice, and the triangles that they become.
+//! The triangles: a quad around each crossed edge of the lattice, split along its shorter diagonal.
+//!
+//! A quad belongs to the last of the four cells around its edge, the one that has the edge at its low corner. The other three may be in bricks below; so
+//! each brick sees its cells in a table with one more layer on each low side, filled from those bricks.
 
 use rayon::prelude::*;
 
 use super::Mesh;
-use super::cell::{EDGE_CORNERS, sheets};
-use super::crossing::{Cell, Crossings, Layer};
-use super::vertex::Vertex;
+use super::brick::{Bricks, NONE, cell_sides, direction, number, place, split};
+use super::cell::{EDGE_CORNERS, Sheets, default_sheets, sheets_with_quads};
+use super::crossing::{Cell, Crossings};
 
-/// Four vertices around a crossed edge, counter-clockwise when seen from outside.
-pub(crate) type Quad = [u32; 4];
-
-/// The quads, in the order of the cell that owns them: of the four cells around an edge, the last.
-pub(crate) fn quads(crossings: &Crossings) -> Vec<Quad> {
-    let layers = &crossings.layers;
-    let of_layer = |z: usize| {
-        let mut quads = Vec::new();
-        let below = z.checked_sub(1).map(|z| &layers[z]);
-        for y in 0..layers[z].rows() {
-            row_quads(&layers[z], below, y, &mut quads);
-        }
-        quads
-    };
-    (0..layers.len()).into_par_iter().map(of_layer).collect::<Vec<_>>().concat()
-}
-
-/// A walk along a row of cells that answers for ascending x.
-struct Cursor<'a> {
-    row: &'a [Cell],
-}
-
-impl<'a> Cursor<'a> {
-    /// The row of one y, or an empty one where the lattice has none.
-    fn new(layer: Option<&'a Layer>, y: Option<usize>) -> Self {
-        Cursor { row: layer.zip(y).map_or(&[], |(layer, y)| layer.row(y)) }
-    }
-
-    /// The cell at `x`, if it is crossed. Later calls may go back by one cell, and not further.
-    fn at(&mut self, x: u32) -> Option<&'a Cell> {
-        while let [first, rest @ ..] = self.row
-            && first.x + 1 < x
-        {
-            self.row = rest;
-        }
-        self.row.iter().take(2).find(|cell| cell.x == x)
-    }
-}
-
-/// The quads that the cells of one row own.
-fn row_quads(layer: &Layer, below: Option<&Layer>, y: usize, quads: &mut Vec<Quad>) {
-    let back = y.checked_sub(1);
-    // rows[dy + 2 dz] is that of (y - dy, z - dz).
-    let mut rows = [(Some(layer), Some(y)), (Some(layer), back), (below, Some(y)), (below, back)]
-        .map(|(layer, y)| Cursor::new(layer, y));
-    for cell in layer.row(y) {
-        for axis in 0..3 {
-            let inside = [0, 1 << axis].map(|corner| cell.signs >> corner & 1 == 1);
-            if inside[0] == inside[1] {
-                continue;
+/// The triangles of all quads, in the order of the cells that own them.
+pub(crate) fn triangles(bricks: &Bricks, crossings: &Crossings, positions: &[[f32; 3]]) -> Vec<[u32; 3]> {
+    let group = bricks.group();
+    let mut triangles = vec![[0; 3]; 2 * crossings.quad_count()];
+    let groups = split(&mut triangles, &crossings.quads, group, 2);
+    groups.into_par_iter().enumerate().for_each_init(
+        || Around::new(bricks),
+        |around, (index, triangles)| {
+            let mut pairs = triangles.as_chunks_mut().0.iter_mut();
+            let first = index * group;
+            for brick in first..bricks.len().min(first + group) {
+                if crossings.quads[brick] == crossings.quads[brick + 1] {
+                    continue;
+                }
+                around.fill(bricks, crossings, brick);
+                let sides = bricks.sides(brick);
+                for cell in crossings.of(brick) {
+                    let at = bricks.in_table(cell.number) + around.first;
+                    around.quads::<0>(cell, at, sides, positions, &mut pairs);
+                    around.quads::<1>(cell, at, sides, positions, &mut pairs);
+                    around.quads::<2>(cell, at, sides, positions, &mut pairs);
+                }
             }
-            // Around the edge, seen from its end: (b, c) goes through (low, low), (high, low), (high, high), (low, high).
-            let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
-            let corner = |low_b: bool, low_c: bool| {
-                let back = usize::from(low_b) << b | usize::from(low_c) << c;
-                // A cell that lies low along an axis has the edge on its high side there.
-                let edge = 4 * axis + usize::from(low_b) + 2 * usize::from(low_c);
-                (back, edge)
-            };
-            let around = [corner(true, true), corner(false, true), corner(false, false), corner(true, false)];
-            let Some(mut quad) = vertices_at(&mut rows, cell.x, around) else { continue };
-            if inside[1] {
-                // The inside is at the end, so this quad is seen from the other side.
-                quad.reverse();
+        },
+    );
+    triangles
+}
+
+/// A crossed cell: its first vertex, and which sheets it has.
+#[derive(Clone, Copy, Default)]
+struct Entry {
+    vertex: u32,
+    /// The signs of a cell without flipped faces inside the lattice; 256 and the place in [`Around::special`] of any other.
+    sheets: u32,
+}
+
+/// The cells of a brick and those just below it. A cell that the surface does not cross has anything.
+struct Around {
+    /// x fastest, then y, then z; each from the layer below the brick on.
+    table: Vec<Entry>,
+    special: Vec<Sheets>,
+    /// The place of the brick's first cell.
+    first: usize,
+    /// The distances of cells along the axes.
+    steps: [usize; 3],
+}
+
+impl Around {
+    fn new(bricks: &Bricks) -> Self {
+        let stride = bricks.stride();
+        let steps = [1, stride, stride * stride];
+        let table = vec![Entry::default(); bricks.table_len()];
+        Self { table, special: Vec::new(), first: steps.iter().sum(), steps }
+    }
+
+    fn fill(&mut self, bricks: &Bricks, crossings: &Crossings, brick: usize) {
+        self.special.clear();
+        self.push(bricks, crossings, brick, 0, self.first);
+        for below in 1..8 {
+            let is_below = [0, 1, 2].map(|axis| below >> axis & 1 == 1);
+            let other = bricks.neighbours[brick][direction(is_below.map(|is| -i8::from(is)))];
+            if other != NONE {
+                // Its last layer is just below the first one of this brick.
+                let last = number(is_below.map(|is| if is { bricks.edge - 1 } else { 0 }));
+                let back: usize =
+                    (0..3).filter(|&axis| is_below[axis]).map(|axis| bricks.edge * self.steps[axis]).sum();
+                self.push(bricks, crossings, other as usize, last, self.first.wrapping_sub(back));
             }
-            quads.push(quad);
+        }
+    }
+
+    /// Puts those cells of a brick into the table that have all bits of a number in theirs, as seen from its first cell.
+    fn push(&mut self, bricks: &Bricks, crossings: &Crossings, brick: usize, bits: u16, first: usize) {
+        let vertex = crossings.vertices[brick] as u32;
+        let sides = bricks.sides(brick);
+        for cell in crossings.of(brick).iter().filter(|cell| cell.number & bits == bits) {
+            let mut sheets = u32::from(cell.signs);
+            if sides != 0 || cell.flips != 0 {
+                let sides = cell_sides(sides, bricks.extent(brick), place(cell.number));
+                if sides != 0 || cell.flips != 0 {
+                    sheets = 256 + self.special.len() as u32;
+                    self.special.push(sheets_with_quads(cell.signs, cell.flips, sides));
+                }
+            }
+            let at = first.wrapping_add(bricks.in_table(cell.number));
+            self.table[at] = Entry { vertex: vertex + cell.vertex, sheets };
+        }
+    }
+
+    /// The vertex of the cell at a place of the table on one of its crossed edges.
+    #[inline(always)]
+    fn vertex(&self, at: usize, edge: usize) -> u32 {
+        let Entry { vertex, sheets } = self.table[at];
+        let sheets = match sheets.checked_sub(256) {
+            None => default_sheets(sheets as u8),
+            Some(special) => &self.special[special as usize],
+        };
+        vertex + sheets.of_crossed_edge(edge)
+    }
+
+    /// The two triangles around the edge along an axis at the low corner of a cell, if the edge is crossed and has cells all around.
+    #[inline(always)]
+    fn quads<'a, const AXIS: usize>(
+        &self,
+        cell: &Cell,
+        at: usize,
+        sides: u8,
+        positions: &[[f32; 3]],
+        pairs: &mut impl Iterator<Item = &'a mut [[u32; 3]; 2]>,
+    ) {
+        let inside = [0, 1 << AXIS].map(|corner| cell.signs >> corner & 1 == 1);
+        if inside[0] == inside[1] {
+            return;
+        }
+        let (b, c) = const { ((AXIS + 1) % 3, (AXIS + 2) % 3) };
+        let is_low = |axis: usize| sides >> (2 * axis) & 1 == 1 && cell.number & (LAST >> (2 - axis)) == 0;
+        if is_low(b) || is_low(c) {
+            return;
+        }
+        // Around the edge, seen from its end. A cell that lies back along an axis has the edge on its high side there.
+        let (back_b, back_c) = (self.steps[b], self.steps[c]);
+        let quad = [
+            self.vertex(at - back_b - back_c, 4 * AXIS + 3),
+            self.vertex(at - back_c, 4 * AXIS + 2),
+            self.vertex(at, 4 * AXIS),
+            self.vertex(at - back_b, 4 * AXIS + 1),
+        ];
+        // Where the inside is at the end, it is seen from the other side.
+        let [p, q, r, s] = if inside[1] { [quad[3], quad[2], quad[1], quad[0]] } else { quad };
+        if let Some(pair) = pairs.next() {
+            *pair = halves([p, q, r, s], positions);
         }
     }
 }
 
-/// The vertices of four cells, each given by how far it lies back (a bit for each axis) and by its own number of the edge; or
-/// nothing where the lattice ends.
-fn vertices_at(rows: &mut [Cursor<'_>; 4], x: u32, around: [(usize, usize); 4]) -> Option<Quad> {
-    let mut quad = [0; 4];
-    for (vertex, (back, edge)) in quad.iter_mut().zip(around) {
-        let cell = rows[back >> 1].at(x.checked_sub(back as u32 & 1)?)?;
-        *vertex = cell.vertex + sheets(cell.signs, cell.flips).of_edge(edge)?;
-    }
-    Some(quad)
-}
+/// The bits of z in the number of a cell; those of y and x are one and two places below.
+const LAST: u16 = 0b100_1001_0010_0100;
 
-/// Drops the vertices that no quad uses, and renumbers the others in their order.
-pub(crate) fn drop_unused(vertices: &mut Vec<Vertex>, quads: &mut [Quad]) {
-    const UNUSED: u32 = u32::MAX;
-    let mut numbers = vec![UNUSED; vertices.len()];
-    for &vertex in quads.iter().flatten() {
-        numbers[vertex as usize] = 0;
-    }
-    for (next, number) in (0..).zip(numbers.iter_mut().filter(|number| **number != UNUSED)) {
-        *number = next;
-    }
-    let mut old = numbers.iter();
-    vertices.retain(|_| old.next() != Some(&UNUSED));
-    for vertex in quads.iter_mut().flatten() {
-        *vertex = numbers[*vertex as usize];
-    }
-}
-
-/// Splits each quad along its shorter diagonal, or from its first vertex if they are equal.
-pub(crate) fn triangles(positions: &[[f32; 3]], quads: &[Quad]) -> Vec<[u32; 3]> {
+/// Splits a quad along its shorter diagonal, or from its first vertex if they are equal.
+#[inline(always)]
+fn halves([p, q, r, s]: [u32; 4], positions: &[[f32; 3]]) -> [[u32; 3]; 2] {
     let distance = |p: u32, q: u32| {
         let (p, q) = (positions[p as usize], positions[q as usize]);
-        (0..3).map(|axis| (f64::from(p[axis]) - f64::from(q[axis])).powi(2)).sum::<f64>()
+        let [x, y, z] = [0, 1, 2].map(|axis| f64::from(p[axis]) - f64::from(q[axis]));
+        x * x + y * y + z * z
     };
-    let mut triangles = vec![[0; 3]; 2 * quads.len()];
-    triangles.par_chunks_exact_mut(2).zip(quads).for_each(|(pair, &[p, q, r, s])| {
-        let split =
-            if distance(p, r) <= distance(q, s) { [[p, q, r], [p, r, s]] } else { [[q, r, s], [q, s, p]] };
-        pair.copy_from_slice(&split);
-    });
-    triangles
+    // Both ways, q r s or p q r comes first: a choice of numbers, and no jump that would be guessed wrong half of the time.
+    let (d, e) = if distance(p, r) <= distance(q, s) { (p, r) } else { (s, q) };
+    [[q, r, d], [e, s, p]]
 }
 
 /// Gives the vertices without a normal (the gradient vanishes there, or is no number) that of their triangles, weighted by
 /// area; or up, if they have no area either.
 pub(crate) fn repair_normals(mesh: &mut Mesh) {
     let Mesh { positions, normals, triangles, .. } = mesh;
-    if !normals.par_iter().any(|normal| *normal == [0.0; 3]) {
-        return;
-    }
     let mut sums = vec![[0.0_f64; 3]; normals.len()];
     for triangle in &*triangles {
         let area = area_vector(triangle.map(|vertex| positions[vertex as usize]));

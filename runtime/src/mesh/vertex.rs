@@ -1,102 +1,68 @@
-//! Vertices: where they start, how they are pulled onto the surface, and what they carry.
+//! Vertices: where they start, how they are pulled onto the surface, and what they carry. Brick by brick: everything stays at hand, and each
+//! evaluation is of all vertices of a brick, in the brick's region.
+
+use std::ops::{Range, RangeInclusive};
 
 use jbt_ir::limits::MAX_ATTRIBUTE_WIDTH;
 use rayon::prelude::*;
 
-use super::cell::{EDGE_CORNERS, sheets};
-use super::crossing::{Cell, Crossings, Layer};
+use super::brick::{Bricks, cell_sides, place, split};
+use super::cell::{CROSSED_EDGES, EDGE_CORNERS, Edges, default_sheets, mean_crossing, sheets_with_quads};
+use super::crossing::Crossings;
 use super::progress::{Phase, Progress};
-use super::sample::Grid;
-use super::settle::{Place, Stray, settle};
+use super::pull::{LANES, Lanes, pull_lanes};
+use super::sample::Samples;
+use super::settle::{Place, Stray, settle, strays};
 use super::surface::unit;
 use super::{Attribute, Field, Mesh, MeshError, Options};
 
-/// Vertices that are evaluated in one call.
-const BATCH: usize = 1024;
-
-/// A vertex before it is pulled.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Vertex {
-    position: [f32; 3],
-    /// The cell that it stays in.
-    cell: [u32; 3],
-    /// The cell's corners that its sheet separates: those outside and those inside, a bit for each corner.
-    corners: [u8; 2],
+/// What was done at vertices.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Done {
+    /// Points at which the gradient was evaluated.
+    pub(crate) gradient_evaluations: u64,
+    /// Points at which everything was evaluated.
+    pub(crate) full_evaluations: u64,
+    /// Whether some vertex has no normal yet: its normal is zero.
+    pub(crate) lacks_normals: bool,
 }
 
-/// One vertex for each sheet of each crossing cell, at the mean of the sheet's crossings.
-pub(crate) fn start(grid: &Grid, crossings: &Crossings) -> Vec<Vertex> {
-    let of_layer = |(z, layer): (usize, &Layer)| {
-        let mut vertices = Vec::with_capacity(layer.vertices);
-        for y in 0..layer.rows() {
-            for cell in layer.row(y) {
-                start_cell(grid, cell, [cell.x as usize, y, z], &mut vertices);
-            }
+impl Done {
+    fn and(self, other: Self) -> Self {
+        Self {
+            gradient_evaluations: self.gradient_evaluations + other.gradient_evaluations,
+            full_evaluations: self.full_evaluations + other.full_evaluations,
+            lacks_normals: self.lacks_normals || other.lacks_normals,
         }
-        vertices
-    };
-    crossings.layers.par_iter().enumerate().map(of_layer).collect::<Vec<_>>().concat()
-}
-
-fn start_cell(grid: &Grid, cell: &Cell, place: [usize; 3], vertices: &mut Vec<Vertex>) {
-    let sheets = sheets(cell.signs, cell.flips);
-    let corners = grid.corners(place);
-    let coordinate =
-        |axis: usize, corner: usize| f64::from(grid.axes[axis][place[axis] + (corner >> axis & 1)]);
-    let mut sums = [([0.0_f64; 3], 0_u32, [0_u8; 2]); 4];
-    for (edge, &[low, high]) in EDGE_CORNERS.iter().enumerate() {
-        let Some(sheet) = sheets.of_edge(edge) else { continue };
-        let t = crossing(grid.iso, corners[low], corners[high]);
-        let (sum, count, sides) = &mut sums[sheet as usize];
-        for corner in [low, high] {
-            sides[usize::from(cell.signs >> corner & 1)] |= 1 << corner;
-        }
-        for (axis, sum) in sum.iter_mut().enumerate() {
-            let (from, to) = (coordinate(axis, low), coordinate(axis, high));
-            *sum += from + t * (to - from);
-        }
-        *count += 1;
-    }
-    for (sum, count, corners) in sums.into_iter().take(sheets.count() as usize) {
-        let mean = sum.map(|sum| (sum / f64::from(count)) as f32);
-        let cell = place.map(|index| index as u32);
-        // The mean is in the cell, and rounding to f32, which the sides of the cell are in, does not take it out.
-        vertices.push(Vertex { position: mean, cell, corners });
     }
 }
 
-/// Where along an edge the surface crosses, from 0 to 1, if the field is linear there; the middle if a corner has no number.
-fn crossing(iso: f32, low: f32, high: f32) -> f64 {
-    let (iso, low, high) = (f64::from(iso), f64::from(low), f64::from(high));
-    let t = (iso - low) / (high - low);
-    if (0.0..=1.0).contains(&t) && low.is_finite() && high.is_finite() { t } else { 0.5 }
+/// What the vertices of all bricks are made from.
+pub(crate) struct Source<'a, F: Field> {
+    pub(crate) field: &'a F,
+    pub(crate) options: &'a Options,
+    pub(crate) bricks: &'a Bricks,
+    pub(crate) regions: &'a [F::Region],
+    pub(crate) samples: &'a Samples,
+    pub(crate) crossings: &'a Crossings,
 }
 
-/// The low and the high corner of a cell.
-fn bounds(axes: &[Vec<f32>; 3], cell: [u32; 3]) -> [[f32; 3]; 2] {
-    [0, 1].map(|side| [0, 1, 2].map(|axis| axes[axis][cell[axis] as usize + side]))
-}
-
-/// A run of vertices and where their answers go.
-struct Batch<'a> {
-    vertices: &'a [Vertex],
+/// Where the answers for some bricks go.
+struct Target<'a> {
     positions: &'a mut [[f32; 3]],
     normals: &'a mut [[f32; 3]],
-    /// For each attribute, its values at these vertices.
+    /// For each attribute, its values.
     attributes: Vec<&'a mut [f32]>,
 }
 
-/// Pulls the vertices onto the surface and evaluates everything at them, once; also says at how many points the gradient was asked. A vertex at which the gradient vanishes or
-/// is no number has the normal zero.
+/// Makes one vertex for each sheet of each crossing cell that has quads. A vertex at which the gradient vanishes or is no number has the
+/// normal zero.
 pub(crate) fn finish<F: Field>(
-    field: &F,
-    axes: &[Vec<f32>; 3],
-    options: &Options,
-    vertices: Vec<Vertex>,
+    source: &Source<'_, F>,
     progress: &Progress<'_>,
-) -> Result<(Mesh, u64), MeshError<F::Error>> {
-    let count = vertices.len();
-    let attributes = field.attributes();
+) -> Result<(Mesh, Done), MeshError<F::Error>> {
+    let count = source.crossings.vertex_count();
+    let attributes = source.field.attributes();
     if let Some((name, width)) =
         attributes.iter().find(|(_, width)| !(1..=MAX_ATTRIBUTE_WIDTH).contains(width))
     {
@@ -111,182 +77,310 @@ pub(crate) fn finish<F: Field>(
         attributes: attributes.into_iter().map(attribute).collect(),
         triangles: Vec::new(),
     };
-    let mut batches: Vec<Batch<'_>> = vertices
-        .chunks(BATCH)
-        .zip(mesh.positions.chunks_mut(BATCH).zip(mesh.normals.chunks_mut(BATCH)))
-        .map(|(vertices, (positions, normals))| Batch {
-            vertices,
-            positions,
-            normals,
-            attributes: Vec::new(),
-        })
-        .collect();
-    for attribute in &mut mesh.attributes {
-        for (batch, values) in batches.iter_mut().zip(attribute.values.chunks_mut(BATCH * attribute.width)) {
-            batch.attributes.push(values);
-        }
-    }
-    let total = batches.len();
+    let group = source.bricks.group();
+    let targets = targets(&mut mesh, &source.crossings.vertices, group);
+    let total = targets.len();
     progress.begin(Phase::Vertices)?;
-    let finish = |batch| {
-        let evaluations = finish_batch(field, axes, options, &widths, batch).map_err(MeshError::Field)?;
+    let work = targets.into_par_iter().enumerate();
+    let work = work.map_init(Batch::default, |batch, (index, target)| {
+        let first = index * group;
+        let bricks = first..source.bricks.len().min(first + group);
+        let done = finish_group(source, &widths, bricks, target, batch).map_err(MeshError::Field)?;
         progress.advance(Phase::Vertices, total)?;
-        Ok(evaluations)
-    };
-    let evaluations = batches.into_par_iter().map(finish).try_reduce(|| 0, |a, b| Ok(a + b))?;
-    Ok((mesh, evaluations))
+        Ok(done)
+    });
+    let done = work.try_reduce(Done::default, |a, b| Ok(a.and(b)))?;
+    Ok((mesh, done))
 }
 
-fn finish_batch<F: Field>(
-    field: &F,
-    axes: &[Vec<f32>; 3],
-    options: &Options,
+/// Divides a mesh's vertices among groups of bricks.
+fn targets<'a>(mesh: &'a mut Mesh, starts: &[usize], group: usize) -> Vec<Target<'a>> {
+    let positions = split(&mut mesh.positions, starts, group, 1);
+    let normals = split(&mut mesh.normals, starts, group, 1);
+    let both = positions.into_iter().zip(normals);
+    let mut targets: Vec<Target<'a>> =
+        both.map(|(positions, normals)| Target { positions, normals, attributes: Vec::new() }).collect();
+    for attribute in &mut mesh.attributes {
+        for (target, values) in
+            targets.iter_mut().zip(split(&mut attribute.values, starts, group, attribute.width))
+        {
+            target.attributes.push(values);
+        }
+    }
+    targets
+}
+
+fn finish_group<F: Field>(
+    source: &Source<'_, F>,
     widths: &[usize],
-    batch: Batch<'_>,
-) -> Result<u64, F::Error> {
-    let Batch { vertices, positions, normals, attributes } = batch;
-    let plane = || vec![0.0_f32; vertices.len()];
-    let mut point = [0, 1, 2].map(|axis| vertices.iter().map(|v| v.position[axis]).collect::<Vec<f32>>());
-    let mut values = plane();
-    let mut gradient = [plane(), plane(), plane()];
-    for _ in 0..options.pulls {
-        let [x, y, z] = &point;
-        field.gradient(x, y, z, &mut values, gradient.each_mut().map(Vec::as_mut_slice))?;
-        for (i, vertex) in vertices.iter().enumerate() {
-            let position = point.each_ref().map(|plane| plane[i]);
-            let slope = gradient.each_ref().map(|plane| plane[i]);
-            let pulled = pull(options.iso, position, values[i], slope, bounds(axes, vertex.cell));
-            for (plane, coordinate) in point.iter_mut().zip(pulled) {
-                plane[i] = coordinate;
+    bricks: Range<usize>,
+    mut target: Target<'_>,
+    batch: &mut Batch,
+) -> Result<Done, F::Error> {
+    let starts = &source.crossings.vertices;
+    let (first, mut done) = (starts[bricks.start], Done::default());
+    for brick in bricks {
+        let range = starts[brick] - first..starts[brick + 1] - first;
+        if range.is_empty() {
+            continue;
+        }
+        batch.start(source, brick, range.len());
+        done = done.and(batch.evaluate(source, brick, widths.iter().sum())?);
+        done.lacks_normals |= batch.write(&mut target, range, widths);
+    }
+    Ok(done)
+}
+
+/// Three planes of numbers.
+type Planes = [Vec<f32>; 3];
+
+/// The vertices of one brick, in planes that are filled up to whole [`LANES`].
+#[derive(Default)]
+struct Batch {
+    /// How many there are.
+    count: usize,
+    /// The field at the points of the brick.
+    table: Vec<f32>,
+    /// The cell of each, counted in the brick, and its sheet.
+    owners: Vec<(u32, u32)>,
+    points: Planes,
+    /// The corners of their cells.
+    low: Planes,
+    high: Planes,
+    values: Vec<f32>,
+    gradient: Planes,
+    /// One plane after the other, each for `count` vertices.
+    attributes: Vec<f32>,
+}
+
+impl Batch {
+    /// Puts the vertices of a brick where they start: at the means of their sheets' crossings.
+    fn start<F: Field>(&mut self, source: &Source<'_, F>, brick: usize, count: usize) {
+        let Source { bricks, options, .. } = source;
+        self.table.resize(bricks.table_len(), 0.0);
+        source.samples.gather(bricks, brick, &mut self.table);
+        self.resize(count);
+        let (origin, extent, sides) = (bricks.origin(brick), bricks.extent(brick), bricks.sides(brick));
+        let axes: [&[f32]; 3] =
+            std::array::from_fn(|axis| &bricks.axes[axis][origin[axis]..][..extent[axis] + 1]);
+        let mut next = 0;
+        for (index, cell) in (0..).zip(source.crossings.of(brick)) {
+            let corners = corners(&self.table, bricks.in_table(cell.number), bricks.stride());
+            let place = place(cell.number);
+            let low = std::array::from_fn(|axis| axes[axis][place[axis]]);
+            let high = std::array::from_fn(|axis| axes[axis][place[axis] + 1]);
+            if sides == 0 && cell.flips == 0 && default_sheets(cell.signs).count() == 1 {
+                let edges = &CROSSED_EDGES[usize::from(cell.signs)];
+                self.put(next, (index, 0), mean_crossing(options.iso, &corners, edges), low, high);
+                next += 1;
+                continue;
+            }
+            let sheets = sheets_with_quads(cell.signs, cell.flips, cell_sides(sides, extent, place));
+            for sheet in 0..sheets.count() {
+                let edges = Edges::new(sheets.edges(sheet));
+                self.put(next, (index, sheet), mean_crossing(options.iso, &corners, &edges), low, high);
+                next += 1;
             }
         }
     }
 
-    let mut evaluations = (options.pulls * vertices.len()) as u64;
-    if options.pulls > 0 {
-        let [x, y, z] = &point;
-        field.gradient(x, y, z, &mut values, gradient.each_mut().map(Vec::as_mut_slice))?;
-        evaluations += vertices.len() as u64;
-        let stray = |i: usize| {
-            let place = Place { bounds: bounds(axes, vertices[i].cell), corners: vertices[i].corners };
-            let position = point.each_ref().map(|plane| plane[i]);
-            let slope = gradient.each_ref().map(|plane| plane[i]);
-            Stray::new(options.iso, i, place, position, values[i], slope)
+    /// Puts a vertex at a place that is given in units of its cell.
+    #[inline(always)]
+    fn put(&mut self, index: usize, owner: (u32, u32), place: [f32; 3], low: [f32; 3], high: [f32; 3]) {
+        self.owners[index] = owner;
+        for axis in 0..3 {
+            // Nothing overflows on the way, however large the cell.
+            let start = low[axis] * (1.0 - place[axis]) + high[axis] * place[axis];
+            self.points[axis][index] = start.max(low[axis]).min(high[axis]);
+            self.low[axis][index] = low[axis];
+            self.high[axis][index] = high[axis];
+        }
+    }
+
+    fn resize(&mut self, count: usize) {
+        self.count = count;
+        let padded = count.next_multiple_of(LANES);
+        self.owners.resize(padded, (0, 0));
+        let planes = [&mut self.points, &mut self.low, &mut self.high, &mut self.gradient];
+        planes.into_iter().flatten().for_each(|plane| plane.resize(padded, 0.0));
+        self.values.resize(padded, 0.0);
+    }
+
+    /// Pulls the vertices and evaluates everything at them, `width` attributes among it.
+    fn evaluate<F: Field>(
+        &mut self,
+        source: &Source<'_, F>,
+        brick: usize,
+        width: usize,
+    ) -> Result<Done, F::Error> {
+        let Source { field, options, regions, .. } = source;
+        let (region, count) = (&regions[brick], self.count);
+        for _ in 0..options.pulls {
+            let [x, y, z] = self.points.each_ref().map(|plane| &plane[..count]);
+            let gradient = self.gradient.each_mut().map(|plane| &mut plane[..count]);
+            field.gradient(region, x, y, z, &mut self.values[..count], gradient)?;
+            self.pull(options.iso);
+        }
+        let [x, y, z] = self.points.each_ref().map(|plane| &plane[..count]);
+        let gradient = self.gradient.each_mut().map(|plane| &mut plane[..count]);
+        self.attributes.resize(width * count, 0.0);
+        let mut attributes: Vec<&mut [f32]> = self.attributes.chunks_exact_mut(count).collect();
+        field.all(region, x, y, z, &mut self.values[..count], gradient, &mut attributes)?;
+        let done = Done {
+            gradient_evaluations: (options.pulls * count) as u64,
+            full_evaluations: count as u64,
+            lacks_normals: false,
         };
-        let mut strays: Vec<Stray> = (0..vertices.len()).filter_map(stray).collect();
-        evaluations += settle(field, options.iso, &mut strays)?;
-        for stray in &strays {
-            for (plane, coordinate) in point.iter_mut().zip(stray.best()) {
-                plane[stray.index] = coordinate;
+        if options.pulls == 0 { Ok(done) } else { Ok(done.and(self.settle(source, brick)?)) }
+    }
+
+    /// A pull of all vertices.
+    fn pull(&mut self, iso: f32) {
+        for chunk in 0..self.values.len() / LANES {
+            let mut points = lanes(&self.points, chunk);
+            let values = &lane(&self.values, chunk);
+            let gradient = lanes(&self.gradient, chunk);
+            pull_lanes(
+                iso,
+                &mut points,
+                values,
+                &gradient,
+                &lanes(&self.low, chunk),
+                &lanes(&self.high, chunk),
+            );
+            for (plane, lanes) in self.points.iter_mut().zip(points) {
+                plane[chunk * LANES..][..LANES].copy_from_slice(&lanes.0);
             }
         }
     }
 
-    let mut planes: Vec<Vec<f32>> = widths.iter().flat_map(|&width| (0..width).map(|_| plane())).collect();
-    let mut borrowed: Vec<&mut [f32]> = planes.iter_mut().map(Vec::as_mut_slice).collect();
-    let [x, y, z] = &point;
-    field.all(x, y, z, &mut values, gradient.each_mut().map(Vec::as_mut_slice), &mut borrowed)?;
-    for (i, (position, normal)) in positions.iter_mut().zip(normals).enumerate() {
-        *position = point.each_ref().map(|plane| plane[i]);
-        *normal = unit(gradient.each_ref().map(|plane| -f64::from(plane[i]))).unwrap_or([0.0; 3]);
+    /// Brings those that a crease has kept off the surface onto it, and evaluates everything at them again.
+    fn settle<F: Field>(&mut self, source: &Source<'_, F>, brick: usize) -> Result<Done, F::Error> {
+        let Source { field, options, regions, .. } = source;
+        let mut strays = self.strays(source, brick);
+        if strays.is_empty() {
+            return Ok(Done::default());
+        }
+        let gradient_evaluations = settle(*field, &regions[brick], options.iso, &mut strays)?;
+        let count = strays.len();
+        let [x, y, z] =
+            [0, 1, 2].map(|axis| strays.iter().map(|stray| stray.best()[axis]).collect::<Vec<f32>>());
+        let (mut values, mut gradient) = (vec![0.0; count], [0; 3].map(|_| vec![0.0; count]));
+        let mut attributes = vec![0.0; self.attributes.len() / self.count * count];
+        let mut planes: Vec<&mut [f32]> = attributes.chunks_exact_mut(count).collect();
+        let slopes = gradient.each_mut().map(Vec::as_mut_slice);
+        field.all(&regions[brick], &x, &y, &z, &mut values, slopes, &mut planes)?;
+        for (n, stray) in strays.iter().enumerate() {
+            let index = stray.index;
+            for axis in 0..3 {
+                self.points[axis][index] = stray.best()[axis];
+                self.gradient[axis][index] = gradient[axis][n];
+            }
+            self.values[index] = values[n];
+            let planes = self.attributes.chunks_exact_mut(self.count).zip(attributes.chunks_exact(count));
+            planes.for_each(|(plane, settled)| plane[index] = settled[n]);
+        }
+        Ok(Done { gradient_evaluations, full_evaluations: count as u64, lacks_normals: false })
     }
-    let mut next = planes.iter();
-    for (target, &width) in attributes.into_iter().zip(widths) {
-        for (component, plane) in next.by_ref().take(width).enumerate() {
-            for (value, &source) in target.iter_mut().skip(component).step_by(width).zip(plane) {
-                *value = source;
+
+    /// The vertices that are off the surface.
+    fn strays<F: Field>(&self, source: &Source<'_, F>, brick: usize) -> Vec<Stray> {
+        let iso = source.options.iso;
+        let mut found = Vec::new();
+        for start in (0..self.count).step_by(LANES) {
+            let chunk = start / LANES;
+            let (values, gradient) = (lane(&self.values, chunk), lanes(&self.gradient, chunk));
+            let (low, high) = (lane(&self.low[0], chunk), lane(&self.high[0], chunk));
+            let is_stray: [bool; LANES] = std::array::from_fn(|i| {
+                strays(iso, high.0[i] - low.0[i], values.0[i], gradient.each_ref().map(|plane| plane.0[i]))
+            });
+            if is_stray == [false; LANES] {
+                continue;
+            }
+            let indices = (start..self.count).zip(is_stray).filter(|&(_, is_stray)| is_stray);
+            found.extend(indices.map(|(index, _)| self.stray(source, brick, index)));
+        }
+        found
+    }
+
+    fn stray<F: Field>(&self, source: &Source<'_, F>, brick: usize, index: usize) -> Stray {
+        let (cell, sheet) = self.owners[index];
+        let cell = source.crossings.of(brick)[cell as usize];
+        let bricks = source.bricks;
+        let sides = cell_sides(bricks.sides(brick), bricks.extent(brick), place(cell.number));
+        let edges = sheets_with_quads(cell.signs, cell.flips, sides).edges(sheet);
+        let mut corners = [0_u8; 2];
+        let ends = EDGE_CORNERS.iter().enumerate().filter(|(edge, _)| edges >> edge & 1 == 1);
+        for &corner in ends.flat_map(|(_, ends)| ends) {
+            corners[usize::from(cell.signs >> corner & 1)] |= 1 << corner;
+        }
+        let at = |planes: &Planes| planes.each_ref().map(|plane| plane[index]);
+        let place = Place { bounds: [at(&self.low), at(&self.high)], corners };
+        Stray::new(source.options.iso, index, place, at(&self.points), self.values[index], at(&self.gradient))
+    }
+
+    /// Writes the vertices to their range of the target. Returns whether one has no normal.
+    fn write(&self, target: &mut Target<'_>, range: Range<usize>, widths: &[usize]) -> bool {
+        let [x, y, z] = &self.points;
+        for (i, position) in target.positions[range.clone()].iter_mut().enumerate() {
+            *position = [x[i], y[i], z[i]];
+        }
+        let mut lacks_normals = false;
+        for (normals, chunk) in target.normals[range.clone()].chunks_mut(LANES).zip(0..) {
+            let [x, y, z] = normals_of(&lanes(&self.gradient, chunk));
+            for (i, normal) in normals.iter_mut().enumerate() {
+                *normal = [x.0[i], y.0[i], z.0[i]];
+                lacks_normals |= *normal == [0.0; 3];
             }
         }
+        let mut planes = self.attributes.chunks_exact(self.count);
+        for (values, &width) in target.attributes.iter_mut().zip(widths) {
+            let values = &mut values[range.start * width..range.end * width];
+            for (component, plane) in planes.by_ref().take(width).enumerate() {
+                for (value, &source) in values[component..].iter_mut().step_by(width).zip(plane) {
+                    *value = source;
+                }
+            }
+        }
+        lacks_normals
     }
-    Ok(evaluations)
 }
 
-/// Newton's step along the gradient, within a box.
-///
-/// A step that would leave the box goes as far as its sides and spends what is left along them, so that a surface which
-/// leaves the box beside the vertex is still met. Where the gradient vanishes or is no number, the position stays.
-pub(super) fn pull(
-    iso: f32,
-    position: [f32; 3],
-    field: f32,
-    gradient: [f32; 3],
-    [low, high]: [[f32; 3]; 2],
-) -> [f32; 3] {
-    if gradient.iter().any(|g| !g.is_finite()) {
-        return position;
-    }
-    let mut point = position;
-    // By how much the field, were it linear, has still to rise.
-    let mut rest = iso - field;
-    // Every round but the last stops one more axis at a side.
-    for _ in 0..3 {
-        let along = [0, 1, 2].map(|axis| {
-            let slope = gradient[axis];
-            let limit = if rest * slope > 0.0 { high[axis] } else { low[axis] };
-            if point[axis] == limit { 0.0 } else { slope }
-        });
-        let step = rest / (along[0] * along[0] + along[1] * along[1] + along[2] * along[2]);
-        if !step.is_finite() {
-            break;
-        }
-        let aim = [0, 1, 2].map(|axis| point[axis] + step * along[axis]);
-        let next = [0, 1, 2].map(|axis| aim[axis].clamp(low[axis], high[axis]));
-        rest -= (0..3).map(|axis| along[axis] * (next[axis] - point[axis])).sum::<f32>();
-        point = next;
-        if next == aim {
-            break;
-        }
-    }
-    point
+/// The field at the corners of the cell at a place of a table.
+#[inline(always)]
+fn corners(table: &[f32], at: usize, stride: usize) -> [f32; 8] {
+    let layer = stride * stride;
+    let table = &table[at..at + layer + stride + 2];
+    let [p, q, r, s] = [0, stride, layer, layer + stride].map(|at| [table[at], table[at + 1]]);
+    [p[0], p[1], q[0], q[1], r[0], r[1], s[0], s[1]]
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+#[inline(always)]
+fn lane(plane: &[f32], chunk: usize) -> Lanes {
+    Lanes(*plane[chunk * LANES..].first_chunk().expect("planes are filled up"))
+}
 
-    const BOX: [[f32; 3]; 2] = [[-10.0; 3], [10.0; 3]];
+#[inline(always)]
+fn lanes(planes: &Planes, chunk: usize) -> [Lanes; 3] {
+    planes.each_ref().map(|plane| lane(plane, chunk))
+}
 
-    #[test]
-    fn a_pull_solves_a_linear_field_at_once() {
-        // f = 2 x - y + 1 is 0.5 on the plane that this ends on.
-        let [x, y, z] = pull(0.5, [1.0, 1.0, 7.0], 2.0, [2.0, -1.0, 0.0], BOX);
-        assert!((2.0 * x - y + 0.5).abs() < 1e-6);
-        assert_eq!(z, 7.0);
+/// The directions away from the inside, or zero where the gradient vanishes or is no number.
+#[inline]
+fn normals_of(gradient: &[Lanes; 3]) -> [Lanes; 3] {
+    /// Squares of lengths whose terms neither overflow nor lose digits.
+    const TAME: RangeInclusive<f32> = 1e-24..=1e30;
+    let [x, y, z] = gradient;
+    let square: [f32; LANES] = std::array::from_fn(|i| x.0[i] * x.0[i] + y.0[i] * y.0[i] + z.0[i] * z.0[i]);
+    let scale: [f32; LANES] = std::array::from_fn(|i| -1.0 / square[i].sqrt());
+    let mut normals = gradient.map(|plane| Lanes(std::array::from_fn(|i| plane.0[i] * scale[i])));
+    let is_tame = square.iter().fold(true, |all, square| all & TAME.contains(square));
+    if !is_tame {
+        for i in (0..LANES).filter(|&i| !TAME.contains(&square[i])) {
+            let slope = gradient.map(|plane| -f64::from(plane.0[i]));
+            let normal = unit(slope).unwrap_or([0.0; 3]);
+            normals.iter_mut().zip(normal).for_each(|(plane, component)| plane.0[i] = component);
+        }
     }
-
-    #[test]
-    fn a_pull_goes_on_along_the_sides_of_its_box() {
-        // The plain step towards x + 2 y + 4 z = 6 would end at z = 8 / 7.
-        let unit = [[0.0; 3], [1.0; 3]];
-        let [x, y, z] = pull(6.0, [0.0; 3], 0.0, [1.0, 2.0, 4.0], unit);
-        assert_eq!(z, 1.0);
-        assert!((x + 2.0 * y + 4.0 * z - 6.0).abs() < 1e-6);
-        // Out of reach: the nearest corner.
-        assert_eq!(pull(9.0, [0.0; 3], 0.0, [1.0, 2.0, 4.0], unit), [1.0; 3]);
-        assert_eq!(pull(-9.0, [0.5; 3], 0.0, [1.0, 2.0, -4.0], unit), [0.0, 0.0, 1.0]);
-    }
-
-    #[test]
-    fn a_pull_goes_nowhere_without_a_gradient() {
-        let pull = |field, gradient| pull(0.5, [0.25; 3], field, gradient, BOX);
-        assert_eq!(pull(0.4, [0.0; 3]), [0.25; 3]);
-        assert_eq!(pull(0.5, [0.0; 3]), [0.25; 3]);
-        assert_eq!(pull(0.4, [1e-30, 0.0, 0.0]), [0.25; 3]);
-        assert_eq!(pull(0.4, [f32::NAN, 1.0, 0.0]), [0.25; 3]);
-        assert_eq!(pull(0.4, [f32::INFINITY, 1.0, 0.0]), [0.25; 3]);
-        assert_eq!(pull(0.4, [f32::MAX, 1.0, 0.0]), [0.25; 3]);
-        assert_eq!(pull(f32::NAN, [1.0, 0.0, 0.0]), [0.25; 3]);
-        assert_eq!(pull(f32::INFINITY, [1.0, 0.0, 0.0]), [0.25; 3]);
-    }
-
-    #[test]
-    fn a_crossing_is_on_its_edge() {
-        assert_eq!(crossing(0.5, 0.0, 1.0), 0.5);
-        assert_eq!(crossing(0.5, 1.0, 0.0), 0.5);
-        assert_eq!(crossing(0.25, 0.0, 1.0), 0.25);
-        assert_eq!(crossing(0.5, 0.5, 0.0), 0.0);
-        assert_eq!(crossing(0.5, f32::NAN, 0.9), 0.5);
-        assert_eq!(crossing(0.5, f32::NEG_INFINITY, 0.9), 0.5);
-        assert_eq!(crossing(0.5, f32::MIN, f32::MAX), 0.5);
-    }
+    normals
 }

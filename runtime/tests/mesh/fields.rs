@@ -2,22 +2,46 @@
 
 use std::convert::Infallible;
 
+use jbt::Box3;
 use jbt::mesh::Field;
+use jbt::region::Divisible;
 
 /// A field and its gradient at one point.
 pub type Sample = (f32, [f32; 3]);
 
-/// A field from a function of a point. Its attributes are `color` (the point itself) and `height` (z).
+/// A field from a function of a point. It knows nothing of boxes. Its attributes are `color` (the point itself) and `height` (z).
 pub struct Closed<F>(pub F);
 
-impl<F: Fn([f32; 3]) -> Sample + Sync> Field for Closed<F> {
-    type Error = Infallible;
+/// Says nothing about some boxes.
+pub fn no_ranges(ranges: &mut [[f32; 2]]) {
+    ranges.fill([f32::NEG_INFINITY, f32::INFINITY]);
+}
 
+impl<F: Fn([f32; 3]) -> Sample + Sync> Divisible for Closed<F> {
+    type Error = Infallible;
+    type Region = ();
+
+    fn region(&self, _: Box3) -> Result<(), Infallible> {
+        Ok(())
+    }
+
+    fn ranges(&self, (): &(), _: &[Box3], ranges: &mut [[f32; 2]]) -> Result<(), Infallible> {
+        no_ranges(ranges);
+        Ok(())
+    }
+
+    fn narrow(&self, (): &(), boxes: &[Box3], parts: &mut Vec<()>) -> Result<(), Infallible> {
+        parts.extend(boxes.iter().map(|_| ()));
+        Ok(())
+    }
+}
+
+impl<F: Fn([f32; 3]) -> Sample + Sync> Field for Closed<F> {
     fn attributes(&self) -> Vec<(String, usize)> {
         vec![("color".to_owned(), 3), ("height".to_owned(), 1)]
     }
 
-    fn field(&self, x: &[f32], y: &[f32], z: &[f32], field: &mut [f32]) -> Result<(), Infallible> {
+    fn field(&self, (): &(), x: &[f32], y: &[f32], z: &[f32], field: &mut [f32]) -> Result<(), Infallible> {
         for (i, field) in field.iter_mut().enumerate() {
             *field = self.0([x[i], y[i], z[i]]).0;
         }
@@ -26,6 +50,7 @@ impl<F: Fn([f32; 3]) -> Sample + Sync> Field for Closed<F> {
 
     fn gradient(
         &self,
+        (): &(),
         x: &[f32],
         y: &[f32],
         z: &[f32],
@@ -44,6 +69,7 @@ impl<F: Fn([f32; 3]) -> Sample + Sync> Field for Closed<F> {
 
     fn all(
         &self,
+        (): &(),
         x: &[f32],
         y: &[f32],
         z: &[f32],
@@ -55,7 +81,7 @@ impl<F: Fn([f32; 3]) -> Sample + Sync> Field for Closed<F> {
         attributes[1].copy_from_slice(y);
         attributes[2].copy_from_slice(z);
         attributes[3].copy_from_slice(z);
-        self.gradient(x, y, z, field, gradient)
+        self.gradient(&(), x, y, z, field, gradient)
     }
 }
 

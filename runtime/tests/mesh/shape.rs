@@ -4,11 +4,13 @@ use std::convert::Infallible;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use jbt::Box3;
 use jbt::mesh::{
     Field, Lattice, Mesh, MeshError, Options, Report, Sides, check_manifold, extract, extract_with_progress,
 };
+use jbt::region::Divisible;
 
-use crate::fields::{Closed, Sample, cubic, sphere, torus, union};
+use crate::fields::{Closed, Sample, cubic, no_ranges, sphere, torus, union};
 
 const PI: f64 = std::f64::consts::PI;
 
@@ -113,11 +115,10 @@ fn more_pulls_come_nearer() {
         let options = Options { pulls, ..Options::default() };
         let (mesh, report) = extract(&Closed(cubic(1.0)), &lattice(1.0, 0.25), &options).unwrap();
         let vertices = mesh.positions.len() as u64;
-        assert_eq!(report.full_evaluations, vertices);
-        // Pulls, and a look at what they achieved. One pull leaves vertices of such large cells off the surface; those are pulled on.
-        let (pulls, looks) = (pulls as u64, u64::from(pulls > 0));
-        let more = report.gradient_evaluations - (pulls + looks) * vertices;
+        // One pull leaves vertices of such large cells off the surface; those are pulled on, and evaluated once more.
+        let more = report.gradient_evaluations - pulls as u64 * vertices;
         assert_eq!(more > 0, pulls == 1, "{pulls} pulls");
+        assert_eq!(report.full_evaluations > vertices, pulls == 1, "{pulls} pulls");
         let off = |p: &[f32; 3]| (f64::from(cubic(1.0)(*p).0) - 0.5).abs();
         mesh.positions.iter().map(off).fold(0.0, f64::max)
     };
@@ -169,7 +170,7 @@ fn attributes_are_those_of_the_vertex() {
 #[test]
 fn every_lattice_point_is_asked_once_and_by_its_global_coordinate() {
     let lattice = Lattice::new([-1.0, 0.1, 7.0], 0.3, [37, 18, 5]).unwrap();
-    for brick in [1, 8, 16, 33, 128] {
+    for brick in [2, 4, 8, 16, 32] {
         let seen = Mutex::new(Vec::new());
         let record = |p: [f32; 3]| {
             seen.lock().unwrap().push([p[2], p[1], p[0]].map(f32::to_bits));
@@ -276,10 +277,11 @@ fn assert_unit_normals(mesh: &Mesh) {
 fn bad_options_are_errors() {
     let with = |options: Options| extract(&Closed(cubic(1.0)), &lattice(1.0, 0.5), &options).map(|_| ());
     let default = Options::default();
-    assert_eq!(with(Options { brick: 0, ..default.clone() }), Err(MeshError::Brick { brick: 0 }));
-    assert_eq!(with(Options { brick: 129, ..default.clone() }), Err(MeshError::Brick { brick: 129 }));
+    for brick in [0, 1, 3, 12, 33, 64] {
+        assert_eq!(with(Options { brick, ..default.clone() }), Err(MeshError::Brick { brick }));
+    }
     assert_eq!(with(Options { pulls: 65, ..default.clone() }), Err(MeshError::Pulls { pulls: 65 }));
-    assert_eq!(with(Options { pulls: 64, brick: 128, ..default.clone() }), Ok(()));
+    assert_eq!(with(Options { pulls: 64, brick: 32, ..default.clone() }), Ok(()));
     let infinite = f32::INFINITY;
     assert_eq!(with(Options { iso: infinite, ..default }), Err(MeshError::Iso { iso: infinite }));
 }
@@ -323,32 +325,51 @@ impl Failing {
     }
 }
 
-impl Field for Failing {
+impl Divisible for Failing {
     type Error = NoMore;
+    type Region = ();
 
+    fn region(&self, _: Box3) -> Result<(), NoMore> {
+        self.call()
+    }
+
+    fn ranges(&self, (): &(), _: &[Box3], ranges: &mut [[f32; 2]]) -> Result<(), NoMore> {
+        no_ranges(ranges);
+        self.call()
+    }
+
+    fn narrow(&self, (): &(), boxes: &[Box3], parts: &mut Vec<()>) -> Result<(), NoMore> {
+        parts.extend(boxes.iter().map(|_| ()));
+        self.call()
+    }
+}
+
+impl Field for Failing {
     fn attributes(&self) -> Vec<(String, usize)> {
         Vec::new()
     }
 
-    fn field(&self, x: &[f32], y: &[f32], z: &[f32], field: &mut [f32]) -> Result<(), NoMore> {
-        let Ok(()) = Closed(cubic(1.0)).field(x, y, z, field);
+    fn field(&self, (): &(), x: &[f32], y: &[f32], z: &[f32], field: &mut [f32]) -> Result<(), NoMore> {
+        let Ok(()) = Closed(cubic(1.0)).field(&(), x, y, z, field);
         self.call()
     }
 
     fn gradient(
         &self,
+        (): &(),
         x: &[f32],
         y: &[f32],
         z: &[f32],
         field: &mut [f32],
         gradient: [&mut [f32]; 3],
     ) -> Result<(), NoMore> {
-        let Ok(()) = Closed(cubic(1.0)).gradient(x, y, z, field, gradient);
+        let Ok(()) = Closed(cubic(1.0)).gradient(&(), x, y, z, field, gradient);
         self.call()
     }
 
     fn all(
         &self,
+        (): &(),
         x: &[f32],
         y: &[f32],
         z: &[f32],
@@ -356,49 +377,70 @@ impl Field for Failing {
         gradient: [&mut [f32]; 3],
         _: &mut [&mut [f32]],
     ) -> Result<(), NoMore> {
-        self.gradient(x, y, z, field, gradient)
+        self.gradient(&(), x, y, z, field, gradient)
     }
 }
 
 #[test]
 fn an_error_of_the_field_is_handed_on() {
-    // One brick and one batch: a call for the lattice, two pulls, a look at them, and the last.
-    let lattice = lattice(1.0, 0.25);
-    for calls in 0..5 {
+    // Two levels of boxes: the region, its range, those of its children, their regions. Then eight bricks: the lattice, two pulls
+    // and the rest of each.
+    let lattice = lattice(1.0, 0.125);
+    let needed = 4 + 8 * (1 + 2 + 1);
+    for calls in 0..needed {
         let field = Failing(AtomicU64::new(calls));
         let result = extract(&field, &lattice, &Options::default());
         assert_eq!(result.map(|_| ()), Err(MeshError::Field(NoMore)), "after {calls}");
     }
-    assert!(extract(&Failing(AtomicU64::new(5)), &lattice, &Options::default()).is_ok());
+    assert!(extract(&Failing(AtomicU64::new(needed)), &lattice, &Options::default()).is_ok());
 }
 
 /// The sphere with one attribute, of any width.
 struct Wide(usize);
 
-impl Field for Wide {
+impl Divisible for Wide {
     type Error = Infallible;
+    type Region = ();
 
+    fn region(&self, _: Box3) -> Result<(), Infallible> {
+        Ok(())
+    }
+
+    fn ranges(&self, (): &(), _: &[Box3], ranges: &mut [[f32; 2]]) -> Result<(), Infallible> {
+        no_ranges(ranges);
+        Ok(())
+    }
+
+    fn narrow(&self, (): &(), boxes: &[Box3], parts: &mut Vec<()>) -> Result<(), Infallible> {
+        parts.extend(boxes.iter().map(|_| ()));
+        Ok(())
+    }
+}
+
+impl Field for Wide {
     fn attributes(&self) -> Vec<(String, usize)> {
         vec![("wide".to_owned(), self.0)]
     }
 
-    fn field(&self, x: &[f32], y: &[f32], z: &[f32], field: &mut [f32]) -> Result<(), Infallible> {
-        Closed(cubic(1.0)).field(x, y, z, field)
+    fn field(&self, (): &(), x: &[f32], y: &[f32], z: &[f32], field: &mut [f32]) -> Result<(), Infallible> {
+        Closed(cubic(1.0)).field(&(), x, y, z, field)
     }
 
     fn gradient(
         &self,
+        (): &(),
         x: &[f32],
         y: &[f32],
         z: &[f32],
         field: &mut [f32],
         gradient: [&mut [f32]; 3],
     ) -> Result<(), Infallible> {
-        Closed(cubic(1.0)).gradient(x, y, z, field, gradient)
+        Closed(cubic(1.0)).gradient(&(), x, y, z, field, gradient)
     }
 
     fn all(
         &self,
+        (): &(),
         x: &[f32],
         y: &[f32],
         z: &[f32],
@@ -409,7 +451,7 @@ impl Field for Wide {
         for (number, plane) in (1_u8..).zip(attributes) {
             plane.fill(f32::from(number));
         }
-        self.gradient(x, y, z, field, gradient)
+        self.gradient(&(), x, y, z, field, gradient)
     }
 }
 
@@ -430,5 +472,5 @@ fn attributes_are_one_to_four_reals() {
 #[test]
 fn errors_print() {
     let error: MeshError<Infallible> = MeshError::Brick { brick: 0 };
-    assert_eq!(error.to_string(), "a brick has from 1 to 128 points along an edge, and 0 were asked for");
+    assert_eq!(error.to_string(), "the edge of a brick is a power of two from 2 to 32, and 0 was asked for");
 }

@@ -120,11 +120,16 @@ fn vertices_stay_in_their_cells() {
 }
 
 /// All bits of a mesh.
-fn bits(mesh: &Mesh) -> Vec<u32> {
+pub fn bits(mesh: &Mesh) -> Vec<u32> {
     let reals = mesh.positions.iter().chain(&mesh.normals).flatten().map(|c| c.to_bits());
     let attributes =
         mesh.attributes.iter().flat_map(|attribute| attribute.values.iter().map(|v| v.to_bits()));
     reals.chain(attributes).chain(mesh.triangles.iter().flatten().copied()).collect()
+}
+
+/// What does not depend on the bricks.
+fn without_boxes(report: Report) -> Report {
+    Report { boxes: 0, bricks: 0, ..report }
 }
 
 #[test]
@@ -140,11 +145,11 @@ fn the_same_bits_for_any_threads_and_bricks() {
             let (a, report_a) = extract(&smooth.1, &smooth.0, &options).unwrap();
             let (b, report_b) = extract(&rough.1, &rough.0, &options).unwrap();
             assert!(report_a.closed && report_b.closed);
-            (bits(&a), report_a, bits(&b), report_b)
+            (bits(&a), without_boxes(report_a), bits(&b), without_boxes(report_b))
         })
     };
-    let expected = run(1, 16);
-    for (threads, brick) in [(4, 16), (1, 8), (4, 33), (3, 128), (2, 1)] {
+    let expected = run(1, 8);
+    for (threads, brick) in [(4, 8), (1, 2), (4, 4), (3, 16), (2, 32)] {
         assert!(run(threads, brick) == expected, "{threads} threads, bricks of {brick}");
     }
 }

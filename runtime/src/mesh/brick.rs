@@ -1,0 +1,220 @@
+//! Bricks: cubes of cells that the surface may be in, their neighbours, and the order of their cells.
+//!
+//! ```text
+//!      x---x---x---x---x        a brick of 4 x 4 cells (in the plane; in space it has 4 x 4 x 4);
+//!      | a | b | e | f |        cells are numbered in Morton order: the bits of x, y and z
+//!      o---o---o---o---x        interleaved, that of x lowest
+//!      | 8 | 9 | c | d |
+//!      o---o---o---o---x        o  points of its half-open box: its own
+//!      | 2 | 3 | 6 | 7 |        x  points that belong to the bricks above, where there are any
+//!      o---o---o---o---x
+//!      | 0 | 1 | 4 | 5 |
+//!      o---o---o---o---x
+//! ```
+//!
+//! Bricks are aligned to multiples of their edge, which is a power of two, and stand in Morton order as well. So bricks and their cells, one after the
+//! other, run through all cells in Morton order, whatever the edge is.
+
+use crate::region::Box3;
+
+/// No brick.
+pub(crate) const NONE: u32 = u32::MAX;
+/// The neighbour of a brick in no direction: itself.
+pub(crate) const SELF: usize = direction([0, 0, 0]);
+/// Cells of bricks that a thread does at a time: small enough to share small meshes among threads, and large enough for
+/// the cost of sharing not to count.
+const CELLS_AT_A_TIME: usize = 1 << 13;
+
+/// The number of a direction, from steps of -1, 0 or 1 along the axes: 0 to 26.
+pub(crate) const fn direction(steps: [i8; 3]) -> usize {
+    ((steps[0] + 1) + 3 * (steps[1] + 1) + 9 * (steps[2] + 1)) as usize
+}
+
+/// The place of a cell within its brick, from its number in Morton order (of 15 bits).
+#[inline]
+pub(crate) fn place(number: u16) -> [usize; 3] {
+    let gather = |bits: u16| {
+        bits & 1 | bits >> 2 & 0b10 | bits >> 4 & 0b100 | bits >> 6 & 0b1000 | bits >> 8 & 0b1_0000
+    };
+    [gather(number), gather(number >> 1), gather(number >> 2)].map(usize::from)
+}
+
+/// The number of a cell within its brick. The inverse of [`place`].
+pub(crate) fn number(place: [usize; 3]) -> u16 {
+    let spread = |index: usize| (0..5).fold(0, |bits, bit| bits | (index >> bit & 1) << (3 * bit));
+    (spread(place[0]) | spread(place[1]) << 1 | spread(place[2]) << 2) as u16
+}
+
+/// The bricks of a lattice, in Morton order.
+pub(crate) struct Bricks {
+    /// Cells along an edge: 2, 4, 8, 16 or 32.
+    pub(crate) edge: usize,
+    /// The coordinates of the lattice's points along x, y and z.
+    pub(crate) axes: [Vec<f32>; 3],
+    /// Where each brick is, in units of bricks.
+    pub(crate) places: Vec<[u32; 3]>,
+    /// The bricks around each one by [`direction`], or [`NONE`].
+    pub(crate) neighbours: Vec<[u32; 27]>,
+    /// For each eight cells in Morton order, where the first one is in a table of a brick's points.
+    octets: Vec<u32>,
+}
+
+impl Bricks {
+    /// The bricks in these places, which are in Morton order.
+    pub(crate) fn new(
+        edge: usize,
+        axes: [Vec<f32>; 3],
+        places: Vec<[u32; 3]>,
+        neighbours: Vec<[u32; 27]>,
+    ) -> Self {
+        let stride = edge + 1;
+        let octet = |number: u16| {
+            let [x, y, z] = place(number);
+            (x + stride * (y + stride * z)) as u32
+        };
+        let octets = (0..edge.pow(3)).step_by(8).map(|number| octet(number as u16)).collect();
+        Self { edge, axes, places, neighbours, octets }
+    }
+
+    /// How many there are.
+    pub(crate) fn len(&self) -> usize {
+        self.places.len()
+    }
+
+    /// How many a thread does at a time.
+    pub(crate) fn group(&self) -> usize {
+        (CELLS_AT_A_TIME / self.edge.pow(3)).max(1)
+    }
+
+    /// Points along an edge, and the distance of rows in a table of a brick's points (x fastest, then y, then z).
+    pub(crate) fn stride(&self) -> usize {
+        self.edge + 1
+    }
+
+    /// Points in a table.
+    pub(crate) fn table_len(&self) -> usize {
+        self.stride().pow(3)
+    }
+
+    /// For each eight cells in Morton order, the place of the first in a table.
+    pub(crate) fn octets(&self) -> &[u32] {
+        &self.octets
+    }
+
+    /// The place of a cell's low corner in a table.
+    #[inline]
+    pub(crate) fn in_table(&self, number: u16) -> usize {
+        let (octet, rest) = (usize::from(number >> 3), usize::from(number & 7));
+        let stride = self.stride();
+        self.octets[octet] as usize + (rest & 1) + stride * ((rest >> 1 & 1) + stride * (rest >> 2))
+    }
+
+    /// The first cell of a brick.
+    pub(crate) fn origin(&self, brick: usize) -> [usize; 3] {
+        self.places[brick].map(|index| index as usize * self.edge)
+    }
+
+    /// The cells of a brick along x, y and z: fewer than its edge where the lattice ends.
+    pub(crate) fn extent(&self, brick: usize) -> [usize; 3] {
+        let origin = self.origin(brick);
+        [0, 1, 2].map(|axis| self.edge.min(self.axes[axis].len() - 1 - origin[axis]))
+    }
+
+    /// The sides of the lattice that a brick touches: bit `2 axis` for the low one, `2 axis + 1` for the high one.
+    pub(crate) fn sides(&self, brick: usize) -> u8 {
+        let (origin, extent) = (self.origin(brick), self.extent(brick));
+        (0..3).fold(0, |sides, axis| {
+            let ends = origin[axis] + extent[axis] + 1 == self.axes[axis].len();
+            sides | u8::from(origin[axis] == 0) << (2 * axis) | u8::from(ends) << (2 * axis + 1)
+        })
+    }
+}
+
+/// The sides of the lattice that a cell touches, in a brick with these sides.
+pub(crate) fn cell_sides(sides: u8, extent: [usize; 3], place: [usize; 3]) -> u8 {
+    let touches = (0..3).fold(0, |mask, axis| {
+        let (low, high) = (place[axis] == 0, place[axis] + 1 == extent[axis]);
+        mask | u8::from(low) << (2 * axis) | u8::from(high) << (2 * axis + 1)
+    });
+    sides & touches
+}
+
+/// The closed box of the cells from `first` to before `end` (along each axis; no further than the lattice).
+pub(crate) fn box_of(axes: &[Vec<f32>; 3], first: [usize; 3], end: [usize; 3]) -> Box3 {
+    let last = |axis: usize| end[axis].min(axes[axis].len() - 1);
+    Box3 {
+        low: [0, 1, 2].map(|axis| axes[axis][first[axis]]),
+        high: [0, 1, 2].map(|axis| axes[axis][last(axis)]),
+    }
+}
+
+/// Divides a slice among groups of bricks; the part of brick `b` is from `starts[b]` to `starts[b + 1]`, times `width`.
+pub(crate) fn split<'a, T>(
+    mut slice: &'a mut [T],
+    starts: &[usize],
+    group: usize,
+    width: usize,
+) -> Vec<&'a mut [T]> {
+    let bricks = starts.len() - 1;
+    let part = |first: usize| {
+        let length = width * (starts[bricks.min(first + group)] - starts[first]);
+        let (part, rest) = std::mem::take(&mut slice).split_at_mut(length);
+        slice = rest;
+        part
+    };
+    (0..bricks).step_by(group).map(part).collect()
+}
+
+/// The sums of all numbers before each, and of all.
+pub(crate) fn starts(counts: impl ExactSizeIterator<Item = usize>) -> Vec<usize> {
+    let mut starts = Vec::with_capacity(counts.len() + 1);
+    let mut sum = 0;
+    starts.push(sum);
+    for count in counts {
+        sum += count;
+        starts.push(sum);
+    }
+    starts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_places() {
+        for cell in 0..1 << 15 {
+            assert_eq!(number(place(cell)), cell);
+        }
+        assert_eq!(place(1), [1, 0, 0]);
+        assert_eq!(place(0b110), [0, 1, 1]);
+        assert_eq!(number([31; 3]), (1 << 15) - 1);
+    }
+
+    #[test]
+    fn a_brick_at_the_end_is_cut() {
+        let axis = |cells: u8| (0..=cells).map(f32::from).collect::<Vec<f32>>();
+        let places = vec![[0, 0, 0], [1, 0, 0]];
+        let bricks = Bricks::new(4, [axis(7), axis(4), axis(2)], places, vec![[NONE; 27]; 2]);
+        assert_eq!((bricks.extent(0), bricks.extent(1)), ([4, 4, 2], [3, 4, 2]));
+        assert_eq!((bricks.sides(0), bricks.sides(1)), (0b11_1101, 0b11_1110));
+        assert_eq!(cell_sides(bricks.sides(1), [3, 4, 2], [2, 1, 0]), 0b01_0010);
+        assert_eq!(
+            box_of(&bricks.axes, [4, 0, 0], [8; 3]),
+            Box3 { low: [4.0, 0.0, 0.0], high: [7.0, 4.0, 2.0] }
+        );
+        for cell in 0..64 {
+            let [x, y, z] = place(cell);
+            assert_eq!(bricks.in_table(cell), x + 5 * (y + 5 * z));
+        }
+    }
+
+    #[test]
+    fn slices_are_split_by_groups() {
+        let mut numbers = [1, 2, 3, 4, 5, 6];
+        let starts = starts([1, 0, 2].into_iter());
+        assert_eq!(starts, [0, 1, 1, 3]);
+        let parts = split(&mut numbers, &starts, 2, 2);
+        assert_eq!(parts, [&[1, 2][..], &[3, 4, 5, 6]]);
+    }
+}

@@ -1,0 +1,411 @@
+//! The recursive division of the lattice into bricks: boxes without surface are dropped, and nothing in them is ever asked again.
+//!
+//! ```text
+//! boxes = [the whole lattice]
+//! until boxes are bricks:
+//!     for each box, in parallel:                      ranges of its (up to) 8 children
+//!         low >= iso: all inside, dropped             high < iso: all outside, dropped
+//!         the others get regions of their own         (narrow)
+//!     boxes = all children, in Morton order           their neighbours: children of their parents' neighbours
+//! ```
+//!
+//! A box is judged closed, far sides included: so a point that it shares with another box is on the same side of the surface for
+//! both, and a cell that the surface crosses is always in a brick.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use rayon::prelude::*;
+
+use super::brick::{Bricks, NONE, SELF, box_of};
+use super::field::Field;
+use super::progress::{Phase, Progress};
+use super::{MeshError, Options, Sides};
+use crate::region::{ANYTHING, Box3, MAX_PARTS};
+
+/// What division found.
+pub(crate) struct Division<R> {
+    /// The bricks that the surface may be in.
+    pub(crate) bricks: Bricks,
+    /// What the field knows of each.
+    pub(crate) regions: Vec<R>,
+    /// What became of the boxes.
+    pub(crate) boxes: Boxes,
+}
+
+/// What became of boxes.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Boxes {
+    /// Whose range was asked.
+    pub(crate) examined: u64,
+    /// That were dropped as all inside.
+    pub(crate) inside: u64,
+    /// That were dropped as all outside.
+    pub(crate) outside: u64,
+    /// The sides of the lattice that those inside touch.
+    pub(crate) cut: Sides,
+}
+
+impl Boxes {
+    fn add(&mut self, other: Self) {
+        self.examined += other.examined;
+        self.inside += other.inside;
+        self.outside += other.outside;
+        self.cut.add(other.cut);
+    }
+}
+
+/// The boxes of one size that are left, in Morton order.
+struct Level<R> {
+    /// Where they are, in units of their size.
+    places: Vec<[u32; 3]>,
+    regions: Vec<R>,
+    neighbours: Vec<[u32; 27]>,
+}
+
+/// The children of some boxes.
+struct Children<R> {
+    /// For each box which of its children are left, a bit each.
+    masks: Vec<u8>,
+    /// The regions of those.
+    regions: Vec<R>,
+    boxes: Boxes,
+}
+
+/// What stays the same all the way down.
+struct Work<'a, 'hook, F: Field> {
+    field: &'a F,
+    axes: &'a [Vec<f32>; 3],
+    iso: f32,
+    limit: usize,
+    progress: &'a Progress<'hook>,
+}
+
+/// Divides a lattice with these coordinates into bricks. No more than `limit` boxes of one size are kept.
+pub(crate) fn divide<F: Field>(
+    field: &F,
+    axes: [Vec<f32>; 3],
+    options: &Options,
+    limit: usize,
+    progress: &Progress<'_>,
+) -> Result<Division<F::Region>, MeshError<F::Error>> {
+    let edge = options.brick;
+    let work = Work { field, axes: &axes, iso: options.iso, limit, progress };
+    let most = axes.iter().map(|axis| axis.len() - 1).fold(1, usize::max);
+    let halvings = most.div_ceil(edge).next_power_of_two().ilog2();
+    progress.begin(Phase::Divide)?;
+    let mut boxes = Boxes::default();
+    let mut level = work.root(edge << halvings, &mut boxes)?;
+    for halving in (0..halvings).rev() {
+        level = work.descend(level, edge << halving, &mut boxes)?;
+        progress.advance(Phase::Divide, halvings as usize)?;
+    }
+    let Level { places, regions, neighbours } = level;
+    Ok(Division { bricks: Bricks::new(edge, axes, places, neighbours), regions, boxes })
+}
+
+impl<F: Field> Work<'_, '_, F> {
+    /// The whole lattice as one box of this size; or nothing, if it has no surface.
+    fn root(&self, size: usize, boxes: &mut Boxes) -> Result<Level<F::Region>, MeshError<F::Error>> {
+        let bounds = box_of(self.axes, [0; 3], [size; 3]);
+        let region = self.field.region(bounds).map_err(MeshError::Field)?;
+        let ranges = self.ranges(&region, &[bounds])?;
+        let level = Level { places: Vec::new(), regions: Vec::new(), neighbours: Vec::new() };
+        if !self.may_cross(ranges[0], [0; 3], size, boxes) {
+            return Ok(level);
+        }
+        self.check(1)?;
+        let mut neighbours = [NONE; 27];
+        neighbours[SELF] = 0;
+        Ok(Level { places: vec![[0; 3]], regions: vec![region], neighbours: vec![neighbours] })
+    }
+
+    /// The children, of this size, of all boxes.
+    fn descend(
+        &self,
+        level: Level<F::Region>,
+        size: usize,
+        boxes: &mut Boxes,
+    ) -> Result<Level<F::Region>, MeshError<F::Error>> {
+        // Near the top there are few boxes, and each takes long.
+        let group = if level.places.len() < 256 { 1 } else { 16 };
+        let found = AtomicUsize::new(0);
+        let groups = level.places.par_chunks(group).zip(level.regions.par_chunks(group));
+        let groups = groups.map(|(places, regions)| {
+            self.progress.check()?;
+            let children = self.children(places, regions, size)?;
+            let before = found.fetch_add(children.regions.len(), Ordering::Relaxed);
+            self.check(before + children.regions.len())?;
+            Ok(children)
+        });
+        let groups = groups.collect::<Result<Vec<Children<F::Region>>, MeshError<F::Error>>>()?;
+        let mut masks = Vec::with_capacity(level.places.len());
+        let mut regions = Vec::with_capacity(found.into_inner());
+        for mut children in groups {
+            masks.append(&mut children.masks);
+            regions.append(&mut children.regions);
+            boxes.add(children.boxes);
+        }
+        let (places, neighbours) = link(&level.places, &level.neighbours, &masks);
+        Ok(Level { places, regions, neighbours })
+    }
+
+    fn check(&self, bricks: usize) -> Result<(), MeshError<F::Error>> {
+        let limit = self.limit;
+        if bricks > limit { Err(MeshError::TooManyBricks { limit }) } else { Ok(()) }
+    }
+
+    /// The children of some boxes.
+    fn children(
+        &self,
+        places: &[[u32; 3]],
+        regions: &[F::Region],
+        size: usize,
+    ) -> Result<Children<F::Region>, MeshError<F::Error>> {
+        let mut children = Children {
+            masks: Vec::with_capacity(places.len()),
+            regions: Vec::with_capacity(4 * places.len()),
+            boxes: Boxes::default(),
+        };
+        for (place, region) in places.iter().zip(regions) {
+            self.divide_box(*place, region, size, &mut children)?;
+        }
+        Ok(children)
+    }
+
+    fn divide_box(
+        &self,
+        place: [u32; 3],
+        region: &F::Region,
+        size: usize,
+        children: &mut Children<F::Region>,
+    ) -> Result<(), MeshError<F::Error>> {
+        let first =
+            |child: usize| [0, 1, 2].map(|axis| (2 * place[axis] as usize + (child >> axis & 1)) * size);
+        let in_lattice = |child: usize| (0..3).all(|axis| first(child)[axis] + 1 < self.axes[axis].len());
+        let bounds = |child: usize| box_of(self.axes, first(child), first(child).map(|index| index + size));
+        let mut boxes = [Box3::default(); MAX_PARTS];
+        let mut which = [0; MAX_PARTS];
+        let mut count = 0;
+        for child in (0..8).filter(|&child| in_lattice(child)) {
+            (boxes[count], which[count]) = (bounds(child), child);
+            count += 1;
+        }
+        let ranges = self.ranges(region, &boxes[..count])?;
+        let (mut mask, mut kept) = (0_u8, 0);
+        for n in 0..count {
+            if self.may_cross(ranges[n], first(which[n]), size, &mut children.boxes) {
+                mask |= 1 << which[n];
+                boxes[kept] = boxes[n];
+                kept += 1;
+            }
+        }
+        children.masks.push(mask);
+        if kept == 0 {
+            return Ok(());
+        }
+        let before = children.regions.len();
+        self.field.narrow(region, &boxes[..kept], &mut children.regions).map_err(MeshError::Field)?;
+        assert_eq!(children.regions.len(), before + kept, "a field gives each box a region");
+        Ok(())
+    }
+
+    fn ranges(
+        &self,
+        region: &F::Region,
+        boxes: &[Box3],
+    ) -> Result<[[f32; 2]; MAX_PARTS], MeshError<F::Error>> {
+        let mut ranges = [ANYTHING; MAX_PARTS];
+        self.field.ranges(region, boxes, &mut ranges[..boxes.len()]).map_err(MeshError::Field)?;
+        Ok(ranges)
+    }
+
+    /// Whether the surface may be in a box, by the range of the field in it. A NaN says nothing.
+    fn may_cross(&self, [low, high]: [f32; 2], first: [usize; 3], size: usize, boxes: &mut Boxes) -> bool {
+        boxes.examined += 1;
+        if low >= self.iso {
+            boxes.inside += 1;
+            for axis in 0..3 {
+                boxes.cut.low[axis] |= first[axis] == 0;
+                boxes.cut.high[axis] |= first[axis] + size + 1 >= self.axes[axis].len();
+            }
+            return false;
+        }
+        let outside = high < self.iso;
+        boxes.outside += u64::from(outside);
+        !outside
+    }
+}
+
+/// The places of the children that are left, and their neighbours.
+fn link(places: &[[u32; 3]], neighbours: &[[u32; 27]], masks: &[u8]) -> (Vec<[u32; 3]>, Vec<[u32; 27]>) {
+    let mut firsts = Vec::with_capacity(masks.len());
+    let mut count = 0;
+    for mask in masks {
+        firsts.push(count);
+        count += mask.count_ones();
+    }
+    let of_child = |parent: usize, child: usize| {
+        let place = [0, 1, 2].map(|axis| 2 * places[parent][axis] + (child >> axis & 1) as u32);
+        let around = KIN[child].map(|(direction, kin)| {
+            let parent = neighbours[parent][usize::from(direction)];
+            if parent == NONE || masks[parent as usize] >> kin & 1 == 0 {
+                return NONE;
+            }
+            let mask = masks[parent as usize];
+            firsts[parent as usize] + (mask & ((1 << kin) - 1)).count_ones()
+        });
+        (place, around)
+    };
+    let of_parent = |parent: usize| {
+        (0..8).filter(move |&child| masks[parent] >> child & 1 == 1).map(move |child| of_child(parent, child))
+    };
+    (0..masks.len()).into_par_iter().with_min_len(64).flat_map_iter(of_parent).unzip()
+}
+
+/// For each child and each direction: the direction in which the parent of the neighbour is, and which child of it that is.
+static KIN: [[(u8, u8); 27]; 8] = {
+    let mut kin = [[(0, 0); 27]; 8];
+    let mut child = 0;
+    while child < 8 {
+        let mut direction = 0;
+        while direction < 27 {
+            let (mut parent, mut place) = (0, 0);
+            let (mut axis, mut unit, mut rest) = (0, 1, direction);
+            while axis < 3 {
+                // From one before the first child to one after the second, counted from 1: parents are 0, 1, 1, 2.
+                let step = (child >> axis & 1) + rest % 3;
+                parent += unit * ((step + 1) / 2);
+                place |= (step + 1) % 2 << axis;
+                (axis, unit, rest) = (axis + 1, 3 * unit, rest / 3);
+            }
+            kin[child][direction] = (parent as u8, place as u8);
+            direction += 1;
+        }
+        child += 1;
+    }
+    kin
+};
+
+#[cfg(test)]
+mod tests {
+    use std::convert::Infallible;
+
+    use super::*;
+    use crate::region::Divisible;
+
+    /// The ball of radius 2 about the origin, by its square, with exact ranges of boxes. Nothing is evaluated.
+    struct Ball;
+
+    impl Divisible for Ball {
+        type Error = Infallible;
+        type Region = ();
+
+        fn region(&self, _: Box3) -> Result<(), Infallible> {
+            Ok(())
+        }
+
+        fn ranges(&self, (): &(), boxes: &[Box3], ranges: &mut [[f32; 2]]) -> Result<(), Infallible> {
+            for (range, Box3 { low, high }) in ranges.iter_mut().zip(boxes) {
+                let square =
+                    |of: fn(f32, f32) -> f32| (0..3).map(|a| of(low[a], high[a]).powi(2)).sum::<f32>();
+                *range = [
+                    -square(|low, high| low.abs().max(high.abs())),
+                    -square(|low, high| low.max(-high).max(0.0)),
+                ];
+            }
+            Ok(())
+        }
+
+        fn narrow(&self, (): &(), boxes: &[Box3], parts: &mut Vec<()>) -> Result<(), Infallible> {
+            parts.resize(parts.len() + boxes.len(), ());
+            Ok(())
+        }
+    }
+
+    impl Field for Ball {
+        fn attributes(&self) -> Vec<(String, usize)> {
+            Vec::new()
+        }
+
+        fn field(&self, (): &(), _: &[f32], _: &[f32], _: &[f32], _: &mut [f32]) -> Result<(), Infallible> {
+            Ok(())
+        }
+
+        fn gradient(
+            &self,
+            (): &(),
+            _: &[f32],
+            _: &[f32],
+            _: &[f32],
+            _: &mut [f32],
+            _: [&mut [f32]; 3],
+        ) -> Result<(), Infallible> {
+            Ok(())
+        }
+
+        fn all(
+            &self,
+            (): &(),
+            _: &[f32],
+            _: &[f32],
+            _: &[f32],
+            _: &mut [f32],
+            _: [&mut [f32]; 3],
+            _: &mut [&mut [f32]],
+        ) -> Result<(), Infallible> {
+            Ok(())
+        }
+    }
+
+    /// Divides a lattice with so many cells along each axis, from -3 on, into bricks of 2^3 cells of 1/8.
+    fn divided(cells: [usize; 3], limit: usize) -> Result<Division<()>, MeshError<Infallible>> {
+        let axes = cells.map(|cells| (0..=cells).map(|index| -3.0 + 0.125 * index as f32).collect());
+        let options = Options { iso: -4.0, brick: 2, ..Options::default() };
+        divide(&Ball, axes, &options, limit, &Progress::new(&mut |_| true))
+    }
+
+    #[test]
+    fn the_limit_of_bricks_holds_at_its_value_and_one_past_it() {
+        let count = divided([48; 3], usize::MAX).map(|division| division.bricks.len()).unwrap();
+        assert!(count > 1000);
+        assert!(divided([48; 3], count).is_ok());
+        let limit = count - 1;
+        assert_eq!(divided([48; 3], limit).err(), Some(MeshError::TooManyBricks { limit }));
+        assert_eq!(divided([48; 3], 0).err(), Some(MeshError::TooManyBricks { limit: 0 }));
+    }
+
+    #[test]
+    fn bricks_are_those_that_the_surface_may_be_in_and_know_each_other() {
+        let Division { bricks, regions, boxes } = divided([48, 31, 40], usize::MAX).unwrap();
+        assert_eq!(bricks.len(), regions.len());
+        assert!(boxes.examined > boxes.inside + boxes.outside && boxes.inside > 0 && boxes.outside > 0);
+        // The lattice ends at y = 0.875 and z = 2.
+        assert_eq!(boxes.cut, Sides { low: [false; 3], high: [false, true, false] });
+        let mut expected = Vec::new();
+        for (x, y, z) in (0..24).flat_map(|x| (0..16).flat_map(move |y| (0..20).map(move |z| (x, y, z)))) {
+            let first = [x, y, z].map(|index| 2 * index);
+            let mut range = [[0.0; 2]];
+            let Ok(()) =
+                Ball.ranges(&(), &[box_of(&bricks.axes, first, first.map(|index| index + 2))], &mut range);
+            if range[0][0] < -4.0 && range[0][1] >= -4.0 {
+                expected.push([x, y, z].map(|index| index as u32));
+            }
+        }
+        let morton = |place: &[u32; 3]| {
+            (0..10).fold(0, |bits, bit| {
+                (0..3).fold(bits, |bits, axis| bits | (place[axis] >> bit & 1) << (3 * bit + axis as u32))
+            })
+        };
+        expected.sort_by_key(morton);
+        assert_eq!(bricks.places, expected);
+        let find = |place: [i64; 3]| {
+            expected.iter().position(|other| other.map(i64::from) == place).map_or(NONE, |index| index as u32)
+        };
+        for (place, neighbours) in bricks.places.iter().zip(&bricks.neighbours).step_by(7) {
+            for (direction, &neighbour) in neighbours.iter().enumerate() {
+                let step = [direction % 3, direction / 3 % 3, direction / 9].map(|step| step as i64 - 1);
+                assert_eq!(neighbour, find([0, 1, 2].map(|axis| i64::from(place[axis]) + step[axis])));
+            }
+        }
+    }
+}

@@ -1,0 +1,156 @@
+//! Newton's step along the gradient, within the cell of a vertex.
+
+/// Vertices that are pulled together: two registers of 128 bits, or one of 256.
+pub(super) const LANES: usize = 8;
+
+/// A number for each of some vertices.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Lanes(pub(super) [f32; LANES]);
+
+impl Lanes {
+    /// From a function of the lane.
+    #[inline(always)]
+    fn from(of: impl Fn(usize) -> f32) -> Self {
+        Self(std::array::from_fn(of))
+    }
+}
+
+/// Pulls vertices, each from its position with the field and the gradient there, within the boxes from `low` to `high`.
+///
+/// A plain step that stays in its box is taken by all lanes at once; those that would leave it go on one by one.
+#[inline]
+pub(super) fn pull_lanes(
+    iso: f32,
+    points: &mut [Lanes; 3],
+    values: &Lanes,
+    gradient: &[Lanes; 3],
+    low: &[Lanes; 3],
+    high: &[Lanes; 3],
+) {
+    let [gx, gy, gz] = gradient;
+    let step = Lanes::from(|i| {
+        let square = gx.0[i] * gx.0[i] + gy.0[i] * gy.0[i] + gz.0[i] * gz.0[i];
+        (iso - values.0[i]) / square
+    });
+    let aims: [Lanes; 3] =
+        std::array::from_fn(|axis| Lanes::from(|i| points[axis].0[i] + step.0[i] * gradient[axis].0[i]));
+    let mut stays = [true; LANES];
+    for axis in 0..3 {
+        for (i, stays) in stays.iter_mut().enumerate() {
+            *stays &= (low[axis].0[i] <= aims[axis].0[i]) & (aims[axis].0[i] <= high[axis].0[i]);
+        }
+    }
+    if stays == [true; LANES] {
+        *points = aims;
+        return;
+    }
+    for (i, stays) in stays.into_iter().enumerate() {
+        let at = |planes: &[Lanes; 3]| [planes[0].0[i], planes[1].0[i], planes[2].0[i]];
+        let next = if stays {
+            at(&aims)
+        } else {
+            pull(iso, at(points), values.0[i], at(gradient), [at(low), at(high)])
+        };
+        for (plane, coordinate) in points.iter_mut().zip(next) {
+            plane.0[i] = coordinate;
+        }
+    }
+}
+
+/// Newton's step along the gradient of one vertex, within a box.
+///
+/// A step that would leave the box goes as far as its sides and spends what is left along them, so that a surface which
+/// leaves the box beside the vertex is still met. Where the gradient vanishes or is no number, the position stays.
+pub(super) fn pull(
+    iso: f32,
+    position: [f32; 3],
+    field: f32,
+    gradient: [f32; 3],
+    [low, high]: [[f32; 3]; 2],
+) -> [f32; 3] {
+    if gradient.iter().any(|g| !g.is_finite()) {
+        return position;
+    }
+    let mut point = position;
+    // By how much the field, were it linear, has still to rise.
+    let mut rest = iso - field;
+    // Every round but the last stops one more axis at a side.
+    for _ in 0..3 {
+        let along = [0, 1, 2].map(|axis| {
+            let slope = gradient[axis];
+            let limit = if rest * slope > 0.0 { high[axis] } else { low[axis] };
+            if point[axis] == limit { 0.0 } else { slope }
+        });
+        let step = rest / (along[0] * along[0] + along[1] * along[1] + along[2] * along[2]);
+        if !step.is_finite() {
+            break;
+        }
+        let aim = [0, 1, 2].map(|axis| point[axis] + step * along[axis]);
+        let next = [0, 1, 2].map(|axis| aim[axis].clamp(low[axis], high[axis]));
+        rest -= (0..3).map(|axis| along[axis] * (next[axis] - point[axis])).sum::<f32>();
+        point = next;
+        if next == aim {
+            break;
+        }
+    }
+    point
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const BOX: [[f32; 3]; 2] = [[-10.0; 3], [10.0; 3]];
+
+    #[test]
+    fn a_pull_solves_a_linear_field_at_once() {
+        // f = 2 x - y + 1 is 0.5 on the plane that this ends on.
+        let [x, y, z] = pull(0.5, [1.0, 1.0, 7.0], 2.0, [2.0, -1.0, 0.0], BOX);
+        assert!((2.0 * x - y + 0.5).abs() < 1e-6);
+        assert_eq!(z, 7.0);
+    }
+
+    #[test]
+    fn a_pull_goes_on_along_the_sides_of_its_box() {
+        // The plain step towards x + 2 y + 4 z = 6 would end at z = 8 / 7.
+        let unit = [[0.0; 3], [1.0; 3]];
+        let [x, y, z] = pull(6.0, [0.0; 3], 0.0, [1.0, 2.0, 4.0], unit);
+        assert_eq!(z, 1.0);
+        assert!((x + 2.0 * y + 4.0 * z - 6.0).abs() < 1e-6);
+        // Out of reach: the nearest corner.
+        assert_eq!(pull(9.0, [0.0; 3], 0.0, [1.0, 2.0, 4.0], unit), [1.0; 3]);
+        assert_eq!(pull(-9.0, [0.5; 3], 0.0, [1.0, 2.0, -4.0], unit), [0.0, 0.0, 1.0]);
+    }
+
+    #[test]
+    fn pulls_by_lanes_are_pulls() {
+        // A step that stays, one that leaves the box, one without a number.
+        let mut points = [Lanes([0.25; LANES]), Lanes([0.5; LANES]), Lanes([0.75; LANES])];
+        let mut gradient = [Lanes([1.0; LANES]), Lanes([0.5; LANES]), Lanes([-0.25; LANES])];
+        gradient[0].0[1] = f32::NAN;
+        let mut values = Lanes([0.5; LANES]);
+        (values.0[2], values.0[3]) = (9.0, 0.25);
+        let bounds = [[0.0; 3], [1.0; 3]];
+        let [low, high] = bounds.map(|corner| corner.map(|c| Lanes([c; LANES])));
+        let before = points;
+        pull_lanes(0.5, &mut points, &values, &gradient, &low, &high);
+        for lane in 0..LANES {
+            let at = |planes: [Lanes; 3]| planes.map(|plane| plane.0[lane]);
+            let pulled = pull(0.5, at(before), values.0[lane], at(gradient), bounds);
+            assert_eq!(at(points), pulled, "lane {lane}");
+        }
+    }
+
+    #[test]
+    fn a_pull_goes_nowhere_without_a_gradient() {
+        let pull = |field, gradient| pull(0.5, [0.25; 3], field, gradient, BOX);
+        assert_eq!(pull(0.4, [0.0; 3]), [0.25; 3]);
+        assert_eq!(pull(0.5, [0.0; 3]), [0.25; 3]);
+        assert_eq!(pull(0.4, [1e-30, 0.0, 0.0]), [0.25; 3]);
+        assert_eq!(pull(0.4, [f32::NAN, 1.0, 0.0]), [0.25; 3]);
+        assert_eq!(pull(0.4, [f32::INFINITY, 1.0, 0.0]), [0.25; 3]);
+        assert_eq!(pull(0.4, [f32::MAX, 1.0, 0.0]), [0.25; 3]);
+        assert_eq!(pull(f32::NAN, [1.0, 0.0, 0.0]), [0.25; 3]);
+        assert_eq!(pull(f32::INFINITY, [1.0, 0.0, 0.0]), [0.25; 3]);
+    }
+}

@@ -1,0 +1,94 @@
+//! The kernels of a mesh as a field. They know nothing of boxes: everything matters everywhere.
+
+use jbt_frontend::check::CheckedTree;
+use jbt_frontend::query::Query;
+
+use crate::error::{CompileError, EvalError};
+use crate::evaluator::{Compiler, Evaluator};
+use crate::kernel::Engine;
+use crate::mesh::Field;
+use crate::region::{Box3, Divisible};
+
+/// The three kernels of a mesh.
+pub(super) struct Kernels {
+    field: Evaluator,
+    gradient: Evaluator,
+    all: Evaluator,
+}
+
+impl Kernels {
+    /// Compiles them.
+    pub(super) fn new(compiler: &Compiler, tree: &CheckedTree) -> Result<Self, CompileError> {
+        Ok(Self {
+            field: compiler.evaluator(tree, Query::FIELD)?,
+            gradient: compiler.evaluator(tree, Query::GRADIENT)?,
+            all: compiler.evaluator(tree, Query::ALL)?,
+        })
+    }
+
+    /// What runs them.
+    pub(super) fn engine(&self) -> Engine {
+        self.field.engine()
+    }
+
+    /// Distances to skeletons that were computed so far.
+    pub(super) fn primitive_evaluations(&self) -> u64 {
+        [&self.field, &self.gradient, &self.all].iter().map(|e| e.counters().primitive_evaluations).sum()
+    }
+}
+
+impl Divisible for Kernels {
+    type Error = EvalError;
+    type Region = ();
+
+    fn region(&self, _: Box3) -> Result<(), EvalError> {
+        Ok(())
+    }
+
+    fn ranges(&self, (): &(), _: &[Box3], ranges: &mut [[f32; 2]]) -> Result<(), EvalError> {
+        ranges.fill([f32::NEG_INFINITY, f32::INFINITY]);
+        Ok(())
+    }
+
+    fn narrow(&self, (): &(), boxes: &[Box3], parts: &mut Vec<()>) -> Result<(), EvalError> {
+        parts.resize(parts.len() + boxes.len(), ());
+        Ok(())
+    }
+}
+
+impl Field for Kernels {
+    fn attributes(&self) -> Vec<(String, usize)> {
+        self.all.layout().attributes().map(|(name, _, width)| (name.to_owned(), width)).collect()
+    }
+
+    fn field(&self, (): &(), x: &[f32], y: &[f32], z: &[f32], field: &mut [f32]) -> Result<(), EvalError> {
+        self.field.eval_planes([x, y, z], &mut [field])
+    }
+
+    fn gradient(
+        &self,
+        (): &(),
+        x: &[f32],
+        y: &[f32],
+        z: &[f32],
+        field: &mut [f32],
+        [gx, gy, gz]: [&mut [f32]; 3],
+    ) -> Result<(), EvalError> {
+        self.gradient.eval_planes([x, y, z], &mut [field, gx, gy, gz])
+    }
+
+    fn all(
+        &self,
+        (): &(),
+        x: &[f32],
+        y: &[f32],
+        z: &[f32],
+        field: &mut [f32],
+        [gx, gy, gz]: [&mut [f32]; 3],
+        attributes: &mut [&mut [f32]],
+    ) -> Result<(), EvalError> {
+        let mut planes: Vec<&mut [f32]> = vec![field, gx, gy, gz];
+        planes.extend(attributes.iter_mut().map(|plane| &mut **plane));
+        self.all.eval_planes([x, y, z], &mut planes)
+    }
+}
