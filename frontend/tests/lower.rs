@@ -45,6 +45,20 @@ fn programs_are_as_expected() {
     assert!(scenes >= 5);
 }
 
+/// Guards do not make a program deeper than it may be.
+#[test]
+fn a_long_chain_of_operators_has_some_guards() {
+    let text = "union { point { radius 1 } sum { point { radius 2 }\n".repeat(500);
+    let text = format!("jbt 1 {text} point {{ radius 3 }} {}", "} }".repeat(500));
+    let tree = parse(text.as_bytes(), &Options::default()).unwrap().check().unwrap();
+    for query in Query::EVERY {
+        let Lowered { function, tables } = lower(&tree, query).unwrap();
+        assert_eq!(function.tables.len(), 1 + 1000 + 23, "the scene, points, guards");
+        tables.check(&function).unwrap();
+        jbt_ir::verify(function).unwrap();
+    }
+}
+
 /// Shapes, and not counts or numbers, make code: what the golden files cannot say.
 #[test]
 fn alike_models_have_one_program() {

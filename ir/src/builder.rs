@@ -200,6 +200,17 @@ impl FunctionBuilder {
         params
     }
 
+    /// Gives the innermost fold one more accumulator, behind the others, and returns it: for code that learns in the body what it has to
+    /// carry out.
+    pub fn add_accumulator(&mut self, initial: Value) -> Value {
+        let depth = self.open.len() - 1;
+        let param = self.new_value(self.function.values[initial], depth);
+        let open = self.open.last_mut().expect("the function's body is open");
+        self.function.blocks[open.block].params.push(param);
+        open.fold.as_mut().expect("a fold is open").2.push(initial);
+        param
+    }
+
     /// Closes the innermost fold with the next accumulators, and returns the final ones.
     pub fn end_fold(&mut self, next: &[Value]) -> Vec<Value> {
         let open = self.open.pop().expect("begin_fold came first");

@@ -38,9 +38,9 @@ pub enum Reduction {
     Sum,
     /// Ricci blend with a running scale: a row with a zero field is neutral.
     Ricci,
-    /// Largest field: a dropped row counts as zero.
+    /// Largest field: a row that is not the largest is not missed, nor is a zero field if the fold starts at zero.
     Union,
-    /// Smallest field: one dropped row makes the node zero.
+    /// Smallest field: a row that is not the smallest is not missed; a zero field is.
     Intersection,
     /// One row, whose answer passes through: a guard around one child. If it is dropped, its initial values stand.
     Only,

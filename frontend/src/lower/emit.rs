@@ -6,23 +6,31 @@
 //!                      difference  both sides, then the smaller
 //!                      operator    for each group:  folded   open a fold over a table, define the first member, step, close
 //!                                                   else     for each member: define, step
+//! define under a guard: open a fold over a table of one row, define, close; the answer is what the fold carries out
 //! ```
 //!
 //! An explicit list of tasks takes the place of recursion, because a model may be a chain of any length. The columns of a row are
 //! declared in the order in which the code asks for them; [`super::rows`] goes through the same order for every row.
+//!
+//! The guide function is emitted in the same way, and carries probes out of its guards: see `probe`.
+
+mod guard;
+mod probe;
+mod row;
 
 use rustc_hash::FxHashMap as HashMap;
 use std::rc::Rc;
 
-use jbt_ir::{
-    Domain, Entity, Function, FunctionBuilder, Origin, Part, Reduction, Schema, Table, Value, limits,
-};
+use jbt_ir::{Domain, Entity, Function, FunctionBuilder, Reduction, Schema, Table, Value, limits};
 
-use super::mixing::{Answer, GroupAnswer, Operator, State, difference};
+use self::guard::{Guard, GuardStart};
+use self::probe::Probes;
+use super::guide::{Decision, DecisionKind, Rule};
+use super::mixing::{Answer, Operator, State, difference};
 use super::occurrence::{FieldId, OccurrenceId, OccurrenceKind, Scene, SpaceId};
 use super::position::MapKind;
 use super::shape::{Lift, ReducerCode, Shapes, non_negative};
-use crate::attribute::{AttributeGroup, Mixing};
+use crate::attribute::Mixing;
 use crate::check::CheckedTree;
 use crate::combine::ricci::Exponent;
 use crate::diagnostic::Diagnostic;
@@ -31,8 +39,24 @@ use crate::query::Query;
 /// A function, and what the rows need to know about it.
 pub(super) struct Code {
     pub(super) function: Function,
-    /// The tables under each table, in the order in which a row meets them.
-    pub(super) children: Vec<Vec<Table>>,
+    /// By table.
+    pub(super) tables: Vec<TableCode>,
+    /// Of a guide function; others have none.
+    pub(super) decisions: Vec<Decision>,
+}
+
+/// What the code says about a table.
+pub(super) struct TableCode {
+    /// The tables under it, in the order in which a row meets them.
+    pub(super) children: Vec<Table>,
+    /// How many folds are open in its rows.
+    pub(super) depth: usize,
+    /// The space in which its fold stands, for its first row.
+    pub(super) space: SpaceId,
+    /// The first of the three probes of the point in that space, in a guide function, if all rows see the same point.
+    pub(super) probe: Option<usize>,
+    /// What may be done with rows that are zero.
+    pub(super) rule: Rule,
 }
 
 /// How many attribute groups a query asks for.
@@ -42,13 +66,12 @@ pub(super) fn groups(tree: &CheckedTree, query: Query) -> usize {
 
 /// Writes the code.
 pub(super) fn emit(scene: &Scene<'_>, shapes: &Shapes, query: Query) -> Result<Code, Vec<Diagnostic>> {
-    let mut emitter = Emitter::new(scene, shapes, query);
-    emitter.start();
-    while let Some(task) = emitter.tasks.pop() {
-        emitter.work(task);
-        emitter.check_limits()?;
-    }
-    Ok(emitter.finish())
+    Emitter::new(scene, shapes, query, None).run()
+}
+
+/// Writes the guide function.
+pub(super) fn emit_guide(scene: &Scene<'_>, shapes: &Shapes) -> Result<Code, Vec<Diagnostic>> {
+    Emitter::new(scene, shapes, Query::FIELD, Some(Probes::default())).run()
 }
 
 enum Task {
@@ -64,6 +87,10 @@ enum Task {
     LeaveSpace,
     OpenFold,
     CloseFold,
+    /// An operand that is written out: under a guard, if it is worth one.
+    Operand(OccurrenceId, Guard),
+    OpenGuard(OccurrenceId, GuardStart),
+    CloseGuard(Option<DecisionKind>),
     /// The next operand of an operator has its answer.
     Step,
     FinishReduce,
@@ -89,10 +116,10 @@ struct Emitter<'a> {
     tasks: Vec<Task>,
     answers: Vec<Answer>,
     /// The point in each space that is open.
-    points: Vec<[Value; 3]>,
+    points: Vec<(SpaceId, [Value; 3])>,
     /// The tables whose rows are open.
     rows: Vec<Table>,
-    children: Vec<Vec<Table>>,
+    tables: Vec<TableCode>,
     reduces: Vec<Reduce>,
     kept: HashMap<OccurrenceId, Answer>,
     kept_fields: HashMap<FieldId, Value>,
@@ -100,10 +127,12 @@ struct Emitter<'a> {
     slots: u32,
     iso2: Option<Value>,
     defaults: Vec<Vec<Value>>,
+    /// In a guide function.
+    probes: Option<Probes>,
 }
 
 impl<'a> Emitter<'a> {
-    fn new(scene: &'a Scene<'a>, shapes: &'a Shapes, query: Query) -> Self {
+    fn new(scene: &'a Scene<'a>, shapes: &'a Shapes, query: Query, probes: Option<Probes>) -> Self {
         let attributes = &scene.tree.attributes()[..groups(scene.tree, query)];
         Self {
             scene,
@@ -115,7 +144,7 @@ impl<'a> Emitter<'a> {
             answers: Vec::new(),
             points: Vec::new(),
             rows: Vec::new(),
-            children: Vec::new(),
+            tables: Vec::new(),
             reduces: Vec::new(),
             kept: HashMap::default(),
             kept_fields: HashMap::default(),
@@ -123,16 +152,25 @@ impl<'a> Emitter<'a> {
             slots: 0,
             iso2: None,
             defaults: Vec::new(),
+            probes,
         }
+    }
+
+    fn run(mut self) -> Result<Code, Vec<Diagnostic>> {
+        self.start();
+        while let Some(task) = self.tasks.pop() {
+            self.work(task);
+            self.check_limits()?;
+        }
+        Ok(self.finish())
     }
 
     /// Opens the scene's row.
     fn start(&mut self) {
         let point = std::array::from_fn(|axis| self.builder.input(axis));
-        self.points.push(point);
-        let channels = self.defaults_width();
-        let zeros = vec![self.builder.constant(0.0); 1 + channels];
-        self.open_fold("scene", Reduction::Only, &zeros);
+        self.points.push((SpaceId(0), point));
+        let zero = self.builder.constant(0.0);
+        self.open_only("scene", SpaceId(0), Rule::Never, zero);
         self.iso2 = Some(self.column("iso2"));
         for group in &self.scene.tree.attributes()[..self.mixing.len()] {
             let default = (0..group.width()).map(|i| self.column(&group.channel(i))).collect();
@@ -151,18 +189,15 @@ impl<'a> Emitter<'a> {
             // The sign of a zero may depend on rows that add nothing; no answer shows it.
             next.extend(group.channels.iter().map(|&channel| self.builder.add(channel, zero)));
         }
-        let results = self.builder.end_fold(&next);
+        let results = self.close_only(next);
         let mut names = vec!["field".to_owned()];
         for group in &self.scene.tree.attributes()[..self.mixing.len()] {
             names.extend((0..group.width()).map(|i| group.channel(i)));
         }
-        let outputs: Vec<_> = names.into_iter().zip(results).collect();
-        Code { function: self.builder.finish(&outputs), children: self.children }
-    }
-
-    /// Number of attribute channels that the query asks for.
-    fn defaults_width(&self) -> usize {
-        self.scene.tree.attributes()[..self.mixing.len()].iter().map(AttributeGroup::width).sum()
+        let mut outputs: Vec<_> = names.into_iter().zip(results).collect();
+        let decisions =
+            self.probes.map_or_else(Vec::new, |probes| probes.finish(&mut outputs, &mut self.tables));
+        Code { function: self.builder.finish(&outputs), tables: self.tables, decisions }
     }
 
     fn check_limits(&self) -> Result<(), Vec<Diagnostic>> {
@@ -201,11 +236,22 @@ impl<'a> Emitter<'a> {
             Task::LiftSpace(space) => {
                 self.tasks.push(Task::LeaveSpace);
                 self.enter_warp(space);
-                self.kept_points.insert(space, *self.points.last().expect("the warp has been entered"));
+                self.kept_points.insert(space, self.points.last().expect("the warp has been entered").1);
             }
             Task::LeaveSpace => {
                 self.points.pop();
             }
+            Task::Operand(id, guard) => {
+                if self.shapes.guards_operand(self.scene, id, self.builder.fold_depth()) {
+                    self.tasks.push(Task::CloseGuard(guard.decision));
+                    self.tasks.push(Task::Define(id));
+                    self.tasks.push(Task::OpenGuard(id, guard.start));
+                } else {
+                    self.tasks.push(Task::Use(id));
+                }
+            }
+            Task::OpenGuard(id, start) => self.open_guard(id, start),
+            Task::CloseGuard(decision) => self.close_guard(decision),
             Task::OpenFold => self.open_group(),
             Task::CloseFold => {
                 self.rows.pop();
@@ -224,13 +270,16 @@ impl<'a> Emitter<'a> {
             Task::FinishReduce => {
                 let reduce = self.reduces.pop().expect("it was started");
                 let answer = reduce.state.finish(&mut self.builder, &reduce.operator, &self.defaults);
+                self.end_operator(answer.field);
                 self.answers.push(answer);
             }
             Task::Difference => {
                 let right = self.answers.pop().expect("the right side has been defined");
                 let left = self.answers.pop().expect("the left side has been defined");
                 let iso2 = self.iso2.expect("the scene's row is open");
-                self.answers.push(difference(&mut self.builder, &left, &right, iso2, &self.defaults));
+                let answer = difference(&mut self.builder, &left, &right, iso2, &self.defaults);
+                self.end_operator(answer.field);
+                self.answers.push(answer);
             }
         }
     }
@@ -245,12 +294,15 @@ impl<'a> Emitter<'a> {
             OccurrenceKind::Warp { inside, child, .. } => {
                 self.tasks.extend([Task::LeaveSpace, Task::Use(*child)]);
                 match self.kept_points.get(inside) {
-                    Some(&point) => self.points.push(point),
+                    Some(&point) => self.points.push((*inside, point)),
                     None => self.enter_warp(*inside),
                 }
             }
             OccurrenceKind::Difference { left, right } => {
-                self.tasks.extend([Task::Difference, Task::Use(*right), Task::Use(*left)]);
+                self.begin_operator();
+                self.tasks.push(Task::Difference);
+                self.tasks.push(Task::Operand(*right, Guard::RIGHT));
+                self.tasks.push(Task::Operand(*left, Guard::LEFT));
             }
             OccurrenceKind::Reduce { .. } => self.begin_reduce(id),
         }
@@ -260,13 +312,14 @@ impl<'a> Emitter<'a> {
     fn enter_warp(&mut self, space: SpaceId) {
         let inside = self.scene.inside(space).expect("the world is no warp's inside");
         let map = MapKind::of(&self.scene.position(inside.position).map);
-        let outer = *self.points.last().expect("a space is open");
+        let (_, outer) = *self.points.last().expect("a space is open");
         let row = self.columns(map.columns());
         let point = map.emit(&mut self.builder, outer, &row);
         let kind = self.scene.warp(inside.warp).kind();
         let row = self.columns(kind.columns());
         let point = kind.emit(&mut self.builder, point, &row);
-        self.points.push(point);
+        self.points.push((space, point));
+        self.probe_point(space, point);
         self.enter_space(space);
     }
 
@@ -276,6 +329,10 @@ impl<'a> Emitter<'a> {
             match lift {
                 Lift::Field(field) => self.tasks.push(Task::LiftField(*field)),
                 Lift::Space(space) => self.tasks.push(Task::LiftSpace(*space)),
+                Lift::Occurrence(id) if self.shapes.guards_lift(*id, self.builder.fold_depth()) => {
+                    self.tasks.extend([Task::Keep(*id), Task::CloseGuard(None), Task::Define(*id)]);
+                    self.tasks.push(Task::OpenGuard(*id, GuardStart::Zero));
+                }
                 Lift::Occurrence(id) => self.tasks.extend([Task::Keep(*id), Task::Define(*id)]),
             }
         }
@@ -301,13 +358,15 @@ impl<'a> Emitter<'a> {
         let operator = Operator {
             code,
             exponent,
-            non_negative: non_negative(self.scene, *reducer, groups),
+            non_negative: non_negative(self.scene, groups),
             ordered: groups.len() > 1,
             moving: self.query.gradient,
             mixing: Rc::clone(&self.mixing),
         };
         let state = State::new(&mut self.builder, &operator, &self.defaults);
+        let guard = Guard::of(code, operator.non_negative);
         self.reduces.push(Reduce { operator, state, order: None });
+        self.begin_operator();
         self.tasks.push(Task::FinishReduce);
         for group in groups.iter().rev() {
             if group.folded {
@@ -315,24 +374,33 @@ impl<'a> Emitter<'a> {
                 self.tasks.push(Task::OpenFold);
             } else {
                 for (member, _) in group.members.iter().rev() {
-                    self.tasks.extend([Task::Step, Task::Use(*member), Task::Order]);
+                    self.tasks.extend([Task::Step, Task::Operand(*member, guard), Task::Order]);
                 }
             }
         }
     }
 }
 
-/// Tables, columns and leaves.
+/// Tables.
 impl Emitter<'_> {
-    fn open_fold(&mut self, name: &str, reduction: Reduction, initial: &[Value]) -> Vec<Value> {
+    /// Opens a fold over a new table under the innermost open row.
+    fn open_fold(
+        &mut self,
+        name: &str,
+        space: SpaceId,
+        rule: Rule,
+        reduction: Reduction,
+        initial: &[Value],
+    ) -> Vec<Value> {
         let parent = self.rows.last().copied();
         let schema = Schema { name: name.to_owned(), columns: Vec::new(), parent, slots: Vec::new() };
         let table = self.builder.table(schema);
-        self.children.push(Vec::new());
         if let Some(parent) = parent {
-            self.children[parent.index()].push(table);
+            self.tables[parent.index()].children.push(table);
         }
         self.rows.push(table);
+        let probe = self.probes.as_ref().and_then(|probes| probes.point(space));
+        self.tables.push(TableCode { children: Vec::new(), depth: self.rows.len(), space, probe, rule });
         self.builder.begin_fold(table, reduction, initial)
     }
 
@@ -350,7 +418,14 @@ impl Emitter<'_> {
             _ => unreachable!("the first member is used next"),
         };
         let initial = reduce.state.values();
-        let params = self.open_fold(&name, reduction, &initial);
+        let rule = match reduce.operator.code {
+            ReducerCode::Sum | ReducerCode::RicciInteger(_) | ReducerCode::RicciGeneral => Rule::Neutral,
+            ReducerCode::Union if reduce.operator.non_negative => Rule::Neutral,
+            ReducerCode::Intersection if reduce.operator.non_negative => Rule::OnlyZero,
+            ReducerCode::Union | ReducerCode::Intersection => Rule::KeepOne,
+        };
+        let (space, _) = *self.points.last().expect("a space is open");
+        let params = self.open_fold(&name, space, rule, reduction, &initial);
         reduce.state.replace(&params);
         self.reduces.push(reduce);
         self.read_order();
@@ -372,67 +447,5 @@ impl Emitter<'_> {
                 ReducerCode::Intersection => "intersection".to_owned(),
             },
         }
-    }
-
-    /// The place in the file of the operand that follows, where ties need it.
-    fn read_order(&mut self) {
-        let wanted = self.reduces.last().expect("operands belong to operators").operator.wants_order();
-        if wanted {
-            let order = self.column("order");
-            self.reduces.last_mut().expect("it was there a line ago").order = Some(order);
-        }
-    }
-
-    fn column(&mut self, name: &str) -> Value {
-        let table = *self.rows.last().expect("the scene's row is open");
-        let column = self.builder.add_column(table, name);
-        self.builder.column(table, column)
-    }
-
-    fn columns(&mut self, names: &[&str]) -> Vec<Value> {
-        names.iter().map(|name| self.column(name)).collect()
-    }
-
-    /// The field of a leaf.
-    fn leaf(&mut self, field: FieldId) -> Value {
-        let primitive = self.scene.primitive(field);
-        let slot = self.slots;
-        self.slots += 1;
-        self.builder.add_slot(*self.rows.last().expect("the scene's row is open"), slot);
-        let map = MapKind::of_leaf(&self.scene.field(field).map);
-        let skeleton = primitive.skeleton.kind();
-        let outer = *self.points.last().expect("a space is open");
-        self.builder.set_origin(Origin::leaf(slot, Part::Position));
-        let row = self.columns(map.columns());
-        let point = map.emit(&mut self.builder, outer, &row);
-        let row = self.columns(skeleton.columns());
-        let square = skeleton.emit(&mut self.builder, point, &row);
-        self.builder.mark(square, Origin::leaf(slot, Part::Distance));
-
-        self.builder.set_origin(Origin::leaf(slot, Part::Falloff));
-        let slope = self.column("neg_inv_r2");
-        let (zero, one) = (self.builder.constant(0.0), self.builder.constant(1.0));
-        let left = self.builder.fma(square, slope, one);
-        let left = self.builder.max(left, zero);
-        let mut value = primitive.falloff.emit(&mut self.builder, left);
-        if primitive.strength != 1.0 {
-            let strength = self.column("strength");
-            let product = self.builder.mul(strength, value);
-            // Where the falloff is 0, a negative strength makes -0 of it, and sums must not depend on what adds nothing.
-            value = self.builder.add(product, zero);
-        }
-        self.builder.set_origin(Origin::SHARED);
-        value
-    }
-
-    /// The attributes of a leaf: numbers of its row.
-    fn leaf_attributes(&mut self) -> Vec<GroupAnswer> {
-        let groups = &self.scene.tree.attributes()[..self.mixing.len()];
-        let answer = |group: &AttributeGroup| {
-            let names = (0..group.width()).map(|i| group.channel(i));
-            names.map(|name| self.column(&name)).collect()
-        };
-        let channels: Vec<Vec<Value>> = groups.iter().map(answer).collect();
-        channels.into_iter().map(|channels| GroupAnswer { channels, share: None, numbers: true }).collect()
     }
 }

@@ -27,9 +27,7 @@ impl<'a> LeafOccurrences<'a> {
     /// Finds them. Cost: all paths of the tree at worst.
     #[must_use]
     pub fn new(tree: &'a CheckedTree) -> Self {
-        // Without attributes: they do not tell leaves apart.
-        let scene = Scene::new(tree, 0);
-        Self { scene }
+        Self { scene: Scene::new(tree) }
     }
 
     /// How many there are.

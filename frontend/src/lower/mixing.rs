@@ -102,6 +102,8 @@ impl State {
         let field = match operator.code {
             ReducerCode::Sum => vec![zero],
             ReducerCode::RicciInteger(_) | ReducerCode::RicciGeneral => vec![d.constant(ricci::FLOOR), zero],
+            // Zero takes part without a row: whoever is above zero wins all the same, and where nobody is there is only the default.
+            ReducerCode::Union if operator.non_negative => vec![zero],
             ReducerCode::Union => vec![d.constant(f32::NEG_INFINITY)],
             ReducerCode::Intersection => vec![d.constant(f32::INFINITY)],
         };

@@ -12,16 +12,22 @@
 //! * `emit`: children of one operator that have one shape are the rows of one table, under one fold. Field and attribute
 //!   weights come out of the same traversal; the gradient is the business of a later pass.
 //! * `rows`: walks the occurrences in the order of `emit` and writes down their numbers.
+//! * `support`: finds for each occurrence where it can be anything but zero, in the program's own arithmetic.
+//! * [`guide`]: what somebody has to know who leaves rows out: supports, rules, and a function of probes.
+//!
+//! The tables, their rows and the order of these are the same for every query; only columns differ.
 //!
 //! The program's body is a fold over the one row of the table `scene`, which holds the numbers of whatever is there once.
 
 mod emit;
+pub mod guide;
 mod leaves;
 mod mixing;
 mod occurrence;
 mod position;
 mod rows;
 mod shape;
+mod support;
 
 use jbt_ir::{Function, Tables};
 
@@ -29,6 +35,7 @@ use crate::check::CheckedTree;
 use crate::diagnostic::Diagnostic;
 use crate::query::Query;
 
+pub use guide::{Guide, Guided, lower_guided};
 pub use leaves::LeafOccurrences;
 
 /// A program, before any pass, and its numbers.
@@ -48,9 +55,9 @@ pub struct Lowered {
 /// Located diagnostics: numbers that leave the range of f32 once all transforms are applied, or a program beyond
 /// [`jbt_ir::limits`].
 pub fn lower(tree: &CheckedTree, query: Query) -> Result<Lowered, Vec<Diagnostic>> {
-    let scene = occurrence::Scene::new(tree, emit::groups(tree, query));
+    let scene = occurrence::Scene::new(tree);
     let shapes = shape::Shapes::new(&scene);
     let code = emit::emit(&scene, &shapes, query)?;
-    let tables = rows::rows(&scene, &shapes, query, &code)?;
-    Ok(Lowered { function: code.function, tables })
+    let rows = rows::rows(&scene, &shapes, query, &code)?;
+    Ok(Lowered { function: code.function, tables: rows.tables })
 }

@@ -108,10 +108,10 @@ pub(super) struct Scene<'a> {
 type Key = (NodeId, PositionId, BindingsId);
 
 impl<'a> Scene<'a> {
-    /// Finds every occurrence, without recursion. Only the first `groups` attribute groups count: nodes that differ in others alone
-    /// are one occurrence.
-    pub(super) fn new(tree: &'a CheckedTree, groups: usize) -> Self {
-        Finder::new(tree, groups).run()
+    /// Finds every occurrence, without recursion. All attribute groups count, whatever is asked: so the tables of a tree, which are made of
+    /// its occurrences, have the same rows for every query.
+    pub(super) fn new(tree: &'a CheckedTree) -> Self {
+        Finder::new(tree).run()
     }
 
     pub(super) fn occurrence(&self, id: OccurrenceId) -> &Occurrence {
@@ -182,12 +182,11 @@ struct Finder<'a> {
     known: HashMap<Key, OccurrenceId>,
     /// For each node, whether one path leads to it from the root: then it is met once, and nothing has to be remembered of it.
     once: Vec<bool>,
-    groups: usize,
     stack: Vec<Frame>,
 }
 
 impl<'a> Finder<'a> {
-    fn new(tree: &'a CheckedTree, groups: usize) -> Self {
+    fn new(tree: &'a CheckedTree) -> Self {
         let scene = Scene {
             tree,
             occurrences: Vec::new(),
@@ -205,14 +204,13 @@ impl<'a> Finder<'a> {
             inside_names: HashMap::default(),
             known: HashMap::default(),
             once: tree.uses().into_iter().map(|uses| uses == 1).collect(),
-            groups,
             stack: Vec::new(),
         }
     }
 
     fn run(mut self) -> Scene<'a> {
         let world = self.name_position(Position { space: SpaceId(0), map: DAffine3::IDENTITY });
-        let unbound = self.name_bindings(vec![None; self.groups]);
+        let unbound = self.name_bindings(vec![None; self.scene.tree.attributes().len()]);
         let root = self.resolve((self.scene.tree.root(), world, unbound));
         let mut done = self.enter(root);
         while let Some(frame) = self.stack.last_mut() {
@@ -255,7 +253,7 @@ impl<'a> Finder<'a> {
                     moved = true;
                 }
                 NodeKind::Attribute { name, .. } => {
-                    let groups = &self.scene.tree.attributes()[..self.groups];
+                    let groups = self.scene.tree.attributes();
                     if let Some(group) = groups.iter().position(|group| group.name == *name) {
                         let bound = bound.get_or_insert_with(|| self.scene.bindings(bindings).to_vec());
                         bound[group] = Some(node);

@@ -9,7 +9,7 @@
 //! | scaling | 4 | 3 fused steps |
 //! | full | 12 | 9 fused steps |
 
-use glam::DAffine3;
+use glam::{DAffine3, DMat3, DVec3};
 use jbt_ir::Domain;
 
 /// How much of an affine map there is: what selects code.
@@ -31,7 +31,7 @@ impl MapKind {
             Self::Full
         } else if scale != 1.0 {
             Self::Scaling
-        } else if map.translation != glam::DVec3::ZERO {
+        } else if map.translation != DVec3::ZERO {
             Self::Translation
         } else {
             Self::Identity
@@ -59,21 +59,36 @@ impl MapKind {
 
     /// The numbers of the inverse of `map`.
     pub(super) fn push_columns(self, map: &DAffine3, row: &mut Vec<f64>) {
+        let inverse = self.inverse(map);
         match self {
             Self::Identity => {}
             Self::Translation => row.extend(map.translation.to_array()),
             Self::Scaling => {
-                let scale = 1.0 / map.matrix3.x_axis.x;
-                row.push(scale);
-                row.extend((map.translation * -scale).to_array());
+                row.push(inverse.matrix3.x_axis.x);
+                row.extend(inverse.translation.to_array());
             }
             Self::Full => {
-                let inverse = map.inverse();
                 for axis in 0..3 {
                     row.extend(inverse.matrix3.row(axis).to_array());
                     row.push(inverse.translation[axis]);
                 }
             }
+        }
+    }
+
+    /// The inverse of `map`: its numbers are those of a row, before they are rounded.
+    pub(super) fn inverse(self, map: &DAffine3) -> DAffine3 {
+        match self {
+            Self::Identity => DAffine3::IDENTITY,
+            Self::Translation => DAffine3::from_translation(-map.translation),
+            Self::Scaling => {
+                let scale = 1.0 / map.matrix3.x_axis.x;
+                DAffine3 {
+                    matrix3: DMat3::from_diagonal(DVec3::splat(scale)),
+                    translation: map.translation * -scale,
+                }
+            }
+            Self::Full => map.inverse(),
         }
     }
 

@@ -16,13 +16,20 @@ use crate::diagnostic::Diagnostic;
 use crate::query::Query;
 use crate::tree::NodeKind;
 
+/// The numbers, and what they belong to.
+pub(super) struct Written {
+    pub(super) tables: Tables,
+    /// The occurrence behind each row of each table.
+    pub(super) members: Vec<Vec<OccurrenceId>>,
+}
+
 /// Writes the numbers.
 pub(super) fn rows(
     scene: &Scene<'_>,
     shapes: &Shapes,
     query: Query,
     code: &Code,
-) -> Result<Tables, Vec<Diagnostic>> {
+) -> Result<Written, Vec<Diagnostic>> {
     let mut writer = Writer::new(scene, shapes, query, code);
     for table in code.function.tables.keys() {
         for row in 0..writer.members[table.index()].len() {
@@ -42,7 +49,17 @@ pub(super) fn rows(
     for rows in writer.tables {
         tables.push(rows);
     }
-    Ok(Tables { tables })
+    let occurrences = |members: Vec<Member>| members.into_iter().map(|member| member.occurrence).collect();
+    let members = writer.members.into_iter().map(occurrences).collect();
+    Ok(Written { tables: Tables { tables }, members })
+}
+
+/// What is behind a row.
+#[derive(Clone, Copy)]
+struct Member {
+    occurrence: OccurrenceId,
+    /// Its place in the order of its operator, where that is a column.
+    order: Option<u32>,
 }
 
 enum Task {
@@ -53,6 +70,10 @@ enum Task {
     LiftSpace(SpaceId),
     /// The members of a folded group become rows of the next child table.
     Rows(OccurrenceId, usize),
+    /// An operand that is written out: the row of the next child table, if it has a guard.
+    Operand(OccurrenceId),
+    /// Under a guard: the row of the next child table.
+    Guard(OccurrenceId),
 }
 
 struct Writer<'a> {
@@ -62,8 +83,8 @@ struct Writer<'a> {
     query: Query,
     mixing: Vec<Mixing>,
     tables: Vec<Rows>,
-    /// The occurrence behind each row of each table, and its place in the order of its operator, where that is a column.
-    members: Vec<Vec<(OccurrenceId, Option<u32>)>>,
+    /// By table and row.
+    members: Vec<Vec<Member>>,
     errors: Vec<Diagnostic>,
     row: Vec<f64>,
     nodes: Vec<u32>,
@@ -80,7 +101,7 @@ impl<'a> Writer<'a> {
             rows.starts.push(0);
         }
         let mut members = vec![Vec::new(); count];
-        members[0].push((scene.root, None));
+        members[0].push(Member { occurrence: scene.root, order: None });
         tables[0].active.push(0);
         tables[0].starts.push(1);
         let attributes = &scene.tree.attributes()[..groups(scene.tree, query)];
@@ -102,28 +123,32 @@ impl<'a> Writer<'a> {
 
     /// Writes one row, and hands the rows of the tables under it out.
     fn row(&mut self, table: Table, index: usize) {
-        let (member, order) = self.members[table.index()][index];
+        let Member { occurrence: member, order } = self.members[table.index()][index];
         let mut tasks = std::mem::take(&mut self.tasks);
-        tasks.push(Task::Use(member));
+        let depth = self.code.tables[table.index()].depth;
+        tasks.push(Task::Define(member));
         if table.index() == 0 {
-            self.start(&mut tasks);
+            self.start(depth, &mut tasks);
         }
         if let Some(order) = order {
             self.row.push(f64::from(order));
         }
-        let mut children = self.code.children[table.index()].iter();
+        let mut children = self.code.tables[table.index()].children.iter();
+        let mut child = || *children.next().expect("the code has a table for each folded group and guard");
         while let Some(task) = tasks.pop() {
             match task {
-                Task::Use(id)
-                    if self.scene.occurrence(id).uses > 1 && !(table.index() > 0 && id == member) => {}
-                Task::Use(id) | Task::Define(id) => self.define(id, &mut tasks),
+                // It is computed where it is lifted to.
+                Task::Use(id) if self.scene.occurrence(id).uses > 1 => {}
+                Task::Use(id) | Task::Define(id) => self.define(id, depth, &mut tasks),
                 Task::Order(order) => self.row.push(f64::from(order)),
                 Task::LiftField(field) => self.leaf(field),
-                Task::LiftSpace(space) => self.enter_warp(space, &mut tasks),
-                Task::Rows(id, group) => {
-                    let child = *children.next().expect("the code has a table for each folded group");
-                    self.hand_out(child, id, group);
+                Task::LiftSpace(space) => self.enter_warp(space, depth, &mut tasks),
+                Task::Rows(id, group) => self.hand_out(child(), id, group),
+                Task::Operand(id) => {
+                    let guarded = self.shapes.guards_operand(self.scene, id, depth);
+                    tasks.push(if guarded { Task::Guard(id) } else { Task::Use(id) });
                 }
+                Task::Guard(occurrence) => self.own(child(), &[Member { occurrence, order: None }]),
             }
         }
         self.tasks = tasks;
@@ -131,33 +156,34 @@ impl<'a> Writer<'a> {
     }
 
     /// The numbers of the scene itself.
-    fn start(&mut self, tasks: &mut Vec<Task>) {
+    fn start(&mut self, depth: usize, tasks: &mut Vec<Task>) {
         self.row.push(2.0 * self.scene.tree.iso());
         for group in &self.scene.tree.attributes()[..self.mixing.len()] {
             self.row.extend(&group.default);
         }
-        self.enter_space(SpaceId(0), tasks);
+        self.enter_space(SpaceId(0), depth, tasks);
     }
 
-    fn enter_warp(&mut self, space: SpaceId, tasks: &mut Vec<Task>) {
+    fn enter_warp(&mut self, space: SpaceId, depth: usize, tasks: &mut Vec<Task>) {
         let inside = self.scene.inside(space).expect("the world is no warp's inside");
         let map = self.scene.position(inside.position).map;
         MapKind::of(&map).push_columns(&map, &mut self.row);
         self.scene.warp(inside.warp).columns(&mut self.row);
-        self.enter_space(space, tasks);
+        self.enter_space(space, depth, tasks);
     }
 
-    fn enter_space(&self, space: SpaceId, tasks: &mut Vec<Task>) {
+    fn enter_space(&self, space: SpaceId, depth: usize, tasks: &mut Vec<Task>) {
         for lift in self.shapes.lifts(space).iter().rev() {
             tasks.push(match lift {
                 Lift::Field(field) => Task::LiftField(*field),
                 Lift::Space(space) => Task::LiftSpace(*space),
+                Lift::Occurrence(id) if self.shapes.guards_lift(*id, depth) => Task::Guard(*id),
                 Lift::Occurrence(id) => Task::Define(*id),
             });
         }
     }
 
-    fn define(&mut self, id: OccurrenceId, tasks: &mut Vec<Task>) {
+    fn define(&mut self, id: OccurrenceId, depth: usize, tasks: &mut Vec<Task>) {
         let occurrence = self.scene.occurrence(id);
         match &occurrence.kind {
             OccurrenceKind::Leaf { field, bindings } => {
@@ -173,11 +199,11 @@ impl<'a> Writer<'a> {
             OccurrenceKind::Warp { inside, child, .. } => {
                 tasks.push(Task::Use(*child));
                 if !self.scene.is_shared(*inside) {
-                    self.enter_warp(*inside, tasks);
+                    self.enter_warp(*inside, depth, tasks);
                 }
             }
             OccurrenceKind::Difference { left, right } => {
-                tasks.extend([Task::Use(*right), Task::Use(*left)]);
+                tasks.extend([Task::Operand(*right), Task::Operand(*left)]);
             }
             OccurrenceKind::Reduce { reducer, .. } => {
                 let code = ReducerCode::of(*reducer);
@@ -192,7 +218,7 @@ impl<'a> Writer<'a> {
                         continue;
                     }
                     for &(member, order) in group.members.iter().rev() {
-                        tasks.push(Task::Use(member));
+                        tasks.push(Task::Operand(member));
                         if ordered {
                             tasks.push(Task::Order(order));
                         }
@@ -210,11 +236,16 @@ impl<'a> Writer<'a> {
         let groups = self.shapes.groups(id);
         let ordered =
             wants_order(ReducerCode::of(*reducer), groups.len() > 1, self.query.gradient, &self.mixing);
+        let member = |&(occurrence, order)| Member { occurrence, order: ordered.then_some(order) };
+        let members: Vec<Member> = groups[group].members.iter().map(member).collect();
+        self.own(child, &members);
+    }
+
+    /// These are the rows of `child` that the row in progress owns.
+    fn own(&mut self, child: Table, owned: &[Member]) {
         let (rows, members) = (&mut self.tables[child.index()], &mut self.members[child.index()]);
-        for &(member, order) in &groups[group].members {
-            rows.active.push(members.len() as u32);
-            members.push((member, ordered.then_some(order)));
-        }
+        rows.active.extend((members.len()..members.len() + owned.len()).map(|row| row as u32));
+        members.extend(owned);
         rows.starts.push(rows.active.len() as u32);
     }
 

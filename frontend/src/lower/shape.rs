@@ -3,6 +3,8 @@
 //! A shape is what selects code. Nested operators of a kind flatten into one; an occurrence with several uses is *lifted*: computed
 //! once, where its space begins, and seen by the others as a value. The children of an operator form groups, one for each shape; a
 //! group is the rows of one table, unless its shape holds tables of its own and there is one such child: that one is written out.
+//!
+//! What is written out, and is worth it, gets a *guard*: it is the one row of a table, so that it can be left out where it does not matter.
 
 use rustc_hash::FxHashMap as HashMap;
 
@@ -92,11 +94,51 @@ pub(super) enum Lift {
     Occurrence(OccurrenceId),
 }
 
+/// How many folds there may be around a guard. Behind so many, what is left of a deep model is mostly left out with what is around it.
+///
+/// Folds over several rows that own rows double the occurrences each, so there are at most 22 of these in each other, by
+/// [`jbt_ir::limits::MAX_OCCURRENCES`]; with this many guards they stay below [`jbt_ir::limits::MAX_FOLD_DEPTH`].
+const MAX_DEPTH_OF_GUARDS: usize = 24;
+
+/// What the code of a shape consists of.
+#[derive(Clone, Copy, Debug)]
+struct Content {
+    /// Whether a use of it has to be written out: it holds tables, or is a lifted value.
+    written_out: bool,
+    /// Whether tables hang under it. Lifted values count where they are computed.
+    tables: bool,
+    /// Leaves that are computed where it stands, those in tables left out.
+    leaves: usize,
+}
+
+impl Content {
+    const LEAF: Self = Self { written_out: false, tables: false, leaves: 1 };
+    const LIFTED: Self = Self { written_out: true, tables: false, leaves: 0 };
+    /// Rows of a table.
+    const ROWS: Self = Self { written_out: true, tables: true, leaves: 0 };
+
+    /// Both, one after the other.
+    const fn and(self, other: Self) -> Self {
+        Self {
+            written_out: self.written_out || other.written_out,
+            tables: self.tables || other.tables,
+            leaves: self.leaves.saturating_add(other.leaves),
+        }
+    }
+
+    /// Whether it is worth a guard inside of so many folds.
+    const fn wants_guard(self, depth: usize) -> bool {
+        (self.tables || self.leaves > 1) && depth < MAX_DEPTH_OF_GUARDS
+    }
+}
+
 /// The shapes of a scene.
 pub(super) struct Shapes {
     /// Groups of each operator that has not been flattened into another.
     groups: HashMap<OccurrenceId, Vec<Group>>,
     lifts: HashMap<SpaceId, Vec<Lift>>,
+    /// Of each occurrence, where it is computed. Not of those that have been flattened.
+    contents: Vec<Content>,
 }
 
 impl Shapes {
@@ -110,6 +152,18 @@ impl Shapes {
         &self.groups[&id]
     }
 
+    /// Whether an operand that is not a row is computed under a guard, inside of `depth` folds. What is lifted is not: its value is there.
+    pub(super) fn guards_operand(&self, scene: &Scene<'_>, id: OccurrenceId, depth: usize) -> bool {
+        let content = self.contents[id.0 as usize];
+        // Without tables of its own it may stand in a row, whose shape guards must not change.
+        scene.occurrence(id).uses == 1 && content.written_out && content.wants_guard(depth)
+    }
+
+    /// Whether a lifted occurrence is computed under a guard, inside of `depth` folds.
+    pub(super) fn guards_lift(&self, id: OccurrenceId, depth: usize) -> bool {
+        self.contents[id.0 as usize].wants_guard(depth)
+    }
+
     /// What is lifted to the start of a space.
     pub(super) fn lifts(&self, space: SpaceId) -> &[Lift] {
         self.lifts.get(&space).map_or(&[], Vec::as_slice)
@@ -119,8 +173,8 @@ impl Shapes {
 struct Classifier<'a> {
     scene: &'a Scene<'a>,
     names: HashMap<ShapeKey, ShapeId>,
-    /// For each shape, whether a use of it has to be written out: it holds tables, or is a lifted value.
-    written_out: Vec<bool>,
+    /// By shape.
+    contents: Vec<Content>,
     /// The shape of each occurrence, as its user sees it.
     shapes: Vec<ShapeId>,
     /// Whether an operator dissolves into its only user.
@@ -130,16 +184,9 @@ struct Classifier<'a> {
 
 impl<'a> Classifier<'a> {
     fn new(scene: &'a Scene<'a>) -> Self {
-        let result = Shapes { groups: HashMap::default(), lifts: HashMap::default() };
+        let result = Shapes { groups: HashMap::default(), lifts: HashMap::default(), contents: Vec::new() };
         let flattened = flattened(scene);
-        Self {
-            scene,
-            names: HashMap::default(),
-            written_out: Vec::new(),
-            shapes: Vec::new(),
-            flattened,
-            result,
-        }
+        Self { scene, names: HashMap::default(), contents: Vec::new(), shapes: Vec::new(), flattened, result }
     }
 
     fn run(mut self) -> Shapes {
@@ -160,9 +207,10 @@ impl<'a> Classifier<'a> {
             let id = OccurrenceId(index as u32);
             let shape = self.shape(id);
             let occurrence = self.scene.occurrence(id);
+            self.result.contents.push(self.contents[shape.0 as usize]);
             let shape = if occurrence.uses > 1 {
                 self.result.lifts.entry(occurrence.space).or_default().push(Lift::Occurrence(id));
-                self.name(ShapeKey::Lifted(id), true)
+                self.name(ShapeKey::Lifted(id), Content::LIFTED)
             } else {
                 shape
             };
@@ -171,18 +219,18 @@ impl<'a> Classifier<'a> {
         self.result
     }
 
-    fn name(&mut self, key: ShapeKey, written_out: bool) -> ShapeId {
-        let next = ShapeId(self.written_out.len() as u32);
+    fn name(&mut self, key: ShapeKey, content: Content) -> ShapeId {
+        let next = ShapeId(self.contents.len() as u32);
         let id = *self.names.entry(key).or_insert(next);
         if id == next {
-            self.written_out.push(written_out);
+            self.contents.push(content);
         }
         id
     }
 
-    fn of(&self, id: OccurrenceId) -> (ShapeId, bool) {
+    fn of(&self, id: OccurrenceId) -> (ShapeId, Content) {
         let shape = self.shapes[id.0 as usize];
-        (shape, self.written_out[shape.0 as usize])
+        (shape, self.contents[shape.0 as usize])
     }
 
     /// The shape of an occurrence whose children have theirs.
@@ -190,7 +238,7 @@ impl<'a> Classifier<'a> {
         let occurrence = self.scene.occurrence(id);
         match &occurrence.kind {
             OccurrenceKind::Leaf { field, .. } if self.scene.field(*field).uses > 1 => {
-                self.name(ShapeKey::LeafOf(*field), true)
+                self.name(ShapeKey::LeafOf(*field), Content::LIFTED)
             }
             OccurrenceKind::Leaf { field, .. } => {
                 let primitive = self.scene.primitive(*field);
@@ -200,33 +248,41 @@ impl<'a> Classifier<'a> {
                     falloff: primitive.falloff,
                     strong: primitive.strength != 1.0,
                 };
-                self.name(key, false)
+                self.name(key, Content::LEAF)
             }
             OccurrenceKind::Warp { position, inside, child } => {
-                let (child, written_out) = self.of(*child);
+                let (child, mut content) = self.of(*child);
                 if self.scene.is_shared(*inside) {
-                    return self.name(ShapeKey::Inside { space: *inside, child }, true);
+                    content.written_out = true;
+                    return self.name(ShapeKey::Inside { space: *inside, child }, content);
                 }
                 // What is lifted to the start of this space has to be visible to all of it, so the warp stands alone.
-                let pinned = self.result.lifts.contains_key(inside).then_some(*inside);
+                let lifts = self.result.lifts.get(inside);
+                let pinned = lifts.map(|_| *inside);
+                content.written_out |= pinned.is_some();
+                content.leaves = content.leaves.saturating_add(lifts.map_or(0, Vec::len));
                 let map = MapKind::of(&self.scene.position(*position).map);
                 let warp = self.scene.warp(occurrence.node).kind();
                 let key = ShapeKey::Warp { map, warp, child, pinned };
-                self.name(key, written_out || pinned.is_some())
+                self.name(key, content)
             }
             OccurrenceKind::Difference { left, right } => {
-                let ((left, left_out), (right, right_out)) = (self.of(*left), self.of(*right));
-                self.name(ShapeKey::Difference { left, right }, left_out || right_out)
+                let ((left, content), (right, other)) = (self.of(*left), self.of(*right));
+                self.name(ShapeKey::Difference { left, right }, content.and(other))
             }
             OccurrenceKind::Reduce { .. } if self.flattened[id.0 as usize] => {
                 // Its user asks for its children; nobody asks for its shape.
-                self.name(ShapeKey::Lifted(id), true)
+                self.name(ShapeKey::Lifted(id), Content::LIFTED)
             }
             OccurrenceKind::Reduce { reducer, .. } => {
                 let groups = self.group(id);
+                let content = groups.iter().fold(Content::LIFTED, |all, group| match group.folded {
+                    true => all.and(Content::ROWS),
+                    false => group.members.iter().fold(all, |all, member| all.and(self.of(member.0).1)),
+                });
                 let key = ShapeKey::Reduce {
                     code: ReducerCode::of(*reducer),
-                    non_negative: non_negative(self.scene, *reducer, &groups),
+                    non_negative: non_negative(self.scene, &groups),
                     groups: groups
                         .iter()
                         .map(|group| {
@@ -236,7 +292,7 @@ impl<'a> Classifier<'a> {
                         .collect(),
                 };
                 self.result.groups.insert(id, groups);
-                self.name(key, true)
+                self.name(key, content)
             }
         }
     }
@@ -267,7 +323,7 @@ impl<'a> Classifier<'a> {
             .map(|(_, members)| {
                 let first = members[0].0;
                 let lifted = self.scene.occurrence(first).uses > 1;
-                let written_out = self.of(first).1;
+                let written_out = self.of(first).1.written_out;
                 Group {
                     folded: !written_out || (members.len() > 1 && !lifted && !self.is_leaf(first)),
                     members,
@@ -281,13 +337,10 @@ impl<'a> Classifier<'a> {
     }
 }
 
-/// Whether no operand can be negative; true for operators that do nothing else with those that are.
-pub(super) fn non_negative(scene: &Scene<'_>, reducer: Reducer, groups: &[Group]) -> bool {
+/// Whether no operand can be negative.
+pub(super) fn non_negative(scene: &Scene<'_>, groups: &[Group]) -> bool {
     let mut members = groups.iter().flat_map(|group| &group.members);
-    match reducer {
-        Reducer::Sum | Reducer::Ricci(_) => members.all(|(member, _)| scene.occurrence(*member).non_negative),
-        Reducer::Union | Reducer::Intersection => true,
-    }
+    members.all(|(member, _)| scene.occurrence(*member).non_negative)
 }
 
 /// Which operators dissolve into the operator that uses them: same kind, one use, and the same answers either way.

@@ -4,6 +4,7 @@ use glam::{DAffine3, DVec3};
 use jbt_ir::Domain;
 
 use super::{SkeletonMember, Symmetry};
+use crate::affine::map_bounds;
 use crate::bounds::Bounds;
 use crate::field::{Field, FieldKind, FieldValue, Member};
 
@@ -36,8 +37,8 @@ impl SkeletonMember for Box {
     const COLUMNS: &'static [&'static str] = &["half_x", "half_y", "half_z"];
     const SYMMETRY: Symmetry = Symmetry::None;
 
-    fn bounds(&self) -> Bounds {
-        Bounds::new(self.center - self.half, self.center + self.half)
+    fn bounds_under(&self, map: &DAffine3) -> Bounds {
+        map_bounds(map, Bounds::new(self.center - self.half, self.center + self.half))
     }
 
     fn distance_squared(&self, p: DVec3) -> f64 {

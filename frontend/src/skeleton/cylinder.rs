@@ -50,9 +50,9 @@ impl SkeletonMember for Cylinder {
     const COLUMNS: &'static [&'static str] = &["half", "radius"];
     const SYMMETRY: Symmetry = Symmetry::Axis;
 
-    fn bounds(&self) -> Bounds {
-        let reach = super::circle_reach(self.direction(), self.radius);
-        let ends = Bounds::around([self.from, self.to]);
+    fn bounds_under(&self, map: &DAffine3) -> Bounds {
+        let reach = super::circle_reach(map, self.direction(), self.radius);
+        let ends = Bounds::around([self.from, self.to].map(|end| map.transform_point3(end)));
         Bounds::new(ends.min - reach, ends.max + reach)
     }
 
@@ -111,7 +111,7 @@ mod tests {
         testing::same_everywhere(&thin, DVec3::new(3.0, 0.0, 7.0), 25.0);
         let disc = Cylinder { from: axis[0], to: axis[0], radius: 2.0 };
         testing::same_everywhere(&disc, DVec3::new(0.0, 5.0, 5.0), 25.0);
-        assert_eq!(disc.bounds(), Bounds::new(DVec3::new(-2.0, -2.0, 1.0), DVec3::new(2.0, 2.0, 1.0)));
+        assert_eq!(disc.bounds_under(&DAffine3::IDENTITY), Bounds::new(DVec3::new(-2.0, -2.0, 1.0), DVec3::new(2.0, 2.0, 1.0)));
     }
 
     #[test]

@@ -24,8 +24,8 @@ pub trait SkeletonMember: Member {
     /// Its symmetry in its pose.
     const SYMMETRY: Symmetry;
 
-    /// The smallest box that holds the skeleton itself (not the support of its field).
-    fn bounds(&self) -> Bounds;
+    /// The smallest box that holds the image of the skeleton itself (not the support of its field) under a map.
+    fn bounds_under(&self, map: &DAffine3) -> Bounds;
 
     /// The squared distance from `p`, plainly.
     fn distance_squared(&self, p: DVec3) -> f64;
@@ -41,8 +41,19 @@ pub trait SkeletonMember: Member {
     fn columns(&self, scale: f64, row: &mut Vec<f64>);
 
     /// The squared distance from `p`, over the ops, of the skeleton in its pose; `row` holds the columns.
+    ///
+    /// In f32, with columns rounded once, its square root is off by at most [`ROUNDING`] of the distance and the largest coordinate of
+    /// the skeleton together (and by 2^-73, where squares fall below the smallest numbers): supports rest on it.
     fn emit<D: Domain>(d: &mut D, p: [D::Real; 3], row: &[D::Real]) -> D::Real;
 }
+
+/// The rounding that [`SkeletonMember::emit`] may have: 64 units in the last place.
+///
+/// A column is off by half a unit of what it holds. A difference of a coordinate and a length adds half a unit of both, a sum of two
+/// squares and its root less than two of the result: a cylinder, with two such terms, stays below 8 units, a box below 8. The sides of
+/// a triangle take two products and a sum, of numbers that are off themselves, so both its terms are off by up to 12 units of
+/// coordinates that are up to 1.5 times as large; and near a corner the test of what is inside may be off by three times as much.
+pub const ROUNDING: f64 = 64.0 / (1 << 24) as f64;
 
 /// Which rotations a skeleton in its pose does not feel: they need not be done.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -123,9 +134,13 @@ macro_rules! skeletons {
             #[must_use]
             pub fn to_fields(&self) -> Vec<FieldValue> { match self { $( Self::$name(s) => s.to_fields(), )+ } }
 
-            /// See [`SkeletonMember::bounds`].
+            /// The smallest box that holds the skeleton itself (not the support of its field).
             #[must_use]
-            pub fn bounds(&self) -> Bounds { match self { $( Self::$name(s) => s.bounds(), )+ } }
+            pub fn bounds(&self) -> Bounds { self.bounds_under(&DAffine3::IDENTITY) }
+
+            /// See [`SkeletonMember::bounds_under`].
+            #[must_use]
+            pub fn bounds_under(&self, map: &DAffine3) -> Bounds { match self { $( Self::$name(s) => s.bounds_under(map), )+ } }
 
             /// See [`SkeletonMember::distance_squared`].
             #[must_use]
@@ -172,9 +187,10 @@ fn cylindrical(v: DVec3, n: DVec3) -> (f64, f64) {
     (h, (v - h * n).length())
 }
 
-/// How far a circle about the unit vector `n` reaches along each axis.
-fn circle_reach(n: DVec3, radius: f64) -> DVec3 {
-    radius * DVec3::new(n.y.hypot(n.z), n.z.hypot(n.x), n.x.hypot(n.y))
+/// How far the image of a circle about the unit vector `n` reaches along each axis.
+fn circle_reach(map: &DAffine3, n: DVec3, radius: f64) -> DVec3 {
+    // Along a row of the matrix the circle reaches as far as that row is long in the circle's plane.
+    radius * DVec3::from_array([0, 1, 2].map(|axis| map.matrix3.row(axis).cross(n).length()))
 }
 
 /// The rotation that takes the z axis to the direction of `v`, or against it: the identity if it need not move, or if `v` is zero.

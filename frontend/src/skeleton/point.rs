@@ -32,8 +32,8 @@ impl SkeletonMember for Point {
     const COLUMNS: &'static [&'static str] = &[];
     const SYMMETRY: Symmetry = Symmetry::Ball;
 
-    fn bounds(&self) -> Bounds {
-        Bounds::new(self.at, self.at)
+    fn bounds_under(&self, map: &DAffine3) -> Bounds {
+        Bounds::around([map.transform_point3(self.at)])
     }
 
     fn distance_squared(&self, p: DVec3) -> f64 {

@@ -43,9 +43,10 @@ impl SkeletonMember for Ring {
     const COLUMNS: &'static [&'static str] = &["radius"];
     const SYMMETRY: Symmetry = Symmetry::Axis;
 
-    fn bounds(&self) -> Bounds {
-        let reach = super::circle_reach(super::unit(self.normal), self.radius);
-        Bounds::new(self.center - reach, self.center + reach)
+    fn bounds_under(&self, map: &DAffine3) -> Bounds {
+        let reach = super::circle_reach(map, super::unit(self.normal), self.radius);
+        let center = map.transform_point3(self.center);
+        Bounds::new(center - reach, center + reach)
     }
 
     fn distance_squared(&self, p: DVec3) -> f64 {

@@ -38,8 +38,8 @@ impl SkeletonMember for Segment {
     const COLUMNS: &'static [&'static str] = &["half"];
     const SYMMETRY: Symmetry = Symmetry::Axis;
 
-    fn bounds(&self) -> Bounds {
-        Bounds::around([self.from, self.to])
+    fn bounds_under(&self, map: &DAffine3) -> Bounds {
+        Bounds::around([self.from, self.to].map(|end| map.transform_point3(end)))
     }
 
     fn distance_squared(&self, p: DVec3) -> f64 {

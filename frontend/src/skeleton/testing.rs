@@ -2,10 +2,10 @@
 
 use std::fmt::Debug;
 
-use glam::{DMat3, DQuat, DVec3};
+use glam::{DAffine3, DMat3, DQuat, DVec3};
 use jbt_ir::domain::scalar::Scalar;
 
-use super::SkeletonMember;
+use super::{ROUNDING, SkeletonMember};
 use crate::bounds::Bounds;
 
 /// A position within 5 of the origin along each axis.
@@ -70,7 +70,7 @@ where
         let (skeleton, samples) = make(&mut rng);
         assert_eq!(S::from_fields(&skeleton.to_fields()), skeleton);
         assert_eq!(skeleton.to_fields().len(), S::FIELDS.len());
-        bounds_hold(&skeleton, &samples, spacing);
+        bounds_hold(&skeleton, &samples, spacing, &mut rng);
         for i in 0..50 {
             let near =
                 samples[rng.usize(..samples.len())] + direction(&mut rng) * 10f64.powf(1.0 - 6.0 * rng.f64());
@@ -92,6 +92,14 @@ where
                 (got - distance).abs() <= 1e-6 * 10.0,
                 "{skeleton:?} at {p}: {got} in f32, {distance} in f64"
             );
+            let size = skeleton.bounds_under(&skeleton.pose().inverse());
+            let size = size.min.abs().max(size.max.abs()).max_element();
+            // The point that it was given is off by half a unit along each axis.
+            let allowed = (ROUNDING + 2f64.powi(-24)) * (size + distance) + 2f64.powi(-73);
+            assert!(
+                (got - distance).abs() <= allowed,
+                "{skeleton:?} at {p}: {got} in f32, {distance} in f64"
+            );
             scales(&skeleton, p, &mut rng);
         }
         for sample in samples.iter().step_by(97) {
@@ -101,12 +109,28 @@ where
 }
 
 /// The bounds hold all samples, and not more than the samples need.
-fn bounds_hold<S: SkeletonMember + Debug>(skeleton: &S, samples: &[DVec3], spacing: f64) {
-    let (bounds, around) = (skeleton.bounds(), Bounds::around(samples.iter().copied()));
-    let (low, high) = (around.min - bounds.min, bounds.max - around.max);
-    for slack in [low, high] {
-        assert!(slack.min_element() >= -1e-12, "{skeleton:?}: {bounds:?} does not hold {around:?}");
-        assert!(slack.max_element() <= spacing, "{skeleton:?}: {bounds:?} is too large for {around:?}");
+fn bounds_hold<S: SkeletonMember + Debug>(
+    skeleton: &S,
+    samples: &[DVec3],
+    spacing: f64,
+    rng: &mut fastrand::Rng,
+) {
+    let map = DAffine3::from_mat3_translation(
+        DMat3::from_cols(direction(rng), direction(rng), direction(rng)),
+        position(rng),
+    );
+    for map in [DAffine3::IDENTITY, map] {
+        let stretch = map.matrix3.to_cols_array().iter().map(|x| x.abs()).sum::<f64>();
+        let images = samples.iter().map(|sample| map.transform_point3(*sample));
+        let (bounds, around) = (skeleton.bounds_under(&map), Bounds::around(images));
+        let (low, high) = (around.min - bounds.min, bounds.max - around.max);
+        for slack in [low, high] {
+            assert!(slack.min_element() >= -1e-11, "{skeleton:?}: {bounds:?} does not hold {around:?}");
+            assert!(
+                slack.max_element() <= spacing * stretch,
+                "{skeleton:?}: {bounds:?} is too large for {around:?}"
+            );
+        }
     }
 }
 

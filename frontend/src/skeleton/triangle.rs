@@ -69,8 +69,8 @@ impl SkeletonMember for Triangle {
     ];
     const SYMMETRY: Symmetry = Symmetry::None;
 
-    fn bounds(&self) -> Bounds {
-        Bounds::around([self.a, self.b, self.c])
+    fn bounds_under(&self, map: &DAffine3) -> Bounds {
+        Bounds::around([self.a, self.b, self.c].map(|corner| map.transform_point3(corner)))
     }
 
     fn distance_squared(&self, p: DVec3) -> f64 {

@@ -19,6 +19,13 @@ pub trait WarpMember: Member {
     /// A box around the warped child, from a box around the child.
     fn forward_bounds(&self, child: Bounds) -> Bounds;
 
+    /// A box like [`forward_bounds`](Self::forward_bounds), for [`emit`](Self::emit) in f32 with its rounding: no point outside of it is
+    /// taken into the child's box. Supports rest on it.
+    fn reach(&self, child: Bounds) -> Bounds;
+
+    /// What the inverse map makes of coordinates up to `largest` in magnitude.
+    fn growth(&self, largest: f64) -> Growth;
+
     /// The numbers of a row: one for each of [`COLUMNS`](Self::COLUMNS).
     fn columns(&self, row: &mut Vec<f64>);
 
@@ -27,6 +34,15 @@ pub trait WarpMember: Member {
 
     /// Where the child is asked, over the ops; `row` holds the columns of a warp with this variant.
     fn emit<D: Domain>(d: &mut D, variant: u8, p: [D::Real; 3], row: &[D::Real]) -> [D::Real; 3];
+}
+
+/// How large the numbers behind a warp may become.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Growth {
+    /// A bound of the child's coordinates, in magnitude.
+    pub coordinates: f64,
+    /// A bound of the sum of the derivatives of a child's coordinate along the three axes, in magnitude.
+    pub derivatives: f64,
 }
 
 macro_rules! warps {
@@ -87,6 +103,14 @@ macro_rules! warps {
             /// See [`WarpMember::forward_bounds`].
             #[must_use]
             pub fn forward_bounds(&self, child: Bounds) -> Bounds { match self { $( Self::$name(w) => w.forward_bounds(child), )+ } }
+
+            /// See [`WarpMember::reach`].
+            #[must_use]
+            pub fn reach(&self, child: Bounds) -> Bounds { match self { $( Self::$name(w) => w.reach(child), )+ } }
+
+            /// See [`WarpMember::growth`].
+            #[must_use]
+            pub fn growth(&self, largest: f64) -> Growth { match self { $( Self::$name(w) => w.growth(largest), )+ } }
 
             /// See [`WarpMember::columns`].
             pub fn columns(&self, row: &mut Vec<f64>) { match self { $( Self::$name(w) => w.columns(row), )+ } }

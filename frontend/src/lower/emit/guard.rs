@@ -1,0 +1,128 @@
+//! Guards: folds over one row around what can be left out as a whole.
+//!
+//! ```text
+//! answer of an operand  ->  fold only (start, 0, ...) (): ... yield field, channels, probes     where the row runs: the answer
+//!                                                                                               else: the field is `start`
+//! ```
+//!
+//! What a guard starts with never decides: 0 is neutral for sums, blends and unions without negative operands, an infinity for the others.
+
+use jbt_ir::{Domain, Reduction, Value};
+
+use super::Emitter;
+use crate::lower::guide::{DecisionKind, Rule};
+use crate::lower::mixing::{Answer, GroupAnswer};
+use crate::lower::occurrence::{OccurrenceId, SpaceId};
+use crate::lower::shape::ReducerCode;
+
+/// The field of a guard whose row is left out.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum GuardStart {
+    Zero,
+    /// Below every field.
+    Lowest,
+    /// Above every field.
+    Highest,
+}
+
+impl GuardStart {
+    const fn number(self) -> f32 {
+        match self {
+            Self::Zero => 0.0,
+            Self::Lowest => f32::NEG_INFINITY,
+            Self::Highest => f32::INFINITY,
+        }
+    }
+
+    const fn rule(self) -> Rule {
+        match self {
+            Self::Zero => Rule::Neutral,
+            Self::Lowest | Self::Highest => Rule::Never,
+        }
+    }
+}
+
+/// What the guard of an operand is like.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Guard {
+    pub(super) start: GuardStart,
+    /// How it is left out while it is not zero.
+    pub(super) decision: Option<DecisionKind>,
+}
+
+impl Guard {
+    /// Of the left side of a difference.
+    pub(super) const LEFT: Self =
+        Self { start: GuardStart::Highest, decision: Some(DecisionKind::DifferenceLeft) };
+    /// Of what is subtracted: where it is zero, it limits the left side to twice the iso-value all the same.
+    pub(super) const RIGHT: Self =
+        Self { start: GuardStart::Zero, decision: Some(DecisionKind::DifferenceRight) };
+
+    /// Of an operand.
+    pub(super) const fn of(code: ReducerCode, non_negative: bool) -> Self {
+        match code {
+            ReducerCode::Sum | ReducerCode::RicciInteger(_) | ReducerCode::RicciGeneral => {
+                Self { start: GuardStart::Zero, decision: None }
+            }
+            ReducerCode::Union => {
+                let start = if non_negative { GuardStart::Zero } else { GuardStart::Lowest };
+                Self { start, decision: Some(DecisionKind::UnionOperand) }
+            }
+            ReducerCode::Intersection => {
+                Self { start: GuardStart::Highest, decision: Some(DecisionKind::IntersectionOperand) }
+            }
+        }
+    }
+}
+
+impl Emitter<'_> {
+    pub(super) fn open_guard(&mut self, id: OccurrenceId, start: GuardStart) {
+        let name = self.group_name(id);
+        let field = self.builder.constant(start.number());
+        self.open_only(&name, self.scene.occurrence(id).space, start.rule(), field);
+    }
+
+    /// The answer that has just been computed in the guard's row, as it is seen outside.
+    pub(super) fn close_guard(&mut self, decision: Option<DecisionKind>) {
+        let answer = self.answers.pop().expect("the operand has been defined");
+        let mut next = vec![answer.field];
+        for group in &answer.groups {
+            next.extend(&group.channels);
+            next.extend(group.share);
+        }
+        let table = *self.rows.last().expect("the guard's row is open");
+        let mut results = self.close_only(next).into_iter();
+        let mut result = || results.next().expect("as many as were carried out");
+        let field = result();
+        let groups = answer.groups.iter().map(|group| GroupAnswer {
+            channels: group.channels.iter().map(|_| result()).collect(),
+            share: group.share.map(|_| result()),
+            // What the row computes where it runs may be anything.
+            numbers: false,
+        });
+        let groups = groups.collect();
+        self.probe_operand(table, decision, field);
+        self.answers.push(Answer { field, groups });
+    }
+
+    /// Opens a fold over one row. It carries out a field, and whatever else it is closed with.
+    pub(super) fn open_only(&mut self, name: &str, space: SpaceId, rule: Rule, field: Value) {
+        self.probe_row();
+        self.open_fold(name, space, rule, Reduction::Only, &[field]);
+    }
+
+    /// Closes a fold over one row. What it carries out, behind the field, begins at 0; probes come out too.
+    pub(super) fn close_only(&mut self, mut next: Vec<Value>) -> Vec<Value> {
+        let wanted = next.len();
+        let probes = self.leave_row();
+        next.extend(probes.iter().map(|probe| probe.value));
+        let zero = self.builder.constant(0.0);
+        for _ in 1..next.len() {
+            self.builder.add_accumulator(zero);
+        }
+        self.rows.pop();
+        let mut results = self.builder.end_fold(&next);
+        self.probe_again(&probes, &results.split_off(wanted));
+        results
+    }
+}

@@ -1,0 +1,155 @@
+//! Probes: numbers of a point that the guide function carries out of its folds.
+//!
+//! A probe is one number for a point, so it can only be taken where no fold over several rows is open: in the row of the scene and in the rows of
+//! guards in it. It comes out of each of these folds as one more accumulator, which begins at 0.
+
+use jbt_ir::{Table, Value};
+use rustc_hash::FxHashMap as HashMap;
+
+use super::{Emitter, TableCode};
+use crate::lower::guide::{Decision, DecisionKind};
+use crate::lower::occurrence::SpaceId;
+
+/// A probe that may be asked for in the end, as it is seen in the innermost open row.
+#[derive(Clone, Copy)]
+pub(super) struct Probe {
+    name: usize,
+    pub(super) value: Value,
+}
+
+/// A guard of an operator in progress.
+struct Operand {
+    table: Table,
+    kind: DecisionKind,
+    name: usize,
+}
+
+/// The probes of a guide function.
+#[derive(Default)]
+pub(super) struct Probes {
+    /// How many there are.
+    count: usize,
+    /// The probes in each open row of the scene and of guards; no others are open outside of these.
+    open: Vec<Vec<Probe>>,
+    /// The point in the world, and in spaces where it is one number for a point of the world: the first of three probes.
+    points: HashMap<SpaceId, usize>,
+    /// Guards whose operators are in progress, and for each operator in progress, how many are not its own.
+    operands: Vec<Operand>,
+    outer: Vec<usize>,
+    decisions: Vec<Decision>,
+    /// In the end: the values behind the scene's row.
+    results: Vec<Probe>,
+}
+
+impl Probes {
+    /// The first of the three probes of the point in a space.
+    pub(super) fn point(&self, space: SpaceId) -> Option<usize> {
+        self.points.get(&space).copied()
+    }
+
+    fn take(&mut self, value: Value) -> usize {
+        let name = self.count;
+        self.count += 1;
+        self.open.last_mut().expect("a row is open").push(Probe { name, value });
+        name
+    }
+
+    /// Makes outputs of the probes that somebody uses, and gives them their final names in the tables and decisions.
+    pub(super) fn finish(
+        self,
+        outputs: &mut Vec<(String, Value)>,
+        tables: &mut [TableCode],
+    ) -> Vec<Decision> {
+        let mut used = vec![false; self.count];
+        for first in tables.iter().filter_map(|table| table.probe) {
+            used[first..first + 3].fill(true);
+        }
+        for decision in &self.decisions {
+            used[decision.operand] = true;
+            used[decision.node] = true;
+        }
+        let mut values: Vec<Option<Value>> = vec![None; self.count];
+        for probe in &self.results {
+            values[probe.name] = Some(probe.value);
+        }
+        let mut names = vec![0; self.count];
+        let before = outputs.len();
+        for (name, value) in values.into_iter().enumerate().filter(|&(name, _)| used[name]) {
+            names[name] = outputs.len() - before;
+            let value = value.expect("every probe comes out of the scene's row");
+            outputs.push((format!("probe{}", names[name]), value));
+        }
+        for probe in tables.iter_mut().filter_map(|table| table.probe.as_mut()) {
+            *probe = names[*probe];
+        }
+        let rename = |decision: Decision| Decision {
+            operand: names[decision.operand],
+            node: names[decision.node],
+            ..decision
+        };
+        self.decisions.into_iter().map(rename).collect()
+    }
+}
+
+impl Emitter<'_> {
+    /// The probes, if there are any in this function and one could be taken here.
+    fn probes_here(&mut self) -> Option<&mut Probes> {
+        let rows = self.rows.len();
+        self.probes.as_mut().filter(|probes| probes.open.len() == rows)
+    }
+
+    /// The row of the scene or of a guard is about to be opened.
+    pub(super) fn probe_row(&mut self) {
+        if let Some(probes) = self.probes_here() {
+            probes.open.push(Vec::new());
+        }
+    }
+
+    /// The probes in the row of a scene or guard that is about to be closed.
+    pub(super) fn leave_row(&mut self) -> Vec<Probe> {
+        self.probes_here().and_then(|probes| probes.open.pop()).unwrap_or_default()
+    }
+
+    /// The probes in a row that has been closed, as they are seen outside.
+    pub(super) fn probe_again(&mut self, inner: &[Probe], results: &[Value]) {
+        let Some(probes) = &mut self.probes else { return };
+        let outer = probes.open.last_mut().unwrap_or(&mut probes.results);
+        outer.extend(inner.iter().zip(results).map(|(probe, &value)| Probe { value, ..*probe }));
+    }
+
+    /// The point in a space.
+    pub(super) fn probe_point(&mut self, space: SpaceId, point: [Value; 3]) {
+        if let Some(probes) = self.probes_here() {
+            let first = point.map(|coordinate| probes.take(coordinate))[0];
+            probes.points.insert(space, first);
+        }
+    }
+
+    /// The operands of an operator come next.
+    pub(super) fn begin_operator(&mut self) {
+        if let Some(probes) = &mut self.probes {
+            probes.outer.push(probes.operands.len());
+        }
+    }
+
+    /// The field of an operand that a guard has carried out.
+    pub(super) fn probe_operand(&mut self, table: Table, decision: Option<DecisionKind>, field: Value) {
+        if let (Some(kind), Some(probes)) = (decision, self.probes_here()) {
+            let name = probes.take(field);
+            probes.operands.push(Operand { table, kind, name });
+        }
+    }
+
+    /// The field of the operator whose operands have been met.
+    pub(super) fn end_operator(&mut self, field: Value) {
+        let Some(probes) = &mut self.probes else { return };
+        let first = probes.outer.pop().expect("the operator has begun");
+        if probes.operands.len() == first {
+            return;
+        }
+        let node = probes.take(field);
+        for Operand { table, kind, name } in probes.operands.split_off(first) {
+            probes.decisions.push(Decision { table, operand: name, node, kind });
+        }
+    }
+}

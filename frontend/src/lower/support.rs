@@ -1,0 +1,255 @@
+//! Supports: where an occurrence's field can be anything but zero, as the compiled program computes it.
+//!
+//! A leaf's field is zero where its skeleton is farther away than its radius, and so is, outside of a box, whatever is made of leaves. The
+//! program computes in f32, so all boxes are inflated by what rounding may do. With `u = 2^-24`, half a unit in the last place of 1:
+//!
+//! **The map.** A row holds `R = A^-1` and `t = -R a` for a map `p = A q + a`, each number off by u of itself, and the program takes
+//! at most three fused steps for a coordinate, each off by u of what it has so far. So coordinate k is off by at most
+//! `4.01 u (sum_j |R_kj p_j| + |t_k|)`, for which 6 u stands here; a subtraction is off by less. With `|p| <= |A| |q| + |a|` this is
+//!
+//! ```text
+//! e(q) <= N |q| + n        N = 6 u |R| |A| + |R A - I|        n = 6 u (|R| |a| + |t|) + |R a + t| + 2^-86
+//! ```
+//!
+//! where the second terms are what R, computed in f64, is no inverse of A by, and 2^-86 is more than underflow takes from numbers of a
+//! row, times coordinates up to 2^60.
+//!
+//! **The distance.** It changes by at most the length of e, and is computed with the [`ROUNDING`] of skeletons. With the true distance d
+//! and the largest coordinates K of the skeleton in its pose, `|q_k| <= K_k + d`. So what is computed is at least
+//! `d - |N K + n| - d |N 1| - ROUNDING (|K| + d) - 2^-73`, which grows with d.
+//!
+//! **The falloff.** It is `max(fma(d^2, -1 / r^2 (1 + u), 1), 0)`: zero, with zero slope, as soon as the computed d is `r (1 + u)`.
+//!
+//! All this takes numbers that do not overflow, so there is a bound of the coordinates at which points are asked,
+//! [`LARGEST_COORDINATE`], and rows whose numbers could overflow within it are bounded by nothing.
+
+use glam::{DAffine3, DMat3, DVec3};
+
+use super::guide::{LARGEST_COORDINATE, Support};
+use super::occurrence::{FieldId, OccurrenceId, OccurrenceKind, Reducer, Scene};
+use super::position::MapKind;
+use crate::affine::{Similarity, map_bounds};
+use crate::bounds::Bounds;
+use crate::skeleton::ROUNDING;
+
+/// Half a unit in the last place of 1 in f32.
+const HALF_UNIT: f64 = 1.0 / (1 << 24) as f64;
+/// What numbers of the program may grow to: far from overflow, also if three squares of such numbers are added.
+const LARGEST_NUMBER: f64 = (1u64 << 60) as f64;
+/// What factors of a derivative may grow to.
+const LARGEST_FACTOR: f64 = LARGEST_NUMBER * LARGEST_NUMBER;
+/// More than any number of f64 that is made of a few others is off by, relative to the largest of them.
+const F64_SLACK: f64 = 1.0 / (1u64 << 44) as f64;
+/// A root of a sum of squares of this size may lose all its bits to underflow.
+const SMALLEST_ROOT: f64 = 1.0 / (1u128 << 73) as f64;
+/// Where rounding may take more than this part of a length, nothing is promised.
+const LARGEST_PART: f64 = 0.25;
+
+const EVERYWHERE: Bounds = Bounds::new(DVec3::NEG_INFINITY, DVec3::INFINITY);
+
+/// All points within a distance of a box.
+#[derive(Clone, Copy, Debug)]
+struct Rounded {
+    core: Bounds,
+    radius: f64,
+}
+
+impl Rounded {
+    const EVERYWHERE: Self = Self { core: EVERYWHERE, radius: 0.0 };
+
+    fn bounds(self) -> Bounds {
+        self.core.grown(self.radius)
+    }
+}
+
+/// The supports of all occurrences of a scene, each in the space in which it is asked.
+pub(super) struct Supports<'a> {
+    scene: &'a Scene<'a>,
+    fields: Vec<Rounded>,
+    /// By occurrence.
+    bounds: Vec<Bounds>,
+}
+
+impl<'a> Supports<'a> {
+    /// Finds them, children before parents.
+    pub(super) fn new(scene: &'a Scene<'a>) -> Self {
+        let extents = extents(scene);
+        let field = |index| leaf(scene, FieldId(index as u32), &extents);
+        let fields = (0..scene.fields.len()).map(field).collect();
+        let mut supports = Self { scene, fields, bounds: Vec::with_capacity(scene.occurrences.len()) };
+        for index in 0..scene.occurrences.len() {
+            let bounds = supports.find(OccurrenceId(index as u32));
+            // Whatever is empty is empty in every direction, so that it adds nothing to a box around several.
+            supports.bounds.push(if bounds.is_empty() { Bounds::EMPTY } else { bounds });
+        }
+        supports
+    }
+
+    /// The support of an occurrence: round for a leaf, a box otherwise.
+    pub(super) fn of(&self, id: OccurrenceId) -> Support {
+        match &self.scene.occurrence(id).kind {
+            OccurrenceKind::Leaf { field, .. } => {
+                let Rounded { core, radius } = self.fields[field.0 as usize];
+                Support::around(core, radius)
+            }
+            OccurrenceKind::Warp { .. }
+            | OccurrenceKind::Reduce { .. }
+            | OccurrenceKind::Difference { .. } => Support::around(self.bounds[id.0 as usize], 0.0),
+        }
+    }
+
+    fn find(&self, id: OccurrenceId) -> Bounds {
+        let of = |id: &OccurrenceId| self.bounds[id.0 as usize];
+        match &self.scene.occurrence(id).kind {
+            OccurrenceKind::Leaf { field, .. } => self.fields[field.0 as usize].bounds(),
+            OccurrenceKind::Warp { position, inside, child } => {
+                let warp = self.scene.warp(self.scene.insides[inside.0 as usize - 1].warp);
+                around_map(&self.scene.position(*position).map, warp.reach(of(child)))
+            }
+            OccurrenceKind::Reduce { reducer, children } => {
+                let positive = children.iter().all(|id| self.scene.occurrence(*id).non_negative);
+                match reducer {
+                    // A zero operand makes it zero; the smaller of zero and a negative field is not zero.
+                    Reducer::Intersection if positive => {
+                        children.iter().map(of).fold(EVERYWHERE, Bounds::intersection)
+                    }
+                    Reducer::Sum | Reducer::Ricci(_) | Reducer::Union | Reducer::Intersection => {
+                        children.iter().map(of).fold(Bounds::EMPTY, Bounds::hull)
+                    }
+                }
+            }
+            OccurrenceKind::Difference { left, .. } => of(left),
+        }
+    }
+}
+
+/// How large the numbers of a space may become.
+#[derive(Clone, Copy)]
+struct Extent {
+    /// A bound of coordinates, in magnitude.
+    coordinates: f64,
+    /// A bound of the sum of a coordinate's derivatives along the axes of the world, in magnitude.
+    derivatives: f64,
+}
+
+/// The extents of all spaces, the world first. A space comes after the one in which its warp stands.
+fn extents(scene: &Scene<'_>) -> Vec<Extent> {
+    let mut extents = vec![Extent { coordinates: f64::from(LARGEST_COORDINATE), derivatives: 1.0 }];
+    for inside in &scene.insides {
+        let position = scene.position(inside.position);
+        let outer = extents[position.space.0 as usize].after(&Inverse::new(MapKind::of, &position.map));
+        let growth = scene.warp(inside.warp).growth(outer.coordinates);
+        let derivatives = outer.derivatives * growth.derivatives;
+        // What is too large stays so, whatever a map behind it does.
+        let fits = outer.coordinates <= LARGEST_NUMBER && derivatives <= LARGEST_FACTOR;
+        let coordinates = if fits { growth.coordinates } else { f64::INFINITY };
+        extents.push(Extent { coordinates, derivatives });
+    }
+    extents
+}
+
+impl Extent {
+    /// The extent behind a map; twice what it is without rounding.
+    fn after(self, inverse: &Inverse) -> Self {
+        let sums = absolute(inverse.back.matrix3) * DVec3::ONE;
+        let shifts = inverse.back.translation.abs();
+        Self {
+            coordinates: 2.0 * (self.coordinates * sums + shifts).max_element(),
+            derivatives: 2.0 * self.derivatives * sums.max_element(),
+        }
+    }
+}
+
+/// The inverse of a map, and what rounding does to the coordinates that it gives: `error <= relative |q| + fixed`.
+struct Inverse {
+    back: DAffine3,
+    relative: DMat3,
+    fixed: DVec3,
+}
+
+impl Inverse {
+    fn new(kind: impl Fn(&DAffine3) -> MapKind, map: &DAffine3) -> Self {
+        let kind = kind(map);
+        let back = kind.inverse(map);
+        if kind == MapKind::Identity {
+            return Self { back, relative: DMat3::ZERO, fixed: DVec3::ZERO };
+        }
+        let rows = absolute(back.matrix3);
+        let units = 6.0 * HALF_UNIT;
+        let residual = back.matrix3 * map.matrix3 - DMat3::IDENTITY;
+        let shift = back.matrix3 * map.translation + back.translation;
+        let size = rows * map.translation.abs() + back.translation.abs();
+        Self {
+            back,
+            relative: units * (rows * absolute(map.matrix3)) + absolute(residual),
+            fixed: units * size + shift.abs() + 2f64.powi(-86),
+        }
+    }
+}
+
+fn absolute(matrix: DMat3) -> DMat3 {
+    DMat3::from_cols(matrix.x_axis.abs(), matrix.y_axis.abs(), matrix.z_axis.abs())
+}
+
+/// The support of a leaf's field.
+fn leaf(scene: &Scene<'_>, id: FieldId, extents: &[Extent]) -> Rounded {
+    let (field, primitive) = (scene.field(id), scene.primitive(id));
+    let (map, skeleton) = (&field.map, &primitive.skeleton);
+    let radius = field.scale * primitive.radius;
+    let slope = radius.powi(-2);
+    let inverse = Inverse::new(MapKind::of_leaf, map);
+    let to_pose = DAffine3::from_scale(DVec3::splat(field.scale)) * skeleton.pose().inverse();
+    let pose = skeleton.bounds_under(&to_pose);
+    let size = pose.min.abs().max(pose.max.abs());
+
+    let asked = extents[scene.position(field.position).space.0 as usize].after(&inverse);
+    let factor = slope * primitive.strength.abs().max(1.0);
+    let small = slope >= f64::from(f32::MIN_POSITIVE)
+        && asked.coordinates <= LARGEST_NUMBER
+        && asked.derivatives * asked.coordinates <= LARGEST_FACTOR
+        // A derivative of a distance from an axis has that distance as its divisor.
+        && factor * size.max_element() / SMALLEST_ROOT <= LARGEST_FACTOR
+        && factor * asked.coordinates <= LARGEST_FACTOR;
+    let part = (inverse.relative * DVec3::ONE).length() + ROUNDING;
+    // Written so that a NaN is no promise either.
+    if !(small && part <= LARGEST_PART) {
+        return Rounded::EVERYWHERE;
+    }
+    let lost =
+        (inverse.relative * size + inverse.fixed).length() + ROUNDING * size.max_element() + SMALLEST_ROOT;
+    let reach = (radius * (1.0 + 4.0 * HALF_UNIT) + lost) / (1.0 - part);
+
+    let own = skeleton.bounds();
+    let own = field.scale * own.min.abs().max(own.max.abs()).max_element();
+    let rows = DVec3::from_array([0, 1, 2].map(|axis| map.matrix3.row(axis).length()));
+    let slack = F64_SLACK * (2.0 * rows.max_element() * (own + reach) + map.translation.abs().max_element());
+    let core = skeleton.bounds_under(&(*map * to_pose)).grown(slack);
+    // A rigid map leaves distances alone.
+    let rigid = Similarity::from_affine(map).is_some_and(|it| (it.scale() - 1.0).abs() < 1e-11);
+    if rigid {
+        return Rounded { core, radius: reach * (1.0 + 1e-10) };
+    }
+    let reach = reach * rows;
+    Rounded { core: Bounds::new(core.min - reach, core.max + reach), radius: 0.0 }
+}
+
+/// A box such that the program takes no point outside of it into `bounds`, by the inverse of `map`.
+fn around_map(map: &DAffine3, bounds: Bounds) -> Bounds {
+    if bounds.is_empty() {
+        return Bounds::EMPTY;
+    }
+    let inverse = Inverse::new(MapKind::of, map);
+    if MapKind::of(map) == MapKind::Identity {
+        return bounds;
+    }
+    // Where the computed point is in the box, the true one is within e of it: e <= part (size + e) + fixed.
+    let size = bounds.min.abs().max(bounds.max.abs()).max_element();
+    let part = (inverse.relative * DVec3::ONE).max_element();
+    if !(size.is_finite() && part <= LARGEST_PART) {
+        return EVERYWHERE;
+    }
+    let error = (part * size + inverse.fixed.max_element()) / (1.0 - part);
+    let image = map_bounds(map, bounds.grown(error));
+    let sums = absolute(map.matrix3) * DVec3::splat(size + error) + map.translation.abs();
+    image.grown(F64_SLACK * sums.max_element())
+}
