@@ -9,6 +9,7 @@ use criterion::{BatchSize, BenchmarkGroup, BenchmarkId, Criterion, criterion_gro
 use jbt::ir::domain::lanes::Tape;
 use jbt::ir::pass::run_pipeline;
 use jbt::ir::verify;
+use jbt::kernel::Purpose;
 use jbt::{CheckedTree, Compiler, Query, Update};
 use jbt_benches::check;
 use jbt_benches::model::{cube, varied};
@@ -36,7 +37,7 @@ fn stages(group: &mut BenchmarkGroup<'_, WallTime>, name: &str, tree: &CheckedTr
         b.iter(|| lower(black_box(tree), Query::ALL).expect("the model lowers"));
     });
     let lowered = lower(tree, Query::ALL).expect("the model lowers").function;
-    let passes = |function| run_pipeline(function, jbt::kernel::passes(true), &mut |_, _| {});
+    let passes = |function| run_pipeline(function, jbt::kernel::passes(Purpose::Answers(Query::ALL)), &mut |_, _| {});
     group.bench_function(BenchmarkId::new("passes", name), |b| {
         b.iter_batched(|| lowered.clone(), passes, BatchSize::SmallInput);
     });

@@ -25,6 +25,7 @@ Exit codes: 0 done, 1 the scene has errors, 2 usage, 3 a limit was hit, 4 a file
 Examples:
   jbt mesh examples/hero.jbt -o hero.glb
   jbt mesh train.scene --cell 0.13 -o train.glb --json
+  jbt sample hero.jbt --resolution 64 -o field.npy
   jbt eval hero.jbt --points points.csv --query all -o answers.csv
   jbt show hero.jbt --stage ir
   jbt count hero.jbt
@@ -35,6 +36,8 @@ Examples:
 pub enum Command {
     /// Write the surface of a scene as a triangle mesh
     Mesh(MeshArguments),
+    /// Evaluate a scene at the points of a lattice, and write an array for numpy
+    Sample(SampleArguments),
     /// Evaluate a scene at the points of a CSV file
     Eval(EvalArguments),
     /// Print a scene as one of the stages that it goes through on its way to machine code
@@ -110,6 +113,41 @@ impl LatticeArguments {
     pub fn given(&self) -> bool {
         self.cell.is_some() || self.resolution.is_some() || self.region.is_some()
     }
+}
+
+/// What `jbt sample` takes.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+OUT is a .npy file: an array of 32 bit floats of the shape (nx, ny, nz), where [i, j, k] is the field at the point with these
+indices; with several answers (nx, ny, nz, n), in the order field, gx, gy, gz, color.r, color.g, color.b and the other attributes. The
+points are the corners of the cells of the lattice. Without --region it covers the support of the model.
+
+Examples:
+  jbt sample hero.jbt -o field.npy
+  jbt sample hero.jbt --cell 0.05 --query all -o all.npy --json
+  python3 -c 'import numpy; print(numpy.load(\"field.npy\").max())'")]
+pub struct SampleArguments {
+    /// What to sample.
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// The .npy file to write; `-` is the standard output
+    #[arg(short, long, value_name = "OUT.npy")]
+    pub output: PathBuf,
+    /// The answers wanted
+    #[arg(long, value_enum, default_value_t = QueryName::Field)]
+    pub query: QueryName,
+    /// Where they are wanted.
+    #[command(flatten)]
+    pub lattice: LatticeArguments,
+    /// What evaluates the field: all engines give the same bits
+    #[arg(long, value_enum, default_value_t = EngineName::Jit)]
+    pub engine: EngineName,
+    /// Number of threads; the samples do not depend on it [default: one for each processor]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+    /// Print one JSON object instead of a summary
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// What `jbt eval` takes.

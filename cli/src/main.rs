@@ -4,7 +4,7 @@
 //! |---|---|
 //! | [`arguments`] | what can be asked |
 //! | [`scene`], [`points`] | reading |
-//! | [`mesh`], [`eval`], [`show`], [`count`], [`check`] | one command each |
+//! | [`mesh`], [`sample`], [`eval`], [`show`], [`count`], [`check`] | one command each |
 //! | [`output`], [`progress`], [`logger`] | what comes out, and where |
 //! | [`failure`] | what went wrong, and the exit code for it |
 
@@ -19,8 +19,10 @@ mod mesh;
 mod output;
 mod points;
 mod progress;
+mod sample;
 mod scene;
 mod show;
+mod threads;
 
 use std::process::ExitCode;
 use std::time::Instant;
@@ -50,6 +52,7 @@ fn main() -> ExitCode {
 fn run(command: &Command, quiet: bool, start: Instant) -> Result<(), Failure> {
     match command {
         Command::Mesh(arguments) => mesh::run(arguments, quiet, start),
+        Command::Sample(arguments) => sample::run(arguments, quiet, start),
         Command::Eval(arguments) => eval::run(arguments, quiet),
         Command::Show(arguments) => show::run(arguments, quiet),
         Command::Count(arguments) => count::run(arguments, quiet),

@@ -13,6 +13,7 @@ use crate::lattice;
 use crate::output::{Output, grouped, plural, print, tell, warn};
 use crate::progress::Progress;
 use crate::scene::{Scene, is_standard};
+use crate::threads::in_pool;
 
 /// Runs the command. `start` is when the process began, for the total time.
 pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(), Failure> {
@@ -88,16 +89,6 @@ fn format(arguments: &MeshArguments) -> Result<Format, Failure> {
             "{name} does not end with .glb, .ply, .obj or .stl; --format says what to write"
         ))
     })
-}
-
-/// Runs the work on so many threads; on one for each processor if no number is given.
-fn in_pool<T: Send>(threads: Option<u16>, work: &mut (impl FnMut() -> T + Send)) -> Result<T, Failure> {
-    let Some(threads) = threads else { return Ok(work()) };
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(usize::from(threads))
-        .build()
-        .map_err(|error| Failure::Limit(format!("{threads} threads cannot be had: {error}")))?;
-    Ok(pool.install(work))
 }
 
 /// What may not be as people expect.

@@ -1,6 +1,6 @@
 //! `jbt show`: a scene as one of the stages on its way to machine code.
 
-use jbt::kernel::{optimise, passes};
+use jbt::kernel::{Purpose, optimise, passes};
 use jbt::{CompileError, Query};
 use jbt_frontend::diagnostic::escape;
 use jbt_frontend::lower::lower;
@@ -37,7 +37,7 @@ pub fn run(arguments: &ShowArguments, quiet: bool) -> Result<(), Failure> {
         return print(lowered.function.to_string().trim_end());
     }
     let mut shown = None;
-    let verified = optimise(lowered.function, query.gradient, &mut |pass, function| {
+    let verified = optimise(lowered.function, Purpose::Answers(query), &mut |pass, function| {
         if pass == stage {
             shown = Some(function.to_string());
         }
@@ -73,7 +73,7 @@ fn stages(query: Query) -> impl Iterator<Item = (&'static str, &'static str)> {
         (ASM, "The machine's instructions, registers chosen."),
     ];
     let last = last.into_iter().filter(|_| cfg!(feature = "jit"));
-    first.into_iter().chain(passes(query.gradient).map(|pass| (pass.name, pass.what))).chain(last)
+    first.into_iter().chain(passes(Purpose::Answers(query)).map(|pass| (pass.name, pass.what))).chain(last)
 }
 
 /// The message about an unknown stage, with those that there are.

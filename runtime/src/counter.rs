@@ -13,6 +13,9 @@ pub struct Counters {
     pub lanes: u64,
     /// Distances to skeletons that were computed, for the points asked for.
     pub primitive_evaluations: u64,
+    /// Distances that would have been computed on top of these if nothing had been left out at the points asked for: rows that do not
+    /// reach a region, operands that do not decide there.
+    pub evaluations_pruned: u64,
     /// Distances that [separate walks](crate::statistics::walks) of the tree would have computed on top of these: for the field, for the
     /// normal by differences and for the attributes, a shared subtree again at each use.
     pub evaluations_avoided: u64,
@@ -24,10 +27,13 @@ pub(crate) struct Tally {
     calls: AtomicU64,
     points: AtomicU64,
     lanes: AtomicU64,
+    pruned: AtomicU64,
 }
 
 impl Tally {
-    pub(crate) fn add(&self, points: usize, lanes: usize) {
+    /// Counts a call that left `pruned` distances out at each point.
+    pub(crate) fn add(&self, points: usize, lanes: usize, pruned: u64) {
+        self.pruned.fetch_add(pruned.saturating_mul(points as u64), Ordering::Relaxed);
         self.calls.fetch_add(1, Ordering::Relaxed);
         self.points.fetch_add(points as u64, Ordering::Relaxed);
         self.lanes.fetch_add(lanes as u64, Ordering::Relaxed);
@@ -36,12 +42,14 @@ impl Tally {
     /// The counters, for a program that computes `evaluations` distances a point where separate walks compute `separate`.
     pub(crate) fn snapshot(&self, evaluations: u64, separate: u64) -> Counters {
         let points = self.points.load(Ordering::Relaxed);
-        let primitive_evaluations = points.saturating_mul(evaluations);
+        let pruned = self.pruned.load(Ordering::Relaxed);
+        let primitive_evaluations = points.saturating_mul(evaluations).saturating_sub(pruned);
         Counters {
             calls: self.calls.load(Ordering::Relaxed),
             points,
             lanes: self.lanes.load(Ordering::Relaxed),
             primitive_evaluations,
+            evaluations_pruned: pruned,
             evaluations_avoided: points.saturating_mul(separate).saturating_sub(primitive_evaluations),
         }
     }

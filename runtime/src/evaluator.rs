@@ -5,14 +5,15 @@ use std::sync::{Arc, Mutex, OnceLock};
 use jbt_frontend::check::CheckedTree;
 use jbt_frontend::lower::{Lowered, lower};
 use jbt_frontend::query::Query;
-use jbt_ir::domain::counting::{Evaluations, evaluations};
+use jbt_ir::domain::counting::{Evaluations, evaluations, selected_evaluations};
 use jbt_ir::{Function, Tables, Verified};
 
 use crate::buffer::{Layout, Points, Samples};
 use crate::counter::{Counters, Tally};
 use crate::error::{CompileError, EvalError};
-use crate::kernel::{Bound, Engine, Kernel, optimise};
+use crate::kernel::{Bound, Engine, Kernel, Purpose, optimise};
 use crate::probe::Probe;
+use crate::prune::Region;
 use crate::statistics::{leaf_uses, walks};
 
 /// Makes evaluators, and remembers the code of every shape that it has met: models of one shape share it.
@@ -24,9 +25,9 @@ pub struct Compiler {
     known: Arc<Mutex<Vec<Known>>>,
 }
 
-/// The code of a shape, for a query.
+/// The code of a shape, for a purpose.
 struct Known {
-    query: Query,
+    purpose: Purpose,
     kernel: Arc<Kernel>,
 }
 
@@ -63,24 +64,35 @@ impl Compiler {
         present: Option<&Arc<Kernel>>,
     ) -> Result<(Arc<Kernel>, Tables), CompileError> {
         let Lowered { function, tables } = lower(tree, query).map_err(CompileError::Model)?;
+        Ok((self.kernel(function, Purpose::Answers(query), present)?, tables))
+    }
+
+    /// The kernel of a lowered function: the present one, one that is remembered, or a new one.
+    pub(crate) fn kernel(
+        &self,
+        function: Function,
+        purpose: Purpose,
+        present: Option<&Arc<Kernel>>,
+    ) -> Result<Arc<Kernel>, CompileError> {
         let present = present.filter(|kernel| kernel.lowered == function).cloned();
-        if let Some(kernel) = present.or_else(|| self.find(query, &function)) {
-            return Ok((kernel, tables));
+        if let Some(kernel) = present.or_else(|| self.find(purpose, &function)) {
+            return Ok(kernel);
         }
-        let verified = optimise(function.clone(), query.gradient, &mut |_, _| {})?;
+        let verified = optimise(function.clone(), purpose, &mut |_, _| {})?;
         let kernel = Arc::new(Kernel::new(function, verified, self.engine)?);
         if let Ok(mut known) = self.known.lock() {
             if known.len() == REMEMBERED {
                 known.remove(0);
             }
-            known.push(Known { query, kernel: Arc::clone(&kernel) });
+            known.push(Known { purpose, kernel: Arc::clone(&kernel) });
         }
-        Ok((kernel, tables))
+        Ok(kernel)
     }
 
-    fn find(&self, query: Query, function: &Function) -> Option<Arc<Kernel>> {
+    fn find(&self, purpose: Purpose, function: &Function) -> Option<Arc<Kernel>> {
         let known = self.known.lock().ok()?;
-        let found = known.iter().find(|known| known.query == query && known.kernel.lowered == *function)?;
+        let found =
+            known.iter().find(|known| known.purpose == purpose && known.kernel.lowered == *function)?;
         Some(Arc::clone(&found.kernel))
     }
 }
@@ -201,7 +213,24 @@ impl Evaluator {
     /// If there are too many or too few planes, or their lengths differ.
     pub fn eval_planes(&self, points: [&[f32]; 3], answers: &mut [&mut [f32]]) -> Result<(), EvalError> {
         let lanes = self.bound.run(&self.bound.all, &points, answers)?;
-        self.tally.add(points[0].len(), lanes);
+        self.tally.add(points[0].len(), lanes, 0);
+        Ok(())
+    }
+
+    /// As [`eval_planes`](Self::eval_planes), with the rows that matter in a region. The answers have the same bits, at points of the region's box; elsewhere
+    /// they mean nothing.
+    ///
+    /// # Errors
+    /// Those of [`eval_planes`](Self::eval_planes), and a region of a model with other numbers of rows.
+    pub fn eval_region(
+        &self,
+        region: &Region,
+        points: [&[f32]; 3],
+        answers: &mut [&mut [f32]],
+    ) -> Result<(), EvalError> {
+        let lanes = self.bound.run(region.selection(), &points, answers)?;
+        let left_out = self.evaluations_per_point().saturating_sub(self.evaluations_in(region));
+        self.tally.add(points[0].len(), lanes, left_out);
         Ok(())
     }
 
@@ -221,6 +250,12 @@ impl Evaluator {
     #[must_use]
     pub fn evaluations_per_point(&self) -> u64 {
         *self.evaluations.get_or_init(|| self.evaluations_by_node().total)
+    }
+
+    /// How many distances to skeletons one point of a region takes.
+    #[must_use]
+    pub fn evaluations_in(&self, region: &Region) -> u64 {
+        selected_evaluations(&self.bound.kernel.per_row, region.selection())
     }
 
     /// How many distances one point takes, by tree node.

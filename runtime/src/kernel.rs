@@ -12,9 +12,11 @@ use std::sync::Arc;
 use std::sync::Mutex;
 
 use jbt_frontend::diagnostic::Diagnostic;
+use jbt_frontend::query::Query;
+use jbt_ir::domain::counting::evaluations_per_row;
 use jbt_ir::domain::lanes::{Scratch, Tape};
 use jbt_ir::domain::scalar::Scalar;
-use jbt_ir::pass::{GRADIENT, PIPELINE, Pass, run_pipeline};
+use jbt_ir::pass::{GRADIENT, INTERVAL, PIPELINE, Pass, run_pipeline};
 use jbt_ir::{Function, Selection, Tables, Verified, interpret, limits, verify};
 
 use crate::error::{CompileError, EvalError};
@@ -45,9 +47,28 @@ impl Engine {
     }
 }
 
-/// The passes that a function goes through: the gradient first, where it is asked for.
-pub fn passes(gradient: bool) -> impl Iterator<Item = &'static Pass> {
-    gradient.then_some(&GRADIENT).into_iter().chain(PIPELINE)
+/// What a kernel is for.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum Purpose {
+    /// To answer a query at points.
+    Answers(Query),
+    /// To enclose the field in boxes.
+    Ranges,
+}
+
+impl Purpose {
+    /// The pass that goes before the others, and changes what is computed.
+    fn first_pass(self) -> Option<&'static Pass> {
+        match self {
+            Self::Answers(query) => query.gradient.then_some(&GRADIENT),
+            Self::Ranges => Some(&INTERVAL),
+        }
+    }
+}
+
+/// The passes that a function goes through.
+pub fn passes(purpose: Purpose) -> impl Iterator<Item = &'static Pass> {
+    purpose.first_pass().into_iter().chain(PIPELINE)
 }
 
 /// Runs the passes and verifies. The observer sees what every pass made.
@@ -56,10 +77,10 @@ pub fn passes(gradient: bool) -> impl Iterator<Item = &'static Pass> {
 /// A function that a pass makes larger than [`limits::MAX_VALUES`]; broken rules, which are a defect of the compiler.
 pub fn optimise(
     mut function: Function,
-    gradient: bool,
+    purpose: Purpose,
     observer: &mut dyn FnMut(&str, &Function),
 ) -> Result<Verified, CompileError> {
-    for pass in passes(gradient) {
+    for pass in passes(purpose) {
         function = run_pipeline(function, [pass], observer);
         let values = function.values.len();
         if values > limits::MAX_VALUES {
@@ -86,6 +107,8 @@ pub(crate) struct Kernel {
     /// The function as it was lowered: what tells whether another model has the same shape.
     pub(crate) lowered: Function,
     pub(crate) function: Arc<Verified>,
+    /// For each table, the distances that an active row takes.
+    pub(crate) per_row: Vec<u64>,
     code: Code,
 }
 
@@ -109,7 +132,8 @@ impl Kernel {
                 }
             },
         };
-        Ok(Self { lowered, function: Arc::new(function), code })
+        let per_row = evaluations_per_row(function.function());
+        Ok(Self { lowered, function: Arc::new(function), per_row, code })
     }
 
     pub(crate) fn engine(&self) -> Engine {

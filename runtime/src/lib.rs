@@ -48,7 +48,9 @@ pub mod kernel;
 pub mod mesh;
 mod polygonize;
 mod probe;
+pub mod prune;
 pub mod region;
+pub mod sample;
 pub mod statistics;
 
 pub use jbt_ir as ir;
@@ -77,4 +79,5 @@ pub use evaluator::{Compiler, Evaluator, Update};
 pub use kernel::Engine;
 pub use polygonize::{Fineness, Polygonize, PolygonizeError, Polygonized};
 pub use probe::Probe;
+pub use prune::{PruneCounters, Pruner, Region};
 pub use region::{Box3, Range};

@@ -1,4 +1,4 @@
-//! The kernels of a mesh as a field. They know nothing of boxes: everything matters everywhere.
+//! The kernels of a mesh as a field, and the pruner that says what matters where.
 
 use jbt_frontend::check::CheckedTree;
 use jbt_frontend::query::Query;
@@ -7,10 +7,12 @@ use crate::error::{CompileError, EvalError};
 use crate::evaluator::{Compiler, Evaluator};
 use crate::kernel::Engine;
 use crate::mesh::Field;
-use crate::region::{Box3, Divisible};
+use crate::prune::{Pruner, Region};
+use crate::region::{Box3, Divisible, Range};
 
-/// The three kernels of a mesh.
+/// The four kernels of a mesh.
 pub(super) struct Kernels {
+    pruner: Pruner,
     field: Evaluator,
     gradient: Evaluator,
     all: Evaluator,
@@ -20,6 +22,7 @@ impl Kernels {
     /// Compiles them.
     pub(super) fn new(compiler: &Compiler, tree: &CheckedTree) -> Result<Self, CompileError> {
         Ok(Self {
+            pruner: Pruner::new(compiler, tree)?,
             field: compiler.evaluator(tree, Query::FIELD)?,
             gradient: compiler.evaluator(tree, Query::GRADIENT)?,
             all: compiler.evaluator(tree, Query::ALL)?,
@@ -39,20 +42,18 @@ impl Kernels {
 
 impl Divisible for Kernels {
     type Error = EvalError;
-    type Region = ();
+    type Region = Region;
 
-    fn region(&self, _: Box3) -> Result<(), EvalError> {
-        Ok(())
+    fn region(&self, bounds: Box3) -> Result<Region, EvalError> {
+        self.pruner.region(bounds)
     }
 
-    fn ranges(&self, (): &(), _: &[Box3], ranges: &mut [[f32; 2]]) -> Result<(), EvalError> {
-        ranges.fill([f32::NEG_INFINITY, f32::INFINITY]);
-        Ok(())
+    fn ranges(&self, region: &Region, boxes: &[Box3], ranges: &mut [Range]) -> Result<(), EvalError> {
+        self.pruner.ranges(region, boxes, ranges)
     }
 
-    fn narrow(&self, (): &(), boxes: &[Box3], parts: &mut Vec<()>) -> Result<(), EvalError> {
-        parts.resize(parts.len() + boxes.len(), ());
-        Ok(())
+    fn narrow(&self, region: &Region, boxes: &[Box3], parts: &mut Vec<Region>) -> Result<(), EvalError> {
+        self.pruner.narrow(region, boxes, parts)
     }
 }
 
@@ -61,25 +62,32 @@ impl Field for Kernels {
         self.all.layout().attributes().map(|(name, _, width)| (name.to_owned(), width)).collect()
     }
 
-    fn field(&self, (): &(), x: &[f32], y: &[f32], z: &[f32], field: &mut [f32]) -> Result<(), EvalError> {
-        self.field.eval_planes([x, y, z], &mut [field])
+    fn field(
+        &self,
+        region: &Region,
+        x: &[f32],
+        y: &[f32],
+        z: &[f32],
+        field: &mut [f32],
+    ) -> Result<(), EvalError> {
+        self.field.eval_region(region, [x, y, z], &mut [field])
     }
 
     fn gradient(
         &self,
-        (): &(),
+        region: &Region,
         x: &[f32],
         y: &[f32],
         z: &[f32],
         field: &mut [f32],
         [gx, gy, gz]: [&mut [f32]; 3],
     ) -> Result<(), EvalError> {
-        self.gradient.eval_planes([x, y, z], &mut [field, gx, gy, gz])
+        self.gradient.eval_region(region, [x, y, z], &mut [field, gx, gy, gz])
     }
 
     fn all(
         &self,
-        (): &(),
+        region: &Region,
         x: &[f32],
         y: &[f32],
         z: &[f32],
@@ -89,6 +97,6 @@ impl Field for Kernels {
     ) -> Result<(), EvalError> {
         let mut planes: Vec<&mut [f32]> = vec![field, gx, gy, gz];
         planes.extend(attributes.iter_mut().map(|plane| &mut **plane));
-        self.all.eval_planes([x, y, z], &mut planes)
+        self.all.eval_region(region, [x, y, z], &mut planes)
     }
 }

@@ -1,0 +1,135 @@
+//! `jbt sample`: the answers at the points of a lattice, as an array for numpy.
+
+use std::time::{Duration, Instant};
+
+use jbt::divide::DivideError;
+use jbt::mesh::Lattice;
+use jbt::sample::{SampleError, Sampler, write_npy};
+use jbt::{Compiler, Counters, EvalError};
+use serde_json::json;
+
+use crate::arguments::SampleArguments;
+use crate::failure::Failure;
+use crate::lattice;
+use crate::output::{Output, grouped, print, tell};
+use crate::progress::Progress;
+use crate::scene::{Scene, is_standard};
+use crate::threads::in_pool;
+
+/// Runs the command. `start` is when the process began, for the total time.
+pub fn run(arguments: &SampleArguments, quiet: bool, start: Instant) -> Result<(), Failure> {
+    let to_stdout = is_standard(&arguments.output);
+    if to_stdout && arguments.json {
+        let message = "the samples and the JSON report cannot both go to the standard output";
+        return Err(Failure::Usage(message.to_owned()));
+    }
+    let settings = lattice::settings(&arguments.lattice)?;
+    let scene = Scene::load(&arguments.scene)?;
+    scene.warn(quiet);
+    let tree = scene.check()?;
+    let lattice = settings.lattice(&tree).map_err(|error| lattice::failure(&scene, error))?;
+    let compiler = arguments.engine.required().map_or_else(Compiler::new, Compiler::for_engine);
+    let sampler = Sampler::new(&compiler, &tree, arguments.query.query())
+        .map_err(|error| Failure::compile(&scene.source(), &error))?;
+    let mut progress = Progress::new("sampling", quiet);
+    let mut work = || {
+        sampler.dense(&lattice, &mut |fraction| {
+            progress.set(fraction);
+            true
+        })
+    };
+    let planes = in_pool(arguments.threads, &mut work)?.map_err(|error| failure(&scene, error))?;
+    drop(progress);
+
+    let mut output = Output::open(&arguments.output)?;
+    write_npy(lattice.points(), &planes, &mut output).map_err(|error| output.failure(error))?;
+    output.finish()?;
+    let report = Report {
+        sampler: &sampler,
+        lattice: &lattice,
+        counters: sampler.evaluator().counters(),
+        warnings: &scene.warnings,
+        total: start.elapsed(),
+    };
+    if arguments.json {
+        return print(&report.json().to_string());
+    }
+    match (quiet, to_stdout) {
+        (true, _) => Ok(()),
+        (false, true) => {
+            tell(&report.text("<stdout>"));
+            Ok(())
+        }
+        (false, false) => print(&report.text(&arguments.output.display().to_string())),
+    }
+}
+
+/// Whose fault it is that there are no samples.
+fn failure(scene: &Scene, error: SampleError) -> Failure {
+    match error {
+        SampleError::Compile(error) => Failure::compile(&scene.source(), &error),
+        SampleError::TooMany { .. }
+        | SampleError::Memory { .. }
+        | SampleError::Divide(DivideError::Depth { .. } | DivideError::Boxes { .. }) => {
+            Failure::Limit(error.to_string())
+        }
+        SampleError::Divide(
+            DivideError::Bounds { .. }
+            | DivideError::Place { .. }
+            | DivideError::Field(
+                EvalError::Length { .. }
+                | EvalError::Planes { .. }
+                | EvalError::Selection
+                | EvalError::Layout,
+            ),
+        )
+        | SampleError::Cancelled => Failure::Defect(error.to_string()),
+    }
+}
+
+/// What is told about samples.
+struct Report<'a> {
+    sampler: &'a Sampler,
+    lattice: &'a Lattice,
+    counters: Counters,
+    warnings: &'a [String],
+    total: Duration,
+}
+
+impl Report<'_> {
+    /// For machines.
+    fn json(&self) -> serde_json::Value {
+        let (low, high) = lattice::corners(self.lattice);
+        json!({
+            "planes": self.sampler.evaluator().layout().names(),
+            "points": self.lattice.points(),
+            "region": [low[0], low[1], low[2], high[0], high[1], high[2]],
+            "cell": self.lattice.spacing(),
+            "points_evaluated": self.counters.points,
+            "primitive_evaluations": self.counters.primitive_evaluations,
+            "evaluations_pruned": self.counters.evaluations_pruned,
+            "engine": self.sampler.evaluator().engine().name(),
+            "total_ms": self.total.as_secs_f64() * 1e3,
+            "warnings": self.warnings,
+        })
+    }
+
+    /// For people.
+    fn text(&self, name: &str) -> String {
+        let [x, y, z] = self.lattice.points();
+        format!(
+            "{}: {} at {x} x {y} x {z} points\n\
+             \x20 lattice      {}\n\
+             \x20 primitives   {} evaluated at {} points, {} left out there, by engine {}\n\
+             \x20 time         {:.1} ms in total",
+            jbt_frontend::diagnostic::escape(name),
+            self.sampler.evaluator().layout().names().join(", "),
+            lattice::describe(self.lattice),
+            grouped(self.counters.primitive_evaluations),
+            grouped(self.counters.points),
+            grouped(self.counters.evaluations_pruned),
+            self.sampler.evaluator().engine().name(),
+            self.total.as_secs_f64() * 1e3,
+        )
+    }
+}

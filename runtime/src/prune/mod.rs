@@ -1,0 +1,262 @@
+//! Pruning: which rows matter in a box, and between which bounds the field is there.
+//!
+//! ```text
+//! ranges:  one call of the interval kernel, boxes as lanes, with the rows of the region around them
+//! narrow:  for each table, row by row: the boxes that the row's support reaches              (cull)
+//!          operands that do not decide: the larger of a union wins wherever the other is      (decide)
+//!          smaller in the whole box
+//!          leave the others out, by the rule of the operator                                  (rule)
+//! ```
+//!
+//! A selection is right if evaluating with it gives, at every point of its box, the bits that evaluating with all rows gives: field, gradient,
+//! attributes. Three things make it so:
+//!
+//! * Outside of its support a row's field and gradient are exactly zero in the arithmetic of the kernels; each operator's rule says
+//!   what leaving zeros out does ([`jbt_frontend::lower::guide::Rule`]).
+//! * The interval kernel runs the kernel's own ops on bounds, so a range encloses every f32 value that the kernel gives in the box. An
+//!   operand is left out only if it is strictly beaten by such ranges.
+//! * Rows stay in their order.
+
+mod cull;
+mod decide;
+mod edit;
+mod rule;
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use jbt_frontend::check::CheckedTree;
+use jbt_frontend::lower::guide::{Guide, Guided, Rule, SpaceGuide, TableGuide, lower_guided};
+use jbt_ir::domain::counting::selected_evaluations;
+use jbt_ir::selection::Extent;
+use jbt_ir::{Selection, Tables};
+
+use crate::error::{CompileError, EvalError};
+use crate::evaluator::Compiler;
+use crate::kernel::{Bound, Kernel, Purpose};
+use crate::region::{ANYTHING, Box3, Divisible, MAX_PARTS, Range};
+
+use cull::{Boxes, Supports};
+
+/// What matters of a model in a box: for each table, the rows that run. Every evaluator of the model takes it
+/// ([`Evaluator::eval_region`](crate::Evaluator::eval_region)).
+#[derive(Clone, Debug)]
+pub struct Region {
+    bounds: Box3,
+    selection: Arc<Selection>,
+}
+
+impl Region {
+    /// The box.
+    #[must_use]
+    pub fn bounds(&self) -> Box3 {
+        self.bounds
+    }
+
+    /// The rows that run.
+    #[must_use]
+    pub fn selection(&self) -> &Selection {
+        &self.selection
+    }
+
+    /// Rows that run, of all tables.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.selection.len()
+    }
+}
+
+/// A model that can be asked about boxes: see the module.
+pub struct Pruner {
+    compiler: Compiler,
+    guide: Guide,
+    /// By table; `None` where rows are not left out by their supports.
+    supports: Vec<Option<Supports>>,
+    kernel: Bound,
+    counts: Counts,
+}
+
+/// What a pruner has done so far.
+#[derive(Debug, Default)]
+struct Counts {
+    boxes: AtomicU64,
+    primitives: AtomicU64,
+}
+
+/// What a pruner has done so far. A snapshot: see [`Pruner::counters`].
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub struct PruneCounters {
+    /// Boxes for which a range was computed.
+    pub boxes: u64,
+    /// Ranges of distances to skeletons that were computed for them.
+    pub interval_evaluations: u64,
+}
+
+/// The most rows in a region for which ranges of its parts are computed. The field of so many is bounded by nothing useful; the parts of its
+/// parts will tell.
+const MAX_RANGED_ROWS: usize = 4096;
+
+impl Pruner {
+    /// A pruner for a model.
+    ///
+    /// # Errors
+    /// The model is beyond a limit, or the engine cannot be had.
+    pub fn new(compiler: &Compiler, tree: &CheckedTree) -> Result<Self, CompileError> {
+        Self::with_kernel(compiler, tree, None)
+    }
+
+    fn with_kernel(
+        compiler: &Compiler,
+        tree: &CheckedTree,
+        present: Option<&Arc<Kernel>>,
+    ) -> Result<Self, CompileError> {
+        let Guided { function, tables, guide } = lower_guided(tree).map_err(CompileError::Model)?;
+        let kernel = compiler.kernel(function, Purpose::Ranges, present)?;
+        Ok(Self {
+            compiler: compiler.clone(),
+            supports: guide.tables.values().map(supports).collect(),
+            guide,
+            kernel: kernel.bind(Arc::new(tables)),
+            counts: Counts::default(),
+        })
+    }
+
+    /// A pruner for another model, usually an edited one. If it has the shape of this one, nothing is compiled.
+    ///
+    /// # Errors
+    /// Those of [`new`](Self::new).
+    pub fn updated(&self, tree: &CheckedTree) -> Result<Self, CompileError> {
+        Self::with_kernel(&self.compiler, tree, Some(&self.kernel.kernel))
+    }
+
+    /// What it has done so far.
+    #[must_use]
+    pub fn counters(&self) -> PruneCounters {
+        PruneCounters {
+            boxes: self.counts.boxes.load(Ordering::Relaxed),
+            interval_evaluations: self.counts.primitives.load(Ordering::Relaxed),
+        }
+    }
+
+    /// The region of all space: every row runs.
+    #[must_use]
+    pub fn everywhere(&self) -> Region {
+        let bounds = Box3::new([f32::MIN; 3], [f32::MAX; 3]);
+        Region { bounds, selection: Arc::clone(&self.kernel.all) }
+    }
+
+    fn extent(&self) -> &Arc<Extent> {
+        self.kernel.all.extent()
+    }
+
+    fn tables(&self) -> &Tables {
+        &self.kernel.tables
+    }
+
+    /// Ranges of the field and of all probes in boxes: plane by plane, the low and the high ends, [`MAX_PARTS`] each.
+    fn evaluate(&self, region: &Region, boxes: &[Box3]) -> Result<Vec<[f32; MAX_PARTS]>, EvalError> {
+        let mut inputs = [[0.0; MAX_PARTS]; 6];
+        for (lane, bounds) in boxes.iter().enumerate() {
+            for axis in 0..3 {
+                inputs[2 * axis][lane] = bounds.low[axis];
+                inputs[2 * axis + 1][lane] = bounds.high[axis];
+            }
+        }
+        let count = boxes.len();
+        let inputs = inputs.each_ref().map(|plane| &plane[..count]);
+        let mut outputs = vec![[0.0; MAX_PARTS]; 2 * (1 + self.guide.probes)];
+        let mut planes: Vec<&mut [f32]> = outputs.iter_mut().map(|plane| &mut plane[..count]).collect();
+        self.kernel.run(&region.selection, &inputs, &mut planes)?;
+        let each = selected_evaluations(&self.kernel.kernel.per_row, &region.selection);
+        self.counts.boxes.fetch_add(count as u64, Ordering::Relaxed);
+        self.counts.primitives.fetch_add(each.saturating_mul(count as u64), Ordering::Relaxed);
+        Ok(outputs)
+    }
+
+    /// For each active row of the region, the boxes in which it matters: a bit each.
+    fn masks(&self, region: &Region, boxes: &[Box3]) -> Result<Vec<u8>, EvalError> {
+        let world = Boxes::new(boxes);
+        let probed = self.guide.probes > 0 && region.rows() <= MAX_RANGED_ROWS;
+        let probes = if probed { self.evaluate(region, boxes)? } else { Vec::new() };
+        let selection = &*region.selection;
+        let mut masks = vec![world.all(); selection.len()];
+        let mut first = 0;
+        for ((table, guide), supports) in self.guide.tables.iter().zip(&self.supports) {
+            let active = selection.active(table);
+            let mine = &mut masks[first..][..active.len()];
+            first += active.len();
+            let inside;
+            let boxes = match guide.space {
+                SpaceGuide::World => &world,
+                SpaceGuide::Probed(probe) if probed => {
+                    inside = inner_boxes(&probes, probe, boxes.len());
+                    &inside
+                }
+                SpaceGuide::Probed(_) | SpaceGuide::Unknown => continue,
+            };
+            let Some(supports) = supports else { continue };
+            for (mask, &row) in mine.iter_mut().zip(active) {
+                *mask = supports.reach(row, boxes);
+            }
+            rule::apply(guide.rule, selection.starts(table), mine, boxes.all());
+        }
+        if probed {
+            decide::leave_out(&self.guide, &probes, boxes.len(), selection, &mut masks);
+        }
+        Ok(masks)
+    }
+}
+
+/// The supports of a table, if rows are left out by them.
+fn supports(guide: &TableGuide) -> Option<Supports> {
+    match guide.rule {
+        Rule::Never => None,
+        Rule::Neutral | Rule::KeepOne | Rule::OnlyZero => Some(Supports::new(&guide.supports)),
+    }
+}
+
+/// The boxes of a point inside of a warp, whose ranges are probes.
+fn inner_boxes(probes: &[[f32; MAX_PARTS]], probe: usize, count: usize) -> Boxes {
+    let mut boxes = [Box3::default(); MAX_PARTS];
+    for (lane, bounds) in boxes[..count].iter_mut().enumerate() {
+        for axis in 0..3 {
+            // The field's own range comes before those of the probes.
+            let at = 2 * (1 + probe + axis);
+            bounds.low[axis] = probes[at][lane];
+            bounds.high[axis] = probes[at + 1][lane];
+        }
+    }
+    Boxes::new(&boxes[..count])
+}
+
+impl Divisible for Pruner {
+    type Error = EvalError;
+    type Region = Region;
+
+    fn region(&self, bounds: Box3) -> Result<Region, EvalError> {
+        let mut parts = Vec::with_capacity(1);
+        self.narrow(&self.everywhere(), &[bounds], &mut parts)?;
+        Ok(parts.pop().expect("one box has one region"))
+    }
+
+    fn ranges(&self, region: &Region, boxes: &[Box3], ranges: &mut [Range]) -> Result<(), EvalError> {
+        if region.rows() > MAX_RANGED_ROWS {
+            ranges.fill(ANYTHING);
+            return Ok(());
+        }
+        let outputs = self.evaluate(region, boxes)?;
+        for (lane, range) in ranges.iter_mut().enumerate() {
+            *range = [outputs[0][lane], outputs[1][lane]];
+        }
+        Ok(())
+    }
+
+    fn narrow(&self, region: &Region, boxes: &[Box3], parts: &mut Vec<Region>) -> Result<(), EvalError> {
+        let mut masks = self.masks(region, boxes)?;
+        let mut selections: [Selection; MAX_PARTS] = Default::default();
+        region.selection.narrow(&mut masks, &mut selections[..boxes.len()]);
+        let regions = boxes.iter().zip(selections);
+        parts.extend(regions.map(|(&bounds, selection)| Region { bounds, selection: Arc::new(selection) }));
+        Ok(())
+    }
+}

@@ -1,0 +1,260 @@
+//! Sampling: the answers of a query at the points of a lattice, all of them or only where something is.
+//!
+//! ```text
+//! divide the lattice into blocks of 16^3 points, with the rows that reach each:
+//!     nothing reaches a block         it is constant: one point is evaluated            (it may be huge)
+//!     all of it is in or out          skipped, where only the surface is wanted
+//!     else                            its points are evaluated with its rows
+//! ```
+//!
+//! Coordinates are those of the [`Lattice`], so that the bits are those of any other way to ask at these points.
+
+mod block;
+mod npy;
+
+pub use block::Block;
+pub use npy::write_npy;
+
+use rayon::prelude::*;
+
+use jbt_frontend::check::CheckedTree;
+use jbt_frontend::query::Query;
+use jbt_ir::limits::MAX_LATTICE_POINTS;
+
+use crate::buffer::Layout;
+use crate::divide::{Cell, Decision, DivideError, Limits, divide};
+use crate::error::{CompileError, EvalError};
+use crate::evaluator::{Compiler, Evaluator};
+use crate::mesh::Lattice;
+use crate::prune::{Pruner, Region};
+use crate::region::Box3;
+
+/// Which blocks of a lattice are sampled.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum Wanted {
+    /// All.
+    Everywhere,
+    /// Those that some primitive reaches: elsewhere the field is zero.
+    Support,
+    /// Those in which the field may have this value: the others are known to be inside or outside.
+    Surface(f32),
+}
+
+/// Samples models. The evaluator and the pruner are those of one model.
+pub struct Sampler {
+    evaluator: Evaluator,
+    pruner: Pruner,
+}
+
+/// Why a lattice was not sampled.
+#[derive(Debug, thiserror::Error)]
+pub enum SampleError {
+    /// The model could not be compiled.
+    #[error(transparent)]
+    Compile(#[from] CompileError),
+    /// More numbers than fit into memory that anybody has.
+    #[error(
+        "{points} lattice points with {planes} answers each are more than {MAX_LATTICE_POINTS} numbers: \
+         the cells are too small, or the region too large"
+    )]
+    TooMany {
+        /// Points of the lattice.
+        points: u128,
+        /// Answers of the query.
+        planes: usize,
+    },
+    /// The memory is not to be had.
+    #[error("there is no memory for {numbers} numbers")]
+    Memory {
+        /// Points times answers.
+        numbers: usize,
+    },
+    /// The lattice could not be divided.
+    #[error(transparent)]
+    Divide(#[from] DivideError<EvalError>),
+    /// The hook said to stop.
+    #[error("sampling was cancelled")]
+    Cancelled,
+}
+
+/// Points along the edge of a block.
+const BLOCK: usize = 16;
+/// Blocks between two reports of progress.
+const STRIDE: usize = 256;
+
+/// A range of indices along each axis: the points of a block. From the first to before the end.
+type Indices = [[u32; 2]; 3];
+
+impl Sampler {
+    /// Prepares to sample a model.
+    ///
+    /// # Errors
+    /// The model is beyond a limit, or the engine cannot be had.
+    pub fn new(compiler: &Compiler, tree: &CheckedTree, query: Query) -> Result<Self, CompileError> {
+        Ok(Self { evaluator: compiler.evaluator(tree, query)?, pruner: Pruner::new(compiler, tree)? })
+    }
+
+    /// What answers.
+    #[must_use]
+    pub fn evaluator(&self) -> &Evaluator {
+        &self.evaluator
+    }
+
+    /// What finds the rows that matter.
+    #[must_use]
+    pub fn pruner(&self) -> &Pruner {
+        &self.pruner
+    }
+
+    /// The wanted blocks of a lattice, in the order of a walk down its octree. No two have a point in common.
+    ///
+    /// Memory: the answers at the points of the wanted blocks. Runs on the threads of the rayon pool in which this is called; the answers do not
+    /// depend on them. The hook is told how far the work is, from 0 to 1, and cancels it by returning false.
+    ///
+    /// # Errors
+    /// See [`SampleError`].
+    pub fn blocks(
+        &self,
+        lattice: &Lattice,
+        wanted: Wanted,
+        hook: &mut dyn FnMut(f32) -> bool,
+    ) -> Result<Vec<Block>, SampleError> {
+        let mut blocks = Vec::new();
+        self.each_block(lattice, wanted, hook, &mut |block| blocks.push(block))?;
+        Ok(blocks)
+    }
+
+    /// The answers at all points of a lattice: a plane for each name of the [`layout`](Evaluator::layout), x fastest, then y, then z.
+    ///
+    /// # Errors
+    /// See [`SampleError`]. The number of numbers is checked before memory is taken.
+    pub fn dense(
+        &self,
+        lattice: &Lattice,
+        hook: &mut dyn FnMut(f32) -> bool,
+    ) -> Result<Vec<Vec<f32>>, SampleError> {
+        let count = self.check_size(lattice)?;
+        let planes = self.layout().names().len();
+        let mut dense = Vec::new();
+        for _ in 0..planes {
+            let mut plane = Vec::new();
+            let failed = |_| SampleError::Memory { numbers: count * planes };
+            plane.try_reserve_exact(count).map_err(failed)?;
+            plane.resize(count, 0.0);
+            dense.push(plane);
+        }
+        let points = lattice.points();
+        self.each_block(lattice, Wanted::Everywhere, hook, &mut |block| block.copy_to(points, &mut dense))?;
+        Ok(dense)
+    }
+
+    /// The number of points of a lattice, if all answers at them are not too many.
+    fn check_size(&self, lattice: &Lattice) -> Result<usize, SampleError> {
+        let points: u128 = lattice.points().iter().map(|&points| points as u128).product();
+        let planes = self.layout().names().len();
+        if points.saturating_mul(planes as u128) > MAX_LATTICE_POINTS as u128 {
+            return Err(SampleError::TooMany { points, planes });
+        }
+        Ok(points as usize)
+    }
+
+    fn layout(&self) -> &Layout {
+        self.evaluator.layout()
+    }
+
+    fn each_block(
+        &self,
+        lattice: &Lattice,
+        wanted: Wanted,
+        hook: &mut dyn FnMut(f32) -> bool,
+        take: &mut dyn FnMut(Block),
+    ) -> Result<(), SampleError> {
+        if !hook(0.0) {
+            return Err(SampleError::Cancelled);
+        }
+        let axes = lattice.axes();
+        let all: Indices = lattice.points().map(|points| [0, points as u32]);
+        let decide = |cell: &Cell<'_, Pruner>, indices: &Indices| self.decide(&axes, wanted, cell, indices);
+        let division = divide(&self.pruner, box_of(&axes, &all), all, &Limits::default(), &decide)?;
+        let leaves: Vec<(Indices, &Region)> =
+            division.leaves().map(|(node, region)| (node.data, region)).collect();
+        for (done, some) in leaves.chunks(STRIDE).enumerate() {
+            let sample = |(indices, region): &(Indices, &Region)| self.block(&axes, *indices, region);
+            let blocks: Vec<Block> =
+                some.par_iter().map(sample).collect::<Result<_, _>>().map_err(DivideError::Field)?;
+            blocks.into_iter().for_each(&mut *take);
+            let fraction = ((done + 1) * STRIDE).min(leaves.len()) as f32 / leaves.len() as f32;
+            if !hook(fraction) {
+                return Err(SampleError::Cancelled);
+            }
+        }
+        Ok(())
+    }
+
+    fn decide(
+        &self,
+        axes: &[Vec<f32>; 3],
+        wanted: Wanted,
+        cell: &Cell<'_, Pruner>,
+        indices: &Indices,
+    ) -> Result<Decision<Indices>, EvalError> {
+        let constant = self.evaluator.evaluations_in(cell.region()?) == 0;
+        match wanted {
+            Wanted::Everywhere if constant => return Ok(Decision::Leaf),
+            Wanted::Support | Wanted::Surface(_) if constant => return Ok(Decision::Stop),
+            Wanted::Everywhere | Wanted::Support => {}
+            Wanted::Surface(iso) => {
+                let [low, high] = cell.range()?;
+                if high < iso || low >= iso {
+                    return Ok(Decision::Stop);
+                }
+            }
+        }
+        let small = indices.iter().all(|[first, end]| (end - first) as usize <= BLOCK);
+        Ok(if small { Decision::Leaf } else { halve(axes, indices) })
+    }
+
+    fn block(&self, axes: &[Vec<f32>; 3], indices: Indices, region: &Region) -> Result<Block, EvalError> {
+        let axis = |axis: usize| &axes[axis][indices[axis][0] as usize..indices[axis][1] as usize];
+        let [xs, ys, zs] = [axis(0), axis(1), axis(2)];
+        let constant = self.evaluator.evaluations_in(region) == 0;
+        let [xs, ys, zs] = if constant { [&xs[..1], &ys[..1], &zs[..1]] } else { [xs, ys, zs] };
+        let count = xs.len() * ys.len() * zs.len();
+        let (mut x, mut y, mut z) =
+            (Vec::with_capacity(count), Vec::with_capacity(count), Vec::with_capacity(count));
+        for &at_z in zs {
+            for &at_y in ys {
+                x.extend_from_slice(xs);
+                y.resize(x.len(), at_y);
+            }
+            z.resize(x.len(), at_z);
+        }
+        let mut planes = vec![vec![0.0; count]; self.layout().names().len()];
+        let mut answers: Vec<&mut [f32]> = planes.iter_mut().map(Vec::as_mut_slice).collect();
+        self.evaluator.eval_region(region, [&x, &y, &z], &mut answers)?;
+        Ok(Block::new(indices, planes))
+    }
+}
+
+/// The closed box of some points.
+fn box_of(axes: &[Vec<f32>; 3], indices: &Indices) -> Box3 {
+    let side = |last: bool| {
+        [0, 1, 2].map(|axis| {
+            axes[axis][if last { indices[axis][1] as usize - 1 } else { indices[axis][0] as usize }]
+        })
+    };
+    Box3::new(side(false), side(true))
+}
+
+/// Two parts along the axis with the most points, at a multiple of the block.
+fn halve(axes: &[Vec<f32>; 3], indices: &Indices) -> Decision<Indices> {
+    let length = |axis: usize| indices[axis][1] - indices[axis][0];
+    let axis = [1, 2].into_iter().fold(0, |best, axis| if length(axis) > length(best) { axis } else { best });
+    let [first, end] = indices[axis].map(|index| index as usize);
+    let middle = (first + (end - first) / 2).next_multiple_of(BLOCK).min(end - 2);
+    let mut data = [*indices; 2];
+    data[0][axis][1] = middle as u32;
+    data[1][axis][0] = middle as u32;
+    // The points below the place belong to the first part, the others to the second one.
+    Decision::Split { axis, at: axes[axis][middle], data }
+}
