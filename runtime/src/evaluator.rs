@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex, OnceLock};
 
 use jbt_frontend::check::CheckedTree;
-use jbt_frontend::lower::{Lowered, lower};
+use jbt_frontend::lower::{Lowered, Lowering};
 use jbt_frontend::query::Query;
 use jbt_ir::domain::counting::{Evaluations, evaluations, selected_evaluations};
 use jbt_ir::{Function, Tables, Verified};
@@ -52,18 +52,27 @@ impl Compiler {
     /// # Errors
     /// The model is beyond a limit, or the engine cannot be had.
     pub fn evaluator(&self, tree: &CheckedTree, query: Query) -> Result<Evaluator, CompileError> {
-        let (kernel, tables) = self.compile(tree, query, None)?;
-        Ok(Evaluator::new(self.clone(), kernel, tables, tree, query))
+        self.evaluator_of(&Lowering::new(tree), query)
+    }
+
+    /// As [`evaluator`](Self::evaluator), for a model of which several things are asked.
+    pub(crate) fn evaluator_of(
+        &self,
+        lowering: &Lowering<'_>,
+        query: Query,
+    ) -> Result<Evaluator, CompileError> {
+        let (kernel, tables) = self.compile(lowering, query, None)?;
+        Ok(Evaluator::new(self.clone(), kernel, tables, lowering.tree(), query))
     }
 
     /// The kernel and the numbers of a model. `present` is a kernel for the same query, tried first.
     fn compile(
         &self,
-        tree: &CheckedTree,
+        lowering: &Lowering<'_>,
         query: Query,
         present: Option<&Arc<Kernel>>,
     ) -> Result<(Arc<Kernel>, Tables), CompileError> {
-        let Lowered { function, tables } = lower(tree, query).map_err(CompileError::Model)?;
+        let Lowered { function, tables } = lowering.answers(query).map_err(CompileError::Model)?;
         Ok((self.kernel(function, Purpose::Answers(query), present)?, tables))
     }
 
@@ -162,7 +171,8 @@ impl Evaluator {
     /// # Errors
     /// Those of [`Compiler::evaluator`]; the evaluator stays as it was.
     pub fn update(&mut self, tree: &CheckedTree) -> Result<Update, CompileError> {
-        let (kernel, tables) = self.compiler.compile(tree, self.query, Some(&self.bound.kernel))?;
+        let (kernel, tables) =
+            self.compiler.compile(&Lowering::new(tree), self.query, Some(&self.bound.kernel))?;
         let same = Arc::ptr_eq(&kernel, &self.bound.kernel);
         let next = Self::new(self.compiler.clone(), kernel, tables, tree, self.query);
         *self = Self { tally: std::mem::take(&mut self.tally), ..next };

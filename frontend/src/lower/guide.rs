@@ -21,7 +21,7 @@ use super::rows;
 use super::shape::Shapes;
 use super::support::Supports;
 use crate::bounds::Bounds;
-use crate::check::{CheckedTree, NodeId};
+use crate::check::NodeId;
 use crate::diagnostic::Diagnostic;
 use crate::query::Query;
 
@@ -182,21 +182,16 @@ pub struct Guided {
     pub guide: Guide,
 }
 
-/// Lowers a model to its guide function, and says what there is to know about its tables.
-///
-/// # Errors
-/// Those of [`super::lower`].
-pub fn lower_guided(tree: &CheckedTree) -> Result<Guided, Vec<Diagnostic>> {
-    let scene = Scene::new(tree);
-    let shapes = Shapes::new(&scene);
-    let code = emit::emit_guide(&scene, &shapes)?;
-    let rows = rows::rows(&scene, &shapes, Query::FIELD, &code)?;
-    let supports = Supports::new(&scene);
+/// The guide function of a scene, and what there is to know about its tables.
+pub(super) fn guided(scene: &Scene<'_>, shapes: &Shapes) -> Result<Guided, Vec<Diagnostic>> {
+    let code = emit::emit_guide(scene, shapes)?;
+    let rows = rows::rows(scene, shapes, Query::FIELD, &code)?;
+    let supports = Supports::new(scene);
     let mut tables = Store::new();
     for (code, members) in code.tables.iter().zip(&rows.members) {
-        tables.push(table_guide(&scene, &supports, code, members));
+        tables.push(table_guide(scene, &supports, code, members));
     }
-    let iso2 = (2.0 * tree.iso()) as f32;
+    let iso2 = (2.0 * scene.tree.iso()) as f32;
     let guide = Guide { tables, probes: code.function.outputs.len() - 1, decisions: code.decisions, iso2 };
     Ok(Guided { function: code.function, tables: rows.tables, guide })
 }

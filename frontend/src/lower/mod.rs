@@ -35,7 +35,7 @@ use crate::check::CheckedTree;
 use crate::diagnostic::Diagnostic;
 use crate::query::Query;
 
-pub use guide::{Guide, Guided, lower_guided};
+pub use guide::{Guide, Guided};
 pub use leaves::LeafOccurrences;
 
 /// A program, before any pass, and its numbers.
@@ -47,17 +47,61 @@ pub struct Lowered {
     pub tables: Tables,
 }
 
-/// Lowers a model for a query.
-///
-/// Trees of one shape give equal functions, whatever their numbers; their tables may be exchanged.
+/// A model on its way to programs: what stands where, and which parts are alike. It is found once, for all that is asked of the model.
+pub struct Lowering<'a> {
+    scene: occurrence::Scene<'a>,
+    shapes: shape::Shapes,
+}
+
+impl<'a> Lowering<'a> {
+    /// Cost: all paths of the tree that do not lead to the same place.
+    #[must_use]
+    pub fn new(tree: &'a CheckedTree) -> Self {
+        let scene = occurrence::Scene::new(tree);
+        let shapes = shape::Shapes::new(&scene);
+        Self { scene, shapes }
+    }
+
+    /// The model.
+    #[must_use]
+    pub fn tree(&self) -> &'a CheckedTree {
+        self.scene.tree
+    }
+
+    /// The program for a query.
+    ///
+    /// Trees of one shape give equal functions, whatever their numbers; their tables may be exchanged.
+    ///
+    /// # Errors
+    /// Located diagnostics: numbers that leave the range of f32 once all transforms are applied, or a program beyond
+    /// [`jbt_ir::limits`].
+    pub fn answers(&self, query: Query) -> Result<Lowered, Vec<Diagnostic>> {
+        let code = emit::emit(&self.scene, &self.shapes, query)?;
+        let rows = rows::rows(&self.scene, &self.shapes, query, &code)?;
+        Ok(Lowered { function: code.function, tables: rows.tables })
+    }
+
+    /// The guide function, and what there is to know about the tables of all queries.
+    ///
+    /// # Errors
+    /// Those of [`answers`](Self::answers).
+    pub fn guided(&self) -> Result<Guided, Vec<Diagnostic>> {
+        guide::guided(&self.scene, &self.shapes)
+    }
+}
+
+/// Lowers a model for one query: see [`Lowering`].
 ///
 /// # Errors
-/// Located diagnostics: numbers that leave the range of f32 once all transforms are applied, or a program beyond
-/// [`jbt_ir::limits`].
+/// Those of [`Lowering::answers`].
 pub fn lower(tree: &CheckedTree, query: Query) -> Result<Lowered, Vec<Diagnostic>> {
-    let scene = occurrence::Scene::new(tree);
-    let shapes = shape::Shapes::new(&scene);
-    let code = emit::emit(&scene, &shapes, query)?;
-    let rows = rows::rows(&scene, &shapes, query, &code)?;
-    Ok(Lowered { function: code.function, tables: rows.tables })
+    Lowering::new(tree).answers(query)
+}
+
+/// Lowers a model to its guide function, and says what there is to know about its tables: see [`Lowering`].
+///
+/// # Errors
+/// Those of [`Lowering::guided`].
+pub fn lower_guided(tree: &CheckedTree) -> Result<Guided, Vec<Diagnostic>> {
+    Lowering::new(tree).guided()
 }

@@ -1,6 +1,7 @@
 //! The kernels of a mesh as a field, and the pruner that says what matters where.
 
 use jbt_frontend::check::CheckedTree;
+use jbt_frontend::lower::Lowering;
 use jbt_frontend::query::Query;
 
 use crate::error::{CompileError, EvalError};
@@ -19,14 +20,20 @@ pub(super) struct Kernels {
 }
 
 impl Kernels {
-    /// Compiles them.
+    /// Compiles them, on the threads of the rayon pool in which this is called.
     pub(super) fn new(compiler: &Compiler, tree: &CheckedTree) -> Result<Self, CompileError> {
-        Ok(Self {
-            pruner: Pruner::new(compiler, tree)?,
-            field: compiler.evaluator(tree, Query::FIELD)?,
-            gradient: compiler.evaluator(tree, Query::GRADIENT)?,
-            all: compiler.evaluator(tree, Query::ALL)?,
-        })
+        let lowering = Lowering::new(tree);
+        let evaluator = |query| compiler.evaluator_of(&lowering, query);
+        let (all, (gradient, (pruner, field))) = rayon::join(
+            || evaluator(Query::ALL),
+            || {
+                rayon::join(
+                    || evaluator(Query::GRADIENT),
+                    || rayon::join(|| Pruner::of(compiler, &lowering, None), || evaluator(Query::FIELD)),
+                )
+            },
+        );
+        Ok(Self { pruner: pruner?, field: field?, gradient: gradient?, all: all? })
     }
 
     /// What runs them.

@@ -26,7 +26,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use jbt_frontend::check::CheckedTree;
-use jbt_frontend::lower::guide::{Guide, Guided, Rule, SpaceGuide, TableGuide, lower_guided};
+use jbt_frontend::lower::Lowering;
+use jbt_frontend::lower::guide::{Guide, Guided, Rule, SpaceGuide, TableGuide};
 use jbt_ir::domain::counting::selected_evaluations;
 use jbt_ir::selection::Extent;
 use jbt_ir::{Selection, Tables};
@@ -102,15 +103,16 @@ impl Pruner {
     /// # Errors
     /// The model is beyond a limit, or the engine cannot be had.
     pub fn new(compiler: &Compiler, tree: &CheckedTree) -> Result<Self, CompileError> {
-        Self::with_kernel(compiler, tree, None)
+        Self::of(compiler, &Lowering::new(tree), None)
     }
 
-    fn with_kernel(
+    /// As [`new`](Self::new), for a model of which more is asked. `present` is a kernel that may have its shape.
+    pub(crate) fn of(
         compiler: &Compiler,
-        tree: &CheckedTree,
+        lowering: &Lowering<'_>,
         present: Option<&Arc<Kernel>>,
     ) -> Result<Self, CompileError> {
-        let Guided { function, tables, guide } = lower_guided(tree).map_err(CompileError::Model)?;
+        let Guided { function, tables, guide } = lowering.guided().map_err(CompileError::Model)?;
         let kernel = compiler.kernel(function, Purpose::Ranges, present)?;
         Ok(Self {
             compiler: compiler.clone(),
@@ -126,7 +128,7 @@ impl Pruner {
     /// # Errors
     /// Those of [`new`](Self::new).
     pub fn updated(&self, tree: &CheckedTree) -> Result<Self, CompileError> {
-        Self::with_kernel(&self.compiler, tree, Some(&self.kernel.kernel))
+        Self::of(&self.compiler, &Lowering::new(tree), Some(&self.kernel.kernel))
     }
 
     /// What it has done so far.
