@@ -37,7 +37,8 @@ fn stages(group: &mut BenchmarkGroup<'_, WallTime>, name: &str, tree: &CheckedTr
         b.iter(|| lower(black_box(tree), Query::ALL).expect("the model lowers"));
     });
     let lowered = lower(tree, Query::ALL).expect("the model lowers").function;
-    let passes = |function| run_pipeline(function, jbt::kernel::passes(Purpose::Answers(Query::ALL)), &mut |_, _| {});
+    let passes =
+        |function| run_pipeline(function, jbt::kernel::passes(Purpose::Answers(Query::ALL)), &mut |_, _| {});
     group.bench_function(BenchmarkId::new("passes", name), |b| {
         b.iter_batched(|| lowered.clone(), passes, BatchSize::SmallInput);
     });

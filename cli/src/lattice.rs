@@ -21,7 +21,8 @@ pub fn settings(arguments: &LatticeArguments) -> Result<Polygonize, Failure> {
         (None, Some(cells)) => Fineness::Resolution(cells),
         (None, None) => Fineness::default(),
     };
-    Ok(Polygonize { region: arguments.region.map(|region| (region.low, region.high)), fineness })
+    let region = arguments.region.map(|region| (region.low, region.high));
+    Ok(Polygonize { region, fineness, verify: true })
 }
 
 /// Whose fault it is that there is no lattice or mesh.
@@ -41,9 +42,9 @@ pub fn failure(scene: &Scene, error: PolygonizeError) -> Failure {
             | LatticeError::TooFine { .. } => Failure::Limit(error.to_string()),
         },
         PolygonizeError::Mesh(error) => match error {
-            MeshError::TooManyBricks { .. } | MeshError::Memory { .. } | MeshError::TooManyVertices { .. } => {
-                Failure::Limit(error.to_string())
-            }
+            MeshError::TooManyBricks { .. }
+            | MeshError::Memory { .. }
+            | MeshError::TooManyVertices { .. } => Failure::Limit(error.to_string()),
             MeshError::Field(_)
             | MeshError::Cancelled
             | MeshError::Iso { .. }

@@ -119,7 +119,7 @@ struct Report<'a> {
 impl Report<'_> {
     /// For machines.
     fn json(&self) -> serde_json::Value {
-        let Polygonized { mesh, report, lattice, .. } = self.made;
+        let Polygonized { mesh, report, lattice, counters, .. } = self.made;
         let (low, high) = lattice::corners(lattice);
         json!({
             "triangles": mesh.triangles.len(),
@@ -130,6 +130,23 @@ impl Report<'_> {
             "gradient_evaluations": report.gradient_evaluations,
             "full_evaluations": report.full_evaluations,
             "primitive_evaluations": self.made.primitive_evaluations,
+            "stages": {
+                "division": {
+                    "boxes": counters.division.boxes,
+                    "interval_evaluations": counters.division.interval_evaluations,
+                },
+                "lattice": { "points": counters.lattice.points, "evaluations": counters.lattice.primitive_evaluations },
+                "pulls": { "points": counters.pulls.points, "evaluations": counters.pulls.primitive_evaluations },
+                "vertices": {
+                    "points": counters.vertices.points,
+                    "evaluations": counters.vertices.primitive_evaluations,
+                },
+            },
+            "dense_evaluations": counters.dense_evaluations,
+            "avoided_by_support": counters.avoided_by_support,
+            "avoided_by_interval": counters.avoided_by_interval,
+            "interval_evaluations": counters.division.interval_evaluations,
+            "bricks": report.bricks,
             "crossing_cells": report.crossing_cells,
             "engine": self.made.engine.name(),
             "region": [low[0], low[1], low[2], high[0], high[1], high[2]],
@@ -143,7 +160,7 @@ impl Report<'_> {
 
     /// For people.
     fn text(&self, name: &str) -> String {
-        let Polygonized { mesh, report, lattice, .. } = self.made;
+        let Polygonized { mesh, report, lattice, counters, .. } = self.made;
         let closed = if report.closed {
             "closed".to_owned()
         } else if report.cut_sides.any() {
@@ -155,7 +172,8 @@ impl Report<'_> {
             "{}: {}, {}, {closed}\n\
              \x20 lattice      {}\n\
              \x20 evaluations  {} of the field, {} with gradient, {} with everything\n\
-             \x20 primitives   {} evaluated, by engine {}\n\
+             \x20 primitives   {} evaluated, {} over boxes, by engine {}\n\
+             \x20 avoided      {} out of reach, {} where no surface is\n\
              \x20 time         {:.1} ms to compile, {:.1} ms in total",
             escape(name),
             plural(mesh.triangles.len() as u64, "triangle", "triangles"),
@@ -165,7 +183,10 @@ impl Report<'_> {
             grouped(report.gradient_evaluations),
             grouped(report.full_evaluations),
             grouped(self.made.primitive_evaluations),
+            grouped(counters.division.interval_evaluations),
             self.made.engine.name(),
+            grouped(counters.avoided_by_support),
+            grouped(counters.avoided_by_interval),
             milliseconds(self.made.compile_time),
             milliseconds(self.total),
         )

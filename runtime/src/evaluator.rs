@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, OnceLock};
 use jbt_frontend::check::CheckedTree;
 use jbt_frontend::lower::{Lowered, Lowering};
 use jbt_frontend::query::Query;
-use jbt_ir::domain::counting::{Evaluations, evaluations, selected_evaluations};
+use jbt_ir::domain::counting::{Evaluations, evaluations, of_selection};
 use jbt_ir::{Function, Tables, Verified};
 
 use crate::buffer::{Layout, Points, Samples};
@@ -265,7 +265,13 @@ impl Evaluator {
     /// How many distances to skeletons one point of a region takes.
     #[must_use]
     pub fn evaluations_in(&self, region: &Region) -> u64 {
-        selected_evaluations(&self.bound.kernel.per_row, region.selection())
+        of_selection(&self.bound.kernel.per_row, region.selection())
+    }
+
+    /// How many ops one point of a region takes: a measure of the time.
+    #[must_use]
+    pub fn ops_in(&self, region: &Region) -> u64 {
+        of_selection(&self.bound.kernel.ops_per_row, region.selection())
     }
 
     /// How many distances one point takes, by tree node.

@@ -13,7 +13,7 @@ use std::sync::Mutex;
 
 use jbt_frontend::diagnostic::Diagnostic;
 use jbt_frontend::query::Query;
-use jbt_ir::domain::counting::evaluations_per_row;
+use jbt_ir::domain::counting::{evaluations_per_row, ops_per_row};
 use jbt_ir::domain::lanes::{Scratch, Tape};
 use jbt_ir::domain::scalar::Scalar;
 use jbt_ir::pass::{GRADIENT, INTERVAL, PIPELINE, Pass, run_pipeline};
@@ -109,6 +109,8 @@ pub(crate) struct Kernel {
     pub(crate) function: Arc<Verified>,
     /// For each table, the distances that an active row takes.
     pub(crate) per_row: Vec<u64>,
+    /// For each table, the ops that an active row takes.
+    pub(crate) ops_per_row: Vec<u64>,
     code: Code,
 }
 
@@ -133,7 +135,8 @@ impl Kernel {
             },
         };
         let per_row = evaluations_per_row(function.function());
-        Ok(Self { lowered, function: Arc::new(function), per_row, code })
+        let ops_per_row = ops_per_row(function.function());
+        Ok(Self { lowered, function: Arc::new(function), per_row, ops_per_row, code })
     }
 
     pub(crate) fn engine(&self) -> Engine {

@@ -77,7 +77,7 @@ pub use counter::Counters;
 pub use error::{CompileError, EvalError};
 pub use evaluator::{Compiler, Evaluator, Update};
 pub use kernel::Engine;
-pub use polygonize::{Fineness, Polygonize, PolygonizeError, Polygonized};
+pub use polygonize::{Fineness, MeshCounters, Polygonize, PolygonizeError, Polygonized};
 pub use probe::Probe;
 pub use prune::{PruneCounters, Pruner, Region};
 pub use region::{Box3, Range};

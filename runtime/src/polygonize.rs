@@ -12,10 +12,12 @@ use std::time::{Duration, Instant};
 
 use jbt_frontend::check::CheckedTree;
 
+use crate::counter::Counters;
 use crate::error::{CompileError, EvalError};
 use crate::evaluator::Compiler;
 use crate::kernel::Engine;
 use crate::mesh::{self, Lattice, LatticeError, Mesh, MeshError, Report};
+use crate::prune::PruneCounters;
 
 use kernels::Kernels;
 
@@ -51,6 +53,8 @@ pub struct Polygonize {
     pub region: Option<([f64; 3], [f64; 3])>,
     /// How fine.
     pub fineness: Fineness,
+    /// Whether to look at every edge to say that the mesh is closed: see [`mesh::Options::verify`].
+    pub verify: bool,
 }
 
 /// A mesh, and what it took.
@@ -64,10 +68,51 @@ pub struct Polygonized {
     pub lattice: Lattice,
     /// What ran the kernels.
     pub engine: Engine,
-    /// Distances to skeletons that were computed.
+    /// What was evaluated and what was not, stage by stage.
+    pub counters: MeshCounters,
+    /// Distances to skeletons that were computed, in all stages.
     pub primitive_evaluations: u64,
     /// Time to lower and compile the three kernels.
     pub compile_time: Duration,
+}
+
+/// What the stages of a mesh evaluated, and what they did not have to.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub struct MeshCounters {
+    /// Dividing: boxes, and ranges of distances to skeletons over them.
+    pub division: PruneCounters,
+    /// The field at lattice points.
+    pub lattice: Counters,
+    /// Field and gradient, to pull vertices.
+    pub pulls: Counters,
+    /// Everything, at vertices.
+    pub vertices: Counters,
+    /// Distances that all points of the lattice would take with all rows: what an evaluator does that knows nothing.
+    pub dense_evaluations: u64,
+    /// Those of them that were not computed because the range of a box said that no surface is in it, though some rows reach it.
+    pub avoided_by_interval: u64,
+    /// Those that were not computed because a row does not reach a box, or does not decide there.
+    pub avoided_by_support: u64,
+}
+
+impl MeshCounters {
+    fn new(kernels: &Kernels, report: &Report, lattice: &Lattice) -> Self {
+        let [field, pulls, vertices] = kernels.counters();
+        let points = lattice.points().iter().fold(1_u64, |all, &points| all.saturating_mul(points as u64));
+        let dense = points.saturating_mul(kernels.evaluations_per_point());
+        let avoided = dense.saturating_sub(field.primitive_evaluations);
+        // A point on the far side of a box that was dropped may have been sampled for its neighbour: so not more than what is left.
+        let by_interval = report.evaluations_spared.min(avoided);
+        Self {
+            division: kernels.pruned(),
+            lattice: field,
+            pulls,
+            vertices,
+            dense_evaluations: dense,
+            avoided_by_interval: by_interval,
+            avoided_by_support: avoided - by_interval,
+        }
+    }
 }
 
 /// Why there is no mesh.
@@ -142,10 +187,13 @@ impl Polygonize {
         let start = Instant::now();
         let kernels = Kernels::new(compiler, tree)?;
         let compile_time = start.elapsed();
-        let options = mesh::Options { iso: tree.iso() as f32, ..mesh::Options::default() };
+        let options =
+            mesh::Options { iso: tree.iso() as f32, verify: self.verify, ..mesh::Options::default() };
         let (mesh, report) = mesh::extract_with_progress(&kernels, &lattice, &options, hook)?;
+        let counters = MeshCounters::new(&kernels, &report, &lattice);
         Ok(Polygonized {
             mesh,
+            counters,
             report,
             lattice,
             engine: kernels.engine(),
@@ -181,7 +229,11 @@ mod tests {
     fn an_empty_model_says_so_unless_a_region_is_given() {
         let tree = tree("jbt 1 intersection { point { radius 1 } translate (5 0 0) { point { radius 1 } } }");
         assert!(matches!(Polygonize::default().region(&tree), Err(PolygonizeError::Empty)));
-        let here = Polygonize { region: Some(([0.0; 3], [1.0; 3])), fineness: Fineness::Resolution(4) };
+        let here = Polygonize {
+            region: Some(([0.0; 3], [1.0; 3])),
+            fineness: Fineness::Resolution(4),
+            verify: true,
+        };
         let made = here.run(&Compiler::for_engine(Engine::Scalar), &tree, &mut |_| true).unwrap();
         assert!(made.mesh.triangles.is_empty() && made.report.closed);
         // A point of the lattice takes both distances, whatever they amount to.

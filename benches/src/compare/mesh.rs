@@ -42,7 +42,8 @@ impl Task {
 
     fn ours(&self) -> Polygonized {
         let region = Some(([-1.0; 3], [1.0; 3]));
-        let polygonize = Polygonize { region, fineness: jbt::Fineness::Resolution(self.cells) };
+        let polygonize =
+            Polygonize { region, fineness: jbt::Fineness::Resolution(self.cells), verify: false };
         let run = || polygonize.run(&Compiler::new(), &self.tree, &mut |_| true);
         self.pool.install(run).expect("blobs have a mesh")
     }
@@ -145,17 +146,18 @@ fn gates(count: usize, options: Options) -> &'static [Gate] {
     }
 }
 
-/// A ball of particles of one size. splashsurf computes another surface of the same particles, with the same reach and cells.
+/// A ball of particles of one size, each of which about 30 others reach. splashsurf computes another surface of the same particles, with the
+/// same reach and cells.
 pub(super) fn particles(options: Options) -> Vec<Row> {
-    let counts: &[usize] = if options.quick { &[2_000] } else { &[2_000, 10_000] };
-    let row = |&count: &usize| {
+    let counts: &[(usize, usize)] =
+        if options.quick { &[(10_000, 83)] } else { &[(10_000, 83), (583_000, LATTICE_OF_PARTICLES - 1)] };
+    let row = |&(count, cells): &(usize, usize)| {
         let particles = model::particles(count, 1);
-        let cells = (2.0 * CELLS_IN_REACH / f64::from(particles[0].radius)).round() as usize;
         let task = Task::new(particles, cells, options);
         let mut contest = Contest::new();
         let made = task.enter(&mut contest);
         let cell = 2.0 / cells as f32;
-        for (division, form) in [(Division::None, "one grid"), (Division::Subdomains, "subdomains")] {
+        for (division, form) in divisions(count) {
             let peer = Particles::new(&task.blobs, cell, division, peer_threads(options));
             let mesh = move || peer.as_ref().map_err(Clone::clone).and_then(Particles::mesh);
             contest.enter_checked(Contestant::Splashsurf, form, mesh, |made| match made {
@@ -169,5 +171,24 @@ pub(super) fn particles(options: Options) -> Vec<Row> {
     counts.iter().map(row).collect()
 }
 
-/// Cells from a particle to where its field ends.
-const CELLS_IN_REACH: f64 = 8.0;
+/// Points of the lattice along an axis of [-1, 1]^3, for the most particles. Their fields end about six cells from them, those of fewer particles too.
+const LATTICE_OF_PARTICLES: usize = 320;
+
+/// The ways of splashsurf that are worth trying: one grid for everything takes minutes for many particles.
+fn divisions(count: usize) -> Vec<(Division, &'static str)> {
+    let subdomains = (Division::Subdomains, "subdomains");
+    if count > 100_000 { vec![subdomains] } else { vec![(Division::None, "one grid"), subdomains] }
+}
+
+/// Blobs of constant overlap in number, on one lattice: what a blob more costs.
+pub(super) fn scaling(options: Options) -> Vec<Row> {
+    let counts: &[usize] =
+        if options.quick { &[1_000, 10_000] } else { &[1_000, 10_000, 100_000, 1_000_000] };
+    let row = |&count: &usize| {
+        let task = Task::new(model::blobs(count, 1), 2 * CELLS, options);
+        let mut contest = Contest::new();
+        let made = task.enter(&mut contest);
+        task.row("mesh-scaling", contest, made, options)
+    };
+    counts.iter().map(row).collect()
+}

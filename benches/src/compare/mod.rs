@@ -81,6 +81,11 @@ impl Case {
             what: "the same, 4,096 blobs",
             run: |options| mesh::blobs(4096, "mesh-4096", options),
         },
+        Self {
+            name: "mesh-scaling",
+            what: "blobs to a mesh, 257^3 lattice, by number of blobs",
+            run: mesh::scaling,
+        },
         Self { name: "particles", what: "a ball of particles to a mesh", run: mesh::particles },
         Self {
             name: "train",

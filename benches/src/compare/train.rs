@@ -33,7 +33,7 @@ fn scene() -> Result<CheckedTree, String> {
 
 /// All points of the lattice.
 fn lattice(tree: &CheckedTree) -> Points {
-    let polygonize = jbt::Polygonize { region: None, fineness: jbt::Fineness::Cell(CELL) };
+    let polygonize = jbt::Polygonize { region: None, fineness: jbt::Fineness::Cell(CELL), verify: false };
     let lattice = polygonize.lattice(tree).expect("the train is bounded");
     let [nx, ny, nz] = lattice.points();
     let at = |axis, index| lattice.coordinate(axis, index);

@@ -123,9 +123,24 @@ pub fn evaluations_per_row(function: &Function) -> Vec<u64> {
     rows
 }
 
-/// The evaluations that a point takes with the rows of a selection; `per_row` is what [`evaluations_per_row`] gives.
+/// For each table, the ops that one run of the body of its fold takes, without those of folds inside.
 #[must_use]
-pub fn selected_evaluations(per_row: &[u64], selection: &Selection) -> u64 {
+pub fn ops_per_row(function: &Function) -> Vec<u64> {
+    let mut rows = vec![0; function.tables.len()];
+    for data in function.insts.values() {
+        if let InstKind::Fold(fold) = &data.kind {
+            let insts = &function.blocks[fold.body].insts;
+            let ops = insts.iter().filter(|&&inst| matches!(function.insts[inst].kind, InstKind::Op { .. }));
+            rows[fold.table.index()] += ops.count() as u64;
+        }
+    }
+    rows
+}
+
+/// What a point takes with the rows of a selection, where each row takes so much: `per_row` is what [`evaluations_per_row`] or [`ops_per_row`]
+/// gives.
+#[must_use]
+pub fn of_selection(per_row: &[u64], selection: &Selection) -> u64 {
     let of = |(table, &each): (usize, &u64)| {
         if each == 0 { 0 } else { each.saturating_mul(selection.active(Table::new(table)).len() as u64) }
     };

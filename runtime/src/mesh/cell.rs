@@ -303,31 +303,14 @@ pub(crate) static CROSSED_EDGES: [Edges; 256] = {
     crossed
 };
 
-/// The mean of the crossings on some edges of a cell (at least one), in units of the cell: each coordinate is from 0 to 1, or
-/// a little more by rounding.
-///
-/// The four edges along an axis are done together, whether they are crossed or not: that is quicker than to ask.
-#[inline]
-pub(crate) fn mean_crossing(iso: f32, corners: &[f32; 8], edges: &Edges) -> [f32; 3] {
-    std::array::from_fn(|axis| {
-        let ends =
-            |end: usize| -> [f32; 4] { std::array::from_fn(|n| corners[EDGE_CORNERS[4 * axis + n][end]]) };
-        let (low, high) = (ends(0), ends(1));
-        let t: [f32; 4] = std::array::from_fn(|n| crossing(iso, low[n], high[n]));
-        let chosen = &CHOSEN[usize::from(edges.mask >> (4 * axis) & 15)];
-        let t: [f32; 4] = std::array::from_fn(|n| t[n] * chosen[n]);
-        (edges.high[axis] + ((t[0] + t[1]) + (t[2] + t[3]))) * edges.part
-    })
-}
-
-/// For each choice of four edges, a bit each: 1 for those that are chosen, and 0 for the others.
-static CHOSEN: [[f32; 4]; 16] = {
-    let mut chosen = [[0.0; 4]; 16];
+/// Where the chosen edges are among the four along an axis, a bit each: all ones for those, and zero for the others.
+static CHOSEN: [[u32; 4]; 16] = {
+    let mut chosen = [[0; 4]; 16];
     let mut choice = 0;
     while choice < 16 {
         let mut edge = 0;
         while edge < 4 {
-            chosen[choice][edge] = (choice >> edge & 1) as f32;
+            chosen[choice][edge] = if choice >> edge & 1 == 1 { u32::MAX } else { 0 };
             edge += 1;
         }
         choice += 1;
@@ -335,13 +318,48 @@ static CHOSEN: [[f32; 4]; 16] = {
     chosen
 };
 
-/// Where along an edge the surface crosses, from 0 to 1, if the field is linear there; the middle if that is no number.
+/// The mean of the crossings on some crossed edges of a cell (at least one), in units of the cell: each coordinate is from 0 to 1, or
+/// a little more by rounding.
 #[inline(always)]
+pub(crate) fn mean_crossing(iso: f32, corners: &[f32; 8], edges: &Edges) -> [f32; 3] {
+    /// Differences of numbers up to this do not overflow.
+    const LARGE: f32 = 1e38;
+    let is_tame = corners.iter().fold(1, |all, corner| all & u32::from(corner.abs() <= LARGE));
+    let [a, b, c, d, e, f, g, h] = *corners;
+    let sums = if is_tame == 1 {
+        [
+            sum_along([a, c, e, g], [b, d, f, h], iso, edges.mask & 15),
+            sum_along([a, e, b, f], [c, g, d, h], iso, edges.mask >> 4 & 15),
+            sum_along([a, b, c, d], [e, f, g, h], iso, edges.mask >> 8),
+        ]
+    } else {
+        std::array::from_fn(|axis| {
+            let chosen = (4 * axis..4 * axis + 4).filter(|edge| edges.mask >> edge & 1 == 1);
+            let ends = chosen.map(|edge| EDGE_CORNERS[edge].map(|corner| corners[corner]));
+            ends.map(|[low, high]| crossing(iso, low, high)).sum()
+        })
+    };
+    std::array::from_fn(|axis| (edges.high[axis] + sums[axis]) * edges.part)
+}
+
+/// The sum of the crossings on the chosen ones of the four edges along an axis. All four are done together: that is quicker than to ask.
+#[inline(always)]
+fn sum_along(low: [f32; 4], high: [f32; 4], iso: f32, choice: u16) -> f32 {
+    let chosen = &CHOSEN[usize::from(choice)];
+    let mut t = [0.0; 4];
+    for n in 0..4 {
+        // On a crossed edge this is from 0 to 1; on another one it is anything, and is left out.
+        let crossing = (iso - low[n]) / (high[n] - low[n]);
+        t[n] = f32::from_bits(crossing.to_bits() & chosen[n]);
+    }
+    (t[0] + t[1]) + (t[2] + t[3])
+}
+
+/// Where along a crossed edge the surface crosses, from 0 to 1, if the field is linear there; the middle if that is no number.
 fn crossing(iso: f32, low: f32, high: f32) -> f32 {
     let rise = high - low;
     let t = (iso - low) / rise;
-    // Without jumps, so that four are done at once.
-    if (t >= 0.0) & (t <= 1.0) & (rise.abs() < f32::INFINITY) { t } else { 0.5 }
+    if (0.0..=1.0).contains(&t) && rise.is_finite() { t } else { 0.5 }
 }
 
 #[cfg(test)]
@@ -439,6 +457,10 @@ mod tests {
         corners.rotate_left(1);
         let [x, y, z] = mean_crossing(0.75, &corners, &CROSSED_EDGES[128]);
         assert!([x, y, z].iter().all(|c| (c - (1.0 - 0.25 / 3.0)).abs() < 1e-6));
+        // A corner without a number: the middle.
+        corners = [1.0, 0.0, 0.0, f32::NAN, f32::NEG_INFINITY, 0.0, 0.0, 0.0];
+        let [x, y, z] = mean_crossing(0.75, &corners, &CROSSED_EDGES[1]);
+        assert_eq!([x * 3.0, y * 3.0, z * 3.0], [0.25, 0.25, 0.5]);
         for signs in 1..255_u8 {
             let sheets = sheets(signs, 0);
             let all = (0..sheets.count()).fold(0, |all, sheet| all | sheets.edges(sheet));

@@ -114,81 +114,59 @@ impl Edges {
 ///
 /// Linear in triangles and vertices, as long as few vertices have very many triangles.
 pub fn is_closed(vertices: usize, triangles: &[[u32; 3]]) -> bool {
-    let Some(forward) = Forward::new(vertices, triangles) else { return false };
-    forward.has_opposites(triangles)
+    let mut slots = vec![[NO_END; SLOTS]; vertices];
+    // For each vertex and direction, the slots whose edges have been met in it, a bit each.
+    let mut met = vec![[0_u8; 2]; vertices];
+    let mut rest = Vec::new();
+    for &[p, q, r] in triangles {
+        let last = p.max(q).max(r);
+        if last as usize >= vertices || last == NO_END || p == q || q == r || r == p {
+            return false;
+        }
+        for (from, to) in [(p, q), (q, r), (r, p)] {
+            let (low, high) = (from.min(to) as usize, from.max(to));
+            let Some(slot) = find(&mut slots[low], high) else {
+                rest.push((low as u32, high, from > to));
+                continue;
+            };
+            let met = &mut met[low][usize::from(from > to)];
+            if *met >> slot & 1 == 1 {
+                return false;
+            }
+            *met |= 1 << slot;
+        }
+    }
+    // Sorted, the two directions of each edge stand side by side, and nothing else does.
+    rest.sort_unstable();
+    let (pairs, odd) = rest.as_chunks::<2>();
+    let is_pair = |&[(a, b, up), (c, d, down)]: &[(u32, u32, bool); 2]| (a, b, up) == (c, d, !down) && !up;
+    met.iter().all(|[up, down]| up == down)
+        && odd.is_empty()
+        && pairs.iter().all(is_pair)
+        && rest.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).all(|edge| edge.len() == 2)
 }
 
-/// Ends of edges that are kept with each vertex; more than half of all meshes' vertices have three.
+/// Edges to larger numbers that are kept with each vertex. Most have three, and few have more than this.
 const SLOTS: usize = 8;
+/// No edge. A vertex with this number is taken for missing; 32 bits would not number the one after it.
+const NO_END: u32 = u32::MAX;
 
-/// The edges that go up, from a vertex to one with a larger number.
-struct Forward {
-    /// For each vertex the ends of its first edges.
-    slots: Vec<[u32; SLOTS]>,
-    /// How many slots each vertex uses.
-    used: Vec<u8>,
-    /// The edges of vertices without a slot left.
-    rest: Vec<[u32; 2]>,
-}
-
-/// The edges of triangles, directed as they go around.
-fn edges(triangles: &[[u32; 3]]) -> impl Iterator<Item = [u32; 2]> {
-    triangles.iter().flat_map(|&[p, q, r]| [[p, q], [q, r], [r, p]])
-}
-
-impl Forward {
-    /// Collects the edges that go up; fails if a triangle names a vertex that does not exist, or one twice.
-    fn new(vertices: usize, triangles: &[[u32; 3]]) -> Option<Self> {
-        let (mut slots, mut used) = (vec![[0; SLOTS]; vertices], vec![0_u8; vertices]);
-        let mut rest = Vec::new();
-        for [from, to] in edges(triangles) {
-            let (low, high) = (from.min(to), from.max(to));
-            if high as usize >= vertices || low == high {
-                return None;
-            }
-            let used = &mut used[low as usize];
-            let is_up = from < to;
-            if usize::from(*used) == SLOTS {
-                if is_up {
-                    rest.push([from, to]);
-                }
-                continue;
-            }
-            // An edge that goes down is overwritten by the next one: that is quicker than to jump half of the time.
-            slots[low as usize][usize::from(*used) % SLOTS] = high;
-            *used += u8::from(is_up);
+/// The slot of an edge's end, which is put there if it is new; or nothing if all slots have others.
+#[inline(always)]
+fn find(ends: &mut [u32; SLOTS], end: u32) -> Option<usize> {
+    // It is looked for first where few others are: multiplication by this (2^32 / the golden ratio) scatters numbers that are near each other.
+    let first = (end.wrapping_mul(0x9e37_79b9) >> 29) as usize;
+    for step in 0..SLOTS {
+        let slot = (first + step) % SLOTS;
+        if ends[slot] == end {
+            return Some(slot);
         }
-        Some(Self { slots, used, rest })
-    }
-
-    /// Whether the edges that go down are these, turned around, and none of either is there twice.
-    fn has_opposites(mut self, triangles: &[[u32; 3]]) -> bool {
-        let mut seen = vec![0_u8; self.used.len()];
-        let mut is_good = true;
-        let mut rest = Vec::new();
-        for [from, to] in edges(triangles) {
-            let (low, high) = (from.min(to), from.max(to));
-            let slots = &self.slots[low as usize];
-            let used = (1_u32 << self.used[low as usize]) - 1;
-            let is_down = from > to;
-            let found = (0..SLOTS).fold(0, |mask, slot| mask | u32::from(slots[slot] == high) << slot) & used;
-            if found == 0 && usize::from(self.used[low as usize]) == SLOTS {
-                if is_down {
-                    rest.push([to, from]);
-                }
-                continue;
-            }
-            let seen = &mut seen[low as usize];
-            // Just one place, and not for the second time.
-            let is_new = found.is_power_of_two() & (u32::from(*seen) & found == 0);
-            is_good &= is_new | !is_down;
-            *seen |= found as u8 & u8::from(is_down).wrapping_neg();
+        if ends[slot] == NO_END {
+            ends[slot] = end;
+            return Some(slot);
         }
-        self.rest.sort_unstable();
-        rest.sort_unstable();
-        let all_seen = seen.iter().zip(&self.used).all(|(seen, used)| seen.count_ones() == u32::from(*used));
-        is_good && all_seen && self.rest == rest && rest.array_windows().all(|[a, b]| a != b)
     }
+    None
 }
 
 /// Checks that triangles form a closed manifold: they are closed as in [`is_closed`], and the triangles at each vertex form
@@ -257,6 +235,10 @@ mod tests {
         }
     }
 
+    fn edges_of(triangles: &[[u32; 3]]) -> impl Iterator<Item = [u32; 2]> {
+        triangles.iter().flat_map(|&[p, q, r]| [[p, q], [q, r], [r, p]])
+    }
+
     /// Against the count of every edge.
     #[test]
     fn random_triangles_are_closed_if_their_edges_pair() {
@@ -272,8 +254,8 @@ mod tests {
                 triangles
                     .extend_from_slice(&TETRAHEDRON.map(|triangle| triangle.map(|v| v + random.u32(3..5))));
             }
-            let count = |edge: [u32; 2]| edges(&triangles).filter(|&other| other == edge).count();
-            let expected = edges(&triangles)
+            let count = |edge: [u32; 2]| edges_of(&triangles).filter(|&other| other == edge).count();
+            let expected = edges_of(&triangles)
                 .all(|[from, to]| from != to && count([from, to]) == 1 && count([to, from]) == 1);
             assert_eq!(is_closed(9, &triangles), expected, "{triangles:?}");
             closed += usize::from(expected);

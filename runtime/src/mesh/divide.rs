@@ -18,6 +18,8 @@ use rayon::prelude::*;
 
 use super::brick::{Bricks, NONE, SELF, box_of};
 use super::field::Field;
+#[cfg(test)]
+use super::field::Work as FieldWork;
 use super::progress::{Phase, Progress};
 use super::{MeshError, Options, Sides};
 use crate::region::{ANYTHING, Box3, MAX_PARTS};
@@ -41,6 +43,8 @@ pub(crate) struct Boxes {
     pub(crate) inside: u64,
     /// That were dropped as all outside.
     pub(crate) outside: u64,
+    /// Evaluations of primitives that their points would have taken.
+    pub(crate) spared: u64,
     /// The sides of the lattice that those inside touch.
     pub(crate) cut: Sides,
 }
@@ -50,6 +54,7 @@ impl Boxes {
         self.examined += other.examined;
         self.inside += other.inside;
         self.outside += other.outside;
+        self.spared = self.spared.saturating_add(other.spared);
         self.cut.add(other.cut);
     }
 }
@@ -60,6 +65,19 @@ struct Level<R> {
     places: Vec<[u32; 3]>,
     regions: Vec<R>,
     neighbours: Vec<[u32; 27]>,
+}
+
+/// The edge of bricks, if the points are cheap.
+const DEFAULT_BRICK: usize = 8;
+/// The ops of a point, on average, from which on it pays to halve bricks: to have fewer points and more bricks.
+const COSTLY: u64 = 200;
+
+impl<R> Level<R> {
+    /// Whether a point takes long, on average.
+    fn is_costly<F: Field<Region = R>>(&self, field: &F) -> bool {
+        let ops = self.regions.iter().map(|region| field.work(region).ops).fold(0, u64::saturating_add);
+        ops >= COSTLY.saturating_mul(self.regions.len() as u64) && ops > 0
+    }
 }
 
 /// The children of some boxes.
@@ -88,7 +106,7 @@ pub(crate) fn divide<F: Field>(
     limit: usize,
     progress: &Progress<'_>,
 ) -> Result<Division<F::Region>, MeshError<F::Error>> {
-    let edge = options.brick;
+    let mut edge = options.brick.unwrap_or(DEFAULT_BRICK);
     let work = Work { field, axes: &axes, iso: options.iso, limit, progress };
     let most = axes.iter().map(|axis| axis.len() - 1).fold(1, usize::max);
     let halvings = most.div_ceil(edge).next_power_of_two().ilog2();
@@ -98,6 +116,10 @@ pub(crate) fn divide<F: Field>(
     for halving in (0..halvings).rev() {
         level = work.descend(level, edge << halving, &mut boxes)?;
         progress.advance(Phase::Divide, halvings as usize)?;
+    }
+    if options.brick.is_none() && level.is_costly(field) {
+        edge /= 2;
+        level = work.descend(level, edge, &mut boxes)?;
     }
     let Level { places, regions, neighbours } = level;
     Ok(Division { bricks: Bricks::new(edge, axes, places, neighbours), regions, boxes })
@@ -110,7 +132,7 @@ impl<F: Field> Work<'_, '_, F> {
         let region = self.field.region(bounds).map_err(MeshError::Field)?;
         let ranges = self.ranges(&region, &[bounds])?;
         let level = Level { places: Vec::new(), regions: Vec::new(), neighbours: Vec::new() };
-        if !self.may_cross(ranges[0], [0; 3], size, boxes) {
+        if !self.may_cross(&region, ranges[0], ([0; 3], size), boxes) {
             return Ok(level);
         }
         self.check(1)?;
@@ -193,7 +215,7 @@ impl<F: Field> Work<'_, '_, F> {
         let ranges = self.ranges(region, &boxes[..count])?;
         let (mut mask, mut kept) = (0_u8, 0);
         for n in 0..count {
-            if self.may_cross(ranges[n], first(which[n]), size, &mut children.boxes) {
+            if self.may_cross(region, ranges[n], (first(which[n]), size), &mut children.boxes) {
                 mask |= 1 << which[n];
                 boxes[kept] = boxes[n];
                 kept += 1;
@@ -220,19 +242,31 @@ impl<F: Field> Work<'_, '_, F> {
     }
 
     /// Whether the surface may be in a box, by the range of the field in it. A NaN says nothing.
-    fn may_cross(&self, [low, high]: [f32; 2], first: [usize; 3], size: usize, boxes: &mut Boxes) -> bool {
+    fn may_cross(
+        &self,
+        around: &F::Region,
+        [low, high]: [f32; 2],
+        (first, size): ([usize; 3], usize),
+        boxes: &mut Boxes,
+    ) -> bool {
         boxes.examined += 1;
-        if low >= self.iso {
-            boxes.inside += 1;
-            for axis in 0..3 {
-                boxes.cut.low[axis] |= first[axis] == 0;
-                boxes.cut.high[axis] |= first[axis] + size + 1 >= self.axes[axis].len();
-            }
-            return false;
+        let (inside, outside) = (low >= self.iso, high < self.iso);
+        if !inside && !outside {
+            return true;
         }
-        let outside = high < self.iso;
-        boxes.outside += u64::from(outside);
-        !outside
+        let points = |axis: usize| (first[axis] + size).min(self.axes[axis].len()) - first[axis];
+        let points = (0..3).fold(1_u64, |product, axis| product.saturating_mul(points(axis) as u64));
+        let evaluations = self.field.work(around).evaluations.saturating_mul(points);
+        boxes.spared = boxes.spared.saturating_add(evaluations);
+        boxes.inside += u64::from(inside);
+        boxes.outside += u64::from(!inside);
+        if inside {
+            for (axis, first) in first.into_iter().enumerate() {
+                boxes.cut.low[axis] |= first == 0;
+                boxes.cut.high[axis] |= first + size + 1 >= self.axes[axis].len();
+            }
+        }
+        false
     }
 }
 
@@ -274,8 +308,8 @@ static KIN: [[(u8, u8); 27]; 8] = {
             while axis < 3 {
                 // From one before the first child to one after the second, counted from 1: parents are 0, 1, 1, 2.
                 let step = (child >> axis & 1) + rest % 3;
-                parent += unit * ((step + 1) / 2);
-                place |= (step + 1) % 2 << axis;
+                parent += unit * usize::div_ceil(step, 2);
+                place |= ((step + 1) % 2) << axis;
                 (axis, unit, rest) = (axis + 1, 3 * unit, rest / 3);
             }
             kin[child][direction] = (parent as u8, place as u8);
@@ -327,6 +361,10 @@ mod tests {
             Vec::new()
         }
 
+        fn work(&self, (): &()) -> FieldWork {
+            FieldWork::default()
+        }
+
         fn field(&self, (): &(), _: &[f32], _: &[f32], _: &[f32], _: &mut [f32]) -> Result<(), Infallible> {
             Ok(())
         }
@@ -360,7 +398,7 @@ mod tests {
     /// Divides a lattice with so many cells along each axis, from -3 on, into bricks of 2^3 cells of 1/8.
     fn divided(cells: [usize; 3], limit: usize) -> Result<Division<()>, MeshError<Infallible>> {
         let axes = cells.map(|cells| (0..=cells).map(|index| -3.0 + 0.125 * index as f32).collect());
-        let options = Options { iso: -4.0, brick: 2, ..Options::default() };
+        let options = Options { iso: -4.0, brick: Some(2), ..Options::default() };
         divide(&Ball, axes, &options, limit, &Progress::new(&mut |_| true))
     }
 

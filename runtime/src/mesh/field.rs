@@ -2,6 +2,15 @@
 
 use crate::region::Divisible;
 
+/// What the field at a point takes: for counters, and to choose the size of bricks.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub struct Work {
+    /// Distances to skeletons, or whatever else is worth counting.
+    pub evaluations: u64,
+    /// Ops: a measure of the time.
+    pub ops: u64,
+}
+
 /// A field over space, and what it knows of boxes.
 ///
 /// ```text
@@ -17,6 +26,9 @@ use crate::region::Divisible;
 pub trait Field: Divisible {
     /// The names and widths (1 to 4 reals) of the attributes that [`Field::all`] answers, in its order.
     fn attributes(&self) -> Vec<(String, usize)>;
+
+    /// What the field at a point of a region takes.
+    fn work(&self, region: &Self::Region) -> Work;
 
     /// The field at each point, all of which are in the region's box. Inside is `field >= iso`; NaN is outside.
     ///

@@ -53,7 +53,7 @@ use jbt_ir::limits::{MAX_ATTRIBUTE_WIDTH, MAX_BRICKS};
 use thiserror::Error;
 
 pub use check::{Defect, check_manifold, is_closed};
-pub use field::Field;
+pub use field::{Field, Work};
 pub use lattice::{Lattice, LatticeError};
 
 pub(crate) use surface::facet_normal;
@@ -78,14 +78,17 @@ pub struct Options {
     /// squares the distance that is left, in units of the radius of curvature; two suffice for a smooth field.
     pub pulls: usize,
     /// Cells along the edge of the bricks at which division ends: a power of two from [`MIN_BRICK`] to [`MAX_BRICK`]. Small ones waste fewer points
-    /// far from the surface, large ones fewer calls. It changes what is evaluated, but no bit of the mesh.
-    pub brick: usize,
+    /// far from the surface, large ones fewer calls. It changes what is evaluated, but no bit of the mesh. `None`: 8, or 4 where a point takes
+    /// long.
+    pub brick: Option<usize>,
+    /// Whether to look at every edge of the mesh to say that it is closed. Where no side of the lattice cuts the body it is, by construction.
+    pub verify: bool,
 }
 
 impl Default for Options {
-    /// Iso 0.5, two pulls, bricks of 8^3 cells.
+    /// Iso 0.5, two pulls, bricks as they are best, verified.
     fn default() -> Self {
-        Options { iso: 0.5, pulls: 2, brick: 8 }
+        Options { iso: 0.5, pulls: 2, brick: None, verify: true }
     }
 }
 
@@ -157,7 +160,8 @@ impl fmt::Display for Sides {
 /// What was done to make a mesh, and what it is like.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Report {
-    /// Whether every edge has exactly two triangles, in opposite directions. A mesh without triangles is closed.
+    /// Whether every edge has exactly two triangles, in opposite directions. A mesh without triangles is closed. It has been looked at if
+    /// [`Options::verify`] said so, and follows from `cut_sides` otherwise.
     pub closed: bool,
     /// The sides of the lattice that cut the body: some lattice point on that side is inside. Without any, the mesh is closed.
     pub cut_sides: Sides,
@@ -167,6 +171,8 @@ pub struct Report {
     pub boxes_inside: u64,
     /// Those that were dropped because they are outside as a whole.
     pub boxes_outside: u64,
+    /// Evaluations of primitives that the points of these boxes would have taken, with the rows that matter in the box around each.
+    pub evaluations_spared: u64,
     /// Bricks that were left and sampled.
     pub bricks: u64,
     /// Points at which the field alone was evaluated: the lattice points of the bricks, once each.
@@ -275,7 +281,11 @@ pub fn extract_with_progress<F: Field>(
     let division = divide::divide(field, lattice.axes(), options, MAX_BRICKS, &progress)?;
     let (mesh, mut report) = polygonize(field, &division, options, &progress)?;
     drop(division);
-    report.closed = is_closed(mesh.positions.len(), &mesh.triangles);
+    report.closed = if options.verify {
+        is_closed(mesh.positions.len(), &mesh.triangles)
+    } else {
+        !report.cut_sides.any()
+    };
     progress.finish()?;
     Ok((mesh, report))
 }
@@ -301,6 +311,7 @@ fn polygonize<F: Field>(
         boxes: boxes.examined,
         boxes_inside: boxes.inside,
         boxes_outside: boxes.outside,
+        evaluations_spared: boxes.spared,
         bricks: bricks.len() as u64,
         field_evaluations: samples.len() as u64,
         gradient_evaluations: done.gradient_evaluations,
@@ -319,11 +330,13 @@ fn polygonize<F: Field>(
 }
 
 fn check_options<E: Error + 'static>(options: &Options) -> Result<(), MeshError<E>> {
-    let &Options { iso, pulls, brick } = options;
+    let &Options { iso, pulls, brick, verify: _ } = options;
     if !iso.is_finite() {
         return Err(MeshError::Iso { iso });
     }
-    if !brick.is_power_of_two() || !(MIN_BRICK..=MAX_BRICK).contains(&brick) {
+    if let Some(brick) = brick
+        && (!brick.is_power_of_two() || !(MIN_BRICK..=MAX_BRICK).contains(&brick))
+    {
         return Err(MeshError::Brick { brick });
     }
     if pulls > MAX_PULLS {

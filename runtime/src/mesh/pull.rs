@@ -3,16 +3,23 @@
 /// Vertices that are pulled together: two registers of 128 bits, or one of 256.
 pub(super) const LANES: usize = 8;
 
-/// A number for each of some vertices.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Lanes(pub(super) [f32; LANES]);
+/// A number for each of some vertices. Loops over them have no jumps and are compiled to vector instructions.
+pub(super) type Lanes = [f32; LANES];
 
-impl Lanes {
-    /// From a function of the lane.
-    #[inline(always)]
-    fn from(of: impl Fn(usize) -> f32) -> Self {
-        Self(std::array::from_fn(of))
+/// Sums of squares by lanes.
+#[inline(always)]
+pub(super) fn squares([x, y, z]: &[Lanes; 3]) -> Lanes {
+    let mut sums = [0.0; LANES];
+    for i in 0..LANES {
+        sums[i] = x[i] * x[i] + y[i] * y[i] + z[i] * z[i];
     }
+    sums
+}
+
+/// Whether a condition, 1 or 0, holds for all lanes.
+#[inline(always)]
+pub(super) fn all(conditions: &[u32; LANES]) -> bool {
+    conditions.iter().fold(1, |all, condition| all & condition) == 1
 }
 
 /// Pulls vertices, each from its position with the field and the gradient there, within the boxes from `low` to `high`.
@@ -27,34 +34,28 @@ pub(super) fn pull_lanes(
     low: &[Lanes; 3],
     high: &[Lanes; 3],
 ) {
-    let [gx, gy, gz] = gradient;
-    let step = Lanes::from(|i| {
-        let square = gx.0[i] * gx.0[i] + gy.0[i] * gy.0[i] + gz.0[i] * gz.0[i];
-        (iso - values.0[i]) / square
-    });
-    let aims: [Lanes; 3] =
-        std::array::from_fn(|axis| Lanes::from(|i| points[axis].0[i] + step.0[i] * gradient[axis].0[i]));
-    let mut stays = [true; LANES];
+    let mut step = squares(gradient);
+    for i in 0..LANES {
+        step[i] = (iso - values[i]) / step[i];
+    }
+    let (mut aims, mut stays) = ([[0.0; LANES]; 3], [1_u32; LANES]);
     for axis in 0..3 {
-        for (i, stays) in stays.iter_mut().enumerate() {
-            *stays &= (low[axis].0[i] <= aims[axis].0[i]) & (aims[axis].0[i] <= high[axis].0[i]);
+        for i in 0..LANES {
+            let aim = points[axis][i] + step[i] * gradient[axis][i];
+            aims[axis][i] = aim;
+            stays[i] &= u32::from(low[axis][i] <= aim) & u32::from(aim <= high[axis][i]);
         }
     }
-    if stays == [true; LANES] {
-        *points = aims;
-        return;
-    }
-    for (i, stays) in stays.into_iter().enumerate() {
-        let at = |planes: &[Lanes; 3]| [planes[0].0[i], planes[1].0[i], planes[2].0[i]];
-        let next = if stays {
-            at(&aims)
-        } else {
-            pull(iso, at(points), values.0[i], at(gradient), [at(low), at(high)])
-        };
-        for (plane, coordinate) in points.iter_mut().zip(next) {
-            plane.0[i] = coordinate;
+    if !all(&stays) {
+        for i in (0..LANES).filter(|&i| stays[i] == 0) {
+            let at = |planes: &[Lanes; 3]| [planes[0][i], planes[1][i], planes[2][i]];
+            let pulled = pull(iso, at(points), values[i], at(gradient), [at(low), at(high)]);
+            for (plane, coordinate) in aims.iter_mut().zip(pulled) {
+                plane[i] = coordinate;
+            }
         }
     }
+    *points = aims;
 }
 
 /// Newton's step along the gradient of one vertex, within a box.
@@ -125,18 +126,18 @@ mod tests {
     #[test]
     fn pulls_by_lanes_are_pulls() {
         // A step that stays, one that leaves the box, one without a number.
-        let mut points = [Lanes([0.25; LANES]), Lanes([0.5; LANES]), Lanes([0.75; LANES])];
-        let mut gradient = [Lanes([1.0; LANES]), Lanes([0.5; LANES]), Lanes([-0.25; LANES])];
-        gradient[0].0[1] = f32::NAN;
-        let mut values = Lanes([0.5; LANES]);
-        (values.0[2], values.0[3]) = (9.0, 0.25);
+        let mut points = [[0.25; LANES], [0.5; LANES], [0.75; LANES]];
+        let mut gradient = [[1.0; LANES], [0.5; LANES], [-0.25; LANES]];
+        gradient[0][1] = f32::NAN;
+        let mut values = [0.5; LANES];
+        (values[2], values[3]) = (9.0, 0.25);
         let bounds = [[0.0; 3], [1.0; 3]];
-        let [low, high] = bounds.map(|corner| corner.map(|c| Lanes([c; LANES])));
+        let [low, high] = bounds.map(|corner: [f32; 3]| corner.map(|c| [c; LANES]));
         let before = points;
         pull_lanes(0.5, &mut points, &values, &gradient, &low, &high);
         for lane in 0..LANES {
-            let at = |planes: [Lanes; 3]| planes.map(|plane| plane.0[lane]);
-            let pulled = pull(0.5, at(before), values.0[lane], at(gradient), bounds);
+            let at = |planes: [Lanes; 3]| planes.map(|plane| plane[lane]);
+            let pulled = pull(0.5, at(before), values[lane], at(gradient), bounds);
             assert_eq!(at(points), pulled, "lane {lane}");
         }
     }

@@ -327,49 +327,37 @@ impl Block {
 }
 
 /// Copies a box of numbers.
-fn copy(source: &[f32], from: Block, target: &mut [f32], to: Block, counts: [usize; 3]) {
-    // Rows of whole bricks, and columns: their lengths are known, so that no function is called for each.
-    match counts[0] {
-        1 => copy_rows::<1>(source, from, target, to, counts),
-        2 => copy_rows::<2>(source, from, target, to, counts),
-        4 => copy_rows::<4>(source, from, target, to, counts),
-        8 => copy_rows::<8>(source, from, target, to, counts),
-        16 => copy_rows::<16>(source, from, target, to, counts),
-        length => rows(source, from, target, to, counts, |source, target| {
-            target[..length].copy_from_slice(&source[..length]);
-        }),
+fn copy(source: &[f32], from: Block, target: &mut [f32], to: Block, [nx, ny, nz]: [usize; 3]) {
+    if nx == 0 || ny == 0 {
+        return;
+    }
+    for z in 0..nz {
+        let source = &source[from.start + z * from.layer..][..(ny - 1) * from.row + nx];
+        let target = &mut target[to.start + z * to.layer..][..(ny - 1) * to.row + nx];
+        // Rows of whole bricks, and columns: their lengths are known, so that no function is called for each.
+        match nx {
+            1 => {
+                for (target, source) in target.iter_mut().step_by(to.row).zip(source.iter().step_by(from.row))
+                {
+                    *target = *source;
+                }
+            }
+            8 if from.row == 8 => copy_rows::<8>(source, target, to.row),
+            16 if from.row == 16 => copy_rows::<16>(source, target, to.row),
+            length => {
+                for (target, source) in target.chunks_mut(to.row).zip(source.chunks(from.row)) {
+                    target[..length].copy_from_slice(&source[..length]);
+                }
+            }
+        }
     }
 }
 
-/// Copies rows of one length.
-fn copy_rows<const LENGTH: usize>(
-    source: &[f32],
-    from: Block,
-    target: &mut [f32],
-    to: Block,
-    counts: [usize; 3],
-) {
-    rows(source, from, target, to, counts, |source, target| {
-        target[..LENGTH].copy_from_slice(&source[..LENGTH]);
-    });
-}
-
-/// Does something with each pair of rows.
+/// Copies rows that stand one after the other to rows at a distance.
 #[inline(always)]
-fn rows(
-    source: &[f32],
-    from: Block,
-    target: &mut [f32],
-    to: Block,
-    [_, ny, nz]: [usize; 3],
-    act: impl Fn(&[f32], &mut [f32]),
-) {
-    for z in 0..nz {
-        let (source, target) =
-            (&source[from.start + z * from.layer..], &mut target[to.start + z * to.layer..]);
-        for y in 0..ny {
-            act(&source[y * from.row..], &mut target[y * to.row..]);
-        }
+fn copy_rows<const LENGTH: usize>(source: &[f32], target: &mut [f32], row: usize) {
+    for (target, source) in target.chunks_mut(row).zip(source.as_chunks::<LENGTH>().0) {
+        target[..LENGTH].copy_from_slice(source);
     }
 }
 

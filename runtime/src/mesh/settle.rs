@@ -9,7 +9,7 @@
 //! ```
 
 use super::Field;
-use super::pull::pull;
+use super::pull::{LANES, Lanes, pull, squares};
 
 /// Pulls that a stray gets on top.
 const ROUNDS: usize = 6;
@@ -18,11 +18,22 @@ const HALVINGS: usize = 10;
 /// A vertex strays when its distance to the surface, by its own gradient, is more than this part of its cell.
 const TOLERANCE: f32 = 1e-3;
 
-/// Whether a vertex strays, in a cell with this edge. Where the gradient is no number nothing can be said, and it does not.
+/// Which vertices stray, 1 or 0 each, in cells with these low and high sides along x. Where the gradient is no number nothing can be said, and
+/// a vertex does not.
 #[inline(always)]
-pub(super) fn strays(iso: f32, edge: f32, value: f32, gradient: [f32; 3]) -> bool {
-    let steep = gradient.iter().map(|g| g * g).sum::<f32>().sqrt();
-    (value - iso).abs() > TOLERANCE * edge * steep && steep < f32::INFINITY
+pub(super) fn strays(
+    iso: f32,
+    [low, high]: [&Lanes; 2],
+    values: &Lanes,
+    gradient: &[Lanes; 3],
+) -> [u32; LANES] {
+    let (square, mut strays) = (squares(gradient), [0; LANES]);
+    for i in 0..LANES {
+        let error = (values[i] - iso).abs();
+        let far = error > TOLERANCE * (high[i] - low[i]) * square[i].sqrt();
+        strays[i] = u32::from(far) & u32::from(square[i] < f32::INFINITY);
+    }
+    strays
 }
 
 /// Where a vertex may be.

@@ -10,7 +10,7 @@ use super::brick::{Bricks, cell_sides, place, split};
 use super::cell::{CROSSED_EDGES, EDGE_CORNERS, Edges, default_sheets, mean_crossing, sheets_with_quads};
 use super::crossing::Crossings;
 use super::progress::{Phase, Progress};
-use super::pull::{LANES, Lanes, pull_lanes};
+use super::pull::{LANES, Lanes, all, pull_lanes, squares};
 use super::sample::Samples;
 use super::settle::{Place, Stray, settle, strays};
 use super::surface::unit;
@@ -191,7 +191,8 @@ impl Batch {
         for axis in 0..3 {
             // Nothing overflows on the way, however large the cell.
             let start = low[axis] * (1.0 - place[axis]) + high[axis] * place[axis];
-            self.points[axis][index] = start.max(low[axis]).min(high[axis]);
+            let start = if start < low[axis] { low[axis] } else { start };
+            self.points[axis][index] = if start > high[axis] { high[axis] } else { start };
             self.low[axis][index] = low[axis];
             self.high[axis][index] = high[axis];
         }
@@ -249,7 +250,7 @@ impl Batch {
                 &lanes(&self.high, chunk),
             );
             for (plane, lanes) in self.points.iter_mut().zip(points) {
-                plane[chunk * LANES..][..LANES].copy_from_slice(&lanes.0);
+                plane[chunk * LANES..][..LANES].copy_from_slice(&lanes);
             }
         }
     }
@@ -272,9 +273,9 @@ impl Batch {
         field.all(&regions[brick], &x, &y, &z, &mut values, slopes, &mut planes)?;
         for (n, stray) in strays.iter().enumerate() {
             let index = stray.index;
-            for axis in 0..3 {
+            for (axis, slope) in gradient.iter().enumerate() {
                 self.points[axis][index] = stray.best()[axis];
-                self.gradient[axis][index] = gradient[axis][n];
+                self.gradient[axis][index] = slope[n];
             }
             self.values[index] = values[n];
             let planes = self.attributes.chunks_exact_mut(self.count).zip(attributes.chunks_exact(count));
@@ -291,13 +292,11 @@ impl Batch {
             let chunk = start / LANES;
             let (values, gradient) = (lane(&self.values, chunk), lanes(&self.gradient, chunk));
             let (low, high) = (lane(&self.low[0], chunk), lane(&self.high[0], chunk));
-            let is_stray: [bool; LANES] = std::array::from_fn(|i| {
-                strays(iso, high.0[i] - low.0[i], values.0[i], gradient.each_ref().map(|plane| plane.0[i]))
-            });
-            if is_stray == [false; LANES] {
+            let is_stray = strays(iso, [&low, &high], &values, &gradient);
+            if is_stray == [0; LANES] {
                 continue;
             }
-            let indices = (start..self.count).zip(is_stray).filter(|&(_, is_stray)| is_stray);
+            let indices = (start..self.count).zip(is_stray).filter(|&(_, is_stray)| is_stray == 1);
             found.extend(indices.map(|(index, _)| self.stray(source, brick, index)));
         }
         found
@@ -329,7 +328,7 @@ impl Batch {
         for (normals, chunk) in target.normals[range.clone()].chunks_mut(LANES).zip(0..) {
             let [x, y, z] = normals_of(&lanes(&self.gradient, chunk));
             for (i, normal) in normals.iter_mut().enumerate() {
-                *normal = [x.0[i], y.0[i], z.0[i]];
+                *normal = [x[i], y[i], z[i]];
                 lacks_normals |= *normal == [0.0; 3];
             }
         }
@@ -357,7 +356,7 @@ fn corners(table: &[f32], at: usize, stride: usize) -> [f32; 8] {
 
 #[inline(always)]
 fn lane(plane: &[f32], chunk: usize) -> Lanes {
-    Lanes(*plane[chunk * LANES..].first_chunk().expect("planes are filled up"))
+    *plane[chunk * LANES..].first_chunk().expect("planes are filled up")
 }
 
 #[inline(always)]
@@ -370,16 +369,18 @@ fn lanes(planes: &Planes, chunk: usize) -> [Lanes; 3] {
 fn normals_of(gradient: &[Lanes; 3]) -> [Lanes; 3] {
     /// Squares of lengths whose terms neither overflow nor lose digits.
     const TAME: RangeInclusive<f32> = 1e-24..=1e30;
-    let [x, y, z] = gradient;
-    let square: [f32; LANES] = std::array::from_fn(|i| x.0[i] * x.0[i] + y.0[i] * y.0[i] + z.0[i] * z.0[i]);
-    let scale: [f32; LANES] = std::array::from_fn(|i| -1.0 / square[i].sqrt());
-    let mut normals = gradient.map(|plane| Lanes(std::array::from_fn(|i| plane.0[i] * scale[i])));
-    let is_tame = square.iter().fold(true, |all, square| all & TAME.contains(square));
-    if !is_tame {
-        for i in (0..LANES).filter(|&i| !TAME.contains(&square[i])) {
-            let slope = gradient.map(|plane| -f64::from(plane.0[i]));
+    let square = squares(gradient);
+    let (mut normals, mut is_tame) = (*gradient, [0_u32; LANES]);
+    for i in 0..LANES {
+        let scale = -1.0 / square[i].sqrt();
+        normals.iter_mut().for_each(|plane| plane[i] *= scale);
+        is_tame[i] = u32::from(square[i] >= *TAME.start()) & u32::from(square[i] <= *TAME.end());
+    }
+    if !all(&is_tame) {
+        for i in (0..LANES).filter(|&i| is_tame[i] == 0) {
+            let slope = gradient.map(|plane| -f64::from(plane[i]));
             let normal = unit(slope).unwrap_or([0.0; 3]);
-            normals.iter_mut().zip(normal).for_each(|(plane, component)| plane.0[i] = component);
+            normals.iter_mut().zip(normal).for_each(|(plane, component)| plane[i] = component);
         }
     }
     normals

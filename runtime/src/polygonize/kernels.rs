@@ -4,11 +4,12 @@ use jbt_frontend::check::CheckedTree;
 use jbt_frontend::lower::Lowering;
 use jbt_frontend::query::Query;
 
+use crate::counter::Counters;
 use crate::error::{CompileError, EvalError};
 use crate::evaluator::{Compiler, Evaluator};
 use crate::kernel::Engine;
-use crate::mesh::Field;
-use crate::prune::{Pruner, Region};
+use crate::mesh::{Field, Work};
+use crate::prune::{PruneCounters, Pruner, Region};
 use crate::region::{Box3, Divisible, Range};
 
 /// The four kernels of a mesh.
@@ -41,9 +42,24 @@ impl Kernels {
         self.field.engine()
     }
 
+    /// What the field kernel, the gradient kernel and the full one have done.
+    pub(super) fn counters(&self) -> [Counters; 3] {
+        [&self.field, &self.gradient, &self.all].map(Evaluator::counters)
+    }
+
+    /// What the pruner has done.
+    pub(super) fn pruned(&self) -> PruneCounters {
+        self.pruner.counters()
+    }
+
+    /// Distances that the field takes at a point, with all rows.
+    pub(super) fn evaluations_per_point(&self) -> u64 {
+        self.field.evaluations_per_point()
+    }
+
     /// Distances to skeletons that were computed so far.
     pub(super) fn primitive_evaluations(&self) -> u64 {
-        [&self.field, &self.gradient, &self.all].iter().map(|e| e.counters().primitive_evaluations).sum()
+        self.counters().iter().map(|counters| counters.primitive_evaluations).sum()
     }
 }
 
@@ -67,6 +83,10 @@ impl Divisible for Kernels {
 impl Field for Kernels {
     fn attributes(&self) -> Vec<(String, usize)> {
         self.all.layout().attributes().map(|(name, _, width)| (name.to_owned(), width)).collect()
+    }
+
+    fn work(&self, region: &Region) -> Work {
+        Work { evaluations: self.field.evaluations_in(region), ops: self.field.ops_in(region) }
     }
 
     fn field(

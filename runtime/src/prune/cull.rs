@@ -78,12 +78,12 @@ impl Supports {
         let row = &self.rows[row as usize];
         let mut square = [0.0_f32; MAX_PARTS];
         for axis in 0..3 {
-            for lane in 0..MAX_PARTS {
-                let before = row.low[axis] - boxes.high[axis][lane];
-                let behind = boxes.low[axis][lane] - row.high[axis];
+            let sides = boxes.low[axis].iter().zip(&boxes.high[axis]);
+            for (square, (low, high)) in square.iter_mut().zip(sides) {
+                let (before, behind) = (row.low[axis] - high, low - row.high[axis]);
                 let gap = if before > behind { before } else { behind };
                 let gap = if gap > 0.0 { gap } else { 0.0 };
-                square[lane] += gap * gap;
+                *square += gap * gap;
             }
         }
         // Not `<=`: a distance that is no number (infinite less infinite) reaches.

@@ -28,7 +28,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use jbt_frontend::check::CheckedTree;
 use jbt_frontend::lower::Lowering;
 use jbt_frontend::lower::guide::{Guide, Guided, Rule, SpaceGuide, TableGuide};
-use jbt_ir::domain::counting::selected_evaluations;
+use jbt_ir::domain::counting::of_selection;
 use jbt_ir::selection::Extent;
 use jbt_ir::{Selection, Tables};
 
@@ -169,7 +169,7 @@ impl Pruner {
         let mut outputs = vec![[0.0; MAX_PARTS]; 2 * (1 + self.guide.probes)];
         let mut planes: Vec<&mut [f32]> = outputs.iter_mut().map(|plane| &mut plane[..count]).collect();
         self.kernel.run(&region.selection, &inputs, &mut planes)?;
-        let each = selected_evaluations(&self.kernel.kernel.per_row, &region.selection);
+        let each = of_selection(&self.kernel.kernel.per_row, &region.selection);
         self.counts.boxes.fetch_add(count as u64, Ordering::Relaxed);
         self.counts.primitives.fetch_add(each.saturating_mul(count as u64), Ordering::Relaxed);
         Ok(outputs)

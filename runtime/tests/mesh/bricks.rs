@@ -6,7 +6,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use jbt::Box3;
-use jbt::mesh::{Field, Lattice, Mesh, Options, Report, Sides, check_manifold, extract};
+use jbt::mesh::{Field, Lattice, Mesh, Options, Report, Sides, Work, check_manifold, extract};
 use jbt::region::Divisible;
 
 use crate::fields::{Closed, Sample, hash, signs, sphere, torus};
@@ -73,6 +73,10 @@ impl<F: Fn([f32; 3]) -> Sample + Sync, R: Fn(&Box3) -> [f32; 2] + Sync> Divisibl
 impl<F: Fn([f32; 3]) -> Sample + Sync, R: Fn(&Box3) -> [f32; 2] + Sync> Field for Checked<F, R> {
     fn attributes(&self) -> Vec<(String, usize)> {
         self.field.attributes()
+    }
+
+    fn work(&self, _: &Box3) -> Work {
+        Work::default()
     }
 
     fn field(
@@ -153,7 +157,7 @@ fn torus_range(major: f32, minor: f32) -> impl Fn(&Box3) -> [f32; 2] + Sync {
 }
 
 fn with_brick(brick: usize) -> Options {
-    Options { brick, ..Options::default() }
+    Options { brick: Some(brick), ..Options::default() }
 }
 
 /// Meshes with every brick size; the meshes have the same bits as without ranges.

@@ -3,7 +3,7 @@
 use std::convert::Infallible;
 
 use jbt::Box3;
-use jbt::mesh::Field;
+use jbt::mesh::{Field, Work};
 use jbt::region::Divisible;
 
 /// A field and its gradient at one point.
@@ -39,6 +39,10 @@ impl<F: Fn([f32; 3]) -> Sample + Sync> Divisible for Closed<F> {
 impl<F: Fn([f32; 3]) -> Sample + Sync> Field for Closed<F> {
     fn attributes(&self) -> Vec<(String, usize)> {
         vec![("color".to_owned(), 3), ("height".to_owned(), 1)]
+    }
+
+    fn work(&self, (): &()) -> Work {
+        Work::default()
     }
 
     fn field(&self, (): &(), x: &[f32], y: &[f32], z: &[f32], field: &mut [f32]) -> Result<(), Infallible> {

@@ -6,7 +6,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use jbt::Box3;
 use jbt::mesh::{
-    Field, Lattice, Mesh, MeshError, Options, Report, Sides, check_manifold, extract, extract_with_progress,
+    Field, Lattice, Mesh, MeshError, Options, Report, Sides, Work, check_manifold, extract,
+    extract_with_progress,
 };
 use jbt::region::Divisible;
 
@@ -177,7 +178,8 @@ fn every_lattice_point_is_asked_once_and_by_its_global_coordinate() {
             (0.0, [0.0; 3])
         };
         let (mesh, report) =
-            extract(&Closed(record), &lattice, &Options { brick, ..Options::default() }).unwrap();
+            extract(&Closed(record), &lattice, &Options { brick: Some(brick), ..Options::default() })
+                .unwrap();
         assert_eq!(mesh.positions.len(), 0);
         assert_eq!(report.field_evaluations, 38 * 19 * 6);
         let mut expected = Vec::new();
@@ -278,10 +280,10 @@ fn bad_options_are_errors() {
     let with = |options: Options| extract(&Closed(cubic(1.0)), &lattice(1.0, 0.5), &options).map(|_| ());
     let default = Options::default();
     for brick in [0, 1, 3, 12, 33, 64] {
-        assert_eq!(with(Options { brick, ..default.clone() }), Err(MeshError::Brick { brick }));
+        assert_eq!(with(Options { brick: Some(brick), ..default.clone() }), Err(MeshError::Brick { brick }));
     }
     assert_eq!(with(Options { pulls: 65, ..default.clone() }), Err(MeshError::Pulls { pulls: 65 }));
-    assert_eq!(with(Options { pulls: 64, brick: 32, ..default.clone() }), Ok(()));
+    assert_eq!(with(Options { pulls: 64, brick: Some(32), ..default.clone() }), Ok(()));
     let infinite = f32::INFINITY;
     assert_eq!(with(Options { iso: infinite, ..default }), Err(MeshError::Iso { iso: infinite }));
 }
@@ -347,6 +349,10 @@ impl Divisible for Failing {
 impl Field for Failing {
     fn attributes(&self) -> Vec<(String, usize)> {
         Vec::new()
+    }
+
+    fn work(&self, (): &()) -> Work {
+        Work::default()
     }
 
     fn field(&self, (): &(), x: &[f32], y: &[f32], z: &[f32], field: &mut [f32]) -> Result<(), NoMore> {
@@ -420,6 +426,10 @@ impl Divisible for Wide {
 impl Field for Wide {
     fn attributes(&self) -> Vec<(String, usize)> {
         vec![("wide".to_owned(), self.0)]
+    }
+
+    fn work(&self, (): &()) -> Work {
+        Work::default()
     }
 
     fn field(&self, (): &(), x: &[f32], y: &[f32], z: &[f32], field: &mut [f32]) -> Result<(), Infallible> {

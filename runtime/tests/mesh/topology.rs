@@ -140,7 +140,7 @@ fn the_same_bits_for_any_threads_and_bricks() {
     let rough = (Lattice::new([0.0; 3], 1.0, [40, 40, 40]).unwrap(), Closed(signs(inside)));
     let run = |threads: usize, brick: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        let options = Options { brick, ..Options::default() };
+        let options = Options { brick: Some(brick), ..Options::default() };
         pool.install(|| {
             let (a, report_a) = extract(&smooth.1, &smooth.0, &options).unwrap();
             let (b, report_b) = extract(&rough.1, &rough.0, &options).unwrap();

@@ -69,8 +69,11 @@ fn the_mesh_does_not_depend_on_the_threads() {
 fn the_compiler_makes_as_many_triangles() {
     let (model, cells) = (blobs(64, 4), 64);
     let by_hand = mesh(&model, &lattice(cells), ISO);
-    let settings =
-        Polygonize { region: Some(([-1.5; 3], [1.5; 3])), fineness: Fineness::Cell(3.0 / cells as f64) };
+    let settings = Polygonize {
+        region: Some(([-1.5; 3], [1.5; 3])),
+        fineness: Fineness::Cell(3.0 / cells as f64),
+        verify: true,
+    };
     let compiled = settings.run(&Compiler::new(), &tree(&model), &mut |_| true).expect("blobs have a mesh");
     // A corner that is on the surface to within rounding may be inside for one of them only.
     assert!(by_hand.triangles.len().abs_diff(compiled.mesh.triangles.len()) <= 8);
