@@ -232,8 +232,10 @@ Keys of --json. For one point:
   leaves: [{node, kind, line, column, uses, evaluations: {QUERY: count}, pairs_in_support}]
 For the lattice (`total` and `pairs_in_support` too):
   lattice: {region: [x0, y0, z0, x1, y1, z1], cell, cells: [nx, ny, nz]}, points, evaluations (of primitives, for the
-  field), interval_evaluations (of primitives over boxes), pairs_in_support, waste, warnings
-A model that is empty or unbounded has no lattice without --region: `lattice` and `waste` are null, and the counts are 0.
+  field, if no point and no primitive is left out), pairs_in_support, waste, warnings; interval_evaluations (of primitives
+  over boxes, for a mesh) and mesh: {stages: {division: {boxes, interval_evaluations}, lattice, pulls, vertices: {points,
+  evaluations}}, avoided_by_support, avoided_by_interval} (evaluations of the lattice that a mesh does without)
+A model that is empty or unbounded has no lattice without --region: `lattice`, `waste` and `mesh` are null, and the counts are 0.
 
 Examples:
   jbt count hero.jbt

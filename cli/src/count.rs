@@ -19,7 +19,7 @@ use std::fmt::Write as _;
 
 use jbt::mesh::Lattice;
 use jbt::statistics::{PerPoint, Statistics, Supports, SupportsError, walks};
-use jbt::{Compiler, Engine, PolygonizeError, Query};
+use jbt::{Compiler, Engine, MeshCounters, Polygonize, PolygonizeError, Query};
 use jbt_frontend::check::CheckedTree;
 use jbt_frontend::tree::NodeKind;
 use serde_json::{Value, json};
@@ -30,6 +30,7 @@ use crate::lattice;
 use crate::output::{grouped, plural, print, warn};
 use crate::progress::Progress;
 use crate::scene::Scene;
+use crate::stages;
 
 /// How the evaluations of separate walks add up.
 const FORMULA: &str = "separate = walks x uses of leaves; walks = 1 (field) + 4 (gradient, by differences) + 1 (attributes); \
@@ -63,6 +64,7 @@ pub fn run(arguments: &CountArguments, quiet: bool) -> Result<(), Failure> {
     };
     let supports =
         lattice.as_ref().map(|lattice| supports(&scene, &statistics, lattice, quiet)).transpose()?;
+    let mesh = lattice.as_ref().map(|_| mesh(&scene, &tree, &settings, quiet)).transpose()?;
     if !quiet {
         warnings.iter().for_each(|warning| warn(warning));
     }
@@ -74,6 +76,7 @@ pub fn run(arguments: &CountArguments, quiet: bool) -> Result<(), Failure> {
         occurrences: statistics.occurrences(),
         evaluations: field.evaluations.fused,
         lattice: lattice.zip(supports),
+        mesh,
         warnings,
     };
     if arguments.json { print(&report.json().to_string()) } else { print(&report.text()) }
@@ -101,6 +104,21 @@ fn supports(
         SupportsError::Lattice(error) => Failure::Limit(error.to_string()),
         SupportsError::Cancelled => Failure::Defect(error.to_string()),
     })
+}
+
+/// Makes the mesh, to count what that takes.
+fn mesh(
+    scene: &Scene,
+    tree: &CheckedTree,
+    settings: &Polygonize,
+    quiet: bool,
+) -> Result<MeshCounters, Failure> {
+    let mut progress = Progress::new("meshing", quiet);
+    let made = settings.run(&Compiler::new(), tree, &mut |fraction| {
+        progress.set(fraction);
+        true
+    });
+    made.map(|made| made.counters).map_err(|error| lattice::failure(scene, error))
 }
 
 /// The evaluations for one query.
@@ -184,6 +202,8 @@ struct Report {
     /// Evaluations that the field of one point takes.
     evaluations: u64,
     lattice: Option<(Lattice, Supports)>,
+    /// What a mesh over the lattice takes.
+    mesh: Option<MeshCounters>,
     warnings: Vec<String>,
 }
 
@@ -198,9 +218,9 @@ impl Report {
         self.evaluations.saturating_mul(self.points())
     }
 
-    /// Evaluations of primitives over boxes: nothing is asked about boxes yet.
+    /// Evaluations of primitives over boxes that a mesh takes.
     fn interval_evaluations(&self) -> u64 {
-        0
+        self.mesh.map_or(0, |mesh| mesh.division.interval_evaluations)
     }
 
     fn waste(&self) -> Option<f64> {
@@ -231,11 +251,13 @@ impl Report {
             let _ = writeln!(
                 out,
                 "{} of a point and a primitive whose support it is inside of\n\
-                 {} of the field, {} over boxes: {waste}\n",
+                 {} of the field, if no point and no primitive is left out: {waste}\n",
                 plural(supports.pairs, "pair", "pairs"),
                 plural(self.field_of_lattice(), "evaluation", "evaluations"),
-                grouped(self.interval_evaluations()),
             );
+        }
+        if let Some(mesh) = &self.mesh {
+            let _ = writeln!(out, "a mesh over the lattice takes\n{}\n", stages::text(mesh));
         }
         self.write_leaves(&mut out);
         out
@@ -294,6 +316,11 @@ impl Report {
             "interval_evaluations": self.interval_evaluations(),
             "pairs_in_support": self.lattice.as_ref().map_or(0, |(_, supports)| supports.pairs),
             "waste": self.waste(),
+            "mesh": self.mesh.as_ref().map(|mesh| json!({
+                "stages": stages::json(mesh),
+                "avoided_by_support": mesh.avoided_by_support,
+                "avoided_by_interval": mesh.avoided_by_interval,
+            })),
             "warnings": self.warnings,
         })
     }

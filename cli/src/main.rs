@@ -22,6 +22,7 @@ mod progress;
 mod sample;
 mod scene;
 mod show;
+mod stages;
 mod threads;
 
 use std::process::ExitCode;

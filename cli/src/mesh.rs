@@ -13,6 +13,7 @@ use crate::lattice;
 use crate::output::{Output, grouped, plural, print, tell, warn};
 use crate::progress::Progress;
 use crate::scene::{Scene, is_standard};
+use crate::stages;
 use crate::threads::in_pool;
 
 /// Runs the command. `start` is when the process began, for the total time.
@@ -130,18 +131,7 @@ impl Report<'_> {
             "gradient_evaluations": report.gradient_evaluations,
             "full_evaluations": report.full_evaluations,
             "primitive_evaluations": self.made.primitive_evaluations,
-            "stages": {
-                "division": {
-                    "boxes": counters.division.boxes,
-                    "interval_evaluations": counters.division.interval_evaluations,
-                },
-                "lattice": { "points": counters.lattice.points, "evaluations": counters.lattice.primitive_evaluations },
-                "pulls": { "points": counters.pulls.points, "evaluations": counters.pulls.primitive_evaluations },
-                "vertices": {
-                    "points": counters.vertices.points,
-                    "evaluations": counters.vertices.primitive_evaluations,
-                },
-            },
+            "stages": stages::json(counters),
             "dense_evaluations": counters.dense_evaluations,
             "avoided_by_support": counters.avoided_by_support,
             "avoided_by_interval": counters.avoided_by_interval,

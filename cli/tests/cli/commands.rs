@@ -55,7 +55,18 @@ fn mesh_reports_for_machines() {
     // Three leaves stand in this scene at different places; everything is evaluated once at a vertex.
     let points = ["field_evaluations", "gradient_evaluations", "full_evaluations"];
     let points: u64 = points.iter().filter_map(|key| report[key].as_u64()).sum();
-    assert_eq!(report["primitive_evaluations"].as_u64(), Some(3 * points));
+    let evaluations = report["primitive_evaluations"].as_u64().unwrap();
+    assert!(points < evaluations && evaluations < 3 * points, "{evaluations} at {points} points");
+    let count = |value: &serde_json::Value| value.as_u64().expect("a count");
+    let stages = ["lattice", "pulls", "vertices"].map(|stage| &report["stages"][stage]);
+    assert_eq!(stages.map(|stage| count(&stage["points"])).iter().sum::<u64>(), points);
+    assert_eq!(stages.map(|stage| count(&stage["evaluations"])).iter().sum::<u64>(), evaluations);
+    let avoided = ["avoided_by_support", "avoided_by_interval"].map(|key| count(&report[key]));
+    assert_eq!(
+        count(&stages[0]["evaluations"]) + avoided[0] + avoided[1],
+        count(&report["dense_evaluations"])
+    );
+    assert!(avoided.iter().all(|&avoided| avoided > 0));
     assert_eq!(report["full_evaluations"], report["vertices"]);
     // Euler: a closed surface has an even number of triangles, and two for each vertex but for its genus.
     let count = |key: &str| report[key].as_i64().unwrap();
@@ -265,7 +276,13 @@ fn count_tells_what_matters_on_the_lattice_of_mesh() {
     let points = all.count() as u64;
     assert_eq!((&report["points"], &report["pairs_in_support"]), (&points.into(), &inside.into()));
     assert_eq!((&report["uses"], &report["occurrences"]), (&2.into(), &1.into()));
-    assert_eq!((&report["evaluations"], &report["interval_evaluations"]), (&points.into(), &0.into()));
+    assert_eq!(report["evaluations"], points);
+    let (mesh, stages) = (&report["mesh"], &report["mesh"]["stages"]);
+    let of = |value: &serde_json::Value| value.as_u64().expect("a count");
+    assert_eq!(stages["division"]["interval_evaluations"], report["interval_evaluations"]);
+    assert!(of(&report["interval_evaluations"]) > 0);
+    let avoided = of(&mesh["avoided_by_support"]) + of(&mesh["avoided_by_interval"]);
+    assert_eq!(of(&stages["lattice"]["evaluations"]) + avoided, points, "done or avoided");
     assert_eq!(report["waste"].as_f64(), Some(points as f64 / inside as f64));
     assert_eq!(report["lattice"]["cells"], serde_json::json!([8, 8, 12]));
     assert_eq!(report["leaves"][0]["pairs_in_support"].as_u64(), Some(inside));
@@ -278,7 +295,8 @@ fn count_tells_what_matters_on_the_lattice_of_mesh() {
     let mesh = [&["mesh", "ball.jbt", "-o", "a.obj", "--json", "--resolution", "20"][..]].concat();
     let mesh = folder.jbt(&mesh).code(0).json();
     let report = folder.jbt(&["count", "ball.jbt", "--json", "--resolution", "20"]).code(0).json();
-    assert_eq!(report["points"], mesh["field_evaluations"]);
+    assert_eq!(report["points"], mesh["dense_evaluations"], "of one primitive");
+    assert_eq!(report["mesh"]["stages"], mesh["stages"]);
     assert_eq!(report["lattice"]["region"], mesh["region"]);
 }
 
@@ -322,4 +340,34 @@ fn help_and_version() {
         assert!(folder.jbt(&["--help"]).code(0).stdout().contains(command));
         assert!(folder.jbt(&[command, "--help"]).code(0).stdout().contains("SCENE"));
     }
+}
+
+/// The array of one ball, as numpy would read it.
+#[test]
+fn sample_writes_an_array() {
+    let folder = folder().with("ball.jbt", "jbt 1 point { radius 1 }");
+    let lattice = ["--cell", "0.5", "--region", "-1,-1,-1,1,1,1.5"];
+    let report =
+        folder.jbt(&[&["sample", "ball.jbt", "-o", "a.npy", "--json"][..], &lattice].concat()).code(0);
+    let report = report.json();
+    assert_eq!(
+        (&report["points"], &report["planes"]),
+        (&serde_json::json!([5, 5, 6]), &serde_json::json!(["field"]))
+    );
+    let file = folder.read("a.npy");
+    let header = String::from_utf8_lossy(&file[..128]).into_owned();
+    assert!(header.contains("'fortran_order': True, 'shape': (5, 5, 6)"), "{header}");
+    let numbers: Vec<f32> =
+        file[128..].as_chunks().0.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect();
+    assert_eq!(numbers.len(), 150);
+    // The middle of the ball, and half a radius beside it along x.
+    let at = |x: usize, y: usize, z: usize| numbers[(z * 5 + y) * 5 + x];
+    assert_eq!((at(2, 2, 2), at(3, 2, 2), at(2, 2, 5)), (1.0, 0.5, 0.0));
+
+    let all =
+        folder.jbt(&[&["sample", "ball.jbt", "-o", "-", "--query", "all", "-q"][..], &lattice].concat());
+    assert_eq!(all.code(0).stdout_bytes().len(), 128 + 4 * 150 * 7);
+    let huge = ["sample", "ball.jbt", "-o", "b.npy", "--resolution", "5000"];
+    folder.jbt(&huge).code(3).says("more than 1073741824 numbers");
+    folder.jbt(&["sample", "ball.jbt", "-o", "b.npy", "--cell", "0"]).code(2);
 }
