@@ -232,3 +232,41 @@ fn only_what_an_edit_touches_is_decided_again() {
     assert_eq!(leaves(&some, true), leaves(&fresh, true));
     assert_eq!(leaves(&some, false), leaves(&before, false));
 }
+
+#[test]
+fn a_ray_passes_leaves_from_the_nearest_on() {
+    let division = sphere(true);
+    let mut rng = fastrand::Rng::with_seed(8);
+    for _ in 0..200 {
+        let mut vector = |size: f32| [0; 3].map(|_: i32| size * (2.0 * rng.f32() - 1.0));
+        let (origin, direction) = (vector(3.0), vector(1.0));
+        let passed = division.ray(origin, direction);
+        assert!(passed.is_sorted_by(|a, b| a.enter <= b.enter));
+        // The middle of a passage is in its box, as far as rounding goes; and no other leaf holds a point of the ray.
+        for passage in &passed {
+            let at = 0.5 * (passage.enter + passage.exit);
+            let slack = 1e-5;
+            let bounds = passage.node.bounds;
+            for axis in 0..3 {
+                let x = origin[axis] + at * direction[axis];
+                assert!(bounds.low[axis] - slack <= x && x <= bounds.high[axis] + slack);
+            }
+            assert_eq!(*passage.region, bounds);
+        }
+        for step in 0..300 {
+            let at = 0.02 * step as f32;
+            let point: [f32; 3] = std::array::from_fn(|axis| origin[axis] + at * direction[axis]);
+            let middle = |bounds: &Box3| {
+                (0..3).all(|axis| {
+                    bounds.low[axis] + 1e-4 < point[axis] && point[axis] < bounds.high[axis] - 1e-4
+                })
+            };
+            for (node, _) in division.leaves().filter(|(node, _)| middle(&node.bounds)) {
+                assert!(passed.iter().any(|passage| passage.node.bounds == node.bounds));
+            }
+        }
+    }
+    assert!(division.ray([0.0; 3], [0.0; 3]).is_empty(), "no leaf is at the centre");
+    let along = division.ray([-3.0, 0.0, 0.0], [1.0, 0.0, 0.0]);
+    assert!(along[0].enter > 1.8 && along[along.len() - 1].exit < 4.3, "two walls of the sphere");
+}

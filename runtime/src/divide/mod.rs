@@ -22,11 +22,13 @@
 mod cell;
 mod edit;
 mod node;
+mod ray;
 mod run;
 
 pub use cell::Cell;
 pub use edit::Edit;
 pub use node::{Division, Node, Outcome, Tally};
+pub use ray::Passage;
 pub use run::{DivideError, Limits};
 
 use std::sync::atomic::AtomicU64;
