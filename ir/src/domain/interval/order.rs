@@ -93,6 +93,17 @@ impl<D: Domain> Interval<D> {
         if a.facts.point { a.high } else { self.guarded(a.high, a.low) }
     }
 
+    /// As [`sure_low`](Self::sure_low), and NaN where it is infinite: so that infinities do not seem to be equal where one may be NaN.
+    fn finite_low(&mut self, a: Range<D>) -> D::Real {
+        let low = self.sure_low(a);
+        if a.facts.point { low } else { self.guarded(low, low) }
+    }
+
+    fn finite_high(&mut self, a: Range<D>) -> D::Real {
+        let high = self.sure_high(a);
+        if a.facts.point { high } else { self.guarded(high, high) }
+    }
+
     pub(super) fn less(&mut self, a: Range<D>, b: Range<D>) -> Certainty<D> {
         if a.facts.point && b.facts.point {
             let holds = self.domain.lt(a.low, b.low);
@@ -110,7 +121,7 @@ impl<D: Domain> Interval<D> {
             let holds = self.domain.le(a.low, b.low);
             return self.decided(holds);
         }
-        let (high, low) = (self.sure_high(a), self.sure_low(b));
+        let (high, low) = (self.finite_high(a), self.finite_low(b));
         let yes = self.domain.le(high, low);
         let no = self.domain.lt(b.high, a.low);
         Certainty { yes, no, decided: false }
@@ -121,7 +132,7 @@ impl<D: Domain> Interval<D> {
             let holds = self.domain.eq(a.low, b.low);
             return self.decided(holds);
         }
-        let (a_high, b_high) = (self.sure_high(a), self.sure_high(b));
+        let (a_high, b_high) = (self.finite_high(a), self.finite_high(b));
         let d = &mut self.domain;
         let not_above = d.le(a_high, b.low);
         let not_below = d.le(b_high, a.low);

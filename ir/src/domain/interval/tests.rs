@@ -146,6 +146,23 @@ fn close([low, high]: [f32; 2], [expected_low, expected_high]: [f64; 2]) {
 }
 
 #[test]
+fn what_may_be_no_number_is_not_certainly_infinite() {
+    // NaN <= inf does not hold, and NaN == inf neither: then y is taken, which is negative.
+    for x in [ALL, [0.0, f32::INFINITY]] {
+        for equal in [false, true] {
+            let range = range_of(&[x, [-2.0, -1.0]], |b, x, y, _| {
+                let (infinity, one) = (b.constant(f32::INFINITY), b.constant(1.0));
+                let size = b.abs(x);
+                let holds = if equal { b.eq(size, infinity) } else { b.le(size, infinity) };
+                let chosen = b.select(holds, size, y);
+                b.min(chosen, one)
+            });
+            assert!(range[0] <= -2.0, "{range:?}");
+        }
+    }
+}
+
+#[test]
 fn transcendentals_are_sharp() {
     let sin = |range| range_of(&[range], |b, x, _, _| b.sin(x));
     let cos = |range| range_of(&[range], |b, x, _, _| b.cos(x));
