@@ -29,6 +29,7 @@ Examples:
   jbt eval hero.jbt --points points.csv --query all -o answers.csv
   jbt show hero.jbt --stage ir
   jbt count hero.jbt
+  jbt stats hero.jbt
   jbt check hero.jbt";
 
 /// The commands.
@@ -44,6 +45,8 @@ pub enum Command {
     Show(ShowArguments),
     /// Count the evaluations of primitives that a point and a lattice take, and how many matter
     Count(CountArguments),
+    /// Measure the solid of a scene: tight bounds, volume, area, and what a division of space by it is like
+    Stats(StatsArguments),
     /// Report everything that is wrong with a scene
     Check(CheckArguments),
 }
@@ -240,6 +243,51 @@ A model that is empty or unbounded has no lattice without --region: `lattice`, `
 Examples:
   jbt count hero.jbt
   jbt count train.scene --cell 0.13 --json";
+
+/// What `jbt stats` takes.
+#[derive(Args, Debug)]
+#[command(after_help = STATS_HELP)]
+pub struct StatsArguments {
+    /// What to measure.
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// Where, and how small boxes get.
+    #[command(flatten)]
+    pub lattice: LatticeArguments,
+    /// How often the region's longest side is halved, instead of --cell or --resolution
+    #[arg(long, value_name = "N", conflicts_with_all = ["cell", "resolution"], value_parser = clap::value_parser!(u8).range(0..=20))]
+    pub depth: Option<u8>,
+    /// How tight the bounds are, in units of the scene [default: 1/1024 of the region's longest side]
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
+    pub tolerance: Option<f32>,
+    /// Print one JSON object instead of a table
+    #[arg(long)]
+    pub json: bool,
+}
+
+const STATS_HELP: &str = "\
+The solid is where the field is at least the iso-value. A region (without --region the support of the model) is divided
+into boxes that are proven to be all inside (solid) or all outside (air), and boxes of one cell that may hold surface.
+
+  volume    between the solid boxes and these with the surface boxes: proven; and an estimate
+  area      an estimate: in each surface box, of the plane that the field has there; it converges with the cell
+  tight     a box that holds all of the solid in the region: proven; each side is within the tolerance of the solid
+            if it has converged
+  contents  primitives that matter in a surface box
+
+Keys of --json:
+  support: [x0, y0, z0, x1, y1, z1] (null if empty or unbounded), region: [...], cell,
+  tight: {outer: [...], inner: [...], tolerance, converged} (null: no inside point is there, or none was found),
+  volume: {low, high, estimate}, area, center: [x, y, z] (of mass; null if nothing is there),
+  division: {boxes, splits, solid, air, surface, levels: [{depth, splits, solid, air, surface}]}, counts of boxes,
+  shares: {solid, air, surface} of the region's volume, contents: {mean, most},
+  points, evaluations (of primitives, at points), ranges (of the field in boxes), interval_evaluations (of primitives
+  over boxes), total_ms, warnings
+
+Examples:
+  jbt stats hero.jbt
+  jbt stats hero.jbt --depth 6
+  jbt stats train.scene --cell 0.13 --tolerance 0.001 --json";
 
 /// What `jbt check` takes.
 #[derive(Args, Debug)]

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | [`arguments`] | what can be asked |
 //! | [`scene`], [`points`] | reading |
-//! | [`mesh`], [`sample`], [`eval`], [`show`], [`count`], [`check`] | one command each |
+//! | [`mesh`], [`sample`], [`eval`], [`show`], [`count`], [`stats`], [`check`] | one command each |
 //! | [`output`], [`progress`], [`logger`] | what comes out, and where |
 //! | [`failure`] | what went wrong, and the exit code for it |
 
@@ -23,6 +23,7 @@ mod sample;
 mod scene;
 mod show;
 mod stages;
+mod stats;
 mod threads;
 
 use std::process::ExitCode;
@@ -57,6 +58,7 @@ fn run(command: &Command, quiet: bool, start: Instant) -> Result<(), Failure> {
         Command::Eval(arguments) => eval::run(arguments, quiet),
         Command::Show(arguments) => show::run(arguments, quiet),
         Command::Count(arguments) => count::run(arguments, quiet),
+        Command::Stats(arguments) => stats::run(arguments, quiet, start),
         Command::Check(arguments) => check::run(arguments, quiet),
     }
 }

@@ -18,6 +18,7 @@ pub mod field;
 pub mod import;
 pub mod lower;
 pub mod model;
+pub mod owner;
 pub mod query;
 mod report;
 pub mod scene;

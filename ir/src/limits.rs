@@ -42,6 +42,12 @@ pub const MAX_LATTICE_POINTS: usize = 1 << 30;
 pub const MAX_BRICKS: usize = 1 << 22;
 /// Cells along one axis of a lattice.
 pub const MAX_RESOLUTION: usize = 1 << 20;
+/// Ranges of boxes that it may take to prove on which side of the surface all of a cube is; beyond it the surface may be there.
+pub const MAX_MEMBERSHIP_BOXES: usize = 1 << 10;
+/// Boxes that the search for one side of a solid's tight bounds may ask about; beyond it the bounds are as tight as they are.
+pub const MAX_SEARCH_BOXES: usize = 1 << 19;
+/// Boxes of the division that measures a solid: those with surface keep about half a kilobyte each.
+pub const MAX_MEASURE_BOXES: u64 = 1 << 22;
 /// How often a box may be split on the way to a part of it. Halving f32 coordinates along three axes ends before.
 pub const MAX_DIVISION_DEPTH: usize = 96;
 /// Boxes of one division: each keeps about 64 bytes.

@@ -36,6 +36,8 @@
 //! * An [`Evaluator`] answers one [`Query`] at any points, on the [`Engine`] that the machine has; all engines give the same bits.
 //!   A [`Probe`] asks about a single point, in any order, for one evaluation.
 //! * [`Polygonize`] meshes a model; [`export`] writes meshes.
+//! * A [`Solid`] answers questions about the set that a model encloses: which side a point is on, which leaf decides there, how far it
+//!   reaches, how large it is.
 //! * [`Counters`] say what was done, and what separate walks would have done; [`statistics`] foretell it, and say how much of it matters.
 
 mod buffer;
@@ -51,6 +53,7 @@ mod probe;
 pub mod prune;
 pub mod region;
 pub mod sample;
+pub mod solid;
 pub mod statistics;
 
 pub use jbt_ir as ir;
@@ -81,3 +84,4 @@ pub use polygonize::{Fineness, MeshCounters, Polygonize, PolygonizeError, Polygo
 pub use probe::Probe;
 pub use prune::{PruneCounters, Pruner, Region};
 pub use region::{Box3, Range};
+pub use solid::{Membership, Solid};

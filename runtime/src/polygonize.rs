@@ -236,8 +236,8 @@ mod tests {
         };
         let made = here.run(&Compiler::for_engine(Engine::Scalar), &tree, &mut |_| true).unwrap();
         assert!(made.mesh.triangles.is_empty() && made.report.closed);
-        // A point of the lattice takes both distances, whatever they amount to.
-        assert_eq!(made.primitive_evaluations, 2 * 125);
+        // A range tells that there is nothing: no point is asked.
+        assert_eq!(made.primitive_evaluations, 0);
     }
 
     /// A sphere of radius 1: every vertex lies on it, and the volume is near 4 pi / 3.

@@ -315,6 +315,67 @@ fn count_needs_no_lattice() {
     folder.jbt(&["count", "scene.jbt", "--resolution", "0"]).code(2).says("at least one cell");
 }
 
+/// A ball of radius 1: everything is known.
+#[test]
+fn stats_measures_the_solid() {
+    let folder = folder().with("ball.jbt", "jbt 1 color (1 0 0) { point { surface_radius 1 } }");
+    let arguments = ["stats", "ball.jbt", "--region", "-2,-2,-2,2,2,2", "--tolerance", "0.001", "--json"];
+    let stats = |extra: &[&str]| folder.jbt(&[&arguments[..], extra].concat()).code(0).json();
+    let report = stats(&["--depth", "5"]);
+    let number = |value: &serde_json::Value| value.as_f64().unwrap();
+    let near = |value: &serde_json::Value, expected: f64, by: f64| {
+        assert!((number(value) - expected).abs() < by, "{value} is not {expected}");
+    };
+    let volume = 4.0 / 3.0 * std::f64::consts::PI;
+    near(&report["volume"]["estimate"], volume, 0.03);
+    near(&report["area"], 3.0 * volume, 0.1);
+    assert!(number(&report["volume"]["low"]) < volume && volume < number(&report["volume"]["high"]));
+    for (index, side) in [-1.0, -1.0, -1.0, 1.0, 1.0, 1.0].into_iter().enumerate() {
+        near(&report["tight"]["outer"][index], side, 0.0011);
+        near(&report["tight"]["inner"][index], side, 0.0011);
+    }
+    assert_eq!((&report["tight"]["converged"], &report["cell"]), (&true.into(), &0.125.into()));
+    let shares = ["solid", "air", "surface"].map(|key| number(&report["shares"][key]));
+    assert!((shares.iter().sum::<f64>() - 1.0).abs() < 1e-9, "{shares:?}");
+    assert_eq!(report["contents"], serde_json::json!({ "mean": 1.0, "most": 1 }));
+    let division = &report["division"];
+    assert_eq!(division["levels"].as_array().map(Vec::len), Some(6));
+    let count = |key: &str| division[key].as_u64().unwrap();
+    assert_eq!(count("boxes"), 1 + 8 * count("splits"));
+    assert_eq!(count("boxes"), ["splits", "solid", "air", "surface"].map(count).iter().sum::<u64>());
+    for key in ["points", "evaluations", "ranges", "interval_evaluations"] {
+        assert!(report[key].as_u64().is_some_and(|count| count > 0), "{key}");
+    }
+    assert_eq!(stats(&["--resolution", "32"])["division"], *division);
+    assert_eq!(stats(&["--cell", "0.125"])["division"], *division);
+
+    let text = folder.jbt(&["stats", "ball.jbt", "--depth", "4"]).code(0).stdout();
+    for words in
+        ["ball.jbt: volume 4.", "tight        (-1.0", "at least", "primitives in a surface box", "depth"]
+    {
+        assert!(text.contains(words), "{words}: {text}");
+    }
+    let far = folder.jbt(&["stats", "ball.jbt", "--region", "2,2,2,3,3,3", "--json"]).code(0);
+    let far = far.says("no point of the region is inside").json();
+    assert!(far["tight"]["outer"].is_null() && far["center"].is_null());
+    assert_eq!(far["volume"], serde_json::json!({ "low": 0.0, "high": 0.0, "estimate": 0.0 }));
+}
+
+#[test]
+fn stats_refuses_what_makes_no_sense() {
+    let empty = "jbt 1 intersection { point { radius 1 } translate (5 0 0) { point { radius 1 } } }";
+    let folder = folder().with("empty.jbt", empty);
+    folder.jbt(&["stats", "empty.jbt"]).code(1).says("the model is empty");
+    let stats = |extra: &[&str]| folder.jbt(&[&["stats", "scene.jbt"], extra].concat());
+    stats(&["--cell", "-1"]).code(2).says("greater than zero");
+    stats(&["--resolution", "0"]).code(2).says("at least one cell");
+    stats(&["--depth", "2", "--cell", "1"]).code(2).says("cannot be used with");
+    stats(&["--depth", "21"]).code(2).says("--depth");
+    stats(&["--depth", "3", "--tolerance", "0"]).code(2).says("greater than 0");
+    stats(&["--depth", "3", "--tolerance", "nan"]).code(2).says("greater than 0");
+    stats(&["--cell", "1e-300"]).code(3).says("jbt: limit: ");
+}
+
 #[test]
 fn check_summarises_a_good_scene() {
     let folder = folder();
@@ -336,7 +397,7 @@ fn check_summarises_a_good_scene() {
 fn help_and_version() {
     let folder = Folder::new();
     assert_eq!(folder.jbt(&["--version"]).code(0).stdout(), concat!("jbt ", env!("CARGO_PKG_VERSION"), "\n"));
-    for command in ["mesh", "eval", "show", "count", "check"] {
+    for command in ["mesh", "eval", "show", "count", "stats", "check"] {
         assert!(folder.jbt(&["--help"]).code(0).stdout().contains(command));
         assert!(folder.jbt(&[command, "--help"]).code(0).stdout().contains("SCENE"));
     }

@@ -10,12 +10,13 @@ fn folder() -> Folder {
 }
 
 /// Every command on a scene.
-fn commands(scene: &str) -> [Vec<&str>; 5] {
+fn commands(scene: &str) -> [Vec<&str>; 6] {
     [
         vec!["mesh", scene, "-o", "out.glb"],
         vec!["eval", scene, "--points", "p.csv", "-o", "out.csv"],
         vec!["show", scene, "--stage", "ir"],
         vec!["count", scene],
+        vec!["stats", scene],
         vec!["check", scene],
     ]
 }

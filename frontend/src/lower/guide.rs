@@ -11,7 +11,7 @@
 //! run with intervals, it gives the ranges of them all over a box.
 //!
 //! A *guard* is a fold over one row around an operand that has tables of its own. Where the row is left out, the operand's field is what
-//! the fold starts with: 0, or an infinity where that never decides.
+//! the fold starts with: 0, or the lowest or highest number where that never decides.
 
 use jbt_ir::{Function, Store, Table, Tables};
 
@@ -76,7 +76,7 @@ pub enum Rule {
     /// If one is zero, all others of the same parent row may be left out, zero or not, and one that is zero stays: rows of intersections
     /// without negative operands.
     OnlyZero,
-    /// Zero is no reason: the scene, and guards that start at an infinity.
+    /// Zero is no reason: the scene, and guards that do not start at 0.
     Never,
 }
 

@@ -104,8 +104,9 @@ impl State {
             ReducerCode::RicciInteger(_) | ReducerCode::RicciGeneral => vec![d.constant(ricci::FLOOR), zero],
             // Zero takes part without a row: whoever is above zero wins all the same, and where nobody is there is only the default.
             ReducerCode::Union if operator.non_negative => vec![zero],
-            ReducerCode::Union => vec![d.constant(f32::NEG_INFINITY)],
-            ReducerCode::Intersection => vec![d.constant(f32::INFINITY)],
+            // Finite, because a range with an infinite end says nothing: every field is nearer to zero.
+            ReducerCode::Union => vec![d.constant(f32::MIN)],
+            ReducerCode::Intersection => vec![d.constant(f32::MAX)],
         };
         let weighs = operator.weighs();
         let wants_attributes = !defaults.is_empty();

@@ -5,7 +5,8 @@
 //!                                                                                               else: the field is `start`
 //! ```
 //!
-//! What a guard starts with never decides: 0 is neutral for sums, blends and unions without negative operands, an infinity for the others.
+//! What a guard starts with never decides: 0 is neutral for sums, blends and unions without negative operands, the lowest or the highest
+//! number for the others. It is finite, because a range with an infinite end says nothing.
 
 use jbt_ir::{Domain, Reduction, Value};
 
@@ -29,8 +30,8 @@ impl GuardStart {
     const fn number(self) -> f32 {
         match self {
             Self::Zero => 0.0,
-            Self::Lowest => f32::NEG_INFINITY,
-            Self::Highest => f32::INFINITY,
+            Self::Lowest => f32::MIN,
+            Self::Highest => f32::MAX,
         }
     }
 

@@ -1,0 +1,232 @@
+//! Owners: the leaf that decides the field at a point, and the way down to it.
+//!
+//! ```text
+//! owner(node, p):   primitive      itself, where its field is not 0
+//!                   union          the owner of the largest operand, of the smallest at an intersection, of the one that decides at a difference
+//!                   sum, Ricci     of the operands' owners, the leaf with the largest share of the weight
+//! ```
+//!
+//! Shares are those that mix attributes: the owner is the leaf whose value a `dominant` attribute takes. Of equals the first in the file
+//! owns the point. The walk is in f64 over plain formulas, one point at a time, on a list of its own: a chain of a million nodes is a tree like any
+//! other.
+
+use std::fmt::Write as _;
+
+use glam::DVec3;
+
+use crate::check::{CheckedTree, NodeId};
+use crate::combine::Combinator;
+use crate::diagnostic::Span;
+use crate::tree::NodeKind;
+
+/// A leaf that decides, as one of its occurrences.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Owner {
+    /// The leaf.
+    pub node: NodeId,
+    /// Where it stands in its source text.
+    pub span: Option<Span>,
+    /// Its part of the weight of the whole field, in (0, 1]. It is 1 unless fields are blended.
+    pub share: f64,
+    /// The nodes above it, the root first, each with the number of the child that leads to the leaf.
+    pub above: Vec<(NodeId, u32)>,
+}
+
+impl Owner {
+    /// The way from the root to the leaf: kinds and numbers of children, as in `union.2/color.0/segment`.
+    #[must_use]
+    pub fn path(&self, tree: &CheckedTree) -> String {
+        let mut path = String::new();
+        for &(node, child) in &self.above {
+            let _ = write!(path, "{}.{child}/", name(&tree.node(node).kind));
+        }
+        path + name(&tree.node(self.node).kind)
+    }
+}
+
+/// The word for a node.
+fn name(kind: &NodeKind) -> &str {
+    match kind {
+        NodeKind::Primitive(leaf) => leaf.skeleton.kind().name(),
+        NodeKind::Combine(combinator) => combinator.name(),
+        NodeKind::Affine(_) => "affine",
+        NodeKind::Warp(warp) => warp.kind().name(),
+        NodeKind::Attribute { name, .. } => name,
+    }
+}
+
+/// A node at the end of a path from the root.
+struct Step {
+    node: NodeId,
+    /// The step above, and which of its children this is; the root is its own.
+    above: u32,
+    child: u32,
+}
+
+/// What is known at a node.
+#[derive(Clone, Copy)]
+struct Answer {
+    field: f64,
+    /// The step of the leaf that decides, and its share of the weight here. Nobody decides where nothing has weight.
+    leaf: Option<(u32, f64)>,
+}
+
+/// The work that is left.
+enum Task {
+    /// Ask the node of a step that is still to be made, at a point of its parent's space.
+    Ask(Step, DVec3),
+    /// Combine the answers of the children of a node.
+    Combine(NodeId),
+}
+
+/// The leaf that decides at `p`: `None` where the field is 0, or where it is negative because nothing with a positive field is left.
+///
+/// Cost: all paths of the tree.
+#[must_use]
+pub fn owner(tree: &CheckedTree, p: [f64; 3]) -> Option<Owner> {
+    let mut steps: Vec<Step> = Vec::new();
+    let mut tasks = vec![Task::Ask(Step { node: tree.root(), above: 0, child: 0 }, p.into())];
+    let mut answers: Vec<Answer> = Vec::new();
+    while let Some(task) = tasks.pop() {
+        match task {
+            Task::Ask(step, p) => {
+                // At most limits::MAX_OCCURRENCES.
+                let here = steps.len() as u32;
+                let node = tree.node(step.node);
+                let below =
+                    |child: usize| Step { node: node.children[child], above: here, child: child as u32 };
+                match &node.kind {
+                    NodeKind::Primitive(leaf) => {
+                        let s = leaf.skeleton.distance_squared(p) / (leaf.radius * leaf.radius);
+                        let field = leaf.strength * leaf.falloff.value(s);
+                        answers.push(Answer { field, leaf: (field != 0.0).then_some((here, 1.0)) });
+                    }
+                    NodeKind::Combine(_) => {
+                        tasks.push(Task::Combine(step.node));
+                        tasks.extend((0..node.children.len()).rev().map(|child| Task::Ask(below(child), p)));
+                    }
+                    NodeKind::Affine(map) => {
+                        tasks.push(Task::Ask(below(0), map.inverse().transform_point3(p)));
+                    }
+                    NodeKind::Warp(warp) => tasks.push(Task::Ask(below(0), warp.inverse(p))),
+                    NodeKind::Attribute { .. } => tasks.push(Task::Ask(below(0), p)),
+                }
+                steps.push(step);
+            }
+            Task::Combine(id) => {
+                let node = tree.node(id);
+                let children = answers.split_off(answers.len() - node.children.len());
+                if let NodeKind::Combine(combinator) = node.kind {
+                    answers.push(combine(combinator, tree.iso(), &children));
+                }
+            }
+        }
+    }
+    let root = answers.pop()?;
+    let (leaf, share) = root.leaf.filter(|_| root.field != 0.0)?;
+    Some(describe(tree, &steps, leaf, share))
+}
+
+fn combine(combinator: Combinator, iso: f64, children: &[Answer]) -> Answer {
+    if let (1, Combinator::Union | Combinator::Intersection | Combinator::Difference) =
+        (children.len(), combinator)
+    {
+        // There is nothing to decide.
+        return children[0];
+    }
+    let fields: Vec<f64> = children.iter().map(|child| child.field).collect();
+    let weights = combinator.weights(&fields, iso);
+    let total: f64 = weights.iter().sum();
+    let mut best = None;
+    let mut most = 0.0;
+    for (child, weight) in children.iter().zip(&weights) {
+        let Some((leaf, share)) = child.leaf else { continue };
+        let share = weight / total * share;
+        // Strictly: of equals the first in the file stays. A total of zero gives no number, which is not more.
+        if share > most {
+            (best, most) = (Some((leaf, share)), share);
+        }
+    }
+    Answer { field: combinator.field(&fields, iso), leaf: best }
+}
+
+/// The way up from a leaf.
+fn describe(tree: &CheckedTree, steps: &[Step], leaf: u32, share: f64) -> Owner {
+    let node = steps[leaf as usize].node;
+    let mut above = Vec::new();
+    let mut at = leaf;
+    // The first step is the root's.
+    while at != 0 {
+        let step = &steps[at as usize];
+        above.push((steps[step.above as usize].node, step.child));
+        at = step.above;
+    }
+    above.reverse();
+    Owner { node, span: tree.node(node).span, share, above }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::text::{Options, parse};
+
+    fn tree(text: &str) -> CheckedTree {
+        parse(text.as_bytes(), &Options::default()).unwrap().check().unwrap()
+    }
+
+    fn path(text: &str, p: [f64; 3]) -> Option<String> {
+        let tree = tree(text);
+        owner(&tree, p).map(|owner| owner.path(&tree))
+    }
+
+    #[test]
+    fn paths_name_kinds_and_children() {
+        let text = "jbt 1 union {
+            point { at (5 0 0) radius 1 }
+            point { at (-5 0 0) radius 1 }
+            color (1 0 0) { translate (0 1 0) { segment { from (0 0 0) to (1 0 0) radius 1 } } }
+        }";
+        assert_eq!(path(text, [0.0, 1.0, 0.0]).as_deref(), Some("union.2/color.0/affine.0/segment"));
+        assert_eq!(path(text, [5.0, 0.0, 0.0]).as_deref(), Some("union.0/point"));
+        assert_eq!(path(text, [0.0, 9.0, 0.0]), None);
+        assert_eq!(path("jbt 1 point { radius 1 }", [0.0; 3]).as_deref(), Some("point"));
+    }
+
+    #[test]
+    fn ties_go_to_the_first_in_the_file() {
+        for operator in ["union", "intersection", "sum", "blend ricci 2"] {
+            let text = format!("jbt 1 {operator} {{ point {{ radius 1 }} point {{ radius 1 }} }}");
+            let found = path(&text, [0.1, 0.0, 0.0]).unwrap();
+            assert!(found.ends_with(".0/point"), "{found}");
+        }
+    }
+
+    #[test]
+    fn a_difference_is_owned_by_who_decides() {
+        let text = "jbt 1 difference { point { radius 2 } point { at (1 0 0) radius 1 } }";
+        assert_eq!(path(text, [-0.5, 0.0, 0.0]).as_deref(), Some("difference.0/point"));
+        // The cut: field 2 iso - b, less than that of the ball.
+        assert_eq!(path(text, [0.4, 0.0, 0.0]).as_deref(), Some("difference.1/point"));
+        assert_eq!(path(text, [1.0, 0.0, 0.0]), None, "cut away to a field of 0");
+    }
+
+    #[test]
+    fn a_blend_is_owned_by_the_largest_leaf_and_not_by_the_largest_branch() {
+        let text = "jbt 1 sum {
+            sum { point { at (0.6 0 0) radius 1 } point { at (-0.6 0 0) radius 1 } }
+            point { at (0 0.5 0) radius 1 }
+        }";
+        assert_eq!(path(text, [0.0; 3]).as_deref(), Some("sum.1/point"));
+        let tree = tree(text);
+        let found = owner(&tree, [0.0; 3]).unwrap();
+        assert!(found.share > 0.33 && found.share < 0.5, "{}", found.share);
+    }
+
+    #[test]
+    fn what_has_no_weight_owns_nothing() {
+        let text = "jbt 1 sum { point { radius 1 strength -1 } point { at (0.5 0 0) radius 1 strength -1 } }";
+        assert_eq!(path(text, [0.0; 3]), None);
+        let text = "jbt 1 sum { point { radius 1 strength -0.25 } point { at (0.5 0 0) radius 1 } }";
+        assert_eq!(path(text, [0.0; 3]).as_deref(), Some("sum.1/point"));
+    }
+}

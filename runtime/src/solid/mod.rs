@@ -1,0 +1,261 @@
+//! Solids: questions about the set where the field is at least the iso-value, and not about single values of the field.
+//!
+//! ```text
+//! membership     which side a point is on, and whether the surface may pass within some distance of it
+//! owner          the leaf that decides at a point; the leaves that may matter in a box
+//! tight_bounds   a box around the solid, as narrow as wanted
+//! measure        volume between bounds, area, centre of mass, and what the division that found them is like
+//! ```
+//!
+//! The field is that of the compiled kernels, in f32, and the iso-value is rounded to f32, as meshing has them. What is said to hold in a box is
+//! proven by enclosing ranges ([`Divisible`](crate::region::Divisible)), so it holds for every value that a kernel gives there. What is estimated says so.
+//! After Bowyer's svLis (1999): its membership test, its tight fit and the report of its divisions.
+
+mod bounds;
+mod cut;
+mod measure;
+mod membership;
+mod progress;
+
+pub use bounds::{BoundsError, TightBounds};
+pub use jbt_frontend::check::NodeId;
+pub use jbt_frontend::owner::Owner;
+pub use measure::{Contents, Level, Measure, MeasureError, Measures, Volume};
+pub use membership::{Membership, MembershipError};
+
+use std::collections::BTreeSet;
+
+use jbt_frontend::check::CheckedTree;
+use jbt_frontend::owner;
+use jbt_frontend::query::Query;
+use jbt_ir::Selection;
+
+use crate::error::{CompileError, EvalError};
+use crate::evaluator::{Compiler, Evaluator};
+use crate::prune::{Pruner, Region};
+use crate::region::{Box3, Divisible as _, Range};
+
+/// A model, compiled for questions about its solid: the set where `field >= iso`.
+///
+/// It is `Send + Sync`: threads may share it and ask at once.
+///
+/// ```
+/// use jbt::solid::{Membership, Solid};
+/// # let tree = jbt::text::parse(b"jbt 1 point { surface_radius 1 }", &Default::default()).unwrap().check().unwrap();
+/// let ball = Solid::new(&jbt::Compiler::new(), &tree).unwrap();
+/// assert_eq!(ball.membership([0.0, 0.0, 0.8], 0.1).unwrap(), Membership::Inside);
+/// assert_eq!(ball.membership([0.0, 0.0, 0.95], 0.1).unwrap(), Membership::Surface);
+/// let bounds = ball.tight_bounds(None, 0.001).unwrap();
+/// assert!((bounds.outer.unwrap().high[0] - 1.0).abs() <= 0.001);
+/// ```
+pub struct Solid {
+    tree: CheckedTree,
+    /// The iso-value as kernels compare with it.
+    iso: f32,
+    pruner: Pruner,
+    field: Evaluator,
+}
+
+/// Why a question has no region.
+#[derive(Clone, Copy, PartialEq, Debug, thiserror::Error)]
+pub enum RegionError {
+    /// The region is infinite, not a number, flat, or not in order.
+    #[error("a region has finite corners, each number of the first below that of the second, and this one goes from {:?} to {:?}", bounds.low, bounds.high)]
+    Bounds {
+        /// What was given.
+        bounds: Box3,
+    },
+    /// The model's field is zero everywhere, and no region was given.
+    #[error("the model is empty: its field is zero everywhere")]
+    Empty,
+    /// The model's field may differ from zero arbitrarily far away, and no region was given.
+    #[error("the model is unbounded: it needs a region")]
+    Unbounded,
+}
+
+/// The part of the support's longest side by which the region that nobody gave exceeds it: more than f32 is off by.
+const MARGIN: f64 = 1.0 / 512.0;
+
+impl Solid {
+    /// Compiles a model for questions about its solid.
+    ///
+    /// # Errors
+    /// The model is beyond a limit, or the engine cannot be had.
+    pub fn new(compiler: &Compiler, tree: &CheckedTree) -> Result<Self, CompileError> {
+        Ok(Self {
+            tree: tree.clone(),
+            iso: tree.iso() as f32,
+            pruner: Pruner::new(compiler, tree)?,
+            field: compiler.evaluator(tree, Query::FIELD)?,
+        })
+    }
+
+    /// The model.
+    #[must_use]
+    pub fn tree(&self) -> &CheckedTree {
+        &self.tree
+    }
+
+    /// What encloses the field in boxes. Its counters tell what the questions so far took of that.
+    #[must_use]
+    pub fn pruner(&self) -> &Pruner {
+        &self.pruner
+    }
+
+    /// What evaluates the field at points. Its counters tell what the questions so far took of that.
+    #[must_use]
+    pub fn evaluator(&self) -> &Evaluator {
+        &self.field
+    }
+
+    /// The leaf that decides the field at a point, in f64 by a plain walk: see [`jbt_frontend::owner`].
+    ///
+    /// `None` where the field is 0, or where it is negative because nothing with a positive field is left. Cost: all paths of the tree.
+    #[must_use]
+    pub fn owner(&self, point: [f64; 3]) -> Option<Owner> {
+        owner::owner(&self.tree, point)
+    }
+
+    /// The leaves that may matter in a box, ascending: whatever the others are, the field in the box is the same to the bit.
+    ///
+    /// A leaf that is shared between parents at the same place may be named where it does not matter.
+    ///
+    /// # Errors
+    /// A box that is infinite, not a number, or not in order; it may be flat.
+    pub fn owners_in(&self, bounds: Box3) -> Result<Vec<NodeId>, OwnersError> {
+        if !bounds.is_proper() {
+            return Err(OwnersError::Bounds { bounds });
+        }
+        let region = self.pruner.region(bounds)?;
+        Ok(self.leaves_of(region.selection()))
+    }
+
+    /// The leaves behind the rows of a selection.
+    fn leaves_of(&self, selection: &Selection) -> Vec<NodeId> {
+        let mut leaves = BTreeSet::new();
+        let schemas = &self.field.program().function().tables;
+        for (table, rows) in self.field.tables().tables.iter() {
+            let slots = schemas[table].slots.len();
+            for &row in selection.active(table) {
+                leaves.extend(&rows.nodes[row as usize * slots..][..slots]);
+            }
+        }
+        leaves.into_iter().map(NodeId).collect()
+    }
+
+    /// Which side of the surface all values of a range are on: true is inside. `None` if the range does not tell.
+    fn side(&self, [low, high]: Range) -> Option<bool> {
+        if low >= self.iso {
+            Some(true)
+        } else if high < self.iso {
+            Some(false)
+        } else {
+            None
+        }
+    }
+
+    /// The region of a question: the one that was given, or the model's support and a little more.
+    fn region(&self, given: Option<Box3>) -> Result<Box3, RegionError> {
+        let bounds = match given {
+            Some(bounds) => bounds,
+            None => {
+                let support = self.tree.support();
+                if support.is_empty() {
+                    return Err(RegionError::Empty);
+                }
+                if !support.is_finite() {
+                    return Err(RegionError::Unbounded);
+                }
+                let grown = support.grown(support.longest_side() * MARGIN);
+                let low = grown.low().map(|side| (side as f32).next_down());
+                Box3::new(low, grown.high().map(|side| (side as f32).next_up()))
+            }
+        };
+        let full = (0..3).all(|axis| bounds.low[axis] < bounds.high[axis]);
+        // Sides whose difference is not finite cannot be halved by it.
+        if full && bounds.is_proper() && bounds.longest_side().is_finite() {
+            Ok(bounds)
+        } else {
+            Err(RegionError::Bounds { bounds })
+        }
+    }
+}
+
+/// Why the leaves in a box are not known.
+#[derive(Clone, PartialEq, Debug, thiserror::Error)]
+pub enum OwnersError {
+    /// The box is infinite, not a number, or not in order.
+    #[error("a box has finite corners in order, and this one goes from {:?} to {:?}", bounds.low, bounds.high)]
+    Bounds {
+        /// What was given.
+        bounds: Box3,
+    },
+    /// The field could not be evaluated.
+    #[error(transparent)]
+    Eval(#[from] EvalError),
+}
+
+/// Points by coordinates, as kernels read them, and their fields.
+#[derive(Default)]
+struct Batch {
+    points: [Vec<f32>; 3],
+    field: Vec<f32>,
+}
+
+impl Batch {
+    fn clear(&mut self) {
+        self.points.iter_mut().for_each(Vec::clear);
+    }
+
+    fn push(&mut self, point: [f32; 3]) {
+        for (plane, coordinate) in self.points.iter_mut().zip(point) {
+            plane.push(coordinate);
+        }
+    }
+
+    fn point(&self, index: usize) -> [f32; 3] {
+        self.points.each_ref().map(|plane| plane[index])
+    }
+
+    /// The field at each point; all are in a region.
+    fn values(&mut self, solid: &Solid, region: &Region) -> Result<&[f32], EvalError> {
+        self.field.resize(self.points[0].len(), 0.0);
+        let planes = self.points.each_ref().map(Vec::as_slice);
+        solid.field.eval_region(region, planes, &mut [&mut self.field])?;
+        Ok(&self.field)
+    }
+
+    /// Whether each point is inside; all are in a region.
+    fn sides(&mut self, solid: &Solid, region: &Region) -> Result<Vec<bool>, EvalError> {
+        Ok(self.values(solid, region)?.iter().map(|&field| field >= solid.iso).collect())
+    }
+}
+
+/// Cuts a box into equal parts, so many along each axis, x fastest; fewer where f32 has no more numbers between the sides.
+fn cut(bounds: &Box3, counts: [usize; 3]) -> Vec<Box3> {
+    let sides: [Vec<f32>; 3] = [0, 1, 2].map(|axis| {
+        let (low, high) = (f64::from(bounds.low[axis]), f64::from(bounds.high[axis]));
+        let side = |part: usize| (low + (high - low) * part as f64 / counts[axis] as f64) as f32;
+        let mut sides: Vec<f32> = (0..=counts[axis]).map(side).collect();
+        sides.dedup();
+        if sides.len() == 1 {
+            // A flat box is one part.
+            sides.push(sides[0]);
+        }
+        sides
+    });
+    let mut parts = Vec::new();
+    for z in sides[2].windows(2) {
+        for y in sides[1].windows(2) {
+            for x in sides[0].windows(2) {
+                parts.push(Box3::new([x[0], y[0], z[0]], [x[1], y[1], z[1]]));
+            }
+        }
+    }
+    parts
+}
+
+/// The middle of a box.
+fn center(bounds: &Box3) -> [f32; 3] {
+    [0, 1, 2].map(|axis| bounds.middle(axis))
+}
