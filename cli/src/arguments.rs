@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use jbt::{Engine, Query};
+use jbt::{Engine, Query, text};
 
 /// Compiles BlobTrees to SIMD machine code, and makes meshes and values of them.
 #[derive(Parser, Debug)]
@@ -57,7 +57,7 @@ pub struct SceneArguments {
     /// The scene: a .jbt text or a ParsIP .blob or .scene; `-` is the standard input
     #[arg(value_name = "SCENE")]
     pub path: PathBuf,
-    /// Set a parameter of a .jbt text
+    /// Set a parameter of a .jbt text; the value is a number or an expression of numbers, as 2*pi
     #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = definition)]
     pub definitions: Vec<(String, f64)>,
 }
@@ -372,8 +372,11 @@ fn definition(text: &str) -> Result<(String, f64), String> {
     if name.is_empty() {
         return Err("expected a name before `=`".to_owned());
     }
-    let value: f64 = value.trim().parse().map_err(|_| format!("expected a number after `{name}=`"))?;
-    if value.is_finite() { Ok((name.to_owned(), value)) } else { Err("expected a finite number".to_owned()) }
+    let value = text::number(value).map_err(|errors| {
+        let reason = errors.first().map_or(String::new(), |error| format!(": {}", error.message));
+        format!("expected a number after `{name}=`, as 2 or 2*pi{reason}")
+    })?;
+    Ok((name.to_owned(), value))
 }
 
 fn region(text: &str) -> Result<Region, String> {
@@ -418,7 +421,8 @@ mod tests {
         }
         assert_eq!(definition("r=2"), Ok(("r".to_owned(), 2.0)));
         assert_eq!(definition("r = -1e3"), Ok(("r".to_owned(), -1000.0)));
-        for bad in ["r", "=2", "r=", "r=x", "r=inf"] {
+        assert_eq!(definition("r=2 * (1 + sqrt(4))"), Ok(("r".to_owned(), 6.0)));
+        for bad in ["r", "=2", "r=", "r=x", "r=inf", "r=1 2", "r=1/0", "r=(", "r=2)"] {
             assert!(definition(bad).is_err(), "{bad}");
         }
     }

@@ -31,7 +31,11 @@ pub fn run(arguments: &CheckArguments, quiet: bool) -> Result<(), Failure> {
 fn summary(name: &str, tree: &CheckedTree, occurrences: u64) -> String {
     let primitive = |kind: &NodeKind| match kind {
         NodeKind::Primitive(_) => true,
-        NodeKind::Combine(_) | NodeKind::Affine(_) | NodeKind::Warp(_) | NodeKind::Attribute { .. } => false,
+        NodeKind::Combine(_)
+        | NodeKind::Select(_)
+        | NodeKind::Affine(_)
+        | NodeKind::Warp(_)
+        | NodeKind::Attribute { .. } => false,
     };
     let leaves = tree.nodes().iter().filter(|node| primitive(&node.kind)).count();
     let mut out = format!("{}: no errors\n", escape(name));
@@ -39,10 +43,25 @@ fn summary(name: &str, tree: &CheckedTree, occurrences: u64) -> String {
     let _ = writeln!(out, "  leaves       {}", grouped(leaves as u64));
     let _ = writeln!(out, "  occurrences  {}", grouped(occurrences));
     let _ = writeln!(out, "  iso          {}", tree.iso());
+    if !tree.parameters().is_empty() {
+        let _ = writeln!(out, "  parameters   {}", parameters(tree));
+    }
     let _ = writeln!(out, "  bounds       {}", bounds(tree.support()));
     let groups: Vec<String> = tree.attributes().iter().map(attribute).collect();
     let _ = write!(out, "  attributes   {}", groups.join(", "));
     out
+}
+
+/// The parameters, and of derived and set ones their present values.
+fn parameters(tree: &CheckedTree) -> String {
+    const SHOWN: usize = 20;
+    let all = tree.parameters();
+    let mut shown: Vec<String> =
+        all.iter().take(SHOWN).map(|p| format!("{} = {}", escape(p.name()), p.value())).collect();
+    if all.len() > SHOWN {
+        shown.push(format!("and {} more", all.len() - SHOWN));
+    }
+    shown.join(", ")
 }
 
 fn bounds(support: Bounds) -> String {

@@ -156,7 +156,7 @@ struct Leaf {
 }
 
 fn leaves(scene: &Scene, tree: &CheckedTree) -> Vec<Leaf> {
-    let uses = tree.uses();
+    let uses = tree.asked();
     let lines = Lines::new(scene.source().text);
     let leaf = |(index, node): (usize, &jbt_frontend::check::CheckedNode)| match &node.kind {
         NodeKind::Primitive(primitive) => Some(Leaf {
@@ -165,7 +165,11 @@ fn leaves(scene: &Scene, tree: &CheckedTree) -> Vec<Leaf> {
             place: node.span.map(|span| lines.position(span.start as usize)),
             uses: uses[index],
         }),
-        NodeKind::Combine(_) | NodeKind::Affine(_) | NodeKind::Warp(_) | NodeKind::Attribute { .. } => None,
+        NodeKind::Combine(_)
+        | NodeKind::Select(_)
+        | NodeKind::Affine(_)
+        | NodeKind::Warp(_)
+        | NodeKind::Attribute { .. } => None,
     };
     let mut leaves: Vec<Leaf> = tree.nodes().iter().enumerate().filter_map(leaf).collect();
     leaves.sort_by_key(|leaf| (leaf.place, leaf.node));

@@ -23,68 +23,126 @@
 //! | `a \| b` | union |
 //! | `a & b` | intersection |
 //! | `a - b` | difference |
+//! | `Tree::select(which, [a, b, c])` | one of them |
+//!
+//! Wherever a number is asked for, one that follows a parameter will do; it can be set again without compiling anything:
+//!
+//! ```
+//! use jbt_frontend::builder::{param, point};
+//! use jbt_frontend::model::Model;
+//!
+//! let bulge = param("bulge", 0.6);
+//! let drop = point([0.0; 3], &bulge * 2.0) + point((0.0, 0.0, 1.0 + bulge.sqrt()), bulge);
+//! let tree = Model::new(drop).check().unwrap();
+//! assert_eq!(tree.support().high()[0], 1.2);
+//! let fat = tree.with_parameters(&[("bulge", 1.0)]).unwrap();
+//! assert_eq!(fat.support().high(), [2.0, 2.0, 3.0]);
+//! ```
 //!
 //! Trees are shared, not copied: `&a + &a` has one leaf under two edges. Anything can be built; [`Model::check`](crate::model::Model::check)
 //! says whether it makes sense.
 
 use std::ops::{Add, BitAnd, BitOr, Sub};
 
-use glam::{DAffine3, DMat3, DVec3};
+use glam::DVec3;
 
-use crate::affine;
 use crate::combine::Combinator;
 use crate::falloff::Falloff;
-use crate::skeleton::{Box, Cylinder, Disc, Point, Ring, Segment, Skeleton, Triangle};
+use crate::field::FieldValue;
+use crate::recipe::{Angle, FieldNumber, Map, Radius, Recipe};
+use crate::skeleton::{Skeleton, SkeletonKind};
 use crate::tree::{NodeKind, Primitive, Tree};
-use crate::warp::Twist;
+use crate::warp::WarpKind;
+
+pub use crate::number::{Number, Vector, param};
 
 /// A primitive of strength 1 with the soft object's falloff; `radius` is where its field reaches zero.
 #[must_use]
-pub fn primitive(skeleton: impl Into<Skeleton>, radius: f64) -> Tree {
-    let leaf = Primitive { skeleton: skeleton.into(), falloff: Falloff::Soft, radius, strength: 1.0 };
+pub fn primitive(skeleton: impl Into<Skeleton>, radius: impl Into<Number>) -> Tree {
+    let (skeleton, radius) = (skeleton.into(), radius.into());
+    if radius.follows() {
+        let fields = skeleton.to_fields().into_iter().map(FieldNumber::from).collect();
+        return leaf(skeleton.kind(), fields, radius);
+    }
+    let leaf = Primitive { skeleton, falloff: Falloff::Soft, radius: radius.value(), strength: 1.0 };
     Tree::new(NodeKind::Primitive(leaf), Vec::new())
+}
+
+/// A primitive whose skeleton's parameters may follow those of the model.
+fn leaf(skeleton: SkeletonKind, fields: Vec<FieldNumber>, radius: impl Into<Number>) -> Tree {
+    let (falloff, radius) = (Falloff::Soft, Radius::Support(radius.into()));
+    let recipe = Recipe::Primitive { skeleton, fields, falloff, radius, strength: 1.0.into() };
+    Tree::of(recipe, Vec::new())
+}
+
+fn vector(value: impl Into<Vector>) -> FieldNumber {
+    FieldNumber::Vector(value.into().0)
+}
+
+fn real(value: impl Into<Number>) -> FieldNumber {
+    FieldNumber::Real(value.into())
 }
 
 /// A ball around a point.
 #[must_use]
-pub fn point(at: [f64; 3], radius: f64) -> Tree {
-    primitive(Point { at: at.into() }, radius)
+pub fn point(at: impl Into<Vector>, radius: impl Into<Number>) -> Tree {
+    leaf(SkeletonKind::Point, vec![vector(at)], radius)
 }
 
 /// A capsule around the line between two points.
 #[must_use]
-pub fn segment(from: [f64; 3], to: [f64; 3], radius: f64) -> Tree {
-    primitive(Segment { from: from.into(), to: to.into() }, radius)
+pub fn segment(from: impl Into<Vector>, to: impl Into<Vector>, radius: impl Into<Number>) -> Tree {
+    leaf(SkeletonKind::Segment, vec![vector(from), vector(to)], radius)
 }
 
 /// A field around a filled circle of radius `disc_radius` that faces along `normal`.
 #[must_use]
-pub fn disc(center: [f64; 3], normal: [f64; 3], disc_radius: f64, radius: f64) -> Tree {
-    primitive(Disc { center: center.into(), normal: normal.into(), radius: disc_radius }, radius)
+pub fn disc(
+    center: impl Into<Vector>,
+    normal: impl Into<Vector>,
+    disc_radius: impl Into<Number>,
+    radius: impl Into<Number>,
+) -> Tree {
+    leaf(SkeletonKind::Disc, vec![vector(center), vector(normal), real(disc_radius)], radius)
 }
 
 /// A torus: a field around a circle of radius `ring_radius` about the axis `normal`.
 #[must_use]
-pub fn ring(center: [f64; 3], normal: [f64; 3], ring_radius: f64, radius: f64) -> Tree {
-    primitive(Ring { center: center.into(), normal: normal.into(), radius: ring_radius }, radius)
+pub fn ring(
+    center: impl Into<Vector>,
+    normal: impl Into<Vector>,
+    ring_radius: impl Into<Number>,
+    radius: impl Into<Number>,
+) -> Tree {
+    leaf(SkeletonKind::Ring, vec![vector(center), vector(normal), real(ring_radius)], radius)
 }
 
 /// A field around a solid cylinder between two end points of its axis.
 #[must_use]
-pub fn cylinder(from: [f64; 3], to: [f64; 3], cylinder_radius: f64, radius: f64) -> Tree {
-    primitive(Cylinder { from: from.into(), to: to.into(), radius: cylinder_radius }, radius)
+pub fn cylinder(
+    from: impl Into<Vector>,
+    to: impl Into<Vector>,
+    cylinder_radius: impl Into<Number>,
+    radius: impl Into<Number>,
+) -> Tree {
+    leaf(SkeletonKind::Cylinder, vec![vector(from), vector(to), real(cylinder_radius)], radius)
 }
 
 /// A field around a solid box along the axes; `half` are half its sides.
 #[must_use]
-pub fn cuboid(center: [f64; 3], half: [f64; 3], radius: f64) -> Tree {
-    primitive(Box { center: center.into(), half: half.into() }, radius)
+pub fn cuboid(center: impl Into<Vector>, half: impl Into<Vector>, radius: impl Into<Number>) -> Tree {
+    leaf(SkeletonKind::Box, vec![vector(center), vector(half)], radius)
 }
 
 /// A field around a filled triangle.
 #[must_use]
-pub fn triangle(a: [f64; 3], b: [f64; 3], c: [f64; 3], radius: f64) -> Tree {
-    primitive(Triangle { a: a.into(), b: b.into(), c: c.into() }, radius)
+pub fn triangle(
+    a: impl Into<Vector>,
+    b: impl Into<Vector>,
+    c: impl Into<Vector>,
+    radius: impl Into<Number>,
+) -> Tree {
+    leaf(SkeletonKind::Triangle, vec![vector(a), vector(b), vector(c)], radius)
 }
 
 impl Tree {
@@ -96,14 +154,31 @@ impl Tree {
 
     /// Ricci's blend with exponent `n` in [1, 1024]: 1 is the sum, large ones near the union.
     #[must_use]
-    pub fn blend(n: f64, children: impl IntoIterator<Item = Self>) -> Self {
-        Self::combine(Combinator::Ricci(n), children)
+    pub fn blend(n: impl Into<Number>, children: impl IntoIterator<Item = Self>) -> Self {
+        Self::of(Recipe::Ricci(n.into()), children.into_iter().collect())
     }
 
     /// [`Tree::blend`] of two.
     #[must_use]
-    pub fn ricci(&self, n: f64, other: &Self) -> Self {
+    pub fn ricci(&self, n: impl Into<Number>, other: &Self) -> Self {
         Self::blend(n, [self.clone(), other.clone()])
+    }
+
+    /// The child whose place, from 0, is nearest to `which`; the others do not count. `which` is a parameter as a rule.
+    ///
+    /// ```
+    /// use jbt_frontend::builder::{param, point};
+    /// use jbt_frontend::model::Model;
+    /// use jbt_frontend::tree::Tree;
+    ///
+    /// let frames = (1..4).map(|size| point([0.0; 3], f64::from(size)));
+    /// let tree = Model::new(Tree::select(param("frame", 0.0), frames)).check().unwrap();
+    /// let last = tree.with_parameters(&[("frame", 2.0)]).unwrap();
+    /// assert_eq!((tree.support().high(), last.support().high()), ([1.0; 3], [3.0; 3]));
+    /// ```
+    #[must_use]
+    pub fn select(which: impl Into<Number>, children: impl IntoIterator<Item = Self>) -> Self {
+        Self::of(Recipe::Select(which.into()), children.into_iter().collect())
     }
 
     /// The same with this falloff in every primitive.
@@ -114,77 +189,102 @@ impl Tree {
 
     /// The same with this strength in every primitive; negative ones push surfaces away.
     #[must_use]
-    pub fn strength(&self, strength: f64) -> Self {
-        self.map_primitives(|leaf| leaf.strength = strength)
+    pub fn strength(&self, strength: impl Into<Number>) -> Self {
+        let strength = strength.into();
+        if !strength.follows() {
+            return self.map_primitives(|leaf| leaf.strength = strength.value());
+        }
+        self.rewrite(|tree| {
+            let recipe = match (tree.node().recipe(), tree.node().kind()) {
+                (Some(recipe), NodeKind::Primitive(_)) => Recipe::clone(recipe),
+                (None, NodeKind::Primitive(leaf)) => Recipe::of_primitive(leaf),
+                (
+                    _,
+                    NodeKind::Combine(_)
+                    | NodeKind::Select(_)
+                    | NodeKind::Affine(_)
+                    | NodeKind::Warp(_)
+                    | NodeKind::Attribute { .. },
+                ) => return None,
+            };
+            Some(tree.with_recipe(recipe.with_strength(strength.clone())))
+        })
     }
 
-    /// The same with every primitive changed.
+    /// The same with every primitive changed. Numbers that the change leaves alone follow their parameters still.
     #[must_use]
     pub fn map_primitives(&self, mut change: impl FnMut(&mut Primitive)) -> Self {
         self.rewrite(|tree| match tree.node().kind() {
-            NodeKind::Primitive(leaf) => {
-                let mut leaf = leaf.clone();
+            NodeKind::Primitive(old) => {
+                let mut leaf = old.clone();
                 change(&mut leaf);
-                Some(tree.with(NodeKind::Primitive(leaf), Vec::new()))
+                Some(match tree.node().recipe() {
+                    Some(recipe) => tree.with_recipe(recipe.changed(old, &leaf)),
+                    None => Self::assemble(NodeKind::Primitive(leaf), None, Vec::new(), tree.node().span()),
+                })
             }
-            NodeKind::Combine(_) | NodeKind::Affine(_) | NodeKind::Warp(_) | NodeKind::Attribute { .. } => {
-                None
-            }
+            NodeKind::Combine(_)
+            | NodeKind::Select(_)
+            | NodeKind::Affine(_)
+            | NodeKind::Warp(_)
+            | NodeKind::Attribute { .. } => None,
         })
     }
 
     /// Shifted.
     #[must_use]
-    pub fn translate(&self, by: [f64; 3]) -> Self {
-        self.mapped(DAffine3::from_translation(by.into()))
+    pub fn translate(&self, by: impl Into<Vector>) -> Self {
+        self.mapped(Map::Translate(by.into().0))
     }
 
     /// Turned about an axis through the origin, right-handed. Quarter turns are exact.
     #[must_use]
-    pub fn rotate(&self, axis: [f64; 3], degrees: f64) -> Self {
-        let axis = DVec3::from(axis).normalize();
-        self.mapped(DAffine3::from_mat3(affine::rotation(axis, affine::sin_cos_degrees(degrees))))
+    pub fn rotate(&self, axis: impl Into<Vector>, degrees: impl Into<Number>) -> Self {
+        self.mapped(Map::Rotate { axis: axis.into().0, angle: Angle::Degrees(degrees.into()) })
     }
 
     /// Scaled about the origin.
     #[must_use]
-    pub fn scale(&self, by: f64) -> Self {
-        self.scale_axes([by; 3])
+    pub fn scale(&self, by: impl Into<Number>) -> Self {
+        self.mapped(Map::Scale(by.into()))
     }
 
     /// Scaled about the origin, by another factor along each axis; a negative one mirrors.
     #[must_use]
-    pub fn scale_axes(&self, by: [f64; 3]) -> Self {
-        self.mapped(DAffine3::from_scale(by.into()))
+    pub fn scale_axes(&self, by: impl Into<Vector>) -> Self {
+        self.mapped(Map::ScaleAxes(by.into().0))
     }
 
     /// Mapped by a 3x4 matrix, given by rows, that takes this tree's space to its parent's: the last column is the shift.
     #[must_use]
-    pub fn affine(&self, rows: [[f64; 4]; 3]) -> Self {
-        let [x, y, z, shift] = [0, 1, 2, 3].map(|column| DVec3::from_array(rows.map(|row| row[column])));
-        self.mapped(DAffine3::from_mat3_translation(DMat3::from_cols(x, y, z), shift))
+    pub fn affine<T: Into<Number>>(&self, rows: [[T; 4]; 3]) -> Self {
+        let [[xx, xy, xz, x], [yx, yy, yz, y], [zx, zy, zz, z]] = rows.map(|row| row.map(Into::into));
+        self.mapped(Map::Affine(Box::new([xx, xy, xz, x, yx, yy, yz, y, zx, zy, zz, z])))
     }
 
-    fn mapped(&self, map: DAffine3) -> Self {
-        Self::new(NodeKind::Affine(map), vec![self.clone()])
+    fn mapped(&self, map: Map) -> Self {
+        Self::of(Recipe::Map(map), vec![self.clone()])
     }
 
     /// Twisted about a coordinate axis through the origin, by `rate` radians for each unit of length, right-handed.
     #[must_use]
-    pub fn twist(&self, axis: Axis, rate: f64) -> Self {
-        Self::new(NodeKind::Warp(Twist { axis: axis as u8, rate }.into()), vec![self.clone()])
+    pub fn twist(&self, axis: Axis, rate: impl Into<Number>) -> Self {
+        let direction = FieldValue::Vector(DVec3::AXES[axis as usize].to_array()).into();
+        let recipe = Recipe::Warp { warp: WarpKind::Twist(0), fields: vec![direction, real(rate)] };
+        Self::of(recipe, vec![self.clone()])
     }
 
     /// Coloured: linear red, green and blue for every leaf below that has no nearer colour.
     #[must_use]
-    pub fn color(&self, rgb: [f64; 3]) -> Self {
-        self.attribute("color", &rgb)
+    pub fn color(&self, rgb: impl Into<Vector>) -> Self {
+        self.attribute("color", &rgb.into().0)
     }
 
     /// With an attribute for every leaf below that has no nearer one of this name.
     #[must_use]
-    pub fn attribute(&self, name: &str, values: &[f64]) -> Self {
-        Self::new(NodeKind::Attribute { name: name.into(), values: values.to_vec() }, vec![self.clone()])
+    pub fn attribute<T: Into<Number> + Clone>(&self, name: &str, values: &[T]) -> Self {
+        let values = values.iter().cloned().map(Into::into).collect();
+        Self::of(Recipe::Attribute { name: name.into(), values }, vec![self.clone()])
     }
 }
 

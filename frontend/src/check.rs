@@ -9,13 +9,14 @@
 //!
 //! * Every number is finite and at most [`limits::MAX_NUMBER`] in magnitude; radii are at least [`limits::MIN_LENGTH`], and each
 //!   parameter is what its [`FieldKind`] says.
-//! * Leaves have no children, maps and attributes have one, combinators at least one. A Ricci exponent is in
+//! * Leaves have no children, maps and attributes have one, combinators and selectors at least one, and these choose one that is
+//!   there. A Ricci exponent is in
 //!   [1, [`limits::MAX_RICCI_EXPONENT`]].
 //! * Every affine map can be undone, and the numbers of its inverse are finite in f32.
 //! * The first attribute group is `color` with three reals; names are unique; attribute nodes name a group and fit its width.
 //! * There are at most [`limits::MAX_NODES`] nodes and [`limits::MAX_OCCURRENCES`] paths from the root to leaves.
 
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
 use glam::{DAffine3, DMat3};
@@ -28,8 +29,20 @@ use crate::combine::Combinator;
 use crate::diagnostic::{Diagnostic, Span};
 use crate::field::{Field, FieldKind, FieldValue};
 use crate::model::Model;
+use crate::number::Values;
+use crate::parameter::{Parameter, collect, refresh};
 use crate::report::{Report, clip, nearest};
-use crate::tree::{Node, NodeKind, Primitive};
+use crate::tree::{NodeKind, Primitive};
+
+mod groups;
+mod numbers;
+mod parameters;
+
+pub(crate) use groups::is_identifier;
+use groups::{check_groups, widths};
+use numbers::{check_choice, check_exponent, check_number, check_numbers};
+use parameters::{Dependence, check_iso};
+pub(crate) use parameters::{not_finite, unknown};
 
 /// The name of a node of a checked tree: its place in [`CheckedTree::nodes`].
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
@@ -52,6 +65,8 @@ pub struct CheckedTree {
     iso: f64,
     attributes: Vec<AttributeGroup>,
     nodes: Arc<[CheckedNode]>,
+    parameters: Vec<Parameter>,
+    dependence: Arc<Dependence>,
 }
 
 impl CheckedTree {
@@ -89,7 +104,14 @@ impl CheckedTree {
     /// [`nodes`](Self::nodes).
     #[must_use]
     pub fn uses(&self) -> Vec<u64> {
-        paths(&self.nodes)
+        paths(&self.nodes, |node| &node.children)
+    }
+
+    /// How often each node is asked from the root, along every path: as [`uses`](Self::uses), but through the chosen child of a
+    /// selector alone.
+    #[must_use]
+    pub fn asked(&self) -> Vec<u64> {
+        paths(&self.nodes, |node| node.kind.asked(&node.children))
     }
 
     /// A leaf under maps, the nearest first. They are those of a checked tree, or products of them, so they are not checked again.
@@ -100,7 +122,13 @@ impl CheckedTree {
             let below = NodeId(nodes.len() as u32 - 1);
             nodes.push(CheckedNode { kind, children: vec![below], span: None });
         }
-        Self { iso: Model::DEFAULT_ISO, attributes: vec![AttributeGroup::color()], nodes: nodes.into() }
+        Self {
+            iso: Model::DEFAULT_ISO,
+            attributes: vec![AttributeGroup::color()],
+            nodes: nodes.into(),
+            parameters: Vec::new(),
+            dependence: Arc::default(),
+        }
     }
 }
 
@@ -118,16 +146,20 @@ impl Model {
 
     fn check_within(&self, max_nodes: usize, max_occurrences: usize) -> Result<CheckedTree, Vec<Diagnostic>> {
         let mut report = Report::default();
-        check_number(&mut report, None, "the iso-value", self.iso, 0.0);
-        if (0.0..limits::MIN_LENGTH).contains(&self.iso) {
-            let message = format!("the iso-value is {:?}", self.iso);
-            report.add(|| {
-                Diagnostic::error(None, message)
-                    .expected(format!("a number of at least {:e}", limits::MIN_LENGTH))
-            });
+        let (mut parameters, errors) = collect(&self.parameters, &self.iso, &self.root);
+        report.extend(errors);
+        parameters::check_names(&mut report, &parameters);
+        let values = refresh(&mut parameters).unwrap_or_else(|errors| {
+            report.extend(errors);
+            Values::new()
+        });
+        if !report.is_empty() {
+            return Err(report.finish());
         }
+        let iso = check_iso(&mut report, &self.iso, &values);
         check_groups(&mut report, &self.attributes);
-        let nodes = self.arena(max_nodes, &mut report);
+        let mut dependence = Dependence::new(&parameters, &self.iso);
+        let nodes = self.arena(max_nodes, &mut report, (iso, &values), &mut dependence);
         if report.is_empty() {
             check_occurrences(&mut report, &nodes, max_occurrences);
         }
@@ -135,12 +167,19 @@ impl Model {
             report.sort();
             return Err(report.finish());
         }
-        Ok(CheckedTree { iso: self.iso, attributes: self.attributes.clone(), nodes: nodes.into() })
+        let (attributes, dependence) = (self.attributes.clone(), Arc::new(dependence));
+        Ok(CheckedTree { iso, attributes, nodes: nodes.into(), parameters, dependence })
     }
 
     /// All nodes, children before parents, each checked by itself.
-    fn arena(&self, max_nodes: usize, report: &mut Report) -> Vec<CheckedNode> {
-        let groups: BTreeMap<&str, usize> = self.attributes.iter().map(|g| (&*g.name, g.width())).collect();
+    fn arena(
+        &self,
+        max_nodes: usize,
+        report: &mut Report,
+        (iso, values): (f64, &Values),
+        dependence: &mut Dependence,
+    ) -> Vec<CheckedNode> {
+        let groups = widths(&self.attributes);
         let mut nodes: Vec<CheckedNode> = Vec::new();
         let mut ids: HashMap<usize, NodeId> = HashMap::new();
         // Each entry is a node, and whether its children are done.
@@ -160,10 +199,27 @@ impl Model {
                 report.add_last(Diagnostic::limit(node.span(), message));
                 break;
             }
-            check_node(report, node, &groups);
+            let id = NodeId(nodes.len() as u32);
+            if let Some(recipe) = node.recipe() {
+                dependence.add(id, recipe);
+            }
+            let made = node.recipe().map_or_else(
+                || Ok(node.kind().clone()),
+                |recipe| parameters::cook(recipe, values, iso, node.span()),
+            );
+            let kind = match made {
+                Ok(kind) => {
+                    check_node(report, &kind, node.children().len(), node.span(), &groups);
+                    kind
+                }
+                Err(error) => {
+                    report.add(|| error);
+                    node.kind().clone()
+                }
+            };
             let children = node.children().iter().map(|child| ids[&child.identity()]).collect();
-            ids.insert(tree.identity(), NodeId(nodes.len() as u32));
-            nodes.push(CheckedNode { kind: node.kind().clone(), children, span: node.span() });
+            ids.insert(tree.identity(), id);
+            nodes.push(CheckedNode { kind, children, span: node.span() });
         }
         nodes
     }
@@ -200,6 +256,7 @@ fn node_support(kind: &NodeKind, children: &[(Bounds, bool)]) -> (Bounds, bool) 
             (common.filter(|bounds| !bounds.is_empty()).unwrap_or(Bounds::EMPTY), false)
         }
         NodeKind::Combine(Combinator::Difference) => children[0],
+        NodeKind::Select(_) => kind.asked(children)[0],
         NodeKind::Affine(map) => (affine::map_bounds(map, children[0].0), negative),
         NodeKind::Warp(warp) => (warp.forward_bounds(children[0].0), negative),
         NodeKind::Attribute { .. } => children[0],
@@ -212,92 +269,14 @@ fn node_support(kind: &NodeKind, children: &[(Bounds, bool)]) -> (Bounds, bool) 
 /// unchanged by uniform scale. At 1e-12, an f64 inverse is still right to about four digits.
 pub const MIN_RECIPROCAL_CONDITION: f64 = 1e-12;
 
-/// Whether `value` is finite, at least `least` and not too large; an error otherwise.
-fn check_number(report: &mut Report, span: Option<Span>, what: &str, value: f64, least: f64) -> bool {
-    let fault = if !value.is_finite() {
-        "a finite number".to_owned()
-    } else if value.abs() > limits::MAX_NUMBER {
-        format!("a number of at most {:e}", limits::MAX_NUMBER)
-    } else if value < least {
-        if least == 0.0 {
-            "a number of at least 0".to_owned()
-        } else {
-            format!("a number of at least {least:e}")
-        }
-    } else {
-        return true;
-    };
-    report
-        .add(|| Diagnostic::error(span, format!("{what} is {value}")).expected(format!("expected {fault}")));
-    false
-}
-
-/// Three numbers, or an error that shows all of them.
-fn check_numbers(report: &mut Report, span: Option<Span>, what: &str, values: &[f64], least: f64) {
-    let good = |x: &f64| x.is_finite() && x.abs() <= limits::MAX_NUMBER && *x >= least;
-    if !values.iter().all(good) {
-        let shown: Vec<String> = values.iter().map(f64::to_string).collect();
-        let at_least = if least == 0.0 { " of at least 0" } else { "" };
-        report.add(|| {
-            Diagnostic::error(span, format!("{what} is ({})", shown.join(" "))).expected(format!(
-                "expected finite numbers{at_least}, at most {:e} in magnitude",
-                limits::MAX_NUMBER
-            ))
-        });
-    }
-}
-
-fn check_groups(report: &mut Report, groups: &[AttributeGroup]) {
-    if groups.first().is_none_or(|group| &*group.name != "color" || group.width() != 3) {
-        report.add(|| Diagnostic::error(None, "the first attribute is not `color` with 3 reals"));
-    }
-    if groups.len() > limits::MAX_ATTRIBUTES {
-        let message = format!("{} attributes; there may be {}", groups.len(), limits::MAX_ATTRIBUTES);
-        report.add(|| Diagnostic::limit(None, message));
-    }
-    let mut seen = HashSet::new();
-    for group in groups {
-        let name = &group.name;
-        if !is_identifier(name) {
-            report.add(|| {
-                Diagnostic::error(None, format!("an attribute is called `{name}`"))
-                    .expected("expected letters, digits and underscores, beginning with a letter")
-            });
-        } else if RESERVED.contains(&&**name) {
-            let message = format!("an attribute is called `{name}`, like another answer at a point");
-            report.add(|| Diagnostic::error(None, message));
-        }
-        if !seen.insert(name) {
-            report.add(|| Diagnostic::error(None, format!("two attributes are called `{name}`")));
-        }
-        let width = group.width();
-        if width == 0 {
-            report.add(|| Diagnostic::error(None, format!("the attribute `{name}` has no reals")));
-        } else if width > limits::MAX_ATTRIBUTE_WIDTH {
-            let most = limits::MAX_ATTRIBUTE_WIDTH;
-            report.add(|| {
-                Diagnostic::limit(
-                    None,
-                    format!("the attribute `{name}` has {width} reals; it may have {most}"),
-                )
-            });
-        }
-        let what = format!("the default of `{name}`");
-        check_numbers(report, None, &what, &group.default, f64::NEG_INFINITY);
-    }
-}
-
-/// What tables of samples call the other answers.
-const RESERVED: [&str; 7] = ["x", "y", "z", "field", "gx", "gy", "gz"];
-
-fn is_identifier(name: &str) -> bool {
-    name.starts_with(|c: char| c.is_ascii_alphabetic())
-        && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
-}
-
-fn check_node(report: &mut Report, node: &Node, groups: &BTreeMap<&str, usize>) {
-    let (span, count) = (node.span(), node.children().len());
-    let fits = match node.kind() {
+fn check_node(
+    report: &mut Report,
+    kind: &NodeKind,
+    count: usize,
+    span: Option<Span>,
+    groups: &BTreeMap<&str, usize>,
+) {
+    let fits = match kind {
         NodeKind::Primitive(leaf) => {
             check_primitive(report, span, leaf);
             (count == 0, "no children")
@@ -306,6 +285,10 @@ fn check_node(report: &mut Report, node: &Node, groups: &BTreeMap<&str, usize>) 
             if let Combinator::Ricci(n) = combinator {
                 check_exponent(report, span, *n);
             }
+            (count >= 1, "at least one child")
+        }
+        NodeKind::Select(which) => {
+            check_choice(report, span, *which, count);
             (count >= 1, "at least one child")
         }
         NodeKind::Affine(map) => {
@@ -322,7 +305,7 @@ fn check_node(report: &mut Report, node: &Node, groups: &BTreeMap<&str, usize>) 
         }
     };
     if let (false, expected) = fits {
-        let message = format!("{} has {count} children", describe(node.kind()));
+        let message = format!("{} has {count} children", describe(kind));
         report.add(|| Diagnostic::error(span, message).expected(format!("expected {expected}")));
     }
 }
@@ -332,6 +315,7 @@ fn describe(kind: &NodeKind) -> String {
     match kind {
         NodeKind::Primitive(leaf) => format!("a {}", leaf.skeleton.kind().name()),
         NodeKind::Combine(combinator) => format!("a node `{}`", combinator.name()),
+        NodeKind::Select(_) => "a node `select`".to_owned(),
         NodeKind::Affine(_) => "an affine map".to_owned(),
         NodeKind::Warp(warp) => format!("a {}", warp.kind().name()),
         NodeKind::Attribute { name, .. } => format!("the attribute node `{name}`"),
@@ -376,15 +360,6 @@ fn check_fields(
                 }
             }
         }
-    }
-}
-
-fn check_exponent(report: &mut Report, span: Option<Span>, n: f64) {
-    if !(1.0..=limits::MAX_RICCI_EXPONENT).contains(&n) {
-        report.add(|| {
-            Diagnostic::error(span, format!("the exponent of the Ricci blend is {n}"))
-                .expected(format!("expected a number from 1 to {}", limits::MAX_RICCI_EXPONENT))
-        });
     }
 }
 
@@ -451,14 +426,14 @@ fn norm(m: DMat3) -> f64 {
     [m.x_axis, m.y_axis, m.z_axis].iter().map(|column| column.abs().element_sum()).fold(0.0, f64::max)
 }
 
-/// The number of paths from the root to each node. Children come before their parents.
-fn paths(nodes: &[CheckedNode]) -> Vec<u64> {
+/// The number of paths from the root to each node, through these children of each. Children come before their parents.
+fn paths(nodes: &[CheckedNode], below: impl Fn(&CheckedNode) -> &[NodeId]) -> Vec<u64> {
     let mut paths = vec![0_u64; nodes.len()];
     if let Some(root) = paths.last_mut() {
         *root = 1;
     }
     for (index, node) in nodes.iter().enumerate().rev() {
-        for child in &node.children {
+        for child in below(node) {
             let child = child.0 as usize;
             paths[child] = paths[child].saturating_add(paths[index]);
         }
@@ -468,7 +443,7 @@ fn paths(nodes: &[CheckedNode]) -> Vec<u64> {
 
 /// Counts the paths from the root to all nodes: what lowering may have to go through, and rows in the end.
 fn check_occurrences(report: &mut Report, nodes: &[CheckedNode], most: usize) {
-    let uses = paths(nodes).into_iter().fold(0, u64::saturating_add);
+    let uses = paths(nodes, |node| &node.children).into_iter().fold(0, u64::saturating_add);
     if uses > most as u64 {
         let span = nodes.last().and_then(|root| root.span);
         let count = if uses == u64::MAX { "more than 10^19".to_owned() } else { uses.to_string() };

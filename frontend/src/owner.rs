@@ -17,7 +17,7 @@ use glam::DVec3;
 use crate::check::{CheckedTree, NodeId};
 use crate::combine::Combinator;
 use crate::diagnostic::Span;
-use crate::tree::NodeKind;
+use crate::tree::{NodeKind, chosen};
 
 /// A leaf that decides, as one of its occurrences.
 #[derive(Clone, PartialEq, Debug)]
@@ -52,6 +52,7 @@ fn name(kind: &NodeKind) -> &str {
         NodeKind::Affine(_) => "affine",
         NodeKind::Warp(warp) => warp.kind().name(),
         NodeKind::Attribute { name, .. } => name,
+        NodeKind::Select(_) => "select",
     }
 }
 
@@ -110,6 +111,7 @@ pub fn owner(tree: &CheckedTree, p: [f64; 3]) -> Option<Owner> {
                     }
                     NodeKind::Warp(warp) => tasks.push(Task::Ask(below(0), warp.inverse(p))),
                     NodeKind::Attribute { .. } => tasks.push(Task::Ask(below(0), p)),
+                    NodeKind::Select(which) => tasks.push(Task::Ask(below(chosen(*which)), p)),
                 }
                 steps.push(step);
             }
@@ -190,6 +192,12 @@ mod tests {
         assert_eq!(path(text, [5.0, 0.0, 0.0]).as_deref(), Some("union.0/point"));
         assert_eq!(path(text, [0.0, 9.0, 0.0]), None);
         assert_eq!(path("jbt 1 point { radius 1 }", [0.0; 3]).as_deref(), Some("point"));
+    }
+
+    #[test]
+    fn a_selector_asks_the_chosen_child() {
+        let text = "jbt 1 select 1 { point { radius 1 } sum { point { radius 1 } point { radius 2 } } }";
+        assert_eq!(path(text, [0.1, 0.0, 0.0]).as_deref(), Some("select.1/sum.1/point"));
     }
 
     #[test]

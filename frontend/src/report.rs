@@ -21,6 +21,13 @@ impl Report {
         }
     }
 
+    /// Adds all of these.
+    pub(crate) fn extend(&mut self, diagnostics: Vec<Diagnostic>) {
+        for diagnostic in diagnostics {
+            self.add(|| diagnostic);
+        }
+    }
+
     /// Whether further ones are only counted.
     pub(crate) fn is_full(&self) -> bool {
         self.kept.len() >= MAX_ERRORS

@@ -17,9 +17,9 @@
 //! # Ok::<(), jbt_frontend::scene::ScopeError>(())
 //! ```
 
-use glam::DAffine3;
-
 use crate::combine::Combinator;
+use crate::number::{Number, Vector};
+use crate::recipe::{Map, Recipe};
 use crate::tree::{NodeKind, Tree};
 
 /// A tree under construction: a stack of open scopes.
@@ -37,7 +37,14 @@ pub struct Scene {
 struct Scope {
     combinator: Combinator,
     children: Vec<Tree>,
-    around: Vec<NodeKind>,
+    around: Vec<Around>,
+}
+
+/// A node around what follows it.
+#[derive(Debug)]
+enum Around {
+    Kind(NodeKind),
+    Recipe(Recipe),
 }
 
 /// `begin` and `end` do not match.
@@ -57,7 +64,10 @@ impl Scope {
     }
 
     fn add(&mut self, tree: Tree) {
-        let wrap = |tree, kind: &NodeKind| Tree::new(kind.clone(), vec![tree]);
+        let wrap = |tree, around: &Around| match around {
+            Around::Kind(kind) => Tree::new(kind.clone(), vec![tree]),
+            Around::Recipe(recipe) => Tree::of(recipe.clone(), vec![tree]),
+        };
         self.children.push(self.around.iter().rev().fold(tree, wrap));
     }
 
@@ -95,20 +105,23 @@ impl Scene {
     }
 
     /// An attribute for what follows.
-    pub fn attribute(&mut self, name: &str, values: &[f64]) -> &mut Self {
-        let kind = NodeKind::Attribute { name: name.into(), values: values.to_vec() };
-        self.scope().around.push(kind);
+    pub fn attribute<T: Into<Number> + Clone>(&mut self, name: &str, values: &[T]) -> &mut Self {
+        let values = values.iter().cloned().map(Into::into).collect();
+        let recipe = Recipe::Attribute { name: name.into(), values };
+        self.scope().around.push(Around::Recipe(recipe));
         self
     }
 
     /// A shift of what follows.
-    pub fn translate(&mut self, by: [f64; 3]) -> &mut Self {
-        self.map(NodeKind::Affine(DAffine3::from_translation(by.into())))
+    pub fn translate(&mut self, by: impl Into<Vector>) -> &mut Self {
+        let recipe = Recipe::Map(Map::Translate(by.into().0));
+        self.scope().around.push(Around::Recipe(recipe));
+        self
     }
 
     /// Any map for what follows: an affine one or a warp.
     pub fn map(&mut self, kind: NodeKind) -> &mut Self {
-        self.scope().around.push(kind);
+        self.scope().around.push(Around::Kind(kind));
         self
     }
 

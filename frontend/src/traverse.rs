@@ -10,7 +10,8 @@
 
 use std::collections::{HashMap, HashSet};
 
-use crate::tree::{NodeKind, Tree};
+use crate::recipe::Recipe;
+use crate::tree::Tree;
 
 /// How often a shared node is visited.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
@@ -93,19 +94,29 @@ impl Tree {
             let old = tree.node().children();
             let new: Vec<Self> = old.iter().map(|child| done[&child.identity()].clone()).collect();
             let same = old.iter().zip(&new).all(|(a, b)| a.identity() == b.identity());
-            let rebuilt = if same { tree.clone() } else { tree.with(tree.node().kind().clone(), new) };
+            let rebuilt = if same { tree.clone() } else { tree.with_children(new) };
             let result = replace(&rebuilt).unwrap_or(rebuilt);
             done.insert(tree.identity(), result);
         }
         done.remove(&self.identity()).unwrap_or_else(|| self.clone())
     }
 
-    /// Another node in the same place of the text.
-    pub(crate) fn with(&self, kind: NodeKind, children: Vec<Self>) -> Self {
-        match self.node().span() {
-            Some(span) => Self::at(span, kind, children),
-            None => Self::new(kind, children),
-        }
+    /// A node of another recipe in the same place of the text, over the same children.
+    pub(crate) fn with_recipe(&self, recipe: Recipe) -> Self {
+        let other = Self::of(recipe, self.node().children().to_vec());
+        let node = other.node();
+        Self::assemble(
+            node.kind().clone(),
+            node.recipe().cloned(),
+            node.children().to_vec(),
+            self.node().span(),
+        )
+    }
+
+    /// The same node over other children.
+    fn with_children(&self, children: Vec<Self>) -> Self {
+        let node = self.node();
+        Self::assemble(node.kind().clone(), node.recipe().cloned(), children, node.span())
     }
 }
 
@@ -123,6 +134,7 @@ mod tests {
     use super::*;
     use crate::builder::{point, ring};
     use crate::skeleton::{Ring, Skeleton};
+    use crate::tree::NodeKind;
 
     /// The picture of the module: a is a union, b and c are colours, d is a point.
     fn diamond() -> Tree {
@@ -134,7 +146,7 @@ mod tests {
         let letter = |tree: &Tree| match tree.node().kind() {
             NodeKind::Combine(_) => 'a',
             NodeKind::Attribute { .. } => 'b',
-            NodeKind::Affine(_) | NodeKind::Warp(_) => 'c',
+            NodeKind::Affine(_) | NodeKind::Warp(_) | NodeKind::Select(_) => 'c',
             NodeKind::Primitive(_) => 'd',
         };
         trees.map(letter).collect()
@@ -180,7 +192,11 @@ mod tests {
         // Without the colour, the other side is untouched.
         let plain = tree.rewrite(|t| match t.node().kind() {
             NodeKind::Attribute { .. } => Some(t.node().children()[0].clone()),
-            NodeKind::Primitive(_) | NodeKind::Combine(_) | NodeKind::Affine(_) | NodeKind::Warp(_) => None,
+            NodeKind::Primitive(_)
+            | NodeKind::Combine(_)
+            | NodeKind::Select(_)
+            | NodeKind::Affine(_)
+            | NodeKind::Warp(_) => None,
         });
         assert_eq!(letters(plain.prefix(Visit::Paths)), "adcd");
         assert_eq!(plain.node().children()[1].identity(), tree.node().children()[1].identity());

@@ -17,11 +17,14 @@ use std::collections::HashMap;
 use std::fmt;
 use std::sync::Arc;
 
-use glam::DAffine3;
+use glam::{DAffine3, DVec3};
 
 use crate::combine::Combinator;
 use crate::diagnostic::Span;
 use crate::falloff::Falloff;
+use crate::model::Model;
+use crate::number::Number;
+use crate::recipe::{Fault, Recipe};
 use crate::skeleton::Skeleton;
 use crate::traverse::Visit;
 use crate::warp::Warp;
@@ -48,6 +51,8 @@ pub enum NodeKind {
     Primitive(Primitive),
     /// Fields of the children become one field.
     Combine(Combinator),
+    /// One child answers, the others do not count: that whose place, from 0, is nearest to this number.
+    Select(f64),
     /// The child stands elsewhere: the map takes the child's space to the parent's.
     Affine(DAffine3),
     /// The child is deformed.
@@ -61,11 +66,36 @@ pub enum NodeKind {
     },
 }
 
+impl NodeKind {
+    /// The children that answer: of a selector the chosen one, of any other node all. Panics, if a selector's number is near no child:
+    /// the check has excluded it.
+    #[must_use]
+    pub fn asked<'a, T>(&self, children: &'a [T]) -> &'a [T] {
+        match self {
+            Self::Select(which) => std::slice::from_ref(&children[chosen(*which)]),
+            Self::Primitive(_)
+            | Self::Combine(_)
+            | Self::Affine(_)
+            | Self::Warp(_)
+            | Self::Attribute { .. } => children,
+        }
+    }
+}
+
+/// The place of the child that a selector's number stands for: the nearest whole number. The number has been checked.
+pub(crate) fn chosen(which: f64) -> usize {
+    which.round() as usize
+}
+
 /// A node and its children.
 pub struct Node {
     kind: NodeKind,
+    /// What the kind was made of, if a number in it follows a parameter.
+    recipe: Option<Arc<Recipe>>,
     children: Vec<Tree>,
     span: Option<Span>,
+    /// Whether this node or one below has a recipe.
+    follows: bool,
 }
 
 impl Node {
@@ -73,6 +103,18 @@ impl Node {
     #[must_use]
     pub fn kind(&self) -> &NodeKind {
         &self.kind
+    }
+
+    /// The node before its formulas were evaluated, if one of its numbers follows a parameter.
+    #[must_use]
+    pub fn recipe(&self) -> Option<&Arc<Recipe>> {
+        self.recipe.as_ref()
+    }
+
+    /// Whether a number of this node, or of one below, follows a parameter.
+    #[must_use]
+    pub fn follows(&self) -> bool {
+        self.follows
     }
 
     /// Its children, in order.
@@ -96,13 +138,48 @@ impl Tree {
     /// A node over children. Anything can be built; [`Model::check`](crate::check) says whether it makes sense.
     #[must_use]
     pub fn new(kind: NodeKind, children: Vec<Self>) -> Self {
-        Self(Arc::new(Node { kind, children, span: None }))
+        Self::assemble(kind, None, children, None)
+    }
+
+    /// A node whose numbers may follow parameters. Until the check, which knows better, a surface radius is that of the usual
+    /// iso-value.
+    #[must_use]
+    pub fn of(recipe: Recipe, children: Vec<Self>) -> Self {
+        let iso = Number::from(Model::DEFAULT_ISO);
+        let (kind, asks_iso) = (recipe.kind(iso.value()), recipe.asks_iso());
+        // What it cannot be now, it may be for other values; the check says what is wrong.
+        let broken = || NodeKind::Affine(DAffine3::from_translation(DVec3::NAN));
+        let kept = (kind.is_err() || asks_iso || recipe.follows(&iso)).then(|| Arc::new(recipe));
+        Self::assemble(kind.unwrap_or_else(|_| broken()), kept, children, None)
+    }
+
+    /// The node of a recipe, which is kept if a number in it follows a parameter.
+    pub(crate) fn cook(
+        recipe: Recipe,
+        iso: &Number,
+        children: Vec<Self>,
+        span: Option<Span>,
+    ) -> Result<Self, Fault> {
+        let kind = recipe.kind(iso.value())?;
+        let kept = recipe.follows(iso).then(|| Arc::new(recipe));
+        Ok(Self::assemble(kind, kept, children, span))
+    }
+
+    /// A node of all its parts.
+    pub(crate) fn assemble(
+        kind: NodeKind,
+        recipe: Option<Arc<Recipe>>,
+        children: Vec<Self>,
+        span: Option<Span>,
+    ) -> Self {
+        let follows = recipe.is_some() || children.iter().any(|child| child.0.follows);
+        Self(Arc::new(Node { kind, recipe, children, span, follows }))
     }
 
     /// A node that stands at a place in a text.
     #[must_use]
     pub fn at(span: Span, kind: NodeKind, children: Vec<Self>) -> Self {
-        Self(Arc::new(Node { kind, children, span: Some(span) }))
+        Self::assemble(kind, None, children, Some(span))
     }
 
     /// The root node.
@@ -162,7 +239,13 @@ impl PartialEq for Tree {
                 continue;
             }
             let (a, b) = (a.node(), b.node());
-            if a.kind != b.kind || a.children.len() != b.children.len() {
+            let same = match (&a.recipe, &b.recipe) {
+                // Values are those of parameters that somebody else compares.
+                (Some(a), Some(b)) => a == b,
+                (None, None) => a.kind == b.kind,
+                (Some(_), None) | (None, Some(_)) => false,
+            };
+            if !same || a.children.len() != b.children.len() {
                 return false;
             }
             pairs.extend(a.children.iter().zip(&b.children));

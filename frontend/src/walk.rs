@@ -3,6 +3,7 @@
 //! ```text
 //! walk(node, p):   primitive    strength * falloff(d^2(p) / radius^2), with the attributes of the way down
 //!                  combinator   walk each child at p; combine fields, mix attributes by weights
+//!                  selector     walk the chosen child
 //!                  map          walk the child at map^-1(p)
 //!                  attribute    walk the child, its leaves having this attribute
 //! ```
@@ -78,6 +79,9 @@ pub fn walk(tree: &CheckedTree, p: [f64; 3]) -> Sample {
                         tasks.extend(
                             node.children.iter().rev().map(|&child| Task::Ask(child, p, values.clone())),
                         );
+                    }
+                    NodeKind::Select(_) => {
+                        tasks.push(Task::Ask(node.kind.asked(&node.children)[0], p, values));
                     }
                     NodeKind::Affine(map) => {
                         tasks.push(Task::Ask(node.children[0], map.inverse().transform_point3(p), values));

@@ -11,7 +11,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use jbt_frontend::diagnostic::{Diagnostic, Severity, Source};
-use jbt_frontend::text::{Options, parse, parse_scene, print};
+use jbt_frontend::text::{Options, parse, print};
 use jbt_frontend::tree::{NodeKind, Tree};
 use jbt_ir::limits;
 
@@ -152,7 +152,7 @@ fn bits(root: &Tree) -> Vec<u64> {
                 values(&mut all, leaf.skeleton.to_fields());
                 all.extend([leaf.radius.to_bits(), leaf.strength.to_bits()]);
             }
-            NodeKind::Combine(_) => {}
+            NodeKind::Combine(_) | NodeKind::Select(_) => {}
             NodeKind::Affine(map) => all.extend(map.to_cols_array().map(f64::to_bits)),
             NodeKind::Warp(warp) => values(&mut all, warp.to_fields()),
             NodeKind::Attribute { values, .. } => all.extend(values.iter().map(|x| x.to_bits())),
@@ -197,10 +197,10 @@ fn a_graph_prints_as_long_as_it_is() {
 fn parameters_are_listed_and_set() {
     let text = b"jbt 1 param a = 2 param b = a * 3 point { radius b }";
     let options = Options { parameters: vec![("a".to_owned(), 5.0)] };
-    let scene = parse_scene(text, &options).unwrap();
-    let shown: Vec<_> = scene.parameters.iter().map(|p| (p.name.as_str(), p.default, p.value)).collect();
+    let model = parse(text, &options).unwrap();
+    let shown: Vec<_> = model.parameters.iter().map(|p| (p.name(), p.default(), p.value())).collect();
     assert_eq!(shown, [("a", 2.0, 5.0), ("b", 15.0, 15.0)]);
-    let NodeKind::Primitive(leaf) = scene.model.root.node().kind() else { panic!() };
+    let NodeKind::Primitive(leaf) = model.root.node().kind() else { panic!() };
     assert_eq!(leaf.radius, 15.0);
 }
 

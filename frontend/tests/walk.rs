@@ -120,7 +120,7 @@ fn dominance() {
     let model = |root: Tree| {
         let attributes =
             vec![AttributeGroup::color(), group("part", Mixing::Dominant), group("heat", Mixing::Blend)];
-        Model { iso: 0.5, attributes, root }.check().unwrap()
+        Model { attributes, ..Model::new(root) }.check().unwrap()
     };
     let part =
         |field: f64, number: f64| level(field).attribute("part", &[number]).attribute("heat", &[number]);

@@ -33,6 +33,8 @@
 //! ```
 //!
 //! * [`build`], [`text`] and [`import`] make a [`Model`]; [`Model::check`] says everything that is wrong with it.
+//! * Numbers may follow named parameters ([`build::param`], `param` in a text): [`CheckedTree::with_parameters`] sets them, and
+//!   [`Evaluator::update`] then writes numbers and compiles nothing.
 //! * An [`Evaluator`] answers one [`Query`] at any points, on the [`Engine`] that the machine has; all engines give the same bits.
 //!   A [`Probe`] asks about a single point, in any order, for one evaluation.
 //! * [`Polygonize`] meshes a model; [`export`] writes meshes.
@@ -62,12 +64,14 @@ pub use jbt_jit as jit;
 
 pub use jbt_frontend::attribute::{AttributeGroup, Mixing};
 pub use jbt_frontend::builder as build;
-pub use jbt_frontend::check::CheckedTree;
+pub use jbt_frontend::check::{CheckedTree, NodeId};
 pub use jbt_frontend::combine::Combinator;
 pub use jbt_frontend::diagnostic;
 pub use jbt_frontend::falloff::Falloff;
 pub use jbt_frontend::import;
 pub use jbt_frontend::model::Model;
+pub use jbt_frontend::number::Number;
+pub use jbt_frontend::parameter::Parameter;
 pub use jbt_frontend::query::Query;
 pub use jbt_frontend::scene::Scene;
 pub use jbt_frontend::text;

@@ -35,14 +35,18 @@ pub fn places(query: Query) -> u64 {
     1 + 3 * u64::from(query.gradient)
 }
 
-/// Uses of leaves: paths from the root to a leaf.
+/// Uses of leaves: paths from the root to a leaf, through the chosen child of a selector alone.
 #[must_use]
 pub fn leaf_uses(tree: &CheckedTree) -> u64 {
     let of = |(node, uses): (&jbt_frontend::check::CheckedNode, u64)| match node.kind {
         NodeKind::Primitive(_) => uses,
-        NodeKind::Combine(_) | NodeKind::Affine(_) | NodeKind::Warp(_) | NodeKind::Attribute { .. } => 0,
+        NodeKind::Combine(_)
+        | NodeKind::Select(_)
+        | NodeKind::Affine(_)
+        | NodeKind::Warp(_)
+        | NodeKind::Attribute { .. } => 0,
     };
-    tree.nodes().iter().zip(tree.uses()).map(of).fold(0, u64::saturating_add)
+    tree.nodes().iter().zip(tree.asked()).map(of).fold(0, u64::saturating_add)
 }
 
 /// Evaluations of primitives for one point.

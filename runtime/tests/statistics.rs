@@ -125,9 +125,15 @@ fn paths(tree: &CheckedTree) -> Vec<(u32, Vec<Map>)> {
             (NodeKind::Affine(map), _) => below.push(Map::Affine(*map)),
             (NodeKind::Warp(warp), _) => below.push(Map::Warp(warp.clone())),
             (NodeKind::Primitive(_), _) if !found.contains(&(id.0, maps.clone())) => found.push((id.0, maps)),
-            (NodeKind::Primitive(_) | NodeKind::Combine(_) | NodeKind::Attribute { .. }, _) => {}
+            (
+                NodeKind::Primitive(_)
+                | NodeKind::Combine(_)
+                | NodeKind::Select(_)
+                | NodeKind::Attribute { .. },
+                _,
+            ) => {}
         }
-        stack.extend(node.children.iter().map(|&child| (child, below.clone())));
+        stack.extend(node.kind.asked(&node.children).iter().map(|&child| (child, below.clone())));
     }
     found
 }

@@ -115,6 +115,9 @@ impl Compact {
         match &node.kind {
             NodeKind::Primitive(primitive) => self.leaf(primitive, &map, &values),
             NodeKind::Combine(combinator) => combine(*combinator, &node.children, map, &values, tasks),
+            NodeKind::Select(_) => {
+                tasks.push(Task::Write(node.kind.asked(&node.children)[0], map, values));
+            }
             NodeKind::Affine(here) => tasks.push(Task::Write(node.children[0], map * *here, values)),
             NodeKind::Warp(Warp::Twist(twist)) => {
                 let map = self.map(&map);

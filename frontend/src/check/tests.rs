@@ -125,7 +125,8 @@ fn reports_everything_in_the_order_of_the_text() {
 #[test]
 fn judges_the_model_itself() {
     let with = |iso: f64, attributes: Vec<AttributeGroup>| {
-        let errors = Model { iso, attributes, root: point(0.0) }.check().err().unwrap_or_default();
+        let errors =
+            Model { iso: iso.into(), attributes, ..Model::new(point(0.0)) }.check().err().unwrap_or_default();
         errors.into_iter().map(|error| (error.severity, error.message)).collect::<Vec<_>>()
     };
     let color = AttributeGroup::color;

@@ -4,6 +4,7 @@
 //! define(occurrence):  leaf        its point, squared distance, falloff, strength; attributes are columns
 //!                      warp        its point in a new space, then the child there
 //!                      difference  both sides, then the smaller
+//!                      selector    for each child: a fold over one row, which is active or not
 //!                      operator    for each group:  folded   open a fold over a table, define the first member, step, close
 //!                                                   else     for each member: define, step
 //! define under a guard: open a fold over a table of one row, define, close; the answer is what the fold carries out
@@ -17,6 +18,7 @@
 mod guard;
 mod probe;
 mod row;
+mod select;
 
 use rustc_hash::FxHashMap as HashMap;
 use std::rc::Rc;
@@ -25,10 +27,10 @@ use jbt_ir::{Domain, Entity, Function, FunctionBuilder, Reduction, Schema, Table
 
 use self::guard::{Guard, GuardStart};
 use self::probe::Probes;
+use self::select::Select;
 use super::guide::{Decision, DecisionKind, Rule};
 use super::mixing::{Answer, Operator, State, difference};
 use super::occurrence::{FieldId, OccurrenceId, OccurrenceKind, Scene, SpaceId};
-use super::position::MapKind;
 use super::shape::{Lift, ReducerCode, Shapes, non_negative};
 use crate::attribute::Mixing;
 use crate::check::CheckedTree;
@@ -95,6 +97,10 @@ enum Task {
     Step,
     FinishReduce,
     Difference,
+    BeginSelect,
+    OpenChild(OccurrenceId),
+    CloseChild,
+    FinishSelect,
     /// An operand that is written out: its place in the file is a number of the current row.
     Order,
 }
@@ -121,6 +127,7 @@ struct Emitter<'a> {
     rows: Vec<Table>,
     tables: Vec<TableCode>,
     reduces: Vec<Reduce>,
+    selects: Vec<Select>,
     kept: HashMap<OccurrenceId, Answer>,
     kept_fields: HashMap<FieldId, Value>,
     kept_points: HashMap<SpaceId, [Value; 3]>,
@@ -146,6 +153,7 @@ impl<'a> Emitter<'a> {
             rows: Vec::new(),
             tables: Vec::new(),
             reduces: Vec::new(),
+            selects: Vec::new(),
             kept: HashMap::default(),
             kept_fields: HashMap::default(),
             kept_points: HashMap::default(),
@@ -170,7 +178,7 @@ impl<'a> Emitter<'a> {
         let point = std::array::from_fn(|axis| self.builder.input(axis));
         self.points.push((SpaceId(0), point));
         let zero = self.builder.constant(0.0);
-        self.open_only("scene", SpaceId(0), Rule::Never, zero);
+        self.open_only("scene", SpaceId(0), Rule::Never, &[zero]);
         self.iso2 = Some(self.column("iso2"));
         for group in &self.scene.tree.attributes()[..self.mixing.len()] {
             let default = (0..group.width()).map(|i| self.column(&group.channel(i))).collect();
@@ -189,7 +197,7 @@ impl<'a> Emitter<'a> {
             // The sign of a zero may depend on rows that add nothing; no answer shows it.
             next.extend(group.channels.iter().map(|&channel| self.builder.add(channel, zero)));
         }
-        let results = self.close_only(next);
+        let results = self.close_only(next, 1);
         let mut names = vec!["field".to_owned()];
         for group in &self.scene.tree.attributes()[..self.mixing.len()] {
             names.extend((0..group.width()).map(|i| group.channel(i)));
@@ -230,13 +238,16 @@ impl<'a> Emitter<'a> {
                 self.kept.insert(id, answer);
             }
             Task::LiftField(field) => {
-                let value = self.leaf(field);
+                let value = self.lift_field(field);
                 self.kept_fields.insert(field, value);
             }
             Task::LiftSpace(space) => {
                 self.tasks.push(Task::LeaveSpace);
-                self.enter_warp(space);
-                self.kept_points.insert(space, self.points.last().expect("the warp has been entered").1);
+                let point = self.lift_point(space);
+                self.points.push((space, point));
+                self.probe_point(space, point);
+                self.kept_points.insert(space, point);
+                self.enter_space(space);
             }
             Task::LeaveSpace => {
                 self.points.pop();
@@ -252,6 +263,10 @@ impl<'a> Emitter<'a> {
             }
             Task::OpenGuard(id, start) => self.open_guard(id, start),
             Task::CloseGuard(decision) => self.close_guard(decision),
+            Task::BeginSelect => self.begin_select(),
+            Task::OpenChild(id) => self.open_child(id),
+            Task::CloseChild => self.close_child(),
+            Task::FinishSelect => self.finish_select(),
             Task::OpenFold => self.open_group(),
             Task::CloseFold => {
                 self.rows.pop();
@@ -304,23 +319,29 @@ impl<'a> Emitter<'a> {
                 self.tasks.push(Task::Operand(*right, Guard::RIGHT));
                 self.tasks.push(Task::Operand(*left, Guard::LEFT));
             }
+            OccurrenceKind::Select { children, .. } => self.select(children),
             OccurrenceKind::Reduce { .. } => self.begin_reduce(id),
         }
     }
 
     /// Computes the point inside a warp, and what is lifted to the start of its space.
     fn enter_warp(&mut self, space: SpaceId) {
+        let point = self.point_inside(space);
+        self.points.push((space, point));
+        self.probe_point(space, point);
+        self.enter_space(space);
+    }
+
+    /// The point inside a warp.
+    fn point_inside(&mut self, space: SpaceId) -> [Value; 3] {
         let inside = self.scene.inside(space).expect("the world is no warp's inside");
-        let map = MapKind::of(&self.scene.position(inside.position).map);
+        let map = self.scene.position(inside.position).kind();
         let (_, outer) = *self.points.last().expect("a space is open");
         let row = self.columns(map.columns());
         let point = map.emit(&mut self.builder, outer, &row);
         let kind = self.scene.warp(inside.warp).kind();
         let row = self.columns(kind.columns());
-        let point = kind.emit(&mut self.builder, point, &row);
-        self.points.push((space, point));
-        self.probe_point(space, point);
-        self.enter_space(space);
+        kind.emit(&mut self.builder, point, &row)
     }
 
     /// Puts what is lifted to the start of a space on top of the tasks.
@@ -329,7 +350,7 @@ impl<'a> Emitter<'a> {
             match lift {
                 Lift::Field(field) => self.tasks.push(Task::LiftField(*field)),
                 Lift::Space(space) => self.tasks.push(Task::LiftSpace(*space)),
-                Lift::Occurrence(id) if self.shapes.guards_lift(*id, self.builder.fold_depth()) => {
+                Lift::Occurrence(id) if self.guards_lift(*lift) => {
                     self.tasks.extend([Task::Keep(*id), Task::CloseGuard(None), Task::Define(*id)]);
                     self.tasks.push(Task::OpenGuard(*id, GuardStart::Zero));
                 }
@@ -440,6 +461,7 @@ impl Emitter<'_> {
                 self.scene.warp(self.scene.occurrence(id).node).kind().name().to_owned()
             }
             OccurrenceKind::Difference { .. } => "difference".to_owned(),
+            OccurrenceKind::Select { .. } => "select".to_owned(),
             OccurrenceKind::Reduce { reducer, .. } => match ReducerCode::of(*reducer) {
                 ReducerCode::Sum => "sum".to_owned(),
                 ReducerCode::RicciInteger(_) | ReducerCode::RicciGeneral => "ricci".to_owned(),

@@ -16,9 +16,9 @@
 use jbt_ir::{Function, Store, Table, Tables};
 
 use super::emit::{self, TableCode};
-use super::occurrence::{OccurrenceId, Scene, SpaceId};
-use super::rows;
-use super::shape::Shapes;
+use super::occurrence::{Scene, SpaceId};
+use super::rows::{self, Member};
+use super::shape::{Lift, Shapes};
 use super::support::Supports;
 use crate::bounds::Bounds;
 use crate::check::NodeId;
@@ -200,7 +200,7 @@ fn table_guide(
     scene: &Scene<'_>,
     supports: &Supports<'_>,
     code: &TableCode,
-    members: &[OccurrenceId],
+    members: &[Member],
 ) -> TableGuide {
     let space = match (code.space, code.probe) {
         (SpaceId(0), _) => SpaceGuide::World,
@@ -209,8 +209,16 @@ fn table_guide(
     };
     TableGuide {
         space,
-        supports: members.iter().map(|&member| supports.of(member)).collect(),
+        supports: members.iter().map(|member| support(supports, member)).collect(),
         rule: code.rule,
-        nodes: members.iter().map(|&member| scene.occurrence(member).node).collect(),
+        nodes: members.iter().map(|member| member.node(scene)).collect(),
+    }
+}
+
+fn support(supports: &Supports<'_>, member: &Member) -> Support {
+    match member {
+        Member::Operand(id, _) | Member::Lifted(Lift::Occurrence(id)) => supports.of(*id),
+        Member::Lifted(Lift::Field(field)) => supports.of_field(*field),
+        Member::Lifted(Lift::Space(_)) => Support::EVERYWHERE,
     }
 }

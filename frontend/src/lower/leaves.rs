@@ -1,11 +1,12 @@
 //! Every leaf where it stands, each as a model of its own: what statistics ask about one primitive at a time.
 
 use super::occurrence::{FieldId, Scene};
+use super::shape::Lift;
 use crate::check::{CheckedTree, NodeId};
 use crate::tree::{NodeKind, Primitive};
 
 /// The leaves of a tree at their positions: one for each leaf and way of coordinates to it, whatever the attributes. A leaf that
-/// several parents share under the same maps is there once.
+/// several parents share under the same maps is there once. Of a selector's children, only the chosen one has leaves.
 ///
 /// ```
 /// use jbt_frontend::builder::point;
@@ -21,38 +22,44 @@ use crate::tree::{NodeKind, Primitive};
 /// ```
 pub struct LeafOccurrences<'a> {
     scene: Scene<'a>,
+    /// Those that selectors do not leave out.
+    asked: Vec<FieldId>,
 }
 
 impl<'a> LeafOccurrences<'a> {
     /// Finds them. Cost: all paths of the tree at worst.
     #[must_use]
     pub fn new(tree: &'a CheckedTree) -> Self {
-        Self { scene: Scene::new(tree) }
+        let scene = Scene::new(tree);
+        let all = (0..scene.fields.len() as u32).map(FieldId);
+        let asked = all.filter(|&field| scene.demand.is_asked(Lift::Field(field))).collect();
+        Self { scene, asked }
     }
 
     /// How many there are.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.scene.fields.len()
+        self.asked.len()
     }
 
     /// Whether there are none. No tree is without leaves.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.scene.fields.is_empty()
+        self.asked.is_empty()
     }
 
     /// The node of one of them. Panics if there are not as many.
     #[must_use]
     pub fn node(&self, index: usize) -> NodeId {
-        self.scene.field(FieldId(index as u32)).node
+        self.scene.field(self.asked[index]).node
     }
 
     /// A model of this leaf alone, where it stands in the whole, with strength 1: its field is above zero exactly inside the
-    /// primitive's support. Its numbers are, to the bit, those that it has in the program of the whole model. Panics if there are not as many.
+    /// primitive's support. Its numbers are, to the bit, those that it has in the program of the whole model, unless they follow
+    /// parameters: then to within rounding. Panics if there are not as many.
     #[must_use]
     pub fn alone(&self, index: usize) -> CheckedTree {
-        let field = FieldId(index as u32);
+        let field = self.asked[index];
         let leaf = Primitive { strength: 1.0, ..self.scene.primitive(field).clone() };
         let mut maps = Vec::new();
         let mut position = self.scene.position(self.scene.field(field).position);

@@ -7,10 +7,12 @@ use rustc_hash::FxHashMap as HashMap;
 
 use glam::DAffine3;
 
-use crate::affine::Similarity;
+use super::demand::Demand;
+use super::position::{MapKind, Position, PositionKey, Trails, position_key};
 use crate::check::{CheckedTree, NodeId};
 use crate::combine::Combinator;
-use crate::tree::{NodeKind, Primitive};
+use crate::recipe::Recipe;
+use crate::tree::{NodeKind, Primitive, chosen};
 use crate::warp::Warp;
 
 /// The name of an occurrence.
@@ -33,13 +35,6 @@ pub(super) struct BindingsId(u32);
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, PartialOrd, Ord)]
 pub(super) struct SpaceId(pub(super) u32);
 
-/// The map from an occurrence's own space to `space`.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub(super) struct Position {
-    pub(super) space: SpaceId,
-    pub(super) map: DAffine3,
-}
-
 /// The inside of a warp.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Inside {
@@ -61,6 +56,10 @@ pub(super) struct LeafField {
     pub(super) map: DAffine3,
     /// How many times as large as it was written the skeleton is in its pose. A similarity ends up here; other maps leave it at 1.
     pub(super) scale: f64,
+    /// What the inverse of the map is as code.
+    pub(super) kind: MapKind,
+    /// Whether the strength is a number of its row.
+    pub(super) strong: bool,
 }
 
 /// An operator whose operands are alike: any number of them, in any order but for ties.
@@ -68,16 +67,36 @@ pub(super) struct LeafField {
 pub(super) enum Reducer {
     Sum,
     Ricci(f64),
+    /// Ricci's blend whose exponent follows a parameter.
+    RicciFollowing(f64),
     Union,
     Intersection,
 }
 
 #[derive(Clone, Debug)]
 pub(super) enum OccurrenceKind {
-    Leaf { field: FieldId, bindings: BindingsId },
-    Warp { position: PositionId, inside: SpaceId, child: OccurrenceId },
-    Reduce { reducer: Reducer, children: Vec<OccurrenceId> },
-    Difference { left: OccurrenceId, right: OccurrenceId },
+    Leaf {
+        field: FieldId,
+        bindings: BindingsId,
+    },
+    Warp {
+        position: PositionId,
+        inside: SpaceId,
+        child: OccurrenceId,
+    },
+    Reduce {
+        reducer: Reducer,
+        children: Vec<OccurrenceId>,
+    },
+    Difference {
+        left: OccurrenceId,
+        right: OccurrenceId,
+    },
+    /// One child answers now; all have code.
+    Select {
+        children: Vec<OccurrenceId>,
+        chosen: usize,
+    },
 }
 
 #[derive(Clone, Debug)]
@@ -102,6 +121,7 @@ pub(super) struct Scene<'a> {
     bindings: Vec<Vec<Option<NodeId>>>,
     /// By the numbers of spaces without that of the world, which is 0.
     pub(super) insides: Vec<Inside>,
+    pub(super) demand: Demand,
 }
 
 /// A node and what its ancestors say about it.
@@ -134,7 +154,11 @@ impl<'a> Scene<'a> {
     pub(super) fn primitive(&self, field: FieldId) -> &'a Primitive {
         match &self.tree.node(self.field(field).node).kind {
             NodeKind::Primitive(primitive) => primitive,
-            NodeKind::Combine(_) | NodeKind::Affine(_) | NodeKind::Warp(_) | NodeKind::Attribute { .. } => {
+            NodeKind::Combine(_)
+            | NodeKind::Select(_)
+            | NodeKind::Affine(_)
+            | NodeKind::Warp(_)
+            | NodeKind::Attribute { .. } => {
                 unreachable!("leaf fields are made of primitives")
             }
         }
@@ -154,6 +178,7 @@ impl<'a> Scene<'a> {
         match &self.tree.node(node).kind {
             NodeKind::Warp(warp) => warp,
             NodeKind::Combine(_)
+            | NodeKind::Select(_)
             | NodeKind::Affine(_)
             | NodeKind::Primitive(_)
             | NodeKind::Attribute { .. } => {
@@ -175,13 +200,16 @@ struct Frame {
 struct Finder<'a> {
     scene: Scene<'a>,
     /// Numbers of the file are keys here: a hash that nobody can prepare for.
-    position_names: std::collections::HashMap<(SpaceId, [u64; 12]), PositionId>,
+    position_names: std::collections::HashMap<PositionKey, PositionId>,
+    trails: Trails,
     bindings_names: HashMap<Vec<Option<NodeId>>, BindingsId>,
     field_names: HashMap<(NodeId, PositionId), FieldId>,
     inside_names: HashMap<(NodeId, PositionId), (SpaceId, PositionId)>,
     known: HashMap<Key, OccurrenceId>,
     /// For each node, whether one path leads to it from the root: then it is met once, and nothing has to be remembered of it.
     once: Vec<bool>,
+    /// Whether there is a selector.
+    selects: bool,
     stack: Vec<Frame>,
 }
 
@@ -195,21 +223,24 @@ impl<'a> Finder<'a> {
             positions: Vec::new(),
             bindings: Vec::new(),
             insides: Vec::new(),
+            demand: Demand::ALL,
         };
         Self {
             scene,
             position_names: std::collections::HashMap::new(),
+            trails: Trails::default(),
             bindings_names: HashMap::default(),
             field_names: HashMap::default(),
             inside_names: HashMap::default(),
             known: HashMap::default(),
             once: tree.uses().into_iter().map(|uses| uses == 1).collect(),
+            selects: false,
             stack: Vec::new(),
         }
     }
 
     fn run(mut self) -> Scene<'a> {
-        let world = self.name_position(Position { space: SpaceId(0), map: DAffine3::IDENTITY });
+        let world = self.name_position(Position::start(SpaceId(0)));
         let unbound = self.name_bindings(vec![None; self.scene.tree.attributes().len()]);
         let root = self.resolve((self.scene.tree.root(), world, unbound));
         let mut done = self.enter(root);
@@ -237,12 +268,15 @@ impl<'a> Finder<'a> {
         }
         self.scene.root = done.expect("the last frame was the root");
         self.scene.occurrences[self.scene.root.0 as usize].uses += 1;
+        if self.selects {
+            self.scene.demand = Demand::new(&self.scene);
+        }
         self.scene
     }
 
     /// Walks through affine, attribute and pass-through nodes to the node that does something.
     fn resolve(&mut self, (mut node, position, bindings): Key) -> Key {
-        let Position { space, mut map } = *self.scene.position(position);
+        let Position { space, mut map, mut trail } = *self.scene.position(position);
         let mut bound: Option<Vec<Option<NodeId>>> = None;
         let mut moved = false;
         loop {
@@ -250,6 +284,14 @@ impl<'a> Finder<'a> {
             match &data.kind {
                 NodeKind::Affine(inner) => {
                     map *= *inner;
+                    trail = match self.scene.tree.recipe(node) {
+                        None => trail.fixed(inner, self.scene.tree.follows()),
+                        Some(recipe) => {
+                            let name =
+                                self.trails.name(position_key(space, trail.name, &trail.since), node, recipe);
+                            trail.free(name, recipe.freedom())
+                        }
+                    };
                     moved = true;
                 }
                 NodeKind::Attribute { name, .. } => {
@@ -261,8 +303,10 @@ impl<'a> Finder<'a> {
                 }
                 NodeKind::Combine(Combinator::Union | Combinator::Intersection | Combinator::Difference)
                     if data.children.len() == 1 => {}
-                NodeKind::Combine(_) | NodeKind::Primitive(_) | NodeKind::Warp(_) => {
-                    let position = if moved { self.name_position(Position { space, map }) } else { position };
+                NodeKind::Select(_) if data.children.len() == 1 => {}
+                NodeKind::Combine(_) | NodeKind::Select(_) | NodeKind::Primitive(_) | NodeKind::Warp(_) => {
+                    let position =
+                        if moved { self.name_position(Position { space, map, trail }) } else { position };
                     let bindings = bound.map_or(bindings, |bound| self.name_bindings(bound));
                     return (node, position, bindings);
                 }
@@ -298,6 +342,9 @@ impl<'a> Finder<'a> {
             NodeKind::Combine(combinator) => {
                 let reducer = match combinator {
                     Combinator::Sum => Some(Reducer::Sum),
+                    Combinator::Ricci(n) if self.scene.tree.recipe(node).is_some() => {
+                        Some(Reducer::RicciFollowing(*n))
+                    }
                     Combinator::Ricci(n) if *n == 1.0 => Some(Reducer::Sum),
                     Combinator::Ricci(n) => Some(Reducer::Ricci(*n)),
                     Combinator::Union => Some(Reducer::Union),
@@ -308,6 +355,10 @@ impl<'a> Finder<'a> {
                     Some(reducer) => OccurrenceKind::Reduce { reducer, children: frame.children },
                     None => self.difference(node, position, &frame.children),
                 }
+            }
+            NodeKind::Select(which) => {
+                self.selects = true;
+                OccurrenceKind::Select { children: frame.children, chosen: chosen(*which) }
             }
             NodeKind::Affine(_) | NodeKind::Attribute { .. } => unreachable!("resolve walks through these"),
         };
@@ -320,17 +371,11 @@ impl<'a> Finder<'a> {
         let once = self.once[node.0 as usize];
         let id = if once { next } else { *self.field_names.entry((node, position)).or_insert(next) };
         if id == next {
-            let map = self.scene.position(position).map;
-            let (pose, symmetry) = (primitive.skeleton.pose(), primitive.skeleton.kind().symmetry());
-            let (map, scale) = match Similarity::from_affine(&map) {
-                Some(similarity) => {
-                    let turn = *similarity.turn() * pose.matrix3;
-                    let at = map.transform_point3(pose.translation);
-                    (DAffine3::from_mat3_translation(symmetry.simplest(turn), at), similarity.scale())
-                }
-                None => (map * pose, 1.0),
-            };
-            self.scene.fields.push(LeafField { node, position, uses: 0, map, scale });
+            let recipe = self.scene.tree.recipe(node);
+            let turns = recipe.is_some_and(Recipe::skeleton_turns);
+            let (map, scale, kind) = self.scene.position(position).of_skeleton(&primitive.skeleton, turns);
+            let strong = primitive.strength != 1.0 || recipe.is_some_and(Recipe::strength_follows);
+            self.scene.fields.push(LeafField { node, position, uses: 0, map, scale, kind, strong });
         }
         self.scene.fields[id.0 as usize].uses += 1;
         id
@@ -366,12 +411,17 @@ impl<'a> Finder<'a> {
     fn non_negative(&self, kind: &OccurrenceKind) -> bool {
         let of = |id: &OccurrenceId| self.scene.occurrence(*id).non_negative;
         match kind {
-            OccurrenceKind::Leaf { field, .. } => self.scene.primitive(*field).strength >= 0.0,
+            OccurrenceKind::Leaf { field, .. } => {
+                let recipe = self.scene.tree.recipe(self.scene.field(*field).node);
+                let follows = recipe.is_some_and(Recipe::strength_follows);
+                self.scene.primitive(*field).strength >= 0.0 && !follows
+            }
             OccurrenceKind::Warp { child, .. } => of(child),
             OccurrenceKind::Difference { left, .. } => of(left),
+            OccurrenceKind::Select { children, .. } => children.iter().all(of),
             OccurrenceKind::Reduce { reducer, children } => match reducer {
                 Reducer::Sum | Reducer::Intersection => children.iter().all(of),
-                Reducer::Ricci(_) => true,
+                Reducer::Ricci(_) | Reducer::RicciFollowing(_) => true,
                 Reducer::Union => children.iter().any(of),
             },
         }
@@ -386,7 +436,7 @@ impl<'a> Finder<'a> {
         }
         self.scene.insides.push(Inside { warp, position, uses: 1 });
         let space = SpaceId(self.scene.insides.len() as u32);
-        let inside = self.name_position(Position { space, map: DAffine3::IDENTITY });
+        let inside = self.name_position(Position::start(space));
         if !once {
             self.inside_names.insert((warp, position), (space, inside));
         }
@@ -394,10 +444,10 @@ impl<'a> Finder<'a> {
     }
 
     fn name_position(&mut self, position: Position) -> PositionId {
-        // Adding 0 makes -0 and +0 one name.
-        let bits = position.map.to_cols_array().map(|number| (number + 0.0).to_bits());
+        let Position { space, trail, .. } = position;
         let next = PositionId(self.scene.positions.len() as u32);
-        let id = *self.position_names.entry((position.space, bits)).or_insert(next);
+        let key = position_key(space, trail.name, &trail.since);
+        let id = *self.position_names.entry(key).or_insert(next);
         if id == next {
             self.scene.positions.push(position);
         }
@@ -420,7 +470,7 @@ pub(super) fn children(kind: &OccurrenceKind) -> Vec<OccurrenceId> {
     match kind {
         OccurrenceKind::Leaf { .. } => Vec::new(),
         OccurrenceKind::Warp { child, .. } => vec![*child],
-        OccurrenceKind::Reduce { children, .. } => children.clone(),
+        OccurrenceKind::Reduce { children, .. } | OccurrenceKind::Select { children, .. } => children.clone(),
         OccurrenceKind::Difference { left, right } => vec![*left, *right],
     }
 }

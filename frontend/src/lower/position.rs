@@ -9,8 +9,140 @@
 //! | scaling | 4 | 3 fused steps |
 //! | full | 12 | 9 fused steps |
 
+//!
+//! A map that follows parameters has the kind that serves all their values, and is told from others by how it was made: two that are equal
+//! for the present values are not one position, because they will not be equal for the next ones.
+
+use std::collections::HashMap;
+
 use glam::{DAffine3, DMat3, DVec3};
 use jbt_ir::Domain;
+
+use super::occurrence::SpaceId;
+use crate::affine::Similarity;
+use crate::check::NodeId;
+use crate::recipe::{Freedom, Recipe};
+use crate::skeleton::{Skeleton, Symmetry};
+
+/// The map from an occurrence's own space to `space`.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(super) struct Position {
+    pub(super) space: SpaceId,
+    pub(super) map: DAffine3,
+    pub(super) trail: Trail,
+}
+
+/// What is known of a map whatever the parameters.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(super) struct Trail {
+    /// How the map was made, up to the last factor that follows parameters; 0 if none does.
+    pub(super) name: u32,
+    /// The product of the factors after it.
+    pub(super) since: DAffine3,
+    /// How much the factors that follow parameters can change the linear part.
+    freedom: Freedom,
+    /// Whether another factor is no similarity.
+    skewed: bool,
+}
+
+impl Trail {
+    /// That of the identity.
+    pub(super) const START: Self =
+        Self { name: 0, since: DAffine3::IDENTITY, freedom: Freedom::Fixed, skewed: false };
+
+    /// With one more factor that does not change.
+    pub(super) fn fixed(self, inner: &DAffine3, can_turn: bool) -> Self {
+        // Asked only where the answer can matter.
+        let skewed = self.skewed || (can_turn && Similarity::from_affine(inner).is_none());
+        Self { since: self.since * *inner, skewed, ..self }
+    }
+
+    /// With one more factor that can change, which gives the way here this name.
+    pub(super) fn free(self, name: u32, freedom: Freedom) -> Self {
+        Self { name, since: DAffine3::IDENTITY, freedom: self.freedom.max(freedom), ..self }
+    }
+
+    fn freedom(&self) -> Freedom {
+        // A rotation between two maps that are no similarities can make one of them, for some values.
+        if self.freedom == Freedom::Turn && self.skewed { Freedom::Full } else { self.freedom }
+    }
+}
+
+/// How a position was made: equal for two that are one whatever the parameters.
+pub(super) type PositionKey = (SpaceId, u32, [u64; 12]);
+
+/// The key of a position: its space, and the name and the last factors of its trail.
+pub(super) fn position_key(space: SpaceId, trail: u32, since: &DAffine3) -> PositionKey {
+    // Adding 0 makes -0 and +0 one name.
+    (space, trail, since.to_cols_array().map(|number| (number + 0.0).to_bits()))
+}
+
+/// The names of trails: those that end with the same map after the same way have the same name.
+#[derive(Default)]
+pub(super) struct Trails {
+    /// By the text of the map, so that a map that is written twice is one.
+    maps: HashMap<String, u32>,
+    map_of_node: HashMap<NodeId, u32>,
+    names: HashMap<(PositionKey, u32), u32>,
+}
+
+impl Trails {
+    /// The name of the trail that a map which follows parameters ends.
+    pub(super) fn name(&mut self, before: PositionKey, node: NodeId, recipe: &Recipe) -> u32 {
+        let maps = &mut self.maps;
+        let map = *self.map_of_node.entry(node).or_insert_with(|| {
+            let next = maps.len() as u32;
+            *maps.entry(crate::text::print_head(recipe)).or_insert(next)
+        });
+        let next = self.names.len() as u32 + 1;
+        *self.names.entry((before, map)).or_insert(next)
+    }
+}
+
+impl Position {
+    /// Where a space begins.
+    pub(super) const fn start(space: SpaceId) -> Self {
+        Self { space, map: DAffine3::IDENTITY, trail: Trail::START }
+    }
+
+    /// What its inverse is as code.
+    pub(super) fn kind(&self) -> MapKind {
+        let least = match self.trail.freedom() {
+            Freedom::Fixed if self.trail.name == 0 => MapKind::Identity,
+            Freedom::Fixed => MapKind::Translation,
+            Freedom::Scale => MapKind::Scaling,
+            Freedom::Turn | Freedom::Full => MapKind::Full,
+        };
+        MapKind::of(&self.map).max(least)
+    }
+
+    /// The map from the pose of a skeleton that stands here, the size of the skeleton there, and what the inverse of the map is as
+    /// code: at least a translation, so that a primitive that passes the origin keeps its code. `turns`: the skeleton itself can turn.
+    pub(super) fn of_skeleton(&self, skeleton: &Skeleton, turns: bool) -> (DAffine3, f64, MapKind) {
+        let (pose, symmetry) = (skeleton.pose(), skeleton.kind().symmetry());
+        let freedom = self.trail.freedom();
+        let similarity = if freedom == Freedom::Full { None } else { Similarity::from_affine(&self.map) };
+        let Some(similarity) = similarity else {
+            let map = self.map * pose;
+            let least = if freedom == Freedom::Full { MapKind::Full } else { MapKind::Translation };
+            return (map, 1.0, MapKind::of(&map).max(least));
+        };
+        let turn = *similarity.turn() * pose.matrix3;
+        let at = self.map.transform_point3(pose.translation);
+        let map = DAffine3::from_mat3_translation(symmetry.simplest(turn), at);
+        let least = match (symmetry, freedom) {
+            (Symmetry::Ball, _) => MapKind::Translation,
+            (Symmetry::Axis | Symmetry::None, Freedom::Turn | Freedom::Full) => MapKind::Full,
+            (Symmetry::Axis | Symmetry::None, _) if turns => MapKind::Full,
+            // A scale that changes its sign mirrors.
+            (Symmetry::None, Freedom::Scale) => MapKind::Scaling,
+            (Symmetry::Axis, Freedom::Scale) | (Symmetry::Axis | Symmetry::None, Freedom::Fixed) => {
+                MapKind::Translation
+            }
+        };
+        (map, similarity.scale(), MapKind::of(&map).max(least))
+    }
+}
 
 /// How much of an affine map there is: what selects code.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, PartialOrd, Ord)]
@@ -23,7 +155,7 @@ pub(super) enum MapKind {
 
 impl MapKind {
     /// The kind of the inverse of `map`, which is of the same kind.
-    pub(super) fn of(map: &DAffine3) -> Self {
+    fn of(map: &DAffine3) -> Self {
         let matrix = map.matrix3.to_cols_array();
         let scale = matrix[0];
         let uniform = [scale, 0.0, 0.0, 0.0, scale, 0.0, 0.0, 0.0, scale];
@@ -35,15 +167,6 @@ impl MapKind {
             Self::Translation
         } else {
             Self::Identity
-        }
-    }
-
-    /// The kind for a leaf, which is at least a translation: a primitive that passes the origin keeps its code.
-    pub(super) fn of_leaf(map: &DAffine3) -> Self {
-        match Self::of(map) {
-            Self::Identity | Self::Translation => Self::Translation,
-            Self::Scaling => Self::Scaling,
-            Self::Full => Self::Full,
         }
     }
 

@@ -8,7 +8,6 @@ use jbt_ir::{Entity, Rows, Store, Table, Tables};
 use super::emit::{Code, groups};
 use super::mixing::wants_order;
 use super::occurrence::{FieldId, LeafField, OccurrenceId, OccurrenceKind, Reducer, Scene, SpaceId};
-use super::position::MapKind;
 use super::shape::{Lift, ReducerCode, Shapes};
 use crate::attribute::Mixing;
 use crate::check::NodeId;
@@ -19,8 +18,8 @@ use crate::tree::NodeKind;
 /// The numbers, and what they belong to.
 pub(super) struct Written {
     pub(super) tables: Tables,
-    /// The occurrence behind each row of each table.
-    pub(super) members: Vec<Vec<OccurrenceId>>,
+    /// What is behind each row of each table.
+    pub(super) members: Vec<Vec<Member>>,
 }
 
 /// Writes the numbers.
@@ -49,31 +48,40 @@ pub(super) fn rows(
     for rows in writer.tables {
         tables.push(rows);
     }
-    let occurrences = |members: Vec<Member>| members.into_iter().map(|member| member.occurrence).collect();
-    let members = writer.members.into_iter().map(occurrences).collect();
-    Ok(Written { tables: Tables { tables }, members })
-}
-
-/// What is behind a row.
-#[derive(Clone, Copy)]
-struct Member {
-    occurrence: OccurrenceId,
-    /// Its place in the order of its operator, where that is a column.
-    order: Option<u32>,
+    Ok(Written { tables: Tables { tables }, members: writer.members })
 }
 
 enum Task {
     Use(OccurrenceId),
     Define(OccurrenceId),
     Order(u32),
-    LiftField(FieldId),
-    LiftSpace(SpaceId),
+    Lift(Lift),
     /// The members of a folded group become rows of the next child table.
     Rows(OccurrenceId, usize),
     /// An operand that is written out: the row of the next child table, if it has a guard.
     Operand(OccurrenceId),
-    /// Under a guard: the row of the next child table.
-    Guard(OccurrenceId),
+    /// One row of the next child table, active or not.
+    Guard(Member, bool),
+}
+
+/// What is behind a row.
+#[derive(Clone, Copy)]
+pub(super) enum Member {
+    /// What stands here: the scene, an operand, or a selector's child. And its place in the order of its operator, where that is a column.
+    Operand(OccurrenceId, Option<u32>),
+    /// What is lifted and has a guard.
+    Lifted(Lift),
+}
+
+impl Member {
+    /// The tree node whose numbers stand in the row.
+    pub(super) fn node(self, scene: &Scene<'_>) -> NodeId {
+        match self {
+            Self::Operand(id, _) | Self::Lifted(Lift::Occurrence(id)) => scene.occurrence(id).node,
+            Self::Lifted(Lift::Field(field)) => scene.field(field).node,
+            Self::Lifted(Lift::Space(space)) => scene.inside(space).expect("the world is not lifted").warp,
+        }
+    }
 }
 
 struct Writer<'a> {
@@ -101,7 +109,7 @@ impl<'a> Writer<'a> {
             rows.starts.push(0);
         }
         let mut members = vec![Vec::new(); count];
-        members[0].push(Member { occurrence: scene.root, order: None });
+        members[0].push(Member::Operand(scene.root, None));
         tables[0].active.push(0);
         tables[0].starts.push(1);
         let attributes = &scene.tree.attributes()[..groups(scene.tree, query)];
@@ -123,15 +131,20 @@ impl<'a> Writer<'a> {
 
     /// Writes one row, and hands the rows of the tables under it out.
     fn row(&mut self, table: Table, index: usize) {
-        let Member { occurrence: member, order } = self.members[table.index()][index];
+        let member = self.members[table.index()][index];
         let mut tasks = std::mem::take(&mut self.tasks);
         let depth = self.code.tables[table.index()].depth;
-        tasks.push(Task::Define(member));
-        if table.index() == 0 {
-            self.start(depth, &mut tasks);
+        match member {
+            Member::Operand(member, order) => {
+                tasks.push(Task::Use(member));
+                self.row.extend(order.map(f64::from));
+            }
+            Member::Lifted(Lift::Field(field)) => self.leaf(field),
+            Member::Lifted(Lift::Space(space)) => self.warp(space),
+            Member::Lifted(Lift::Occurrence(id)) => tasks.push(Task::Define(id)),
         }
-        if let Some(order) = order {
-            self.row.push(f64::from(order));
+        if table.index() == 0 {
+            self.start(&mut tasks);
         }
         let mut children = self.code.tables[table.index()].children.iter();
         let mut child = || *children.next().expect("the code has a table for each folded group and guard");
@@ -139,16 +152,16 @@ impl<'a> Writer<'a> {
             match task {
                 // It is computed where it is lifted to.
                 Task::Use(id) if self.scene.occurrence(id).uses > 1 => {}
-                Task::Use(id) | Task::Define(id) => self.define(id, depth, &mut tasks),
+                Task::Use(id) | Task::Define(id) => self.define(id, &mut tasks),
                 Task::Order(order) => self.row.push(f64::from(order)),
-                Task::LiftField(field) => self.leaf(field),
-                Task::LiftSpace(space) => self.enter_warp(space, depth, &mut tasks),
+                Task::Lift(lift) => self.lift(lift, depth, &mut tasks),
                 Task::Rows(id, group) => self.hand_out(child(), id, group),
                 Task::Operand(id) => {
                     let guarded = self.shapes.guards_operand(self.scene, id, depth);
-                    tasks.push(if guarded { Task::Guard(id) } else { Task::Use(id) });
+                    let guard = Task::Guard(Member::Operand(id, None), true);
+                    tasks.push(if guarded { guard } else { Task::Use(id) });
                 }
-                Task::Guard(occurrence) => self.own(child(), &[Member { occurrence, order: None }]),
+                Task::Guard(member, active) => self.own(child(), &[member], active),
             }
         }
         self.tasks = tasks;
@@ -156,34 +169,47 @@ impl<'a> Writer<'a> {
     }
 
     /// The numbers of the scene itself.
-    fn start(&mut self, depth: usize, tasks: &mut Vec<Task>) {
+    fn start(&mut self, tasks: &mut Vec<Task>) {
         self.row.push(2.0 * self.scene.tree.iso());
         for group in &self.scene.tree.attributes()[..self.mixing.len()] {
             self.row.extend(&group.default);
         }
-        self.enter_space(SpaceId(0), depth, tasks);
+        self.enter_space(SpaceId(0), tasks);
     }
 
-    fn enter_warp(&mut self, space: SpaceId, depth: usize, tasks: &mut Vec<Task>) {
+    fn enter_warp(&mut self, space: SpaceId, tasks: &mut Vec<Task>) {
+        self.warp(space);
+        self.enter_space(space, tasks);
+    }
+
+    fn warp(&mut self, space: SpaceId) {
         let inside = self.scene.inside(space).expect("the world is no warp's inside");
-        let map = self.scene.position(inside.position).map;
-        MapKind::of(&map).push_columns(&map, &mut self.row);
+        let position = self.scene.position(inside.position);
+        position.kind().push_columns(&position.map, &mut self.row);
         self.scene.warp(inside.warp).columns(&mut self.row);
-        self.enter_space(space, depth, tasks);
     }
 
-    fn enter_space(&self, space: SpaceId, depth: usize, tasks: &mut Vec<Task>) {
-        for lift in self.shapes.lifts(space).iter().rev() {
-            tasks.push(match lift {
-                Lift::Field(field) => Task::LiftField(*field),
-                Lift::Space(space) => Task::LiftSpace(*space),
-                Lift::Occurrence(id) if self.shapes.guards_lift(*id, depth) => Task::Guard(*id),
-                Lift::Occurrence(id) => Task::Define(*id),
-            });
+    /// What is lifted: here, or in a row of its own.
+    fn lift(&mut self, lift: Lift, depth: usize, tasks: &mut Vec<Task>) {
+        let guarded = self.shapes.guards_lift(self.scene, lift, depth);
+        match lift {
+            Lift::Field(field) if !guarded => self.leaf(field),
+            Lift::Space(space) if !guarded => self.enter_warp(space, tasks),
+            Lift::Occurrence(id) if !guarded => tasks.push(Task::Define(id)),
+            // Only the point is computed under the guard.
+            Lift::Space(space) => self.enter_space(space, tasks),
+            Lift::Field(_) | Lift::Occurrence(_) => {}
+        }
+        if guarded {
+            tasks.push(Task::Guard(Member::Lifted(lift), self.scene.demand.is_asked(lift)));
         }
     }
 
-    fn define(&mut self, id: OccurrenceId, depth: usize, tasks: &mut Vec<Task>) {
+    fn enter_space(&self, space: SpaceId, tasks: &mut Vec<Task>) {
+        tasks.extend(self.shapes.lifts(space).iter().rev().map(|&lift| Task::Lift(lift)));
+    }
+
+    fn define(&mut self, id: OccurrenceId, tasks: &mut Vec<Task>) {
         let occurrence = self.scene.occurrence(id);
         match &occurrence.kind {
             OccurrenceKind::Leaf { field, bindings } => {
@@ -199,15 +225,22 @@ impl<'a> Writer<'a> {
             OccurrenceKind::Warp { inside, child, .. } => {
                 tasks.push(Task::Use(*child));
                 if !self.scene.is_shared(*inside) {
-                    self.enter_warp(*inside, depth, tasks);
+                    self.enter_warp(*inside, tasks);
                 }
             }
             OccurrenceKind::Difference { left, right } => {
                 tasks.extend([Task::Operand(*right), Task::Operand(*left)]);
             }
+            OccurrenceKind::Select { children, chosen } => {
+                for (place, &child) in children.iter().enumerate().rev() {
+                    tasks.push(Task::Guard(Member::Operand(child, None), place == *chosen));
+                }
+            }
             OccurrenceKind::Reduce { reducer, .. } => {
                 let code = ReducerCode::of(*reducer);
-                if let (Reducer::Ricci(n), ReducerCode::RicciGeneral) = (reducer, code) {
+                if let (Reducer::Ricci(n) | Reducer::RicciFollowing(n), ReducerCode::RicciGeneral) =
+                    (reducer, code)
+                {
                     self.row.extend([*n, 1.0 / n]);
                 }
                 let groups = self.shapes.groups(id);
@@ -236,15 +269,17 @@ impl<'a> Writer<'a> {
         let groups = self.shapes.groups(id);
         let ordered =
             wants_order(ReducerCode::of(*reducer), groups.len() > 1, self.query.gradient, &self.mixing);
-        let member = |&(occurrence, order)| Member { occurrence, order: ordered.then_some(order) };
+        let member = |&(occurrence, order)| Member::Operand(occurrence, ordered.then_some(order));
         let members: Vec<Member> = groups[group].members.iter().map(member).collect();
-        self.own(child, &members);
+        self.own(child, &members, true);
     }
 
-    /// These are the rows of `child` that the row in progress owns.
-    fn own(&mut self, child: Table, owned: &[Member]) {
+    /// These are the rows of `child` that the row in progress owns, active or not.
+    fn own(&mut self, child: Table, owned: &[Member], active: bool) {
         let (rows, members) = (&mut self.tables[child.index()], &mut self.members[child.index()]);
-        rows.active.extend((members.len()..members.len() + owned.len()).map(|row| row as u32));
+        if active {
+            rows.active.extend((members.len()..members.len() + owned.len()).map(|row| row as u32));
+        }
         members.extend(owned);
         rows.starts.push(rows.active.len() as u32);
     }
@@ -252,11 +287,11 @@ impl<'a> Writer<'a> {
     fn leaf(&mut self, field: FieldId) {
         self.nodes.push(self.scene.field(field).node.0);
         let primitive = self.scene.primitive(field);
-        let LeafField { map, scale, .. } = self.scene.field(field);
-        MapKind::of_leaf(map).push_columns(map, &mut self.row);
+        let LeafField { map, scale, kind, strong, .. } = self.scene.field(field);
+        kind.push_columns(map, &mut self.row);
         primitive.skeleton.columns(*scale, &mut self.row);
         self.row.push(-(scale * primitive.radius).powi(-2));
-        if primitive.strength != 1.0 {
+        if *strong {
             self.row.push(primitive.strength);
         }
     }
@@ -264,21 +299,26 @@ impl<'a> Writer<'a> {
     fn attribute(&self, node: NodeId) -> &'a [f64] {
         match &self.scene.tree.node(node).kind {
             NodeKind::Attribute { values, .. } => values,
-            NodeKind::Primitive(_) | NodeKind::Combine(_) | NodeKind::Affine(_) | NodeKind::Warp(_) => {
+            NodeKind::Primitive(_)
+            | NodeKind::Combine(_)
+            | NodeKind::Select(_)
+            | NodeKind::Affine(_)
+            | NodeKind::Warp(_) => {
                 unreachable!("bindings name attribute nodes")
             }
         }
     }
 
     /// Rounds the row and appends it to its table.
-    fn flush(&mut self, table: Table, member: OccurrenceId) {
+    fn flush(&mut self, table: Table, member: Member) {
+        let node = member.node(self.scene);
         let rows = &mut self.tables[table.index()];
         rows.count += 1;
         rows.nodes.append(&mut self.nodes);
         for number in self.row.drain(..) {
             let rounded = number as f32;
             if !rounded.is_finite() && self.errors.len() < jbt_ir::limits::MAX_ERRORS {
-                let node = self.scene.tree.node(self.scene.occurrence(member).node);
+                let node = self.scene.tree.node(node);
                 let message = format!("a number derived from this part leaves the range of f32: {number:e}");
                 let help = "the part is too small, too large or too far away once all transforms are applied";
                 self.errors.push(Diagnostic::error(node.span, message).expected(help));

@@ -36,7 +36,7 @@ impl ReducerCode {
         match reducer {
             Reducer::Sum => Self::Sum,
             Reducer::Ricci(n) if n == (n as u32) as f64 => Self::RicciInteger(n as u32),
-            Reducer::Ricci(_) => Self::RicciGeneral,
+            Reducer::Ricci(_) | Reducer::RicciFollowing(_) => Self::RicciGeneral,
             Reducer::Union => Self::Union,
             Reducer::Intersection => Self::Intersection,
         }
@@ -73,6 +73,7 @@ enum ShapeKey {
         space: SpaceId,
         child: ShapeId,
     },
+    Select(Vec<ShapeId>),
     Lifted(OccurrenceId),
 }
 
@@ -159,9 +160,14 @@ impl Shapes {
         scene.occurrence(id).uses == 1 && content.written_out && content.wants_guard(depth)
     }
 
-    /// Whether a lifted occurrence is computed under a guard, inside of `depth` folds.
-    pub(super) fn guards_lift(&self, id: OccurrenceId, depth: usize) -> bool {
-        self.contents[id.0 as usize].wants_guard(depth)
+    /// Whether what is lifted is computed under a guard, inside of `depth` folds: because some choices of selectors do without it, or
+    /// because it is worth one.
+    pub(super) fn guards_lift(&self, scene: &Scene<'_>, lift: Lift, depth: usize) -> bool {
+        let worth = match lift {
+            Lift::Occurrence(id) => self.contents[id.0 as usize].wants_guard(depth),
+            Lift::Field(_) | Lift::Space(_) => false,
+        };
+        worth || scene.demand.is_guarded(lift)
     }
 
     /// What is lifted to the start of a space.
@@ -241,12 +247,12 @@ impl<'a> Classifier<'a> {
                 self.name(ShapeKey::LeafOf(*field), Content::LIFTED)
             }
             OccurrenceKind::Leaf { field, .. } => {
-                let primitive = self.scene.primitive(*field);
+                let (primitive, leaf) = (self.scene.primitive(*field), self.scene.field(*field));
                 let key = ShapeKey::Leaf {
-                    map: MapKind::of_leaf(&self.scene.field(*field).map),
+                    map: leaf.kind,
                     skeleton: primitive.skeleton.kind(),
                     falloff: primitive.falloff,
-                    strong: primitive.strength != 1.0,
+                    strong: leaf.strong,
                 };
                 self.name(key, Content::LEAF)
             }
@@ -261,7 +267,7 @@ impl<'a> Classifier<'a> {
                 let pinned = lifts.map(|_| *inside);
                 content.written_out |= pinned.is_some();
                 content.leaves = content.leaves.saturating_add(lifts.map_or(0, Vec::len));
-                let map = MapKind::of(&self.scene.position(*position).map);
+                let map = self.scene.position(*position).kind();
                 let warp = self.scene.warp(occurrence.node).kind();
                 let key = ShapeKey::Warp { map, warp, child, pinned };
                 self.name(key, content)
@@ -269,6 +275,11 @@ impl<'a> Classifier<'a> {
             OccurrenceKind::Difference { left, right } => {
                 let ((left, content), (right, other)) = (self.of(*left), self.of(*right));
                 self.name(ShapeKey::Difference { left, right }, content.and(other))
+            }
+            OccurrenceKind::Select { children, .. } => {
+                let children = children.iter().map(|child| self.of(*child).0).collect();
+                // Each child is a row of a table of its own.
+                self.name(ShapeKey::Select(children), Content::ROWS)
             }
             OccurrenceKind::Reduce { .. } if self.flattened[id.0 as usize] => {
                 // Its user asks for its children; nobody asks for its shape.
@@ -310,6 +321,7 @@ impl<'a> Classifier<'a> {
                 OccurrenceKind::Reduce { .. }
                 | OccurrenceKind::Leaf { .. }
                 | OccurrenceKind::Warp { .. }
+                | OccurrenceKind::Select { .. }
                 | OccurrenceKind::Difference { .. } => {
                     by_shape.entry(self.of(next).0).or_default().push((next, order));
                     order += 1;
@@ -356,6 +368,8 @@ fn flattened(scene: &Scene<'_>) -> Vec<bool> {
                 let safe = match reducer {
                     Reducer::Sum => operands.iter().all(|id| scene.occurrence(*id).non_negative),
                     Reducer::Ricci(_) | Reducer::Union | Reducer::Intersection => true,
+                    // Exponents that are equal now may differ later.
+                    Reducer::RicciFollowing(_) => false,
                 };
                 flattened[child.0 as usize] = inner_reducer == reducer && inner.uses == 1 && safe;
             }

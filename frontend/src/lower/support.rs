@@ -27,7 +27,7 @@ use glam::{DAffine3, DMat3, DVec3};
 
 use super::guide::{LARGEST_COORDINATE, Support};
 use super::occurrence::{FieldId, OccurrenceId, OccurrenceKind, Reducer, Scene};
-use super::position::MapKind;
+use super::position::{MapKind, Position};
 use crate::affine::{Similarity, map_bounds};
 use crate::bounds::Bounds;
 use crate::skeleton::ROUNDING;
@@ -88,14 +88,18 @@ impl<'a> Supports<'a> {
     /// The support of an occurrence: round for a leaf, a box otherwise.
     pub(super) fn of(&self, id: OccurrenceId) -> Support {
         match &self.scene.occurrence(id).kind {
-            OccurrenceKind::Leaf { field, .. } => {
-                let Rounded { core, radius } = self.fields[field.0 as usize];
-                Support::around(core, radius)
-            }
+            OccurrenceKind::Leaf { field, .. } => self.of_field(*field),
             OccurrenceKind::Warp { .. }
             | OccurrenceKind::Reduce { .. }
+            | OccurrenceKind::Select { .. }
             | OccurrenceKind::Difference { .. } => Support::around(self.bounds[id.0 as usize], 0.0),
         }
+    }
+
+    /// The support of a leaf's field.
+    pub(super) fn of_field(&self, id: FieldId) -> Support {
+        let Rounded { core, radius } = self.fields[id.0 as usize];
+        Support::around(core, radius)
     }
 
     fn find(&self, id: OccurrenceId) -> Bounds {
@@ -104,7 +108,7 @@ impl<'a> Supports<'a> {
             OccurrenceKind::Leaf { field, .. } => self.fields[field.0 as usize].bounds(),
             OccurrenceKind::Warp { position, inside, child } => {
                 let warp = self.scene.warp(self.scene.insides[inside.0 as usize - 1].warp);
-                around_map(&self.scene.position(*position).map, warp.reach(of(child)))
+                around_map(self.scene.position(*position), warp.reach(of(child)))
             }
             OccurrenceKind::Reduce { reducer, children } => {
                 let positive = children.iter().all(|id| self.scene.occurrence(*id).non_negative);
@@ -113,12 +117,15 @@ impl<'a> Supports<'a> {
                     Reducer::Intersection if positive => {
                         children.iter().map(of).fold(EVERYWHERE, Bounds::intersection)
                     }
-                    Reducer::Sum | Reducer::Ricci(_) | Reducer::Union | Reducer::Intersection => {
-                        children.iter().map(of).fold(Bounds::EMPTY, Bounds::hull)
-                    }
+                    Reducer::Sum
+                    | Reducer::Ricci(_)
+                    | Reducer::RicciFollowing(_)
+                    | Reducer::Union
+                    | Reducer::Intersection => children.iter().map(of).fold(Bounds::EMPTY, Bounds::hull),
                 }
             }
             OccurrenceKind::Difference { left, .. } => of(left),
+            OccurrenceKind::Select { children, chosen } => of(&children[*chosen]),
         }
     }
 }
@@ -137,7 +144,7 @@ fn extents(scene: &Scene<'_>) -> Vec<Extent> {
     let mut extents = vec![Extent { coordinates: f64::from(LARGEST_COORDINATE), derivatives: 1.0 }];
     for inside in &scene.insides {
         let position = scene.position(inside.position);
-        let outer = extents[position.space.0 as usize].after(&Inverse::new(MapKind::of, &position.map));
+        let outer = extents[position.space.0 as usize].after(&Inverse::new(position.kind(), &position.map));
         let growth = scene.warp(inside.warp).growth(outer.coordinates);
         let derivatives = outer.derivatives * growth.derivatives;
         // What is too large stays so, whatever a map behind it does.
@@ -168,8 +175,7 @@ struct Inverse {
 }
 
 impl Inverse {
-    fn new(kind: impl Fn(&DAffine3) -> MapKind, map: &DAffine3) -> Self {
-        let kind = kind(map);
+    fn new(kind: MapKind, map: &DAffine3) -> Self {
         let back = kind.inverse(map);
         if kind == MapKind::Identity {
             return Self { back, relative: DMat3::ZERO, fixed: DVec3::ZERO };
@@ -197,7 +203,7 @@ fn leaf(scene: &Scene<'_>, id: FieldId, extents: &[Extent]) -> Rounded {
     let (map, skeleton) = (&field.map, &primitive.skeleton);
     let radius = field.scale * primitive.radius;
     let slope = radius.powi(-2);
-    let inverse = Inverse::new(MapKind::of_leaf, map);
+    let inverse = Inverse::new(field.kind, map);
     let to_pose = DAffine3::from_scale(DVec3::splat(field.scale)) * skeleton.pose().inverse();
     let pose = skeleton.bounds_under(&to_pose);
     let size = pose.min.abs().max(pose.max.abs());
@@ -233,15 +239,16 @@ fn leaf(scene: &Scene<'_>, id: FieldId, extents: &[Extent]) -> Rounded {
     Rounded { core: Bounds::new(core.min - reach, core.max + reach), radius: 0.0 }
 }
 
-/// A box such that the program takes no point outside of it into `bounds`, by the inverse of `map`.
-fn around_map(map: &DAffine3, bounds: Bounds) -> Bounds {
+/// A box such that the program takes no point outside of it into `bounds`, by the inverse of a position's map.
+fn around_map(position: &Position, bounds: Bounds) -> Bounds {
     if bounds.is_empty() {
         return Bounds::EMPTY;
     }
-    let inverse = Inverse::new(MapKind::of, map);
-    if MapKind::of(map) == MapKind::Identity {
+    let (map, kind) = (&position.map, position.kind());
+    if kind == MapKind::Identity {
         return bounds;
     }
+    let inverse = Inverse::new(kind, map);
     // Where the computed point is in the box, the true one is within e of it: e <= part (size + e) + fixed.
     let size = bounds.min.abs().max(bounds.max.abs()).max_element();
     let part = (inverse.relative * DVec3::ONE).max_element();

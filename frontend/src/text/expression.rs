@@ -6,92 +6,35 @@
 //! ```
 //!
 //! A number that could not be computed is NaN from there on, and is reported once: where it arose.
+//!
+//! What follows parameters is written down as a formula besides. Both stacks meet the operands in the order of the text, so the steps of
+//! the formula come out in postfix order, each operand's after those of the operand before it.
 
 use std::f64::consts::PI;
 
 use jbt_ir::limits::MAX_EXPRESSION_DEPTH;
 
-use super::lex::TokenKind;
+use super::lex::{Token, TokenKind};
 use super::parse::{Parser, is_statement};
 use crate::diagnostic::{Diagnostic, Span};
+use crate::number::{Binary, Formula, Function, Number, Step};
 use crate::report::{clip, nearest};
-
-/// A function of the text format.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-enum Function {
-    Sqrt,
-    Sin,
-    Cos,
-    Abs,
-    Exp,
-    Ln,
-    Min,
-    Max,
-    Pow,
-}
-
-const FUNCTIONS: &[(&str, Function)] = &[
-    ("sqrt", Function::Sqrt),
-    ("sin", Function::Sin),
-    ("cos", Function::Cos),
-    ("abs", Function::Abs),
-    ("exp", Function::Exp),
-    ("ln", Function::Ln),
-    ("min", Function::Min),
-    ("max", Function::Max),
-    ("pow", Function::Pow),
-];
 
 const CONSTANTS: &[(&str, f64)] = &[("pi", PI)];
 
 /// Whether a word means something else already where a number may stand, so that no parameter may have it.
 pub(super) fn is_builtin(word: &str) -> bool {
-    is_statement(word) || function(word).is_some() || constant(word).is_some()
-}
-
-fn function(word: &str) -> Option<Function> {
-    FUNCTIONS.iter().find(|(name, _)| *name == word).map(|&(_, function)| function)
+    is_statement(word) || Function::named(word).is_some() || constant(word).is_some()
 }
 
 fn constant(word: &str) -> Option<f64> {
     CONSTANTS.iter().find(|(name, _)| *name == word).map(|&(_, value)| value)
 }
 
-impl Function {
-    /// The allowed numbers of arguments.
-    const fn arity(self) -> (usize, usize) {
-        match self {
-            Self::Sqrt | Self::Sin | Self::Cos | Self::Abs | Self::Exp | Self::Ln => (1, 1),
-            Self::Min | Self::Max => (1, usize::MAX),
-            Self::Pow => (2, 2),
-        }
-    }
-
-    fn name(self) -> &'static str {
-        FUNCTIONS.iter().find(|(_, function)| *function == self).map_or("", |(name, _)| name)
-    }
-
-    /// The value; `arguments` are as many as [`arity`](Self::arity) allows.
-    fn apply(self, arguments: &[f64]) -> f64 {
-        let x = arguments[0];
-        match self {
-            Self::Sqrt => x.sqrt(),
-            Self::Sin => x.sin(),
-            Self::Cos => x.cos(),
-            Self::Abs => x.abs(),
-            Self::Exp => x.exp(),
-            Self::Ln => x.ln(),
-            Self::Min => arguments.iter().copied().fold(x, f64::min),
-            Self::Max => arguments.iter().copied().fold(x, f64::max),
-            Self::Pow => x.powf(arguments[1]),
-        }
-    }
-}
-
 /// What waits on the operator stack.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 enum Waiting {
-    Binary(u8),
+    Binary(Binary),
     Negate,
     Group,
     /// A function and the place of its first argument on the operand stack.
@@ -102,10 +45,8 @@ impl Waiting {
     /// How strongly it binds; groups do not bind.
     const fn strength(self) -> u8 {
         match self {
-            Self::Binary(b'+' | b'-') => 1,
-            Self::Binary(b'*' | b'/') => 2,
+            Self::Binary(binary) => binary.strength(),
             Self::Negate => 3,
-            Self::Binary(_) => 4,
             Self::Group | Self::Call(..) => 0,
         }
     }
@@ -115,11 +56,22 @@ impl Waiting {
     }
 }
 
-/// A value and the text that it came from.
-#[derive(Clone, Copy, Debug)]
+/// A number and the text that it came from.
+#[derive(Clone, Debug)]
 pub(super) struct Operand {
-    pub(super) value: f64,
+    pub(super) number: Number,
     pub(super) span: Span,
+}
+
+/// An operand on the stack.
+#[derive(Clone, Copy, Debug)]
+struct Part {
+    value: f64,
+    span: Span,
+    /// Where its steps begin in the list; they end where those of the next operand begin.
+    first: u32,
+    /// Whether it follows a parameter; otherwise its only step is its value.
+    follows: bool,
 }
 
 /// Where an expression stands, which decides where it ends.
@@ -131,40 +83,130 @@ pub(super) enum Place {
     Element,
 }
 
-/// The two stacks.
+/// The two stacks, and the steps of the operands on theirs.
 #[derive(Default)]
 struct Stacks {
-    operands: Vec<Operand>,
+    operands: Vec<Part>,
+    steps: Vec<Step>,
     waiting: Vec<(Waiting, u32)>,
     /// How many groups and calls wait.
     open: usize,
 }
 
+impl Stacks {
+    /// A plain number.
+    fn push(&mut self, value: f64, span: Span) {
+        let first = self.steps.len() as u32;
+        self.steps.push(Step::Literal(value));
+        self.operands.push(Part { value, span, first, follows: false });
+    }
+
+    /// A number that is made already.
+    fn push_number(&mut self, number: &Number, span: Span) {
+        match number.formula() {
+            None => self.push(number.value(), span),
+            Some(formula) => {
+                let first = self.steps.len() as u32;
+                self.steps.extend_from_slice(formula.steps());
+                self.operands.push(Part { value: number.value(), span, first, follows: true });
+            }
+        }
+    }
+
+    /// What became of the operands whose steps begin at `first`: `step` on top of theirs, or a value, if they are plain.
+    fn push_result(&mut self, value: f64, span: Span, first: u32, step: Option<Step>) {
+        match step {
+            Some(step) => {
+                self.steps.push(step);
+                self.operands.push(Part { value, span, first, follows: true });
+            }
+            None => {
+                self.steps.truncate(first as usize);
+                self.push(value, span);
+            }
+        }
+    }
+
+    /// The only operand that is left.
+    fn finish(&mut self) -> Option<Operand> {
+        let part = self.operands.pop()?;
+        let number = if part.follows {
+            Number::with_formula(part.value, Formula::new(self.steps.clone(), Some(part.span)))
+        } else {
+            Number::from(part.value)
+        };
+        Some(Operand { number, span: part.span })
+    }
+}
+
 impl Parser<'_> {
     /// A number. After an error that has lost the place, NaN.
     pub(super) fn expression(&mut self, place: Place) -> Operand {
-        self.expression_from(place, None)
+        let sign = self.accept(b'-');
+        let token = self.peek();
+        if token.kind != TokenKind::Number {
+            return self.expression_after(place, sign, None);
+        }
+        self.next();
+        let value = self.literal(token.span());
+        let goes_on = match self.peek().kind {
+            TokenKind::Mark(mark) => {
+                Binary::of_mark(mark).is_some_and(|binary| !self.begins_element(binary, place))
+            }
+            TokenKind::Number | TokenKind::Word | TokenKind::Unknown | TokenKind::End => false,
+        };
+        if goes_on {
+            return self.expression_after(place, sign, Some((&value.into(), token.span())));
+        }
+        // Most numbers stand alone.
+        let start = sign.map_or(token.start, |sign| sign.start);
+        let value = if sign.is_some() { -value } else { value };
+        Operand { number: value.into(), span: Span::new(start, token.end) }
     }
 
     /// A number whose first operand has been read.
-    pub(super) fn expression_from(&mut self, place: Place, first: Option<Operand>) -> Operand {
-        let lost = Operand { value: f64::NAN, span: self.peek().span() };
+    pub(super) fn expression_from(&mut self, place: Place, first: &Operand) -> Operand {
+        self.expression_after(place, None, Some((&first.number, first.span)))
+    }
+
+    /// A number whose minus sign has been read, or its first operand, or both.
+    fn expression_after(
+        &mut self,
+        place: Place,
+        sign: Option<Token>,
+        first: Option<(&Number, Span)>,
+    ) -> Operand {
         let mut stacks = Stacks::default();
-        let mut wanted = first.is_none();
-        stacks.operands.extend(first);
+        stacks.waiting.extend(sign.map(|sign| (Waiting::Negate, sign.start as u32)));
+        let wanted = first.is_none();
+        if let Some((number, span)) = first {
+            stacks.push_number(number, span);
+        }
+        let lost = Operand { number: f64::NAN.into(), span: self.peek().span() };
+        self.finished(&mut stacks, wanted, place).unwrap_or(lost)
+    }
+
+    /// Whether a `+` or `-` begins the next element of a vector.
+    fn begins_element(&self, binary: Binary, place: Place) -> bool {
+        let additive = matches!(binary, Binary::Add | Binary::Subtract);
+        place == Place::Element && additive && self.leans_right()
+    }
+
+    /// The number that the stacks, the text and the place lead to; nothing after an error that has lost the place.
+    fn finished(&mut self, stacks: &mut Stacks, mut wanted: bool, place: Place) -> Option<Operand> {
         loop {
             if stacks.waiting.len().max(stacks.operands.len()) >= MAX_EXPRESSION_DEPTH {
                 let message = format!("more than {MAX_EXPRESSION_DEPTH} operators wait in one expression");
                 self.give_up(Diagnostic::limit(Some(self.peek().span()), message));
-                return lost;
+                return None;
             }
             if wanted {
-                match self.operand(&mut stacks) {
+                match self.operand(stacks) {
                     Some(still) => wanted = still,
-                    None => return lost,
+                    None => return None,
                 }
             } else {
-                match self.operator(&mut stacks, place) {
+                match self.operator(stacks, place) {
                     Some(true) => wanted = true,
                     Some(false) => {}
                     None => break,
@@ -177,10 +219,10 @@ impl Parser<'_> {
                 Diagnostic::error(Some(Span::new(at as usize, at as usize + 1)), "this `(` is not closed")
                     .expected(format!("expected `)` before {found}"))
             });
-            return lost;
+            return None;
         }
-        self.reduce(&mut stacks, 0);
-        stacks.operands.pop().unwrap_or(lost)
+        self.reduce(stacks, 0);
+        stacks.finish()
     }
 
     /// Takes what may begin an operand. Returns whether one is still wanted, or nothing if none can begin here.
@@ -191,7 +233,7 @@ impl Parser<'_> {
             TokenKind::Number => {
                 self.next();
                 let value = self.literal(token.span());
-                stacks.operands.push(Operand { value, span: token.span() });
+                stacks.push(value, token.span());
                 Some(false)
             }
             TokenKind::Word if is_statement(self.text(token)) => {
@@ -201,7 +243,7 @@ impl Parser<'_> {
             TokenKind::Word => {
                 self.next();
                 let word = self.text(token);
-                if let Some(function) = function(word) {
+                if let Some(function) = Function::named(word) {
                     if !self.peek().is(b'(') {
                         self.lose_place(|| {
                             Diagnostic::error(Some(token.span()), format!("`{word}` is a function"))
@@ -214,9 +256,12 @@ impl Parser<'_> {
                     stacks.waiting.push((Waiting::Call(function, stacks.operands.len() as u32), at));
                     return Some(true);
                 }
-                let value = constant(word).or_else(|| self.parameter(word));
-                let value = value.unwrap_or_else(|| self.unknown_number(word, token.span()));
-                stacks.operands.push(Operand { value, span: token.span() });
+                if let Some(number) = self.parameter(word) {
+                    stacks.push_number(number, token.span());
+                } else {
+                    let value = constant(word).unwrap_or_else(|| self.unknown_number(word, token.span()));
+                    stacks.push(value, token.span());
+                }
                 Some(false)
             }
             TokenKind::Mark(b'-') => {
@@ -247,20 +292,18 @@ impl Parser<'_> {
         let TokenKind::Mark(mark) = token.kind else {
             return None;
         };
-        match mark {
-            b'+' | b'-' | b'*' | b'/' | b'^' => {
-                let additive = matches!(mark, b'+' | b'-');
-                if place == Place::Element && stacks.open == 0 && additive && self.leans_right() {
+        match (mark, Binary::of_mark(mark)) {
+            (_, Some(binary)) => {
+                if stacks.open == 0 && self.begins_element(binary, place) {
                     return None;
                 }
                 self.next();
-                let operator = Waiting::Binary(mark);
                 // Operators of equal strength group to the left, powers to the right.
-                self.reduce(stacks, operator.strength() + u8::from(mark == b'^'));
-                stacks.waiting.push((operator, token.start as u32));
+                self.reduce(stacks, binary.strength() + u8::from(binary == Binary::Power));
+                stacks.waiting.push((Waiting::Binary(binary), token.start as u32));
                 Some(true)
             }
-            b')' if stacks.open > 0 => {
+            (b')', None) if stacks.open > 0 => {
                 self.next();
                 self.reduce(stacks, 0);
                 stacks.open -= 1;
@@ -269,7 +312,7 @@ impl Parser<'_> {
                 }
                 Some(false)
             }
-            b',' if stacks.open > 0 => {
+            (b',', None) if stacks.open > 0 => {
                 self.reduce(stacks, 0);
                 if let Some((Waiting::Call(..), _)) = stacks.waiting.last() {
                     self.next();
@@ -291,19 +334,20 @@ impl Parser<'_> {
             let Some(right) = stacks.operands.pop() else {
                 return;
             };
-            let result = match waiting {
-                Waiting::Binary(mark) => {
+            match waiting {
+                Waiting::Binary(binary) => {
                     let Some(left) = stacks.operands.pop() else {
                         return;
                     };
-                    self.binary(mark, left, right)
+                    self.binary(stacks, binary, left, right);
                 }
                 Waiting::Negate => {
-                    Operand { value: -right.value, span: Span { start: at, end: right.span.end } }
+                    let span = Span { start: at, end: right.span.end };
+                    let step = right.follows.then_some(Step::Negate);
+                    stacks.push_result(-right.value, span, right.first, step);
                 }
-                Waiting::Group | Waiting::Call(..) => right,
-            };
-            stacks.operands.push(result);
+                Waiting::Group | Waiting::Call(..) => stacks.operands.push(right),
+            }
         }
     }
 
@@ -315,7 +359,8 @@ impl Parser<'_> {
             }
             return;
         };
-        let arguments: Vec<f64> = stacks.operands.drain(first as usize..).map(|o| o.value).collect();
+        let parts: Vec<Part> = stacks.operands.drain(first as usize..).collect();
+        let arguments: Vec<f64> = parts.iter().map(|part| part.value).collect();
         let (fewest, most) = function.arity();
         let (name, count) = (function.name(), arguments.len());
         let value = if count < fewest || count > most {
@@ -330,61 +375,45 @@ impl Parser<'_> {
         } else if arguments.iter().any(|x| x.is_nan()) {
             f64::NAN
         } else {
-            let value = function.apply(&arguments);
-            self.finite(value, span, || {
-                let shown: Vec<String> = arguments.iter().map(|&x| super::print::number(x)).collect();
-                format!("{name}({}) is not a finite number", shown.join(", "))
-            })
+            self.computed(function.compute(&arguments), span)
         };
-        stacks.operands.push(Operand { value, span });
+        let follows = parts.iter().any(|part| part.follows);
+        let step = follows.then_some(Step::Call(function, count as u32));
+        let begin = parts.first().map_or(stacks.steps.len() as u32, |part| part.first);
+        stacks.push_result(value, span, begin, step);
     }
 
-    fn binary(&mut self, mark: u8, left: Operand, right: Operand) -> Operand {
+    fn binary(&mut self, stacks: &mut Stacks, binary: Binary, left: Part, right: Part) {
         let span = Span { start: left.span.start, end: right.span.end };
         let (a, b) = (left.value, right.value);
-        if a.is_nan() || b.is_nan() {
-            return Operand { value: f64::NAN, span };
-        }
-        if mark == b'/' && b == 0.0 {
-            self.report(|| Diagnostic::error(Some(span), "division by zero"));
-            return Operand { value: f64::NAN, span };
-        }
-        let value = match mark {
-            b'+' => a + b,
-            b'-' => a - b,
-            b'*' => a * b,
-            b'/' => a / b,
-            _ => a.powf(b),
-        };
-        let value = self.finite(value, span, || {
-            let (a, b) = (super::print::number(a), super::print::number(b));
-            match mark {
-                b'^' => format!("pow({a}, {b}) is not a finite number"),
-                _ => format!("{a} {} {b} is not a finite number", char::from(mark)),
-            }
-        });
-        Operand { value, span }
+        let value =
+            if a.is_nan() || b.is_nan() { f64::NAN } else { self.computed(binary.compute(a, b), span) };
+        let step = (left.follows || right.follows).then_some(Step::Binary(binary));
+        stacks.push_result(value, span, left.first, step);
     }
 
-    /// The value, or NaN and a message where it is not finite.
-    fn finite(&mut self, value: f64, span: Span, message: impl FnOnce() -> String) -> f64 {
-        if value.is_finite() {
-            return value;
-        }
-        self.report(|| Diagnostic::error(Some(span), message()));
-        f64::NAN
+    /// The value, or NaN and a message where there is none.
+    fn computed(&mut self, value: Result<f64, String>, span: Span) -> f64 {
+        value.unwrap_or_else(|message| {
+            self.report(|| Diagnostic::error(Some(span), message));
+            f64::NAN
+        })
     }
 
     fn literal(&mut self, span: Span) -> f64 {
         let digits = self.source(span);
-        let value = digits.parse().unwrap_or(f64::INFINITY);
-        self.finite(value, span, || format!("{} is too large", clip(digits)))
+        let value: f64 = digits.parse().unwrap_or(f64::INFINITY);
+        let finite =
+            if value.is_finite() { Ok(value) } else { Err(format!("{} is too large", clip(digits))) };
+        self.computed(finite, span)
     }
 
     fn unknown_number(&mut self, word: &str, span: Span) -> f64 {
         self.report_with(|parser| {
-            let builtin =
-                FUNCTIONS.iter().map(|(name, _)| *name).chain(CONSTANTS.iter().map(|(name, _)| *name));
+            let builtin = Function::ALL
+                .iter()
+                .map(|function| function.name())
+                .chain(CONSTANTS.iter().map(|(name, _)| *name));
             let error = Diagnostic::error(Some(span), format!("no parameter is named `{}`", clip(word)));
             match nearest(word, parser.parameter_names().chain(builtin)) {
                 Some(near) => error.expected(format!("perhaps `{near}`")),

@@ -29,7 +29,8 @@
 //!            | "surface_radius" expression                   where the primitive alone meets the iso-value
 //!            | "falloff" FALLOFF                             soft if not written
 //!            | "strength" expression ;                       1 if not written
-//! operator   = "sum" | "union" | "intersection" | "difference" | [ "blend" ] "ricci" expression ;
+//! operator   = "sum" | "union" | "intersection" | "difference" | [ "blend" ] "ricci" expression
+//!            | "select" expression ;                         one child: that whose place, from 0, is nearest
 //! map        = "translate" vector
 //!            | "rotate" "axis" value ( "degrees" | "radians" ) expression
 //!            | "scale" ( expression | vector )
@@ -51,6 +52,13 @@
 //! that every primitive has, the skeleton's name goes before it: a disc has a `disc_radius`, and a `radius` around it.
 //!
 //! * `#` and `//` begin a comment that ends with the line. Line ends are blanks like others.
+//! * A parameter can be set from outside, `-D bulge=2`, and again at run time
+//!   ([`CheckedTree::with_parameters`](crate::check::CheckedTree::with_parameters)): numbers that mention it follow it, and so do
+//!   parameters whose defaults mention it, unless they are set themselves. Parameters in the width or the default of an attribute group
+//!   count as they were read. An exponent of `ricci` that follows a parameter is a blend also where it is 1: unlike the plain sum, it
+//!   takes negative fields as 0.
+//! * `select which { a b c }` is one of its children, and the others do not count: `a` for 0, `b` for 1, `c` for 2, and what is
+//!   between is rounded. A number that is near no child is an error.
 //! * Names are defined before they are used, and once. `color` is declared in every file (3 reals, white, blend) and may be
 //!   declared again to change its default or its mixing.
 //! * Angles of functions are radians. `^` goes to the right and binds before a minus sign: `-2^2` is -4.
@@ -61,7 +69,8 @@
 //!
 //! `parse(print(model)) == model` for every model that passes the check, with the same bits in every number, and with the same
 //! subtrees shared, as long as its text is not longer than [`jbt_ir::limits::MAX_SCENE_BYTES`]. Reading is iterative, takes
-//! memory for the model and not for the text, and reports every error with its place.
+//! memory for the model and not for the text, and reports every error with its place. Parameters are printed as such, with their
+//! present values, and so are the expressions that mention them.
 
 mod expression;
 mod lex;
@@ -78,33 +87,15 @@ use crate::field::{Field, FieldKind};
 use crate::model::Model;
 use crate::skeleton::SkeletonKind;
 
+pub(crate) use parse::is_statement;
 pub use print::print;
+pub(crate) use print::print_head;
 
 /// What is set from outside a text.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub struct Options {
     /// Values of parameters, by name; the last one of a name counts.
     pub parameters: Vec<(String, f64)>,
-}
-
-/// A parameter of a text.
-#[derive(Clone, PartialEq, Debug)]
-pub struct Parameter {
-    /// Its name.
-    pub name: String,
-    /// The value of its expression.
-    pub default: f64,
-    /// Its value: the default, unless the options set another one.
-    pub value: f64,
-}
-
-/// A model, and the parameters of its text.
-#[derive(Clone, PartialEq, Debug)]
-pub struct Scene {
-    /// The model.
-    pub model: Model,
-    /// The parameters, in the order of their declarations.
-    pub parameters: Vec<Parameter>,
 }
 
 /// The model of a text.
@@ -120,16 +111,16 @@ pub struct Scene {
 /// All that is wrong with the text, in its order, up to [`jbt_ir::limits::MAX_ERRORS`] and a count of the others. Whether the
 /// model makes sense, [`check`](crate::check) says.
 pub fn parse(text: &[u8], options: &Options) -> Result<Model, Vec<Diagnostic>> {
-    parse_scene(text, options).map(|scene| scene.model)
+    parse::read(text, options)
 }
 
-/// The model of a text, with the parameters that it declares.
+/// The value of an expression of numbers alone, as `2 * pi`.
 ///
 /// # Errors
 ///
-/// See [`parse`].
-pub fn parse_scene(text: &[u8], options: &Options) -> Result<Scene, Vec<Diagnostic>> {
-    parse::read(text, options)
+/// All that is wrong with it.
+pub fn number(text: &str) -> Result<f64, Vec<Diagnostic>> {
+    parse::read_number(text)
 }
 
 /// The word before the name of an attribute group that is called like a word of the format.

@@ -1,15 +1,15 @@
 //! Nodes of a text: a stack of open blocks, and one of finished subtrees.
 
-use glam::{DAffine3, DMat3, DVec3};
 use jbt_ir::limits::MAX_NODES;
 
+use super::expression::Place;
 use super::lex::{Token, TokenKind};
 use super::parse::{Parser, is_statement};
 use super::primitive::Slots;
 use super::{GROUP_NODE, ROTATE};
-use crate::affine::{rotation, sin_cos_degrees};
 use crate::combine::Combinator;
 use crate::diagnostic::{Diagnostic, Span};
+use crate::recipe::{Angle, FieldNumber, Map, Recipe};
 use crate::report::{clip, nearest};
 use crate::skeleton::SkeletonKind;
 use crate::tree::{NodeKind, Tree};
@@ -20,7 +20,8 @@ const COMBINATORS: [Combinator; 4] =
     [Combinator::Sum, Combinator::Union, Combinator::Intersection, Combinator::Difference];
 
 /// The other words that begin a node.
-const OTHERS: [&str; 8] = ["use", "blend", "ricci", "translate", "rotate", "scale", "affine", GROUP_NODE];
+const OTHERS: [&str; 9] =
+    ["use", "blend", "ricci", "select", "translate", "rotate", "scale", "affine", GROUP_NODE];
 
 /// Whether a word begins a node, or a statement, in every file: a group of this name needs the word `with` before it.
 pub(super) fn is_reserved(word: &str) -> bool {
@@ -37,8 +38,10 @@ fn fixed_words() -> impl Iterator<Item = &'static str> {
 /// What an open block becomes.
 enum Head {
     Combine(Combinator),
+    /// An operator with a number.
+    Operator(Box<Recipe>),
     /// Boxed, so that a million open blocks are small.
-    Unary(Box<NodeKind>),
+    Unary(Box<Recipe>),
     /// The head has an error; the block is read for its own errors.
     Broken,
 }
@@ -194,13 +197,14 @@ impl<'a> Parser<'a> {
             return self.block(start, Head::Combine(combinator));
         }
         if let Some(kind) = WarpKind::ALL.iter().copied().find(|kind| kind.name() == word) {
-            let values = self.slots(kind.fields(), "a warp").complete(self, start, kind.name());
-            let head = values.map(|values| NodeKind::Warp(kind.from_fields(&values)));
-            return self.unary(start, head);
+            let fields = self.slots(kind.fields(), "a warp").complete(self, start, kind.name());
+            let recipe = fields.map(|fields| Recipe::Warp { warp: kind, fields });
+            return self.unary(start, recipe);
         }
         match word {
             "use" => Begun::Leaf(self.use_node()),
             "ricci" => self.ricci(start),
+            "select" => self.select(start),
             "blend" => {
                 if !self.accept_word("ricci") {
                     self.expected_at(
@@ -212,15 +216,14 @@ impl<'a> Parser<'a> {
                 self.ricci(start)
             }
             "translate" => {
-                let [x, y, z] = self.vector();
-                self.affine(start, DAffine3::from_translation(DVec3::new(x, y, z)))
+                let by = self.vector();
+                self.map(start, Map::Translate(by))
             }
             "rotate" => self.rotate(start),
             "scale" => self.scale(start),
             "affine" => {
-                let [xx, xy, xz, x, yx, yy, yz, y, zx, zy, zz, z] = self.vector();
-                let linear = DMat3::from_cols_array(&[xx, yx, zx, xy, yy, zy, xz, yz, zz]);
-                self.affine(start, DAffine3 { matrix3: linear, translation: DVec3::new(x, y, z) })
+                let rows = self.vector();
+                self.map(start, Map::Affine(Box::new(rows)))
             }
             GROUP_NODE => match self.peek_word() {
                 Some(name) => {
@@ -268,20 +271,27 @@ impl<'a> Parser<'a> {
         self.accept(b'{')
     }
 
-    fn unary(&mut self, start: Token, kind: Option<NodeKind>) -> Begun {
-        self.block(start, kind.map_or(Head::Broken, |kind| Head::Unary(Box::new(kind))))
+    fn unary(&mut self, start: Token, recipe: Option<Recipe>) -> Begun {
+        self.block(start, recipe.map_or(Head::Broken, |recipe| Head::Unary(Box::new(recipe))))
     }
 
-    fn affine(&mut self, start: Token, map: DAffine3) -> Begun {
-        self.unary(start, Some(NodeKind::Affine(map)))
+    fn map(&mut self, start: Token, map: Map) -> Begun {
+        if let Err(fault) = map.affine() {
+            let span = Span::new(start.start, self.previous_end());
+            self.report(|| fault.at(Some(span)));
+        }
+        self.unary(start, Some(Recipe::Map(map)))
     }
 
     /// The node of a block that has been closed.
     fn close(&mut self, frame: Frame, children: Vec<Tree>) -> Tree {
-        let kind = match frame.head {
+        let recipe = match frame.head {
             Head::Broken => return self.broken.clone(),
-            Head::Combine(combinator) => NodeKind::Combine(combinator),
-            Head::Unary(kind) => {
+            Head::Combine(combinator) => {
+                return Tree::at(frame.span, NodeKind::Combine(combinator), children);
+            }
+            Head::Operator(recipe) => *recipe,
+            Head::Unary(recipe) => {
                 let count = children.len();
                 if count != 1 && !frame.incomplete {
                     let word = self.source(frame.span).split_ascii_whitespace().next().unwrap_or_default();
@@ -296,15 +306,22 @@ impl<'a> Parser<'a> {
                         }
                     });
                 }
-                *kind
+                *recipe
             }
         };
-        Tree::at(frame.span, kind, children)
+        // A fault has been told where the head was read.
+        let made = Tree::cook(recipe, &self.iso, children, Some(frame.span));
+        made.unwrap_or_else(|_| self.broken.clone())
     }
 
     fn ricci(&mut self, start: Token) -> Begun {
-        let exponent = self.expression(super::expression::Place::Alone).value;
-        self.block(start, Head::Combine(Combinator::Ricci(exponent)))
+        let exponent = self.expression(Place::Alone).number;
+        self.block(start, Head::Operator(Box::new(Recipe::Ricci(exponent))))
+    }
+
+    fn select(&mut self, start: Token) -> Begun {
+        let which = self.expression(Place::Alone).number;
+        self.block(start, Head::Operator(Box::new(Recipe::Select(which))))
     }
 
     fn use_node(&mut self) -> Tree {
@@ -337,12 +354,12 @@ impl<'a> Parser<'a> {
     }
 
     fn rotate(&mut self, start: Token) -> Begun {
-        let slots = self.slots(ROTATE, "`rotate`");
-        let [axis, degrees, radians] = [0, 1, 2].map(|index| slots.get(index));
+        let mut slots = self.slots(ROTATE, "`rotate`");
+        let [axis, degrees, radians] = [0, 1, 2].map(|index| slots.take(index));
         let span = Span::new(start.start, self.previous_end());
         let angle = match (degrees, radians) {
-            (Some(degrees), None) => sin_cos_degrees(degrees.real()),
-            (None, Some(radians)) => radians.real().sin_cos(),
+            (Some(FieldNumber::Real(degrees)), None) => Angle::Degrees(degrees),
+            (None, Some(FieldNumber::Real(radians))) => Angle::Radians(radians),
             _ => {
                 self.lose_place(|| {
                     Diagnostic::error(Some(span), "`rotate` has no angle, or two")
@@ -351,28 +368,23 @@ impl<'a> Parser<'a> {
                 return self.block(start, Head::Broken);
             }
         };
-        let Some(axis) = axis else {
+        let Some(FieldNumber::Vector(axis)) = axis else {
             self.lose_place(|| {
                 Diagnostic::error(Some(span), "`rotate` has no axis")
                     .expected("expected `axis x`, `axis y`, `axis z` or `axis (a b c)`")
             });
             return self.block(start, Head::Broken);
         };
-        let axis = DVec3::from(axis.vector());
-        let unit = axis.normalize_or_zero();
-        if unit == DVec3::ZERO && !axis.is_nan() {
-            self.report(|| Diagnostic::error(Some(span), "the axis has no direction"));
-        }
-        self.affine(start, DAffine3::from_mat3(rotation(unit, angle)))
+        self.map(start, Map::Rotate { axis, angle })
     }
 
     fn scale(&mut self, start: Token) -> Begun {
-        let factors = match self.number_or_elements() {
-            None => DVec3::NAN,
-            Some(all) if all.count == 1 => DVec3::splat(all.numbers[0]),
-            Some(all) => DVec3::from(self.sized::<3>(&all)),
+        let map = match self.number_or_elements() {
+            None => Map::Scale(f64::NAN.into()),
+            Some(all) if all.count == 1 => Map::Scale(all.numbers[0].clone()),
+            Some(all) => Map::ScaleAxes(self.sized::<3>(all)),
         };
-        self.affine(start, DAffine3::from_scale(factors))
+        self.map(start, map)
     }
 
     fn attribute(&mut self, start: Token, at: Token, name: &str) -> Begun {
@@ -386,7 +398,7 @@ impl<'a> Parser<'a> {
             return self.block(start, Head::Broken);
         };
         let values = self.group_values(Some(width));
-        self.unary(start, Some(NodeKind::Attribute { name, values }))
+        self.unary(start, Some(Recipe::Attribute { name, values }))
     }
 
     fn known_groups(&self) -> String {
@@ -424,12 +436,7 @@ impl<'a> Parser<'a> {
 
 impl Slots {
     /// All values, with defaults; nothing if one is missing or wrong, after a message.
-    fn complete(
-        self,
-        parser: &mut Parser<'_>,
-        start: Token,
-        name: &str,
-    ) -> Option<Vec<crate::field::FieldValue>> {
+    fn complete(self, parser: &mut Parser<'_>, start: Token, name: &str) -> Option<Vec<FieldNumber>> {
         let span = Span::new(start.start, parser.previous_end());
         let missing = self.missing();
         if !missing.is_empty() && !parser.is_lost() {

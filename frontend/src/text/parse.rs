@@ -8,21 +8,24 @@ use std::sync::Arc;
 
 use jbt_ir::limits::{MAX_ATTRIBUTE_WIDTH, MAX_ATTRIBUTES, MAX_SCENE_BYTES};
 
+use super::Options;
 use super::expression::{Place, is_builtin};
 use super::lex::{Lexer, Token, TokenKind};
-use super::{Options, Parameter, Scene};
 use crate::attribute::{AttributeGroup, Mixing};
+use crate::check::{not_finite, unknown};
 use crate::combine::Combinator;
 use crate::diagnostic::{Diagnostic, Span};
 use crate::model::Model;
-use crate::report::{Report, clip, nearest};
+use crate::number::{Formula, Number};
+use crate::parameter::{Parameter, reference};
+use crate::report::{Report, clip};
 use crate::tree::{NodeKind, Tree};
 
 /// The words that begin a statement.
 const STATEMENTS: [&str; 5] = ["jbt", "iso", "param", "attribute", "let"];
 
 /// Whether a word begins a statement.
-pub(super) fn is_statement(word: &str) -> bool {
+pub(crate) fn is_statement(word: &str) -> bool {
     STATEMENTS.contains(&word)
 }
 
@@ -37,11 +40,11 @@ pub(super) struct Parser<'a> {
     stopped: bool,
     options: &'a Options,
     parameters: Vec<Parameter>,
-    /// The value of each parameter; NaN for one whose expression has an error.
-    values: HashMap<&'a str, f64>,
+    /// Each parameter as formulas have it; its value is NaN where its expression has an error.
+    references: HashMap<&'a str, Number>,
     pub(super) lets: HashMap<&'a str, Tree>,
     pub(super) attributes: Vec<AttributeGroup>,
-    pub(super) iso: f64,
+    pub(super) iso: Number,
     iso_at: Option<Span>,
     /// Nodes so far, shared ones once.
     pub(super) nodes: usize,
@@ -52,8 +55,8 @@ pub(super) struct Parser<'a> {
     pub(super) broken: Tree,
 }
 
-/// The scene of a text, or everything that is wrong with it.
-pub(super) fn read(text: &[u8], options: &Options) -> Result<Scene, Vec<Diagnostic>> {
+/// The model of a text, or everything that is wrong with it.
+pub(super) fn read(text: &[u8], options: &Options) -> Result<Model, Vec<Diagnostic>> {
     if text.len() > MAX_SCENE_BYTES {
         let message = format!("the file has {} bytes; at most {MAX_SCENE_BYTES} are read", text.len());
         return Err(vec![Diagnostic::limit(None, message)]);
@@ -71,6 +74,18 @@ pub(super) fn read(text: &[u8], options: &Options) -> Result<Scene, Vec<Diagnost
     parser.finish()
 }
 
+/// The value of a text that is one expression, or everything that is wrong with it.
+pub(super) fn read_number(text: &str) -> Result<f64, Vec<Diagnostic>> {
+    let options = Options::default();
+    let mut parser = Parser::new(text, &options);
+    let value = parser.expression(Place::Alone).number.value();
+    let rest = parser.peek();
+    if rest.kind != TokenKind::End {
+        parser.expected_at(rest, "expected one number");
+    }
+    if parser.report.is_empty() { Ok(value) } else { Err(parser.report.finish()) }
+}
+
 impl<'a> Parser<'a> {
     fn new(whole: &'a str, options: &'a Options) -> Self {
         Self {
@@ -81,10 +96,10 @@ impl<'a> Parser<'a> {
             stopped: false,
             options,
             parameters: Vec::new(),
-            values: HashMap::new(),
+            references: HashMap::new(),
             lets: HashMap::new(),
             attributes: vec![AttributeGroup::color()],
-            iso: Model::DEFAULT_ISO,
+            iso: Model::DEFAULT_ISO.into(),
             iso_at: None,
             nodes: 0,
             root: None,
@@ -207,12 +222,12 @@ impl<'a> Parser<'a> {
 
     // Parameters.
 
-    pub(super) fn parameter(&self, name: &str) -> Option<f64> {
-        self.values.get(name).copied()
+    pub(super) fn parameter(&self, name: &str) -> Option<&Number> {
+        self.references.get(name)
     }
 
     pub(super) fn parameter_names(&self) -> impl Iterator<Item = &str> {
-        self.parameters.iter().map(|parameter| parameter.name.as_str())
+        self.parameters.iter().map(Parameter::name)
     }
 
     // Statements.
@@ -296,7 +311,7 @@ impl<'a> Parser<'a> {
     }
 
     fn iso_statement(&mut self, span: Span) {
-        let value = self.expression(Place::Alone).value;
+        let value = self.expression(Place::Alone).number;
         if self.iso_at.is_some() {
             self.report(|| Diagnostic::error(Some(span), "a second `iso`").expected("expected it once"));
         } else if self.nodes > 0 {
@@ -331,16 +346,19 @@ impl<'a> Parser<'a> {
             return;
         };
         self.equals();
-        let default = if self.is_lost() { f64::NAN } else { self.expression(Place::Alone).value };
+        let lost = self.is_lost();
+        let default = if lost { f64::NAN.into() } else { self.expression(Place::Alone).number };
         if is_builtin(name) {
             self.report(|| Diagnostic::error(Some(span), format!("`{name}` means something else already")));
-        } else if self.values.contains_key(name) {
+        } else if self.references.contains_key(name) {
             self.report(|| Diagnostic::error(Some(span), format!("a second parameter `{}`", clip(name))));
         } else {
             let set = self.options.parameters.iter().rev().find(|(set, _)| set == name);
-            let value = set.map_or(default, |&(_, value)| value);
-            self.values.insert(name, value);
-            self.parameters.push(Parameter { name: name.to_owned(), default, value });
+            let setting = set.map(|&(_, value)| value);
+            let parameter = Parameter { setting, span: Some(span), ..Parameter::new(name, default) };
+            let formula = Formula::new(vec![reference(&parameter.name, parameter.value())], None);
+            self.references.insert(name, Number::with_formula(parameter.value(), formula));
+            self.parameters.push(parameter);
         }
     }
 
@@ -350,20 +368,27 @@ impl<'a> Parser<'a> {
         };
         let width_at = self.peek();
         let width = self.expression(Place::Alone);
-        let right = width.value.fract() == 0.0 && (1.0..=MAX_ATTRIBUTE_WIDTH as f64).contains(&width.value);
-        if !right && !width.value.is_nan() {
+        self.declares(&width.number, width.span);
+        let (width, width_span) = (width.number.value(), width.span);
+        let right = width.fract() == 0.0 && (1.0..=MAX_ATTRIBUTE_WIDTH as f64).contains(&width);
+        if !right && !width.is_nan() {
             self.report(|| {
                 Diagnostic::error(
-                    Some(width.span),
+                    Some(width_span),
                     format!("the width of `{}` is not 1 to {MAX_ATTRIBUTE_WIDTH}", clip(name)),
                 )
                 .expected("expected the number of its reals")
             });
         }
-        let width = right.then_some(width.value as usize);
+        let width = right.then_some(width as usize);
         let mut default = None;
         if !self.is_lost() && self.accept_word("default") {
-            default = Some(self.group_values(width));
+            let from = self.peek().start;
+            let values = self.group_values(width);
+            for number in &values {
+                self.declares(number, Span::new(from, self.previous_end()));
+            }
+            default = Some(values.iter().map(Number::value).collect());
         }
         let mixing = Mixing::ALL.into_iter().find(|mixing| self.accept_word(mixing.name()));
         if self.is_lost() || width_at.kind == TokenKind::End {
@@ -376,6 +401,16 @@ impl<'a> Parser<'a> {
             mixing: mixing.unwrap_or(Mixing::Blend),
         };
         self.declare(group, span);
+    }
+
+    /// Marks the parameters of a number that stays as it is read.
+    fn declares(&mut self, number: &Number, span: Span) {
+        for (name, _) in number.formula().into_iter().flat_map(Formula::parameters) {
+            let declared = self.parameters.iter_mut().find(|parameter| parameter.name == *name);
+            if let Some(parameter) = declared {
+                parameter.declares = Some(span);
+            }
+        }
     }
 
     fn declare(&mut self, group: AttributeGroup, span: Span) {
@@ -435,7 +470,7 @@ impl<'a> Parser<'a> {
 
     // The end.
 
-    fn finish(mut self) -> Result<Scene, Vec<Diagnostic>> {
+    fn finish(mut self) -> Result<Model, Vec<Diagnostic>> {
         self.check_options();
         if self.root.is_none() {
             let end = Span::new(self.whole.len(), self.whole.len());
@@ -445,10 +480,9 @@ impl<'a> Parser<'a> {
         }
         let report = std::mem::take(&mut self.report);
         match self.root {
-            Some(root) if report.is_empty() => Ok(Scene {
-                model: Model { iso: self.iso, attributes: self.attributes, root },
-                parameters: self.parameters,
-            }),
+            Some(root) if report.is_empty() => {
+                Ok(Model { iso: self.iso, attributes: self.attributes, root, parameters: self.parameters })
+            }
             _ => Err(report.finish()),
         }
     }
@@ -456,22 +490,10 @@ impl<'a> Parser<'a> {
     /// Values from outside are for parameters that exist, and are numbers.
     fn check_options(&mut self) {
         for (name, value) in &self.options.parameters {
-            if !self.values.contains_key(name.as_str()) {
-                self.report_with(|parser| {
-                    let error =
-                        Diagnostic::error(None, format!("the file has no parameter `{}` to set", clip(name)));
-                    let known: Vec<&str> = parser.parameter_names().take(20).collect();
-                    let near = nearest(name, parser.parameter_names());
-                    error.expected(match (near, known.len()) {
-                        (_, 0) => "it has none".to_owned(),
-                        (Some(near), _) => format!("perhaps `{near}`; it has {}", known.join(", ")),
-                        (None, _) => format!("it has {}", known.join(", ")),
-                    })
-                });
+            if !self.references.contains_key(name.as_str()) {
+                self.report_with(|parser| unknown(name, &parser.parameters));
             } else if !value.is_finite() {
-                self.report(|| {
-                    Diagnostic::error(None, format!("the value of `{}` is not finite", clip(name)))
-                });
+                self.report(|| not_finite(name));
             }
         }
     }

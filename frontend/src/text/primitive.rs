@@ -6,15 +6,17 @@ use super::parse::{Parser, is_statement};
 use super::{OWN_FIELDS, field_word};
 use crate::diagnostic::{Diagnostic, Span};
 use crate::falloff::Falloff;
-use crate::field::{Field, FieldValue};
+use crate::field::Field;
+use crate::number::Number;
+use crate::recipe::{FieldNumber, Radius, Recipe};
 use crate::report::{clip, nearest};
 use crate::skeleton::SkeletonKind;
-use crate::tree::{NodeKind, Primitive, Tree};
+use crate::tree::Tree;
 
 /// Parameters of a description, with those values that have been read.
 pub(super) struct Slots {
     fields: &'static [Field],
-    values: Vec<Option<FieldValue>>,
+    values: Vec<Option<FieldNumber>>,
 }
 
 impl Slots {
@@ -22,9 +24,9 @@ impl Slots {
         Self { fields, values: vec![None; fields.len()] }
     }
 
-    /// What was written for a parameter.
-    pub(super) fn get(&self, index: usize) -> Option<FieldValue> {
-        self.values[index]
+    /// What was written for a parameter; it is not there any more.
+    pub(super) fn take(&mut self, index: usize) -> Option<FieldNumber> {
+        self.values[index].take()
     }
 
     /// The parameters that have to be written and were not.
@@ -34,17 +36,15 @@ impl Slots {
     }
 
     /// All values, with defaults; nothing if one is missing or was wrong.
-    pub(super) fn values(&self) -> Option<Vec<FieldValue>> {
-        let all = self.fields.iter().zip(&self.values).map(|(field, value)| value.or(field.default));
+    pub(super) fn values(self) -> Option<Vec<FieldNumber>> {
+        let all = self.fields.iter().zip(self.values);
+        let all = all.map(|(field, value)| value.or_else(|| field.default.map(FieldNumber::from)));
         all.map(|value| value.filter(is_number)).collect()
     }
 }
 
-fn is_number(value: &FieldValue) -> bool {
-    match value {
-        FieldValue::Real(x) => !x.is_nan(),
-        FieldValue::Vector(v) => v.iter().all(|x| !x.is_nan()),
-    }
+fn is_number(value: &FieldNumber) -> bool {
+    value.numbers().iter().all(|number| !number.value().is_nan())
 }
 
 /// The message about parameters that have to be written.
@@ -56,10 +56,10 @@ pub(super) fn missing_error(span: Span, name: &str, missing: &[Field]) -> Diagno
 /// The parameters that every primitive has, as far as they have been read.
 #[derive(Default)]
 struct Own {
-    radius: Option<f64>,
-    surface_radius: Option<(f64, Span)>,
+    radius: Option<Number>,
+    surface_radius: Option<(Number, Span)>,
     falloff: Option<Falloff>,
-    strength: Option<f64>,
+    strength: Option<Number>,
 }
 
 impl Parser<'_> {
@@ -126,7 +126,7 @@ impl Parser<'_> {
             }
         }
         let span = Span::new(start.start, self.previous_end());
-        self.finished_primitive(kind, span, &slots, &own)
+        self.finished_primitive(kind, span, slots, own)
     }
 
     /// A parameter of a primitive whose word, `token`, has just been taken.
@@ -153,12 +153,12 @@ impl Parser<'_> {
         }
         let value = self.expression(Place::Alone);
         match word {
-            "radius" => self.once(&mut own.radius, value.value, token),
+            "radius" => self.once(&mut own.radius, value.number, token),
             "surface_radius" => {
                 let span = Span { start: token.start as u32, end: value.span.end };
-                self.once(&mut own.surface_radius, (value.value, span), token);
+                self.once(&mut own.surface_radius, (value.number, span), token);
             }
-            _ => self.once(&mut own.strength, value.value, token),
+            _ => self.once(&mut own.strength, value.number, token),
         }
     }
 
@@ -197,7 +197,7 @@ impl Parser<'_> {
         });
     }
 
-    fn finished_primitive(&mut self, kind: SkeletonKind, span: Span, slots: &Slots, own: &Own) -> Tree {
+    fn finished_primitive(&mut self, kind: SkeletonKind, span: Span, slots: Slots, own: Own) -> Tree {
         let mut missing: Vec<String> =
             slots.missing().iter().map(|field| format!("`{}`", field_word(kind, field))).collect();
         if own.radius.is_none() && own.surface_radius.is_none() {
@@ -209,11 +209,13 @@ impl Parser<'_> {
             });
         }
         let falloff = own.falloff.unwrap_or(Falloff::Soft);
-        let strength = own.strength.unwrap_or(1.0);
+        let strength = own.strength.unwrap_or_else(|| 1.0.into());
+        // What is wrong with a surface radius is told there.
+        let at = own.surface_radius.as_ref().map_or(span, |(_, at)| *at);
         let radius = match (own.radius, own.surface_radius) {
-            (radius, None) => radius,
-            (None, Some((radius, at))) => self.support_radius(radius, falloff, strength, at),
-            (Some(_), Some((_, at))) => {
+            (radius, None) => radius.map(Radius::Support),
+            (None, Some((radius, _))) => Some(Radius::Surface(radius)),
+            (Some(_), Some(_)) => {
                 self.report(|| {
                     Diagnostic::error(Some(at), "`surface_radius` and `radius` in one primitive")
                         .expected("expected one of them")
@@ -221,31 +223,13 @@ impl Parser<'_> {
                 None
             }
         };
-        match (slots.values(), radius) {
-            (Some(values), Some(radius)) => {
-                let skeleton = kind.from_fields(&values);
-                let primitive = Primitive { skeleton, falloff, radius, strength };
-                Tree::at(span, NodeKind::Primitive(primitive), Vec::new())
-            }
-            _ => self.broken.clone(),
-        }
-    }
-
-    /// The support radius of a primitive whose surface alone has this radius: `r / sqrt(s)` with `falloff(s) = iso / strength`.
-    fn support_radius(&mut self, radius: f64, falloff: Falloff, strength: f64, at: Span) -> Option<f64> {
-        let level = self.iso / strength;
-        if radius.is_nan() || self.iso.is_nan() || strength.is_nan() {
-            return None;
-        }
-        if !(level > 0.0 && level < 1.0) {
-            let (iso, strength) = (super::print::number(self.iso), super::print::number(strength));
-            self.report(|| {
-                let message = format!("with strength {strength} the primitive has no surface at iso {iso}");
-                Diagnostic::error(Some(at), message)
-                    .expected("expected a strength above iso, or `radius`, the radius of the support")
-            });
-            return None;
-        }
-        Some(radius / falloff.inverse(level).sqrt())
+        let (Some(fields), Some(radius)) = (slots.values(), radius) else {
+            return self.broken.clone();
+        };
+        let recipe = Recipe::Primitive { skeleton: kind, fields, falloff, radius, strength };
+        Tree::cook(recipe, &self.iso, Vec::new(), Some(span)).unwrap_or_else(|fault| {
+            self.report(|| fault.at(Some(at)));
+            self.broken.clone()
+        })
     }
 }

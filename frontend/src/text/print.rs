@@ -16,6 +16,8 @@ use crate::combine::Combinator;
 use crate::falloff::Falloff;
 use crate::field::{Field, FieldKind, FieldValue};
 use crate::model::Model;
+use crate::number::{Number, plain};
+use crate::recipe::{Angle, FieldNumber, Map, Radius, Recipe};
 use crate::tree::{NodeKind, Primitive, Tree};
 
 /// Operators below this depth are printed on one line.
@@ -24,7 +26,11 @@ const DEEPEST: usize = 12;
 /// The model as text. See [`parse`](super::parse) for the promise.
 #[must_use]
 pub fn print(model: &Model) -> String {
-    let mut out = format!("jbt 1\niso {}\n", number(model.iso));
+    let mut out = "jbt 1\n".to_owned();
+    for parameter in model.all_parameters() {
+        let _ = writeln!(out, "param {} = {}", parameter.name(), parameter.source());
+    }
+    let _ = writeln!(out, "iso {}", model.iso);
     for group in &model.attributes {
         if *group != AttributeGroup::color() {
             declaration(&mut out, group);
@@ -43,30 +49,23 @@ pub fn print(model: &Model) -> String {
     out
 }
 
-/// The shortest text of a finite number that reads back as the same bits.
-pub(super) fn number(value: f64) -> String {
-    let mut text = format!("{value:?}");
-    if text.ends_with(".0") {
-        text.truncate(text.len() - 2);
-    }
-    text
-}
-
-fn vector(values: &[f64]) -> String {
-    let numbers: Vec<String> = values.iter().map(|&value| number(value)).collect();
+fn vector(numbers: impl IntoIterator<Item = impl Into<Number>>) -> String {
+    let numbers: Vec<String> = numbers.into_iter().map(|number| number.into().text()).collect();
     format!("({})", numbers.join(" "))
 }
 
 /// The values of an attribute: one number without parentheses.
-fn group_values(values: &[f64]) -> String {
-    match values {
-        [value] => number(*value),
+fn group_values<T: Into<Number>>(values: impl IntoIterator<Item = T>) -> String {
+    let values: Vec<Number> = values.into_iter().map(Into::into).collect();
+    match &values[..] {
+        [value] => value.text(),
         values => vector(values),
     }
 }
 
 fn declaration(out: &mut String, group: &AttributeGroup) {
-    let (width, default, mixing) = (group.width(), group_values(&group.default), group.mixing.name());
+    let (width, default, mixing) =
+        (group.width(), group_values(group.default.iter().copied()), group.mixing.name());
     let _ = writeln!(out, "attribute {} {width} default {default} {mixing}", group.name);
 }
 
@@ -129,11 +128,14 @@ impl Printer {
 
     /// Prints a node's head and leaves the rest of it on the stack.
     fn open<'a>(out: &mut String, stack: &mut Vec<Item<'a>>, tree: &'a Tree, depth: usize) {
-        head(out, tree.node().kind());
+        match tree.node().recipe() {
+            Some(recipe) => head_of_recipe(out, recipe),
+            None => head(out, tree.node().kind()),
+        }
         let children = tree.node().children();
         match tree.node().kind() {
             NodeKind::Primitive(_) => {}
-            NodeKind::Combine(_) => {
+            NodeKind::Combine(_) | NodeKind::Select(_) => {
                 out.push_str(" {");
                 stack.push(Item::Text("}"));
                 stack.push(Item::Line(depth));
@@ -156,53 +158,117 @@ fn head(out: &mut String, kind: &NodeKind) {
     match kind {
         NodeKind::Primitive(leaf) => primitive(out, leaf),
         NodeKind::Combine(Combinator::Ricci(exponent)) => {
-            let _ = write!(out, "blend ricci {}", number(*exponent));
+            let _ = write!(out, "blend ricci {}", plain(*exponent));
         }
         NodeKind::Combine(combinator) => out.push_str(combinator.name()),
+        NodeKind::Select(which) => {
+            let _ = write!(out, "select {}", plain(*which));
+        }
         NodeKind::Affine(map) => affine(out, map),
         NodeKind::Warp(warp) => {
             out.push_str(warp.kind().name());
             for (described, value) in warp.kind().fields().iter().zip(warp.to_fields()) {
+                field(out, described.name, described, &value.into());
+            }
+        }
+        NodeKind::Attribute { name, values } => attribute(out, name, &group_values(values.iter().copied())),
+    }
+}
+
+/// The head of a node with numbers that follow parameters: as it was written.
+fn head_of_recipe(out: &mut String, recipe: &Recipe) {
+    match recipe {
+        Recipe::Primitive { skeleton: kind, fields, falloff, radius, strength } => {
+            let _ = write!(out, "{} {{", kind.name());
+            for (described, value) in kind.fields().iter().zip(fields) {
+                field(out, &field_word(*kind, described), described, value);
+            }
+            let _ = match radius {
+                Radius::Support(radius) => write!(out, " radius {radius}"),
+                Radius::Surface(radius) => write!(out, " surface_radius {radius}"),
+            };
+            rest_of_primitive(out, *falloff, strength);
+        }
+        Recipe::Ricci(exponent) => {
+            let _ = write!(out, "blend ricci {exponent}");
+        }
+        Recipe::Select(which) => {
+            let _ = write!(out, "select {which}");
+        }
+        Recipe::Map(map) => head_of_map(out, map),
+        Recipe::Warp { warp, fields } => {
+            out.push_str(warp.name());
+            for (described, value) in warp.fields().iter().zip(fields) {
                 field(out, described.name, described, value);
             }
         }
-        NodeKind::Attribute { name, values } => {
-            if super::node::is_reserved(name) {
-                let _ = write!(out, "{GROUP_NODE} ");
-            }
-            let _ = write!(out, "{name} {}", group_values(values));
-        }
+        Recipe::Attribute { name, values } => attribute(out, name, &group_values(values)),
     }
+}
+
+/// The head of a node with numbers that follow parameters, as text: equal for nodes that are equal for all their values.
+pub(crate) fn print_head(recipe: &Recipe) -> String {
+    let mut out = String::new();
+    head_of_recipe(&mut out, recipe);
+    out
+}
+
+fn head_of_map(out: &mut String, map: &Map) {
+    let _ = match map {
+        Map::Translate(by) => write!(out, "translate {}", vector(by)),
+        Map::Rotate { axis, angle: Angle::Degrees(angle) } => {
+            write!(out, "rotate axis {} degrees {angle}", vector(axis))
+        }
+        Map::Rotate { axis, angle: Angle::Radians(angle) } => {
+            write!(out, "rotate axis {} radians {angle}", vector(axis))
+        }
+        Map::Scale(by) => write!(out, "scale {by}"),
+        Map::ScaleAxes(by) => write!(out, "scale {}", vector(by)),
+        Map::Affine(rows) => write!(out, "affine {}", vector(&**rows)),
+    };
+}
+
+fn attribute(out: &mut String, name: &str, values: &str) {
+    if super::node::is_reserved(name) {
+        let _ = write!(out, "{GROUP_NODE} ");
+    }
+    let _ = write!(out, "{name} {values}");
 }
 
 fn primitive(out: &mut String, leaf: &Primitive) {
     let kind = leaf.skeleton.kind();
     let _ = write!(out, "{} {{", kind.name());
     for (described, value) in kind.fields().iter().zip(leaf.skeleton.to_fields()) {
-        field(out, &field_word(kind, described), described, value);
+        field(out, &field_word(kind, described), described, &value.into());
     }
-    let _ = write!(out, " radius {}", number(leaf.radius));
-    if leaf.falloff != Falloff::Soft {
-        let _ = write!(out, " falloff {}", leaf.falloff.name());
+    let _ = write!(out, " radius {}", plain(leaf.radius));
+    rest_of_primitive(out, leaf.falloff, &leaf.strength.into());
+}
+
+/// What follows a primitive's radius.
+fn rest_of_primitive(out: &mut String, falloff: Falloff, strength: &Number) {
+    if falloff != Falloff::Soft {
+        let _ = write!(out, " falloff {}", falloff.name());
     }
-    if leaf.strength.to_bits() != 1f64.to_bits() {
-        let _ = write!(out, " strength {}", number(leaf.strength));
+    if strength.follows() || strength.value().to_bits() != 1f64.to_bits() {
+        let _ = write!(out, " strength {strength}");
     }
     out.push_str(" }");
 }
 
 /// A parameter, unless it has its default.
-fn field(out: &mut String, word: &str, described: &Field, value: FieldValue) {
-    if described.default.is_some_and(|default| same_bits(default, value)) {
+fn field(out: &mut String, word: &str, described: &Field, value: &FieldNumber) {
+    let plain = !value.numbers().iter().any(Number::follows);
+    if plain && described.default.is_some_and(|default| same_bits(default, value.value())) {
         return;
     }
     let _ = match (described.kind, value) {
-        (FieldKind::Axis, FieldValue::Vector(axis)) => {
-            let index = axis.iter().position(|&x| x != 0.0).unwrap_or(2);
+        (FieldKind::Axis, FieldNumber::Vector(axis)) => {
+            let index = axis.iter().position(|x| x.value() != 0.0).unwrap_or(2);
             write!(out, " {word} {}", ["x", "y", "z"][index])
         }
-        (_, FieldValue::Real(value)) => write!(out, " {word} {}", number(value)),
-        (_, FieldValue::Vector(values)) => write!(out, " {word} {}", vector(&values)),
+        (_, FieldNumber::Real(value)) => write!(out, " {word} {value}"),
+        (_, FieldNumber::Vector(values)) => write!(out, " {word} {}", vector(values)),
     };
 }
 
@@ -219,13 +285,13 @@ fn affine(out: &mut String, map: &DAffine3) {
     let bits = |map: &DAffine3| map.to_cols_array().map(f64::to_bits);
     let diagonal = glam::DVec3::new(map.matrix3.x_axis.x, map.matrix3.y_axis.y, map.matrix3.z_axis.z);
     let _ = if bits(map) == bits(&DAffine3::from_translation(map.translation)) {
-        write!(out, "translate {}", vector(&map.translation.to_array()))
+        write!(out, "translate {}", vector(map.translation.to_array()))
     } else if bits(map) != bits(&DAffine3::from_scale(diagonal)) {
         let [xx, yx, zx, xy, yy, zy, xz, yz, zz, x, y, z] = map.to_cols_array();
-        write!(out, "affine {}", vector(&[xx, xy, xz, x, yx, yy, yz, y, zx, zy, zz, z]))
+        write!(out, "affine {}", vector([xx, xy, xz, x, yx, yy, yz, y, zx, zy, zz, z]))
     } else if diagonal.x.to_bits() == diagonal.y.to_bits() && diagonal.x.to_bits() == diagonal.z.to_bits() {
-        write!(out, "scale {}", number(diagonal.x))
+        write!(out, "scale {}", plain(diagonal.x))
     } else {
-        write!(out, "scale {}", vector(&diagonal.to_array()))
+        write!(out, "scale {}", vector(diagonal.to_array()))
     };
 }

@@ -6,6 +6,8 @@ use super::lex::TokenKind;
 use super::parse::Parser;
 use crate::diagnostic::{Diagnostic, Span};
 use crate::field::{FieldKind, FieldValue};
+use crate::number::Number;
+use crate::recipe::FieldNumber;
 
 /// The most elements that a vector may have: a 3x4 matrix.
 const LONGEST: usize = 12;
@@ -13,7 +15,7 @@ const LONGEST: usize = 12;
 /// The elements of a vector.
 pub(super) struct Elements {
     /// The first ones, at most [`LONGEST`].
-    pub(super) numbers: Vec<f64>,
+    pub(super) numbers: Vec<Number>,
     /// How many there are.
     pub(super) count: usize,
     pub(super) span: Span,
@@ -21,7 +23,7 @@ pub(super) struct Elements {
 
 impl Elements {
     fn one(operand: Operand) -> Self {
-        Self { numbers: vec![operand.value], count: 1, span: operand.span }
+        Self { numbers: vec![operand.number], count: 1, span: operand.span }
     }
 }
 
@@ -49,7 +51,7 @@ impl Parser<'_> {
             }
             all.count += 1;
             if all.count <= LONGEST {
-                all.numbers.push(element.value);
+                all.numbers.push(element.number);
             }
         }
         all.span.end = self.next().end as u32;
@@ -63,11 +65,11 @@ impl Parser<'_> {
             return (!self.is_lost()).then(|| Elements::one(operand));
         }
         let all = self.elements()?;
-        let &[value] = all.numbers.as_slice() else {
+        let [number] = all.numbers.as_slice() else {
             return Some(all);
         };
-        let first = Operand { value, span: all.span };
-        let operand = self.expression_from(Place::Alone, Some(first));
+        let first = Operand { number: number.clone(), span: all.span };
+        let operand = self.expression_from(Place::Alone, &first);
         (!self.is_lost()).then(|| Elements::one(operand))
     }
 
@@ -100,22 +102,23 @@ impl Parser<'_> {
     }
 
     /// A vector of `N` elements; NaNs after an error.
-    pub(super) fn vector<const N: usize>(&mut self) -> [f64; N] {
+    pub(super) fn vector<const N: usize>(&mut self) -> [Number; N] {
         let Some(all) = self.elements() else {
-            return [f64::NAN; N];
+            return std::array::from_fn(|_| f64::NAN.into());
         };
-        self.sized(&all)
+        self.sized(all)
     }
 
     /// The elements, if they are `N`; else a message and NaNs.
-    pub(super) fn sized<const N: usize>(&mut self, all: &Elements) -> [f64; N] {
-        if let Ok(numbers) = <[f64; N]>::try_from(all.numbers.as_slice())
-            && all.count == N
-        {
-            return numbers;
+    pub(super) fn sized<const N: usize>(&mut self, all: Elements) -> [Number; N] {
+        if all.count != N {
+            self.wrong_count(&all, N);
         }
-        self.wrong_count(all, N);
-        [f64::NAN; N]
+        // As long as the first ones are all.
+        <[Number; N]>::try_from(all.numbers)
+            .ok()
+            .filter(|_| all.count == N)
+            .unwrap_or_else(|| std::array::from_fn(|_| f64::NAN.into()))
     }
 
     pub(super) fn wrong_count(&mut self, all: &Elements, expected: usize) {
@@ -128,8 +131,8 @@ impl Parser<'_> {
     }
 
     /// The values of an attribute group; zeros after an error. The width is nothing if it has an error itself.
-    pub(super) fn group_values(&mut self, width: Option<usize>) -> Vec<f64> {
-        let zeros = vec![0.0; width.unwrap_or(1)];
+    pub(super) fn group_values(&mut self, width: Option<usize>) -> Vec<Number> {
+        let zeros = vec![Number::from(0.0); width.unwrap_or(1)];
         let Some(all) = self.number_or_elements() else {
             return zeros;
         };
@@ -144,20 +147,23 @@ impl Parser<'_> {
     }
 
     /// The value of a parameter of this kind; NaN after an error.
-    pub(super) fn field_value(&mut self, kind: FieldKind) -> FieldValue {
+    pub(super) fn field_value(&mut self, kind: FieldKind) -> FieldNumber {
         match kind {
             FieldKind::Real | FieldKind::Positive | FieldKind::NonNegative => {
-                FieldValue::Real(self.expression(Place::Alone).value)
+                FieldNumber::Real(self.expression(Place::Alone).number)
             }
-            FieldKind::Position | FieldKind::Extents => FieldValue::Vector(self.vector()),
+            FieldKind::Position | FieldKind::Extents => FieldNumber::Vector(self.vector()),
             FieldKind::Direction => match self.axis_word() {
-                Some(axis) => FieldValue::Vector(axis),
-                None => FieldValue::Vector(self.vector()),
+                Some(axis) => FieldValue::Vector(axis).into(),
+                None => FieldNumber::Vector(self.vector()),
             },
-            FieldKind::Axis => FieldValue::Vector(self.axis_word().unwrap_or_else(|| {
-                self.expected_at(self.peek(), "expected one of x, y, z");
-                [f64::NAN; 3]
-            })),
+            FieldKind::Axis => {
+                let axis = self.axis_word().unwrap_or_else(|| {
+                    self.expected_at(self.peek(), "expected one of x, y, z");
+                    [f64::NAN; 3]
+                });
+                FieldValue::Vector(axis).into()
+            }
         }
     }
 

@@ -9,6 +9,7 @@ use jbt_frontend::combine::Combinator;
 use jbt_frontend::falloff::Falloff;
 use jbt_frontend::field::{Field, FieldKind, FieldValue};
 use jbt_frontend::model::Model;
+use jbt_frontend::number::param;
 use jbt_frontend::skeleton::SkeletonKind;
 use jbt_frontend::tree::{NodeKind, Primitive, Tree};
 use jbt_frontend::warp::WarpKind;
@@ -72,6 +73,16 @@ fn unary(rng: &mut Rng) -> NodeKind {
     }
 }
 
+/// A tree under a map that follows a parameter of its own: its code serves all values.
+fn following(rng: &mut Rng, tree: &Tree, index: usize) -> Tree {
+    let follows = param(&format!("p{index}"), 2.0 * rng.f64() - 1.0);
+    match rng.u8(..3) {
+        0 => tree.translate((follows, 0.0, 0.5 - rng.f64())),
+        1 => tree.scale(1.0 + 0.5 * follows),
+        _ => tree.rotate([0.3, 0.5, 1.0], 90.0 * follows),
+    }
+}
+
 fn combinator(rng: &mut Rng) -> Combinator {
     match rng.u8(..7) {
         0 | 1 => Combinator::Sum,
@@ -96,7 +107,16 @@ pub fn model(rng: &mut Rng, steps: usize, signs: bool) -> Model {
         };
         let tree = match rng.u8(..5) {
             0 => plain(leaf(rng, signs)),
+            1 if rng.u8(..5) == 0 => {
+                let tree = pick(rng);
+                following(rng, &tree, trees.len())
+            }
             1 | 2 => Tree::new(unary(rng), vec![pick(rng)]),
+            3 if rng.u8(..4) == 0 => {
+                let children: Vec<Tree> = (0..rng.usize(1..4)).map(|_| pick(rng)).collect();
+                let which = rng.usize(..children.len()) as f64;
+                Tree::new(NodeKind::Select(which), children)
+            }
             _ => {
                 let fresh = rng.usize(..3);
                 let mut children: Vec<Tree> = (0..rng.usize(1..4)).map(|_| pick(rng)).collect();
@@ -107,5 +127,6 @@ pub fn model(rng: &mut Rng, steps: usize, signs: bool) -> Model {
         trees.push(tree);
     }
     let root = trees.pop().expect("there is a leaf");
-    Model { iso: 0.2 + 0.5 * rng.f64(), attributes: vec![AttributeGroup::color(), wood], root }
+    let iso = (0.2 + 0.5 * rng.f64()).into();
+    Model { iso, attributes: vec![AttributeGroup::color(), wood], ..Model::new(root) }
 }

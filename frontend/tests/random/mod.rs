@@ -92,7 +92,7 @@ pub fn model(rng: &mut Rng) -> Model {
             let recent = trees.len().saturating_sub(4);
             trees[if rng.bool() { rng.usize(recent..trees.len()) } else { rng.usize(..trees.len()) }].clone()
         };
-        let tree = match rng.u8(..5) {
+        let tree = match rng.u8(..6) {
             0 => leaf(rng),
             1 => Tree::new(NodeKind::Affine(affine(rng)), vec![pick(rng)]),
             2 => {
@@ -103,6 +103,10 @@ pub fn model(rng: &mut Rng) -> Model {
                 let group = rng.choice(&groups).unwrap();
                 let values = (0..group.width()).map(|_| number(rng)).collect();
                 Tree::new(NodeKind::Attribute { name: Arc::clone(&group.name), values }, vec![pick(rng)])
+            }
+            4 => {
+                let children = (0..rng.usize(1..5)).map(|_| pick(rng)).collect();
+                Tree::new(NodeKind::Select(number(rng)), children)
             }
             _ => {
                 let combinator = match rng.u8(..5) {
@@ -119,5 +123,5 @@ pub fn model(rng: &mut Rng) -> Model {
         trees.push(tree);
     }
     let root = trees.pop().unwrap_or_else(point);
-    Model { iso: number(rng), attributes: groups, root }
+    Model { iso: number(rng).into(), attributes: groups, ..Model::new(root) }
 }

@@ -54,7 +54,7 @@ pub struct Divided {
 pub fn model(circles: &[Circle]) -> Model {
     let leaf = |circle: &Circle| point([circle.center[0], circle.center[1], 0.0], circle.radius);
     let root = Tree::combine(Combinator::Sum, circles.iter().map(leaf));
-    Model { iso: ISO, ..Model::new(root) }
+    Model { iso: ISO.into(), ..Model::new(root) }
 }
 
 /// Divides the square.

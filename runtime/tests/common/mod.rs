@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use fastrand::Rng;
 use jbt::Model;
+use jbt::build::param;
 use jbt_frontend::affine::scale_rotate_translate;
 use jbt_frontend::attribute::{AttributeGroup, Mixing};
 use jbt_frontend::combine::Combinator;
@@ -21,12 +22,19 @@ pub struct Random {
     numbers: Rng,
     /// Trees that may be used once more.
     done: Vec<Tree>,
+    /// How many parameters there are.
+    parameters: usize,
 }
 
 impl Random {
     /// The generator of a shape and a set of numbers.
     pub fn new(shape: u64, numbers: u64) -> Self {
-        Self { shape: Rng::with_seed(shape), numbers: Rng::with_seed(numbers), done: Vec::new() }
+        Self {
+            shape: Rng::with_seed(shape),
+            numbers: Rng::with_seed(numbers),
+            done: Vec::new(),
+            parameters: 0,
+        }
     }
 
     fn between(&mut self, low: f64, high: f64) -> f64 {
@@ -48,7 +56,7 @@ impl Random {
             });
         }
         let root = self.tree(leaves, &attributes, 0);
-        Model { iso: self.between(0.3, 0.6), attributes, root }
+        Model { iso: self.between(0.3, 0.6).into(), attributes, ..Model::new(root) }
     }
 
     fn tree(&mut self, leaves: usize, attributes: &[AttributeGroup], depth: usize) -> Tree {
@@ -61,16 +69,25 @@ impl Random {
         } else {
             let parts = self.shape.usize(1..leaves.min(5) + 1);
             let children = (0..parts).map(|_| self.tree(leaves / parts, attributes, depth + 1)).collect();
-            let combinator = match self.shape.u8(0..8) {
+            let kind = NodeKind::Combine(match self.shape.u8(0..9) {
                 0 | 1 => Combinator::Sum,
                 2 => Combinator::Ricci(f64::from(self.shape.u32(1..20))),
                 3 => Combinator::Ricci(if self.shape.bool() { self.between(1.01, 9.9) } else { 1024.0 }),
                 4 => Combinator::Intersection,
                 5 => Combinator::Difference,
-                _ => Combinator::Union,
-            };
-            Tree::new(NodeKind::Combine(combinator), children)
+                6 | 7 => Combinator::Union,
+                _ => {
+                    // Which child answers is a number as any other.
+                    let which = self.between(-0.49, parts as f64 - 0.51);
+                    return self.finished(Tree::new(NodeKind::Select(which), children), attributes);
+                }
+            });
+            Tree::new(kind, children)
         };
+        self.finished(tree, attributes)
+    }
+
+    fn finished(&mut self, tree: Tree, attributes: &[AttributeGroup]) -> Tree {
         let tree = self.unary(tree, attributes);
         self.done.push(tree.clone());
         tree
@@ -120,11 +137,27 @@ impl Random {
                     let kind = WarpKind::ALL[self.shape.usize(0..WarpKind::ALL.len())];
                     NodeKind::Warp(kind.from_fields(&self.fields(kind.fields())))
                 }
+                4 => {
+                    tree = self.following(&tree);
+                    continue;
+                }
                 _ => self.affine(),
             };
             tree = Tree::new(kind, vec![tree]);
         }
         tree
+    }
+
+    /// The tree under a map that follows a parameter of its own: its code serves all values.
+    fn following(&mut self, tree: &Tree) -> Tree {
+        let name = format!("p{}", self.parameters);
+        self.parameters += 1;
+        let follows = param(&name, self.between(-1.0, 1.0));
+        match self.shape.u8(0..3) {
+            0 => tree.translate((follows, 0.0, self.between(-0.5, 0.5))),
+            1 => tree.scale(1.0 + 0.4 * follows),
+            _ => tree.rotate([0.3, 0.5, 1.0], 90.0 * follows),
+        }
     }
 
     fn affine(&mut self) -> NodeKind {

@@ -14,7 +14,7 @@ use super::Emitter;
 use crate::lower::guide::{DecisionKind, Rule};
 use crate::lower::mixing::{Answer, GroupAnswer};
 use crate::lower::occurrence::{OccurrenceId, SpaceId};
-use crate::lower::shape::ReducerCode;
+use crate::lower::shape::{Lift, ReducerCode};
 
 /// The field of a guard whose row is left out.
 #[derive(Clone, Copy, Debug)]
@@ -77,10 +77,16 @@ impl Guard {
 }
 
 impl Emitter<'_> {
+    /// Whether what is lifted here is computed under a guard.
+    pub(super) fn guards_lift(&self, lift: Lift) -> bool {
+        self.shapes.guards_lift(self.scene, lift, self.builder.fold_depth())
+    }
+
     pub(super) fn open_guard(&mut self, id: OccurrenceId, start: GuardStart) {
         let name = self.group_name(id);
         let field = self.builder.constant(start.number());
-        self.open_only(&name, self.scene.occurrence(id).space, start.rule(), field);
+        let rule = if self.scene.demand.is_bare(id) { Rule::Never } else { start.rule() };
+        self.open_only(&name, self.scene.occurrence(id).space, rule, &[field]);
     }
 
     /// The answer that has just been computed in the guard's row, as it is seen outside.
@@ -92,7 +98,7 @@ impl Emitter<'_> {
             next.extend(group.share);
         }
         let table = *self.rows.last().expect("the guard's row is open");
-        let mut results = self.close_only(next).into_iter();
+        let mut results = self.close_only(next, 1).into_iter();
         let mut result = || results.next().expect("as many as were carried out");
         let field = result();
         let groups = answer.groups.iter().map(|group| GroupAnswer {
@@ -106,19 +112,19 @@ impl Emitter<'_> {
         self.answers.push(Answer { field, groups });
     }
 
-    /// Opens a fold over one row. It carries out a field, and whatever else it is closed with.
-    pub(super) fn open_only(&mut self, name: &str, space: SpaceId, rule: Rule, field: Value) {
+    /// Opens a fold over one row. It carries out what is given here, and whatever else it is closed with.
+    pub(super) fn open_only(&mut self, name: &str, space: SpaceId, rule: Rule, initial: &[Value]) {
         self.probe_row();
-        self.open_fold(name, space, rule, Reduction::Only, &[field]);
+        self.open_fold(name, space, rule, Reduction::Only, initial);
     }
 
-    /// Closes a fold over one row. What it carries out, behind the field, begins at 0; probes come out too.
-    pub(super) fn close_only(&mut self, mut next: Vec<Value>) -> Vec<Value> {
+    /// Closes a fold over one row that was opened with so many values. What it carries out behind these begins at 0; probes come out too.
+    pub(super) fn close_only(&mut self, mut next: Vec<Value>, opened: usize) -> Vec<Value> {
         let wanted = next.len();
         let probes = self.leave_row();
         next.extend(probes.iter().map(|probe| probe.value));
         let zero = self.builder.constant(0.0);
-        for _ in 1..next.len() {
+        for _ in opened..next.len() {
             self.builder.add_accumulator(zero);
         }
         self.rows.pop();

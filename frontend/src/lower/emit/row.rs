@@ -5,8 +5,7 @@ use jbt_ir::{Domain, Origin, Part, Value};
 use super::Emitter;
 use crate::attribute::AttributeGroup;
 use crate::lower::mixing::GroupAnswer;
-use crate::lower::occurrence::FieldId;
-use crate::lower::position::MapKind;
+use crate::lower::occurrence::{FieldId, LeafField};
 
 impl Emitter<'_> {
     /// The place in the file of the operand that follows, where ties need it.
@@ -34,7 +33,7 @@ impl Emitter<'_> {
         let slot = self.slots;
         self.slots += 1;
         self.builder.add_slot(*self.rows.last().expect("the scene's row is open"), slot);
-        let map = MapKind::of_leaf(&self.scene.field(field).map);
+        let LeafField { kind: map, strong, .. } = *self.scene.field(field);
         let skeleton = primitive.skeleton.kind();
         let (_, outer) = *self.points.last().expect("a space is open");
         self.builder.set_origin(Origin::leaf(slot, Part::Position));
@@ -50,7 +49,7 @@ impl Emitter<'_> {
         let left = self.builder.fma(square, slope, one);
         let left = self.builder.max(left, zero);
         let mut value = primitive.falloff.emit(&mut self.builder, left);
-        if primitive.strength != 1.0 {
+        if strong {
             let strength = self.column("strength");
             let product = self.builder.mul(strength, value);
             // Where the falloff is 0, a negative strength makes -0 of it, and sums must not depend on what adds nothing.

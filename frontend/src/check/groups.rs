@@ -1,0 +1,65 @@
+//! The check of attribute groups.
+
+use std::collections::{BTreeMap, HashSet};
+
+use jbt_ir::limits;
+
+use super::numbers::check_numbers;
+use crate::attribute::AttributeGroup;
+use crate::diagnostic::Diagnostic;
+use crate::report::Report;
+
+/// The groups of a model: `color` first, names that are identifiers and unique, widths and defaults.
+pub(super) fn check_groups(report: &mut Report, groups: &[AttributeGroup]) {
+    if groups.first().is_none_or(|group| &*group.name != "color" || group.width() != 3) {
+        report.add(|| Diagnostic::error(None, "the first attribute is not `color` with 3 reals"));
+    }
+    if groups.len() > limits::MAX_ATTRIBUTES {
+        let message = format!("{} attributes; there may be {}", groups.len(), limits::MAX_ATTRIBUTES);
+        report.add(|| Diagnostic::limit(None, message));
+    }
+    let mut seen = HashSet::new();
+    for group in groups {
+        let name = &group.name;
+        if !is_identifier(name) {
+            report.add(|| {
+                Diagnostic::error(None, format!("an attribute is called `{name}`"))
+                    .expected("expected letters, digits and underscores, beginning with a letter")
+            });
+        } else if RESERVED.contains(&&**name) {
+            let message = format!("an attribute is called `{name}`, like another answer at a point");
+            report.add(|| Diagnostic::error(None, message));
+        }
+        if !seen.insert(name) {
+            report.add(|| Diagnostic::error(None, format!("two attributes are called `{name}`")));
+        }
+        let width = group.width();
+        if width == 0 {
+            report.add(|| Diagnostic::error(None, format!("the attribute `{name}` has no reals")));
+        } else if width > limits::MAX_ATTRIBUTE_WIDTH {
+            let most = limits::MAX_ATTRIBUTE_WIDTH;
+            report.add(|| {
+                Diagnostic::limit(
+                    None,
+                    format!("the attribute `{name}` has {width} reals; it may have {most}"),
+                )
+            });
+        }
+        let what = format!("the default of `{name}`");
+        check_numbers(report, None, &what, &group.default, f64::NEG_INFINITY);
+    }
+}
+
+/// What tables of samples call the other answers.
+const RESERVED: [&str; 7] = ["x", "y", "z", "field", "gx", "gy", "gz"];
+
+/// Letters, digits and underscores, beginning with a letter.
+pub(crate) fn is_identifier(name: &str) -> bool {
+    name.starts_with(|c: char| c.is_ascii_alphabetic())
+        && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+}
+
+/// The widths of attribute groups, by name.
+pub(super) fn widths(groups: &[AttributeGroup]) -> BTreeMap<&str, usize> {
+    groups.iter().map(|group| (&*group.name, group.width())).collect()
+}

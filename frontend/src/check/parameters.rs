@@ -1,0 +1,283 @@
+//! Parameters of a checked tree: what follows them, and setting them again without the text.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use jbt_ir::limits;
+
+use super::numbers::check_number;
+use super::{CheckedNode, CheckedTree, NodeId, check_node, widths};
+use crate::diagnostic::{Diagnostic, Span};
+use crate::number::{Formula, Number, Values};
+use crate::parameter::{Parameter, is_name, refresh};
+use crate::recipe::Recipe;
+use crate::report::{Report, clip, nearest};
+use crate::tree::NodeKind;
+
+/// What follows the parameters of a tree, whatever their values.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub(super) struct Dependence {
+    /// The iso-value, if it does.
+    iso: Option<Number>,
+    /// The nodes with a number that does, ascending.
+    nodes: Vec<(NodeId, Arc<Recipe>)>,
+    /// The place of each parameter in the list.
+    names: HashMap<Arc<str>, usize>,
+    /// For each parameter, the nodes whose own numbers mention it, ascending.
+    mentions: Vec<Vec<NodeId>>,
+    /// The nodes that depend on the iso-value, ascending, if that follows a parameter.
+    surfaces: Vec<NodeId>,
+}
+
+impl Dependence {
+    /// Nothing yet but the iso-value.
+    pub(super) fn new(parameters: &[Parameter], iso: &Number) -> Self {
+        let names = parameters.iter().enumerate().map(|(index, p)| (Arc::clone(&p.name), index)).collect();
+        Self {
+            iso: iso.follows().then(|| iso.clone()),
+            names,
+            mentions: vec![Vec::new(); parameters.len()],
+            ..Self::default()
+        }
+    }
+
+    /// Adds a node, which comes after those so far.
+    pub(super) fn add(&mut self, id: NodeId, recipe: &Arc<Recipe>) {
+        for formula in recipe.following().filter_map(Number::formula) {
+            for (name, _) in formula.parameters() {
+                let mentions = self.names.get(name).map(|&index| &mut self.mentions[index]);
+                if let Some(mentions) = mentions
+                    && mentions.last() != Some(&id)
+                {
+                    mentions.push(id);
+                }
+            }
+        }
+        if self.iso.is_some() && recipe.asks_iso() {
+            self.surfaces.push(id);
+        }
+        self.nodes.push((id, Arc::clone(recipe)));
+    }
+
+    fn recipe(&self, id: NodeId) -> Option<&Arc<Recipe>> {
+        // Nothing to search is by far the commonest case.
+        let found = self.nodes.binary_search_by_key(&id, |&(node, _)| node).ok()?;
+        Some(&self.nodes[found].1)
+    }
+
+    /// Which nodes can change with these parameters, ascending.
+    fn affected(&self, parameters: &[Parameter], moved: &mut [bool]) -> Vec<NodeId> {
+        let mentions = |number: &Number, moved: &[bool]| {
+            let mut names = number.formula().into_iter().flat_map(Formula::parameters);
+            names.any(|(name, _)| self.names.get(name).is_some_and(|&index| moved[index]))
+        };
+        // A default mentions earlier parameters only.
+        for (index, parameter) in parameters.iter().enumerate() {
+            moved[index] |= mentions(&parameter.default, moved);
+        }
+        let mut nodes: Vec<NodeId> = Vec::new();
+        for (mentions, _) in self.mentions.iter().zip(&*moved).filter(|(_, moved)| **moved) {
+            nodes.extend(mentions);
+        }
+        if self.iso.as_ref().is_some_and(|iso| mentions(iso, moved)) {
+            nodes.extend(&self.surfaces);
+        }
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
+    }
+}
+
+/// The node of a recipe for these values of parameters.
+pub(super) fn cook(
+    recipe: &Recipe,
+    values: &Values,
+    iso: f64,
+    span: Option<Span>,
+) -> Result<NodeKind, Diagnostic> {
+    recipe.refreshed(values)?.kind(iso).map_err(|fault| fault.at(span))
+}
+
+/// The iso-value for these values of parameters, checked.
+pub(super) fn check_iso(report: &mut Report, iso: &Number, values: &Values) -> f64 {
+    let span = iso.formula().and_then(Formula::span);
+    let iso = match iso.refreshed(values) {
+        Ok(iso) => iso.value(),
+        Err(error) => {
+            report.add(|| error);
+            return f64::NAN;
+        }
+    };
+    check_number(report, span, "the iso-value", iso, 0.0);
+    if (0.0..limits::MIN_LENGTH).contains(&iso) {
+        let message = format!("the iso-value is {iso:?}");
+        report.add(|| {
+            Diagnostic::error(span, message)
+                .expected(format!("a number of at least {:e}", limits::MIN_LENGTH))
+        });
+    }
+    iso
+}
+
+/// Names that can stand in formulas, each once, with finite values.
+pub(super) fn check_names(report: &mut Report, parameters: &[Parameter]) {
+    let mut seen = std::collections::HashSet::new();
+    for parameter in parameters {
+        let (name, span) = (clip(&parameter.name), parameter.span);
+        if !is_name(&parameter.name) {
+            report.add(|| {
+                Diagnostic::error(span, format!("a parameter is called `{name}`"))
+                    .expected("expected letters, digits and underscores, beginning with a letter, and no word of expressions")
+            });
+        }
+        if !seen.insert(&parameter.name) {
+            report.add(|| Diagnostic::error(span, format!("two parameters are called `{name}`")));
+        }
+        let plain = parameter.setting.is_some() || !parameter.default.follows();
+        if plain && !parameter.value().is_finite() {
+            let value = parameter.value();
+            report.add(|| {
+                Diagnostic::error(span, format!("the parameter `{name}` is {value}"))
+                    .expected("expected a finite number")
+            });
+        }
+    }
+}
+
+impl CheckedTree {
+    /// The named parameters, in the order of their declarations.
+    #[must_use]
+    pub fn parameters(&self) -> &[Parameter] {
+        &self.parameters
+    }
+
+    /// The same tree with other values of some parameters: what evaluators of this one take without compiling
+    /// (`Evaluator::update`). Parameters that are not named keep theirs.
+    ///
+    /// ```
+    /// use jbt_frontend::text::{Options, parse};
+    /// let text = b"jbt 1 param bulge = 0.6 param all = bulge * 2 point { radius all }";
+    /// let tree = parse(text, &Options::default()).unwrap().check().unwrap();
+    /// let fat = tree.with_parameters(&[("bulge", 1.5)]).unwrap();
+    /// assert_eq!(fat.parameters()[1].value(), 3.0);
+    /// assert_eq!(fat.support().high(), [3.0; 3]);
+    /// assert_eq!(tree.affected_by("bulge"), [tree.root()]);
+    /// assert_eq!(tree.with_parameters(&[("bulge", -1.0)]).unwrap_err()[0].message, "the radius is -2");
+    /// ```
+    ///
+    /// Only numbers that follow these parameters are evaluated and checked again. Cost: that, and a copy of the nodes.
+    ///
+    /// # Errors
+    ///
+    /// Parameters that are not there, formulas without a value, and numbers that the [check](crate::check) refuses; located where the
+    /// tree came from a text.
+    pub fn with_parameters(&self, settings: &[(&str, f64)]) -> Result<Self, Vec<Diagnostic>> {
+        let mut report = Report::default();
+        let mut parameters = self.parameters.clone();
+        for &(name, value) in settings {
+            match self.dependence.names.get(name) {
+                None => report.add(|| unknown(name, &self.parameters)),
+                Some(_) if !value.is_finite() => report.add(|| not_finite(name)),
+                Some(&index) => parameters[index].setting = Some(value),
+            }
+        }
+        if !report.is_empty() {
+            return Err(report.finish());
+        }
+        let values = refresh(&mut parameters)?;
+        let mut moved: Vec<bool> = parameters
+            .iter()
+            .zip(&self.parameters)
+            .map(|(new, old)| new.value().to_bits() != old.value().to_bits())
+            .collect();
+        for (parameter, _) in parameters.iter().zip(&moved).filter(|(_, moved)| **moved) {
+            if let Some(place) = parameter.declares {
+                report.add(|| declares(&parameter.name, place));
+            }
+        }
+        let iso = match &self.dependence.iso {
+            Some(iso) => check_iso(&mut report, iso, &values),
+            None => self.iso,
+        };
+        let nodes = self.cooked_again(&mut moved, (iso, &values), &mut report);
+        if !report.is_empty() {
+            report.sort();
+            return Err(report.finish());
+        }
+        let (attributes, dependence) = (self.attributes.clone(), Arc::clone(&self.dependence));
+        Ok(Self { iso, attributes, nodes, parameters, dependence })
+    }
+
+    /// The nodes, those that follow parameters that have moved made and checked again.
+    fn cooked_again(
+        &self,
+        moved: &mut [bool],
+        (iso, values): (f64, &Values),
+        report: &mut Report,
+    ) -> Arc<[CheckedNode]> {
+        let affected = self.dependence.affected(&self.parameters, moved);
+        if affected.is_empty() {
+            return Arc::clone(&self.nodes);
+        }
+        let groups = widths(&self.attributes);
+        let mut nodes = self.nodes.to_vec();
+        for id in affected {
+            let node = &mut nodes[id.0 as usize];
+            let recipe = self.dependence.recipe(id).expect("affected nodes have recipes");
+            match cook(recipe, values, iso, node.span) {
+                Ok(kind) => {
+                    check_node(report, &kind, node.children.len(), node.span, &groups);
+                    node.kind = kind;
+                }
+                Err(error) => report.add(|| error),
+            }
+        }
+        nodes.into()
+    }
+
+    /// The nodes that a parameter can change, ascending: those with a number that follows it, through other parameters and the
+    /// iso-value too. None, if there is no such parameter.
+    #[must_use]
+    pub fn affected_by(&self, name: &str) -> Vec<NodeId> {
+        let Some(&index) = self.dependence.names.get(name) else { return Vec::new() };
+        let mut moved = vec![false; self.parameters.len()];
+        moved[index] = true;
+        self.dependence.affected(&self.parameters, &mut moved)
+    }
+
+    /// A node before its formulas were evaluated, if one of its numbers follows a parameter.
+    #[must_use]
+    pub fn recipe(&self, id: NodeId) -> Option<&Recipe> {
+        self.dependence.recipe(id).map(|recipe| &**recipe)
+    }
+
+    /// Whether any number follows a parameter.
+    #[must_use]
+    pub fn follows(&self) -> bool {
+        !self.dependence.nodes.is_empty()
+    }
+}
+
+/// The message about a parameter that is not there.
+pub(crate) fn unknown(name: &str, parameters: &[Parameter]) -> Diagnostic {
+    const SHOWN: usize = 20;
+    let error = Diagnostic::error(None, format!("the model has no parameter `{}` to set", clip(name)));
+    let names = || parameters.iter().map(Parameter::name);
+    let known: Vec<&str> = names().take(SHOWN).collect();
+    error.expected(match (nearest(name, names()), known.len()) {
+        (_, 0) => "it has none".to_owned(),
+        (Some(near), _) => format!("perhaps `{near}`; it has {}", known.join(", ")),
+        (None, _) => format!("it has {}", known.join(", ")),
+    })
+}
+
+/// The message about a value that is no number.
+pub(crate) fn not_finite(name: &str) -> Diagnostic {
+    Diagnostic::error(None, format!("the value of `{}` is not finite", clip(name)))
+}
+
+fn declares(name: &str, place: Span) -> Diagnostic {
+    let message =
+        format!("`{}` stands in a declaration of attributes, which stays as it was read", clip(name));
+    Diagnostic::error(Some(place), message).expected("set it before the text is read")
+}

@@ -1,0 +1,452 @@
+//! Recipes: how a node's numbers follow parameters.
+//!
+//! A node whose numbers are plain is its [`NodeKind`] and nothing more. A node with a number that mentions a parameter keeps a recipe
+//! beside it: the same node before its formulas were evaluated, as it was written. `kind` evaluates it.
+//!
+//! ```text
+//! rotate axis z degrees 90 * t { .. }      recipe  Rotate { axis (0 0 1), angle 90 * t degrees }
+//!                                          kind    Affine(a 3x4 matrix), for the present value of t
+//! ```
+
+use std::sync::Arc;
+
+use glam::{DAffine3, DMat3, DVec3};
+
+use crate::affine::{rotation, sin_cos_degrees};
+use crate::combine::Combinator;
+use crate::diagnostic::{Diagnostic, Span};
+use crate::falloff::Falloff;
+use crate::field::{FieldKind, FieldValue};
+use crate::number::{Number, Values, plain, values};
+use crate::skeleton::SkeletonKind;
+use crate::tree::{NodeKind, Primitive};
+use crate::warp::WarpKind;
+
+/// The value of a member's parameter, before its formulas are evaluated.
+#[derive(Clone, PartialEq, Debug)]
+pub enum FieldNumber {
+    /// One number.
+    Real(Number),
+    /// Three numbers.
+    Vector([Number; 3]),
+}
+
+/// The radius of a primitive.
+#[derive(Clone, PartialEq, Debug)]
+pub enum Radius {
+    /// Where the field reaches zero.
+    Support(Number),
+    /// Where the primitive alone meets the iso-value of the model.
+    Surface(Number),
+}
+
+/// The angle of a rotation.
+#[derive(Clone, PartialEq, Debug)]
+pub enum Angle {
+    /// In degrees; quarter turns are exact.
+    Degrees(Number),
+    /// In radians.
+    Radians(Number),
+}
+
+/// An affine map as it was written.
+#[derive(Clone, PartialEq, Debug)]
+pub enum Map {
+    /// A shift.
+    Translate([Number; 3]),
+    /// A rotation about an axis through the origin, right-handed.
+    Rotate {
+        /// The axis, of any length.
+        axis: [Number; 3],
+        /// How far.
+        angle: Angle,
+    },
+    /// A uniform scale about the origin.
+    Scale(Number),
+    /// A scale about the origin, by another factor along each axis.
+    ScaleAxes([Number; 3]),
+    /// The rows of a 3x4 matrix, child to parent.
+    Affine(Box<[Number; 12]>),
+}
+
+/// A node before its formulas are evaluated.
+#[derive(Clone, PartialEq, Debug)]
+pub enum Recipe {
+    /// A leaf.
+    Primitive {
+        /// The kind of the skeleton.
+        skeleton: SkeletonKind,
+        /// Its parameters, in the order of [`SkeletonKind::fields`].
+        fields: Vec<FieldNumber>,
+        /// How the field fades.
+        falloff: Falloff,
+        /// How far the field reaches.
+        radius: Radius,
+        /// The factor of the field.
+        strength: Number,
+    },
+    /// Ricci's blend with this exponent.
+    Ricci(Number),
+    /// A selector, which chooses the child whose place is nearest to this number.
+    Select(Number),
+    /// An affine map.
+    Map(Map),
+    /// A warp.
+    Warp {
+        /// The kind; its variant is not looked at.
+        warp: WarpKind,
+        /// Its parameters, in the order of [`WarpKind::fields`].
+        fields: Vec<FieldNumber>,
+    },
+    /// An attribute of the leaves below.
+    Attribute {
+        /// The attribute group.
+        name: Arc<str>,
+        /// One number for each channel of the group.
+        values: Vec<Number>,
+    },
+}
+
+/// Why a recipe gives no node.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub(crate) struct Fault {
+    pub(crate) message: String,
+    pub(crate) help: Option<&'static str>,
+}
+
+impl Fault {
+    /// The message about it, at a place.
+    pub(crate) fn at(self, span: Option<Span>) -> Diagnostic {
+        let error = Diagnostic::error(span, self.message);
+        match self.help {
+            Some(help) => error.expected(help),
+            None => error,
+        }
+    }
+}
+
+/// How much the linear part of an affine map can change, from least to most: what its code has to be ready for.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub(crate) enum Freedom {
+    /// Not at all.
+    Fixed,
+    /// By a uniform scale.
+    Scale,
+    /// By a rotation and a uniform scale.
+    Turn,
+    /// In any way.
+    Full,
+}
+
+impl FieldNumber {
+    /// The present value.
+    #[must_use]
+    pub fn value(&self) -> FieldValue {
+        match self {
+            Self::Real(number) => FieldValue::Real(number.value()),
+            Self::Vector(numbers) => FieldValue::Vector(values(numbers)),
+        }
+    }
+
+    /// All its numbers.
+    pub(crate) fn numbers(&self) -> &[Number] {
+        match self {
+            Self::Real(number) => std::slice::from_ref(number),
+            Self::Vector(numbers) => numbers,
+        }
+    }
+
+    fn numbers_mut(&mut self) -> &mut [Number] {
+        match self {
+            Self::Real(number) => std::slice::from_mut(number),
+            Self::Vector(numbers) => numbers,
+        }
+    }
+}
+
+impl From<FieldValue> for FieldNumber {
+    fn from(value: FieldValue) -> Self {
+        match value {
+            FieldValue::Real(value) => Self::Real(value.into()),
+            FieldValue::Vector(values) => Self::Vector(values.map(Number::from)),
+        }
+    }
+}
+
+impl Radius {
+    fn number(&self) -> &Number {
+        match self {
+            Self::Support(number) | Self::Surface(number) => number,
+        }
+    }
+
+    fn number_mut(&mut self) -> &mut Number {
+        match self {
+            Self::Support(number) | Self::Surface(number) => number,
+        }
+    }
+}
+
+impl Angle {
+    fn number(&self) -> &Number {
+        match self {
+            Self::Degrees(number) | Self::Radians(number) => number,
+        }
+    }
+
+    fn sin_cos(&self) -> (f64, f64) {
+        match self {
+            Self::Degrees(degrees) => sin_cos_degrees(degrees.value()),
+            Self::Radians(radians) => radians.value().sin_cos(),
+        }
+    }
+}
+
+impl Map {
+    /// The map, with the present values of its numbers.
+    ///
+    /// An axis without a direction is a fault.
+    pub(crate) fn affine(&self) -> Result<DAffine3, Fault> {
+        Ok(match self {
+            Self::Translate(by) => DAffine3::from_translation(values(by).into()),
+            Self::Rotate { axis, angle } => {
+                let axis = DVec3::from(values(axis));
+                let unit = axis.normalize_or_zero();
+                if unit == DVec3::ZERO && !axis.is_nan() {
+                    return Err(Fault { message: "the axis has no direction".to_owned(), help: None });
+                }
+                DAffine3::from_mat3(rotation(unit, angle.sin_cos()))
+            }
+            Self::Scale(by) => DAffine3::from_scale(DVec3::splat(by.value())),
+            Self::ScaleAxes(by) => DAffine3::from_scale(values(by).into()),
+            Self::Affine(rows) => {
+                let [xx, xy, xz, x, yx, yy, yz, y, zx, zy, zz, z] = values(rows);
+                let columns = [[xx, yx, zx], [xy, yy, zy], [xz, yz, zz]];
+                DAffine3 { matrix3: DMat3::from_cols_array_2d(&columns), translation: DVec3::new(x, y, z) }
+            }
+        })
+    }
+
+    fn numbers(&self) -> impl Iterator<Item = &Number> {
+        let (numbers, last): (&[Number], Option<&Number>) = match self {
+            Self::Translate(by) | Self::ScaleAxes(by) => (by, None),
+            Self::Rotate { axis, angle } => (axis, Some(angle.number())),
+            Self::Scale(by) => (&[], Some(by)),
+            Self::Affine(rows) => (&rows[..], None),
+        };
+        numbers.iter().chain(last)
+    }
+
+    fn numbers_mut(&mut self) -> Vec<&mut Number> {
+        match self {
+            Self::Translate(by) | Self::ScaleAxes(by) => by.iter_mut().collect(),
+            Self::Rotate { axis, angle: Angle::Degrees(angle) | Angle::Radians(angle) } => {
+                axis.iter_mut().chain([angle]).collect()
+            }
+            Self::Scale(by) => vec![by],
+            Self::Affine(rows) => rows.iter_mut().collect(),
+        }
+    }
+
+    fn freedom(&self) -> Freedom {
+        match self {
+            Self::Translate(_) => Freedom::Fixed,
+            Self::Scale(_) => Freedom::Scale,
+            Self::Rotate { .. } => Freedom::Turn,
+            Self::ScaleAxes(_) | Self::Affine(_) => Freedom::Full,
+        }
+    }
+}
+
+impl Recipe {
+    /// All its numbers.
+    fn numbers(&self) -> impl Iterator<Item = &Number> {
+        let (fields, numbers, own): (&[FieldNumber], &[Number], [Option<&Number>; 2]) = match self {
+            Self::Primitive { fields, radius, strength, .. } => {
+                (fields, &[], [Some(radius.number()), Some(strength)])
+            }
+            Self::Ricci(number) | Self::Select(number) => (&[], &[], [Some(number), None]),
+            Self::Map(_) => (&[], &[], [None; 2]),
+            Self::Warp { fields, .. } => (fields, &[], [None; 2]),
+            Self::Attribute { values, .. } => (&[], values, [None; 2]),
+        };
+        let map = if let Self::Map(map) = self { Some(map) } else { None };
+        let fields = fields.iter().flat_map(FieldNumber::numbers);
+        fields.chain(numbers).chain(map.into_iter().flat_map(Map::numbers)).chain(own.into_iter().flatten())
+    }
+
+    fn numbers_mut(&mut self) -> Vec<&mut Number> {
+        match self {
+            Self::Primitive { fields, radius, strength, .. } => {
+                let own = [radius.number_mut(), strength];
+                fields.iter_mut().flat_map(FieldNumber::numbers_mut).chain(own).collect()
+            }
+            Self::Ricci(number) | Self::Select(number) => vec![number],
+            Self::Map(map) => map.numbers_mut(),
+            Self::Warp { fields, .. } => fields.iter_mut().flat_map(FieldNumber::numbers_mut).collect(),
+            Self::Attribute { values, .. } => values.iter_mut().collect(),
+        }
+    }
+
+    /// The numbers that follow parameters.
+    pub(crate) fn following(&self) -> impl Iterator<Item = &Number> {
+        self.numbers().filter(|number| number.follows())
+    }
+
+    /// Whether a number follows a parameter; of a surface radius, the iso-value counts too.
+    pub(crate) fn follows(&self, iso: &Number) -> bool {
+        self.following().next().is_some() || (iso.follows() && self.asks_iso())
+    }
+
+    /// Whether the node depends on the iso-value of its model.
+    pub(crate) fn asks_iso(&self) -> bool {
+        match self {
+            Self::Primitive { radius, .. } => matches!(radius, Radius::Surface(_)),
+            Self::Ricci(_) | Self::Select(_) | Self::Map(_) | Self::Warp { .. } | Self::Attribute { .. } => {
+                false
+            }
+        }
+    }
+
+    /// The same with the present values of parameters. An error names the place of a formula, if it has one.
+    pub(crate) fn refreshed(&self, known: &Values) -> Result<Self, Diagnostic> {
+        let mut fresh = self.clone();
+        for number in fresh.numbers_mut() {
+            *number = number.refreshed(known)?;
+        }
+        Ok(fresh)
+    }
+
+    /// The node, with the present values of its numbers.
+    pub(crate) fn kind(&self, iso: f64) -> Result<NodeKind, Fault> {
+        let values =
+            |fields: &[FieldNumber]| -> Vec<FieldValue> { fields.iter().map(FieldNumber::value).collect() };
+        Ok(match self {
+            Self::Primitive { skeleton, fields, falloff, radius, strength } => {
+                let (falloff, strength) = (*falloff, strength.value());
+                let radius = match radius {
+                    Radius::Support(radius) => radius.value(),
+                    Radius::Surface(radius) => support_radius(radius.value(), falloff, strength, iso)?,
+                };
+                let skeleton = skeleton.from_fields(&values(fields));
+                NodeKind::Primitive(Primitive { skeleton, falloff, radius, strength })
+            }
+            Self::Ricci(exponent) => NodeKind::Combine(Combinator::Ricci(above_one(exponent))),
+            Self::Select(which) => NodeKind::Select(which.value()),
+            Self::Map(map) => NodeKind::Affine(map.affine()?),
+            Self::Warp { warp, fields } => NodeKind::Warp(warp.from_fields(&values(fields))),
+            Self::Attribute { name, values } => NodeKind::Attribute {
+                name: Arc::clone(name),
+                values: values.iter().map(Number::value).collect(),
+            },
+        })
+    }
+
+    /// How much the linear part of a map can change.
+    pub(crate) fn freedom(&self) -> Freedom {
+        match self {
+            Self::Map(map) if map.numbers().any(Number::follows) => map.freedom(),
+            Self::Map(_)
+            | Self::Primitive { .. }
+            | Self::Ricci(_)
+            | Self::Select(_)
+            | Self::Warp { .. }
+            | Self::Attribute { .. } => Freedom::Fixed,
+        }
+    }
+
+    /// Whether a primitive's skeleton can turn: a direction follows a parameter, or one of several positions, which give it its own.
+    pub(crate) fn skeleton_turns(&self) -> bool {
+        let Self::Primitive { skeleton, fields, .. } = self else { return false };
+        let described = skeleton.fields();
+        let positions = described.iter().filter(|field| field.kind == FieldKind::Position).count();
+        described.iter().zip(fields).any(|(field, value)| {
+            let turns = match field.kind {
+                FieldKind::Direction | FieldKind::Axis => true,
+                FieldKind::Position => positions > 1,
+                FieldKind::Real | FieldKind::Positive | FieldKind::NonNegative | FieldKind::Extents => false,
+            };
+            turns && value.numbers().iter().any(Number::follows)
+        })
+    }
+
+    /// Whether the strength of a primitive follows a parameter.
+    pub(crate) fn strength_follows(&self) -> bool {
+        match self {
+            Self::Primitive { strength, .. } => strength.follows(),
+            Self::Ricci(_) | Self::Select(_) | Self::Map(_) | Self::Warp { .. } | Self::Attribute { .. } => {
+                false
+            }
+        }
+    }
+
+    /// The recipe of a primitive with plain numbers.
+    pub(crate) fn of_primitive(leaf: &Primitive) -> Self {
+        Self::Primitive {
+            skeleton: leaf.skeleton.kind(),
+            fields: leaf.skeleton.to_fields().into_iter().map(FieldNumber::from).collect(),
+            falloff: leaf.falloff,
+            radius: Radius::Support(leaf.radius.into()),
+            strength: leaf.strength.into(),
+        }
+    }
+
+    /// The recipe of a primitive with another strength.
+    pub(crate) fn with_strength(mut self, new: Number) -> Self {
+        if let Self::Primitive { strength, .. } = &mut self {
+            *strength = new;
+        }
+        self
+    }
+
+    /// The recipe of a primitive that was changed from one leaf to another: numbers that the change has left alone follow their
+    /// parameters still.
+    pub(crate) fn changed(&self, old: &Primitive, new: &Primitive) -> Self {
+        let Self::Primitive { fields, radius, strength, .. } = self else {
+            unreachable!("leaves have recipes of primitives")
+        };
+        let kept = |number: &Number, old: f64, new: f64| {
+            if old.to_bits() == new.to_bits() { number.clone() } else { Number::from(new) }
+        };
+        let skeleton = new.skeleton.kind();
+        let after = new.skeleton.to_fields();
+        let fields = if skeleton == old.skeleton.kind() {
+            let before = old.skeleton.to_fields();
+            let each = fields.iter().zip(before).zip(after);
+            each.map(|((field, before), after)| if before == after { field.clone() } else { after.into() })
+                .collect()
+        } else {
+            after.into_iter().map(FieldNumber::from).collect()
+        };
+        let radius = if old.radius.to_bits() == new.radius.to_bits() {
+            radius.clone()
+        } else {
+            Radius::Support(new.radius.into())
+        };
+        let strength = kept(strength, old.strength, new.strength);
+        Self::Primitive { skeleton, fields, falloff: new.falloff, radius, strength }
+    }
+}
+
+/// An exponent that follows a parameter is never exactly 1: the plain sum is another operator where fields are negative, and passing
+/// by it must not exchange one for the other. The next number above 1 is the same exponent in f32.
+fn above_one(exponent: &Number) -> f64 {
+    let n = exponent.value();
+    if exponent.follows() && n == 1.0 { 1.0 + f64::EPSILON } else { n }
+}
+
+/// The support radius of a primitive whose surface alone has this radius: `r / sqrt(s)` with `falloff(s) = iso / strength`.
+fn support_radius(radius: f64, falloff: Falloff, strength: f64, iso: f64) -> Result<f64, Fault> {
+    let level = iso / strength;
+    if radius.is_nan() || level.is_nan() {
+        return Ok(f64::NAN);
+    }
+    if !(level > 0.0 && level < 1.0) {
+        let (iso, strength) = (plain(iso), plain(strength));
+        return Err(Fault {
+            message: format!("with strength {strength} the primitive has no surface at iso {iso}"),
+            help: Some("expected a strength above iso, or `radius`, the radius of the support"),
+        });
+    }
+    Ok(radius / falloff.inverse(level).sqrt())
+}
