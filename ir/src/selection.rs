@@ -11,12 +11,14 @@
 //!
 //! Starts are kept by *position* and not by row, so that a selection is as long as what it selects, however many rows there are.
 //!
-//! Engines follow these lists blindly. So a selection is made in two ways only: from tables ([`Selection::new`]), and from
-//! another selection by leaving rows out ([`Selection::narrow`]) or by giving them other numbers ([`Selection::shifted`]). All keep this:
+//! Engines follow these lists blindly. So a selection is made in few ways only: from tables ([`Selection::new`]), and from
+//! another selection by leaving rows out ([`Selection::narrow`]), by giving them other numbers ([`Selection::shifted`]) or by following tables whose
+//! active rows have changed ([`Selection::switched`]). All keep this:
 //!
 //! * active rows exist in their table, and ascend in the range of one row of the parent;
 //! * a table has one start for each active row of its parent (for the one imaginary row, if it has no parent), from 0, and the end.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use crate::entity::{Entity, Table};
@@ -195,6 +197,47 @@ impl Selection {
         result
     }
 
+    /// The same rows after other rows have become active in the tables: a row that is not active any more goes, and one that was not active
+    /// before comes, each with all rows under it. Panics if the tables have other rows than those that this selects from.
+    #[must_use]
+    pub fn switched(&self, before: &Tables, now: &Tables) -> Self {
+        let mut result = Self { extent: Arc::clone(&self.extent), ..Self::default() };
+        for (table, rows) in now.tables.iter() {
+            assert_eq!(rows.len(), self.extent.counts[table.index()] as usize, "the rows are the same");
+            let parents = self.places(&result, table);
+            let starts = result.words.len();
+            result.words.resize(starts + parents.len() + 1, 0);
+            let active = result.words.len();
+            for (position, (parent, place)) in parents.into_iter().enumerate() {
+                let all = rows.range(parent as usize);
+                match place {
+                    None => result.words.extend_from_slice(all),
+                    Some(place) => {
+                        let range = &self.starts(table)[place..place + 2];
+                        let kept = &self.active(table)[range[0] as usize..range[1] as usize];
+                        let earlier = before.tables[table].range(parent as usize);
+                        let stays = |row: &&u32| {
+                            kept.binary_search(row).is_ok() || earlier.binary_search(row).is_err()
+                        };
+                        result.words.extend(all.iter().filter(stays));
+                    }
+                }
+                result.words[starts + position + 1] = word(result.words.len() - active);
+            }
+            let [starts, active, end] = [starts, active, result.words.len()].map(word);
+            result.spans.push(Span { starts, active, end });
+        }
+        result
+    }
+
+    /// The active rows of a table's parent in another selection, each with its position here, if it is active here.
+    fn places(&self, other: &Self, table: Table) -> Vec<(u32, Option<usize>)> {
+        let Some(parent) = self.extent.parents[table.index()] else { return vec![(0, Some(0))] };
+        let here: HashMap<u32, usize> =
+            self.active(parent).iter().enumerate().map(|(position, &row)| (row, position)).collect();
+        other.active(parent).iter().map(|row| (*row, here.get(row).copied())).collect()
+    }
+
     /// The lists of one table. `above` are the masks of the active rows of its parent.
     fn narrow_table(&self, table: Table, above: &[u8], masks: &mut [u8], parts: &mut [Self]) {
         let (starts, active) = (self.starts(table), self.active(table));
@@ -314,6 +357,28 @@ mod tests {
         assert_eq!((later.active(parent), later.active(child)), (&[0, 1, 2][..], &[0, 1, 3, 5][..]));
         assert_eq!(later.starts(child), some.starts(child));
         assert!(later.fits(&extent) && !some.fits(&extent));
+    }
+
+    #[test]
+    fn rows_may_become_active_later() {
+        let (function, before) = family();
+        let [parent, child] = [0, 1].map(Table::new);
+        let mut now = before.clone();
+        (now.tables[parent].active, now.tables[parent].starts) = (vec![0, 2], vec![0, 2]);
+        (now.tables[child].active, now.tables[child].starts) = (vec![0, 1, 3, 4], vec![0, 2, 2, 4]);
+        // All rows that were active become all that are.
+        let all = Selection::new(&function, &before);
+        assert_eq!(all.switched(&before, &now), Selection::new(&function, &now));
+        // What had been left out stays so: row 0 of the parent, row 4 of the child.
+        let mut part = vec![Selection::default()];
+        all.narrow(&mut [0, 1, 1, 1, 1, 1, 0], &mut part);
+        let later = part[0].switched(&before, &now);
+        assert_eq!((later.active(parent), later.starts(parent)), (&[2][..], &[0, 1][..]));
+        assert_eq!((later.active(child), later.starts(child)), (&[3][..], &[0, 1][..]));
+        // And back: what comes brings all that is active under it.
+        let again = later.switched(&now, &before);
+        assert_eq!((again.active(parent), again.starts(parent)), (&[1, 2][..], &[0, 2][..]));
+        assert_eq!((again.active(child), again.starts(child)), (&[2][..], &[0, 0, 1][..]));
     }
 
     #[test]

@@ -16,9 +16,9 @@ use fastrand::Rng;
 use jbt::divide::Edit;
 use jbt::prune::Region;
 use jbt::region::{ANYTHING, Divisible};
-use jbt::{Box3, Compiler, Engine, Evaluator, Model, Points, Pruner, Query};
+use jbt::{Box3, CheckedTree, Compiler, Engine, Evaluator, Model, Points, Pruner, Query, Update};
 use jbt_frontend::combine::Combinator;
-use jbt_frontend::text::print;
+use jbt_frontend::text::{Options, parse, print};
 use jbt_frontend::tree::{NodeKind, Tree};
 use rayon::prelude::*;
 
@@ -195,4 +195,145 @@ fn an_edit_is_where_the_rows_have_changed() {
     let region = few.region(far).unwrap();
     let renewed = more.renewed(&few, &region);
     assert_eq!(renewed.selection(), more.region(far).unwrap().selection());
+}
+
+fn model(text: &str) -> Model {
+    parse(text.as_bytes(), &Options::default()).expect("it reads")
+}
+
+fn text(text: &str) -> CheckedTree {
+    model(text).check().expect("it is a model")
+}
+
+/// A row of tanks, or one alone. The last has a choice of turrets, some of which share parts.
+const TANKS: &str = "jbt 1 param turret = 0 param scene = 0
+    let ball = point { at (3 0 0.4) radius 0.4 }
+    let twisted = translate (3 0 0) { twist axis z rate 1 {
+        union { point { at (0 0 0.6) radius 0.2 } point { at (0 0.2 0.5) radius 0.2 } }
+    } }
+    select scene {
+        union {
+            color (1 0 0) { point { at (0 0 0) radius 0.5 } }
+            point { at (1 0 0) radius 0.5 }
+            point { at (2 0 0) radius 0.5 }
+            sum {
+                point { at (3 0 0) radius 0.5 }
+                select turret {
+                    use ball
+                    color (0 1 0) { sum { use ball use twisted } }
+                    color (0 0 1) { intersection { use twisted point { at (3 0 0.8) radius 0.6 } } }
+                    segment { from (3 0 0) to (3 0.3 0.2) radius 0.3 }
+                }
+            }
+        }
+        color (0 0 1) { point { at (0 0.2 0) radius 0.5 } }
+    }";
+
+#[test]
+fn a_choice_is_an_edit_where_the_children_are() {
+    let (model, start) = (model(TANKS), text(TANKS));
+    let whole = Box3::new([-1.0; 3], [4.0, 1.0, 1.5]);
+    let points = points_in(&mut Rng::with_seed(4), &whole, 2000);
+    for engine in Engine::ALL {
+        let compiler = Compiler::for_engine(engine);
+        let mut old = Pruner::new(&compiler, &start).unwrap();
+        let mut evaluators = Query::EVERY.map(|query| compiler.evaluator(&start, query).unwrap());
+        let mut before = fields(&evaluators[0], &points);
+        let mut scene_before = 0;
+        for (turret, scene) in [(3, 0), (0, 0), (1, 0), (2, 0), (0, 0), (0, 1), (2, 1), (3, 0), (1, 0)] {
+            let values = [("turret", f64::from(turret)), ("scene", f64::from(scene))];
+            let set = start.with_parameters(&values).unwrap();
+            let new = old.updated(&set).unwrap();
+            for evaluator in &mut evaluators {
+                assert_eq!(evaluator.update(&set).unwrap(), Update::Numbers);
+            }
+            let edit = new.edit(&old);
+            assert_ne!(edit, Edit::Everywhere);
+            let after = fields(&evaluators[0], &points);
+            for index in (0..points.len()).filter(|&index| before[index].to_bits() != after[index].to_bits())
+            {
+                let at = points.get(index);
+                assert!(edit.touches(&Box3::new(at, at)), "{at:?} is not in {edit:?}");
+            }
+            // A turret is far from the other tanks.
+            let others = Box3::new([-1.0; 3], [2.2, 1.0, 1.5]);
+            assert_eq!(edit.touches(&others), scene != scene_before, "{edit:?}");
+            check_renewed(&whole, [&old, &new], &edit, &model, &evaluators);
+            (old, before, scene_before) = (new, after, scene);
+        }
+    }
+}
+
+fn fields(evaluator: &Evaluator, points: &Points) -> Vec<f32> {
+    let mut samples = evaluator.samples();
+    evaluator.eval(points, &mut samples).expect("the buffers fit");
+    samples.field().to_vec()
+}
+
+/// Regions of boxes that an edit does not touch give the answers of the new model.
+fn check_renewed(
+    whole: &Box3,
+    [old, new]: [&Pruner; 2],
+    edit: &Edit,
+    model: &Model,
+    evaluators: &[Evaluator],
+) {
+    let mut rng = Rng::with_seed(5);
+    for round in 0..60 {
+        let bounds = random_box(&mut rng, whole);
+        if edit.touches(&bounds) {
+            continue;
+        }
+        let renewed = new.renewed(old, &old.region(bounds).expect("the box is proper"));
+        let points = points_in(&mut rng, &bounds, 8);
+        for evaluator in evaluators {
+            compare(&format!("renewed, box {round}"), model, evaluator, &renewed, &points);
+        }
+    }
+}
+
+#[test]
+fn setting_a_parameter_is_an_edit_where_something_has_changed() {
+    let compiler = Compiler::for_engine(Engine::Lanes);
+    let whole = Box3::new([-3.0; 3], [3.0; 3]);
+    let (mut edits, mut bounded) = (0, 0);
+    for shape in 0..setting("JBT_PRUNE_SHAPES", 200).min(200) {
+        let mut rng = Rng::with_seed(shape);
+        let points = points_in(&mut rng, &whole, 200);
+        let model = Random::new(shape, shape).model(1 + (shape % 23) as usize);
+        let tree = model.check().expect("a random model is a good model");
+        let old = Pruner::new(&compiler, &tree).expect("it compiles");
+        let was = fields(&compiler.evaluator(&tree, Query::FIELD).expect("it compiles"), &points);
+        for parameter in &model.parameters {
+            let value = if parameter.name().starts_with("choice") { 0.0 } else { rng.f64() };
+            let set = tree.with_parameters(&[(parameter.name(), value)]).expect("a good value");
+            let new = old.updated(&set).expect("it compiles");
+            let edit = new.edit(&old);
+            edits += 1;
+            bounded += u32::from(edit != Edit::Everywhere);
+            let evaluators = Query::EVERY.map(|query| compiler.evaluator(&set, query).expect("it compiles"));
+            let is = fields(&evaluators[0], &points);
+            for index in (0..points.len()).filter(|&index| was[index].to_bits() != is[index].to_bits()) {
+                let at = Box3::new(points.get(index), points.get(index));
+                assert!(
+                    edit.touches(&at),
+                    "{}, {value}: {at:?}, {edit:?}\n{}",
+                    parameter.name(),
+                    print(&model)
+                );
+            }
+            check_renewed(&whole, [&old, &new], &edit, &model, &evaluators);
+        }
+    }
+    println!("{edits} edits, {bounded} in boxes");
+    assert!(bounded * 4 > edits, "{bounded} of {edits}");
+}
+
+#[test]
+fn rows_that_come_to_an_intersection_matter_everywhere() {
+    let compiler = Compiler::for_engine(Engine::Lanes);
+    let ball = "point { at (0 0 0) radius 1 }";
+    let two = Pruner::new(&compiler, &text(&format!("jbt 1 intersection {{ {ball} {ball} }}"))).unwrap();
+    let three = format!("jbt 1 intersection {{ {ball} {ball} point {{ at (0.9 0 0) radius 0.2 }} }}");
+    assert_eq!(two.updated(&text(&three)).unwrap().edit(&two), Edit::Everywhere);
 }

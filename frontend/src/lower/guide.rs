@@ -50,8 +50,11 @@ pub struct TableGuide {
     pub supports: Vec<Support>,
     /// What may be done with rows that are zero.
     pub rule: Rule,
-    /// Of each row, the tree node whose field it computes: a leaf, an operator, or a warp.
+    /// Of each row, the tree node whose field it computes: a leaf, an operator, a selector, or a warp.
     pub nodes: Vec<NodeId>,
+    /// Whether its row is computed for rows of other tables, and seen by these alone: a field, an answer, or the point inside of a warp, which
+    /// several share.
+    pub is_lifted: bool,
 }
 
 /// The space in which the fold over a table stands.
@@ -69,14 +72,14 @@ pub enum SpaceGuide {
 /// What may be done with rows that are zero all over a box.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Rule {
-    /// They may all be left out: rows of sums, of Ricci blends and of unions without negative operands, and guards that start at 0.
+    /// They may all be left out: rows of sums, of Ricci blends, of unions without negative operands and of selectors, and guards that start at 0.
     Neutral,
     /// The first of each parent row's zero rows stays, the others may be left out: rows of unions and intersections with negative operands.
     KeepOne,
     /// If one is zero, all others of the same parent row may be left out, zero or not, and one that is zero stays: rows of intersections
     /// without negative operands.
     OnlyZero,
-    /// Zero is no reason: the scene, and guards that do not start at 0.
+    /// Zero is no reason: the scene, guards that do not start at 0, points inside of warps, and what may answer for the whole model.
     Never,
 }
 
@@ -212,6 +215,7 @@ fn table_guide(
         supports: members.iter().map(|member| support(supports, member)).collect(),
         rule: code.rule,
         nodes: members.iter().map(|member| member.node(scene)).collect(),
+        is_lifted: members.iter().any(|member| matches!(member, Member::Lifted(_))),
     }
 }
 

@@ -5,17 +5,20 @@
 //!   in an inner space   that of the row above, in the world
 //!   of the scene        everywhere
 //! row put in, taken out the rows before and behind are as they were: their numbers shift
+//! row now active, or no more: a selector has chosen another child, and this is that child, before or now
 //! ```
 
 use std::ops::Range;
 use std::sync::Arc;
 
-use jbt_frontend::lower::guide::SpaceGuide;
+use jbt_frontend::lower::guide::{Rule, SpaceGuide, Support};
 use jbt_ir::selection::Shift;
-use jbt_ir::{Entity, Rows, Table};
+use jbt_ir::{Rows, Table};
 
+use super::cull::Supports;
 use super::{Pruner, Region};
 use crate::divide::Edit;
+use crate::region::{Box3, Divisible};
 
 /// What became of the rows of a table.
 struct Change {
@@ -42,10 +45,6 @@ impl Change {
         Self { before: first..before.len() - last, now: first..now.len() - last }
     }
 
-    fn is_nothing(&self) -> bool {
-        self.before.is_empty() && self.now.is_empty()
-    }
-
     /// The shift of the rows behind.
     fn shift(&self) -> Shift {
         // Row numbers are below 2^31: limits::MAX_OCCURRENCES.
@@ -62,37 +61,68 @@ impl Pruner {
         if !Arc::ptr_eq(&self.kernel.kernel, &before.kernel.kernel) {
             return Edit::Everywhere;
         }
+        // Which rows are active is compared by their numbers, which are not the same where rows come and go.
+        if self.is_switched(before) && !before.kernel.all.fits(self.extent()) {
+            return Edit::Everywhere;
+        }
         let mut boxes = Vec::new();
-        for table in self.tables().tables.keys() {
-            let [old, new] = [before, self].map(|pruner| &pruner.tables().tables[table]);
-            let change = Change::new(old, new);
-            let same_rows = old.active == new.active && old.starts == new.starts;
-            if change.is_nothing() && same_rows {
-                continue;
-            }
-            if !same_rows && !self.may_shift(table) {
-                return Edit::Everywhere;
-            }
-            // Where as many rows are as before, those between the first and the last change may be as they were.
-            let in_place = change.before == change.now;
-            let changed = |row: &usize| !in_place || !same_numbers(old, new, *row);
-            for (pruner, rows) in [(before, change.before.clone()), (self, change.now.clone())] {
-                for row in rows.filter(changed) {
-                    match pruner.reach_of(table, row) {
-                        Some(bounds) => boxes.push(bounds),
-                        None => return Edit::Everywhere,
-                    }
-                }
+        let bounded = |table: Table| self.edit_table(before, table, &mut boxes).is_some();
+        if self.tables().tables.keys().all(bounded) { Edit::Boxes(boxes) } else { Edit::Everywhere }
+    }
+
+    /// Adds the boxes in which rows of a table may make a difference; `None` if there are no such boxes.
+    fn edit_table(&self, before: &Self, table: Table, boxes: &mut Vec<Box3>) -> Option<()> {
+        let [old, new] = [before, self].map(|pruner| &pruner.tables().tables[table]);
+        if old.active != new.active || old.starts != new.starts {
+            if old.len() == new.len() {
+                self.edit_choice(before, table, boxes)?;
+            } else if !(before.may_shift(table) && self.may_shift(table)) {
+                return None;
             }
         }
-        Edit::Boxes(boxes)
+        let change = Change::new(old, new);
+        // Where as many rows are as before, those between the first and the last change may be as they were.
+        let in_place = change.before == change.now;
+        let changed = |row: &usize| !in_place || !same_numbers(old, new, *row);
+        for (pruner, rows) in [(before, change.before.clone()), (self, change.now)] {
+            for row in rows.filter(changed).filter(|&row| pruner.runs(table, row)) {
+                boxes.push(pruner.reach_of(table, row)?);
+            }
+        }
+        Some(())
+    }
+
+    /// Adds the boxes in which it makes a difference which rows of a table are active. What is lifted makes none: some selector has chosen
+    /// another child as well, or nobody would begin to ask for it, or cease to.
+    fn edit_choice(&self, before: &Self, table: Table, boxes: &mut Vec<Box3>) -> Option<()> {
+        if !(before.has_single_rows(table) && self.has_single_rows(table)) {
+            return None;
+        }
+        if self.guide.tables[table].is_lifted {
+            return Some(());
+        }
+        for row in 0..self.tables().tables[table].len() {
+            match [before, self].map(|pruner| pruner.is_active(table, row)) {
+                [true, false] => boxes.push(before.reach_of(table, row)?),
+                [false, true] => boxes.push(self.reach_of(table, row)?),
+                [true, true] | [false, false] => {}
+            }
+        }
+        Some(())
+    }
+
+    /// Whether other rows of the same tables are active.
+    fn is_switched(&self, before: &Self) -> bool {
+        let tables = before.tables().tables.values().zip(self.tables().tables.values());
+        let mut same_length = tables.filter(|(old, new)| old.len() == new.len());
+        same_length.any(|(old, new)| old.active != new.active)
     }
 
     /// A region of an earlier model as it is now: for a box that [`edit`](Self::edit) does not touch.
     #[must_use]
     pub fn renewed(&self, before: &Self, region: &Region) -> Region {
         if region.selection.fits(self.extent()) {
-            return region.clone();
+            return if self.is_switched(before) { self.switched(before, region) } else { region.clone() };
         }
         let shift =
             |table: Table| Change::new(&before.tables().tables[table], &self.tables().tables[table]).shift();
@@ -101,7 +131,20 @@ impl Pruner {
         Region { bounds: region.bounds, selection }
     }
 
-    /// Whether rows of a table may come and go without anything else being moved: all run, no table hangs under them, and they hang under single rows.
+    /// A region of an earlier model with other active rows.
+    fn switched(&self, before: &Self, region: &Region) -> Region {
+        let selection = Arc::new(region.selection.switched(before.tables(), self.tables()));
+        let switched = Region { bounds: region.bounds, selection };
+        // What has come brings all its rows; most do not matter here. If that cannot be asked, they stay.
+        let mut parts = Vec::with_capacity(1);
+        match self.narrow(&switched, &[region.bounds], &mut parts) {
+            Ok(()) => parts.pop().unwrap_or(switched),
+            Err(_) => switched,
+        }
+    }
+
+    /// Whether rows of a table may come and go without anything else being moved: a row that is zero makes no difference, all run, no table hangs
+    /// under them, and they hang under single rows.
     fn may_shift(&self, table: Table) -> bool {
         let function = self.kernel.kernel.function.function();
         let tables = &self.tables().tables;
@@ -113,22 +156,56 @@ impl Pruner {
             }
             above = function.tables[parent].parent;
         }
-        !has_children && tables[table].active.len() == tables[table].len()
+        let neutral = self.guide.tables[table].rule == Rule::Neutral;
+        neutral && !has_children && tables[table].active.len() == tables[table].len()
     }
 
     /// A box of the world outside of which a row adds nothing; `None` if there is none.
-    fn reach_of(&self, mut table: Table, mut row: usize) -> Option<crate::region::Box3> {
-        let function = self.kernel.kernel.function.function();
+    fn reach_of(&self, mut table: Table, mut row: usize) -> Option<Box3> {
         loop {
+            let above = self.above(table, row)?;
             let guide = &self.guide.tables[table];
-            if let (SpaceGuide::World, Some(supports)) = (&guide.space, &self.supports[table.index()]) {
-                return Some(supports.bounds(row));
+            let support = guide.supports[row];
+            if guide.space == SpaceGuide::World && support != Support::EVERYWHERE {
+                return Some(Supports::new(&[support]).bounds(0));
             }
-            let starts = &self.tables().tables[table].starts;
-            // The row above that owns this one. Rows are owned in order.
-            row = starts.partition_point(|&start| start as usize <= row) - 1;
-            table = function.tables[table].parent?;
+            (table, row) = above;
         }
+    }
+
+    /// The row that owns this one; `None` for that of the scene.
+    fn above(&self, table: Table, row: usize) -> Option<(Table, usize)> {
+        let parent = self.kernel.kernel.function.function().tables[table].parent?;
+        if self.has_single_rows(table) {
+            return Some((parent, row));
+        }
+        // In tables of several rows all are active. Rows are owned in order.
+        let starts = &self.tables().tables[table].starts;
+        Some((parent, starts.partition_point(|&start| start as usize <= row) - 1))
+    }
+
+    /// Whether each row of the table above owns one row of this: those of guards and selectors are such tables, and no others have rows that are not active.
+    fn has_single_rows(&self, table: Table) -> bool {
+        let tables = &self.tables().tables;
+        let parent = self.kernel.kernel.function.function().tables[table].parent;
+        tables[table].len() == parent.map_or(1, |parent| tables[parent].len())
+    }
+
+    fn is_active(&self, table: Table, row: usize) -> bool {
+        // Row numbers are below 2^31: limits::MAX_OCCURRENCES.
+        !self.has_single_rows(table)
+            || self.tables().tables[table].active.binary_search(&(row as u32)).is_ok()
+    }
+
+    /// Whether a row and all rows above it are active.
+    fn runs(&self, mut table: Table, mut row: usize) -> bool {
+        while self.is_active(table, row) {
+            match self.above(table, row) {
+                Some(above) => (table, row) = above,
+                None => return true,
+            }
+        }
+        false
     }
 }
 

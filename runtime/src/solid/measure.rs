@@ -141,7 +141,9 @@ pub enum MeasureError {
 const SLACK: f64 = 1e-3;
 
 /// How far a field may be from a linear one, as a part of its rise along an edge of the box.
-const MAX_RESIDUAL: f64 = 0.03;
+const MAX_RESIDUAL: f64 = 0.05;
+/// A linear field that is farther than so many residuals from the iso-value all over a box has no surface there.
+const REACH: f64 = 4.0;
 /// How often a box is cut into eight where no linear field fits.
 const MAX_REFINEMENT: u32 = 2;
 
@@ -228,13 +230,15 @@ impl Solid {
             }
             let linear = Linear::fit(&places, batch.values(self, region)?);
             let sides = [0, 1, 2].map(|axis| f64::from(bounds.high[axis]) - f64::from(bounds.low[axis]));
-            let rise =
-                (0..3).fold(0.0, |most: f64, axis| most.max(sides[axis] * linear.gradient[axis].abs()));
-            if depth < MAX_REFINEMENT && linear.residual > MAX_RESIDUAL * rise {
+            let middle = linear.middle - f64::from(self.iso);
+            let rises = [0, 1, 2].map(|axis| sides[axis] * linear.gradient[axis].abs());
+            let steepest = rises.iter().fold(0.0, |most: f64, &rise| most.max(rise));
+            let reached = middle.abs() < 0.5 * rises.iter().sum::<f64>() + REACH * linear.residual;
+            if depth < MAX_REFINEMENT && reached && linear.residual > MAX_RESIDUAL * steepest {
                 parts.extend(super::cut(&bounds, [2; 3]).into_iter().map(|part| (part, depth + 1)));
                 continue;
             }
-            let cut = cut::cut(sides, linear.middle - f64::from(self.iso), linear.gradient);
+            let cut = cut::cut(sides, middle, linear.gradient);
             piece.volume += cut.fraction * volume_of(&bounds);
             piece.area += cut.area;
         }

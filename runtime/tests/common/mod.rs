@@ -5,8 +5,8 @@
 use std::sync::Arc;
 
 use fastrand::Rng;
-use jbt::Model;
 use jbt::build::param;
+use jbt::{Model, Number};
 use jbt_frontend::affine::scale_rotate_translate;
 use jbt_frontend::attribute::{AttributeGroup, Mixing};
 use jbt_frontend::combine::Combinator;
@@ -68,7 +68,8 @@ impl Random {
             self.leaf()
         } else {
             let parts = self.shape.usize(1..leaves.min(5) + 1);
-            let children = (0..parts).map(|_| self.tree(leaves / parts, attributes, depth + 1)).collect();
+            let children: Vec<Tree> =
+                (0..parts).map(|_| self.tree(leaves / parts, attributes, depth + 1)).collect();
             let kind = NodeKind::Combine(match self.shape.u8(0..9) {
                 0 | 1 => Combinator::Sum,
                 2 => Combinator::Ricci(f64::from(self.shape.u32(1..20))),
@@ -79,7 +80,8 @@ impl Random {
                 _ => {
                     // Which child answers is a number as any other.
                     let which = self.between(-0.49, parts as f64 - 0.51);
-                    return self.finished(Tree::new(NodeKind::Select(which), children), attributes);
+                    let which = self.parameter("choice", which);
+                    return self.finished(Tree::select(which, children), attributes);
                 }
             });
             Tree::new(kind, children)
@@ -148,11 +150,16 @@ impl Random {
         tree
     }
 
+    /// A new parameter.
+    fn parameter(&mut self, kind: &str, value: f64) -> Number {
+        self.parameters += 1;
+        param(&format!("{kind}{}", self.parameters), value)
+    }
+
     /// The tree under a map that follows a parameter of its own: its code serves all values.
     fn following(&mut self, tree: &Tree) -> Tree {
-        let name = format!("p{}", self.parameters);
-        self.parameters += 1;
-        let follows = param(&name, self.between(-1.0, 1.0));
+        let value = self.between(-1.0, 1.0);
+        let follows = self.parameter("map", value);
         match self.shape.u8(0..3) {
             0 => tree.translate((follows, 0.0, self.between(-0.5, 0.5))),
             1 => tree.scale(1.0 + 0.4 * follows),
