@@ -77,9 +77,10 @@ pub struct Shift {
 pub const MAX_PARTS: usize = 8;
 
 impl Selection {
-    /// All rows that are active in the tables, which fit the function ([`Tables::check`]).
+    /// All rows that are active in the tables. Panics if the tables do not fit the function ([`Tables::check`]): machine code trusts selections.
     #[must_use]
     pub fn new(function: &Function, tables: &Tables) -> Self {
+        assert_eq!(tables.check(function), Ok(()), "a selection is made from tables that fit");
         let mut result = Self { extent: Arc::new(Extent::new(function, tables)), ..Self::default() };
         for (table, rows) in tables.tables.iter() {
             let starts = result.words.len();
@@ -224,6 +225,8 @@ impl Selection {
                 }
                 result.words[starts + position + 1] = word(result.words.len() - active);
             }
+            let exist = result.words[active..].iter().all(|&row| (row as usize) < rows.len());
+            assert!(exist, "active rows are in their table");
             let [starts, active, end] = [starts, active, result.words.len()].map(word);
             result.spans.push(Span { starts, active, end });
         }

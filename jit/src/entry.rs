@@ -42,7 +42,7 @@ impl TableView {
     pub(crate) const STARTS: usize = offset_of!(Self, starts);
 }
 
-/// Everything that one call of a kernel is given. Made by [`BoundKernel::run`] alone, from what it has checked.
+/// Everything that one call of a kernel is given. Made by [`BoundKernel::run_selected`] alone, from what it has checked.
 pub(crate) struct Arguments<'a> {
     /// Input planes, then output planes.
     pub(crate) planes: &'a [*const f32],

@@ -91,7 +91,7 @@ impl Code {
     pub(crate) fn call(&self, arguments: &Arguments<'_>) {
         let Arguments { planes, bytes, tables } = arguments;
         // SAFETY: the contract of `Code` says that this is a function of the ABI that `enter` expects. `Arguments` come from
-        // `BoundKernel::run`: there is a plane of this many bytes for each input and output, at least one block long and whole
+        // `BoundKernel::run_selected`: there is a plane of this many bytes for each input and output, at least one block long and whole
         // blocks; outputs come from exclusive borrows, so that no other plane overlaps them; the tables have been
         // checked against the function, the selection fits them, and both are borrowed by the caller.
         unsafe { enter(self.address, planes.as_ptr(), *bytes, tables.as_ptr()) };

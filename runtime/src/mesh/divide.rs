@@ -18,8 +18,6 @@ use rayon::prelude::*;
 
 use super::brick::{Bricks, NONE, SELF, box_of};
 use super::field::Field;
-#[cfg(test)]
-use super::field::Work as FieldWork;
 use super::progress::{Phase, Progress};
 use super::{MeshError, Options, Sides};
 use crate::region::{ANYTHING, Box3, MAX_PARTS};
@@ -325,6 +323,7 @@ mod tests {
     use std::convert::Infallible;
 
     use super::*;
+    use crate::mesh::Work as FieldWork;
     use crate::region::Divisible;
 
     /// The ball of radius 2 about the origin, by its square, with exact ranges of boxes. Nothing is evaluated.
