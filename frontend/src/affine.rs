@@ -19,6 +19,9 @@ impl Similarity {
     /// The map as a similarity, if it is one to within 1e-12 of its size.
     #[must_use]
     pub fn from_affine(map: &DAffine3) -> Option<Self> {
+        if map.matrix3 == DMat3::IDENTITY {
+            return Some(Self { scale: 1.0, turn: DMat3::IDENTITY });
+        }
         let gram = map.matrix3.transpose() * map.matrix3;
         let square = (gram.x_axis.x + gram.y_axis.y + gram.z_axis.z) / 3.0;
         let near = gram.abs_diff_eq(DMat3::from_diagonal(DVec3::splat(square)), 1e-12 * square);

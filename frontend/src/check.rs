@@ -114,6 +114,20 @@ impl CheckedTree {
         paths(&self.nodes, |node| node.kind.asked(&node.children))
     }
 
+    /// Uses of leaves: paths from the root to a leaf, through the chosen child of a selector alone.
+    #[must_use]
+    pub fn leaf_uses(&self) -> u64 {
+        let of = |(node, uses): (&CheckedNode, u64)| match node.kind {
+            NodeKind::Primitive(_) => uses,
+            NodeKind::Combine(_)
+            | NodeKind::Select(_)
+            | NodeKind::Affine(_)
+            | NodeKind::Warp(_)
+            | NodeKind::Attribute { .. } => 0,
+        };
+        self.nodes.iter().zip(self.asked()).map(of).fold(0, u64::saturating_add)
+    }
+
     /// A leaf under maps, the nearest first. They are those of a checked tree, or products of them, so they are not checked again.
     pub(crate) fn leaf_under(leaf: Primitive, maps: impl IntoIterator<Item = NodeKind>) -> Self {
         let mut nodes =

@@ -23,7 +23,7 @@ use std::sync::Arc;
 
 use crate::entity::{Entity, Table};
 use crate::function::Function;
-use crate::table::Tables;
+use crate::table::{TableError, Tables};
 
 /// What a selection selects from: the number of rows of each table, and its parent.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
@@ -80,8 +80,21 @@ impl Selection {
     /// All rows that are active in the tables. Panics if the tables do not fit the function ([`Tables::check`]): machine code trusts selections.
     #[must_use]
     pub fn new(function: &Function, tables: &Tables) -> Self {
-        assert_eq!(tables.check(function), Ok(()), "a selection is made from tables that fit");
+        match Self::checked(function, tables) {
+            Ok(all) => all,
+            Err(error) => panic!("a selection is made from tables that fit: {error}"),
+        }
+    }
+
+    /// All rows that are active in the tables.
+    ///
+    /// # Errors
+    /// The tables do not fit the function ([`Tables::check`]).
+    pub fn checked(function: &Function, tables: &Tables) -> Result<Self, TableError> {
+        tables.check(function)?;
         let mut result = Self { extent: Arc::new(Extent::new(function, tables)), ..Self::default() };
+        let active = tables.tables.values().map(|rows| rows.active.len());
+        result.words.reserve_exact(2 * active.sum::<usize>() + 2 * tables.tables.len());
         for (table, rows) in tables.tables.iter() {
             let starts = result.words.len();
             let parents = match function.tables[table].parent {
@@ -100,7 +113,7 @@ impl Selection {
                 end: word(result.words.len()),
             });
         }
-        result
+        Ok(result)
     }
 
     /// What it selects from.
@@ -157,10 +170,15 @@ impl Selection {
     /// What is in `parts` before is forgotten, its memory used again. Panics if there are too many parts or too few masks.
     pub fn narrow(&self, masks: &mut [u8], parts: &mut [Self]) {
         assert!(parts.len() <= MAX_PARTS, "a bit for each part");
-        for part in parts.iter_mut() {
+        let counts = counts(masks);
+        let starts = self.words.len() - self.len();
+        for (part, &count) in parts.iter_mut().zip(&counts) {
             part.extent.clone_from(&self.extent);
             part.words.clear();
             part.spans.clear();
+            // A start for each row that stays is the most, and all that there are is the most.
+            part.words.reserve_exact(count + starts.min(count + self.spans.len() + 1));
+            part.spans.reserve_exact(self.spans.len());
         }
         // Where the masks of each table begin.
         let mut firsts = Vec::with_capacity(self.spans.len());
@@ -273,6 +291,24 @@ impl Selection {
             part.spans.last_mut().expect("it was pushed above").end = end;
         }
     }
+}
+
+/// How many of the masks have each bit.
+fn counts(masks: &[u8]) -> [usize; MAX_PARTS] {
+    let mut counts = [0; MAX_PARTS];
+    // A byte for each bit, as long as it cannot overflow.
+    for masks in masks.chunks(usize::from(u8::MAX)) {
+        let mut bytes = [0_u8; MAX_PARTS];
+        for mask in masks {
+            for (bit, byte) in bytes.iter_mut().enumerate() {
+                *byte += mask >> bit & 1;
+            }
+        }
+        for (count, byte) in counts.iter_mut().zip(bytes) {
+            *count += usize::from(byte);
+        }
+    }
+    counts
 }
 
 /// The places of the ones in a mask, ascending.

@@ -120,8 +120,7 @@ impl Kernel {
     /// # Errors
     /// When the tables do not fit the function that the kernel was compiled from.
     pub fn bind(&self, tables: Arc<Tables>) -> Result<BoundKernel, TableError> {
-        tables.check(&self.shared.interface)?;
-        let all = Arc::new(Selection::new(&self.shared.interface, &tables));
+        let all = Arc::new(Selection::checked(&self.shared.interface, &tables)?);
         Ok(BoundKernel { kernel: self.clone(), tables, all })
     }
 }
@@ -210,6 +209,12 @@ impl BoundKernel {
     #[must_use]
     pub fn tables(&self) -> &Arc<Tables> {
         &self.tables
+    }
+
+    /// All rows that are active.
+    #[must_use]
+    pub fn all(&self) -> &Arc<Selection> {
+        &self.all
     }
 
     /// What selections are made from: those of other kernels fit if their tables have as many rows.

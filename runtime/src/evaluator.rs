@@ -1,6 +1,6 @@
 //! The evaluator: a model and a query become a kernel once; points become samples many times.
 
-use std::sync::{Arc, Mutex, OnceLock};
+use std::sync::{Arc, Mutex};
 
 use jbt_frontend::check::CheckedTree;
 use jbt_frontend::lower::{Lowered, Lowering};
@@ -14,7 +14,7 @@ use crate::error::{CompileError, EvalError};
 use crate::kernel::{Bound, Engine, Kernel, Purpose, optimise};
 use crate::probe::Probe;
 use crate::prune::Region;
-use crate::statistics::{leaf_uses, walks};
+use crate::statistics::walks;
 
 /// Makes evaluators, and remembers the code of every shape that it has met: models of one shape share it.
 ///
@@ -62,7 +62,7 @@ impl Compiler {
         query: Query,
     ) -> Result<Evaluator, CompileError> {
         let (kernel, tables) = self.compile(lowering, query, None)?;
-        Ok(Evaluator::new(self.clone(), kernel, tables, lowering.tree(), query))
+        Ok(Evaluator::new(self.clone(), kernel, tables, lowering, query))
     }
 
     /// The kernel and the numbers of a model. `present` is a kernel for the same query, tried first.
@@ -123,8 +123,6 @@ pub struct Evaluator {
     bound: Bound,
     query: Query,
     layout: Layout,
-    /// Distances for a point, once somebody has asked.
-    evaluations: OnceLock<u64>,
     /// What separate walks would compute at a point.
     separate: u64,
     tally: Tally,
@@ -143,24 +141,23 @@ impl Evaluator {
         compiler: Compiler,
         kernel: Arc<Kernel>,
         tables: Tables,
-        tree: &CheckedTree,
+        lowering: &Lowering<'_>,
         query: Query,
     ) -> Self {
-        let attributes = if query.attributes { tree.attributes() } else { &[] };
+        let attributes = if query.attributes { lowering.tree().attributes() } else { &[] };
         let layout = Layout::new(query.gradient, attributes);
         debug_assert_eq!(
             layout.names(),
             kernel.function.function().outputs,
             "planes are named alike everywhere"
         );
-        let separate = walks(query).saturating_mul(leaf_uses(tree));
+        let separate = walks(query).saturating_mul(lowering.leaf_uses());
         let bound = kernel.bind(Arc::new(tables));
         Self {
             compiler,
             bound,
             query,
             layout,
-            evaluations: OnceLock::new(),
             separate,
             tally: Tally::default(),
         }
@@ -171,10 +168,10 @@ impl Evaluator {
     /// # Errors
     /// Those of [`Compiler::evaluator`]; the evaluator stays as it was.
     pub fn update(&mut self, tree: &CheckedTree) -> Result<Update, CompileError> {
-        let (kernel, tables) =
-            self.compiler.compile(&Lowering::new(tree), self.query, Some(&self.bound.kernel))?;
+        let lowering = Lowering::new(tree);
+        let (kernel, tables) = self.compiler.compile(&lowering, self.query, Some(&self.bound.kernel))?;
         let same = Arc::ptr_eq(&kernel, &self.bound.kernel);
-        let next = Self::new(self.compiler.clone(), kernel, tables, tree, self.query);
+        let next = Self::new(self.compiler.clone(), kernel, tables, &lowering, self.query);
         *self = Self { tally: std::mem::take(&mut self.tally), ..next };
         Ok(if same { Update::Numbers } else { Update::Code })
     }
@@ -259,7 +256,7 @@ impl Evaluator {
     /// How many distances to skeletons one point takes.
     #[must_use]
     pub fn evaluations_per_point(&self) -> u64 {
-        *self.evaluations.get_or_init(|| self.evaluations_by_node().total)
+        of_selection(&self.bound.kernel.per_row, &self.bound.all)
     }
 
     /// How many distances to skeletons one point of a region takes.

@@ -160,17 +160,19 @@ impl Kernel {
 
     /// Gives the kernel its numbers.
     pub(crate) fn bind(self: &Arc<Self>, tables: Arc<Tables>) -> Bound {
-        // Lowering made both, so they fit; the check is what the engines' safety rests on.
-        let checked = tables.check(self.function.function());
-        assert_eq!(checked, Ok(()), "lowering gives tables that fit their function");
+        // Lowering made both, so they fit. It is checked all the same, because the engines' safety rests on it.
+        let interpreted = || Arc::new(Selection::new(self.function.function(), &tables));
         #[cfg(feature = "jit")]
-        let machine = match &self.code {
-            Code::Scalar | Code::Lanes(_) => None,
+        let (machine, all) = match &self.code {
+            Code::Scalar | Code::Lanes(_) => (None, interpreted()),
             Code::Jit(kernel) => {
-                Some(kernel.bind(Arc::clone(&tables)).expect("the tables have just been checked"))
+                let bound = kernel.bind(Arc::clone(&tables)).expect("lowering gives tables that fit");
+                let all = Arc::clone(bound.all());
+                (Some(bound), all)
             }
         };
-        let all = Arc::new(Selection::new(self.function.function(), &tables));
+        #[cfg(not(feature = "jit"))]
+        let all = interpreted();
         Bound {
             kernel: Arc::clone(self),
             tables,

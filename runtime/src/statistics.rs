@@ -15,7 +15,6 @@ use std::collections::BTreeMap;
 use jbt_frontend::check::CheckedTree;
 use jbt_frontend::lower::LeafOccurrences;
 use jbt_frontend::query::Query;
-use jbt_frontend::tree::NodeKind;
 use rayon::prelude::*;
 
 use crate::error::CompileError;
@@ -38,15 +37,7 @@ pub fn places(query: Query) -> u64 {
 /// Uses of leaves: paths from the root to a leaf, through the chosen child of a selector alone.
 #[must_use]
 pub fn leaf_uses(tree: &CheckedTree) -> u64 {
-    let of = |(node, uses): (&jbt_frontend::check::CheckedNode, u64)| match node.kind {
-        NodeKind::Primitive(_) => uses,
-        NodeKind::Combine(_)
-        | NodeKind::Select(_)
-        | NodeKind::Affine(_)
-        | NodeKind::Warp(_)
-        | NodeKind::Attribute { .. } => 0,
-    };
-    tree.nodes().iter().zip(tree.asked()).map(of).fold(0, u64::saturating_add)
+    tree.leaf_uses()
 }
 
 /// Evaluations of primitives for one point.

@@ -22,6 +22,11 @@ const CELLS: usize = 128;
 const DEPTH: u8 = 7;
 /// How far from `iso` the field may be at a vertex, on average and at most. Its gradients are up to 50.
 const VERTICES_OFF: (f64, f64) = (2e-3, 1e-1);
+/// How many vertices are checked, of few blobs and of many: the oracle meets every blob for each of them.
+const MOST_CHECKED: usize = 500;
+const FEWEST_CHECKED: usize = 20;
+/// How many blobs the oracle may meet, as long as enough vertices are checked.
+const MOST_WALKED: usize = 10_000_000;
 /// How much the numbers of triangles of two meshes of one surface may differ.
 const TRIANGLES_OFF: f64 = 0.01;
 
@@ -56,7 +61,8 @@ impl Task {
 
     /// Whether the field at vertices is the iso-value, as far as a step or two of Newton's can bring it there.
     fn check(&self, positions: &[[f32; 3]]) -> Result<(), String> {
-        let step = positions.len().div_ceil(500).max(1);
+        let checked = (MOST_WALKED / self.blobs.len()).clamp(FEWEST_CHECKED, MOST_CHECKED);
+        let step = positions.len().div_ceil(checked).max(1);
         let offs: Vec<f64> = (positions.iter().step_by(step))
             .map(|position| (walk(&self.tree, position.map(f64::from)).field - f64::from(ISO)).abs())
             .collect();

@@ -31,6 +31,8 @@ mod rows;
 mod shape;
 mod support;
 
+use std::sync::OnceLock;
+
 use jbt_ir::{Function, Tables};
 
 use crate::check::CheckedTree;
@@ -53,6 +55,8 @@ pub struct Lowered {
 pub struct Lowering<'a> {
     scene: occurrence::Scene<'a>,
     shapes: shape::Shapes,
+    /// See [`leaf_uses`](Self::leaf_uses).
+    leaf_uses: OnceLock<u64>,
 }
 
 impl<'a> Lowering<'a> {
@@ -61,13 +65,19 @@ impl<'a> Lowering<'a> {
     pub fn new(tree: &'a CheckedTree) -> Self {
         let scene = occurrence::Scene::new(tree);
         let shapes = shape::Shapes::new(&scene);
-        Self { scene, shapes }
+        Self { scene, shapes, leaf_uses: OnceLock::new() }
     }
 
     /// The model.
     #[must_use]
     pub fn tree(&self) -> &'a CheckedTree {
         self.scene.tree
+    }
+
+    /// [`CheckedTree::leaf_uses`], counted once.
+    #[must_use]
+    pub fn leaf_uses(&self) -> u64 {
+        *self.leaf_uses.get_or_init(|| self.tree().leaf_uses())
     }
 
     /// The program for a query.

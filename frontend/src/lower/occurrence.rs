@@ -118,7 +118,8 @@ pub(super) struct Scene<'a> {
     pub(super) fields: Vec<LeafField>,
     pub(super) root: OccurrenceId,
     positions: Vec<Position>,
-    bindings: Vec<Vec<Option<NodeId>>>,
+    /// Of each set of bindings, the node of each attribute group.
+    bindings: Vec<Option<NodeId>>,
     /// By the numbers of spaces without that of the world, which is 0.
     pub(super) insides: Vec<Inside>,
     pub(super) demand: Demand,
@@ -148,7 +149,8 @@ impl<'a> Scene<'a> {
 
     /// The node that binds each attribute group, `None` for the default.
     pub(super) fn bindings(&self, id: BindingsId) -> &[Option<NodeId>] {
-        &self.bindings[id.0 as usize]
+        let groups = self.tree.attributes().len();
+        &self.bindings[id.0 as usize * groups..][..groups]
     }
 
     pub(super) fn primitive(&self, field: FieldId) -> &'a Primitive {
@@ -202,7 +204,11 @@ struct Finder<'a> {
     /// Numbers of the file are keys here: a hash that nobody can prepare for.
     position_names: std::collections::HashMap<PositionKey, PositionId>,
     trails: Trails,
-    bindings_names: HashMap<Vec<Option<NodeId>>, BindingsId>,
+    bindings_names: HashMap<Box<[Option<NodeId>]>, BindingsId>,
+    /// How many sets of bindings there are.
+    bindings_count: u32,
+    /// The bindings of the path in progress.
+    bound: Vec<Option<NodeId>>,
     field_names: HashMap<(NodeId, PositionId), FieldId>,
     inside_names: HashMap<(NodeId, PositionId), (SpaceId, PositionId)>,
     known: HashMap<Key, OccurrenceId>,
@@ -215,10 +221,12 @@ struct Finder<'a> {
 
 impl<'a> Finder<'a> {
     fn new(tree: &'a CheckedTree) -> Self {
+        let once: Vec<bool> = tree.uses().into_iter().map(|uses| uses == 1).collect();
         let scene = Scene {
             tree,
-            occurrences: Vec::new(),
-            fields: Vec::new(),
+            // Large ones are moved as they grow: there is room for a tree without sharing.
+            occurrences: Vec::with_capacity(once.len()),
+            fields: Vec::with_capacity(once.len() / 2),
             root: OccurrenceId(0),
             positions: Vec::new(),
             bindings: Vec::new(),
@@ -230,10 +238,12 @@ impl<'a> Finder<'a> {
             position_names: std::collections::HashMap::new(),
             trails: Trails::default(),
             bindings_names: HashMap::default(),
+            bindings_count: 0,
+            bound: Vec::new(),
             field_names: HashMap::default(),
             inside_names: HashMap::default(),
             known: HashMap::default(),
-            once: tree.uses().into_iter().map(|uses| uses == 1).collect(),
+            once,
             selects: false,
             stack: Vec::new(),
         }
@@ -241,7 +251,8 @@ impl<'a> Finder<'a> {
 
     fn run(mut self) -> Scene<'a> {
         let world = self.name_position(Position::start(SpaceId(0)));
-        let unbound = self.name_bindings(vec![None; self.scene.tree.attributes().len()]);
+        self.bound = vec![None; self.scene.tree.attributes().len()];
+        let unbound = self.name_bindings();
         let root = self.resolve((self.scene.tree.root(), world, unbound));
         let mut done = self.enter(root);
         while let Some(frame) = self.stack.last_mut() {
@@ -277,8 +288,7 @@ impl<'a> Finder<'a> {
     /// Walks through affine, attribute and pass-through nodes to the node that does something.
     fn resolve(&mut self, (mut node, position, bindings): Key) -> Key {
         let Position { space, mut map, mut trail } = *self.scene.position(position);
-        let mut bound: Option<Vec<Option<NodeId>>> = None;
-        let mut moved = false;
+        let (mut rebound, mut moved) = (false, false);
         loop {
             let data = self.scene.tree.node(node);
             match &data.kind {
@@ -297,17 +307,30 @@ impl<'a> Finder<'a> {
                 NodeKind::Attribute { name, .. } => {
                     let groups = self.scene.tree.attributes();
                     if let Some(group) = groups.iter().position(|group| group.name == *name) {
-                        let bound = bound.get_or_insert_with(|| self.scene.bindings(bindings).to_vec());
-                        bound[group] = Some(node);
+                        if !std::mem::replace(&mut rebound, true) {
+                            self.bound.clear();
+                            self.bound.extend_from_slice(self.scene.bindings(bindings));
+                        }
+                        self.bound[group] = Some(node);
                     }
                 }
                 NodeKind::Combine(Combinator::Union | Combinator::Intersection | Combinator::Difference)
                     if data.children.len() == 1 => {}
                 NodeKind::Select(_) if data.children.len() == 1 => {}
                 NodeKind::Combine(_) | NodeKind::Select(_) | NodeKind::Primitive(_) | NodeKind::Warp(_) => {
-                    let position =
-                        if moved { self.name_position(Position { space, map, trail }) } else { position };
-                    let bindings = bound.map_or(bindings, |bound| self.name_bindings(bound));
+                    // Nobody asks again for what is met once and has nothing below it that others meet: it needs no name.
+                    let alone = self.once[node.0 as usize] && data.children.is_empty();
+                    let place = Position { space, map, trail };
+                    let position = match (moved, alone) {
+                        (false, _) => position,
+                        (true, false) => self.name_position(place),
+                        (true, true) => self.push_position(place),
+                    };
+                    let bindings = match (rebound, alone) {
+                        (false, _) => bindings,
+                        (true, false) => self.name_bindings(),
+                        (true, true) => self.push_bindings(),
+                    };
                     return (node, position, bindings);
                 }
             }
@@ -448,20 +471,28 @@ impl<'a> Finder<'a> {
         let next = PositionId(self.scene.positions.len() as u32);
         let key = position_key(space, trail.name, &trail.since);
         let id = *self.position_names.entry(key).or_insert(next);
-        if id == next {
-            self.scene.positions.push(position);
-        }
-        id
+        if id == next { self.push_position(position) } else { id }
     }
 
-    fn name_bindings(&mut self, bindings: Vec<Option<NodeId>>) -> BindingsId {
-        if let Some(&known) = self.bindings_names.get(&bindings) {
+    fn push_position(&mut self, position: Position) -> PositionId {
+        self.scene.positions.push(position);
+        PositionId(self.scene.positions.len() as u32 - 1)
+    }
+
+    /// The name of the bindings of the path in progress.
+    fn name_bindings(&mut self) -> BindingsId {
+        if let Some(&known) = self.bindings_names.get(&*self.bound) {
             return known;
         }
-        let next = BindingsId(self.scene.bindings.len() as u32);
-        self.scene.bindings.push(bindings.clone());
-        self.bindings_names.insert(bindings, next);
+        let next = self.push_bindings();
+        self.bindings_names.insert(self.bound.as_slice().into(), next);
         next
+    }
+
+    fn push_bindings(&mut self) -> BindingsId {
+        self.scene.bindings.extend_from_slice(&self.bound);
+        self.bindings_count += 1;
+        BindingsId(self.bindings_count - 1)
     }
 }
 
