@@ -42,6 +42,8 @@
 //! Trees are shared, not copied: `&a + &a` has one leaf under two edges. Anything can be built; [`Model::check`](crate::model::Model::check)
 //! says whether it makes sense.
 
+mod falloff;
+
 use std::ops::{Add, BitAnd, BitOr, Sub};
 
 use glam::DVec3;
@@ -49,11 +51,13 @@ use glam::DVec3;
 use crate::combine::Combinator;
 use crate::falloff::Falloff;
 use crate::field::FieldValue;
-use crate::recipe::{Angle, FieldNumber, Map, Radius, Recipe};
+use crate::recipe::{Angle, FalloffRecipe, FieldNumber, Map, Radius, Recipe};
 use crate::skeleton::{Skeleton, SkeletonKind};
 use crate::tree::{NodeKind, Primitive, Tree};
 use crate::warp::WarpKind;
 
+pub use self::falloff::{arctan, blanc, blinn, degree, inverse_power};
+pub use crate::falloff::Edge;
 pub use crate::number::{Number, Vector, param};
 
 /// A primitive of strength 1 with the soft object's falloff; `radius` is where its field reaches zero.
@@ -70,7 +74,7 @@ pub fn primitive(skeleton: impl Into<Skeleton>, radius: impl Into<Number>) -> Tr
 
 /// A primitive whose skeleton's parameters may follow those of the model.
 fn leaf(skeleton: SkeletonKind, fields: Vec<FieldNumber>, radius: impl Into<Number>) -> Tree {
-    let (falloff, radius) = (Falloff::Soft, Radius::Support(radius.into()));
+    let (falloff, radius) = (Falloff::Soft.into(), Radius::Support(radius.into()));
     let recipe = Recipe::Primitive { skeleton, fields, falloff, radius, strength: 1.0.into() };
     Tree::of(recipe, Vec::new())
 }
@@ -181,10 +185,23 @@ impl Tree {
         Self::of(Recipe::Select(which.into()), children.into_iter().collect())
     }
 
-    /// The same with this falloff in every primitive.
+    /// The same with this falloff in every primitive: one by its name, or one with parameters, which may follow those of the model.
+    ///
+    /// ```
+    /// use jbt_frontend::builder::{Edge, blinn, param, point};
+    /// use jbt_frontend::falloff::Falloff;
+    ///
+    /// let cubic = point([0.0; 3], 1.0).falloff(Falloff::Wyvill);
+    /// let gaussian = point([0.0; 3], 1.0).falloff(blinn(param("hardness", 3.0), 1.0, Edge::Smooth));
+    /// ```
     #[must_use]
-    pub fn falloff(&self, falloff: Falloff) -> Self {
-        self.map_primitives(|leaf| leaf.falloff = falloff)
+    pub fn falloff(&self, falloff: impl Into<FalloffRecipe>) -> Self {
+        let falloff = falloff.into();
+        if !falloff.follows() {
+            let falloff = falloff.falloff();
+            return self.map_primitives(|leaf| leaf.falloff = falloff);
+        }
+        self.map_recipes(|recipe| recipe.with_falloff(falloff.clone()))
     }
 
     /// The same with this strength in every primitive; negative ones push surfaces away.
@@ -194,6 +211,11 @@ impl Tree {
         if !strength.follows() {
             return self.map_primitives(|leaf| leaf.strength = strength.value());
         }
+        self.map_recipes(|recipe| recipe.with_strength(strength.clone()))
+    }
+
+    /// The same with the recipe of every primitive changed.
+    fn map_recipes(&self, mut change: impl FnMut(Recipe) -> Recipe) -> Self {
         self.rewrite(|tree| {
             let recipe = match (tree.node().recipe(), tree.node().kind()) {
                 (Some(recipe), NodeKind::Primitive(_)) => Recipe::clone(recipe),
@@ -207,7 +229,7 @@ impl Tree {
                     | NodeKind::Attribute { .. },
                 ) => return None,
             };
-            Some(tree.with_recipe(recipe.with_strength(strength.clone())))
+            Some(tree.with_recipe(change(recipe)))
         })
     }
 

@@ -40,7 +40,7 @@ mod parameters;
 
 pub(crate) use groups::is_identifier;
 use groups::{check_groups, widths};
-use numbers::{check_choice, check_exponent, check_number, check_numbers};
+use numbers::{check_choice, check_exponent, check_number, check_numbers, check_within};
 use parameters::{Dependence, check_iso};
 pub(crate) use parameters::{not_finite, unknown};
 
@@ -339,11 +339,14 @@ fn describe(kind: &NodeKind) -> String {
 fn check_primitive(report: &mut Report, span: Option<Span>, leaf: &Primitive) {
     let kind = leaf.skeleton.kind();
     check_fields(report, span, kind.name(), kind.fields(), &leaf.skeleton.to_fields());
+    let falloff = leaf.falloff.kind();
+    let owner = format!("{} falloff", falloff.name());
+    check_fields(report, span, &owner, falloff.fields(), &leaf.falloff.to_fields());
     check_number(report, span, "the radius", leaf.radius, limits::MIN_LENGTH);
     check_number(report, span, "the strength", leaf.strength, f64::NEG_INFINITY);
 }
 
-/// The parameters of a skeleton or a warp, each by its kind.
+/// The parameters of a skeleton, a falloff or a warp, each by its kind.
 fn check_fields(
     report: &mut Report,
     span: Option<Span>,
@@ -362,6 +365,12 @@ fn check_fields(
             }
             FieldKind::NonNegative => {
                 check_number(report, span, &what, value.real(), 0.0);
+            }
+            FieldKind::Within { least, most } => {
+                check_within(report, span, &what, value.real(), least..=most);
+            }
+            FieldKind::Choice(words) => {
+                check_within(report, span, &what, value.real(), 0.0..=words.len() as f64 - 1.0);
             }
             FieldKind::Extents => check_numbers(report, span, &what, &value.vector(), 0.0),
             FieldKind::Position => check_numbers(report, span, &what, &value.vector(), f64::NEG_INFINITY),

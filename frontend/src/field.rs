@@ -2,7 +2,7 @@
 //! parser, the printer, the check and the documentation.
 
 /// What a parameter may be.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Debug)]
 pub enum FieldKind {
     /// Any finite number.
     Real,
@@ -10,6 +10,15 @@ pub enum FieldKind {
     Positive,
     /// A finite number of at least 0.
     NonNegative,
+    /// A number in a range, ends included.
+    Within {
+        /// The smallest one.
+        least: f64,
+        /// The largest one.
+        most: f64,
+    },
+    /// One of these words; stored as its place, from 0.
+    Choice(&'static [&'static str]),
     /// Three finite numbers: a position.
     Position,
     /// Three finite numbers of at least 0: sizes along the axes.

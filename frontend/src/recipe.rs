@@ -8,6 +8,8 @@
 //!                                          kind    Affine(a 3x4 matrix), for the present value of t
 //! ```
 
+mod falloff;
+
 use std::sync::Arc;
 
 use glam::{DAffine3, DMat3, DVec3};
@@ -21,6 +23,8 @@ use crate::number::{Number, Values, plain, values};
 use crate::skeleton::SkeletonKind;
 use crate::tree::{NodeKind, Primitive};
 use crate::warp::WarpKind;
+
+pub use falloff::FalloffRecipe;
 
 /// The value of a member's parameter, before its formulas are evaluated.
 #[derive(Clone, PartialEq, Debug)]
@@ -79,7 +83,7 @@ pub enum Recipe {
         /// Its parameters, in the order of [`SkeletonKind::fields`].
         fields: Vec<FieldNumber>,
         /// How the field fades.
-        falloff: Falloff,
+        falloff: FalloffRecipe,
         /// How far the field reaches.
         radius: Radius,
         /// The factor of the field.
@@ -261,6 +265,7 @@ impl Map {
 impl Recipe {
     /// All its numbers.
     fn numbers(&self) -> impl Iterator<Item = &Number> {
+        let falloff = if let Self::Primitive { falloff, .. } = self { falloff.fields() } else { &[] };
         let (fields, numbers, own): (&[FieldNumber], &[Number], [Option<&Number>; 2]) = match self {
             Self::Primitive { fields, radius, strength, .. } => {
                 (fields, &[], [Some(radius.number()), Some(strength)])
@@ -271,15 +276,16 @@ impl Recipe {
             Self::Attribute { values, .. } => (&[], values, [None; 2]),
         };
         let map = if let Self::Map(map) = self { Some(map) } else { None };
-        let fields = fields.iter().flat_map(FieldNumber::numbers);
+        let fields = fields.iter().chain(falloff).flat_map(FieldNumber::numbers);
         fields.chain(numbers).chain(map.into_iter().flat_map(Map::numbers)).chain(own.into_iter().flatten())
     }
 
     fn numbers_mut(&mut self) -> Vec<&mut Number> {
         match self {
-            Self::Primitive { fields, radius, strength, .. } => {
+            Self::Primitive { fields, falloff, radius, strength, .. } => {
                 let own = [radius.number_mut(), strength];
-                fields.iter_mut().flat_map(FieldNumber::numbers_mut).chain(own).collect()
+                let fields = fields.iter_mut().chain(falloff.fields_mut());
+                fields.flat_map(FieldNumber::numbers_mut).chain(own).collect()
             }
             Self::Ricci(number) | Self::Select(number) => vec![number],
             Self::Map(map) => map.numbers_mut(),
@@ -323,7 +329,7 @@ impl Recipe {
             |fields: &[FieldNumber]| -> Vec<FieldValue> { fields.iter().map(FieldNumber::value).collect() };
         Ok(match self {
             Self::Primitive { skeleton, fields, falloff, radius, strength } => {
-                let (falloff, strength) = (*falloff, strength.value());
+                let (falloff, strength) = (falloff.falloff(), strength.value());
                 let radius = match radius {
                     Radius::Support(radius) => radius.value(),
                     Radius::Surface(radius) => support_radius(radius.value(), falloff, strength, iso)?,
@@ -365,6 +371,7 @@ impl Recipe {
                 FieldKind::Direction | FieldKind::Axis => true,
                 FieldKind::Position => positions > 1,
                 FieldKind::Real | FieldKind::Positive | FieldKind::NonNegative | FieldKind::Extents => false,
+                FieldKind::Within { .. } | FieldKind::Choice(_) => false,
             };
             turns && value.numbers().iter().any(Number::follows)
         })
@@ -380,12 +387,17 @@ impl Recipe {
         }
     }
 
+    /// Whether a parameter of a primitive's falloff follows one of the model.
+    pub(crate) fn falloff_follows(&self) -> bool {
+        if let Self::Primitive { falloff, .. } = self { falloff.follows() } else { false }
+    }
+
     /// The recipe of a primitive with plain numbers.
     pub(crate) fn of_primitive(leaf: &Primitive) -> Self {
         Self::Primitive {
             skeleton: leaf.skeleton.kind(),
             fields: leaf.skeleton.to_fields().into_iter().map(FieldNumber::from).collect(),
-            falloff: leaf.falloff,
+            falloff: leaf.falloff.into(),
             radius: Radius::Support(leaf.radius.into()),
             strength: leaf.strength.into(),
         }
@@ -399,10 +411,18 @@ impl Recipe {
         self
     }
 
+    /// The recipe of a primitive with another falloff.
+    pub(crate) fn with_falloff(mut self, new: FalloffRecipe) -> Self {
+        if let Self::Primitive { falloff, .. } = &mut self {
+            *falloff = new;
+        }
+        self
+    }
+
     /// The recipe of a primitive that was changed from one leaf to another: numbers that the change has left alone follow their
     /// parameters still.
     pub(crate) fn changed(&self, old: &Primitive, new: &Primitive) -> Self {
-        let Self::Primitive { fields, radius, strength, .. } = self else {
+        let Self::Primitive { fields, falloff, radius, strength, .. } = self else {
             unreachable!("leaves have recipes of primitives")
         };
         let kept = |number: &Number, old: f64, new: f64| {
@@ -424,7 +444,8 @@ impl Recipe {
             Radius::Support(new.radius.into())
         };
         let strength = kept(strength, old.strength, new.strength);
-        Self::Primitive { skeleton, fields, falloff: new.falloff, radius, strength }
+        let falloff = if new.falloff == old.falloff { falloff.clone() } else { new.falloff.into() };
+        Self::Primitive { skeleton, fields, falloff, radius, strength }
     }
 }
 

@@ -129,7 +129,9 @@ fn primitive(leaf: &Primitive, p: DVec3, values: Values) -> Answer {
     let field = leaf.strength * leaf.falloff.value(s);
     let silent = s >= 1.0 || leaf.strength == 0.0;
     let rim = if leaf.strength == 0.0 { f64::INFINITY } else { (1.0 - s).abs() };
-    let decision = if silent { rim } else { rim.min(leaf.skeleton.decision(p)) };
+    // At the tip of a falloff, as at the axis of a ring, the gradient jumps.
+    let tip = if leaf.falloff.is_pointed() { s.sqrt() * leaf.radius } else { f64::INFINITY };
+    let decision = if silent { rim } else { rim.min(tip).min(leaf.skeleton.decision(p)) };
     Answer { field, decision, silent, mean: values.clone(), dominant: values, share: 1.0, second: 0.0 }
 }
 

@@ -312,6 +312,15 @@ fn falloff(falloff: Falloff, u: f32) -> f32 {
     match falloff {
         Falloff::Soft => u * u * (5.0 / 9.0 + 4.0 / 9.0 * u),
         Falloff::Wyvill => u * u * u,
+        Falloff::Quartic
+        | Falloff::Metaball
+        | Falloff::Hermite
+        | Falloff::Quintic
+        | Falloff::Degree(_)
+        | Falloff::Blinn(_)
+        | Falloff::ArcTan(_)
+        | Falloff::InversePower(_)
+        | Falloff::Blanc(_) => falloff.value(1.0 - f64::from(u)) as f32,
     }
 }
 
@@ -321,5 +330,20 @@ fn falloff_slope(falloff: Falloff, u: f32) -> f32 {
     match falloff {
         Falloff::Soft => u * (10.0 / 9.0 + 12.0 / 9.0 * u),
         Falloff::Wyvill => 3.0 * u * u,
+        Falloff::Quartic
+        | Falloff::Metaball
+        | Falloff::Hermite
+        | Falloff::Quintic
+        | Falloff::Degree(_)
+        | Falloff::Blinn(_)
+        | Falloff::ArcTan(_)
+        | Falloff::InversePower(_)
+        | Falloff::Blanc(_) => {
+            // No model that is timed has these: central differences, inside of the support.
+            let s = 1.0 - f64::from(u);
+            let step = 1e-6 * s.min(1.0 - s);
+            let rise = falloff.value(s - step) - falloff.value(s + step);
+            if step > 0.0 { (rise / (2.0 * step)) as f32 } else { 0.0 }
+        }
     }
 }

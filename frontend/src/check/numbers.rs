@@ -1,5 +1,7 @@
 //! The check of numbers: of single ones, of several, of exponents and choices.
 
+use std::ops::RangeInclusive;
+
 use jbt_ir::limits;
 
 use crate::diagnostic::{Diagnostic, Span};
@@ -29,6 +31,25 @@ pub(super) fn check_number(
     report
         .add(|| Diagnostic::error(span, format!("{what} is {value}")).expected(format!("expected {fault}")));
     false
+}
+
+/// A number has to be in a range.
+pub(super) fn check_within(
+    report: &mut Report,
+    span: Option<Span>,
+    what: &str,
+    value: f64,
+    range: RangeInclusive<f64>,
+) {
+    if !range.contains(&value) {
+        report.add(|| {
+            Diagnostic::error(span, format!("{what} is {value}")).expected(format!(
+                "expected a number from {} to {}",
+                range.start(),
+                range.end()
+            ))
+        });
+    }
 }
 
 /// Three numbers, or an error that shows all of them.

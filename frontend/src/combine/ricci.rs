@@ -127,7 +127,7 @@ fn unit<D: Domain>(d: &mut D, field: D::Real, largest: D::Real, exponent: Expone
 }
 
 /// `x^n` for x in [0, 1].
-fn power<D: Domain>(d: &mut D, x: D::Real, exponent: Exponent<D::Real>) -> D::Real {
+pub(crate) fn power<D: Domain>(d: &mut D, x: D::Real, exponent: Exponent<D::Real>) -> D::Real {
     match exponent {
         Exponent::General(n, _) => d.pow(x, n),
         Exponent::Integer(n) => {

@@ -6,14 +6,16 @@
 
 use jbt_ir::Domain;
 
-use super::FalloffMember;
+use super::PlainFalloff;
 
-/// The falloff of soft objects. Text: `soft`.
+/// The falloff of soft objects. Text: `soft`, also `geoff`.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Soft;
 
-impl FalloffMember for Soft {
+impl PlainFalloff for Soft {
     const NAME: &'static str = "soft";
+    const ALIASES: &'static [&'static str] = &["geoff"];
+    const STEEPNESS: f64 = 4.0;
 
     fn value(s: f64) -> f64 {
         if s >= 1.0 { 0.0 } else { 1.0 - s * (22.0 - s * (17.0 - 4.0 * s)) / 9.0 }
@@ -34,9 +36,12 @@ impl FalloffMember for Soft {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::falloff::Falloff;
+    use crate::falloff::testing::Published;
 
     #[test]
     fn published_values() {
+        Published { half: Some(0.5), steepest: Some((0.5035, 1.58343)) }.check(Falloff::Soft);
         assert!((Soft::value(0.25) - 0.5).abs() < 1e-15, "1/2 at half the radius");
         assert_eq!(Soft::value(0.0), 1.0);
         assert_eq!(Soft::value(1.0), 0.0);

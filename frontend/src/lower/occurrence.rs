@@ -11,6 +11,7 @@ use super::demand::Demand;
 use super::position::{MapKind, Position, PositionKey, Trails, position_key};
 use crate::check::{CheckedTree, NodeId};
 use crate::combine::Combinator;
+use crate::falloff::FalloffKind;
 use crate::recipe::Recipe;
 use crate::tree::{NodeKind, Primitive, chosen};
 use crate::warp::Warp;
@@ -60,6 +61,8 @@ pub(super) struct LeafField {
     pub(super) kind: MapKind,
     /// Whether the strength is a number of its row.
     pub(super) strong: bool,
+    /// What the falloff is as code.
+    pub(super) falloff: FalloffKind,
 }
 
 /// An operator whose operands are alike: any number of them, in any order but for ties.
@@ -398,7 +401,8 @@ impl<'a> Finder<'a> {
             let turns = recipe.is_some_and(Recipe::skeleton_turns);
             let (map, scale, kind) = self.scene.position(position).of_skeleton(&primitive.skeleton, turns);
             let strong = primitive.strength != 1.0 || recipe.is_some_and(Recipe::strength_follows);
-            self.scene.fields.push(LeafField { node, position, uses: 0, map, scale, kind, strong });
+            let falloff = primitive.falloff.code(recipe.is_some_and(Recipe::falloff_follows));
+            self.scene.fields.push(LeafField { node, position, uses: 0, map, scale, kind, strong, falloff });
         }
         self.scene.fields[id.0 as usize].uses += 1;
         id

@@ -287,10 +287,11 @@ impl<'a> Writer<'a> {
     fn leaf(&mut self, field: FieldId) {
         self.nodes.push(self.scene.field(field).node.0);
         let primitive = self.scene.primitive(field);
-        let LeafField { map, scale, kind, strong, .. } = self.scene.field(field);
+        let LeafField { map, scale, kind, strong, falloff, .. } = self.scene.field(field);
         kind.push_columns(map, &mut self.row);
         primitive.skeleton.columns(*scale, &mut self.row);
         self.row.push(-(scale * primitive.radius).powi(-2));
+        primitive.falloff.columns(*falloff, &mut self.row);
         if *strong {
             self.row.push(primitive.strength);
         }

@@ -10,7 +10,7 @@ use rustc_hash::FxHashMap as HashMap;
 
 use super::occurrence::{FieldId, OccurrenceId, OccurrenceKind, Reducer, Scene, SpaceId};
 use super::position::MapKind;
-use crate::falloff::Falloff;
+use crate::falloff::FalloffKind;
 use crate::skeleton::SkeletonKind;
 use crate::warp::WarpKind;
 
@@ -48,7 +48,7 @@ enum ShapeKey {
     Leaf {
         map: MapKind,
         skeleton: SkeletonKind,
-        falloff: Falloff,
+        falloff: FalloffKind,
         strong: bool,
     },
     /// A lifted field with attributes of its own.
@@ -251,7 +251,7 @@ impl<'a> Classifier<'a> {
                 let key = ShapeKey::Leaf {
                     map: leaf.kind,
                     skeleton: primitive.skeleton.kind(),
-                    falloff: primitive.falloff,
+                    falloff: leaf.falloff,
                     strong: leaf.strong,
                 };
                 self.name(key, Content::LEAF)

@@ -19,6 +19,7 @@
 //! `d - |N K + n| - d |N 1| - ROUNDING (|K| + d) - 2^-73`, which grows with d.
 //!
 //! **The falloff.** It is `max(fma(d^2, -1 / r^2 (1 + u), 1), 0)`: zero, with zero slope, as soon as the computed d is `r (1 + u)`.
+//! Whatever the falloff is, it is written in that, and is exactly +0 there. The factors of its derivative are bounded by its steepness.
 //!
 //! All this takes numbers that do not overflow, so there is a bound of the coordinates at which points are asked,
 //! [`LARGEST_COORDINATE`], and rows whose numbers could overflow within it are bounded by nothing.
@@ -209,7 +210,7 @@ fn leaf(scene: &Scene<'_>, id: FieldId, extents: &[Extent]) -> Rounded {
     let size = pose.min.abs().max(pose.max.abs());
 
     let asked = extents[scene.position(field.position).space.0 as usize].after(&inverse);
-    let factor = slope * primitive.strength.abs().max(1.0);
+    let factor = slope * primitive.strength.abs().max(1.0) * primitive.falloff.steepness();
     let small = slope >= f64::from(f32::MIN_POSITIVE)
         && asked.coordinates <= LARGEST_NUMBER
         && asked.derivatives * asked.coordinates <= LARGEST_FACTOR

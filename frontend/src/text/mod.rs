@@ -27,7 +27,7 @@
 //! parameter  = FIELD value
 //!            | "radius" expression                           where the field reaches zero
 //!            | "surface_radius" expression                   where the primitive alone meets the iso-value
-//!            | "falloff" FALLOFF                             soft if not written
+//!            | "falloff" FALLOFF [ "{" { FIELD value } "}" ]   soft if not written
 //!            | "strength" expression ;                       1 if not written
 //! operator   = "sum" | "union" | "intersection" | "difference" | [ "blend" ] "ricci" expression
 //!            | "select" expression ;                         one child: that whose place, from 0, is nearest
@@ -37,7 +37,7 @@
 //!            | "affine" vector                               12 numbers: the rows of a 3x4 matrix, child to parent
 //!            | WARP { FIELD value }
 //!            | [ "with" ] NAME values ;                      a declared attribute; "with" if its name is a word of the format
-//! value      = expression | vector | "x" | "y" | "z" ;       as the field's kind asks
+//! value      = expression | vector | WORD ;                     as the field's kind asks
 //! values     = vector | expression ;                         as many as the group is wide
 //! vector     = "(" expression { [ "," ] expression } ")" ;
 //! expression = NUMBER | NAME | "pi" | "-" expression | "+" expression | "(" expression ")"
@@ -73,6 +73,7 @@
 //! present values, and so are the expressions that mention them.
 
 mod expression;
+mod falloff;
 mod lex;
 mod node;
 mod parse;

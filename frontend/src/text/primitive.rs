@@ -8,7 +8,7 @@ use crate::diagnostic::{Diagnostic, Span};
 use crate::falloff::Falloff;
 use crate::field::Field;
 use crate::number::Number;
-use crate::recipe::{FieldNumber, Radius, Recipe};
+use crate::recipe::{FalloffRecipe, FieldNumber, Radius, Recipe};
 use crate::report::{clip, nearest};
 use crate::skeleton::SkeletonKind;
 use crate::tree::Tree;
@@ -20,7 +20,7 @@ pub(super) struct Slots {
 }
 
 impl Slots {
-    fn new(fields: &'static [Field]) -> Self {
+    pub(super) fn new(fields: &'static [Field]) -> Self {
         Self { fields, values: vec![None; fields.len()] }
     }
 
@@ -58,7 +58,7 @@ pub(super) fn missing_error(span: Span, name: &str, missing: &[Field]) -> Diagno
 struct Own {
     radius: Option<Number>,
     surface_radius: Option<(Number, Span)>,
-    falloff: Option<Falloff>,
+    falloff: Option<FalloffRecipe>,
     strength: Option<Number>,
 }
 
@@ -83,7 +83,7 @@ impl Parser<'_> {
     }
 
     /// The value of a parameter whose word, `token`, has just been taken.
-    fn slot(&mut self, slots: &mut Slots, index: usize, token: Token) {
+    pub(super) fn slot(&mut self, slots: &mut Slots, index: usize, token: Token) {
         let value = self.field_value(slots.fields[index].kind);
         self.once(&mut slots.values[index], value, token);
     }
@@ -162,25 +162,6 @@ impl Parser<'_> {
         }
     }
 
-    fn falloff(&mut self) -> Option<Falloff> {
-        let token = self.peek();
-        let names = || Falloff::ALL.iter().map(|falloff| falloff.name());
-        let expected = || format!("expected one of {}", names().collect::<Vec<_>>().join(", "));
-        let Some(word) = self.peek_word() else {
-            self.expected_at(token, &expected());
-            return None;
-        };
-        self.next();
-        let found = Falloff::ALL.iter().copied().find(|falloff| falloff.name() == word);
-        if found.is_none() {
-            self.report(|| {
-                Diagnostic::error(Some(token.span()), format!("no falloff is called `{}`", clip(word)))
-                    .expected(expected())
-            });
-        }
-        found
-    }
-
     fn unknown_field(&mut self, kind: SkeletonKind, token: Token) {
         let word = self.text(token);
         self.lose_place(|| {
@@ -208,7 +189,7 @@ impl Parser<'_> {
                 Diagnostic::error(Some(span), format!("`{}` needs {}", kind.name(), missing.join(" and ")))
             });
         }
-        let falloff = own.falloff.unwrap_or(Falloff::Soft);
+        let falloff = own.falloff.unwrap_or_else(|| Falloff::Soft.into());
         let strength = own.strength.unwrap_or_else(|| 1.0.into());
         // What is wrong with a surface radius is told there.
         let at = own.surface_radius.as_ref().map_or(span, |(_, at)| *at);

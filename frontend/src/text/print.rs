@@ -13,11 +13,11 @@ use glam::DAffine3;
 use super::{GROUP_NODE, field_word};
 use crate::attribute::AttributeGroup;
 use crate::combine::Combinator;
-use crate::falloff::Falloff;
+use crate::falloff::FalloffKind;
 use crate::field::{Field, FieldKind, FieldValue};
 use crate::model::Model;
 use crate::number::{Number, plain};
-use crate::recipe::{Angle, FieldNumber, Map, Radius, Recipe};
+use crate::recipe::{Angle, FalloffRecipe, FieldNumber, Map, Radius, Recipe};
 use crate::tree::{NodeKind, Primitive, Tree};
 
 /// Operators below this depth are printed on one line.
@@ -187,7 +187,7 @@ fn head_of_recipe(out: &mut String, recipe: &Recipe) {
                 Radius::Support(radius) => write!(out, " radius {radius}"),
                 Radius::Surface(radius) => write!(out, " surface_radius {radius}"),
             };
-            rest_of_primitive(out, *falloff, strength);
+            rest_of_primitive(out, falloff, strength);
         }
         Recipe::Ricci(exponent) => {
             let _ = write!(out, "blend ricci {exponent}");
@@ -242,18 +242,32 @@ fn primitive(out: &mut String, leaf: &Primitive) {
         field(out, &field_word(kind, described), described, &value.into());
     }
     let _ = write!(out, " radius {}", plain(leaf.radius));
-    rest_of_primitive(out, leaf.falloff, &leaf.strength.into());
+    rest_of_primitive(out, &leaf.falloff.into(), &leaf.strength.into());
 }
 
 /// What follows a primitive's radius.
-fn rest_of_primitive(out: &mut String, falloff: Falloff, strength: &Number) {
-    if falloff != Falloff::Soft {
-        let _ = write!(out, " falloff {}", falloff.name());
+fn rest_of_primitive(out: &mut String, falloff: &FalloffRecipe, strength: &Number) {
+    if falloff.kind() != FalloffKind::Soft {
+        print_falloff(out, falloff);
     }
     if strength.follows() || strength.value().to_bits() != 1f64.to_bits() {
         let _ = write!(out, " strength {strength}");
     }
     out.push_str(" }");
+}
+
+/// A falloff, in braces its parameters that do not have their defaults.
+fn print_falloff(out: &mut String, falloff: &FalloffRecipe) {
+    let mut fields = String::new();
+    for (described, value) in falloff.kind().fields().iter().zip(falloff.fields()) {
+        field(&mut fields, described.name, described, value);
+    }
+    let name = falloff.kind().name();
+    let _ = if fields.is_empty() {
+        write!(out, " falloff {name}")
+    } else {
+        write!(out, " falloff {name} {{{fields} }}")
+    };
 }
 
 /// A parameter, unless it has its default.
@@ -266,6 +280,9 @@ fn field(out: &mut String, word: &str, described: &Field, value: &FieldNumber) {
         (FieldKind::Axis, FieldNumber::Vector(axis)) => {
             let index = axis.iter().position(|x| x.value() != 0.0).unwrap_or(2);
             write!(out, " {word} {}", ["x", "y", "z"][index])
+        }
+        (FieldKind::Choice(words), FieldNumber::Real(value)) => {
+            write!(out, " {word} {}", words.get(value.value() as usize).unwrap_or(&words[0]))
         }
         (_, FieldNumber::Real(value)) => write!(out, " {word} {value}"),
         (_, FieldNumber::Vector(values)) => write!(out, " {word} {}", vector(values)),

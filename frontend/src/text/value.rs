@@ -149,7 +149,7 @@ impl Parser<'_> {
     /// The value of a parameter of this kind; NaN after an error.
     pub(super) fn field_value(&mut self, kind: FieldKind) -> FieldNumber {
         match kind {
-            FieldKind::Real | FieldKind::Positive | FieldKind::NonNegative => {
+            FieldKind::Real | FieldKind::Positive | FieldKind::NonNegative | FieldKind::Within { .. } => {
                 FieldNumber::Real(self.expression(Place::Alone).number)
             }
             FieldKind::Position | FieldKind::Extents => FieldNumber::Vector(self.vector()),
@@ -157,12 +157,28 @@ impl Parser<'_> {
                 Some(axis) => FieldValue::Vector(axis).into(),
                 None => FieldNumber::Vector(self.vector()),
             },
+            FieldKind::Choice(words) => FieldValue::Real(self.choice(words)).into(),
             FieldKind::Axis => {
                 let axis = self.axis_word().unwrap_or_else(|| {
                     self.expected_at(self.peek(), "expected one of x, y, z");
                     [f64::NAN; 3]
                 });
                 FieldValue::Vector(axis).into()
+            }
+        }
+    }
+
+    /// The place of the word that is next; NaN after an error.
+    fn choice(&mut self, words: &[&str]) -> f64 {
+        let found = self.peek_word().and_then(|word| words.iter().position(|known| *known == word));
+        match found {
+            Some(place) => {
+                self.next();
+                place as f64
+            }
+            None => {
+                self.expected_at(self.peek(), &format!("expected one of {}", words.join(", ")));
+                f64::NAN
             }
         }
     }

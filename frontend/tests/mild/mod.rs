@@ -6,7 +6,7 @@ use glam::{DAffine3, DQuat, DVec3};
 use jbt_frontend::affine::scale_rotate_translate;
 use jbt_frontend::attribute::{AttributeGroup, Mixing};
 use jbt_frontend::combine::Combinator;
-use jbt_frontend::falloff::Falloff;
+use jbt_frontend::falloff::FalloffKind;
 use jbt_frontend::field::{Field, FieldKind, FieldValue};
 use jbt_frontend::model::Model;
 use jbt_frontend::number::param;
@@ -24,6 +24,12 @@ pub fn fields(rng: &mut Rng, fields: &[Field]) -> Vec<FieldValue> {
     let value = |field: &Field| match field.kind {
         FieldKind::Real => FieldValue::Real(3.0 * rng.f64() - 1.5),
         FieldKind::Positive | FieldKind::NonNegative => FieldValue::Real(0.05 + rng.f64()),
+        FieldKind::Within { least, most } => {
+            let number = least + (most.min(8.0) - least) * rng.f64();
+            // Whole numbers may be code.
+            FieldValue::Real(if rng.bool() { number.ceil() } else { number })
+        }
+        FieldKind::Choice(words) => FieldValue::Real(rng.usize(..words.len()) as f64),
         FieldKind::Position | FieldKind::Direction => FieldValue::Vector(vector(rng, 1.0)),
         FieldKind::Extents => FieldValue::Vector(vector(rng, 1.0).map(f64::abs)),
         FieldKind::Axis => FieldValue::Vector(DVec3::AXES[rng.usize(..3)].to_array()),
@@ -40,7 +46,8 @@ pub fn leaf(rng: &mut Rng, signs: bool) -> Primitive {
         _ => 1.0,
     };
     let skeleton = kind.from_fields(&fields(rng, kind.fields()));
-    let falloff = *rng.choice(Falloff::ALL).expect("there are falloffs");
+    let falloff = *rng.choice(FalloffKind::ALL).expect("there are falloffs");
+    let falloff = falloff.from_fields(&fields(rng, falloff.fields()));
     Primitive { skeleton, falloff, radius: 0.1 + rng.f64(), strength }
 }
 

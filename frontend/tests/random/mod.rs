@@ -6,7 +6,7 @@ use fastrand::Rng;
 use glam::{DAffine3, DMat3, DVec3};
 use jbt_frontend::attribute::{AttributeGroup, Mixing};
 use jbt_frontend::combine::Combinator;
-use jbt_frontend::falloff::Falloff;
+use jbt_frontend::falloff::{Falloff, FalloffKind};
 use jbt_frontend::field::{Field, FieldKind, FieldValue};
 use jbt_frontend::model::Model;
 use jbt_frontend::skeleton::{Point, SkeletonKind};
@@ -41,6 +41,8 @@ fn fields(rng: &mut Rng, fields: &[Field]) -> Vec<FieldValue> {
         (_, Some(default)) if rng.u8(..4) == 0 => default,
         (FieldKind::Real, _) => FieldValue::Real(number(rng)),
         (FieldKind::Positive | FieldKind::NonNegative, _) => FieldValue::Real(number(rng).abs()),
+        (FieldKind::Within { least, most }, _) => FieldValue::Real(number(rng).clamp(least, most)),
+        (FieldKind::Choice(words), _) => FieldValue::Real(rng.usize(..words.len()) as f64),
         (FieldKind::Position | FieldKind::Direction, _) => FieldValue::Vector(numbers(rng)),
         (FieldKind::Extents, _) => FieldValue::Vector(numbers(rng).map(f64::abs)),
         (FieldKind::Axis, _) => FieldValue::Vector(DVec3::AXES[rng.usize(..3)].to_array()),
@@ -50,9 +52,10 @@ fn fields(rng: &mut Rng, fields: &[Field]) -> Vec<FieldValue> {
 
 fn leaf(rng: &mut Rng) -> Tree {
     let kind = *rng.choice(SkeletonKind::ALL).unwrap();
+    let falloff = *rng.choice(FalloffKind::ALL).unwrap();
     let leaf = Primitive {
         skeleton: kind.from_fields(&fields(rng, kind.fields())),
-        falloff: *rng.choice(Falloff::ALL).unwrap(),
+        falloff: falloff.from_fields(&fields(rng, falloff.fields())),
         radius: number(rng),
         strength: if rng.bool() { 1.0 } else { number(rng) },
     };

@@ -10,7 +10,7 @@ use jbt::{Model, Number};
 use jbt_frontend::affine::scale_rotate_translate;
 use jbt_frontend::attribute::{AttributeGroup, Mixing};
 use jbt_frontend::combine::Combinator;
-use jbt_frontend::falloff::Falloff;
+use jbt_frontend::falloff::FalloffKind;
 use jbt_frontend::field::{Field, FieldKind, FieldValue};
 use jbt_frontend::skeleton::SkeletonKind;
 use jbt_frontend::tree::{NodeKind, Primitive, Tree};
@@ -103,7 +103,8 @@ impl Random {
             1 | 2 => self.between(0.5, 1.7),
             _ => 1.0,
         };
-        let falloff = Falloff::ALL[self.shape.usize(0..Falloff::ALL.len())];
+        let falloff = FalloffKind::ALL[self.shape.usize(0..FalloffKind::ALL.len())];
+        let falloff = falloff.from_fields(&self.fields(falloff.fields()));
         let radius = self.between(0.5, 1.5);
         Tree::new(NodeKind::Primitive(Primitive { skeleton, falloff, radius, strength }), Vec::new())
     }
@@ -114,6 +115,13 @@ impl Random {
             values.push(match field.kind {
                 FieldKind::Real => FieldValue::Real(self.between(-1.5, 1.5)),
                 FieldKind::Positive | FieldKind::NonNegative => FieldValue::Real(self.between(0.1, 1.0)),
+                // Whole numbers may be code.
+                FieldKind::Within { least, most } if self.shape.bool() => {
+                    let (least, most) = (least.ceil() as u32, most.min(8.0) as u32);
+                    FieldValue::Real(f64::from(self.shape.u32(least.max(1)..=most)))
+                }
+                FieldKind::Within { least, most } => FieldValue::Real(self.between(least, most.min(8.0))),
+                FieldKind::Choice(words) => FieldValue::Real(self.shape.usize(0..words.len()) as f64),
                 FieldKind::Position => FieldValue::Vector(self.vector(1.0)),
                 FieldKind::Extents => FieldValue::Vector(self.vector(1.0).map(f64::abs)),
                 FieldKind::Direction => FieldValue::Vector(self.vector(1.0)),

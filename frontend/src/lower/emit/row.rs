@@ -33,7 +33,7 @@ impl Emitter<'_> {
         let slot = self.slots;
         self.slots += 1;
         self.builder.add_slot(*self.rows.last().expect("the scene's row is open"), slot);
-        let LeafField { kind: map, strong, .. } = *self.scene.field(field);
+        let LeafField { kind: map, strong, falloff, .. } = *self.scene.field(field);
         let skeleton = primitive.skeleton.kind();
         let (_, outer) = *self.points.last().expect("a space is open");
         self.builder.set_origin(Origin::leaf(slot, Part::Position));
@@ -48,7 +48,8 @@ impl Emitter<'_> {
         let (zero, one) = (self.builder.constant(0.0), self.builder.constant(1.0));
         let left = self.builder.fma(square, slope, one);
         let left = self.builder.max(left, zero);
-        let mut value = primitive.falloff.emit(&mut self.builder, left);
+        let row = self.columns(falloff.columns());
+        let mut value = falloff.emit(&mut self.builder, left, &row);
         if strong {
             let strength = self.column("strength");
             let product = self.builder.mul(strength, value);

@@ -1,0 +1,109 @@
+//! The family `(1 - s)^n`, of degree 2n in the distance: Stolte's (n = 8 and others), [`Quartic`](super::Quartic) for n = 2,
+//! [`Wyvill`](super::Wyvill) for n = 3.
+//!
+//! A whole exponent up to [`MOST_WHOLE`] is code, a chain of products; others are powers. Below n = 1 the slope grows without bounds
+//! towards the rim: gradients are finite still, because u is 0 or at least 2^-48.
+
+use jbt_ir::Domain;
+
+use super::{FalloffMember, emit_inside, whole};
+use crate::combine::ricci::{Exponent, power};
+use crate::field::{Field, FieldKind, FieldValue, Member};
+
+/// The largest whole exponent that is code.
+const MOST_WHOLE: u8 = 64;
+
+/// `(1 - s)^n`. Text: `degree { exponent 4 }`, also `stolte`.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Degree {
+    /// n, in [0.001, 1024].
+    pub exponent: f64,
+}
+
+impl Member for Degree {
+    const NAME: &'static str = "degree";
+    const FIELDS: &'static [Field] = &[Field {
+        name: "exponent",
+        kind: FieldKind::Within { least: 0.001, most: 1024.0 },
+        default: None,
+    }];
+
+    fn from_fields(values: &[FieldValue]) -> Self {
+        Self { exponent: values[0].real() }
+    }
+
+    fn to_fields(&self) -> Vec<FieldValue> {
+        vec![FieldValue::Real(self.exponent)]
+    }
+}
+
+impl FalloffMember for Degree {
+    const ALIASES: &'static [&'static str] = &["stolte"];
+
+    fn value(&self, s: f64) -> f64 {
+        if s >= 1.0 { 0.0 } else { (1.0 - s).powf(self.exponent) }
+    }
+
+    fn inverse(&self, level: f64) -> f64 {
+        1.0 - level.powf(1.0 / self.exponent)
+    }
+
+    fn steepness(&self) -> f64 {
+        // The tangent of a power is 0 where its base is.
+        self.exponent.max(1.0)
+    }
+
+    fn is_pointed(&self) -> bool {
+        false
+    }
+
+    fn variant(&self, follows: bool) -> u8 {
+        if follows { 0 } else { whole(self.exponent, MOST_WHOLE).unwrap_or(0) }
+    }
+
+    fn column_names(variant: u8) -> &'static [&'static str] {
+        if variant == 0 { &["falloff_exponent"] } else { &[] }
+    }
+
+    fn columns(&self, variant: u8, row: &mut Vec<f64>) {
+        if variant == 0 {
+            row.push(self.exponent);
+        }
+    }
+
+    fn emit<D: Domain>(d: &mut D, variant: u8, u: D::Real, row: &[D::Real]) -> D::Real {
+        if variant > 0 {
+            return power(d, u, Exponent::Integer(u32::from(variant)));
+        }
+        let power = d.pow(u, row[0]);
+        // It is 0 at 0 anyway, but ranges of powers are a little too wide.
+        emit_inside(d, u, power)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::falloff::Falloff;
+    use crate::falloff::testing::Published;
+
+    #[test]
+    fn published_values() {
+        for n in [2.0, 3.0, 2.5, 8.0, 64.0, 65.0] {
+            let half = (1.0 - 2f64.powf(-1.0 / n)).sqrt();
+            let r = 1.0 / (2.0 * n - 1.0f64).sqrt();
+            let slope = 2.0 * n * r * (1.0 - r * r).powf(n - 1.0);
+            Published { half: Some(half), steepest: Some((r, slope)) }.check(Degree { exponent: n }.into());
+        }
+        for s in [0.0, 0.3, 0.9, 1.0, 7.0] {
+            assert!((Degree { exponent: 3.0 }.value(s) - Falloff::Wyvill.value(s)).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn whole_exponents_are_code() {
+        let variant = |exponent, follows| Degree { exponent }.variant(follows);
+        let found = [variant(1.0, false), variant(64.0, false), variant(65.0, false), variant(2.5, false)];
+        assert_eq!((found, variant(2.0, true)), ([1, 64, 0, 0], 0));
+    }
+}

@@ -1,0 +1,143 @@
+//! The inverse power, in a form that is finite at the skeleton.
+//!
+//! ```text
+//! 1 / (1 + (c r)^n)        c the cutoff, n the exponent
+//! ```
+//!
+//! The potential `1 / d^n` of a charge is infinite at the charge; with the 1 in the divisor the field is 1 there, 1/2 at r = 1 / c,
+//! and near the inverse power from some two times that distance outwards. So the cutoff is the support radius in units of the distance at
+//! which the field has fallen to 1/2. n = 2 is Cauchy's (and Lorentz's) curve.
+//!
+//! It never reaches zero. With an exact [`Edge`] the field jumps from `1 / (1 + c^n)` to zero at the rim, by 1/17 for the defaults.
+//!
+//! A whole exponent is code: powers of s, and r once if it is odd. For n = 1 the field has a tip at the skeleton.
+
+use jbt_ir::Domain;
+
+use super::{Edge, FalloffMember, bisect, emit_square, whole};
+use crate::combine::ricci::{Exponent, power};
+use crate::field::{Field, FieldKind, FieldValue, Member};
+
+/// The largest exponent.
+const MOST: u8 = 16;
+
+/// An inverse power. Text: `inverse_power { exponent 2 cutoff 4 edge smooth }`, which are the defaults; also `inverse`, `lorentz`.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct InversePower {
+    /// n, in [1, 16].
+    pub exponent: f64,
+    /// The support radius, in units of the distance at which the field is 1/2; in [0.01, 16].
+    pub cutoff: f64,
+    /// What happens at the support radius.
+    pub edge: Edge,
+}
+
+impl Member for InversePower {
+    const NAME: &'static str = "inverse_power";
+    const FIELDS: &'static [Field] = &[
+        Field {
+            name: "exponent",
+            kind: FieldKind::Within { least: 1.0, most: MOST as f64 },
+            default: Some(FieldValue::Real(2.0)),
+        },
+        Field {
+            name: "cutoff",
+            kind: FieldKind::Within { least: 0.01, most: 16.0 },
+            default: Some(FieldValue::Real(4.0)),
+        },
+        Edge::field(Edge::Smooth),
+    ];
+
+    fn from_fields(values: &[FieldValue]) -> Self {
+        let [exponent, cutoff] = [0, 1].map(|i: usize| values[i].real());
+        Self { exponent, cutoff, edge: Edge::from_field(values[2]) }
+    }
+
+    fn to_fields(&self) -> Vec<FieldValue> {
+        vec![FieldValue::Real(self.exponent), FieldValue::Real(self.cutoff), self.edge.to_field()]
+    }
+}
+
+impl FalloffMember for InversePower {
+    const ALIASES: &'static [&'static str] = &["inverse", "lorentz"];
+
+    fn value(&self, s: f64) -> f64 {
+        self.edge.factor(s) / (1.0 + (self.cutoff * s.sqrt()).powf(self.exponent))
+    }
+
+    fn inverse(&self, level: f64) -> f64 {
+        bisect(|s| self.value(s), level)
+    }
+
+    fn steepness(&self) -> f64 {
+        8.0 * self.exponent * self.cutoff.powf(self.exponent).max(1.0)
+    }
+
+    fn is_pointed(&self) -> bool {
+        self.exponent <= 1.0
+    }
+
+    /// The edge, and above it a whole exponent.
+    fn variant(&self, follows: bool) -> u8 {
+        let exponent = if follows { 0 } else { whole(self.exponent, MOST).unwrap_or(0) };
+        self.edge.bit() | exponent << 1
+    }
+
+    fn column_names(variant: u8) -> &'static [&'static str] {
+        if variant >> 1 == 0 { &["falloff_scale", "half_exponent"] } else { &["falloff_scale"] }
+    }
+
+    fn columns(&self, variant: u8, row: &mut Vec<f64>) {
+        row.push(self.cutoff.powf(self.exponent));
+        if variant >> 1 == 0 {
+            row.push(0.5 * self.exponent);
+        }
+    }
+
+    fn emit<D: Domain>(d: &mut D, variant: u8, u: D::Real, row: &[D::Real]) -> D::Real {
+        let (s, one) = (emit_square(d, u), d.constant(1.0));
+        let power = match variant >> 1 {
+            0 => d.pow(s, row[1]),
+            1 => d.sqrt(s),
+            n => {
+                let even = power(d, s, Exponent::Integer(u32::from(n / 2)));
+                if n % 2 == 0 {
+                    even
+                } else {
+                    let r = d.sqrt(s);
+                    d.mul(even, r)
+                }
+            }
+        };
+        let sum = d.fma(row[0], power, one);
+        let value = d.div(one, sum);
+        Edge::of_bit(variant).emit(d, u, value)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::falloff::testing::Published;
+
+    #[test]
+    fn published_values() {
+        for edge in [Edge::Exact, Edge::Smooth] {
+            for (exponent, cutoff) in [(1.0, 4.0), (2.0, 4.0), (2.5, 3.0), (5.0, 2.0), (16.0, 2.0)] {
+                // The slope n x^(n-1) / (1 + x^n)^2 in x = c r is largest where x^n = (n - 1) / (n + 1).
+                let x = ((exponent - 1.0) / (exponent + 1.0) as f64).powf(1.0 / exponent);
+                let slope = cutoff * exponent * x.powf(exponent - 1.0) / (1.0 + x.powf(exponent)).powi(2);
+                let steepest = (exponent > 1.0).then_some((x / cutoff, slope));
+                Published { half: Some(1.0 / cutoff), steepest }
+                    .check(InversePower { exponent, cutoff, edge }.into());
+            }
+        }
+    }
+
+    #[test]
+    fn an_exact_edge_jumps() {
+        let exact = InversePower { exponent: 2.0, cutoff: 4.0, edge: Edge::Exact };
+        assert!((exact.value(1.0 - 1e-12) - 1.0 / 17.0).abs() < 1e-10);
+        assert_eq!(exact.value(1.0), 0.0);
+    }
+}

@@ -1,0 +1,59 @@
+//! The recipe of a falloff.
+
+use super::FieldNumber;
+use crate::falloff::{Falloff, FalloffKind};
+use crate::field::FieldValue;
+use crate::number::Number;
+
+/// A falloff before its formulas are evaluated.
+#[derive(Clone, PartialEq, Debug)]
+pub struct FalloffRecipe {
+    /// The kind, with variant 0.
+    kind: FalloffKind,
+    /// Its parameters, in the order of [`FalloffKind::fields`].
+    fields: Vec<FieldNumber>,
+}
+
+impl FalloffRecipe {
+    /// The falloff of this kind, whatever its variant, with these parameters, in the order of [`FalloffKind::fields`].
+    #[must_use]
+    pub fn new(kind: FalloffKind, fields: Vec<FieldNumber>) -> Self {
+        Self { kind: kind.base(), fields }
+    }
+
+    /// The kind, with variant 0.
+    #[must_use]
+    pub fn kind(&self) -> FalloffKind {
+        self.kind
+    }
+
+    /// The parameters.
+    #[must_use]
+    pub fn fields(&self) -> &[FieldNumber] {
+        &self.fields
+    }
+
+    pub(super) fn fields_mut(&mut self) -> &mut [FieldNumber] {
+        &mut self.fields
+    }
+
+    /// The falloff, with the present values of its numbers.
+    #[must_use]
+    pub fn falloff(&self) -> Falloff {
+        let values: Vec<FieldValue> = self.fields.iter().map(FieldNumber::value).collect();
+        self.kind.from_fields(&values)
+    }
+
+    /// Whether one of its numbers follows a parameter.
+    #[must_use]
+    pub fn follows(&self) -> bool {
+        self.fields.iter().flat_map(FieldNumber::numbers).any(Number::follows)
+    }
+}
+
+impl<T: Into<Falloff>> From<T> for FalloffRecipe {
+    fn from(falloff: T) -> Self {
+        let falloff = falloff.into();
+        Self::new(falloff.kind(), falloff.to_fields().into_iter().map(FieldNumber::from).collect())
+    }
+}

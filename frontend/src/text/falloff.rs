@@ -1,0 +1,90 @@
+//! The falloff of a primitive: its name, and a block with its parameters where it has any.
+
+use super::lex::TokenKind;
+use super::parse::{Parser, is_statement};
+use super::primitive::{Slots, missing_error};
+use crate::diagnostic::{Diagnostic, Span};
+use crate::falloff::FalloffKind;
+use crate::recipe::FalloffRecipe;
+use crate::report::{clip, nearest};
+
+impl Parser<'_> {
+    /// What follows the word `falloff`. Nothing after an error.
+    pub(super) fn falloff(&mut self) -> Option<FalloffRecipe> {
+        let token = self.peek();
+        let names = || FalloffKind::ALL.iter().map(|kind| kind.name());
+        let expected = || format!("expected one of {}", names().collect::<Vec<_>>().join(", "));
+        let Some(word) = self.peek_word() else {
+            self.expected_at(token, &expected());
+            return None;
+        };
+        self.next();
+        let Some(kind) = FalloffKind::named(word) else {
+            self.report(|| {
+                Diagnostic::error(Some(token.span()), format!("no falloff is called `{}`", clip(word)))
+                    .expected(expected())
+            });
+            if self.peek().is(b'{') {
+                self.skip_block();
+            }
+            return None;
+        };
+        let mut slots = Slots::new(kind.fields());
+        if self.peek().is(b'{') && !self.falloff_block(kind, &mut slots) {
+            return None;
+        }
+        let missing = slots.missing();
+        if !missing.is_empty() {
+            self.report(|| missing_error(token.span(), kind.name(), &missing));
+        }
+        slots.values().map(|fields| FalloffRecipe::new(kind, fields))
+    }
+
+    /// A block of parameters: in any order, each once. False if it does not end.
+    fn falloff_block(&mut self, kind: FalloffKind, slots: &mut Slots) -> bool {
+        let open = self.next();
+        loop {
+            let token = self.peek();
+            match token.kind {
+                TokenKind::Mark(b'}') => {
+                    self.find_place();
+                    self.next();
+                    return true;
+                }
+                TokenKind::Word if !is_statement(self.text(token)) => {
+                    self.next();
+                    let word = self.text(token);
+                    match kind.fields().iter().position(|field| field.name == word) {
+                        Some(index) => {
+                            self.find_place();
+                            self.slot(slots, index, token);
+                        }
+                        None if self.is_lost() => {}
+                        None => self.unknown_falloff_field(kind, word, token.span()),
+                    }
+                }
+                TokenKind::Word | TokenKind::End => {
+                    self.unclosed(open.start as u32, token);
+                    return false;
+                }
+                TokenKind::Mark(_) | TokenKind::Number | TokenKind::Unknown => {
+                    self.expected_at(token, "expected a parameter or `}`");
+                    self.skip_token();
+                }
+            }
+        }
+    }
+
+    fn unknown_falloff_field(&mut self, kind: FalloffKind, word: &str, span: Span) {
+        self.lose_place(|| {
+            let known = || kind.fields().iter().map(|field| field.name);
+            let message = format!("`{}` has no parameter `{}`", kind.name(), clip(word));
+            let error = Diagnostic::error(Some(span), message);
+            match nearest(word, known()) {
+                Some(near) => error.expected(format!("perhaps `{near}`")),
+                None if kind.fields().is_empty() => error.expected("expected `}`"),
+                None => error.expected(format!("it has {}", known().collect::<Vec<_>>().join(", "))),
+            }
+        });
+    }
+}

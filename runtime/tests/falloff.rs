@@ -1,0 +1,150 @@
+//! Falloffs through the compiler: gradients against the oracle, what happens at the skeleton, at the rim and beyond it, parameters, and
+//! that pruning changes nothing.
+
+use jbt::build::{Edge, arctan, blanc, blinn, degree, inverse_power, param, point, segment};
+use jbt::walk::{walk, walk_gradient};
+use jbt::{Compiler, Engine, Falloff, Model, Points, Query, Samples, Tree, Update};
+use jbt_frontend::recipe::FalloffRecipe;
+
+/// Every falloff, those with parameters with several.
+fn falloffs() -> Vec<FalloffRecipe> {
+    let plain = [
+        Falloff::Soft,
+        Falloff::Wyvill,
+        Falloff::Quartic,
+        Falloff::Metaball,
+        Falloff::Hermite,
+        Falloff::Quintic,
+    ];
+    let mut all: Vec<FalloffRecipe> = plain.into_iter().map(FalloffRecipe::from).collect();
+    all.extend([0.5, 1.0, 2.5, 8.0, 65.0].map(degree));
+    all.extend([0.0, 0.7, 1.125, 10.0].map(blanc));
+    for edge in [Edge::Exact, Edge::Smooth] {
+        all.extend([(2.0, 2.0), (3.0, 1.0), (10.0, 1.5)].map(|(h, c)| blinn(h, c, edge)));
+        all.extend([0.5, 5.0, 50.0].map(|p| arctan(p, edge)));
+        all.extend(
+            [(1.0, 4.0), (1.5, 3.0), (2.0, 4.0), (3.0, 2.0), (8.0, 2.0)].map(|(n, c)| inverse_power(n, c, edge)),
+        );
+    }
+    all
+}
+
+fn evaluate(tree: &Tree, points: &Points, engine: Engine) -> Samples {
+    let tree = Model::new(tree.clone()).check().expect("a good model");
+    let evaluator = Compiler::for_engine(engine).evaluator(&tree, Query::GRADIENT).expect("it compiles");
+    let mut samples = evaluator.samples();
+    evaluator.eval(points, &mut samples).expect("the buffers fit");
+    samples
+}
+
+fn gradient(samples: &Samples, index: usize) -> [f64; 3] {
+    samples.gradient().expect("asked for").map(|plane| f64::from(plane[index]))
+}
+
+#[test]
+fn gradients_are_those_of_the_oracle() {
+    let points: Points = (1..400)
+        .map(|i| {
+            let (r, turn) = (i as f32 / 380.0, i as f32 * 2.4);
+            [r * turn.cos() * 0.8, r * turn.sin() * 0.8, 0.6 * r]
+        })
+        .collect();
+    let mut compared = 0;
+    for falloff in falloffs() {
+        for tree in [point([0.0; 3], 0.9), segment([0.0; 3], [0.3, -0.2, 0.1], 0.7)] {
+            let tree = tree.falloff(falloff.clone());
+            let checked = Model::new(tree.clone()).check().unwrap();
+            let samples = evaluate(&tree, &points, Engine::Scalar);
+            for index in 0..points.len() {
+                let p = points.get(index).map(f64::from);
+                let oracle = walk(&checked, p);
+                if oracle.decision < 1e-3 {
+                    continue;
+                }
+                let [fine, coarse] = [1e-6, 1e-5].map(|step| walk_gradient(&checked, p, step));
+                let size = fine.iter().fold(1.0, |size: f64, g| size.max(g.abs()));
+                if (0..3).any(|k| (fine[k] - coarse[k]).abs() > 1e-4 * size) {
+                    continue;
+                }
+                compared += 1;
+                let (field, found) = (f64::from(samples.field()[index]), gradient(&samples, index));
+                assert!((field - oracle.field).abs() < 4e-6 * size, "{falloff:?} at {p:?}: {field}, not {}", oracle.field);
+                for axis in 0..3 {
+                    let close = (found[axis] - fine[axis]).abs() < 1e-3 * size;
+                    assert!(close, "{falloff:?} at {p:?}: {found:?}, not {fine:?}");
+                }
+            }
+        }
+    }
+    assert!(compared > 400 * falloffs().len(), "only {compared} gradients were compared");
+}
+
+#[test]
+fn nothing_is_lost_at_the_skeleton_and_at_the_rim() {
+    let near = [0.0, 1e-45, 1e-30, 1e-10, 1e-7, 6e-8, 1e-5, 2.4e-4, 2.5e-4, 1e-3];
+    let rim = [0.999, 0.999_99, 0.999_999_9, 1.0 - 6e-8, 1.0, 1.0 + 1.2e-7, 1.001, 3.0, 1e15, 1e30];
+    let points: Points = near.into_iter().chain(rim).map(|x| [x, 0.0, 0.0]).collect();
+    for falloff in falloffs() {
+        // The support radius is 1, so it is the rim that the last points surround.
+        for tree in [point([0.0; 3], 1.0), segment([0.0; 3], [-1.0, 0.0, 0.0], 1.0)] {
+            let tree = tree.falloff(falloff.clone());
+            for engine in Engine::ALL {
+                let samples = evaluate(&tree, &points, engine);
+                for index in 0..points.len() {
+                    let (x, gradient) = (points.get(index)[0], gradient(&samples, index));
+                    assert!(gradient.iter().all(|g| g.is_finite()), "{falloff:?} at {x}: {gradient:?}");
+                    assert!(gradient[0] <= 0.0, "{falloff:?} at {x} rises: {gradient:?}");
+                    let field = samples.field()[index];
+                    if x >= 1.0 {
+                        assert_eq!((field.to_bits(), gradient), (0, [0.0; 3]), "{falloff:?} at {x}");
+                    }
+                    if x == 0.0 {
+                        assert!((field - 1.0).abs() < 1e-6 && gradient == [0.0; 3], "{falloff:?}: {field} {gradient:?}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn parameters_of_falloffs_are_numbers() {
+    let t = || param("t", 2.0);
+    let half = || t() * 0.5;
+    let falloffs = [
+        degree(t()),
+        blanc(t()),
+        blinn(t(), half(), Edge::Exact),
+        arctan(t(), Edge::Smooth),
+        inverse_power(t(), half() + 1.0, Edge::Smooth),
+    ];
+    let points: Points = (0..200).map(|i| [i as f32 / 180.0, 0.1, 0.0]).collect();
+    for falloff in falloffs {
+        let tree = Model::new(point([0.0; 3], 1.0).falloff(falloff.clone())).check().unwrap();
+        let mut evaluator = Compiler::new().evaluator(&tree, Query::GRADIENT).unwrap();
+        for value in [2.0, 1.0, 3.0, 2.7, 8.0] {
+            let set = tree.with_parameters(&[("t", value)]).unwrap();
+            assert_eq!(evaluator.update(&set).unwrap(), Update::Numbers, "{falloff:?}");
+            let mut samples = evaluator.samples();
+            evaluator.eval(&points, &mut samples).unwrap();
+            for index in 0..points.len() {
+                let expected = walk(&set, points.get(index).map(f64::from)).field;
+                let found = f64::from(samples.field()[index]);
+                assert!((found - expected).abs() < 1e-5, "{falloff:?} for {value}: {found}, not {expected}");
+            }
+        }
+        assert!(tree.with_parameters(&[("t", -1.0)]).is_err(), "{falloff:?}");
+    }
+}
+
+#[test]
+fn a_surface_radius_is_where_the_surface_is() {
+    for falloff in ["soft", "quintic", "degree { exponent 2.5 }", "blinn", "arctan { stiffness 2 }", "inverse", "blanc { hardness 3 }"] {
+        let text = format!("jbt 1 param size = 0.5 point {{ surface_radius size falloff {falloff} }}");
+        let tree = jbt::text::parse(text.as_bytes(), &Default::default()).unwrap().check().unwrap();
+        for size in [0.5, 2.0] {
+            let field = walk(&tree.with_parameters(&[("size", size)]).unwrap(), [0.0, size, 0.0]).field;
+            assert!((field - 0.5).abs() < 1e-12, "{falloff}: {field}");
+        }
+    }
+}
