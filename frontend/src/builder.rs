@@ -277,6 +277,24 @@ impl Tree {
         self.mapped(Map::ScaleAxes(by.into().0))
     }
 
+    /// A mirror image in the plane through the origin that is normal to `axis`, of any length.
+    #[must_use]
+    pub fn reflect(&self, axis: impl Into<Vector>) -> Self {
+        self.mapped(Map::Reflect(axis.into().0))
+    }
+
+    /// Scaled about the origin along a direction of any length; a negative factor mirrors.
+    #[must_use]
+    pub fn stretch(&self, axis: impl Into<Vector>, by: impl Into<Number>) -> Self {
+        self.mapped(Map::Stretch { axis: axis.into().0, by: by.into() })
+    }
+
+    /// Sheared: what is at height h along a direction of any length moves by h times `by`.
+    #[must_use]
+    pub fn shear(&self, axis: impl Into<Vector>, by: impl Into<Vector>) -> Self {
+        self.mapped(Map::Shear { axis: axis.into().0, by: by.into().0 })
+    }
+
     /// Mapped by a 3x4 matrix, given by rows, that takes this tree's space to its parent's: the last column is the shift.
     #[must_use]
     pub fn affine<T: Into<Number>>(&self, rows: [[T; 4]; 3]) -> Self {
@@ -291,9 +309,73 @@ impl Tree {
     /// Twisted about a coordinate axis through the origin, by `rate` radians for each unit of length, right-handed.
     #[must_use]
     pub fn twist(&self, axis: Axis, rate: impl Into<Number>) -> Self {
-        let direction = FieldValue::Vector(DVec3::AXES[axis as usize].to_array()).into();
-        let recipe = Recipe::Warp { warp: WarpKind::Twist(0), fields: vec![direction, real(rate)] };
-        Self::of(recipe, vec![self.clone()])
+        self.warped(WarpKind::Twist(0), vec![axis.field(), real(rate)])
+    }
+
+    /// Tapered along a coordinate axis through the origin: between two heights the scale across it goes from `start` to `end`, and stays what it is beyond
+    /// them. See [`Taper`](struct@crate::warp::Taper).
+    #[must_use]
+    pub fn taper<T: Into<Number>, S: Into<Number>>(
+        &self,
+        axis: Axis,
+        [from, to]: [T; 2],
+        [start, end]: [S; 2],
+    ) -> Self {
+        self.warped(WarpKind::Taper(0), vec![axis.field(), real(from), real(to), real(start), real(end)])
+    }
+
+    /// Bent about a coordinate axis: the spine, which runs along the axis behind it (y for x, z for y, x for z), turns by `rate` radians for each unit
+    /// of length between two places; the origin stays. See [`Bend`](struct@crate::warp::Bend).
+    #[must_use]
+    pub fn bend<T: Into<Number>>(&self, axis: Axis, rate: impl Into<Number>, [from, to]: [T; 2]) -> Self {
+        self.bend_at(axis, rate, [from.into(), to.into()], 0.0)
+    }
+
+    /// [`bend`](Self::bend) where another place of the spine stays.
+    #[must_use]
+    pub fn bend_at<T: Into<Number>>(
+        &self,
+        axis: Axis,
+        rate: impl Into<Number>,
+        [from, to]: [T; 2],
+        center: impl Into<Number>,
+    ) -> Self {
+        self.warped(WarpKind::Bend(0), vec![axis.field(), real(rate), real(from), real(to), real(center)])
+    }
+
+    /// What is on the positive side of a coordinate plane, on both sides: the plane through the origin across the axis.
+    #[must_use]
+    pub fn mirror(&self, axis: Axis) -> Self {
+        self.warped(WarpKind::Mirror(0), vec![axis.field()])
+    }
+
+    /// Copies along a coordinate axis, `spacing` from each to the next, the child being the first of `count`; 0 for no end, to both
+    /// sides. See [`Repeat`](struct@crate::warp::Repeat).
+    #[must_use]
+    pub fn repeat(&self, axis: Axis, spacing: impl Into<Number>, count: impl Into<Number>) -> Self {
+        self.warped(WarpKind::Repeat(0), vec![axis.field(), real(spacing), real(count)])
+    }
+
+    /// `count` copies about a coordinate axis through the origin, at equal angles. See [`RepeatAround`](struct@crate::warp::RepeatAround).
+    #[must_use]
+    pub fn repeat_around(&self, axis: Axis, count: impl Into<Number>) -> Self {
+        self.warped(WarpKind::RepeatAround(0), vec![axis.field(), real(count)])
+    }
+
+    /// Pulled: what is at `from` appears at `to`, and nothing moves that is `radius` or more away from there. See
+    /// [`SpaceMap`](struct@crate::warp::SpaceMap).
+    #[must_use]
+    pub fn space_map(
+        &self,
+        from: impl Into<Vector>,
+        to: impl Into<Vector>,
+        radius: impl Into<Number>,
+    ) -> Self {
+        self.warped(WarpKind::SpaceMap(0), vec![vector(from), vector(to), real(radius)])
+    }
+
+    fn warped(&self, warp: WarpKind, fields: Vec<FieldNumber>) -> Self {
+        Self::of(Recipe::Warp { warp, fields }, vec![self.clone()])
     }
 
     /// Coloured: linear red, green and blue for every leaf below that has no nearer colour.
@@ -319,6 +401,13 @@ pub enum Axis {
     Y,
     /// The third.
     Z,
+}
+
+impl Axis {
+    /// The value of the parameter `axis` of a warp.
+    fn field(self) -> FieldNumber {
+        FieldValue::Vector(DVec3::AXES[self as usize].to_array()).into()
+    }
 }
 
 macro_rules! operators {
@@ -387,7 +476,21 @@ mod tests {
             (start.scale(2.0), [2.0, 4.0, 6.0]),
             (start.scale_axes([-1.0, 0.5, 1.0]), [-1.0, 1.0, 3.0]),
             (start.affine(rows), [13.0, 24.0, 31.0]),
+            (start.reflect([0.0, 0.0, -5.0]), [1.0, 2.0, -3.0]),
+            (start.reflect([1.0, -1.0, 0.0]), [2.0, 1.0, 3.0]),
+            (start.stretch([0.0, 2.0, 0.0], -1.5), [1.0, -3.0, 3.0]),
+            (start.stretch([1.0, 1.0, 0.0], 3.0), [4.0, 5.0, 3.0]),
+            (start.shear([0.0, 0.0, 9.0], [0.5, -1.0, 0.0]), [2.5, -1.0, 3.0]),
             (start.twist(Axis::Z, std::f64::consts::FRAC_PI_6), [-2.0, 1.0, 3.0]),
+            (start.taper(Axis::Z, [1.0, 5.0], [1.0, 0.0]), [0.5, 1.0, 3.0]),
+            // The spine ends at 2 here, so the point turns about the centre of curvature by 2 * 0.25.
+            (start.bend(Axis::X, 0.25, [-9.0, 9.0]), [1.0, 0.5f64.sin(), 4.0 - 0.5f64.cos()]),
+            (start.bend_at(Axis::X, 0.25, [-9.0, 9.0], 2.0), [1.0, 2.0, 3.0]),
+            (start.mirror(Axis::Y), [1.0, -2.0, 3.0]),
+            (start.repeat(Axis::X, 8.0, 3.0), [17.0, 2.0, 3.0]),
+            (start.repeat(Axis::Z, 8.0, 0.0), [1.0, 2.0, -21.0]),
+            (start.repeat_around(Axis::Z, 2.0), [-1.0, -2.0, 3.0]),
+            (start.space_map([1.0, 2.0, 3.0], [1.5, 2.0, 3.0], 4.0), [1.5, 2.0, 3.0]),
             (start.translate([1.0, 0.0, 0.0]).scale(3.0), [6.0, 6.0, 9.0]),
         ] {
             assert!((field(&tree, there) - 1.0).abs() < 1e-15, "{:?}", tree.node().kind());

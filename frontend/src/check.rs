@@ -40,7 +40,7 @@ mod parameters;
 
 pub(crate) use groups::is_identifier;
 use groups::{check_groups, widths};
-use numbers::{check_choice, check_exponent, check_number, check_numbers, check_within};
+use numbers::{check_choice, check_count, check_exponent, check_number, check_numbers, check_within};
 use parameters::{Dependence, check_iso};
 pub(crate) use parameters::{not_finite, unknown};
 
@@ -311,6 +311,9 @@ fn check_node(
         }
         NodeKind::Warp(warp) => {
             check_fields(report, span, warp.kind().name(), warp.kind().fields(), &warp.to_fields());
+            if let Some(fault) = warp.fault() {
+                report.add(|| Diagnostic::error(span, fault.message).expected(fault.expected));
+            }
             (count == 1, "one child")
         }
         NodeKind::Attribute { name, values } => {
@@ -372,6 +375,7 @@ fn check_fields(
             FieldKind::Choice(words) => {
                 check_within(report, span, &what, value.real(), 0.0..=words.len() as f64 - 1.0);
             }
+            FieldKind::Count => check_count(report, span, &what, value.real()),
             FieldKind::Extents => check_numbers(report, span, &what, &value.vector(), 0.0),
             FieldKind::Position => check_numbers(report, span, &what, &value.vector(), f64::NEG_INFINITY),
             FieldKind::Direction | FieldKind::Axis => {

@@ -19,6 +19,8 @@ pub enum FieldKind {
     },
     /// One of these words; stored as its place, from 0.
     Choice(&'static [&'static str]),
+    /// A whole number from 0 to [`jbt_ir::limits::MAX_COPIES`].
+    Count,
     /// Three finite numbers: a position.
     Position,
     /// Three finite numbers of at least 0: sizes along the axes.

@@ -69,6 +69,22 @@ pub enum Map {
     Scale(Number),
     /// A scale about the origin, by another factor along each axis.
     ScaleAxes([Number; 3]),
+    /// A mirror image in the plane through the origin that is normal to this direction, of any length.
+    Reflect([Number; 3]),
+    /// A scale about the origin by a factor along a direction of any length, and by 1 across it.
+    Stretch {
+        /// The direction.
+        axis: [Number; 3],
+        /// The factor; a negative one mirrors.
+        by: Number,
+    },
+    /// A shear: what is at height h along a direction moves by h times a vector.
+    Shear {
+        /// The direction, of any length.
+        axis: [Number; 3],
+        /// How far at height 1: as a rule across the direction.
+        by: [Number; 3],
+    },
     /// The rows of a 3x4 matrix, child to parent.
     Affine(Box<[Number; 12]>),
 }
@@ -206,6 +222,26 @@ impl Angle {
     }
 }
 
+/// The unit vector of a direction; without one, a fault.
+fn unit(axis: &[Number; 3]) -> Result<DVec3, Fault> {
+    let axis = DVec3::from(values(axis));
+    let unit = axis.normalize_or_zero();
+    if unit == DVec3::ZERO && !axis.is_nan() {
+        return Err(Fault { message: "the axis has no direction".to_owned(), help: None });
+    }
+    Ok(unit)
+}
+
+/// The matrix that takes q to `(axis . q) by`.
+fn outer(by: DVec3, axis: DVec3) -> DMat3 {
+    DMat3::from_cols(by * axis.x, by * axis.y, by * axis.z)
+}
+
+/// The scale by a factor along a unit vector.
+fn along(axis: DVec3, factor: f64) -> DMat3 {
+    DMat3::IDENTITY + outer((factor - 1.0) * axis, axis)
+}
+
 impl Map {
     /// The map, with the present values of its numbers.
     ///
@@ -213,13 +249,11 @@ impl Map {
     pub(crate) fn affine(&self) -> Result<DAffine3, Fault> {
         Ok(match self {
             Self::Translate(by) => DAffine3::from_translation(values(by).into()),
-            Self::Rotate { axis, angle } => {
-                let axis = DVec3::from(values(axis));
-                let unit = axis.normalize_or_zero();
-                if unit == DVec3::ZERO && !axis.is_nan() {
-                    return Err(Fault { message: "the axis has no direction".to_owned(), help: None });
-                }
-                DAffine3::from_mat3(rotation(unit, angle.sin_cos()))
+            Self::Rotate { axis, angle } => DAffine3::from_mat3(rotation(unit(axis)?, angle.sin_cos())),
+            Self::Reflect(axis) => DAffine3::from_mat3(along(unit(axis)?, -1.0)),
+            Self::Stretch { axis, by } => DAffine3::from_mat3(along(unit(axis)?, by.value())),
+            Self::Shear { axis, by } => {
+                DAffine3::from_mat3(DMat3::IDENTITY + outer(values(by).into(), unit(axis)?))
             }
             Self::Scale(by) => DAffine3::from_scale(DVec3::splat(by.value())),
             Self::ScaleAxes(by) => DAffine3::from_scale(values(by).into()),
@@ -232,18 +266,22 @@ impl Map {
     }
 
     fn numbers(&self) -> impl Iterator<Item = &Number> {
-        let (numbers, last): (&[Number], Option<&Number>) = match self {
-            Self::Translate(by) | Self::ScaleAxes(by) => (by, None),
-            Self::Rotate { axis, angle } => (axis, Some(angle.number())),
-            Self::Scale(by) => (&[], Some(by)),
-            Self::Affine(rows) => (&rows[..], None),
+        let (numbers, last): (&[Number], &[Number]) = match self {
+            Self::Translate(by) | Self::ScaleAxes(by) | Self::Reflect(by) => (by, &[]),
+            Self::Rotate { axis, angle } => (axis, std::slice::from_ref(angle.number())),
+            Self::Stretch { axis, by } => (axis, std::slice::from_ref(by)),
+            Self::Shear { axis, by } => (axis, by),
+            Self::Scale(by) => (&[], std::slice::from_ref(by)),
+            Self::Affine(rows) => (&rows[..], &[]),
         };
         numbers.iter().chain(last)
     }
 
     fn numbers_mut(&mut self) -> Vec<&mut Number> {
         match self {
-            Self::Translate(by) | Self::ScaleAxes(by) => by.iter_mut().collect(),
+            Self::Translate(by) | Self::ScaleAxes(by) | Self::Reflect(by) => by.iter_mut().collect(),
+            Self::Stretch { axis, by } => axis.iter_mut().chain([by]).collect(),
+            Self::Shear { axis, by } => axis.iter_mut().chain(by).collect(),
             Self::Rotate { axis, angle: Angle::Degrees(angle) | Angle::Radians(angle) } => {
                 axis.iter_mut().chain([angle]).collect()
             }
@@ -257,7 +295,11 @@ impl Map {
             Self::Translate(_) => Freedom::Fixed,
             Self::Scale(_) => Freedom::Scale,
             Self::Rotate { .. } => Freedom::Turn,
-            Self::ScaleAxes(_) | Self::Affine(_) => Freedom::Full,
+            Self::ScaleAxes(_)
+            | Self::Reflect(_)
+            | Self::Stretch { .. }
+            | Self::Shear { .. }
+            | Self::Affine(_) => Freedom::Full,
         }
     }
 }
@@ -371,7 +413,7 @@ impl Recipe {
                 FieldKind::Direction | FieldKind::Axis => true,
                 FieldKind::Position => positions > 1,
                 FieldKind::Real | FieldKind::Positive | FieldKind::NonNegative | FieldKind::Extents => false,
-                FieldKind::Within { .. } | FieldKind::Choice(_) => false,
+                FieldKind::Within { .. } | FieldKind::Choice(_) | FieldKind::Count => false,
             };
             turns && value.numbers().iter().any(Number::follows)
         })

@@ -27,7 +27,7 @@ pub struct Sample {
     pub field: f64,
     /// The value of each attribute group, in the order of [`CheckedTree::attributes`].
     pub attributes: Vec<Vec<f64>>,
-    /// How far the point is from anything that is decided: a tie of a union, the rim of a support, the axis of a ring, a total
+    /// How far the point is from anything that is decided: a tie of a union, the rim of a support, the axis of a ring, the crease of a warp, a total
     /// weight of zero, a tie of dominance. In units of the fields, weights and lengths that it compares; infinity if nothing is decided.
     ///
     /// Where this is small, gradients and attributes of another engine may differ: it may have decided otherwise.
@@ -58,6 +58,8 @@ struct Answer {
 enum Task {
     /// Ask a node, at a point of its parent's space, its leaves having these values.
     Ask(NodeId, DVec3, Values),
+    /// The last answer is no farther from a decision than this.
+    Decide(f64),
     /// Combine the answers of the children of a node.
     Combine(NodeId),
 }
@@ -86,7 +88,10 @@ pub fn walk(tree: &CheckedTree, p: [f64; 3]) -> Sample {
                     NodeKind::Affine(map) => {
                         tasks.push(Task::Ask(node.children[0], map.inverse().transform_point3(p), values));
                     }
-                    NodeKind::Warp(warp) => tasks.push(Task::Ask(node.children[0], warp.inverse(p), values)),
+                    NodeKind::Warp(warp) => {
+                        tasks.push(Task::Decide(warp.decision(p)));
+                        tasks.push(Task::Ask(node.children[0], warp.inverse(p), values));
+                    }
                     NodeKind::Attribute { name, values: here } => {
                         // Nearer to the leaves than whatever was said above: it replaces it.
                         let mut values = values.to_vec();
@@ -98,6 +103,10 @@ pub fn walk(tree: &CheckedTree, p: [f64; 3]) -> Sample {
                         tasks.push(Task::Ask(node.children[0], p, values.into()));
                     }
                 }
+            }
+            Task::Decide(decision) => {
+                let answer = answers.last_mut().expect("the child has been asked");
+                answer.decision = answer.decision.min(decision);
             }
             Task::Combine(id) => {
                 let node = tree.node(id);

@@ -19,6 +19,8 @@ pub const MAX_ATTRIBUTE_WIDTH: usize = 4;
 pub const MAX_ATTRIBUTES: usize = 32;
 /// The largest exponent of a Ricci blend; the smallest is 1.
 pub const MAX_RICCI_EXPONENT: f64 = 1024.0;
+/// The most copies that a repetition makes of its child. They cost nothing, but beyond this f32 could not tell their places.
+pub const MAX_COPIES: f64 = (1 << 20) as f64;
 /// The largest magnitude of any number in a model. Its square is still a finite f32.
 pub const MAX_NUMBER: f64 = 1e15;
 /// The smallest support radius, smallest scale and so on. The inverse of its square is still a finite f32.

@@ -47,6 +47,15 @@ pub(super) struct Twist {
     pub(super) map: Option<u32>,
 }
 
+/// Any other warp, and the affine map before it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Warped {
+    /// The place of the warp in [`Compact::warps`].
+    pub(super) warp: u32,
+    /// As in [`Leaf::map`].
+    pub(super) map: Option<u32>,
+}
+
 /// What is done with the fields of children.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Operator {
@@ -60,6 +69,7 @@ pub(super) enum Operator {
     /// The first child without the second.
     Difference,
     Twist(Twist),
+    Warp(Warped),
 }
 
 /// A step of the walk.
@@ -77,6 +87,8 @@ pub(super) enum Step {
 pub(super) struct Compact {
     pub(super) steps: Vec<Step>,
     pub(super) maps: Vec<Map>,
+    /// Warps that are no twists.
+    pub(super) warps: Vec<Warp>,
     /// The values of all attribute groups at each leaf.
     pub(super) values: Vec<f32>,
 }
@@ -90,7 +102,7 @@ enum Task {
 
 impl Compact {
     pub(super) fn new(tree: &CheckedTree) -> Self {
-        let mut compact = Self { steps: Vec::new(), maps: Vec::new(), values: Vec::new() };
+        let mut compact = Self { steps: Vec::new(), maps: Vec::new(), warps: Vec::new(), values: Vec::new() };
         let defaults: Rc<[f32]> = defaults(tree).into();
         let mut tasks = vec![Task::Write(tree.root(), DAffine3::IDENTITY, defaults)];
         while let Some(task) = tasks.pop() {
@@ -125,6 +137,14 @@ impl Compact {
                 tasks.push(Task::Close);
                 tasks.push(Task::Write(node.children[0], DAffine3::IDENTITY, values));
                 tasks.push(Task::Push(Operator::Twist(twist)));
+            }
+            NodeKind::Warp(warp) => {
+                let map = self.map(&map);
+                self.warps.push(warp.clone());
+                let warp = self.warps.len() as u32 - 1;
+                tasks.push(Task::Close);
+                tasks.push(Task::Write(node.children[0], DAffine3::IDENTITY, values));
+                tasks.push(Task::Push(Operator::Warp(Warped { warp, map })));
             }
             NodeKind::Attribute { name, values: here } => {
                 let mut values = values.to_vec();

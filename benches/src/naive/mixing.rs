@@ -151,7 +151,7 @@ impl Frame {
             }
             Operator::Powers(n) => self.power::<GRADIENT>(child, values, depth, |x| x.powi(n - 1)),
             Operator::Ricci(n) => self.power::<GRADIENT>(child, values, depth, |x| x.powf(n - 1.0)),
-            Operator::Twist(_) => self.win(child, values, depth),
+            Operator::Twist(_) | Operator::Warp(_) => self.win(child, values, depth),
             Operator::Union | Operator::Intersection | Operator::Difference if self.first => {
                 self.win(child, values, depth);
             }
@@ -239,7 +239,7 @@ impl Frame {
             Operator::Union | Operator::Intersection | Operator::Difference => {
                 (self.field, self.gradient, self.field)
             }
-            Operator::Twist(_) => {
+            Operator::Twist(_) | Operator::Warp(_) => {
                 return self.lone();
             }
         };

@@ -11,12 +11,12 @@
 //! explicit stack, and maps that were multiplied into the leaves beforehand. Operators take in their children one by one, so the stack is
 //! as high as the tree is nested. There is no culling: each leaf is evaluated at each point, but leaves out of reach stop at their distance.
 
-use glam::{Mat3, Vec3};
+use glam::{DVec3, Mat3, Vec3};
 use jbt_frontend::attribute::Mixing;
 use jbt_frontend::check::CheckedTree;
 use jbt_frontend::falloff::Falloff;
 
-use super::compact::{self, Compact, Leaf, Map, Operator, Step, Twist};
+use super::compact::{self, Compact, Leaf, Map, Operator, Step, Twist, Warped};
 use super::mixing::{Answer, Frame, Values};
 
 /// A tree, ready to be walked.
@@ -110,9 +110,7 @@ impl Walker {
                 Step::Leaf(leaf) => top.take(self.leaf_field(leaf, p), self.iso2),
                 Step::Open(operator) => {
                     frames.push(std::mem::replace(&mut top, FieldFrame::new(*operator, p)));
-                    if let Operator::Twist(twist) = operator {
-                        p = self.twist(twist, p).at;
-                    }
+                    p = self.entered(operator, p);
                 }
                 Step::Close => {
                     let (answer, outer) = (top.finish(), frames.pop());
@@ -145,16 +143,14 @@ impl Walker {
                 Step::Open(operator) => {
                     frames.push(std::mem::replace(&mut top, Frame::new(*operator, p)));
                     values.open(frames.len());
-                    if let Operator::Twist(twist) = operator {
-                        p = self.twist(twist, p).at;
-                    }
+                    p = self.entered(operator, p);
                 }
                 Step::Close => {
                     let mut answer = top.finish(values, frames.len());
                     values.set_frame();
                     p = top.p;
-                    if let (true, Operator::Twist(twist)) = (GRADIENT, top.operator) {
-                        answer.gradient = self.untwist(&twist, p, answer.gradient);
+                    if GRADIENT {
+                        answer.gradient = self.left(&top.operator, p, answer.gradient);
                     }
                     top = frames.pop().expect("each close has its open");
                     top.take::<GRADIENT>(&answer, self.iso2, values, frames.len());
@@ -200,6 +196,51 @@ impl Walker {
         let Some(index) = map else { return gradient };
         let linear: Mat3 = self.compact.maps[index as usize].linear;
         linear.transpose() * gradient
+    }
+
+    /// The point inside of an operator.
+    #[inline]
+    fn entered(&self, operator: &Operator, p: Vec3) -> Vec3 {
+        match operator {
+            Operator::Twist(twist) => self.twist(twist, p).at,
+            Operator::Warp(warped) => self.warped(warped, self.mapped(warped.map, p).as_dvec3()).as_vec3(),
+            Operator::Sum
+            | Operator::Powers(_)
+            | Operator::Ricci(_)
+            | Operator::Union
+            | Operator::Intersection
+            | Operator::Difference => p,
+        }
+    }
+
+    /// A gradient inside of an operator, as it is outside.
+    #[inline]
+    fn left(&self, operator: &Operator, p: Vec3, gradient: Vec3) -> Vec3 {
+        match operator {
+            Operator::Twist(twist) => self.untwist(twist, p, gradient),
+            Operator::Warp(warped) => self.unwarped(warped, p, gradient),
+            Operator::Sum
+            | Operator::Powers(_)
+            | Operator::Ricci(_)
+            | Operator::Union
+            | Operator::Intersection
+            | Operator::Difference => gradient,
+        }
+    }
+
+    /// Where a warp takes a point of its own space.
+    fn warped(&self, warped: &Warped, p: DVec3) -> DVec3 {
+        self.compact.warps[warped.warp as usize].inverse(p)
+    }
+
+    /// The gradient outside of a warp: its transposed Jacobian, by central differences, applied to that inside.
+    fn unwarped(&self, warped: &Warped, p: Vec3, gradient: Vec3) -> Vec3 {
+        let (p, step) = (self.mapped(warped.map, p).as_dvec3(), 1e-6);
+        let by_p = DVec3::AXES.map(|axis| {
+            let change = self.warped(warped, p + step * axis) - self.warped(warped, p - step * axis);
+            change.dot(gradient.as_dvec3()) / (2.0 * step)
+        });
+        self.unmapped(warped.map, DVec3::from_array(by_p).as_vec3())
     }
 
     // Apart, because coordinates that are chosen by an index live in memory.
@@ -253,7 +294,8 @@ impl FieldFrame {
             | Operator::Powers(_)
             | Operator::Ricci(_)
             | Operator::Difference
-            | Operator::Twist(_) => 0.0,
+            | Operator::Twist(_)
+            | Operator::Warp(_) => 0.0,
             Operator::Union => f32::NEG_INFINITY,
             Operator::Intersection => f32::INFINITY,
         };
@@ -266,7 +308,7 @@ impl FieldFrame {
             Operator::Sum => self.field += field,
             Operator::Powers(n) => self.power(field, |x| x.powi(n)),
             Operator::Ricci(n) => self.power(field, |x| x.powf(n)),
-            Operator::Twist(_) => self.field = field,
+            Operator::Twist(_) | Operator::Warp(_) => self.field = field,
             Operator::Union => self.field = self.field.max(field),
             Operator::Intersection => self.field = self.field.min(field),
             Operator::Difference => {
@@ -296,7 +338,8 @@ impl FieldFrame {
             | Operator::Union
             | Operator::Intersection
             | Operator::Difference
-            | Operator::Twist(_) => self.field,
+            | Operator::Twist(_)
+            | Operator::Warp(_) => self.field,
         }
     }
 }

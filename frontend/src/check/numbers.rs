@@ -67,6 +67,18 @@ pub(super) fn check_numbers(report: &mut Report, span: Option<Span>, what: &str,
     }
 }
 
+/// A whole number of at least 0 and not too large.
+pub(super) fn check_count(report: &mut Report, span: Option<Span>, what: &str, value: f64) {
+    // Written so that a NaN is refused as well.
+    let fits = value.fract() == 0.0 && (0.0..=limits::MAX_COPIES).contains(&value);
+    if !fits {
+        report.add(|| {
+            Diagnostic::error(span, format!("{what} is {value}"))
+                .expected(format!("expected a whole number from 0 to {}", limits::MAX_COPIES))
+        });
+    }
+}
+
 /// The number of a selector has to be near the place of a child.
 pub(super) fn check_choice(report: &mut Report, span: Option<Span>, which: f64, count: usize) {
     // Written so that a NaN is refused as well.

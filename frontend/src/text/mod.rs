@@ -34,6 +34,9 @@
 //! map        = "translate" vector
 //!            | "rotate" "axis" value ( "degrees" | "radians" ) expression
 //!            | "scale" ( expression | vector )
+//!            | "reflect" "axis" value                         a mirror image in the plane through the origin across the axis
+//!            | "stretch" "axis" value "by" expression         a scale along an axis
+//!            | "shear" "axis" value "by" vector               what is at height h along the axis moves by h times the vector
 //!            | "affine" vector                               12 numbers: the rows of a 3x4 matrix, child to parent
 //!            | WARP { FIELD value }
 //!            | [ "with" ] NAME values ;                      a declared attribute; "with" if its name is a word of the format
@@ -135,6 +138,21 @@ const ROTATE: &[Field] = &[
     Field { name: "axis", kind: FieldKind::Direction, default: None },
     Field { name: "degrees", kind: FieldKind::Real, default: None },
     Field { name: "radians", kind: FieldKind::Real, default: None },
+];
+
+/// The parameter of `reflect`.
+const REFLECT: &[Field] = &[Field { name: "axis", kind: FieldKind::Direction, default: None }];
+
+/// The parameters of `stretch`.
+const STRETCH: &[Field] = &[
+    Field { name: "axis", kind: FieldKind::Direction, default: None },
+    Field { name: "by", kind: FieldKind::Real, default: None },
+];
+
+/// The parameters of `shear`.
+const SHEAR: &[Field] = &[
+    Field { name: "axis", kind: FieldKind::Direction, default: None },
+    Field { name: "by", kind: FieldKind::Position, default: None },
 ];
 
 /// The word for a parameter of a skeleton: its name, after the skeleton's where every primitive has one of that name.

@@ -6,9 +6,10 @@ use super::expression::Place;
 use super::lex::{Token, TokenKind};
 use super::parse::{Parser, is_statement};
 use super::primitive::Slots;
-use super::{GROUP_NODE, ROTATE};
+use super::{GROUP_NODE, REFLECT, ROTATE, SHEAR, STRETCH};
 use crate::combine::Combinator;
 use crate::diagnostic::{Diagnostic, Span};
+use crate::field::Field;
 use crate::recipe::{Angle, FieldNumber, Map, Recipe};
 use crate::report::{clip, nearest};
 use crate::skeleton::SkeletonKind;
@@ -20,8 +21,20 @@ const COMBINATORS: [Combinator; 4] =
     [Combinator::Sum, Combinator::Union, Combinator::Intersection, Combinator::Difference];
 
 /// The other words that begin a node.
-const OTHERS: [&str; 9] =
-    ["use", "blend", "ricci", "select", "translate", "rotate", "scale", "affine", GROUP_NODE];
+const OTHERS: [&str; 12] = [
+    "use",
+    "blend",
+    "ricci",
+    "select",
+    "translate",
+    "rotate",
+    "scale",
+    "reflect",
+    "stretch",
+    "shear",
+    "affine",
+    GROUP_NODE,
+];
 
 /// Whether a word begins a node, or a statement, in every file: a group of this name needs the word `with` before it.
 pub(super) fn is_reserved(word: &str) -> bool {
@@ -221,6 +234,9 @@ impl<'a> Parser<'a> {
             }
             "rotate" => self.rotate(start),
             "scale" => self.scale(start),
+            "reflect" => self.map_along(start, REFLECT, "reflect"),
+            "stretch" => self.map_along(start, STRETCH, "stretch"),
+            "shear" => self.map_along(start, SHEAR, "shear"),
             "affine" => {
                 let rows = self.vector();
                 self.map(start, Map::Affine(Box::new(rows)))
@@ -376,6 +392,19 @@ impl<'a> Parser<'a> {
             return self.block(start, Head::Broken);
         };
         self.map(start, Map::Rotate { axis, angle })
+    }
+
+    /// A map with an axis, and with a number or a vector that says how far.
+    fn map_along(&mut self, start: Token, fields: &'static [Field], name: &str) -> Begun {
+        let values = self.slots(fields, &format!("`{name}`")).complete(self, start, name);
+        let mut values = values.into_iter().flatten();
+        let map = match (values.next(), values.next()) {
+            (Some(FieldNumber::Vector(axis)), None) => Map::Reflect(axis),
+            (Some(FieldNumber::Vector(axis)), Some(FieldNumber::Real(by))) => Map::Stretch { axis, by },
+            (Some(FieldNumber::Vector(axis)), Some(FieldNumber::Vector(by))) => Map::Shear { axis, by },
+            (Some(FieldNumber::Real(_)) | None, _) => return self.block(start, Head::Broken),
+        };
+        self.map(start, map)
     }
 
     fn scale(&mut self, start: Token) -> Begun {

@@ -224,6 +224,9 @@ fn head_of_map(out: &mut String, map: &Map) {
         }
         Map::Scale(by) => write!(out, "scale {by}"),
         Map::ScaleAxes(by) => write!(out, "scale {}", vector(by)),
+        Map::Reflect(axis) => write!(out, "reflect axis {}", vector(axis)),
+        Map::Stretch { axis, by } => write!(out, "stretch axis {} by {by}", vector(axis)),
+        Map::Shear { axis, by } => write!(out, "shear axis {} by {}", vector(axis), vector(by)),
         Map::Affine(rows) => write!(out, "affine {}", vector(&**rows)),
     };
 }

@@ -149,7 +149,11 @@ impl Parser<'_> {
     /// The value of a parameter of this kind; NaN after an error.
     pub(super) fn field_value(&mut self, kind: FieldKind) -> FieldNumber {
         match kind {
-            FieldKind::Real | FieldKind::Positive | FieldKind::NonNegative | FieldKind::Within { .. } => {
+            FieldKind::Real
+            | FieldKind::Positive
+            | FieldKind::NonNegative
+            | FieldKind::Count
+            | FieldKind::Within { .. } => {
                 FieldNumber::Real(self.expression(Place::Alone).number)
             }
             FieldKind::Position | FieldKind::Extents => FieldNumber::Vector(self.vector()),

@@ -6,7 +6,11 @@ use glam::DVec3;
 use jbt_ir::Domain;
 
 use crate::bounds::Bounds;
-use crate::field::{Field, FieldValue, Member};
+use crate::field::{Field, FieldKind, FieldValue, Member};
+
+mod angle;
+#[cfg(test)]
+mod testing;
 
 /// What a warp states about itself.
 pub trait WarpMember: Member {
@@ -15,6 +19,13 @@ pub trait WarpMember: Member {
 
     /// Where the child is asked when the node is asked at `p`, plainly.
     fn inverse(&self, p: DVec3) -> DVec3;
+
+    /// How far a point is, about, from where the map has a crease or a jump: gradients of the warped child may jump there, too. Infinity
+    /// if it has none.
+    fn decision(&self, p: DVec3) -> f64;
+
+    /// What is wrong with parameters of which each is what its [`FieldKind`] says.
+    fn fault(&self) -> Option<WarpFault>;
 
     /// A box around the warped child, from a box around the child.
     fn forward_bounds(&self, child: Bounds) -> Bounds;
@@ -36,6 +47,15 @@ pub trait WarpMember: Member {
     fn emit<D: Domain>(d: &mut D, variant: u8, p: [D::Real; 3], row: &[D::Real]) -> [D::Real; 3];
 }
 
+/// Why a warp is none.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct WarpFault {
+    /// What is wrong.
+    pub message: String,
+    /// What would be right.
+    pub expected: &'static str,
+}
+
 /// How large the numbers behind a warp may become.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Growth {
@@ -44,6 +64,61 @@ pub struct Growth {
     /// A bound of the sum of the derivatives of a child's coordinate along the three axes, in magnitude.
     pub derivatives: f64,
 }
+
+impl Growth {
+    /// Nothing is known: what is behind such a warp may be anywhere.
+    pub(crate) const UNKNOWN: Self = Self { coordinates: f64::INFINITY, derivatives: f64::INFINITY };
+}
+
+/// The parameter `axis`: a coordinate axis through the origin, z if it is not written.
+const AXIS: Field =
+    Field { name: "axis", kind: FieldKind::Axis, default: Some(FieldValue::Vector([0.0, 0.0, 1.0])) };
+
+/// The number of an axis: 0 is x, 1 is y, 2 is z.
+fn axis_of(value: FieldValue) -> u8 {
+    let axis = value.vector();
+    if axis[0] != 0.0 {
+        0
+    } else if axis[1] != 0.0 {
+        1
+    } else {
+        2
+    }
+}
+
+/// The value of the parameter [`AXIS`].
+fn axis_value(axis: u8) -> FieldValue {
+    FieldValue::Vector(DVec3::AXES[axis as usize].into())
+}
+
+/// An axis and the two behind it, in right-handed order.
+const fn order(axis: u8) -> [usize; 3] {
+    let a = axis as usize;
+    [a, (a + 1) % 3, (a + 2) % 3]
+}
+
+/// A box, turned by every angle about an axis, and `stretch` times as far from it.
+fn turned(axis: u8, child: Bounds, stretch: f64) -> Bounds {
+    let [_, u, v] = order(axis);
+    let reach = |axis: usize| child.min[axis].abs().max(child.max[axis].abs());
+    let radius = reach(u).hypot(reach(v)) * stretch;
+    let mut turned = child;
+    for axis in [u, v] {
+        turned.min[axis] = -radius;
+        turned.max[axis] = radius;
+    }
+    turned
+}
+
+/// The largest magnitude of a coordinate in a box; 0 if nothing is in it.
+fn farthest(child: Bounds) -> f64 {
+    if child.is_empty() { 0.0 } else { child.min.abs().max(child.max.abs()).max_element() }
+}
+
+/// More than a few roundings of f32 take, relative to the numbers that are rounded: 2^-19.
+const ROUNDINGS: f64 = 1.0 / (1 << 19) as f64;
+/// More than underflow takes from products of numbers in f32 and coordinates: 2^-80.
+const UNDERFLOW: f64 = 1.0 / (1_u128 << 80) as f64;
 
 macro_rules! warps {
     ($($module:ident :: $name:ident),+ $(,)?) => {
@@ -100,6 +175,14 @@ macro_rules! warps {
             #[must_use]
             pub fn inverse(&self, p: DVec3) -> DVec3 { match self { $( Self::$name(w) => w.inverse(p), )+ } }
 
+            /// See [`WarpMember::decision`].
+            #[must_use]
+            pub fn decision(&self, p: DVec3) -> f64 { match self { $( Self::$name(w) => w.decision(p), )+ } }
+
+            /// See [`WarpMember::fault`].
+            #[must_use]
+            pub fn fault(&self) -> Option<WarpFault> { match self { $( Self::$name(w) => w.fault(), )+ } }
+
             /// See [`WarpMember::forward_bounds`].
             #[must_use]
             pub fn forward_bounds(&self, child: Bounds) -> Bounds { match self { $( Self::$name(w) => w.forward_bounds(child), )+ } }
@@ -120,4 +203,10 @@ macro_rules! warps {
 
 warps! {
     twist::Twist,
+    taper::Taper,
+    bend::Bend,
+    mirror::Mirror,
+    repeat::Repeat,
+    repeat_around::RepeatAround,
+    space_map::SpaceMap,
 }

@@ -30,11 +30,17 @@ pub fn fields(rng: &mut Rng, fields: &[Field]) -> Vec<FieldValue> {
             FieldValue::Real(if rng.bool() { number.ceil() } else { number })
         }
         FieldKind::Choice(words) => FieldValue::Real(rng.usize(..words.len()) as f64),
+        FieldKind::Count => FieldValue::Real(count(field, rng.u8(..6))),
         FieldKind::Position | FieldKind::Direction => FieldValue::Vector(vector(rng, 1.0)),
         FieldKind::Extents => FieldValue::Vector(vector(rng, 1.0).map(f64::abs)),
         FieldKind::Axis => FieldValue::Vector(DVec3::AXES[rng.usize(..3)].to_array()),
     };
     fields.iter().map(value).collect()
+}
+
+/// A count, which may be 0 where that is its default.
+fn count(field: &Field, count: u8) -> f64 {
+    f64::from(if field.default.is_none() { count + 1 } else { count })
 }
 
 /// A leaf of any kind; one in eight is negative if `signs`.

@@ -43,6 +43,9 @@ fn fields(rng: &mut Rng, fields: &[Field]) -> Vec<FieldValue> {
         (FieldKind::Positive | FieldKind::NonNegative, _) => FieldValue::Real(number(rng).abs()),
         (FieldKind::Within { least, most }, _) => FieldValue::Real(number(rng).clamp(least, most)),
         (FieldKind::Choice(words), _) => FieldValue::Real(rng.usize(..words.len()) as f64),
+        (FieldKind::Count, _) => {
+            FieldValue::Real(if rng.bool() { f64::from(rng.u8(..9)) } else { number(rng) })
+        }
         (FieldKind::Position | FieldKind::Direction, _) => FieldValue::Vector(numbers(rng)),
         (FieldKind::Extents, _) => FieldValue::Vector(numbers(rng).map(f64::abs)),
         (FieldKind::Axis, _) => FieldValue::Vector(DVec3::AXES[rng.usize(..3)].to_array()),

@@ -122,6 +122,9 @@ impl Random {
                 }
                 FieldKind::Within { least, most } => FieldValue::Real(self.between(least, most.min(8.0))),
                 FieldKind::Choice(words) => FieldValue::Real(self.shape.usize(0..words.len()) as f64),
+                // 0 where that is the default.
+                FieldKind::Count if field.default.is_some() => FieldValue::Real(self.numbers.u8(0..6).into()),
+                FieldKind::Count => FieldValue::Real(self.numbers.u8(1..6).into()),
                 FieldKind::Position => FieldValue::Vector(self.vector(1.0)),
                 FieldKind::Extents => FieldValue::Vector(self.vector(1.0).map(f64::abs)),
                 FieldKind::Direction => FieldValue::Vector(self.vector(1.0)),
