@@ -15,6 +15,9 @@ impl Bounds {
     /// The box that holds nothing.
     pub const EMPTY: Self = Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
 
+    /// The box of all points.
+    pub const EVERYWHERE: Self = Self { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY };
+
     /// The box between two corners.
     #[must_use]
     pub const fn new(min: DVec3, max: DVec3) -> Self {

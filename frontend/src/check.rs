@@ -11,7 +11,7 @@
 //!   parameter is what its [`FieldKind`] says.
 //! * Leaves have no children, maps and attributes have one, combinators and selectors at least one, and these choose one that is
 //!   there. A Ricci exponent is in
-//!   [1, [`limits::MAX_RICCI_EXPONENT`]].
+//!   [1, [`limits::MAX_RICCI_EXPONENT`]], or the negative of such a number; other numbers of operators are what their files say.
 //! * Every affine map can be undone, and the numbers of its inverse are finite in f32.
 //! * The first attribute group is `color` with three reals; names are unique; attribute nodes name a group and fit its width.
 //! * There are at most [`limits::MAX_NODES`] nodes and [`limits::MAX_OCCURRENCES`] paths from the root to leaves.
@@ -25,12 +25,14 @@ use jbt_ir::limits;
 use crate::affine;
 use crate::attribute::AttributeGroup;
 use crate::bounds::Bounds;
-use crate::combine::Combinator;
+use crate::combine::Form;
+use crate::combine::extent::Extent;
 use crate::diagnostic::{Diagnostic, Span};
 use crate::field::{Field, FieldKind, FieldValue};
 use crate::model::Model;
 use crate::number::Values;
 use crate::parameter::{Parameter, collect, refresh};
+use crate::recipe::Recipe;
 use crate::report::{Report, clip, nearest};
 use crate::tree::{NodeKind, Primitive};
 
@@ -40,7 +42,7 @@ mod parameters;
 
 pub(crate) use groups::is_identifier;
 use groups::{check_groups, widths};
-use numbers::{check_choice, check_count, check_exponent, check_number, check_numbers, check_within};
+use numbers::{check_choice, check_combinator, check_count, check_number, check_numbers, check_within};
 use parameters::{Dependence, check_iso};
 pub(crate) use parameters::{not_finite, unknown};
 
@@ -216,6 +218,12 @@ impl Model {
             let id = NodeId(nodes.len() as u32);
             if let Some(recipe) = node.recipe() {
                 dependence.add(id, recipe);
+            } else if let NodeKind::Combine(combinator) = node.kind()
+                && combinator.asks_iso()
+                && self.iso.follows()
+            {
+                // It has to be checked again when the iso-value moves.
+                dependence.add(id, &Arc::new(Recipe::of_combinator(*combinator)));
             }
             let made = node.recipe().map_or_else(
                 || Ok(node.kind().clone()),
@@ -223,7 +231,7 @@ impl Model {
             );
             let kind = match made {
                 Ok(kind) => {
-                    check_node(report, &kind, node.children().len(), node.span(), &groups);
+                    check_node(report, &kind, node.children().len(), node.span(), &groups, iso);
                     kind
                 }
                 Err(error) => {
@@ -245,34 +253,27 @@ impl CheckedTree {
     /// Its sides may be infinite. Cost: linear in the number of nodes, shared ones counted once.
     #[must_use]
     pub fn support(&self) -> Bounds {
-        // Of each node: its box, and whether its field is negative anywhere.
-        let mut done: Vec<(Bounds, bool)> = Vec::with_capacity(self.nodes.len());
+        let mut done: Vec<Extent> = Vec::with_capacity(self.nodes.len());
         for node in &*self.nodes {
             let children: Vec<_> = node.children.iter().map(|id| done[id.0 as usize]).collect();
-            done.push(node_support(&node.kind, &children));
+            done.push(node_extent(&node.kind, &children, self.iso));
         }
-        done.last().map_or(Bounds::EMPTY, |root| root.0)
+        done.last().map_or(Bounds::EMPTY, |root| root.support)
     }
 }
 
-/// The box of a node and whether its field may be negative, from those of its children.
-fn node_support(kind: &NodeKind, children: &[(Bounds, bool)]) -> (Bounds, bool) {
-    let hull = || children.iter().fold(Bounds::EMPTY, |all, child| all.hull(child.0));
-    let negative = children.iter().any(|child| child.1);
+/// The extent of a node, from those of its children.
+fn node_extent(kind: &NodeKind, children: &[Extent], iso: f64) -> Extent {
     match kind {
-        NodeKind::Primitive(leaf) => (leaf.skeleton.bounds().grown(leaf.radius), leaf.strength < 0.0),
-        NodeKind::Combine(Combinator::Sum | Combinator::Union) => (hull(), negative),
-        NodeKind::Combine(Combinator::Ricci(n)) => (hull(), negative && *n == 1.0),
-        // The smaller of a negative field and zero is the negative field: then it reaches out of the other children.
-        NodeKind::Combine(Combinator::Intersection) if negative => (hull(), true),
-        NodeKind::Combine(Combinator::Intersection) => {
-            let common = children.iter().map(|child| child.0).reduce(Bounds::intersection);
-            (common.filter(|bounds| !bounds.is_empty()).unwrap_or(Bounds::EMPTY), false)
+        NodeKind::Primitive(leaf) => {
+            let support = leaf.skeleton.bounds().grown(leaf.radius);
+            Extent { support, negative: if leaf.strength < 0.0 { support } else { Bounds::EMPTY } }
         }
-        NodeKind::Combine(Combinator::Difference) => children[0],
+        NodeKind::Combine(combinator) if children.len() == 1 && combinator.passes_single() => children[0],
+        NodeKind::Combine(combinator) => Extent::of(*combinator, children, iso),
         NodeKind::Select(_) => kind.asked(children)[0],
-        NodeKind::Affine(map) => (affine::map_bounds(map, children[0].0), negative),
-        NodeKind::Warp(warp) => (warp.forward_bounds(children[0].0), negative),
+        NodeKind::Affine(map) => children[0].map(|bounds| affine::map_bounds(map, bounds)),
+        NodeKind::Warp(warp) => children[0].map(|bounds| warp.forward_bounds(bounds)),
         NodeKind::Attribute { .. } => children[0],
     }
 }
@@ -289,6 +290,7 @@ fn check_node(
     count: usize,
     span: Option<Span>,
     groups: &BTreeMap<&str, usize>,
+    iso: f64,
 ) {
     let fits = match kind {
         NodeKind::Primitive(leaf) => {
@@ -296,10 +298,11 @@ fn check_node(
             (count == 0, "no children")
         }
         NodeKind::Combine(combinator) => {
-            if let Combinator::Ricci(n) = combinator {
-                check_exponent(report, span, *n);
+            check_combinator(report, span, *combinator, iso);
+            match combinator.form() {
+                Form::Map(_) => (count == 1, "one child"),
+                Form::Fold | Form::Difference | Form::Step(_) => (count >= 1, "at least one child"),
             }
-            (count >= 1, "at least one child")
         }
         NodeKind::Select(which) => {
             check_choice(report, span, *which, count);

@@ -130,9 +130,7 @@ pub fn owner(tree: &CheckedTree, p: [f64; 3]) -> Option<Owner> {
 }
 
 fn combine(combinator: Combinator, iso: f64, children: &[Answer]) -> Answer {
-    if let (1, Combinator::Union | Combinator::Intersection | Combinator::Difference) =
-        (children.len(), combinator)
-    {
+    if children.len() == 1 && combinator.passes_single() {
         // There is nothing to decide.
         return children[0];
     }

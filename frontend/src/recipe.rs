@@ -105,8 +105,13 @@ pub enum Recipe {
         /// The factor of the field.
         strength: Number,
     },
-    /// Ricci's blend with this exponent.
-    Ricci(Number),
+    /// An operator with numbers.
+    Combine {
+        /// The operator; the numbers in it are not looked at, and are 0.
+        combinator: Combinator,
+        /// Its numbers, in their order.
+        numbers: Vec<Number>,
+    },
     /// A selector, which chooses the child whose place is nearest to this number.
     Select(Number),
     /// An affine map.
@@ -312,7 +317,8 @@ impl Recipe {
             Self::Primitive { fields, radius, strength, .. } => {
                 (fields, &[], [Some(radius.number()), Some(strength)])
             }
-            Self::Ricci(number) | Self::Select(number) => (&[], &[], [Some(number), None]),
+            Self::Combine { numbers, .. } => (&[], numbers, [None; 2]),
+            Self::Select(number) => (&[], &[], [Some(number), None]),
             Self::Map(_) => (&[], &[], [None; 2]),
             Self::Warp { fields, .. } => (fields, &[], [None; 2]),
             Self::Attribute { values, .. } => (&[], values, [None; 2]),
@@ -329,7 +335,8 @@ impl Recipe {
                 let fields = fields.iter_mut().chain(falloff.fields_mut());
                 fields.flat_map(FieldNumber::numbers_mut).chain(own).collect()
             }
-            Self::Ricci(number) | Self::Select(number) => vec![number],
+            Self::Combine { numbers, .. } => numbers.iter_mut().collect(),
+            Self::Select(number) => vec![number],
             Self::Map(map) => map.numbers_mut(),
             Self::Warp { fields, .. } => fields.iter_mut().flat_map(FieldNumber::numbers_mut).collect(),
             Self::Attribute { values, .. } => values.iter_mut().collect(),
@@ -350,10 +357,17 @@ impl Recipe {
     pub(crate) fn asks_iso(&self) -> bool {
         match self {
             Self::Primitive { radius, .. } => matches!(radius, Radius::Surface(_)),
-            Self::Ricci(_) | Self::Select(_) | Self::Map(_) | Self::Warp { .. } | Self::Attribute { .. } => {
-                false
-            }
+            Self::Combine { .. }
+            | Self::Select(_)
+            | Self::Map(_)
+            | Self::Warp { .. }
+            | Self::Attribute { .. } => false,
         }
+    }
+
+    /// Whether the iso-value of the model decides if its numbers can be.
+    pub(crate) fn is_limited_by_iso(&self) -> bool {
+        matches!(self, Self::Combine { combinator, .. } if combinator.asks_iso())
     }
 
     /// The same with the present values of parameters. An error names the place of a formula, if it has one.
@@ -379,7 +393,13 @@ impl Recipe {
                 let skeleton = skeleton.from_fields(&values(fields));
                 NodeKind::Primitive(Primitive { skeleton, falloff, radius, strength })
             }
-            Self::Ricci(exponent) => NodeKind::Combine(Combinator::Ricci(above_one(exponent))),
+            Self::Combine { combinator: Combinator::Ricci(_), numbers } => {
+                NodeKind::Combine(Combinator::Ricci(above_one(&numbers[0])))
+            }
+            Self::Combine { combinator, numbers } => {
+                let values: Vec<f64> = numbers.iter().map(Number::value).collect();
+                NodeKind::Combine(combinator.with_numbers(&values))
+            }
             Self::Select(which) => NodeKind::Select(which.value()),
             Self::Map(map) => NodeKind::Affine(map.affine()?),
             Self::Warp { warp, fields } => NodeKind::Warp(warp.from_fields(&values(fields))),
@@ -396,7 +416,7 @@ impl Recipe {
             Self::Map(map) if map.numbers().any(Number::follows) => map.freedom(),
             Self::Map(_)
             | Self::Primitive { .. }
-            | Self::Ricci(_)
+            | Self::Combine { .. }
             | Self::Select(_)
             | Self::Warp { .. }
             | Self::Attribute { .. } => Freedom::Fixed,
@@ -423,15 +443,23 @@ impl Recipe {
     pub(crate) fn strength_follows(&self) -> bool {
         match self {
             Self::Primitive { strength, .. } => strength.follows(),
-            Self::Ricci(_) | Self::Select(_) | Self::Map(_) | Self::Warp { .. } | Self::Attribute { .. } => {
-                false
-            }
+            Self::Combine { .. }
+            | Self::Select(_)
+            | Self::Map(_)
+            | Self::Warp { .. }
+            | Self::Attribute { .. } => false,
         }
     }
 
     /// Whether a parameter of a primitive's falloff follows one of the model.
     pub(crate) fn falloff_follows(&self) -> bool {
         if let Self::Primitive { falloff, .. } = self { falloff.follows() } else { false }
+    }
+
+    /// The recipe of an operator with plain numbers.
+    pub(crate) fn of_combinator(combinator: Combinator) -> Self {
+        let numbers = combinator.numbers().into_iter().map(Number::from).collect();
+        Self::Combine { combinator: combinator.with_numbers(&[0.0; 2]), numbers }
     }
 
     /// The recipe of a primitive with plain numbers.

@@ -145,9 +145,7 @@ fn primitive(leaf: &Primitive, p: DVec3, values: Values) -> Answer {
 }
 
 fn combine(combinator: Combinator, iso: f64, children: &[Answer], defaults: &Values) -> Answer {
-    if let (1, Combinator::Union | Combinator::Intersection | Combinator::Difference) =
-        (children.len(), combinator)
-    {
+    if children.len() == 1 && combinator.passes_single() {
         // There is nothing to decide.
         return children[0].clone();
     }
@@ -191,10 +189,32 @@ fn decide(
     field: f64,
 ) -> (f64, bool) {
     let nearest = |d: f64, child: &Answer| d.min(child.decision);
+    let all_nearest = || children.iter().fold(f64::INFINITY, nearest);
     if children.iter().all(|child| child.silent) {
-        return (children.iter().fold(f64::INFINITY, nearest), true);
+        // The complement of nothing is something, but it is the same all around.
+        return (all_nearest(), field == 0.0);
     }
+    let heard_fields =
+        || children.iter().filter(|child| !child.silent).map(|child| child.field).collect::<Vec<_>>();
     match combinator {
+        Combinator::Product | Combinator::Ricci(..0.0) => {
+            let silent = children.iter().any(|child| child.silent);
+            // Where the field falls to zero, attributes jump to their defaults.
+            let fading = heard_fields().iter().fold(f64::INFINITY, |least, f| least.min(f.abs()));
+            (all_nearest().min(if silent { f64::INFINITY } else { fading }), silent)
+        }
+        Combinator::SymmetricDifference | Combinator::Smooth(..) | Combinator::RFunction(..) => {
+            let fields: Vec<f64> = children.iter().map(|child| child.field).collect();
+            if field == 0.0 && children.iter().any(|child| child.silent) {
+                return (all_nearest(), true);
+            }
+            (combinator.decision(&fields, iso).min(all_nearest()).min(field.abs()), false)
+        }
+        Combinator::Complement | Combinator::Clamp { .. } | Combinator::Shell(_) | Combinator::Offset(_) => {
+            let child = &children[0];
+            let fading = child.field.abs().min(field.abs());
+            (combinator.decision(&[child.field], iso).min(child.decision).min(fading), false)
+        }
         Combinator::Sum | Combinator::Ricci(_) => {
             // Where the total weight falls to zero, attributes jump to their defaults.
             let heard = || children.iter().filter(|child| !child.silent).map(|child| child.field);

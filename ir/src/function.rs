@@ -38,17 +38,22 @@ pub enum Reduction {
     Sum,
     /// Ricci blend with a running scale: a row with a zero field is neutral.
     Ricci,
+    /// Product of fields: a row with a zero field makes it zero.
+    Product,
     /// Largest field: a row that is not the largest is not missed, nor is a zero field if the fold starts at zero.
     Union,
     /// Smallest field: a row that is not the smallest is not missed; a zero field is.
     Intersection,
+    /// Two fields at a time, in order, by an operator that is not said: what dropping a row does is known elsewhere.
+    Step,
     /// One row, whose answer passes through: a guard around one child. If it is dropped, its initial values stand.
     Only,
 }
 
 impl Reduction {
     /// All reductions.
-    pub const ALL: [Self; 5] = [Self::Sum, Self::Ricci, Self::Union, Self::Intersection, Self::Only];
+    pub const ALL: [Self; 7] =
+        [Self::Sum, Self::Ricci, Self::Product, Self::Union, Self::Intersection, Self::Step, Self::Only];
 
     /// The name in the text form.
     #[must_use]
@@ -56,8 +61,10 @@ impl Reduction {
         match self {
             Self::Sum => "sum",
             Self::Ricci => "ricci",
+            Self::Product => "product",
             Self::Union => "union",
             Self::Intersection => "intersection",
+            Self::Step => "step",
             Self::Only => "only",
         }
     }

@@ -153,14 +153,7 @@ impl Evaluator {
         );
         let separate = walks(query).saturating_mul(lowering.leaf_uses());
         let bound = kernel.bind(Arc::new(tables));
-        Self {
-            compiler,
-            bound,
-            query,
-            layout,
-            separate,
-            tally: Tally::default(),
-        }
+        Self { compiler, bound, query, layout, separate, tally: Tally::default() }
     }
 
     /// Takes another model, usually an edited one. If it has the shape of the present one, only numbers are written.

@@ -177,7 +177,9 @@ fn compare_oracle(
             );
         };
         let gradient = answers.gradient().expect("asked for").map(|plane| f64::from(plane[index]));
-        let steep = gradient.iter().fold(1.0, |steep: f64, g| steep.max(g.abs()));
+        // Products of fields may be far above 1; rounding is relative to them.
+        let size = oracle.field.abs().max(1.0);
+        let steep = gradient.iter().fold(size, |steep: f64, g| steep.max(g.abs()));
         close(field, oracle.field, FIELD_BOUND * steep, "the field");
         tally.compared.fetch_add(1, Ordering::Relaxed);
         if oracle.decision < 1e-4 * steep || field < 1e-3 {

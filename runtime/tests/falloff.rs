@@ -23,7 +23,8 @@ fn falloffs() -> Vec<FalloffRecipe> {
         all.extend([(2.0, 2.0), (3.0, 1.0), (10.0, 1.5)].map(|(h, c)| blinn(h, c, edge)));
         all.extend([0.5, 5.0, 50.0].map(|p| arctan(p, edge)));
         all.extend(
-            [(1.0, 4.0), (1.5, 3.0), (2.0, 4.0), (3.0, 2.0), (8.0, 2.0)].map(|(n, c)| inverse_power(n, c, edge)),
+            [(1.0, 4.0), (1.5, 3.0), (2.0, 4.0), (3.0, 2.0), (8.0, 2.0)]
+                .map(|(n, c)| inverse_power(n, c, edge)),
         );
     }
     all
@@ -68,7 +69,11 @@ fn gradients_are_those_of_the_oracle() {
                 }
                 compared += 1;
                 let (field, found) = (f64::from(samples.field()[index]), gradient(&samples, index));
-                assert!((field - oracle.field).abs() < 4e-6 * size, "{falloff:?} at {p:?}: {field}, not {}", oracle.field);
+                assert!(
+                    (field - oracle.field).abs() < 4e-6 * size,
+                    "{falloff:?} at {p:?}: {field}, not {}",
+                    oracle.field
+                );
                 for axis in 0..3 {
                     let close = (found[axis] - fine[axis]).abs() < 1e-3 * size;
                     assert!(close, "{falloff:?} at {p:?}: {found:?}, not {fine:?}");
@@ -99,7 +104,10 @@ fn nothing_is_lost_at_the_skeleton_and_at_the_rim() {
                         assert_eq!((field.to_bits(), gradient), (0, [0.0; 3]), "{falloff:?} at {x}");
                     }
                     if x == 0.0 {
-                        assert!((field - 1.0).abs() < 1e-6 && gradient == [0.0; 3], "{falloff:?}: {field} {gradient:?}");
+                        assert!(
+                            (field - 1.0).abs() < 1e-6 && gradient == [0.0; 3],
+                            "{falloff:?}: {field} {gradient:?}"
+                        );
                     }
                 }
             }
@@ -139,7 +147,15 @@ fn parameters_of_falloffs_are_numbers() {
 
 #[test]
 fn a_surface_radius_is_where_the_surface_is() {
-    for falloff in ["soft", "quintic", "degree { exponent 2.5 }", "blinn", "arctan { stiffness 2 }", "inverse", "blanc { hardness 3 }"] {
+    for falloff in [
+        "soft",
+        "quintic",
+        "degree { exponent 2.5 }",
+        "blinn",
+        "arctan { stiffness 2 }",
+        "inverse",
+        "blanc { hardness 3 }",
+    ] {
         let text = format!("jbt 1 param size = 0.5 point {{ surface_radius size falloff {falloff} }}");
         let tree = jbt::text::parse(text.as_bytes(), &Default::default()).unwrap().check().unwrap();
         for size in [0.5, 2.0] {

@@ -305,7 +305,7 @@ fn setting_a_parameter_is_an_edit_where_something_has_changed() {
         let old = Pruner::new(&compiler, &tree).expect("it compiles");
         let was = fields(&compiler.evaluator(&tree, Query::FIELD).expect("it compiles"), &points);
         for parameter in &model.parameters {
-            let value = if parameter.name().starts_with("choice") { 0.0 } else { rng.f64() };
+            let value = if parameter.name().starts_with("choice") { 0.0 } else { 0.01 + rng.f64() };
             let set = tree.with_parameters(&[(parameter.name(), value)]).expect("a good value");
             let new = old.updated(&set).expect("it compiles");
             let edit = new.edit(&old);

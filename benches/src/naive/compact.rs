@@ -101,6 +101,7 @@ enum Task {
 }
 
 impl Compact {
+    /// Panics on operators that no case has: the walk knows sums, Ricci's blend, and plain set operations.
     pub(super) fn new(tree: &CheckedTree) -> Self {
         let mut compact = Self { steps: Vec::new(), maps: Vec::new(), warps: Vec::new(), values: Vec::new() };
         let defaults: Rc<[f32]> = defaults(tree).into();
@@ -205,11 +206,19 @@ fn combine(
     let operator = match combinator {
         Combinator::Sum => Operator::Sum,
         Combinator::Ricci(1.0) => Operator::Sum,
-        Combinator::Ricci(n) if n.fract() == 0.0 => Operator::Powers(n as i32),
+        Combinator::Ricci(n) if n.fract() == 0.0 && n > 0.0 => Operator::Powers(n as i32),
         Combinator::Ricci(n) => Operator::Ricci(n as f32),
         Combinator::Union => Operator::Union,
         Combinator::Intersection => Operator::Intersection,
         Combinator::Difference => Operator::Difference,
+        Combinator::Product
+        | Combinator::SymmetricDifference
+        | Combinator::Smooth(..)
+        | Combinator::RFunction(..)
+        | Combinator::Complement
+        | Combinator::Clamp { .. }
+        | Combinator::Shell(_)
+        | Combinator::Offset(_) => panic!("no case compares walks of `{}`", combinator.name()),
     };
     match (operator, children) {
         // With one child there is nothing to decide.

@@ -53,7 +53,7 @@ impl Dependence {
                 }
             }
         }
-        if self.iso.is_some() && recipe.asks_iso() {
+        if self.iso.is_some() && (recipe.asks_iso() || recipe.is_limited_by_iso()) {
             self.surfaces.push(id);
         }
         self.nodes.push((id, Arc::clone(recipe)));
@@ -226,7 +226,7 @@ impl CheckedTree {
             let recipe = self.dependence.recipe(id).expect("affected nodes have recipes");
             match cook(recipe, values, iso, node.span) {
                 Ok(kind) => {
-                    check_node(report, &kind, node.children.len(), node.span, &groups);
+                    check_node(report, &kind, node.children.len(), node.span, &groups, iso);
                     node.kind = kind;
                 }
                 Err(error) => report.add(|| error),

@@ -7,6 +7,7 @@ use jbt_ir::limits;
 
 use super::*;
 use crate::attribute::Mixing;
+use crate::combine::{Combinator, Family, SetOperation};
 use crate::diagnostic::Severity;
 use crate::falloff::Falloff;
 use crate::skeleton::{Box, Disc, Point, Skeleton};
@@ -68,6 +69,31 @@ fn refuses_numbers_and_children_that_make_no_sense() {
         (combine(Combinator::Sum, vec![]), "a node `sum` has 0 children"),
         (combine(Combinator::Difference, vec![]), "a node `difference` has 0 children"),
         (combine(Combinator::Ricci(0.5), vec![point(0.0)]), "the exponent of the Ricci blend is 0.5"),
+        (combine(Combinator::Ricci(0.0), vec![point(0.0)]), "the exponent of the Ricci blend is 0"),
+        (combine(Combinator::Ricci(-0.5), vec![point(0.0)]), "the exponent of the Ricci blend is -0.5"),
+        (combine(Combinator::Ricci(-1025.0), vec![point(0.0)]), "the exponent of the Ricci blend is -1025"),
+        (combine(Combinator::Complement, vec![]), "a node `complement` has 0 children"),
+        (combine(Combinator::Shell(0.1), vec![point(0.0); 2]), "a node `shell` has 2 children"),
+        (combine(Combinator::Shell(1.0), vec![point(0.0)]), "the thickness of the shell is 1"),
+        (combine(Combinator::Shell(0.0), vec![point(0.0)]), "the thickness of the shell is 0"),
+        (combine(Combinator::Offset(0.5), vec![point(0.0)]), "the offset is 0.5"),
+        (combine(Combinator::Clamp { low: 1.0, high: 0.0 }, vec![point(0.0)]), "the clamp is from 1 to 0"),
+        (
+            combine(Combinator::Smooth(SetOperation::Union, -1.0), vec![point(0.0)]),
+            "the width of the smooth_union is -1",
+        ),
+        (
+            combine(Combinator::RFunction(SetOperation::Union, Family::Alpha(-1.0)), vec![point(0.0)]),
+            "the alpha of the R-function is -1",
+        ),
+        (
+            combine(Combinator::RFunction(SetOperation::Union, Family::Power(1.0)), vec![point(0.0)]),
+            "the power of the R-function is 1",
+        ),
+        (
+            combine(Combinator::RFunction(SetOperation::Union, Family::Order(5)), vec![point(0.0)]),
+            "the order of the R-function is 5",
+        ),
         (combine(Combinator::Ricci(1025.0), vec![point(0.0)]), "the exponent of the Ricci blend is 1025"),
         (combine(Combinator::Ricci(f64::NAN), vec![point(0.0)]), "the exponent of the Ricci blend is NaN"),
         (Tree::new(NodeKind::Affine(DAffine3::IDENTITY), vec![]), "an affine map has 0 children"),
@@ -96,7 +122,7 @@ fn lets_the_extremes_through() {
     }
     assert_eq!(messages(point(1e15)), [""; 0]);
     assert_eq!(messages(leaf(Point { at: DVec3::ZERO }, 1e-15, -1e15)), [""; 0]);
-    for n in [1.0, 1024.0] {
+    for n in [1.0, 1024.0, -1.0, -1024.0] {
         assert_eq!(messages(combine(Combinator::Ricci(n), vec![point(0.0)])), [""; 0]);
     }
 }
@@ -220,9 +246,10 @@ fn the_box_of_each_kind_of_node() {
     let apart = combine(Combinator::Intersection, vec![point(0.0), point(9.0)]);
     assert!(support(apart.clone()).is_empty());
     assert_eq!(support(combine(Combinator::Union, vec![apart, point(0.0)])), between([-1.0; 3], [1.0; 3]));
-    // The minimum of a negative field and zero is negative: it reaches beyond the other operand.
+    // The minimum of a negative field and zero is negative: it reaches beyond the other operand, and no farther.
     let hole = leaf(Point { at: DVec3::new(1.5, 0.0, 0.0) }, 1.0, -1.0);
-    assert_eq!(support(combine(Combinator::Intersection, vec![point(0.0), hole])), hull);
+    let of_hole = between([0.5, -1.0, -1.0], [2.5, 1.0, 1.0]);
+    assert_eq!(support(combine(Combinator::Intersection, vec![point(0.0), hole])), of_hole);
 
     let map = DAffine3::from_scale_rotation_translation(
         DVec3::new(-2.0, 1.0, 1.0),

@@ -80,7 +80,9 @@ impl Demand {
                     }
                     demand.occurrences[children[*chosen].0 as usize].also(Asked { always: false, ..asked });
                 }
-                OccurrenceKind::Reduce { .. } | OccurrenceKind::Difference { .. } => {
+                OccurrenceKind::Reduce { .. }
+                | OccurrenceKind::Difference { .. }
+                | OccurrenceKind::Map { .. } => {
                     for child in children(kind) {
                         demand.occurrences[child.0 as usize].also(asked);
                     }

@@ -4,9 +4,10 @@
 //! define(occurrence):  leaf        its point, squared distance, falloff, strength; attributes are columns
 //!                      warp        its point in a new space, then the child there
 //!                      difference  both sides, then the smaller
+//!                      map         the child, then the map of its field
 //!                      selector    for each child: a fold over one row, which is active or not
 //!                      operator    for each group:  folded   open a fold over a table, define the first member, step, close
-//!                                                   else     for each member: define, step
+//!                                                   else     for each member: define, step; the first member of a step is the beginning
 //! define under a guard: open a fold over a table of one row, define, close; the answer is what the fold carries out
 //! ```
 //!
@@ -29,12 +30,13 @@ use self::guard::{Guard, GuardStart};
 use self::probe::Probes;
 use self::select::Select;
 use super::guide::{Decision, DecisionKind, Rule};
-use super::mixing::{Answer, Operator, State, difference};
+use super::mixing::{Answer, Operator, State, difference, mapped};
 use super::occurrence::{FieldId, OccurrenceId, OccurrenceKind, Scene, SpaceId};
-use super::shape::{Lift, ReducerCode, Shapes, non_negative};
+use super::shape::{Lift, ReducerCode, RicciCode, Shapes, non_negative};
 use crate::attribute::Mixing;
 use crate::check::CheckedTree;
-use crate::combine::ricci::Exponent;
+use crate::combine::ricci::{Blend, Exponent};
+use crate::combine::unary::UnaryKind;
 use crate::diagnostic::Diagnostic;
 use crate::query::Query;
 
@@ -96,7 +98,11 @@ enum Task {
     /// The next operand of an operator has its answer.
     Step,
     FinishReduce,
+    /// The first operand of a step has its answer: the others come to it.
+    Seed,
     Difference,
+    /// The child of a map has its answer; these are the map's numbers.
+    Map(UnaryKind, Vec<Value>),
     BeginSelect,
     OpenChild(OccurrenceId),
     CloseChild,
@@ -288,6 +294,17 @@ impl<'a> Emitter<'a> {
                 self.end_operator(answer.field);
                 self.answers.push(answer);
             }
+            Task::Seed => {
+                let operand = self.answers.pop().expect("the operand has been defined");
+                let reduce = self.reduces.last_mut().expect("steps belong to operators");
+                reduce.state.seed(&mut self.builder, &operand);
+            }
+            Task::Map(kind, row) => {
+                let child = self.answers.pop().expect("the child has been defined");
+                let iso2 = self.iso2.expect("the scene's row is open");
+                let field = kind.emit(&mut self.builder, child.field, &row, iso2);
+                self.answers.push(mapped(&mut self.builder, field, &child, &self.defaults));
+            }
             Task::Difference => {
                 let right = self.answers.pop().expect("the right side has been defined");
                 let left = self.answers.pop().expect("the left side has been defined");
@@ -318,6 +335,11 @@ impl<'a> Emitter<'a> {
                 self.tasks.push(Task::Difference);
                 self.tasks.push(Task::Operand(*right, Guard::RIGHT));
                 self.tasks.push(Task::Operand(*left, Guard::LEFT));
+            }
+            OccurrenceKind::Map { kind, child } => {
+                let row = self.columns(kind.columns());
+                self.tasks.push(Task::Map(*kind, row));
+                self.tasks.push(Task::Operand(*child, Guard::ZERO));
             }
             OccurrenceKind::Select { children, .. } => self.select(children),
             OccurrenceKind::Reduce { .. } => self.begin_reduce(id),
@@ -366,22 +388,27 @@ impl<'a> Emitter<'a> {
         };
         let groups = self.shapes.groups(id);
         let code = ReducerCode::of(*reducer);
-        let exponent = match code {
-            ReducerCode::RicciInteger(n) => Some(Exponent::Integer(n)),
-            ReducerCode::RicciGeneral => {
-                let [n, inverse] = self.columns(&["exponent", "inverse_exponent"])[..] else {
-                    unreachable!("two columns were asked for")
-                };
-                Some(Exponent::General(n, inverse))
+        let row = self.columns(code.columns());
+        let (non_negative, moving) = (non_negative(self.scene, groups), self.query.gradient);
+        let blend = match code {
+            ReducerCode::Ricci(RicciCode { integer, negative }) => {
+                let exponent = integer.map_or_else(|| Exponent::General(row[0], row[1]), Exponent::Integer);
+                Some(Blend { exponent, negative, non_negative, moving })
             }
-            ReducerCode::Sum | ReducerCode::Union | ReducerCode::Intersection => None,
+            ReducerCode::Sum
+            | ReducerCode::Product
+            | ReducerCode::Union
+            | ReducerCode::Intersection
+            | ReducerCode::Step(_) => None,
         };
         let operator = Operator {
             code,
-            exponent,
-            non_negative: non_negative(self.scene, groups),
+            blend,
+            row,
+            iso2: self.iso2.expect("the scene's row is open"),
+            non_negative,
             ordered: groups.len() > 1,
-            moving: self.query.gradient,
+            moving,
             mixing: Rc::clone(&self.mixing),
         };
         let state = State::new(&mut self.builder, &operator, &self.defaults);
@@ -394,8 +421,13 @@ impl<'a> Emitter<'a> {
                 self.tasks.extend([Task::CloseFold, Task::Step, Task::Use(group.members[0].0)]);
                 self.tasks.push(Task::OpenFold);
             } else {
-                for (member, _) in group.members.iter().rev() {
-                    self.tasks.extend([Task::Step, Task::Operand(*member, guard), Task::Order]);
+                for &(member, order) in group.members.iter().rev() {
+                    // A step begins with its first operand.
+                    let step = match code {
+                        ReducerCode::Step(_) if order == 0 => Task::Seed,
+                        _ => Task::Step,
+                    };
+                    self.tasks.extend([step, Task::Operand(member, guard), Task::Order]);
                 }
             }
         }
@@ -430,9 +462,11 @@ impl Emitter<'_> {
         let mut reduce = self.reduces.pop().expect("folds belong to operators");
         let reduction = match reduce.operator.code {
             ReducerCode::Sum => Reduction::Sum,
-            ReducerCode::RicciInteger(_) | ReducerCode::RicciGeneral => Reduction::Ricci,
+            ReducerCode::Ricci(_) => Reduction::Ricci,
+            ReducerCode::Product => Reduction::Product,
             ReducerCode::Union => Reduction::Union,
             ReducerCode::Intersection => Reduction::Intersection,
+            ReducerCode::Step(_) => Reduction::Step,
         };
         let name = match self.tasks.last() {
             Some(Task::Use(id)) => self.group_name(*id),
@@ -440,7 +474,10 @@ impl Emitter<'_> {
         };
         let initial = reduce.state.values();
         let rule = match reduce.operator.code {
-            ReducerCode::Sum | ReducerCode::RicciInteger(_) | ReducerCode::RicciGeneral => Rule::Neutral,
+            ReducerCode::Sum | ReducerCode::Ricci(RicciCode { negative: false, .. }) => Rule::Neutral,
+            // Whatever the others are: a zero makes it zero.
+            ReducerCode::Product | ReducerCode::Ricci(RicciCode { negative: true, .. }) => Rule::OnlyZero,
+            ReducerCode::Step(kind) => kind.rule(reduce.operator.non_negative),
             ReducerCode::Union if reduce.operator.non_negative => Rule::Neutral,
             ReducerCode::Intersection if reduce.operator.non_negative => Rule::OnlyZero,
             ReducerCode::Union | ReducerCode::Intersection => Rule::KeepOne,
@@ -461,13 +498,11 @@ impl Emitter<'_> {
                 self.scene.warp(self.scene.occurrence(id).node).kind().name().to_owned()
             }
             OccurrenceKind::Difference { .. } => "difference".to_owned(),
+            OccurrenceKind::Map { .. } => {
+                self.scene.combinator(self.scene.occurrence(id).node).name().to_owned()
+            }
             OccurrenceKind::Select { .. } => "select".to_owned(),
-            OccurrenceKind::Reduce { reducer, .. } => match ReducerCode::of(*reducer) {
-                ReducerCode::Sum => "sum".to_owned(),
-                ReducerCode::RicciInteger(_) | ReducerCode::RicciGeneral => "ricci".to_owned(),
-                ReducerCode::Union => "union".to_owned(),
-                ReducerCode::Intersection => "intersection".to_owned(),
-            },
+            OccurrenceKind::Reduce { reducer, .. } => ReducerCode::of(*reducer).name().to_owned(),
         }
     }
 }

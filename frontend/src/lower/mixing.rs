@@ -1,20 +1,23 @@
 //! The accumulators of an operator: its field, and its attributes in the same traversal.
 //!
-//! An operator either *weighs* its operands (sum, Ricci) or lets one *win* (union, intersection).
+//! An operator either *weighs* its operands (sum, Ricci, product), lets one *win* (union, intersection) or *steps* from one to the next.
 //!
 //! ```text
 //! weighs   blend:     A = sum w a            in the end A / W, W = sum w
 //!          dominant:  the a with the largest w * share, share being the part of w that the leaf behind a has in its operand
 //! wins     both:      the a of the winner, and its share
+//! steps    blend:     a = (l a + r b) / (l + r), of both sides' weights l and r; where one is 0, the other side's to the bit
+//!          dominant:  that with the larger share
 //! ```
 
 use std::rc::Rc;
 
 use jbt_ir::{Domain, FunctionBuilder, Value};
 
-use super::shape::ReducerCode;
+use super::shape::{ReducerCode, RicciCode};
 use crate::attribute::Mixing;
-use crate::combine::{intersection, ricci, sum, union};
+use crate::combine::step::Pair;
+use crate::combine::{intersection, product, ricci, sum, union};
 
 /// One attribute group of an answer.
 #[derive(Clone, Debug)]
@@ -37,7 +40,12 @@ pub(super) struct Answer {
 #[derive(Clone, Debug)]
 pub(super) struct Operator {
     pub(super) code: ReducerCode,
-    pub(super) exponent: Option<ricci::Exponent<Value>>,
+    /// Of Ricci's blend.
+    pub(super) blend: Option<ricci::Blend<Value>>,
+    /// The numbers that the row of the operator keeps.
+    pub(super) row: Vec<Value>,
+    /// Twice the iso-value.
+    pub(super) iso2: Value,
     /// Whether no operand can be negative.
     pub(super) non_negative: bool,
     /// Whether operands come in several groups: then ties need their order in the file.
@@ -51,9 +59,13 @@ pub(super) struct Operator {
 impl Operator {
     const fn weighs(&self) -> bool {
         match self.code {
-            ReducerCode::Sum | ReducerCode::RicciInteger(_) | ReducerCode::RicciGeneral => true,
-            ReducerCode::Union | ReducerCode::Intersection => false,
+            ReducerCode::Sum | ReducerCode::Ricci(_) | ReducerCode::Product => true,
+            ReducerCode::Union | ReducerCode::Intersection | ReducerCode::Step(_) => false,
         }
+    }
+
+    fn blend(&self) -> ricci::Blend<Value> {
+        self.blend.expect("a Ricci blend has an exponent")
     }
 
     /// Whether operands need their place in the file: something is decided among several groups, and somebody sees by whom.
@@ -65,10 +77,10 @@ impl Operator {
 /// See [`Operator::wants_order`].
 pub(super) fn wants_order(code: ReducerCode, ordered: bool, moving: bool, mixing: &[Mixing]) -> bool {
     let decides = match code {
-        ReducerCode::Sum | ReducerCode::RicciInteger(_) | ReducerCode::RicciGeneral => {
-            mixing.contains(&Mixing::Dominant)
-        }
+        ReducerCode::Sum | ReducerCode::Ricci(_) | ReducerCode::Product => mixing.contains(&Mixing::Dominant),
         ReducerCode::Union | ReducerCode::Intersection => moving || !mixing.is_empty(),
+        // They come in that order.
+        ReducerCode::Step(_) => false,
     };
     ordered && decides
 }
@@ -86,7 +98,7 @@ struct GroupState {
 /// The accumulators of an operator.
 #[derive(Clone, Debug)]
 pub(super) struct State {
-    /// Sum: the sum. Ricci: the largest operand and the relative sum. Union and intersection: the best field.
+    /// Sum and product: that. Ricci: the largest operand and the relative sum. Union and intersection: the best field. Step: the left side.
     field: Vec<Value>,
     /// The place in the file of the winner, where it matters.
     order: Option<Value>,
@@ -101,7 +113,11 @@ impl State {
         let zero = d.constant(0.0);
         let field = match operator.code {
             ReducerCode::Sum => vec![zero],
-            ReducerCode::RicciInteger(_) | ReducerCode::RicciGeneral => vec![d.constant(ricci::FLOOR), zero],
+            ReducerCode::Ricci(RicciCode { negative: false, .. }) => vec![d.constant(ricci::FLOOR), zero],
+            ReducerCode::Ricci(RicciCode { negative: true, .. }) => vec![d.constant(ricci::CEILING), zero],
+            ReducerCode::Product => vec![product::start(d, operator.iso2)],
+            // Until its first operand comes.
+            ReducerCode::Step(_) => vec![zero],
             // Zero takes part without a row: whoever is above zero wins all the same, and where nobody is there is only the default.
             ReducerCode::Union if operator.non_negative => vec![zero],
             // Finite, because a range with an infinite end says nothing: every field is nearer to zero.
@@ -110,7 +126,15 @@ impl State {
         };
         let weighs = operator.weighs();
         let wants_attributes = !defaults.is_empty();
-        let separate_total = operator.code == ReducerCode::Sum && !operator.non_negative && wants_attributes;
+        let separate_total = wants_attributes
+            && match operator.code {
+                ReducerCode::Sum => !operator.non_negative,
+                ReducerCode::Product => true,
+                ReducerCode::Ricci(_)
+                | ReducerCode::Union
+                | ReducerCode::Intersection
+                | ReducerCode::Step(_) => false,
+            };
         let groups = defaults
             .iter()
             .zip(operator.mixing.iter())
@@ -178,14 +202,27 @@ impl State {
                     self.weigh(d, weight, None, operand, order);
                 }
             }
-            ReducerCode::RicciInteger(_) | ReducerCode::RicciGeneral => {
-                let exponent = operator.exponent.expect("a Ricci blend has an exponent");
+            ReducerCode::Ricci(_) => {
                 let so_far = ricci::Scaled { largest: self.field[0], sum: self.field[1] };
-                let step =
-                    ricci::step(d, so_far, operand.field, exponent, (operator.non_negative, operator.moving));
+                let step = ricci::step(d, so_far, operand.field, operator.blend());
                 self.field = vec![step.next.largest, step.next.sum];
                 if !self.groups.is_empty() {
                     self.weigh(d, step.weight, Some(step.rescale), operand, order);
+                }
+            }
+            ReducerCode::Product => {
+                self.field[0] = product::step(d, self.field[0], operand.field, operator.iso2);
+                if let Some(total) = self.total {
+                    let one = d.constant(1.0);
+                    self.total = Some(d.add(total, one));
+                    self.weigh(d, one, None, operand, order);
+                }
+            }
+            ReducerCode::Step(kind) => {
+                let pair = kind.emit(d, [self.field[0], operand.field], &operator.row, operator.iso2);
+                self.field[0] = pair.field;
+                for (state, answer) in self.groups.iter_mut().zip(&operand.groups) {
+                    state.join(d, pair, answer);
                 }
             }
             ReducerCode::Union => {
@@ -195,6 +232,17 @@ impl State {
             ReducerCode::Intersection => {
                 let beats = intersection::beats::<FunctionBuilder>;
                 self.win(d, (intersection::step::<FunctionBuilder>, beats), operand, order);
+            }
+        }
+    }
+
+    /// The first operand of a step.
+    pub(super) fn seed(&mut self, d: &mut FunctionBuilder, operand: &Answer) {
+        self.field[0] = operand.field;
+        for (state, answer) in self.groups.iter_mut().zip(&operand.groups) {
+            state.channels.clone_from(&answer.channels);
+            if let Some(share) = &mut state.best {
+                *share = answer.share.unwrap_or_else(|| d.constant(1.0));
             }
         }
     }
@@ -269,18 +317,28 @@ impl State {
         operator: &Operator,
         defaults: &[Vec<Value>],
     ) -> Answer {
-        let (field, total) = match operator.code {
-            ReducerCode::Sum => (self.field[0], self.total.unwrap_or(self.field[0])),
-            ReducerCode::RicciInteger(_) | ReducerCode::RicciGeneral => {
-                let exponent = operator.exponent.expect("a Ricci blend has an exponent");
-                let scaled = ricci::Scaled { largest: self.field[0], sum: self.field[1] };
-                (ricci::finish(d, scaled, exponent), self.field[1])
+        // What it divides by, and what has to be positive for that.
+        let (field, total, seen) = match operator.code {
+            ReducerCode::Sum => {
+                let total = self.total.unwrap_or(self.field[0]);
+                (self.field[0], total, total)
             }
-            ReducerCode::Union | ReducerCode::Intersection => (self.field[0], self.field[0]),
+            ReducerCode::Ricci(code) => {
+                let scaled = ricci::Scaled { largest: self.field[0], sum: self.field[1] };
+                let field = ricci::finish(d, scaled, operator.blend());
+                (field, self.field[1], if code.negative { field } else { self.field[1] })
+            }
+            ReducerCode::Product => {
+                let field = product::finish(d, self.field[0]);
+                (field, self.total.unwrap_or(field), field)
+            }
+            ReducerCode::Union | ReducerCode::Intersection | ReducerCode::Step(_) => {
+                (self.field[0], self.field[0], self.field[0])
+            }
         };
         let groups = self.groups.iter().zip(defaults).map(|(state, default)| {
             if operator.weighs() {
-                state.normalised(d, total, default)
+                state.normalised(d, (total, seen), default)
             } else {
                 let channels = where_positive(d, field, &state.channels, default);
                 GroupAnswer { channels, share: state.best, numbers: false }
@@ -301,12 +359,48 @@ impl GroupState {
         }
     }
 
-    /// The group's answer once all weights are in; the default where their sum is zero.
+    /// The right side of a step comes to the left one.
+    fn join(&mut self, d: &mut FunctionBuilder, pair: Pair<Value>, answer: &GroupAnswer) {
+        let zero = d.constant(0.0);
+        let [left, right] = pair.weights;
+        let (has_left, has_right) = (d.lt(zero, left), d.lt(zero, right));
+        let total = d.add(left, right);
+        let part = d.div(right, total);
+        // A side that is alone keeps its bits: then leaving out the other one changes none.
+        if let Some(share) = self.best {
+            let one = d.constant(1.0);
+            let theirs = answer.share.unwrap_or(one);
+            let rest = d.div(left, total);
+            let (candidate, so_far) = (d.mul(part, theirs), d.mul(rest, share));
+            let takes = d.lt(so_far, candidate);
+            let both = d.select(takes, candidate, so_far);
+            let alone = d.select(has_left, both, theirs);
+            self.best = Some(d.select(has_right, alone, share));
+            let without_left = d.not(has_left);
+            let takes = d.either(takes, without_left);
+            let takes = d.both(takes, has_right);
+            self.take(d, takes, answer, None);
+            return;
+        }
+        for (channel, &theirs) in self.channels.iter_mut().zip(&answer.channels) {
+            let difference = d.sub(theirs, *channel);
+            let mixed = d.fma(part, difference, *channel);
+            let alone = d.select(has_left, mixed, theirs);
+            *channel = d.select(has_right, alone, *channel);
+        }
+    }
+
+    /// The group's answer once all weights are in; the default where `seen` is not positive.
     ///
     /// Divided, and not multiplied with a reciprocal: that is infinite for subnormal sums, and mixes like values inexactly.
-    fn normalised(&self, d: &mut FunctionBuilder, total: Value, default: &[Value]) -> GroupAnswer {
+    fn normalised(
+        &self,
+        d: &mut FunctionBuilder,
+        (total, seen): (Value, Value),
+        default: &[Value],
+    ) -> GroupAnswer {
         let zero = d.constant(0.0);
-        let any = d.lt(zero, total);
+        let any = d.lt(zero, seen);
         let channels = self.channels.iter().zip(default).map(|(&channel, &default)| {
             let mixed = if self.best.is_some() { channel } else { d.div(channel, total) };
             d.select(any, mixed, default)
@@ -346,6 +440,26 @@ fn where_positive(
     let zero = d.constant(0.0);
     let weighs = d.lt(zero, field);
     channels.iter().zip(default).map(|(&channel, &default)| d.select(weighs, channel, default)).collect()
+}
+
+/// The answer of a map: the child's attributes where both fields are positive.
+pub(super) fn mapped(
+    d: &mut FunctionBuilder,
+    field: Value,
+    child: &Answer,
+    defaults: &[Vec<Value>],
+) -> Answer {
+    let groups = child.groups.iter().zip(defaults).map(|(group, default)| {
+        let channels = where_positive(d, child.field, &group.channels, default);
+        let share = group.share.map(|share| {
+            let (zero, one) = (d.constant(0.0), d.constant(1.0));
+            let there = d.lt(zero, child.field);
+            d.select(there, share, one)
+        });
+        GroupAnswer { channels: where_positive(d, field, &channels, default), share, numbers: false }
+    });
+    let groups = groups.collect();
+    Answer { field, groups }
 }
 
 /// The answer of the left child of a difference, or of the subtracted one where that decides.

@@ -10,7 +10,9 @@ use glam::DAffine3;
 use super::demand::Demand;
 use super::position::{MapKind, Position, PositionKey, Trails, position_key};
 use crate::check::{CheckedTree, NodeId};
-use crate::combine::Combinator;
+use crate::combine::step::StepKind;
+use crate::combine::unary::UnaryKind;
+use crate::combine::{Combinator, Form};
 use crate::falloff::FalloffKind;
 use crate::recipe::Recipe;
 use crate::tree::{NodeKind, Primitive, chosen};
@@ -65,15 +67,18 @@ pub(super) struct LeafField {
     pub(super) falloff: FalloffKind,
 }
 
-/// An operator whose operands are alike: any number of them, in any order but for ties.
+/// An operator whose operands are alike: any number of them, in any order but for ties; the operands of a step in that of the file.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) enum Reducer {
     Sum,
     Ricci(f64),
     /// Ricci's blend whose exponent follows a parameter.
     RicciFollowing(f64),
+    Product,
     Union,
     Intersection,
+    /// A fold from the left, and the number of its step.
+    Step(StepKind, f64),
 }
 
 #[derive(Clone, Debug)]
@@ -94,6 +99,11 @@ pub(super) enum OccurrenceKind {
     Difference {
         left: OccurrenceId,
         right: OccurrenceId,
+    },
+    /// A map of one field.
+    Map {
+        kind: UnaryKind,
+        child: OccurrenceId,
     },
     /// One child answers now; all have code.
     Select {
@@ -177,6 +187,20 @@ impl<'a> Scene<'a> {
     /// Whether several occurrences lead into a space: then its points are computed once, for all of them.
     pub(super) fn is_shared(&self, space: SpaceId) -> bool {
         self.inside(space).is_some_and(|inside| inside.uses > 1)
+    }
+
+    /// What an operator does.
+    pub(super) fn combinator(&self, node: NodeId) -> Combinator {
+        match &self.tree.node(node).kind {
+            NodeKind::Combine(combinator) => *combinator,
+            NodeKind::Primitive(_)
+            | NodeKind::Select(_)
+            | NodeKind::Affine(_)
+            | NodeKind::Warp(_)
+            | NodeKind::Attribute { .. } => {
+                unreachable!("operators are made of combinators")
+            }
+        }
     }
 
     pub(super) fn warp(&self, node: NodeId) -> &'a Warp {
@@ -317,8 +341,7 @@ impl<'a> Finder<'a> {
                         self.bound[group] = Some(node);
                     }
                 }
-                NodeKind::Combine(Combinator::Union | Combinator::Intersection | Combinator::Difference)
-                    if data.children.len() == 1 => {}
+                NodeKind::Combine(combinator) if data.children.len() == 1 && combinator.passes_single() => {}
                 NodeKind::Select(_) if data.children.len() == 1 => {}
                 NodeKind::Combine(_) | NodeKind::Select(_) | NodeKind::Primitive(_) | NodeKind::Warp(_) => {
                     // Nobody asks again for what is met once and has nothing below it that others meet: it needs no name.
@@ -365,23 +388,7 @@ impl<'a> Finder<'a> {
                 let (inside, _) = frame.inside.expect("a warp's frame has its inside");
                 OccurrenceKind::Warp { position, inside, child: frame.children[0] }
             }
-            NodeKind::Combine(combinator) => {
-                let reducer = match combinator {
-                    Combinator::Sum => Some(Reducer::Sum),
-                    Combinator::Ricci(n) if self.scene.tree.recipe(node).is_some() => {
-                        Some(Reducer::RicciFollowing(*n))
-                    }
-                    Combinator::Ricci(n) if *n == 1.0 => Some(Reducer::Sum),
-                    Combinator::Ricci(n) => Some(Reducer::Ricci(*n)),
-                    Combinator::Union => Some(Reducer::Union),
-                    Combinator::Intersection => Some(Reducer::Intersection),
-                    Combinator::Difference => None,
-                };
-                match reducer {
-                    Some(reducer) => OccurrenceKind::Reduce { reducer, children: frame.children },
-                    None => self.difference(node, position, &frame.children),
-                }
-            }
+            NodeKind::Combine(combinator) => self.operator(node, *combinator, position, frame.children),
             NodeKind::Select(which) => {
                 self.selects = true;
                 OccurrenceKind::Select { children: frame.children, chosen: chosen(*which) }
@@ -389,6 +396,38 @@ impl<'a> Finder<'a> {
             NodeKind::Affine(_) | NodeKind::Attribute { .. } => unreachable!("resolve walks through these"),
         };
         self.push(node, position, kind)
+    }
+
+    /// The occurrence of an operator whose children are done.
+    fn operator(
+        &mut self,
+        node: NodeId,
+        combinator: Combinator,
+        position: PositionId,
+        children: Vec<OccurrenceId>,
+    ) -> OccurrenceKind {
+        let reducer = match combinator {
+            Combinator::Sum => Reducer::Sum,
+            Combinator::Ricci(n) if self.scene.tree.recipe(node).is_some() => Reducer::RicciFollowing(n),
+            Combinator::Ricci(1.0) => Reducer::Sum,
+            Combinator::Ricci(n) => Reducer::Ricci(n),
+            Combinator::Product => Reducer::Product,
+            Combinator::Union => Reducer::Union,
+            Combinator::Intersection => Reducer::Intersection,
+            Combinator::Difference
+            | Combinator::SymmetricDifference
+            | Combinator::Smooth(..)
+            | Combinator::RFunction(..)
+            | Combinator::Complement
+            | Combinator::Clamp { .. }
+            | Combinator::Shell(_)
+            | Combinator::Offset(_) => match (combinator.form(), combinator.step()) {
+                (Form::Map(kind), _) => return OccurrenceKind::Map { kind, child: children[0] },
+                (_, Some((kind, number))) => Reducer::Step(kind, number),
+                (_, None) => return self.difference(node, position, &children),
+            },
+        };
+        OccurrenceKind::Reduce { reducer, children }
     }
 
     /// The field of a leaf at a position.
@@ -427,7 +466,7 @@ impl<'a> Finder<'a> {
 
     fn push(&mut self, node: NodeId, position: PositionId, kind: OccurrenceKind) -> OccurrenceId {
         let space = self.scene.position(position).space;
-        let non_negative = self.non_negative(&kind);
+        let non_negative = self.non_negative(node, &kind);
         for child in children(&kind) {
             self.scene.occurrences[child.0 as usize].uses += 1;
         }
@@ -435,7 +474,7 @@ impl<'a> Finder<'a> {
         OccurrenceId(self.scene.occurrences.len() as u32 - 1)
     }
 
-    fn non_negative(&self, kind: &OccurrenceKind) -> bool {
+    fn non_negative(&self, node: NodeId, kind: &OccurrenceKind) -> bool {
         let of = |id: &OccurrenceId| self.scene.occurrence(*id).non_negative;
         match kind {
             OccurrenceKind::Leaf { field, .. } => {
@@ -445,11 +484,16 @@ impl<'a> Finder<'a> {
             }
             OccurrenceKind::Warp { child, .. } => of(child),
             OccurrenceKind::Difference { left, .. } => of(left),
+            OccurrenceKind::Map { kind, child } => {
+                let fixed = self.scene.tree.recipe(node).is_none();
+                kind.is_non_negative(of(child), self.scene.combinator(node), fixed)
+            }
             OccurrenceKind::Select { children, .. } => children.iter().all(of),
             OccurrenceKind::Reduce { reducer, children } => match reducer {
-                Reducer::Sum | Reducer::Intersection => children.iter().all(of),
+                Reducer::Sum | Reducer::Product | Reducer::Intersection => children.iter().all(of),
                 Reducer::Ricci(_) | Reducer::RicciFollowing(_) => true,
                 Reducer::Union => children.iter().any(of),
+                Reducer::Step(kind, _) => kind.is_non_negative(children.iter().map(of)),
             },
         }
     }
@@ -504,7 +548,7 @@ impl<'a> Finder<'a> {
 pub(super) fn children(kind: &OccurrenceKind) -> Vec<OccurrenceId> {
     match kind {
         OccurrenceKind::Leaf { .. } => Vec::new(),
-        OccurrenceKind::Warp { child, .. } => vec![*child],
+        OccurrenceKind::Warp { child, .. } | OccurrenceKind::Map { child, .. } => vec![*child],
         OccurrenceKind::Reduce { children, .. } | OccurrenceKind::Select { children, .. } => children.clone(),
         OccurrenceKind::Difference { left, right } => vec![*left, *right],
     }

@@ -7,7 +7,7 @@ use jbt_ir::{Entity, Rows, Store, Table, Tables};
 
 use super::emit::{Code, groups};
 use super::mixing::wants_order;
-use super::occurrence::{FieldId, LeafField, OccurrenceId, OccurrenceKind, Reducer, Scene, SpaceId};
+use super::occurrence::{FieldId, LeafField, OccurrenceId, OccurrenceKind, Scene, SpaceId};
 use super::shape::{Lift, ReducerCode, Shapes};
 use crate::attribute::Mixing;
 use crate::check::NodeId;
@@ -231,6 +231,11 @@ impl<'a> Writer<'a> {
             OccurrenceKind::Difference { left, right } => {
                 tasks.extend([Task::Operand(*right), Task::Operand(*left)]);
             }
+            OccurrenceKind::Map { kind, child } => {
+                let combinator = self.scene.combinator(occurrence.node);
+                kind.push_columns(combinator, self.scene.tree.iso(), &mut self.row);
+                tasks.push(Task::Operand(*child));
+            }
             OccurrenceKind::Select { children, chosen } => {
                 for (place, &child) in children.iter().enumerate().rev() {
                     tasks.push(Task::Guard(Member::Operand(child, None), place == *chosen));
@@ -238,11 +243,7 @@ impl<'a> Writer<'a> {
             }
             OccurrenceKind::Reduce { reducer, .. } => {
                 let code = ReducerCode::of(*reducer);
-                if let (Reducer::Ricci(n) | Reducer::RicciFollowing(n), ReducerCode::RicciGeneral) =
-                    (reducer, code)
-                {
-                    self.row.extend([*n, 1.0 / n]);
-                }
+                code.push_columns(*reducer, &mut self.row);
                 let groups = self.shapes.groups(id);
                 let ordered = wants_order(code, groups.len() > 1, self.query.gradient, &self.mixing);
                 for (index, group) in groups.iter().enumerate().rev() {

@@ -10,6 +10,8 @@ use rustc_hash::FxHashMap as HashMap;
 
 use super::occurrence::{FieldId, OccurrenceId, OccurrenceKind, Reducer, Scene, SpaceId};
 use super::position::MapKind;
+use crate::combine::step::StepKind;
+use crate::combine::unary::UnaryKind;
 use crate::falloff::FalloffKind;
 use crate::skeleton::SkeletonKind;
 use crate::warp::WarpKind;
@@ -18,16 +20,24 @@ use crate::warp::WarpKind;
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, PartialOrd, Ord)]
 pub(super) struct ShapeId(u32);
 
-/// What an exponent is as code.
+/// What an operator is as code.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub(super) enum ReducerCode {
     Sum,
-    /// An integer exponent is code: a chain of products.
-    RicciInteger(u32),
-    /// Any other exponent is a number of the row.
-    RicciGeneral,
+    Ricci(RicciCode),
+    Product,
     Union,
     Intersection,
+    Step(StepKind),
+}
+
+/// What an exponent is as code.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub(super) struct RicciCode {
+    /// An integer exponent is code: a chain of products. Any other is a number of the row.
+    pub(super) integer: Option<u32>,
+    /// Whether the exponent is negative; otherwise these are magnitudes.
+    pub(super) negative: bool,
 }
 
 impl ReducerCode {
@@ -35,10 +45,57 @@ impl ReducerCode {
     pub(super) const fn of(reducer: Reducer) -> Self {
         match reducer {
             Reducer::Sum => Self::Sum,
-            Reducer::Ricci(n) if n == (n as u32) as f64 => Self::RicciInteger(n as u32),
-            Reducer::Ricci(_) | Reducer::RicciFollowing(_) => Self::RicciGeneral,
+            Reducer::Ricci(n) if n.abs() == (n.abs() as u32) as f64 => {
+                Self::Ricci(RicciCode { integer: Some(n.abs() as u32), negative: n < 0.0 })
+            }
+            Reducer::Ricci(n) | Reducer::RicciFollowing(n) => {
+                Self::Ricci(RicciCode { integer: None, negative: n < 0.0 })
+            }
+            Reducer::Product => Self::Product,
             Reducer::Union => Self::Union,
             Reducer::Intersection => Self::Intersection,
+            Reducer::Step(kind, _) => Self::Step(kind),
+        }
+    }
+
+    /// Whether operands are met in the order of the file, the first of them alone.
+    const fn is_ordered(self) -> bool {
+        match self {
+            Self::Step(_) => true,
+            Self::Sum | Self::Ricci(_) | Self::Product | Self::Union | Self::Intersection => false,
+        }
+    }
+
+    /// Names of the numbers that a row keeps for the operator.
+    pub(super) fn columns(self) -> &'static [&'static str] {
+        match self {
+            Self::Ricci(RicciCode { integer: None, .. }) => &["exponent", "inverse_exponent"],
+            Self::Step(kind) => kind.columns(),
+            Self::Ricci(_) | Self::Sum | Self::Product | Self::Union | Self::Intersection => &[],
+        }
+    }
+
+    /// These numbers.
+    pub(super) fn push_columns(self, reducer: Reducer, row: &mut Vec<f64>) {
+        match (reducer, self) {
+            (
+                Reducer::Ricci(n) | Reducer::RicciFollowing(n),
+                Self::Ricci(RicciCode { integer: None, .. }),
+            ) => row.extend([n.abs(), 1.0 / n.abs()]),
+            (Reducer::Step(kind, number), _) => kind.push_columns(number, row),
+            _ => {}
+        }
+    }
+
+    /// The word for it.
+    pub(super) const fn name(self) -> &'static str {
+        match self {
+            Self::Sum => "sum",
+            Self::Ricci(_) => "ricci",
+            Self::Product => "product",
+            Self::Union => "union",
+            Self::Intersection => "intersection",
+            Self::Step(kind) => kind.name(),
         }
     }
 }
@@ -67,6 +124,10 @@ enum ShapeKey {
     Difference {
         left: ShapeId,
         right: ShapeId,
+    },
+    Map {
+        kind: UnaryKind,
+        child: ShapeId,
     },
     /// A use of a space that several lead into.
     Inside {
@@ -276,6 +337,10 @@ impl<'a> Classifier<'a> {
                 let ((left, content), (right, other)) = (self.of(*left), self.of(*right));
                 self.name(ShapeKey::Difference { left, right }, content.and(other))
             }
+            OccurrenceKind::Map { kind, child } => {
+                let (child, content) = self.of(*child);
+                self.name(ShapeKey::Map { kind: *kind, child }, content)
+            }
             OccurrenceKind::Select { children, .. } => {
                 let children = children.iter().map(|child| self.of(*child).0).collect();
                 // Each child is a row of a table of its own.
@@ -286,13 +351,14 @@ impl<'a> Classifier<'a> {
                 self.name(ShapeKey::Lifted(id), Content::LIFTED)
             }
             OccurrenceKind::Reduce { reducer, .. } => {
-                let groups = self.group(id);
+                let code = ReducerCode::of(*reducer);
+                let groups = self.group(id, code);
                 let content = groups.iter().fold(Content::LIFTED, |all, group| match group.folded {
                     true => all.and(Content::ROWS),
                     false => group.members.iter().fold(all, |all, member| all.and(self.of(member.0).1)),
                 });
                 let key = ShapeKey::Reduce {
-                    code: ReducerCode::of(*reducer),
+                    code,
                     non_negative: non_negative(self.scene, &groups),
                     groups: groups
                         .iter()
@@ -309,7 +375,10 @@ impl<'a> Classifier<'a> {
     }
 
     /// The operands of an operator, those of flattened ones among them, by shape.
-    fn group(&self, id: OccurrenceId) -> Vec<Group> {
+    fn group(&self, id: OccurrenceId, code: ReducerCode) -> Vec<Group> {
+        if code.is_ordered() {
+            return self.runs(id);
+        }
         let mut by_shape: HashMap<ShapeId, Vec<(OccurrenceId, u32)>> = HashMap::default();
         let mut stack = vec![id];
         let mut order = 0;
@@ -321,6 +390,7 @@ impl<'a> Classifier<'a> {
                 OccurrenceKind::Reduce { .. }
                 | OccurrenceKind::Leaf { .. }
                 | OccurrenceKind::Warp { .. }
+                | OccurrenceKind::Map { .. }
                 | OccurrenceKind::Select { .. }
                 | OccurrenceKind::Difference { .. } => {
                     by_shape.entry(self.of(next).0).or_default().push((next, order));
@@ -330,18 +400,36 @@ impl<'a> Classifier<'a> {
         }
         let mut by_shape: Vec<_> = by_shape.into_iter().collect();
         by_shape.sort_unstable_by_key(|(shape, _)| *shape);
-        by_shape
-            .into_iter()
-            .map(|(_, members)| {
-                let first = members[0].0;
-                let lifted = self.scene.occurrence(first).uses > 1;
-                let written_out = self.of(first).1.written_out;
-                Group {
-                    folded: !written_out || (members.len() > 1 && !lifted && !self.is_leaf(first)),
-                    members,
+        by_shape.into_iter().map(|(_, members)| Group { folded: self.is_folded(&members), members }).collect()
+    }
+
+    /// The operands of a step: the first alone, the others as runs of one shape.
+    fn runs(&self, id: OccurrenceId) -> Vec<Group> {
+        let children = super::occurrence::children(&self.scene.occurrence(id).kind);
+        let mut members = children.into_iter().zip(0..);
+        let first = members.next().expect("an operator has children");
+        let mut groups = vec![Group { folded: false, members: vec![first] }];
+        for member in members {
+            let shape = self.of(member.0).0;
+            match groups.last_mut() {
+                Some(run) if run.members[0].1 > 0 && self.of(run.members[0].0).0 == shape => {
+                    run.members.push(member);
                 }
-            })
-            .collect()
+                _ => groups.push(Group { folded: false, members: vec![member] }),
+            }
+        }
+        for run in &mut groups[1..] {
+            run.folded = self.is_folded(&run.members);
+        }
+        groups
+    }
+
+    /// Whether operands of one shape are rows of a table.
+    fn is_folded(&self, members: &[(OccurrenceId, u32)]) -> bool {
+        let first = members[0].0;
+        let lifted = self.scene.occurrence(first).uses > 1;
+        let written_out = self.of(first).1.written_out;
+        !written_out || (members.len() > 1 && !lifted && !self.is_leaf(first))
     }
 
     fn is_leaf(&self, id: OccurrenceId) -> bool {
@@ -370,6 +458,8 @@ fn flattened(scene: &Scene<'_>) -> Vec<bool> {
                     Reducer::Ricci(_) | Reducer::Union | Reducer::Intersection => true,
                     // Exponents that are equal now may differ later.
                     Reducer::RicciFollowing(_) => false,
+                    // Nested ones mix attributes by twos.
+                    Reducer::Product | Reducer::Step(..) => false,
                 };
                 flattened[child.0 as usize] = inner_reducer == reducer && inner.uses == 1 && safe;
             }

@@ -31,6 +31,8 @@ use super::occurrence::{FieldId, OccurrenceId, OccurrenceKind, Reducer, Scene};
 use super::position::{MapKind, Position};
 use crate::affine::{Similarity, map_bounds};
 use crate::bounds::Bounds;
+use crate::combine::Combinator;
+use crate::combine::extent::Extent;
 use crate::skeleton::ROUNDING;
 
 /// Half a unit in the last place of 1 in f32.
@@ -46,8 +48,6 @@ const SMALLEST_ROOT: f64 = 1.0 / (1u128 << 73) as f64;
 /// Where rounding may take more than this part of a length, nothing is promised.
 const LARGEST_PART: f64 = 0.25;
 
-const EVERYWHERE: Bounds = Bounds::new(DVec3::NEG_INFINITY, DVec3::INFINITY);
-
 /// All points within a distance of a box.
 #[derive(Clone, Copy, Debug)]
 struct Rounded {
@@ -56,7 +56,7 @@ struct Rounded {
 }
 
 impl Rounded {
-    const EVERYWHERE: Self = Self { core: EVERYWHERE, radius: 0.0 };
+    const EVERYWHERE: Self = Self { core: Bounds::EVERYWHERE, radius: 0.0 };
 
     fn bounds(self) -> Bounds {
         self.core.grown(self.radius)
@@ -68,20 +68,22 @@ pub(super) struct Supports<'a> {
     scene: &'a Scene<'a>,
     fields: Vec<Rounded>,
     /// By occurrence.
-    bounds: Vec<Bounds>,
+    extents: Vec<Extent>,
 }
 
 impl<'a> Supports<'a> {
     /// Finds them, children before parents.
     pub(super) fn new(scene: &'a Scene<'a>) -> Self {
-        let extents = extents(scene);
-        let field = |index| leaf(scene, FieldId(index as u32), &extents);
+        let sizes = sizes(scene);
+        let field = |index| leaf(scene, FieldId(index as u32), &sizes);
         let fields = (0..scene.fields.len()).map(field).collect();
-        let mut supports = Self { scene, fields, bounds: Vec::with_capacity(scene.occurrences.len()) };
+        let mut supports = Self { scene, fields, extents: Vec::with_capacity(scene.occurrences.len()) };
         for index in 0..scene.occurrences.len() {
-            let bounds = supports.find(OccurrenceId(index as u32));
+            let extent = supports.find(OccurrenceId(index as u32));
             // Whatever is empty is empty in every direction, so that it adds nothing to a box around several.
-            supports.bounds.push(if bounds.is_empty() { Bounds::EMPTY } else { bounds });
+            supports
+                .extents
+                .push(extent.map(|bounds| if bounds.is_empty() { Bounds::EMPTY } else { bounds }));
         }
         supports
     }
@@ -93,7 +95,8 @@ impl<'a> Supports<'a> {
             OccurrenceKind::Warp { .. }
             | OccurrenceKind::Reduce { .. }
             | OccurrenceKind::Select { .. }
-            | OccurrenceKind::Difference { .. } => Support::around(self.bounds[id.0 as usize], 0.0),
+            | OccurrenceKind::Map { .. }
+            | OccurrenceKind::Difference { .. } => Support::around(self.extents[id.0 as usize].support, 0.0),
         }
     }
 
@@ -103,29 +106,33 @@ impl<'a> Supports<'a> {
         Support::around(core, radius)
     }
 
-    fn find(&self, id: OccurrenceId) -> Bounds {
-        let of = |id: &OccurrenceId| self.bounds[id.0 as usize];
-        match &self.scene.occurrence(id).kind {
-            OccurrenceKind::Leaf { field, .. } => self.fields[field.0 as usize].bounds(),
+    fn find(&self, id: OccurrenceId) -> Extent {
+        let of = |id: &OccurrenceId| self.extents[id.0 as usize];
+        let all = |children: &[OccurrenceId]| children.iter().map(of).collect::<Vec<_>>();
+        let (occurrence, iso) = (self.scene.occurrence(id), self.scene.tree.iso());
+        match &occurrence.kind {
+            OccurrenceKind::Leaf { field, .. } => {
+                let support = self.fields[field.0 as usize].bounds();
+                let signed = self.scene.primitive(*field).strength < 0.0;
+                Extent { support, negative: if signed { support } else { Bounds::EMPTY } }
+            }
             OccurrenceKind::Warp { position, inside, child } => {
                 let warp = self.scene.warp(self.scene.insides[inside.0 as usize - 1].warp);
-                around_map(self.scene.position(*position), warp.reach(of(child)))
+                let position = self.scene.position(*position);
+                of(child).map(|bounds| around_map(position, warp.reach(bounds)))
             }
             OccurrenceKind::Reduce { reducer, children } => {
-                let positive = children.iter().all(|id| self.scene.occurrence(*id).non_negative);
-                match reducer {
-                    // A zero operand makes it zero; the smaller of zero and a negative field is not zero.
-                    Reducer::Intersection if positive => {
-                        children.iter().map(of).fold(EVERYWHERE, Bounds::intersection)
-                    }
-                    Reducer::Sum
-                    | Reducer::Ricci(_)
-                    | Reducer::RicciFollowing(_)
-                    | Reducer::Union
-                    | Reducer::Intersection => children.iter().map(of).fold(Bounds::EMPTY, Bounds::hull),
-                }
+                let combinator = match (reducer, self.scene.combinator(occurrence.node)) {
+                    // What a difference subtracts.
+                    (Reducer::Union, _) => Combinator::Union,
+                    (_, combinator) => combinator,
+                };
+                Extent::of(combinator, &all(children), iso)
             }
             OccurrenceKind::Difference { left, .. } => of(left),
+            OccurrenceKind::Map { child, .. } => {
+                Extent::of(self.scene.combinator(occurrence.node), &[of(child)], iso)
+            }
             OccurrenceKind::Select { children, chosen } => of(&children[*chosen]),
         }
     }
@@ -133,31 +140,31 @@ impl<'a> Supports<'a> {
 
 /// How large the numbers of a space may become.
 #[derive(Clone, Copy)]
-struct Extent {
+struct Sizes {
     /// A bound of coordinates, in magnitude.
     coordinates: f64,
     /// A bound of the sum of a coordinate's derivatives along the axes of the world, in magnitude.
     derivatives: f64,
 }
 
-/// The extents of all spaces, the world first. A space comes after the one in which its warp stands.
-fn extents(scene: &Scene<'_>) -> Vec<Extent> {
-    let mut extents = vec![Extent { coordinates: f64::from(LARGEST_COORDINATE), derivatives: 1.0 }];
+/// The sizes of all spaces, the world first. A space comes after the one in which its warp stands.
+fn sizes(scene: &Scene<'_>) -> Vec<Sizes> {
+    let mut sizes = vec![Sizes { coordinates: f64::from(LARGEST_COORDINATE), derivatives: 1.0 }];
     for inside in &scene.insides {
         let position = scene.position(inside.position);
-        let outer = extents[position.space.0 as usize].after(&Inverse::new(position.kind(), &position.map));
+        let outer = sizes[position.space.0 as usize].after(&Inverse::new(position.kind(), &position.map));
         let growth = scene.warp(inside.warp).growth(outer.coordinates);
         let derivatives = outer.derivatives * growth.derivatives;
         // What is too large stays so, whatever a map behind it does.
         let fits = outer.coordinates <= LARGEST_NUMBER && derivatives <= LARGEST_FACTOR;
         let coordinates = if fits { growth.coordinates } else { f64::INFINITY };
-        extents.push(Extent { coordinates, derivatives });
+        sizes.push(Sizes { coordinates, derivatives });
     }
-    extents
+    sizes
 }
 
-impl Extent {
-    /// The extent behind a map; twice what it is without rounding.
+impl Sizes {
+    /// The sizes behind a map; twice what it is without rounding.
     fn after(self, inverse: &Inverse) -> Self {
         let sums = absolute(inverse.back.matrix3) * DVec3::ONE;
         let shifts = inverse.back.translation.abs();
@@ -199,7 +206,7 @@ fn absolute(matrix: DMat3) -> DMat3 {
 }
 
 /// The support of a leaf's field.
-fn leaf(scene: &Scene<'_>, id: FieldId, extents: &[Extent]) -> Rounded {
+fn leaf(scene: &Scene<'_>, id: FieldId, sizes: &[Sizes]) -> Rounded {
     let (field, primitive) = (scene.field(id), scene.primitive(id));
     let (map, skeleton) = (&field.map, &primitive.skeleton);
     let radius = field.scale * primitive.radius;
@@ -209,7 +216,7 @@ fn leaf(scene: &Scene<'_>, id: FieldId, extents: &[Extent]) -> Rounded {
     let pose = skeleton.bounds_under(&to_pose);
     let size = pose.min.abs().max(pose.max.abs());
 
-    let asked = extents[scene.position(field.position).space.0 as usize].after(&inverse);
+    let asked = sizes[scene.position(field.position).space.0 as usize].after(&inverse);
     let factor = slope * primitive.strength.abs().max(1.0) * primitive.falloff.steepness();
     let small = slope >= f64::from(f32::MIN_POSITIVE)
         && asked.coordinates <= LARGEST_NUMBER
@@ -254,7 +261,7 @@ fn around_map(position: &Position, bounds: Bounds) -> Bounds {
     let size = bounds.min.abs().max(bounds.max.abs()).max_element();
     let part = (inverse.relative * DVec3::ONE).max_element();
     if !(size.is_finite() && part <= LARGEST_PART) {
-        return EVERYWHERE;
+        return Bounds::EVERYWHERE;
     }
     let error = (part * size + inverse.fixed.max_element()) / (1.0 - part);
     let image = map_bounds(map, bounds.grown(error));

@@ -29,9 +29,17 @@
 //!            | "surface_radius" expression                   where the primitive alone meets the iso-value
 //!            | "falloff" FALLOFF [ "{" { FIELD value } "}" ]   soft if not written
 //!            | "strength" expression ;                       1 if not written
-//! operator   = "sum" | "union" | "intersection" | "difference" | [ "blend" ] "ricci" expression
+//! operator   = "sum" | "product" | "union" | "intersection" | "difference" | "symmetric_difference"
+//!            | [ "blend" ] "ricci" expression                at least 1, or at most -1
+//!            | ( "smooth_union" | "smooth_intersection" | "smooth_difference" ) [ "width" ] expression
+//!            | "rfunction" ( "union" | "intersection" | "difference" )
+//!              [ "alpha" expression | "power" expression | "order" expression ]    alpha 0 if not written
 //!            | "select" expression ;                         one child: that whose place, from 0, is nearest
-//! map        = "translate" vector
+//! map        = "complement"
+//!            | "clamp" "low" expression "high" expression
+//!            | "shell" [ "thickness" ] expression
+//!            | "offset" [ "by" ] expression
+//!            | "translate" vector
 //!            | "rotate" "axis" value ( "degrees" | "radians" ) expression
 //!            | "scale" ( expression | vector )
 //!            | "reflect" "axis" value                         a mirror image in the plane through the origin across the axis
@@ -79,6 +87,7 @@ mod expression;
 mod falloff;
 mod lex;
 mod node;
+mod operator;
 mod parse;
 mod primitive;
 mod print;

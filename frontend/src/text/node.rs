@@ -6,7 +6,7 @@ use super::expression::Place;
 use super::lex::{Token, TokenKind};
 use super::parse::{Parser, is_statement};
 use super::primitive::Slots;
-use super::{GROUP_NODE, REFLECT, ROTATE, SHEAR, STRETCH};
+use super::{GROUP_NODE, REFLECT, ROTATE, SHEAR, STRETCH, operator};
 use crate::combine::Combinator;
 use crate::diagnostic::{Diagnostic, Span};
 use crate::field::Field;
@@ -17,8 +17,14 @@ use crate::tree::{NodeKind, Tree};
 use crate::warp::WarpKind;
 
 /// The combinators without parameters.
-const COMBINATORS: [Combinator; 4] =
-    [Combinator::Sum, Combinator::Union, Combinator::Intersection, Combinator::Difference];
+const COMBINATORS: [Combinator; 6] = [
+    Combinator::Sum,
+    Combinator::Product,
+    Combinator::Union,
+    Combinator::Intersection,
+    Combinator::Difference,
+    Combinator::SymmetricDifference,
+];
 
 /// The other words that begin a node.
 const OTHERS: [&str; 12] = [
@@ -45,22 +51,22 @@ pub(super) fn is_reserved(word: &str) -> bool {
 fn fixed_words() -> impl Iterator<Item = &'static str> {
     let members = SkeletonKind::ALL.iter().map(|kind| kind.name());
     let warps = WarpKind::ALL.iter().map(|kind| kind.name());
-    members.chain(warps).chain(COMBINATORS.iter().map(|c| c.name())).chain(OTHERS)
+    members.chain(warps).chain(COMBINATORS.iter().map(|c| c.name())).chain(operator::WORDS).chain(OTHERS)
 }
 
 /// What an open block becomes.
-enum Head {
+pub(super) enum Head {
     Combine(Combinator),
     /// An operator with a number.
     Operator(Box<Recipe>),
-    /// Boxed, so that a million open blocks are small.
+    /// With one child. Boxed, so that a million open blocks are small.
     Unary(Box<Recipe>),
     /// The head has an error; the block is read for its own errors.
     Broken,
 }
 
 /// An open block.
-struct Frame {
+pub(super) struct Frame {
     head: Head,
     /// Its first child on the stack of finished subtrees.
     first: u32,
@@ -73,7 +79,7 @@ struct Frame {
 }
 
 /// What begins with a word.
-enum Begun {
+pub(super) enum Begun {
     /// A whole subtree.
     Leaf(Tree),
     /// A block is open.
@@ -241,6 +247,7 @@ impl<'a> Parser<'a> {
                 let rows = self.vector();
                 self.map(start, Map::Affine(Box::new(rows)))
             }
+            _ if operator::WORDS.contains(&word) => self.operator_head(start, word),
             GROUP_NODE => match self.peek_word() {
                 Some(name) => {
                     let at = self.next();
@@ -257,7 +264,7 @@ impl<'a> Parser<'a> {
     }
 
     /// The block of a node whose head has been read.
-    fn block(&mut self, start: Token, head: Head) -> Begun {
+    pub(super) fn block(&mut self, start: Token, head: Head) -> Begun {
         let span = Span::new(start.start, self.previous_end());
         self.count_node(span);
         match self.open() {
@@ -328,11 +335,6 @@ impl<'a> Parser<'a> {
         // A fault has been told where the head was read.
         let made = Tree::cook(recipe, &self.iso, children, Some(frame.span));
         made.unwrap_or_else(|_| self.broken.clone())
-    }
-
-    fn ricci(&mut self, start: Token) -> Begun {
-        let exponent = self.expression(Place::Alone).number;
-        self.block(start, Head::Operator(Box::new(Recipe::Ricci(exponent))))
     }
 
     fn select(&mut self, start: Token) -> Begun {

@@ -12,7 +12,7 @@ use glam::DAffine3;
 
 use super::{GROUP_NODE, field_word};
 use crate::attribute::AttributeGroup;
-use crate::combine::Combinator;
+use crate::combine::{Combinator, Family};
 use crate::falloff::FalloffKind;
 use crate::field::{Field, FieldKind, FieldValue};
 use crate::model::Model;
@@ -157,10 +157,9 @@ impl Printer {
 fn head(out: &mut String, kind: &NodeKind) {
     match kind {
         NodeKind::Primitive(leaf) => primitive(out, leaf),
-        NodeKind::Combine(Combinator::Ricci(exponent)) => {
-            let _ = write!(out, "blend ricci {}", plain(*exponent));
+        NodeKind::Combine(combinator) => {
+            operator(out, *combinator, &combinator.numbers().into_iter().map(plain).collect::<Vec<_>>());
         }
-        NodeKind::Combine(combinator) => out.push_str(combinator.name()),
         NodeKind::Select(which) => {
             let _ = write!(out, "select {}", plain(*which));
         }
@@ -173,6 +172,22 @@ fn head(out: &mut String, kind: &NodeKind) {
         }
         NodeKind::Attribute { name, values } => attribute(out, name, &group_values(values.iter().copied())),
     }
+}
+
+/// The head of an operator with these numbers.
+fn operator(out: &mut String, combinator: Combinator, numbers: &[String]) {
+    let _ = match (combinator, numbers) {
+        (Combinator::Ricci(_), [exponent]) => write!(out, "blend ricci {exponent}"),
+        (Combinator::Clamp { .. }, [low, high]) => write!(out, "clamp low {low} high {high}"),
+        (Combinator::RFunction(set, Family::Order(order)), _) => {
+            write!(out, "rfunction {} order {order}", set.name())
+        }
+        (Combinator::RFunction(set, family), [number]) => {
+            write!(out, "rfunction {} {} {number}", set.name(), family.name())
+        }
+        (_, [number]) => write!(out, "{} {number}", combinator.name()),
+        _ => write!(out, "{}", combinator.name()),
+    };
 }
 
 /// The head of a node with numbers that follow parameters: as it was written.
@@ -189,8 +204,8 @@ fn head_of_recipe(out: &mut String, recipe: &Recipe) {
             };
             rest_of_primitive(out, falloff, strength);
         }
-        Recipe::Ricci(exponent) => {
-            let _ = write!(out, "blend ricci {exponent}");
+        Recipe::Combine { combinator, numbers } => {
+            operator(out, *combinator, &numbers.iter().map(Number::text).collect::<Vec<_>>());
         }
         Recipe::Select(which) => {
             let _ = write!(out, "select {which}");

@@ -153,9 +153,7 @@ impl Parser<'_> {
             | FieldKind::Positive
             | FieldKind::NonNegative
             | FieldKind::Count
-            | FieldKind::Within { .. } => {
-                FieldNumber::Real(self.expression(Place::Alone).number)
-            }
+            | FieldKind::Within { .. } => FieldNumber::Real(self.expression(Place::Alone).number),
             FieldKind::Position | FieldKind::Extents => FieldNumber::Vector(self.vector()),
             FieldKind::Direction => match self.axis_word() {
                 Some(axis) => FieldValue::Vector(axis).into(),

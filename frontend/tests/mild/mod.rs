@@ -5,7 +5,7 @@ use fastrand::Rng;
 use glam::{DAffine3, DQuat, DVec3};
 use jbt_frontend::affine::scale_rotate_translate;
 use jbt_frontend::attribute::{AttributeGroup, Mixing};
-use jbt_frontend::combine::Combinator;
+use jbt_frontend::combine::{Combinator, Family, SetOperation};
 use jbt_frontend::falloff::FalloffKind;
 use jbt_frontend::field::{Field, FieldKind, FieldValue};
 use jbt_frontend::model::Model;
@@ -77,8 +77,20 @@ pub fn warp(rng: &mut Rng) -> NodeKind {
     NodeKind::Warp(kind.from_fields(&fields(rng, kind.fields())))
 }
 
+/// A map of the field, for iso-values from 0.2.
+fn field_map(rng: &mut Rng) -> NodeKind {
+    NodeKind::Combine(match rng.u8(..6) {
+        0 => Combinator::Complement,
+        1 => Combinator::Clamp { low: 0.4 * rng.f64() - 0.2, high: 0.3 + rng.f64() },
+        2 => Combinator::Clamp { low: 0.0, high: 0.3 + rng.f64() },
+        3 | 4 => Combinator::Shell(0.05 + 0.3 * rng.f64()),
+        _ => Combinator::Offset(0.3 * rng.f64() - 0.15),
+    })
+}
+
 fn unary(rng: &mut Rng) -> NodeKind {
-    match rng.u8(..4) {
+    match rng.u8(..5) {
+        3 if rng.u8(..3) == 0 => field_map(rng),
         0 => NodeKind::Attribute { name: "color".into(), values: vector(rng, 1.0).into() },
         1 => NodeKind::Attribute { name: "wood".into(), values: vec![rng.f64()] },
         2 => warp(rng),
@@ -96,8 +108,24 @@ fn following(rng: &mut Rng, tree: &Tree, index: usize) -> Tree {
     }
 }
 
+fn family(rng: &mut Rng) -> Family {
+    match rng.u8(..3) {
+        0 => Family::Alpha(1.9 * rng.f64() - 0.9),
+        1 => Family::Order(rng.u32(1..5)),
+        _ => Family::Power(1.5 + 4.0 * rng.f64()),
+    }
+}
+
 fn combinator(rng: &mut Rng) -> Combinator {
-    match rng.u8(..7) {
+    let set = SetOperation::ALL[rng.usize(..3)];
+    match rng.u8(..17) {
+        14..17 => Combinator::Difference,
+        7 => Combinator::Product,
+        8 => Combinator::SymmetricDifference,
+        9 | 10 => Combinator::Smooth(set, 0.05 + 0.4 * rng.f64()),
+        11 => Combinator::RFunction(set, family(rng)),
+        12 => Combinator::Ricci(-f64::from(rng.u32(1..5))),
+        13 => Combinator::Ricci(-1.0 - 4.0 * rng.f64()),
         0 | 1 => Combinator::Sum,
         2 => Combinator::Ricci(f64::from(rng.u32(1..5))),
         3 => Combinator::Ricci(1.0 + 4.0 * rng.f64()),

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use fastrand::Rng;
 use glam::{DAffine3, DMat3, DVec3};
 use jbt_frontend::attribute::{AttributeGroup, Mixing};
-use jbt_frontend::combine::Combinator;
+use jbt_frontend::combine::{Combinator, Family, SetOperation};
 use jbt_frontend::falloff::{Falloff, FalloffKind};
 use jbt_frontend::field::{Field, FieldKind, FieldValue};
 use jbt_frontend::model::Model;
@@ -115,14 +115,16 @@ pub fn model(rng: &mut Rng) -> Model {
                 Tree::new(NodeKind::Select(number(rng)), children)
             }
             _ => {
-                let combinator = match rng.u8(..5) {
-                    0 => Combinator::Sum,
-                    1 => Combinator::Ricci(number(rng)),
-                    2 => Combinator::Union,
-                    3 => Combinator::Intersection,
-                    _ => Combinator::Difference,
-                };
-                let children = (0..rng.usize(1..5)).map(|_| pick(rng)).collect();
+                let combinator = combinator(rng);
+                let single = matches!(
+                    combinator,
+                    Combinator::Complement
+                        | Combinator::Clamp { .. }
+                        | Combinator::Shell(_)
+                        | Combinator::Offset(_)
+                );
+                let count = if single { 1 } else { rng.usize(1..5) };
+                let children = (0..count).map(|_| pick(rng)).collect();
                 Tree::new(NodeKind::Combine(combinator), children)
             }
         };
@@ -130,4 +132,28 @@ pub fn model(rng: &mut Rng) -> Model {
     }
     let root = trees.pop().unwrap_or_else(point);
     Model { iso: number(rng).into(), attributes: groups, ..Model::new(root) }
+}
+
+/// Any operator.
+fn combinator(rng: &mut Rng) -> Combinator {
+    let set = SetOperation::ALL[rng.usize(..3)];
+    match rng.u8(..14) {
+        0 => Combinator::Sum,
+        1 => Combinator::Ricci(number(rng)),
+        2 => Combinator::Union,
+        3 => Combinator::Intersection,
+        4 => Combinator::Difference,
+        5 => Combinator::Product,
+        6 => Combinator::SymmetricDifference,
+        7 => Combinator::Smooth(set, number(rng)),
+        8 => Combinator::RFunction(set, Family::Alpha(number(rng))),
+        9 => match rng.bool() {
+            true => Combinator::RFunction(set, Family::Power(number(rng))),
+            false => Combinator::RFunction(set, Family::Order(rng.u32(..9))),
+        },
+        10 => Combinator::Complement,
+        11 => Combinator::Clamp { low: number(rng), high: number(rng) },
+        12 => Combinator::Shell(number(rng)),
+        _ => Combinator::Offset(number(rng)),
+    }
 }

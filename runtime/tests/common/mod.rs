@@ -9,7 +9,7 @@ use jbt::build::param;
 use jbt::{Model, Number};
 use jbt_frontend::affine::scale_rotate_translate;
 use jbt_frontend::attribute::{AttributeGroup, Mixing};
-use jbt_frontend::combine::Combinator;
+use jbt_frontend::combine::{Combinator, Family, SetOperation};
 use jbt_frontend::falloff::FalloffKind;
 use jbt_frontend::field::{Field, FieldKind, FieldValue};
 use jbt_frontend::skeleton::SkeletonKind;
@@ -70,7 +70,22 @@ impl Random {
             let parts = self.shape.usize(1..leaves.min(5) + 1);
             let children: Vec<Tree> =
                 (0..parts).map(|_| self.tree(leaves / parts, attributes, depth + 1)).collect();
-            let kind = NodeKind::Combine(match self.shape.u8(0..9) {
+            let set = SetOperation::ALL[self.shape.usize(0..3)];
+            let kind = NodeKind::Combine(match self.shape.u8(0..15) {
+                9 => Combinator::Product,
+                10 => Combinator::SymmetricDifference,
+                11 => Combinator::Smooth(set, self.between(0.05, 0.5)),
+                12 => {
+                    let width = self.between(0.05, 0.5);
+                    let width = self.parameter("width", width);
+                    return self.finished(Tree::smooth(set, width, children), attributes);
+                }
+                13 => Combinator::RFunction(set, self.family()),
+                14 => Combinator::Ricci(match self.shape.u8(0..3) {
+                    0 => -f64::from(self.shape.u32(1..20)),
+                    1 => -self.between(1.01, 9.9),
+                    _ => -512.0,
+                }),
                 0 | 1 => Combinator::Sum,
                 2 => Combinator::Ricci(f64::from(self.shape.u32(1..20))),
                 3 => Combinator::Ricci(if self.shape.bool() { self.between(1.01, 9.9) } else { 1024.0 }),
@@ -140,7 +155,8 @@ impl Random {
     /// The tree under up to two unary nodes.
     fn unary(&mut self, mut tree: Tree, attributes: &[AttributeGroup]) -> Tree {
         for _ in 0..self.shape.usize(0..3) {
-            let kind = match self.shape.u8(0..10) {
+            let kind = match self.shape.u8(0..11) {
+                10 => self.field_map(),
                 0..3 => {
                     let group = &attributes[self.shape.usize(0..attributes.len())];
                     let values = (0..group.width()).map(|_| self.between(0.0, 1.0)).collect();
@@ -159,6 +175,26 @@ impl Random {
             tree = Tree::new(kind, vec![tree]);
         }
         tree
+    }
+
+    fn family(&mut self) -> Family {
+        match self.shape.u8(0..3) {
+            0 => Family::Alpha(self.between(-0.8, 1.0)),
+            1 => Family::Order(self.shape.u32(1..4)),
+            _ => Family::Power(self.between(1.5, 6.0)),
+        }
+    }
+
+    /// A map of the field, for iso-values from 0.3. Whether a clamp lets negative fields pass selects code.
+    fn field_map(&mut self) -> NodeKind {
+        NodeKind::Combine(match self.shape.u8(0..6) {
+            0 => Combinator::Complement,
+            1 => Combinator::Clamp { low: -self.between(0.01, 0.5), high: self.between(0.4, 1.3) },
+            2 => Combinator::Clamp { low: self.between(0.0, 0.2), high: self.between(0.4, 1.3) },
+            3 => Combinator::Clamp { low: 0.0, high: self.between(0.4, 1.3) },
+            4 => Combinator::Shell(self.between(0.05, 0.5)),
+            _ => Combinator::Offset(self.between(-0.3, 0.2)),
+        })
     }
 
     /// A new parameter.

@@ -52,6 +52,8 @@ pub(super) struct Guard {
 }
 
 impl Guard {
+    /// Of whatever is left out where it is zero, and then counts as that.
+    pub(super) const ZERO: Self = Self { start: GuardStart::Zero, decision: None };
     /// Of the left side of a difference.
     pub(super) const LEFT: Self =
         Self { start: GuardStart::Highest, decision: Some(DecisionKind::DifferenceLeft) };
@@ -62,8 +64,8 @@ impl Guard {
     /// Of an operand.
     pub(super) const fn of(code: ReducerCode, non_negative: bool) -> Self {
         match code {
-            ReducerCode::Sum | ReducerCode::RicciInteger(_) | ReducerCode::RicciGeneral => {
-                Self { start: GuardStart::Zero, decision: None }
+            ReducerCode::Sum | ReducerCode::Ricci(_) | ReducerCode::Product | ReducerCode::Step(_) => {
+                Self::ZERO
             }
             ReducerCode::Union => {
                 let start = if non_negative { GuardStart::Zero } else { GuardStart::Lowest };

@@ -1,0 +1,310 @@
+//! R-functions (Rvachev 1963, 1982): set operations of functions whose sign is the inside, here without their background.
+//!
+//! With `x = a / iso - 1` and `y = b / iso - 1` the union is `R(x, y)`, the intersection `-R(-x, -y)`, the difference `-R(-x, y)`, and
+//!
+//! | family | R(x, y) | numbers |
+//! |---|---|---|
+//! | alpha | `x + y + sqrt(x^2 + y^2 - 2 alpha x y)`, a positive factor left out | alpha in [-0.9, 1]: 1 is the maximum, 0 is R_0 |
+//! | order | `(x + y + s) s^m` with `s = sqrt(x^2 + y^2)`: R_0^m, with m continuous derivatives in the corner | m from 1 to 4 |
+//! | power | `x + y + (\|x\|^p + \|y\|^p)^(1/p)`: R_p | p in [1.1, 64]: 2 is R_0 |
+//!
+//! As they are, R-functions have no support: R_0 of two fields that are 0 is 0.2 for iso 1/2, and not 0. So with B, their value where both
+//! fields are 0, the field is
+//!
+//! ```text
+//! F = max(0, iso (1 - R / B))        0 where all fields are 0, iso where R is 0, and so that the surface stays
+//! ```
+//!
+//! R and B come from the same ops, so 0 is exact. A lone field is changed too (0.3 becomes 0.27 by R_0's union for iso 1/2), so no zero may be
+//! left out of a fold, and the intersection is not 0 where one field alone is (it may reach 0.29 iso): all have the hull of the children as support.
+//!
+//! Alpha below -0.9, where B goes to 0, and p near 1 leave too few digits in f32. Gradients are continuous but for the corner `x = y = 0` (and
+//! the tie of alpha = 1); there the root has the tangent 0. R_0^m is not monotone. Weights are `f dF/df`, those of what is subtracted by its complement,
+//! where it is there.
+
+use jbt_ir::Domain;
+
+use super::SetOperation;
+use super::ricci::FLOOR;
+use super::step::{Pair, Reach, Step};
+use crate::lower::guide::Rule;
+use crate::skeleton::positive_part;
+
+/// The least alpha: below it the background is too near to 0.
+pub(crate) const LEAST_ALPHA: f64 = -0.9;
+/// The largest order.
+pub(crate) const LARGEST_ORDER: u32 = 4;
+/// The powers that are taken.
+pub(crate) const POWERS: [f64; 2] = [1.1, 64.0];
+
+/// A family of R-functions.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum Family {
+    /// R_alpha: from -0.9 (the roundest) through 0 (R_0) to 1 (minimum and maximum).
+    Alpha(f64),
+    /// R_0^m: m times continuously differentiable in the corner; from 1 to 4.
+    Order(u32),
+    /// R_p, with p from 1.1 to 64.
+    Power(f64),
+}
+
+/// What of a family selects code.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub(crate) enum FamilyKind {
+    Alpha,
+    Order(u32),
+    Power,
+}
+
+impl Family {
+    pub(crate) const fn kind(self) -> FamilyKind {
+        match self {
+            Self::Alpha(_) => FamilyKind::Alpha,
+            Self::Order(order) => FamilyKind::Order(order),
+            Self::Power(_) => FamilyKind::Power,
+        }
+    }
+
+    /// The number that may follow a parameter.
+    pub(crate) const fn number(self) -> Option<f64> {
+        match self {
+            Self::Alpha(number) | Self::Power(number) => Some(number),
+            Self::Order(_) => None,
+        }
+    }
+
+    pub(crate) const fn with_numbers(self, numbers: &[f64]) -> Self {
+        match self {
+            Self::Alpha(_) => Self::Alpha(numbers[0]),
+            Self::Order(order) => Self::Order(order),
+            Self::Power(_) => Self::Power(numbers[0]),
+        }
+    }
+
+    /// The word of the text format.
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Self::Alpha(_) => "alpha",
+            Self::Order(_) => "order",
+            Self::Power(_) => "power",
+        }
+    }
+}
+
+/// See the module.
+#[derive(Clone, Copy)]
+pub(super) struct RFunction(pub(super) SetOperation, pub(super) FamilyKind);
+
+/// R, and its derivatives up to a common factor.
+#[derive(Clone, Copy)]
+struct Rvachev<R> {
+    value: R,
+    slopes: [R; 2],
+    /// The root: 0 where gradients are not continuous.
+    root: R,
+}
+
+impl RFunction {
+    fn rvachev(self, [x, y]: [f64; 2], number: f64) -> Rvachev<f64> {
+        let over = |x: f64, root: f64| if root == 0.0 { 0.0 } else { x / root };
+        match self.1 {
+            FamilyKind::Alpha => {
+                let root = ((x - number * y).powi(2) + (1.0 - number * number) * y * y).sqrt();
+                let slopes = [1.0 + over(x - number * y, root), 1.0 + over(y - number * x, root)];
+                Rvachev { value: x + y + root, slopes, root }
+            }
+            FamilyKind::Order(order) => {
+                let root = x.hypot(y);
+                let lean = f64::from(order) * over(x + y + root, root);
+                let slope = |x: f64| 1.0 + over(x, root) * (1.0 + lean);
+                Rvachev {
+                    value: (x + y + root) * root.powi(order as i32),
+                    slopes: [slope(x), slope(y)],
+                    root,
+                }
+            }
+            FamilyKind::Power => {
+                let largest = x.abs().max(y.abs());
+                let part = |x: f64| over(x.abs(), largest).powf(number);
+                let root = largest * (part(x) + part(y)).powf(1.0 / number);
+                let slope = |x: f64| 1.0 + over(x.abs(), root).powf(number - 1.0).copysign(x);
+                Rvachev { value: x + y + root, slopes: [slope(x), slope(y)], root }
+            }
+        }
+    }
+
+    /// The arguments of R, from fields in units of the iso-value.
+    fn arguments(self, [a, b]: [f64; 2]) -> [f64; 2] {
+        match self.0 {
+            SetOperation::Union => [a - 1.0, b - 1.0],
+            SetOperation::Intersection => [1.0 - a, 1.0 - b],
+            SetOperation::Difference => [1.0 - a, b - 1.0],
+        }
+    }
+
+    /// `1 - R / B`, and R.
+    fn relative(self, [a, b]: [f64; 2], number: f64, iso: f64) -> (f64, Rvachev<f64>) {
+        let here = self.rvachev(self.arguments([a / iso, b / iso]), number);
+        let background = self.rvachev(self.arguments([0.0, 0.0]), number);
+        (1.0 - here.value / background.value, here)
+    }
+}
+
+impl Step for RFunction {
+    fn column_names(self) -> &'static [&'static str] {
+        match self.1 {
+            FamilyKind::Alpha => &["alpha", "rest"],
+            FamilyKind::Order(_) => &[],
+            FamilyKind::Power => &["power", "inverse_power"],
+        }
+    }
+
+    fn columns(self, number: f64, row: &mut Vec<f64>) {
+        match self.1 {
+            FamilyKind::Alpha => row.extend([number, 1.0 - number * number]),
+            FamilyKind::Order(_) => {}
+            FamilyKind::Power => row.extend([number, 1.0 / number]),
+        }
+    }
+
+    fn pair(self, [a, b]: [f64; 2], number: f64, iso: f64) -> Pair<f64> {
+        let (relative, here) = self.relative([a, b], number, iso);
+        let right = match self.0 {
+            SetOperation::Union | SetOperation::Intersection => b,
+            SetOperation::Difference if b > 0.0 => 2.0 * iso - b,
+            SetOperation::Difference => 0.0,
+        };
+        let weights = [a.max(0.0) * here.slopes[0].max(0.0), right.max(0.0) * here.slopes[1].max(0.0)];
+        Pair { field: iso * relative.max(0.0), weights }
+    }
+
+    fn decision(self, [a, b]: [f64; 2], number: f64, iso: f64) -> f64 {
+        let (relative, here) = self.relative([a, b], number, iso);
+        let appears = match self.0 {
+            SetOperation::Difference if b != 0.0 => b.abs(),
+            SetOperation::Union | SetOperation::Intersection | SetOperation::Difference => f64::INFINITY,
+        };
+        iso * here.root.min(relative.abs()).min(appears / iso)
+    }
+
+    fn reach(self) -> Reach {
+        Reach::Any
+    }
+
+    fn rule(self, _: bool) -> Rule {
+        Rule::Never
+    }
+
+    fn is_non_negative(self, _: [bool; 2]) -> bool {
+        true
+    }
+
+    fn emit<D: Domain>(
+        self,
+        d: &mut D,
+        [a, b]: [D::Real; 2],
+        row: &[D::Real],
+        iso2: D::Real,
+    ) -> Pair<D::Real> {
+        let (zero, one, half, two) = (d.constant(0.0), d.constant(1.0), d.constant(0.5), d.constant(2.0));
+        let (iso, inverse) = (d.mul(iso2, half), d.div(two, iso2));
+        let in_units = [d.mul(a, inverse), d.mul(b, inverse)];
+        let arguments = self.emit_arguments(d, in_units);
+        let nothing = self.emit_arguments(d, [zero, zero]);
+        let here = self.emit_rvachev(d, arguments, row);
+        let background = self.emit_rvachev(d, nothing, row);
+        let ratio = d.div(here.value, background.value);
+        let relative = d.sub(one, ratio);
+        let relative = positive_part(d, relative);
+        let field = d.mul(iso, relative);
+        let right = match self.0 {
+            SetOperation::Union | SetOperation::Intersection => b,
+            SetOperation::Difference => {
+                let (there, complement) = (d.lt(zero, b), d.sub(iso2, b));
+                d.select(there, complement, zero)
+            }
+        };
+        let mut weight = |field: D::Real, slope: D::Real| {
+            let (field, slope) = (positive_part(d, field), positive_part(d, slope));
+            d.mul(field, slope)
+        };
+        Pair { field, weights: [weight(a, here.slopes[0]), weight(right, here.slopes[1])] }
+    }
+}
+
+/// Over the ops.
+impl RFunction {
+    fn emit_arguments<D: Domain>(self, d: &mut D, [a, b]: [D::Real; 2]) -> [D::Real; 2] {
+        let one = d.constant(1.0);
+        match self.0 {
+            SetOperation::Union => [d.sub(a, one), d.sub(b, one)],
+            SetOperation::Intersection => [d.sub(one, a), d.sub(one, b)],
+            SetOperation::Difference => [d.sub(one, a), d.sub(b, one)],
+        }
+    }
+
+    fn emit_rvachev<D: Domain>(self, d: &mut D, [x, y]: [D::Real; 2], row: &[D::Real]) -> Rvachev<D::Real> {
+        let sum = d.add(x, y);
+        match self.1 {
+            FamilyKind::Alpha => {
+                let minus = d.neg(row[0]);
+                let (along_x, along_y) = (d.fma(minus, y, x), d.fma(minus, x, y));
+                // Of two terms that are not negative, so that their sum is not.
+                let (square, y_square) = (d.mul(along_x, along_x), d.mul(y, y));
+                let square = d.fma(row[1], y_square, square);
+                let root = d.sqrt(square);
+                let slopes = [along_x, along_y].map(|along| slope(d, along, root));
+                Rvachev { value: d.add(sum, root), slopes, root }
+            }
+            FamilyKind::Order(order) => {
+                let square = d.mul(x, x);
+                let square = d.fma(y, y, square);
+                let root = d.sqrt(square);
+                let mut value = d.add(sum, root);
+                let (one, m) = (d.constant(1.0), d.constant(order as f32));
+                let lean = over(d, value, root);
+                let lean = d.fma(m, lean, one);
+                let slopes = [x, y].map(|x| {
+                    let lean_x = over(d, x, root);
+                    d.fma(lean_x, lean, one)
+                });
+                for _ in 0..order {
+                    value = d.mul(value, root);
+                }
+                Rvachev { value, slopes, root }
+            }
+            FamilyKind::Power => {
+                let (p, inverse_p) = (row[0], row[1]);
+                let (x_size, y_size) = (d.abs(x), d.abs(y));
+                let (largest, smallest) = (d.max(y_size, x_size), d.min(y_size, x_size));
+                let ratio = over(d, smallest, largest);
+                let part = d.pow(ratio, p);
+                let one = d.constant(1.0);
+                let powers = d.add(one, part);
+                let root = d.pow(powers, inverse_p);
+                let root = d.mul(largest, root);
+                let less = d.sub(p, one);
+                let slopes = [(x, x_size), (y, y_size)].map(|(x, size)| {
+                    let (zero, lean) = (d.constant(0.0), over(d, size, root));
+                    let lean = d.pow(lean, less);
+                    let (negative, minus) = (d.lt(x, zero), d.neg(lean));
+                    let lean = d.select(negative, minus, lean);
+                    d.add(one, lean)
+                });
+                Rvachev { value: d.add(sum, root), slopes, root }
+            }
+        }
+    }
+}
+
+/// `x / root`, and 0 where both are: a root is 0, or far above the floor.
+fn over<D: Domain>(d: &mut D, x: D::Real, root: D::Real) -> D::Real {
+    let floor = d.constant(FLOOR);
+    let divisor = d.max(root, floor);
+    d.div(x, divisor)
+}
+
+fn slope<D: Domain>(d: &mut D, along: D::Real, root: D::Real) -> D::Real {
+    let (one, part) = (d.constant(1.0), over(d, along, root));
+    d.add(one, part)
+}

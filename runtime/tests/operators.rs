@@ -1,0 +1,55 @@
+//! What is often wrong with operators in systems of this kind, on every engine: lanes that share what the first of them decides, and models
+//! that end nowhere.
+
+use jbt::build::point;
+use jbt::{Compiler, Engine, Model, Points, Polygonize, PolygonizeError, Query, SetOperation, Tree};
+
+/// Eight balls in a row, each red and blue in parts of its own.
+fn balls(operator: impl Fn([Tree; 2]) -> Tree) -> Tree {
+    let pair = |i: i32| {
+        let at = [3.0 * f64::from(i), 0.0, 0.0];
+        let (red, blue) = (point(at, 1.0).color([1.0, 0.0, 0.0]), point(at, 1.0).color([0.0, 0.0, 1.0]));
+        let (near, far) = (red.strength(1.2), blue.strength(0.9));
+        // Who wins alternates.
+        operator(if i % 2 == 0 { [near, far] } else { [far.strength(1.2), near.strength(0.9)] })
+    };
+    Tree::combine(jbt::Combinator::Union, (0..8).map(pair))
+}
+
+#[test]
+fn lanes_do_not_share_the_colour_of_the_first() {
+    let operators: [fn([Tree; 2]) -> Tree; 5] = [
+        |[a, b]| a | b,
+        |[a, b]| a & b,
+        |[a, b]| a ^ b,
+        |[a, b]| a.smooth_union(0.1, &b),
+        |[a, b]| Tree::smooth(SetOperation::Intersection, 0.1, [a, b]),
+    ];
+    for (index, operator) in operators.into_iter().enumerate() {
+        let tree = Model::new(balls(operator)).check().unwrap();
+        let points: Points = (0..8).map(|i| [3.0 * i as f32, 0.1, 0.0]).collect();
+        for engine in Engine::ALL {
+            let evaluator = Compiler::for_engine(engine).evaluator(&tree, Query::ALL).unwrap();
+            let mut samples = evaluator.samples();
+            evaluator.eval(&points, &mut samples).unwrap();
+            let red = samples.attribute("color").unwrap()[0];
+            for (i, red) in red.iter().enumerate() {
+                let expected = jbt::walk::walk(&tree, points.get(i).map(f64::from)).attributes[0][0];
+                assert!(
+                    (f64::from(*red) - expected).abs() < 1e-4,
+                    "{index} {} lane {i}: {red}",
+                    engine.name()
+                );
+            }
+            assert!(red.windows(2).all(|pair| pair[0] != pair[1]), "neighbours differ: {red:?}");
+        }
+    }
+}
+
+#[test]
+fn an_unbounded_model_asks_for_a_region() {
+    let hole = Model::new(!point([0.0; 3], 1.0)).check().unwrap();
+    assert!(matches!(Polygonize::default().region(&hole), Err(PolygonizeError::Unbounded)));
+    let cut = Model::new(point([0.5, 0.0, 0.0], 1.0) & !point([0.0; 3], 1.0)).check().unwrap();
+    assert!(Polygonize::default().region(&cut).is_ok());
+}
