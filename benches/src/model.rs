@@ -78,7 +78,7 @@ pub fn tree(blobs: &[Blob]) -> CheckedTree {
         };
         let leaf = Tree::new(NodeKind::Primitive(primitive), Vec::new());
         let values = blob.color.map(f64::from).to_vec();
-        Tree::new(NodeKind::Attribute { name: "color".into(), values }, vec![leaf])
+        Tree::new(NodeKind::Attribute { name: "color".into(), value: values.into() }, vec![leaf])
     };
     let tree = Tree::new(NodeKind::Combine(Combinator::Sum), blobs.iter().map(leaf).collect());
     Model::new(tree).check().expect("blobs are a good model")

@@ -32,6 +32,7 @@ fn summary(name: &str, tree: &CheckedTree, occurrences: u64) -> String {
     let primitive = |kind: &NodeKind| match kind {
         NodeKind::Primitive(_) => true,
         NodeKind::Combine(_)
+        | NodeKind::Expression(_)
         | NodeKind::Select(_)
         | NodeKind::Affine(_)
         | NodeKind::Warp(_)

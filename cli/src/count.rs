@@ -166,6 +166,7 @@ fn leaves(scene: &Scene, tree: &CheckedTree) -> Vec<Leaf> {
             uses: uses[index],
         }),
         NodeKind::Combine(_)
+        | NodeKind::Expression(_)
         | NodeKind::Select(_)
         | NodeKind::Affine(_)
         | NodeKind::Warp(_)

@@ -8,7 +8,7 @@ use jbt::ir::limits::MAX_SCENE_BYTES;
 use jbt::{Compiler, Engine, Evaluator, Model, Query};
 use jbt_frontend::check::CheckedTree;
 use jbt_frontend::diagnostic::{Severity, Source, escape};
-use jbt_frontend::import::{Imported, parsip};
+use jbt_frontend::import::{Imported, parsip, vm};
 use jbt_frontend::text;
 
 use crate::arguments::SceneArguments;
@@ -30,6 +30,18 @@ pub struct Scene {
 enum Format {
     Jbt,
     Parsip,
+    Vm,
+}
+
+impl Format {
+    /// In words.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Jbt => "a model",
+            Self::Parsip => "a ParsIP scene",
+            Self::Vm => "a program of instructions",
+        }
+    }
 }
 
 impl Scene {
@@ -45,20 +57,22 @@ impl Scene {
         };
         let source = Source { name: &name, text: &text };
         let fail = |diagnostics: Vec<_>| Failure::diagnostics(&source, &diagnostics);
-        let Imported { model, warnings } = match format(path, &text) {
+        let format = format(path, &text);
+        let Imported { model, warnings } = match format {
             Format::Jbt => {
                 let options = text::Options { parameters: arguments.definitions.clone() };
                 Imported { model: text::parse(&text, &options).map_err(fail)?, warnings: Vec::new() }
             }
-            Format::Parsip => {
+            Format::Parsip | Format::Vm => {
                 if let Some((parameter, _)) = arguments.definitions.first() {
                     let message = format!(
-                        "{} is a ParsIP scene: it has no parameter `{parameter}` to define",
-                        escape(&name)
+                        "{} is {}: it has no parameter `{parameter}` to define",
+                        escape(&name),
+                        format.name()
                     );
                     return Err(Failure::Usage(message));
                 }
-                parsip(&text).map_err(fail)?
+                if format == Format::Vm { vm(&text) } else { parsip(&text) }.map_err(fail)?
             }
         };
         let warnings = warnings.iter().map(|warning| source.render(warning)).collect();
@@ -138,11 +152,13 @@ fn format(path: &Path, text: &[u8]) -> Format {
     match extension.as_deref() {
         Some("jbt") => Format::Jbt,
         Some("blob" | "scene") => Format::Parsip,
+        Some("vm") => Format::Vm,
         _ => sniff(text),
     }
 }
 
-/// ParsIP scenes are sections, the first of which begins with a bracket; no `.jbt` text begins with one. Both have comments.
+/// ParsIP scenes are sections, the first of which begins with a bracket, and instructions have names that begin with an underscore as a rule; no
+/// `.jbt` text begins with either. All have comments.
 fn sniff(text: &[u8]) -> Format {
     let blank = |byte: &u8| byte.is_ascii_whitespace() || *byte == 0;
     let mut lines = text.split(|&byte| byte == b'\n').map(|line| {
@@ -151,6 +167,7 @@ fn sniff(text: &[u8]) -> Format {
     });
     match lines.find(|line| !line.is_empty() && !line.starts_with(b"#")) {
         Some(line) if line.starts_with(b"[") => Format::Parsip,
+        Some(line) if line.starts_with(b"_") => Format::Vm,
         Some(_) | None => Format::Jbt,
     }
 }
@@ -165,6 +182,8 @@ mod tests {
         assert_eq!(format(Path::new("a.scene"), b"jbt 1"), Format::Parsip);
         assert_eq!(format(Path::new("-"), b"\n\0\r\n# x\r\n [BLOBNODE 0]\0"), Format::Parsip);
         assert_eq!(format(Path::new("-"), b"# x\njbt 1 point { radius 1 }"), Format::Jbt);
+        assert_eq!(format(Path::new("a.vm"), b"# x"), Format::Vm);
+        assert_eq!(format(Path::new("-"), b"# x\n_0 var-x"), Format::Vm);
         assert_eq!(format(Path::new("a"), b""), Format::Jbt);
     }
 

@@ -30,6 +30,7 @@
 //! | `Tree::rfunction(set, alpha, [a, b])`, `rfunction_power`, `rfunction_order` | set operations by R-functions |
 //! | `a.clamp(low, high)`, `a.shell(thickness)`, `a.offset(by)` | maps of the field |
 //! | `Tree::select(which, [a, b, c])` | one of them |
+//! | `Tree::expression(0.7 * a.field() * b.field() + x())` | a formula of fields and coordinates |
 //!
 //! Wherever a number is asked for, one that follows a parameter will do; it can be set again without compiling anything:
 //!
@@ -57,7 +58,9 @@ use glam::DVec3;
 use crate::combine::{Combinator, Family, SetOperation};
 use crate::falloff::Falloff;
 use crate::field::FieldValue;
-use crate::recipe::{Angle, FalloffRecipe, FieldNumber, Map, Radius, Recipe};
+use crate::recipe::{
+    Angle, AttributeRecipe, FalloffRecipe, FieldNumber, Map, Radius, Recipe, TexturedRecipe, UvRecipe,
+};
 use crate::skeleton::{Skeleton, SkeletonKind};
 use crate::tree::{NodeKind, Primitive, Tree};
 use crate::warp::WarpKind;
@@ -65,6 +68,10 @@ use crate::warp::WarpKind;
 pub use self::falloff::{arctan, blanc, blinn, degree, inverse_power};
 pub use crate::falloff::Edge;
 pub use crate::number::{Number, Vector, param};
+pub use crate::term::{Term, x, y, z};
+pub use pattern::{Pattern, checker, gradient, marble, noise, rings, stripes};
+
+mod pattern;
 
 /// A primitive of strength 1 with the soft object's falloff; `radius` is where its field reaches zero.
 #[must_use]
@@ -91,6 +98,10 @@ fn vector(value: impl Into<Vector>) -> FieldNumber {
 
 fn real(value: impl Into<Number>) -> FieldNumber {
     FieldNumber::Real(value.into())
+}
+
+fn numbers<T: Into<Number> + Clone>(values: &[T]) -> Vec<Number> {
+    values.iter().cloned().map(Into::into).collect()
 }
 
 /// A ball around a point.
@@ -153,6 +164,153 @@ pub fn triangle(
     radius: impl Into<Number>,
 ) -> Tree {
     leaf(SkeletonKind::Triangle, vec![vector(a), vector(b), vector(c)], radius)
+}
+
+/// The lines from point to point, at least two. [`Tree::closed`] joins the last to the first; [`Tree::radii`] makes it a tube.
+#[must_use]
+pub fn polyline(points: impl IntoIterator<Item = impl Into<Vector>>, radius: impl Into<Number>) -> Tree {
+    leaf(SkeletonKind::Polyline, vec![vectors(points), reals(), real(0.0)], radius)
+}
+
+/// A field around a filled polygon between at least three corners in a plane; it may be concave.
+#[must_use]
+pub fn polygon(points: impl IntoIterator<Item = impl Into<Vector>>, radius: impl Into<Number>) -> Tree {
+    leaf(SkeletonKind::Polygon, vec![vectors(points)], radius)
+}
+
+/// A chain of cubic Bezier curves: four points, and three more for each further curve. [`Tree::radii`] makes it a tube.
+#[must_use]
+pub fn bezier(points: impl IntoIterator<Item = impl Into<Vector>>, radius: impl Into<Number>) -> Tree {
+    leaf(SkeletonKind::Bezier, vec![vectors(points), reals()], radius)
+}
+
+/// A smooth curve through at least two points. [`Tree::closed`] leads it back to the first; [`Tree::radii`] makes it a tube.
+#[must_use]
+pub fn catmull_rom(points: impl IntoIterator<Item = impl Into<Vector>>, radius: impl Into<Number>) -> Tree {
+    leaf(SkeletonKind::CatmullRom, vec![vectors(points), reals(), real(0.0)], radius)
+}
+
+fn vectors(points: impl IntoIterator<Item = impl Into<Vector>>) -> FieldNumber {
+    FieldNumber::Vectors(points.into_iter().map(|point| point.into().0).collect())
+}
+
+/// No numbers.
+fn reals() -> FieldNumber {
+    FieldNumber::Reals(Vec::new())
+}
+
+/// A field around a solid ball of radius `sphere_radius`.
+#[must_use]
+pub fn sphere(
+    center: impl Into<Vector>,
+    sphere_radius: impl Into<Number>,
+    radius: impl Into<Number>,
+) -> Tree {
+    leaf(SkeletonKind::Sphere, vec![vector(center), real(sphere_radius)], radius)
+}
+
+/// A field around a solid torus: a tube of radius `tube_radius` around a circle of radius `ring_radius` about the axis `normal`.
+#[must_use]
+pub fn torus(
+    center: impl Into<Vector>,
+    normal: impl Into<Vector>,
+    ring_radius: impl Into<Number>,
+    tube_radius: impl Into<Number>,
+    radius: impl Into<Number>,
+) -> Tree {
+    let fields = vec![vector(center), vector(normal), real(ring_radius), real(tube_radius)];
+    leaf(SkeletonKind::Torus, fields, radius)
+}
+
+/// A field around a solid cone with flat ends, each with its radius; one of 0 is a tip.
+#[must_use]
+pub fn cone(
+    from: impl Into<Vector>,
+    to: impl Into<Vector>,
+    from_radius: impl Into<Number>,
+    to_radius: impl Into<Number>,
+    radius: impl Into<Number>,
+) -> Tree {
+    let fields = vec![vector(from), vector(to), real(from_radius), real(to_radius)];
+    leaf(SkeletonKind::Cone, fields, radius)
+}
+
+/// A field around the hull of two balls: a capsule with two radii.
+#[must_use]
+pub fn round_cone(
+    from: impl Into<Vector>,
+    to: impl Into<Vector>,
+    from_radius: impl Into<Number>,
+    to_radius: impl Into<Number>,
+    radius: impl Into<Number>,
+) -> Tree {
+    let fields = vec![vector(from), vector(to), real(from_radius), real(to_radius)];
+    leaf(SkeletonKind::RoundCone, fields, radius)
+}
+
+/// A field around a filled rectangle that faces along `normal`; `half` are half its sides, along `along` and across it.
+#[must_use]
+pub fn rectangle<T: Into<Number>>(
+    center: impl Into<Vector>,
+    normal: impl Into<Vector>,
+    along: impl Into<Vector>,
+    half: [T; 2],
+    radius: impl Into<Number>,
+) -> Tree {
+    let [half_length, half_width] = half.map(real);
+    let fields = vec![vector(center), vector(normal), vector(along), half_length, half_width];
+    leaf(SkeletonKind::Rectangle, fields, radius)
+}
+
+/// A field around a part of a circle of radius `arc_radius` about the axis `normal`: from the direction `start` on, counterclockwise by
+/// up to 360 degrees.
+#[must_use]
+pub fn arc(
+    center: impl Into<Vector>,
+    normal: impl Into<Vector>,
+    start: impl Into<Vector>,
+    degrees: impl Into<Number>,
+    arc_radius: impl Into<Number>,
+    radius: impl Into<Number>,
+) -> Tree {
+    let fields = vec![vector(center), vector(normal), vector(start), real(degrees), real(arc_radius)];
+    leaf(SkeletonKind::Arc, fields, radius)
+}
+
+/// A field around all that is behind the plane through `at`; `normal` points out of it. It is unbounded: cut it with something, or give a region.
+#[must_use]
+pub fn half_space(at: impl Into<Vector>, normal: impl Into<Vector>, radius: impl Into<Number>) -> Tree {
+    leaf(SkeletonKind::HalfSpace, vec![vector(at), vector(normal)], radius)
+}
+
+/// An ellipsoid: a ball around a point, `stretch` times as large along each axis.
+#[must_use]
+pub fn ellipsoid(center: impl Into<Vector>, stretch: impl Into<Vector>, radius: impl Into<Number>) -> Tree {
+    leaf(SkeletonKind::Ellipsoid, vec![vector(center), vector(stretch)], radius)
+}
+
+/// The ball of another norm, whose exponent is from 1 (an octahedron) over 2 (a ball) to 1024 (a cube), `stretch` times as large along each axis.
+#[must_use]
+pub fn lmetric(
+    center: impl Into<Vector>,
+    exponent: impl Into<Number>,
+    stretch: impl Into<Vector>,
+    radius: impl Into<Number>,
+) -> Tree {
+    leaf(SkeletonKind::LMetric, vec![vector(center), real(exponent), vector(stretch)], radius)
+}
+
+/// A superquadric with Barr's exponents, that of the profile along z and that of the slices across it: towards 0 square, 1 round, 2 faceted. It is
+/// `stretch` times as large along each axis.
+#[must_use]
+pub fn superquadric<T: Into<Number>>(
+    center: impl Into<Vector>,
+    exponents: [T; 2],
+    stretch: impl Into<Vector>,
+    radius: impl Into<Number>,
+) -> Tree {
+    let [e1, e2] = exponents.map(real);
+    leaf(SkeletonKind::Superquadric, vec![vector(center), e1, e2, vector(stretch)], radius)
 }
 
 impl Tree {
@@ -325,6 +483,7 @@ impl Tree {
                 (
                     _,
                     NodeKind::Combine(_)
+                    | NodeKind::Expression(_)
                     | NodeKind::Select(_)
                     | NodeKind::Affine(_)
                     | NodeKind::Warp(_)
@@ -332,6 +491,47 @@ impl Tree {
                 ) => return None,
             };
             Some(tree.with_recipe(change(recipe)))
+        })
+    }
+
+    /// The same with these radii for every curve and polyline, which become tubes: one for all points, or one for each. The support radius is
+    /// measured from the tube.
+    ///
+    /// ```
+    /// use jbt_frontend::builder::polyline;
+    /// use jbt_frontend::model::Model;
+    /// use jbt_frontend::walk::walk;
+    ///
+    /// let horn = polyline([[0.0; 3], [5.0, 0.0, 0.0]], 2.0).radii([2.0, 1.0]);
+    /// let tree = Model::new(horn).check().unwrap();
+    /// // The field is 1 in the tube, and 1/2 at half the support radius from it.
+    /// assert_eq!(walk(&tree, [0.0, 1.5, 0.0]).field, 1.0);
+    /// assert_eq!(walk(&tree, [-3.0, 0.0, 0.0]).field, 0.5);
+    /// ```
+    #[must_use]
+    pub fn radii(&self, radii: impl IntoIterator<Item = impl Into<Number>>) -> Self {
+        self.with_field("radii", &FieldNumber::Reals(radii.into_iter().map(Into::into).collect()))
+    }
+
+    /// The same with every curve and polyline, where that may be, led back from the last point to the first.
+    #[must_use]
+    pub fn closed(&self) -> Self {
+        self.with_field("closed", &real(1.0))
+    }
+
+    /// The same with another value of a parameter of skeletons, wherever there is one of this name.
+    fn with_field(&self, name: &str, value: &FieldNumber) -> Self {
+        self.rewrite(|tree| {
+            let NodeKind::Primitive(leaf) = tree.node().kind() else { return None };
+            let index = leaf.skeleton.kind().fields().iter().position(|field| field.name == name)?;
+            let mut recipe = tree
+                .node()
+                .recipe()
+                .map_or_else(|| Recipe::of_primitive(leaf), |recipe| Recipe::clone(recipe));
+            if let Recipe::Primitive { fields, .. } = &mut recipe {
+                fields[index] = value.clone();
+            }
+            Some(tree.with_recipe(recipe))
         })
     }
 
@@ -348,6 +548,7 @@ impl Tree {
                 })
             }
             NodeKind::Combine(_)
+            | NodeKind::Expression(_)
             | NodeKind::Select(_)
             | NodeKind::Affine(_)
             | NodeKind::Warp(_)
@@ -476,6 +677,42 @@ impl Tree {
         self.warped(WarpKind::SpaceMap(0), vec![vector(from), vector(to), real(radius)])
     }
 
+    /// Scaled about `center`, turned about an axis through it, and moved: an affine map to be [weighted](Self::weighted). See
+    /// [`Deform`](struct@crate::warp::Deform).
+    #[must_use]
+    pub fn deform(
+        &self,
+        by: impl Into<Vector>,
+        (axis, degrees): (impl Into<Vector>, impl Into<Number>),
+        size: impl Into<Vector>,
+        center: impl Into<Vector>,
+    ) -> Self {
+        let fields = vec![vector(by), vector(axis), real(degrees), vector(size), vector(center)];
+        self.warped(WarpKind::Deform(0), fields)
+    }
+
+    /// This tree, whose root is a warp, with the warp weighted by the field of another tree, between 0 and 1: where that is 0, the warp does
+    /// nothing. On any other node it is an error, which the check tells.
+    ///
+    /// ```
+    /// use jbt_frontend::builder::{Axis, point, segment};
+    /// use jbt_frontend::model::Model;
+    /// use jbt_frontend::walk::walk;
+    ///
+    /// let bar = segment([-2.0, 0.0, 0.0], [2.0, 0.0, 0.0], 0.5);
+    /// // Pulled up by 1 in the middle, where the weight is 1, and not at the ends.
+    /// let pulled = bar.deform([0.0, 0.0, 1.0], ([0.0, 0.0, 1.0], 0.0), [1.0; 3], [0.0; 3]);
+    /// let weighted = pulled.weighted(&point([0.0, 0.0, 1.0], 1.5));
+    /// let tree = Model::new(weighted).check().unwrap();
+    /// assert_eq!(walk(&tree, [0.0, 0.0, 1.0]).field, 1.0);
+    /// assert_eq!(walk(&tree, [2.0, 0.0, 0.0]).field, 1.0);
+    /// ```
+    #[must_use]
+    pub fn weighted(&self, weight: &Self) -> Self {
+        let children = self.node().children().iter().chain([weight]).cloned().collect();
+        self.with_children(children)
+    }
+
     fn warped(&self, warp: WarpKind, fields: Vec<FieldNumber>) -> Self {
         Self::of(Recipe::Warp { warp, fields }, vec![self.clone()])
     }
@@ -489,8 +726,51 @@ impl Tree {
     /// With an attribute for every leaf below that has no nearer one of this name.
     #[must_use]
     pub fn attribute<T: Into<Number> + Clone>(&self, name: &str, values: &[T]) -> Self {
-        let values = values.iter().cloned().map(Into::into).collect();
-        Self::of(Recipe::Attribute { name: name.into(), values }, vec![self.clone()])
+        self.given(name, AttributeRecipe::Numbers(numbers(values)))
+    }
+
+    /// With a pattern of two values for every leaf below: `a` where it is 0, `b` where it is 1, mixed in between. It lies in the space of
+    /// this tree: maps of the whole move it, maps below do not.
+    ///
+    /// ```
+    /// use jbt_frontend::builder::{checker, point};
+    /// use jbt_frontend::model::Model;
+    /// use jbt_frontend::walk::walk;
+    ///
+    /// let ball = point([0.0; 3], 1.0).textured("color", checker(0.5), &[1.0, 0.0, 0.0], &[0.0, 0.0, 1.0]);
+    /// let tree = Model::new(ball.translate([5.0, 0.0, 0.0])).check().unwrap();
+    /// assert_eq!(walk(&tree, [5.1, 0.1, 0.1]).attributes[0], [1.0, 0.0, 0.0]);
+    /// assert_eq!(walk(&tree, [4.9, 0.1, 0.1]).attributes[0], [0.0, 0.0, 1.0]);
+    /// ```
+    #[must_use]
+    pub fn textured<T: Into<Number> + Clone>(&self, name: &str, pattern: Pattern, a: &[T], b: &[T]) -> Self {
+        let Pattern { texture, fields } = pattern;
+        let (a, b) = (numbers(a), numbers(b));
+        self.given(name, AttributeRecipe::Textured(TexturedRecipe { texture, fields, a, b }))
+    }
+
+    /// With the uv of its skeleton for every leaf below, in a group of two reals: see
+    /// [`SkeletonMember::uv`](crate::skeleton::SkeletonMember::uv).
+    #[must_use]
+    pub fn uv(&self, name: &str) -> Self {
+        self.uv_mapped(name, [1.0; 2], 0.0, [0.0; 2])
+    }
+
+    /// [`Tree::uv`], scaled, then turned about (0, 0), then shifted.
+    #[must_use]
+    pub fn uv_mapped<T: Into<Number>>(
+        &self,
+        name: &str,
+        scale: [T; 2],
+        degrees: impl Into<Number>,
+        shift: [T; 2],
+    ) -> Self {
+        let (scale, shift) = (scale.map(Into::into), shift.map(Into::into));
+        self.given(name, AttributeRecipe::Uv(UvRecipe { scale, degrees: degrees.into(), shift }))
+    }
+
+    fn given(&self, name: &str, value: AttributeRecipe) -> Self {
+        Self::of(Recipe::Attribute { name: name.into(), value }, vec![self.clone()])
     }
 }
 
@@ -639,6 +919,22 @@ mod tests {
             (cylinder(o, x, 1.0, 2.0), [2.0, 0.0, 2.0]),
             (cuboid(x, [1.0, 2.0, 3.0], 2.0), [4.0, 3.0, -2.0]),
             (triangle(o, x, y, 2.0), [1.0, 1.0, -1.0]),
+            (polyline([o, x, y], 2.0), [2.0, 2.0, 1.0]),
+            (polyline([o, x, y], 2.0).closed(), [0.0, 2.0, -1.0]),
+            (polyline([o, x, y], 2.0).radii([0.5]), [2.0, -1.5, 0.0]),
+            (polygon([o, x, y], 2.0), [1.0, 1.0, -1.0]),
+            (bezier([o, x, x, x], 2.0), [2.0, 0.0, 1.0]),
+            (catmull_rom([o, x], 2.0).radii([1.0, 1.0]), [2.0, 0.0, 2.0]),
+            (sphere(x, 1.0, 2.0), [4.0, -2.0, 0.0]),
+            (torus(o, [0.0, 0.0, 3.0], 3.0, 1.0, 2.0), [3.0, 0.0, 2.0]),
+            (cone(o, x, 3.0, 0.0, 2.0), [-1.0, 2.0, 0.0]),
+            (round_cone(o, x, 3.0, 1.0, 2.0), [-4.0, 0.0, 0.0]),
+            (rectangle(o, [0.0, 0.0, 3.0], y, [3.0, 1.0], 2.0), [0.0, 4.0, 0.0]),
+            (arc(o, [0.0, 0.0, 3.0], x, 90.0, 3.0, 2.0), [0.0, 4.0, 0.0]),
+            (half_space(x, y, 2.0), [-9.0, 1.0, 5.0]),
+            (ellipsoid(x, [2.0, 1.0, 1.0], 2.0), [6.0, 0.0, 0.0]),
+            (lmetric(o, 1.0, [1.0, 2.0, 1.0], 2.0), [0.5, 0.5, 0.25]),
+            (superquadric(o, [2.0, 1.0], [1.0; 3], 4.0), [0.6, 0.8, 1.0]),
         ] {
             assert!((field(&tree, p) - 0.5).abs() < 1e-15, "{:?}", tree.node().kind());
         }

@@ -9,12 +9,13 @@
 //!
 //! * Every number is finite and at most [`limits::MAX_NUMBER`] in magnitude; radii are at least [`limits::MIN_LENGTH`], and each
 //!   parameter is what its [`FieldKind`] says.
-//! * Leaves have no children, maps and attributes have one, combinators and selectors at least one, and these choose one that is
+//! * Leaves have no children, maps and attributes have one, warps one or two, combinators and selectors at least one, and these choose one that is
 //!   there. A Ricci exponent is in
 //!   [1, [`limits::MAX_RICCI_EXPONENT`]], or the negative of such a number; other numbers of operators are what their files say.
 //! * Every affine map can be undone, and the numbers of its inverse are finite in f32.
 //! * The first attribute group is `color` with three reals; names are unique; attribute nodes name a group and fit its width.
-//! * There are at most [`limits::MAX_NODES`] nodes and [`limits::MAX_OCCURRENCES`] paths from the root to leaves.
+//! * There are at most [`limits::MAX_NODES`] nodes and [`limits::MAX_OCCURRENCES`] paths from the root to leaves,
+//!   those to each piece of a skeleton counted.
 
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
@@ -28,21 +29,26 @@ use crate::bounds::Bounds;
 use crate::combine::Form;
 use crate::combine::extent::Extent;
 use crate::diagnostic::{Diagnostic, Span};
+use crate::falloff::Falloff;
 use crate::field::{Field, FieldKind, FieldValue};
 use crate::model::Model;
 use crate::number::Values;
 use crate::parameter::{Parameter, collect, refresh};
 use crate::recipe::Recipe;
-use crate::report::{Report, clip, nearest};
+use crate::report::Report;
 use crate::tree::{NodeKind, Primitive};
+use crate::warp::Warp;
 
 mod groups;
 mod numbers;
 mod parameters;
 
 pub(crate) use groups::is_identifier;
-use groups::{check_groups, widths};
-use numbers::{check_choice, check_combinator, check_count, check_number, check_numbers, check_within};
+use groups::{check_attribute, check_groups, widths};
+use numbers::{
+    check_choice, check_combinator, check_count, check_expression, check_formula, check_list, check_number,
+    check_numbers, check_within, check_words,
+};
 use parameters::{Dependence, check_iso};
 pub(crate) use parameters::{not_finite, unknown};
 
@@ -122,6 +128,7 @@ impl CheckedTree {
         let of = |(node, uses): (&CheckedNode, u64)| match node.kind {
             NodeKind::Primitive(_) => uses,
             NodeKind::Combine(_)
+            | NodeKind::Expression(_)
             | NodeKind::Select(_)
             | NodeKind::Affine(_)
             | NodeKind::Warp(_)
@@ -130,17 +137,54 @@ impl CheckedTree {
         self.nodes.iter().zip(self.asked()).map(of).fold(0, u64::saturating_add)
     }
 
-    /// A leaf under maps, the nearest first. They are those of a checked tree, or products of them, so they are not checked again.
-    pub(crate) fn leaf_under(leaf: Primitive, maps: impl IntoIterator<Item = NodeKind>) -> Self {
+    /// A leaf under maps, the nearest first, each with the node of this tree that gives its weight, if it has one. They are those of a checked tree,
+    /// or products of them, so they are not checked again.
+    pub(crate) fn leaf_under(
+        &self,
+        leaf: Primitive,
+        maps: impl IntoIterator<Item = (NodeKind, Option<NodeId>)>,
+    ) -> Self {
         let mut nodes =
             vec![CheckedNode { kind: NodeKind::Primitive(leaf), children: Vec::new(), span: None }];
-        for kind in maps {
-            let below = NodeId(nodes.len() as u32 - 1);
-            nodes.push(CheckedNode { kind, children: vec![below], span: None });
+        for (kind, weight) in maps {
+            let mut children = vec![NodeId(nodes.len() as u32 - 1)];
+            children.extend(weight.map(|weight| self.copy_below(weight, &mut nodes)));
+            nodes.push(CheckedNode { kind, children, span: None });
         }
+        self.of_nodes(nodes)
+    }
+
+    /// A subtree as a tree of its own, with the iso-value of this one and no parameters.
+    #[must_use]
+    pub fn subtree(&self, root: NodeId) -> Self {
+        let mut nodes = Vec::new();
+        self.copy_below(root, &mut nodes);
+        self.of_nodes(nodes)
+    }
+
+    /// Copies a subtree behind other nodes; gives the place of its root.
+    fn copy_below(&self, root: NodeId, nodes: &mut Vec<CheckedNode>) -> NodeId {
+        let mut copies: BTreeMap<NodeId, NodeId> = BTreeMap::new();
+        // Children come before their parents: whatever is below, from the last to the first.
+        let mut below = std::collections::BTreeSet::from([root]);
+        let mut order = Vec::new();
+        while let Some(id) = below.pop_last() {
+            below.extend(&self.node(id).children);
+            order.push(id);
+        }
+        for id in order.into_iter().rev() {
+            copies.insert(id, NodeId(nodes.len() as u32));
+            let node = self.node(id);
+            let children = node.children.iter().map(|child| copies[child]).collect();
+            nodes.push(CheckedNode { children, ..node.clone() });
+        }
+        copies[&root]
+    }
+
+    fn of_nodes(&self, nodes: Vec<CheckedNode>) -> Self {
         Self {
-            iso: Model::DEFAULT_ISO,
-            attributes: vec![AttributeGroup::color()],
+            iso: self.iso,
+            attributes: self.attributes.clone(),
             nodes: nodes.into(),
             parameters: Vec::new(),
             dependence: Arc::default(),
@@ -225,6 +269,11 @@ impl Model {
                 // It has to be checked again when the iso-value moves.
                 dependence.add(id, &Arc::new(Recipe::of_combinator(*combinator)));
             }
+            if let Some(Recipe::Expression(formula) | Recipe::FormulaWarp(formula)) =
+                node.recipe().map(|recipe| &**recipe)
+            {
+                check_words(report, formula, node.span());
+            }
             let made = node.recipe().map_or_else(
                 || Ok(node.kind().clone()),
                 |recipe| parameters::cook(recipe, values, iso, node.span()),
@@ -250,7 +299,7 @@ impl Model {
 impl CheckedTree {
     /// A box that holds the support of the field: outside of it the field is exactly zero. Empty if the field is zero everywhere.
     ///
-    /// Its sides may be infinite. Cost: linear in the number of nodes, shared ones counted once.
+    /// Its sides may be infinite, as those of a half space are. Cost: linear in the number of nodes, shared ones counted once.
     #[must_use]
     pub fn support(&self) -> Bounds {
         let mut done: Vec<Extent> = Vec::with_capacity(self.nodes.len());
@@ -266,13 +315,25 @@ impl CheckedTree {
 fn node_extent(kind: &NodeKind, children: &[Extent], iso: f64) -> Extent {
     match kind {
         NodeKind::Primitive(leaf) => {
-            let support = leaf.skeleton.bounds().grown(leaf.radius);
+            let support = leaf.skeleton.bounds_within(leaf.radius);
             Extent { support, negative: if leaf.strength < 0.0 { support } else { Bounds::EMPTY } }
         }
         NodeKind::Combine(combinator) if children.len() == 1 && combinator.passes_single() => children[0],
         NodeKind::Combine(combinator) => Extent::of(*combinator, children, iso),
+        NodeKind::Expression(expression) => {
+            let signs: Vec<bool> = children.iter().map(|child| child.negative.is_empty()).collect();
+            let hull = || children.iter().fold(Bounds::EMPTY, |all, child| all.hull(child.support));
+            let reach = if expression.vanishes() { hull() } else { Bounds::EVERYWHERE };
+            let support = expression.bounds().map_or(reach, |bounds| reach.intersection(bounds));
+            let support = if support.is_empty() { Bounds::EMPTY } else { support };
+            Extent {
+                support,
+                negative: if expression.non_negative(&signs) { Bounds::EMPTY } else { support },
+            }
+        }
         NodeKind::Select(_) => kind.asked(children)[0],
         NodeKind::Affine(map) => children[0].map(|bounds| affine::map_bounds(map, bounds)),
+        NodeKind::Warp(_) if children.len() > 1 => children[0].weighted(&children[1]),
         NodeKind::Warp(warp) => children[0].map(|bounds| warp.forward_bounds(bounds)),
         NodeKind::Attribute { .. } => children[0],
     }
@@ -304,6 +365,13 @@ fn check_node(
                 Form::Fold | Form::Difference | Form::Step(_) => (count >= 1, "at least one child"),
             }
         }
+        NodeKind::Expression(expression) => {
+            check_expression(report, span, expression, count);
+            for falloff in expression.form().falloffs() {
+                check_falloff(report, span, &falloff);
+            }
+            (true, "as many children as the formula names")
+        }
         NodeKind::Select(which) => {
             check_choice(report, span, *which, count);
             (count >= 1, "at least one child")
@@ -313,14 +381,20 @@ fn check_node(
             (count == 1, "one child")
         }
         NodeKind::Warp(warp) => {
-            check_fields(report, span, warp.kind().name(), warp.kind().fields(), &warp.to_fields());
+            check_fields(report, span, warp.name(), warp.fields(), &warp.to_fields());
+            if let Warp::Formula(warp) = warp {
+                check_formula(report, span, "the warp", &warp.form, &warp.numbers);
+                for falloff in warp.form.falloffs() {
+                    check_falloff(report, span, &falloff);
+                }
+            }
             if let Some(fault) = warp.fault() {
                 report.add(|| Diagnostic::error(span, fault.message).expected(fault.expected));
             }
-            (count == 1, "one child")
+            (count == 1 || count == 2, "one child, or a second one that gives its weight")
         }
-        NodeKind::Attribute { name, values } => {
-            check_attribute(report, span, name, values, groups);
+        NodeKind::Attribute { name, value } => {
+            check_attribute(report, span, name, value, groups);
             (count == 1, "one child")
         }
     };
@@ -336,30 +410,38 @@ fn describe(kind: &NodeKind) -> String {
         NodeKind::Primitive(leaf) => format!("a {}", leaf.skeleton.kind().name()),
         NodeKind::Combine(combinator) => format!("a node `{}`", combinator.name()),
         NodeKind::Select(_) => "a node `select`".to_owned(),
+        NodeKind::Expression(_) => "a node `expression`".to_owned(),
         NodeKind::Affine(_) => "an affine map".to_owned(),
-        NodeKind::Warp(warp) => format!("a {}", warp.kind().name()),
+        NodeKind::Warp(warp) => format!("a {}", warp.name()),
         NodeKind::Attribute { name, .. } => format!("the attribute node `{name}`"),
     }
 }
 
 fn check_primitive(report: &mut Report, span: Option<Span>, leaf: &Primitive) {
     let kind = leaf.skeleton.kind();
-    check_fields(report, span, kind.name(), kind.fields(), &leaf.skeleton.to_fields());
-    let falloff = leaf.falloff.kind();
-    let owner = format!("{} falloff", falloff.name());
-    check_fields(report, span, &owner, falloff.fields(), &leaf.falloff.to_fields());
+    let well = check_fields(report, span, kind.name(), kind.fields(), &leaf.skeleton.to_fields());
+    if let Some(fault) = leaf.skeleton.fault().filter(|_| well) {
+        report.add(|| Diagnostic { span, ..fault });
+    }
+    check_falloff(report, span, &leaf.falloff);
     check_number(report, span, "the radius", leaf.radius, limits::MIN_LENGTH);
     check_number(report, span, "the strength", leaf.strength, f64::NEG_INFINITY);
 }
 
-/// The parameters of a skeleton, a falloff or a warp, each by its kind.
+fn check_falloff(report: &mut Report, span: Option<Span>, falloff: &Falloff) {
+    let owner = format!("{} falloff", falloff.name());
+    check_fields(report, span, &owner, falloff.kind().fields(), &falloff.to_fields());
+}
+
+/// The parameters of a skeleton, a falloff or a warp, each by its kind: whether all are well.
 fn check_fields(
     report: &mut Report,
     span: Option<Span>,
     owner: &str,
     fields: &[Field],
     values: &[FieldValue],
-) {
+) -> bool {
+    let before = report.len();
     for (field, value) in fields.iter().zip(values) {
         let what = format!("the `{}` of the {owner}", field.name);
         match field.kind {
@@ -379,7 +461,17 @@ fn check_fields(
                 check_within(report, span, &what, value.real(), 0.0..=words.len() as f64 - 1.0);
             }
             FieldKind::Count => check_count(report, span, &what, value.real()),
+            FieldKind::Degrees => check_within(report, span, &what, value.real(), 0.0..=360.0),
+            FieldKind::Exponent => {
+                let range = 1.0..=limits::MAX_METRIC_EXPONENT;
+                check_within(report, span, &what, value.real(), range);
+            }
+            FieldKind::Squareness => {
+                let range = 2.0 / limits::MAX_METRIC_EXPONENT..=2.0;
+                check_within(report, span, &what, value.real(), range);
+            }
             FieldKind::Extents => check_numbers(report, span, &what, &value.vector(), 0.0),
+            FieldKind::Stretches => check_numbers(report, span, &what, &value.vector(), limits::MIN_LENGTH),
             FieldKind::Position => check_numbers(report, span, &what, &value.vector(), f64::NEG_INFINITY),
             FieldKind::Direction | FieldKind::Axis => {
                 check_numbers(report, span, &what, &value.vector(), f64::NEG_INFINITY);
@@ -389,34 +481,21 @@ fn check_fields(
                     });
                 }
             }
+            FieldKind::Positions => {
+                let what = |index: usize| format!("number {} of {what}", index + 1);
+                check_list(report, span, &what, value.vectors(), f64::NEG_INFINITY);
+            }
+            FieldKind::Lengths => {
+                let what = |index: usize| format!("number {} of {what}", index + 1);
+                let (values, _) = value.reals().as_chunks::<1>();
+                check_list(report, span, &what, values, 0.0);
+            }
+            FieldKind::Flag => {
+                check_number(report, span, &what, value.real(), 0.0);
+            }
         }
     }
-}
-
-fn check_attribute(
-    report: &mut Report,
-    span: Option<Span>,
-    name: &str,
-    values: &[f64],
-    groups: &BTreeMap<&str, usize>,
-) {
-    match groups.get(name).copied() {
-        None => report.add(|| {
-            let help = match nearest(name, groups.keys().copied()) {
-                Some(other) => format!("perhaps `{other}` was meant"),
-                None => "declare it with its default first".to_owned(),
-            };
-            Diagnostic::error(span, format!("there is no attribute `{}`", clip(name))).expected(help)
-        }),
-        Some(width) if width != values.len() => {
-            let message = format!("the attribute `{name}` has width {width}, not {}", values.len());
-            let plural = if width == 1 { "" } else { "s" };
-            report
-                .add(|| Diagnostic::error(span, message).expected(format!("expected {width} real{plural}")));
-        }
-        Some(_) => {}
-    }
-    check_numbers(report, span, &format!("the attribute `{name}`"), values, f64::NEG_INFINITY);
+    report.len() == before
 }
 
 /// An affine map has to have an inverse, in numbers that f32 can hold.
@@ -473,12 +552,31 @@ fn paths(nodes: &[CheckedNode], below: impl Fn(&CheckedNode) -> &[NodeId]) -> Ve
 
 /// Counts the paths from the root to all nodes: what lowering may have to go through, and rows in the end.
 fn check_occurrences(report: &mut Report, nodes: &[CheckedNode], most: usize) {
-    let uses = paths(nodes, |node| &node.children).into_iter().fold(0, u64::saturating_add);
+    let weights = nodes.iter().map(|node| match &node.kind {
+        // Each piece is a row as well.
+        NodeKind::Primitive(leaf) => 1 + leaf.skeleton.piece_count(leaf.radius, most) as u64,
+        NodeKind::Combine(_)
+        | NodeKind::Expression(_)
+        | NodeKind::Select(_)
+        | NodeKind::Affine(_)
+        | NodeKind::Warp(_)
+        | NodeKind::Attribute { .. } => 1,
+    });
+    let paths = paths(nodes, |node| &node.children);
+    let mut uses = paths.iter().fold(0, |all: u64, paths| all.saturating_add(*paths));
+    let what = if uses > most as u64 { "nodes" } else { "nodes and pieces" };
+    for (paths, weight) in paths.into_iter().zip(weights) {
+        // Pieces take longer to count than nodes.
+        if uses > most as u64 {
+            break;
+        }
+        uses = uses.saturating_add(paths.saturating_mul(weight - 1));
+    }
     if uses > most as u64 {
         let span = nodes.last().and_then(|root| root.span);
         let count = if uses == u64::MAX { "more than 10^19".to_owned() } else { uses.to_string() };
         report.add(|| {
-            Diagnostic::limit(span, format!("unfolded, the tree has {count} nodes; it may have {most}"))
+            Diagnostic::limit(span, format!("unfolded, the tree has {count} {what}; it may have {most}"))
                 .expected("share fewer subtrees")
         });
     }

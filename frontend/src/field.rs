@@ -21,18 +21,32 @@ pub enum FieldKind {
     Choice(&'static [&'static str]),
     /// A whole number from 0 to [`jbt_ir::limits::MAX_COPIES`].
     Count,
+    /// An angle in degrees, from 0 to 360.
+    Degrees,
+    /// An exponent of a norm, from 1 to [`jbt_ir::limits::MAX_METRIC_EXPONENT`].
+    Exponent,
+    /// An exponent of Barr's, from `2 / MAX_METRIC_EXPONENT` to 2: two by an exponent of a norm.
+    Squareness,
     /// Three finite numbers: a position.
     Position,
     /// Three finite numbers of at least 0: sizes along the axes.
     Extents,
+    /// Three finite numbers of at least [`jbt_ir::limits::MIN_LENGTH`]: factors along the axes.
+    Stretches,
     /// Three finite numbers, not all zero: a direction, normalised before use.
     Direction,
     /// One of the words x, y, z; stored as the unit vector of that axis.
     Axis,
+    /// Any number of positions, at most [`jbt_ir::limits::MAX_SKELETON_POINTS`].
+    Positions,
+    /// Any number of finite numbers of at least 0, as many at most.
+    Lengths,
+    /// One of the words yes and no; stored as 1 and 0.
+    Flag,
 }
 
 /// A parameter of a member.
-#[derive(Clone, Copy, PartialEq, Debug)]
+#[derive(Clone, PartialEq, Debug)]
 pub struct Field {
     /// Its name in the text format.
     pub name: &'static str,
@@ -43,30 +57,54 @@ pub struct Field {
 }
 
 /// The value of a parameter.
-#[derive(Clone, Copy, PartialEq, Debug)]
+#[derive(Clone, PartialEq, Debug)]
 pub enum FieldValue {
     /// One number.
     Real(f64),
     /// Three numbers.
     Vector([f64; 3]),
+    /// Any number of numbers.
+    Reals(Vec<f64>),
+    /// Any number of vectors.
+    Vectors(Vec<[f64; 3]>),
 }
 
 impl FieldValue {
-    /// The number. Panics on a vector: the kind of the field has excluded it.
+    /// The number. Panics on anything else: the kind of the field has excluded it.
     #[must_use]
-    pub fn real(self) -> f64 {
+    pub fn real(&self) -> f64 {
         match self {
-            Self::Real(value) => value,
-            Self::Vector(_) => panic!("the field is a number by its kind"),
+            Self::Real(value) => *value,
+            Self::Vector(_) | Self::Reals(_) | Self::Vectors(_) => {
+                panic!("the field is a number by its kind")
+            }
         }
     }
 
-    /// The vector. Panics on a number: the kind of the field has excluded it.
+    /// The vector. Panics on anything else: the kind of the field has excluded it.
     #[must_use]
-    pub fn vector(self) -> [f64; 3] {
+    pub fn vector(&self) -> [f64; 3] {
         match self {
-            Self::Vector(value) => value,
-            Self::Real(_) => panic!("the field is a vector by its kind"),
+            Self::Vector(value) => *value,
+            Self::Real(_) | Self::Reals(_) | Self::Vectors(_) => panic!("the field is a vector by its kind"),
+        }
+    }
+
+    /// The numbers of a list. Panics on anything else: the kind of the field has excluded it.
+    #[must_use]
+    pub fn reals(&self) -> &[f64] {
+        match self {
+            Self::Reals(values) => values,
+            Self::Real(_) | Self::Vector(_) | Self::Vectors(_) => panic!("the field is a list by its kind"),
+        }
+    }
+
+    /// The vectors of a list. Panics on anything else: the kind of the field has excluded it.
+    #[must_use]
+    pub fn vectors(&self) -> &[[f64; 3]] {
+        match self {
+            Self::Vectors(values) => values,
+            Self::Real(_) | Self::Vector(_) | Self::Reals(_) => panic!("the field is a list by its kind"),
         }
     }
 }

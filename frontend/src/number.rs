@@ -22,7 +22,7 @@ use std::sync::Arc;
 
 use crate::diagnostic::Diagnostic;
 
-pub(crate) use formula::{Formula, Step};
+pub(crate) use formula::{Formula, Step, Variable, show};
 pub(crate) use function::{Binary, Function};
 
 /// The values of parameters, by name.
@@ -86,7 +86,7 @@ impl Number {
     }
 
     /// The steps that give this number.
-    fn steps(&self) -> Vec<Step> {
+    pub(crate) fn steps(&self) -> Vec<Step> {
         match &self.formula {
             Some(formula) => formula.steps().to_vec(),
             None => vec![Step::Literal(self.value)],
@@ -108,6 +108,24 @@ impl Number {
         }
         let mut steps = self.steps();
         steps.extend(other.steps());
+        steps.push(step);
+        Self::with_formula(value, Formula::new(steps, None))
+    }
+
+    /// What a step makes of numbers, which are as many as it takes. Its value may be no finite number.
+    pub(crate) fn of_step(step: Step, operands: &[&Self]) -> Self {
+        let values: Vec<f64> = operands.iter().map(|number| number.value).collect();
+        let value = match &step {
+            Step::Negate => -values[0],
+            Step::Binary(binary) => binary.apply(values[0], values[1]),
+            Step::Call(function, _) => function.apply(&values),
+            Step::Literal(value) | Step::Parameter { default: value, .. } => *value,
+            Step::Variable(_) => f64::NAN,
+        };
+        if !operands.iter().any(|number| number.follows()) {
+            return Self::from(value);
+        }
+        let mut steps: Vec<Step> = operands.iter().flat_map(|number| number.steps()).collect();
         steps.push(step);
         Self::with_formula(value, Formula::new(steps, None))
     }

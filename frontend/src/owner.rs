@@ -17,6 +17,7 @@ use glam::DVec3;
 use crate::check::{CheckedTree, NodeId};
 use crate::combine::Combinator;
 use crate::diagnostic::Span;
+use crate::expression::Expression;
 use crate::tree::{NodeKind, chosen};
 
 /// A leaf that decides, as one of its occurrences.
@@ -50,9 +51,10 @@ fn name(kind: &NodeKind) -> &str {
         NodeKind::Primitive(leaf) => leaf.skeleton.kind().name(),
         NodeKind::Combine(combinator) => combinator.name(),
         NodeKind::Affine(_) => "affine",
-        NodeKind::Warp(warp) => warp.kind().name(),
+        NodeKind::Warp(warp) => warp.name(),
         NodeKind::Attribute { name, .. } => name,
         NodeKind::Select(_) => "select",
+        NodeKind::Expression(_) => "expression",
     }
 }
 
@@ -76,8 +78,10 @@ struct Answer {
 enum Task {
     /// Ask the node of a step that is still to be made, at a point of its parent's space.
     Ask(Step, DVec3),
-    /// Combine the answers of the children of a node.
-    Combine(NodeId),
+    /// Ask the child of a weighted warp, the node of this step, whose weight has answered.
+    Enter(NodeId, Step, DVec3),
+    /// Combine the answers of the children of a node, which is asked at a point of its parent's space.
+    Combine(NodeId, DVec3),
 }
 
 /// The leaf that decides at `p`: `None` where the field is 0, or where it is negative because nothing with a positive field is left.
@@ -102,12 +106,20 @@ pub fn owner(tree: &CheckedTree, p: [f64; 3]) -> Option<Owner> {
                         let field = leaf.strength * leaf.falloff.value(s);
                         answers.push(Answer { field, leaf: (field != 0.0).then_some((here, 1.0)) });
                     }
-                    NodeKind::Combine(_) => {
-                        tasks.push(Task::Combine(step.node));
+                    NodeKind::Expression(expression) if node.children.is_empty() => {
+                        let field = expression.field(p, &[]);
+                        answers.push(Answer { field, leaf: (field != 0.0).then_some((here, 1.0)) });
+                    }
+                    NodeKind::Combine(_) | NodeKind::Expression(_) => {
+                        tasks.push(Task::Combine(step.node, p));
                         tasks.extend((0..node.children.len()).rev().map(|child| Task::Ask(below(child), p)));
                     }
                     NodeKind::Affine(map) => {
                         tasks.push(Task::Ask(below(0), map.inverse().transform_point3(p)));
+                    }
+                    NodeKind::Warp(_) if node.children.len() > 1 => {
+                        tasks.push(Task::Enter(step.node, below(0), p));
+                        tasks.push(Task::Ask(below(1), p));
                     }
                     NodeKind::Warp(warp) => tasks.push(Task::Ask(below(0), warp.inverse(p))),
                     NodeKind::Attribute { .. } => tasks.push(Task::Ask(below(0), p)),
@@ -115,11 +127,25 @@ pub fn owner(tree: &CheckedTree, p: [f64; 3]) -> Option<Owner> {
                 }
                 steps.push(step);
             }
-            Task::Combine(id) => {
+            Task::Enter(id, step, p) => {
+                let weight = answers.pop().expect("the weight has been asked").field;
+                if let NodeKind::Warp(warp) = &tree.node(id).kind {
+                    tasks.push(Task::Ask(step, warp.weighted(p, weight)));
+                }
+            }
+            Task::Combine(id, p) => {
                 let node = tree.node(id);
                 let children = answers.split_off(answers.len() - node.children.len());
-                if let NodeKind::Combine(combinator) = node.kind {
-                    answers.push(combine(combinator, tree.iso(), &children));
+                match &node.kind {
+                    NodeKind::Combine(combinator) => {
+                        answers.push(combine(*combinator, tree.iso(), &children));
+                    }
+                    NodeKind::Expression(expression) => answers.push(express(expression, p, &children)),
+                    NodeKind::Primitive(_)
+                    | NodeKind::Select(_)
+                    | NodeKind::Affine(_)
+                    | NodeKind::Warp(_)
+                    | NodeKind::Attribute { .. } => unreachable!("these combine nothing"),
                 }
             }
         }
@@ -136,10 +162,25 @@ fn combine(combinator: Combinator, iso: f64, children: &[Answer]) -> Answer {
     }
     let fields: Vec<f64> = children.iter().map(|child| child.field).collect();
     let weights = combinator.weights(&fields, iso);
+    Answer { field: combinator.field(&fields, iso), leaf: heaviest(children, &weights) }
+}
+
+/// A formula of one child is that child's; of several, of the leaf with the largest share.
+fn express(expression: &Expression, p: DVec3, children: &[Answer]) -> Answer {
+    let fields: Vec<f64> = children.iter().map(|child| child.field).collect();
+    let field = expression.field(p, &fields);
+    if let [child] = children {
+        return Answer { field, leaf: child.leaf };
+    }
+    Answer { field, leaf: heaviest(children, &expression.weights(p, &fields)) }
+}
+
+/// The leaf with the largest share of the weight.
+fn heaviest(children: &[Answer], weights: &[f64]) -> Option<(u32, f64)> {
     let total: f64 = weights.iter().sum();
     let mut best = None;
     let mut most = 0.0;
-    for (child, weight) in children.iter().zip(&weights) {
+    for (child, weight) in children.iter().zip(weights) {
         let Some((leaf, share)) = child.leaf else { continue };
         let share = weight / total * share;
         // Strictly: of equals the first in the file stays. A total of zero gives no number, which is not more.
@@ -147,7 +188,7 @@ fn combine(combinator: Combinator, iso: f64, children: &[Answer]) -> Answer {
             (best, most) = (Some((leaf, share)), share);
         }
     }
-    Answer { field: combinator.field(&fields, iso), leaf: best }
+    best
 }
 
 /// The way up from a leaf.

@@ -84,7 +84,9 @@ pub(crate) fn refresh(parameters: &mut [Parameter]) -> Result<Values, Vec<Diagno
 
 /// Whether a name may be that of a parameter: a formula with it reads back as it was.
 pub(crate) fn is_name(name: &str) -> bool {
-    let builtin = Function::named(name).is_some() || name == "pi" || crate::text::is_statement(name);
+    let builtin = Function::named(name).is_some_and(Function::is_reserved)
+        || name == "pi"
+        || crate::text::is_statement(name);
     !builtin && crate::check::is_identifier(name)
 }
 

@@ -17,14 +17,19 @@ use glam::{DAffine3, DMat3, DVec3};
 use crate::affine::{rotation, sin_cos_degrees};
 use crate::combine::Combinator;
 use crate::diagnostic::{Diagnostic, Span};
+use crate::expression::Formula;
 use crate::falloff::Falloff;
 use crate::field::{FieldKind, FieldValue};
 use crate::number::{Number, Values, plain, values};
 use crate::skeleton::SkeletonKind;
 use crate::tree::{NodeKind, Primitive};
-use crate::warp::WarpKind;
+use crate::warp::{FormulaWarp, WarpKind};
 
 pub use falloff::FalloffRecipe;
+
+mod attribute;
+
+pub use attribute::{AttributeRecipe, TexturedRecipe, UvRecipe};
 
 /// The value of a member's parameter, before its formulas are evaluated.
 #[derive(Clone, PartialEq, Debug)]
@@ -33,6 +38,10 @@ pub enum FieldNumber {
     Real(Number),
     /// Three numbers.
     Vector([Number; 3]),
+    /// Any number of numbers.
+    Reals(Vec<Number>),
+    /// Any number of vectors.
+    Vectors(Vec<[Number; 3]>),
 }
 
 /// The radius of a primitive.
@@ -112,6 +121,8 @@ pub enum Recipe {
         /// Its numbers, in their order.
         numbers: Vec<Number>,
     },
+    /// A formula.
+    Expression(Formula),
     /// A selector, which chooses the child whose place is nearest to this number.
     Select(Number),
     /// An affine map.
@@ -123,12 +134,14 @@ pub enum Recipe {
         /// Its parameters, in the order of [`WarpKind::fields`].
         fields: Vec<FieldNumber>,
     },
+    /// A warp that is given by three formulas of the point.
+    FormulaWarp(Formula),
     /// An attribute of the leaves below.
     Attribute {
         /// The attribute group.
         name: Arc<str>,
-        /// One number for each channel of the group.
-        values: Vec<Number>,
+        /// What they have.
+        value: AttributeRecipe,
     },
 }
 
@@ -170,6 +183,8 @@ impl FieldNumber {
         match self {
             Self::Real(number) => FieldValue::Real(number.value()),
             Self::Vector(numbers) => FieldValue::Vector(values(numbers)),
+            Self::Reals(numbers) => FieldValue::Reals(numbers.iter().map(Number::value).collect()),
+            Self::Vectors(vectors) => FieldValue::Vectors(vectors.iter().map(values).collect()),
         }
     }
 
@@ -178,6 +193,8 @@ impl FieldNumber {
         match self {
             Self::Real(number) => std::slice::from_ref(number),
             Self::Vector(numbers) => numbers,
+            Self::Reals(numbers) => numbers,
+            Self::Vectors(vectors) => vectors.as_flattened(),
         }
     }
 
@@ -185,6 +202,8 @@ impl FieldNumber {
         match self {
             Self::Real(number) => std::slice::from_mut(number),
             Self::Vector(numbers) => numbers,
+            Self::Reals(numbers) => numbers,
+            Self::Vectors(vectors) => vectors.as_flattened_mut(),
         }
     }
 }
@@ -194,6 +213,10 @@ impl From<FieldValue> for FieldNumber {
         match value {
             FieldValue::Real(value) => Self::Real(value.into()),
             FieldValue::Vector(values) => Self::Vector(values.map(Number::from)),
+            FieldValue::Reals(values) => Self::Reals(values.into_iter().map(Number::from).collect()),
+            FieldValue::Vectors(values) => {
+                Self::Vectors(values.into_iter().map(|vector| vector.map(Number::from)).collect())
+            }
         }
     }
 }
@@ -242,9 +265,12 @@ fn outer(by: DVec3, axis: DVec3) -> DMat3 {
     DMat3::from_cols(by * axis.x, by * axis.y, by * axis.z)
 }
 
-/// The scale by a factor along a unit vector.
-fn along(axis: DVec3, factor: f64) -> DMat3 {
-    DMat3::IDENTITY + outer((factor - 1.0) * axis, axis)
+/// The scale by a factor along a direction; exact along simple ones.
+fn along(axis: &[Number; 3], factor: f64) -> Result<DMat3, Fault> {
+    unit(axis)?;
+    let axis = DVec3::from(values(axis));
+    let axis = axis / axis.abs().max_element();
+    Ok(DMat3::IDENTITY + outer((factor - 1.0) / axis.length_squared() * axis, axis))
 }
 
 impl Map {
@@ -255,8 +281,8 @@ impl Map {
         Ok(match self {
             Self::Translate(by) => DAffine3::from_translation(values(by).into()),
             Self::Rotate { axis, angle } => DAffine3::from_mat3(rotation(unit(axis)?, angle.sin_cos())),
-            Self::Reflect(axis) => DAffine3::from_mat3(along(unit(axis)?, -1.0)),
-            Self::Stretch { axis, by } => DAffine3::from_mat3(along(unit(axis)?, by.value())),
+            Self::Reflect(axis) => DAffine3::from_mat3(along(axis, -1.0)?),
+            Self::Stretch { axis, by } => DAffine3::from_mat3(along(axis, by.value())?),
             Self::Shear { axis, by } => {
                 DAffine3::from_mat3(DMat3::IDENTITY + outer(values(by).into(), unit(axis)?))
             }
@@ -319,11 +345,13 @@ impl Recipe {
             }
             Self::Combine { numbers, .. } => (&[], numbers, [None; 2]),
             Self::Select(number) => (&[], &[], [Some(number), None]),
-            Self::Map(_) => (&[], &[], [None; 2]),
+            Self::Expression(formula) | Self::FormulaWarp(formula) => (&[], &formula.numbers, [None; 2]),
+            Self::Map(_) | Self::Attribute { .. } => (&[], &[], [None; 2]),
             Self::Warp { fields, .. } => (fields, &[], [None; 2]),
-            Self::Attribute { values, .. } => (&[], values, [None; 2]),
         };
         let map = if let Self::Map(map) = self { Some(map) } else { None };
+        let value = if let Self::Attribute { value, .. } = self { Some(value) } else { None };
+        let numbers = numbers.iter().chain(value.into_iter().flat_map(AttributeRecipe::numbers));
         let fields = fields.iter().chain(falloff).flat_map(FieldNumber::numbers);
         fields.chain(numbers).chain(map.into_iter().flat_map(Map::numbers)).chain(own.into_iter().flatten())
     }
@@ -337,9 +365,10 @@ impl Recipe {
             }
             Self::Combine { numbers, .. } => numbers.iter_mut().collect(),
             Self::Select(number) => vec![number],
+            Self::Expression(formula) | Self::FormulaWarp(formula) => formula.numbers.iter_mut().collect(),
             Self::Map(map) => map.numbers_mut(),
             Self::Warp { fields, .. } => fields.iter_mut().flat_map(FieldNumber::numbers_mut).collect(),
-            Self::Attribute { values, .. } => values.iter_mut().collect(),
+            Self::Attribute { value, .. } => value.numbers_mut(),
         }
     }
 
@@ -358,9 +387,11 @@ impl Recipe {
         match self {
             Self::Primitive { radius, .. } => matches!(radius, Radius::Surface(_)),
             Self::Combine { .. }
+            | Self::Expression(_)
             | Self::Select(_)
             | Self::Map(_)
             | Self::Warp { .. }
+            | Self::FormulaWarp(_)
             | Self::Attribute { .. } => false,
         }
     }
@@ -400,13 +431,14 @@ impl Recipe {
                 let values: Vec<f64> = numbers.iter().map(Number::value).collect();
                 NodeKind::Combine(combinator.with_numbers(&values))
             }
+            Self::Expression(formula) => NodeKind::Expression(formula.expression()),
             Self::Select(which) => NodeKind::Select(which.value()),
             Self::Map(map) => NodeKind::Affine(map.affine()?),
             Self::Warp { warp, fields } => NodeKind::Warp(warp.from_fields(&values(fields))),
-            Self::Attribute { name, values } => NodeKind::Attribute {
-                name: Arc::clone(name),
-                values: values.iter().map(Number::value).collect(),
-            },
+            Self::FormulaWarp(formula) => NodeKind::Warp(FormulaWarp::from(formula).into()),
+            Self::Attribute { name, value } => {
+                NodeKind::Attribute { name: Arc::clone(name), value: value.value() }
+            }
         })
     }
 
@@ -417,23 +449,36 @@ impl Recipe {
             Self::Map(_)
             | Self::Primitive { .. }
             | Self::Combine { .. }
+            | Self::Expression(_)
             | Self::Select(_)
             | Self::Warp { .. }
+            | Self::FormulaWarp(_)
             | Self::Attribute { .. } => Freedom::Fixed,
         }
     }
 
-    /// Whether a primitive's skeleton can turn: a direction follows a parameter, or one of several positions, which give it its own.
+    /// Whether a primitive's skeleton can turn: a direction or an angle follows a parameter, or one of several positions, which give it its own.
     pub(crate) fn skeleton_turns(&self) -> bool {
         let Self::Primitive { skeleton, fields, .. } = self else { return false };
         let described = skeleton.fields();
         let positions = described.iter().filter(|field| field.kind == FieldKind::Position).count();
         described.iter().zip(fields).any(|(field, value)| {
             let turns = match field.kind {
-                FieldKind::Direction | FieldKind::Axis => true,
+                // An arc is posed by its middle, which turns with its angle.
+                FieldKind::Direction | FieldKind::Axis | FieldKind::Positions | FieldKind::Degrees => true,
                 FieldKind::Position => positions > 1,
-                FieldKind::Real | FieldKind::Positive | FieldKind::NonNegative | FieldKind::Extents => false,
-                FieldKind::Within { .. } | FieldKind::Choice(_) | FieldKind::Count => false,
+                FieldKind::Real
+                | FieldKind::Positive
+                | FieldKind::NonNegative
+                | FieldKind::Exponent
+                | FieldKind::Squareness
+                | FieldKind::Extents
+                | FieldKind::Stretches
+                | FieldKind::Lengths
+                | FieldKind::Within { .. }
+                | FieldKind::Choice(_)
+                | FieldKind::Count
+                | FieldKind::Flag => false,
             };
             turns && value.numbers().iter().any(Number::follows)
         })
@@ -444,9 +489,11 @@ impl Recipe {
         match self {
             Self::Primitive { strength, .. } => strength.follows(),
             Self::Combine { .. }
+            | Self::Expression(_)
             | Self::Select(_)
             | Self::Map(_)
             | Self::Warp { .. }
+            | Self::FormulaWarp(_)
             | Self::Attribute { .. } => false,
         }
     }

@@ -43,6 +43,11 @@ impl Report {
         self.kept.sort_by_key(|diagnostic| diagnostic.span);
     }
 
+    /// How many were added.
+    pub(crate) fn len(&self) -> usize {
+        self.kept.len() + self.counted
+    }
+
     /// Whether nothing was added.
     pub(crate) fn is_empty(&self) -> bool {
         self.kept.is_empty()

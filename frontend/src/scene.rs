@@ -19,7 +19,7 @@
 
 use crate::combine::Combinator;
 use crate::number::{Number, Vector};
-use crate::recipe::{Map, Recipe};
+use crate::recipe::{AttributeRecipe, Map, Recipe};
 use crate::tree::{NodeKind, Tree};
 
 /// A tree under construction: a stack of open scopes.
@@ -106,8 +106,8 @@ impl Scene {
 
     /// An attribute for what follows.
     pub fn attribute<T: Into<Number> + Clone>(&mut self, name: &str, values: &[T]) -> &mut Self {
-        let values = values.iter().cloned().map(Into::into).collect();
-        let recipe = Recipe::Attribute { name: name.into(), values };
+        let value = AttributeRecipe::Numbers(values.iter().cloned().map(Into::into).collect());
+        let recipe = Recipe::Attribute { name: name.into(), value };
         self.scope().around.push(Around::Recipe(recipe));
         self
     }

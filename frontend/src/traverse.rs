@@ -114,7 +114,7 @@ impl Tree {
     }
 
     /// The same node over other children.
-    fn with_children(&self, children: Vec<Self>) -> Self {
+    pub(crate) fn with_children(&self, children: Vec<Self>) -> Self {
         let node = self.node();
         Self::assemble(node.kind().clone(), node.recipe().cloned(), children, node.span())
     }
@@ -144,7 +144,7 @@ mod tests {
 
     fn letters<'a>(trees: impl Iterator<Item = &'a Tree>) -> String {
         let letter = |tree: &Tree| match tree.node().kind() {
-            NodeKind::Combine(_) => 'a',
+            NodeKind::Combine(_) | NodeKind::Expression(_) => 'a',
             NodeKind::Attribute { .. } => 'b',
             NodeKind::Affine(_) | NodeKind::Warp(_) | NodeKind::Select(_) => 'c',
             NodeKind::Primitive(_) => 'd',
@@ -194,6 +194,7 @@ mod tests {
             NodeKind::Attribute { .. } => Some(t.node().children()[0].clone()),
             NodeKind::Primitive(_)
             | NodeKind::Combine(_)
+            | NodeKind::Expression(_)
             | NodeKind::Select(_)
             | NodeKind::Affine(_)
             | NodeKind::Warp(_) => None,

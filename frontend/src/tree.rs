@@ -19,13 +19,15 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
 
+use crate::attribute::AttributeValue;
 use crate::combine::Combinator;
 use crate::diagnostic::Span;
+use crate::expression::Expression;
 use crate::falloff::Falloff;
 use crate::model::Model;
 use crate::number::Number;
 use crate::recipe::{Fault, Recipe};
-use crate::skeleton::Skeleton;
+use crate::skeleton::{Point, Skeleton};
 use crate::traverse::Visit;
 use crate::warp::Warp;
 
@@ -51,22 +53,39 @@ pub enum NodeKind {
     Primitive(Primitive),
     /// Fields of the children become one field.
     Combine(Combinator),
+    /// The field is a formula of the coordinates and of the children's fields: a leaf, if it has no children.
+    Expression(Expression),
     /// One child answers, the others do not count: that whose place, from 0, is nearest to this number.
     Select(f64),
     /// The child stands elsewhere: the map takes the child's space to the parent's.
     Affine(DAffine3),
-    /// The child is deformed.
+    /// The child is deformed. A second child, if there is one, gives the weight of the deformation: see [`warp`](crate::warp).
     Warp(Warp),
     /// The leaves below have this attribute, unless another node of the same name stands nearer to them.
     Attribute {
         /// The attribute group.
         name: Arc<str>,
-        /// One real for each channel of the group.
-        values: Vec<f64>,
+        /// What they have.
+        value: AttributeValue,
     },
 }
 
 impl NodeKind {
+    /// The skeleton whose uv the field of a leaf has: a formula has that of a point at the origin of its space.
+    #[must_use]
+    pub(crate) fn uv_skeleton(&self) -> &Skeleton {
+        static ORIGIN: Skeleton = Skeleton::Point(Point { at: DVec3::ZERO });
+        match self {
+            Self::Primitive(primitive) => &primitive.skeleton,
+            Self::Combine(_)
+            | Self::Expression(_)
+            | Self::Select(_)
+            | Self::Affine(_)
+            | Self::Warp(_)
+            | Self::Attribute { .. } => &ORIGIN,
+        }
+    }
+
     /// The children that answer: of a selector the chosen one, of any other node all. Panics, if a selector's number is near no child:
     /// the check has excluded it.
     #[must_use]
@@ -75,6 +94,7 @@ impl NodeKind {
             Self::Select(which) => std::slice::from_ref(&children[chosen(*which)]),
             Self::Primitive(_)
             | Self::Combine(_)
+            | Self::Expression(_)
             | Self::Affine(_)
             | Self::Warp(_)
             | Self::Attribute { .. } => children,

@@ -3,9 +3,10 @@
 //! ```text
 //! walk(node, p):   primitive    strength * falloff(d^2(p) / radius^2), with the attributes of the way down
 //!                  combinator   walk each child at p; combine fields, mix attributes by weights
+//!                  expression   walk each child at p; the formula of p and their fields
 //!                  selector     walk the chosen child
 //!                  map          walk the child at map^-1(p)
-//!                  attribute    walk the child, its leaves having this attribute
+//!                  attribute    walk the child, its leaves having this attribute: numbers, what a texture is at p, or their uv
 //! ```
 //!
 //! It judges the compiler, so it shares no code with it. It is too simple to be fast: every primitive is evaluated once for each
@@ -15,9 +16,11 @@ use std::rc::Rc;
 
 use glam::DVec3;
 
-use crate::attribute::{AttributeGroup, Mixing};
+use crate::attribute::{AttributeGroup, AttributeValue, Mixing, UvMap};
 use crate::check::{CheckedTree, NodeId};
 use crate::combine::Combinator;
+use crate::expression::Expression;
+use crate::skeleton::Skeleton;
 use crate::tree::{NodeKind, Primitive};
 
 /// The answers at a point.
@@ -36,6 +39,18 @@ pub struct Sample {
 
 /// The values of all attribute groups at a leaf.
 type Values = Rc<[Vec<f64>]>;
+
+/// What the way down has found of an attribute group.
+#[derive(Clone)]
+enum Given {
+    /// A value, and how far it is from a jump.
+    Value(Vec<f64>, f64),
+    /// The uv of the leaf.
+    Uv(UvMap),
+}
+
+/// What the way down has found of all groups.
+type Way = Rc<[Given]>;
 
 /// What is known at a node.
 #[derive(Clone)]
@@ -56,31 +71,41 @@ struct Answer {
 
 /// The work that is left.
 enum Task {
-    /// Ask a node, at a point of its parent's space, its leaves having these values.
-    Ask(NodeId, DVec3, Values),
+    /// Ask a node, at a point of its parent's space, its leaves having this.
+    Ask(NodeId, DVec3, Way),
+    /// Ask the child of a weighted warp, whose weight has answered.
+    Enter(NodeId, DVec3, Way),
     /// The last answer is no farther from a decision than this.
     Decide(f64),
     /// Combine the answers of the children of a node.
     Combine(NodeId),
+    /// Evaluate the formula of a node at a point, its children having answered. As a leaf it has this.
+    Express(NodeId, DVec3, Way),
 }
 
 /// The answers at `p`. Cost: all paths of the tree.
 #[must_use]
 pub fn walk(tree: &CheckedTree, p: [f64; 3]) -> Sample {
     let defaults: Values = tree.attributes().iter().map(|group| group.default.clone()).collect();
-    let mut tasks = vec![Task::Ask(tree.root(), p.into(), defaults.clone())];
+    let unbound: Way = defaults.iter().map(|value| Given::Value(value.clone(), f64::INFINITY)).collect();
+    let mut tasks = vec![Task::Ask(tree.root(), p.into(), unbound)];
     let mut answers: Vec<Answer> = Vec::new();
     while let Some(task) = tasks.pop() {
         match task {
             Task::Ask(id, p, values) => {
                 let node = tree.node(id);
                 match &node.kind {
-                    NodeKind::Primitive(leaf) => answers.push(primitive(leaf, p, values)),
+                    NodeKind::Primitive(leaf) => answers.push(primitive(leaf, p, &values)),
                     NodeKind::Combine(_) => {
                         tasks.push(Task::Combine(id));
                         tasks.extend(
                             node.children.iter().rev().map(|&child| Task::Ask(child, p, values.clone())),
                         );
+                    }
+                    NodeKind::Expression(_) => {
+                        tasks.push(Task::Express(id, p, values.clone()));
+                        let ask = |&child: &NodeId| Task::Ask(child, p, values.clone());
+                        tasks.extend(node.children.iter().rev().map(ask));
                     }
                     NodeKind::Select(_) => {
                         tasks.push(Task::Ask(node.kind.asked(&node.children)[0], p, values));
@@ -88,20 +113,35 @@ pub fn walk(tree: &CheckedTree, p: [f64; 3]) -> Sample {
                     NodeKind::Affine(map) => {
                         tasks.push(Task::Ask(node.children[0], map.inverse().transform_point3(p), values));
                     }
+                    NodeKind::Warp(_) if node.children.len() > 1 => {
+                        tasks.push(Task::Enter(id, p, values.clone()));
+                        tasks.push(Task::Ask(node.children[1], p, values));
+                    }
                     NodeKind::Warp(warp) => {
                         tasks.push(Task::Decide(warp.decision(p)));
                         tasks.push(Task::Ask(node.children[0], warp.inverse(p), values));
                     }
-                    NodeKind::Attribute { name, values: here } => {
+                    NodeKind::Attribute { name, value: here } => {
                         // Nearer to the leaves than whatever was said above: it replaces it.
                         let mut values = values.to_vec();
                         for (group, value) in tree.attributes().iter().zip(&mut values) {
                             if group.name == *name {
-                                value.clone_from(here);
+                                *value = given(here, p);
                             }
                         }
                         tasks.push(Task::Ask(node.children[0], p, values.into()));
                     }
+                }
+            }
+            Task::Enter(id, p, values) => {
+                let weight = answers.pop().expect("the weight has been asked");
+                let node = tree.node(id);
+                if let NodeKind::Warp(warp) = &node.kind {
+                    // Where the weight is clamped, there is a crease.
+                    let clamp = if weight.silent { f64::INFINITY } else { weight.field.abs() };
+                    let clamp = clamp.min((weight.field - 1.0).abs());
+                    tasks.push(Task::Decide(warp.decision(p).min(weight.decision).min(clamp)));
+                    tasks.push(Task::Ask(node.children[0], warp.weighted(p, weight.field), values));
                 }
             }
             Task::Decide(decision) => {
@@ -113,6 +153,14 @@ pub fn walk(tree: &CheckedTree, p: [f64; 3]) -> Sample {
                 let children = answers.split_off(answers.len() - node.children.len());
                 if let NodeKind::Combine(combinator) = node.kind {
                     answers.push(combine(combinator, tree.iso(), &children, &defaults));
+                }
+            }
+            Task::Express(id, p, values) => {
+                let node = tree.node(id);
+                let children = answers.split_off(answers.len() - node.children.len());
+                if let NodeKind::Expression(expression) = &node.kind {
+                    let values = values_at(&values, node.kind.uv_skeleton(), p);
+                    answers.push(express(expression, p, &children, values, &defaults));
                 }
             }
         }
@@ -133,14 +181,37 @@ pub fn walk_gradient(tree: &CheckedTree, p: [f64; 3], step: f64) -> [f64; 3] {
     })
 }
 
-fn primitive(leaf: &Primitive, p: DVec3, values: Values) -> Answer {
+/// What an attribute node gives at a point of its space.
+fn given(value: &AttributeValue, p: DVec3) -> Given {
+    match value {
+        AttributeValue::Numbers(numbers) => Given::Value(numbers.clone(), f64::INFINITY),
+        AttributeValue::Textured(textured) => Given::Value(textured.value(p), textured.texture.decision(p)),
+        AttributeValue::Uv(map) => Given::Uv(*map),
+    }
+}
+
+/// The values of all attribute groups at a leaf with this skeleton's uv, and how far they are from a jump.
+fn values_at(way: &Way, skeleton: &Skeleton, p: DVec3) -> (Values, f64) {
+    let value = |given: &Given| match given {
+        Given::Value(value, _) => value.clone(),
+        Given::Uv(map) => map.apply(skeleton.uv(p)).to_vec(),
+    };
+    let jump = |given: &Given| match given {
+        Given::Value(_, decision) => *decision,
+        Given::Uv(_) => skeleton.uv_decision(p),
+    };
+    (way.iter().map(value).collect(), way.iter().map(jump).fold(f64::INFINITY, f64::min))
+}
+
+fn primitive(leaf: &Primitive, p: DVec3, way: &Way) -> Answer {
     let s = leaf.skeleton.distance_squared(p) / (leaf.radius * leaf.radius);
     let field = leaf.strength * leaf.falloff.value(s);
     let silent = s >= 1.0 || leaf.strength == 0.0;
     let rim = if leaf.strength == 0.0 { f64::INFINITY } else { (1.0 - s).abs() };
     // At the tip of a falloff, as at the axis of a ring, the gradient jumps.
     let tip = if leaf.falloff.is_pointed() { s.sqrt() * leaf.radius } else { f64::INFINITY };
-    let decision = if silent { rim } else { rim.min(tip).min(leaf.skeleton.decision(p)) };
+    let (values, jump) = values_at(way, &leaf.skeleton, p);
+    let decision = if silent { rim } else { rim.min(tip).min(jump).min(leaf.skeleton.decision(p)) };
     Answer { field, decision, silent, mean: values.clone(), dominant: values, share: 1.0, second: 0.0 }
 }
 
@@ -152,8 +223,50 @@ fn combine(combinator: Combinator, iso: f64, children: &[Answer], defaults: &Val
     let fields: Vec<f64> = children.iter().map(|child| child.field).collect();
     let field = combinator.field(&fields, iso);
     let weights = combinator.weights(&fields, iso);
-    let total: f64 = weights.iter().sum();
     let (decision, silent) = decide(combinator, iso, children, combinator.winner(&fields, iso), field);
+    mixed(children, &weights, defaults, (field, decision, silent))
+}
+
+/// The field of a formula, and the attributes of the leaf that it is, of its only child, or of several by weight.
+fn express(
+    expression: &Expression,
+    p: DVec3,
+    children: &[Answer],
+    (values, jump): (Values, f64),
+    defaults: &Values,
+) -> Answer {
+    let fields: Vec<f64> = children.iter().map(|child| child.field).collect();
+    let field = expression.field(p, &fields);
+    let heard = expression.decision(p, &fields);
+    let decision = children.iter().fold(heard, |d, child| d.min(child.decision));
+    let silent = !children.is_empty() && children.iter().all(|child| child.silent) && expression.vanishes();
+    match children {
+        [] => {
+            let (mean, dominant, decision) = (values.clone(), values, decision.min(jump));
+            Answer { field, decision, silent, mean, dominant, share: 1.0, second: 0.0 }
+        }
+        [child] => {
+            let decision = if child.silent { decision } else { decision.min(child.field.abs()) };
+            mixed(children, &[f64::from(u8::from(child.field != 0.0))], defaults, (field, decision, silent))
+        }
+        _ => {
+            let weights = expression.weights(p, &fields);
+            let total: f64 = weights.iter().sum();
+            // Where the weight falls to zero, attributes jump to their defaults.
+            let decision = if silent { decision } else { decision.min(total) };
+            mixed(children, &weights, defaults, (field, decision, silent))
+        }
+    }
+}
+
+/// The answer of a node with this field and decision, whose attributes are those of its children by weight.
+fn mixed(
+    children: &[Answer],
+    weights: &[f64],
+    defaults: &Values,
+    (field, decision, silent): (f64, f64, bool),
+) -> Answer {
+    let total: f64 = weights.iter().sum();
     if total <= 0.0 {
         let (mean, dominant) = (defaults.clone(), defaults.clone());
         return Answer { field, decision, silent, mean, dominant, share: 1.0, second: 0.0 };
@@ -161,7 +274,7 @@ fn combine(combinator: Combinator, iso: f64, children: &[Answer], defaults: &Val
     let mut mean: Vec<Vec<f64>> = defaults.iter().map(|default| vec![0.0; default.len()]).collect();
     let mut dominant = defaults;
     let (mut share, mut second) = (0.0, 0.0f64);
-    for (child, weight) in children.iter().zip(&weights) {
+    for (child, weight) in children.iter().zip(weights) {
         let part = weight / total;
         for (sums, values) in mean.iter_mut().zip(child.mean.iter()) {
             for (sum, value) in sums.iter_mut().zip(values) {

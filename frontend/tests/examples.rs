@@ -30,5 +30,5 @@ fn every_example_is_a_model() {
             "{name}: {support:?}"
         );
     }
-    assert!(count >= 7);
+    assert!(count >= 14);
 }

@@ -8,6 +8,7 @@ use std::path::Path;
 use jbt_frontend::lower::{Lowered, lower};
 use jbt_frontend::query::Query;
 use jbt_frontend::text::{Options, parse};
+use jbt_ir::{InstKind, Op};
 
 fn shown(scene: &[u8], query: Query) -> String {
     let tree = parse(scene, &Options::default()).unwrap().check().unwrap();
@@ -43,6 +44,54 @@ fn programs_are_as_expected() {
         assert_eq!(expected, found, "{} differs; BLESS=1 accepts what was found", golden.display());
     }
     assert!(scenes >= 5);
+}
+
+/// How often an op stands in the program of all answers.
+fn count_of(op: Op, scene: &str, query: Query) -> usize {
+    let tree = parse(scene.as_bytes(), &Options::default()).unwrap().check().unwrap();
+    let function = lower(&tree, query).unwrap().function;
+    function
+        .insts
+        .values()
+        .filter(|inst| matches!(inst.kind, InstKind::Op { op: found, .. } if found == op))
+        .count()
+}
+
+#[test]
+fn a_texture_is_evaluated_once_for_all_leaves_that_see_the_same() {
+    let noise = |below: &str| format!("jbt 1 rough noise {{ a 0 b 1 octaves 2 }} {{ {below} }}");
+    let scene = |below: &str| noise(below).replace("jbt 1", "jbt 1 attribute rough 1");
+    let ball = "point { radius 1 }";
+    let segment = "segment { from (0 0 0) to (1 0 0) radius 1 }";
+    let count = |below: &str, query| count_of(Op::BitXor, &scene(below), query);
+    let once = count(ball, Query::ATTRIBUTES);
+    assert!(once > 0);
+    let both = format!("sum {{ {ball} union {{ {segment} twist axis z rate 1 {{ {ball} }} }} }}");
+    assert_eq!(count(&both, Query::ALL), once, "leaves of three shapes, one of them behind a warp");
+    assert_eq!(count(&both, Query::GRADIENT), 0, "nobody asks for attributes");
+    // Under other coordinates it is another one: a row of the same table.
+    let moved = "jbt 1 attribute rough 1 let a = rough noise { a 0 b 1 octaves 2 } { point { radius 1 } }
+        sum { use a translate (1 0 0) { use a } translate (0 1 0) { use a } rough noise { a 1 b 3 octaves 2 size 2 } { point { radius 2 } } }";
+    assert_eq!(count_of(Op::BitXor, moved, Query::ATTRIBUTES), 2 * once, "the identity, and translations");
+}
+
+/// Whatever is computed, the tables have the same rows for every query.
+#[test]
+fn computed_attributes_make_no_rows() {
+    let scene = "jbt 1 attribute uv 2 attribute rough 1
+        rough marble { a 0 b 1 } { uv scale 2 { select 0 {
+            sum { point { radius 1 } twist axis z rate 1 { color checker { a (1 1 1) b (0 0 0) } { sum { ring { ring_radius 1 radius 1 } point { radius 1 } } } } }
+            box { half (1 1 1) radius 1 } } } }";
+    let tree = parse(scene.as_bytes(), &Options::default()).unwrap().check().unwrap();
+    let rows = |query| {
+        let Lowered { function, tables } = lower(&tree, query).unwrap();
+        tables.check(&function).unwrap();
+        jbt_ir::verify(function).unwrap();
+        tables.tables.values().map(|rows| (rows.len(), rows.active.clone())).collect::<Vec<_>>()
+    };
+    for query in Query::EVERY {
+        assert_eq!(rows(query), rows(Query::FIELD), "{}", query.name());
+    }
 }
 
 /// Guards do not make a program deeper than it may be.

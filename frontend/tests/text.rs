@@ -2,6 +2,7 @@
 //!
 //! `golden/text/NAME.jbt` prints as `NAME.print`. In `golden/text/error_NAME.jbt` every line that earns an error says so behind
 //! `#~`, with the columns; the marks are taken off before the text is read. `BLESS=1` writes what is found.
+//! What reads well is checked.
 //! A line `#! -D NAME=VALUE` sets a parameter from outside.
 
 mod random;
@@ -10,7 +11,9 @@ use std::collections::HashSet;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
+use jbt_frontend::attribute::{AttributeValue, Textured};
 use jbt_frontend::diagnostic::{Diagnostic, Severity, Source};
+use jbt_frontend::field::FieldValue;
 use jbt_frontend::text::{Options, parse, print};
 use jbt_frontend::tree::{NodeKind, Tree};
 use jbt_ir::limits;
@@ -101,7 +104,9 @@ fn golden_errors() {
     for path in golden_files().iter().filter(|path| is_error_file(path)) {
         let file = std::fs::read_to_string(path).unwrap();
         let text = unmarked(&file);
-        let errors = parse(text.as_bytes(), &options(&text)).expect_err(path.to_str().unwrap());
+        // What reads well may make no sense: then the check says so.
+        let model = parse(text.as_bytes(), &options(&text)).and_then(|model| model.check());
+        let errors = model.expect_err(path.to_str().unwrap());
         inside(&text, &errors);
         compare(path, &marked(&text, &errors));
     }
@@ -132,11 +137,15 @@ fn distinct(root: &Tree) -> usize {
 
 /// Every number of a tree as bits, in preorder: what equality of floats does not tell apart.
 fn bits(root: &Tree) -> Vec<u64> {
-    fn values(all: &mut Vec<u64>, fields: Vec<jbt_frontend::field::FieldValue>) {
+    fn values(all: &mut Vec<u64>, fields: Vec<FieldValue>) {
         for field in fields {
             match field {
-                jbt_frontend::field::FieldValue::Real(x) => all.push(x.to_bits()),
-                jbt_frontend::field::FieldValue::Vector(v) => all.extend(v.map(f64::to_bits)),
+                FieldValue::Real(x) => all.push(x.to_bits()),
+                FieldValue::Vector(v) => all.extend(v.map(f64::to_bits)),
+                FieldValue::Reals(v) => all.extend(v.iter().map(|x| x.to_bits())),
+                FieldValue::Vectors(v) => {
+                    all.extend(v.as_flattened().iter().map(|x| x.to_bits()));
+                }
             }
         }
     }
@@ -153,13 +162,37 @@ fn bits(root: &Tree) -> Vec<u64> {
                 all.extend([leaf.radius.to_bits(), leaf.strength.to_bits()]);
             }
             NodeKind::Combine(_) | NodeKind::Select(_) => {}
+            NodeKind::Expression(expression) => {
+                all.extend(expression.numbers().iter().map(|x| x.to_bits()));
+            }
             NodeKind::Affine(map) => all.extend(map.to_cols_array().map(f64::to_bits)),
             NodeKind::Warp(warp) => values(&mut all, warp.to_fields()),
-            NodeKind::Attribute { values, .. } => all.extend(values.iter().map(|x| x.to_bits())),
+            NodeKind::Attribute { value, .. } => all.extend(attribute_bits(value)),
         }
         stack.extend(tree.node().children());
     }
     all
+}
+
+/// The bits of what an attribute node gives.
+fn attribute_bits(value: &AttributeValue) -> Vec<u64> {
+    let mut all = Vec::new();
+    match value {
+        AttributeValue::Numbers(numbers) => all.extend(numbers),
+        AttributeValue::Textured(Textured { texture, a, b }) => {
+            all.extend(a.iter().chain(b));
+            for field in texture.to_fields() {
+                match field {
+                    FieldValue::Real(x) => all.push(x),
+                    FieldValue::Vector(v) => all.extend(v),
+                    FieldValue::Reals(v) => all.extend(v),
+                    FieldValue::Vectors(v) => all.extend(v.into_flattened()),
+                }
+            }
+        }
+        AttributeValue::Uv(map) => all.extend(map.scale.into_iter().chain(map.shift).chain([map.degrees])),
+    }
+    all.into_iter().map(f64::to_bits).collect()
 }
 
 #[test]

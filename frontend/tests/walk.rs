@@ -1,7 +1,7 @@
 //! The oracle against closed forms and published numbers, and every traversal on very deep trees.
 
 use jbt_frontend::attribute::{AttributeGroup, Mixing};
-use jbt_frontend::builder::{Axis, cuboid, point, ring, segment};
+use jbt_frontend::builder::{Axis, checker, cuboid, point, ring, segment};
 use jbt_frontend::combine::Combinator;
 use jbt_frontend::falloff::Falloff;
 use jbt_frontend::model::Model;
@@ -137,6 +137,52 @@ fn dominance() {
     assert_eq!((tie.attributes[1].as_slice(), tie.decision), ([1.0].as_slice(), 0.0), "the first of equals");
     let none = walk(&model(part(1.0, 1.0) + part(1.0, 2.0)), [5.0, 0.0, 0.0]);
     assert_eq!(none.attributes[1], [-1.0]);
+}
+
+#[test]
+fn textures_lie_in_the_space_of_their_node() {
+    let ball = point(HERE, 1.0);
+    let checked = |tree: &Tree| tree.textured("color", checker(0.5), &RED, &BLUE);
+    // The cell from 0 to 0.5 along each axis is red.
+    let inside = checked(&ball).translate([10.0, 0.0, 0.0]);
+    assert_eq!(color(&inside, [10.1, 0.1, 0.1]), RED);
+    assert_eq!(color(&inside, [9.9, 0.1, 0.1]), BLUE);
+    let outside = checked(&ball.translate([10.25, 0.0, 0.0]));
+    assert_eq!(color(&outside, [10.1, 0.1, 0.1]), RED, "maps below do not move it");
+    let twisted = checked(&ball).twist(Axis::Z, std::f64::consts::PI);
+    // A quarter turn at z = 1/2: (-0.1, 0.1) comes from (0.1, 0.1).
+    let q = [-0.1, 0.1, 0.5 - 1e-9];
+    assert_eq!(color(&twisted, q), color(&checked(&ball), [0.1, 0.1, 0.5 - 1e-9]));
+    assert!((at(&checked(&ball), [0.1, 0.2, 0.3]).decision - 0.1).abs() < 1e-15, "0.1 from the plane x = 0");
+    // A nearer node wins, and weights mix as always.
+    assert_eq!(color(&checked(&ball.color(GREEN)), [0.1; 3]), GREEN);
+    let mixed = checked(&ball) + ball.color(GREEN);
+    assert_eq!(color(&mixed, [0.1; 3]), [0.5, 0.5, 0.0]);
+    // Without field, the default.
+    assert_eq!(color(&mixed, [5.0; 3]), WHITE);
+}
+
+#[test]
+fn uv_is_that_of_the_leaf_where_it_stands() {
+    let uv = AttributeGroup { name: "uv".into(), default: vec![9.0; 2], mixing: Mixing::Blend };
+    let at = |tree: Tree, p| {
+        let attributes = vec![AttributeGroup::color(), uv.clone()];
+        walk(&Model { attributes, ..Model::new(tree) }.check().unwrap(), p).attributes[1].clone()
+    };
+    let close = |a: Vec<f64>, b: [f64; 2]| {
+        assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-12), "{a:?}, not {b:?}");
+    };
+    let ball = point(HERE, 2.0).uv("uv");
+    close(at(ball.clone(), [0.0, 0.5, 0.0]), [0.25, 0.5]);
+    // A rotation that the ball's field does not feel turns its uv.
+    close(at(ball.rotate([0.0, 0.0, 1.0], 90.0), [0.0, 0.5, 0.0]), [0.0, 0.5]);
+    close(at(ball.scale(-2.0), [0.0, 1.0, 0.0]), [0.75, 0.5]);
+    let line = segment(HERE, [0.0, 0.0, 2.0], 1.0).uv_mapped("uv", [4.0, 2.0], 0.0, [1.0, 0.0]);
+    close(at(line.clone(), [0.0, -0.1, 0.5]), [4.0, 0.5]);
+    let flipped = line.rotate([1.0, 0.0, 0.0], 180.0);
+    close(at(flipped, [0.0, 0.1, -0.5]), [4.0, 0.5]);
+    close(at(&ball + &ball, [0.0, 0.5, 0.0]), [0.25, 0.5]);
+    close(at(&ball + &ball, [9.0; 3]), [9.0, 9.0]);
 }
 
 #[test]

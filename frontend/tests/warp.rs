@@ -77,6 +77,75 @@ fn gradients_are_differences_of_the_oracle() {
     }
 }
 
+/// Any warp under the weight of another subtree, which has several leaves, and operators, of its own.
+#[test]
+fn gradients_of_weighted_warps_are_differences_of_the_oracle() {
+    let mut rng = Rng::with_seed(2);
+    let mut compared = 0;
+    for index in 0..300 {
+        let kind = WarpKind::ALL[index % WarpKind::ALL.len()];
+        let warp = NodeKind::Warp(kind.from_fields(&mild::fields(&mut rng, kind.fields())));
+        let weight = Tree::new(NodeKind::Affine(mild::affine(&mut rng)), vec![blob(&mut rng)]);
+        let warped = Tree::new(warp, vec![blob(&mut rng), weight]).rotate(mild::vector(&mut rng, 1.0), 50.0);
+        let tree = checked(warped);
+        let program = compiled(&tree);
+        for _ in 0..40 {
+            let p = DVec3::from(mild::vector(&mut rng, 1.2)).as_vec3().as_dvec3();
+            let sample = walk(&tree, p.into());
+            let expected = DVec3::from(walk_gradient(&tree, p.into(), 1e-6));
+            let coarse = DVec3::from(walk_gradient(&tree, p.into(), 4e-6));
+            let size = 1.0 + expected.length();
+            if sample.decision < 2e-3 || size > 100.0 || expected.distance(coarse) > 1e-5 * size {
+                continue;
+            }
+            let found = gradient(&program, p);
+            assert!(
+                found.distance(expected) < 1e-3 * size,
+                "{} at {p}: {found}, differences {expected}",
+                kind.name()
+            );
+            compared += 1;
+        }
+    }
+    assert!(compared > 2000, "{compared} points");
+}
+
+/// A weight that several warps and the model itself use is computed once, in front of them.
+#[test]
+fn a_shared_weight_is_computed_once() {
+    let weight = point([0.0; 3], 1.0) + point([0.5, 0.0, 0.0], 1.0);
+    let bar = segment([-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], 0.5);
+    let twisted = bar.twist(Axis::X, 1.0).weighted(&weight);
+    let both = twisted.color([1.0, 0.0, 0.0])
+        + bar.mirror(Axis::Z).weighted(&weight)
+        + twisted.color([0.0, 0.0, 1.0]);
+    let tree = checked(both | weight);
+    let Lowered { function, tables } = lower(&tree, Query::ALL).unwrap();
+    let points =
+        function.tables.values().zip(tables.tables.values()).filter(|(schema, _)| schema.name == "point");
+    assert_eq!(points.map(|(_, rows)| rows.len()).sum::<usize>(), 2, "{function}");
+    assert_eq!(function.to_string().matches("= sin").count(), 1, "one twist\n{function}");
+    for p in [[0.2, 0.1, 0.3], [0.9, -0.2, 0.1], [1.2, 0.1, 0.0]] {
+        let (found, expected) = (gradient(&compiled(&tree), p.into()), walk_gradient(&tree, p, 1e-6));
+        assert!(found.abs_diff_eq(expected.into(), 1e-3), "{found} at {p:?}, differences {expected:?}");
+    }
+}
+
+#[test]
+fn a_weighted_warp_is_still_where_its_weight_is_zero() {
+    let bar = segment([-2.0, 0.0, 0.0], [2.0, 0.0, 0.0], 0.5);
+    let tree = checked(bar.bend(Axis::Y, 0.7, [-2.0, 2.0]).weighted(&point([0.0; 3], 1.0)));
+    let (weighted, plain) = (compiled(&tree), compiled(&checked(bar)));
+    for p in [[1.5, 0.1, 0.2], [-1.9, -0.3, 0.1], [0.0, 1.1, 0.0]] {
+        assert_eq!(gradient(&weighted, p.into()), gradient(&plain, p.into()), "at {p:?}");
+    }
+    let Lowered { function, .. } = lower(&tree, Query::FIELD).unwrap();
+    assert_eq!(function.tables.len(), 1, "nothing but the scene: it needs no fold");
+    let moved = point([0.0; 3], 1.0).translate([1.0; 3]).weighted(&point([0.0; 3], 1.0));
+    let errors = Model::new(moved).check().expect_err("a map has one child");
+    assert_eq!(errors[0].message, "an affine map has 2 children");
+}
+
 /// three-js-blobtree forgets to divide the gradient of a scaled child by the scale.
 #[test]
 fn the_gradient_of_a_scale_is_divided_by_it() {

@@ -48,12 +48,22 @@ pub enum Reduction {
     Step,
     /// One row, whose answer passes through: a guard around one child. If it is dropped, its initial values stand.
     Only,
+    /// The pieces of one leaf: what dropping one does is the leaf's to say.
+    Pieces,
 }
 
 impl Reduction {
     /// All reductions.
-    pub const ALL: [Self; 7] =
-        [Self::Sum, Self::Ricci, Self::Product, Self::Union, Self::Intersection, Self::Step, Self::Only];
+    pub const ALL: [Self; 8] = [
+        Self::Sum,
+        Self::Ricci,
+        Self::Product,
+        Self::Union,
+        Self::Intersection,
+        Self::Step,
+        Self::Only,
+        Self::Pieces,
+    ];
 
     /// The name in the text form.
     #[must_use]
@@ -66,6 +76,7 @@ impl Reduction {
             Self::Intersection => "intersection",
             Self::Step => "step",
             Self::Only => "only",
+            Self::Pieces => "pieces",
         }
     }
 }

@@ -9,18 +9,26 @@ pub const MAX_SCENE_BYTES: usize = 64 << 20;
 pub const MAX_ERRORS: usize = 50;
 /// Operators and parentheses of one number expression that wait for their operands.
 pub const MAX_EXPRESSION_DEPTH: usize = 1 << 20;
+/// Operations of one expression of fields.
+pub const MAX_EXPRESSION_STEPS: usize = 100_000;
 /// Nodes of one tree, shared ones counted once.
 pub const MAX_NODES: usize = 4_000_000;
 /// Uses of nodes, counted along every path from the root: what is left when no subtree is shared.
 pub const MAX_OCCURRENCES: usize = 4_000_000;
 /// Reals of one attribute group.
-pub const MAX_ATTRIBUTE_WIDTH: usize = 4;
+pub const MAX_ATTRIBUTE_WIDTH: usize = 64;
 /// Attribute groups of one model, colour included.
 pub const MAX_ATTRIBUTES: usize = 32;
-/// The largest exponent of a Ricci blend; the smallest is 1.
+/// Points of one skeleton, and numbers of one list.
+pub const MAX_SKELETON_POINTS: usize = 1 << 16;
+/// How often a cubic curve may be halved into pieces: 4096 of them deviate from their chords by 2^-24 of what it does.
+pub const MAX_CURVE_HALVINGS: u32 = 12;
+/// The largest exponent of a Ricci blend, in magnitude; the smallest is 1.
 pub const MAX_RICCI_EXPONENT: f64 = 1024.0;
 /// The most copies that a repetition makes of its child. They cost nothing, but beyond this f32 could not tell their places.
 pub const MAX_COPIES: f64 = (1 << 20) as f64;
+/// The largest exponent of a norm that is a distance; the smallest is 1.
+pub const MAX_METRIC_EXPONENT: f64 = 1024.0;
 /// The largest magnitude of any number in a model. Its square is still a finite f32.
 pub const MAX_NUMBER: f64 = 1e15;
 /// The smallest support radius, smallest scale and so on. The inverse of its square is still a finite f32.

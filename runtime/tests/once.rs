@@ -100,7 +100,10 @@ fn occurrences(tree: &CheckedTree) -> u64 {
             NodeKind::Primitive(_) => {
                 found.insert(format!("{warps}|{id:?}|{:?}", map.to_cols_array().map(|x| x + 0.0)));
             }
-            NodeKind::Combine(_) | NodeKind::Select(_) | NodeKind::Attribute { .. } => {}
+            NodeKind::Combine(_)
+            | NodeKind::Expression(_)
+            | NodeKind::Select(_)
+            | NodeKind::Attribute { .. } => {}
         }
         stack.extend(node.kind.asked(&node.children).iter().map(|&child| (child, warps.clone(), map)));
     }

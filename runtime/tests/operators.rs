@@ -32,7 +32,7 @@ fn lanes_do_not_share_the_colour_of_the_first() {
             let evaluator = Compiler::for_engine(engine).evaluator(&tree, Query::ALL).unwrap();
             let mut samples = evaluator.samples();
             evaluator.eval(&points, &mut samples).unwrap();
-            let red = samples.attribute("color").unwrap()[0];
+            let red = &samples.attribute("color").unwrap()[0];
             for (i, red) in red.iter().enumerate() {
                 let expected = jbt::walk::walk(&tree, points.get(i).map(f64::from)).attributes[0][0];
                 assert!(

@@ -7,7 +7,7 @@ use jbt_frontend::text::{Options, parse, print};
 use jbt_frontend::walk::walk;
 
 /// Models with the parameter `p`, each in another place that numbers can have.
-const SWEPT: [(&str, f64, f64, &str); 22] = [
+const SWEPT: [(&str, f64, f64, &str); 25] = [
     ("radius", 0.1, 3.0, "point { at (0.1 0 0) radius p }"),
     ("place", -2.0, 2.0, "sum { point { at (p 0 p * p) radius 1 } point { radius 1 } }"),
     ("strength", -2.0, 2.0, "sum { point { radius 1 strength p } point { at (0.4 0 0) radius 1 } }"),
@@ -97,6 +97,24 @@ const SWEPT: [(&str, f64, f64, &str); 22] = [
         -2.0,
         2.0,
         "sum { color (p 0.5 p * p) { point { radius 1 } } color (0 1 0) { point { at (0.5 0 0) radius 1 } } }",
+    ),
+    (
+        "texture",
+        0.1,
+        8.0,
+        "color noise { a (p 0 0) b (0 p 1) size p octaves p seed p } { sum { point { radius 1 } color rings { a (1 1 1) b (0 0 0) along (p 1 0) width p } { point { at (0.5 0 0) radius 1 } } } }",
+    ),
+    (
+        "place of a texture",
+        -2.0,
+        2.0,
+        "rotate axis (0 1 1) degrees 90 * p { color gradient { a (0 0 0) b (1 1 1) from (0 0 0) to (p 1 p) } { sum { point { radius 1 } translate (p 0 0) { box { half (0.2 0.1 0.3) radius 1 } } } } }",
+    ),
+    (
+        "uv",
+        -2.0,
+        2.0,
+        "attribute uv 2 uv scale (p 1) rotate 45 * p shift (0 p) { sum { segment { from (0 0 -1) to (p 0 1) radius 0.8 } rotate axis (1 0 1) degrees 90 * p { ring { ring_radius 0.4 radius 0.5 } } } }",
     ),
     (
         "two places that meet",

@@ -1,7 +1,10 @@
 //! Meshes of models: vertices are on the surface, also at creases, and every engine makes the same mesh.
 
+use jbt::solid::RegionError;
 use jbt::text::{Options, parse};
-use jbt::{CheckedTree, Compiler, Engine, Evaluator, Fineness, Points, Polygonize, Query};
+use jbt::{
+    CheckedTree, Compiler, Engine, Evaluator, Fineness, Points, Polygonize, PolygonizeError, Query, Solid,
+};
 
 fn tree(text: &str) -> CheckedTree {
     parse(text.as_bytes(), &Options::default()).expect("it reads").check().expect("it is a good model")
@@ -46,4 +49,30 @@ fn every_engine_makes_the_same_mesh() {
     for engine in [Engine::Lanes, Engine::Jit] {
         assert!(mesh(engine) == reference, "{}", engine.name());
     }
+}
+
+/// A half space by itself needs a region, and has a surface in it that is open at the region's sides.
+#[test]
+fn what_is_unbounded_needs_a_region() {
+    let half = "half_space { at (0 0 0.25) normal (1 0 2) radius 1 }";
+    let alone = tree(&format!("jbt 1 {half}"));
+    let polygonize = Polygonize { fineness: Fineness::Resolution(24), ..Polygonize::default() };
+    let error = polygonize.run(&Compiler::new(), &alone, &mut |_| true).map(|_| ()).expect_err("no region");
+    assert!(matches!(error, PolygonizeError::Unbounded), "{error}");
+    assert_eq!(error.to_string(), "the model is unbounded: its mesh needs a region");
+    let solid = Solid::new(&Compiler::new(), &alone).expect("it compiles");
+    let error = solid.tight_bounds(None, 0.01).expect_err("no region");
+    assert_eq!(error.to_string(), RegionError::Unbounded.to_string());
+
+    let region = Polygonize { region: Some(([-1.0; 3], [1.0; 3])), ..polygonize };
+    let made = region.run(&Compiler::new(), &alone, &mut |_| true).expect("it has a surface there");
+    assert!(!made.report.closed && made.mesh.triangles.len() > 500);
+    for &[x, _, z] in &made.mesh.positions {
+        // Half the radius from the plane.
+        let distance = (x + 2.0 * (z - 0.25)) / 5f32.sqrt();
+        assert!((distance - 0.5).abs() < 1e-4, "{distance}");
+    }
+    let cut = tree(&format!("jbt 1 intersection {{ {half} point {{ radius 1 }} }}"));
+    let made = polygonize.run(&Compiler::new(), &cut, &mut |_| true).expect("it is bounded");
+    assert!(made.report.closed);
 }

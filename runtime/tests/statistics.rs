@@ -4,9 +4,10 @@ use glam::{DAffine3, DVec3};
 use jbt::mesh::Lattice;
 use jbt::statistics::{PerPoint, Statistics, Supports, SupportsError};
 use jbt::{Compiler, Fineness, Polygonize, Query};
-use jbt_frontend::check::CheckedTree;
+use jbt_frontend::check::{CheckedTree, NodeId};
 use jbt_frontend::text;
 use jbt_frontend::tree::NodeKind;
+use jbt_frontend::walk::walk;
 use jbt_frontend::warp::Warp;
 
 fn tree(text: &str) -> CheckedTree {
@@ -120,6 +121,12 @@ fn paths(tree: &CheckedTree) -> Vec<(u32, Vec<Map>)> {
     while let Some((id, maps)) = stack.pop() {
         let node = tree.node(id);
         let mut below = maps.clone();
+        if let (NodeKind::Warp(warp), [child, weight]) = (&node.kind, &*node.children) {
+            // The weight stands where the warp stands.
+            below.push(Map::Weighted(warp.clone(), *weight));
+            stack.extend([(*child, below), (*weight, maps)]);
+            continue;
+        }
         match (&node.kind, below.last_mut()) {
             (NodeKind::Affine(map), Some(Map::Affine(last))) => *last *= *map,
             (NodeKind::Affine(map), _) => below.push(Map::Affine(*map)),
@@ -128,6 +135,7 @@ fn paths(tree: &CheckedTree) -> Vec<(u32, Vec<Map>)> {
             (
                 NodeKind::Primitive(_)
                 | NodeKind::Combine(_)
+                | NodeKind::Expression(_)
                 | NodeKind::Select(_)
                 | NodeKind::Attribute { .. },
                 _,
@@ -142,6 +150,8 @@ fn paths(tree: &CheckedTree) -> Vec<(u32, Vec<Map>)> {
 enum Map {
     Affine(DAffine3),
     Warp(Warp),
+    /// By the field of a subtree.
+    Weighted(Warp, NodeId),
 }
 
 #[test]
@@ -160,6 +170,9 @@ fn the_supports_of_all_examples_are_those_of_plain_formulas() {
             let undo = |p: DVec3, map: &Map| match map {
                 Map::Affine(map) => map.inverse().transform_point3(p),
                 Map::Warp(warp) => warp.inverse(p),
+                Map::Weighted(warp, weight) => {
+                    warp.weighted(p, walk(&tree.subtree(*weight), p.to_array()).field)
+                }
             };
             let counts = bounds.entry(*node).or_default();
             for p in points(&lattice) {

@@ -10,6 +10,7 @@
 use std::rc::Rc;
 
 use glam::{DAffine3, Mat3, Vec3};
+use jbt_frontend::attribute::AttributeValue;
 use jbt_frontend::check::{CheckedTree, NodeId};
 use jbt_frontend::combine::Combinator;
 use jbt_frontend::falloff::Falloff;
@@ -87,8 +88,8 @@ pub(super) enum Step {
 pub(super) struct Compact {
     pub(super) steps: Vec<Step>,
     pub(super) maps: Vec<Map>,
-    /// Warps that are no twists.
-    pub(super) warps: Vec<Warp>,
+    /// Warps that are no twists, or weighted; and what weighs them.
+    pub(super) warps: Vec<(Warp, Option<CheckedTree>)>,
     /// The values of all attribute groups at each leaf.
     pub(super) values: Vec<f32>,
 }
@@ -128,11 +129,12 @@ impl Compact {
         match &node.kind {
             NodeKind::Primitive(primitive) => self.leaf(primitive, &map, &values),
             NodeKind::Combine(combinator) => combine(*combinator, &node.children, map, &values, tasks),
+            NodeKind::Expression(_) => unreachable!("no model that is compared has a formula"),
             NodeKind::Select(_) => {
                 tasks.push(Task::Write(node.kind.asked(&node.children)[0], map, values));
             }
             NodeKind::Affine(here) => tasks.push(Task::Write(node.children[0], map * *here, values)),
-            NodeKind::Warp(Warp::Twist(twist)) => {
+            NodeKind::Warp(Warp::Twist(twist)) if node.children.len() == 1 => {
                 let map = self.map(&map);
                 let twist = Twist { axis: twist.axis, rate: twist.rate as f32, map };
                 tasks.push(Task::Close);
@@ -141,13 +143,18 @@ impl Compact {
             }
             NodeKind::Warp(warp) => {
                 let map = self.map(&map);
-                self.warps.push(warp.clone());
+                self.warps.push((warp.clone(), node.children.get(1).map(|&weight| tree.subtree(weight))));
                 let warp = self.warps.len() as u32 - 1;
                 tasks.push(Task::Close);
                 tasks.push(Task::Write(node.children[0], DAffine3::IDENTITY, values));
                 tasks.push(Task::Push(Operator::Warp(Warped { warp, map })));
             }
-            NodeKind::Attribute { name, values: here } => {
+            NodeKind::Attribute { name, value } => {
+                // Numbers are all that it knows: where they are computed, the check against the oracle says that it is off.
+                let here: &[f64] = match value {
+                    AttributeValue::Numbers(numbers) => numbers,
+                    AttributeValue::Textured(_) | AttributeValue::Uv(_) => &[],
+                };
                 let mut values = values.to_vec();
                 let mut start = 0;
                 for group in tree.attributes() {

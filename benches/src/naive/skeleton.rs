@@ -39,10 +39,21 @@ pub(super) enum Skeleton {
     Segment(Segment),
     Disc(Round),
     Ring(Round),
-    Cylinder { round: Round, half: f32 },
-    Box { middle: Vec3, half: Vec3 },
+    Cylinder {
+        round: Round,
+        half: f32,
+    },
+    Box {
+        middle: Vec3,
+        half: Vec3,
+    },
     Triangle(Box<Triangle>),
+    /// A kind that no case has: by its plain formula in f64.
+    Plain(Box<skeleton::Skeleton>),
 }
+
+/// To both sides, where the way is found by differences.
+const STEP: f64 = 1e-5;
 
 impl Skeleton {
     /// The skeleton, with what is derived from its parameters computed in f64.
@@ -63,6 +74,20 @@ impl Skeleton {
                 Self::Box { middle: cuboid.center.as_vec3(), half: cuboid.half.as_vec3() }
             }
             skeleton::Skeleton::Triangle(triangle) => Self::Triangle(Box::new(Triangle::new(triangle))),
+            skeleton::Skeleton::Sphere(_)
+            | skeleton::Skeleton::Torus(_)
+            | skeleton::Skeleton::Cone(_)
+            | skeleton::Skeleton::RoundCone(_)
+            | skeleton::Skeleton::Rectangle(_)
+            | skeleton::Skeleton::Arc(_)
+            | skeleton::Skeleton::HalfSpace(_)
+            | skeleton::Skeleton::Ellipsoid(_)
+            | skeleton::Skeleton::LMetric(_)
+            | skeleton::Skeleton::Polyline(_)
+            | skeleton::Skeleton::Polygon(_)
+            | skeleton::Skeleton::Bezier(_)
+            | skeleton::Skeleton::CatmullRom(_)
+            | skeleton::Skeleton::Superquadric(_) => Self::Plain(Box::new(skeleton.clone())),
         }
     }
 
@@ -72,9 +97,12 @@ impl Skeleton {
         match self {
             Self::Point(at) => (p - at).length_squared(),
             Self::Segment(segment) => segment.way(p).length_squared(),
-            Self::Disc(_) | Self::Ring(_) | Self::Cylinder { .. } | Self::Box { .. } | Self::Triangle(_) => {
-                self.larger_distance_squared(p)
-            }
+            Self::Disc(_)
+            | Self::Ring(_)
+            | Self::Cylinder { .. }
+            | Self::Box { .. }
+            | Self::Triangle(_)
+            | Self::Plain(_) => self.larger_distance_squared(p),
         }
     }
 
@@ -94,6 +122,7 @@ impl Skeleton {
                 let (h, rho, _) = round.cylindrical(p);
                 (h.abs() - half).max(0.0).powi(2) + (rho - round.radius).max(0.0).powi(2)
             }
+            Self::Plain(skeleton) => skeleton.distance_squared(p.as_dvec3()) as f32,
             Self::Point(_) | Self::Segment(_) | Self::Box { .. } | Self::Triangle(_) => {
                 self.way(p).length_squared()
             }
@@ -106,9 +135,12 @@ impl Skeleton {
         match self {
             Self::Point(at) => p - at,
             Self::Segment(segment) => segment.way(p),
-            Self::Disc(_) | Self::Ring(_) | Self::Cylinder { .. } | Self::Box { .. } | Self::Triangle(_) => {
-                self.larger_way(p)
-            }
+            Self::Disc(_)
+            | Self::Ring(_)
+            | Self::Cylinder { .. }
+            | Self::Box { .. }
+            | Self::Triangle(_)
+            | Self::Plain(_) => self.larger_way(p),
         }
     }
 
@@ -134,6 +166,11 @@ impl Skeleton {
                 v - v.clamp(-half, *half)
             }
             Self::Triangle(triangle) => triangle.way(p),
+            Self::Plain(skeleton) => {
+                let at = |v: DVec3| skeleton.distance_squared(p.as_dvec3() + v);
+                let slope = |axis: DVec3| (at(STEP * axis) - at(-STEP * axis)) / (4.0 * STEP);
+                DVec3::from_array(DVec3::AXES.map(slope)).as_vec3()
+            }
         }
     }
 }

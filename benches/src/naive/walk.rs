@@ -230,7 +230,10 @@ impl Walker {
 
     /// Where a warp takes a point of its own space.
     fn warped(&self, warped: &Warped, p: DVec3) -> DVec3 {
-        self.compact.warps[warped.warp as usize].inverse(p)
+        match &self.compact.warps[warped.warp as usize] {
+            (warp, None) => warp.inverse(p),
+            (warp, Some(weight)) => warp.weighted(p, jbt_frontend::walk::walk(weight, p.to_array()).field),
+        }
     }
 
     /// The gradient outside of a warp: its transposed Jacobian, by central differences, applied to that inside.

@@ -74,6 +74,24 @@ fn mesh_reports_for_machines() {
 }
 
 #[test]
+fn an_unbounded_model_needs_a_region() {
+    let folder = folder().with("half.jbt", "jbt 1 half_space { normal (1 1 1) radius 1 }");
+    for command in ["mesh", "sample"] {
+        let out = if command == "mesh" { "a.obj" } else { "a.npy" };
+        let ran = folder.jbt(&[command, "half.jbt", "-o", out, "--resolution", "8"]).code(2);
+        ran.says("the model is unbounded: its mesh needs a region; --region gives it one");
+        let region = ["--resolution", "8", "--region", "-1,-1,-1,1,1,1"];
+        folder.jbt(&[&[command, "half.jbt", "-o", out], &region[..]].concat()).code(0);
+    }
+    folder
+        .jbt(&["stats", "half.jbt"])
+        .code(2)
+        .says("the model is unbounded: it needs a region; --region gives it one");
+    let checked = folder.jbt(&["check", "half.jbt"]).code(0);
+    assert!(checked.stdout().contains("unbounded: a mesh needs a region"), "{}", checked.stdout());
+}
+
+#[test]
 fn a_region_that_cuts_the_surface_is_told() {
     let folder = folder();
     let arguments = ["mesh", "scene.jbt", "-o", "a.obj", "--cell", "0.1", "--region", "-2,-2,-2,0.5,2,2"];

@@ -1,13 +1,14 @@
-//! The check of attribute groups.
+//! The check of attribute groups, and of what attribute nodes give to leaves.
 
 use std::collections::{BTreeMap, HashSet};
 
 use jbt_ir::limits;
 
+use super::check_fields;
 use super::numbers::check_numbers;
-use crate::attribute::AttributeGroup;
-use crate::diagnostic::Diagnostic;
-use crate::report::Report;
+use crate::attribute::{AttributeGroup, AttributeValue, Textured};
+use crate::diagnostic::{Diagnostic, Span};
+use crate::report::{Report, clip, nearest};
 
 /// The groups of a model: `color` first, names that are identifiers and unique, widths and defaults.
 pub(super) fn check_groups(report: &mut Report, groups: &[AttributeGroup]) {
@@ -62,4 +63,59 @@ pub(crate) fn is_identifier(name: &str) -> bool {
 /// The widths of attribute groups, by name.
 pub(super) fn widths(groups: &[AttributeGroup]) -> BTreeMap<&str, usize> {
     groups.iter().map(|group| (&*group.name, group.width())).collect()
+}
+
+/// An attribute node: a group that is there, and a value that fits it.
+pub(super) fn check_attribute(
+    report: &mut Report,
+    span: Option<Span>,
+    name: &str,
+    value: &AttributeValue,
+    groups: &BTreeMap<&str, usize>,
+) {
+    let Some(width) = groups.get(name).copied() else {
+        report.add(|| {
+            let help = match nearest(name, groups.keys().copied()) {
+                Some(other) => format!("perhaps `{other}` was meant"),
+                None => "declare it with its default first".to_owned(),
+            };
+            Diagnostic::error(span, format!("there is no attribute `{}`", clip(name))).expected(help)
+        });
+        return;
+    };
+    let mut fits = |numbers: &[f64]| {
+        if numbers.len() != width {
+            let message = format!("the attribute `{name}` has width {width}, not {}", numbers.len());
+            let plural = if width == 1 { "" } else { "s" };
+            report
+                .add(|| Diagnostic::error(span, message).expected(format!("expected {width} real{plural}")));
+        }
+        check_numbers(report, span, &format!("the attribute `{name}`"), numbers, f64::NEG_INFINITY);
+    };
+    match value {
+        AttributeValue::Numbers(numbers) => fits(numbers),
+        AttributeValue::Textured(Textured { texture, a, b }) => {
+            fits(a);
+            fits(b);
+            let kind = texture.kind(false);
+            check_fields(report, span, kind.name(), kind.fields(), &texture.to_fields());
+            if let Some((message, help)) = texture.fault() {
+                report.add(|| Diagnostic::error(span, message).expected(help));
+            }
+        }
+        AttributeValue::Uv(map) => {
+            if width != 2 {
+                let message = format!("the attribute `{name}` has width {width}, and a uv has 2");
+                report.add(|| Diagnostic::error(span, message).expected("expected a group of 2 reals"));
+            }
+            let numbers = [&map.scale[..], &[map.degrees], &map.shift].concat();
+            check_numbers(
+                report,
+                span,
+                "the map of the uv (scale, degrees, shift)",
+                &numbers,
+                f64::NEG_INFINITY,
+            );
+        }
+    }
 }

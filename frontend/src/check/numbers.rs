@@ -7,7 +7,10 @@ use jbt_ir::limits;
 use crate::combine::rfunction::{LARGEST_ORDER, LEAST_ALPHA, POWERS};
 use crate::combine::{Combinator, Family};
 use crate::diagnostic::{Diagnostic, Span};
+use crate::expression::{Expression, Form, Formula};
+use crate::number::{Formula as NumberFormula, Number};
 use crate::report::Report;
+use crate::text::{COORDINATES, FIELD_OF};
 
 /// Whether `value` is finite, at least `least` and not too large; an error otherwise.
 pub(super) fn check_number(
@@ -43,6 +46,7 @@ pub(super) fn check_within(
     value: f64,
     range: RangeInclusive<f64>,
 ) {
+    // Written so that a NaN is refused as well.
     if !range.contains(&value) {
         report.add(|| {
             Diagnostic::error(span, format!("{what} is {value}")).expected(format!(
@@ -59,7 +63,11 @@ pub(super) fn check_numbers(report: &mut Report, span: Option<Span>, what: &str,
     let good = |x: &f64| x.is_finite() && x.abs() <= limits::MAX_NUMBER && *x >= least;
     if !values.iter().all(good) {
         let shown: Vec<String> = values.iter().map(f64::to_string).collect();
-        let at_least = if least == 0.0 { " of at least 0" } else { "" };
+        let at_least = match least {
+            0.0 => " of at least 0".to_owned(),
+            f64::NEG_INFINITY => String::new(),
+            least => format!(" of at least {least:e}"),
+        };
         report.add(|| {
             Diagnostic::error(span, format!("{what} is ({})", shown.join(" "))).expected(format!(
                 "expected finite numbers{at_least}, at most {:e} in magnitude",
@@ -78,6 +86,25 @@ pub(super) fn check_count(report: &mut Report, span: Option<Span>, what: &str, v
             Diagnostic::error(span, format!("{what} is {value}"))
                 .expected(format!("expected a whole number from 0 to {}", limits::MAX_COPIES))
         });
+    }
+}
+
+/// The elements of a list; an error about the first that is not good.
+pub(super) fn check_list<const N: usize>(
+    report: &mut Report,
+    span: Option<Span>,
+    what: &dyn Fn(usize) -> String,
+    elements: &[[f64; N]],
+    least: f64,
+) {
+    let good = |x: &f64| x.is_finite() && x.abs() <= limits::MAX_NUMBER && *x >= least;
+    if let Some(index) = elements.iter().position(|element| !element.iter().all(good)) {
+        check_numbers(report, span, &what(index), &elements[index], least);
+    }
+    if elements.len() > limits::MAX_SKELETON_POINTS {
+        let message = format!("a list of {} elements", elements.len());
+        let help = format!("expected at most {}", limits::MAX_SKELETON_POINTS);
+        report.add(|| Diagnostic::limit(span, message).expected(help));
     }
 }
 
@@ -175,6 +202,78 @@ fn check_exponent(report: &mut Report, span: Option<Span>, n: f64) {
         report.add(|| {
             Diagnostic::error(span, format!("the exponent of the Ricci blend is {n}"))
                 .expected(format!("expected a number from 1 to {most}, or from -{most} to -1"))
+        });
+    }
+}
+
+/// The numbers of a formula, its divisors, its box, its length, and its children.
+pub(super) fn check_expression(
+    report: &mut Report,
+    span: Option<Span>,
+    expression: &Expression,
+    children: usize,
+) {
+    let form = expression.form();
+    if children != form.children() {
+        let message =
+            format!("the expression has {children} children and {} numbers", expression.numbers.len());
+        let expected = format!("expected {} and {}", form.children(), form.numbers());
+        report.add(|| Diagnostic::error(span, message).expected(expected));
+        return;
+    }
+    if !check_formula(report, span, "the expression", form, &expression.numbers) {
+        return;
+    }
+    if let Some(bounds) = expression.bounds().filter(|bounds| bounds.is_empty()) {
+        let (low, high) = (bounds.low(), bounds.high());
+        let message = format!("the box of the expression goes from {low:?} to {high:?}");
+        let expected = "expected the smallest corner, then the largest";
+        report.add(|| Diagnostic::error(span, message).expected(expected));
+    }
+}
+
+/// The numbers of a formula, its divisors and its length. Whether its numbers are good.
+pub(super) fn check_formula(
+    report: &mut Report,
+    span: Option<Span>,
+    what: &str,
+    form: &Form,
+    numbers: &[f64],
+) -> bool {
+    let mut error = |message: String, expected: String| {
+        report.add(|| Diagnostic::error(span, message).expected(expected));
+    };
+    if form.steps() > limits::MAX_EXPRESSION_STEPS {
+        let most = limits::MAX_EXPRESSION_STEPS;
+        error(format!("{what} has {} operations", form.steps()), format!("expected at most {most}"));
+    }
+    if numbers.len() != form.numbers() {
+        error(format!("{what} has {} numbers", numbers.len()), format!("expected {}", form.numbers()));
+        return false;
+    }
+    for number in form.divisors() {
+        if numbers[number] == 0.0 {
+            error("division by zero".to_owned(), "expected a divisor that is not 0".to_owned());
+        }
+    }
+    let good = |value: &&f64| !(value.is_finite() && value.abs() <= limits::MAX_NUMBER);
+    let bad = numbers.iter().find(good);
+    if let Some(value) = bad {
+        let most = limits::MAX_NUMBER;
+        let expected = format!("expected finite numbers, at most {most:e} in magnitude");
+        error(format!("a number of {what} is {value}"), expected);
+    }
+    bad.is_none()
+}
+
+/// In a formula of a field some words mean something else than parameters of these names.
+pub(super) fn check_words(report: &mut Report, formula: &Formula, span: Option<Span>) {
+    let numbers = formula.numbers.iter().filter_map(Number::formula);
+    let mut names = numbers.flat_map(NumberFormula::parameters).map(|(name, _)| name);
+    if let Some(name) = names.find(|name| COORDINATES.contains(&&***name) || &***name == FIELD_OF) {
+        report.add(|| {
+            Diagnostic::error(span, format!("an expression mentions the parameter `{name}`"))
+                .expected("expected another name: this word means something else there")
         });
     }
 }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use jbt_ir::limits;
 
 use super::numbers::check_number;
-use super::{CheckedNode, CheckedTree, NodeId, check_node, widths};
+use super::{CheckedNode, CheckedTree, NodeId, check_node, check_occurrences, widths};
 use crate::diagnostic::{Diagnostic, Span};
 use crate::number::{Formula, Number, Values};
 use crate::parameter::{Parameter, is_name, refresh};
@@ -221,16 +221,22 @@ impl CheckedTree {
         }
         let groups = widths(&self.attributes);
         let mut nodes = self.nodes.to_vec();
+        let mut in_pieces = false;
         for id in affected {
             let node = &mut nodes[id.0 as usize];
             let recipe = self.dependence.recipe(id).expect("affected nodes have recipes");
             match cook(recipe, values, iso, node.span) {
                 Ok(kind) => {
                     check_node(report, &kind, node.children.len(), node.span, &groups, iso);
+                    in_pieces |= is_in_pieces(&kind);
                     node.kind = kind;
                 }
                 Err(error) => report.add(|| error),
             }
+        }
+        // A curve may have more pieces now.
+        if in_pieces && report.is_empty() {
+            check_occurrences(report, &nodes, limits::MAX_OCCURRENCES);
         }
         nodes.into()
     }
@@ -255,6 +261,19 @@ impl CheckedTree {
     #[must_use]
     pub fn follows(&self) -> bool {
         !self.dependence.nodes.is_empty()
+    }
+}
+
+/// Whether it is a leaf whose skeleton has any number of pieces.
+fn is_in_pieces(kind: &NodeKind) -> bool {
+    match kind {
+        NodeKind::Primitive(leaf) => leaf.skeleton.kind().pieces().is_some(),
+        NodeKind::Combine(_)
+        | NodeKind::Expression(_)
+        | NodeKind::Select(_)
+        | NodeKind::Affine(_)
+        | NodeKind::Warp(_)
+        | NodeKind::Attribute { .. } => false,
     }
 }
 

@@ -32,7 +32,7 @@ fn affine(map: DAffine3, child: Tree) -> Tree {
 }
 
 fn attribute(name: &str, values: &[f64], child: Tree) -> Tree {
-    Tree::new(NodeKind::Attribute { name: name.into(), values: values.to_vec() }, vec![child])
+    Tree::new(NodeKind::Attribute { name: name.into(), value: values.to_vec().into() }, vec![child])
 }
 
 fn group(name: &str, width: usize) -> AttributeGroup {
@@ -169,10 +169,10 @@ fn judges_the_model_itself() {
     let message = "an attribute is called `field`, like another answer at a point";
     assert_eq!(with(0.5, vec![color(), group("field", 1)]), error(message));
     assert_eq!(with(0.5, vec![color(), group("uv", 0)]), error("the attribute `uv` has no reals"));
-    assert_eq!(with(0.5, vec![color(), group("uv", 4)]), vec![]);
+    assert_eq!(with(0.5, vec![color(), group("uv", 64)]), vec![]);
     assert_eq!(
-        with(0.5, vec![color(), group("uv", 5)]),
-        limit("the attribute `uv` has 5 reals; it may have 4")
+        with(0.5, vec![color(), group("uv", 65)]),
+        limit("the attribute `uv` has 65 reals; it may have 64")
     );
     let groups = |count: usize| {
         std::iter::once(color()).chain((1..count).map(|i| group(&format!("a{i}"), 1))).collect::<Vec<_>>()
@@ -276,10 +276,55 @@ fn an_unbounded_box_stays_a_box() {
 #[test]
 fn a_name_is_shared_and_not_copied() {
     let name: Arc<str> = "color".into();
-    let tree = Tree::new(NodeKind::Attribute { name: name.clone(), values: vec![0.0; 3] }, vec![point(0.0)]);
+    let tree =
+        Tree::new(NodeKind::Attribute { name: name.clone(), value: vec![0.0; 3].into() }, vec![point(0.0)]);
     let checked = Model::new(tree).check().unwrap();
     let NodeKind::Attribute { name: kept, .. } = &checked.node(checked.root()).kind else {
         panic!("an attribute")
     };
     assert!(Arc::ptr_eq(kept, &name));
+}
+
+#[test]
+fn judges_what_attribute_nodes_compute() {
+    let model = |text: &str| {
+        let text = format!("jbt 1 attribute uv 2 param size = 0 {text}");
+        crate::text::parse(text.as_bytes(), &crate::text::Options::default()).unwrap()
+    };
+    let messages = |text: &str| {
+        let errors = model(text).check().unwrap_err();
+        errors
+            .into_iter()
+            .map(|error| {
+                assert!(error.span.is_some(), "{} has a place", error.message);
+                error.message
+            })
+            .collect::<Vec<_>>()
+    };
+    let ball = "{ point { radius 1 } }";
+    for (head, expected) in [
+        ("color checker { a (1 1 1) b (0 0 0) size 0 }", "the `size` of the checker is 0"),
+        ("color checker { a (1 1 1) b (0 0 0) size size }", "the `size` of the checker is 0"),
+        ("color stripes { a (1 1 1) b (0 0 0) along (0 0 0) }", "the `along` of the stripes is (0 0 0)"),
+        ("color noise { a (1 1 1) b (0 0 0) octaves 9 }", "the `octaves` of the noise are 9"),
+        ("color noise { a (1 1 1e16) b (0 0 0) }", "the attribute `color` is (1 1 10000000000000000)"),
+        (
+            "uv scale 1e20",
+            "the map of the uv (scale, degrees, shift) is (100000000000000000000 100000000000000000000 0 0 0)",
+        ),
+    ] {
+        assert_eq!(messages(&format!("{head} {ball}")), [expected]);
+    }
+    // Trees that no text gives.
+    let leaf = || point(0.0);
+    for (tree, expected) in [
+        (
+            leaf().textured("color", crate::builder::checker(1.0), &[1.0], &[0.0; 3]),
+            "the attribute `color` has width 3, not 1",
+        ),
+        (leaf().uv("color"), "the attribute `color` has width 3, and a uv has 2"),
+    ] {
+        let errors = Model::new(tree).check().unwrap_err();
+        assert_eq!(errors[0].message, expected);
+    }
 }

@@ -20,6 +20,11 @@ impl Extent {
         Self { support: map(self.support), negative: map(self.negative) }
     }
 
+    /// That of a warp over a child with this, in which points move where another field, of extent `weight`, is not 0: elsewhere they stay.
+    pub(crate) fn weighted(self, weight: &Self) -> Self {
+        self.map(|bounds| if bounds.is_empty() { bounds } else { bounds.hull(weight.support) })
+    }
+
     /// That of a node over children with these.
     pub(crate) fn of(combinator: Combinator, children: &[Self], iso: f64) -> Self {
         let (supports, negatives) =

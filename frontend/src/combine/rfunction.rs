@@ -15,8 +15,8 @@
 //! F = max(0, iso (1 - R / B))        0 where all fields are 0, iso where R is 0, and so that the surface stays
 //! ```
 //!
-//! R and B come from the same ops, so 0 is exact. A lone field is changed too (0.3 becomes 0.27 by R_0's union for iso 1/2), so no zero may be
-//! left out of a fold, and the intersection is not 0 where one field alone is (it may reach 0.29 iso): all have the hull of the children as support.
+//! R and B come from the same ops, so 0 is exact. A lone field is changed too (0.3 becomes 0.22 by R_0's union for iso 1/2), so no zero may be
+//! left out of a fold, and the intersection is not 0 where one field alone is (0.29 where the other one is 1, for iso 1/2): all have the hull of the children as support.
 //!
 //! Alpha below -0.9, where B goes to 0, and p near 1 leave too few digits in f32. Gradients are continuous but for the corner `x = y = 0` (and
 //! the tie of alpha = 1); there the root has the tangent 0. R_0^m is not monotone. Weights are `f dF/df`, those of what is subtracted by its complement,

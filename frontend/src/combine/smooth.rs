@@ -17,10 +17,12 @@
 use jbt_ir::Domain;
 
 use super::SetOperation;
-use super::ricci::FLOOR;
 use super::step::{Pair, Reach, Step};
 use crate::lower::guide::Rule;
 use crate::skeleton::positive_part;
+
+/// Widths below this count as this where they divide: the squares of quotients, which derivatives are made of, have to be finite.
+const SMALLEST: f32 = 1.0 / (1u64 << 50) as f32;
 
 /// See the module.
 #[derive(Clone, Copy)]
@@ -86,8 +88,9 @@ impl Step for Smooth {
             SetOperation::Difference => {
                 let (width, complement) = (limited(width, b).0, (2.0 * iso - b).max(0.0));
                 let (field, slopes) = rounded(false, [a, complement], width);
-                let right = if b > 0.0 { complement * slopes[1] } else { 0.0 };
-                Pair { field, weights: [(a * slopes[0]).max(0.0), right.max(0.0)] }
+                // What is not there may limit the field, but takes nothing from the attributes.
+                let slopes = if b > 0.0 { slopes } else { [1.0, 0.0] };
+                Pair { field, weights: [(a * slopes[0]).max(0.0), (complement * slopes[1]).max(0.0)] }
             }
         }
     }
@@ -149,15 +152,18 @@ impl Step for Smooth {
             }
             SetOperation::Difference => {
                 let (here, _) = emit_limited(d, width, b);
-                let (quarter, floor) = (d.constant(0.25), d.constant(FLOOR));
+                let (quarter, floor) = (d.constant(0.25), d.constant(SMALLEST));
                 let divisor = d.max(here, floor);
                 let width = Width { width: here, quarter: d.div(quarter, divisor) };
                 let cut = d.sub(iso2, b);
                 let cut = positive_part(d, cut);
                 let (field, [left, right]) = emit_rounded(d, false, [a, cut], width);
                 let zero = d.constant(0.0);
-                let (there, right) = (d.lt(zero, b), weight(d, cut, right));
-                Pair { field, weights: [weight(d, a, left), d.select(there, right, zero)] }
+                let one = d.constant(1.0);
+                // What is not there may limit the field, but takes nothing from the attributes.
+                let there = d.lt(zero, b);
+                let (left, right) = (d.select(there, left, one), d.select(there, right, zero));
+                Pair { field, weights: [weight(d, a, left), weight(d, cut, right)] }
             }
         }
     }
@@ -204,7 +210,7 @@ fn emit_rounded<D: Domain>(
     let (zero, one, half, quarter) = (d.constant(0.0), d.constant(1.0), d.constant(0.5), d.constant(0.25));
     let difference = d.sub(a, b);
     let apart = d.abs(difference);
-    let floor = d.constant(FLOOR);
+    let floor = d.constant(SMALLEST);
     let divisor = d.max(limit, floor);
     let part = d.div(apart, divisor);
     let left = d.sub(one, part);

@@ -5,7 +5,7 @@
 //! F = step(.. step(step(f_1, f_2), f_3) .., f_n)        A likewise: of both sides' attributes, by their weights
 //! ```
 //!
-//! A step weighs its two sides by `max(0, f dF/df)`; a side without weight is not there. So many children mix as nested pairs would.
+//! A step weighs its two sides by `max(0, f dF/df)`; a side without weight is not there, nor is one whose own sides had none.
 
 use jbt_ir::Domain;
 
@@ -158,11 +158,14 @@ pub(super) fn fold(combinator: Combinator, fields: &[f64], iso: f64) -> (f64, Ve
     let mut weights = vec![1.0];
     for &right in &fields[1..] {
         let pair = on_member!(kind, member => member.pair([field, right], number, iso));
-        let [left, right] = pair.weights;
-        if right > 0.0 {
+        // Once nothing has weight, the left side has none until something has.
+        let known = weights.iter().any(|weight| *weight > 0.0);
+        let [left, right] = if known { pair.weights } else { [0.0, pair.weights[1]] };
+        if left + right > 0.0 {
             weights.iter_mut().for_each(|weight| *weight *= left / (left + right));
             weights.push(right / (left + right));
         } else {
+            weights.fill(0.0);
             weights.push(0.0);
         }
         field = pair.field;

@@ -62,7 +62,7 @@ impl Member for ArcTan {
     ];
 
     fn from_fields(values: &[FieldValue]) -> Self {
-        Self { stiffness: values[0].real(), edge: Edge::from_field(values[1]) }
+        Self { stiffness: values[0].real(), edge: Edge::from_field(&values[1]) }
     }
 
     fn to_fields(&self) -> Vec<FieldValue> {
@@ -115,7 +115,8 @@ impl FalloffMember for ArcTan {
         let value = d.div(scale, sum);
 
         let part = d.mul(depth, thick);
-        let part = d.min(part, one);
+        // Where both are equal, the part moves and the quotient does not.
+        let part = d.min(one, part);
         let value = d.mul(value, part);
         match Edge::of_bit(variant) {
             // It is zero at the rim already.
@@ -128,8 +129,9 @@ impl FalloffMember for ArcTan {
 /// `45 / (A / 8)` from the cotangent of an angle A in (0, pi).
 fn emit_inverse_angle<D: Domain>(d: &mut D, cot: D::Real) -> D::Real {
     // Where the cotangent is negative, cot + csc would be a difference: one of these two is 1.
-    let opposite = d.neg(cot);
-    let (above, below) = (positive_part(d, cot), positive_part(d, opposite));
+    // At 0 only the first one moves.
+    let (opposite, zero) = (d.neg(cot), d.constant(0.0));
+    let (above, below) = (d.max(zero, cot), positive_part(d, opposite));
     let (above, below) = (emit_halved(d, above), emit_halved(d, below));
     let half = d.div(above, below);
     let quarter = emit_halved(d, half);

@@ -92,7 +92,8 @@ impl FalloffMember for Blanc {
         let [one, half, four, nine] = [1.0, 0.5, 4.0, 9.0].map(|number| d.constant(number));
         let [outer_seam, inner_seam] = [1.125, 4.5].map(|number| d.constant(number));
 
-        let x = d.min(u, seam_u);
+        // At the seam itself x moves with u, and y does not move: one of them has to, or the gradient would be 0 there.
+        let x = d.min(seam_u, u);
         let square = d.mul(x, x);
         let before = d.sub(seam_u, x);
         let divisor = d.fma(row[1], before, outer_seam);

@@ -52,7 +52,7 @@ impl Member for Blinn {
 
     fn from_fields(values: &[FieldValue]) -> Self {
         let [hardness, cutoff] = [0, 1].map(|i: usize| values[i].real());
-        Self { hardness, cutoff, edge: Edge::from_field(values[2]) }
+        Self { hardness, cutoff, edge: Edge::from_field(&values[2]) }
     }
 
     fn to_fields(&self) -> Vec<FieldValue> {

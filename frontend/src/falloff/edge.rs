@@ -35,7 +35,7 @@ impl Edge {
         })
     }
 
-    pub(super) fn from_field(value: FieldValue) -> Self {
+    pub(super) fn from_field(value: &FieldValue) -> Self {
         if value.real() == 0.0 { Self::Exact } else { Self::Smooth }
     }
 

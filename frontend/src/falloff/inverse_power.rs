@@ -50,7 +50,7 @@ impl Member for InversePower {
 
     fn from_fields(values: &[FieldValue]) -> Self {
         let [exponent, cutoff] = [0, 1].map(|i: usize| values[i].real());
-        Self { exponent, cutoff, edge: Edge::from_field(values[2]) }
+        Self { exponent, cutoff, edge: Edge::from_field(&values[2]) }
     }
 
     fn to_fields(&self) -> Vec<FieldValue> {
@@ -125,7 +125,7 @@ mod tests {
         for edge in [Edge::Exact, Edge::Smooth] {
             for (exponent, cutoff) in [(1.0, 4.0), (2.0, 4.0), (2.5, 3.0), (5.0, 2.0), (16.0, 2.0)] {
                 // The slope n x^(n-1) / (1 + x^n)^2 in x = c r is largest where x^n = (n - 1) / (n + 1).
-                let x = ((exponent - 1.0) / (exponent + 1.0) as f64).powf(1.0 / exponent);
+                let x = ((exponent - 1.0) / (exponent + 1.0f64)).powf(1.0 / exponent);
                 let slope = cutoff * exponent * x.powf(exponent - 1.0) / (1.0 + x.powf(exponent)).powi(2);
                 let steepest = (exponent > 1.0).then_some((x / cutoff, slope));
                 Published { half: Some(1.0 / cutoff), steepest }

@@ -5,11 +5,11 @@
 //! 3/2 (1 - r)^2        1/3 <= r <= 1
 //! ```
 //!
-//! They touch at r = 1/3 and one is never below the other, so it takes a sum to follow the one and then the other: with the depth
-//! `v = 1 - r`, the second as far as v = 2/3, and what the first one adds to it from there:
+//! They touch at r = 1/3 and one is never below the other, so it takes a sum to follow the one and then the other: the second as far as
+//! `u = 1 - r^2 = 8/9`, and what the first one adds to it from there. With the depth `v(u) = 1 - r = u / (1 + sqrt(1 - u))`:
 //!
 //! ```text
-//! 3/2 min(v, 2/3)^2 + 3 max(u - 8/9, 0)
+//! 3/2 v(min(u, 8/9))^2 + 3 max(u - 8/9, 0)
 //! ```
 
 use jbt_ir::Domain;
@@ -41,13 +41,13 @@ impl PlainFalloff for Metaball {
     }
 
     fn emit<D: Domain>(d: &mut D, u: D::Real) -> D::Real {
-        let (seam, seam_u) = (d.constant(2.0 / 3.0), d.constant(8.0 / 9.0));
-        let (three, three_halves) = (d.constant(3.0), d.constant(1.5));
-        let depth = emit_depth(d, u);
-        let outer = d.min(depth, seam);
-        let outer = d.mul(outer, outer);
+        let [seam, three, three_halves] = [8.0 / 9.0, 3.0, 1.5].map(|number| d.constant(number));
+        // At the seam itself this is u, with its slope, and the other term is 0 without one.
+        let before = d.min(seam, u);
+        let depth = emit_depth(d, before);
+        let outer = d.mul(depth, depth);
         let outer = d.mul(three_halves, outer);
-        let past = d.sub(u, seam_u);
+        let past = d.sub(u, seam);
         let inner = positive_part(d, past);
         d.fma(three, inner, outer)
     }

@@ -4,11 +4,13 @@
 //! cannot say is an error that names it, never a silent approximation.
 
 mod parsip;
+mod vm;
 
 use crate::diagnostic::Diagnostic;
 use crate::model::Model;
 
 pub use parsip::parsip;
+pub use vm::vm;
 
 /// A model from a file of another system.
 #[derive(Clone, PartialEq, Debug)]

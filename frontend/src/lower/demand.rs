@@ -68,7 +68,10 @@ impl Demand {
             let kind = &scene.occurrences[index].kind;
             match kind {
                 OccurrenceKind::Leaf { field, .. } => demand.fields[field.0 as usize].also(asked),
-                OccurrenceKind::Warp { inside, child, .. } => {
+                OccurrenceKind::Warp { inside, child, weight, .. } => {
+                    if let Some(weight) = weight {
+                        demand.occurrences[weight.0 as usize].also(asked);
+                    }
                     demand.spaces[inside.0 as usize].also(asked);
                     demand.bare[child.0 as usize] |= bare;
                     let always = asked.always || !scene.is_shared(*inside);
@@ -82,6 +85,7 @@ impl Demand {
                 }
                 OccurrenceKind::Reduce { .. }
                 | OccurrenceKind::Difference { .. }
+                | OccurrenceKind::Expression { .. }
                 | OccurrenceKind::Map { .. } => {
                     for child in children(kind) {
                         demand.occurrences[child.0 as usize].also(asked);
@@ -100,6 +104,8 @@ impl Demand {
             Lift::Field(FieldId(id)) => self.fields[id as usize],
             Lift::Space(SpaceId(id)) => self.spaces[id as usize],
             Lift::Occurrence(OccurrenceId(id)) => self.occurrences[id as usize],
+            // It has no row of its own.
+            Lift::Computed(_) => Asked { always: true, now: true },
         }
     }
 

@@ -5,6 +5,7 @@
 //!                      warp        its point in a new space, then the child there
 //!                      difference  both sides, then the smaller
 //!                      map         the child, then the map of its field
+//!                      expression  each child; then the formula of the point and their fields
 //!                      selector    for each child: a fold over one row, which is active or not
 //!                      operator    for each group:  folded   open a fold over a table, define the first member, step, close
 //!                                                   else     for each member: define, step; the first member of a step is the beginning
@@ -16,6 +17,8 @@
 //!
 //! The guide function is emitted in the same way, and carries probes out of its guards: see `probe`.
 
+mod computed;
+mod express;
 mod guard;
 mod probe;
 mod row;
@@ -29,6 +32,7 @@ use jbt_ir::{Domain, Entity, Function, FunctionBuilder, Reduction, Schema, Table
 use self::guard::{Guard, GuardStart};
 use self::probe::Probes;
 use self::select::Select;
+use super::computed::ComputedId;
 use super::guide::{Decision, DecisionKind, Rule};
 use super::mixing::{Answer, Operator, State, difference, mapped};
 use super::occurrence::{FieldId, OccurrenceId, OccurrenceKind, Scene, SpaceId};
@@ -86,6 +90,7 @@ enum Task {
     /// What was computed here is what all uses see.
     Keep(OccurrenceId),
     LiftField(FieldId),
+    LiftComputed(ComputedId),
     /// The point in a space is what all uses see.
     LiftSpace(SpaceId),
     LeaveSpace,
@@ -95,6 +100,8 @@ enum Task {
     Operand(OccurrenceId, Guard),
     OpenGuard(OccurrenceId, GuardStart),
     CloseGuard(Option<DecisionKind>),
+    /// The children of a formula have their answers.
+    Express(OccurrenceId),
     /// The next operand of an operator has its answer.
     Step,
     FinishReduce,
@@ -136,6 +143,7 @@ struct Emitter<'a> {
     selects: Vec<Select>,
     kept: HashMap<OccurrenceId, Answer>,
     kept_fields: HashMap<FieldId, Value>,
+    kept_computed: HashMap<ComputedId, Vec<Value>>,
     kept_points: HashMap<SpaceId, [Value; 3]>,
     slots: u32,
     iso2: Option<Value>,
@@ -162,6 +170,7 @@ impl<'a> Emitter<'a> {
             selects: Vec::new(),
             kept: HashMap::default(),
             kept_fields: HashMap::default(),
+            kept_computed: HashMap::default(),
             kept_points: HashMap::default(),
             slots: 0,
             iso2: None,
@@ -226,7 +235,8 @@ impl<'a> Emitter<'a> {
         if function.tables.len() > limits::MAX_TABLES {
             return limit("tables", limits::MAX_TABLES);
         }
-        if self.builder.fold_depth() > limits::MAX_FOLD_DEPTH {
+        // A leaf opens and closes the fold over its pieces at once, so the deepest fold need not be open now.
+        if self.tables.last().is_some_and(|table| table.depth > limits::MAX_FOLD_DEPTH) {
             return limit("operators of many like children inside each other", limits::MAX_FOLD_DEPTH);
         }
         Ok(())
@@ -247,6 +257,7 @@ impl<'a> Emitter<'a> {
                 let value = self.lift_field(field);
                 self.kept_fields.insert(field, value);
             }
+            Task::LiftComputed(id) => self.lift_computed(id),
             Task::LiftSpace(space) => {
                 self.tasks.push(Task::LeaveSpace);
                 let point = self.lift_point(space);
@@ -269,6 +280,7 @@ impl<'a> Emitter<'a> {
             }
             Task::OpenGuard(id, start) => self.open_guard(id, start),
             Task::CloseGuard(decision) => self.close_guard(decision),
+            Task::Express(id) => self.express(id),
             Task::BeginSelect => self.begin_select(),
             Task::OpenChild(id) => self.open_child(id),
             Task::CloseChild => self.close_child(),
@@ -320,7 +332,7 @@ impl<'a> Emitter<'a> {
         match &self.scene.occurrence(id).kind {
             OccurrenceKind::Leaf { field, .. } => {
                 let value = self.kept_fields.get(field).copied().unwrap_or_else(|| self.leaf(*field));
-                let groups = self.leaf_attributes();
+                let groups = self.leaf_attributes(id);
                 self.answers.push(Answer { field: value, groups });
             }
             OccurrenceKind::Warp { inside, child, .. } => {
@@ -340,6 +352,11 @@ impl<'a> Emitter<'a> {
                 let row = self.columns(kind.columns());
                 self.tasks.push(Task::Map(*kind, row));
                 self.tasks.push(Task::Operand(*child, Guard::ZERO));
+            }
+            OccurrenceKind::Expression { children, .. } => {
+                self.tasks.push(Task::Express(id));
+                let operand = |&child: &OccurrenceId| Task::Operand(child, Guard::ALONE);
+                self.tasks.extend(children.iter().rev().map(operand));
             }
             OccurrenceKind::Select { children, .. } => self.select(children),
             OccurrenceKind::Reduce { .. } => self.begin_reduce(id),
@@ -361,9 +378,16 @@ impl<'a> Emitter<'a> {
         let (_, outer) = *self.points.last().expect("a space is open");
         let row = self.columns(map.columns());
         let point = map.emit(&mut self.builder, outer, &row);
-        let kind = self.scene.warp(inside.warp).kind();
-        let row = self.columns(kind.columns());
-        kind.emit(&mut self.builder, point, &row)
+        let code = self.scene.warp(inside.warp).code();
+        let row = self.columns(&code.columns());
+        match inside.weight {
+            None => code.emit(&mut self.builder, point, &row),
+            Some(weight) => {
+                // It was computed where the space began in which the warp stands, at the point in that space.
+                let weight = self.kept[&weight].field;
+                code.emit_weighted(&mut self.builder, point, &row, weight)
+            }
+        }
     }
 
     /// Puts what is lifted to the start of a space on top of the tasks.
@@ -371,6 +395,7 @@ impl<'a> Emitter<'a> {
         for lift in self.shapes.lifts(space).iter().rev() {
             match lift {
                 Lift::Field(field) => self.tasks.push(Task::LiftField(*field)),
+                Lift::Computed(id) => self.tasks.push(Task::LiftComputed(*id)),
                 Lift::Space(space) => self.tasks.push(Task::LiftSpace(*space)),
                 Lift::Occurrence(id) if self.guards_lift(*lift) => {
                     self.tasks.extend([Task::Keep(*id), Task::CloseGuard(None), Task::Define(*id)]);
@@ -494,13 +519,12 @@ impl Emitter<'_> {
             OccurrenceKind::Leaf { field, .. } => {
                 self.scene.primitive(*field).skeleton.kind().name().to_owned()
             }
-            OccurrenceKind::Warp { .. } => {
-                self.scene.warp(self.scene.occurrence(id).node).kind().name().to_owned()
-            }
+            OccurrenceKind::Warp { .. } => self.scene.warp(self.scene.occurrence(id).node).name().to_owned(),
             OccurrenceKind::Difference { .. } => "difference".to_owned(),
             OccurrenceKind::Map { .. } => {
                 self.scene.combinator(self.scene.occurrence(id).node).name().to_owned()
             }
+            OccurrenceKind::Expression { .. } => "expression".to_owned(),
             OccurrenceKind::Select { .. } => "select".to_owned(),
             OccurrenceKind::Reduce { reducer, .. } => ReducerCode::of(*reducer).name().to_owned(),
         }

@@ -50,7 +50,7 @@ pub struct TableGuide {
     pub supports: Vec<Support>,
     /// What may be done with rows that are zero.
     pub rule: Rule,
-    /// Of each row, the tree node whose field it computes: a leaf, an operator, a selector, or a warp.
+    /// Of each row, the tree node whose field it computes: a leaf (for each of its pieces too), an operator, a selector, or a warp.
     pub nodes: Vec<NodeId>,
     /// Whether its row is computed for rows of other tables, and seen by these alone: a field, an answer, or the point inside of a warp, which
     /// several share.
@@ -72,14 +72,17 @@ pub enum SpaceGuide {
 /// What may be done with rows that are zero all over a box.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Rule {
-    /// They may all be left out: rows of sums, of Ricci blends, of unions without negative operands and of selectors, and guards that start at 0.
+    /// They may all be left out: rows of sums, of Ricci blends, of unions without negative operands and of selectors, guards that start at 0,
+    /// and pieces whose distance counts within the support radius only.
     Neutral,
-    /// The first of each parent row's zero rows stays, the others may be left out: rows of unions and intersections with negative operands.
+    /// The first of each parent row's zero rows stays, the others may be left out: rows of unions and intersections with negative operands, and
+    /// of steps that a zero limits once and for all.
     KeepOne,
     /// If one is zero, all others of the same parent row may be left out, zero or not, and one that is zero stays: rows of intersections
-    /// without negative operands.
+    /// without negative operands, of products and of Ricci blends with negative exponents.
     OnlyZero,
-    /// Zero is no reason: the scene, guards that do not start at 0, points inside of warps, and what may answer for the whole model.
+    /// Zero is no reason: the scene, guards that do not start at 0, points inside of warps, R-functions, what may answer for the whole model, and
+    /// pieces that count everywhere.
     Never,
 }
 
@@ -223,6 +226,7 @@ fn support(supports: &Supports<'_>, member: &Member) -> Support {
     match member {
         Member::Operand(id, _) | Member::Lifted(Lift::Occurrence(id)) => supports.of(*id),
         Member::Lifted(Lift::Field(field)) => supports.of_field(*field),
-        Member::Lifted(Lift::Space(_)) => Support::EVERYWHERE,
+        Member::Piece(field, piece) => supports.of_piece(*field, *piece),
+        Member::Lifted(Lift::Space(_) | Lift::Computed(_)) => Support::EVERYWHERE,
     }
 }

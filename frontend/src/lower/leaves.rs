@@ -64,12 +64,13 @@ impl<'a> LeafOccurrences<'a> {
         let mut maps = Vec::new();
         let mut position = self.scene.position(self.scene.field(field).position);
         loop {
-            maps.push(NodeKind::Affine(position.map));
+            maps.push((NodeKind::Affine(position.map), None));
             let Some(inside) = self.scene.inside(position.space) else { break };
-            maps.push(self.scene.tree.node(inside.warp).kind.clone());
+            let warp = self.scene.tree.node(inside.warp);
+            maps.push((warp.kind.clone(), warp.children.get(1).copied()));
             position = self.scene.position(inside.position);
         }
-        CheckedTree::leaf_under(leaf, maps)
+        self.scene.tree.leaf_under(leaf, maps)
     }
 }
 
@@ -93,6 +94,17 @@ mod tests {
         let found = leaves(text, [-sin, cos, 1.0]);
         assert!((found[0] - 1.0).abs() < 1e-12, "{found:?}");
         assert_eq!(found[1], 0.0);
+    }
+
+    #[test]
+    fn a_leaf_in_a_weighted_warp_keeps_the_weight() {
+        let text =
+            "jbt 1 deform by (0 0 1) weighted { point { radius 1 } sum { point { at (0 0 1) radius 2 } } }";
+        assert_eq!(
+            leaves(text, [0.0, 0.0, 1.0]),
+            [1.0, 1.0],
+            "the leaf where it was pulled, and that of the weight"
+        );
     }
 
     #[test]

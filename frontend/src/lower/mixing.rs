@@ -16,7 +16,6 @@ use jbt_ir::{Domain, FunctionBuilder, Value};
 
 use super::shape::{ReducerCode, RicciCode};
 use crate::attribute::Mixing;
-use crate::combine::step::Pair;
 use crate::combine::{intersection, product, ricci, sum, union};
 
 /// One attribute group of an answer.
@@ -102,7 +101,7 @@ pub(super) struct State {
     field: Vec<Value>,
     /// The place in the file of the winner, where it matters.
     order: Option<Value>,
-    /// The sum of weights, where it is not among `field`.
+    /// The sum of weights, where it is not among `field`. Step: 1 where the attributes so far have any weight, else 0.
     total: Option<Value>,
     groups: Vec<GroupState>,
 }
@@ -129,11 +128,8 @@ impl State {
         let separate_total = wants_attributes
             && match operator.code {
                 ReducerCode::Sum => !operator.non_negative,
-                ReducerCode::Product => true,
-                ReducerCode::Ricci(_)
-                | ReducerCode::Union
-                | ReducerCode::Intersection
-                | ReducerCode::Step(_) => false,
+                ReducerCode::Product | ReducerCode::Step(_) => true,
+                ReducerCode::Ricci(_) | ReducerCode::Union | ReducerCode::Intersection => false,
             };
         let groups = defaults
             .iter()
@@ -221,9 +217,17 @@ impl State {
             ReducerCode::Step(kind) => {
                 let pair = kind.emit(d, [self.field[0], operand.field], &operator.row, operator.iso2);
                 self.field[0] = pair.field;
+                let Some(known) = self.total else { return };
+                let (zero, one) = (d.constant(0.0), d.constant(1.0));
+                let is_known = d.lt(zero, known);
+                let [left, right] = pair.weights;
+                let left = d.select(is_known, left, zero);
                 for (state, answer) in self.groups.iter_mut().zip(&operand.groups) {
-                    state.join(d, pair, answer);
+                    state.join(d, [left, right], answer);
                 }
+                let total = d.add(left, right);
+                let any = d.lt(zero, total);
+                self.total = Some(d.select(any, one, zero));
             }
             ReducerCode::Union => {
                 let beats = union::beats::<FunctionBuilder>;
@@ -239,6 +243,9 @@ impl State {
     /// The first operand of a step.
     pub(super) fn seed(&mut self, d: &mut FunctionBuilder, operand: &Answer) {
         self.field[0] = operand.field;
+        if let Some(known) = &mut self.total {
+            *known = d.constant(1.0);
+        }
         for (state, answer) in self.groups.iter_mut().zip(&operand.groups) {
             state.channels.clone_from(&answer.channels);
             if let Some(share) = &mut state.best {
@@ -332,20 +339,56 @@ impl State {
                 let field = product::finish(d, self.field[0]);
                 (field, self.total.unwrap_or(field), field)
             }
-            ReducerCode::Union | ReducerCode::Intersection | ReducerCode::Step(_) => {
-                (self.field[0], self.field[0], self.field[0])
+            ReducerCode::Union | ReducerCode::Intersection => (self.field[0], self.field[0], self.field[0]),
+            ReducerCode::Step(_) => {
+                let seen = self.total.map_or(self.field[0], |known| d.min(self.field[0], known));
+                (self.field[0], seen, seen)
             }
         };
         let groups = self.groups.iter().zip(defaults).map(|(state, default)| {
             if operator.weighs() {
                 state.normalised(d, (total, seen), default)
             } else {
-                let channels = where_positive(d, field, &state.channels, default);
+                let channels = where_positive(d, seen, &state.channels, default);
                 GroupAnswer { channels, share: state.best, numbers: false }
             }
         });
         Answer { field, groups: groups.collect() }
     }
+}
+
+/// The attributes of operands by these weights, none of which is negative.
+pub(super) fn weighted(
+    d: &mut FunctionBuilder,
+    mixing: &Rc<[Mixing]>,
+    operands: &[Answer],
+    weights: &[Value],
+    defaults: &[Vec<Value>],
+) -> Vec<GroupAnswer> {
+    let zero = d.constant(0.0);
+    let operator = Operator {
+        code: ReducerCode::Sum,
+        blend: None,
+        row: Vec::new(),
+        // Sums do not ask for it.
+        iso2: zero,
+        non_negative: true,
+        ordered: false,
+        moving: false,
+        mixing: Rc::clone(mixing),
+    };
+    let mut state = State::new(d, &operator, defaults);
+    let mut total = zero;
+    for (operand, &weight) in operands.iter().zip(weights) {
+        state.weigh(d, weight, None, operand, None);
+        total = d.add(total, weight);
+    }
+    state
+        .groups
+        .iter()
+        .zip(defaults)
+        .map(|(group, default)| group.normalised(d, (total, total), default))
+        .collect()
 }
 
 impl GroupState {
@@ -360,9 +403,8 @@ impl GroupState {
     }
 
     /// The right side of a step comes to the left one.
-    fn join(&mut self, d: &mut FunctionBuilder, pair: Pair<Value>, answer: &GroupAnswer) {
+    fn join(&mut self, d: &mut FunctionBuilder, [left, right]: [Value; 2], answer: &GroupAnswer) {
         let zero = d.constant(0.0);
-        let [left, right] = pair.weights;
         let (has_left, has_right) = (d.lt(zero, left), d.lt(zero, right));
         let total = d.add(left, right);
         let part = d.div(right, total);

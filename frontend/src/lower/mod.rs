@@ -11,6 +11,8 @@
 //! * `shape`: nested operators of a kind flatten; occurrences that differ in numbers alone have one shape.
 //! * `emit`: children of one operator that have one shape are the rows of one table, under one fold. Field and attribute
 //!   weights come out of the same traversal; the gradient is the business of a later pass.
+//! * `slopes`: how a formula's value follows its children's, for the weights of their attributes.
+//! * `computed`: attribute values that are functions of the point.
 //! * `demand`: what selectors leave out has code, in folds whose rows are not active.
 //! * `rows`: walks the occurrences in the order of `emit` and writes down their numbers.
 //! * `support`: finds for each occurrence where it can be anything but zero, in the program's own arithmetic.
@@ -20,6 +22,7 @@
 //!
 //! The program's body is a fold over the one row of the table `scene`, which holds the numbers of whatever is there once.
 
+mod computed;
 mod demand;
 mod emit;
 pub mod guide;
@@ -29,6 +32,7 @@ mod occurrence;
 mod position;
 mod rows;
 mod shape;
+mod slopes;
 mod support;
 
 use std::sync::OnceLock;

@@ -7,16 +7,20 @@ use rustc_hash::FxHashMap as HashMap;
 
 use glam::DAffine3;
 
+use super::computed::{Computed, ComputedId, share};
 use super::demand::Demand;
 use super::position::{MapKind, Position, PositionKey, Trails, position_key};
 use crate::check::{CheckedTree, NodeId};
 use crate::combine::step::StepKind;
 use crate::combine::unary::UnaryKind;
 use crate::combine::{Combinator, Form};
+use crate::expression::Expression;
 use crate::falloff::FalloffKind;
 use crate::recipe::Recipe;
 use crate::tree::{NodeKind, Primitive, chosen};
 use crate::warp::Warp;
+
+mod binding;
 
 /// The name of an occurrence.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, PartialOrd, Ord)]
@@ -34,6 +38,15 @@ pub(super) struct PositionId(u32);
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub(super) struct BindingsId(u32);
 
+/// What a leaf is bound to, of one attribute group.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub(super) struct Bound {
+    /// The attribute node.
+    pub(super) node: NodeId,
+    /// Where it stands, if what it gives depends on that.
+    at: Option<PositionId>,
+}
+
 /// A space in which points are asked: the world, or the inside of a warp.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, PartialOrd, Ord)]
 pub(super) struct SpaceId(pub(super) u32);
@@ -44,6 +57,8 @@ pub(super) struct Inside {
     pub(super) warp: NodeId,
     /// Where the warp stands.
     pub(super) position: PositionId,
+    /// Whose field is its weight, if it has one: known once its occurrence is.
+    pub(super) weight: Option<OccurrenceId>,
     /// How many occurrences, with different attributes, lead into it.
     pub(super) uses: u32,
 }
@@ -86,11 +101,15 @@ pub(super) enum OccurrenceKind {
     Leaf {
         field: FieldId,
         bindings: BindingsId,
+        /// Of each attribute group, the value that is computed for it; empty if none is.
+        computed: Box<[Option<ComputedId>]>,
     },
     Warp {
         position: PositionId,
         inside: SpaceId,
         child: OccurrenceId,
+        /// What weighs it, in the space where the warp stands. It is always lifted.
+        weight: Option<OccurrenceId>,
     },
     Reduce {
         reducer: Reducer,
@@ -104,6 +123,14 @@ pub(super) enum OccurrenceKind {
     Map {
         kind: UnaryKind,
         child: OccurrenceId,
+    },
+    /// A formula of the point and of the children's fields: a leaf with attributes of its own, if there are none.
+    Expression {
+        position: PositionId,
+        bindings: BindingsId,
+        children: Vec<OccurrenceId>,
+        /// As for a leaf.
+        computed: Box<[Option<ComputedId>]>,
     },
     /// One child answers now; all have code.
     Select {
@@ -131,8 +158,10 @@ pub(super) struct Scene<'a> {
     pub(super) fields: Vec<LeafField>,
     pub(super) root: OccurrenceId,
     positions: Vec<Position>,
-    /// Of each set of bindings, the node of each attribute group.
-    bindings: Vec<Option<NodeId>>,
+    /// Of each set of bindings, what each attribute group is bound to.
+    bindings: Vec<Option<Bound>>,
+    /// Attribute values that are computed.
+    pub(super) computed: Vec<Computed>,
     /// By the numbers of spaces without that of the world, which is 0.
     pub(super) insides: Vec<Inside>,
     pub(super) demand: Demand,
@@ -160,16 +189,32 @@ impl<'a> Scene<'a> {
         &self.positions[id.0 as usize]
     }
 
-    /// The node that binds each attribute group, `None` for the default.
-    pub(super) fn bindings(&self, id: BindingsId) -> &[Option<NodeId>] {
+    /// What each attribute group is bound to, `None` for the default.
+    pub(super) fn bindings(&self, id: BindingsId) -> &[Option<Bound>] {
         let groups = self.tree.attributes().len();
         &self.bindings[id.0 as usize * groups..][..groups]
+    }
+
+    pub(super) fn computed(&self, id: ComputedId) -> &Computed {
+        &self.computed[id.0 as usize]
+    }
+
+    /// How many spaces `outer` is outside of `space`, in which it lies.
+    pub(super) fn spaces_between(&self, outer: SpaceId, mut space: SpaceId) -> u32 {
+        let mut count = 0;
+        while space != outer {
+            let inside = self.inside(space).expect("the world is the outermost space");
+            space = self.position(inside.position).space;
+            count += 1;
+        }
+        count
     }
 
     pub(super) fn primitive(&self, field: FieldId) -> &'a Primitive {
         match &self.tree.node(self.field(field).node).kind {
             NodeKind::Primitive(primitive) => primitive,
             NodeKind::Combine(_)
+            | NodeKind::Expression(_)
             | NodeKind::Select(_)
             | NodeKind::Affine(_)
             | NodeKind::Warp(_)
@@ -177,6 +222,34 @@ impl<'a> Scene<'a> {
                 unreachable!("leaf fields are made of primitives")
             }
         }
+    }
+
+    pub(super) fn expression(&self, node: NodeId) -> &'a Expression {
+        match &self.tree.node(node).kind {
+            NodeKind::Expression(expression) => expression,
+            NodeKind::Combine(_)
+            | NodeKind::Select(_)
+            | NodeKind::Affine(_)
+            | NodeKind::Primitive(_)
+            | NodeKind::Warp(_)
+            | NodeKind::Attribute { .. } => {
+                unreachable!("only formulas have expressions")
+            }
+        }
+    }
+
+    /// A number of an expression, if it is the same for all values of the parameters.
+    pub(super) fn fixed_number(&self, node: NodeId, number: usize) -> Option<f64> {
+        let follows = match self.tree.recipe(node) {
+            Some(Recipe::Expression(formula)) => formula.numbers[number].follows(),
+            Some(_) | None => false,
+        };
+        (!follows).then(|| self.expression(node).numbers()[number])
+    }
+
+    /// Whether an expression is 0 wherever its children are, for all values of the parameters.
+    pub(super) fn vanishes(&self, node: NodeId) -> bool {
+        self.expression(node).form().vanishes(|number| self.fixed_number(node, number))
     }
 
     /// What a space is the inside of; `None` for the world.
@@ -194,6 +267,7 @@ impl<'a> Scene<'a> {
         match &self.tree.node(node).kind {
             NodeKind::Combine(combinator) => *combinator,
             NodeKind::Primitive(_)
+            | NodeKind::Expression(_)
             | NodeKind::Select(_)
             | NodeKind::Affine(_)
             | NodeKind::Warp(_)
@@ -203,10 +277,24 @@ impl<'a> Scene<'a> {
         }
     }
 
+    /// The attribute group that a node names.
+    pub(super) fn attribute_name(&self, node: NodeId) -> &'a str {
+        match &self.tree.node(node).kind {
+            NodeKind::Attribute { name, .. } => name,
+            NodeKind::Primitive(_)
+            | NodeKind::Combine(_)
+            | NodeKind::Expression(_)
+            | NodeKind::Select(_)
+            | NodeKind::Affine(_)
+            | NodeKind::Warp(_) => unreachable!("bindings name attribute nodes"),
+        }
+    }
+
     pub(super) fn warp(&self, node: NodeId) -> &'a Warp {
         match &self.tree.node(node).kind {
             NodeKind::Warp(warp) => warp,
             NodeKind::Combine(_)
+            | NodeKind::Expression(_)
             | NodeKind::Select(_)
             | NodeKind::Affine(_)
             | NodeKind::Primitive(_)
@@ -231,11 +319,13 @@ struct Finder<'a> {
     /// Numbers of the file are keys here: a hash that nobody can prepare for.
     position_names: std::collections::HashMap<PositionKey, PositionId>,
     trails: Trails,
-    bindings_names: HashMap<Box<[Option<NodeId>]>, BindingsId>,
+    bindings_names: HashMap<Box<[Option<Bound>]>, BindingsId>,
     /// How many sets of bindings there are.
     bindings_count: u32,
     /// The bindings of the path in progress.
-    bound: Vec<Option<NodeId>>,
+    bound: Vec<Option<Bound>>,
+    /// By attribute node, where that or the leaf stands, and the leaf, if it is the leaf's.
+    computed_names: HashMap<(NodeId, PositionId, Option<NodeId>), ComputedId>,
     field_names: HashMap<(NodeId, PositionId), FieldId>,
     inside_names: HashMap<(NodeId, PositionId), (SpaceId, PositionId)>,
     known: HashMap<Key, OccurrenceId>,
@@ -243,6 +333,8 @@ struct Finder<'a> {
     once: Vec<bool>,
     /// Whether there is a selector.
     selects: bool,
+    /// No attribute is bound: what a weight's attributes are does not matter.
+    unbound: BindingsId,
     stack: Vec<Frame>,
 }
 
@@ -257,6 +349,7 @@ impl<'a> Finder<'a> {
             root: OccurrenceId(0),
             positions: Vec::new(),
             bindings: Vec::new(),
+            computed: Vec::new(),
             insides: Vec::new(),
             demand: Demand::ALL,
         };
@@ -267,11 +360,13 @@ impl<'a> Finder<'a> {
             bindings_names: HashMap::default(),
             bindings_count: 0,
             bound: Vec::new(),
+            computed_names: HashMap::default(),
             field_names: HashMap::default(),
             inside_names: HashMap::default(),
             known: HashMap::default(),
             once,
             selects: false,
+            unbound: BindingsId(0),
             stack: Vec::new(),
         }
     }
@@ -279,8 +374,8 @@ impl<'a> Finder<'a> {
     fn run(mut self) -> Scene<'a> {
         let world = self.name_position(Position::start(SpaceId(0)));
         self.bound = vec![None; self.scene.tree.attributes().len()];
-        let unbound = self.name_bindings();
-        let root = self.resolve((self.scene.tree.root(), world, unbound));
+        self.unbound = self.name_bindings();
+        let root = self.resolve((self.scene.tree.root(), world, self.unbound));
         let mut done = self.enter(root);
         while let Some(frame) = self.stack.last_mut() {
             if let Some(id) = done.take() {
@@ -289,8 +384,12 @@ impl<'a> Finder<'a> {
             let (node, position, bindings) = frame.key;
             match self.scene.tree.node(node).children.get(frame.children.len()) {
                 Some(&child) => {
-                    let position = frame.inside.map_or(position, |(_, inside)| inside);
-                    let key = self.resolve((child, position, bindings));
+                    let key = match frame.inside {
+                        Some(_) if !frame.children.is_empty() => (child, position, self.unbound),
+                        Some((_, inside)) => (child, inside, bindings),
+                        None => (child, position, bindings),
+                    };
+                    let key = self.resolve(key);
                     done = self.enter(key);
                 }
                 None => {
@@ -306,6 +405,7 @@ impl<'a> Finder<'a> {
         }
         self.scene.root = done.expect("the last frame was the root");
         self.scene.occurrences[self.scene.root.0 as usize].uses += 1;
+        share(&mut self.scene.computed);
         if self.selects {
             self.scene.demand = Demand::new(&self.scene);
         }
@@ -331,19 +431,25 @@ impl<'a> Finder<'a> {
                     };
                     moved = true;
                 }
-                NodeKind::Attribute { name, .. } => {
+                NodeKind::Attribute { name, value } => {
                     let groups = self.scene.tree.attributes();
                     if let Some(group) = groups.iter().position(|group| group.name == *name) {
+                        let placed = value.is_placed();
+                        let at = placed.then(|| self.name_position(Position { space, map, trail }));
                         if !std::mem::replace(&mut rebound, true) {
                             self.bound.clear();
                             self.bound.extend_from_slice(self.scene.bindings(bindings));
                         }
-                        self.bound[group] = Some(node);
+                        self.bound[group] = Some(Bound { node, at });
                     }
                 }
                 NodeKind::Combine(combinator) if data.children.len() == 1 && combinator.passes_single() => {}
                 NodeKind::Select(_) if data.children.len() == 1 => {}
-                NodeKind::Combine(_) | NodeKind::Select(_) | NodeKind::Primitive(_) | NodeKind::Warp(_) => {
+                NodeKind::Combine(_)
+                | NodeKind::Expression(_)
+                | NodeKind::Select(_)
+                | NodeKind::Primitive(_)
+                | NodeKind::Warp(_) => {
                     // Nobody asks again for what is met once and has nothing below it that others meet: it needs no name.
                     let alone = self.once[node.0 as usize] && data.children.is_empty();
                     let place = Position { space, map, trail };
@@ -382,13 +488,22 @@ impl<'a> Finder<'a> {
         let (node, position, bindings) = frame.key;
         let kind = match &self.scene.tree.node(node).kind {
             NodeKind::Primitive(primitive) => {
-                OccurrenceKind::Leaf { field: self.field(node, primitive, position), bindings }
+                let field = self.field(node, primitive, position);
+                OccurrenceKind::Leaf { field, bindings, computed: self.computed(bindings, node, position) }
             }
             NodeKind::Warp(_) => {
                 let (inside, _) = frame.inside.expect("a warp's frame has its inside");
-                OccurrenceKind::Warp { position, inside, child: frame.children[0] }
+                let weight = frame.children.get(1).copied();
+                self.scene.insides[inside.0 as usize - 1].weight = weight;
+                OccurrenceKind::Warp { position, inside, child: frame.children[0], weight }
             }
             NodeKind::Combine(combinator) => self.operator(node, *combinator, position, frame.children),
+            NodeKind::Expression(_) => {
+                let children = frame.children;
+                let is_leaf = children.is_empty();
+                let computed = if is_leaf { self.computed(bindings, node, position) } else { Box::default() };
+                OccurrenceKind::Expression { position, bindings, children, computed }
+            }
             NodeKind::Select(which) => {
                 self.selects = true;
                 OccurrenceKind::Select { children: frame.children, chosen: chosen(*which) }
@@ -470,6 +585,10 @@ impl<'a> Finder<'a> {
         for child in children(&kind) {
             self.scene.occurrences[child.0 as usize].uses += 1;
         }
+        if let OccurrenceKind::Warp { weight: Some(weight), .. } = kind {
+            // The point inside uses it once more, so that it is lifted: known before any row that enters.
+            self.scene.occurrences[weight.0 as usize].uses += 1;
+        }
         self.scene.occurrences.push(Occurrence { node, kind, space, uses: 0, non_negative });
         OccurrenceId(self.scene.occurrences.len() as u32 - 1)
     }
@@ -488,6 +607,12 @@ impl<'a> Finder<'a> {
                 let fixed = self.scene.tree.recipe(node).is_none();
                 kind.is_non_negative(of(child), self.scene.combinator(node), fixed)
             }
+            OccurrenceKind::Expression { children, .. } => {
+                let signs: Vec<bool> = children.iter().map(of).collect();
+                let known = |number: usize| self.scene.fixed_number(node, number);
+                let positive = |number| known(number).is_some_and(|value| value >= 0.0);
+                self.scene.expression(node).form().non_negative(&signs, positive)
+            }
             OccurrenceKind::Select { children, .. } => children.iter().all(of),
             OccurrenceKind::Reduce { reducer, children } => match reducer {
                 Reducer::Sum | Reducer::Product | Reducer::Intersection => children.iter().all(of),
@@ -505,7 +630,7 @@ impl<'a> Finder<'a> {
             self.scene.insides[space.0 as usize - 1].uses += 1;
             return (space, inside);
         }
-        self.scene.insides.push(Inside { warp, position, uses: 1 });
+        self.scene.insides.push(Inside { warp, position, weight: None, uses: 1 });
         let space = SpaceId(self.scene.insides.len() as u32);
         let inside = self.name_position(Position::start(space));
         if !once {
@@ -526,30 +651,17 @@ impl<'a> Finder<'a> {
         self.scene.positions.push(position);
         PositionId(self.scene.positions.len() as u32 - 1)
     }
-
-    /// The name of the bindings of the path in progress.
-    fn name_bindings(&mut self) -> BindingsId {
-        if let Some(&known) = self.bindings_names.get(&*self.bound) {
-            return known;
-        }
-        let next = self.push_bindings();
-        self.bindings_names.insert(self.bound.as_slice().into(), next);
-        next
-    }
-
-    fn push_bindings(&mut self) -> BindingsId {
-        self.scene.bindings.extend_from_slice(&self.bound);
-        self.bindings_count += 1;
-        BindingsId(self.bindings_count - 1)
-    }
 }
 
 /// The occurrences that one asks for.
 pub(super) fn children(kind: &OccurrenceKind) -> Vec<OccurrenceId> {
     match kind {
         OccurrenceKind::Leaf { .. } => Vec::new(),
-        OccurrenceKind::Warp { child, .. } | OccurrenceKind::Map { child, .. } => vec![*child],
-        OccurrenceKind::Reduce { children, .. } | OccurrenceKind::Select { children, .. } => children.clone(),
+        OccurrenceKind::Warp { child, weight, .. } => [*child].into_iter().chain(*weight).collect(),
+        OccurrenceKind::Map { child, .. } => vec![*child],
+        OccurrenceKind::Reduce { children, .. }
+        | OccurrenceKind::Expression { children, .. }
+        | OccurrenceKind::Select { children, .. } => children.clone(),
         OccurrenceKind::Difference { left, right } => vec![*left, *right],
     }
 }

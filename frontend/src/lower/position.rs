@@ -116,6 +116,14 @@ impl Position {
         MapKind::of(&self.map).max(least)
     }
 
+    /// The map from the frame in which a skeleton that stands here has its uv, and what its inverse is as code. `follows`: numbers of the
+    /// skeleton follow parameters.
+    pub(super) fn of_uv(&self, skeleton: &Skeleton, follows: bool) -> (DAffine3, MapKind) {
+        let map = self.map * skeleton.uv_frame();
+        let least = if follows || self.trail.name != 0 { MapKind::Full } else { MapKind::Translation };
+        (map, MapKind::of(&map).max(least))
+    }
+
     /// The map from the pose of a skeleton that stands here, the size of the skeleton there, and what the inverse of the map is as
     /// code: at least a translation, so that a primitive that passes the origin keeps its code. `turns`: the skeleton itself can turn.
     pub(super) fn of_skeleton(&self, skeleton: &Skeleton, turns: bool) -> (DAffine3, f64, MapKind) {
@@ -132,13 +140,14 @@ impl Position {
         let map = DAffine3::from_mat3_translation(symmetry.simplest(turn), at);
         let least = match (symmetry, freedom) {
             (Symmetry::Ball, _) => MapKind::Translation,
-            (Symmetry::Axis | Symmetry::None, Freedom::Turn | Freedom::Full) => MapKind::Full,
-            (Symmetry::Axis | Symmetry::None, _) if turns => MapKind::Full,
-            // A scale that changes its sign mirrors.
-            (Symmetry::None, Freedom::Scale) => MapKind::Scaling,
-            (Symmetry::Axis, Freedom::Scale) | (Symmetry::Axis | Symmetry::None, Freedom::Fixed) => {
-                MapKind::Translation
+            (Symmetry::Axis | Symmetry::Arrow | Symmetry::None, Freedom::Turn | Freedom::Full) => {
+                MapKind::Full
             }
+            (Symmetry::Axis | Symmetry::Arrow | Symmetry::None, _) if turns => MapKind::Full,
+            // A scale that changes its sign mirrors.
+            (Symmetry::Arrow | Symmetry::None, Freedom::Scale) => MapKind::Scaling,
+            (Symmetry::Axis, Freedom::Scale)
+            | (Symmetry::Axis | Symmetry::Arrow | Symmetry::None, Freedom::Fixed) => MapKind::Translation,
         };
         (map, similarity.scale(), MapKind::of(&map).max(least))
     }

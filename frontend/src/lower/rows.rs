@@ -5,15 +5,16 @@
 
 use jbt_ir::{Entity, Rows, Store, Table, Tables};
 
+use super::computed::{self, ComputedId};
 use super::emit::{Code, groups};
 use super::mixing::wants_order;
-use super::occurrence::{FieldId, LeafField, OccurrenceId, OccurrenceKind, Scene, SpaceId};
+use super::occurrence::{BindingsId, FieldId, LeafField, OccurrenceId, OccurrenceKind, Scene, SpaceId};
 use super::shape::{Lift, ReducerCode, Shapes};
-use crate::attribute::Mixing;
+use crate::attribute::{AttributeValue, Mixing};
 use crate::check::NodeId;
 use crate::diagnostic::Diagnostic;
 use crate::query::Query;
-use crate::tree::NodeKind;
+use crate::skeleton::BEYOND;
 
 /// The numbers, and what they belong to.
 pub(super) struct Written {
@@ -31,7 +32,8 @@ pub(super) fn rows(
 ) -> Result<Written, Vec<Diagnostic>> {
     let mut writer = Writer::new(scene, shapes, query, code);
     for table in code.function.tables.keys() {
-        for row in 0..writer.members[table.index()].len() {
+        // Pieces have been written with their leaves.
+        for row in writer.tables[table.index()].count..writer.members[table.index()].len() {
             writer.row(table, row);
         }
         let columns = code.function.tables[table].columns.len();
@@ -58,6 +60,8 @@ enum Task {
     Lift(Lift),
     /// The members of a folded group become rows of the next child table.
     Rows(OccurrenceId, usize),
+    /// The numbers of a formula, behind those of its children.
+    Express(OccurrenceId),
     /// An operand that is written out: the row of the next child table, if it has a guard.
     Operand(OccurrenceId),
     /// One row of the next child table, active or not.
@@ -71,6 +75,8 @@ pub(super) enum Member {
     Operand(OccurrenceId, Option<u32>),
     /// What is lifted and has a guard.
     Lifted(Lift),
+    /// A piece of a leaf's skeleton, by its place among them.
+    Piece(FieldId, u32),
 }
 
 impl Member {
@@ -78,7 +84,8 @@ impl Member {
     pub(super) fn node(self, scene: &Scene<'_>) -> NodeId {
         match self {
             Self::Operand(id, _) | Self::Lifted(Lift::Occurrence(id)) => scene.occurrence(id).node,
-            Self::Lifted(Lift::Field(field)) => scene.field(field).node,
+            Self::Lifted(Lift::Field(field)) | Self::Piece(field, _) => scene.field(field).node,
+            Self::Lifted(Lift::Computed(id)) => scene.computed(id).node,
             Self::Lifted(Lift::Space(space)) => scene.inside(space).expect("the world is not lifted").warp,
         }
     }
@@ -95,6 +102,8 @@ struct Writer<'a> {
     members: Vec<Vec<Member>>,
     errors: Vec<Diagnostic>,
     row: Vec<f64>,
+    /// The tables under the row in progress, the next one last.
+    children: Vec<Table>,
     nodes: Vec<u32>,
     /// Empty between rows.
     tasks: Vec<Task>,
@@ -124,6 +133,7 @@ impl<'a> Writer<'a> {
             members,
             errors: Vec::new(),
             row: Vec::new(),
+            children: Vec::new(),
             nodes: Vec::new(),
             tasks: Vec::new(),
         }
@@ -134,34 +144,39 @@ impl<'a> Writer<'a> {
         let member = self.members[table.index()][index];
         let mut tasks = std::mem::take(&mut self.tasks);
         let depth = self.code.tables[table.index()].depth;
+        self.children.clear();
+        self.children.extend(self.code.tables[table.index()].children.iter().rev());
         match member {
             Member::Operand(member, order) => {
                 tasks.push(Task::Use(member));
                 self.row.extend(order.map(f64::from));
             }
             Member::Lifted(Lift::Field(field)) => self.leaf(field),
+            Member::Lifted(Lift::Computed(id)) => self.computed(id),
             Member::Lifted(Lift::Space(space)) => self.warp(space),
             Member::Lifted(Lift::Occurrence(id)) => tasks.push(Task::Define(id)),
+            Member::Piece(..) => unreachable!("pieces are written with their leaves"),
         }
         if table.index() == 0 {
             self.start(&mut tasks);
         }
-        let mut children = self.code.tables[table.index()].children.iter();
-        let mut child = || *children.next().expect("the code has a table for each folded group and guard");
         while let Some(task) = tasks.pop() {
             match task {
                 // It is computed where it is lifted to.
                 Task::Use(id) if self.scene.occurrence(id).uses > 1 => {}
                 Task::Use(id) | Task::Define(id) => self.define(id, &mut tasks),
                 Task::Order(order) => self.row.push(f64::from(order)),
+                Task::Express(id) => self.express(id),
                 Task::Lift(lift) => self.lift(lift, depth, &mut tasks),
-                Task::Rows(id, group) => self.hand_out(child(), id, group),
+                Task::Rows(id, group) => self.hand_out(id, group),
                 Task::Operand(id) => {
                     let guarded = self.shapes.guards_operand(self.scene, id, depth);
                     let guard = Task::Guard(Member::Operand(id, None), true);
                     tasks.push(if guarded { guard } else { Task::Use(id) });
                 }
-                Task::Guard(member, active) => self.own(child(), &[member], active),
+                Task::Guard(member, active) => {
+                    self.own(&[member], active);
+                }
             }
         }
         self.tasks = tasks;
@@ -193,6 +208,8 @@ impl<'a> Writer<'a> {
     fn lift(&mut self, lift: Lift, depth: usize, tasks: &mut Vec<Task>) {
         let guarded = self.shapes.guards_lift(self.scene, lift, depth);
         match lift {
+            Lift::Computed(id) if !self.mixing.is_empty() => self.computed(id),
+            Lift::Computed(_) => {}
             Lift::Field(field) if !guarded => self.leaf(field),
             Lift::Space(space) if !guarded => self.enter_warp(space, tasks),
             Lift::Occurrence(id) if !guarded => tasks.push(Task::Define(id)),
@@ -212,15 +229,11 @@ impl<'a> Writer<'a> {
     fn define(&mut self, id: OccurrenceId, tasks: &mut Vec<Task>) {
         let occurrence = self.scene.occurrence(id);
         match &occurrence.kind {
-            OccurrenceKind::Leaf { field, bindings } => {
+            OccurrenceKind::Leaf { field, bindings, computed } => {
                 if self.scene.field(*field).uses == 1 {
                     self.leaf(*field);
                 }
-                let bindings = self.scene.bindings(*bindings);
-                for (group, binding) in self.scene.tree.attributes()[..self.mixing.len()].iter().zip(bindings)
-                {
-                    self.row.extend(binding.map_or(&group.default[..], |node| self.attribute(node)));
-                }
+                self.attributes(*bindings, computed);
             }
             OccurrenceKind::Warp { inside, child, .. } => {
                 tasks.push(Task::Use(*child));
@@ -235,6 +248,10 @@ impl<'a> Writer<'a> {
                 let combinator = self.scene.combinator(occurrence.node);
                 kind.push_columns(combinator, self.scene.tree.iso(), &mut self.row);
                 tasks.push(Task::Operand(*child));
+            }
+            OccurrenceKind::Expression { children, .. } => {
+                tasks.push(Task::Express(id));
+                tasks.extend(children.iter().rev().map(|&child| Task::Operand(child)));
             }
             OccurrenceKind::Select { children, chosen } => {
                 for (place, &child) in children.iter().enumerate().rev() {
@@ -262,8 +279,8 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// Makes the members of a group rows of `child`, owned by the row in progress.
-    fn hand_out(&mut self, child: Table, id: OccurrenceId, group: usize) {
+    /// Makes the members of a group rows of the next child table, owned by the row in progress.
+    fn hand_out(&mut self, id: OccurrenceId, group: usize) {
         let OccurrenceKind::Reduce { reducer, .. } = &self.scene.occurrence(id).kind else {
             unreachable!("only operators have groups")
         };
@@ -272,17 +289,22 @@ impl<'a> Writer<'a> {
             wants_order(ReducerCode::of(*reducer), groups.len() > 1, self.query.gradient, &self.mixing);
         let member = |&(occurrence, order)| Member::Operand(occurrence, ordered.then_some(order));
         let members: Vec<Member> = groups[group].members.iter().map(member).collect();
-        self.own(child, &members, true);
+        self.own(&members, true);
     }
 
-    /// These are the rows of `child` that the row in progress owns, active or not.
-    fn own(&mut self, child: Table, owned: &[Member], active: bool) {
+    /// These are the rows of the next child table that the row in progress owns, active or not.
+    fn own(&mut self, owned: &[Member], active: bool) -> Table {
+        let child = self
+            .children
+            .pop()
+            .expect("the code has a table for each folded group, guard and fold of pieces");
         let (rows, members) = (&mut self.tables[child.index()], &mut self.members[child.index()]);
         if active {
             rows.active.extend((members.len()..members.len() + owned.len()).map(|row| row as u32));
         }
         members.extend(owned);
         rows.starts.push(rows.active.len() as u32);
+        child
     }
 
     fn leaf(&mut self, field: FieldId) {
@@ -291,6 +313,10 @@ impl<'a> Writer<'a> {
         let LeafField { map, scale, kind, strong, falloff, .. } = self.scene.field(field);
         kind.push_columns(map, &mut self.row);
         primitive.skeleton.columns(*scale, &mut self.row);
+        if let Some(pieces) = primitive.skeleton.kind().pieces() {
+            self.row.push(BEYOND * scale * primitive.radius);
+            self.pieces(field, pieces.columns.len());
+        }
         self.row.push(-(scale * primitive.radius).powi(-2));
         primitive.falloff.columns(*falloff, &mut self.row);
         if *strong {
@@ -298,26 +324,72 @@ impl<'a> Writer<'a> {
         }
     }
 
-    fn attribute(&self, node: NodeId) -> &'a [f64] {
-        match &self.scene.tree.node(node).kind {
-            NodeKind::Attribute { values, .. } => values,
-            NodeKind::Primitive(_)
-            | NodeKind::Combine(_)
-            | NodeKind::Select(_)
-            | NodeKind::Affine(_)
-            | NodeKind::Warp(_) => {
-                unreachable!("bindings name attribute nodes")
+    /// The numbers of a formula: the map to its space, its own, and those of the leaf that it is without children.
+    fn express(&mut self, id: OccurrenceId) {
+        let occurrence = self.scene.occurrence(id);
+        let OccurrenceKind::Expression { position, bindings, children, computed } = &occurrence.kind else {
+            unreachable!("only formulas are expressed")
+        };
+        let expression = self.scene.expression(occurrence.node);
+        if expression.form().asks_point() {
+            let position = self.scene.position(*position);
+            position.kind().push_columns(&position.map, &mut self.row);
+        }
+        self.row.extend(expression.numbers());
+        if children.is_empty() {
+            self.attributes(*bindings, computed);
+        }
+    }
+
+    /// Writes the rows of a leaf's pieces.
+    fn pieces(&mut self, field: FieldId, columns: usize) {
+        let (primitive, scale) = (self.scene.primitive(field), self.scene.field(field).scale);
+        let mut numbers = Vec::new();
+        primitive.skeleton.pieces(scale, primitive.radius, &mut numbers);
+        // At most limits::MAX_OCCURRENCES.
+        let members: Vec<Member> =
+            (0..numbers.len() / columns).map(|piece| Member::Piece(field, piece as u32)).collect();
+        let table = self.own(&members, true);
+        for (member, piece) in members.into_iter().zip(numbers.chunks_exact(columns)) {
+            self.append(table, member, piece.iter().copied());
+        }
+    }
+
+    /// The attributes of a leaf: numbers, and the numbers of what is computed in its row.
+    fn attributes(&mut self, bindings: BindingsId, computed: &[Option<ComputedId>]) {
+        let bindings = self.scene.bindings(bindings);
+        let groups = &self.scene.tree.attributes()[..self.mixing.len()];
+        for (index, (group, bound)) in groups.iter().zip(bindings).enumerate() {
+            match (computed.get(index).copied().flatten(), bound) {
+                (Some(id), _) if self.scene.computed(id).shared => {}
+                (Some(id), _) => self.computed(id),
+                (None, Some(bound)) => match computed::attribute(self.scene, bound.node) {
+                    AttributeValue::Numbers(numbers) => self.row.extend(numbers),
+                    AttributeValue::Textured(_) | AttributeValue::Uv(_) => unreachable!("it is computed"),
+                },
+                (None, None) => self.row.extend(&group.default),
             }
         }
     }
 
+    fn computed(&mut self, id: ComputedId) {
+        computed::push_columns(self.scene, self.scene.computed(id), &mut self.row);
+    }
+
     /// Rounds the row and appends it to its table.
     fn flush(&mut self, table: Table, member: Member) {
+        self.tables[table.index()].nodes.append(&mut self.nodes);
+        let mut row = std::mem::take(&mut self.row);
+        self.append(table, member, row.drain(..));
+        self.row = row;
+    }
+
+    /// Rounds numbers and appends them as a row.
+    fn append(&mut self, table: Table, member: Member, numbers: impl Iterator<Item = f64>) {
         let node = member.node(self.scene);
         let rows = &mut self.tables[table.index()];
         rows.count += 1;
-        rows.nodes.append(&mut self.nodes);
-        for number in self.row.drain(..) {
+        for number in numbers {
             let rounded = number as f32;
             if !rounded.is_finite() && self.errors.len() < jbt_ir::limits::MAX_ERRORS {
                 let node = self.scene.tree.node(node);

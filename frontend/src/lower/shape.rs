@@ -6,15 +6,19 @@
 //!
 //! What is written out, and is worth it, gets a *guard*: it is the one row of a table, so that it can be left out where it does not matter.
 
+use std::sync::Arc;
+
 use rustc_hash::FxHashMap as HashMap;
 
+use super::computed::{ComputedId, ComputedShape};
 use super::occurrence::{FieldId, OccurrenceId, OccurrenceKind, Reducer, Scene, SpaceId};
 use super::position::MapKind;
 use crate::combine::step::StepKind;
 use crate::combine::unary::UnaryKind;
+use crate::expression::Form;
 use crate::falloff::FalloffKind;
 use crate::skeleton::SkeletonKind;
-use crate::warp::WarpKind;
+use crate::warp::WarpCode;
 
 /// The name of a shape.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, PartialOrd, Ord)]
@@ -83,7 +87,15 @@ impl ReducerCode {
                 Self::Ricci(RicciCode { integer: None, .. }),
             ) => row.extend([n.abs(), 1.0 / n.abs()]),
             (Reducer::Step(kind, number), _) => kind.push_columns(number, row),
-            _ => {}
+            (
+                Reducer::Sum
+                | Reducer::Ricci(_)
+                | Reducer::RicciFollowing(_)
+                | Reducer::Product
+                | Reducer::Union
+                | Reducer::Intersection,
+                _,
+            ) => {}
         }
     }
 
@@ -107,13 +119,15 @@ enum ShapeKey {
         skeleton: SkeletonKind,
         falloff: FalloffKind,
         strong: bool,
+        computed: Box<[Option<ComputedShape>]>,
     },
     /// A lifted field with attributes of its own.
-    LeafOf(FieldId),
+    LeafOf(FieldId, Box<[Option<ComputedShape>]>),
     Warp {
         map: MapKind,
-        warp: WarpKind,
+        warp: WarpCode,
         child: ShapeId,
+        weight: Option<ShapeId>,
         pinned: Option<SpaceId>,
     },
     Reduce {
@@ -134,6 +148,14 @@ enum ShapeKey {
         space: SpaceId,
         child: ShapeId,
     },
+    Expression {
+        map: Option<MapKind>,
+        form: Arc<Form>,
+        vanishes: bool,
+        non_negative: bool,
+        children: Vec<ShapeId>,
+        computed: Box<[Option<ComputedShape>]>,
+    },
     Select(Vec<ShapeId>),
     Lifted(OccurrenceId),
 }
@@ -151,6 +173,8 @@ pub(super) struct Group {
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Lift {
     Field(FieldId),
+    /// An attribute value that several leaves share.
+    Computed(ComputedId),
     /// The point in a space that several lead into, and what is lifted to its start.
     Space(SpaceId),
     Occurrence(OccurrenceId),
@@ -162,7 +186,11 @@ pub(super) enum Lift {
 /// [`jbt_ir::limits::MAX_OCCURRENCES`]; with this many guards they stay below [`jbt_ir::limits::MAX_FOLD_DEPTH`].
 const MAX_DEPTH_OF_GUARDS: usize = 24;
 
-/// What the code of a shape consists of.
+/// Operations of a formula that cost as much as a leaf.
+const STEPS_OF_A_LEAF: usize = 16;
+
+/// What the code of a shape consists of. The pieces of a leaf are a table, but a leaf is a row all the same: so any number of them is the
+/// same code.
 #[derive(Clone, Copy, Debug)]
 struct Content {
     /// Whether a use of it has to be written out: it holds tables, or is a lifted value.
@@ -226,7 +254,7 @@ impl Shapes {
     pub(super) fn guards_lift(&self, scene: &Scene<'_>, lift: Lift, depth: usize) -> bool {
         let worth = match lift {
             Lift::Occurrence(id) => self.contents[id.0 as usize].wants_guard(depth),
-            Lift::Field(_) | Lift::Space(_) => false,
+            Lift::Field(_) | Lift::Space(_) | Lift::Computed(_) => false,
         };
         worth || scene.demand.is_guarded(lift)
     }
@@ -246,6 +274,8 @@ struct Classifier<'a> {
     shapes: Vec<ShapeId>,
     /// Whether an operator dissolves into its only user.
     flattened: Vec<bool>,
+    /// Weighted warps whose points are lifted already.
+    entered: rustc_hash::FxHashSet<SpaceId>,
     result: Shapes,
 }
 
@@ -253,10 +283,23 @@ impl<'a> Classifier<'a> {
     fn new(scene: &'a Scene<'a>) -> Self {
         let result = Shapes { groups: HashMap::default(), lifts: HashMap::default(), contents: Vec::new() };
         let flattened = flattened(scene);
-        Self { scene, names: HashMap::default(), contents: Vec::new(), shapes: Vec::new(), flattened, result }
+        Self {
+            scene,
+            names: HashMap::default(),
+            contents: Vec::new(),
+            shapes: Vec::new(),
+            flattened,
+            entered: rustc_hash::FxHashSet::default(),
+            result,
+        }
     }
 
     fn run(mut self) -> Shapes {
+        // First of all: what is lifted behind them may hold leaves that are bound to them.
+        for (index, computed) in self.scene.computed.iter().enumerate().filter(|(_, it)| it.shared) {
+            let lift = Lift::Computed(ComputedId(index as u32));
+            self.result.lifts.entry(computed.space).or_default().push(lift);
+        }
         for (index, field) in self.scene.fields.iter().enumerate() {
             if field.uses > 1 {
                 let space = self.scene.position(field.position).space;
@@ -265,13 +308,15 @@ impl<'a> Classifier<'a> {
         }
         for (index, inside) in self.scene.insides.iter().enumerate() {
             let space = SpaceId(index as u32 + 1);
-            if self.scene.is_shared(space) {
+            // A weighted one comes behind its weight.
+            if self.scene.is_shared(space) && inside.weight.is_none() {
                 let outside = self.scene.position(inside.position).space;
                 self.result.lifts.entry(outside).or_default().push(Lift::Space(space));
             }
         }
         for index in 0..self.scene.occurrences.len() {
             let id = OccurrenceId(index as u32);
+            self.lift_weighted(id);
             let shape = self.shape(id);
             let occurrence = self.scene.occurrence(id);
             self.result.contents.push(self.contents[shape.0 as usize]);
@@ -284,6 +329,17 @@ impl<'a> Classifier<'a> {
             self.shapes.push(shape);
         }
         self.result
+    }
+
+    /// Lifts the point inside of a weighted warp that several occurrences share, when the first of them is met: its weight, and whatever that is
+    /// made of, came before.
+    fn lift_weighted(&mut self, id: OccurrenceId) {
+        let occurrence = self.scene.occurrence(id);
+        let OccurrenceKind::Warp { inside, weight: Some(_), .. } = occurrence.kind else { return };
+        let shared = self.scene.is_shared(inside);
+        if shared && self.entered.insert(inside) {
+            self.result.lifts.entry(occurrence.space).or_default().push(Lift::Space(inside));
+        }
     }
 
     fn name(&mut self, key: ShapeKey, content: Content) -> ShapeId {
@@ -304,21 +360,27 @@ impl<'a> Classifier<'a> {
     fn shape(&mut self, id: OccurrenceId) -> ShapeId {
         let occurrence = self.scene.occurrence(id);
         match &occurrence.kind {
-            OccurrenceKind::Leaf { field, .. } if self.scene.field(*field).uses > 1 => {
-                self.name(ShapeKey::LeafOf(*field), Content::LIFTED)
+            OccurrenceKind::Leaf { field, computed, .. } if self.scene.field(*field).uses > 1 => {
+                let computed = self.computed(computed, occurrence.space);
+                self.name(ShapeKey::LeafOf(*field, computed), Content::LIFTED)
             }
-            OccurrenceKind::Leaf { field, .. } => {
+            OccurrenceKind::Leaf { field, computed, .. } => {
                 let (primitive, leaf) = (self.scene.primitive(*field), self.scene.field(*field));
                 let key = ShapeKey::Leaf {
                     map: leaf.kind,
                     skeleton: primitive.skeleton.kind(),
                     falloff: leaf.falloff,
                     strong: leaf.strong,
+                    computed: self.computed(computed, occurrence.space),
                 };
-                self.name(key, Content::LEAF)
+                let tables = primitive.skeleton.kind().pieces().is_some();
+                self.name(key, Content { tables, ..Content::LEAF })
             }
-            OccurrenceKind::Warp { position, inside, child } => {
+            OccurrenceKind::Warp { position, inside, child, weight } => {
                 let (child, mut content) = self.of(*child);
+                let weight = weight.map(|weight| self.of(weight).0);
+                // A weight is a lifted value.
+                content.written_out |= weight.is_some();
                 if self.scene.is_shared(*inside) {
                     content.written_out = true;
                     return self.name(ShapeKey::Inside { space: *inside, child }, content);
@@ -329,8 +391,8 @@ impl<'a> Classifier<'a> {
                 content.written_out |= pinned.is_some();
                 content.leaves = content.leaves.saturating_add(lifts.map_or(0, Vec::len));
                 let map = self.scene.position(*position).kind();
-                let warp = self.scene.warp(occurrence.node).kind();
-                let key = ShapeKey::Warp { map, warp, child, pinned };
+                let warp = self.scene.warp(occurrence.node).code();
+                let key = ShapeKey::Warp { map, warp, child, weight, pinned };
                 self.name(key, content)
             }
             OccurrenceKind::Difference { left, right } => {
@@ -341,6 +403,7 @@ impl<'a> Classifier<'a> {
                 let (child, content) = self.of(*child);
                 self.name(ShapeKey::Map { kind: *kind, child }, content)
             }
+            OccurrenceKind::Expression { .. } => self.expression(id),
             OccurrenceKind::Select { children, .. } => {
                 let children = children.iter().map(|child| self.of(*child).0).collect();
                 // Each child is a row of a table of its own.
@@ -374,6 +437,39 @@ impl<'a> Classifier<'a> {
         }
     }
 
+    /// The shape of a formula: its form, and whether it asks for the point.
+    fn expression(&mut self, id: OccurrenceId) -> ShapeId {
+        let occurrence = self.scene.occurrence(id);
+        let OccurrenceKind::Expression { position, children, computed, .. } = &occurrence.kind else {
+            unreachable!("only formulas have forms")
+        };
+        let form = Arc::clone(&self.scene.expression(occurrence.node).form);
+        let own = Content { leaves: 1 + form.steps() / STEPS_OF_A_LEAF, ..Content::LEAF };
+        let content = children.iter().fold(own, |all, &child| all.and(self.of(child).1));
+        let key = ShapeKey::Expression {
+            map: form.asks_point().then(|| self.scene.position(*position).kind()),
+            form,
+            vanishes: self.scene.vanishes(occurrence.node),
+            non_negative: occurrence.non_negative,
+            children: children.iter().map(|&child| self.of(child).0).collect(),
+            computed: self.computed(computed, occurrence.space),
+        };
+        self.name(key, content)
+    }
+
+    /// What computed values are as code, for a leaf in a space.
+    fn computed(&self, computed: &[Option<ComputedId>], space: SpaceId) -> Box<[Option<ComputedShape>]> {
+        let shape = |id: ComputedId| {
+            let computed = self.scene.computed(id);
+            if computed.shared {
+                return ComputedShape::Shared(id);
+            }
+            let up = self.scene.spaces_between(computed.space, space);
+            ComputedShape::Here { up, map: computed.map_kind, kind: computed.kind }
+        };
+        computed.iter().map(|id| id.map(shape)).collect()
+    }
+
     /// The operands of an operator, those of flattened ones among them, by shape.
     fn group(&self, id: OccurrenceId, code: ReducerCode) -> Vec<Group> {
         if code.is_ordered() {
@@ -391,6 +487,7 @@ impl<'a> Classifier<'a> {
                 | OccurrenceKind::Leaf { .. }
                 | OccurrenceKind::Warp { .. }
                 | OccurrenceKind::Map { .. }
+                | OccurrenceKind::Expression { .. }
                 | OccurrenceKind::Select { .. }
                 | OccurrenceKind::Difference { .. } => {
                     by_shape.entry(self.of(next).0).or_default().push((next, order));

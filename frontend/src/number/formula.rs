@@ -7,6 +7,17 @@ use super::{Binary, Function, Values, plain};
 use crate::diagnostic::{Diagnostic, Span};
 use crate::report::clip;
 
+/// What the formula of a field is about, besides numbers.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Variable {
+    /// 0, 1, 2: x, y, z.
+    Coordinate(u8),
+    /// The field of a child, by its place.
+    Child(u32),
+    /// A definition that stands before, by its place.
+    Definition(u32),
+}
+
 /// A step of a formula: takes its operands from the end of a list, and puts its value there.
 #[derive(Clone, Debug)]
 pub(crate) enum Step {
@@ -16,6 +27,8 @@ pub(crate) enum Step {
         /// Its value when the formula was written; in Rust, its default.
         default: f64,
     },
+    /// What is not a number before there is a point; in formulas of fields alone.
+    Variable(Variable),
     Negate,
     Binary(Binary),
     /// A function of so many operands.
@@ -28,11 +41,17 @@ impl PartialEq for Step {
         match (self, other) {
             (Self::Literal(a), Self::Literal(b)) => a.to_bits() == b.to_bits(),
             (Self::Parameter { name: a, .. }, Self::Parameter { name: b, .. }) => a == b,
+            (Self::Variable(a), Self::Variable(b)) => a == b,
             (Self::Negate, Self::Negate) => true,
             (Self::Binary(a), Self::Binary(b)) => a == b,
             (Self::Call(f, a), Self::Call(g, b)) => f == g && a == b,
             (
-                Self::Literal(_) | Self::Parameter { .. } | Self::Negate | Self::Binary(_) | Self::Call(..),
+                Self::Literal(_)
+                | Self::Parameter { .. }
+                | Self::Variable(_)
+                | Self::Negate
+                | Self::Binary(_)
+                | Self::Call(..),
                 _,
             ) => false,
         }
@@ -41,9 +60,9 @@ impl PartialEq for Step {
 
 impl Step {
     /// How many operands it takes.
-    const fn operands(&self) -> usize {
+    pub(crate) const fn operands(&self) -> usize {
         match self {
-            Self::Literal(_) | Self::Parameter { .. } => 0,
+            Self::Literal(_) | Self::Parameter { .. } | Self::Variable(_) => 0,
             Self::Negate => 1,
             Self::Binary(_) => 2,
             Self::Call(_, count) => *count as usize,
@@ -83,7 +102,7 @@ impl Formula {
     pub(crate) fn parameters(&self) -> impl Iterator<Item = (&Arc<str>, f64)> {
         self.steps.iter().filter_map(|step| match step {
             Step::Parameter { name, default } => Some((name, *default)),
-            Step::Literal(_) | Step::Negate | Step::Binary(_) | Step::Call(..) => None,
+            Step::Literal(_) | Step::Variable(_) | Step::Negate | Step::Binary(_) | Step::Call(..) => None,
         })
     }
 
@@ -99,6 +118,7 @@ impl Formula {
                 Step::Parameter { name, .. } => *values
                     .get(name)
                     .ok_or_else(|| error(format!("no parameter is named `{}`", clip(name))))?,
+                Step::Variable(_) => return Err(error("a number depends on the point".to_owned())),
                 Step::Negate => -operands[0],
                 Step::Binary(binary) => binary.compute(operands[0], operands[1]).map_err(error)?,
                 Step::Call(function, _) => function.compute(operands).map_err(error)?,
@@ -108,17 +128,17 @@ impl Formula {
         }
         Ok(stack[0])
     }
+}
 
-    /// Of each step, the steps that give its operands, in order: all in one list, and where each step's begin.
-    fn operands(&self) -> (Vec<u32>, Vec<u32>) {
-        let (mut all, mut starts, mut stack) = (Vec::new(), Vec::new(), Vec::new());
-        for (index, step) in self.steps.iter().enumerate() {
-            starts.push(all.len() as u32);
-            all.extend(stack.drain(stack.len() - step.operands()..));
-            stack.push(index as u32);
-        }
-        (all, starts)
+/// Of each step, the steps that give its operands, in order: all in one list, and where each step's begin.
+fn operands(steps: &[Step]) -> (Vec<u32>, Vec<u32>) {
+    let (mut all, mut starts, mut stack) = (Vec::new(), Vec::new(), Vec::new());
+    for (index, step) in steps.iter().enumerate() {
+        starts.push(all.len() as u32);
+        all.extend(stack.drain(stack.len() - step.operands()..));
+        stack.push(index as u32);
     }
+    (all, starts)
 }
 
 /// How strongly a minus sign binds.
@@ -136,59 +156,77 @@ enum Piece {
 impl fmt::Display for Formula {
     /// In the text format, with no more parentheses than it needs.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (operands, starts) = self.operands();
-        let mut pieces = vec![Piece::Step(self.steps.len() as u32 - 1, 0)];
-        while let Some(piece) = pieces.pop() {
-            let (index, least) = match piece {
-                Piece::Text(text) => {
-                    f.write_str(text)?;
-                    continue;
-                }
-                Piece::Step(index, least) => (index, least),
-            };
-            let step = &self.steps[index as usize];
-            let mine = &operands[starts[index as usize] as usize..][..step.operands()];
-            let strength = match step {
-                Step::Literal(value) if value.is_sign_negative() => SIGN,
-                Step::Literal(_) | Step::Parameter { .. } | Step::Call(..) => ATOM,
-                Step::Negate => SIGN,
-                Step::Binary(binary) => binary.strength(),
-            };
-            if strength < least {
-                f.write_str("(")?;
-                pieces.push(Piece::Text(")"));
+        show(&self.steps, f, |_, _| Ok(()))
+    }
+}
+
+/// Writes steps in the text format, with no more parentheses than they need; `name` writes variables.
+pub(crate) fn show<W: fmt::Write>(
+    steps: &[Step],
+    f: &mut W,
+    mut name: impl FnMut(&mut W, Variable) -> fmt::Result,
+) -> fmt::Result {
+    let (operands, starts) = operands(steps);
+    let mut pieces = vec![Piece::Step(steps.len() as u32 - 1, 0)];
+    while let Some(piece) = pieces.pop() {
+        let (index, least) = match piece {
+            Piece::Text(text) => {
+                f.write_str(text)?;
+                continue;
             }
-            match step {
-                Step::Literal(value) => f.write_str(&plain(*value))?,
-                Step::Parameter { name, .. } => f.write_str(name)?,
-                Step::Negate => {
-                    f.write_str("-")?;
-                    pieces.push(Piece::Step(mine[0], SIGN));
+            Piece::Step(index, least) => (index, least),
+        };
+        let step = &steps[index as usize];
+        let mine = &operands[starts[index as usize] as usize..][..step.operands()];
+        let strength = strength(step);
+        if strength < least {
+            f.write_str("(")?;
+            pieces.push(Piece::Text(")"));
+        }
+        match step {
+            Step::Literal(value) => f.write_str(&plain(*value))?,
+            Step::Parameter { name, .. } => f.write_str(name)?,
+            Step::Variable(variable) => name(f, *variable)?,
+            Step::Negate => {
+                f.write_str("-")?;
+                pieces.push(Piece::Step(mine[0], SIGN));
+            }
+            Step::Binary(binary) => {
+                // Operands group to the left, powers to the right; a sign in an exponent needs no parentheses.
+                let (left, right) = match binary {
+                    Binary::Power => (ATOM, SIGN),
+                    Binary::Add | Binary::Subtract | Binary::Multiply | Binary::Divide => {
+                        (strength, strength + 1)
+                    }
+                };
+                pieces.push(Piece::Step(mine[1], right));
+                pieces.push(Piece::Text(binary.text()));
+                pieces.push(Piece::Step(mine[0], left));
+            }
+            Step::Call(function, _) => {
+                match function {
+                    Function::Falloff(falloff) => write!(f, "{}(", crate::text::falloff_text(&falloff.0))?,
+                    _ => write!(f, "{}(", function.name())?,
                 }
-                Step::Binary(binary) => {
-                    // Operators group to the left, powers to the right; a sign in an exponent needs no parentheses.
-                    let (left, right) = match binary {
-                        Binary::Power => (ATOM, SIGN),
-                        Binary::Add | Binary::Subtract | Binary::Multiply | Binary::Divide => {
-                            (strength, strength + 1)
-                        }
-                    };
-                    pieces.push(Piece::Step(mine[1], right));
-                    pieces.push(Piece::Text(binary.text()));
-                    pieces.push(Piece::Step(mine[0], left));
-                }
-                Step::Call(function, _) => {
-                    write!(f, "{}(", function.name())?;
-                    pieces.push(Piece::Text(")"));
-                    for (place, &operand) in mine.iter().enumerate().rev() {
-                        pieces.push(Piece::Step(operand, 0));
-                        if place > 0 {
-                            pieces.push(Piece::Text(", "));
-                        }
+                pieces.push(Piece::Text(")"));
+                for (place, &operand) in mine.iter().enumerate().rev() {
+                    pieces.push(Piece::Step(operand, 0));
+                    if place > 0 {
+                        pieces.push(Piece::Text(", "));
                     }
                 }
             }
         }
-        Ok(())
+    }
+    Ok(())
+}
+
+/// How strongly a step holds together what it is made of.
+fn strength(step: &Step) -> u8 {
+    match step {
+        Step::Literal(value) if value.is_sign_negative() => SIGN,
+        Step::Literal(_) | Step::Parameter { .. } | Step::Variable(_) | Step::Call(..) => ATOM,
+        Step::Negate => SIGN,
+        Step::Binary(binary) => binary.strength(),
     }
 }

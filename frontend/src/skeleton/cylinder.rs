@@ -3,7 +3,7 @@
 use glam::{DAffine3, DVec3};
 use jbt_ir::Domain;
 
-use super::{SkeletonMember, Symmetry};
+use super::{SkeletonMember, Symmetry, uv};
 use crate::bounds::Bounds;
 use crate::field::{Field, FieldKind, FieldValue, Member};
 
@@ -82,6 +82,32 @@ impl SkeletonMember for Cylinder {
         let past_side = super::positive_part(d, off);
         super::sum_of_squares(d, past_side, past_ends)
     }
+
+    const UV_COLUMNS: &'static [&'static str] = &["inv_length"];
+
+    /// u: the angle about the axis. v: how far along it is, from 0 at `from` to 1 at `to`; 1/2 where the ends are equal.
+    fn uv(&self, p: DVec3) -> [f64; 2] {
+        let q = uv::within(&self.uv_frame(), p);
+        let along = q.z * uv::inverse(self.from.distance(self.to)) + 0.5;
+        [uv::turn(q.x, q.y), along.clamp(0.0, 1.0)]
+    }
+
+    fn uv_decision(&self, p: DVec3) -> f64 {
+        let q = uv::within(&self.uv_frame(), p);
+        uv::turn_decision(q.x, q.y)
+    }
+
+    fn uv_frame(&self) -> DAffine3 {
+        uv::frame(self.direction(), self.from.midpoint(self.to))
+    }
+
+    fn uv_columns(&self, row: &mut Vec<f64>) {
+        row.push(uv::inverse(self.from.distance(self.to)));
+    }
+
+    fn emit_uv<D: Domain>(d: &mut D, [x, y, z]: [D::Real; 3], row: &[D::Real]) -> [D::Real; 2] {
+        [uv::emit_turn(d, x, y), uv::emit_ramp(d, z, row[0], 0.5)]
+    }
 }
 
 #[cfg(test)]
@@ -128,5 +154,14 @@ mod tests {
                 .collect();
             (cylinder, samples)
         });
+    }
+
+    #[test]
+    fn uv_goes_around_and_along() {
+        let cylinder = Cylinder { from: DVec3::ZERO, to: DVec3::new(0.0, 4.0, 0.0), radius: 1.0 };
+        // Right-handed about y: from x to -z.
+        testing::same_uv(&cylinder, DVec3::new(0.0, 1.0, -2.0), [0.25, 0.25]);
+        testing::same_uv(&cylinder, DVec3::new(0.0, 9.0, 2.0), [0.75, 1.0]);
+        testing::judge_uv(|rng| Cylinder { from: testing::position(rng), to: testing::position(rng), radius: 1.0 });
     }
 }

@@ -3,7 +3,7 @@
 use glam::{DAffine3, DVec3};
 use jbt_ir::Domain;
 
-use super::{SkeletonMember, Symmetry};
+use super::{SkeletonMember, Symmetry, uv};
 use crate::bounds::Bounds;
 use crate::field::{Field, FieldKind, FieldValue, Member};
 
@@ -72,6 +72,32 @@ impl SkeletonMember for Disc {
         let outside = super::positive_part(d, beyond);
         super::sum_of_squares(d, outside, p[2])
     }
+
+    const UV_COLUMNS: &'static [&'static str] = &["inv_radius"];
+
+    /// u: the angle about the normal. v: the distance from the axis, from 0 in the middle to 1 at the rim; 0 if the radius is.
+    fn uv(&self, p: DVec3) -> [f64; 2] {
+        let q = uv::within(&self.uv_frame(), p);
+        [uv::turn(q.x, q.y), (q.x.hypot(q.y) * uv::inverse(self.radius)).min(1.0)]
+    }
+
+    fn uv_decision(&self, p: DVec3) -> f64 {
+        let q = uv::within(&self.uv_frame(), p);
+        uv::turn_decision(q.x, q.y)
+    }
+
+    fn uv_frame(&self) -> DAffine3 {
+        uv::frame(super::direction(self.normal), self.center)
+    }
+
+    fn uv_columns(&self, row: &mut Vec<f64>) {
+        row.push(uv::inverse(self.radius));
+    }
+
+    fn emit_uv<D: Domain>(d: &mut D, p: [D::Real; 3], row: &[D::Real]) -> [D::Real; 2] {
+        let rho = super::emit_off_axis(d, p);
+        [uv::emit_turn(d, p[0], p[1]), uv::emit_ramp(d, rho, row[0], 0.0)]
+    }
 }
 
 #[cfg(test)]
@@ -105,5 +131,14 @@ mod tests {
                 .collect();
             (disc, samples)
         });
+    }
+
+    #[test]
+    fn uv_goes_around_and_outwards() {
+        let disc = Disc { center: DVec3::new(1.0, 0.0, 0.0), normal: DVec3::new(0.0, 0.0, 3.0), radius: 2.0 };
+        testing::same_uv(&disc, DVec3::new(1.0, 1.0, 5.0), [0.25, 0.5]);
+        testing::same_uv(&disc, DVec3::new(-3.0, 0.0, 0.0), [0.5, 1.0]);
+        testing::same_uv(&disc, disc.center, [0.0, 0.0]);
+        testing::judge_uv(|rng| Disc { center: testing::position(rng), normal: testing::direction(rng), radius: 2.0 });
     }
 }

@@ -12,11 +12,13 @@ use glam::{DAffine3, DMat3, DVec3};
 use jbt_ir::Domain;
 
 use crate::bounds::Bounds;
+use crate::diagnostic::Diagnostic;
 use crate::field::{Field, FieldValue, Member};
 
 /// What a skeleton states about itself.
 ///
-/// Coordinates are those of the primitive's own space. The squared distance is Euclidean.
+/// Coordinates are those of the primitive's own space. The distance is Euclidean unless [`metric`](Self::metric) says otherwise; of a scaled
+/// skeleton and point it is as many times as large.
 pub trait SkeletonMember: Member {
     /// Names of the columns that [`columns`](Self::columns) fills, in order.
     const COLUMNS: &'static [&'static str];
@@ -24,7 +26,16 @@ pub trait SkeletonMember: Member {
     /// Its symmetry in its pose.
     const SYMMETRY: Symmetry;
 
-    /// The smallest box that holds the image of the skeleton itself (not the support of its field) under a map.
+    /// How many distances that may be zero, as that from an axis, divide its derivative one after the other. All but the first of them
+    /// are at least the distance from the skeleton.
+    const DIVISORS: i32 = 1;
+
+    /// What its distance is.
+    fn metric(&self) -> Metric {
+        Metric::EUCLIDEAN
+    }
+
+    /// The smallest box that holds the image of the skeleton itself (not the support of its field) under a map. Its sides may be infinite.
     fn bounds_under(&self, map: &DAffine3) -> Bounds;
 
     /// The squared distance from `p`, plainly.
@@ -45,6 +56,76 @@ pub trait SkeletonMember: Member {
     /// In f32, with columns rounded once, its square root is off by at most [`ROUNDING`] of the distance and the largest coordinate of
     /// the skeleton together (and by 2^-73, where squares fall below the smallest numbers): supports rest on it.
     fn emit<D: Domain>(d: &mut D, p: [D::Real; 3], row: &[D::Real]) -> D::Real;
+
+    /// What is folded over its pieces, if it is made of any number of them. Then the row that [`emit`](Self::emit) is given goes on behind the
+    /// columns with what the accumulators have come to.
+    const PIECES: Option<Pieces> = None;
+
+    /// The numbers of its pieces, those of one behind those of the other, in the pose and `scale` times as large; `reach` is the support
+    /// radius, of the skeleton as it was written. There is at least one piece.
+    fn pieces(&self, _scale: f64, _reach: f64, _rows: &mut Vec<f64>) {}
+
+    /// The smallest boxes that hold the images of its pieces under a map, in their order.
+    fn piece_bounds_under(&self, _reach: f64, _map: &DAffine3) -> Vec<Bounds> {
+        Vec::new()
+    }
+
+    /// How many pieces there are; counting may end at `most`. Cost: that of the count.
+    fn piece_count(&self, _reach: f64, _most: usize) -> usize {
+        0
+    }
+
+    /// The accumulators before the first piece. `beyond` is a distance of [`BEYOND`] support radii.
+    fn begin<D: Domain>(_d: &mut D, _beyond: D::Real) -> Vec<D::Real> {
+        Vec::new()
+    }
+
+    /// The accumulators behind a piece, from those before it; `p` is a point in the pose, `piece` has the numbers of the piece.
+    fn step<D: Domain>(
+        _d: &mut D,
+        _p: [D::Real; 3],
+        _piece: &[D::Real],
+        _so_far: &[D::Real],
+    ) -> Vec<D::Real> {
+        Vec::new()
+    }
+
+    /// What is wrong with parameters that do not go together, each of which by itself is what its kind says; without a place.
+    fn fault(&self) -> Option<Diagnostic> {
+        None
+    }
+
+    /// Names of the columns that [`uv_columns`](Self::uv_columns) fills, in order.
+    const UV_COLUMNS: &'static [&'static str] = &[];
+
+    /// Where `p` is on the skeleton, plainly: two numbers from 0 to 1, finite everywhere. What they mean stands at each skeleton; without
+    /// more, they are longitude
+    /// and latitude about the middle of the pose.
+    fn uv(&self, p: DVec3) -> [f64; 2] {
+        uv::sphere(p - self.pose().translation)
+    }
+
+    /// How far `p` is from where [`uv`](Self::uv) jumps; infinity if it never does.
+    fn uv_decision(&self, p: DVec3) -> f64 {
+        uv::sphere_decision(p - self.pose().translation)
+    }
+
+    /// The rigid motion from the frame in which [`emit_uv`](Self::emit_uv) sees the skeleton to where it is. Unlike the pose it is not up to
+    /// symmetry.
+    fn uv_frame(&self) -> DAffine3 {
+        DAffine3::from_translation(self.pose().translation)
+    }
+
+    /// The numbers of a row that [`emit_uv`](Self::emit_uv) needs: one for each of [`UV_COLUMNS`](Self::UV_COLUMNS).
+    fn uv_columns(&self, row: &mut Vec<f64>) {
+        let _ = row;
+    }
+
+    /// [`uv`](Self::uv) over the ops, in the frame; `row` holds the columns.
+    fn emit_uv<D: Domain>(d: &mut D, p: [D::Real; 3], row: &[D::Real]) -> [D::Real; 2] {
+        let _ = row;
+        uv::emit_sphere(d, p)
+    }
 }
 
 /// The rounding that [`SkeletonMember::emit`] may have: 64 units in the last place.
@@ -52,7 +133,16 @@ pub trait SkeletonMember: Member {
 /// A column is off by half a unit of what it holds. A difference of a coordinate and a length adds half a unit of both, a sum of two
 /// squares and its root less than two of the result: a cylinder, with two such terms, stays below 8 units, a box below 8. The sides of
 /// a triangle take two products and a sum, of numbers that are off themselves, so both its terms are off by up to 12 units of
-/// coordinates that are up to 1.5 times as large; and near a corner the test of what is inside may be off by three times as much.
+/// coordinates that are up to 1.5 times as large; and near a corner the test of what is inside may be off by three times as much. A cone's
+/// profile is a figure of such sides.
+///
+/// Of solids around something (a sphere, a torus, a round cone), the distance from that is at most the distance from the solid and a
+/// coordinate of it: it is off by less than 8 units, and a radius takes one more. A round cone finds the nearest point of its axis with an error
+/// of its own, which matters in the second order alone; see there. An arc adds to a ring the choice between its ends and the circle, which
+/// are equally far away where rounding may take the one for the other.
+///
+/// Norms have no coordinates and are off by parts of themselves: an ellipsoid, with a product in each square, by less than 6 units, and those with
+/// powers by less than 13 for each norm in the other; see [`LMetric`].
 pub const ROUNDING: f64 = 64.0 / (1 << 24) as f64;
 
 /// Which rotations a skeleton in its pose does not feel: they need not be done.
@@ -62,6 +152,8 @@ pub enum Symmetry {
     Ball,
     /// Those about the z axis, and turning it round.
     Axis,
+    /// Those about the z axis.
+    Arrow,
     /// None.
     None,
 }
@@ -73,6 +165,8 @@ impl Symmetry {
         let simplest = match self {
             Self::Ball => DMat3::IDENTITY,
             Self::Axis => along(turn.z_axis),
+            Self::Arrow if turn.z_axis.abs_diff_eq(DVec3::NEG_Z, 1e-12) => -DMat3::IDENTITY,
+            Self::Arrow => towards(turn.z_axis),
             Self::None => turn,
         };
         if simplest.abs_diff_eq(DMat3::IDENTITY, 1e-12) { DMat3::IDENTITY } else { simplest }
@@ -115,6 +209,10 @@ macro_rules! skeletons {
                 match self { $( Self::$name => Skeleton::$name($name::from_fields(values)), )+ }
             }
 
+            /// See [`SkeletonMember::DIVISORS`].
+            #[must_use]
+            pub const fn divisors(self) -> i32 { match self { $( Self::$name => $name::DIVISORS, )+ } }
+
             /// See [`SkeletonMember::SYMMETRY`].
             #[must_use]
             pub const fn symmetry(self) -> Symmetry { match self { $( Self::$name => $name::SYMMETRY, )+ } }
@@ -122,6 +220,35 @@ macro_rules! skeletons {
             /// The squared distance over the ops, in the pose.
             pub fn emit<D: Domain>(self, d: &mut D, p: [D::Real; 3], row: &[D::Real]) -> D::Real {
                 match self { $( Self::$name => $name::emit(d, p, row), )+ }
+            }
+
+            /// See [`SkeletonMember::PIECES`].
+            #[must_use]
+            pub const fn pieces(self) -> Option<Pieces> { match self { $( Self::$name => $name::PIECES, )+ } }
+
+            /// See [`SkeletonMember::begin`].
+            pub fn begin<D: Domain>(self, d: &mut D, beyond: D::Real) -> Vec<D::Real> {
+                match self { $( Self::$name => $name::begin(d, beyond), )+ }
+            }
+
+            /// See [`SkeletonMember::step`].
+            pub fn step<D: Domain>(
+                self,
+                d: &mut D,
+                p: [D::Real; 3],
+                piece: &[D::Real],
+                so_far: &[D::Real],
+            ) -> Vec<D::Real> {
+                match self { $( Self::$name => $name::step(d, p, piece, so_far), )+ }
+            }
+
+            /// The names of the columns for [`emit_uv`](Self::emit_uv).
+            #[must_use]
+            pub const fn uv_columns(self) -> &'static [&'static str] { match self { $( Self::$name => $name::UV_COLUMNS, )+ } }
+
+            /// See [`SkeletonMember::emit_uv`].
+            pub fn emit_uv<D: Domain>(self, d: &mut D, p: [D::Real; 3], row: &[D::Real]) -> [D::Real; 2] {
+                match self { $( Self::$name => $name::emit_uv(d, p, row), )+ }
             }
         }
 
@@ -133,6 +260,10 @@ macro_rules! skeletons {
             /// The parameters, in the order of [`SkeletonKind::fields`].
             #[must_use]
             pub fn to_fields(&self) -> Vec<FieldValue> { match self { $( Self::$name(s) => s.to_fields(), )+ } }
+
+            /// See [`SkeletonMember::metric`].
+            #[must_use]
+            pub fn metric(&self) -> Metric { match self { $( Self::$name(s) => s.metric(), )+ } }
 
             /// The smallest box that holds the skeleton itself (not the support of its field).
             #[must_use]
@@ -158,6 +289,42 @@ macro_rules! skeletons {
             pub fn columns(&self, scale: f64, row: &mut Vec<f64>) {
                 match self { $( Self::$name(s) => s.columns(scale, row), )+ }
             }
+
+            /// See [`SkeletonMember::pieces`].
+            pub fn pieces(&self, scale: f64, reach: f64, rows: &mut Vec<f64>) {
+                match self { $( Self::$name(s) => s.pieces(scale, reach, rows), )+ }
+            }
+
+            /// See [`SkeletonMember::piece_bounds_under`].
+            #[must_use]
+            pub fn piece_bounds_under(&self, reach: f64, map: &DAffine3) -> Vec<Bounds> {
+                match self { $( Self::$name(s) => s.piece_bounds_under(reach, map), )+ }
+            }
+
+            /// See [`SkeletonMember::piece_count`].
+            #[must_use]
+            pub fn piece_count(&self, reach: f64, most: usize) -> usize {
+                match self { $( Self::$name(s) => s.piece_count(reach, most), )+ }
+            }
+
+            /// See [`SkeletonMember::fault`].
+            #[must_use]
+            pub fn fault(&self) -> Option<Diagnostic> { match self { $( Self::$name(s) => s.fault(), )+ } }
+
+            /// See [`SkeletonMember::uv`].
+            #[must_use]
+            pub fn uv(&self, p: DVec3) -> [f64; 2] { match self { $( Self::$name(s) => s.uv(p), )+ } }
+
+            /// See [`SkeletonMember::uv_decision`].
+            #[must_use]
+            pub fn uv_decision(&self, p: DVec3) -> f64 { match self { $( Self::$name(s) => s.uv_decision(p), )+ } }
+
+            /// See [`SkeletonMember::uv_frame`].
+            #[must_use]
+            pub fn uv_frame(&self) -> DAffine3 { match self { $( Self::$name(s) => s.uv_frame(), )+ } }
+
+            /// See [`SkeletonMember::uv_columns`].
+            pub fn uv_columns(&self, row: &mut Vec<f64>) { match self { $( Self::$name(s) => s.uv_columns(row), )+ } }
         }
     };
 }
@@ -170,15 +337,59 @@ skeletons! {
     cylinder::Cylinder,
     r#box::Box,
     triangle::Triangle,
+    polyline::Polyline,
+    polygon::Polygon,
+    bezier::Bezier,
+    catmull_rom::CatmullRom,
+    sphere::Sphere,
+    torus::Torus,
+    cone::Cone,
+    round_cone::RoundCone,
+    rectangle::Rectangle,
+    arc::Arc,
+    half_space::HalfSpace,
+    ellipsoid::Ellipsoid,
+    lmetric::LMetric,
+    superquadric::Superquadric,
 }
+
+mod cubic;
+mod piece;
+mod points;
+mod tapered;
+
+pub use piece::{BEYOND, Pieces};
+
+impl Skeleton {
+    /// A box around all points at up to this distance.
+    #[must_use]
+    pub fn bounds_within(&self, distance: f64) -> Bounds {
+        let (bounds, metric) = (self.bounds(), self.metric());
+        if metric == Metric::EUCLIDEAN {
+            return bounds.grown(distance);
+        }
+        let reach = distance * metric.reach(self.pose().matrix3);
+        Bounds::new(bounds.min - reach, bounds.max + reach)
+    }
+}
+
+mod metric;
+pub use metric::Metric;
 
 #[cfg(test)]
 mod testing;
+mod uv;
 
 /// `v` with length 1, whatever its length was; zero stays zero.
-fn unit(v: DVec3) -> DVec3 {
+pub(crate) fn unit(v: DVec3) -> DVec3 {
     let size = v.abs().max_element();
     if size == 0.0 { DVec3::ZERO } else { (v / size).normalize() }
+}
+
+/// `v` with length 1; the z axis for zero.
+fn direction(v: DVec3) -> DVec3 {
+    let unit = unit(v);
+    if unit == DVec3::ZERO { DVec3::Z } else { unit }
 }
 
 /// Height along the unit vector `n`, and distance from its line.
@@ -203,10 +414,58 @@ fn along(v: DVec3) -> DMat3 {
     DMat3::from_cols(x, y, z)
 }
 
+/// What takes the z axis to the direction of `v`: a rotation, or the reflection in the origin where that will do; the identity if `v` is zero.
+fn towards(v: DVec3) -> DMat3 {
+    let z = unit(v);
+    if z == DVec3::ZERO || z.z == 1.0 {
+        return DMat3::IDENTITY;
+    }
+    if z.z == -1.0 {
+        return -DMat3::IDENTITY;
+    }
+    let (x, y) = z.any_orthonormal_pair();
+    DMat3::from_cols(x, y, z)
+}
+
+/// The rotation that takes the z axis to the direction of `normal`, and the x axis as near to that of `first` as it can be.
+fn frame(normal: DVec3, first: DVec3) -> DMat3 {
+    let (z, first) = (unit(normal), unit(first));
+    let across = |v: DVec3| v - v.dot(z) * z;
+    // Twice, because what is left of a direction near the normal is mostly rounding.
+    let x = unit(across(across(first)));
+    let x = if x == DVec3::ZERO { z.any_orthonormal_vector() } else { x };
+    DMat3::from_cols(x, z.cross(x), z)
+}
+
+/// Whether two directions lie along one line, as nearly as f32 can tell. A direction that is zero lies along none.
+fn are_along(a: DVec3, b: DVec3) -> bool {
+    let (a, b) = (unit(a), unit(b));
+    a != DVec3::ZERO && b != DVec3::ZERO && a.cross(b).length() < 1e-7
+}
+
+/// What is wrong with a direction that has to be across another one, if it lies along that; `what` is its name.
+fn along_normal(owner: &str, what: &str, normal: DVec3, direction: DVec3) -> Option<Diagnostic> {
+    let error = || Diagnostic::error(None, format!("the `{what}` of the {owner} lies along its normal"));
+    are_along(normal, direction).then(|| error().expected("expected a direction across it"))
+}
+
+/// How far the image of a ball reaches along each axis.
+fn ball_reach(map: &DAffine3, radius: f64) -> DVec3 {
+    radius * Metric::EUCLIDEAN.reach(map.matrix3)
+}
+
 /// The distance from the z axis.
 fn emit_off_axis<D: Domain>(d: &mut D, p: [D::Real; 3]) -> D::Real {
     let square = sum_of_squares(d, p[0], p[1]);
     d.sqrt(square)
+}
+
+/// The squared distance from all points within `radius` of something, from the squared distance from that: `max(sqrt(square) - radius, 0)^2`.
+fn outside_squared<D: Domain>(d: &mut D, square: D::Real, radius: D::Real) -> D::Real {
+    let distance = d.sqrt(square);
+    let past = d.sub(distance, radius);
+    let outside = positive_part(d, past);
+    d.mul(outside, outside)
 }
 
 /// How far `x` is outside of `[-half, half]`: `max(|x| - half, 0)`.
@@ -220,6 +479,25 @@ fn beyond<D: Domain>(d: &mut D, x: D::Real, half: D::Real) -> D::Real {
 fn sum_of_squares<D: Domain>(d: &mut D, a: D::Real, b: D::Real) -> D::Real {
     let square = d.mul(a, a);
     d.fma(b, b, square)
+}
+
+/// `a . b`, with two fused steps.
+fn dot<D: Domain>(d: &mut D, a: [D::Real; 3], b: [D::Real; 3]) -> D::Real {
+    let x = d.mul(a[0], b[0]);
+    let xy = d.fma(a[1], b[1], x);
+    d.fma(a[2], b[2], xy)
+}
+
+/// `v - x u`, with one fused step for each coordinate.
+fn minus_multiple<D: Domain>(d: &mut D, v: [D::Real; 3], x: D::Real, u: [D::Real; 3]) -> [D::Real; 3] {
+    let back = d.neg(x);
+    std::array::from_fn(|axis| d.fma(back, u[axis], v[axis]))
+}
+
+/// `|v|`.
+fn length<D: Domain>(d: &mut D, v: [D::Real; 3]) -> D::Real {
+    let square = length_squared(d, v);
+    d.sqrt(square)
 }
 
 /// `|v|^2`, with two fused steps.

@@ -7,7 +7,7 @@ use super::{SkeletonMember, Symmetry};
 use crate::bounds::Bounds;
 use crate::field::{Field, FieldKind, FieldValue, Member};
 
-/// A point.
+/// A point. Its uv is longitude about the z axis, from x, and latitude, from -z to z.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Point {
     /// Where it is.
@@ -66,5 +66,22 @@ mod tests {
             let at = testing::position(rng);
             (Point { at }, vec![at])
         });
+    }
+
+    #[test]
+    fn uv_is_longitude_and_latitude() {
+        let point = Point { at: DVec3::new(1.0, 2.0, 3.0) };
+        for (off, expected) in [
+            ([1.0, 0.0, 0.0], [0.0, 0.5]),
+            ([0.0, 5.0, 0.0], [0.25, 0.5]),
+            ([-1.0, 0.0, 1.0], [0.5, 0.75]),
+            ([0.0, -1.0, 0.0], [0.75, 0.5]),
+            ([0.0, 0.0, 1.0], [0.0, 1.0]),
+            ([0.0, 0.0, -1.0], [0.0, 0.0]),
+            ([0.0, 0.0, 0.0], [0.0, 0.5]),
+        ] {
+            testing::same_uv(&point, point.at + DVec3::from(off), expected);
+        }
+        testing::judge_uv(|rng| Point { at: testing::position(rng) });
     }
 }

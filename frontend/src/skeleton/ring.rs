@@ -3,7 +3,7 @@
 use glam::{DAffine3, DVec3};
 use jbt_ir::Domain;
 
-use super::{SkeletonMember, Symmetry};
+use super::{SkeletonMember, Symmetry, uv};
 use crate::bounds::Bounds;
 use crate::field::{Field, FieldKind, FieldValue, Member};
 
@@ -72,6 +72,34 @@ impl SkeletonMember for Ring {
         let off = d.sub(rho, row[0]);
         super::sum_of_squares(d, off, p[2])
     }
+
+    const UV_COLUMNS: &'static [&'static str] = &["uv_radius"];
+
+    /// u: the angle about the normal. v: the angle about the circle, from 0 outside of it over 1/4 above it (where the normal goes) and 1/2
+    /// inside of it.
+    fn uv(&self, p: DVec3) -> [f64; 2] {
+        let q = uv::within(&self.uv_frame(), p);
+        [uv::turn(q.x, q.y), uv::turn(q.x.hypot(q.y) - self.radius, q.z)]
+    }
+
+    fn uv_decision(&self, p: DVec3) -> f64 {
+        let q = uv::within(&self.uv_frame(), p);
+        uv::turn_decision(q.x, q.y).min(uv::turn_decision(q.x.hypot(q.y) - self.radius, q.z))
+    }
+
+    fn uv_frame(&self) -> DAffine3 {
+        uv::frame(super::direction(self.normal), self.center)
+    }
+
+    fn uv_columns(&self, row: &mut Vec<f64>) {
+        row.push(self.radius);
+    }
+
+    fn emit_uv<D: Domain>(d: &mut D, p: [D::Real; 3], row: &[D::Real]) -> [D::Real; 2] {
+        let rho = super::emit_off_axis(d, p);
+        let off = d.sub(rho, row[0]);
+        [uv::emit_turn(d, p[0], p[1]), uv::emit_turn(d, off, p[2])]
+    }
 }
 
 #[cfg(test)]
@@ -101,5 +129,20 @@ mod tests {
                 .collect();
             (ring, samples)
         });
+    }
+
+    #[test]
+    fn uv_goes_around_both_ways() {
+        let ring = Ring { center: DVec3::ZERO, normal: DVec3::Z, radius: 2.0 };
+        for (p, expected) in [
+            ([0.0, 3.0, 0.0], [0.25, 0.0]),
+            ([0.0, 2.0, 1.0], [0.25, 0.25]),
+            ([0.0, 1.0, 0.0], [0.25, 0.5]),
+            ([-2.0, 0.0, -1.0], [0.5, 0.75]),
+            ([0.0, 0.0, 0.0], [0.0, 0.5]),
+        ] {
+            testing::same_uv(&ring, p.into(), expected);
+        }
+        testing::judge_uv(|rng| Ring { center: testing::position(rng), normal: testing::direction(rng), radius: 2.0 });
     }
 }

@@ -3,7 +3,7 @@
 use glam::{DAffine3, DVec3};
 use jbt_ir::Domain;
 
-use super::{SkeletonMember, Symmetry};
+use super::{SkeletonMember, Symmetry, uv};
 use crate::bounds::Bounds;
 use crate::field::{Field, FieldKind, FieldValue, Member};
 
@@ -62,6 +62,32 @@ impl SkeletonMember for Segment {
         let past_ends = super::beyond(d, z, row[0]);
         super::length_squared(d, [x, y, past_ends])
     }
+
+    const UV_COLUMNS: &'static [&'static str] = &["inv_length"];
+
+    /// u: the angle about the segment's direction. v: how far along it is, from 0 at `from` to 1 at `to`; 1/2 where the ends are equal.
+    fn uv(&self, p: DVec3) -> [f64; 2] {
+        let q = uv::within(&self.uv_frame(), p);
+        let along = q.z * uv::inverse(self.from.distance(self.to)) + 0.5;
+        [uv::turn(q.x, q.y), along.clamp(0.0, 1.0)]
+    }
+
+    fn uv_decision(&self, p: DVec3) -> f64 {
+        let q = uv::within(&self.uv_frame(), p);
+        uv::turn_decision(q.x, q.y)
+    }
+
+    fn uv_frame(&self) -> DAffine3 {
+        uv::frame(super::direction(self.to - self.from), self.from.midpoint(self.to))
+    }
+
+    fn uv_columns(&self, row: &mut Vec<f64>) {
+        row.push(uv::inverse(self.from.distance(self.to)));
+    }
+
+    fn emit_uv<D: Domain>(d: &mut D, [x, y, z]: [D::Real; 3], row: &[D::Real]) -> [D::Real; 2] {
+        [uv::emit_turn(d, x, y), uv::emit_ramp(d, z, row[0], 0.5)]
+    }
 }
 
 /// The squared distance of `p` from the segment between `from` and `to`, plainly.
@@ -98,5 +124,22 @@ mod tests {
             let samples = (0..=1000).map(|i| from.lerp(to, f64::from(i) / 1000.0)).collect();
             (Segment { from, to }, samples)
         });
+    }
+
+    #[test]
+    fn uv_goes_around_and_along() {
+        let segment = Segment { from: DVec3::ZERO, to: DVec3::new(0.0, 0.0, -4.0) };
+        for (p, expected) in [
+            ([2.0, 0.0, -1.0], [0.0, 0.25]),
+            // Right-handed about -z: from x to -y.
+            ([0.0, -2.0, -3.0], [0.25, 0.75]),
+            ([-1.0, 0.0, 1.0], [0.5, 0.0]),
+            ([0.0, 2.0, -9.0], [0.75, 1.0]),
+            ([0.0, 0.0, -2.0], [0.0, 0.5]),
+        ] {
+            testing::same_uv(&segment, p.into(), expected);
+        }
+        testing::same_uv(&Segment { to: segment.from, ..segment }, DVec3::X, [0.0, 0.5]);
+        testing::judge_uv(|rng| Segment { from: testing::position(rng), to: testing::position(rng) });
     }
 }

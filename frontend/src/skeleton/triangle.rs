@@ -14,12 +14,13 @@
 //! follows from the others, except by rounding in a very flat triangle: it keeps the error to the size of the rounding.
 
 use glam::{DAffine3, DMat3, DVec3};
-use jbt_ir::Domain;
+use jbt_ir::{Domain, limits};
 
 use super::{SkeletonMember, Symmetry};
 use super::segment::segment_distance_squared;
 use crate::bounds::Bounds;
 use crate::field::{Field, FieldKind, FieldValue, Member};
+use crate::texture::emit_unit;
 
 /// A filled triangle. Corners on a line make it a segment, equal ones a point.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -32,6 +33,9 @@ pub struct Triangle {
     pub c: DVec3,
 }
 
+/// The height of a triangle, as a part of its longest side, below which it counts as flat for its uv.
+const FLATTEST: f64 = 1e-6;
+
 /// Columns of one of the two shorter sides: outward normal (x, y), offsets of s and q, half length.
 const SIDE: usize = 5;
 
@@ -42,6 +46,19 @@ impl Triangle {
             [[self.a, self.b, self.c], [self.b, self.c, self.a], [self.c, self.a, self.b]];
         let side = |corners: &[DVec3; 3]| corners[0].distance_squared(corners[1]);
         turns.into_iter().reduce(|best, next| if side(&next) > side(&best) { next } else { best }).unwrap_or(turns[0])
+    }
+
+    /// How the barycentric weights of b and c change in space; nothing if the triangle is flat.
+    fn weights(&self) -> [DVec3; 2] {
+        let (to_b, to_c) = (self.b - self.a, self.c - self.a);
+        let n = to_b.cross(to_c);
+        let longest = to_b.length().max(to_c.length()).max(self.b.distance(self.c));
+        if n.length() <= FLATTEST * longest * longest || longest < limits::MIN_LENGTH {
+            return [DVec3::ZERO; 2];
+        }
+        // Divided one after the other: the square of an area may be out of reach of f64.
+        let (unit, area) = (n.normalize(), n.length());
+        [to_c.cross(unit) / area, unit.cross(to_b) / area]
     }
 }
 
@@ -136,6 +153,39 @@ impl SkeletonMember for Triangle {
         let in_plane = d.select(inside, zero, nearest);
         d.fma(z, z, in_plane)
     }
+
+    const UV_COLUMNS: &'static [&'static str] = &["u_x", "u_y", "u_at", "v_x", "v_y", "v_at"];
+
+    /// Barycentric: u is the weight of `b`, v that of `c`, of the place's projection onto the plane, each between 0 and 1. So `a` is (0, 0), `b`
+    /// (1, 0) and `c` (0, 1). A flat triangle, which has no plane, gives (0, 0).
+    fn uv(&self, p: DVec3) -> [f64; 2] {
+        self.weights().map(|weight| (p - self.a).dot(weight).clamp(0.0, 1.0))
+    }
+
+    fn uv_decision(&self, _p: DVec3) -> f64 {
+        f64::INFINITY
+    }
+
+    fn uv_frame(&self) -> DAffine3 {
+        self.pose()
+    }
+
+    fn uv_columns(&self, row: &mut Vec<f64>) {
+        let turn = self.pose().matrix3.transpose();
+        let from = self.pose().translation - self.a;
+        for weight in self.weights() {
+            let posed = turn * weight;
+            row.extend([posed.x, posed.y, from.dot(weight)]);
+        }
+    }
+
+    fn emit_uv<D: Domain>(d: &mut D, [x, y, _]: [D::Real; 3], row: &[D::Real]) -> [D::Real; 2] {
+        [&row[..3], &row[3..]].map(|weight| {
+            let by_x = d.fma(x, weight[0], weight[2]);
+            let both = d.fma(y, weight[1], by_x);
+            emit_unit(d, both)
+        })
+    }
 }
 
 /// The squared distance of (x, y) from a side, and how far out it is from the side's line.
@@ -218,6 +268,26 @@ mod tests {
                 .map(|(s, t)| a + s * (b - a) + t * (c - a))
                 .collect();
             (Triangle { a, b, c }, samples)
+        });
+    }
+
+    #[test]
+    fn uv_is_barycentric() {
+        let triangle = Triangle { a: corner(1.0, 0.0), b: corner(5.0, 0.0), c: corner(1.0, 3.0) };
+        for (p, expected) in [
+            ([1.0, 0.0, 2.0], [0.0, 0.0]),
+            ([5.0, 0.0, 0.0], [1.0, 0.0]),
+            ([1.0, 3.0, 0.0], [0.0, 1.0]),
+            ([2.0, 1.5, -7.0], [0.25, 0.5]),
+            ([-9.0, 9.0, 0.0], [0.0, 1.0]),
+        ] {
+            testing::same_uv(&triangle, p.into(), expected);
+        }
+        testing::same_uv(&Triangle { c: corner(2.0, 0.0), ..triangle }, DVec3::ONE, [0.0, 0.0]);
+        testing::judge_uv(|rng| Triangle {
+            a: testing::position(rng),
+            b: testing::position(rng),
+            c: testing::position(rng),
         });
     }
 }

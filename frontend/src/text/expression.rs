@@ -14,17 +14,18 @@ use std::f64::consts::PI;
 
 use jbt_ir::limits::MAX_EXPRESSION_DEPTH;
 
+use super::formula::Scope;
 use super::lex::{Token, TokenKind};
 use super::parse::{Parser, is_statement};
 use crate::diagnostic::{Diagnostic, Span};
-use crate::number::{Binary, Formula, Function, Number, Step};
+use crate::number::{Binary, Formula, Function, Number, Step, Variable};
 use crate::report::{clip, nearest};
 
 const CONSTANTS: &[(&str, f64)] = &[("pi", PI)];
 
 /// Whether a word means something else already where a number may stand, so that no parameter may have it.
 pub(super) fn is_builtin(word: &str) -> bool {
-    is_statement(word) || Function::named(word).is_some() || constant(word).is_some()
+    is_statement(word) || Function::named(word).is_some_and(Function::is_reserved) || constant(word).is_some()
 }
 
 fn constant(word: &str) -> Option<f64> {
@@ -99,6 +100,13 @@ impl Stacks {
         let first = self.steps.len() as u32;
         self.steps.push(Step::Literal(value));
         self.operands.push(Part { value, span, first, follows: false });
+    }
+
+    /// What is no number before there is a point. Nothing is computed of it, so its value is NaN.
+    fn push_variable(&mut self, variable: Variable, span: Span) {
+        let first = self.steps.len() as u32;
+        self.steps.push(Step::Variable(variable));
+        self.operands.push(Part { value: f64::NAN, span, first, follows: true });
     }
 
     /// A number that is made already.
@@ -243,7 +251,14 @@ impl Parser<'_> {
             TokenKind::Word => {
                 self.next();
                 let word = self.text(token);
-                if let Some(function) = Function::named(word) {
+                if let Some(variable) = self.variable(word, token) {
+                    let span = Span::new(token.start, self.previous_end());
+                    stacks.push_variable(variable.ok()?, span);
+                    return Some(false);
+                }
+                let parameter = self.parameter(word).is_some() && !self.peek().is(b'(');
+                let function = Function::named(word).filter(|_| !parameter);
+                if let Some(function) = function.or_else(|| self.falloff_function(word, token)) {
                     if !self.peek().is(b'(') {
                         self.lose_place(|| {
                             Diagnostic::error(Some(token.span()), format!("`{word}` is a function"))
@@ -415,7 +430,11 @@ impl Parser<'_> {
                 .map(|function| function.name())
                 .chain(CONSTANTS.iter().map(|(name, _)| *name));
             let error = Diagnostic::error(Some(span), format!("no parameter is named `{}`", clip(word)));
-            match nearest(word, parser.parameter_names().chain(builtin)) {
+            if parser.scope.is_some() && parser.lets.contains_key(word) {
+                return error.expected(format!("perhaps `field({word})`"));
+            }
+            let here = parser.scope.iter().flat_map(Scope::words);
+            match nearest(word, parser.parameter_names().chain(builtin).chain(here)) {
                 Some(near) => error.expected(format!("perhaps `{near}`")),
                 None => error.expected(format!("declare it above: param {} = 1", clip(word))),
             }

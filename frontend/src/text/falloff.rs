@@ -1,6 +1,6 @@
 //! The falloff of a primitive: its name, and a block with its parameters where it has any.
 
-use super::lex::TokenKind;
+use super::lex::{Token, TokenKind};
 use super::parse::{Parser, is_statement};
 use super::primitive::{Slots, missing_error};
 use crate::diagnostic::{Diagnostic, Span};
@@ -9,8 +9,8 @@ use crate::recipe::FalloffRecipe;
 use crate::report::{clip, nearest};
 
 impl Parser<'_> {
-    /// What follows the word `falloff`. Nothing after an error.
-    pub(super) fn falloff(&mut self) -> Option<FalloffRecipe> {
+    /// What follows the word `falloff`, of a node or of a primitive. Nothing after an error.
+    pub(super) fn falloff(&mut self, is_node: bool) -> Option<FalloffRecipe> {
         let token = self.peek();
         let names = || FalloffKind::ALL.iter().map(|kind| kind.name());
         let expected = || format!("expected one of {}", names().collect::<Vec<_>>().join(", "));
@@ -29,6 +29,15 @@ impl Parser<'_> {
             }
             return None;
         };
+        // Behind a node's falloff without parameters stands the block of the node.
+        if is_node && kind.fields().is_empty() {
+            return Some(FalloffRecipe::new(kind, Vec::new()));
+        }
+        self.falloff_of(kind, token)
+    }
+
+    /// The parameters of a falloff whose word, `token`, has just been taken. Nothing after an error.
+    pub(super) fn falloff_of(&mut self, kind: FalloffKind, token: Token) -> Option<FalloffRecipe> {
         let mut slots = Slots::new(kind.fields());
         if self.peek().is(b'{') && !self.falloff_block(kind, &mut slots) {
             return None;

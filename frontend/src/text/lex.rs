@@ -59,6 +59,11 @@ impl<'a> Lexer<'a> {
         self.token
     }
 
+    /// The token after the next one.
+    pub(super) fn peek_behind(&self) -> Token {
+        self.scan(self.token.end)
+    }
+
     /// Takes the next token.
     pub(super) fn next(&mut self) -> Token {
         let token = self.token;

@@ -22,7 +22,11 @@
 //!            | "attribute" NAME width [ "default" values ] [ "blend" | "dominant" ]
 //!            | "let" NAME "=" node
 //!            | node ;
-//! node       = primitive | operator "{" { node } "}" | map "{" node "}" | "use" NAME ;
+//! node       = primitive | operator "{" { node } "}" | map "{" node "}" | "use" NAME | formula ;
+//! formula    = "expression" [ box ] "{" { NAME "=" expression "," } expression "}"
+//!            | box "{" node "}"                              the node's field, and 0 outside of the box
+//!            | "falloff" FALLOFF "radius" expression "{" node "}" ;   the node's field is a distance; what is negative is 0
+//! box        = "within" vector "to" vector ;                 smallest corner and largest, in the node's own space
 //! primitive  = SKELETON "{" { parameter } "}" ;              in any order, each once
 //! parameter  = FIELD value
 //!            | "radius" expression                           where the field reaches zero
@@ -46,20 +50,28 @@
 //!            | "stretch" "axis" value "by" expression         a scale along an axis
 //!            | "shear" "axis" value "by" vector               what is at height h along the axis moves by h times the vector
 //!            | "affine" vector                               12 numbers: the rows of a 3x4 matrix, child to parent
-//!            | WARP { FIELD value }
-//!            | [ "with" ] NAME values ;                      a declared attribute; "with" if its name is a word of the format
-//! value      = expression | vector | WORD ;                     as the field's kind asks
+//!            | WARP { FIELD value } [ "weighted" ]           weighted: two nodes in the block, the second gives the weight
+//!            | "warp" "(" { NAME "=" expression "," } expression "," expression "," expression ")" [ box ] [ "weighted" ]
+//!                                                            where the node is asked, for each point
+//!            | [ "with" ] NAME given ;                       a declared attribute; "with" if its name is a word of the format
+//! given      = values                                        the same everywhere
+//!            | TEXTURE "{" { "a" values | "b" values | FIELD value } "}"     a pattern in the node's space: a where it is 0, b where it is 1
+//!            | { "scale" ( expression | vector ) | "rotate" expression | "shift" vector } ;   uv of the skeletons, for groups of 2 reals
+//! value      = expression | vector | WORD ;                  as the field's kind asks
 //! values     = vector | expression ;                         as many as the group is wide
 //! vector     = "(" expression { [ "," ] expression } ")" ;
 //! expression = NUMBER | NAME | "pi" | "-" expression | "+" expression | "(" expression ")"
 //!            | expression ( "+" | "-" | "*" | "/" | "^" ) expression
 //!            | FUNCTION "(" expression { "," expression } ")" ;
-//! FUNCTION   = "sqrt" | "sin" | "cos" | "abs" | "exp" | "ln" | "min" | "max" | "pow" ;
+//!            | "x" | "y" | "z" | "field" "(" NAME ")" | NAME    in formulas: coordinates, fields of `let`s, definitions
+//! FUNCTION   = "sqrt" | "sin" | "cos" | "tan" | "asin" | "acos" | "atan" | "atan2" | "abs" | "sign" | "floor" | "ceil" | "round"
+//!            | "mod" | "exp" | "ln" | "square" | "min" | "max" | "clamp" | "mix" | "step" | "length" | "pow" ;
+//!            in formulas also FALLOFF, of a distance of which 1 is the end
 //! NAME       = letter { letter | digit | "_" } ;
 //! ```
 //!
-//! SKELETON, FALLOFF, WARP and FIELD are the names that the members of [`skeleton`](crate::skeleton),
-//! [`falloff`](crate::falloff) and [`warp`](crate::warp) give themselves. Where a skeleton's own parameter is called like one
+//! SKELETON, FALLOFF, WARP, TEXTURE and FIELD are the names that the members of [`skeleton`](crate::skeleton),
+//! [`falloff`](crate::falloff), [`warp`](crate::warp) and [`texture`](crate::texture) give themselves. Where a skeleton's own parameter is called like one
 //! that every primitive has, the skeleton's name goes before it: a disc has a `disc_radius`, and a `radius` around it.
 //!
 //! * `#` and `//` begin a comment that ends with the line. Line ends are blanks like others.
@@ -72,6 +84,9 @@
 //!   between is rounded. A number that is near no child is an error.
 //! * Names are defined before they are used, and once. `color` is declared in every file (3 reals, white, blend) and may be
 //!   declared again to change its default or its mixing.
+//! * Behind an attribute's name a texture's name is the texture. A parameter of that name goes in parentheses: `rough (noise) { .. }`.
+//! * `uv { .. }` with `attribute uv 2` gives leaves the uv of their skeletons: the picture is scaled (by one number or two), then turned by
+//!   degrees about (0, 0), then shifted. Nothing is wrapped to 0 .. 1.
 //! * Angles of functions are radians. `^` goes to the right and binds before a minus sign: `-2^2` is -4.
 //! * **Directly inside a vector, a `+` or `-` with a blank before it and none after it begins the next number**:
 //!   `(1 -2 3)` are three numbers, `(1 - 2 3)`, `(1-2 3)` and `((1 -2) 3)` are two.
@@ -83,8 +98,10 @@
 //! memory for the model and not for the text, and reports every error with its place. Parameters are printed as such, with their
 //! present values, and so are the expressions that mention them.
 
+mod attribute;
 mod expression;
 mod falloff;
+mod formula;
 mod lex;
 mod node;
 mod operator;
@@ -98,11 +115,13 @@ use std::borrow::Cow;
 use crate::diagnostic::Diagnostic;
 use crate::field::{Field, FieldKind};
 use crate::model::Model;
+use crate::number::Function;
 use crate::skeleton::SkeletonKind;
 
+pub(crate) use formula::{COORDINATES, FIELD as FIELD_OF, fading};
 pub(crate) use parse::is_statement;
 pub use print::print;
-pub(crate) use print::print_head;
+pub(crate) use print::{falloff_text, print_head};
 
 /// What is set from outside a text.
 #[derive(Clone, PartialEq, Debug, Default)]
@@ -127,6 +146,11 @@ pub fn parse(text: &[u8], options: &Options) -> Result<Model, Vec<Diagnostic>> {
     parse::read(text, options)
 }
 
+/// The names of the functions of expressions, as `sqrt`; in formulas of fields, falloffs are functions too.
+pub fn functions() -> impl Iterator<Item = &'static str> {
+    Function::ALL.into_iter().map(Function::name)
+}
+
 /// The value of an expression of numbers alone, as `2 * pi`.
 ///
 /// # Errors
@@ -148,6 +172,9 @@ const ROTATE: &[Field] = &[
     Field { name: "degrees", kind: FieldKind::Real, default: None },
     Field { name: "radians", kind: FieldKind::Real, default: None },
 ];
+
+/// The word before the block of a warp that a second child weighs.
+const WEIGHTED: &str = "weighted";
 
 /// The parameter of `reflect`.
 const REFLECT: &[Field] = &[Field { name: "axis", kind: FieldKind::Direction, default: None }];

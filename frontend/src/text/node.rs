@@ -6,7 +6,7 @@ use super::expression::Place;
 use super::lex::{Token, TokenKind};
 use super::parse::{Parser, is_statement};
 use super::primitive::Slots;
-use super::{GROUP_NODE, REFLECT, ROTATE, SHEAR, STRETCH, operator};
+use super::{GROUP_NODE, REFLECT, ROTATE, SHEAR, STRETCH, WEIGHTED, operator};
 use crate::combine::Combinator;
 use crate::diagnostic::{Diagnostic, Span};
 use crate::field::Field;
@@ -27,11 +27,14 @@ const COMBINATORS: [Combinator; 6] = [
 ];
 
 /// The other words that begin a node.
-const OTHERS: [&str; 12] = [
+const OTHERS: [&str; 16] = [
     "use",
     "blend",
     "ricci",
     "select",
+    "expression",
+    "within",
+    "falloff",
     "translate",
     "rotate",
     "scale",
@@ -39,6 +42,7 @@ const OTHERS: [&str; 12] = [
     "stretch",
     "shear",
     "affine",
+    "warp",
     GROUP_NODE,
 ];
 
@@ -61,6 +65,8 @@ pub(super) enum Head {
     Operator(Box<Recipe>),
     /// With one child. Boxed, so that a million open blocks are small.
     Unary(Box<Recipe>),
+    /// A warp whose second child weighs it.
+    Weighted(Box<Recipe>),
     /// The head has an error; the block is read for its own errors.
     Broken,
 }
@@ -76,6 +82,15 @@ pub(super) struct Frame {
     open: u32,
     /// Something in the block could not be read: its children are not counted.
     incomplete: bool,
+    /// A node around it, which its words give as well.
+    around: Option<Box<Recipe>>,
+}
+
+impl Frame {
+    /// With a node around it.
+    pub(super) fn inside(self, around: Recipe) -> Self {
+        Self { around: Some(Box::new(around)), ..self }
+    }
 }
 
 /// What begins with a word.
@@ -217,13 +232,19 @@ impl<'a> Parser<'a> {
         }
         if let Some(kind) = WarpKind::ALL.iter().copied().find(|kind| kind.name() == word) {
             let fields = self.slots(kind.fields(), "a warp").complete(self, start, kind.name());
-            let recipe = fields.map(|fields| Recipe::Warp { warp: kind, fields });
-            return self.unary(start, recipe);
+            let recipe = fields.map(|fields| Box::new(Recipe::Warp { warp: kind, fields }));
+            let weighted = self.accept_word(WEIGHTED);
+            let head = if weighted { Head::Weighted } else { Head::Unary };
+            return self.block(start, recipe.map_or(Head::Broken, head));
         }
         match word {
             "use" => Begun::Leaf(self.use_node()),
             "ricci" => self.ricci(start),
             "select" => self.select(start),
+            "warp" => self.formula_warp(start),
+            "expression" => Begun::Leaf(self.expression_node(start)),
+            "within" => self.within(start),
+            "falloff" => self.falloff_node(start),
             "blend" => {
                 if !self.accept_word("ricci") {
                     self.expected_at(
@@ -269,7 +290,8 @@ impl<'a> Parser<'a> {
         self.count_node(span);
         match self.open() {
             Some(open) => {
-                Begun::Block(Frame { head, first: 0, span, open: open.start as u32, incomplete: false })
+                let open = open.start as u32;
+                Begun::Block(Frame { head, first: 0, span, open, incomplete: false, around: None })
             }
             None => Begun::Leaf(self.broken.clone()),
         }
@@ -294,7 +316,7 @@ impl<'a> Parser<'a> {
         self.accept(b'{')
     }
 
-    fn unary(&mut self, start: Token, recipe: Option<Recipe>) -> Begun {
+    pub(super) fn unary(&mut self, start: Token, recipe: Option<Recipe>) -> Begun {
         self.block(start, recipe.map_or(Head::Broken, |recipe| Head::Unary(Box::new(recipe))))
     }
 
@@ -314,6 +336,17 @@ impl<'a> Parser<'a> {
                 return Tree::at(frame.span, NodeKind::Combine(combinator), children);
             }
             Head::Operator(recipe) => *recipe,
+            Head::Weighted(recipe) => {
+                let count = children.len();
+                if count != 2 && !frame.incomplete {
+                    self.report(|| {
+                        let what = format!("a weighted warp has {count} nodes in its block");
+                        Diagnostic::error(Some(frame.span), what)
+                            .expected("expected two: what it deforms, and what gives the weight")
+                    });
+                }
+                *recipe
+            }
             Head::Unary(recipe) => {
                 let count = children.len();
                 if count != 1 && !frame.incomplete {
@@ -334,7 +367,9 @@ impl<'a> Parser<'a> {
         };
         // A fault has been told where the head was read.
         let made = Tree::cook(recipe, &self.iso, children, Some(frame.span));
-        made.unwrap_or_else(|_| self.broken.clone())
+        let made = made.unwrap_or_else(|_| self.broken.clone());
+        let Some(around) = frame.around else { return made };
+        Tree::cook(*around, &self.iso, vec![made], Some(frame.span)).unwrap_or_else(|_| self.broken.clone())
     }
 
     fn select(&mut self, start: Token) -> Begun {
@@ -404,7 +439,11 @@ impl<'a> Parser<'a> {
             (Some(FieldNumber::Vector(axis)), None) => Map::Reflect(axis),
             (Some(FieldNumber::Vector(axis)), Some(FieldNumber::Real(by))) => Map::Stretch { axis, by },
             (Some(FieldNumber::Vector(axis)), Some(FieldNumber::Vector(by))) => Map::Shear { axis, by },
-            (Some(FieldNumber::Real(_)) | None, _) => return self.block(start, Head::Broken),
+            // What was not read, and what the description of these maps does not ask for.
+            (Some(FieldNumber::Real(_) | FieldNumber::Reals(_) | FieldNumber::Vectors(_)) | None, _)
+            | (Some(FieldNumber::Vector(_)), Some(FieldNumber::Reals(_) | FieldNumber::Vectors(_))) => {
+                return self.block(start, Head::Broken);
+            }
         };
         self.map(start, map)
     }
@@ -428,8 +467,8 @@ impl<'a> Parser<'a> {
             self.number_or_elements();
             return self.block(start, Head::Broken);
         };
-        let values = self.group_values(Some(width));
-        self.unary(start, Some(Recipe::Attribute { name, values }))
+        let value = self.attribute_value(at, &name, width);
+        self.unary(start, value.map(|value| Recipe::Attribute { name, value }))
     }
 
     fn known_groups(&self) -> String {
@@ -448,6 +487,7 @@ impl<'a> Parser<'a> {
             }
             match nearest(word, known) {
                 Some(near) => error.expected(format!("perhaps `{near}`")),
+                None if word == "uv" => error.expected("declare it first: attribute uv 2"),
                 None if valued => error.expected(parser.known_groups()),
                 None => error,
             }

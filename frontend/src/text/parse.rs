@@ -10,6 +10,7 @@ use jbt_ir::limits::{MAX_ATTRIBUTE_WIDTH, MAX_ATTRIBUTES, MAX_SCENE_BYTES};
 
 use super::Options;
 use super::expression::{Place, is_builtin};
+use super::formula::Scope;
 use super::lex::{Lexer, Token, TokenKind};
 use crate::attribute::{AttributeGroup, Mixing};
 use crate::check::{not_finite, unknown};
@@ -43,6 +44,8 @@ pub(super) struct Parser<'a> {
     /// Each parameter as formulas have it; its value is NaN where its expression has an error.
     references: HashMap<&'a str, Number>,
     pub(super) lets: HashMap<&'a str, Tree>,
+    /// Inside of the formula of a field: what it may be about besides numbers.
+    pub(super) scope: Option<Scope<'a>>,
     pub(super) attributes: Vec<AttributeGroup>,
     pub(super) iso: Number,
     iso_at: Option<Span>,
@@ -98,6 +101,7 @@ impl<'a> Parser<'a> {
             parameters: Vec::new(),
             references: HashMap::new(),
             lets: HashMap::new(),
+            scope: None,
             attributes: vec![AttributeGroup::color()],
             iso: Model::DEFAULT_ISO.into(),
             iso_at: None,
@@ -116,6 +120,10 @@ impl<'a> Parser<'a> {
 
     pub(super) fn next(&mut self) -> Token {
         self.lexer.next()
+    }
+
+    pub(super) fn peek_behind(&self) -> Token {
+        self.lexer.peek_behind()
     }
 
     pub(super) fn leans_right(&self) -> bool {

@@ -3,7 +3,7 @@
 use super::expression::Place;
 use super::lex::{Token, TokenKind};
 use super::parse::{Parser, is_statement};
-use super::{OWN_FIELDS, field_word};
+use super::{OWN_FIELDS, WEIGHTED, field_word};
 use crate::diagnostic::{Diagnostic, Span};
 use crate::falloff::Falloff;
 use crate::field::Field;
@@ -32,13 +32,13 @@ impl Slots {
     /// The parameters that have to be written and were not.
     pub(super) fn missing(&self) -> Vec<Field> {
         let unwritten = self.fields.iter().zip(&self.values).filter(|(_, value)| value.is_none());
-        unwritten.filter(|(field, _)| field.default.is_none()).map(|(field, _)| *field).collect()
+        unwritten.filter(|(field, _)| field.default.is_none()).map(|(field, _)| field.clone()).collect()
     }
 
     /// All values, with defaults; nothing if one is missing or was wrong.
     pub(super) fn values(self) -> Option<Vec<FieldNumber>> {
         let all = self.fields.iter().zip(self.values);
-        let all = all.map(|(field, value)| value.or_else(|| field.default.map(FieldNumber::from)));
+        let all = all.map(|(field, value)| value.or_else(|| field.default.clone().map(FieldNumber::from)));
         all.map(|value| value.filter(is_number)).collect()
     }
 }
@@ -66,7 +66,7 @@ impl Parser<'_> {
     /// Named parameters before a block: in any order, each once.
     pub(super) fn slots(&mut self, fields: &'static [Field], owner: &str) -> Slots {
         let mut slots = Slots::new(fields);
-        while let Some(word) = self.peek_word() {
+        while let Some(word) = self.peek_word().filter(|word| *word != WEIGHTED) {
             let Some(index) = fields.iter().position(|field| field.name == word) else {
                 let names: Vec<&str> = fields.iter().map(|field| field.name).collect();
                 let expected = format!("expected `{{`, or a parameter of {owner}: {}", names.join(", "));
@@ -89,7 +89,7 @@ impl Parser<'_> {
     }
 
     /// Sets what may be written once.
-    fn once<T>(&mut self, slot: &mut Option<T>, value: T, token: Token) {
+    pub(super) fn once<T>(&mut self, slot: &mut Option<T>, value: T, token: Token) {
         if slot.replace(value).is_some() {
             let word = self.text(token);
             self.report(|| Diagnostic::error(Some(token.span()), format!("a second `{word}`")));
@@ -145,7 +145,7 @@ impl Parser<'_> {
             return self.slot(slots, index, token);
         }
         if word == "falloff" {
-            let falloff = self.falloff();
+            let falloff = self.falloff(false);
             if let Some(falloff) = falloff {
                 self.once(&mut own.falloff, falloff, token);
             }

@@ -10,15 +10,20 @@ use std::fmt::Write as _;
 
 use glam::DAffine3;
 
-use super::{GROUP_NODE, field_word};
+use super::attribute::texture_named;
+use super::{GROUP_NODE, WEIGHTED, field_word};
 use crate::attribute::AttributeGroup;
 use crate::combine::{Combinator, Family};
-use crate::falloff::FalloffKind;
+use crate::expression::{Formula, write as write_formula};
+use crate::falloff::{Falloff, FalloffKind};
 use crate::field::{Field, FieldKind, FieldValue};
 use crate::model::Model;
 use crate::number::{Number, plain};
-use crate::recipe::{Angle, FalloffRecipe, FieldNumber, Map, Radius, Recipe};
+use crate::recipe::{
+    Angle, AttributeRecipe, FalloffRecipe, FieldNumber, Map, Radius, Recipe, TexturedRecipe, UvRecipe,
+};
 use crate::tree::{NodeKind, Primitive, Tree};
+use crate::warp::Warp;
 
 /// Operators below this depth are printed on one line.
 const DEEPEST: usize = 12;
@@ -38,7 +43,7 @@ pub fn print(model: &Model) -> String {
     }
     out.push('\n');
     let (order, names) = shared(&model.root);
-    let printer = Printer { names };
+    let printer = Printer { names, definitions: free_prefix(model) };
     for tree in order {
         let _ = write!(out, "let n{} = ", printer.names[&tree.identity()]);
         printer.tree(&mut out, tree);
@@ -69,9 +74,24 @@ fn declaration(out: &mut String, group: &AttributeGroup) {
     let _ = writeln!(out, "attribute {} {width} default {default} {mixing}", group.name);
 }
 
-/// The subtrees with more than one use, children before parents, and the number of each by its identity.
+/// What names of definitions begin with, before a number, so that no parameter has such a name.
+fn free_prefix(model: &Model) -> String {
+    let parameters = model.all_parameters();
+    let mut prefix = "t".to_owned();
+    let is_taken = |prefix: &str| {
+        let rests = parameters.iter().filter_map(|parameter| parameter.name().strip_prefix(prefix));
+        rests.into_iter().any(|rest| rest.bytes().all(|byte| byte.is_ascii_digit()))
+    };
+    while is_taken(&prefix) {
+        prefix.push('t');
+    }
+    prefix
+}
+
+/// The subtrees that need a name, since they have more than one use or stand in a formula, children before parents, and the number of each by its identity.
 fn shared(root: &Tree) -> (Vec<&Tree>, HashMap<usize, usize>) {
     let mut uses: HashMap<usize, usize> = HashMap::new();
+    let mut named = std::collections::HashSet::new();
     let mut finished = Vec::new();
     // A node is on the stack once before its children (false) and once after them (true).
     let mut stack = vec![(root, false)];
@@ -84,10 +104,13 @@ fn shared(root: &Tree) -> (Vec<&Tree>, HashMap<usize, usize>) {
         *count += 1;
         if *count == 1 {
             stack.push((tree, true));
+            if matches!(tree.node().kind(), NodeKind::Expression(_)) {
+                named.extend(tree.node().children().iter().map(Tree::identity));
+            }
             stack.extend(tree.node().children().iter().rev().map(|child| (child, false)));
         }
     }
-    finished.retain(|tree| uses[&tree.identity()] > 1);
+    finished.retain(|tree| uses[&tree.identity()] > 1 || named.contains(&tree.identity()));
     let names = finished.iter().enumerate().map(|(i, tree)| (tree.identity(), i + 1)).collect();
     (finished, names)
 }
@@ -101,13 +124,15 @@ enum Item<'a> {
 
 struct Printer {
     names: HashMap<usize, usize>,
+    /// What names of definitions begin with.
+    definitions: String,
 }
 
 impl Printer {
     /// A subtree, also if it has a name itself.
     fn tree(&self, out: &mut String, root: &Tree) {
         let mut stack = Vec::new();
-        Self::open(out, &mut stack, root, 0);
+        self.open(out, &mut stack, root, 0);
         while let Some(item) = stack.pop() {
             match item {
                 Item::Text(text) => out.push_str(text),
@@ -120,21 +145,29 @@ impl Printer {
                     Some(name) => {
                         let _ = write!(out, "use n{name}");
                     }
-                    None => Self::open(out, &mut stack, tree, depth),
+                    None => self.open(out, &mut stack, tree, depth),
                 },
             }
         }
     }
 
     /// Prints a node's head and leaves the rest of it on the stack.
-    fn open<'a>(out: &mut String, stack: &mut Vec<Item<'a>>, tree: &'a Tree, depth: usize) {
-        match tree.node().recipe() {
-            Some(recipe) => head_of_recipe(out, recipe),
-            None => head(out, tree.node().kind()),
-        }
+    fn open<'a>(&self, out: &mut String, stack: &mut Vec<Item<'a>>, tree: &'a Tree, depth: usize) {
         let children = tree.node().children();
+        let child = |place: usize| match children.get(place) {
+            Some(child) => format!("n{}", self.names[&child.identity()]),
+            None => format!("missing{place}"),
+        };
+        match (tree.node().recipe().map(|recipe| &**recipe), tree.node().kind()) {
+            (Some(Recipe::Expression(formula)), _) => expression(out, formula, child, &self.definitions),
+            (Some(Recipe::FormulaWarp(formula)), _) => formula_warp(out, formula, &self.definitions),
+            (None, NodeKind::Warp(Warp::Formula(warp))) => formula_warp(out, &warp.into(), &self.definitions),
+            (Some(recipe), _) => head_of_recipe(out, recipe),
+            (None, NodeKind::Expression(plain)) => expression(out, &plain.into(), child, &self.definitions),
+            (None, kind) => head(out, kind),
+        }
         match tree.node().kind() {
-            NodeKind::Primitive(_) => {}
+            NodeKind::Primitive(_) | NodeKind::Expression(_) => {}
             NodeKind::Combine(_) | NodeKind::Select(_) => {
                 out.push_str(" {");
                 stack.push(Item::Text("}"));
@@ -145,9 +178,15 @@ impl Printer {
                 }
             }
             NodeKind::Affine(_) | NodeKind::Warp(_) | NodeKind::Attribute { .. } => {
-                out.push_str(" { ");
+                let weighted = children.len() > 1;
+                let _ = if weighted { write!(out, " {WEIGHTED} {{ ") } else { write!(out, " {{ ") };
                 stack.push(Item::Text(" }"));
-                stack.extend(children.iter().rev().map(|child| Item::Tree(child, depth)));
+                for (place, child) in children.iter().enumerate().rev() {
+                    stack.push(Item::Tree(child, depth));
+                    if place > 0 {
+                        stack.push(Item::Text(" "));
+                    }
+                }
             }
         }
     }
@@ -160,17 +199,19 @@ fn head(out: &mut String, kind: &NodeKind) {
         NodeKind::Combine(combinator) => {
             operator(out, *combinator, &combinator.numbers().into_iter().map(plain).collect::<Vec<_>>());
         }
+        NodeKind::Expression(plain) => expression(out, &plain.into(), |place| format!("n{place}"), "t"),
         NodeKind::Select(which) => {
             let _ = write!(out, "select {}", plain(*which));
         }
         NodeKind::Affine(map) => affine(out, map),
+        NodeKind::Warp(Warp::Formula(warp)) => formula_warp(out, &warp.into(), "t"),
         NodeKind::Warp(warp) => {
-            out.push_str(warp.kind().name());
-            for (described, value) in warp.kind().fields().iter().zip(warp.to_fields()) {
+            out.push_str(warp.name());
+            for (described, value) in warp.fields().iter().zip(warp.to_fields()) {
                 field(out, described.name, described, &value.into());
             }
         }
-        NodeKind::Attribute { name, values } => attribute(out, name, &group_values(values.iter().copied())),
+        NodeKind::Attribute { name, value } => attribute(out, name, &AttributeRecipe::from(value)),
     }
 }
 
@@ -207,6 +248,7 @@ fn head_of_recipe(out: &mut String, recipe: &Recipe) {
         Recipe::Combine { combinator, numbers } => {
             operator(out, *combinator, &numbers.iter().map(Number::text).collect::<Vec<_>>());
         }
+        Recipe::Expression(formula) => expression(out, formula, |place| format!("n{place}"), "t"),
         Recipe::Select(which) => {
             let _ = write!(out, "select {which}");
         }
@@ -217,8 +259,31 @@ fn head_of_recipe(out: &mut String, recipe: &Recipe) {
                 field(out, described.name, described, value);
             }
         }
-        Recipe::Attribute { name, values } => attribute(out, name, &group_values(values)),
+        Recipe::FormulaWarp(formula) => formula_warp(out, formula, "t"),
+        Recipe::Attribute { name, value } => attribute(out, name, value),
     }
+}
+
+/// The head of a warp that is given by formulas.
+fn formula_warp(out: &mut String, formula: &Formula, definitions: &str) {
+    out.push_str("warp (");
+    let definition = |place: usize| format!("{definitions}{}", place + 1);
+    // The check refuses those that ask for fields.
+    let child = |place: usize| format!("missing{place}");
+    let _ = write_formula(out, &formula.form, &formula.numbers, child, definition);
+    out.push(')');
+}
+
+/// A formula with its block. `child` names the trees that it asks for.
+fn expression(out: &mut String, formula: &Formula, child: impl Fn(usize) -> String, definitions: &str) {
+    out.push_str("expression ");
+    if let Some(sides) = formula.form.box_numbers(&formula.numbers) {
+        let _ = write!(out, "within {} to {} ", vector(&sides[..3]), vector(&sides[3..]));
+    }
+    out.push_str("{ ");
+    let definition = |place: usize| format!("{definitions}{}", place + 1);
+    let _ = write_formula(out, &formula.form, &formula.numbers, child, definition);
+    out.push_str(" }");
 }
 
 /// The head of a node with numbers that follow parameters, as text: equal for nodes that are equal for all their values.
@@ -246,11 +311,48 @@ fn head_of_map(out: &mut String, map: &Map) {
     };
 }
 
-fn attribute(out: &mut String, name: &str, values: &str) {
+fn attribute(out: &mut String, name: &str, value: &AttributeRecipe) {
     if super::node::is_reserved(name) {
         let _ = write!(out, "{GROUP_NODE} ");
     }
-    let _ = write!(out, "{name} {values}");
+    out.push_str(name);
+    match value {
+        AttributeRecipe::Numbers(numbers) => {
+            let text = group_values(numbers);
+            let first = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').next();
+            // A parameter that is called like a texture.
+            let hidden = first.and_then(texture_named).is_some();
+            let _ = if hidden { write!(out, " ({text})") } else { write!(out, " {text}") };
+        }
+        AttributeRecipe::Textured(TexturedRecipe { texture, fields, a, b }) => {
+            let _ = write!(out, " {} {{ a {} b {}", texture.name(), group_values(a), group_values(b));
+            for (described, value) in texture.fields().iter().zip(fields) {
+                field(out, described.name, described, value);
+            }
+            out.push_str(" }");
+        }
+        AttributeRecipe::Uv(map) => uv(out, map),
+    }
+}
+
+/// A map of uv, without the parts that change nothing.
+fn uv(out: &mut String, map: &UvRecipe) {
+    let identity = UvRecipe::default();
+    if !same_numbers(&map.scale, &identity.scale) {
+        let _ = write!(out, " scale {}", vector(&map.scale));
+    }
+    if !same_numbers(std::slice::from_ref(&map.degrees), &[identity.degrees]) {
+        let _ = write!(out, " rotate {}", map.degrees);
+    }
+    if !same_numbers(&map.shift, &identity.shift) {
+        let _ = write!(out, " shift {}", vector(&map.shift));
+    }
+}
+
+/// Whether numbers are plain and have the same bits.
+fn same_numbers(a: &[Number], b: &[Number]) -> bool {
+    let plain = |number: &Number| (!number.follows()).then(|| number.value().to_bits());
+    a.iter().zip(b).all(|(a, b)| plain(a).is_some() && plain(a) == plain(b))
 }
 
 fn primitive(out: &mut String, leaf: &Primitive) {
@@ -274,6 +376,13 @@ fn rest_of_primitive(out: &mut String, falloff: &FalloffRecipe, strength: &Numbe
     out.push_str(" }");
 }
 
+/// A falloff, as it stands in formulas.
+pub(crate) fn falloff_text(falloff: &Falloff) -> String {
+    let mut text = String::new();
+    print_falloff(&mut text, &(*falloff).into());
+    text.split_off(" falloff ".len())
+}
+
 /// A falloff, in braces its parameters that do not have their defaults.
 fn print_falloff(out: &mut String, falloff: &FalloffRecipe) {
     let mut fields = String::new();
@@ -291,7 +400,7 @@ fn print_falloff(out: &mut String, falloff: &FalloffRecipe) {
 /// A parameter, unless it has its default.
 fn field(out: &mut String, word: &str, described: &Field, value: &FieldNumber) {
     let plain = !value.numbers().iter().any(Number::follows);
-    if plain && described.default.is_some_and(|default| same_bits(default, value.value())) {
+    if plain && described.default.as_ref().is_some_and(|default| same_bits(default, &value.value())) {
         return;
     }
     let _ = match (described.kind, value) {
@@ -302,16 +411,30 @@ fn field(out: &mut String, word: &str, described: &Field, value: &FieldNumber) {
         (FieldKind::Choice(words), FieldNumber::Real(value)) => {
             write!(out, " {word} {}", words.get(value.value() as usize).unwrap_or(&words[0]))
         }
+        (FieldKind::Flag, FieldNumber::Real(value)) => {
+            write!(out, " {word} {}", if value.value() == 0.0 { "no" } else { "yes" })
+        }
         (_, FieldNumber::Real(value)) => write!(out, " {word} {value}"),
         (_, FieldNumber::Vector(values)) => write!(out, " {word} {}", vector(values)),
+        (_, FieldNumber::Reals(values)) => write!(out, " {word} {}", vector(values)),
+        (_, FieldNumber::Vectors(values)) => {
+            let vectors: Vec<String> = values.iter().map(vector).collect();
+            write!(out, " {word} ({})", vectors.join(" "))
+        }
     };
 }
 
-fn same_bits(a: FieldValue, b: FieldValue) -> bool {
+fn same_bits(a: &FieldValue, b: &FieldValue) -> bool {
+    let same = |a: &[f64], b: &[f64]| a.iter().map(|x| x.to_bits()).eq(b.iter().map(|x| x.to_bits()));
     match (a, b) {
         (FieldValue::Real(a), FieldValue::Real(b)) => a.to_bits() == b.to_bits(),
-        (FieldValue::Vector(a), FieldValue::Vector(b)) => a.map(f64::to_bits) == b.map(f64::to_bits),
-        (FieldValue::Real(_), FieldValue::Vector(_)) | (FieldValue::Vector(_), FieldValue::Real(_)) => false,
+        (FieldValue::Vector(a), FieldValue::Vector(b)) => same(a, b),
+        (FieldValue::Reals(a), FieldValue::Reals(b)) => same(a, b),
+        (FieldValue::Vectors(a), FieldValue::Vectors(b)) => same(a.as_flattened(), b.as_flattened()),
+        (
+            FieldValue::Real(_) | FieldValue::Vector(_) | FieldValue::Reals(_) | FieldValue::Vectors(_),
+            FieldValue::Real(_) | FieldValue::Vector(_) | FieldValue::Reals(_) | FieldValue::Vectors(_),
+        ) => false,
     }
 }
 

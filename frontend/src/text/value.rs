@@ -1,5 +1,9 @@
 //! Values of parameters: numbers, vectors, axes, words.
 
+use jbt_ir::limits::MAX_SKELETON_POINTS;
+
+use jbt_ir::limits::MAX_ATTRIBUTE_WIDTH;
+
 use super::OWN_FIELDS;
 use super::expression::{Operand, Place};
 use super::lex::TokenKind;
@@ -9,8 +13,8 @@ use crate::field::{FieldKind, FieldValue};
 use crate::number::Number;
 use crate::recipe::FieldNumber;
 
-/// The most elements that a vector may have: a 3x4 matrix.
-const LONGEST: usize = 12;
+/// The most elements that a vector may have: those of the widest attribute. A 3x4 matrix has 12.
+const LONGEST: usize = MAX_ATTRIBUTE_WIDTH;
 
 /// The elements of a vector.
 pub(super) struct Elements {
@@ -152,14 +156,24 @@ impl Parser<'_> {
             FieldKind::Real
             | FieldKind::Positive
             | FieldKind::NonNegative
+            | FieldKind::Degrees
+            | FieldKind::Exponent
+            | FieldKind::Squareness
             | FieldKind::Count
             | FieldKind::Within { .. } => FieldNumber::Real(self.expression(Place::Alone).number),
-            FieldKind::Position | FieldKind::Extents => FieldNumber::Vector(self.vector()),
+            FieldKind::Position | FieldKind::Extents | FieldKind::Stretches => {
+                FieldNumber::Vector(self.vector())
+            }
             FieldKind::Direction => match self.axis_word() {
                 Some(axis) => FieldValue::Vector(axis).into(),
                 None => FieldNumber::Vector(self.vector()),
             },
             FieldKind::Choice(words) => FieldValue::Real(self.choice(words)).into(),
+            FieldKind::Positions => FieldNumber::Vectors(self.list(Self::vector)),
+            FieldKind::Lengths => {
+                FieldNumber::Reals(self.list(|parser| parser.expression(Place::Element).number))
+            }
+            FieldKind::Flag => FieldValue::Real(self.flag()).into(),
             FieldKind::Axis => {
                 let axis = self.axis_word().unwrap_or_else(|| {
                     self.expected_at(self.peek(), "expected one of x, y, z");
@@ -183,6 +197,57 @@ impl Parser<'_> {
                 f64::NAN
             }
         }
+    }
+
+    /// `( a b c )` of any number of elements, with blanks or commas between; those before an error, or up to the limit.
+    fn list<T>(&mut self, mut element: impl FnMut(&mut Self) -> T) -> Vec<T> {
+        let mut all = Vec::new();
+        let open = self.peek();
+        if self.accept(b'(').is_none() {
+            self.expected_at(open, "expected a list: ( .. )");
+            return all;
+        }
+        let mut count = 0;
+        while !self.peek().is(b')') {
+            if self.vector_is_cut_off() {
+                self.lose_place(|| Diagnostic::error(Some(open.span()), "this `(` is not closed"));
+                return all;
+            }
+            if count > 0 {
+                self.accept(b',');
+            }
+            let next = element(self);
+            if self.is_lost() {
+                self.skip_to_close();
+                return all;
+            }
+            count += 1;
+            if count <= MAX_SKELETON_POINTS {
+                all.push(next);
+            }
+        }
+        let span = Span { start: open.start as u32, end: self.next().end as u32 };
+        if count > MAX_SKELETON_POINTS {
+            self.report(|| {
+                Diagnostic::limit(Some(span), format!("a list of {count} elements"))
+                    .expected(format!("expected at most {MAX_SKELETON_POINTS}"))
+            });
+        }
+        all
+    }
+
+    /// 1 for the word yes, 0 for no; NaN after an error.
+    fn flag(&mut self) -> f64 {
+        let value = match self.peek_word() {
+            Some("yes") => 1.0,
+            Some("no") => 0.0,
+            Some(_) | None => {
+                self.expected_at(self.peek(), "expected one of yes, no");
+                return f64::NAN;
+            }
+        };
+        self.next();
+        value
     }
 
     /// The unit vector of the axis that is named next.

@@ -174,7 +174,7 @@ impl Member for Bend {
 
     fn from_fields(values: &[FieldValue]) -> Self {
         let [rate, from, to, center] = [1, 2, 3, 4].map(|index| values[index].real());
-        Self { axis: axis_of(values[0]), rate, from, to, center }
+        Self { axis: axis_of(&values[0]), rate, from, to, center }
     }
 
     fn to_fields(&self) -> Vec<FieldValue> {

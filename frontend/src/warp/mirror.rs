@@ -22,7 +22,7 @@ impl Member for Mirror {
     const FIELDS: &'static [Field] = &[AXIS];
 
     fn from_fields(values: &[FieldValue]) -> Self {
-        Self { axis: axis_of(values[0]) }
+        Self { axis: axis_of(&values[0]) }
     }
 
     fn to_fields(&self) -> Vec<FieldValue> {

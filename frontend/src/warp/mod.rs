@@ -1,16 +1,26 @@
-//! Warps: deformations of space. One file per member, one list.
+//! Warps: deformations of space. One file per member, one list; and one that is given by formulas ([`FormulaWarp`](struct@FormulaWarp)).
 //!
 //! A warp states the *inverse* map, from the warped space (where points are asked) to the child's space (where it answers).
+//!
+//! Any warp can be *weighted* by the field of a second child, which stands where the warp stands and gives nothing but that number: a point p
+//! is taken to `p + w (inverse(p) - p)`, where w is the field at p, between 0 and 1 (de Groot and Wyvill's deformation by a second BlobTree).
+//! So outside of the second child's support, the first one is as it was.
+
+use std::sync::Arc;
 
 use glam::DVec3;
 use jbt_ir::Domain;
 
 use crate::bounds::Bounds;
+use crate::expression::Form;
 use crate::field::{Field, FieldKind, FieldValue, Member};
 
 mod angle;
+mod formula;
 #[cfg(test)]
 mod testing;
+
+pub use formula::{FormulaWarp, LARGEST_WARPED};
 
 /// What a warp states about itself.
 pub trait WarpMember: Member {
@@ -75,7 +85,7 @@ const AXIS: Field =
     Field { name: "axis", kind: FieldKind::Axis, default: Some(FieldValue::Vector([0.0, 0.0, 1.0])) };
 
 /// The number of an axis: 0 is x, 1 is y, 2 is z.
-fn axis_of(value: FieldValue) -> u8 {
+fn axis_of(value: &FieldValue) -> u8 {
     let axis = value.vector();
     if axis[0] != 0.0 {
         0
@@ -126,9 +136,12 @@ macro_rules! warps {
 
         /// A warp of any kind.
         #[derive(Clone, PartialEq, Debug)]
-        pub enum Warp { $( #[doc = concat!("See [`", stringify!($name), "`](struct@", stringify!($name), ").")] $name($name), )+ }
+        pub enum Warp { $( #[doc = concat!("See [`", stringify!($name), "`](struct@", stringify!($name), ").")] $name($name), )+
+            /// See [`FormulaWarp`](struct@FormulaWarp).
+            Formula(FormulaWarp),
+        }
 
-        /// The kind of a warp and the variant of its code: what selects code.
+        /// The kind of a member and the variant of its code: what selects code.
         #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, PartialOrd, Ord)]
         pub enum WarpKind { $( #[doc = concat!("See [`", stringify!($name), "`](struct@", stringify!($name), ").")] $name(u8), )+ }
 
@@ -163,40 +176,53 @@ macro_rules! warps {
         }
 
         impl Warp {
-            /// The kind and variant.
+            /// What selects its code.
             #[must_use]
-            pub fn kind(&self) -> WarpKind { match self { $( Self::$name(w) => WarpKind::$name(w.variant()), )+ } }
+            pub fn code(&self) -> WarpCode {
+                match self {
+                    $( Self::$name(w) => WarpCode::Member(WarpKind::$name(w.variant())), )+
+                    Self::Formula(w) => WarpCode::Formula(Arc::clone(&w.form)),
+                }
+            }
 
-            /// The parameters, in the order of [`WarpKind::fields`].
+            /// The word of the text format.
             #[must_use]
-            pub fn to_fields(&self) -> Vec<FieldValue> { match self { $( Self::$name(w) => w.to_fields(), )+ } }
+            pub const fn name(&self) -> &'static str { match self { $( Self::$name(_) => $name::NAME, )+ Self::Formula(_) => FormulaWarp::NAME } }
+
+            /// The parameters; formulas have numbers of their own.
+            #[must_use]
+            pub const fn fields(&self) -> &'static [Field] { match self { $( Self::$name(_) => $name::FIELDS, )+ Self::Formula(_) => &[] } }
+
+            /// The parameters, in the order of [`fields`](Self::fields).
+            #[must_use]
+            pub fn to_fields(&self) -> Vec<FieldValue> { match self { $( Self::$name(w) => w.to_fields(), )+ Self::Formula(_) => Vec::new() } }
 
             /// See [`WarpMember::inverse`].
             #[must_use]
-            pub fn inverse(&self, p: DVec3) -> DVec3 { match self { $( Self::$name(w) => w.inverse(p), )+ } }
+            pub fn inverse(&self, p: DVec3) -> DVec3 { match self { $( Self::$name(w) => w.inverse(p), )+ Self::Formula(w) => w.inverse(p) } }
 
             /// See [`WarpMember::decision`].
             #[must_use]
-            pub fn decision(&self, p: DVec3) -> f64 { match self { $( Self::$name(w) => w.decision(p), )+ } }
+            pub fn decision(&self, p: DVec3) -> f64 { match self { $( Self::$name(w) => w.decision(p), )+ Self::Formula(w) => w.decision(p) } }
 
             /// See [`WarpMember::fault`].
             #[must_use]
-            pub fn fault(&self) -> Option<WarpFault> { match self { $( Self::$name(w) => w.fault(), )+ } }
+            pub fn fault(&self) -> Option<WarpFault> { match self { $( Self::$name(w) => w.fault(), )+ Self::Formula(w) => w.fault() } }
 
             /// See [`WarpMember::forward_bounds`].
             #[must_use]
-            pub fn forward_bounds(&self, child: Bounds) -> Bounds { match self { $( Self::$name(w) => w.forward_bounds(child), )+ } }
+            pub fn forward_bounds(&self, child: Bounds) -> Bounds { match self { $( Self::$name(w) => w.forward_bounds(child), )+ Self::Formula(_) => FormulaWarp::reach(child) } }
 
             /// See [`WarpMember::reach`].
             #[must_use]
-            pub fn reach(&self, child: Bounds) -> Bounds { match self { $( Self::$name(w) => w.reach(child), )+ } }
+            pub fn reach(&self, child: Bounds) -> Bounds { match self { $( Self::$name(w) => w.reach(child), )+ Self::Formula(_) => FormulaWarp::reach(child) } }
 
             /// See [`WarpMember::growth`].
             #[must_use]
-            pub fn growth(&self, largest: f64) -> Growth { match self { $( Self::$name(w) => w.growth(largest), )+ } }
+            pub fn growth(&self, largest: f64) -> Growth { match self { $( Self::$name(w) => w.growth(largest), )+ Self::Formula(w) => w.growth(largest) } }
 
             /// See [`WarpMember::columns`].
-            pub fn columns(&self, row: &mut Vec<f64>) { match self { $( Self::$name(w) => w.columns(row), )+ } }
+            pub fn columns(&self, row: &mut Vec<f64>) { match self { $( Self::$name(w) => w.columns(row), )+ Self::Formula(w) => row.extend(&w.numbers) } }
         }
     };
 }
@@ -209,4 +235,65 @@ warps! {
     repeat::Repeat,
     repeat_around::RepeatAround,
     space_map::SpaceMap,
+    deform::Deform,
+}
+
+/// What selects the code of a warp.
+#[derive(Clone, PartialEq, Eq, Hash, Debug)]
+pub enum WarpCode {
+    /// That of a member of the list.
+    Member(WarpKind),
+    /// That of formulas.
+    Formula(Arc<Form>),
+}
+
+impl WarpCode {
+    /// The names of the columns of a row.
+    #[must_use]
+    pub fn columns(&self) -> Vec<&'static str> {
+        match self {
+            Self::Member(kind) => kind.columns().to_vec(),
+            Self::Formula(form) => vec!["number"; form.numbers()],
+        }
+    }
+
+    /// The inverse map over the ops.
+    pub fn emit<D: Domain>(&self, d: &mut D, p: [D::Real; 3], row: &[D::Real]) -> [D::Real; 3] {
+        match self {
+            Self::Member(kind) => kind.emit(d, p, row),
+            Self::Formula(form) => formula::emit(form, d, p, row),
+        }
+    }
+
+    /// The inverse map over the ops, with a weight: see the module. Where the weight is 0, a point stays to the bit.
+    pub fn emit_weighted<D: Domain>(
+        &self,
+        d: &mut D,
+        p: [D::Real; 3],
+        row: &[D::Real],
+        weight: D::Real,
+    ) -> [D::Real; 3] {
+        let q = self.emit(d, p, row);
+        let (zero, one) = (d.constant(0.0), d.constant(1.0));
+        let weight = d.max(weight, zero);
+        let weight = d.min(weight, one);
+        std::array::from_fn(|axis| {
+            let way = d.sub(q[axis], p[axis]);
+            d.fma(weight, way, p[axis])
+        })
+    }
+}
+
+impl From<FormulaWarp> for Warp {
+    fn from(warp: FormulaWarp) -> Self {
+        Self::Formula(warp)
+    }
+}
+
+impl Warp {
+    /// The inverse map with a weight: see the module.
+    #[must_use]
+    pub fn weighted(&self, p: DVec3, weight: f64) -> DVec3 {
+        p + weight.clamp(0.0, 1.0) * (self.inverse(p) - p)
+    }
 }

@@ -55,7 +55,7 @@ impl Member for Repeat {
     ];
 
     fn from_fields(values: &[FieldValue]) -> Self {
-        Self { axis: axis_of(values[0]), spacing: values[1].real(), count: values[2].real() }
+        Self { axis: axis_of(&values[0]), spacing: values[1].real(), count: values[2].real() }
     }
 
     fn to_fields(&self) -> Vec<FieldValue> {

@@ -36,7 +36,7 @@ impl Member for RepeatAround {
     const FIELDS: &'static [Field] = &[AXIS, Field { name: "count", kind: FieldKind::Count, default: None }];
 
     fn from_fields(values: &[FieldValue]) -> Self {
-        Self { axis: axis_of(values[0]), count: values[1].real() }
+        Self { axis: axis_of(&values[0]), count: values[1].real() }
     }
 
     fn to_fields(&self) -> Vec<FieldValue> {

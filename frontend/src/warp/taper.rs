@@ -72,7 +72,7 @@ impl Member for Taper {
 
     fn from_fields(values: &[FieldValue]) -> Self {
         let [from, to, start, end] = [1, 2, 3, 4].map(|index| values[index].real());
-        Self { axis: axis_of(values[0]), from, to, start, end }
+        Self { axis: axis_of(&values[0]), from, to, start, end }
     }
 
     fn to_fields(&self) -> Vec<FieldValue> {

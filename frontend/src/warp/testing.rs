@@ -27,7 +27,7 @@ pub fn holds(bounds: Bounds, p: DVec3) -> bool {
 fn row(warp: &Warp) -> Vec<f32> {
     let mut row = Vec::new();
     warp.columns(&mut row);
-    assert_eq!(row.len(), warp.kind().columns().len(), "one number for each column");
+    assert_eq!(row.len(), warp.code().columns().len(), "one number for each column");
     row.into_iter().map(|number| number as f32).collect()
 }
 
@@ -37,7 +37,7 @@ pub fn emitted(warp: &(impl WarpMember + Clone + Into<Warp>), p: Vec3) -> Vec3 {
 }
 
 fn emitted_of(warp: &Warp, p: Vec3) -> Vec3 {
-    Vec3::from_array(warp.kind().emit(&mut Scalar, p.to_array(), &row(warp)))
+    Vec3::from_array(warp.code().emit(&mut Scalar, p.to_array(), &row(warp)))
 }
 
 /// Both forms give a known point.
@@ -53,7 +53,7 @@ fn program(warp: &Warp, axis: usize) -> Function {
     let mut builder = FunctionBuilder::new("warp", &["x", "y", "z"]);
     let p = std::array::from_fn(|axis| builder.input(axis));
     let row: Vec<_> = row(warp).into_iter().map(|number| builder.constant(number)).collect();
-    let q = warp.kind().emit(&mut builder, p, &row);
+    let q = warp.code().emit(&mut builder, p, &row);
     pass::gradient(&builder.finish(&[("field".to_owned(), q[axis])]))
 }
 
@@ -94,6 +94,14 @@ where
         }
     }
     assert!(compared > 2500, "{compared} of 5,100 points are away from decisions");
+}
+
+/// What [`judge`] asks of any warp, of one that is no member. How many points were compared.
+pub fn judge_formulas(warp: &Warp, rng: &mut fastrand::Rng) -> usize {
+    assert_eq!(warp.fault(), None, "{warp:?}");
+    boxes_hold(warp, rng);
+    growth_bounds(warp, rng);
+    (0..34).filter(|_| forms_agree(warp, vector(rng, 2.0).as_vec3())).count()
 }
 
 /// The two forms agree, and so do differences of the one with the derivative of the other. Whether it was compared.

@@ -26,7 +26,7 @@ impl Member for Twist {
     ];
 
     fn from_fields(values: &[FieldValue]) -> Self {
-        Self { axis: axis_of(values[0]), rate: values[1].real() }
+        Self { axis: axis_of(&values[0]), rate: values[1].real() }
     }
 
     fn to_fields(&self) -> Vec<FieldValue> {

@@ -4,13 +4,15 @@
 use fastrand::Rng;
 use glam::{DAffine3, DQuat, DVec3};
 use jbt_frontend::affine::scale_rotate_translate;
-use jbt_frontend::attribute::{AttributeGroup, Mixing};
+use jbt_frontend::attribute::{AttributeGroup, AttributeValue, Mixing, Textured, UvMap};
+use jbt_frontend::builder::{x, y, z};
 use jbt_frontend::combine::{Combinator, Family, SetOperation};
-use jbt_frontend::falloff::FalloffKind;
+use jbt_frontend::falloff::{Falloff, FalloffKind};
 use jbt_frontend::field::{Field, FieldKind, FieldValue};
 use jbt_frontend::model::Model;
 use jbt_frontend::number::param;
-use jbt_frontend::skeleton::SkeletonKind;
+use jbt_frontend::skeleton::{Skeleton, SkeletonKind};
+use jbt_frontend::texture::TextureKind;
 use jbt_frontend::tree::{NodeKind, Primitive, Tree};
 use jbt_frontend::warp::WarpKind;
 
@@ -32,7 +34,18 @@ pub fn fields(rng: &mut Rng, fields: &[Field]) -> Vec<FieldValue> {
         FieldKind::Choice(words) => FieldValue::Real(rng.usize(..words.len()) as f64),
         FieldKind::Count => FieldValue::Real(count(field, rng.u8(..6))),
         FieldKind::Position | FieldKind::Direction => FieldValue::Vector(vector(rng, 1.0)),
+        FieldKind::Degrees => FieldValue::Real(360.0 * rng.f64()),
+        FieldKind::Exponent => FieldValue::Real(1.0 + 7.0 * rng.f64()),
+        FieldKind::Squareness => FieldValue::Real(0.2 + 1.8 * rng.f64()),
+        FieldKind::Stretches => FieldValue::Vector(vector(rng, 1.0).map(|x| 0.3 + x.abs())),
         FieldKind::Extents => FieldValue::Vector(vector(rng, 1.0).map(f64::abs)),
+        FieldKind::Positions => {
+            // As many as a chain of curves has.
+            let count = 1 + 3 * rng.usize(1..4);
+            FieldValue::Vectors((0..count).map(|_| vector(rng, 1.0)).collect())
+        }
+        FieldKind::Lengths => FieldValue::Reals((0..10).map(|_| 0.3 * rng.f64()).collect()),
+        FieldKind::Flag => FieldValue::Real(f64::from(rng.u8(..2))),
         FieldKind::Axis => FieldValue::Vector(DVec3::AXES[rng.usize(..3)].to_array()),
     };
     fields.iter().map(value).collect()
@@ -43,6 +56,21 @@ fn count(field: &Field, count: u8) -> f64 {
     f64::from(if field.default.is_none() { count + 1 } else { count })
 }
 
+/// Makes parameters that are well by themselves fit each other: a radius for all points or one for each, corners in a plane.
+fn fit(kind: SkeletonKind, values: &mut [FieldValue]) {
+    if kind == SkeletonKind::Polygon
+        && let [FieldValue::Vectors(points)] = values
+    {
+        for [x, y, z] in points {
+            *z = 0.3 * *x - 0.6 * *y + 0.1;
+        }
+    }
+    if let [FieldValue::Vectors(points), FieldValue::Reals(radii), ..] = values {
+        // All lists of radii are as long as the longest list of points.
+        radii.truncate(if radii.first().is_some_and(|first| *first < 0.1) { 0 } else { points.len() });
+    }
+}
+
 /// A leaf of any kind; one in eight is negative if `signs`.
 pub fn leaf(rng: &mut Rng, signs: bool) -> Primitive {
     let kind = *rng.choice(SkeletonKind::ALL).expect("there are skeletons");
@@ -51,10 +79,21 @@ pub fn leaf(rng: &mut Rng, signs: bool) -> Primitive {
         1 => 0.5 + rng.f64(),
         _ => 1.0,
     };
-    let skeleton = kind.from_fields(&fields(rng, kind.fields()));
-    let falloff = *rng.choice(FalloffKind::ALL).expect("there are falloffs");
-    let falloff = falloff.from_fields(&fields(rng, falloff.fields()));
+    let (skeleton, falloff) = (skeleton(rng, kind), falloff(rng));
     Primitive { skeleton, falloff, radius: 0.1 + rng.f64(), strength }
+}
+
+/// A skeleton of this kind.
+pub fn skeleton(rng: &mut Rng, kind: SkeletonKind) -> Skeleton {
+    let mut fields = fields(rng, kind.fields());
+    fit(kind, &mut fields);
+    kind.from_fields(&fields)
+}
+
+/// A falloff of any kind.
+pub fn falloff(rng: &mut Rng) -> Falloff {
+    let kind = *rng.choice(FalloffKind::ALL).expect("there are falloffs");
+    kind.from_fields(&fields(rng, kind.fields()))
 }
 
 /// A map of any kind: moved, scaled, turned, mirrored, stretched.
@@ -71,10 +110,27 @@ pub fn affine(rng: &mut Rng) -> DAffine3 {
     }
 }
 
-/// A warp of any kind.
+/// A warp of any kind, or one that is given by formulas.
 pub fn warp(rng: &mut Rng) -> NodeKind {
+    if rng.usize(..WarpKind::ALL.len() + 1) == 0 {
+        return formula_warp(rng);
+    }
     let kind = *rng.choice(WarpKind::ALL).expect("there are warps");
     NodeKind::Warp(kind.from_fields(&fields(rng, kind.fields())))
+}
+
+/// A warp that is given by formulas: of bounded derivatives, with a definition, with a pole that is not there, with a crease.
+pub fn formula_warp(rng: &mut Rng) -> NodeKind {
+    let [p, q, r] = vector(rng, 1.0);
+    let turn = p * z();
+    let coordinates = match rng.u8(..4) {
+        0 => [x() + 0.3 * p * (3.0 * q * y()).sin(), y() + r, z() * 0.9],
+        1 => [x() * turn.cos() + y() * turn.sin(), y() * turn.cos() - x() * turn.sin(), z()],
+        2 => [x() / (1.0 + r.abs() * z() * z()), y(), z() + 0.2 * q],
+        _ => [x().abs() + 0.3 * p, y() + 0.1 * x() * y(), z().max(2.0 * z() + q)],
+    };
+    let still = Tree::combine(Combinator::Sum, Vec::<Tree>::new()).warp(coordinates);
+    still.node().kind().clone()
 }
 
 /// A map of the field, for iso-values from 0.2.
@@ -88,11 +144,36 @@ fn field_map(rng: &mut Rng) -> NodeKind {
     })
 }
 
+/// The groups of all models.
+fn groups() -> Vec<AttributeGroup> {
+    let wood = AttributeGroup { name: "wood".into(), default: vec![0.5], mixing: Mixing::Dominant };
+    let uv = AttributeGroup { name: "uv".into(), default: vec![0.0; 2], mixing: Mixing::Blend };
+    vec![AttributeGroup::color(), wood, uv]
+}
+
+/// What an attribute node of any kind gives.
+fn attribute(rng: &mut Rng) -> NodeKind {
+    let group = rng.choice(groups()).expect("there are groups");
+    let numbers = |rng: &mut Rng| (0..group.width()).map(|_| rng.f64()).collect::<Vec<f64>>();
+    let value = match rng.u8(..3) {
+        0 => {
+            let kind = *rng.choice(TextureKind::ALL).expect("there are textures");
+            let texture = kind.from_fields(&fields(rng, kind.fields()));
+            AttributeValue::Textured(Textured { texture, a: numbers(rng), b: numbers(rng) })
+        }
+        1 if group.width() == 2 => {
+            let (scale, shift) = ([rng.f64(), -rng.f64()], [rng.f64(), rng.f64()]);
+            AttributeValue::Uv(UvMap { scale, degrees: 90.0 * rng.f64(), shift })
+        }
+        _ => AttributeValue::Numbers(numbers(rng)),
+    };
+    NodeKind::Attribute { name: group.name, value }
+}
+
 fn unary(rng: &mut Rng) -> NodeKind {
     match rng.u8(..5) {
         3 if rng.u8(..3) == 0 => field_map(rng),
-        0 => NodeKind::Attribute { name: "color".into(), values: vector(rng, 1.0).into() },
-        1 => NodeKind::Attribute { name: "wood".into(), values: vec![rng.f64()] },
+        0 | 1 => attribute(rng),
         2 => warp(rng),
         _ => NodeKind::Affine(affine(rng)),
     }
@@ -113,6 +194,22 @@ fn family(rng: &mut Rng) -> Family {
         0 => Family::Alpha(1.9 * rng.f64() - 0.9),
         1 => Family::Order(rng.u32(1..5)),
         _ => Family::Power(1.5 + 4.0 * rng.f64()),
+    }
+}
+
+/// A formula, of the point or of some of the children.
+fn expression(rng: &mut Rng, [a, b, c]: &[Tree; 3]) -> Tree {
+    let high = vector(rng, 0.9).map(|side| side.abs() + 0.1);
+    let p = 0.3 + rng.f64();
+    let (f, g, h) = (a.field(), b.field(), c.field());
+    let size = (x() * x() + y() * y() + z() * z()).sqrt();
+    match rng.u8(..6) {
+        0 => Tree::expression((p - size).clamp(-0.5, 1.5)),
+        1 => Tree::expression_within(p + 0.3 * (2.0 * x()).sin() * y(), high.map(|side| -side), high),
+        2 => Tree::expression(size - p).fading(falloff(rng), p),
+        3 => Tree::expression((0.7 * f * g - p * h.square()).clamp(-1.0, 1.0)),
+        4 => a.within(high.map(|side| -side), high),
+        _ => Tree::expression(f.max(g.min(p)) / (1.0 + y().abs()) + 0.2 * (x() * 0.5).atan()),
     }
 }
 
@@ -137,7 +234,6 @@ fn combinator(rng: &mut Rng) -> Combinator {
 
 /// A model of up to `steps` nodes and leaves, built upwards; nodes that were used once may be used again.
 pub fn model(rng: &mut Rng, steps: usize, signs: bool) -> Model {
-    let wood = AttributeGroup { name: "wood".into(), default: vec![0.5], mixing: Mixing::Dominant };
     let plain = |leaf| Tree::new(NodeKind::Primitive(leaf), Vec::new());
     let mut trees = vec![plain(leaf(rng, signs))];
     for _ in 0..steps {
@@ -152,11 +248,16 @@ pub fn model(rng: &mut Rng, steps: usize, signs: bool) -> Model {
                 let tree = pick(rng);
                 following(rng, &tree, trees.len())
             }
+            1 if rng.u8(..6) == 0 => Tree::new(warp(rng), vec![pick(rng), pick(rng)]),
             1 | 2 => Tree::new(unary(rng), vec![pick(rng)]),
             3 if rng.u8(..4) == 0 => {
                 let children: Vec<Tree> = (0..rng.usize(1..4)).map(|_| pick(rng)).collect();
                 let which = rng.usize(..children.len()) as f64;
                 Tree::new(NodeKind::Select(which), children)
+            }
+            3 if rng.u8(..3) == 0 => {
+                let children = [(); 3].map(|()| pick(rng));
+                expression(rng, &children)
             }
             _ => {
                 let fresh = rng.usize(..3);
@@ -169,5 +270,5 @@ pub fn model(rng: &mut Rng, steps: usize, signs: bool) -> Model {
     }
     let root = trees.pop().expect("there is a leaf");
     let iso = (0.2 + 0.5 * rng.f64()).into();
-    Model { iso, attributes: vec![AttributeGroup::color(), wood], ..Model::new(root) }
+    Model { iso, attributes: groups(), ..Model::new(root) }
 }

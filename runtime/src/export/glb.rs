@@ -1,18 +1,20 @@
 //! GLB: binary glTF 2.0 (Khronos Group 2021).
 //!
 //! ```text
-//!     "glTF" 2 length | length "JSON" text, padded by spaces | length "BIN" positions normals color others indices
+//!     "glTF" 2 length | length "JSON" text, padded by spaces | length "BIN" positions normals color uv others indices
 //! ```
 //!
 //! One mesh of one primitive with one white, rough, non-metallic material. Colours are linear, as glTF takes them, in `COLOR_0`;
-//! every other attribute is `_NAME` in capitals, as glTF wants application-specific ones. Accessors must not be empty, so a mesh
+//! uv in `TEXCOORD_0`, as (u, 1 - v), because glTF's v goes down; every other attribute is `_NAME` in capitals, as glTF wants
+//! application-specific ones. An accessor has at most four reals, so wider ones are `_NAME_0`, `_NAME_1` and so on, of four reals each but for
+//! the last. Accessors must not be empty, so a mesh
 //! without triangles is a scene without nodes.
 
 use std::io::Write;
 
 use serde_json::{Map, Value, json};
 
-use super::{ExportError, Format, Named, clamp_color, colors, others, write_reals};
+use super::{ExportError, Format, Named, clamp_color, colors, finite, others, uvs, write_reals};
 use crate::mesh::Mesh;
 
 const HEADER_BYTES: u64 = 12;
@@ -24,9 +26,11 @@ const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 /// An accessor's component type.
 const FLOAT: u32 = 5126;
 const UNSIGNED_INT: u32 = 5125;
+/// The most reals of an accessor's element.
+const WIDEST: usize = 4;
 
 pub(super) fn write(mesh: &Mesh, out: &mut impl Write) -> Result<(), ExportError> {
-    let attributes = others(mesh, &[], |stem, _| vec![format!("_{}", stem.to_ascii_uppercase())]);
+    let attributes = others(mesh, &[], spell);
     let (json, binary) = describe(mesh, &attributes);
     // Printing a JSON value cannot fail.
     let mut text = json.to_string().into_bytes();
@@ -52,15 +56,31 @@ pub(super) fn write(mesh: &Mesh, out: &mut impl Write) -> Result<(), ExportError
     Ok(())
 }
 
+/// The names of an attribute's accessors.
+fn spell(stem: &str, width: usize) -> Vec<String> {
+    let stem = stem.to_ascii_uppercase();
+    match width.div_ceil(WIDEST) {
+        1 => vec![format!("_{stem}")],
+        parts => (0..parts).map(|part| format!("_{stem}_{part}")).collect(),
+    }
+}
+
 fn write_binary(mesh: &Mesh, attributes: &[Named<'_>], out: &mut impl Write) -> Result<(), ExportError> {
     write_reals(out, mesh.positions.iter().flatten().copied())?;
     write_reals(out, mesh.normals.iter().flatten().copied())?;
     if let Some(colors) = colors(mesh) {
         write_reals(out, colors.iter().map(|&value| clamp_color(value)))?;
     }
-    for Named { attribute, .. } in attributes {
-        // glTF forbids infinities and NaN.
-        write_reals(out, attribute.values.iter().map(|&v| if v.is_finite() { v } else { 0.0 }))?;
+    // glTF forbids infinities and NaN.
+    if let Some(uvs) = uvs(mesh) {
+        write_reals(out, uvs.chunks_exact(2).flat_map(|uv| [finite(uv[0]), finite(1.0 - uv[1])]))?;
+    }
+    for Named { names, attribute } in attributes {
+        for part in 0..names.len() {
+            let reals = WIDEST * part..attribute.width.min(WIDEST * (part + 1));
+            let vertices = attribute.values.chunks_exact(attribute.width);
+            write_reals(out, vertices.flat_map(|vertex| &vertex[reals.clone()]).map(|&value| finite(value)))?;
+        }
     }
     for vertex in mesh.triangles.iter().flatten() {
         out.write_all(&vertex.to_le_bytes())?;
@@ -109,9 +129,15 @@ fn describe(mesh: &Mesh, attributes: &[Named<'_>]) -> (Value, u64) {
     if colors(mesh).is_some() {
         vertex.insert("COLOR_0".to_owned(), json!(layout.add(ARRAY_BUFFER, FLOAT, 3, count)));
     }
+    if uvs(mesh).is_some() {
+        vertex.insert("TEXCOORD_0".to_owned(), json!(layout.add(ARRAY_BUFFER, FLOAT, 2, count)));
+    }
     for Named { names, attribute } in attributes {
-        let accessor = layout.add(ARRAY_BUFFER, FLOAT, attribute.width, count);
-        vertex.extend(names.iter().map(|name| (name.clone(), json!(accessor))));
+        for (part, name) in names.iter().enumerate() {
+            let width = WIDEST.min(attribute.width - WIDEST * part);
+            let accessor = layout.add(ARRAY_BUFFER, FLOAT, width, count);
+            vertex.insert(name.clone(), json!(accessor));
+        }
     }
     let indices = layout.add(ELEMENT_ARRAY_BUFFER, UNSIGNED_INT, 1, 3 * mesh.triangles.len());
     let json = json!({

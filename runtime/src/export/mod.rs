@@ -1,14 +1,15 @@
 //! Mesh files: GLB, PLY, OBJ and STL.
 //!
-//! | format | positions | normals | colour | other attributes |
-//! | --- | --- | --- | --- | --- |
-//! | GLB (glTF 2.0, binary) | yes | yes | yes, linear | yes, as `_NAME` |
-//! | PLY (binary) | yes | yes | 8 bits, linear | yes, as properties |
-//! | OBJ (text) | yes | yes | yes, linear | no |
-//! | STL (binary) | yes | of the triangles | no | no |
+//! | format | positions | normals | colour | uv | other attributes |
+//! | --- | --- | --- | --- | --- | --- |
+//! | GLB (glTF 2.0, binary) | yes | yes | yes, linear | `TEXCOORD_0` | yes, as `_NAME` |
+//! | PLY (binary) | yes | yes | 8 bits, linear | `s` and `t` | yes, as properties |
+//! | OBJ (text) | yes | yes | yes, linear | `vt` | no |
+//! | STL (binary) | yes | of the triangles | no | no | no |
 //!
 //! The colour is the attribute named `color` with three reals; values are never converted, and are clamped to 0 .. 1 where
-//! a format asks for it. [`write()`] writes to anything; [`save`] writes a file under a temporary name and renames it, so that nobody
+//! a format asks for it. The uv is the attribute named `uv` with two reals, v upwards: GLB, where v goes down, gets 1 - v. Every vertex has one uv,
+//! so a triangle across a seam shows the picture backwards. [`write()`] writes to anything; [`save`] writes a file under a temporary name and renames it, so that nobody
 //! ever sees half a file.
 
 mod glb;
@@ -234,6 +235,20 @@ fn is_color(attribute: &Attribute) -> bool {
     attribute.name == "color" && attribute.width == 3
 }
 
+/// The uv of a mesh, if it has the attribute `uv` of width 2: as many chunks of two as vertices.
+fn uvs(mesh: &Mesh) -> Option<&[f32]> {
+    mesh.attributes.iter().find(|attribute| is_uv(attribute)).map(|attribute| attribute.values.as_slice())
+}
+
+fn is_uv(attribute: &Attribute) -> bool {
+    attribute.name == "uv" && attribute.width == 2
+}
+
+/// A real as formats without infinities and NaN have it: those are 0.
+fn finite(value: f32) -> f32 {
+    if value.is_finite() { value } else { 0.0 }
+}
+
 /// A real of a colour, in 0 .. 1. What is no number is black.
 fn clamp_color(value: f32) -> f32 {
     if value.is_nan() { 0.0 } else { value.clamp(0.0, 1.0) }
@@ -245,14 +260,14 @@ struct Named<'a> {
     attribute: &'a Attribute,
 }
 
-/// The attributes besides the colour. `spell` turns a stem of ASCII letters, digits and underscores, and a width, into the
+/// The attributes besides the colour and the uv. `spell` turns a stem of ASCII letters, digits and underscores, and a width, into the
 /// names that the file needs; a number after the stem keeps them apart from the names of the others and from reserved ones.
 fn others<'a>(mesh: &'a Mesh, reserved: &[&str], spell: fn(&str, usize) -> Vec<String>) -> Vec<Named<'a>> {
-    let color = mesh.attributes.iter().position(is_color);
+    let known = [mesh.attributes.iter().position(is_color), mesh.attributes.iter().position(is_uv)];
     let mut taken: HashSet<String> = reserved.iter().map(|&name| name.to_owned()).collect();
     let mut named = Vec::new();
     for (index, attribute) in mesh.attributes.iter().enumerate() {
-        if Some(index) == color {
+        if known.contains(&Some(index)) {
             continue;
         }
         let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };

@@ -1,9 +1,9 @@
 //! Wavefront OBJ: text, with colours behind the positions as many programs read them. Numbers are the shortest that give
-//! the same f32 back. The format has no place for other attributes.
+//! the same f32 back. A uv is `vt`; the format has no place for other attributes.
 
 use std::io::Write;
 
-use super::{ExportError, clamp_color, colors};
+use super::{ExportError, clamp_color, colors, finite, uvs};
 use crate::mesh::Mesh;
 
 pub(super) fn write(mesh: &Mesh, out: &mut impl Write) -> Result<(), ExportError> {
@@ -19,10 +19,17 @@ pub(super) fn write(mesh: &Mesh, out: &mut impl Write) -> Result<(), ExportError
         None => mesh.positions.iter().try_for_each(|[x, y, z]| writeln!(out, "v {x} {y} {z}"))?,
     }
     mesh.normals.iter().try_for_each(|[x, y, z]| writeln!(out, "vn {x} {y} {z}"))?;
+    let uvs = uvs(mesh);
+    for uv in uvs.into_iter().flat_map(|uvs| uvs.chunks_exact(2)) {
+        writeln!(out, "vt {} {}", finite(uv[0]), finite(uv[1]))?;
+    }
     for triangle in &mesh.triangles {
         // Counted from 1, which may be one more than a u32 holds.
         let [a, b, c] = triangle.map(|vertex| u64::from(vertex) + 1);
-        writeln!(out, "f {a}//{a} {b}//{b} {c}//{c}")?;
+        match uvs {
+            Some(_) => writeln!(out, "f {a}/{a}/{a} {b}/{b}/{b} {c}/{c}/{c}")?,
+            None => writeln!(out, "f {a}//{a} {b}//{b} {c}//{c}")?,
+        }
     }
     Ok(())
 }

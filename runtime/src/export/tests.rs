@@ -166,6 +166,50 @@ fn obj_gives_every_number_back() {
     assert!(String::from_utf8(bytes(&plain, Format::Obj)).unwrap().contains("\nv 1 0 0.1\n"));
 }
 
+/// The tetrahedron with a uv and an attribute of six reals.
+fn wide_tetrahedron() -> Mesh {
+    let numbers = |count: usize| (0..count).map(|index| index as f32 / 8.0).collect();
+    let attributes = vec![
+        Attribute { name: "uv".to_owned(), width: 2, values: numbers(8) },
+        Attribute { name: "spectrum".to_owned(), width: 6, values: numbers(24) },
+    ];
+    Mesh { attributes, ..tetrahedron() }
+}
+
+#[test]
+fn glb_has_texture_coordinates_and_splits_wide_attributes() {
+    let file = bytes(&wide_tetrahedron(), Format::Glb);
+    let (json, binary) = parse_glb(&file);
+    let attributes = json["meshes"][0]["primitives"][0]["attributes"].as_object().unwrap();
+    let plane = |name: &str, kind: &str| {
+        let accessor = &json["accessors"][attributes[name].as_u64().unwrap() as usize];
+        assert_eq!(accessor["type"], kind);
+        let view = &json["bufferViews"][accessor["bufferView"].as_u64().unwrap() as usize];
+        let start = view["byteOffset"].as_u64().unwrap() as usize;
+        reals(&binary[start..start + view["byteLength"].as_u64().unwrap() as usize])
+    };
+    assert_eq!(plane("TEXCOORD_0", "VEC2"), [0.0, 0.875, 0.25, 0.625, 0.5, 0.375, 0.75, 0.125]);
+    assert_eq!(plane("_SPECTRUM_0", "VEC4")[4..8], [0.75, 0.875, 1.0, 1.125]);
+    assert_eq!(plane("_SPECTRUM_1", "VEC2"), [0.5, 0.625, 1.25, 1.375, 2.0, 2.125, 2.75, 2.875]);
+    assert_eq!(attributes.len(), 5);
+}
+
+#[test]
+fn ply_and_obj_have_texture_coordinates() {
+    let mesh = wide_tetrahedron();
+    let file = bytes(&mesh, Format::Ply);
+    let end = b"end_header\n";
+    let header = file.windows(end.len()).position(|w| w == end).unwrap() + end.len();
+    let text = std::str::from_utf8(&file[..header]).unwrap();
+    assert!(
+        text.contains("property float nz\nproperty float s\nproperty float t\nproperty float spectrum_0\n")
+    );
+    let vertex = 4 * (6 + 2 + 6);
+    assert_eq!(reals(&file[header + vertex + 24..header + vertex + 36]), [0.25, 0.375, 0.75]);
+    let text = String::from_utf8(bytes(&mesh, Format::Obj)).unwrap();
+    assert!(text.contains("\nvt 0 0.125\nvt 0.25 0.375\n") && text.contains("\nf 1/1/1 3/3/3 2/2/2\n"));
+}
+
 #[test]
 fn stl_has_facets_with_normals() {
     let mut mesh = tetrahedron();

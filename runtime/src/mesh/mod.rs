@@ -97,7 +97,7 @@ impl Default for Options {
 pub struct Attribute {
     /// The name, as in the model.
     pub name: String,
-    /// Reals per vertex, 1 to 4.
+    /// Reals per vertex, 1 to [`MAX_ATTRIBUTE_WIDTH`].
     pub width: usize,
     /// `width` reals for each vertex, one vertex after the other.
     pub values: Vec<f32>,

@@ -5,14 +5,15 @@
 use std::sync::Arc;
 
 use fastrand::Rng;
-use jbt::build::param;
+use jbt::build::{noise, param, x, y, z};
 use jbt::{Model, Number};
 use jbt_frontend::affine::scale_rotate_translate;
-use jbt_frontend::attribute::{AttributeGroup, Mixing};
+use jbt_frontend::attribute::{AttributeGroup, AttributeValue, Mixing, Textured, UvMap};
 use jbt_frontend::combine::{Combinator, Family, SetOperation};
-use jbt_frontend::falloff::FalloffKind;
+use jbt_frontend::falloff::{Falloff, FalloffKind};
 use jbt_frontend::field::{Field, FieldKind, FieldValue};
 use jbt_frontend::skeleton::SkeletonKind;
+use jbt_frontend::texture::TextureKind;
 use jbt_frontend::tree::{NodeKind, Primitive, Tree};
 use jbt_frontend::warp::WarpKind;
 
@@ -51,7 +52,9 @@ impl Random {
         for index in 0..self.shape.usize(0..3) {
             attributes.push(AttributeGroup {
                 name: format!("group{index}").into(),
-                default: (0..self.shape.usize(1..5)).map(|_| self.between(-1.0, 1.0)).collect(),
+                default: (0..[1, 2, 2, 3, 4, 7][self.shape.usize(0..6)])
+                    .map(|_| self.between(-1.0, 1.0))
+                    .collect(),
                 mixing: if self.shape.bool() { Mixing::Blend } else { Mixing::Dominant },
             });
         }
@@ -71,7 +74,7 @@ impl Random {
             let children: Vec<Tree> =
                 (0..parts).map(|_| self.tree(leaves / parts, attributes, depth + 1)).collect();
             let set = SetOperation::ALL[self.shape.usize(0..3)];
-            let kind = NodeKind::Combine(match self.shape.u8(0..15) {
+            let kind = NodeKind::Combine(match self.shape.u8(0..21) {
                 9 => Combinator::Product,
                 10 => Combinator::SymmetricDifference,
                 11 => Combinator::Smooth(set, self.between(0.05, 0.5)),
@@ -91,7 +94,9 @@ impl Random {
                 3 => Combinator::Ricci(if self.shape.bool() { self.between(1.01, 9.9) } else { 1024.0 }),
                 4 => Combinator::Intersection,
                 5 => Combinator::Difference,
-                6 | 7 => Combinator::Union,
+                6 | 7 | 15..18 => Combinator::Union,
+                18 => Combinator::Sum,
+                8 | 19 => return self.expression(&children, attributes),
                 _ => {
                     // Which child answers is a number as any other.
                     let which = self.between(-0.49, parts as f64 - 0.51);
@@ -104,6 +109,28 @@ impl Random {
         self.finished(tree, attributes)
     }
 
+    /// A formula, of the point or of some of the children.
+    fn expression(&mut self, children: &[Tree], attributes: &[AttributeGroup]) -> Tree {
+        let (low, high) = (self.vector(0.8).map(|low| low - 0.9), self.vector(0.8).map(|high| high + 0.9));
+        let (p, q) = (self.between(0.3, 0.9), self.between(0.3, 0.9));
+        let [a, b, c] = std::array::from_fn(|place| children[place % children.len()].field());
+        let size = || (x() * x() + y() * y() + z().powf(2.0)).sqrt();
+        let tree = match self.shape.u8(0..9) {
+            0 => Tree::expression((p - size()).clamp(-0.5, 1.5)),
+            1 => Tree::expression_within(q + 0.3 * (2.0 * x()).sin() * y(), low, high),
+            2 => Tree::expression(size() - p).fading(Falloff::Wyvill, q),
+            3 => Tree::expression((p * &a * &b).clamp(-1.5, 1.5)),
+            4 => Tree::expression((0.7 * &a * &b - q * c.square()).max(-1.0).min(1.0)),
+            5 => children[0].within(low, high),
+            6 => Tree::expression(&a * (1.0 + p * (2.0 * x()).sin()) + q * (&b - &a)),
+            7 => Tree::expression(a.max(b.min(p)) / (1.0 + y().abs()) + q * (&c * &c + 0.1).sqrt()),
+            _ => {
+                Tree::expression(p * a.clamp(-0.5, 1.5).atan2(2.0 + b.abs()) + 0.2 * (z() * 0.5).tan().atan())
+            }
+        };
+        self.finished(tree, attributes)
+    }
+
     fn finished(&mut self, tree: Tree, attributes: &[AttributeGroup]) -> Tree {
         let tree = self.unary(tree, attributes);
         self.done.push(tree.clone());
@@ -112,7 +139,9 @@ impl Random {
 
     fn leaf(&mut self) -> Tree {
         let kind = SkeletonKind::ALL[self.shape.usize(0..SkeletonKind::ALL.len())];
-        let skeleton = kind.from_fields(&self.fields(kind.fields()));
+        let mut fields = self.fields(kind.fields());
+        fit(kind, &mut fields);
+        let skeleton = kind.from_fields(&fields);
         let strength = match self.shape.u8(0..8) {
             0 => -self.between(0.1, 0.8),
             1 | 2 => self.between(0.5, 1.7),
@@ -124,7 +153,8 @@ impl Random {
         Tree::new(NodeKind::Primitive(Primitive { skeleton, falloff, radius, strength }), Vec::new())
     }
 
-    fn fields(&mut self, fields: &[Field]) -> Vec<FieldValue> {
+    /// Values that a member of an open set may have.
+    pub fn fields(&mut self, fields: &[Field]) -> Vec<FieldValue> {
         let mut values = Vec::new();
         for field in fields {
             values.push(match field.kind {
@@ -141,8 +171,19 @@ impl Random {
                 FieldKind::Count if field.default.is_some() => FieldValue::Real(self.numbers.u8(0..6).into()),
                 FieldKind::Count => FieldValue::Real(self.numbers.u8(1..6).into()),
                 FieldKind::Position => FieldValue::Vector(self.vector(1.0)),
+                FieldKind::Degrees => FieldValue::Real(self.between(0.0, 360.0)),
+                FieldKind::Exponent => FieldValue::Real(self.between(1.0, 8.0)),
+                FieldKind::Squareness => FieldValue::Real(self.between(0.2, 2.0)),
+                FieldKind::Stretches => FieldValue::Vector(self.vector(1.0).map(|x| 0.3 + x.abs())),
                 FieldKind::Extents => FieldValue::Vector(self.vector(1.0).map(f64::abs)),
                 FieldKind::Direction => FieldValue::Vector(self.vector(1.0)),
+                FieldKind::Positions => {
+                    // As many as a chain of curves has. How many there are is a number as any other.
+                    let count = 1 + 3 * self.numbers.usize(1..4);
+                    FieldValue::Vectors((0..count).map(|_| self.vector(1.0)).collect())
+                }
+                FieldKind::Lengths => FieldValue::Reals((0..10).map(|_| self.between(0.0, 0.3)).collect()),
+                FieldKind::Flag => FieldValue::Real(f64::from(self.numbers.u8(0..2))),
                 FieldKind::Axis => {
                     let axis = self.shape.usize(0..3);
                     FieldValue::Vector(std::array::from_fn(|k| if k == axis { 1.0 } else { 0.0 }))
@@ -159,12 +200,24 @@ impl Random {
                 10 => self.field_map(),
                 0..3 => {
                     let group = &attributes[self.shape.usize(0..attributes.len())];
-                    let values = (0..group.width()).map(|_| self.between(0.0, 1.0)).collect();
-                    NodeKind::Attribute { name: Arc::clone(&group.name), values }
+                    let pick = self.shape.u8(0..6);
+                    if pick == 0 {
+                        tree = self.textured_following(&tree, group);
+                        continue;
+                    }
+                    NodeKind::Attribute {
+                        name: Arc::clone(&group.name),
+                        value: self.value(pick, group.width()),
+                    }
                 }
                 3 => {
-                    let kind = WarpKind::ALL[self.shape.usize(0..WarpKind::ALL.len())];
-                    NodeKind::Warp(kind.from_fields(&self.fields(kind.fields())))
+                    let warp = self.warp();
+                    if self.shape.u8(0..4) == 0 {
+                        let weight = self.leaf();
+                        tree = Tree::new(warp, vec![tree, weight]);
+                        continue;
+                    }
+                    warp
                 }
                 4 => {
                     tree = self.following(&tree);
@@ -175,6 +228,27 @@ impl Random {
             tree = Tree::new(kind, vec![tree]);
         }
         tree
+    }
+
+    /// A warp of any kind, or one that is given by formulas.
+    fn warp(&mut self) -> NodeKind {
+        let Some(&kind) = WarpKind::ALL.get(self.shape.usize(0..WarpKind::ALL.len() + 1)) else {
+            return self.formula_warp();
+        };
+        NodeKind::Warp(kind.from_fields(&self.fields(kind.fields())))
+    }
+
+    /// Formulas of bounded derivatives, with a definition, with a pole that is not there, with a crease.
+    fn formula_warp(&mut self) -> NodeKind {
+        let [p, q, r] = self.vector(1.0);
+        let turn = p * z();
+        let coordinates = match self.shape.u8(0..4) {
+            0 => [x() + 0.3 * p * (3.0 * q * y()).sin(), y() + r, z() * 0.9],
+            1 => [x() * turn.cos() + y() * turn.sin(), y() * turn.cos() - x() * turn.sin(), z()],
+            2 => [x() / (1.0 + r.abs() * z() * z()), y(), z() + 0.2 * q],
+            _ => [x().abs() + 0.3 * p, y() + 0.1 * x() * y(), z().max(2.0 * z() + q)],
+        };
+        Tree::combine(Combinator::Sum, Vec::<Tree>::new()).warp(coordinates).node().kind().clone()
     }
 
     fn family(&mut self) -> Family {
@@ -195,6 +269,35 @@ impl Random {
             4 => Combinator::Shell(self.between(0.05, 0.5)),
             _ => Combinator::Offset(self.between(-0.3, 0.2)),
         })
+    }
+
+    fn units(&mut self, count: usize) -> Vec<f64> {
+        (0..count).map(|_| self.between(0.0, 1.0)).collect()
+    }
+
+    /// What an attribute node gives: numbers, a texture, or uv where that fits.
+    fn value(&mut self, pick: u8, width: usize) -> AttributeValue {
+        match pick {
+            1 | 2 => {
+                let kind = TextureKind::ALL[self.shape.usize(0..TextureKind::ALL.len())];
+                let texture = kind.from_fields(&self.fields(kind.fields()));
+                AttributeValue::Textured(Textured { texture, a: self.units(width), b: self.units(width) })
+            }
+            3 | 4 if width == 2 => {
+                let (scale, shift) = ([self.between(-1.0, 1.0), 1.0], [0.0, self.between(-1.0, 1.0)]);
+                AttributeValue::Uv(UvMap { scale, degrees: self.between(0.0, 90.0), shift })
+            }
+            _ => AttributeValue::Numbers(self.units(width)),
+        }
+    }
+
+    /// The tree with a noise that follows parameters: its code serves all their values.
+    fn textured_following(&mut self, tree: &Tree, group: &AttributeGroup) -> Tree {
+        let (octaves, low) = (self.between(0.5, 3.5), self.between(0.0, 1.0));
+        let pattern = noise(self.between(0.3, 1.0)).octaves(self.parameter("octaves", octaves));
+        let a = vec![self.parameter("low", low); group.width()];
+        let b: Vec<Number> = self.units(group.width()).into_iter().map(Number::from).collect();
+        tree.textured(&group.name, pattern, &a, &b)
     }
 
     /// A new parameter.
@@ -231,6 +334,21 @@ impl Random {
             3 => scale_rotate_translate(-even, turned, translation),
             _ => scale_rotate_translate(uneven, turned, translation),
         })
+    }
+}
+
+/// Makes parameters that are well by themselves fit each other: a radius for all points or one for each, corners in a plane.
+pub fn fit(kind: SkeletonKind, values: &mut [FieldValue]) {
+    if kind == SkeletonKind::Polygon
+        && let [FieldValue::Vectors(points)] = values
+    {
+        for [x, y, z] in points {
+            *z = 0.3 * *x - 0.6 * *y + 0.1;
+        }
+    }
+    if let [FieldValue::Vectors(points), FieldValue::Reals(radii), ..] = values {
+        // All lists of radii are as long as the longest list of points.
+        radii.truncate(if radii.first().is_some_and(|first| *first < 0.1) { 0 } else { points.len() });
     }
 }
 

@@ -290,7 +290,7 @@ fn assemble(span: Span, meaning: Meaning, map: Option<DAffine3>, children: Vec<T
             match color {
                 None => tree,
                 Some(color) => {
-                    let kind = NodeKind::Attribute { name: "color".into(), values: color.to_vec() };
+                    let kind = NodeKind::Attribute { name: "color".into(), value: color.to_vec().into() };
                     Tree::at(span, kind, vec![tree])
                 }
             }

@@ -61,6 +61,9 @@ impl Guard {
     pub(super) const RIGHT: Self =
         Self { start: GuardStart::Zero, decision: Some(DecisionKind::DifferenceRight) };
 
+    /// Of a child of a formula.
+    pub(super) const ALONE: Self = Self { start: GuardStart::Zero, decision: None };
+
     /// Of an operand.
     pub(super) const fn of(code: ReducerCode, non_negative: bool) -> Self {
         match code {

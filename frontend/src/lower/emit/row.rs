@@ -1,11 +1,11 @@
 //! What stands in a row: its columns, and its leaf.
 
-use jbt_ir::{Domain, Origin, Part, Value};
+use jbt_ir::{Domain, Origin, Part, Reduction, Value};
 
 use super::Emitter;
-use crate::attribute::AttributeGroup;
-use crate::lower::mixing::GroupAnswer;
+use crate::lower::guide::Rule;
 use crate::lower::occurrence::{FieldId, LeafField};
+use crate::skeleton::{Pieces, SkeletonKind};
 
 impl Emitter<'_> {
     /// The place in the file of the operand that follows, where ties need it.
@@ -39,7 +39,10 @@ impl Emitter<'_> {
         self.builder.set_origin(Origin::leaf(slot, Part::Position));
         let row = self.columns(map.columns());
         let point = map.emit(&mut self.builder, outer, &row);
-        let row = self.columns(skeleton.columns());
+        let mut row = self.columns(skeleton.columns());
+        if let Some(pieces) = skeleton.pieces() {
+            row.extend(self.fold_pieces(skeleton, pieces, point));
+        }
         let square = skeleton.emit(&mut self.builder, point, &row);
         self.builder.mark(square, Origin::leaf(slot, Part::Distance));
 
@@ -60,14 +63,17 @@ impl Emitter<'_> {
         value
     }
 
-    /// The attributes of a leaf: numbers of its row.
-    pub(super) fn leaf_attributes(&mut self) -> Vec<GroupAnswer> {
-        let groups = &self.scene.tree.attributes()[..self.mixing.len()];
-        let answer = |group: &AttributeGroup| {
-            let names = (0..group.width()).map(|i| group.channel(i));
-            names.map(|name| self.column(&name)).collect()
-        };
-        let channels: Vec<Vec<Value>> = groups.iter().map(answer).collect();
-        channels.into_iter().map(|channels| GroupAnswer { channels, share: None, numbers: true }).collect()
+    /// What the accumulators of a leaf come to: a fold over the rows of its pieces, which hang under the row of the leaf.
+    fn fold_pieces(&mut self, skeleton: SkeletonKind, pieces: Pieces, point: [Value; 3]) -> Vec<Value> {
+        let beyond = self.column("beyond");
+        let initial = skeleton.begin(&mut self.builder, beyond);
+        let (space, _) = *self.points.last().expect("a space is open");
+        // A piece that is out of reach is no farther than where distances begin: the field is zero either way.
+        let rule = if pieces.local { Rule::Neutral } else { Rule::Never };
+        let so_far = self.open_fold("pieces", space, rule, Reduction::Pieces, &initial);
+        let piece = self.columns(pieces.columns);
+        let next = skeleton.step(&mut self.builder, point, &piece, &so_far);
+        self.rows.pop();
+        self.builder.end_fold(&next)
     }
 }

@@ -99,7 +99,7 @@ impl Emitter<'_> {
             return self.point_inside(space);
         }
         let inside = self.scene.inside(space).expect("the world is not lifted");
-        let name = self.scene.warp(inside.warp).kind().name();
+        let name = self.scene.warp(inside.warp).name();
         let outside = self.scene.position(inside.position).space;
         // A point is no field: where it is zero says nothing.
         self.guarded(name, outside, Rule::Never, |emitter| emitter.point_inside(space))

@@ -1,0 +1,135 @@
+//! Formulas: the value of each step from those before it, within bounds, and 0 where it has to be.
+//!
+//! ```text
+//! F      the formula of the point in the node's own space, of the children's fields and of numbers of the row
+//! field  min(max(F, lowest), largest) + 0      lowest: 0, if F is never negative, else -largest; a NaN ends there too
+//!        0 where all children are 0            if F is 0 there for all points, so that children may be left out
+//!        0 outside of the box                  if there is one, so that the row may be left out
+//! ```
+
+use jbt_ir::{Domain, Origin, Value};
+
+use super::Emitter;
+use crate::expression::{Form, LARGEST_FIELD, Operand};
+use crate::lower::mixing::{Answer, GroupAnswer, weighted};
+use crate::lower::occurrence::{OccurrenceId, OccurrenceKind};
+use crate::lower::slopes::{Tape, slopes};
+
+/// What a formula is about.
+struct Leaves {
+    point: Option<[Value; 3]>,
+    fields: Vec<Value>,
+    numbers: Vec<Value>,
+}
+
+impl Leaves {
+    fn of(&self, operand: Operand) -> Value {
+        match operand {
+            Operand::Coordinate(axis) => {
+                self.point.expect("a formula with coordinates asks for the point")[axis as usize]
+            }
+            Operand::Child(child) => self.fields[child as usize],
+            Operand::Number(number) => self.numbers[number as usize],
+            Operand::Step(_) => unreachable!("a step is no leaf"),
+        }
+    }
+}
+
+impl Emitter<'_> {
+    /// The answer of a formula whose children have theirs.
+    pub(super) fn express(&mut self, id: OccurrenceId) {
+        let occurrence = self.scene.occurrence(id);
+        let OccurrenceKind::Expression { position, children, .. } = &occurrence.kind else {
+            unreachable!("only formulas are expressed")
+        };
+        let expression = self.scene.expression(occurrence.node);
+        let form = expression.form();
+        let answers = self.answers.split_off(self.answers.len() - children.len());
+        let point = form.asks_point().then(|| {
+            let map = self.scene.position(*position).kind();
+            let row = self.columns(map.columns());
+            let (_, outer) = *self.points.last().expect("a space is open");
+            map.emit(&mut self.builder, outer, &row)
+        });
+        let numbers = (0..form.numbers()).map(|_| self.column("number")).collect();
+        let leaves = Leaves { point, fields: answers.iter().map(|answer| answer.field).collect(), numbers };
+        let weighs = !self.mixing.is_empty() && answers.len() > 1;
+        let mut tape = Tape::new(&mut self.builder, weighs);
+        let value = form.emit(&mut tape, |operand| leaves.of(operand))[0];
+        let tape = tape.finish();
+        let field =
+            self.bounded(value, form, &leaves, occurrence.non_negative, self.scene.vanishes(occurrence.node));
+        let groups = match &answers[..] {
+            [] => self.leaf_attributes(id),
+            [child] => self.passed_on(child),
+            _ if weighs => {
+                let slopes = slopes(&mut self.builder, &tape, value, &leaves.fields);
+                self.weighted_by(&answers, &slopes)
+            }
+            _ => Vec::new(),
+        };
+        self.builder.set_origin(Origin::SHARED);
+        self.answers.push(Answer { field, groups });
+    }
+
+    /// The field of a formula with this value.
+    fn bounded(
+        &mut self,
+        value: Value,
+        form: &Form,
+        leaves: &Leaves,
+        non_negative: bool,
+        vanishes: bool,
+    ) -> Value {
+        let d = &mut self.builder;
+        let zero = d.constant(0.0);
+        let lowest = if non_negative { zero } else { d.constant(-LARGEST_FIELD) };
+        let largest = d.constant(LARGEST_FIELD);
+        // In this order a NaN gives the lowest.
+        let field = d.max(value, lowest);
+        let field = d.min(field, largest);
+        // No field is -0: sums and unions must not depend on what adds nothing.
+        let mut field = d.add(field, zero);
+        if vanishes {
+            let silent: Vec<Value> = leaves.fields.iter().map(|&field| d.eq(field, zero)).collect();
+            let all = silent.into_iter().reduce(|all, one| d.both(all, one));
+            field = d.select(all.expect("what vanishes has children"), zero, field);
+        }
+        if let (Some(sides), Some(point)) = (form.box_numbers(&leaves.numbers), leaves.point) {
+            for axis in (0..3).rev() {
+                let above = d.le(sides[axis], point[axis]);
+                let below = d.le(point[axis], sides[axis + 3]);
+                let inside = d.both(above, below);
+                field = d.select(inside, field, zero);
+            }
+        }
+        field
+    }
+
+    /// The attributes of an only child, where it has a field.
+    fn passed_on(&mut self, child: &Answer) -> Vec<GroupAnswer> {
+        let d = &mut self.builder;
+        let zero = d.constant(0.0);
+        let silent = d.eq(child.field, zero);
+        let groups = child.groups.iter().zip(&self.defaults).map(|(group, default)| {
+            let channels = group.channels.iter().zip(default);
+            let channels = channels.map(|(&channel, &default)| d.select(silent, default, channel));
+            GroupAnswer { channels: channels.collect(), share: group.share, numbers: false }
+        });
+        groups.collect()
+    }
+
+    /// The attributes of several children, by what they contribute.
+    fn weighted_by(&mut self, answers: &[Answer], slopes: &[Value]) -> Vec<GroupAnswer> {
+        let d = &mut self.builder;
+        let zero = d.constant(0.0);
+        let weight = |d: &mut jbt_ir::FunctionBuilder, (answer, &slope): (&Answer, &Value)| {
+            let product = d.mul(answer.field, slope);
+            // A NaN has no weight.
+            let positive = d.lt(zero, product);
+            d.select(positive, product, zero)
+        };
+        let weights: Vec<Value> = answers.iter().zip(slopes).map(|pair| weight(d, pair)).collect();
+        weighted(d, &self.mixing, answers, &weights, &self.defaults)
+    }
+}

@@ -1,0 +1,94 @@
+//! What skeletons of any number of points have in common: their lists, and what can be wrong with these.
+
+use std::sync::Arc;
+
+use glam::{DAffine3, DVec3};
+
+use crate::bounds::Bounds;
+use crate::diagnostic::Diagnostic;
+use crate::field::{Field, FieldKind, FieldValue};
+
+/// The points of a skeleton.
+pub(super) const POINTS: Field = Field { name: "points", kind: FieldKind::Positions, default: None };
+/// The radii of a tube: none, one for all points, or one for each.
+pub(super) const RADII: Field =
+    Field { name: "radii", kind: FieldKind::Lengths, default: Some(FieldValue::Reals(Vec::new())) };
+/// Whether the last point is joined to the first.
+pub(super) const CLOSED: Field =
+    Field { name: "closed", kind: FieldKind::Flag, default: Some(FieldValue::Real(0.0)) };
+
+pub(super) fn points_of(value: &FieldValue) -> Arc<[DVec3]> {
+    value.vectors().iter().map(|&point| point.into()).collect()
+}
+
+pub(super) fn value_of(points: &[DVec3]) -> FieldValue {
+    FieldValue::Vectors(points.iter().map(DVec3::to_array).collect())
+}
+
+/// The radius at a point.
+pub(super) fn radius_at(radii: &[f64], index: usize) -> f64 {
+    match radii {
+        [] => 0.0,
+        [only] => *only,
+        each => each.get(index).copied().unwrap_or(0.0),
+    }
+}
+
+/// The middle of the points: where their pose has its origin.
+pub(super) fn middle(points: &[DVec3]) -> DAffine3 {
+    let bounds = Bounds::around(points.iter().copied());
+    DAffine3::from_translation(if bounds.is_empty() { DVec3::ZERO } else { bounds.min.midpoint(bounds.max) })
+}
+
+/// What is wrong with the numbers of points and radii, or with points that are all equal.
+pub(super) fn fault(owner: &str, points: &[DVec3], radii: &[f64], least: usize) -> Option<Diagnostic> {
+    let count = points.len();
+    if count < least {
+        let plural = if count == 1 { "" } else { "s" };
+        let error = Diagnostic::error(None, format!("the {owner} has {count} point{plural}"));
+        return Some(error.expected(format!("expected at least {least}")));
+    }
+    if ![0, 1, count].contains(&radii.len()) {
+        let message = format!("the {owner} has {count} points and {} radii", radii.len());
+        let help = format!("expected no radii, one for all points, or {count}");
+        return Some(Diagnostic::error(None, message).expected(help));
+    }
+    if points.iter().all(|point| *point == points[0]) {
+        let error = Diagnostic::error(None, format!("the {owner} has no length: all its points are equal"));
+        return Some(error.expected("expected two that differ, or a `point`"));
+    }
+    None
+}
+
+/// A nearest place of a part of a skeleton.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    /// The distance from it, below zero inside.
+    pub(super) distance: f64,
+    /// Where the direction to the skeleton leads.
+    pub(super) foot: DVec3,
+    /// Below about 1/2, the foot moves much faster than the point: the gradient turns quickly.
+    pub(super) firmness: f64,
+}
+
+/// The smallest distance, squared: zero inside.
+pub(super) fn distance_squared(places: impl IntoIterator<Item = Place>) -> f64 {
+    let nearest = places.into_iter().map(|place| place.distance).fold(f64::INFINITY, f64::min);
+    nearest.max(0.0).powi(2)
+}
+
+/// By how much the nearest place is nearer than another one in another direction, whose turn it would be next.
+pub(super) fn decision(places: &[Place]) -> f64 {
+    let Some(best) = places.iter().min_by(|a, b| a.distance.total_cmp(&b.distance)) else {
+        return f64::INFINITY;
+    };
+    if best.distance <= 0.0 {
+        return f64::INFINITY;
+    }
+    if best.firmness < 0.5 {
+        return 0.0;
+    }
+    // The search has the distance to all digits, and the place, where the distance is flat, to half of them.
+    let other = |place: &&Place| place.foot.distance(best.foot) > 1e-5 * (best.distance + best.foot.length());
+    places.iter().filter(other).map(|place| place.distance - best.distance).fold(f64::INFINITY, f64::min)
+}

@@ -1,0 +1,313 @@
+//! The formula of a field: an expression over `x y z`, `field(name)`, definitions of its own and numbers. Or three of them, of a point.
+//!
+//! It is read by the parser of numbers, which hands what is no number through as steps.
+
+use std::collections::HashMap;
+
+use jbt_ir::limits::MAX_EXPRESSION_STEPS;
+
+use super::WEIGHTED;
+use super::expression::{Place, is_builtin};
+use super::lex::{Token, TokenKind};
+use super::node::{Begun, Head};
+use super::parse::{Parser, is_statement};
+use crate::diagnostic::{Diagnostic, Span};
+use crate::expression::{Assembler, Draft, Formula};
+use crate::falloff::{Falloff, FalloffKind};
+use crate::number::{Binary, Function, Number, Step, Variable};
+use crate::recipe::{FalloffRecipe, Recipe};
+use crate::report::{clip, nearest};
+use crate::tree::Tree;
+
+/// The coordinates of a point.
+pub(crate) const COORDINATES: [&str; 3] = ["x", "y", "z"];
+/// The word for the field of a subtree.
+pub(crate) const FIELD: &str = "field";
+
+/// What a formula may be about besides numbers.
+#[derive(Default)]
+pub(super) struct Scope<'a> {
+    /// The place of each definition.
+    definitions: HashMap<&'a str, u32>,
+    /// The subtrees whose fields it asks for, each once, and the place of each by its identity.
+    children: Vec<Tree>,
+    places: HashMap<usize, u32>,
+    /// It is about a point, which follows from no field.
+    pointwise: bool,
+}
+
+impl Scope<'_> {
+    /// The words that stand for something.
+    pub(super) fn words(&self) -> impl Iterator<Item = &str> {
+        COORDINATES.into_iter().chain([FIELD]).chain(self.definitions.keys().copied())
+    }
+
+    fn child(&mut self, tree: Tree) -> Variable {
+        let next = self.children.len() as u32;
+        let place = *self.places.entry(tree.identity()).or_insert(next);
+        if place == next {
+            self.children.push(tree);
+        }
+        Variable::Child(place)
+    }
+}
+
+impl<'a> Parser<'a> {
+    /// What a word that has just been taken stands for in a formula, if it is no number there; an error that has been told.
+    pub(super) fn variable(&mut self, word: &str, token: Token) -> Option<Result<Variable, ()>> {
+        let scope = self.scope.as_ref()?;
+        if let Some(&place) = scope.definitions.get(word) {
+            return Some(Ok(Variable::Definition(place)));
+        }
+        if let Some(axis) = COORDINATES.iter().position(|name| *name == word) {
+            return Some(Ok(Variable::Coordinate(axis as u8)));
+        }
+        (word == FIELD).then(|| self.field_of(token))
+    }
+
+    /// The function of a falloff, in a formula.
+    pub(super) fn falloff_function(&mut self, word: &str, token: Token) -> Option<Function> {
+        let next = self.peek();
+        if self.scope.is_none() || !(next.is(b'(') || next.is(b'{')) {
+            return None;
+        }
+        let recipe = self.falloff_of(FalloffKind::named(word)?, token)?;
+        Some(Function::falloff(self.fixed_falloff(&recipe, token.span())))
+    }
+
+    /// A falloff of plain numbers.
+    fn fixed_falloff(&mut self, recipe: &FalloffRecipe, span: Span) -> Falloff {
+        if recipe.follows() {
+            self.report(|| {
+                Diagnostic::error(Some(span), "the numbers of this falloff follow a parameter")
+                    .expected("expected plain numbers: in a formula they are code")
+            });
+        }
+        recipe.falloff()
+    }
+
+    /// `( NAME )` behind the word `field`.
+    fn field_of(&mut self, token: Token) -> Result<Variable, ()> {
+        if self.scope.as_ref().is_some_and(|scope| scope.pointwise) {
+            self.lose_place(|| {
+                Diagnostic::error(Some(token.span()), "a warp asks for no fields").expected(
+                    "expected formulas of x, y and z; `weighted` gives a warp the weight of a field",
+                )
+            });
+            return Err(());
+        }
+        if self.accept(b'(').is_none() {
+            self.lose_place(|| {
+                Diagnostic::error(Some(token.span()), "`field` names no subtree")
+                    .expected("expected the name of a `let`: field(name)")
+            });
+            return Err(());
+        }
+        let at = self.peek();
+        let Some(name) = self.peek_word().filter(|word| !is_statement(word)) else {
+            self.expected_at(at, "expected the name of a `let`");
+            return Err(());
+        };
+        self.next();
+        let tree = self.lets.get(name).cloned().unwrap_or_else(|| {
+            self.report_with(|parser| {
+                let error =
+                    Diagnostic::error(Some(at.span()), format!("no `let {}` stands above", clip(name)));
+                match nearest(name, parser.lets.keys().copied()) {
+                    Some(near) => error.expected(format!("perhaps `{near}`")),
+                    None => error,
+                }
+            });
+            self.broken.clone()
+        });
+        if self.accept(b')').is_none() {
+            self.expected_at(self.peek(), "expected `)`");
+            return Err(());
+        }
+        self.scope.as_mut().map(|scope| scope.child(tree)).ok_or(())
+    }
+
+    /// A node whose word, `expression`, has just been taken.
+    pub(super) fn expression_node(&mut self, start: Token) -> Tree {
+        let bounds = if self.accept_word("within") { Some(self.corners()) } else { None };
+        self.count_node(Span::new(start.start, self.previous_end()));
+        let Some(open) = self.open() else {
+            return self.broken.clone();
+        };
+        self.scope = Some(Scope::default());
+        let mut assembler = Assembler::default();
+        let values = self.formulas(&mut assembler, 1);
+        let scope = self.scope.take().unwrap_or_default();
+        if !self.peek().is(b'}') {
+            self.expected_at(self.peek(), "expected an operator, or `}`");
+        }
+        if !self.end_of_formula(open) {
+            return self.broken.clone();
+        }
+        let span = Span::new(start.start, self.previous_end());
+        if assembler.steps() > MAX_EXPRESSION_STEPS {
+            let message = format!(
+                "the expression has {} operations; it may have {MAX_EXPRESSION_STEPS}",
+                assembler.steps()
+            );
+            self.report(|| Diagnostic::limit(Some(span), message));
+            return self.broken.clone();
+        }
+        let assembled = assembler.finish(&values);
+        let children = assembled.children.iter().map(|&child| scope.children[child as usize].clone());
+        let children = children.collect();
+        let recipe = Recipe::Expression(Formula::new(assembled, bounds));
+        Tree::cook(recipe, &self.iso, children, Some(span)).unwrap_or_else(|_| self.broken.clone())
+    }
+
+    /// The definitions and the values of a formula, this many, up to its end or to an error that has lost the place.
+    fn formulas(&mut self, assembler: &mut Assembler, count: usize) -> Vec<Draft> {
+        let (mut definitions, mut values): (Vec<Draft>, Vec<Draft>) = (Vec::new(), Vec::new());
+        while values.len() < count {
+            let token = self.peek();
+            let defines = token.kind == TokenKind::Word && self.peek_behind().is(b'=');
+            let name = defines.then(|| self.text(token));
+            if defines {
+                self.next();
+                self.next();
+            }
+            let number = self.expression(Place::Alone).number;
+            let value = assembler.postfix(&number.steps(), &definitions);
+            match name.filter(|_| !self.is_lost()) {
+                Some(name) => {
+                    self.define(name, token.span(), definitions.len() as u32);
+                    definitions.push(value);
+                }
+                None => values.push(value),
+            }
+            if values.len() < count && self.accept(b',').is_none() {
+                let expected = match values.len() {
+                    0 => "expected `,` and the next definition, or the value",
+                    _ => "expected an operator, or `,` and the next coordinate: warp (x, y, z)",
+                };
+                self.expected_at(self.peek(), expected);
+                values.resize(count, Draft::Constant(f64::NAN.into()));
+            }
+        }
+        values
+    }
+
+    /// The node `warp`: its child is asked where three formulas of the point say. Its word has just been taken.
+    pub(super) fn formula_warp(&mut self, start: Token) -> Begun {
+        let recipe = self.coordinates();
+        let bounds = self.accept_word("within").then(|| self.corners());
+        let weighted = self.accept_word(WEIGHTED);
+        let head = recipe.map_or(Head::Broken, |recipe| {
+            let recipe = Box::new(recipe);
+            if weighted { Head::Weighted(recipe) } else { Head::Unary(recipe) }
+        });
+        match (self.block(start, head), bounds) {
+            (Begun::Block(frame), Some(corners)) => {
+                self.count_node(Span::new(start.start, self.previous_end()));
+                Begun::Block(frame.inside(bounding(corners)))
+            }
+            (begun, _) => begun,
+        }
+    }
+
+    /// `( definitions x, y, z )`: the formulas of a point.
+    fn coordinates(&mut self) -> Option<Recipe> {
+        if self.accept(b'(').is_none() {
+            self.expected_at(self.peek(), "expected `(` and three coordinates: warp (x, y, z)");
+            return None;
+        }
+        self.scope = Some(Scope { pointwise: true, ..Scope::default() });
+        let mut assembler = Assembler::default();
+        let values = self.formulas(&mut assembler, 3);
+        self.scope = None;
+        if self.accept(b')').is_none() {
+            self.expected_at(self.peek(), "expected an operator, or `)`: a point has three coordinates");
+        }
+        (!self.is_lost()).then(|| Recipe::FormulaWarp(Formula::new(assembler.finish(&values), None)))
+    }
+
+    fn define(&mut self, name: &'a str, span: Span, place: u32) {
+        let taken = is_builtin(name)
+            || COORDINATES.contains(&name)
+            || name == FIELD
+            || self.parameter(name).is_some()
+            || Function::named(name).is_some()
+            || FalloffKind::named(name).is_some();
+        if taken {
+            self.report(|| {
+                Diagnostic::error(Some(span), format!("`{}` means something else already", clip(name)))
+            });
+        } else if self.scope.as_mut().is_some_and(|scope| scope.definitions.insert(name, place).is_some()) {
+            self.report(|| Diagnostic::error(Some(span), format!("a second definition of `{}`", clip(name))));
+        }
+    }
+
+    /// Past the end of a formula's block, whatever stands before it. Whether there is one.
+    fn end_of_formula(&mut self, open: Token) -> bool {
+        loop {
+            let token = self.peek();
+            match token.kind {
+                TokenKind::Mark(b'}') => {
+                    self.find_place();
+                    self.next();
+                    return true;
+                }
+                TokenKind::End => {
+                    self.unclosed(open.start as u32, token);
+                    return false;
+                }
+                TokenKind::Word if is_statement(self.text(token)) => {
+                    self.unclosed(open.start as u32, token);
+                    return false;
+                }
+                TokenKind::Word | TokenKind::Mark(_) | TokenKind::Number | TokenKind::Unknown => {
+                    self.skip_token();
+                }
+            }
+        }
+    }
+
+    /// Two corners of a box: `(..) to (..)`.
+    fn corners(&mut self) -> [[Number; 3]; 2] {
+        let low = self.vector();
+        if !self.accept_word("to") {
+            self.expected_at(self.peek(), "expected `to` and the largest corner");
+        }
+        let high = if self.is_lost() { low.clone() } else { self.vector() };
+        [low, high]
+    }
+
+    /// The node `within`: 0 outside of a box. Its word has just been taken.
+    pub(super) fn within(&mut self, start: Token) -> Begun {
+        let corners = self.corners();
+        self.unary(start, Some(bounding(corners)))
+    }
+
+    /// The node `falloff`: its child's field is a distance. Its word has just been taken.
+    pub(super) fn falloff_node(&mut self, start: Token) -> Begun {
+        let Some(recipe) = self.falloff(true) else {
+            return self.unary(start, None);
+        };
+        let falloff = self.fixed_falloff(&recipe, Span::new(start.start, self.previous_end()));
+        if !self.accept_word("radius") {
+            self.expected_at(self.peek(), "expected `radius`, the distance at which the field reaches zero");
+            return self.unary(start, None);
+        }
+        let radius = self.expression(Place::Alone).number;
+        self.unary(start, Some(Recipe::Expression(fading(falloff, radius))))
+    }
+}
+
+/// A child's field, and 0 outside of a box.
+fn bounding(corners: [[Number; 3]; 2]) -> Recipe {
+    Recipe::Expression(Formula::new(Assembler::default().finish(&[Draft::Child(0)]), Some(corners)))
+}
+
+/// The falloff of a child's field as a distance.
+pub(crate) fn fading(falloff: Falloff, radius: Number) -> Formula {
+    let mut assembler = Assembler::default();
+    let divide = Step::Binary(Binary::Divide);
+    let distance = assembler.apply(&divide, vec![Draft::Child(0), Draft::Constant(radius)]);
+    let field = assembler.apply(&Step::Call(Function::falloff(falloff), 1), vec![distance]);
+    Formula::new(assembler.finish(&[field]), None)
+}

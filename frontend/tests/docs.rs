@@ -1,0 +1,271 @@
+//! The pages of `docs/` are true: they name every member with all its parameters, their values and defaults; and every scene in them, and
+//! in the README, is a good model.
+
+use std::path::{Path, PathBuf};
+
+use jbt_frontend::combine::{Combinator, Family, SetOperation};
+use jbt_frontend::diagnostic::Source;
+use jbt_frontend::falloff::FalloffKind;
+use jbt_frontend::field::{Field, FieldKind, FieldValue};
+use jbt_frontend::skeleton::SkeletonKind;
+use jbt_frontend::text::{Options, functions, parse};
+use jbt_frontend::texture::TextureKind;
+use jbt_frontend::warp::WarpKind;
+
+/// What stands before a scene that does not begin with its format: the group and the subtrees that examples use.
+const HEAD: &str = "jbt 1
+    attribute uv 2
+    let a = point { at (-0.3 0 0) radius 1 }
+    let b = point { at (0.3 0 0) radius 1 }
+    let d = sphere { sphere_radius 0.3 radius 0.5 }
+";
+
+/// The parameters of every primitive.
+const OWN_FIELDS: [&str; 4] = ["radius", "surface_radius", "falloff", "strength"];
+
+/// The maps that are no warps, with the words of their parameters.
+const MAPS: [(&str, &[&str]); 7] = [
+    ("translate", &[]),
+    ("rotate", &["axis", "degrees", "radians"]),
+    ("scale", &[]),
+    ("reflect", &["axis"]),
+    ("stretch", &["axis", "by"]),
+    ("shear", &["axis", "by"]),
+    ("affine", &[]),
+];
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+fn page(name: &str) -> String {
+    std::fs::read_to_string(root().join("docs").join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+}
+
+/// The lines between the heading of a member and the next heading.
+fn section<'a>(page: &'a str, name: &str) -> Vec<&'a str> {
+    let heading = format!("### `{name}`");
+    let mut lines = page.lines().skip_while(|line| *line != heading);
+    assert!(lines.next().is_some(), "a heading {heading}");
+    lines.take_while(|line| !line.starts_with('#')).collect()
+}
+
+fn numbers(values: &[f64]) -> String {
+    let shown: Vec<String> = values.iter().map(f64::to_string).collect();
+    format!("({})", shown.join(" "))
+}
+
+/// What a parameter may be, as the tables say it.
+fn values(kind: FieldKind) -> String {
+    match kind {
+        FieldKind::Real => "any".to_owned(),
+        FieldKind::Positive => "> 0".to_owned(),
+        FieldKind::NonNegative => ">= 0".to_owned(),
+        FieldKind::Within { least, most } => format!("{least} .. {most}"),
+        FieldKind::Choice(words) => words.join(", "),
+        FieldKind::Count => format!("whole, 0 .. {}", jbt_ir::limits::MAX_COPIES),
+        FieldKind::Degrees => "0 .. 360".to_owned(),
+        FieldKind::Exponent => format!("1 .. {}", jbt_ir::limits::MAX_METRIC_EXPONENT),
+        FieldKind::Squareness => format!("1/{} .. 2", 0.5 * jbt_ir::limits::MAX_METRIC_EXPONENT),
+        FieldKind::Position => "3 numbers".to_owned(),
+        FieldKind::Extents => "3 numbers >= 0".to_owned(),
+        FieldKind::Stretches => "3 numbers > 0".to_owned(),
+        FieldKind::Direction => "direction".to_owned(),
+        FieldKind::Axis => "x, y, z".to_owned(),
+        FieldKind::Positions => "points".to_owned(),
+        FieldKind::Lengths => "numbers >= 0".to_owned(),
+        FieldKind::Flag => "yes, no".to_owned(),
+    }
+}
+
+/// The default of a parameter, as the tables say it.
+fn default(field: &Field) -> String {
+    match (&field.default, field.kind) {
+        (None, _) => "required".to_owned(),
+        (Some(FieldValue::Real(place)), FieldKind::Choice(words)) => words[*place as usize].to_owned(),
+        (Some(FieldValue::Real(flag)), FieldKind::Flag) => if *flag == 0.0 { "no" } else { "yes" }.to_owned(),
+        (Some(FieldValue::Vector(axis)), FieldKind::Axis) => {
+            let place = axis.iter().position(|x| *x == 1.0).expect("an axis");
+            ["x", "y", "z"][place].to_owned()
+        }
+        (Some(FieldValue::Real(number)), _) => number.to_string(),
+        (Some(FieldValue::Vector(vector)), _) => numbers(vector),
+        (Some(FieldValue::Reals(list)), _) => numbers(list),
+        (Some(FieldValue::Vectors(list)), _) => numbers(list.as_flattened()),
+    }
+}
+
+/// A member has a section, whose table has a row for each of its parameters and no others.
+fn has_member(page: &str, name: &str, fields: &[Field], word: impl Fn(&Field) -> String) {
+    let lines = section(page, name);
+    for field in fields {
+        let row = format!("| `{}` | {} | {} |", word(field), values(field.kind), default(field));
+        assert!(lines.iter().any(|line| line.starts_with(&row)), "`{name}`: a row {row}");
+    }
+    let rows = lines.iter().filter(|line| line.starts_with("| `")).count();
+    assert_eq!(rows, fields.len(), "`{name}`: as many rows as parameters");
+    assert!(lines.contains(&"```jbt"), "`{name}`: an example");
+}
+
+fn own_word(field: &Field) -> String {
+    field.name.to_owned()
+}
+
+#[test]
+fn all_textures() {
+    let page = page("attributes.md");
+    for kind in TextureKind::ALL {
+        has_member(&page, kind.name(), kind.fields(), own_word);
+    }
+}
+
+#[test]
+fn all_skeletons() {
+    let page = page("skeletons.md");
+    for kind in SkeletonKind::ALL {
+        has_member(&page, kind.name(), kind.fields(), |field| match field.name {
+            name if OWN_FIELDS.contains(&name) => format!("{}_{name}", kind.name()),
+            name => name.to_owned(),
+        });
+    }
+    for name in OWN_FIELDS {
+        assert!(page.contains(&format!("| `{name}` |")), "{name}");
+    }
+}
+
+#[test]
+fn all_falloffs() {
+    let page = page("falloffs.md");
+    for kind in FalloffKind::ALL {
+        has_member(&page, kind.name(), kind.fields(), own_word);
+        let aliases: Vec<String> = kind.aliases().iter().map(|alias| format!("`{alias}`")).collect();
+        let row = format!("| `{}` | {} |", kind.name(), aliases.join(", "));
+        assert!(page.lines().any(|line| line.starts_with(&row)), "a row {row}");
+    }
+}
+
+#[test]
+fn all_warps_and_maps() {
+    let page = page("warps.md");
+    for kind in WarpKind::ALL {
+        has_member(&page, kind.name(), kind.fields(), own_word);
+    }
+    for (name, words) in MAPS {
+        let text = section(&page, name).join("\n");
+        assert!(text.contains("```jbt"), "`{name}`: an example");
+        for word in words {
+            assert!(text.contains(&format!("`{word}`")), "`{name}`: {word}");
+        }
+    }
+}
+
+/// The words of an operator's numbers.
+fn words(combinator: Combinator) -> &'static [&'static str] {
+    match combinator {
+        Combinator::Smooth(..) => &["width"],
+        Combinator::RFunction(..) => &["alpha", "power", "order"],
+        Combinator::Clamp { .. } => &["low", "high"],
+        Combinator::Shell(_) => &["thickness"],
+        Combinator::Offset(_) => &["by"],
+        Combinator::Sum
+        | Combinator::Ricci(_)
+        | Combinator::Product
+        | Combinator::Union
+        | Combinator::Intersection
+        | Combinator::Difference
+        | Combinator::SymmetricDifference
+        | Combinator::Complement => &[],
+    }
+}
+
+#[test]
+fn all_operators() {
+    let page = page("operators.md");
+    let smooth = SetOperation::ALL.map(|set| Combinator::Smooth(set, 0.1));
+    let others = [
+        Combinator::Sum,
+        Combinator::Ricci(2.0),
+        Combinator::Product,
+        Combinator::Union,
+        Combinator::Intersection,
+        Combinator::Difference,
+        Combinator::SymmetricDifference,
+        Combinator::RFunction(SetOperation::Union, Family::Alpha(0.0)),
+        Combinator::Complement,
+        Combinator::Clamp { low: 0.0, high: 1.0 },
+        Combinator::Shell(0.1),
+        Combinator::Offset(0.1),
+    ];
+    for combinator in smooth.into_iter().chain(others) {
+        let text = section(&page, combinator.name()).join("\n");
+        assert!(text.contains("```jbt"), "`{}`: an example", combinator.name());
+        for word in words(combinator) {
+            assert!(text.contains(word), "`{}`: {word}", combinator.name());
+        }
+    }
+    assert!(section(&page, "select").contains(&"```jbt"));
+}
+
+#[test]
+fn all_functions() {
+    let page = page("expressions.md");
+    let table: String = page.lines().filter(|line| line.starts_with("| `")).collect();
+    for name in functions() {
+        assert!(table.contains(&format!("`{name}(")), "{name}");
+    }
+}
+
+/// The scenes of a page, each with the line that it begins at: blocks marked `jbt`, and indented ones that begin with the format.
+fn scenes(page: &str) -> Vec<(usize, String)> {
+    let mut scenes: Vec<(usize, String)> = Vec::new();
+    let mut lines = page.lines().enumerate().peekable();
+    while let Some((at, line)) = lines.next() {
+        let mut scene = String::new();
+        if line == "```jbt" {
+            for (_, inside) in lines.by_ref().take_while(|(_, inside)| *inside != "```") {
+                scene += &format!("{inside}\n");
+            }
+        } else if line == "    jbt 1" {
+            scene += &format!("{line}\n");
+            while let Some((_, inside)) = lines.next_if(|(_, inside)| inside.starts_with("    ")) {
+                scene += &format!("{inside}\n");
+            }
+        } else {
+            continue;
+        }
+        scenes.push((at + 1, scene));
+    }
+    scenes
+}
+
+#[test]
+fn every_scene_is_a_model() {
+    let folder = std::fs::read_dir(root().join("docs")).expect("the project has documents");
+    let pages = folder.map(|entry| entry.expect("it can be read").path());
+    let mut count = 0;
+    for path in pages.chain([root().join("README.md")]) {
+        let page = std::fs::read_to_string(&path).expect("it can be read");
+        for (line, scene) in scenes(&page) {
+            let text = if scene.trim_start().starts_with("jbt 1") { scene } else { format!("{HEAD}{scene}") };
+            let name = format!("{}:{line}", path.display());
+            let source = Source { name: &name, text: text.as_bytes() };
+            let shown = |errors: Vec<_>| -> String {
+                errors.iter().map(|error| source.render(error) + "\n").collect()
+            };
+            let model = parse(text.as_bytes(), &Options::default())
+                .unwrap_or_else(|errors| panic!("{}", shown(errors)));
+            model.check().unwrap_or_else(|errors| panic!("{}", shown(errors)));
+            count += 1;
+        }
+    }
+    assert!(count > 70, "{count} scenes");
+}
+
+#[test]
+fn every_page_is_linked_from_the_readme() {
+    let readme = std::fs::read_to_string(root().join("README.md")).expect("the project has a README");
+    for entry in std::fs::read_dir(root().join("docs")).expect("the project has documents") {
+        let link = format!("(docs/{})", entry.expect("it can be read").file_name().display());
+        assert!(readme.contains(&link), "{link}");
+    }
+}
