@@ -5,6 +5,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use jbt::Box3;
+use jbt::limits::MAX_ATTRIBUTE_WIDTH;
 use jbt::mesh::{
     Field, Lattice, Mesh, MeshError, Options, Report, Sides, Work, check_manifold, extract,
     extract_with_progress,
@@ -466,14 +467,15 @@ impl Field for Wide {
 }
 
 #[test]
-fn attributes_are_one_to_four_reals() {
-    for width in 1..=4 {
+fn attributes_have_a_width() {
+    for width in [1, 4, MAX_ATTRIBUTE_WIDTH] {
         let (mesh, _) = extract(&Wide(width), &lattice(1.0, 0.1), &Options::default()).unwrap();
         let values = &mesh.attributes[0].values;
         assert_eq!(values.len(), width * mesh.positions.len());
-        assert!(values.chunks_exact(width).all(|chunk| chunk == &[1.0, 2.0, 3.0, 4.0][..width]));
+        let channels: Vec<f32> = (1_u8..).take(width).map(f32::from).collect();
+        assert!(values.chunks_exact(width).all(|chunk| chunk == channels));
     }
-    for width in [0, 5, usize::MAX] {
+    for width in [0, MAX_ATTRIBUTE_WIDTH + 1, usize::MAX] {
         let error = extract(&Wide(width), &lattice(1.0, 0.1), &Options::default()).unwrap_err();
         assert_eq!(error, MeshError::Width { name: "wide".to_owned(), width });
     }
