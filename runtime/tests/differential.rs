@@ -21,7 +21,7 @@ use jbt_frontend::walk::{walk, walk_gradient};
 use jbt_frontend::warp::Warp;
 use rayon::prelude::*;
 
-const SHAPES: u64 = 1000;
+const SHAPES: u64 = 400;
 const SETS: u64 = 10;
 
 /// What the oracle allows: f32 rounding of coordinates, rows and sums, times how steep the field may be.

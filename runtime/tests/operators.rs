@@ -53,3 +53,18 @@ fn an_unbounded_model_asks_for_a_region() {
     let cut = Model::new(point([0.5, 0.0, 0.0], 1.0) & !point([0.0; 3], 1.0)).check().unwrap();
     assert!(Polygonize::default().region(&cut).is_ok());
 }
+
+/// Both children of the formula are one leaf, of two colours: the field is theirs together, the slopes are not.
+#[test]
+fn children_of_a_formula_that_share_a_field_have_weights_of_their_own() {
+    let ball = point([0.0; 3], 1.0);
+    let (red, blue) = (ball.color([1.0, 0.0, 0.0]), ball.color([0.0, 0.0, 1.0]));
+    let tree = Model::new(Tree::expression(2.0 * red.field() - 0.5 * blue.field())).check().unwrap();
+    for engine in Engine::ALL {
+        let evaluator = Compiler::for_engine(engine).evaluator(&tree, Query::ALL).unwrap();
+        let mut samples = evaluator.samples();
+        evaluator.eval(&[[0.3, 0.2, 0.1]].into_iter().collect(), &mut samples).unwrap();
+        let color = samples.attribute("color").unwrap();
+        assert_eq!([color[0][0], color[1][0], color[2][0]], [1.0, 0.0, 0.0], "{}", engine.name());
+    }
+}

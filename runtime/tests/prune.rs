@@ -22,7 +22,7 @@ use jbt_frontend::text::{Options, parse, print};
 use jbt_frontend::tree::{NodeKind, Tree};
 use rayon::prelude::*;
 
-const SHAPES: u64 = 600;
+const SHAPES: u64 = 250;
 const POINTS: u64 = 24;
 /// Boxes of each shape.
 const BOXES: usize = 10;

@@ -29,7 +29,7 @@ members! { Warp {
         ([0.0; 3], 1.0),
         ([0.5, 0.5, 0.0], 0.5),
         ([1.5, 1.0, 0.0], 0.0),
-    ])],
+    ]).unbounded([-1.5, -1.0, -1.0], [1.5, 1.0, 1.0])],
 } }
 
 fn found(_: &Model, tree: &CheckedTree) -> Vec<&'static str> {

@@ -7,7 +7,8 @@
 //!        0 outside of the box                  if there is one, so that the row may be left out
 //! ```
 
-use jbt_ir::{Domain, Origin, Value};
+use jbt_ir::{Domain, FunctionBuilder, Origin, Value};
+use rustc_hash::FxHashSet;
 
 use super::Emitter;
 use crate::expression::{Form, LARGEST_FIELD, Operand};
@@ -35,6 +36,18 @@ impl Leaves {
     }
 }
 
+/// The same fields, no two of them one value: children that share a field have slopes of their own.
+fn distinct(d: &mut FunctionBuilder, mut fields: Vec<Value>) -> Vec<Value> {
+    let mut seen = FxHashSet::default();
+    for field in &mut fields {
+        while !seen.insert(*field) {
+            // The larger of a number and itself is that number, to the bit, and moves with it.
+            *field = d.max(*field, *field);
+        }
+    }
+    fields
+}
+
 impl Emitter<'_> {
     /// The answer of a formula whose children have theirs.
     pub(super) fn express(&mut self, id: OccurrenceId) {
@@ -52,8 +65,10 @@ impl Emitter<'_> {
             map.emit(&mut self.builder, outer, &row)
         });
         let numbers = (0..form.numbers()).map(|_| self.column("number")).collect();
-        let leaves = Leaves { point, fields: answers.iter().map(|answer| answer.field).collect(), numbers };
         let weighs = !self.mixing.is_empty() && answers.len() > 1;
+        let fields: Vec<Value> = answers.iter().map(|answer| answer.field).collect();
+        let fields = if weighs { distinct(&mut self.builder, fields) } else { fields };
+        let leaves = Leaves { point, fields, numbers };
         let mut tape = Tape::new(&mut self.builder, weighs);
         let value = form.emit(&mut tape, |operand| leaves.of(operand))[0];
         let tape = tape.finish();
@@ -123,7 +138,7 @@ impl Emitter<'_> {
     fn weighted_by(&mut self, answers: &[Answer], slopes: &[Value]) -> Vec<GroupAnswer> {
         let d = &mut self.builder;
         let zero = d.constant(0.0);
-        let weight = |d: &mut jbt_ir::FunctionBuilder, (answer, &slope): (&Answer, &Value)| {
+        let weight = |d: &mut FunctionBuilder, (answer, &slope): (&Answer, &Value)| {
             let product = d.mul(answer.field, slope);
             // A NaN has no weight.
             let positive = d.lt(zero, product);
