@@ -277,6 +277,21 @@ pub fn arc(
     leaf(SkeletonKind::Arc, fields, radius)
 }
 
+/// A field around a screw line about the axis `normal`, whose middle is `center`: from the direction `start` on it rises by `pitch` in each of its
+/// turns, counterclockwise; below 0 it falls. The `size` has `helix_radius`, `pitch` and `turns`.
+#[must_use]
+pub fn helix<T: Into<Number>>(
+    center: impl Into<Vector>,
+    normal: impl Into<Vector>,
+    start: impl Into<Vector>,
+    size: [T; 3],
+    radius: impl Into<Number>,
+) -> Tree {
+    let [helix_radius, pitch, turns] = size.map(real);
+    let fields = vec![vector(center), vector(normal), vector(start), helix_radius, pitch, turns];
+    leaf(SkeletonKind::Helix, fields, radius)
+}
+
 /// A field around all that is behind the plane through `at`; `normal` points out of it. It is unbounded: cut it with something, or give a region.
 #[must_use]
 pub fn half_space(at: impl Into<Vector>, normal: impl Into<Vector>, radius: impl Into<Number>) -> Tree {
@@ -931,6 +946,7 @@ mod tests {
             (round_cone(o, x, 3.0, 1.0, 2.0), [-4.0, 0.0, 0.0]),
             (rectangle(o, [0.0, 0.0, 3.0], y, [3.0, 1.0], 2.0), [0.0, 4.0, 0.0]),
             (arc(o, [0.0, 0.0, 3.0], x, 90.0, 3.0, 2.0), [0.0, 4.0, 0.0]),
+            (helix(o, [0.0, 0.0, 3.0], x, [3.0, 4.0, 2.0], 2.0), [0.0, 4.0, 1.0]),
             (half_space(x, y, 2.0), [-9.0, 1.0, 5.0]),
             (ellipsoid(x, [2.0, 1.0, 1.0], 2.0), [6.0, 0.0, 0.0]),
             (lmetric(o, 1.0, [1.0, 2.0, 1.0], 2.0), [0.5, 0.5, 0.25]),

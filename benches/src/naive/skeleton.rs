@@ -80,6 +80,7 @@ impl Skeleton {
             | skeleton::Skeleton::RoundCone(_)
             | skeleton::Skeleton::Rectangle(_)
             | skeleton::Skeleton::Arc(_)
+            | skeleton::Skeleton::Helix(_)
             | skeleton::Skeleton::HalfSpace(_)
             | skeleton::Skeleton::Ellipsoid(_)
             | skeleton::Skeleton::LMetric(_)

@@ -18,7 +18,7 @@ const ATAN: [f32; 4] = [8.053_744_5e-2, -0.138_776_86, 0.199_777_11, -0.333_329_
 const EIGHTH: f32 = 0.414_213_57;
 
 /// The angle of the point (x, y), in [-pi, pi]: that of -x and y = -0 is pi, not -pi.
-pub(super) fn atan2<D: Domain>(d: &mut D, y: D::Real, x: D::Real) -> D::Real {
+pub(crate) fn atan2<D: Domain>(d: &mut D, y: D::Real, x: D::Real) -> D::Real {
     let zero = d.constant(0.0);
     let (width, height) = (d.abs(x), d.abs(y));
     let steep = d.lt(width, height);

@@ -31,7 +31,7 @@
 //! Without children an expression is a leaf: it has the attributes of the way down. With one child it hands on the child's, where that has a
 //! field. With several it mixes them by `max(0, f_i dF/df_i)`.
 
-mod arc;
+pub(crate) mod arc;
 mod form;
 mod growth;
 mod operation;

@@ -139,7 +139,8 @@ pub trait SkeletonMember: Member {
 /// Of solids around something (a sphere, a torus, a round cone), the distance from that is at most the distance from the solid and a
 /// coordinate of it: it is off by less than 8 units, and a radius takes one more. A round cone finds the nearest point of its axis with an error
 /// of its own, which matters in the second order alone; see there. An arc adds to a ring the choice between its ends and the circle, which
-/// are equally far away where rounding may take the one for the other.
+/// are equally far away where rounding may take the one for the other. A helix answers for a place of its own that is off by less than 8 units, and for
+/// one that is farther away than the nearest by at most 32.
 ///
 /// Norms have no coordinates and are off by parts of themselves: an ellipsoid, with a product in each square, by less than 6 units, and those with
 /// powers by less than 13 for each norm in the other; see [`LMetric`].
@@ -347,6 +348,7 @@ skeletons! {
     round_cone::RoundCone,
     rectangle::Rectangle,
     arc::Arc,
+    helix::Helix,
     half_space::HalfSpace,
     ellipsoid::Ellipsoid,
     lmetric::LMetric,

@@ -32,6 +32,7 @@ members! { SkeletonKind {
     RoundCone => solids::round_cones(),
     Rectangle => flat::rectangles(),
     Arc => curves::arcs(),
+    Helix => curves::helices(),
     HalfSpace => solids::half_spaces(),
     Ellipsoid => norms::ellipsoids(),
     LMetric => norms::lmetrics(),

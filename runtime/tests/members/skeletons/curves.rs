@@ -180,6 +180,38 @@ pub fn catmull_roms() -> Vec<Row> {
     ]
 }
 
+pub fn helices() -> Vec<Row> {
+    vec![
+        // From (2, 0, -4) to (2, 0, 4).
+        row(
+            "of two turns",
+            "helix { helix_radius 2 pitch 4 turns 2 radius 4 }",
+            &[
+                ([2.0, 0.0, -4.0], 1.0),
+                ([0.0, 2.0, -3.0], 1.0),
+                ([-2.0, 0.0, 2.0], 1.0),
+                ([0.0, -4.0, -1.0], 0.5),
+                // On the axis, and beyond the ends.
+                ([0.0; 3], 0.5),
+                ([0.0, 0.0, -5.0], soft(5.0 / 16.0)),
+                ([2.0, 0.0, 6.0], 0.5),
+                ([2.0, 0.0, -8.0], 0.0),
+            ],
+        ),
+        // From (0, 2, 1) by way of (-2, 0, 0) to (0, -2, -1).
+        row(
+            "of half a turn, left-handed",
+            "helix { start y helix_radius 2 pitch -4 turns 0.5 radius 4 }",
+            &[([0.0, 2.0, 1.0], 1.0), ([-2.0, 0.0, 0.0], 1.0), ([0.0, -2.0, -1.0], 1.0), ([-4.0, 0.0, 0.0], 0.5)],
+        ),
+        row(
+            "of no length, about any direction",
+            "helix { center (0 0 1) normal (0 0 -3) start (1 0 7) helix_radius 2 pitch 1 turns 0 radius 4 }",
+            &[([2.0, 0.0, 1.0], 1.0), ([2.0, 2.0, 1.0], 0.5), ([-2.0, 0.0, 1.0], 0.0)],
+        ),
+    ]
+}
+
 pub fn arcs() -> Vec<Row> {
     vec![
         row(
