@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use crate::affine::sin_cos_degrees;
+use crate::expression::Expression;
 use crate::texture::Texture;
 
 /// How the leaves' values become the value at a point.
@@ -76,13 +77,15 @@ pub enum AttributeValue {
     Textured(Textured),
     /// The uv of each leaf's skeleton, for groups of two reals: see [`SkeletonMember::uv`](crate::skeleton::SkeletonMember::uv).
     Uv(UvMap),
+    /// A formula of the coordinates in the space of the node, with one value for each channel of the group. It asks for no fields, and has no box.
+    Expressed(Expression),
 }
 
 impl AttributeValue {
     /// Whether it is a function of the place in the node's space.
     pub(crate) fn is_placed(&self) -> bool {
         match self {
-            Self::Textured(_) => true,
+            Self::Textured(_) | Self::Expressed(_) => true,
             Self::Numbers(_) | Self::Uv(_) => false,
         }
     }

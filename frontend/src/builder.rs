@@ -784,7 +784,7 @@ impl Tree {
         self.given(name, AttributeRecipe::Uv(UvRecipe { scale, degrees: degrees.into(), shift }))
     }
 
-    fn given(&self, name: &str, value: AttributeRecipe) -> Self {
+    pub(crate) fn given(&self, name: &str, value: AttributeRecipe) -> Self {
         Self::of(Recipe::Attribute { name: name.into(), value }, vec![self.clone()])
     }
 }

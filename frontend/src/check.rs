@@ -29,6 +29,7 @@ use crate::bounds::Bounds;
 use crate::combine::Form;
 use crate::combine::extent::Extent;
 use crate::diagnostic::{Diagnostic, Span};
+use crate::expression::Expression;
 use crate::falloff::Falloff;
 use crate::field::{Field, FieldKind, FieldValue};
 use crate::model::Model;
@@ -269,9 +270,7 @@ impl Model {
                 // It has to be checked again when the iso-value moves.
                 dependence.add(id, &Arc::new(Recipe::of_combinator(*combinator)));
             }
-            if let Some(Recipe::Expression(formula) | Recipe::FormulaWarp(formula)) =
-                node.recipe().map(|recipe| &**recipe)
-            {
+            if let Some(formula) = node.recipe().and_then(|recipe| recipe.formula()) {
                 check_words(report, formula, node.span());
             }
             let made = node.recipe().map_or_else(
@@ -366,10 +365,7 @@ fn check_node(
             }
         }
         NodeKind::Expression(expression) => {
-            check_expression(report, span, expression, count);
-            for falloff in expression.form().falloffs() {
-                check_falloff(report, span, &falloff);
-            }
+            check_expressed(report, span, expression, (1, count));
             (true, "as many children as the formula names")
         }
         NodeKind::Select(which) => {
@@ -579,6 +575,14 @@ fn check_occurrences(report: &mut Report, nodes: &[CheckedNode], most: usize) {
             Diagnostic::limit(span, format!("unfolded, the tree has {count} {what}; it may have {most}"))
                 .expected("share fewer subtrees")
         });
+    }
+}
+
+/// A formula with so many values and children, and the falloffs in it.
+fn check_expressed(report: &mut Report, span: Option<Span>, formula: &Expression, counts: (usize, usize)) {
+    check_expression(report, span, formula, counts);
+    for falloff in formula.form().falloffs() {
+        check_falloff(report, span, &falloff);
     }
 }
 

@@ -336,6 +336,21 @@ impl Map {
 }
 
 impl Recipe {
+    /// The formula of coordinates that it has.
+    pub(crate) const fn formula(&self) -> Option<&Formula> {
+        match self {
+            Self::Expression(formula)
+            | Self::FormulaWarp(formula)
+            | Self::Attribute { value: AttributeRecipe::Expressed(formula), .. } => Some(formula),
+            Self::Primitive { .. }
+            | Self::Combine { .. }
+            | Self::Select(_)
+            | Self::Map(_)
+            | Self::Warp { .. }
+            | Self::Attribute { .. } => None,
+        }
+    }
+
     /// All its numbers.
     fn numbers(&self) -> impl Iterator<Item = &Number> {
         let falloff = if let Self::Primitive { falloff, .. } = self { falloff.fields() } else { &[] };

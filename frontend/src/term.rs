@@ -24,8 +24,8 @@ use std::sync::Arc;
 use crate::expression::{Assembled, Assembler, Draft, Formula};
 use crate::falloff::Falloff;
 use crate::number::{Binary, Function, Number, Step, Vector};
-use crate::recipe::Recipe;
-use crate::tree::Tree;
+use crate::recipe::{AttributeRecipe, Recipe};
+use crate::tree::{NodeKind, Tree};
 
 /// A part of the formula of a field. Cloning one is cheap, and what is used several times is computed once.
 #[derive(Clone)]
@@ -270,6 +270,60 @@ impl Tree {
         let coordinates = coordinates.map(Into::into);
         let (assembled, _) = Term::assemble(&coordinates.each_ref());
         Self::of(Recipe::FormulaWarp(Formula::new(assembled, None)), vec![self.clone()])
+    }
+
+    /// With a formula for every leaf below: one value for each channel of the group, of the coordinates in the space of this tree. It may ask for no
+    /// fields. See [`expression`](crate::expression).
+    ///
+    /// ```
+    /// use jbt_frontend::builder::{point, x, y};
+    /// use jbt_frontend::model::Model;
+    /// use jbt_frontend::walk::walk;
+    ///
+    /// let ball = point([0.0; 3], 2.0).expressed("color", [0.5 + 0.5 * x(), y().abs(), 0.2.into()]);
+    /// let tree = Model::new(ball.translate([5.0, 0.0, 0.0])).check().unwrap();
+    /// assert_eq!(walk(&tree, [6.0, -0.25, 0.0]).attributes[0], [1.0, 0.25, 0.2]);
+    /// ```
+    #[must_use]
+    pub fn expressed(&self, name: &str, values: impl IntoIterator<Item = impl Into<Term>>) -> Self {
+        let values: Vec<Term> = values.into_iter().map(Into::into).collect();
+        let (assembled, _) = Term::assemble(&values.iter().collect::<Vec<_>>());
+        self.given(name, AttributeRecipe::Expressed(Formula::new(assembled, None)))
+    }
+
+    /// The same with the falloff of every primitive given by a formula of r, the distance over the radius of support, from 0 at the skeleton to 1.
+    ///
+    /// Where r is 1 the formula has to be 0 exactly, as computed in f64: then the field is exactly 0 from there on, and reaches as far as before. One
+    /// that is not reaches everywhere. Between 0 and 1 it may rise and fall. It is the same as an expression over primitives with the falloff
+    /// [`Linear`](Falloff::Linear), of which r is `1 - field`. So a surface radius, which is turned into one of support by a falloff, is by that one.
+    ///
+    /// ```
+    /// use jbt_frontend::builder::point;
+    /// use jbt_frontend::model::Model;
+    /// use jbt_frontend::walk::walk;
+    ///
+    /// // A ball in a shell: cos^2(3 pi r / 2) (1 - r).
+    /// let ripple = |r: &jbt_frontend::builder::Term| (4.712 * r).cos().square() * (1.0 - r);
+    /// let tree = Model::new(point([0.0; 3], 2.0).falloff_by(|r| ripple(&r))).check().unwrap();
+    /// assert_eq!(walk(&tree, [0.0; 3]).field, 1.0);
+    /// assert!((walk(&tree, [0.0, 4.0 / 3.0, 0.0]).field - 1.0 / 3.0).abs() < 1e-3);
+    /// assert!(tree.support().is_finite());
+    /// ```
+    #[must_use]
+    pub fn falloff_by(&self, formula: impl Fn(Term) -> Term) -> Self {
+        self.rewrite(|tree| {
+            let NodeKind::Primitive(leaf) = tree.node().kind() else { return None };
+            let recipe = tree.node().recipe().map(|recipe| &**recipe);
+            let strength = if let Some(Recipe::Primitive { strength, .. }) = recipe {
+                strength.clone()
+            } else {
+                leaf.strength.into()
+            };
+            let cone = tree.falloff(Falloff::Linear).strength(1.0);
+            let field = formula(1.0 - cone.field());
+            let is_plain = !strength.follows() && strength.value() == 1.0;
+            Some(Self::expression(if is_plain { field } else { field * strength }))
+        })
     }
 
     /// Its field as a part of a formula, where `+ - * /` are arithmetic.

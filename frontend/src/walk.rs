@@ -187,6 +187,9 @@ fn given(value: &AttributeValue, p: DVec3) -> Given {
         AttributeValue::Numbers(numbers) => Given::Value(numbers.clone(), f64::INFINITY),
         AttributeValue::Textured(textured) => Given::Value(textured.value(p), textured.texture.decision(p)),
         AttributeValue::Uv(map) => Given::Uv(*map),
+        AttributeValue::Expressed(expression) => {
+            Given::Value(expression.values(p), expression.decision(p, &[]))
+        }
     }
 }
 

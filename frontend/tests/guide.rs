@@ -306,6 +306,6 @@ fn leaving_out_what_the_guide_allows_changes_no_bit() {
             }
         }
     }
-    assert!(tally.zero > 10_000 && tally.probed > 3000 && tally.alone > 50, "{tally:?}");
+    assert!(tally.zero > 10_000 && tally.probed > 3000 && tally.alone > 30, "{tally:?}");
     assert!(tally.decided.iter().all(|&count| count > 15), "{tally:?}");
 }

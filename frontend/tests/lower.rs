@@ -75,6 +75,22 @@ fn a_texture_is_evaluated_once_for_all_leaves_that_see_the_same() {
     assert_eq!(count_of(Op::BitXor, moved, Query::ATTRIBUTES), 2 * once, "the identity, and translations");
 }
 
+/// The same with formulas, whose values share what they have in common.
+#[test]
+fn a_formula_is_evaluated_once_for_all_leaves_that_see_the_same() {
+    let scene =
+        |below: &str| format!("jbt 1 color expression {{ t = sqrt(x), (t, 2 * t, y) }} {{ {below} }}");
+    let (ball, solid) = ("point { radius 1 }", "box { half (1 1 1) radius 1 }");
+    let count = |below: &str, query| count_of(Op::Sqrt, &scene(below), query);
+    assert_eq!(count(ball, Query::ATTRIBUTES), 1);
+    let both = format!("sum {{ {ball} union {{ {solid} twist axis z rate 1 {{ {ball} }} }} }}");
+    assert_eq!(count(&both, Query::ALL), 1, "leaves of three shapes, one of them behind a warp");
+    assert_eq!(count(&both, Query::GRADIENT), 0, "nobody asks for attributes");
+    // Formulas that differ in numbers alone are rows of one table.
+    let rows = "jbt 1 sum { color expression { (sqrt(x), 1, 2) } { point { radius 1 } } color expression { (sqrt(x), 3, 4) } { point { radius 2 } } }";
+    assert_eq!(count_of(Op::Sqrt, rows, Query::ATTRIBUTES), 1);
+}
+
 /// Whatever is computed, the tables have the same rows for every query.
 #[test]
 fn computed_attributes_make_no_rows() {

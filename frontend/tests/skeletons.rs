@@ -4,6 +4,7 @@ mod mild;
 
 use fastrand::Rng;
 use jbt_frontend::check::CheckedTree;
+use jbt_frontend::falloff::Falloff;
 use jbt_frontend::lower::lower;
 use jbt_frontend::model::Model;
 use jbt_frontend::query::Query;
@@ -35,7 +36,9 @@ fn text(text: &str) -> CheckedTree {
 
 /// A primitive of this kind.
 fn primitive(kind: SkeletonKind, rng: &mut Rng) -> CheckedTree {
-    let (skeleton, falloff) = (mild::skeleton(rng, kind), mild::falloff(rng));
+    // Smooth ones: differences are to see the skeleton.
+    let falloff = if rng.bool() { Falloff::Soft } else { Falloff::Wyvill };
+    let skeleton = mild::skeleton(rng, kind);
     let leaf = Primitive { skeleton, falloff, radius: 0.5 + rng.f64(), strength: 1.0 };
     Model::new(Tree::new(NodeKind::Primitive(leaf), Vec::new())).check().expect("its numbers are mild")
 }

@@ -190,6 +190,7 @@ fn attribute_bits(value: &AttributeValue) -> Vec<u64> {
                 }
             }
         }
+        AttributeValue::Expressed(expression) => all.extend(expression.numbers()),
         AttributeValue::Uv(map) => all.extend(map.scale.into_iter().chain(map.shift).chain([map.degrees])),
     }
     all.into_iter().map(f64::to_bits).collect()

@@ -1,7 +1,7 @@
 //! The oracle against closed forms and published numbers, and every traversal on very deep trees.
 
 use jbt_frontend::attribute::{AttributeGroup, Mixing};
-use jbt_frontend::builder::{Axis, checker, cuboid, point, ring, segment};
+use jbt_frontend::builder::{Axis, Term, checker, cuboid, point, ring, segment, x, y, z};
 use jbt_frontend::combine::Combinator;
 use jbt_frontend::falloff::Falloff;
 use jbt_frontend::model::Model;
@@ -160,6 +160,35 @@ fn textures_lie_in_the_space_of_their_node() {
     assert_eq!(color(&mixed, [0.1; 3]), [0.5, 0.5, 0.0]);
     // Without field, the default.
     assert_eq!(color(&mixed, [5.0; 3]), WHITE);
+}
+
+#[test]
+fn formulas_lie_in_the_space_of_their_node() {
+    let ball = point(HERE, 2.0);
+    let colored = |tree: &Tree| tree.expressed("color", [x(), (y() * z()).abs(), Term::from(0.25)]);
+    assert_eq!(color(&colored(&ball), [0.5, -1.0, 0.75]), [0.5, 0.75, 0.25]);
+    assert_eq!(color(&colored(&ball).translate([1.0, 0.0, 0.0]), [0.5, -1.0, 0.75]), [-0.5, 0.75, 0.25]);
+    assert_eq!(color(&colored(&ball.translate([1.0, 0.0, 0.0])), [0.5, -1.0, 0.75]), [0.5, 0.75, 0.25]);
+    assert_eq!(color(&colored(&ball.color(GREEN)), [0.5; 3]), GREEN, "a nearer node wins");
+    assert_eq!(color(&(colored(&ball) + ball.color(GREEN)), [0.5, 0.0, 0.0]), [0.25, 0.5, 0.125]);
+    // What has no value: a pole, and what overflows.
+    let odd = ball.expressed("color", [x() / y(), (1000.0 * x()).exp(), (1000.0 * x()).exp() * y()]);
+    let most = f64::from(jbt_frontend::expression::LARGEST_FIELD);
+    assert_eq!(color(&odd, [1.0, 0.0, 0.0]), [0.0, most, 0.0]);
+}
+
+#[test]
+fn formulas_of_attributes_are_checked() {
+    let ball = point(HERE, 1.0);
+    let message = |tree: Tree| format!("{:?}", Model::new(tree).check().expect_err("it is wrong"));
+    let two = message(ball.expressed("color", [x(), y()]));
+    assert!(two.contains("2 values") && two.contains("3 values"), "{two}");
+    let none = message(ball.expressed("color", Vec::<Term>::new()));
+    assert!(none.contains("0 values"), "{none}");
+    let field = message(ball.expressed("color", [x(), y(), ball.field()]));
+    assert!(field.contains("asks for a field"), "{field}");
+    assert!(message(ball.expressed("color", [x() / 0.0, y(), z()])).contains("division by zero"));
+    assert!(message(ball.expressed("colour", [x(), y(), z()])).contains("no attribute `colour`"));
 }
 
 #[test]

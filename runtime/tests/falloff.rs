@@ -1,9 +1,10 @@
 //! Falloffs through the compiler: gradients against the oracle, what happens at the skeleton, at the rim and beyond it, parameters, and
 //! that pruning changes nothing.
 
-use jbt::build::{Edge, arctan, blanc, blinn, degree, inverse_power, param, point, segment};
+use jbt::build::{Edge, Term, arctan, blanc, blinn, degree, inverse_power, param, point, segment};
+use jbt::region::Divisible;
 use jbt::walk::{walk, walk_gradient};
-use jbt::{Compiler, Engine, Falloff, Model, Points, Query, Samples, Tree, Update};
+use jbt::{Box3, Compiler, Engine, Falloff, Model, Points, Pruner, Query, Samples, Tree, Update};
 use jbt_frontend::recipe::FalloffRecipe;
 
 /// Every falloff, those with parameters with several.
@@ -15,6 +16,7 @@ fn falloffs() -> Vec<FalloffRecipe> {
         Falloff::Metaball,
         Falloff::Hermite,
         Falloff::Quintic,
+        Falloff::Linear,
     ];
     let mut all: Vec<FalloffRecipe> = plain.into_iter().map(FalloffRecipe::from).collect();
     all.extend([0.5, 1.0, 2.5, 8.0, 65.0].map(degree));
@@ -144,6 +146,61 @@ fn no_seam_has_a_gap() {
             let falls = found < 0.0 || expected > -1e-30;
             assert!(falls && (found - expected).abs() < bound, "{falloff:?} at {x}: {found}, not {expected}");
         }
+    }
+}
+
+/// Formulas of r as falloffs: one that is published, one that rises and falls, one that is negative.
+fn formulas() -> [fn(Term) -> Term; 3] {
+    [
+        |r| 1.0 - 3.0 * r.square() + 2.0 * r.powf(3.0),
+        |r| (1.0 - &r) * (9.0 * &r).cos().square(),
+        |r| r.square() * (&r - 1.0),
+    ]
+}
+
+#[test]
+fn a_falloff_may_be_a_formula() {
+    let mut rng = fastrand::Rng::with_seed(5);
+    let points: Points = (0..400).map(|_| std::array::from_fn(|_| 3.0 * rng.f32() - 1.5)).collect();
+    let balls =
+        point([0.0; 3], 0.75) + segment([0.5, 0.0, 0.0], [1.0, 0.5, 0.0], 0.5).strength(param("s", 2.0));
+    for formula in formulas() {
+        let tree = balls.falloff_by(formula);
+        let checked = Model::new(tree.clone()).check().expect("a good model");
+        assert!(checked.support().is_finite());
+        let compiler = Compiler::new();
+        let evaluator = compiler.evaluator(&checked, Query::GRADIENT).expect("it compiles");
+        let mut all = evaluator.samples();
+        evaluator.eval(&points, &mut all).expect("the buffers fit");
+        let pruner = Pruner::new(&compiler, &checked).expect("it compiles");
+        let mut beyond = 0;
+        for index in 0..points.len() {
+            let p = points.get(index);
+            let sample = walk(&checked, p.map(f64::from));
+            let field = all.field()[index];
+            assert!((f64::from(field) - sample.field).abs() < 1e-5, "{p:?}: {field}, not {}", sample.field);
+            let bounds = Box3 { low: p.map(|x| x - 0.01), high: p.map(|x| x + 0.01) };
+            let region = pruner.region(bounds).expect("the box is proper");
+            let mut pruned = [0f32; 4];
+            let mut planes: Vec<&mut [f32]> = pruned.chunks_mut(1).collect();
+            evaluator
+                .eval_region(&region, p.each_ref().map(std::slice::from_ref), &mut planes)
+                .expect("the buffers fit");
+            assert_eq!(pruned[0].to_bits(), field.to_bits(), "at {p:?}");
+            if sample.field == 0.0 && region.rows() < pruner.everywhere().rows() {
+                beyond += 1;
+                assert_eq!(field.to_bits(), 0, "at {p:?}");
+            }
+        }
+        assert!(beyond > 50, "{beyond} points are beyond all supports");
+    }
+    // The published one is what has a word of its own.
+    let [hermite, ..] = formulas();
+    let own = Model::new(balls.falloff(Falloff::Hermite)).check().expect("a good model");
+    let same = Model::new(balls.falloff_by(hermite)).check().expect("a good model");
+    for index in 0..points.len() {
+        let [a, b] = [&own, &same].map(|tree| walk(tree, points.get(index).map(f64::from)).field);
+        assert!((a - b).abs() < 1e-12, "{a} and {b}");
     }
 }
 

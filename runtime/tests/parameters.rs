@@ -7,7 +7,7 @@ use jbt_frontend::text::{Options, parse, print};
 use jbt_frontend::walk::walk;
 
 /// Models with the parameter `p`, each in another place that numbers can have.
-const SWEPT: [(&str, f64, f64, &str); 25] = [
+const SWEPT: [(&str, f64, f64, &str); 26] = [
     ("radius", 0.1, 3.0, "point { at (0.1 0 0) radius p }"),
     ("place", -2.0, 2.0, "sum { point { at (p 0 p * p) radius 1 } point { radius 1 } }"),
     ("strength", -2.0, 2.0, "sum { point { radius 1 strength p } point { at (0.4 0 0) radius 1 } }"),
@@ -109,6 +109,12 @@ const SWEPT: [(&str, f64, f64, &str); 25] = [
         -2.0,
         2.0,
         "rotate axis (0 1 1) degrees 90 * p { color gradient { a (0 0 0) b (1 1 1) from (0 0 0) to (p 1 p) } { sum { point { radius 1 } translate (p 0 0) { box { half (0.2 0.1 0.3) radius 1 } } } } }",
+    ),
+    (
+        "formula of an attribute",
+        -2.0,
+        2.0,
+        "rotate axis z degrees 90 * p { color expression { t = p * x + y, (sin(t), t * p, p) } { sum { point { radius 1 } translate (p 0 0) { box { half (0.2 0.1 0.3) radius 1 } } } } }",
     ),
     (
         "uv",

@@ -153,7 +153,7 @@ impl Compact {
                 // Numbers are all that it knows: where they are computed, the check against the oracle says that it is off.
                 let here: &[f64] = match value {
                     AttributeValue::Numbers(numbers) => numbers,
-                    AttributeValue::Textured(_) | AttributeValue::Uv(_) => &[],
+                    AttributeValue::Textured(_) | AttributeValue::Uv(_) | AttributeValue::Expressed(_) => &[],
                 };
                 let mut values = values.to_vec();
                 let mut start = 0;

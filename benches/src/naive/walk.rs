@@ -362,6 +362,7 @@ fn falloff(falloff: Falloff, u: f32) -> f32 {
         | Falloff::Metaball
         | Falloff::Hermite
         | Falloff::Quintic
+        | Falloff::Linear
         | Falloff::Degree(_)
         | Falloff::Blinn(_)
         | Falloff::ArcTan(_)
@@ -380,6 +381,7 @@ fn falloff_slope(falloff: Falloff, u: f32) -> f32 {
         | Falloff::Metaball
         | Falloff::Hermite
         | Falloff::Quintic
+        | Falloff::Linear
         | Falloff::Degree(_)
         | Falloff::Blinn(_)
         | Falloff::ArcTan(_)

@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, HashSet};
 
 use jbt_ir::limits;
 
-use super::check_fields;
 use super::numbers::check_numbers;
+use super::{check_expressed, check_fields};
 use crate::attribute::{AttributeGroup, AttributeValue, Textured};
 use crate::diagnostic::{Diagnostic, Span};
 use crate::report::{Report, clip, nearest};
@@ -103,6 +103,11 @@ pub(super) fn check_attribute(
                 report.add(|| Diagnostic::error(span, message).expected(help));
             }
         }
+        AttributeValue::Expressed(expression) if expression.form().children() > 0 => {
+            let message = format!("the formula of the attribute `{name}` asks for a field");
+            report.add(|| Diagnostic::error(span, message).expected("expected coordinates and numbers"));
+        }
+        AttributeValue::Expressed(expression) => check_expressed(report, span, expression, (width, 0)),
         AttributeValue::Uv(map) => {
             if width != 2 {
                 let message = format!("the attribute `{name}` has width {width}, and a uv has 2");

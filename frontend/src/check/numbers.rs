@@ -211,7 +211,7 @@ pub(super) fn check_expression(
     report: &mut Report,
     span: Option<Span>,
     expression: &Expression,
-    children: usize,
+    (values, children): (usize, usize),
 ) {
     let form = expression.form();
     if children != form.children() {
@@ -220,6 +220,11 @@ pub(super) fn check_expression(
         let expected = format!("expected {} and {}", form.children(), form.numbers());
         report.add(|| Diagnostic::error(span, message).expected(expected));
         return;
+    }
+    if form.results.len() != values {
+        let plural = if values == 1 { "" } else { "s" };
+        let message = format!("the expression has {} values", form.results.len());
+        report.add(|| Diagnostic::error(span, message).expected(format!("expected {values} value{plural}")));
     }
     if !check_formula(report, span, "the expression", form, &expression.numbers) {
         return;

@@ -142,7 +142,7 @@ impl Form {
         self.results.iter().map(|&result| of(&done, result)).collect()
     }
 
-    /// The value, plainly.
+    /// The first value, plainly.
     pub(super) fn value(&self, numbers: &[f64], p: DVec3, children: &[f64]) -> f64 {
         self.values(numbers, p, children)[0]
     }

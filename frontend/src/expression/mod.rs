@@ -1,10 +1,11 @@
-//! Expressions: fields that are given by a formula of the coordinates, of other fields, and of numbers.
+//! Expressions: fields and attributes that are given by a formula of the coordinates, of other fields, and of numbers.
 //!
 //! ```text
 //! expression { 1 - sqrt(x^2 + y^2) / (1 + bulge) }                       a leaf of its own
 //! expression { 0.7 * field(a) * field(b) - 0.3 * field(c)^2 }            arithmetic on three subtrees
 //! expression { r = sqrt(x^2 + y^2), r - 0.1 * sin(8 * r) }               a definition, which is computed once
 //! expression within (-1 -1 -1) to (1 1 1) { x * y * z }                  exactly 0 outside of a box
+//! color expression { (0.5 + 0.5 * sin(x), y, 0.2) } { .. }               an attribute of the leaves below
 //! ```
 //!
 //! The shape of the formula ([`Form`]) is code; its numbers are numbers of a row. `x y z` are those of the node's own space: maps above it
@@ -26,10 +27,24 @@
 //! A formula is 0 outside of its box, if it has one. It is 0 where all its children are, if it is so for whatever coordinates
 //! ([`Expression::vanishes`]): then it reaches no further than they do. Any other expression reaches everywhere.
 //!
+//! # Falloffs
+//!
+//! The falloff `linear` is 1 - r, where r is the distance over the radius. So a formula of r is one over a primitive with that falloff:
+//!
+//! ```text
+//! let cone = point { radius 2 falloff linear }
+//! expression { r = 1 - field(cone), (1 - r)^2 * (1 + 2 * r) }            in Rust `point(..).falloff_by(|r| ..)`
+//! ```
+//!
+//! Beyond the radius r stays 1. If the formula is 0 there, exactly, the field is exactly 0 and is pruned like others; it need not fall everywhere.
+//!
 //! # Attributes
 //!
 //! Without children an expression is a leaf: it has the attributes of the way down. With one child it hands on the child's, where that has a
 //! field. With several it mixes them by `max(0, f_i dF/df_i)`.
+//!
+//! An attribute may be an expression itself: one value for each channel, of the coordinates and of numbers, but of no fields. What is no number
+//! counts as 0 there, and overflow ends at [`LARGEST_FIELD`] too.
 
 pub(crate) mod arc;
 mod form;
@@ -45,15 +60,14 @@ use crate::bounds::Bounds;
 use crate::number::Number;
 
 pub use form::Form;
-pub(crate) use form::Operand;
-pub(crate) use form::{Assembled, Assembler, Draft};
+pub(crate) use form::{Assembled, Assembler, Draft, Operand};
 pub(crate) use growth::Growth;
 pub(crate) use write::write;
 
-/// What the field of an expression is kept within, in magnitude: 2^100. Sums and products with ordinary fields stay finite.
+/// What the field of an expression, and the value of an attribute, is kept within, in magnitude: 2^100. Sums and products with ordinary fields stay finite.
 pub const LARGEST_FIELD: f32 = 1.267_650_6e30;
 
-/// A field that is given by a formula.
+/// A formula with its numbers, of a field or of the values of an attribute group.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Expression {
     pub(crate) form: Arc<Form>,
@@ -129,6 +143,14 @@ impl Expression {
             (field * slope).max(0.0)
         };
         (0..children.len()).map(&mut weight).collect()
+    }
+
+    /// The values of an attribute group at a point of the attribute node's space, plainly.
+    #[must_use]
+    pub fn values(&self, p: DVec3) -> Vec<f64> {
+        let largest = f64::from(LARGEST_FIELD);
+        let kept = |value: f64| if value.is_nan() { 0.0 } else { value.clamp(-largest, largest) };
+        self.form.values(&self.numbers, p, &[]).into_iter().map(kept).collect()
     }
 
     /// How far the point is from where the formula has a jump or a kink, in the units of what is compared there.

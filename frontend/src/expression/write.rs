@@ -1,4 +1,4 @@
-//! Formulas as text: definitions first, for what is used more than once, then the value, or the values.
+//! Formulas as text: definitions first, for what is used more than once, then the value, or several in parentheses.
 
 use std::fmt;
 
@@ -13,6 +13,7 @@ pub(crate) fn write<W: fmt::Write>(
     numbers: &[Number],
     child: impl Fn(usize) -> String,
     definition: impl Fn(usize) -> String,
+    tuple: bool,
 ) -> fmt::Result {
     let shared: Vec<u32> =
         (0..).zip(form.uses()).filter(|(_, uses)| *uses > 1).map(|(step, _)| step).collect();
@@ -30,11 +31,12 @@ pub(crate) fn write<W: fmt::Write>(
         out.write_str(", ")?;
         place[step as usize] = Some(index as u32);
     }
+    out.write_str(if tuple { "(" } else { "" })?;
     for (index, &result) in form.results.iter().enumerate() {
         out.write_str(if index == 0 { "" } else { ", " })?;
         show(&postfix(&all, result, numbers, &place), out, &mut name)?;
     }
-    Ok(())
+    out.write_str(if tuple { ")" } else { "" })
 }
 
 /// The steps of a part, in postfix order, without what has a definition.

@@ -11,6 +11,7 @@
 //! | `metaball` | `1 - 3r^2`, then `3/2 (1 - r)^2` | 0.4226 | 2 at 1/3 | C1 |
 //! | `hermite` | `1 - 3r^2 + 2r^3` | 0.5 | 1.5 at 0.5 | C1 |
 //! | `quintic` | `1 - 10r^3 + 15r^4 - 6r^5` | 0.5 | 1.875 at 0.5 | C2 |
+//! | `linear` | `1 - r` | 0.5 | 1 | C0 |
 //! | `degree` | `u^n` | `sqrt(1 - 2^(-1/n))` | at `1/sqrt(2n - 1)` | C(n-1) |
 //! | `blinn` | `exp(-h c^2 s)` | `sqrt(ln 2 / h) / c` | at `1 / (c sqrt(2h))` | its edge |
 //! | `arctan` | `1/2 + atan(p - 2pr) / (2 atan p)` | 0.5 | `p / atan p` at 0.5 | C0, or its edge |
@@ -28,7 +29,7 @@
 //! * its derivative is finite everywhere: r is a root of `1 - u`, whose tangent at 0 is 0.
 //!
 //! What u has lost to rounding, r = sqrt(1 - u) loses near the skeleton: it is off by 2^-25 / r there, at most 2^-13. Only falloffs with
-//! a tip show it, [`ArcTan`] and an [`InversePower`] with an exponent below 2.
+//! a tip show it, [`Linear`], [`ArcTan`] and an [`InversePower`] with an exponent below 2.
 //!
 //! Polynomials in r are not such chains as they are published. Their files say by what they are replaced.
 
@@ -49,6 +50,8 @@ pub trait PlainFalloff {
     const ALIASES: &'static [&'static str];
     /// See [`FalloffMember::steepness`].
     const STEEPNESS: f64;
+    /// See [`FalloffMember::is_pointed`].
+    const IS_POINTED: bool = false;
 
     /// The field at `s = d^2 / R^2 >= 0`, plainly.
     fn value(s: f64) -> f64;
@@ -218,7 +221,7 @@ macro_rules! falloffs {
             /// See [`FalloffMember::is_pointed`].
             #[must_use]
             pub fn is_pointed(&self) -> bool {
-                match self { $( Self::$name => false, )+ $( Self::$rich(falloff) => falloff.is_pointed(), )+ }
+                match self { $( Self::$name => $name::IS_POINTED, )+ $( Self::$rich(falloff) => falloff.is_pointed(), )+ }
             }
 
             /// The numbers of a row, for code of this kind and variant: one for each of [`FalloffKind::columns`].
@@ -237,6 +240,7 @@ falloffs! {
         metaball::Metaball,
         hermite::Hermite,
         quintic::Quintic,
+        linear::Linear,
     }
     with_parameters {
         degree::Degree,

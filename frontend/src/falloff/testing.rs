@@ -101,6 +101,7 @@ impl Compiled {
             | FalloffKind::Metaball
             | FalloffKind::Hermite
             | FalloffKind::Quintic
+            | FalloffKind::Linear
             | FalloffKind::Degree(_)
             | FalloffKind::ArcTan(_)
             | FalloffKind::InversePower(_)

@@ -1,4 +1,4 @@
-//! Attribute values that are computed at the point: textures and uv.
+//! Attribute values that are computed at the point: textures, uv, formulas.
 //!
 //! An attribute node that gives numbers ends up in the rows of the leaves below it. One that gives a function ends up there too: as the map to the
 //! space of the function, and the function's own numbers. So leaves under a thousand checkers of their own are rows of one table.
@@ -6,9 +6,10 @@
 //! ```text
 //! leaf bound to a texture     its row: map, numbers of the texture, both values     code: t at the mapped point, (1 - t) a + t b
 //! leaf bound to uv            its row: map to the skeleton's frame, uv columns, a 2x3 matrix
+//! leaf bound to a formula     its row: map, numbers of the formula                  code: min(max(F, -largest), largest), and 0 for a NaN
 //! ```
 //!
-//! A texture that several leaves see in the same coordinates is evaluated once: it is lifted to the start of its space, and all of them take
+//! A texture or formula that several leaves see in the same coordinates is evaluated once: it is lifted to the start of its space, and all of them take
 //! its value. Then the leaves differ in code from those of other textures, so only the [`MAX_SHARED`] textures with the most leaves are
 //! lifted; the others are evaluated for each leaf.
 //!
@@ -17,6 +18,8 @@
 //! To add another kind of computed value: a variant of [`AttributeValue`], one of [`ComputedKind`] with its columns and its code here, and
 //! what the oracle makes of it.
 
+use std::sync::Arc;
+
 use glam::DAffine3;
 use jbt_ir::{Domain, FunctionBuilder, Value};
 
@@ -24,11 +27,12 @@ use super::occurrence::{Scene, SpaceId};
 use super::position::MapKind;
 use crate::attribute::{AttributeValue, Textured, UvMap};
 use crate::check::NodeId;
+use crate::expression::{Form, LARGEST_FIELD, Operand};
 use crate::skeleton::SkeletonKind;
 use crate::texture::TextureKind;
 use crate::tree::NodeKind;
 
-/// How many textures may be lifted, because several leaves share them.
+/// How many textures and formulas may be lifted, because several leaves share them.
 pub(super) const MAX_SHARED: usize = 32;
 
 /// The name of a computed value: a function in coordinates.
@@ -36,10 +40,11 @@ pub(super) const MAX_SHARED: usize = 32;
 pub(super) struct ComputedId(pub(super) u32);
 
 /// The function: what selects code.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[derive(Clone, PartialEq, Eq, Hash, Debug)]
 pub(super) enum ComputedKind {
     Texture(TextureKind),
     Uv(SkeletonKind),
+    Formula(Arc<Form>),
 }
 
 /// A function in coordinates.
@@ -73,9 +78,18 @@ pub(super) enum ComputedShape {
 
 impl ComputedKind {
     /// Whether its values are finite at every point, infinite ones and NaN too.
-    pub(super) const fn is_finite(self) -> bool {
+    pub(super) const fn is_finite(&self) -> bool {
         match self {
-            Self::Texture(_) | Self::Uv(_) => true,
+            // Formulas are kept within bounds.
+            Self::Texture(_) | Self::Uv(_) | Self::Formula(_) => true,
+        }
+    }
+
+    /// How many operations of a formula it takes.
+    pub(super) fn steps(&self) -> usize {
+        match self {
+            Self::Texture(_) | Self::Uv(_) => 0,
+            Self::Formula(form) => form.steps(),
         }
     }
 }
@@ -87,7 +101,7 @@ const UV_MATRIX: [&str; 6] = ["uu", "uv", "u", "vu", "vv", "v"];
 /// of the group's.
 pub(super) fn emit(
     d: &mut FunctionBuilder,
-    kind: ComputedKind,
+    kind: &ComputedKind,
     point: [Value; 3],
     channels: &[String],
     mut columns: impl FnMut(&mut FunctionBuilder, &[&str]) -> Vec<Value>,
@@ -118,22 +132,46 @@ pub(super) fn emit(
             };
             row.chunks_exact(3).map(part).collect()
         }
+        ComputedKind::Formula(form) => {
+            let row = columns(d, &vec!["number"; form.numbers()]);
+            let values = form.emit(d, |operand| match operand {
+                Operand::Coordinate(axis) => point[axis as usize],
+                Operand::Number(number) => row[number as usize],
+                Operand::Child(_) | Operand::Step(_) => unreachable!("an attribute asks for no fields"),
+            });
+            values.into_iter().map(|value| kept(d, value)).collect()
+        }
     }
+}
+
+/// The value within bounds, and 0 instead of a NaN.
+fn kept(d: &mut FunctionBuilder, value: Value) -> Value {
+    let bounds = [-LARGEST_FIELD, LARGEST_FIELD, 0.0];
+    let [lowest, largest, zero] = bounds.map(|number| d.constant(number));
+    let is_number = d.eq(value, value);
+    let value = d.select(is_number, value, zero);
+    let value = d.max(value, lowest);
+    d.min(value, largest)
 }
 
 /// The numbers of a computed value in a row, in the order in which [`emit`] asks for them behind those of the map.
 pub(super) fn push_columns(scene: &Scene<'_>, computed: &Computed, row: &mut Vec<f64>) {
     computed.map_kind.push_columns(&computed.map, row);
-    match (attribute(scene, computed.node), computed.kind) {
+    match (attribute(scene, computed.node), &computed.kind) {
         (AttributeValue::Textured(Textured { texture, a, b }), ComputedKind::Texture(kind)) => {
             kind.push_columns(texture, row);
             row.extend(a);
             row.extend(b);
         }
         (AttributeValue::Uv(map), ComputedKind::Uv(_)) => push_uv(scene, computed, map, row),
-        (AttributeValue::Numbers(_) | AttributeValue::Textured(_) | AttributeValue::Uv(_), _) => {
-            unreachable!("the kind is that of the node")
-        }
+        (AttributeValue::Expressed(expression), ComputedKind::Formula(_)) => row.extend(expression.numbers()),
+        (
+            AttributeValue::Numbers(_)
+            | AttributeValue::Textured(_)
+            | AttributeValue::Uv(_)
+            | AttributeValue::Expressed(_),
+            _,
+        ) => unreachable!("the kind is that of the node"),
     }
 }
 
@@ -156,7 +194,7 @@ pub(super) fn attribute<'a>(scene: &Scene<'a>, node: NodeId) -> &'a AttributeVal
     }
 }
 
-/// Decides which textures are lifted: those with the most leaves; of equals those that are met first.
+/// Decides which textures and formulas are lifted: those with the most leaves; of equals those that are met first.
 pub(super) fn share(computed: &mut [Computed]) {
     let mut candidates: Vec<&mut Computed> = computed.iter_mut().filter(|it| it.uses > 1).collect();
     candidates.sort_by_key(|it| std::cmp::Reverse(it.uses));

@@ -365,7 +365,9 @@ impl<'a> Writer<'a> {
                 (Some(id), _) => self.computed(id),
                 (None, Some(bound)) => match computed::attribute(self.scene, bound.node) {
                     AttributeValue::Numbers(numbers) => self.row.extend(numbers),
-                    AttributeValue::Textured(_) | AttributeValue::Uv(_) => unreachable!("it is computed"),
+                    AttributeValue::Textured(_) | AttributeValue::Uv(_) | AttributeValue::Expressed(_) => {
+                        unreachable!("it is computed")
+                    }
                 },
                 (None, None) => self.row.extend(&group.default),
             }

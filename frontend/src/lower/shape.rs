@@ -189,6 +189,12 @@ const MAX_DEPTH_OF_GUARDS: usize = 24;
 /// Operations of a formula that cost as much as a leaf.
 const STEPS_OF_A_LEAF: usize = 16;
 
+/// How many operations of formulas the attributes of a leaf take, where it stands.
+fn steps_of(scene: &Scene<'_>, computed: &[Option<ComputedId>]) -> usize {
+    let here = computed.iter().flatten().map(|&id| scene.computed(id)).filter(|computed| !computed.shared);
+    here.map(|computed| computed.kind.steps()).sum()
+}
+
 /// What the code of a shape consists of. The pieces of a leaf are a table, but a leaf is a row all the same: so any number of them is the
 /// same code.
 #[derive(Clone, Copy, Debug)]
@@ -374,7 +380,8 @@ impl<'a> Classifier<'a> {
                     computed: self.computed(computed, occurrence.space),
                 };
                 let tables = primitive.skeleton.kind().pieces().is_some();
-                self.name(key, Content { tables, ..Content::LEAF })
+                let leaves = 1 + steps_of(self.scene, computed) / STEPS_OF_A_LEAF;
+                self.name(key, Content { tables, leaves, ..Content::LEAF })
             }
             OccurrenceKind::Warp { position, inside, child, weight } => {
                 let (child, mut content) = self.of(*child);
@@ -444,7 +451,8 @@ impl<'a> Classifier<'a> {
             unreachable!("only formulas have forms")
         };
         let form = Arc::clone(&self.scene.expression(occurrence.node).form);
-        let own = Content { leaves: 1 + form.steps() / STEPS_OF_A_LEAF, ..Content::LEAF };
+        let steps = form.steps() + steps_of(self.scene, computed);
+        let own = Content { leaves: 1 + steps / STEPS_OF_A_LEAF, ..Content::LEAF };
         let content = children.iter().fold(own, |all, &child| all.and(self.of(child).1));
         let key = ShapeKey::Expression {
             map: form.asks_point().then(|| self.scene.position(*position).kind()),
@@ -465,7 +473,7 @@ impl<'a> Classifier<'a> {
                 return ComputedShape::Shared(id);
             }
             let up = self.scene.spaces_between(computed.space, space);
-            ComputedShape::Here { up, map: computed.map_kind, kind: computed.kind }
+            ComputedShape::Here { up, map: computed.map_kind, kind: computed.kind.clone() }
         };
         computed.iter().map(|id| id.map(shape)).collect()
     }

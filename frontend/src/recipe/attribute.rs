@@ -2,6 +2,7 @@
 
 use super::FieldNumber;
 use crate::attribute::{AttributeValue, Textured, UvMap};
+use crate::expression::Formula;
 use crate::number::{Number, values};
 use crate::texture::TextureKind;
 
@@ -14,6 +15,8 @@ pub enum AttributeRecipe {
     Textured(TexturedRecipe),
     /// The uv of each leaf's skeleton.
     Uv(UvRecipe),
+    /// A formula with one value for each channel.
+    Expressed(Formula),
 }
 
 /// A mixture of two values by a texture.
@@ -66,6 +69,7 @@ impl From<&AttributeValue> for AttributeRecipe {
                 b: all(b),
             }),
             AttributeValue::Uv(map) => Self::Uv((*map).into()),
+            AttributeValue::Expressed(expression) => Self::Expressed(expression.into()),
         }
     }
 }
@@ -87,6 +91,7 @@ impl AttributeRecipe {
                 degrees: degrees.value(),
                 shift: values(shift),
             }),
+            Self::Expressed(formula) => AttributeValue::Expressed(formula.expression()),
         }
     }
 
@@ -98,6 +103,7 @@ impl AttributeRecipe {
             Self::Uv(UvRecipe { scale, degrees, shift }) => {
                 (&[], [scale, std::slice::from_ref(degrees), shift])
             }
+            Self::Expressed(formula) => (&[], [&formula.numbers, &[], &[]]),
         };
         fields.iter().flat_map(FieldNumber::numbers).chain(numbers.into_iter().flatten())
     }
@@ -112,6 +118,7 @@ impl AttributeRecipe {
             Self::Uv(UvRecipe { scale, degrees, shift }) => {
                 scale.iter_mut().chain([degrees]).chain(shift).collect()
             }
+            Self::Expressed(formula) => formula.numbers.iter_mut().collect(),
         }
     }
 }

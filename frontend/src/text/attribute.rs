@@ -1,12 +1,14 @@
-//! What stands between the name of an attribute and its block: numbers, a texture, or a map of uv.
+//! What stands between the name of an attribute and its block: numbers, a texture, a formula, or a map of uv.
 //!
 //! ```text
 //! color (1 0.3 0.1) { child }
 //! color checker { a (1 1 1) b (0 0 0) size 0.5 } { child }
+//! color expression { r = sqrt(x^2 + y^2), (r, 1 - r, 0) } { child }
 //! uv scale (2 2) rotate 90 shift (0 0.5) { child }           a group of two reals; all three may be left out
 //! ```
 
 use super::expression::{Place, is_builtin};
+use super::formula::EXPRESSION;
 use super::lex::{Token, TokenKind};
 use super::parse::{Parser, is_statement};
 use super::primitive::Slots;
@@ -35,6 +37,10 @@ impl Parser<'_> {
             let token = self.next();
             return self.textured(kind, token, width).map(AttributeRecipe::Textured);
         }
+        if word == Some(EXPRESSION) {
+            let token = self.next();
+            return self.attribute_formula(token, width).map(AttributeRecipe::Expressed);
+        }
         let is_number = |word: &str| self.parameter(word).is_some() || is_builtin(word);
         let begins_uv = match word {
             Some(word) => UV_WORDS.contains(&word) && (width == 2 || !is_number(word)),
@@ -57,12 +63,14 @@ impl Parser<'_> {
         self.report_with(|parser| {
             let message = format!("no texture or parameter is called `{}`", clip(word));
             let textures = || TextureKind::ALL.iter().map(|kind| kind.name());
-            Diagnostic::error(Some(token.span()), message).expected(
-                match nearest(word, textures().chain(parser.parameter_names())) {
-                    Some(near) => format!("perhaps `{near}`"),
-                    None => format!("textures are {}", textures().collect::<Vec<_>>().join(", ")),
-                },
-            )
+            let words = textures().chain([EXPRESSION]).chain(parser.parameter_names());
+            Diagnostic::error(Some(token.span()), message).expected(match nearest(word, words) {
+                Some(near) => format!("perhaps `{near}`"),
+                None => format!(
+                    "`{EXPRESSION}` is a formula, textures are {}",
+                    textures().collect::<Vec<_>>().join(", ")
+                ),
+            })
         });
         self.stay_lost();
         if self.peek().is(b'{') {

@@ -1,4 +1,5 @@
-//! The formula of a field: an expression over `x y z`, `field(name)`, definitions of its own and numbers. Or three of them, of a point.
+//! The formula of a field: an expression over `x y z`, `field(name)`, definitions of its own and numbers. Or several, without fields: three of a point,
+//! or one for each channel of an attribute.
 //!
 //! It is read by the parser of numbers, which hands what is no number through as steps.
 
@@ -12,7 +13,7 @@ use super::lex::{Token, TokenKind};
 use super::node::{Begun, Head};
 use super::parse::{Parser, is_statement};
 use crate::diagnostic::{Diagnostic, Span};
-use crate::expression::{Assembler, Draft, Formula};
+use crate::expression::{Assembled, Assembler, Draft, Formula};
 use crate::falloff::{Falloff, FalloffKind};
 use crate::number::{Binary, Function, Number, Step, Variable};
 use crate::recipe::{FalloffRecipe, Recipe};
@@ -23,10 +24,14 @@ use crate::tree::Tree;
 pub(crate) const COORDINATES: [&str; 3] = ["x", "y", "z"];
 /// The word for the field of a subtree.
 pub(crate) const FIELD: &str = "field";
+/// The word for a formula.
+pub(super) const EXPRESSION: &str = "expression";
 
 /// What a formula may be about besides numbers.
 #[derive(Default)]
 pub(super) struct Scope<'a> {
+    /// Whether it may ask for no fields.
+    fieldless: bool,
     /// The place of each definition.
     definitions: HashMap<&'a str, u32>,
     /// The subtrees whose fields it asks for, each once, and the place of each by its identity.
@@ -39,7 +44,8 @@ pub(super) struct Scope<'a> {
 impl Scope<'_> {
     /// The words that stand for something.
     pub(super) fn words(&self) -> impl Iterator<Item = &str> {
-        COORDINATES.into_iter().chain([FIELD]).chain(self.definitions.keys().copied())
+        let field = (!self.fieldless).then_some(FIELD);
+        COORDINATES.into_iter().chain(field).chain(self.definitions.keys().copied())
     }
 
     fn child(&mut self, tree: Tree) -> Variable {
@@ -62,7 +68,8 @@ impl<'a> Parser<'a> {
         if let Some(axis) = COORDINATES.iter().position(|name| *name == word) {
             return Some(Ok(Variable::Coordinate(axis as u8)));
         }
-        (word == FIELD).then(|| self.field_of(token))
+        let fieldless = scope.fieldless;
+        (word == FIELD).then(|| if fieldless { self.no_field(token) } else { self.field_of(token) })
     }
 
     /// The function of a falloff, in a formula.
@@ -84,6 +91,14 @@ impl<'a> Parser<'a> {
             });
         }
         recipe.falloff()
+    }
+
+    fn no_field(&mut self, token: Token) -> Result<Variable, ()> {
+        self.lose_place(|| {
+            Diagnostic::error(Some(token.span()), "the formula of an attribute asks for no field")
+                .expected("expected coordinates and numbers")
+        });
+        Err(())
     }
 
     /// `( NAME )` behind the word `field`.
@@ -134,15 +149,38 @@ impl<'a> Parser<'a> {
         let Some(open) = self.open() else {
             return self.broken.clone();
         };
-        self.scope = Some(Scope::default());
+        let Some((assembled, children)) = self.formula((start, open), Scope::default(), 1) else {
+            return self.broken.clone();
+        };
+        let span = Span::new(start.start, self.previous_end());
+        let recipe = Recipe::Expression(Formula::new(assembled, bounds));
+        Tree::cook(recipe, &self.iso, children, Some(span)).unwrap_or_else(|_| self.broken.clone())
+    }
+
+    /// The formula of an attribute, whose word, `start`, has just been taken: one value for each channel.
+    pub(super) fn attribute_formula(&mut self, start: Token, width: usize) -> Option<Formula> {
+        let open = self.open()?;
+        let scope = Scope { fieldless: true, ..Scope::default() };
+        let (assembled, _) = self.formula((start, open), scope, width)?;
+        Some(Formula::new(assembled, None))
+    }
+
+    /// A formula with so many values and the subtrees that it asks for, from behind its `{`, which is `open`, to behind its `}`.
+    fn formula(
+        &mut self,
+        (start, open): (Token, Token),
+        scope: Scope<'a>,
+        width: usize,
+    ) -> Option<(Assembled, Vec<Tree>)> {
+        self.scope = Some(scope);
         let mut assembler = Assembler::default();
-        let values = self.formulas(&mut assembler, 1);
+        let values = self.definitions(&mut assembler, width);
         let scope = self.scope.take().unwrap_or_default();
         if !self.peek().is(b'}') {
             self.expected_at(self.peek(), "expected an operator, or `}`");
         }
         if !self.end_of_formula(open) {
-            return self.broken.clone();
+            return None;
         }
         let span = Span::new(start.start, self.previous_end());
         if assembler.steps() > MAX_EXPRESSION_STEPS {
@@ -151,13 +189,43 @@ impl<'a> Parser<'a> {
                 assembler.steps()
             );
             self.report(|| Diagnostic::limit(Some(span), message));
-            return self.broken.clone();
+            return None;
         }
         let assembled = assembler.finish(&values);
         let children = assembled.children.iter().map(|&child| scope.children[child as usize].clone());
         let children = children.collect();
-        let recipe = Recipe::Expression(Formula::new(assembled, bounds));
-        Tree::cook(recipe, &self.iso, children, Some(span)).unwrap_or_else(|_| self.broken.clone())
+        Some((assembled, children))
+    }
+
+    /// The definitions of a formula and its value, or its values in parentheses, up to its end or to an error that has lost the place.
+    fn definitions(&mut self, assembler: &mut Assembler, width: usize) -> Vec<Draft> {
+        let mut values: Vec<Draft> = Vec::new();
+        loop {
+            let token = self.peek();
+            let defines = token.kind == TokenKind::Word && self.peek_behind().is(b'=');
+            let name = defines.then(|| self.text(token));
+            if defines {
+                self.next();
+                self.next();
+            }
+            // Numbers whose steps may hold variables.
+            let numbers = match (defines, width) {
+                (false, 2..) => self.group_values(Some(width)),
+                _ => vec![self.expression(Place::Alone).number],
+            };
+            let drafts = numbers.iter().map(|number| assembler.postfix(&number.steps(), &values));
+            let mut drafts: Vec<Draft> = drafts.collect();
+            let Some(name) = name.filter(|_| !self.is_lost()) else {
+                return drafts;
+            };
+            let value = drafts.remove(0);
+            self.define(name, token.span(), values.len() as u32);
+            values.push(value);
+            if self.accept(b',').is_none() {
+                self.expected_at(self.peek(), "expected `,` and the next definition, or the value");
+                return vec![Draft::Constant(f64::NAN.into())];
+            }
+        }
     }
 
     /// The definitions and the values of a formula, this many, up to its end or to an error that has lost the place.

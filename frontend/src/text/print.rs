@@ -11,6 +11,7 @@ use std::fmt::Write as _;
 use glam::DAffine3;
 
 use super::attribute::texture_named;
+use super::formula::EXPRESSION;
 use super::{GROUP_NODE, WEIGHTED, field_word};
 use crate::attribute::AttributeGroup;
 use crate::combine::{Combinator, Family};
@@ -162,9 +163,9 @@ impl Printer {
             (Some(Recipe::Expression(formula)), _) => expression(out, formula, child, &self.definitions),
             (Some(Recipe::FormulaWarp(formula)), _) => formula_warp(out, formula, &self.definitions),
             (None, NodeKind::Warp(Warp::Formula(warp))) => formula_warp(out, &warp.into(), &self.definitions),
-            (Some(recipe), _) => head_of_recipe(out, recipe),
+            (Some(recipe), _) => head_of_recipe(out, recipe, &self.definitions),
             (None, NodeKind::Expression(plain)) => expression(out, &plain.into(), child, &self.definitions),
-            (None, kind) => head(out, kind),
+            (None, kind) => head(out, kind, &self.definitions),
         }
         match tree.node().kind() {
             NodeKind::Primitive(_) | NodeKind::Expression(_) => {}
@@ -192,14 +193,16 @@ impl Printer {
     }
 }
 
-/// What stands before a node's block; of a primitive, all of it.
-fn head(out: &mut String, kind: &NodeKind) {
+/// What stands before a node's block; of a primitive, all of it. Names of definitions begin with `definitions`.
+fn head(out: &mut String, kind: &NodeKind, definitions: &str) {
     match kind {
         NodeKind::Primitive(leaf) => primitive(out, leaf),
         NodeKind::Combine(combinator) => {
             operator(out, *combinator, &combinator.numbers().into_iter().map(plain).collect::<Vec<_>>());
         }
-        NodeKind::Expression(plain) => expression(out, &plain.into(), |place| format!("n{place}"), "t"),
+        NodeKind::Expression(plain) => {
+            expression(out, &plain.into(), |place| format!("n{place}"), definitions);
+        }
         NodeKind::Select(which) => {
             let _ = write!(out, "select {}", plain(*which));
         }
@@ -211,7 +214,9 @@ fn head(out: &mut String, kind: &NodeKind) {
                 field(out, described.name, described, &value.into());
             }
         }
-        NodeKind::Attribute { name, value } => attribute(out, name, &AttributeRecipe::from(value)),
+        NodeKind::Attribute { name, value } => {
+            attribute(out, name, &AttributeRecipe::from(value), definitions);
+        }
     }
 }
 
@@ -232,7 +237,7 @@ fn operator(out: &mut String, combinator: Combinator, numbers: &[String]) {
 }
 
 /// The head of a node with numbers that follow parameters: as it was written.
-fn head_of_recipe(out: &mut String, recipe: &Recipe) {
+fn head_of_recipe(out: &mut String, recipe: &Recipe, definitions: &str) {
     match recipe {
         Recipe::Primitive { skeleton: kind, fields, falloff, radius, strength } => {
             let _ = write!(out, "{} {{", kind.name());
@@ -248,7 +253,7 @@ fn head_of_recipe(out: &mut String, recipe: &Recipe) {
         Recipe::Combine { combinator, numbers } => {
             operator(out, *combinator, &numbers.iter().map(Number::text).collect::<Vec<_>>());
         }
-        Recipe::Expression(formula) => expression(out, formula, |place| format!("n{place}"), "t"),
+        Recipe::Expression(formula) => expression(out, formula, |place| format!("n{place}"), definitions),
         Recipe::Select(which) => {
             let _ = write!(out, "select {which}");
         }
@@ -260,7 +265,7 @@ fn head_of_recipe(out: &mut String, recipe: &Recipe) {
             }
         }
         Recipe::FormulaWarp(formula) => formula_warp(out, formula, "t"),
-        Recipe::Attribute { name, value } => attribute(out, name, value),
+        Recipe::Attribute { name, value } => attribute(out, name, value, definitions),
     }
 }
 
@@ -270,26 +275,27 @@ fn formula_warp(out: &mut String, formula: &Formula, definitions: &str) {
     let definition = |place: usize| format!("{definitions}{}", place + 1);
     // The check refuses those that ask for fields.
     let child = |place: usize| format!("missing{place}");
-    let _ = write_formula(out, &formula.form, &formula.numbers, child, definition);
+    let _ = write_formula(out, &formula.form, &formula.numbers, child, definition, false);
     out.push(')');
 }
 
 /// A formula with its block. `child` names the trees that it asks for.
 fn expression(out: &mut String, formula: &Formula, child: impl Fn(usize) -> String, definitions: &str) {
-    out.push_str("expression ");
+    let _ = write!(out, "{EXPRESSION} ");
     if let Some(sides) = formula.form.box_numbers(&formula.numbers) {
         let _ = write!(out, "within {} to {} ", vector(&sides[..3]), vector(&sides[3..]));
     }
     out.push_str("{ ");
     let definition = |place: usize| format!("{definitions}{}", place + 1);
-    let _ = write_formula(out, &formula.form, &formula.numbers, child, definition);
+    let tuple = formula.form.results.len() > 1;
+    let _ = write_formula(out, &formula.form, &formula.numbers, child, definition, tuple);
     out.push_str(" }");
 }
 
 /// The head of a node with numbers that follow parameters, as text: equal for nodes that are equal for all their values.
 pub(crate) fn print_head(recipe: &Recipe) -> String {
     let mut out = String::new();
-    head_of_recipe(&mut out, recipe);
+    head_of_recipe(&mut out, recipe, "t");
     out
 }
 
@@ -311,7 +317,7 @@ fn head_of_map(out: &mut String, map: &Map) {
     };
 }
 
-fn attribute(out: &mut String, name: &str, value: &AttributeRecipe) {
+fn attribute(out: &mut String, name: &str, value: &AttributeRecipe, definitions: &str) {
     if super::node::is_reserved(name) {
         let _ = write!(out, "{GROUP_NODE} ");
     }
@@ -320,8 +326,8 @@ fn attribute(out: &mut String, name: &str, value: &AttributeRecipe) {
         AttributeRecipe::Numbers(numbers) => {
             let text = group_values(numbers);
             let first = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').next();
-            // A parameter that is called like a texture.
-            let hidden = first.and_then(texture_named).is_some();
+            // A parameter that is called like what computes.
+            let hidden = first.is_some_and(|word| word == EXPRESSION || texture_named(word).is_some());
             let _ = if hidden { write!(out, " ({text})") } else { write!(out, " {text}") };
         }
         AttributeRecipe::Textured(TexturedRecipe { texture, fields, a, b }) => {
@@ -332,6 +338,10 @@ fn attribute(out: &mut String, name: &str, value: &AttributeRecipe) {
             out.push_str(" }");
         }
         AttributeRecipe::Uv(map) => uv(out, map),
+        AttributeRecipe::Expressed(formula) => {
+            out.push(' ');
+            expression(out, formula, |place| format!("n{place}"), definitions);
+        }
     }
 }
 

@@ -5,7 +5,7 @@ use fastrand::Rng;
 use glam::{DAffine3, DQuat, DVec3};
 use jbt_frontend::affine::scale_rotate_translate;
 use jbt_frontend::attribute::{AttributeGroup, AttributeValue, Mixing, Textured, UvMap};
-use jbt_frontend::builder::{x, y, z};
+use jbt_frontend::builder::{Term, x, y, z};
 use jbt_frontend::combine::{Combinator, Family, SetOperation};
 use jbt_frontend::falloff::{Falloff, FalloffKind};
 use jbt_frontend::field::{Field, FieldKind, FieldValue};
@@ -170,6 +170,23 @@ fn attribute(rng: &mut Rng) -> NodeKind {
     NodeKind::Attribute { name: group.name, value }
 }
 
+/// The tree with a formula as an attribute, of one of the groups.
+fn expressed(rng: &mut Rng, tree: &Tree) -> Tree {
+    let group = rng.choice(groups()).expect("there are groups");
+    let (p, q) = (rng.f64(), 1.0 + 3.0 * rng.f64());
+    let radius = (x() * x() + y() * y() + z() * z()).sqrt();
+    let all = [
+        (q * x()).sin() * p,
+        radius.clone() - p,
+        radius.falloff(Falloff::Wyvill),
+        y().clamp(-p, p),
+        p.into(),
+    ];
+    let value = |_| all[rng.usize(..all.len())].clone();
+    let values: Vec<Term> = (0..group.width()).map(value).collect();
+    tree.expressed(&group.name, values)
+}
+
 fn unary(rng: &mut Rng) -> NodeKind {
     match rng.u8(..5) {
         3 if rng.u8(..3) == 0 => field_map(rng),
@@ -249,6 +266,10 @@ pub fn model(rng: &mut Rng, steps: usize, signs: bool) -> Model {
                 following(rng, &tree, trees.len())
             }
             1 if rng.u8(..6) == 0 => Tree::new(warp(rng), vec![pick(rng), pick(rng)]),
+            2 if rng.u8(..4) == 0 => {
+                let tree = pick(rng);
+                expressed(rng, &tree)
+            }
             1 | 2 => Tree::new(unary(rng), vec![pick(rng)]),
             3 if rng.u8(..4) == 0 => {
                 let children: Vec<Tree> = (0..rng.usize(1..4)).map(|_| pick(rng)).collect();

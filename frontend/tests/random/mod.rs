@@ -197,6 +197,13 @@ pub fn model(rng: &mut Rng) -> Model {
             }
             3 => {
                 let group = rng.choice(&groups).unwrap();
+                if rng.u8(..4) == 0 {
+                    let terms = terms(rng, &[]);
+                    let values: Vec<Term> =
+                        (0..group.width()).map(|_| terms[rng.usize(..terms.len())].clone()).collect();
+                    trees.push(pick(rng).expressed(&group.name, values));
+                    continue;
+                }
                 let value = value(rng, group.width());
                 Tree::new(NodeKind::Attribute { name: Arc::clone(&group.name), value }, vec![pick(rng)])
             }

@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use fastrand::Rng;
-use jbt::build::{noise, param, x, y, z};
+use jbt::build::{Term, noise, param, x, y, z};
 use jbt::{Model, Number};
 use jbt_frontend::affine::scale_rotate_translate;
 use jbt_frontend::attribute::{AttributeGroup, AttributeValue, Mixing, Textured, UvMap};
@@ -202,7 +202,11 @@ impl Random {
                     let group = &attributes[self.shape.usize(0..attributes.len())];
                     let pick = self.shape.u8(0..6);
                     if pick == 0 {
-                        tree = self.textured_following(&tree, group);
+                        tree = if self.shape.bool() {
+                            self.textured_following(&tree, group)
+                        } else {
+                            self.expressed(&tree, group)
+                        };
                         continue;
                     }
                     NodeKind::Attribute {
@@ -298,6 +302,25 @@ impl Random {
         let a = vec![self.parameter("low", low); group.width()];
         let b: Vec<Number> = self.units(group.width()).into_iter().map(Number::from).collect();
         tree.textured(&group.name, pattern, &a, &b)
+    }
+
+    /// The tree with a formula as an attribute, with a number that follows a parameter.
+    fn expressed(&mut self, tree: &Tree, group: &AttributeGroup) -> Tree {
+        let (size, part) = (self.between(0.3, 2.0), self.between(0.0, 1.0));
+        let follows = self.parameter("wave", size);
+        let radius = (x() * x() + y() * y() + z() * z()).sqrt();
+        // The last one is infinite or no number where the point is.
+        let all = [
+            (x() * follows).sin() * part,
+            radius.falloff(Falloff::Wyvill),
+            y().clamp(-part, part),
+            radius.clone() + part,
+            Term::from(part),
+            radius.square() - radius.square() * x().abs() / (1.0 + x().abs()),
+        ];
+        let values = (0..group.width()).map(|_| all[self.shape.usize(0..all.len())].clone());
+        let values: Vec<Term> = values.collect();
+        tree.expressed(&group.name, values)
     }
 
     /// A new parameter.

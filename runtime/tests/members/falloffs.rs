@@ -15,6 +15,7 @@ members! { Falloff {
     Metaball => rows("metaball", &metaball),
     Hermite => rows("hermite", &hermite),
     Quintic => rows("quintic", &quintic),
+    Linear => rows("linear", &|s| (1.0 - s.sqrt()).max(0.0)),
     Degree(_) => degrees(),
     Blinn(_) => blinns(),
     ArcTan(_) => arctans(),

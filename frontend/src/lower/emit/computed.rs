@@ -37,7 +37,7 @@ impl Emitter<'_> {
     /// The value of a group, computed here from the point in its space, which is open.
     fn computed(&mut self, id: ComputedId, group: usize) -> Vec<Value> {
         let computed = self.scene.computed(id);
-        let (kind, map, space) = (computed.kind, computed.map_kind, computed.space);
+        let (kind, map, space) = (&computed.kind, computed.map_kind, computed.space);
         let open = self.points.iter().rfind(|(open, _)| *open == space);
         let &(_, outer) = open.expect("a leaf stands inside of the spaces of its attributes");
         let row = self.columns(map.columns());

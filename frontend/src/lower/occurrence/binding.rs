@@ -1,5 +1,7 @@
 //! What leaves are bound to: names of sets of bindings, and functions of the point in coordinates.
 
+use std::sync::Arc;
+
 use super::{BindingsId, Bound, Finder, PositionId};
 use crate::attribute::AttributeValue;
 use crate::check::NodeId;
@@ -37,6 +39,12 @@ impl Finder<'_> {
                 let at = bound.at.expect("textures are bound with their places");
                 let kind = ComputedKind::Texture(textured.texture.kind(tree.recipe(node).is_some()));
                 let position = self.scene.position(at);
+                ((node, at, None), kind, position, position.map, position.kind())
+            }
+            AttributeValue::Expressed(expression) => {
+                let at = bound.at.expect("formulas are bound with their places");
+                let position = self.scene.position(at);
+                let kind = ComputedKind::Formula(Arc::clone(&expression.form));
                 ((node, at, None), kind, position, position.map, position.kind())
             }
             AttributeValue::Uv(_) => {

@@ -202,7 +202,12 @@ pub fn helices() -> Vec<Row> {
         row(
             "of half a turn, left-handed",
             "helix { start y helix_radius 2 pitch -4 turns 0.5 radius 4 }",
-            &[([0.0, 2.0, 1.0], 1.0), ([-2.0, 0.0, 0.0], 1.0), ([0.0, -2.0, -1.0], 1.0), ([-4.0, 0.0, 0.0], 0.5)],
+            &[
+                ([0.0, 2.0, 1.0], 1.0),
+                ([-2.0, 0.0, 0.0], 1.0),
+                ([0.0, -2.0, -1.0], 1.0),
+                ([-4.0, 0.0, 0.0], 0.5),
+            ],
         ),
         row(
             "of no length, about any direction",
