@@ -295,7 +295,7 @@ mod tests {
         contest.enter(Contestant::Ours, "", Ok(()), || work(&ours, 130));
         contest.enter(Contestant::Walk, "", Ok(()), || work(&walk, 130));
         let standings = contest.run(EFFORT);
-        assert_eq!((ours.get(), walk.get()), (LEAST_ROUNDS, 1));
+        assert_eq!((ours.get(), walk.get()), (LEAST_ROUNDS as u32, 1));
         assert_eq!(standings.standings.len(), 2);
     }
 
@@ -322,7 +322,7 @@ mod tests {
         contest.enter_checked(Contestant::Walk, "", || work(&walk, 130), |_| Ok(()));
         contest.enter_checked(Contestant::Limit, "", || work(&limit, 610), |_| Ok(()));
         let standings = contest.run(EFFORT).standings;
-        assert_eq!((ours.get(), walk.get(), limit.get()), (LEAST_ROUNDS, 1, 1));
+        assert_eq!((ours.get(), walk.get(), limit.get()), (LEAST_ROUNDS as u32, 1, 1));
         assert_eq!(seen, 1);
         for (standing, millis) in standings.iter().zip([130, 610, 130]) {
             assert!(standing.median >= Duration::from_millis(millis), "{standing:?}");
