@@ -32,7 +32,9 @@ use crate::report::{Report, clip, nearest};
 use crate::tree::{NodeKind, Tree};
 
 /// How much longer a program may become by being split.
-const LONGEST: usize = 8;
+const LONGEST: usize = 4;
+/// What has fewer operations is not split: a row, and what is around it, takes about as long as this many.
+const SMALLEST: u32 = 96;
 
 /// What an instruction does.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -305,13 +307,15 @@ impl Program {
     /// A tree of unions and intersections of formulas; nothing, if these are too long together.
     fn split(&self, root: Wanted) -> Option<Tree> {
         let mut left = LONGEST * self.instructions.len();
+        let sizes = self.sizes();
         let mut done: HashMap<Wanted, Tree> = HashMap::new();
         let mut stack = vec![(root, false)];
         while let Some((wanted, opened)) = stack.pop() {
             if done.contains_key(&wanted) {
                 continue;
             }
-            let tree = match self.parts(wanted) {
+            let parts = if sizes[wanted.line as usize] < SMALLEST { Split::Leaf } else { self.parts(wanted) };
+            let tree = match parts {
                 Split::Leaf => {
                     let (tree, steps) = self.leaf(wanted, left);
                     left = left.checked_sub(steps)?;
@@ -335,6 +339,16 @@ impl Program {
             done.insert(wanted, tree);
         }
         done.remove(&root)
+    }
+
+    /// At least the operations behind each line: what several ask for counts for each.
+    fn sizes(&self) -> Vec<u32> {
+        let mut sizes: Vec<u32> = Vec::with_capacity(self.instructions.len());
+        for instruction in &self.instructions {
+            let below = instruction.operands().iter().map(|&line| sizes[line as usize]);
+            sizes.push(below.fold(1, u32::saturating_add));
+        }
+        sizes
     }
 
     /// One formula, and how many operations it has; it may stop beyond `most`.
