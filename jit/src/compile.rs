@@ -147,32 +147,34 @@ pub enum CompileError {
 /// Up to this many live values the code is faster for having 16 points in a block: what is spilled costs less than reading every
 /// number of a row four times.
 const FOUR_VECTORS_UP_TO: usize = 14;
-/// But only where loops carry this many: a field, and not a gradient or attributes.
-const FOUR_VECTORS_CARRY: usize = 3;
+/// Where loops carry at most this many, a function is a field, and not a gradient or attributes: more points in a block pay longer.
+const FIELD_CARRIES: usize = 3;
 /// Up to this many live values 8 points are faster than 16; beyond, than 4 by so little that compiling twice as much is a waste.
 const TWO_VECTORS_UP_TO: usize = 27;
+/// The same for a field.
+const TWO_VECTORS_OF_A_FIELD_UP_TO: usize = 64;
 /// Up to this many live values a good choice of registers is worth its time. Beyond, nearly everything lives in the frame
 /// whichever allocator chose, and the code of both runs at the same speed.
 const BACKTRACKING_UP_TO: usize = 100;
-/// A function with more values than this is straight-line code for the most part: it is compiled in the cheapest way.
-const LONG_FUNCTION: usize = 10_000;
+/// A function with more values than this is straight-line code for the most part, which the processor fetches anew for every block: 8 points
+/// halve that, and 16 would take seconds to compile.
+const LONG_FUNCTION: usize = 16_000;
 
 impl Options {
     /// Fills in what is open, for a function of which so many values are alive at once.
     fn choose(&self, function: &Function, live: usize) -> (VectorCount, Allocator) {
         let long = function.values.len() > LONG_FUNCTION;
-        let carried = pressure::carried_values(function);
-        let vectors = if live <= FOUR_VECTORS_UP_TO && carried <= FOUR_VECTORS_CARRY && !long {
-            VectorCount::Four
-        } else if live <= TWO_VECTORS_UP_TO && !long {
-            VectorCount::Two
-        } else if live <= BACKTRACKING_UP_TO || long {
-            VectorCount::One
+        let field = pressure::carried_values(function) <= FIELD_CARRIES;
+        let few = if field { TWO_VECTORS_OF_A_FIELD_UP_TO } else { TWO_VECTORS_UP_TO };
+        let (vectors, allocator) = if live > BACKTRACKING_UP_TO {
+            (if long { VectorCount::One } else { VectorCount::Four }, Allocator::SinglePass)
+        } else if live <= FOUR_VECTORS_UP_TO && field && !long {
+            (VectorCount::Four, Allocator::Backtracking)
+        } else if live <= few || long {
+            (VectorCount::Two, Allocator::Backtracking)
         } else {
-            VectorCount::Four
+            (VectorCount::One, Allocator::Backtracking)
         };
-        let allocator =
-            if live <= BACKTRACKING_UP_TO && !long { Allocator::Backtracking } else { Allocator::SinglePass };
         (self.vectors.unwrap_or(vectors), self.allocator.unwrap_or(allocator))
     }
 }

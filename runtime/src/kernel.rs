@@ -102,10 +102,6 @@ enum Code {
     Jit(jbt_jit::Kernel),
 }
 
-/// The instructions from which on the interpreter is faster: machine code of more does not stay in the caches of the processor, and is fetched again
-/// for every few points, where the interpreter takes 64 points through each instruction.
-const LONGEST_CODE: usize = 8000;
-
 /// A program that is ready to run on any numbers that fit it.
 pub(crate) struct Kernel {
     /// The function as it was lowered: what tells whether another model has the same shape.
@@ -119,8 +115,7 @@ pub(crate) struct Kernel {
 }
 
 impl Kernel {
-    /// Prepares a function for an engine. Without an engine in mind, machine code is tried first and the interpreter then; the interpreter
-    /// runs what is longer than [`LONGEST_CODE`].
+    /// Prepares a function for an engine. Without an engine in mind, machine code is tried first and the interpreter then.
     pub(crate) fn new(
         lowered: Function,
         function: Verified,
@@ -131,7 +126,6 @@ impl Kernel {
             Some(Engine::Lanes) => lanes(&function)?,
             Some(Engine::Jit) => jit(&function)
                 .map_err(|reason| CompileError::Engine { engine: Engine::Jit.name(), reason })?,
-            None if function.function().insts.len() > LONGEST_CODE => lanes(&function)?,
             None => match jit(&function) {
                 Ok(code) => code,
                 Err(reason) => {
