@@ -151,6 +151,12 @@ impl Selection {
         &self.words[span.starts as usize..span.active as usize]
     }
 
+    /// The table whose rows own the rows of a table.
+    #[must_use]
+    pub fn parent(&self, table: Table) -> Option<Table> {
+        self.extent.parents[table.index()]
+    }
+
     /// Active rows of all tables.
     #[must_use]
     pub fn len(&self) -> usize {

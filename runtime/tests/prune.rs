@@ -38,6 +38,9 @@ struct Tally {
     all: AtomicU64,
     selected: AtomicU64,
     bounded: AtomicU64,
+    /// Rows that there are, and those of regions.
+    rows: AtomicU64,
+    kept: AtomicU64,
 }
 
 #[test]
@@ -45,7 +48,7 @@ fn pruned_answers_have_the_bits_of_all_rows() {
     let (shapes, points) = (setting("JBT_PRUNE_SHAPES", SHAPES), setting("JBT_PRUNE_POINTS", POINTS));
     let tally = Tally::default();
     (0..shapes).into_par_iter().for_each(|shape| try_shape(shape, points as usize, &tally));
-    let Tally { points, all, selected, bounded } = tally;
+    let Tally { points, all, selected, bounded, .. } = tally;
     let [points, all, selected, bounded] = [points, all, selected, bounded].map(AtomicU64::into_inner);
     println!("{points} points, {all} evaluations became {selected}; {bounded} in ranges that end somewhere");
     assert!(selected * 2 < all, "most rows do not matter");
@@ -82,7 +85,10 @@ fn points_in(rng: &mut Rng, bounds: &Box3, count: usize) -> Points {
 
 fn try_shape(shape: u64, count: usize, tally: &Tally) {
     let leaves = 1 + (shape % 23) as usize;
-    let model = Random::new(shape, shape ^ 0x51_0000).model(leaves);
+    try_model(&Random::new(shape, shape ^ 0x51_0000).model(leaves), shape, count, tally);
+}
+
+fn try_model(model: &Model, shape: u64, count: usize, tally: &Tally) {
     let tree = model.check().expect("a random model is a good model");
     let engine = Engine::ALL[(shape % 3) as usize];
     let compiler = Compiler::for_engine(engine);
@@ -97,7 +103,7 @@ fn try_shape(shape: u64, count: usize, tally: &Tally) {
         // From region to region, up to four levels, among other boxes.
         for _ in 0..rng.usize(0..4) {
             let parts: Vec<Box3> = (0..rng.usize(1..9)).map(|_| random_box(&mut rng, &bounds)).collect();
-            check_ranges(&mut rng, &model, &pruner, &evaluators[0], &region, &parts, tally);
+            check_ranges(&mut rng, model, &pruner, &evaluators[0], &region, &parts, tally);
             let mut regions = Vec::new();
             pruner.narrow(&region, &parts, &mut regions).expect("the boxes are proper");
             let part = rng.usize(0..parts.len());
@@ -107,17 +113,74 @@ fn try_shape(shape: u64, count: usize, tally: &Tally) {
         for (evaluator, query) in evaluators.iter().zip(Query::EVERY) {
             compare(
                 &format!("shape {shape}, box {round}, {}", query.name()),
-                &model,
+                model,
                 evaluator,
                 &region,
                 &points,
             );
         }
+        tally.rows.fetch_add(pruner.everywhere().rows() as u64, Ordering::Relaxed);
+        tally.kept.fetch_add(region.rows() as u64, Ordering::Relaxed);
         let points = points.len() as u64;
         tally.points.fetch_add(points, Ordering::Relaxed);
         tally.all.fetch_add(points * evaluators[0].evaluations_per_point(), Ordering::Relaxed);
         tally.selected.fetch_add(points * evaluators[0].evaluations_in(&region), Ordering::Relaxed);
     }
+}
+
+/// A formula with its surface near a place, of one of a few forms.
+fn formula(rng: &mut Rng) -> String {
+    let [x, y, z] = [(); 3].map(|()| rng.f32() * 5.0 - 2.5);
+    let size = 0.2 + 0.5 * rng.f32();
+    let formula = match rng.u8(0..4) {
+        0 => format!("{size} - sqrt((x - {x})^2 + (y - {y})^2 + (z - {z})^2)"),
+        1 => format!("{size} - max(max(abs(x - {x}), abs(y - {y})), abs(z - {z}))"),
+        2 => format!("{size} - abs(sin(x - {x})) - abs(y - {y}) * (1 + z^2)"),
+        _ => format!("0.5 + {size} - max(x - {x}, max({x} - {size} - x, y - {y}))"),
+    };
+    let colour = [(); 3].map(|()| rng.f32());
+    format!("color ({} {} {}) {{ expression {{ {formula} }} }} ", colour[0], colour[1], colour[2])
+}
+
+/// Operators of many formulas, in each other: formulas have no support, and only what they are in a box says that they do not decide there.
+fn formulas(rng: &mut Rng) -> Model {
+    let mut text = String::from("jbt 1 let shared = union { ");
+    (0..rng.usize(2..5)).for_each(|_| text += &formula(rng));
+    text += "} ";
+    let (outer, inner) = if rng.bool() { ("union", "intersection") } else { ("intersection", "union") };
+    text += outer;
+    text += " { ";
+    (0..rng.usize(20..60)).for_each(|_| text += &formula(rng));
+    for _ in 0..rng.usize(0..30) {
+        let operands: String = (0..rng.usize(2..4)).map(|_| formula(rng)).collect();
+        text += &format!("{inner} {{ {operands} }} ");
+    }
+    if rng.bool() {
+        // What is shared is computed in front of all, so that nothing is free.
+        text += &format!(
+            "{inner} {{ use shared {} }} difference {{ use shared {} }} ",
+            formula(rng),
+            formula(rng)
+        );
+    }
+    if rng.bool() {
+        let operands: String = (0..30).map(|_| formula(rng)).collect();
+        text += &format!("twist axis z rate 0.5 {{ {outer} {{ {operands} }} }} ");
+    }
+    text += "}";
+    model(&text)
+}
+
+#[test]
+fn formulas_that_do_not_decide_are_left_out() {
+    let tally = Tally::default();
+    (0..24_u64).into_par_iter().for_each(|seed| {
+        let model = formulas(&mut Rng::with_seed(seed));
+        try_model(&model, seed, 24, &tally);
+    });
+    let [rows, kept] = [tally.rows, tally.kept].map(AtomicU64::into_inner);
+    println!("{rows} rows became {kept}");
+    assert!(kept * 2 < rows, "most formulas do not decide");
 }
 
 fn compare(what: &str, model: &Model, evaluator: &Evaluator, region: &Region, points: &Points) {

@@ -30,10 +30,10 @@ use std::rc::Rc;
 use jbt_ir::{Domain, Entity, Function, FunctionBuilder, Reduction, Schema, Table, Value, limits};
 
 use self::guard::{Guard, GuardStart};
-use self::probe::Probes;
+use self::probe::{Extreme, Probes};
 use self::select::Select;
 use super::computed::ComputedId;
-use super::guide::{Decision, DecisionKind, Rule};
+use super::guide::{DecidedRows, Decision, DecisionKind, Rule};
 use super::mixing::{Answer, Operator, State, difference, mapped};
 use super::occurrence::{FieldId, OccurrenceId, OccurrenceKind, Scene, SpaceId};
 use super::shape::{Lift, ReducerCode, RicciCode, Shapes, non_negative};
@@ -124,6 +124,8 @@ struct Reduce {
     state: State,
     /// The place in the file of the operand in progress.
     order: Option<Value>,
+    /// Where operands are rows, and each may be left out while it is not zero: the extreme of their fields.
+    extreme: Option<(Extreme, Value)>,
 }
 
 struct Emitter<'a> {
@@ -286,18 +288,15 @@ impl<'a> Emitter<'a> {
             Task::CloseChild => self.close_child(),
             Task::FinishSelect => self.finish_select(),
             Task::OpenFold => self.open_group(),
-            Task::CloseFold => {
-                self.rows.pop();
-                let reduce = self.reduces.last_mut().expect("folds belong to operators");
-                let next = reduce.state.values();
-                let results = self.builder.end_fold(&next);
-                reduce.state.replace(&results);
-            }
+            Task::CloseFold => self.close_group(),
             Task::Order => self.read_order(),
             Task::Step => {
                 let operand = self.answers.pop().expect("the operand has been defined");
                 let reduce = self.reduces.last_mut().expect("steps belong to operators");
                 let order = reduce.order.take();
+                if let Some((extreme, value)) = &mut reduce.extreme {
+                    *value = extreme.of(&mut self.builder, *value, operand.field);
+                }
                 reduce.state.step(&mut self.builder, &reduce.operator, &operand, order);
             }
             Task::FinishReduce => {
@@ -438,7 +437,7 @@ impl<'a> Emitter<'a> {
         };
         let state = State::new(&mut self.builder, &operator, &self.defaults);
         let guard = Guard::of(code, operator.non_negative);
-        self.reduces.push(Reduce { operator, state, order: None });
+        self.reduces.push(Reduce { operator, state, order: None, extreme: None });
         self.begin_operator();
         self.tasks.push(Task::FinishReduce);
         for group in groups.iter().rev() {
@@ -493,11 +492,13 @@ impl Emitter<'_> {
             ReducerCode::Intersection => Reduction::Intersection,
             ReducerCode::Step(_) => Reduction::Step,
         };
-        let name = match self.tasks.last() {
-            Some(Task::Use(id)) => self.group_name(*id),
-            _ => unreachable!("the first member is used next"),
+        let Some(&Task::Use(member)) = self.tasks.last() else {
+            unreachable!("the first member is used next")
         };
-        let initial = reduce.state.values();
+        let name = self.group_name(member);
+        let extreme = self.decides_rows(reduce.operator.code, member);
+        let mut initial = reduce.state.values();
+        initial.extend(extreme.map(|extreme| self.builder.constant(extreme.start())));
         let rule = match reduce.operator.code {
             ReducerCode::Sum | ReducerCode::Ricci(RicciCode { negative: false, .. }) => Rule::Neutral,
             // Whatever the others are: a zero makes it zero.
@@ -508,10 +509,29 @@ impl Emitter<'_> {
             ReducerCode::Union | ReducerCode::Intersection => Rule::KeepOne,
         };
         let (space, _) = *self.points.last().expect("a space is open");
-        let params = self.open_fold(&name, space, rule, reduction, &initial);
+        let mut params = self.open_fold(&name, space, rule, reduction, &initial);
+        reduce.extreme =
+            extreme.map(|extreme| (extreme, params.pop().expect("it is the last that was given")));
         reduce.state.replace(&params);
         self.reduces.push(reduce);
         self.read_order();
+    }
+
+    /// Closes the fold over the rows of a group.
+    fn close_group(&mut self) {
+        let table = self.rows.pop().expect("the fold is open");
+        let reduce = self.reduces.last_mut().expect("folds belong to operators");
+        let mut next = reduce.state.values();
+        let extreme = reduce.extreme.take();
+        next.extend(extreme.map(|(_, value)| value));
+        let mut results = self.builder.end_fold(&next);
+        if let Some((extreme, _)) = extreme {
+            let value = results.pop().expect("it is the last that was carried out");
+            let rows = DecidedRows::Each { free: self.is_free() };
+            self.probe_operand(table, rows, Some(extreme.decision()), value);
+        }
+        let reduce = self.reduces.last_mut().expect("folds belong to operators");
+        reduce.state.replace(&results);
     }
 
     fn group_name(&self, id: OccurrenceId) -> String {

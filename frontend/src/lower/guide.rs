@@ -86,17 +86,31 @@ pub enum Rule {
     Never,
 }
 
-/// A guard that may be left out where its operand does not decide. It is told by the ranges of two probes over a box.
+/// What may be left out where it does not decide. It is told by the ranges of two probes over a box.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Decision {
-    /// The guard: a table of one row.
+    /// The guard, a table of one row; or operands that are rows.
     pub table: Table,
-    /// The probe of the operand's field.
+    /// Which rows of the table are an operand.
+    pub rows: DecidedRows,
+    /// The probe of the operand's field: where operands are rows, of the largest or smallest among those that run.
     pub operand: usize,
     /// The probe of the operator's field.
     pub node: usize,
     /// When the operand does not decide.
     pub kind: DecisionKind,
+}
+
+/// What an operand of a [`Decision`] is.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum DecidedRows {
+    /// All rows: that of a guard.
+    All,
+    /// Each row is an operand: run it without the others of its table, and the probe tells about it alone.
+    Each {
+        /// Whether it needs no rows but those above and under it.
+        free: bool,
+    },
 }
 
 /// When an operand does not decide. `iso2` is [`Guide::iso2`].

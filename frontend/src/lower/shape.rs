@@ -205,13 +205,15 @@ struct Content {
     tables: bool,
     /// Leaves that are computed where it stands, those in tables left out.
     leaves: usize,
+    /// Whether it holds a formula of the point, of which no support is known.
+    formulas: bool,
 }
 
 impl Content {
-    const LEAF: Self = Self { written_out: false, tables: false, leaves: 1 };
-    const LIFTED: Self = Self { written_out: true, tables: false, leaves: 0 };
+    const LEAF: Self = Self { written_out: false, tables: false, leaves: 1, formulas: false };
+    const LIFTED: Self = Self { written_out: true, tables: false, leaves: 0, formulas: false };
     /// Rows of a table.
-    const ROWS: Self = Self { written_out: true, tables: true, leaves: 0 };
+    const ROWS: Self = Self { written_out: true, tables: true, leaves: 0, formulas: false };
 
     /// Both, one after the other.
     const fn and(self, other: Self) -> Self {
@@ -219,6 +221,7 @@ impl Content {
             written_out: self.written_out || other.written_out,
             tables: self.tables || other.tables,
             leaves: self.leaves.saturating_add(other.leaves),
+            formulas: self.formulas || other.formulas,
         }
     }
 
@@ -246,6 +249,11 @@ impl Shapes {
     /// The groups of an operator, in the order of their code.
     pub(super) fn groups(&self, id: OccurrenceId) -> &[Group] {
         &self.groups[&id]
+    }
+
+    /// Whether it holds a formula of the point, of which no support is known.
+    pub(super) fn holds_formulas(&self, id: OccurrenceId) -> bool {
+        self.contents[id.0 as usize].formulas
     }
 
     /// Whether an operand that is not a row is computed under a guard, inside of `depth` folds. What is lifted is not: its value is there.
@@ -423,9 +431,14 @@ impl<'a> Classifier<'a> {
             OccurrenceKind::Reduce { reducer, .. } => {
                 let code = ReducerCode::of(*reducer);
                 let groups = self.group(id, code);
-                let content = groups.iter().fold(Content::LIFTED, |all, group| match group.folded {
-                    true => all.and(Content::ROWS),
-                    false => group.members.iter().fold(all, |all, member| all.and(self.of(member.0).1)),
+                let content = groups.iter().fold(Content::LIFTED, |all, group| {
+                    let of = |member: &(OccurrenceId, u32)| self.of(member.0).1;
+                    match group.folded {
+                        true => {
+                            all.and(Content { formulas: of(&group.members[0]).formulas, ..Content::ROWS })
+                        }
+                        false => group.members.iter().fold(all, |all, member| all.and(of(member))),
+                    }
                 });
                 let key = ShapeKey::Reduce {
                     code,
@@ -452,7 +465,8 @@ impl<'a> Classifier<'a> {
         };
         let form = Arc::clone(&self.scene.expression(occurrence.node).form);
         let steps = form.steps() + steps_of(self.scene, computed);
-        let own = Content { leaves: 1 + steps / STEPS_OF_A_LEAF, ..Content::LEAF };
+        let formulas = children.is_empty();
+        let own = Content { leaves: 1 + steps / STEPS_OF_A_LEAF, formulas, ..Content::LEAF };
         let content = children.iter().fold(own, |all, &child| all.and(self.of(child).1));
         let key = ShapeKey::Expression {
             map: form.asks_point().then(|| self.scene.position(*position).kind()),

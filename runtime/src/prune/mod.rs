@@ -4,7 +4,7 @@
 //! ranges:  one call of the interval kernel, boxes as lanes, with the rows of the region around them
 //! narrow:  for each table, row by row: the boxes that the row's support reaches              (cull)
 //!          operands that do not decide: the larger of a union wins wherever the other is      (decide)
-//!          smaller in the whole box
+//!          smaller in the whole box; formulas that are rows are run one by one for that
 //!          leave the others out, by the rule of the operator                                  (rule)
 //! ```
 //!
@@ -38,6 +38,7 @@ use crate::kernel::{Bound, Kernel, Purpose};
 use crate::region::{ANYTHING, Box3, Divisible, MAX_PARTS, Range};
 
 use cull::{Boxes, Supports};
+use decide::Alone;
 
 /// What matters of a model in a box: for each table, the rows that run. Every evaluator of the model takes it
 /// ([`Evaluator::eval_region`](crate::Evaluator::eval_region)).
@@ -156,7 +157,7 @@ impl Pruner {
     }
 
     /// Ranges of the field and of all probes in boxes: plane by plane, the low and the high ends, [`MAX_PARTS`] each.
-    fn evaluate(&self, region: &Region, boxes: &[Box3]) -> Result<Vec<[f32; MAX_PARTS]>, EvalError> {
+    fn evaluate(&self, rows: &Selection, boxes: &[Box3]) -> Result<Vec<[f32; MAX_PARTS]>, EvalError> {
         let mut inputs = [[0.0; MAX_PARTS]; 6];
         for (lane, bounds) in boxes.iter().enumerate() {
             for axis in 0..3 {
@@ -168,8 +169,8 @@ impl Pruner {
         let inputs = inputs.each_ref().map(|plane| &plane[..count]);
         let mut outputs = vec![[0.0; MAX_PARTS]; 2 * (1 + self.guide.probes)];
         let mut planes: Vec<&mut [f32]> = outputs.iter_mut().map(|plane| &mut plane[..count]).collect();
-        self.kernel.run(&region.selection, &inputs, &mut planes)?;
-        let each = of_selection(&self.kernel.kernel.per_row, &region.selection);
+        self.kernel.run(rows, &inputs, &mut planes)?;
+        let each = of_selection(&self.kernel.kernel.per_row, rows);
         self.counts.boxes.fetch_add(count as u64, Ordering::Relaxed);
         self.counts.primitives.fetch_add(each.saturating_mul(count as u64), Ordering::Relaxed);
         Ok(outputs)
@@ -179,7 +180,7 @@ impl Pruner {
     fn masks(&self, region: &Region, boxes: &[Box3]) -> Result<Vec<u8>, EvalError> {
         let world = Boxes::new(boxes);
         let probed = self.guide.probes > 0 && region.rows() <= MAX_RANGED_ROWS;
-        let probes = if probed { self.evaluate(region, boxes)? } else { Vec::new() };
+        let probes = if probed { self.evaluate(&region.selection, boxes)? } else { Vec::new() };
         let selection = &*region.selection;
         let mut masks = vec![world.all(); selection.len()];
         let mut first = 0;
@@ -204,8 +205,31 @@ impl Pruner {
         }
         if probed {
             decide::leave_out(&self.guide, &probes, boxes.len(), selection, &mut masks);
+            self.leave_out_rows(region, boxes, &probes, &mut masks)?;
         }
         Ok(masks)
+    }
+
+    /// Takes operands that are rows, and do not decide, out of the masks.
+    fn leave_out_rows(
+        &self,
+        region: &Region,
+        boxes: &[Box3],
+        probes: &[[f32; MAX_PARTS]],
+        masks: &mut [u8],
+    ) -> Result<(), EvalError> {
+        let selection = &*region.selection;
+        let Some(alone) = Alone::new(&self.guide, selection) else { return Ok(()) };
+        let mut parts: [Selection; MAX_PARTS] = Default::default();
+        for run in alone.runs() {
+            let count = alone.selections(selection, run, &mut parts);
+            for (part, rows) in parts[..count].iter().enumerate() {
+                let ranges = self.evaluate(rows, boxes)?;
+                let masks = (boxes.len(), &mut *masks);
+                alone.leave_out((selection, self.guide.iso2), run + part, probes, &ranges, masks);
+            }
+        }
+        Ok(())
     }
 }
 
@@ -246,7 +270,7 @@ impl Divisible for Pruner {
             ranges.fill(ANYTHING);
             return Ok(());
         }
-        let outputs = self.evaluate(region, boxes)?;
+        let outputs = self.evaluate(&region.selection, boxes)?;
         for (lane, range) in ranges.iter_mut().enumerate() {
             *range = [outputs[0][lane], outputs[1][lane]];
         }

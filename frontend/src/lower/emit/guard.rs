@@ -11,7 +11,7 @@
 use jbt_ir::{Domain, Reduction, Value};
 
 use super::Emitter;
-use crate::lower::guide::{DecisionKind, Rule};
+use crate::lower::guide::{DecidedRows, DecisionKind, Rule};
 use crate::lower::mixing::{Answer, GroupAnswer};
 use crate::lower::occurrence::{OccurrenceId, SpaceId};
 use crate::lower::shape::{Lift, ReducerCode};
@@ -113,7 +113,7 @@ impl Emitter<'_> {
             numbers: false,
         });
         let groups = groups.collect();
-        self.probe_operand(table, decision, field);
+        self.probe_operand(table, DecidedRows::All, decision, field);
         self.answers.push(Answer { field, groups });
     }
 

@@ -3,12 +3,13 @@
 //! A probe is one number for a point, so it can only be taken where no fold over several rows is open: in the row of the scene and in the rows of
 //! guards in it. It comes out of each of these folds as one more accumulator, which begins at 0.
 
-use jbt_ir::{Table, Value};
+use jbt_ir::{Domain as _, FunctionBuilder, Table, Value};
 use rustc_hash::FxHashMap as HashMap;
 
 use super::{Emitter, TableCode};
-use crate::lower::guide::{Decision, DecisionKind};
-use crate::lower::occurrence::SpaceId;
+use crate::lower::guide::{DecidedRows, Decision, DecisionKind};
+use crate::lower::occurrence::{OccurrenceId, SpaceId};
+use crate::lower::shape::ReducerCode;
 
 /// A probe that may be asked for in the end, as it is seen in the innermost open row.
 #[derive(Clone, Copy)]
@@ -17,11 +18,45 @@ pub(super) struct Probe {
     pub(super) value: Value,
 }
 
-/// A guard of an operator in progress.
+/// A guard of an operator in progress, or rows that are its operands.
 struct Operand {
     table: Table,
+    rows: DecidedRows,
     kind: DecisionKind,
     name: usize,
+}
+
+/// Which of the fields of rows decides.
+#[derive(Clone, Copy)]
+pub(super) enum Extreme {
+    /// Of a union.
+    Largest,
+    /// Of an intersection.
+    Smallest,
+}
+
+impl Extreme {
+    /// What no field goes beyond.
+    pub(super) const fn start(self) -> f32 {
+        match self {
+            Self::Largest => f32::MIN,
+            Self::Smallest => f32::MAX,
+        }
+    }
+
+    pub(super) fn of(self, builder: &mut FunctionBuilder, a: Value, b: Value) -> Value {
+        match self {
+            Self::Largest => builder.max(a, b),
+            Self::Smallest => builder.min(a, b),
+        }
+    }
+
+    pub(super) const fn decision(self) -> DecisionKind {
+        match self {
+            Self::Largest => DecisionKind::UnionOperand,
+            Self::Smallest => DecisionKind::IntersectionOperand,
+        }
+    }
 }
 
 /// The probes of a guide function.
@@ -132,12 +167,39 @@ impl Emitter<'_> {
         }
     }
 
-    /// The field of an operand that a guard has carried out.
-    pub(super) fn probe_operand(&mut self, table: Table, decision: Option<DecisionKind>, field: Value) {
+    /// The field of an operand that a guard has carried out, or of the operands that are the rows of a table.
+    pub(super) fn probe_operand(
+        &mut self,
+        table: Table,
+        rows: DecidedRows,
+        decision: Option<DecisionKind>,
+        field: Value,
+    ) {
         if let (Some(kind), Some(probes)) = (decision, self.probes_here()) {
             let name = probes.take(field);
-            probes.operands.push(Operand { table, kind, name });
+            probes.operands.push(Operand { table, rows, kind, name });
         }
+    }
+
+    /// What to keep of operands that are about to become rows, so that each may be left out while it is not zero. Supports say nothing
+    /// about formulas; of other rows they say enough.
+    pub(super) fn decides_rows(&mut self, code: ReducerCode, member: OccurrenceId) -> Option<Extreme> {
+        let extreme = match code {
+            ReducerCode::Union => Extreme::Largest,
+            ReducerCode::Intersection => Extreme::Smallest,
+            ReducerCode::Sum | ReducerCode::Ricci(_) | ReducerCode::Product | ReducerCode::Step(_) => {
+                return None;
+            }
+        };
+        (self.shapes.holds_formulas(member) && self.probes_here().is_some()).then_some(extreme)
+    }
+
+    /// Whether what is computed here needs no rows but those above and under it: nothing has been lifted.
+    pub(super) fn is_free(&self) -> bool {
+        self.points.len() == 1
+            && self.kept.is_empty()
+            && self.kept_fields.is_empty()
+            && self.kept_points.is_empty()
     }
 
     /// The field of the operator whose operands have been met.
@@ -148,8 +210,8 @@ impl Emitter<'_> {
             return;
         }
         let node = probes.take(field);
-        for Operand { table, kind, name } in probes.operands.split_off(first) {
-            probes.decisions.push(Decision { table, operand: name, node, kind });
+        for Operand { table, rows, kind, name } in probes.operands.split_off(first) {
+            probes.decisions.push(Decision { table, rows, operand: name, node, kind });
         }
     }
 }
