@@ -1,8 +1,9 @@
-//! The pages of `docs/` are true: they name every member with all its parameters, their values and defaults; and every scene in them, and
-//! in the README, is a good model.
+//! The pages of `docs/` are true: they name every member with all its parameters, their values and defaults; and every scene in them, in
+//! the README and in `docs/members/`, where each member has one that shows it, is a good model.
 
 use std::path::{Path, PathBuf};
 
+use jbt_frontend::check::CheckedTree;
 use jbt_frontend::combine::{Combinator, Family, SetOperation};
 use jbt_frontend::diagnostic::Source;
 use jbt_frontend::falloff::FalloffKind;
@@ -32,6 +33,19 @@ const MAPS: [(&str, &[&str]); 7] = [
     ("stretch", &["axis", "by"]),
     ("shear", &["axis", "by"]),
     ("affine", &[]),
+];
+
+/// What the pages tell about that is in no list, by page.
+const UNLISTED: [(&str, &str); 9] = [
+    ("attributes", "blend"),
+    ("attributes", "dominant"),
+    ("attributes", "expression"),
+    ("attributes", "uv"),
+    ("expressions", "expression"),
+    ("expressions", "falloff"),
+    ("expressions", "field"),
+    ("expressions", "within"),
+    ("warps", "warp"),
 ];
 
 fn root() -> PathBuf {
@@ -95,9 +109,11 @@ fn default(field: &Field) -> String {
     }
 }
 
-/// A member has a section, whose table has a row for each of its parameters and no others.
-fn has_member(page: &str, name: &str, fields: &[Field], word: impl Fn(&Field) -> String) {
-    let lines = section(page, name);
+/// A member has a section, whose table has a row for each of its parameters and no others, and a scene.
+fn has_member(family: &str, name: &str, fields: &[Field], word: impl Fn(&Field) -> String) {
+    has_scene(family, name);
+    let page = page(&format!("{family}.md"));
+    let lines = section(&page, name);
     for field in fields {
         let row = format!("| `{}` | {} | {} |", word(field), values(field.kind), default(field));
         assert!(lines.iter().any(|line| line.starts_with(&row)), "`{name}`: a row {row}");
@@ -113,21 +129,20 @@ fn own_word(field: &Field) -> String {
 
 #[test]
 fn all_textures() {
-    let page = page("attributes.md");
     for kind in TextureKind::ALL {
-        has_member(&page, kind.name(), kind.fields(), own_word);
+        has_member("attributes", kind.name(), kind.fields(), own_word);
     }
 }
 
 #[test]
 fn all_skeletons() {
-    let page = page("skeletons.md");
     for kind in SkeletonKind::ALL {
-        has_member(&page, kind.name(), kind.fields(), |field| match field.name {
+        has_member("skeletons", kind.name(), kind.fields(), |field| match field.name {
             name if OWN_FIELDS.contains(&name) => format!("{}_{name}", kind.name()),
             name => name.to_owned(),
         });
     }
+    let page = page("skeletons.md");
     for name in OWN_FIELDS {
         assert!(page.contains(&format!("| `{name}` |")), "{name}");
     }
@@ -137,7 +152,7 @@ fn all_skeletons() {
 fn all_falloffs() {
     let page = page("falloffs.md");
     for kind in FalloffKind::ALL {
-        has_member(&page, kind.name(), kind.fields(), own_word);
+        has_member("falloffs", kind.name(), kind.fields(), own_word);
         let aliases: Vec<String> = kind.aliases().iter().map(|alias| format!("`{alias}`")).collect();
         let row = format!("| `{}` | {} |", kind.name(), aliases.join(", "));
         assert!(page.lines().any(|line| line.starts_with(&row)), "a row {row}");
@@ -146,11 +161,12 @@ fn all_falloffs() {
 
 #[test]
 fn all_warps_and_maps() {
-    let page = page("warps.md");
     for kind in WarpKind::ALL {
-        has_member(&page, kind.name(), kind.fields(), own_word);
+        has_member("warps", kind.name(), kind.fields(), own_word);
     }
+    let page = page("warps.md");
     for (name, words) in MAPS {
+        has_scene("warps", name);
         let text = section(&page, name).join("\n");
         assert!(text.contains("```jbt"), "`{name}`: an example");
         for word in words {
@@ -197,12 +213,14 @@ fn all_operators() {
         Combinator::Offset(0.1),
     ];
     for combinator in smooth.into_iter().chain(others) {
+        has_scene("operators", combinator.name());
         let text = section(&page, combinator.name()).join("\n");
         assert!(text.contains("```jbt"), "`{}`: an example", combinator.name());
         for word in words(combinator) {
             assert!(text.contains(word), "`{}`: {word}", combinator.name());
         }
     }
+    has_scene("operators", "select");
     assert!(section(&page, "select").contains(&"```jbt"));
 }
 
@@ -212,7 +230,51 @@ fn all_functions() {
     let table: String = page.lines().filter(|line| line.starts_with("| `")).collect();
     for name in functions() {
         assert!(table.contains(&format!("`{name}(")), "{name}");
+        has_scene("expressions", name);
     }
+}
+
+#[test]
+fn what_has_no_list_has_a_scene() {
+    for (family, name) in UNLISTED {
+        has_scene(family, name);
+    }
+}
+
+/// A scene of `docs/members/` begins with a comment that says how to look at it, `# render` or `# slice z=0`, is a good model with an end,
+/// and uses its member.
+fn has_scene(family: &str, name: &str) {
+    let path = root().join("docs/members").join(family).join(format!("{name}.jbt"));
+    let shown = path.display().to_string();
+    let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{shown}: {error}"));
+
+    let first = text.lines().next().expect("a line");
+    let plane = first.strip_prefix("# slice ").and_then(|plane| plane.split_once('='));
+    let slice = plane.is_some_and(|(axis, at)| ["x", "y", "z"].contains(&axis) && at.parse::<f64>().is_ok());
+    assert!(slice || first == "# render", "{shown} says how to look at it");
+
+    let code: String = text.lines().flat_map(|line| line.split('#').next()).collect::<Vec<_>>().join("\n");
+    let mut words = code.split(|letter: char| !letter.is_alphanumeric() && letter != '_');
+    assert!(words.any(|word| word == name), "{shown} shows `{name}`");
+    let support = model(&shown, &text).support();
+    assert!(support.low().iter().chain(&support.high()).all(|side| side.abs() < 4.0), "{shown} has an end");
+}
+
+/// Reads a text and checks it. Panics with all that is wrong.
+fn model(name: &str, text: &str) -> CheckedTree {
+    let source = Source { name, text: text.as_bytes() };
+    let shown =
+        |errors: Vec<_>| -> String { errors.iter().map(|error| source.render(error) + "\n").collect() };
+    let model =
+        parse(text.as_bytes(), &Options::default()).unwrap_or_else(|errors| panic!("{}", shown(errors)));
+    model.check().unwrap_or_else(|errors| panic!("{}", shown(errors)))
+}
+
+/// The files of a folder with this extension.
+fn entries(folder: &str, extension: &str) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(root().join(folder)).expect("a folder of the project");
+    let paths = entries.map(|entry| entry.expect("it can be read").path());
+    paths.filter(|path| path.extension().and_then(|found| found.to_str()) == Some(extension)).collect()
 }
 
 /// The scenes of a page, each with the line that it begins at: blocks marked `jbt`, and indented ones that begin with the format.
@@ -240,21 +302,12 @@ fn scenes(page: &str) -> Vec<(usize, String)> {
 
 #[test]
 fn every_scene_is_a_model() {
-    let folder = std::fs::read_dir(root().join("docs")).expect("the project has documents");
-    let pages = folder.map(|entry| entry.expect("it can be read").path());
     let mut count = 0;
-    for path in pages.chain([root().join("README.md")]) {
+    for path in entries("docs", "md").into_iter().chain([root().join("README.md")]) {
         let page = std::fs::read_to_string(&path).expect("it can be read");
         for (line, scene) in scenes(&page) {
             let text = if scene.trim_start().starts_with("jbt 1") { scene } else { format!("{HEAD}{scene}") };
-            let name = format!("{}:{line}", path.display());
-            let source = Source { name: &name, text: text.as_bytes() };
-            let shown = |errors: Vec<_>| -> String {
-                errors.iter().map(|error| source.render(error) + "\n").collect()
-            };
-            let model = parse(text.as_bytes(), &Options::default())
-                .unwrap_or_else(|errors| panic!("{}", shown(errors)));
-            model.check().unwrap_or_else(|errors| panic!("{}", shown(errors)));
+            model(&format!("{}:{line}", path.display()), &text);
             count += 1;
         }
     }
@@ -264,8 +317,8 @@ fn every_scene_is_a_model() {
 #[test]
 fn every_page_is_linked_from_the_readme() {
     let readme = std::fs::read_to_string(root().join("README.md")).expect("the project has a README");
-    for entry in std::fs::read_dir(root().join("docs")).expect("the project has documents") {
-        let link = format!("(docs/{})", entry.expect("it can be read").file_name().display());
+    for path in entries("docs", "md") {
+        let link = format!("(docs/{})", path.file_name().expect("a name").display());
         assert!(readme.contains(&link), "{link}");
     }
 }

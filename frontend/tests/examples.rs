@@ -30,5 +30,5 @@ fn every_example_is_a_model() {
             "{name}: {support:?}"
         );
     }
-    assert!(count >= 14);
+    assert!(count >= 24);
 }

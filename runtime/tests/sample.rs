@@ -20,6 +20,16 @@ fn scene() -> CheckedTree {
     )
 }
 
+/// A formula in a box, and a ball away from it: no distance is evaluated in the box.
+fn formula() -> CheckedTree {
+    tree(
+        "jbt 1 union {
+            color (0 0 1) { expression within (-1 -1 -1) to (1 1 1) { 0.5 + sin(4 * x) * cos(3 * y) - abs(z) } }
+            color (1 0 0) { point { at (2 0 0) radius 0.7 } }
+        }",
+    )
+}
+
 fn lattice() -> Lattice {
     Lattice::covering([-3.0, -1.5, -1.5], [3.0, 1.5, 1.6], 0.06).unwrap()
 }
@@ -54,9 +64,21 @@ fn dense_samples_have_the_bits_of_points() {
 }
 
 #[test]
+fn a_formula_is_not_constant_where_no_primitive_is() {
+    for query in Query::EVERY {
+        let sampler = Sampler::new(&Compiler::for_engine(Engine::Lanes), &formula(), query).unwrap();
+        let dense = sampler.dense(&lattice(), &mut |_| true).unwrap();
+        assert_eq!(bits(&dense), bits(&expected(&sampler, &lattice())), "{}", query.name());
+    }
+}
+
+#[test]
 fn sparse_blocks_are_where_they_are_wanted() {
-    let tree = scene();
-    let sampler = Sampler::new(&Compiler::for_engine(Engine::Lanes), &tree, Query::FIELD).unwrap();
+    [scene(), formula()].iter().for_each(check_sparse_blocks);
+}
+
+fn check_sparse_blocks(tree: &CheckedTree) {
+    let sampler = Sampler::new(&Compiler::for_engine(Engine::Lanes), tree, Query::FIELD).unwrap();
     let lattice = lattice();
     let dense = sampler.dense(&lattice, &mut |_| true).unwrap();
     let [nx, ny, _] = lattice.points();

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! divide the lattice into blocks of 16^3 points, with the rows that reach each:
-//!     nothing reaches a block         it is constant: one point is evaluated            (it may be huge)
+//!     nothing reaches a block         it is constant: one point is evaluated            (it may be huge; not where there are formulas)
 //!     all of it is in or out          skipped, where only the surface is wanted
 //!     else                            its points are evaluated with its rows
 //! ```
@@ -19,6 +19,7 @@ use rayon::prelude::*;
 
 use jbt_frontend::check::CheckedTree;
 use jbt_frontend::query::Query;
+use jbt_frontend::tree::NodeKind;
 use jbt_ir::limits::MAX_LATTICE_POINTS;
 
 use crate::buffer::Layout;
@@ -34,7 +35,7 @@ use crate::region::Box3;
 pub enum Wanted {
     /// All.
     Everywhere,
-    /// Those that some primitive reaches: elsewhere the field is zero.
+    /// Those that some primitive or formula reaches: elsewhere the field is zero.
     Support,
     /// Those in which the field may have this value: the others are known to be inside or outside.
     Surface(f32),
@@ -44,6 +45,8 @@ pub enum Wanted {
 pub struct Sampler {
     evaluator: Evaluator,
     pruner: Pruner,
+    /// Whether the model has formulas: their fields change from place to place where no primitive reaches.
+    formulas: bool,
 }
 
 /// Why a lattice was not sampled.
@@ -91,7 +94,12 @@ impl Sampler {
     /// # Errors
     /// The model is beyond a limit, or the engine cannot be had.
     pub fn new(compiler: &Compiler, tree: &CheckedTree, query: Query) -> Result<Self, CompileError> {
-        Ok(Self { evaluator: compiler.evaluator(tree, query)?, pruner: Pruner::new(compiler, tree)? })
+        let formulas = tree.nodes().iter().any(|node| matches!(node.kind, NodeKind::Expression(_)));
+        Ok(Self {
+            evaluator: compiler.evaluator(tree, query)?,
+            pruner: Pruner::new(compiler, tree)?,
+            formulas,
+        })
     }
 
     /// What answers.
@@ -198,10 +206,11 @@ impl Sampler {
         cell: &Cell<'_, Pruner>,
         indices: &Indices,
     ) -> Result<Decision<Indices>, EvalError> {
-        let constant = self.evaluator.evaluations_in(cell.region()?) == 0;
+        let constant = self.is_constant(cell.region()?);
         match wanted {
             Wanted::Everywhere if constant => return Ok(Decision::Leaf),
             Wanted::Support | Wanted::Surface(_) if constant => return Ok(Decision::Stop),
+            Wanted::Support if self.formulas && cell.range()? == [0.0; 2] => return Ok(Decision::Stop),
             Wanted::Everywhere | Wanted::Support => {}
             Wanted::Surface(iso) => {
                 let [low, high] = cell.range()?;
@@ -214,11 +223,16 @@ impl Sampler {
         Ok(if small { Decision::Leaf } else { halve(axes, indices) })
     }
 
+    /// Whether the answers are the same everywhere in a region, because nothing reaches it.
+    fn is_constant(&self, region: &Region) -> bool {
+        !self.formulas && self.evaluator.evaluations_in(region) == 0
+    }
+
     fn block(&self, axes: &[Vec<f32>; 3], indices: Indices, region: &Region) -> Result<Block, EvalError> {
         let axis = |axis: usize| &axes[axis][indices[axis][0] as usize..indices[axis][1] as usize];
         let [xs, ys, zs] = [axis(0), axis(1), axis(2)];
-        let constant = self.evaluator.evaluations_in(region) == 0;
-        let [xs, ys, zs] = if constant { [&xs[..1], &ys[..1], &zs[..1]] } else { [xs, ys, zs] };
+        let [xs, ys, zs] =
+            if self.is_constant(region) { [&xs[..1], &ys[..1], &zs[..1]] } else { [xs, ys, zs] };
         let count = xs.len() * ys.len() * zs.len();
         let (mut x, mut y, mut z) =
             (Vec::with_capacity(count), Vec::with_capacity(count), Vec::with_capacity(count));
