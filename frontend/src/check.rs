@@ -458,14 +458,6 @@ fn check_fields(
             }
             FieldKind::Count => check_count(report, span, &what, value.real()),
             FieldKind::Degrees => check_within(report, span, &what, value.real(), 0.0..=360.0),
-            FieldKind::Exponent => {
-                let range = 1.0..=limits::MAX_METRIC_EXPONENT;
-                check_within(report, span, &what, value.real(), range);
-            }
-            FieldKind::Squareness => {
-                let range = 2.0 / limits::MAX_METRIC_EXPONENT..=2.0;
-                check_within(report, span, &what, value.real(), range);
-            }
             FieldKind::Extents => check_numbers(report, span, &what, &value.vector(), 0.0),
             FieldKind::Stretches => check_numbers(report, span, &what, &value.vector(), limits::MIN_LENGTH),
             FieldKind::Position => check_numbers(report, span, &what, &value.vector(), f64::NEG_INFINITY),

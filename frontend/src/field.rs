@@ -23,10 +23,6 @@ pub enum FieldKind {
     Count,
     /// An angle in degrees, from 0 to 360.
     Degrees,
-    /// An exponent of a norm, from 1 to [`jbt_ir::limits::MAX_METRIC_EXPONENT`].
-    Exponent,
-    /// An exponent of Barr's, from `2 / MAX_METRIC_EXPONENT` to 2: two by an exponent of a norm.
-    Squareness,
     /// Three finite numbers: a position.
     Position,
     /// Three finite numbers of at least 0: sizes along the axes.

@@ -7,6 +7,7 @@
 //! This crate knows no lanes and no machine code; it writes its formulas over [`jbt_ir::Domain`].
 
 pub mod affine;
+mod angle;
 pub mod attribute;
 pub mod bounds;
 pub mod builder;

@@ -485,8 +485,6 @@ impl Recipe {
                 FieldKind::Real
                 | FieldKind::Positive
                 | FieldKind::NonNegative
-                | FieldKind::Exponent
-                | FieldKind::Squareness
                 | FieldKind::Extents
                 | FieldKind::Stretches
                 | FieldKind::Lengths

@@ -5,82 +5,180 @@
 //!      / \                Visit::Nodes, postfix  d b c a        (postfix: an order to build the tree in)
 //!     b   c               Visit::Paths, prefix   a b d c d      each path from the root once: the tree unfolded
 //!      \ /                Visit::Paths, postfix  d b d c a
-//!       d
+//!       d                 Visit::Paths, infix    b d a c d      between children, as operators are written
 //! ```
+//!
+//! In infix order a node comes between each two neighbours among its children, `x a y a z`: one time less than it has children. An only child comes
+//! behind its node, as an operand behind a sign, and a leaf comes once.
 
 use std::collections::{HashMap, HashSet};
+use std::marker::PhantomData;
 
+use crate::check::{CheckedTree, NodeId};
 use crate::recipe::Recipe;
 use crate::tree::Tree;
 
 /// How often a shared node is visited.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Visit {
-    /// Once.
+    /// Once; in infix order, with all its children once.
     Nodes,
     /// Once for each path from the root. Paths can be exponentially many: count before, or stop in time.
     Paths,
 }
 
-/// The nodes of a tree, parents before children. See [`Tree::prefix`].
-#[derive(Clone, Debug)]
-pub struct Prefix<'a> {
-    stack: Vec<&'a Tree>,
+/// Where a node comes among its children.
+#[derive(Clone, Copy, Debug)]
+enum Order {
+    Before,
+    Between,
+    Behind,
+}
+
+/// Nodes with children.
+trait Nodes: Copy {
+    type Node: Copy;
+
+    fn children(self, node: Self::Node) -> impl DoubleEndedIterator<Item = Self::Node> + ExactSizeIterator;
+
+    /// What tells nodes apart.
+    fn identity(self, node: Self::Node) -> usize;
+}
+
+/// Any tree.
+#[derive(Clone, Copy)]
+struct Plain<'a>(PhantomData<&'a Tree>);
+
+impl<'a> Nodes for Plain<'a> {
+    type Node = &'a Tree;
+
+    fn children(self, node: &'a Tree) -> impl DoubleEndedIterator<Item = &'a Tree> + ExactSizeIterator {
+        node.node().children().iter()
+    }
+
+    fn identity(self, node: &'a Tree) -> usize {
+        node.identity()
+    }
+}
+
+/// What has passed the check.
+impl Nodes for &CheckedTree {
+    type Node = NodeId;
+
+    fn children(self, node: NodeId) -> impl DoubleEndedIterator<Item = NodeId> + ExactSizeIterator {
+        self.node(node).children.iter().copied()
+    }
+
+    fn identity(self, node: NodeId) -> usize {
+        node.0 as usize
+    }
+}
+
+/// A walk that is under way.
+struct Walk<N: Nodes> {
+    nodes: N,
+    order: Order,
+    stack: Vec<Todo<N::Node>>,
     seen: Option<HashSet<usize>>,
 }
 
-impl<'a> Iterator for Prefix<'a> {
-    type Item = &'a Tree;
+/// What comes next.
+enum Todo<N> {
+    /// All that is below a node, and itself.
+    Open(N),
+    /// The node itself.
+    Visit(N),
+}
 
-    fn next(&mut self) -> Option<&'a Tree> {
-        loop {
-            let tree = self.stack.pop()?;
-            if self.seen.as_mut().is_none_or(|seen| seen.insert(tree.identity())) {
-                self.stack.extend(tree.node().children().iter().rev());
-                return Some(tree);
+impl<N: Nodes> Walk<N> {
+    fn new(nodes: N, root: N::Node, order: Order, visit: Visit) -> Self {
+        let seen = match visit {
+            Visit::Nodes => Some(HashSet::new()),
+            Visit::Paths => None,
+        };
+        Self { nodes, order, stack: vec![Todo::Open(root)], seen }
+    }
+
+    /// Puts a node and its children onto the stack, the last one first.
+    fn open(&mut self, node: N::Node) {
+        let count = self.nodes.children(node).len();
+        let children = self.nodes.children(node).enumerate();
+        match self.order {
+            Order::Before => {
+                self.stack.extend(children.rev().map(|(_, child)| Todo::Open(child)));
+                self.stack.push(Todo::Visit(node));
+            }
+            Order::Behind => {
+                self.stack.push(Todo::Visit(node));
+                self.stack.extend(children.rev().map(|(_, child)| Todo::Open(child)));
+            }
+            Order::Between => {
+                for (place, child) in children.rev() {
+                    self.stack.push(Todo::Open(child));
+                    if place > 0 {
+                        self.stack.push(Todo::Visit(node));
+                    }
+                }
+                if count < 2 {
+                    self.stack.push(Todo::Visit(node));
+                }
             }
         }
     }
 }
 
-/// The nodes of a tree, children before parents. See [`Tree::postfix`].
-#[derive(Clone, Debug)]
-pub struct Postfix<'a> {
-    /// Each with whether its children were put above it.
-    stack: Vec<(&'a Tree, bool)>,
-    seen: Option<HashSet<usize>>,
-}
+impl<N: Nodes> Iterator for Walk<N> {
+    type Item = N::Node;
 
-impl<'a> Iterator for Postfix<'a> {
-    type Item = &'a Tree;
-
-    fn next(&mut self) -> Option<&'a Tree> {
+    fn next(&mut self) -> Option<N::Node> {
         loop {
-            let (tree, opened) = self.stack.pop()?;
-            if opened {
-                return Some(tree);
-            }
-            // A node that was opened before is done by now: all that stood above it in the stack was popped since, and it cannot
-            // be open still, since no node is its own descendant.
-            if self.seen.as_mut().is_none_or(|seen| seen.insert(tree.identity())) {
-                self.stack.push((tree, true));
-                self.stack.extend(tree.node().children().iter().rev().map(|child| (child, false)));
+            match self.stack.pop()? {
+                Todo::Visit(node) => return Some(node),
+                // A node that was opened before is done by now: all that stood above it in the stack was popped since, and it cannot
+                // be open still, since no node is its own descendant.
+                Todo::Open(node) => {
+                    let identity = self.nodes.identity(node);
+                    if self.seen.as_mut().is_none_or(|seen| seen.insert(identity)) {
+                        self.open(node);
+                    }
+                }
             }
         }
+    }
+}
+
+/// A checked tree is an arena in postfix order, [`CheckedTree::nodes`]; these are for paths, and for other orders.
+impl CheckedTree {
+    /// Parents before children, children in order.
+    pub fn prefix(&self, visit: Visit) -> impl Iterator<Item = NodeId> {
+        Walk::new(self, self.root(), Order::Before, visit)
+    }
+
+    /// Parents between their children, children in order: see [`traverse`](crate::traverse).
+    pub fn infix(&self, visit: Visit) -> impl Iterator<Item = NodeId> {
+        Walk::new(self, self.root(), Order::Between, visit)
+    }
+
+    /// Children before parents, in order.
+    pub fn postfix(&self, visit: Visit) -> impl Iterator<Item = NodeId> {
+        Walk::new(self, self.root(), Order::Behind, visit)
     }
 }
 
 impl Tree {
     /// Parents before children, children in order.
-    #[must_use]
-    pub fn prefix(&self, visit: Visit) -> Prefix<'_> {
-        Prefix { stack: vec![self], seen: visit.seen() }
+    pub fn prefix(&self, visit: Visit) -> impl Iterator<Item = &Self> {
+        Walk::new(Plain(PhantomData), self, Order::Before, visit)
+    }
+
+    /// Parents between their children, children in order: see [`traverse`](crate::traverse).
+    pub fn infix(&self, visit: Visit) -> impl Iterator<Item = &Self> {
+        Walk::new(Plain(PhantomData), self, Order::Between, visit)
     }
 
     /// Children before parents, in order.
-    #[must_use]
-    pub fn postfix(&self, visit: Visit) -> Postfix<'_> {
-        Postfix { stack: vec![(self, false)], seen: visit.seen() }
+    pub fn postfix(&self, visit: Visit) -> impl Iterator<Item = &Self> {
+        Walk::new(Plain(PhantomData), self, Order::Behind, visit)
     }
 
     /// The tree with every node replaced for which `replace` returns another one.
@@ -120,19 +218,12 @@ impl Tree {
     }
 }
 
-impl Visit {
-    fn seen(self) -> Option<HashSet<usize>> {
-        match self {
-            Self::Nodes => Some(HashSet::new()),
-            Self::Paths => None,
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::builder::{point, ring};
+    use crate::combine::Combinator;
+    use crate::model::Model;
     use crate::skeleton::{Ring, Skeleton};
     use crate::tree::NodeKind;
 
@@ -159,6 +250,38 @@ mod tests {
         assert_eq!(letters(tree.prefix(Visit::Paths)), "abdcd");
         assert_eq!(letters(tree.postfix(Visit::Nodes)), "dbca");
         assert_eq!(letters(tree.postfix(Visit::Paths)), "dbdca");
+        assert_eq!(letters(tree.infix(Visit::Nodes)), "bdac");
+        assert_eq!(letters(tree.infix(Visit::Paths)), "bdacd");
+    }
+
+    #[test]
+    fn infix_is_between_all_children() {
+        let d = point([0.0; 3], 1.0);
+        let [b, c] = [d.color([1.0, 0.0, 0.0]), d.translate([1.0, 0.0, 0.0])];
+        let three = Tree::new(NodeKind::Combine(Combinator::Union), vec![b, c.clone(), c]);
+        assert_eq!(letters(three.infix(Visit::Paths)), "bdacdacd");
+        // What was there already is left out, not the node in front of it.
+        assert_eq!(letters(three.infix(Visit::Nodes)), "bdaca");
+        assert_eq!(letters(d.infix(Visit::Nodes)), "d");
+    }
+
+    #[test]
+    fn checked_trees_have_the_same_orders() {
+        let tree = diamond();
+        let checked = Model::new(tree.clone()).check().expect("a good model");
+        for visit in [Visit::Nodes, Visit::Paths] {
+            let kinds = |ids: &mut dyn Iterator<Item = NodeId>| -> Vec<NodeKind> {
+                ids.map(|id| checked.node(id).kind.clone()).collect()
+            };
+            let plain = |trees: &mut dyn Iterator<Item = &Tree>| -> Vec<NodeKind> {
+                trees.map(|tree| tree.node().kind().clone()).collect()
+            };
+            assert_eq!(kinds(&mut checked.prefix(visit)), plain(&mut tree.prefix(visit)));
+            assert_eq!(kinds(&mut checked.infix(visit)), plain(&mut tree.infix(visit)));
+            assert_eq!(kinds(&mut checked.postfix(visit)), plain(&mut tree.postfix(visit)));
+        }
+        let arena: Vec<u32> = checked.postfix(Visit::Nodes).map(|id| id.0).collect();
+        assert_eq!(arena, [0, 1, 2, 3]);
     }
 
     #[test]

@@ -75,12 +75,10 @@ fn values(kind: FieldKind) -> String {
         FieldKind::Real => "any".to_owned(),
         FieldKind::Positive => "> 0".to_owned(),
         FieldKind::NonNegative => ">= 0".to_owned(),
-        FieldKind::Within { least, most } => format!("{least} .. {most}"),
+        FieldKind::Within { least, most } => format!("{} .. {most}", fraction(least)),
         FieldKind::Choice(words) => words.join(", "),
         FieldKind::Count => format!("whole, 0 .. {}", jbt_ir::limits::MAX_COPIES),
         FieldKind::Degrees => "0 .. 360".to_owned(),
-        FieldKind::Exponent => format!("1 .. {}", jbt_ir::limits::MAX_METRIC_EXPONENT),
-        FieldKind::Squareness => format!("1/{} .. 2", 0.5 * jbt_ir::limits::MAX_METRIC_EXPONENT),
         FieldKind::Position => "3 numbers".to_owned(),
         FieldKind::Extents => "3 numbers >= 0".to_owned(),
         FieldKind::Stretches => "3 numbers > 0".to_owned(),
@@ -90,6 +88,12 @@ fn values(kind: FieldKind) -> String {
         FieldKind::Lengths => "numbers >= 0".to_owned(),
         FieldKind::Flag => "yes, no".to_owned(),
     }
+}
+
+/// A number, as a fraction if that is shorter.
+fn fraction(number: f64) -> String {
+    let (plain, inverse) = (number.to_string(), format!("1/{}", number.recip()));
+    if inverse.len() < plain.len() { inverse } else { plain }
 }
 
 /// The default of a parameter, as the tables say it.

@@ -151,13 +151,6 @@ fn same_bits(what: &str, engine: &str, model: &Model, points: &Points, old: &[f3
     }
 }
 
-/// Whether a falloff of the model has a tip at its skeleton.
-fn has_tips(tree: &CheckedTree) -> bool {
-    tree.nodes()
-        .iter()
-        .any(|node| matches!(&node.kind, NodeKind::Primitive(leaf) if leaf.falloff.is_pointed()))
-}
-
 /// Whether there are warps across whose walls fields jump.
 fn has_walls(tree: &CheckedTree) -> bool {
     let is_wall = |kind: &NodeKind| {
@@ -176,8 +169,6 @@ fn compare_oracle(
 ) {
     let (mut inside, mut outside) = (false, false);
     let jumps = has_walls(tree);
-    // Near the tip of a falloff, its distance is a root of what rounding has left of a small difference.
-    let undecided = if has_tips(tree) { 2e-2 } else { 1e-4 };
     for index in 0..points.len() {
         let point = points.get(index);
         if point.iter().any(|x| !x.is_finite() || x.abs() > 1e6) {
@@ -206,7 +197,7 @@ fn compare_oracle(
         let steep = gradient.iter().fold(size, |steep: f64, g| steep.max(g.abs()));
         close(field, oracle.field, FIELD_BOUND * steep, "the field");
         tally.compared.fetch_add(1, Ordering::Relaxed);
-        if oracle.decision < undecided * steep || field < 1e-3 {
+        if oracle.decision < 1e-4 * steep || field < 1e-3 {
             continue;
         }
         let differences = walk_gradient(tree, point, 1e-6);

@@ -1,6 +1,7 @@
 //! Builders make the trees that they say.
 
 use super::*;
+use crate::combine::Combinator;
 use crate::falloff::Falloff;
 use crate::model::Model;
 use crate::walk::walk;

@@ -46,7 +46,6 @@
 //! An attribute may be an expression itself: one value for each channel, of the coordinates and of numbers, but of no fields. What is no number
 //! counts as 0 there, and overflow ends at [`LARGEST_FIELD`] too.
 
-pub(crate) mod arc;
 mod form;
 mod growth;
 mod operation;

@@ -1,14 +1,14 @@
 //! The operations of formulas: what each does, plainly in f64 and over the ops, and what is known of its value.
 //!
 //! A rounding error over the ops is that of the ops it is made of, in units in the last place (ULP) of the result: half a unit for arithmetic and
-//! roots, those of [`jbt_ir::math`] for `sin`, `cos`, `exp`, `ln` and powers, at most 4 for `atan`, `atan2`, `asin` and `acos` (see `arc`), 3.5 for
+//! roots, those of [`jbt_ir::math`] for `sin`, `cos`, `exp`, `ln` and powers, at most 4 for `atan`, `atan2`, `asin` and `acos` (see `angle`), 3.5 for
 //! `tan`; a whole power is a chain of products, `x^n` in at most `2 log2 n` of them.
 
 use jbt_ir::Domain;
 
-use super::arc;
 use super::form::Operand;
-use crate::falloff::Falloff;
+use crate::angle::atan2;
+use crate::falloff::{Falloff, Nearness};
 use crate::number::{Binary, Function, Number, Step};
 
 /// What is done with one to any number of operands.
@@ -268,14 +268,14 @@ fn call<D: Domain>(d: &mut D, function: Function, x: &[D::Real], positive: bool)
         }
         Function::Asin => {
             let (sin, cos) = arc_sides(d, x[0]);
-            arc::atan2(d, sin, cos)
+            atan2(d, sin, cos)
         }
         Function::Acos => {
             let (cos, sin) = arc_sides(d, x[0]);
-            arc::atan2(d, sin, cos)
+            atan2(d, sin, cos)
         }
-        Function::Atan => arc::atan2(d, x[0], one),
-        Function::Atan2 => arc::atan2(d, x[0], x[1]),
+        Function::Atan => atan2(d, x[0], one),
+        Function::Atan2 => atan2(d, x[0], x[1]),
         Function::Abs => d.abs(x[0]),
         Function::Sign => {
             let (above, below) = (d.lt(zero, x[0]), d.lt(x[0], zero));
@@ -321,12 +321,11 @@ fn call<D: Domain>(d: &mut D, function: Function, x: &[D::Real], positive: bool)
         Function::Falloff(falloff) => {
             let distance = d.max(x[0], zero);
             let minus = d.neg(distance);
-            let left = d.fma(minus, distance, one);
-            let left = d.max(left, zero);
+            let near = Nearness::emit(d, minus, distance);
             let (kind, mut numbers) = (falloff.0.kind(), Vec::new());
             falloff.0.columns(kind, &mut numbers);
             let row: Vec<D::Real> = numbers.into_iter().map(|number| d.constant(number as f32)).collect();
-            kind.emit(d, left, &row)
+            kind.emit(d, near, &row)
         }
     }
 }

@@ -27,7 +27,7 @@
 
 use jbt_ir::Domain;
 
-use super::{Edge, FalloffMember, bisect, emit_depth};
+use super::{Edge, FalloffMember, Nearness, bisect, emit_depth};
 use crate::field::{Field, FieldKind, FieldValue, Member};
 use crate::skeleton::positive_part;
 
@@ -104,10 +104,11 @@ impl FalloffMember for ArcTan {
         row.extend([self.stiffness, self.spread(), 180.0 / self.stiffness.atan()]);
     }
 
-    fn emit<D: Domain>(d: &mut D, variant: u8, u: D::Real, row: &[D::Real]) -> D::Real {
+    fn emit<D: Domain>(d: &mut D, variant: u8, near: Nearness<D::Real>, row: &[D::Real]) -> D::Real {
         let [stiffness, spread, scale] = row[..] else { unreachable!("there are three columns") };
         let (one, thin, thick) = (d.constant(1.0), d.constant(THIN), d.constant(1.0 / THIN));
-        let depth = emit_depth(d, u);
+        let r = near.distance(d);
+        let depth = emit_depth(d, near.u, r);
         let inside = d.max(depth, thin);
         let quotient = d.div(spread, inside);
         let cot = d.sub(quotient, stiffness);
@@ -121,7 +122,7 @@ impl FalloffMember for ArcTan {
         match Edge::of_bit(variant) {
             // It is zero at the rim already.
             Edge::Exact => value,
-            Edge::Smooth => Edge::Smooth.emit(d, u, value),
+            Edge::Smooth => Edge::Smooth.emit(d, near.u, value),
         }
     }
 }

@@ -16,7 +16,7 @@
 
 use jbt_ir::Domain;
 
-use super::{FalloffMember, bisect, emit_square};
+use super::{FalloffMember, Nearness, bisect, emit_square};
 use crate::field::{Field, FieldKind, FieldValue, Member};
 
 /// Blanc and Schlick's. Text: `blanc { hardness 0 }`, which is the default; also `schlick`.
@@ -87,7 +87,8 @@ impl FalloffMember for Blanc {
         row.extend([self.hardness, 1.5 + 4.0 * self.hardness]);
     }
 
-    fn emit<D: Domain>(d: &mut D, _variant: u8, u: D::Real, row: &[D::Real]) -> D::Real {
+    fn emit<D: Domain>(d: &mut D, _variant: u8, near: Nearness<D::Real>, row: &[D::Real]) -> D::Real {
+        let u = near.u;
         let [seam_u, seam_s, least] = [0.75, 0.25, LEAST].map(|number| d.constant(number));
         let [one, half, four, nine] = [1.0, 0.5, 4.0, 9.0].map(|number| d.constant(number));
         let [outer_seam, inner_seam] = [1.125, 4.5].map(|number| d.constant(number));

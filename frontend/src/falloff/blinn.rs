@@ -13,7 +13,7 @@
 
 use jbt_ir::Domain;
 
-use super::{Edge, FalloffMember, bisect};
+use super::{Edge, FalloffMember, Nearness, Rim, bisect};
 use crate::field::{Field, FieldKind, FieldValue, Member};
 
 /// A Gaussian. Text: `blinn { hardness 2 cutoff 2 edge smooth }`, which are the defaults; also `gaussian`, `blobby`.
@@ -21,16 +21,14 @@ use crate::field::{Field, FieldKind, FieldValue, Member};
 pub struct Blinn {
     /// How fast it falls, in [0.001, 1000].
     pub hardness: f64,
-    /// The support radius, in units of the radius that the hardness is meant for; in [0.01, 16].
-    pub cutoff: f64,
-    /// What happens at the support radius.
-    pub edge: Edge,
+    /// The support radius, in units of the radius that the hardness is meant for, and what happens there.
+    pub rim: Rim,
 }
 
 impl Blinn {
     /// `h c^2`: the field is `exp(-rate s)`.
     fn rate(&self) -> f64 {
-        self.hardness * self.cutoff * self.cutoff
+        self.hardness * self.rim.cutoff * self.rim.cutoff
     }
 }
 
@@ -42,21 +40,17 @@ impl Member for Blinn {
             kind: FieldKind::Within { least: 0.001, most: 1000.0 },
             default: Some(FieldValue::Real(2.0)),
         },
-        Field {
-            name: "cutoff",
-            kind: FieldKind::Within { least: 0.01, most: 16.0 },
-            default: Some(FieldValue::Real(2.0)),
-        },
+        Rim::cutoff_field(2.0),
         Edge::field(Edge::Smooth),
     ];
 
     fn from_fields(values: &[FieldValue]) -> Self {
-        let [hardness, cutoff] = [0, 1].map(|i: usize| values[i].real());
-        Self { hardness, cutoff, edge: Edge::from_field(&values[2]) }
+        Self { hardness: values[0].real(), rim: Rim::from_fields(&values[1..]) }
     }
 
     fn to_fields(&self) -> Vec<FieldValue> {
-        vec![FieldValue::Real(self.hardness), FieldValue::Real(self.cutoff), self.edge.to_field()]
+        let [cutoff, edge] = self.rim.to_fields();
+        vec![FieldValue::Real(self.hardness), cutoff, edge]
     }
 }
 
@@ -64,7 +58,7 @@ impl FalloffMember for Blinn {
     const ALIASES: &'static [&'static str] = &["gaussian", "blobby"];
 
     fn value(&self, s: f64) -> f64 {
-        (-self.rate() * s).exp() * self.edge.factor(s)
+        (-self.rate() * s).exp() * self.rim.edge.factor(s)
     }
 
     fn inverse(&self, level: f64) -> f64 {
@@ -80,7 +74,7 @@ impl FalloffMember for Blinn {
     }
 
     fn variant(&self, _follows: bool) -> u8 {
-        self.edge.bit()
+        self.rim.edge.bit()
     }
 
     fn column_names(_variant: u8) -> &'static [&'static str] {
@@ -91,7 +85,8 @@ impl FalloffMember for Blinn {
         row.push(self.rate());
     }
 
-    fn emit<D: Domain>(d: &mut D, variant: u8, u: D::Real, row: &[D::Real]) -> D::Real {
+    fn emit<D: Domain>(d: &mut D, variant: u8, near: Nearness<D::Real>, row: &[D::Real]) -> D::Real {
+        let u = near.u;
         // -rate s, exactly 0 at the skeleton.
         let whole = d.neg(row[0]);
         let exponent = d.fma(row[0], u, whole);
@@ -114,14 +109,14 @@ mod tests {
                 let slope = (2.0 * a / std::f64::consts::E).sqrt();
                 let steepest = Some(((0.5 / a).sqrt(), slope));
                 Published { half: Some((2f64.ln() / a).sqrt()), steepest }
-                    .check(Blinn { hardness, cutoff, edge }.into());
+                    .check(Blinn { hardness, rim: Rim { cutoff, edge } }.into());
             }
         }
     }
 
     #[test]
     fn an_exact_edge_jumps() {
-        let exact = Blinn { hardness: 3.0, cutoff: 1.0, edge: Edge::Exact };
+        let exact = Blinn { hardness: 3.0, rim: Rim { cutoff: 1.0, edge: Edge::Exact } };
         assert!((exact.value(1.0 - 1e-12) - (-3f64).exp()).abs() < 1e-10);
         assert_eq!(exact.value(1.0), 0.0);
         assert!((exact.inverse(0.01) - 1.0).abs() < 1e-15, "it jumps over this level at the rim");

@@ -6,7 +6,7 @@
 
 use jbt_ir::Domain;
 
-use super::{FalloffMember, emit_inside, whole};
+use super::{FalloffMember, Nearness, emit_inside, whole};
 use crate::combine::ricci::{Exponent, power};
 use crate::field::{Field, FieldKind, FieldValue, Member};
 
@@ -71,7 +71,8 @@ impl FalloffMember for Degree {
         }
     }
 
-    fn emit<D: Domain>(d: &mut D, variant: u8, u: D::Real, row: &[D::Real]) -> D::Real {
+    fn emit<D: Domain>(d: &mut D, variant: u8, near: Nearness<D::Real>, row: &[D::Real]) -> D::Real {
+        let u = near.u;
         if variant > 0 {
             return power(d, u, Exponent::Integer(u32::from(variant)));
         }

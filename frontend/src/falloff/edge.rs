@@ -4,6 +4,33 @@ use jbt_ir::Domain;
 
 use crate::field::{Field, FieldKind, FieldValue};
 
+/// The end of a function of the distance in a unit of its own, which never reaches zero by itself.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Rim {
+    /// The support radius in that unit, in [0.01, 16].
+    pub cutoff: f64,
+    /// What happens there.
+    pub edge: Edge,
+}
+
+impl Rim {
+    /// The first parameter, and what it is if it is not written; that of the edge follows.
+    pub(super) const fn cutoff_field(default: f64) -> Field {
+        let kind = FieldKind::Within { least: 0.01, most: 16.0 };
+        Field { name: "cutoff", kind, default: Some(FieldValue::Real(default)) }
+    }
+
+    /// The rim with these two parameters.
+    pub(super) fn from_fields(values: &[FieldValue]) -> Self {
+        Self { cutoff: values[0].real(), edge: Edge::from_field(&values[1]) }
+    }
+
+    /// Its two parameters.
+    pub(super) const fn to_fields(self) -> [FieldValue; 2] {
+        [FieldValue::Real(self.cutoff), self.edge.to_field()]
+    }
+}
+
 /// The edge of a falloff.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum Edge {

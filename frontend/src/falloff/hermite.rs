@@ -9,7 +9,7 @@
 
 use jbt_ir::Domain;
 
-use super::{PlainFalloff, emit_distance};
+use super::{Nearness, PlainFalloff, emit_distance};
 
 /// The cubic Hermite polynomial. Text: `hermite`, also `hart`, `smoothstep`.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -28,7 +28,7 @@ impl PlainFalloff for Hermite {
         super::bisect(Self::value, level)
     }
 
-    fn emit<D: Domain>(d: &mut D, u: D::Real) -> D::Real {
+    fn emit<D: Domain>(d: &mut D, Nearness { u, .. }: Nearness<D::Real>) -> D::Real {
         let (r, one) = (emit_distance(d, u), d.constant(1.0));
         let sum = d.add(one, r);
         let inverse = d.div(one, sum);

@@ -14,7 +14,7 @@
 
 use jbt_ir::Domain;
 
-use super::{Edge, FalloffMember, bisect, emit_square, whole};
+use super::{Edge, FalloffMember, Nearness, Rim, bisect, whole};
 use crate::combine::ricci::{Exponent, power};
 use crate::field::{Field, FieldKind, FieldValue, Member};
 
@@ -26,10 +26,8 @@ const MOST: u8 = 16;
 pub struct InversePower {
     /// n, in [1, 16].
     pub exponent: f64,
-    /// The support radius, in units of the distance at which the field is 1/2; in [0.01, 16].
-    pub cutoff: f64,
-    /// What happens at the support radius.
-    pub edge: Edge,
+    /// The support radius, in units of the distance at which the field is 1/2, and what happens there.
+    pub rim: Rim,
 }
 
 impl Member for InversePower {
@@ -40,21 +38,17 @@ impl Member for InversePower {
             kind: FieldKind::Within { least: 1.0, most: MOST as f64 },
             default: Some(FieldValue::Real(2.0)),
         },
-        Field {
-            name: "cutoff",
-            kind: FieldKind::Within { least: 0.01, most: 16.0 },
-            default: Some(FieldValue::Real(4.0)),
-        },
+        Rim::cutoff_field(4.0),
         Edge::field(Edge::Smooth),
     ];
 
     fn from_fields(values: &[FieldValue]) -> Self {
-        let [exponent, cutoff] = [0, 1].map(|i: usize| values[i].real());
-        Self { exponent, cutoff, edge: Edge::from_field(&values[2]) }
+        Self { exponent: values[0].real(), rim: Rim::from_fields(&values[1..]) }
     }
 
     fn to_fields(&self) -> Vec<FieldValue> {
-        vec![FieldValue::Real(self.exponent), FieldValue::Real(self.cutoff), self.edge.to_field()]
+        let [cutoff, edge] = self.rim.to_fields();
+        vec![FieldValue::Real(self.exponent), cutoff, edge]
     }
 }
 
@@ -62,7 +56,7 @@ impl FalloffMember for InversePower {
     const ALIASES: &'static [&'static str] = &["inverse", "lorentz"];
 
     fn value(&self, s: f64) -> f64 {
-        self.edge.factor(s) / (1.0 + (self.cutoff * s.sqrt()).powf(self.exponent))
+        self.rim.edge.factor(s) / (1.0 + (self.rim.cutoff * s.sqrt()).powf(self.exponent))
     }
 
     fn inverse(&self, level: f64) -> f64 {
@@ -70,7 +64,7 @@ impl FalloffMember for InversePower {
     }
 
     fn steepness(&self) -> f64 {
-        8.0 * self.exponent * self.cutoff.powf(self.exponent).max(1.0)
+        8.0 * self.exponent * self.rim.cutoff.powf(self.exponent).max(1.0)
     }
 
     fn is_pointed(&self) -> bool {
@@ -80,7 +74,7 @@ impl FalloffMember for InversePower {
     /// The edge, and above it a whole exponent.
     fn variant(&self, follows: bool) -> u8 {
         let exponent = if follows { 0 } else { whole(self.exponent, MOST).unwrap_or(0) };
-        self.edge.bit() | exponent << 1
+        self.rim.edge.bit() | exponent << 1
     }
 
     fn column_names(variant: u8) -> &'static [&'static str] {
@@ -88,30 +82,30 @@ impl FalloffMember for InversePower {
     }
 
     fn columns(&self, variant: u8, row: &mut Vec<f64>) {
-        row.push(self.cutoff.powf(self.exponent));
+        row.push(self.rim.cutoff.powf(self.exponent));
         if variant >> 1 == 0 {
             row.push(0.5 * self.exponent);
         }
     }
 
-    fn emit<D: Domain>(d: &mut D, variant: u8, u: D::Real, row: &[D::Real]) -> D::Real {
-        let (s, one) = (emit_square(d, u), d.constant(1.0));
+    fn emit<D: Domain>(d: &mut D, variant: u8, near: Nearness<D::Real>, row: &[D::Real]) -> D::Real {
+        let (s, one) = (near.s, d.constant(1.0));
         let power = match variant >> 1 {
             0 => d.pow(s, row[1]),
-            1 => d.sqrt(s),
+            1 => near.distance(d),
             n => {
                 let even = power(d, s, Exponent::Integer(u32::from(n / 2)));
                 if n % 2 == 0 {
                     even
                 } else {
-                    let r = d.sqrt(s);
+                    let r = near.distance(d);
                     d.mul(even, r)
                 }
             }
         };
         let sum = d.fma(row[0], power, one);
         let value = d.div(one, sum);
-        Edge::of_bit(variant).emit(d, u, value)
+        Edge::of_bit(variant).emit(d, near.u, value)
     }
 }
 
@@ -129,14 +123,14 @@ mod tests {
                 let slope = cutoff * exponent * x.powf(exponent - 1.0) / (1.0 + x.powf(exponent)).powi(2);
                 let steepest = (exponent > 1.0).then_some((x / cutoff, slope));
                 Published { half: Some(1.0 / cutoff), steepest }
-                    .check(InversePower { exponent, cutoff, edge }.into());
+                    .check(InversePower { exponent, rim: Rim { cutoff, edge } }.into());
             }
         }
     }
 
     #[test]
     fn an_exact_edge_jumps() {
-        let exact = InversePower { exponent: 2.0, cutoff: 4.0, edge: Edge::Exact };
+        let exact = InversePower { exponent: 2.0, rim: Rim { cutoff: 4.0, edge: Edge::Exact } };
         assert!((exact.value(1.0 - 1e-12) - 1.0 / 17.0).abs() < 1e-10);
         assert_eq!(exact.value(1.0), 0.0);
     }

@@ -4,7 +4,7 @@
 
 use jbt_ir::Domain;
 
-use super::{PlainFalloff, emit_depth};
+use super::{Nearness, PlainFalloff, emit_depth};
 
 /// A cone, with its tip at the skeleton. Text: `linear`, also `cone`.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -24,8 +24,9 @@ impl PlainFalloff for Linear {
         (1.0 - level).powi(2)
     }
 
-    fn emit<D: Domain>(d: &mut D, u: D::Real) -> D::Real {
-        emit_depth(d, u)
+    fn emit<D: Domain>(d: &mut D, near: Nearness<D::Real>) -> D::Real {
+        let r = near.distance(d);
+        emit_depth(d, near.u, r)
     }
 }
 

@@ -14,7 +14,7 @@
 
 use jbt_ir::Domain;
 
-use super::{PlainFalloff, emit_depth};
+use super::{Nearness, PlainFalloff, emit_depth, emit_distance};
 use crate::skeleton::positive_part;
 
 /// Nishimura's metaball. Text: `metaball`, also `nishimura`, `links`.
@@ -40,11 +40,12 @@ impl PlainFalloff for Metaball {
         if level >= 2.0 / 3.0 { (1.0 - level) / 3.0 } else { (1.0 - (level / 1.5).sqrt()).powi(2) }
     }
 
-    fn emit<D: Domain>(d: &mut D, u: D::Real) -> D::Real {
+    fn emit<D: Domain>(d: &mut D, Nearness { u, .. }: Nearness<D::Real>) -> D::Real {
         let [seam, three, three_halves] = [8.0 / 9.0, 3.0, 1.5].map(|number| d.constant(number));
         // At the seam itself this is u, with its slope, and the other term is 0 without one.
         let before = d.min(seam, u);
-        let depth = emit_depth(d, before);
+        let r = emit_distance(d, before);
+        let depth = emit_depth(d, before, r);
         let outer = d.mul(depth, depth);
         let outer = d.mul(three_halves, outer);
         let past = d.sub(u, seam);

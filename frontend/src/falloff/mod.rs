@@ -20,16 +20,17 @@
 //!
 //! # The compiler's form
 //!
-//! It is written in `u = max(1 - s, 0)` as a chain of steps of which each one rises or falls with u, so that
+//! It is written in `u = max(1 - s, 0)`, and in s itself, as a chain of steps of which each one rises or falls with the distance, so that
 //!
 //! * it is exactly +0 at u = 0, never negative, and monotone in f32 too, because rounding is (but for [`Degree`] and [`InversePower`]
 //!   with powers that are not whole, and [`Blinn`]: an approximated power may step back by a unit in the last place);
-//! * a range of u gives the exact image of it, the same values as at its ends: no difference of two terms that move together makes it
+//! * a range of distances gives the exact image of it, the same values as at its ends: no difference of two terms that move together makes it
 //!   wider (where there are powers or exponentials, it is wider by their 4 units in the last place);
-//! * its derivative is finite everywhere: r is a root of `1 - u`, whose tangent at 0 is 0.
+//! * its derivative is finite everywhere: r is a root, whose tangent at 0 is 0.
 //!
-//! What u has lost to rounding, r = sqrt(1 - u) loses near the skeleton: it is off by 2^-25 / r there, at most 2^-13. Only falloffs with
-//! a tip show it, [`Linear`], [`ArcTan`] and an [`InversePower`] with an exponent below 2.
+//! The root of `1 - u` is off by 2^-25 / r, because u has lost the last digits of a small s: at most 2^-13. Falloffs with a tip would show it, in
+//! the field and much more in its gradient, so [`Linear`], [`ArcTan`] and [`InversePower`] take the root of s. Others, which are flat at the
+//! skeleton, have all that follows from u alone, so that pieces of them meet.
 //!
 //! Polynomials in r are not such chains as they are published. Their files say by what they are replaced.
 
@@ -40,7 +41,32 @@ use crate::skeleton::positive_part;
 
 mod edge;
 
-pub use edge::Edge;
+pub use edge::{Edge, Rim};
+
+/// How near a point is to the skeleton, over the ops: what falloffs are functions of.
+#[derive(Clone, Copy, Debug)]
+pub struct Nearness<R> {
+    /// `max(1 - s, 0)`: exactly 0 from the support radius outwards, with all its digits in front of it.
+    pub u: R,
+    /// `min(s, 1)`, with all its digits near the skeleton. Where it moves, u is above 0.
+    pub s: R,
+}
+
+impl<R: Copy> Nearness<R> {
+    /// From two factors of `-s`: the squared distance and `-1 / R^2`. NaN is outside.
+    pub fn emit<D: Domain<Real = R>>(d: &mut D, square: R, slope: R) -> Self {
+        let (zero, one) = (d.constant(0.0), d.constant(1.0));
+        let left = d.fma(square, slope, one);
+        let back = d.mul(square, slope);
+        let s = d.neg(back);
+        Self { u: d.max(left, zero), s: d.min(s, one) }
+    }
+
+    /// `r = sqrt(s)`, from 0 to 1.
+    fn distance<D: Domain<Real = R>>(self, d: &mut D) -> R {
+        d.sqrt(self.s)
+    }
+}
 
 /// What a falloff without parameters states about itself.
 pub trait PlainFalloff {
@@ -59,8 +85,8 @@ pub trait PlainFalloff {
     /// The `s` at which the field is `level`, for `0 < level < 1`.
     fn inverse(level: f64) -> f64;
 
-    /// The field over the ops, from `u = max(1 - s, 0)`.
-    fn emit<D: Domain>(d: &mut D, u: D::Real) -> D::Real;
+    /// The field over the ops.
+    fn emit<D: Domain>(d: &mut D, near: Nearness<D::Real>) -> D::Real;
 }
 
 /// What a falloff with parameters states about itself.
@@ -89,8 +115,8 @@ pub trait FalloffMember: Member {
     /// The numbers of a row: one for each of [`column_names`](Self::column_names).
     fn columns(&self, variant: u8, row: &mut Vec<f64>);
 
-    /// The field over the ops, from `u = max(1 - s, 0)`; `row` holds the columns of a falloff with this variant.
-    fn emit<D: Domain>(d: &mut D, variant: u8, u: D::Real, row: &[D::Real]) -> D::Real;
+    /// The field over the ops; `row` holds the columns of a falloff with this variant.
+    fn emit<D: Domain>(d: &mut D, variant: u8, near: Nearness<D::Real>, row: &[D::Real]) -> D::Real;
 }
 
 macro_rules! falloffs {
@@ -155,11 +181,11 @@ macro_rules! falloffs {
                 }
             }
 
-            /// The field over the ops, from `u = max(1 - s, 0)`.
-            pub fn emit<D: Domain>(self, d: &mut D, u: D::Real, row: &[D::Real]) -> D::Real {
+            /// The field over the ops; `row` holds the columns.
+            pub fn emit<D: Domain>(self, d: &mut D, near: Nearness<D::Real>, row: &[D::Real]) -> D::Real {
                 match self {
-                    $( Self::$name => $name::emit(d, u), )+
-                    $( Self::$rich(variant) => $rich::emit(d, variant, u, row), )+
+                    $( Self::$name => $name::emit(d, near), )+
+                    $( Self::$rich(variant) => $rich::emit(d, variant, near, row), )+
                 }
             }
 
@@ -281,22 +307,22 @@ fn whole(exponent: f64, most: u8) -> Option<u8> {
     (f64::from(n) == exponent && (1..=most).contains(&n)).then_some(n)
 }
 
-/// `s = 1 - u`, from 0 to 1.
+/// `s = 1 - u`, from 0 to 1, for falloffs that are flat at the skeleton.
 fn emit_square<D: Domain>(d: &mut D, u: D::Real) -> D::Real {
     let one = d.constant(1.0);
     let s = d.sub(one, u);
     positive_part(d, s)
 }
 
-/// `r = sqrt(1 - u)`, from 0 to 1.
+/// `r = sqrt(1 - u)`, from 0 to 1, for falloffs that are flat at the skeleton.
 fn emit_distance<D: Domain>(d: &mut D, u: D::Real) -> D::Real {
     let s = emit_square(d, u);
     d.sqrt(s)
 }
 
 /// `1 - r = u / (1 + r)`: this form is exactly 0 at the rim and rises with u.
-fn emit_depth<D: Domain>(d: &mut D, u: D::Real) -> D::Real {
-    let (r, one) = (emit_distance(d, u), d.constant(1.0));
+fn emit_depth<D: Domain>(d: &mut D, u: D::Real, r: D::Real) -> D::Real {
+    let one = d.constant(1.0);
     let sum = d.add(one, r);
     d.div(u, sum)
 }

@@ -2,7 +2,7 @@
 
 use jbt_ir::Domain;
 
-use super::PlainFalloff;
+use super::{Nearness, PlainFalloff};
 
 /// The quartic. Text: `quartic`, also `murakami`, `pov`.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -21,7 +21,7 @@ impl PlainFalloff for Quartic {
         1.0 - level.sqrt()
     }
 
-    fn emit<D: Domain>(d: &mut D, u: D::Real) -> D::Real {
+    fn emit<D: Domain>(d: &mut D, Nearness { u, .. }: Nearness<D::Real>) -> D::Real {
         d.mul(u, u)
     }
 }

@@ -11,7 +11,7 @@
 
 use jbt_ir::Domain;
 
-use super::{PlainFalloff, emit_square};
+use super::{Nearness, PlainFalloff, emit_square};
 
 /// The quintic. Text: `quintic`, also `smootherstep`.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -34,7 +34,7 @@ impl PlainFalloff for Quintic {
         super::bisect(Self::value, level)
     }
 
-    fn emit<D: Domain>(d: &mut D, u: D::Real) -> D::Real {
+    fn emit<D: Domain>(d: &mut D, Nearness { u, .. }: Nearness<D::Real>) -> D::Real {
         let [one, three, six, seven, least] = [1.0, 3.0, 6.0, 7.0, LEAST].map(|number| d.constant(number));
         let s = emit_square(d, u);
         let r = d.sqrt(s);

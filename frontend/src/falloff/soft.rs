@@ -6,7 +6,7 @@
 
 use jbt_ir::Domain;
 
-use super::PlainFalloff;
+use super::{Nearness, PlainFalloff};
 
 /// The falloff of soft objects. Text: `soft`, also `geoff`.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -25,7 +25,7 @@ impl PlainFalloff for Soft {
         super::bisect(Self::value, level)
     }
 
-    fn emit<D: Domain>(d: &mut D, u: D::Real) -> D::Real {
+    fn emit<D: Domain>(d: &mut D, Nearness { u, .. }: Nearness<D::Real>) -> D::Real {
         let (four, five) = (d.constant(4.0 / 9.0), d.constant(5.0 / 9.0));
         let slope = d.fma(four, u, five);
         let square = d.mul(u, u);

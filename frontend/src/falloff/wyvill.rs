@@ -2,7 +2,7 @@
 
 use jbt_ir::Domain;
 
-use super::PlainFalloff;
+use super::{Nearness, PlainFalloff};
 
 /// The Wyvill cubic. Text: `wyvill`, also `cubic`, `galin`, `blender`.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -21,7 +21,7 @@ impl PlainFalloff for Wyvill {
         1.0 - level.cbrt()
     }
 
-    fn emit<D: Domain>(d: &mut D, u: D::Real) -> D::Real {
+    fn emit<D: Domain>(d: &mut D, Nearness { u, .. }: Nearness<D::Real>) -> D::Real {
         let square = d.mul(u, u);
         d.mul(square, u)
     }

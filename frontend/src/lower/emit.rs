@@ -19,6 +19,7 @@
 
 mod computed;
 mod express;
+mod fold;
 mod guard;
 mod probe;
 mod row;
@@ -27,19 +28,18 @@ mod select;
 use rustc_hash::FxHashMap as HashMap;
 use std::rc::Rc;
 
-use jbt_ir::{Domain, Entity, Function, FunctionBuilder, Reduction, Schema, Table, Value, limits};
+use jbt_ir::{Domain, Function, FunctionBuilder, Table, Value, limits};
 
 use self::guard::{Guard, GuardStart};
 use self::probe::{Extreme, Probes};
 use self::select::Select;
 use super::computed::ComputedId;
-use super::guide::{DecidedRows, Decision, DecisionKind, Rule};
+use super::guide::{Decision, DecisionKind, Rule};
 use super::mixing::{Answer, Operator, State, difference, mapped};
 use super::occurrence::{FieldId, OccurrenceId, OccurrenceKind, Scene, SpaceId};
-use super::shape::{Lift, ReducerCode, RicciCode, Shapes, non_negative};
+use super::shape::{Lift, Shapes};
 use crate::attribute::Mixing;
 use crate::check::CheckedTree;
-use crate::combine::ricci::{Blend, Exponent};
 use crate::combine::unary::UnaryKind;
 use crate::diagnostic::Diagnostic;
 use crate::query::Query;
@@ -402,151 +402,6 @@ impl<'a> Emitter<'a> {
                 }
                 Lift::Occurrence(id) => self.tasks.extend([Task::Keep(*id), Task::Define(*id)]),
             }
-        }
-    }
-
-    fn begin_reduce(&mut self, id: OccurrenceId) {
-        let occurrence = self.scene.occurrence(id);
-        let OccurrenceKind::Reduce { reducer, .. } = &occurrence.kind else {
-            unreachable!("only operators are reduced")
-        };
-        let groups = self.shapes.groups(id);
-        let code = ReducerCode::of(*reducer);
-        let row = self.columns(code.columns());
-        let (non_negative, moving) = (non_negative(self.scene, groups), self.query.gradient);
-        let blend = match code {
-            ReducerCode::Ricci(RicciCode { integer, negative }) => {
-                let exponent = integer.map_or_else(|| Exponent::General(row[0], row[1]), Exponent::Integer);
-                Some(Blend { exponent, negative, non_negative, moving })
-            }
-            ReducerCode::Sum
-            | ReducerCode::Product
-            | ReducerCode::Union
-            | ReducerCode::Intersection
-            | ReducerCode::Step(_) => None,
-        };
-        let operator = Operator {
-            code,
-            blend,
-            row,
-            iso2: self.iso2.expect("the scene's row is open"),
-            non_negative,
-            ordered: groups.len() > 1,
-            moving,
-            mixing: Rc::clone(&self.mixing),
-        };
-        let state = State::new(&mut self.builder, &operator, &self.defaults);
-        let guard = Guard::of(code, operator.non_negative);
-        self.reduces.push(Reduce { operator, state, order: None, extreme: None });
-        self.begin_operator();
-        self.tasks.push(Task::FinishReduce);
-        for group in groups.iter().rev() {
-            if group.folded {
-                self.tasks.extend([Task::CloseFold, Task::Step, Task::Use(group.members[0].0)]);
-                self.tasks.push(Task::OpenFold);
-            } else {
-                for &(member, order) in group.members.iter().rev() {
-                    // A step begins with its first operand.
-                    let step = match code {
-                        ReducerCode::Step(_) if order == 0 => Task::Seed,
-                        _ => Task::Step,
-                    };
-                    self.tasks.extend([step, Task::Operand(member, guard), Task::Order]);
-                }
-            }
-        }
-    }
-}
-
-/// Tables.
-impl Emitter<'_> {
-    /// Opens a fold over a new table under the innermost open row.
-    fn open_fold(
-        &mut self,
-        name: &str,
-        space: SpaceId,
-        rule: Rule,
-        reduction: Reduction,
-        initial: &[Value],
-    ) -> Vec<Value> {
-        let parent = self.rows.last().copied();
-        let schema = Schema { name: name.to_owned(), columns: Vec::new(), parent, slots: Vec::new() };
-        let table = self.builder.table(schema);
-        if let Some(parent) = parent {
-            self.tables[parent.index()].children.push(table);
-        }
-        self.rows.push(table);
-        let probe = self.probes.as_ref().and_then(|probes| probes.point(space));
-        self.tables.push(TableCode { children: Vec::new(), depth: self.rows.len(), space, probe, rule });
-        self.builder.begin_fold(table, reduction, initial)
-    }
-
-    /// Opens the fold over the rows of a group; its first task gives the group its name.
-    fn open_group(&mut self) {
-        let mut reduce = self.reduces.pop().expect("folds belong to operators");
-        let reduction = match reduce.operator.code {
-            ReducerCode::Sum => Reduction::Sum,
-            ReducerCode::Ricci(_) => Reduction::Ricci,
-            ReducerCode::Product => Reduction::Product,
-            ReducerCode::Union => Reduction::Union,
-            ReducerCode::Intersection => Reduction::Intersection,
-            ReducerCode::Step(_) => Reduction::Step,
-        };
-        let Some(&Task::Use(member)) = self.tasks.last() else {
-            unreachable!("the first member is used next")
-        };
-        let name = self.group_name(member);
-        let extreme = self.decides_rows(reduce.operator.code, member);
-        let mut initial = reduce.state.values();
-        initial.extend(extreme.map(|extreme| self.builder.constant(extreme.start())));
-        let rule = match reduce.operator.code {
-            ReducerCode::Sum | ReducerCode::Ricci(RicciCode { negative: false, .. }) => Rule::Neutral,
-            // Whatever the others are: a zero makes it zero.
-            ReducerCode::Product | ReducerCode::Ricci(RicciCode { negative: true, .. }) => Rule::OnlyZero,
-            ReducerCode::Step(kind) => kind.rule(reduce.operator.non_negative),
-            ReducerCode::Union if reduce.operator.non_negative => Rule::Neutral,
-            ReducerCode::Intersection if reduce.operator.non_negative => Rule::OnlyZero,
-            ReducerCode::Union | ReducerCode::Intersection => Rule::KeepOne,
-        };
-        let (space, _) = *self.points.last().expect("a space is open");
-        let mut params = self.open_fold(&name, space, rule, reduction, &initial);
-        reduce.extreme =
-            extreme.map(|extreme| (extreme, params.pop().expect("it is the last that was given")));
-        reduce.state.replace(&params);
-        self.reduces.push(reduce);
-        self.read_order();
-    }
-
-    /// Closes the fold over the rows of a group.
-    fn close_group(&mut self) {
-        let table = self.rows.pop().expect("the fold is open");
-        let reduce = self.reduces.last_mut().expect("folds belong to operators");
-        let mut next = reduce.state.values();
-        let extreme = reduce.extreme.take();
-        next.extend(extreme.map(|(_, value)| value));
-        let mut results = self.builder.end_fold(&next);
-        if let Some((extreme, _)) = extreme {
-            let value = results.pop().expect("it is the last that was carried out");
-            let rows = DecidedRows::Each { free: self.is_free() };
-            self.probe_operand(table, rows, Some(extreme.decision()), value);
-        }
-        let reduce = self.reduces.last_mut().expect("folds belong to operators");
-        reduce.state.replace(&results);
-    }
-
-    fn group_name(&self, id: OccurrenceId) -> String {
-        match &self.scene.occurrence(id).kind {
-            OccurrenceKind::Leaf { field, .. } => {
-                self.scene.primitive(*field).skeleton.kind().name().to_owned()
-            }
-            OccurrenceKind::Warp { .. } => self.scene.warp(self.scene.occurrence(id).node).name().to_owned(),
-            OccurrenceKind::Difference { .. } => "difference".to_owned(),
-            OccurrenceKind::Map { .. } => {
-                self.scene.combinator(self.scene.occurrence(id).node).name().to_owned()
-            }
-            OccurrenceKind::Expression { .. } => "expression".to_owned(),
-            OccurrenceKind::Select { .. } => "select".to_owned(),
-            OccurrenceKind::Reduce { reducer, .. } => ReducerCode::of(*reducer).name().to_owned(),
         }
     }
 }

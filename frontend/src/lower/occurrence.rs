@@ -3,24 +3,25 @@
 //! An *occurrence* is a node at a position with attribute bindings. A node that is reached twice with the same of each is one
 //! occurrence with two uses; under other coordinates it is another one.
 
-use rustc_hash::FxHashMap as HashMap;
-
 use glam::DAffine3;
 
-use super::computed::{Computed, ComputedId, share};
+use super::computed::{Computed, ComputedId};
 use super::demand::Demand;
-use super::position::{MapKind, Position, PositionKey, Trails, position_key};
+use super::position::{MapKind, Position};
 use crate::check::{CheckedTree, NodeId};
+use crate::combine::Combinator;
 use crate::combine::step::StepKind;
 use crate::combine::unary::UnaryKind;
-use crate::combine::{Combinator, Form};
 use crate::expression::Expression;
 use crate::falloff::FalloffKind;
 use crate::recipe::Recipe;
-use crate::tree::{NodeKind, Primitive, chosen};
+use crate::tree::{NodeKind, Primitive};
 use crate::warp::Warp;
 
 mod binding;
+mod find;
+
+use self::find::Finder;
 
 /// The name of an occurrence.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, PartialOrd, Ord)]
@@ -167,9 +168,6 @@ pub(super) struct Scene<'a> {
     pub(super) demand: Demand,
 }
 
-/// A node and what its ancestors say about it.
-type Key = (NodeId, PositionId, BindingsId);
-
 impl<'a> Scene<'a> {
     /// Finds every occurrence, without recursion. All attribute groups count, whatever is asked: so the tables of a tree, which are made of
     /// its occurrences, have the same rows for every query.
@@ -302,354 +300,6 @@ impl<'a> Scene<'a> {
                 unreachable!("spaces are the insides of warps")
             }
         }
-    }
-}
-
-/// A node on its way to becoming an occurrence.
-struct Frame {
-    key: Key,
-    /// Children that are done.
-    children: Vec<OccurrenceId>,
-    /// The inside of a warp.
-    inside: Option<(SpaceId, PositionId)>,
-}
-
-struct Finder<'a> {
-    scene: Scene<'a>,
-    /// Numbers of the file are keys here: a hash that nobody can prepare for.
-    position_names: std::collections::HashMap<PositionKey, PositionId>,
-    trails: Trails,
-    bindings_names: HashMap<Box<[Option<Bound>]>, BindingsId>,
-    /// How many sets of bindings there are.
-    bindings_count: u32,
-    /// The bindings of the path in progress.
-    bound: Vec<Option<Bound>>,
-    /// By attribute node, where that or the leaf stands, and the leaf, if it is the leaf's.
-    computed_names: HashMap<(NodeId, PositionId, Option<NodeId>), ComputedId>,
-    field_names: HashMap<(NodeId, PositionId), FieldId>,
-    inside_names: HashMap<(NodeId, PositionId), (SpaceId, PositionId)>,
-    known: HashMap<Key, OccurrenceId>,
-    /// For each node, whether one path leads to it from the root: then it is met once, and nothing has to be remembered of it.
-    once: Vec<bool>,
-    /// Whether there is a selector.
-    selects: bool,
-    /// No attribute is bound: what a weight's attributes are does not matter.
-    unbound: BindingsId,
-    stack: Vec<Frame>,
-}
-
-impl<'a> Finder<'a> {
-    fn new(tree: &'a CheckedTree) -> Self {
-        let once: Vec<bool> = tree.uses().into_iter().map(|uses| uses == 1).collect();
-        let scene = Scene {
-            tree,
-            // Large ones are moved as they grow: there is room for a tree without sharing.
-            occurrences: Vec::with_capacity(once.len()),
-            fields: Vec::with_capacity(once.len() / 2),
-            root: OccurrenceId(0),
-            positions: Vec::new(),
-            bindings: Vec::new(),
-            computed: Vec::new(),
-            insides: Vec::new(),
-            demand: Demand::ALL,
-        };
-        Self {
-            scene,
-            position_names: std::collections::HashMap::new(),
-            trails: Trails::default(),
-            bindings_names: HashMap::default(),
-            bindings_count: 0,
-            bound: Vec::new(),
-            computed_names: HashMap::default(),
-            field_names: HashMap::default(),
-            inside_names: HashMap::default(),
-            known: HashMap::default(),
-            once,
-            selects: false,
-            unbound: BindingsId(0),
-            stack: Vec::new(),
-        }
-    }
-
-    fn run(mut self) -> Scene<'a> {
-        let world = self.name_position(Position::start(SpaceId(0)));
-        self.bound = vec![None; self.scene.tree.attributes().len()];
-        self.unbound = self.name_bindings();
-        let root = self.resolve((self.scene.tree.root(), world, self.unbound));
-        let mut done = self.enter(root);
-        while let Some(frame) = self.stack.last_mut() {
-            if let Some(id) = done.take() {
-                frame.children.push(id);
-            }
-            let (node, position, bindings) = frame.key;
-            match self.scene.tree.node(node).children.get(frame.children.len()) {
-                Some(&child) => {
-                    let key = match frame.inside {
-                        Some(_) if !frame.children.is_empty() => (child, position, self.unbound),
-                        Some((_, inside)) => (child, inside, bindings),
-                        None => (child, position, bindings),
-                    };
-                    let key = self.resolve(key);
-                    done = self.enter(key);
-                }
-                None => {
-                    let frame = self.stack.pop().expect("the loop looked at it");
-                    let key = frame.key;
-                    let id = self.close(frame);
-                    if !self.once[key.0.0 as usize] {
-                        self.known.insert(key, id);
-                    }
-                    done = Some(id);
-                }
-            }
-        }
-        self.scene.root = done.expect("the last frame was the root");
-        self.scene.occurrences[self.scene.root.0 as usize].uses += 1;
-        share(&mut self.scene.computed);
-        if self.selects {
-            self.scene.demand = Demand::new(&self.scene);
-        }
-        self.scene
-    }
-
-    /// Walks through affine, attribute and pass-through nodes to the node that does something.
-    fn resolve(&mut self, (mut node, position, bindings): Key) -> Key {
-        let Position { space, mut map, mut trail } = *self.scene.position(position);
-        let (mut rebound, mut moved) = (false, false);
-        loop {
-            let data = self.scene.tree.node(node);
-            match &data.kind {
-                NodeKind::Affine(inner) => {
-                    map *= *inner;
-                    trail = match self.scene.tree.recipe(node) {
-                        None => trail.fixed(inner, self.scene.tree.follows()),
-                        Some(recipe) => {
-                            let name =
-                                self.trails.name(position_key(space, trail.name, &trail.since), node, recipe);
-                            trail.free(name, recipe.freedom())
-                        }
-                    };
-                    moved = true;
-                }
-                NodeKind::Attribute { name, value } => {
-                    let groups = self.scene.tree.attributes();
-                    if let Some(group) = groups.iter().position(|group| group.name == *name) {
-                        let placed = value.is_placed();
-                        let at = placed.then(|| self.name_position(Position { space, map, trail }));
-                        if !std::mem::replace(&mut rebound, true) {
-                            self.bound.clear();
-                            self.bound.extend_from_slice(self.scene.bindings(bindings));
-                        }
-                        self.bound[group] = Some(Bound { node, at });
-                    }
-                }
-                NodeKind::Combine(combinator) if data.children.len() == 1 && combinator.passes_single() => {}
-                NodeKind::Select(_) if data.children.len() == 1 => {}
-                NodeKind::Combine(_)
-                | NodeKind::Expression(_)
-                | NodeKind::Select(_)
-                | NodeKind::Primitive(_)
-                | NodeKind::Warp(_) => {
-                    // Nobody asks again for what is met once and has nothing below it that others meet: it needs no name.
-                    let alone = self.once[node.0 as usize] && data.children.is_empty();
-                    let place = Position { space, map, trail };
-                    let position = match (moved, alone) {
-                        (false, _) => position,
-                        (true, false) => self.name_position(place),
-                        (true, true) => self.push_position(place),
-                    };
-                    let bindings = match (rebound, alone) {
-                        (false, _) => bindings,
-                        (true, false) => self.name_bindings(),
-                        (true, true) => self.push_bindings(),
-                    };
-                    return (node, position, bindings);
-                }
-            }
-            node = data.children[0];
-        }
-    }
-
-    /// The occurrence, if it is known; otherwise it goes on the stack.
-    fn enter(&mut self, key: Key) -> Option<OccurrenceId> {
-        if !self.once[key.0.0 as usize]
-            && let Some(&known) = self.known.get(&key)
-        {
-            return Some(known);
-        }
-        let is_warp = matches!(self.scene.tree.node(key.0).kind, NodeKind::Warp(_));
-        let inside = is_warp.then(|| self.name_inside(key.0, key.1));
-        self.stack.push(Frame { key, children: Vec::new(), inside });
-        None
-    }
-
-    /// Makes an occurrence of a node whose children are done.
-    fn close(&mut self, frame: Frame) -> OccurrenceId {
-        let (node, position, bindings) = frame.key;
-        let kind = match &self.scene.tree.node(node).kind {
-            NodeKind::Primitive(primitive) => {
-                let field = self.field(node, primitive, position);
-                OccurrenceKind::Leaf { field, bindings, computed: self.computed(bindings, node, position) }
-            }
-            NodeKind::Warp(_) => {
-                let (inside, _) = frame.inside.expect("a warp's frame has its inside");
-                let weight = frame.children.get(1).copied();
-                self.scene.insides[inside.0 as usize - 1].weight = weight;
-                OccurrenceKind::Warp { position, inside, child: frame.children[0], weight }
-            }
-            NodeKind::Combine(combinator) => self.operator(node, *combinator, position, frame.children),
-            NodeKind::Expression(_) => {
-                let children = frame.children;
-                let is_leaf = children.is_empty();
-                let computed = if is_leaf { self.computed(bindings, node, position) } else { Box::default() };
-                OccurrenceKind::Expression { position, bindings, children, computed }
-            }
-            NodeKind::Select(which) => {
-                self.selects = true;
-                OccurrenceKind::Select { children: frame.children, chosen: chosen(*which) }
-            }
-            NodeKind::Affine(_) | NodeKind::Attribute { .. } => unreachable!("resolve walks through these"),
-        };
-        self.push(node, position, kind)
-    }
-
-    /// The occurrence of an operator whose children are done.
-    fn operator(
-        &mut self,
-        node: NodeId,
-        combinator: Combinator,
-        position: PositionId,
-        children: Vec<OccurrenceId>,
-    ) -> OccurrenceKind {
-        let reducer = match combinator {
-            Combinator::Sum => Reducer::Sum,
-            Combinator::Ricci(n) if self.scene.tree.recipe(node).is_some() => Reducer::RicciFollowing(n),
-            Combinator::Ricci(1.0) => Reducer::Sum,
-            Combinator::Ricci(n) => Reducer::Ricci(n),
-            Combinator::Product => Reducer::Product,
-            Combinator::Union => Reducer::Union,
-            Combinator::Intersection => Reducer::Intersection,
-            Combinator::Difference
-            | Combinator::SymmetricDifference
-            | Combinator::Smooth(..)
-            | Combinator::RFunction(..)
-            | Combinator::Complement
-            | Combinator::Clamp { .. }
-            | Combinator::Shell(_)
-            | Combinator::Offset(_) => match (combinator.form(), combinator.step()) {
-                (Form::Map(kind), _) => return OccurrenceKind::Map { kind, child: children[0] },
-                (_, Some((kind, number))) => Reducer::Step(kind, number),
-                (_, None) => return self.difference(node, position, &children),
-            },
-        };
-        OccurrenceKind::Reduce { reducer, children }
-    }
-
-    /// The field of a leaf at a position.
-    fn field(&mut self, node: NodeId, primitive: &Primitive, position: PositionId) -> FieldId {
-        let next = FieldId(self.scene.fields.len() as u32);
-        let once = self.once[node.0 as usize];
-        let id = if once { next } else { *self.field_names.entry((node, position)).or_insert(next) };
-        if id == next {
-            let recipe = self.scene.tree.recipe(node);
-            let turns = recipe.is_some_and(Recipe::skeleton_turns);
-            let (map, scale, kind) = self.scene.position(position).of_skeleton(&primitive.skeleton, turns);
-            let strong = primitive.strength != 1.0 || recipe.is_some_and(Recipe::strength_follows);
-            let falloff = primitive.falloff.code(recipe.is_some_and(Recipe::falloff_follows));
-            self.scene.fields.push(LeafField { node, position, uses: 0, map, scale, kind, strong, falloff });
-        }
-        self.scene.fields[id.0 as usize].uses += 1;
-        id
-    }
-
-    /// The first child without the union of the others.
-    fn difference(
-        &mut self,
-        node: NodeId,
-        position: PositionId,
-        children: &[OccurrenceId],
-    ) -> OccurrenceKind {
-        let right = match children[1..] {
-            [only] => only,
-            _ => {
-                let children = children[1..].to_vec();
-                self.push(node, position, OccurrenceKind::Reduce { reducer: Reducer::Union, children })
-            }
-        };
-        OccurrenceKind::Difference { left: children[0], right }
-    }
-
-    fn push(&mut self, node: NodeId, position: PositionId, kind: OccurrenceKind) -> OccurrenceId {
-        let space = self.scene.position(position).space;
-        let non_negative = self.non_negative(node, &kind);
-        for child in children(&kind) {
-            self.scene.occurrences[child.0 as usize].uses += 1;
-        }
-        if let OccurrenceKind::Warp { weight: Some(weight), .. } = kind {
-            // The point inside uses it once more, so that it is lifted: known before any row that enters.
-            self.scene.occurrences[weight.0 as usize].uses += 1;
-        }
-        self.scene.occurrences.push(Occurrence { node, kind, space, uses: 0, non_negative });
-        OccurrenceId(self.scene.occurrences.len() as u32 - 1)
-    }
-
-    fn non_negative(&self, node: NodeId, kind: &OccurrenceKind) -> bool {
-        let of = |id: &OccurrenceId| self.scene.occurrence(*id).non_negative;
-        match kind {
-            OccurrenceKind::Leaf { field, .. } => {
-                let recipe = self.scene.tree.recipe(self.scene.field(*field).node);
-                let follows = recipe.is_some_and(Recipe::strength_follows);
-                self.scene.primitive(*field).strength >= 0.0 && !follows
-            }
-            OccurrenceKind::Warp { child, .. } => of(child),
-            OccurrenceKind::Difference { left, .. } => of(left),
-            OccurrenceKind::Map { kind, child } => {
-                let fixed = self.scene.tree.recipe(node).is_none();
-                kind.is_non_negative(of(child), self.scene.combinator(node), fixed)
-            }
-            OccurrenceKind::Expression { children, .. } => {
-                let signs: Vec<bool> = children.iter().map(of).collect();
-                let known = |number: usize| self.scene.fixed_number(node, number);
-                let positive = |number| known(number).is_some_and(|value| value >= 0.0);
-                self.scene.expression(node).form().non_negative(&signs, positive)
-            }
-            OccurrenceKind::Select { children, .. } => children.iter().all(of),
-            OccurrenceKind::Reduce { reducer, children } => match reducer {
-                Reducer::Sum | Reducer::Product | Reducer::Intersection => children.iter().all(of),
-                Reducer::Ricci(_) | Reducer::RicciFollowing(_) => true,
-                Reducer::Union => children.iter().any(of),
-                Reducer::Step(kind, _) => kind.is_non_negative(children.iter().map(of)),
-            },
-        }
-    }
-
-    /// The space inside a warp at a position, and the position of the warp's child there.
-    fn name_inside(&mut self, warp: NodeId, position: PositionId) -> (SpaceId, PositionId) {
-        let once = self.once[warp.0 as usize];
-        if !once && let Some(&(space, inside)) = self.inside_names.get(&(warp, position)) {
-            self.scene.insides[space.0 as usize - 1].uses += 1;
-            return (space, inside);
-        }
-        self.scene.insides.push(Inside { warp, position, weight: None, uses: 1 });
-        let space = SpaceId(self.scene.insides.len() as u32);
-        let inside = self.name_position(Position::start(space));
-        if !once {
-            self.inside_names.insert((warp, position), (space, inside));
-        }
-        (space, inside)
-    }
-
-    fn name_position(&mut self, position: Position) -> PositionId {
-        let Position { space, trail, .. } = position;
-        let next = PositionId(self.scene.positions.len() as u32);
-        let key = position_key(space, trail.name, &trail.since);
-        let id = *self.position_names.entry(key).or_insert(next);
-        if id == next { self.push_position(position) } else { id }
-    }
-
-    fn push_position(&mut self, position: Position) -> PositionId {
-        self.scene.positions.push(position);
-        PositionId(self.scene.positions.len() as u32 - 1)
     }
 }
 

@@ -1,16 +1,12 @@
 //! A smooth curve through points (Catmull and Rom 1974), or a tube along it whose radius changes smoothly.
 
-use std::sync::Arc;
+use glam::DVec3;
 
-use glam::{DAffine3, DVec3};
-use jbt_ir::Domain;
-
-use super::cubic::{self, Cubic};
-use super::points::{self, CLOSED, POINTS, RADII};
-use super::{Pieces, SkeletonMember, Symmetry};
-use crate::bounds::Bounds;
+use super::cubic::Cubic;
+use super::points::Path;
+use super::tube::Tube;
 use crate::diagnostic::Diagnostic;
-use crate::field::{Field, FieldValue, Member};
+use crate::field::Field;
 
 /// The curve that goes through points, at each along the line between its neighbours: `c'_i = (p_(i+1) - p_(i-1)) / 2`, and at an
 /// open end along the line to its only neighbour.
@@ -19,19 +15,15 @@ use crate::field::{Field, FieldValue, Member};
 /// change at a point by at most 3 times the radius there, so that they never fall below 0. Its distance is 0 inside.
 #[derive(Clone, PartialEq, Debug)]
 pub struct CatmullRom {
-    /// The points, at least two.
-    pub points: Arc<[DVec3]>,
-    /// Radii of at least 0: none if it is thin, one for all points, or one for each.
-    pub radii: Arc<[f64]>,
-    /// Whether the curve leads on from the last point to the first.
-    pub closed: bool,
+    /// The points, at least two, or three if it is closed.
+    pub path: Path,
 }
 
 impl CatmullRom {
     /// The points before and behind a point.
     fn neighbours(&self, point: usize) -> [usize; 2] {
-        let count = self.points.len();
-        if self.closed {
+        let count = self.path.points.len();
+        if self.path.closed {
             [(point + count - 1) % count, (point + 1) % count]
         } else {
             [point.saturating_sub(1), (point + 1).min(count - 1)]
@@ -43,99 +35,38 @@ impl CatmullRom {
         let [before, behind] = self.neighbours(point);
         // At an open end the neighbours are the point itself and the only one that it has.
         let steps = if before == point || behind == point { 1.0 } else { 2.0 };
-        let radius = |index| points::radius_at(&self.radii, index);
+        let radius = |index| self.path.radius_at(index);
         let change = (radius(behind) - radius(before)) / (3.0 * steps);
         let own = radius(point);
-        ((self.points[behind] - self.points[before]) / (3.0 * steps), change.clamp(-own, own))
+        let way = self.path.points[behind] - self.path.points[before];
+        (way / (3.0 * steps), change.clamp(-own, own))
+    }
+}
+
+impl Tube for CatmullRom {
+    type Part = Cubic;
+    const WORD: &'static str = "catmull_rom";
+    const PARAMETERS: &'static [Field] = Path::FIELDS;
+
+    fn along(path: Path) -> Self {
+        Self { path }
     }
 
-    /// Its curves.
-    fn cubics(&self) -> impl Iterator<Item = Cubic> + '_ {
-        let count = self.points.len();
-        let curves = if self.closed { count } else { count - 1 };
-        (0..curves).map(move |first| {
-            let last = (first + 1) % count;
+    fn path(&self) -> &Path {
+        &self.path
+    }
+
+    fn parts(&self) -> impl Iterator<Item = Cubic> {
+        self.path.steps().map(|[first, last]| {
             let ((leave, grow), (arrive, end)) = (self.third(first), self.third(last));
-            let [from, to] = [first, last].map(|end| self.points[end]);
-            let [small, large] = [first, last].map(|end| points::radius_at(&self.radii, end));
+            let [from, to] = [first, last].map(|end| self.path.points[end]);
+            let [small, large] = [first, last].map(|end| self.path.radius_at(end));
             Cubic { centers: [from, from + leave, to - arrive, to], radii: [small, small + grow, large - end, large] }
         })
     }
-}
 
-impl Member for CatmullRom {
-    const NAME: &'static str = "catmull_rom";
-    const FIELDS: &'static [Field] = &[POINTS, RADII, CLOSED];
-
-    fn from_fields(values: &[FieldValue]) -> Self {
-        Self {
-            points: points::points_of(&values[0]),
-            radii: values[1].reals().into(),
-            closed: values[2].real() != 0.0,
-        }
-    }
-
-    fn to_fields(&self) -> Vec<FieldValue> {
-        vec![
-            points::value_of(&self.points),
-            FieldValue::Reals(self.radii.to_vec()),
-            FieldValue::Real(f64::from(u8::from(self.closed))),
-        ]
-    }
-}
-
-impl SkeletonMember for CatmullRom {
-    const COLUMNS: &'static [&'static str] = &[];
-    const SYMMETRY: Symmetry = Symmetry::None;
-    const PIECES: Option<Pieces> = Some(Pieces { columns: Cubic::COLUMNS, local: true });
-
-    fn bounds_under(&self, map: &DAffine3) -> Bounds {
-        cubic::bounds_of(self.cubics(), map)
-    }
-
-    fn distance_squared(&self, p: DVec3) -> f64 {
-        points::distance_squared(cubic::places(self.cubics(), p))
-    }
-
-    fn decision(&self, p: DVec3) -> f64 {
-        points::decision(&cubic::places(self.cubics(), p))
-    }
-
-    fn pose(&self) -> DAffine3 {
-        points::middle(&self.points)
-    }
-
-    fn columns(&self, _scale: f64, _row: &mut Vec<f64>) {}
-
-    fn emit<D: Domain>(d: &mut D, _p: [D::Real; 3], row: &[D::Real]) -> D::Real {
-        let outside = super::positive_part(d, row[0]);
-        d.mul(outside, outside)
-    }
-
-    fn pieces(&self, scale: f64, reach: f64, rows: &mut Vec<f64>) {
-        let to_pose = self.pose().inverse();
-        cubic::pieces(self.cubics(), reach).for_each(|piece| piece.columns(&to_pose, scale, rows));
-    }
-
-    fn piece_bounds_under(&self, reach: f64, map: &DAffine3) -> Vec<Bounds> {
-        cubic::pieces(self.cubics(), reach).map(|piece| piece.bounds_under(map)).collect()
-    }
-
-    fn piece_count(&self, reach: f64, most: usize) -> usize {
-        cubic::pieces(self.cubics(), reach).take(most).count()
-    }
-
-    fn begin<D: Domain>(_d: &mut D, beyond: D::Real) -> Vec<D::Real> {
-        vec![beyond]
-    }
-
-    fn step<D: Domain>(d: &mut D, p: [D::Real; 3], piece: &[D::Real], so_far: &[D::Real]) -> Vec<D::Real> {
-        let distance = Cubic::emit(d, p, piece);
-        vec![d.min(distance, so_far[0])]
-    }
-
-    fn fault(&self) -> Option<Diagnostic> {
-        points::fault(Self::NAME, &self.points, &self.radii, if self.closed { 3 } else { 2 })
+    fn flaw(&self) -> Option<Diagnostic> {
+        self.path.fault(Self::WORD, if self.path.closed { 3 } else { 2 })
     }
 }
 
@@ -147,8 +78,9 @@ mod tests {
     #[test]
     fn it_goes_through_its_points_along_their_neighbours() {
         let points = [[0.0, 0.0, 0.0], [1.0, 2.0, 0.0], [3.0, 2.0, 1.0], [4.0, 0.0, 0.0]].map(DVec3::from);
-        let curve = CatmullRom { points: points.into(), radii: [0.0, 0.3, 0.1, 0.2].into(), closed: true };
-        for (index, cubic) in curve.cubics().enumerate() {
+        let path = Path { points: points.into(), radii: [0.0, 0.3, 0.1, 0.2].into(), closed: true };
+        let curve = CatmullRom { path };
+        for (index, cubic) in curve.parts().enumerate() {
             assert_eq!(cubic.at(0.0), (points[index], [0.0, 0.3, 0.1, 0.2][index]));
             let step = 1e-6;
             let [before, behind] = [(index + 3) % 4, (index + 1) % 4].map(|i| points[i]);
@@ -167,13 +99,10 @@ mod tests {
                 1 => vec![rng.f64()],
                 _ => (0..count).map(|_| rng.f64()).collect(),
             };
-            let curve = CatmullRom {
-                points: (0..count).map(|_| testing::position(rng)).collect(),
-                radii: radii.into(),
-                closed: rng.bool(),
-            };
+            let points = (0..count).map(|_| testing::position(rng)).collect();
+            let curve = CatmullRom { path: Path { points, radii: radii.into(), closed: rng.bool() } };
             let ball = |cubic: Cubic, i: u32| cubic.at(f64::from(i) / 2000.0);
-            let balls = curve.cubics().flat_map(|cubic| (0..=2000).map(move |i| ball(cubic, i))).collect();
+            let balls = curve.parts().flat_map(|cubic| (0..=2000).map(move |i| ball(cubic, i))).collect();
             (curve, balls)
         });
     }

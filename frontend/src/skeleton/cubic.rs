@@ -30,6 +30,7 @@ use jbt_ir::limits::MAX_CURVE_HALVINGS;
 
 use super::points::Place;
 use super::tapered::Cone;
+use super::tube::Part;
 use crate::bounds::Bounds;
 
 /// Newton's steps.
@@ -53,30 +54,7 @@ pub(super) struct Cubic {
     pub(super) radii: [f64; 4],
 }
 
-/// The pieces of a list of cubics, in order.
-pub(super) fn pieces(cubics: impl IntoIterator<Item = Cubic>, reach: f64) -> impl Iterator<Item = Cubic> {
-    cubics.into_iter().flat_map(move |cubic| {
-        let mut waiting = vec![(cubic, 0)];
-        std::iter::from_fn(move || {
-            loop {
-                let (cubic, halvings) = waiting.pop()?;
-                if halvings == MAX_CURVE_HALVINGS || cubic.is_straight(reach) {
-                    return Some(cubic);
-                }
-                let [first, second] = cubic.halves();
-                waiting.extend([(second, halvings + 1), (first, halvings + 1)]);
-            }
-        })
-    })
-}
-
 impl Cubic {
-    pub(super) const COLUMNS: &'static [&'static str] = &[
-        "px", "py", "pz", "c1x", "c1y", "c1z", "c2x", "c2y", "c2z", "c3x", "c3y", "c3z", "r0", "r1", "r2",
-        "r3", //
-        "gx", "gy", "gz", "lean",
-    ];
-
     /// The cone over the chord.
     fn chord(&self) -> Cone {
         Cone { centers: [self.centers[0], self.centers[3]], radii: [self.radii[0], self.radii[3]] }
@@ -148,9 +126,16 @@ impl Cubic {
         let bend = e.dot(2.0 * c2 + 6.0 * t * c3) - (2.0 * r2 + 6.0 * t * r3) * e.length();
         if speed > 0.0 { 1.0 + bend / speed } else { 0.0 }
     }
+}
 
-    /// The box around its image under a map.
-    pub(super) fn bounds_under(&self, map: &DAffine3) -> Bounds {
+impl Part for Cubic {
+    const COLUMNS: &'static [&'static str] = &[
+        "px", "py", "pz", "c1x", "c1y", "c1z", "c2x", "c2y", "c2z", "c3x", "c3y", "c3z", "r0", "r1", "r2",
+        "r3", //
+        "gx", "gy", "gz", "lean",
+    ];
+
+    fn bounds_under(&self, map: &DAffine3) -> Bounds {
         let image = self.centers.map(|center| map.transform_point3(center));
         let side = |axis: usize, sign: f64| {
             let reach = map.matrix3.row(axis).length();
@@ -162,8 +147,7 @@ impl Cubic {
         Bounds::new(corner(-1.0), corner(1.0))
     }
 
-    /// The numbers of its row, in the pose and scaled.
-    pub(super) fn columns(&self, to_pose: &DAffine3, scale: f64, row: &mut Vec<f64>) {
+    fn columns(&self, to_pose: &DAffine3, scale: f64, row: &mut Vec<f64>) {
         let mut own = *self;
         if self.chord().taper() == Err(1) {
             // The start is at the larger end: at 0.
@@ -185,8 +169,7 @@ impl Cubic {
         row.push(lean);
     }
 
-    /// The distance from `p`, below zero inside.
-    pub(super) fn emit<D: Domain>(d: &mut D, p: [D::Real; 3], piece: &[D::Real]) -> D::Real {
+    fn emit<D: Domain>(d: &mut D, p: [D::Real; 3], piece: &[D::Real]) -> D::Real {
         let curve = Curve::new(d, p, piece);
         let mut t = curve.start(d, [piece[16], piece[17], piece[18]], piece[19]);
         let at = curve.ball(d, t);
@@ -201,6 +184,40 @@ impl Cubic {
         let (_, t) = nearer(d, (&at, t), best);
         let t = d.hold(t);
         curve.ball(d, t).distance
+    }
+
+    fn places(parts: impl Iterator<Item = Self>, p: DVec3) -> Vec<Place> {
+        let mut places = Vec::new();
+        for cubic in parts {
+            let at = |i: usize| i as f64 / SAMPLES as f64;
+            let distances: Vec<f64> = (0..=SAMPLES).map(|i| cubic.distance_at(p, at(i))).collect();
+            for i in 0..=SAMPLES {
+                let (before, behind) = (i.saturating_sub(1), (i + 1).min(SAMPLES));
+                if distances[i] <= distances[before] && distances[i] <= distances[behind] {
+                    let t = minimum(at(before), at(behind), |t| cubic.distance_at(p, t));
+                    let t = if cubic.distance_at(p, at(i)) < cubic.distance_at(p, t) { at(i) } else { t };
+                    let firmness = if t > 0.0 && t < 1.0 { cubic.firmness(p, t) } else { 1.0 };
+                    places.push(Place { distance: cubic.distance_at(p, t), foot: cubic.at(t).0, firmness });
+                }
+            }
+        }
+        places
+    }
+
+    fn divided(parts: impl Iterator<Item = Self>, reach: f64) -> impl Iterator<Item = Self> {
+        parts.flat_map(move |cubic| {
+            let mut waiting = vec![(cubic, 0)];
+            std::iter::from_fn(move || {
+                loop {
+                    let (cubic, halvings) = waiting.pop()?;
+                    if halvings == MAX_CURVE_HALVINGS || cubic.is_straight(reach) {
+                        return Some(cubic);
+                    }
+                    let [first, second] = cubic.halves();
+                    waiting.extend([(second, halvings + 1), (first, halvings + 1)]);
+                }
+            })
+        })
     }
 }
 
@@ -340,25 +357,6 @@ fn unit_interval<D: Domain>(d: &mut D, t: D::Real) -> D::Real {
 /// Places in which a cubic is looked at before its minima are bracketed.
 const SAMPLES: usize = 64;
 
-/// The nearest places of cubics, plainly: at each cubic, every place that is nearer than those around it.
-pub(super) fn places(cubics: impl IntoIterator<Item = Cubic>, p: DVec3) -> Vec<Place> {
-    let mut places = Vec::new();
-    for cubic in cubics {
-        let at = |i: usize| i as f64 / SAMPLES as f64;
-        let distances: Vec<f64> = (0..=SAMPLES).map(|i| cubic.distance_at(p, at(i))).collect();
-        for i in 0..=SAMPLES {
-            let (before, behind) = (i.saturating_sub(1), (i + 1).min(SAMPLES));
-            if distances[i] <= distances[before] && distances[i] <= distances[behind] {
-                let t = minimum(at(before), at(behind), |t| cubic.distance_at(p, t));
-                let t = if cubic.distance_at(p, at(i)) < cubic.distance_at(p, t) { at(i) } else { t };
-                let firmness = if t > 0.0 && t < 1.0 { cubic.firmness(p, t) } else { 1.0 };
-                places.push(Place { distance: cubic.distance_at(p, t), foot: cubic.at(t).0, firmness });
-            }
-        }
-    }
-    places
-}
-
 /// The minimum of a function between two places, by golden sections.
 fn minimum(mut low: f64, mut high: f64, value: impl Fn(f64) -> f64) -> f64 {
     let ratio = 0.5 * (5f64.sqrt() - 1.0);
@@ -367,11 +365,6 @@ fn minimum(mut low: f64, mut high: f64, value: impl Fn(f64) -> f64) -> f64 {
         if value(a) < value(b) { high = b } else { low = a }
     }
     0.5 * (low + high)
-}
-
-/// The box around cubics under a map.
-pub(super) fn bounds_of(cubics: impl IntoIterator<Item = Cubic>, map: &DAffine3) -> Bounds {
-    cubics.into_iter().fold(Bounds::EMPTY, |all, cubic| all.hull(cubic.bounds_under(map)))
 }
 
 #[cfg(test)]
@@ -383,7 +376,7 @@ mod tests {
 
     /// The smallest distance that the program finds in f32, of the pieces for a support radius.
     fn found(cubic: Cubic, reach: f64, p: DVec3) -> f64 {
-        let nearest = pieces([cubic], reach).map(|piece| {
+        let nearest = Cubic::divided([cubic].into_iter(), reach).map(|piece| {
             let mut row = Vec::new();
             piece.columns(&DAffine3::IDENTITY, 1.0, &mut row);
             assert_eq!(row.len(), Cubic::COLUMNS.len());
@@ -420,8 +413,10 @@ mod tests {
                 let (center, radius) = cubic.at(rng.f64());
                 let p = center + direction(&mut rng) * (radius + reach * rng.f64());
                 let p = p.as_vec3().as_dvec3();
-                let nearest =
-                    places([cubic], p).iter().map(|place| place.distance).fold(f64::INFINITY, f64::min);
+                let nearest = Cubic::places([cubic].into_iter(), p)
+                    .iter()
+                    .map(|place| place.distance)
+                    .fold(f64::INFINITY, f64::min);
                 worst_plain = worst_plain.max(nearest - brute_force(&cubic, p, 300));
                 let error = (found(cubic, reach, p) - nearest).abs() / reach;
                 worst = worst.max(error);

@@ -45,9 +45,9 @@ use jbt_ir::{Domain, limits};
 use super::points::{self, Place};
 use super::{SkeletonMember, Symmetry};
 use crate::affine::sin_cos_degrees;
+use crate::angle::atan2;
 use crate::bounds::Bounds;
 use crate::diagnostic::Diagnostic;
-use crate::expression::arc::atan2;
 use crate::field::{Field, FieldKind, FieldValue, Member};
 
 /// Newton's steps of the program.

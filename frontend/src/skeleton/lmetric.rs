@@ -16,6 +16,7 @@
 
 use glam::{DAffine3, DVec3};
 use jbt_ir::Domain;
+use jbt_ir::limits::MAX_METRIC_EXPONENT;
 
 use super::{Metric, SkeletonMember, Symmetry};
 use crate::bounds::Bounds;
@@ -28,7 +29,7 @@ use crate::field::{Field, FieldKind, FieldValue, Member};
 pub struct LMetric {
     /// Its middle.
     pub center: DVec3,
-    /// The exponent, from 1 to [`MAX_METRIC_EXPONENT`](jbt_ir::limits::MAX_METRIC_EXPONENT).
+    /// The exponent, from 1 to [`MAX_METRIC_EXPONENT`].
     pub exponent: f64,
     /// How many times it reaches as far as the radius, along each axis.
     pub stretch: DVec3,
@@ -38,7 +39,11 @@ impl Member for LMetric {
     const NAME: &'static str = "lmetric";
     const FIELDS: &'static [Field] = &[
         Field { name: "center", kind: FieldKind::Position, default: Some(FieldValue::Vector([0.0; 3])) },
-        Field { name: "exponent", kind: FieldKind::Exponent, default: None },
+        Field {
+            name: "exponent",
+            kind: FieldKind::Within { least: 1.0, most: MAX_METRIC_EXPONENT },
+            default: None,
+        },
         Field { name: "stretch", kind: FieldKind::Stretches, default: Some(FieldValue::Vector([1.0; 3])) },
     ];
 

@@ -356,11 +356,21 @@ skeletons! {
 }
 
 mod cubic;
+mod ends;
+mod formulas;
+mod geometry;
 mod piece;
 mod points;
 mod tapered;
+mod tube;
 
+pub use ends::Ends;
+use formulas::{beyond, dot, emit_off_axis, length, minus_multiple, outside_squared, sum_of_squares};
+pub(crate) use formulas::{length_squared, positive_part};
+pub(crate) use geometry::unit;
+use geometry::{along, along_normal, ball_reach, circle_reach, cylindrical, direction, frame, towards};
 pub use piece::{BEYOND, Pieces};
+pub use points::Path;
 
 impl Skeleton {
     /// A box around all points at up to this distance.
@@ -381,135 +391,3 @@ pub use metric::Metric;
 #[cfg(test)]
 mod testing;
 mod uv;
-
-/// `v` with length 1, whatever its length was; zero stays zero.
-pub(crate) fn unit(v: DVec3) -> DVec3 {
-    let size = v.abs().max_element();
-    if size == 0.0 { DVec3::ZERO } else { (v / size).normalize() }
-}
-
-/// `v` with length 1; the z axis for zero.
-fn direction(v: DVec3) -> DVec3 {
-    let unit = unit(v);
-    if unit == DVec3::ZERO { DVec3::Z } else { unit }
-}
-
-/// Height along the unit vector `n`, and distance from its line.
-fn cylindrical(v: DVec3, n: DVec3) -> (f64, f64) {
-    let h = v.dot(n);
-    (h, (v - h * n).length())
-}
-
-/// How far the image of a circle about the unit vector `n` reaches along each axis.
-fn circle_reach(map: &DAffine3, n: DVec3, radius: f64) -> DVec3 {
-    // Along a row of the matrix the circle reaches as far as that row is long in the circle's plane.
-    radius * DVec3::from_array([0, 1, 2].map(|axis| map.matrix3.row(axis).cross(n).length()))
-}
-
-/// The rotation that takes the z axis to the direction of `v`, or against it: the identity if it need not move, or if `v` is zero.
-fn along(v: DVec3) -> DMat3 {
-    let z = unit(v);
-    if z == DVec3::ZERO || z.z.abs() == 1.0 {
-        return DMat3::IDENTITY;
-    }
-    let (x, y) = z.any_orthonormal_pair();
-    DMat3::from_cols(x, y, z)
-}
-
-/// What takes the z axis to the direction of `v`: a rotation, or the reflection in the origin where that will do; the identity if `v` is zero.
-fn towards(v: DVec3) -> DMat3 {
-    let z = unit(v);
-    if z == DVec3::ZERO || z.z == 1.0 {
-        return DMat3::IDENTITY;
-    }
-    if z.z == -1.0 {
-        return -DMat3::IDENTITY;
-    }
-    let (x, y) = z.any_orthonormal_pair();
-    DMat3::from_cols(x, y, z)
-}
-
-/// The rotation that takes the z axis to the direction of `normal`, and the x axis as near to that of `first` as it can be.
-fn frame(normal: DVec3, first: DVec3) -> DMat3 {
-    let (z, first) = (unit(normal), unit(first));
-    let across = |v: DVec3| v - v.dot(z) * z;
-    // Twice, because what is left of a direction near the normal is mostly rounding.
-    let x = unit(across(across(first)));
-    let x = if x == DVec3::ZERO { z.any_orthonormal_vector() } else { x };
-    DMat3::from_cols(x, z.cross(x), z)
-}
-
-/// Whether two directions lie along one line, as nearly as f32 can tell. A direction that is zero lies along none.
-fn are_along(a: DVec3, b: DVec3) -> bool {
-    let (a, b) = (unit(a), unit(b));
-    a != DVec3::ZERO && b != DVec3::ZERO && a.cross(b).length() < 1e-7
-}
-
-/// What is wrong with a direction that has to be across another one, if it lies along that; `what` is its name.
-fn along_normal(owner: &str, what: &str, normal: DVec3, direction: DVec3) -> Option<Diagnostic> {
-    let error = || Diagnostic::error(None, format!("the `{what}` of the {owner} lies along its normal"));
-    are_along(normal, direction).then(|| error().expected("expected a direction across it"))
-}
-
-/// How far the image of a ball reaches along each axis.
-fn ball_reach(map: &DAffine3, radius: f64) -> DVec3 {
-    radius * Metric::EUCLIDEAN.reach(map.matrix3)
-}
-
-/// The distance from the z axis.
-fn emit_off_axis<D: Domain>(d: &mut D, p: [D::Real; 3]) -> D::Real {
-    let square = sum_of_squares(d, p[0], p[1]);
-    d.sqrt(square)
-}
-
-/// The squared distance from all points within `radius` of something, from the squared distance from that: `max(sqrt(square) - radius, 0)^2`.
-fn outside_squared<D: Domain>(d: &mut D, square: D::Real, radius: D::Real) -> D::Real {
-    let distance = d.sqrt(square);
-    let past = d.sub(distance, radius);
-    let outside = positive_part(d, past);
-    d.mul(outside, outside)
-}
-
-/// How far `x` is outside of `[-half, half]`: `max(|x| - half, 0)`.
-fn beyond<D: Domain>(d: &mut D, x: D::Real, half: D::Real) -> D::Real {
-    let size = d.abs(x);
-    let past = d.sub(size, half);
-    positive_part(d, past)
-}
-
-/// `a^2 + b^2`, with one fused step.
-fn sum_of_squares<D: Domain>(d: &mut D, a: D::Real, b: D::Real) -> D::Real {
-    let square = d.mul(a, a);
-    d.fma(b, b, square)
-}
-
-/// `a . b`, with two fused steps.
-fn dot<D: Domain>(d: &mut D, a: [D::Real; 3], b: [D::Real; 3]) -> D::Real {
-    let x = d.mul(a[0], b[0]);
-    let xy = d.fma(a[1], b[1], x);
-    d.fma(a[2], b[2], xy)
-}
-
-/// `v - x u`, with one fused step for each coordinate.
-fn minus_multiple<D: Domain>(d: &mut D, v: [D::Real; 3], x: D::Real, u: [D::Real; 3]) -> [D::Real; 3] {
-    let back = d.neg(x);
-    std::array::from_fn(|axis| d.fma(back, u[axis], v[axis]))
-}
-
-/// `|v|`.
-fn length<D: Domain>(d: &mut D, v: [D::Real; 3]) -> D::Real {
-    let square = length_squared(d, v);
-    d.sqrt(square)
-}
-
-/// `|v|^2`, with two fused steps.
-pub(crate) fn length_squared<D: Domain>(d: &mut D, [x, y, z]: [D::Real; 3]) -> D::Real {
-    let square = sum_of_squares(d, x, y);
-    d.fma(z, z, square)
-}
-
-/// `max(x, 0)`: zero for NaN, and never -0.
-pub(crate) fn positive_part<D: Domain>(d: &mut D, x: D::Real) -> D::Real {
-    let zero = d.constant(0.0);
-    d.max(x, zero)
-}

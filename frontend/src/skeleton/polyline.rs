@@ -1,136 +1,54 @@
 //! The polyline: straight lines from point to point, or a tube along them whose radius changes evenly between points.
 
-use std::sync::Arc;
-
-use glam::{DAffine3, DVec3};
-use jbt_ir::Domain;
-
-use super::tapered::{Cone, bounds_of};
-use super::points::{self, CLOSED, POINTS, Place, RADII};
-use super::{Pieces, SkeletonMember, Symmetry};
-use crate::bounds::Bounds;
+use super::points::Path;
+use super::tapered::Cone;
+use super::tube::Tube;
 use crate::diagnostic::Diagnostic;
-use crate::field::{Field, FieldValue, Member};
+use crate::field::Field;
 
 /// Lines through points in order, at least two. With radii it is the solid tube of all balls with centres on these lines: its distance is 0
 /// inside.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Polyline {
-    /// The points.
-    pub points: Arc<[DVec3]>,
-    /// Radii of at least 0: none if it is thin, one for all points, or one for each.
-    pub radii: Arc<[f64]>,
-    /// Whether a line leads from the last point to the first.
-    pub closed: bool,
+    /// The points and radii, and whether a line leads from the last point to the first.
+    pub path: Path,
 }
 
-impl Polyline {
-    /// Its lines.
-    fn cones(&self) -> Vec<Cone> {
-        let count = self.points.len();
-        let lines = if self.closed { count } else { count - 1 };
-        let cone = |first: usize| {
-            let ends = [first, (first + 1) % count];
-            Cone {
-                centers: ends.map(|end| self.points[end]),
-                radii: ends.map(|end| points::radius_at(&self.radii, end)),
-            }
-        };
-        (0..lines).map(cone).collect()
+impl Tube for Polyline {
+    type Part = Cone;
+    const WORD: &'static str = "polyline";
+    const PARAMETERS: &'static [Field] = Path::FIELDS;
+
+    fn along(path: Path) -> Self {
+        Self { path }
     }
 
-    fn places(&self, p: DVec3) -> Vec<Place> {
-        let place = |cone: &Cone| {
-            let (foot, radius) = cone.at(cone.nearest(p));
-            Place { distance: p.distance(foot) - radius, foot, firmness: 1.0 }
-        };
-        self.cones().iter().map(place).collect()
-    }
-}
-
-impl Member for Polyline {
-    const NAME: &'static str = "polyline";
-    const FIELDS: &'static [Field] = &[POINTS, RADII, CLOSED];
-
-    fn from_fields(values: &[FieldValue]) -> Self {
-        Self {
-            points: points::points_of(&values[0]),
-            radii: values[1].reals().into(),
-            closed: values[2].real() != 0.0,
-        }
+    fn path(&self) -> &Path {
+        &self.path
     }
 
-    fn to_fields(&self) -> Vec<FieldValue> {
-        vec![
-            points::value_of(&self.points),
-            FieldValue::Reals(self.radii.to_vec()),
-            FieldValue::Real(f64::from(u8::from(self.closed))),
-        ]
-    }
-}
-
-impl SkeletonMember for Polyline {
-    const COLUMNS: &'static [&'static str] = &[];
-    const SYMMETRY: Symmetry = Symmetry::None;
-    const PIECES: Option<Pieces> = Some(Pieces { columns: Cone::COLUMNS, local: true });
-
-    fn bounds_under(&self, map: &DAffine3) -> Bounds {
-        bounds_of(&self.cones(), map)
+    fn parts(&self) -> impl Iterator<Item = Cone> {
+        self.path.steps().map(|ends| Cone {
+            centers: ends.map(|end| self.path.points[end]),
+            radii: ends.map(|end| self.path.radius_at(end)),
+        })
     }
 
-    fn distance_squared(&self, p: DVec3) -> f64 {
-        points::distance_squared(self.places(p))
-    }
-
-    fn decision(&self, p: DVec3) -> f64 {
-        points::decision(&self.places(p))
-    }
-
-    fn pose(&self) -> DAffine3 {
-        points::middle(&self.points)
-    }
-
-    fn columns(&self, _scale: f64, _row: &mut Vec<f64>) {}
-
-    fn emit<D: Domain>(d: &mut D, _p: [D::Real; 3], row: &[D::Real]) -> D::Real {
-        let outside = super::positive_part(d, row[0]);
-        d.mul(outside, outside)
-    }
-
-    fn pieces(&self, scale: f64, _reach: f64, rows: &mut Vec<f64>) {
-        let to_pose = self.pose().inverse();
-        self.cones().iter().for_each(|cone| cone.columns(&to_pose, scale, rows));
-    }
-
-    fn piece_bounds_under(&self, _reach: f64, map: &DAffine3) -> Vec<Bounds> {
-        self.cones().iter().map(|cone| cone.bounds_under(map)).collect()
-    }
-
-    fn piece_count(&self, _reach: f64, _most: usize) -> usize {
-        self.points.len()
-    }
-
-    fn begin<D: Domain>(_d: &mut D, beyond: D::Real) -> Vec<D::Real> {
-        vec![beyond]
-    }
-
-    fn step<D: Domain>(d: &mut D, p: [D::Real; 3], piece: &[D::Real], so_far: &[D::Real]) -> Vec<D::Real> {
-        let distance = Cone::emit(d, p, piece);
-        vec![d.min(distance, so_far[0])]
-    }
-
-    fn fault(&self) -> Option<Diagnostic> {
-        points::fault(Self::NAME, &self.points, &self.radii, 2)
+    fn flaw(&self) -> Option<Diagnostic> {
+        self.path.fault(Self::WORD, 2)
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
+
     use super::*;
     use crate::skeleton::testing;
 
     fn polyline(points: &[[f64; 3]], radii: &[f64], closed: bool) -> Polyline {
-        Polyline { points: points.iter().map(|&point| point.into()).collect(), radii: radii.into(), closed }
+        let points = points.iter().map(|&point| point.into()).collect();
+        Polyline { path: Path { points, radii: radii.into(), closed } }
     }
 
     #[test]
@@ -174,9 +92,10 @@ mod tests {
                 1 => vec![rng.f64()],
                 _ => (0..count).map(|_| 2.0 * rng.f64()).collect(),
             };
-            let line = Polyline { points: points.into(), radii: radii.into(), closed: rng.bool() };
-            let ball = |cone: &Cone, i: u32| cone.at(f64::from(i) / 1000.0);
-            let balls = line.cones().iter().flat_map(|cone| (0..=1000).map(move |i| ball(cone, i))).collect();
+            let path = Path { points: points.into(), radii: radii.into(), closed: rng.bool() };
+            let line = Polyline { path };
+            let ball = |cone: Cone, i: u32| cone.at(f64::from(i) / 1000.0);
+            let balls = line.parts().flat_map(|cone| (0..=1000).map(move |i| ball(cone, i))).collect();
             (line, balls)
         });
     }

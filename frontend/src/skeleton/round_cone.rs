@@ -14,21 +14,16 @@
 use glam::{DAffine3, DVec3};
 use jbt_ir::Domain;
 
+use super::ends::Ends;
 use super::{SkeletonMember, Symmetry};
 use crate::bounds::Bounds;
-use crate::field::{Field, FieldKind, FieldValue, Member};
+use crate::field::{Field, FieldValue, Member};
 
 /// The hull of two balls. Equal radii make it a solid capsule, equal middles the larger ball.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct RoundCone {
-    /// The middle of one ball.
-    pub from: DVec3,
-    /// The middle of the other ball.
-    pub to: DVec3,
-    /// The radius of the ball at `from`.
-    pub from_radius: f64,
-    /// The radius of the ball at `to`.
-    pub to_radius: f64,
+    /// The middles of the balls, and their radii.
+    pub ends: Ends,
 }
 
 /// A round cone as the formula sees it.
@@ -45,42 +40,28 @@ struct Profile {
 
 impl RoundCone {
     fn profile(&self) -> Profile {
-        let (length, growth) = (self.from.distance(self.to), self.to_radius - self.from_radius);
+        let Ends { from, to, from_radius, to_radius } = self.ends;
+        let (length, growth) = (self.ends.length(), to_radius - from_radius);
         if growth.abs() < length {
-            let (middle, radius) = (self.from.midpoint(self.to), 0.5 * (self.from_radius + self.to_radius));
+            let (middle, radius) = (from.midpoint(to), 0.5 * (from_radius + to_radius));
             return Profile { middle, half: 0.5 * length, slope: growth / length, radius };
         }
         let (middle, radius) =
-            if growth > 0.0 { (self.to, self.to_radius) } else { (self.from, self.from_radius) };
+            if growth > 0.0 { (to, to_radius) } else { (from, from_radius) };
         Profile { middle, half: 0.0, slope: 0.0, radius }
     }
 }
 
 impl Member for RoundCone {
     const NAME: &'static str = "round_cone";
-    const FIELDS: &'static [Field] = &[
-        Field { name: "from", kind: FieldKind::Position, default: None },
-        Field { name: "to", kind: FieldKind::Position, default: None },
-        Field { name: "from_radius", kind: FieldKind::NonNegative, default: None },
-        Field { name: "to_radius", kind: FieldKind::NonNegative, default: None },
-    ];
+    const FIELDS: &'static [Field] = &Ends::fields(None);
 
     fn from_fields(values: &[FieldValue]) -> Self {
-        Self {
-            from: values[0].vector().into(),
-            to: values[1].vector().into(),
-            from_radius: values[2].real(),
-            to_radius: values[3].real(),
-        }
+        Self { ends: Ends::from_fields(values) }
     }
 
     fn to_fields(&self) -> Vec<FieldValue> {
-        vec![
-            FieldValue::Vector(self.from.into()),
-            FieldValue::Vector(self.to.into()),
-            FieldValue::Real(self.from_radius),
-            FieldValue::Real(self.to_radius),
-        ]
+        self.ends.to_fields()
     }
 }
 
@@ -89,24 +70,20 @@ impl SkeletonMember for RoundCone {
     const SYMMETRY: Symmetry = Symmetry::Arrow;
 
     fn bounds_under(&self, map: &DAffine3) -> Bounds {
-        let around = |end: DVec3, radius: f64| {
-            let (at, reach) = (map.transform_point3(end), super::ball_reach(map, radius));
-            Bounds::new(at - reach, at + reach)
-        };
-        around(self.from, self.from_radius).hull(around(self.to, self.to_radius))
+        self.ends.bounds_under(map, |radius| super::ball_reach(map, radius))
     }
 
     fn distance_squared(&self, p: DVec3) -> f64 {
-        let length = self.from.distance(self.to);
-        let [from, to] = [(self.from, self.from_radius), (self.to, self.to_radius)]
-            .map(|(at, radius)| p.distance(at) - radius);
-        let mut nearest = from.min(to);
-        let k = (self.to_radius - self.from_radius) / length;
+        let Ends { from, to, from_radius, to_radius } = self.ends;
+        let length = self.ends.length();
+        let balls = [(from, from_radius), (to, to_radius)].map(|(at, radius)| p.distance(at) - radius);
+        let mut nearest = balls[0].min(balls[1]);
+        let k = (to_radius - from_radius) / length;
         // NaN where the ends are equal.
         if k.abs() < 1.0 {
-            let (x, y) = super::cylindrical(p - self.from, super::unit(self.to - self.from));
+            let (x, y) = super::cylindrical(p - from, super::unit(to - from));
             let tau = (x + y * k / (1.0 - k * k).sqrt()).clamp(0.0, length);
-            nearest = nearest.min((x - tau).hypot(y) - (self.from_radius + k * tau));
+            nearest = nearest.min((x - tau).hypot(y) - (from_radius + k * tau));
         }
         nearest.max(0.0).powi(2)
     }
@@ -116,7 +93,7 @@ impl SkeletonMember for RoundCone {
     }
 
     fn pose(&self) -> DAffine3 {
-        DAffine3::from_mat3_translation(super::towards(self.to - self.from), self.profile().middle)
+        DAffine3::from_mat3_translation(super::towards(self.ends.to - self.ends.from), self.profile().middle)
     }
 
     fn columns(&self, scale: f64, row: &mut Vec<f64>) {
@@ -147,7 +124,7 @@ mod tests {
     use crate::skeleton::{Sphere, testing};
 
     fn cone(length: f64, from_radius: f64, to_radius: f64) -> RoundCone {
-        RoundCone { from: DVec3::ZERO, to: DVec3::new(length, 0.0, 0.0), from_radius, to_radius }
+        RoundCone { ends: Ends { from: DVec3::ZERO, to: DVec3::new(length, 0.0, 0.0), from_radius, to_radius } }
     }
 
     #[test]
@@ -201,7 +178,7 @@ mod tests {
             [(1.0, 3.0, 1.0), (1.0, 1.0, 3.0), (2.0, 3.0, 1.0), (0.0, 1.0, 2.0), (0.0, 2.0, 2.0), (1.0, 0.5, 1.5)]
         {
             let round = cone(length, from_radius, to_radius);
-            let larger = if from_radius > to_radius { (round.from, from_radius) } else { (round.to, to_radius) };
+            let larger = if from_radius > to_radius { (round.ends.from, from_radius) } else { (round.ends.to, to_radius) };
             let ball = Sphere { center: larger.0, radius: larger.1 };
             for _ in 0..50 {
                 let p = testing::position(&mut rng).as_vec3().as_dvec3();
@@ -234,7 +211,7 @@ mod tests {
                 let (at, radius) = (from.lerp(to, t), from_radius + t * (to_radius - from_radius));
                 testing::ball(5).map(move |v| at + radius * v)
             });
-            (RoundCone { from, to, from_radius, to_radius }, balls.collect())
+            (RoundCone { ends: Ends { from, to, from_radius, to_radius } }, balls.collect())
         });
     }
 }

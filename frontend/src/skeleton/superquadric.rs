@@ -10,11 +10,15 @@
 
 use glam::{DAffine3, DVec3};
 use jbt_ir::Domain;
+use jbt_ir::limits::MAX_METRIC_EXPONENT;
 
 use super::lmetric::{emit_norm, emit_term, norm};
 use super::{Metric, SkeletonMember, Symmetry};
 use crate::bounds::Bounds;
 use crate::field::{Field, FieldKind, FieldValue, Member};
+
+/// Exponents of Barr's: two by an exponent of a norm.
+const BARR: FieldKind = FieldKind::Within { least: 2.0 / MAX_METRIC_EXPONENT, most: 2.0 };
 
 /// A point with the distance of a superellipsoid.
 ///
@@ -35,8 +39,8 @@ impl Member for Superquadric {
     const NAME: &'static str = "superquadric";
     const FIELDS: &'static [Field] = &[
         Field { name: "center", kind: FieldKind::Position, default: Some(FieldValue::Vector([0.0; 3])) },
-        Field { name: "e1", kind: FieldKind::Squareness, default: None },
-        Field { name: "e2", kind: FieldKind::Squareness, default: None },
+        Field { name: "e1", kind: BARR, default: None },
+        Field { name: "e2", kind: BARR, default: None },
         Field { name: "stretch", kind: FieldKind::Stretches, default: Some(FieldValue::Vector([1.0; 3])) },
     ];
 

@@ -14,6 +14,8 @@
 use glam::{DAffine3, DVec3};
 use jbt_ir::Domain;
 
+use super::points::Place;
+use super::tube::Part;
 use crate::bounds::Bounds;
 
 /// The balls between two, those included.
@@ -24,9 +26,6 @@ pub(super) struct Cone {
 }
 
 impl Cone {
-    pub(super) const COLUMNS: &'static [&'static str] =
-        &["ax", "ay", "az", "ux", "uy", "uz", "length", "radius", "taper", "lean"];
-
     /// How fast the radius grows along the line, and how far that shifts the nearest ball for a distance from the line. Where one end
     /// holds all: the place of that end in the list.
     pub(super) fn taper(&self) -> Result<(f64, f64), usize> {
@@ -59,9 +58,13 @@ impl Cone {
     pub(super) fn at(&self, t: f64) -> (DVec3, f64) {
         (self.centers[0].lerp(self.centers[1], t), self.radii[0] + t * (self.radii[1] - self.radii[0]))
     }
+}
 
-    /// The box around its image under a map.
-    pub(super) fn bounds_under(&self, map: &DAffine3) -> Bounds {
+impl Part for Cone {
+    const COLUMNS: &'static [&'static str] =
+        &["ax", "ay", "az", "ux", "uy", "uz", "length", "radius", "taper", "lean"];
+
+    fn bounds_under(&self, map: &DAffine3) -> Bounds {
         let ball = |end: usize| {
             let rows = DVec3::from_array([0, 1, 2].map(|axis| map.matrix3.row(axis).length()));
             let (center, reach) = (map.transform_point3(self.centers[end]), self.radii[end] * rows);
@@ -70,8 +73,7 @@ impl Cone {
         ball(0).hull(ball(1))
     }
 
-    /// The numbers of its row, in the pose and scaled.
-    pub(super) fn columns(&self, to_pose: &DAffine3, scale: f64, row: &mut Vec<f64>) {
+    fn columns(&self, to_pose: &DAffine3, scale: f64, row: &mut Vec<f64>) {
         let [a, b] = self.centers.map(|center| scale * to_pose.transform_point3(center));
         let (from, along, length, radius, taper, lean) = match self.taper() {
             Ok((taper, lean)) => (a, super::unit(b - a), a.distance(b), self.radii[0], taper, lean),
@@ -82,8 +84,7 @@ impl Cone {
         row.extend([length, scale * radius, taper, lean]);
     }
 
-    /// The distance from `p`, below zero inside.
-    pub(super) fn emit<D: Domain>(d: &mut D, p: [D::Real; 3], piece: &[D::Real]) -> D::Real {
+    fn emit<D: Domain>(d: &mut D, p: [D::Real; 3], piece: &[D::Real]) -> D::Real {
         let from_a: [D::Real; 3] = std::array::from_fn(|axis| d.sub(p[axis], piece[axis]));
         let along = [piece[3], piece[4], piece[5]];
         let [length, radius, taper, lean] = [piece[6], piece[7], piece[8], piece[9]];
@@ -99,9 +100,16 @@ impl Cone {
         let ball = d.fma(tau, taper, radius);
         d.sub(distance, ball)
     }
-}
 
-/// The box around cones under a map.
-pub(super) fn bounds_of(cones: &[Cone], map: &DAffine3) -> Bounds {
-    cones.iter().fold(Bounds::EMPTY, |all, cone| all.hull(cone.bounds_under(map)))
+    fn places(parts: impl Iterator<Item = Self>, p: DVec3) -> Vec<Place> {
+        let place = |cone: Self| {
+            let (foot, radius) = cone.at(cone.nearest(p));
+            Place { distance: p.distance(foot) - radius, foot, firmness: 1.0 }
+        };
+        parts.map(place).collect()
+    }
+
+    fn divided(parts: impl Iterator<Item = Self>, _reach: f64) -> impl Iterator<Item = Self> {
+        parts
+    }
 }

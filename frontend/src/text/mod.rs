@@ -103,6 +103,7 @@ mod expression;
 mod falloff;
 mod formula;
 mod lex;
+mod map;
 mod node;
 mod operator;
 mod parse;

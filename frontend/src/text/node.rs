@@ -5,12 +5,10 @@ use jbt_ir::limits::MAX_NODES;
 use super::expression::Place;
 use super::lex::{Token, TokenKind};
 use super::parse::{Parser, is_statement};
-use super::primitive::Slots;
-use super::{GROUP_NODE, REFLECT, ROTATE, SHEAR, STRETCH, WEIGHTED, operator};
+use super::{GROUP_NODE, REFLECT, SHEAR, STRETCH, WEIGHTED, operator};
 use crate::combine::Combinator;
 use crate::diagnostic::{Diagnostic, Span};
-use crate::field::Field;
-use crate::recipe::{Angle, FieldNumber, Map, Recipe};
+use crate::recipe::{Map, Recipe};
 use crate::report::{clip, nearest};
 use crate::skeleton::SkeletonKind;
 use crate::tree::{NodeKind, Tree};
@@ -320,14 +318,6 @@ impl<'a> Parser<'a> {
         self.block(start, recipe.map_or(Head::Broken, |recipe| Head::Unary(Box::new(recipe))))
     }
 
-    fn map(&mut self, start: Token, map: Map) -> Begun {
-        if let Err(fault) = map.affine() {
-            let span = Span::new(start.start, self.previous_end());
-            self.report(|| fault.at(Some(span)));
-        }
-        self.unary(start, Some(Recipe::Map(map)))
-    }
-
     /// The node of a block that has been closed.
     fn close(&mut self, frame: Frame, children: Vec<Tree>) -> Tree {
         let recipe = match frame.head {
@@ -406,57 +396,6 @@ impl<'a> Parser<'a> {
         self.broken.clone()
     }
 
-    fn rotate(&mut self, start: Token) -> Begun {
-        let mut slots = self.slots(ROTATE, "`rotate`");
-        let [axis, degrees, radians] = [0, 1, 2].map(|index| slots.take(index));
-        let span = Span::new(start.start, self.previous_end());
-        let angle = match (degrees, radians) {
-            (Some(FieldNumber::Real(degrees)), None) => Angle::Degrees(degrees),
-            (None, Some(FieldNumber::Real(radians))) => Angle::Radians(radians),
-            _ => {
-                self.lose_place(|| {
-                    Diagnostic::error(Some(span), "`rotate` has no angle, or two")
-                        .expected("expected one of `degrees` and `radians`")
-                });
-                return self.block(start, Head::Broken);
-            }
-        };
-        let Some(FieldNumber::Vector(axis)) = axis else {
-            self.lose_place(|| {
-                Diagnostic::error(Some(span), "`rotate` has no axis")
-                    .expected("expected `axis x`, `axis y`, `axis z` or `axis (a b c)`")
-            });
-            return self.block(start, Head::Broken);
-        };
-        self.map(start, Map::Rotate { axis, angle })
-    }
-
-    /// A map with an axis, and with a number or a vector that says how far.
-    fn map_along(&mut self, start: Token, fields: &'static [Field], name: &str) -> Begun {
-        let values = self.slots(fields, &format!("`{name}`")).complete(self, start, name);
-        let mut values = values.into_iter().flatten();
-        let map = match (values.next(), values.next()) {
-            (Some(FieldNumber::Vector(axis)), None) => Map::Reflect(axis),
-            (Some(FieldNumber::Vector(axis)), Some(FieldNumber::Real(by))) => Map::Stretch { axis, by },
-            (Some(FieldNumber::Vector(axis)), Some(FieldNumber::Vector(by))) => Map::Shear { axis, by },
-            // What was not read, and what the description of these maps does not ask for.
-            (Some(FieldNumber::Real(_) | FieldNumber::Reals(_) | FieldNumber::Vectors(_)) | None, _)
-            | (Some(FieldNumber::Vector(_)), Some(FieldNumber::Reals(_) | FieldNumber::Vectors(_))) => {
-                return self.block(start, Head::Broken);
-            }
-        };
-        self.map(start, map)
-    }
-
-    fn scale(&mut self, start: Token) -> Begun {
-        let map = match self.number_or_elements() {
-            None => Map::Scale(f64::NAN.into()),
-            Some(all) if all.count == 1 => Map::Scale(all.numbers[0].clone()),
-            Some(all) => Map::ScaleAxes(self.sized::<3>(all)),
-        };
-        self.map(start, map)
-    }
-
     fn attribute(&mut self, start: Token, at: Token, name: &str) -> Begun {
         let group = self.attributes.iter().find(|group| &*group.name == name);
         let Some((name, width)) = group.map(|group| (group.name.clone(), group.width())) else {
@@ -502,17 +441,5 @@ impl<'a> Parser<'a> {
             self.find_place();
         }
         Begun::Leaf(self.broken.clone())
-    }
-}
-
-impl Slots {
-    /// All values, with defaults; nothing if one is missing or wrong, after a message.
-    fn complete(self, parser: &mut Parser<'_>, start: Token, name: &str) -> Option<Vec<FieldNumber>> {
-        let span = Span::new(start.start, parser.previous_end());
-        let missing = self.missing();
-        if !missing.is_empty() && !parser.is_lost() {
-            parser.report(|| super::primitive::missing_error(span, name, &missing));
-        }
-        self.values()
     }
 }

@@ -41,6 +41,21 @@ impl Slots {
         let all = all.map(|(field, value)| value.or_else(|| field.default.clone().map(FieldNumber::from)));
         all.map(|value| value.filter(is_number)).collect()
     }
+
+    /// All values, with defaults; nothing if one is missing or wrong, after a message.
+    pub(super) fn complete(
+        self,
+        parser: &mut Parser<'_>,
+        start: Token,
+        name: &str,
+    ) -> Option<Vec<FieldNumber>> {
+        let span = Span::new(start.start, parser.previous_end());
+        let missing = self.missing();
+        if !missing.is_empty() && !parser.is_lost() {
+            parser.report(|| missing_error(span, name, &missing));
+        }
+        self.values()
+    }
 }
 
 fn is_number(value: &FieldNumber) -> bool {

@@ -157,8 +157,6 @@ impl Parser<'_> {
             | FieldKind::Positive
             | FieldKind::NonNegative
             | FieldKind::Degrees
-            | FieldKind::Exponent
-            | FieldKind::Squareness
             | FieldKind::Count
             | FieldKind::Within { .. } => FieldNumber::Real(self.expression(Place::Alone).number),
             FieldKind::Position | FieldKind::Extents | FieldKind::Stretches => {

@@ -130,6 +130,8 @@ textures! {
 
 #[cfg(test)]
 mod testing;
+mod veins;
+pub use veins::Veins;
 
 /// How many cells from the origin a pattern goes on along an axis: 2^21. Beyond that f32 has no places left to tell cells apart.
 pub const LARGEST_CELL: f32 = 2_097_152.0;

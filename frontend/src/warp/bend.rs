@@ -30,8 +30,9 @@ use std::f64::consts::PI;
 use glam::{DAffine3, DMat3, DVec3};
 use jbt_ir::Domain;
 
-use super::{AXIS, Growth, ROUNDINGS, UNDERFLOW, WarpFault, WarpMember, angle, axis_of, axis_value, farthest, order};
+use super::{AXIS, Growth, ROUNDINGS, UNDERFLOW, WarpFault, WarpMember, axis_of, axis_value, farthest, order};
 use crate::affine::map_bounds;
+use crate::angle;
 use crate::bounds::Bounds;
 use crate::field::{Field, FieldKind, FieldValue, Member};
 

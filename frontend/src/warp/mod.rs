@@ -15,7 +15,6 @@ use crate::bounds::Bounds;
 use crate::expression::Form;
 use crate::field::{Field, FieldKind, FieldValue, Member};
 
-mod angle;
 mod formula;
 #[cfg(test)]
 mod testing;

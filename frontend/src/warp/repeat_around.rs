@@ -10,7 +10,8 @@ use glam::DVec3;
 use jbt_ir::Domain;
 
 use super::repeat::ROUND;
-use super::{AXIS, Growth, UNDERFLOW, WarpFault, WarpMember, angle, axis_of, axis_value, order, turned};
+use super::{AXIS, Growth, UNDERFLOW, WarpFault, WarpMember, axis_of, axis_value, order, turned};
+use crate::angle;
 use crate::bounds::Bounds;
 use crate::field::{Field, FieldKind, FieldValue, Member};
 

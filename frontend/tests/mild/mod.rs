@@ -29,14 +29,12 @@ pub fn fields(rng: &mut Rng, fields: &[Field]) -> Vec<FieldValue> {
         FieldKind::Within { least, most } => {
             let number = least + (most.min(8.0) - least) * rng.f64();
             // Whole numbers may be code.
-            FieldValue::Real(if rng.bool() { number.ceil() } else { number })
+            FieldValue::Real(if most > 2.0 && rng.bool() { number.ceil() } else { number })
         }
         FieldKind::Choice(words) => FieldValue::Real(rng.usize(..words.len()) as f64),
         FieldKind::Count => FieldValue::Real(count(field, rng.u8(..6))),
         FieldKind::Position | FieldKind::Direction => FieldValue::Vector(vector(rng, 1.0)),
         FieldKind::Degrees => FieldValue::Real(360.0 * rng.f64()),
-        FieldKind::Exponent => FieldValue::Real(1.0 + 7.0 * rng.f64()),
-        FieldKind::Squareness => FieldValue::Real(0.2 + 1.8 * rng.f64()),
         FieldKind::Stretches => FieldValue::Vector(vector(rng, 1.0).map(|x| 0.3 + x.abs())),
         FieldKind::Extents => FieldValue::Vector(vector(rng, 1.0).map(f64::abs)),
         FieldKind::Positions => {
@@ -64,6 +62,10 @@ fn fit(kind: SkeletonKind, values: &mut [FieldValue]) {
         for [x, y, z] in points {
             *z = 0.3 * *x - 0.6 * *y + 0.1;
         }
+    }
+    if kind == SkeletonKind::Superquadric {
+        // Sharper edges than these are no ordinary ones.
+        values[1..3].iter_mut().for_each(|exponent| *exponent = FieldValue::Real(exponent.real().max(0.2)));
     }
     if let [FieldValue::Vectors(points), FieldValue::Reals(radii), ..] = values {
         // All lists of radii are as long as the longest list of points.

@@ -42,14 +42,9 @@ fn fields(rng: &mut Rng, fields: &[Field]) -> Vec<FieldValue> {
     let value = |field: &Field| match (field.kind, &field.default) {
         (_, Some(default)) if rng.u8(..4) == 0 => default.clone(),
         (FieldKind::Real, _) => FieldValue::Real(number(rng)),
-        (
-            FieldKind::Positive
-            | FieldKind::NonNegative
-            | FieldKind::Degrees
-            | FieldKind::Exponent
-            | FieldKind::Squareness,
-            _,
-        ) => FieldValue::Real(number(rng).abs()),
+        (FieldKind::Positive | FieldKind::NonNegative | FieldKind::Degrees, _) => {
+            FieldValue::Real(number(rng).abs())
+        }
         (FieldKind::Within { least, most }, _) => FieldValue::Real(number(rng).clamp(least, most)),
         (FieldKind::Choice(words), _) => FieldValue::Real(rng.usize(..words.len()) as f64),
         (FieldKind::Count, _) => {

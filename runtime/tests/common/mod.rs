@@ -161,7 +161,7 @@ impl Random {
                 FieldKind::Real => FieldValue::Real(self.between(-1.5, 1.5)),
                 FieldKind::Positive | FieldKind::NonNegative => FieldValue::Real(self.between(0.1, 1.0)),
                 // Whole numbers may be code.
-                FieldKind::Within { least, most } if self.shape.bool() => {
+                FieldKind::Within { least, most } if most > 2.0 && self.shape.bool() => {
                     let (least, most) = (least.ceil() as u32, most.min(8.0) as u32);
                     FieldValue::Real(f64::from(self.shape.u32(least.max(1)..=most)))
                 }
@@ -172,8 +172,6 @@ impl Random {
                 FieldKind::Count => FieldValue::Real(self.numbers.u8(1..6).into()),
                 FieldKind::Position => FieldValue::Vector(self.vector(1.0)),
                 FieldKind::Degrees => FieldValue::Real(self.between(0.0, 360.0)),
-                FieldKind::Exponent => FieldValue::Real(self.between(1.0, 8.0)),
-                FieldKind::Squareness => FieldValue::Real(self.between(0.2, 2.0)),
                 FieldKind::Stretches => FieldValue::Vector(self.vector(1.0).map(|x| 0.3 + x.abs())),
                 FieldKind::Extents => FieldValue::Vector(self.vector(1.0).map(f64::abs)),
                 FieldKind::Direction => FieldValue::Vector(self.vector(1.0)),
@@ -368,6 +366,10 @@ pub fn fit(kind: SkeletonKind, values: &mut [FieldValue]) {
         for [x, y, z] in points {
             *z = 0.3 * *x - 0.6 * *y + 0.1;
         }
+    }
+    if kind == SkeletonKind::Superquadric {
+        // Sharper edges than these are no ordinary ones.
+        values[1..3].iter_mut().for_each(|exponent| *exponent = FieldValue::Real(exponent.real().max(0.2)));
     }
     if let [FieldValue::Vectors(points), FieldValue::Reals(radii), ..] = values {
         // All lists of radii are as long as the longest list of points.

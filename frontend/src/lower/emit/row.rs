@@ -3,6 +3,7 @@
 use jbt_ir::{Domain, Origin, Part, Reduction, Value};
 
 use super::Emitter;
+use crate::falloff::Nearness;
 use crate::lower::guide::Rule;
 use crate::lower::occurrence::{FieldId, LeafField};
 use crate::skeleton::{Pieces, SkeletonKind};
@@ -48,15 +49,14 @@ impl Emitter<'_> {
 
         self.builder.set_origin(Origin::leaf(slot, Part::Falloff));
         let slope = self.column("neg_inv_r2");
-        let (zero, one) = (self.builder.constant(0.0), self.builder.constant(1.0));
-        let left = self.builder.fma(square, slope, one);
-        let left = self.builder.max(left, zero);
+        let near = Nearness::emit(&mut self.builder, square, slope);
         let row = self.columns(falloff.columns());
-        let mut value = falloff.emit(&mut self.builder, left, &row);
+        let mut value = falloff.emit(&mut self.builder, near, &row);
         if strong {
             let strength = self.column("strength");
             let product = self.builder.mul(strength, value);
             // Where the falloff is 0, a negative strength makes -0 of it, and sums must not depend on what adds nothing.
+            let zero = self.builder.constant(0.0);
             value = self.builder.add(product, zero);
         }
         self.builder.set_origin(Origin::SHARED);

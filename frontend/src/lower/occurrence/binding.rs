@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use super::{BindingsId, Bound, Finder, PositionId};
+use super::find::Finder;
+use super::{BindingsId, Bound, PositionId};
 use crate::attribute::AttributeValue;
 use crate::check::NodeId;
 use crate::lower::computed::{Computed, ComputedId, ComputedKind, attribute};
