@@ -58,6 +58,11 @@ pub const MAX_MEMBERSHIP_BOXES: usize = 1 << 10;
 pub const MAX_SEARCH_BOXES: usize = 1 << 19;
 /// Boxes of the division that measures a solid: those with surface keep about half a kilobyte each.
 pub const MAX_MEASURE_BOXES: u64 = 1 << 22;
+/// Rays of one packet: a picture of many is made of tiles.
+pub const MAX_PACKET_RAYS: usize = 1 << 20;
+/// Points and boxes that may be asked for each ray of a packet. A good field takes some dozens; one that says nothing of boxes takes a point for each
+/// tolerance of the ray's length.
+pub const MAX_RAY_WORK: u64 = 1 << 22;
 /// How often a box may be split on the way to a part of it. Halving f32 coordinates along three axes ends before.
 pub const MAX_DIVISION_DEPTH: usize = 96;
 /// Boxes of one division: each keeps about 64 bytes.

@@ -140,6 +140,12 @@ impl Samples {
         Self { layout, planes }
     }
 
+    /// Answers that are there already: a plane for each name of the layout, all of one length.
+    pub(crate) fn from_planes(layout: Layout, planes: Vec<Vec<f32>>) -> Self {
+        debug_assert_eq!(planes.len(), layout.names.len(), "a plane for each name");
+        Self { layout, planes }
+    }
+
     /// Makes room for this many points. Keeps what is allocated.
     pub fn resize(&mut self, points: usize) {
         for plane in &mut self.planes {

@@ -1,8 +1,9 @@
 //! The evaluator: a model and a query become a kernel once; points become samples many times.
 
+use std::collections::BTreeSet;
 use std::sync::{Arc, Mutex};
 
-use jbt_frontend::check::CheckedTree;
+use jbt_frontend::check::{CheckedTree, NodeId};
 use jbt_frontend::lower::{Lowered, Lowering};
 use jbt_frontend::query::Query;
 use jbt_ir::domain::counting::{Evaluations, evaluations, of_selection};
@@ -161,12 +162,20 @@ impl Evaluator {
     /// # Errors
     /// Those of [`Compiler::evaluator`]; the evaluator stays as it was.
     pub fn update(&mut self, tree: &CheckedTree) -> Result<Update, CompileError> {
-        let lowering = Lowering::new(tree);
-        let (kernel, tables) = self.compiler.compile(&lowering, self.query, Some(&self.bound.kernel))?;
-        let same = Arc::ptr_eq(&kernel, &self.bound.kernel);
-        let next = Self::new(self.compiler.clone(), kernel, tables, &lowering, self.query);
+        let next = self.updated(tree)?;
+        let same = Arc::ptr_eq(&next.bound.kernel, &self.bound.kernel);
         *self = Self { tally: std::mem::take(&mut self.tally), ..next };
         Ok(if same { Update::Numbers } else { Update::Code })
+    }
+
+    /// As [`update`](Self::update), but another evaluator, which has done nothing so far.
+    ///
+    /// # Errors
+    /// Those of [`Compiler::evaluator`].
+    pub fn updated(&self, tree: &CheckedTree) -> Result<Self, CompileError> {
+        let lowering = Lowering::new(tree);
+        let (kernel, tables) = self.compiler.compile(&lowering, self.query, Some(&self.bound.kernel))?;
+        Ok(Self::new(self.compiler.clone(), kernel, tables, &lowering, self.query))
     }
 
     /// The query that it answers.
@@ -256,6 +265,19 @@ impl Evaluator {
     #[must_use]
     pub fn evaluations_in(&self, region: &Region) -> u64 {
         of_selection(&self.bound.kernel.per_row, region.selection())
+    }
+
+    /// The leaves behind the rows of a region, ascending.
+    pub(crate) fn leaves_in(&self, region: &Region) -> Vec<NodeId> {
+        let mut leaves = BTreeSet::new();
+        let schemas = &self.program().function().tables;
+        for (table, rows) in self.tables().tables.iter() {
+            let slots = schemas[table].slots.len();
+            for &row in region.selection().active(table) {
+                leaves.extend(&rows.nodes[row as usize * slots..][..slots]);
+            }
+        }
+        leaves.into_iter().map(NodeId).collect()
     }
 
     /// How many ops one point of a region takes: a measure of the time.

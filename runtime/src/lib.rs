@@ -40,6 +40,7 @@
 //! * [`Polygonize`] meshes a model; [`export`] writes meshes.
 //! * A [`Solid`] answers questions about the set that a model encloses: which side a point is on, which leaf decides there, how far it
 //!   reaches, how large it is.
+//! * A [`Tracer`] follows rays to where they hit the surface, singly or in packets, and misses nothing that is longer than a tolerance.
 //! * [`Counters`] say what was done, and what separate walks would have done; [`statistics`] foretell it, and say how much of it matters.
 
 mod buffer;
@@ -57,6 +58,7 @@ pub mod region;
 pub mod sample;
 pub mod solid;
 pub mod statistics;
+pub mod trace;
 
 pub use jbt_ir as ir;
 #[cfg(feature = "jit")]
@@ -89,3 +91,4 @@ pub use probe::Probe;
 pub use prune::{PruneCounters, Pruner, Region};
 pub use region::{Box3, Range};
 pub use solid::{Membership, Solid};
+pub use trace::{Ray, Tracer};

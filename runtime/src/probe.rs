@@ -54,9 +54,7 @@ impl<'a> Probe<'a> {
     /// The unit normal, away from the inside; `None` if the query has no gradient or it vanishes here.
     #[must_use]
     pub fn normal(&self) -> Option<[f32; 3]> {
-        let gradient = self.gradient()?.map(f64::from);
-        let length = gradient.iter().map(|g| g * g).sum::<f64>().sqrt();
-        (length > 0.0 && length.is_finite()).then(|| gradient.map(|g| (-g / length + 0.0) as f32))
+        normal(self.gradient()?)
     }
 
     /// The channels of an attribute group; `None` if there is no such group or it was not asked for.
@@ -71,4 +69,11 @@ impl<'a> Probe<'a> {
     pub fn color(&self) -> Option<[f32; 3]> {
         self.attribute("color")?.try_into().ok()
     }
+}
+
+/// The unit vector against a gradient; `None` if it has no direction.
+pub(crate) fn normal(gradient: [f32; 3]) -> Option<[f32; 3]> {
+    let gradient = gradient.map(f64::from);
+    let length = gradient.iter().map(|g| g * g).sum::<f64>().sqrt();
+    (length > 0.0 && length.is_finite()).then(|| gradient.map(|g| (-g / length + 0.0) as f32))
 }

@@ -170,17 +170,67 @@ impl Pruner {
         let mut outputs = vec![[0.0; MAX_PARTS]; 2 * (1 + self.guide.probes)];
         let mut planes: Vec<&mut [f32]> = outputs.iter_mut().map(|plane| &mut plane[..count]).collect();
         self.kernel.run(rows, &inputs, &mut planes)?;
-        let each = of_selection(&self.kernel.kernel.per_row, rows);
         self.counts.boxes.fetch_add(count as u64, Ordering::Relaxed);
-        self.counts.primitives.fetch_add(each.saturating_mul(count as u64), Ordering::Relaxed);
+        self.counts.primitives.fetch_add(self.evaluations(rows, count), Ordering::Relaxed);
         Ok(outputs)
     }
 
+    /// The boxes inside a region whose ranges are wanted, each by its place among them and with its region; and how many ranges of distances to
+    /// skeletons that took. It is [`ranges`](Divisible::ranges) and [`narrow`](Divisible::narrow) at the cost of one.
+    pub(crate) fn split(
+        &self,
+        region: &Region,
+        boxes: &[Box3],
+        wanted: &dyn Fn(Range) -> bool,
+    ) -> Result<(Vec<(usize, Region)>, u64), EvalError> {
+        let ranged = region.rows() <= MAX_RANGED_ROWS;
+        let mut probes = if ranged { self.evaluate(&region.selection, boxes)? } else { Vec::new() };
+        let is_wanted = |&lane: &usize| !ranged || wanted([probes[0][lane], probes[1][lane]]);
+        let kept: Vec<usize> = (0..boxes.len()).filter(is_wanted).collect();
+        let evaluations = if ranged { self.evaluations(&region.selection, boxes.len()) } else { 0 };
+        if kept.is_empty() {
+            return Ok((Vec::new(), evaluations));
+        }
+        let mut some = [Box3::default(); MAX_PARTS];
+        for (lane, &from) in kept.iter().enumerate() {
+            some[lane] = boxes[from];
+            probes.iter_mut().for_each(|plane| plane[lane] = plane[from]);
+        }
+        let mut regions = Vec::with_capacity(kept.len());
+        self.narrow_probed(region, &some[..kept.len()], &probes, &mut regions)?;
+        Ok((kept.into_iter().zip(regions).collect(), evaluations))
+    }
+
+    /// Ranges of distances to skeletons that some boxes take.
+    fn evaluations(&self, rows: &Selection, boxes: usize) -> u64 {
+        of_selection(&self.kernel.kernel.per_row, rows).saturating_mul(boxes as u64)
+    }
+
+    /// The regions of boxes, from the ranges of the probes in them; they are empty if they are not known.
+    fn narrow_probed(
+        &self,
+        region: &Region,
+        boxes: &[Box3],
+        probes: &[[f32; MAX_PARTS]],
+        parts: &mut Vec<Region>,
+    ) -> Result<(), EvalError> {
+        let mut masks = self.masks(region, boxes, probes)?;
+        let mut selections: [Selection; MAX_PARTS] = Default::default();
+        region.selection.narrow(&mut masks, &mut selections[..boxes.len()]);
+        let regions = boxes.iter().zip(selections);
+        parts.extend(regions.map(|(&bounds, selection)| Region { bounds, selection: Arc::new(selection) }));
+        Ok(())
+    }
+
     /// For each active row of the region, the boxes in which it matters: a bit each.
-    fn masks(&self, region: &Region, boxes: &[Box3]) -> Result<Vec<u8>, EvalError> {
+    fn masks(
+        &self,
+        region: &Region,
+        boxes: &[Box3],
+        probes: &[[f32; MAX_PARTS]],
+    ) -> Result<Vec<u8>, EvalError> {
         let world = Boxes::new(boxes);
-        let probed = self.guide.probes > 0 && region.rows() <= MAX_RANGED_ROWS;
-        let probes = if probed { self.evaluate(&region.selection, boxes)? } else { Vec::new() };
+        let probed = self.guide.probes > 0 && !probes.is_empty();
         let selection = &*region.selection;
         let mut masks = vec![world.all(); selection.len()];
         let mut first = 0;
@@ -192,7 +242,7 @@ impl Pruner {
             let boxes = match guide.space {
                 SpaceGuide::World => &world,
                 SpaceGuide::Probed(probe) if probed => {
-                    inside = inner_boxes(&probes, probe, boxes.len());
+                    inside = inner_boxes(probes, probe, boxes.len());
                     &inside
                 }
                 SpaceGuide::Probed(_) | SpaceGuide::Unknown => continue,
@@ -204,8 +254,8 @@ impl Pruner {
             rule::apply(guide.rule, selection.starts(table), mine, boxes.all());
         }
         if probed {
-            decide::leave_out(&self.guide, &probes, boxes.len(), selection, &mut masks);
-            self.leave_out_rows(region, boxes, &probes, &mut masks)?;
+            decide::leave_out(&self.guide, probes, boxes.len(), selection, &mut masks);
+            self.leave_out_rows(region, boxes, probes, &mut masks)?;
         }
         Ok(masks)
     }
@@ -278,11 +328,8 @@ impl Divisible for Pruner {
     }
 
     fn narrow(&self, region: &Region, boxes: &[Box3], parts: &mut Vec<Region>) -> Result<(), EvalError> {
-        let mut masks = self.masks(region, boxes)?;
-        let mut selections: [Selection; MAX_PARTS] = Default::default();
-        region.selection.narrow(&mut masks, &mut selections[..boxes.len()]);
-        let regions = boxes.iter().zip(selections);
-        parts.extend(regions.map(|(&bounds, selection)| Region { bounds, selection: Arc::new(selection) }));
-        Ok(())
+        let probed = self.guide.probes > 0 && region.rows() <= MAX_RANGED_ROWS;
+        let probes = if probed { self.evaluate(&region.selection, boxes)? } else { Vec::new() };
+        self.narrow_probed(region, boxes, &probes, parts)
     }
 }

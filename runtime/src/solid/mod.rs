@@ -23,12 +23,9 @@ pub use jbt_frontend::owner::Owner;
 pub use measure::{Contents, Level, Measure, MeasureError, Measures, Volume};
 pub use membership::{Membership, MembershipError};
 
-use std::collections::BTreeSet;
-
 use jbt_frontend::check::CheckedTree;
 use jbt_frontend::owner;
 use jbt_frontend::query::Query;
-use jbt_ir::Selection;
 
 use crate::error::{CompileError, EvalError};
 use crate::evaluator::{Compiler, Evaluator};
@@ -126,21 +123,7 @@ impl Solid {
         if !bounds.is_proper() {
             return Err(OwnersError::Bounds { bounds });
         }
-        let region = self.pruner.region(bounds)?;
-        Ok(self.leaves_of(region.selection()))
-    }
-
-    /// The leaves behind the rows of a selection.
-    fn leaves_of(&self, selection: &Selection) -> Vec<NodeId> {
-        let mut leaves = BTreeSet::new();
-        let schemas = &self.field.program().function().tables;
-        for (table, rows) in self.field.tables().tables.iter() {
-            let slots = schemas[table].slots.len();
-            for &row in selection.active(table) {
-                leaves.extend(&rows.nodes[row as usize * slots..][..slots]);
-            }
-        }
-        leaves.into_iter().map(NodeId).collect()
+        Ok(self.field.leaves_in(&self.pruner.region(bounds)?))
     }
 
     /// Which side of the surface all values of a range are on: true is inside. `None` if the range does not tell.

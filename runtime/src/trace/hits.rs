@@ -1,0 +1,108 @@
+//! Answers about rays.
+
+use std::sync::Arc;
+
+use crate::buffer::{Layout, Points, Samples};
+
+/// The hits of a packet of rays, ordered by ray, then by t.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Hits {
+    /// For each ray where its hits begin, and the end: those of ray r are `starts[r]..starts[r + 1]`.
+    pub starts: Vec<u32>,
+    /// Where each hit is on its ray.
+    pub t: Vec<f64>,
+    /// Whether the ray comes in there: from `field < iso` to `field >= iso`.
+    pub entering: Vec<bool>,
+    /// Where each hit is, as the samples were taken: origin + t * direction, rounded to f32.
+    pub positions: Points,
+    /// The answers to the tracer's query at these positions.
+    pub samples: Samples,
+    /// For each ray, the distances to skeletons that were evaluated for it: at points, and its share of those for boxes.
+    pub evaluations: Vec<f32>,
+}
+
+impl Hits {
+    /// The number of hits.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.t.len()
+    }
+
+    /// Whether nothing was hit.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.t.is_empty()
+    }
+
+    /// Which hits are those of a ray. Panics if there are not as many rays.
+    #[must_use]
+    pub fn of(&self, ray: usize) -> std::ops::Range<usize> {
+        self.starts[ray] as usize..self.starts[ray + 1] as usize
+    }
+
+    /// One hit by itself. Panics if there are not as many.
+    pub(super) fn get(&self, index: usize, layout: &Arc<Layout>) -> Hit {
+        Hit {
+            t: self.t[index],
+            position: self.positions.get(index),
+            entering: self.entering[index],
+            layout: Arc::clone(layout),
+            answers: self.samples.planes().iter().map(|plane| plane[index]).collect(),
+        }
+    }
+}
+
+/// Which rays of a packet have something in their way.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Blocked {
+    /// For each ray, whether the side changes along it.
+    pub blocked: Vec<bool>,
+    /// For each ray, the distances to skeletons that were evaluated for it: at points, and its share of those for boxes.
+    pub evaluations: Vec<f32>,
+}
+
+/// Where a ray hits the surface.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Hit {
+    /// Where on the ray.
+    pub t: f64,
+    /// Where in space, as the samples were taken.
+    pub position: [f32; 3],
+    /// Whether the ray comes in: from `field < iso` to `field >= iso`.
+    pub entering: bool,
+    layout: Arc<Layout>,
+    answers: Vec<f32>,
+}
+
+impl Hit {
+    /// The field: about the iso-value.
+    #[must_use]
+    pub fn value(&self) -> f32 {
+        self.answers[0]
+    }
+
+    /// The gradient of the field; `None` if the query has none.
+    #[must_use]
+    pub fn gradient(&self) -> Option<[f32; 3]> {
+        self.layout.has_gradient().then(|| [self.answers[1], self.answers[2], self.answers[3]])
+    }
+
+    /// The unit normal, outwards: against the gradient. `None` if the query has no gradient or it vanishes here.
+    #[must_use]
+    pub fn normal(&self) -> Option<[f32; 3]> {
+        crate::probe::normal(self.gradient()?)
+    }
+
+    /// The channels of an attribute group; `None` if there is no such group or it was not asked for.
+    #[must_use]
+    pub fn attribute(&self, name: &str) -> Option<&[f32]> {
+        let (plane, width) = self.layout.attribute(name)?;
+        Some(&self.answers[plane..plane + width])
+    }
+
+    /// The colour; `None` if attributes were not asked for.
+    #[must_use]
+    pub fn color(&self) -> Option<[f32; 3]> {
+        self.attribute("color")?.try_into().ok()
+    }
+}

@@ -1,0 +1,289 @@
+//! Rays: where they hit the surface of a model, with nothing missed that is longer than a tolerance.
+//!
+//! A *hit* is where the side changes along a ray, from `field < iso` to `field >= iso` or back. The side is known at places of the ray that are no farther apart than
+//! the tolerance, so a stretch inside or outside that is longer holds one of them, and its ends are found:
+//!
+//! ```text
+//! outside  ------+            +------------------+    +------          shorter than the tolerance: this dent may be missed
+//! inside         +------------+                  +-..-+
+//! places   |  |  |  |  |  |  |  |  |  |  |  |  |  |  |  |  |          no farther apart than the tolerance
+//!                ^            ^
+//! ```
+//!
+//! Most places are never asked: ranges of the field ([`Divisible`](crate::region::Divisible)) prove of whole boxes that all of them are on one side. What is found
+//! is what asking all of them would find, to the bit. Everything is about the field that the kernels compute in f32, at positions rounded to f32: between the
+//! ends of a part of a ray each coordinate stays between those at the ends, rounding included, so the box of the ends holds all that is asked between them.
+//!
+//! * Between two places on different sides the change is found by false position, to 1/1024 of the tolerance or the next f32. If there are three changes there,
+//!   one of them is found.
+//! * Packets are quicker than single rays: rays side by side share boxes, rows and calls. Whatever the packet, each ray is answered as if it were alone, to the bit.
+//!   Rays that are neighbours should follow each other, as in the tiles of a picture.
+//! * All answers about a hit come from one evaluation at its position.
+
+mod beam;
+mod error;
+mod found;
+mod hits;
+mod packet;
+mod polish;
+mod ray;
+
+pub use error::TraceError;
+pub use hits::{Blocked, Hit, Hits};
+pub use jbt_frontend::owner::Owner;
+pub use ray::Ray;
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use jbt_frontend::check::{CheckedTree, NodeId};
+use jbt_frontend::lower::Lowering;
+use jbt_frontend::owner;
+use jbt_frontend::query::Query;
+use jbt_ir::limits::MAX_PACKET_RAYS;
+
+use crate::buffer::Layout;
+use crate::error::{CompileError, EvalError};
+use crate::evaluator::{Compiler, Evaluator};
+use crate::prune::Pruner;
+use crate::region::{Box3, Divisible as _};
+
+use found::Found;
+use packet::{Run, Want};
+use ray::{Line, Reach};
+
+/// A model, compiled for rays.
+///
+/// It is `Send + Sync`: threads may share it and ask at once.
+///
+/// ```
+/// use jbt::trace::{Ray, Tracer};
+/// use jbt::{Compiler, Query};
+/// # let tree = jbt::text::parse(b"jbt 1 color (1 0 0) { point { surface_radius 1 } }", &Default::default()).unwrap().check().unwrap();
+/// let tracer = Tracer::new(&Compiler::new(), &tree, Query::ALL).unwrap();
+/// let ray = Ray { origin: [0.0, 0.0, 5.0], direction: [0.0, 0.0, -1.0], span: [0.0, 10.0] };
+/// let hit = tracer.first(&ray, 0.01).unwrap().expect("the ball is there");
+/// assert!(hit.entering && (hit.t - 4.0).abs() < 1e-4);
+/// assert_eq!(hit.normal(), Some([0.0, 0.0, 1.0]));
+/// assert_eq!(hit.color(), Some([1.0, 0.0, 0.0]));
+/// // In and out, each within a thousandth of the tolerance.
+/// assert_eq!(tracer.all(&ray, 0.01).unwrap().len(), 2);
+/// assert!(!tracer.any(&Ray { span: [0.0, 3.9], ..ray }, 0.01).unwrap());
+/// ```
+pub struct Tracer {
+    compiler: Compiler,
+    tree: CheckedTree,
+    /// The iso-value as kernels compare with it.
+    iso: f32,
+    /// Where the field may differ from 0.
+    reach: Option<Reach>,
+    pruner: Pruner,
+    field: Evaluator,
+    /// What is told about hits; `None` if it is the field alone.
+    full: Option<Evaluator>,
+    layout: Arc<Layout>,
+    rays: AtomicU64,
+    hits: AtomicU64,
+}
+
+/// What a tracer has done so far. A snapshot: see [`Tracer::counters`].
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub struct TraceCounters {
+    /// Rays that were given.
+    pub rays: u64,
+    /// Hits that were told.
+    pub hits: u64,
+    /// Boxes for which a range was computed.
+    pub boxes: u64,
+    /// Ranges of distances to skeletons that were computed for them.
+    pub interval_evaluations: u64,
+    /// Points at which something was asked: the field on the way, everything at hits.
+    pub points: u64,
+    /// Distances to skeletons that were computed at them.
+    pub primitive_evaluations: u64,
+}
+
+impl Tracer {
+    /// Compiles a model for rays. The query is what is told about hits.
+    ///
+    /// # Errors
+    /// The model is beyond a limit, or the engine cannot be had.
+    pub fn new(compiler: &Compiler, tree: &CheckedTree, query: Query) -> Result<Self, CompileError> {
+        let lowering = Lowering::new(tree);
+        let pruner = Pruner::of(compiler, &lowering, None)?;
+        let field = compiler.evaluator_of(&lowering, Query::FIELD)?;
+        let full = (query != Query::FIELD).then(|| compiler.evaluator_of(&lowering, query)).transpose()?;
+        Ok(Self::of(compiler.clone(), tree, pruner, field, full))
+    }
+
+    /// A tracer for another model, usually an edited one. If it has the shape of this one, nothing is compiled.
+    ///
+    /// # Errors
+    /// Those of [`new`](Self::new).
+    pub fn updated(&self, tree: &CheckedTree) -> Result<Self, CompileError> {
+        let pruner = self.pruner.updated(tree)?;
+        let field = self.field.updated(tree)?;
+        let full = self.full.as_ref().map(|full| full.updated(tree)).transpose()?;
+        Ok(Self::of(self.compiler.clone(), tree, pruner, field, full))
+    }
+
+    fn of(
+        compiler: Compiler,
+        tree: &CheckedTree,
+        pruner: Pruner,
+        field: Evaluator,
+        full: Option<Evaluator>,
+    ) -> Self {
+        let layout = Arc::new(full.as_ref().unwrap_or(&field).layout().clone());
+        Self {
+            compiler,
+            tree: tree.clone(),
+            iso: tree.iso() as f32,
+            reach: Reach::new(tree.support()),
+            pruner,
+            field,
+            full,
+            layout,
+            rays: AtomicU64::new(0),
+            hits: AtomicU64::new(0),
+        }
+    }
+
+    /// The model.
+    #[must_use]
+    pub fn tree(&self) -> &CheckedTree {
+        &self.tree
+    }
+
+    /// Which plane of the samples of hits holds what.
+    #[must_use]
+    pub fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    /// The iso-value, as kernels compare with it.
+    #[must_use]
+    pub fn iso(&self) -> f32 {
+        self.iso
+    }
+
+    /// The first hit of a ray. A ray that begins inside hits the surface where it leaves.
+    ///
+    /// The tolerance is a length in space: no stretch that is longer is missed. Cost: grows with the logarithm of length by tolerance, away from the surface.
+    ///
+    /// # Errors
+    /// See [`TraceError`].
+    pub fn first(&self, ray: &Ray, tolerance: f64) -> Result<Option<Hit>, TraceError> {
+        let hits = self.first_of(std::slice::from_ref(ray), tolerance)?;
+        Ok((!hits.is_empty()).then(|| hits.get(0, &self.layout)))
+    }
+
+    /// All hits of a ray, by t.
+    ///
+    /// # Errors
+    /// See [`TraceError`].
+    pub fn all(&self, ray: &Ray, tolerance: f64) -> Result<Vec<Hit>, TraceError> {
+        let hits = self.all_of(std::slice::from_ref(ray), tolerance)?;
+        Ok((0..hits.len()).map(|index| hits.get(index, &self.layout)).collect())
+    }
+
+    /// Whether a ray has a hit: which one is not found out, and nothing is asked there.
+    ///
+    /// # Errors
+    /// See [`TraceError`].
+    pub fn any(&self, ray: &Ray, tolerance: f64) -> Result<bool, TraceError> {
+        Ok(self.any_of(std::slice::from_ref(ray), tolerance)?.blocked[0])
+    }
+
+    /// The first hit of each ray, or none: see [`first`](Self::first).
+    ///
+    /// # Errors
+    /// See [`TraceError`].
+    pub fn first_of(&self, rays: &[Ray], tolerance: f64) -> Result<Hits, TraceError> {
+        self.hits(Want::First, rays, tolerance)
+    }
+
+    /// All hits of each ray.
+    ///
+    /// # Errors
+    /// See [`TraceError`].
+    pub fn all_of(&self, rays: &[Ray], tolerance: f64) -> Result<Hits, TraceError> {
+        self.hits(Want::All, rays, tolerance)
+    }
+
+    /// Whether each ray has a hit.
+    ///
+    /// # Errors
+    /// See [`TraceError`].
+    pub fn any_of(&self, rays: &[Ray], tolerance: f64) -> Result<Blocked, TraceError> {
+        let found = self.follow(Want::Any, rays, tolerance)?;
+        Ok(Blocked { blocked: found.blocked, evaluations: found.evaluations })
+    }
+
+    /// What it has done so far.
+    #[must_use]
+    pub fn counters(&self) -> TraceCounters {
+        let boxes = self.pruner.counters();
+        let points = self.field.counters();
+        let hits = self.full.as_ref().map(Evaluator::counters).unwrap_or_default();
+        TraceCounters {
+            rays: self.rays.load(Ordering::Relaxed),
+            hits: self.hits.load(Ordering::Relaxed),
+            boxes: boxes.boxes,
+            interval_evaluations: boxes.interval_evaluations,
+            points: points.points + hits.points,
+            primitive_evaluations: points.primitive_evaluations + hits.primitive_evaluations,
+        }
+    }
+
+    /// The leaf that decides at a position, and the way down to it: see [`jbt_frontend::owner`].
+    ///
+    /// `None` where the field is 0, or where it is negative because nothing with a positive field is left: neither is so at hits. Cost: a plain walk over
+    /// all paths of the tree.
+    #[must_use]
+    pub fn owner(&self, position: [f32; 3]) -> Option<Owner> {
+        owner::owner(&self.tree, position.map(f64::from))
+    }
+
+    /// The leaf that decides at a position: that of [`owner`](Self::owner). If no other leaf matters at the position, no walk is needed to
+    /// know it.
+    ///
+    /// # Errors
+    /// Those of the evaluation.
+    pub fn leaf(&self, position: [f32; 3]) -> Result<Option<NodeId>, EvalError> {
+        let here = Box3::new(position, position);
+        if here.is_proper() {
+            let leaves = self.field.leaves_in(&self.pruner.region(here)?);
+            if let [leaf] = leaves.as_slice() {
+                return Ok(Some(*leaf));
+            }
+        }
+        Ok(self.owner(position).map(|owner| owner.node))
+    }
+
+    fn hits(&self, want: Want, rays: &[Ray], tolerance: f64) -> Result<Hits, TraceError> {
+        let hits = self.follow(want, rays, tolerance)?.into_hits(self);
+        self.hits.fetch_add(hits.len() as u64, Ordering::Relaxed);
+        Ok(hits)
+    }
+
+    fn follow(&self, want: Want, rays: &[Ray], tolerance: f64) -> Result<Found, TraceError> {
+        if !(tolerance > 0.0 && tolerance.is_finite()) {
+            return Err(TraceError::Tolerance { tolerance });
+        }
+        if rays.len() > MAX_PACKET_RAYS {
+            return Err(TraceError::Rays { rays: rays.len() });
+        }
+        self.rays.fetch_add(rays.len() as u64, Ordering::Relaxed);
+        let mut lines = Vec::with_capacity(rays.len());
+        for (index, ray) in rays.iter().enumerate() {
+            lines.extend(Line::new(index, ray, tolerance, self.reach.as_ref())?);
+        }
+        Run::new(self, want, tolerance, rays.len(), lines).finish()
+    }
+
+    /// What answers at hits.
+    fn full(&self) -> &Evaluator {
+        self.full.as_ref().unwrap_or(&self.field)
+    }
+}

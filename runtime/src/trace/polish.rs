@@ -1,0 +1,165 @@
+//! From two places on different sides to where the side changes: false position with its guards, all brackets of a cell at once.
+//!
+//! ```text
+//! while a bracket is too long:
+//!     try where the line through its ends meets the iso-value; an end that stays a second time has counted double (Illinois, Dowell and Jarratt 1971)
+//!         not nearer to an end than half of the wanted length: so a good guess closes the bracket with the next one
+//!         in the middle, if the last three tries have not halved it, or if the fields are no numbers
+//!     the half in which the side changes is the new bracket
+//! ```
+//!
+//! What a bracket becomes depends on the field along its ray, and on nothing else.
+
+use super::Tracer;
+use super::packet::Batch;
+use super::ray::{Line, spacing};
+use crate::error::EvalError;
+use crate::prune::Region;
+
+/// The wanted length of a bracket, as a part of the tolerance.
+const PRECISION: f64 = 1.0 / 1024.0;
+/// Tries after which a bracket has to be at most half as long.
+const CHECKED: u32 = 3;
+
+/// A stretch of a ray whose ends are on different sides.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(super) struct Bracket {
+    line: usize,
+    times: [f64; 2],
+    /// What the fields at the ends exceed the iso-value by.
+    excess: [f64; 2],
+    /// The same as false position sees them: that of an end that stays is halved.
+    weighed: [f64; 2],
+    /// Which end stayed.
+    stayed: Option<usize>,
+    entering: bool,
+    /// The length, in t, that is short enough.
+    wanted: f64,
+    rounds: u32,
+    /// The length that it has to halve.
+    checked: f64,
+}
+
+impl Bracket {
+    pub(super) fn new(
+        index: usize,
+        line: &Line,
+        tolerance: f64,
+        iso: f32,
+        times: [f64; 2],
+        fields: [f32; 2],
+    ) -> Self {
+        let positions = times.map(|t| line.position(t));
+        let farthest = positions.as_flattened().iter().fold(0.0, |most: f32, x| most.max(x.abs()));
+        let wanted = (PRECISION * tolerance).max(spacing(f64::from(farthest))) / line.length;
+        let excess = fields.map(|field| f64::from(field) - f64::from(iso));
+        Self {
+            line: index,
+            times,
+            excess,
+            weighed: excess,
+            stayed: None,
+            entering: fields[1] >= iso,
+            wanted,
+            rounds: 0,
+            checked: times[1] - times[0],
+        }
+    }
+
+    /// Which line.
+    pub(super) fn line(&self) -> usize {
+        self.line
+    }
+
+    /// Whether the ray comes in.
+    pub(super) fn entering(&self) -> bool {
+        self.entering
+    }
+
+    /// How often the field was asked.
+    pub(super) fn rounds(&self) -> u32 {
+        self.rounds
+    }
+
+    /// Where the side changes, as well as can be told: where the line through the ends meets the iso-value.
+    pub(super) fn best(&self) -> f64 {
+        let guess = meet(self.times, self.excess);
+        if guess.is_finite() { guess.clamp(self.times[0], self.times[1]) } else { self.middle() }
+    }
+
+    fn width(&self) -> f64 {
+        self.times[1] - self.times[0]
+    }
+
+    fn middle(&self) -> f64 {
+        self.times[0] + 0.5 * self.width()
+    }
+
+    /// Where to ask next; `None` if it is short enough, or f64 has no t between its ends.
+    fn next(&mut self) -> Option<f64> {
+        let [low, high] = self.times;
+        let (width, middle) = (self.width(), self.middle());
+        if width <= self.wanted || middle <= low || middle >= high {
+            return None;
+        }
+        self.rounds += 1;
+        let mut halve = false;
+        if self.rounds.is_multiple_of(CHECKED) {
+            halve = width > 0.5 * self.checked;
+            self.checked = width;
+        }
+        let guess = meet(self.times, self.weighed);
+        if halve || !guess.is_finite() {
+            return Some(middle);
+        }
+        let guard = 0.5 * self.wanted;
+        let guess = guess.max(low + guard).min(high - guard);
+        Some(if low < guess && guess < high { guess } else { middle })
+    }
+
+    /// Takes the field at the last place.
+    fn take(&mut self, time: f64, field: f32, iso: f32) {
+        let replaced = usize::from((field >= iso) == self.entering);
+        let stays = 1 - replaced;
+        let excess = f64::from(field) - f64::from(iso);
+        self.times[replaced] = time;
+        self.excess[replaced] = excess;
+        self.weighed[replaced] = excess;
+        if self.stayed == Some(stays) {
+            self.weighed[stays] *= 0.5;
+        }
+        self.stayed = Some(stays);
+    }
+}
+
+/// Where the line through two points is 0. No number if they are not at different heights.
+fn meet(times: [f64; 2], heights: [f64; 2]) -> f64 {
+    times[0] + (times[1] - times[0]) * (heights[0] / (heights[0] - heights[1]))
+}
+
+/// Makes brackets short. All are in the region.
+pub(super) fn polish(
+    tracer: &Tracer,
+    region: &Region,
+    lines: &[Line],
+    brackets: &mut [Bracket],
+    batch: &mut Batch,
+) -> Result<(), EvalError> {
+    let mut open: Vec<usize> = (0..brackets.len()).collect();
+    while !open.is_empty() {
+        batch.clear();
+        open.retain(|&index| {
+            let bracket = &mut brackets[index];
+            let next = bracket.next();
+            if let Some(time) = next {
+                batch.push(&lines[bracket.line], time);
+            }
+            next.is_some()
+        });
+        batch.ask(tracer, region)?;
+        for (place, &index) in open.iter().enumerate() {
+            brackets[index].take(batch.times[place], batch.field[place], tracer.iso);
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,166 @@
+//! Rays, and the places on them where the field is asked.
+//!
+//! ```text
+//! span     [------------------------------------------------]          what was given
+//! clipped        [----------------------------]                        where the field may differ from 0
+//! lattice     |  *--+-----+-----+-----+-----+-*   |     |     |        multiples of the step; the ends of the span close it
+//! ```
+//!
+//! The step is the tolerance divided by the length of the direction, cut to four binary digits: so rays of about the same length of direction have the same
+//! step, and one lattice of t. A number of a place times the step is exact. The lattice is counted from t = 0, and so a ray's places are those of the ray alone, whatever
+//! packet it is in and wherever its span begins.
+
+use jbt_frontend::bounds::Bounds;
+
+use super::error::TraceError;
+
+/// The points `origin + t * direction` for t in the span. The direction may have any length but 0: t counts in lengths of it.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Ray {
+    /// Where t is 0.
+    pub origin: [f64; 3],
+    /// The way from t = 0 to t = 1.
+    pub direction: [f64; 3],
+    /// The smallest and the largest t. Both are finite and belong to it.
+    pub span: [f64; 2],
+}
+
+/// The box outside of which the field is 0, and a little more.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(super) struct Reach {
+    low: [f64; 3],
+    high: [f64; 3],
+}
+
+/// The part of the support's longest side by which the box exceeds it: more than f32 is off by.
+const MARGIN: f64 = 1.0 / 512.0;
+/// The part of a coordinate by which the box exceeds it at least.
+const ROUNDING: f64 = 1.0 / (1 << 20) as f64;
+/// The steps of t that f64 can count, with all their digits.
+const SHORTEST: f64 = 1e-300;
+/// The longest step: any multiple that is asked for is finite.
+const LONGEST: f64 = 1e300;
+/// What f64 may be off by in a product and a sum, as a part of the terms; some times that.
+const TINY: f64 = 1.0 / (1_u64 << 48) as f64;
+
+impl Reach {
+    /// `None` if the field is 0 everywhere.
+    pub(super) fn new(support: Bounds) -> Option<Self> {
+        if support.is_empty() {
+            return None;
+        }
+        let (low, high) = (support.low(), support.high());
+        let sides = low.iter().zip(&high).map(|(low, high)| high - low);
+        let margin = MARGIN * sides.filter(|side| side.is_finite()).fold(0.0, f64::max);
+        let beyond = |side: f64| margin + ROUNDING * if side.is_finite() { side.abs() } else { 0.0 };
+        Some(Self { low: low.map(|side| side - beyond(side)), high: high.map(|side| side + beyond(side)) })
+    }
+
+    /// The part of a ray's span that is in the box (Kay and Kajiya 1986, "Ray tracing complex scenes": slabs).
+    fn clip(&self, ray: &Ray) -> Option<[f64; 2]> {
+        let [mut enter, mut exit] = ray.span;
+        for axis in 0..3 {
+            let (origin, direction) = (ray.origin[axis], ray.direction[axis]);
+            let rounding = TINY * origin.abs();
+            let low = self.low[axis] - rounding - origin;
+            let high = self.high[axis] + rounding - origin;
+            if direction == 0.0 {
+                if low > 0.0 || high < 0.0 {
+                    return None;
+                }
+                continue;
+            }
+            let [a, b] = [low / direction, high / direction];
+            enter = enter.max(a.min(b));
+            exit = exit.min(a.max(b));
+        }
+        (enter <= exit).then_some([enter, exit])
+    }
+}
+
+/// A ray that may hit something, with its lattice.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(super) struct Line {
+    /// Which ray of the packet.
+    pub(super) ray: u32,
+    pub(super) origin: [f64; 3],
+    pub(super) direction: [f64; 3],
+    /// The clipped span.
+    pub(super) span: [f64; 2],
+    /// From one place of the lattice to the next one.
+    pub(super) step: f64,
+    /// The places at the ends of the span, which stand for the ends.
+    pub(super) places: [i64; 2],
+    /// The length of the direction.
+    pub(super) length: f64,
+}
+
+impl Line {
+    /// Checks a ray; `None` if it does not come near the model.
+    pub(super) fn new(
+        index: usize,
+        ray: &Ray,
+        tolerance: f64,
+        reach: Option<&Reach>,
+    ) -> Result<Option<Self>, TraceError> {
+        let Ray { origin, direction, span } = *ray;
+        if !origin.iter().chain(&direction).chain(&span).all(|number| number.is_finite()) {
+            return Err(TraceError::NotFinite { ray: index, origin, direction, span });
+        }
+        if direction == [0.0; 3] {
+            return Err(TraceError::Direction { ray: index });
+        }
+        if span[0] > span[1] {
+            return Err(TraceError::Span { ray: index, span });
+        }
+        let Some(span) = reach.and_then(|reach| reach.clip(ray)) else { return Ok(None) };
+        let length = direction[0].hypot(direction[1]).hypot(direction[2]).min(f64::MAX);
+        let resolution = resolution(index, ray, span)?.max(SHORTEST * length);
+        if tolerance < resolution {
+            return Err(TraceError::Resolution { ray: index, tolerance, resolution });
+        }
+        let step = four_digits((tolerance / length).min(LONGEST));
+        // Below 2^50, because the tolerance is above the resolution.
+        let places = [(span[0] / step).floor() as i64, (span[1] / step).ceil() as i64];
+        // Ray numbers are below 2^32: MAX_PACKET_RAYS.
+        Ok(Some(Self { ray: index as u32, origin, direction, span, step, places, length }))
+    }
+
+    /// The t of a place: rises with the place.
+    pub(super) fn time(&self, place: f64) -> f64 {
+        (place * self.step).clamp(self.span[0], self.span[1])
+    }
+
+    /// The position at t, as the field is asked there: each coordinate rises with t, or falls.
+    pub(super) fn position(&self, t: f64) -> [f32; 3] {
+        [0, 1, 2].map(|axis| (self.origin[axis] + t * self.direction[axis]) as f32)
+    }
+}
+
+/// A number's first four binary digits.
+fn four_digits(number: f64) -> f64 {
+    f64::from_bits(number.to_bits() & !((1 << 49) - 1))
+}
+
+/// The smallest tolerance that positions on a clipped ray allow.
+fn resolution(index: usize, ray: &Ray, span: [f64; 2]) -> Result<f64, TraceError> {
+    let mut resolution: f64 = 0.0;
+    for t in span {
+        let position = [0, 1, 2].map(|axis| ray.origin[axis] + t * ray.direction[axis]);
+        let farthest = position.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        if !(farthest < f64::from(f32::MAX)) {
+            return Err(TraceError::Far { ray: index, position });
+        }
+        let terms = (0..3).fold(0.0, |most: f64, axis| {
+            most.max(ray.origin[axis].abs()).max((t * ray.direction[axis]).abs())
+        });
+        resolution = resolution.max(spacing(farthest)).max(TINY * terms);
+    }
+    Ok(resolution)
+}
+
+/// The distance from a coordinate to the next f32.
+pub(super) fn spacing(coordinate: f64) -> f64 {
+    let near = (coordinate.abs() as f32).min(f32::MAX.next_down());
+    f64::from(near.next_up()) - f64::from(near)
+}
