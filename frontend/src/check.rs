@@ -163,6 +163,18 @@ impl CheckedTree {
         self.of_nodes(nodes)
     }
 
+    /// The tree in other coordinates, with the iso-value and the attributes of this one and no parameters: under one more affine node, whose
+    /// map takes points of this tree's space to the new ones. It is given by rows, the last column is the shift; it can be undone.
+    #[must_use]
+    pub fn mapped(&self, rows: [[f64; 4]; 3]) -> Self {
+        let column = |place: usize| rows.map(|row| row[place]);
+        let columns: [[f64; 3]; 4] = std::array::from_fn(column);
+        let mut nodes = self.nodes.to_vec();
+        let map = DAffine3::from_cols_array_2d(&columns);
+        nodes.push(CheckedNode { kind: NodeKind::Affine(map), children: vec![self.root()], span: None });
+        self.of_nodes(nodes)
+    }
+
     /// Copies a subtree behind other nodes; gives the place of its root.
     fn copy_below(&self, root: NodeId, nodes: &mut Vec<CheckedNode>) -> NodeId {
         let mut copies: BTreeMap<NodeId, NodeId> = BTreeMap::new();

@@ -52,6 +52,12 @@ pub const MAX_LATTICE_POINTS: usize = 1 << 30;
 pub const MAX_BRICKS: usize = 1 << 22;
 /// Cells along one axis of a lattice.
 pub const MAX_RESOLUTION: usize = 1 << 20;
+/// Squares of a contour in which points are evaluated.
+pub const MAX_SQUARES: u64 = 1 << 22;
+/// Vertices of a contour before straight lines along the border are joined: about 100 bytes each while loops are closed.
+pub const MAX_CONTOUR_VERTICES: u64 = 1 << 24;
+/// Pixels of an image, times the points that are evaluated in each.
+pub const MAX_PIXELS: usize = 1 << 26;
 /// Ranges of boxes that it may take to prove on which side of the surface all of a cube is; beyond it the surface may be there.
 pub const MAX_MEMBERSHIP_BOXES: usize = 1 << 10;
 /// Boxes that the search for one side of a solid's tight bounds may ask about; beyond it the bounds are as tight as they are.

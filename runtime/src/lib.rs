@@ -38,12 +38,14 @@
 //! * An [`Evaluator`] answers one [`Query`] at any points, on the [`Engine`] that the machine has; all engines give the same bits.
 //!   A [`Probe`] asks about a single point, in any order, for one evaluation.
 //! * [`Polygonize`] meshes a model; [`export`] writes meshes.
+//! * A [`contour::Slicer`] looks at a model in a plane: contours as closed loops, and images.
 //! * A [`Solid`] answers questions about the set that a model encloses: which side a point is on, which leaf decides there, how far it
 //!   reaches, how large it is.
 //! * A [`Tracer`] follows rays to where they hit the surface, singly or in packets, and misses nothing that is longer than a tolerance.
 //! * [`Counters`] say what was done, and what separate walks would have done; [`statistics`] foretell it, and say how much of it matters.
 
 mod buffer;
+pub mod contour;
 mod counter;
 pub mod divide;
 mod error;

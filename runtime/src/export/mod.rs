@@ -1,4 +1,4 @@
-//! Mesh files: GLB, PLY, OBJ and STL.
+//! Mesh files: GLB, PLY, OBJ and STL; contours as [`svg`], pictures as [`png`].
 //!
 //! | format | positions | normals | colour | uv | other attributes |
 //! | --- | --- | --- | --- | --- | --- |
@@ -15,7 +15,9 @@
 mod glb;
 mod obj;
 mod ply;
+pub mod png;
 mod stl;
+pub mod svg;
 
 use std::collections::HashSet;
 use std::fmt;

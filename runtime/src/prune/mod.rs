@@ -21,6 +21,7 @@ mod cull;
 mod decide;
 mod edit;
 mod rule;
+mod survey;
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -59,6 +60,14 @@ impl Region {
     #[must_use]
     pub fn selection(&self) -> &Selection {
         &self.selection
+    }
+
+    /// Appends the regions of parts: `masks` has a byte for each row that runs, a bit for each part in which it matters.
+    fn narrow_by(&self, boxes: &[Box3], mut masks: Vec<u8>, parts: &mut Vec<Self>) {
+        let mut selections: [Selection; MAX_PARTS] = Default::default();
+        self.selection.narrow(&mut masks, &mut selections[..boxes.len()]);
+        let regions = boxes.iter().zip(selections);
+        parts.extend(regions.map(|(&bounds, selection)| Self { bounds, selection: Arc::new(selection) }));
     }
 
     /// Rows that run, of all tables.
@@ -167,38 +176,29 @@ impl Pruner {
         }
         let count = boxes.len();
         let inputs = inputs.each_ref().map(|plane| &plane[..count]);
-        let mut outputs = vec![[0.0; MAX_PARTS]; 2 * (1 + self.guide.probes)];
+        let mut outputs = vec![[0.0; MAX_PARTS]; self.planes()];
         let mut planes: Vec<&mut [f32]> = outputs.iter_mut().map(|plane| &mut plane[..count]).collect();
-        self.kernel.run(rows, &inputs, &mut planes)?;
-        self.counts.boxes.fetch_add(count as u64, Ordering::Relaxed);
-        self.counts.primitives.fetch_add(self.evaluations(rows, count), Ordering::Relaxed);
+        self.run(rows, &inputs, &mut planes)?;
         Ok(outputs)
     }
 
-    /// The boxes inside a region whose ranges are wanted, each by its place among them and with its region; and how many ranges of distances to
-    /// skeletons that took. It is [`ranges`](Divisible::ranges) and [`narrow`](Divisible::narrow) at the cost of one.
-    pub(crate) fn split(
+    /// The planes of answers: the low and the high end of the field, and of each probe.
+    fn planes(&self) -> usize {
+        2 * (1 + self.guide.probes)
+    }
+
+    /// Runs the interval kernel, and counts it.
+    fn run(
         &self,
-        region: &Region,
-        boxes: &[Box3],
-        wanted: &dyn Fn(Range) -> bool,
-    ) -> Result<(Vec<(usize, Region)>, u64), EvalError> {
-        let ranged = region.rows() <= MAX_RANGED_ROWS;
-        let mut probes = if ranged { self.evaluate(&region.selection, boxes)? } else { Vec::new() };
-        let is_wanted = |&lane: &usize| !ranged || wanted([probes[0][lane], probes[1][lane]]);
-        let kept: Vec<usize> = (0..boxes.len()).filter(is_wanted).collect();
-        let evaluations = if ranged { self.evaluations(&region.selection, boxes.len()) } else { 0 };
-        if kept.is_empty() {
-            return Ok((Vec::new(), evaluations));
-        }
-        let mut some = [Box3::default(); MAX_PARTS];
-        for (lane, &from) in kept.iter().enumerate() {
-            some[lane] = boxes[from];
-            probes.iter_mut().for_each(|plane| plane[lane] = plane[from]);
-        }
-        let mut regions = Vec::with_capacity(kept.len());
-        self.narrow_probed(region, &some[..kept.len()], &probes, &mut regions)?;
-        Ok((kept.into_iter().zip(regions).collect(), evaluations))
+        rows: &Selection,
+        inputs: &[&[f32]; 6],
+        outputs: &mut [&mut [f32]],
+    ) -> Result<(), EvalError> {
+        self.kernel.run(rows, inputs, outputs)?;
+        let count = inputs[0].len();
+        self.counts.boxes.fetch_add(count as u64, Ordering::Relaxed);
+        self.counts.primitives.fetch_add(self.evaluations(rows, count), Ordering::Relaxed);
+        Ok(())
     }
 
     /// Ranges of distances to skeletons that some boxes take.
@@ -206,31 +206,15 @@ impl Pruner {
         of_selection(&self.kernel.kernel.per_row, rows).saturating_mul(boxes as u64)
     }
 
-    /// The regions of boxes, from the ranges of the probes in them; they are empty if they are not known.
-    fn narrow_probed(
-        &self,
-        region: &Region,
-        boxes: &[Box3],
-        probes: &[[f32; MAX_PARTS]],
-        parts: &mut Vec<Region>,
-    ) -> Result<(), EvalError> {
-        let mut masks = self.masks(region, boxes, probes)?;
-        let mut selections: [Selection; MAX_PARTS] = Default::default();
-        region.selection.narrow(&mut masks, &mut selections[..boxes.len()]);
-        let regions = boxes.iter().zip(selections);
-        parts.extend(regions.map(|(&bounds, selection)| Region { bounds, selection: Arc::new(selection) }));
-        Ok(())
-    }
-
-    /// For each active row of the region, the boxes in which it matters: a bit each.
+    /// For each active row of the region, the boxes in which it matters: a bit each. It is told by the ranges of the field and of all probes in
+    /// these boxes, if they are known.
     fn masks(
         &self,
         region: &Region,
         boxes: &[Box3],
-        probes: &[[f32; MAX_PARTS]],
+        probes: Option<&[[f32; MAX_PARTS]]>,
     ) -> Result<Vec<u8>, EvalError> {
         let world = Boxes::new(boxes);
-        let probed = self.guide.probes > 0 && !probes.is_empty();
         let selection = &*region.selection;
         let mut masks = vec![world.all(); selection.len()];
         let mut first = 0;
@@ -239,13 +223,13 @@ impl Pruner {
             let mine = &mut masks[first..][..active.len()];
             first += active.len();
             let inside;
-            let boxes = match guide.space {
-                SpaceGuide::World => &world,
-                SpaceGuide::Probed(probe) if probed => {
+            let boxes = match (guide.space, probes) {
+                (SpaceGuide::World, _) => &world,
+                (SpaceGuide::Probed(probe), Some(probes)) => {
                     inside = inner_boxes(probes, probe, boxes.len());
                     &inside
                 }
-                SpaceGuide::Probed(_) | SpaceGuide::Unknown => continue,
+                (SpaceGuide::Probed(_), None) | (SpaceGuide::Unknown, _) => continue,
             };
             let Some(supports) = supports else { continue };
             for (mask, &row) in mine.iter_mut().zip(active) {
@@ -253,7 +237,7 @@ impl Pruner {
             }
             rule::apply(guide.rule, selection.starts(table), mine, boxes.all());
         }
-        if probed {
+        if let Some(probes) = probes {
             decide::leave_out(&self.guide, probes, boxes.len(), selection, &mut masks);
             self.leave_out_rows(region, boxes, probes, &mut masks)?;
         }
@@ -329,7 +313,9 @@ impl Divisible for Pruner {
 
     fn narrow(&self, region: &Region, boxes: &[Box3], parts: &mut Vec<Region>) -> Result<(), EvalError> {
         let probed = self.guide.probes > 0 && region.rows() <= MAX_RANGED_ROWS;
-        let probes = if probed { self.evaluate(&region.selection, boxes)? } else { Vec::new() };
-        self.narrow_probed(region, boxes, &probes, parts)
+        let probes = if probed { Some(self.evaluate(&region.selection, boxes)?) } else { None };
+        let masks = self.masks(region, boxes, probes.as_deref())?;
+        region.narrow_by(boxes, masks, parts);
+        Ok(())
     }
 }

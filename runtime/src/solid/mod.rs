@@ -15,7 +15,7 @@ mod bounds;
 mod cut;
 mod measure;
 mod membership;
-mod progress;
+pub(crate) mod progress;
 
 pub use bounds::{BoundsError, TightBounds};
 pub use jbt_frontend::check::NodeId;

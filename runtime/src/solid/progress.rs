@@ -3,7 +3,7 @@
 use std::sync::{Mutex, PoisonError};
 
 /// Adds up finished shares of the work and tells the hook. Threads may share it.
-pub(super) struct Progress<'a>(Mutex<State<'a>>);
+pub(crate) struct Progress<'a>(Mutex<State<'a>>);
 
 struct State<'a> {
     hook: &'a mut (dyn FnMut(f32) -> bool + Send),
@@ -16,13 +16,13 @@ struct State<'a> {
 const STEP: f64 = 1.0 / 256.0;
 
 impl<'a> Progress<'a> {
-    pub(super) fn new(hook: &'a mut (dyn FnMut(f32) -> bool + Send)) -> Self {
+    pub(crate) fn new(hook: &'a mut (dyn FnMut(f32) -> bool + Send)) -> Self {
         let cancelled = !hook(0.0);
         Self(Mutex::new(State { hook, done: 0.0, told: 0.0, cancelled }))
     }
 
     /// A share of the work is done, in (0, 1]. Returns whether to go on.
-    pub(super) fn add(&self, share: f64) -> bool {
+    pub(crate) fn add(&self, share: f64) -> bool {
         let mut state = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         state.done += share;
         if !state.cancelled && state.done >= state.told + STEP {
@@ -34,7 +34,7 @@ impl<'a> Progress<'a> {
     }
 
     /// Whether the hook said to stop.
-    pub(super) fn is_cancelled(&self) -> bool {
+    pub(crate) fn is_cancelled(&self) -> bool {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).cancelled
     }
 }

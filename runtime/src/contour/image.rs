@@ -1,0 +1,384 @@
+//! Images: which pixels of a rectangle are inside, the field there, or an attribute.
+//!
+//! ```text
+//! +-----------+-----------+      squares of pixels whose range proves one side are filled, and none of their points is evaluated;
+//! |           |  . .|#####|      where division does not pay any more, because few rows are left, pixels are evaluated with these rows;
+//! |  outside  |. . #|#####|      the field itself is asked everywhere, but where nothing reaches it is constant
+//! |           |-----+-----|
+//! |           | . ##|#####|      pixels are asked in their middles, or in the middles of their equal parts
+//! +-----------+-----------+
+//! ```
+
+use jbt_ir::limits::MAX_PIXELS;
+
+use super::divide::{Divided, Plan, Square, Verdict, Work, divide};
+use super::grid::{Grid, Rectangle};
+use super::shade;
+use super::slicer::{SliceError, Slicer};
+use crate::error::EvalError;
+use crate::evaluator::Evaluator;
+use crate::export::png::Picture;
+use crate::polygonize::Fineness;
+use crate::prune::Region;
+use crate::region::{Box3, Range};
+use crate::solid::progress::Progress;
+
+/// The largest [`ImageDetail::samples`].
+pub const MAX_SAMPLES: usize = 8;
+
+/// Pixels along the side of the squares at which division ends.
+const BLOCK: u32 = 16;
+/// Halvings of a side at once: 16 parts are asked about in one call.
+const STEP: u32 = 2;
+/// Points times ops of a square up to which its points are evaluated at once: to divide it would take longer.
+const CHEAP: u64 = 100_000;
+
+/// How finely an image is made.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct ImageDetail {
+    /// The pixels, along the longer side of the rectangle or by their edge.
+    pub fineness: Fineness,
+    /// Points along the side of a pixel, 1 to [`MAX_SAMPLES`]: the image is smooth where there are several. Images of the field take one.
+    pub samples: usize,
+}
+
+impl Default for ImageDetail {
+    /// 512 pixels along the longer side, one point each.
+    fn default() -> Self {
+        Self { fineness: Fineness::Resolution(512), samples: 1 }
+    }
+}
+
+/// What an image shows.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub enum Mode {
+    /// White inside, black outside.
+    Inside,
+    /// The field, from blue outside over white at the iso-value to red inside, each as far as the field goes there; the contour is dark.
+    Field,
+    /// The field from black (the lowest) to white (the highest); the contour is red.
+    Grey,
+    /// The field as a landscape, lit from above on the left; the solid is brown, the contour dark.
+    Height,
+    /// An attribute inside, nothing (transparent) outside. One channel is grey, two are red and green, of more the first three are red, green and blue: 0 to
+    /// 1, as they are.
+    Attribute(String),
+}
+
+/// Numbers for the pixels of a rectangle: row by row, from above.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Raster<T> {
+    /// Pixels along u.
+    pub width: usize,
+    /// Pixels along v.
+    pub height: usize,
+    /// One for each pixel.
+    pub values: Vec<T>,
+}
+
+impl<T: Copy> Raster<T> {
+    fn new(width: usize, height: usize, value: T) -> Self {
+        Self { width, height, values: vec![value; width * height] }
+    }
+
+    /// Writes the pixels of a tile, whose rows go upwards.
+    fn put(&mut self, tile: &Tile<T>) {
+        let [first, end] =
+            [tile.square.first, tile.square.end].map(|pixel| pixel.map(|index| index as usize));
+        let width = end[0] - first[0];
+        for row in first[1]..end[1] {
+            let start = (self.height - 1 - row) * self.width + first[0];
+            let pixels = &mut self.values[start..start + width];
+            match &tile.values[..] {
+                [one] => pixels.fill(*one),
+                values => pixels.copy_from_slice(&values[(row - first[1]) * width..][..width]),
+            }
+        }
+    }
+}
+
+/// A square of pixels: one number for each, or one for all.
+struct Tile<T> {
+    square: Square,
+    values: Vec<T>,
+}
+
+/// A grid of points, `samples` x `samples` in each pixel.
+struct Canvas<'a> {
+    slicer: &'a Slicer,
+    grid: Grid,
+    samples: usize,
+}
+
+impl<'a> Canvas<'a> {
+    fn new(slicer: &'a Slicer, rectangle: &Rectangle, detail: &ImageDetail) -> Result<Self, SliceError> {
+        let samples = detail.samples;
+        if !(1..=MAX_SAMPLES).contains(&samples) {
+            return Err(SliceError::Samples { samples });
+        }
+        let grid = Grid::pixels(rectangle, detail.fineness, samples)?;
+        let grid = grid.ok_or(SliceError::TooManyPixels { limit: MAX_PIXELS })?;
+        Ok(Self { slicer, grid, samples })
+    }
+
+    fn pixels(&self) -> [usize; 2] {
+        self.grid.points().map(|points| points / self.samples)
+    }
+
+    fn plan(&self) -> Plan {
+        Plan { cells: self.pixels().map(|pixels| pixels as u32), leaf: BLOCK, step: STEP, keep: false }
+    }
+
+    /// The points of a square: the first one, and those behind the last one.
+    fn points(&self, square: &Square) -> [[u32; 2]; 2] {
+        [square.first, square.end].map(|pixel| pixel.map(|index| index * self.samples as u32))
+    }
+
+    fn bounds(&self, square: &Square) -> Box3 {
+        let [first, end] = self.points(square);
+        self.slicer.bounds(self.grid.bounds(first, end.map(|end| end - 1)))
+    }
+
+    fn block(&self, square: &Square) -> [Vec<f32>; 2] {
+        let [first, end] = self.points(square);
+        self.grid.block(first, end)
+    }
+
+    /// Whether the points of a square are evaluated sooner than it is divided.
+    fn is_cheap(&self, square: &Square, region: &Region) -> bool {
+        let points = (self.samples * self.samples) as u64 * u64::from(square.size) * u64::from(square.size);
+        points.saturating_mul(self.slicer.field.ops_in(region)) <= CHEAP
+    }
+
+    /// The pixel (in its square) of each of the points of a square, in their order.
+    fn pixel_of_points(&self, square: &Square) -> impl Iterator<Item = usize> {
+        let [width, height] = [0, 1].map(|axis| (square.end[axis] - square.first[axis]) as usize);
+        let samples = self.samples;
+        (0..height * samples).flat_map(move |row| {
+            (0..width * samples).map(move |column| row / samples * width + column / samples)
+        })
+    }
+
+    fn raster<T: Copy>(&self, divided: &Divided<Tile<T>>, value: T) -> Raster<T> {
+        let [width, height] = self.pixels();
+        let mut raster = Raster::new(width, height, value);
+        divided.pieces.iter().for_each(|tile| raster.put(tile));
+        raster
+    }
+}
+
+fn tile<T>(square: &Square, values: Vec<T>) -> Option<Tile<T>> {
+    Some(Tile { square: *square, values })
+}
+
+/// Which part of each pixel is inside, of 255.
+struct Inside<'a>(Canvas<'a>);
+
+impl Work for Inside<'_> {
+    type Piece = Tile<u8>;
+
+    fn bounds(&self, square: &Square) -> Box3 {
+        self.0.bounds(square)
+    }
+
+    fn verdict(&self, range: Range) -> Verdict {
+        Verdict::of(range, self.0.slicer.iso)
+    }
+
+    fn dropped(&self, square: &Square, inside: bool, _: &Region) -> Result<Option<Tile<u8>>, EvalError> {
+        Ok(if inside { tile(square, vec![u8::MAX]) } else { None })
+    }
+
+    fn is_told(&self, square: &Square, region: &Region) -> bool {
+        self.0.is_cheap(square, region)
+    }
+
+    fn leaf(&self, square: &Square, region: &Region) -> Result<(Option<Tile<u8>>, bool), SliceError> {
+        let [u, v] = self.0.block(square);
+        let mut values = Vec::new();
+        self.0.slicer.values(region, [&u, &v], &mut values)?;
+        let iso = self.0.slicer.iso;
+        if self.0.samples == 1 {
+            let side = |&value: &f32| if value >= iso { u8::MAX } else { 0 };
+            return Ok((tile(square, values.iter().map(side).collect()), false));
+        }
+        let points = self.0.samples * self.0.samples;
+        let mut counts = vec![0_usize; values.len() / points];
+        for (pixel, value) in self.0.pixel_of_points(square).zip(&values) {
+            counts[pixel] += usize::from(*value >= iso);
+        }
+        let share = |count: &usize| ((count * 255 + points / 2) / points) as u8;
+        Ok((tile(square, counts.iter().map(share).collect()), false))
+    }
+}
+
+/// The field in the middle of each pixel.
+struct Values<'a>(Canvas<'a>);
+
+impl Work for Values<'_> {
+    type Piece = Tile<f32>;
+
+    fn bounds(&self, square: &Square) -> Box3 {
+        self.0.bounds(square)
+    }
+
+    /// All values are wanted.
+    fn verdict(&self, _: Range) -> Verdict {
+        Verdict::Open
+    }
+
+    fn dropped(&self, _: &Square, _: bool, _: &Region) -> Result<Option<Tile<f32>>, EvalError> {
+        Ok(None)
+    }
+
+    fn is_told(&self, square: &Square, region: &Region) -> bool {
+        self.is_constant(region) || self.0.is_cheap(square, region)
+    }
+
+    fn leaf(&self, square: &Square, region: &Region) -> Result<(Option<Tile<f32>>, bool), SliceError> {
+        let [mut u, mut v] = self.0.block(square);
+        if self.is_constant(region) {
+            u.truncate(1);
+            v.truncate(1);
+        }
+        let mut values = Vec::new();
+        self.0.slicer.values(region, [&u, &v], &mut values)?;
+        Ok((tile(square, values), false))
+    }
+}
+
+impl Values<'_> {
+    fn is_constant(&self, region: &Region) -> bool {
+        self.0.slicer.field.evaluations_in(region) == 0
+    }
+}
+
+/// An attribute where a pixel is inside: its channels (red, green and blue), and the part that is inside.
+struct Painted<'a> {
+    canvas: Canvas<'a>,
+    evaluator: &'a Evaluator,
+    /// The planes of the three channels among the answers; none is 0.
+    planes: [Option<usize>; 3],
+}
+
+impl Work for Painted<'_> {
+    type Piece = Tile<[f32; 4]>;
+
+    fn bounds(&self, square: &Square) -> Box3 {
+        self.canvas.bounds(square)
+    }
+
+    fn verdict(&self, range: Range) -> Verdict {
+        match Verdict::of(range, self.canvas.slicer.iso) {
+            Verdict::Outside => Verdict::Outside,
+            Verdict::Inside | Verdict::Open => Verdict::Open,
+        }
+    }
+
+    fn dropped(&self, _: &Square, _: bool, _: &Region) -> Result<Option<Tile<[f32; 4]>>, EvalError> {
+        Ok(None)
+    }
+
+    fn is_told(&self, square: &Square, region: &Region) -> bool {
+        self.canvas.is_cheap(square, region)
+    }
+
+    fn leaf(&self, square: &Square, region: &Region) -> Result<(Option<Tile<[f32; 4]>>, bool), SliceError> {
+        let [u, v] = self.canvas.block(square);
+        let mut planes = vec![vec![0.0; u.len()]; self.evaluator.layout().names().len()];
+        let mut answers: Vec<&mut [f32]> = planes.iter_mut().map(Vec::as_mut_slice).collect();
+        self.canvas.slicer.eval(self.evaluator, region, [&u, &v], &mut answers)?;
+        let points = self.canvas.samples * self.canvas.samples;
+        let mut pixels = vec![[0.0_f32; 4]; u.len() / points];
+        for (point, pixel) in self.canvas.pixel_of_points(square).enumerate() {
+            if planes[0][point] >= self.canvas.slicer.iso {
+                let [r, g, b] = self.planes.map(|plane| plane.map_or(0.0, |plane| planes[plane][point]));
+                pixels[pixel].iter_mut().zip([r, g, b, 1.0]).for_each(|(sum, value)| *sum += value);
+            }
+        }
+        for [r, g, b, count] in &mut pixels {
+            if *count > 0.0 {
+                (*r, *g, *b) = (*r / *count, *g / *count, *b / *count);
+            }
+            *count /= points as f32;
+        }
+        Ok((tile(square, pixels), false))
+    }
+}
+
+impl Slicer {
+    /// Which pixels of a rectangle are inside: 255 for those that are, 0 for those that are not, and with several samples the part of 255.
+    ///
+    /// The same for any number of threads, and at each point what the field there says. The hook is told how far the work is, from 0 to 1, and cancels it by
+    /// returning false.
+    ///
+    /// # Errors
+    /// See [`SliceError`].
+    pub fn inside(
+        &self,
+        rectangle: &Rectangle,
+        detail: &ImageDetail,
+        hook: &mut (dyn FnMut(f32) -> bool + Send),
+    ) -> Result<Raster<u8>, SliceError> {
+        let work = Inside(Canvas::new(self, rectangle, detail)?);
+        let divided = divide(&self.pruner, &work, work.0.plan(), &Progress::new(hook))?;
+        Ok(work.0.raster(&divided, 0))
+    }
+
+    /// The field in the middle of each pixel of a rectangle.
+    ///
+    /// # Errors
+    /// See [`SliceError`].
+    pub fn field_values(
+        &self,
+        rectangle: &Rectangle,
+        fineness: Fineness,
+        hook: &mut (dyn FnMut(f32) -> bool + Send),
+    ) -> Result<Raster<f32>, SliceError> {
+        let work = Values(Canvas::new(self, rectangle, &ImageDetail { fineness, samples: 1 })?);
+        let divided = divide(&self.pruner, &work, work.0.plan(), &Progress::new(hook))?;
+        Ok(work.0.raster(&divided, 0.0))
+    }
+
+    /// An attribute inside: red, green, blue, and which part of the pixel is inside.
+    fn painted(
+        &self,
+        rectangle: &Rectangle,
+        name: &str,
+        detail: &ImageDetail,
+        hook: &mut (dyn FnMut(f32) -> bool + Send),
+    ) -> Result<Raster<[f32; 4]>, SliceError> {
+        let (evaluator, first, width) = self.attribute(name)?;
+        let planes = match width {
+            1 => [Some(first); 3],
+            2 => [Some(first), Some(first + 1), None],
+            _ => [0, 1, 2].map(|channel| Some(first + channel)),
+        };
+        let work = Painted { canvas: Canvas::new(self, rectangle, detail)?, evaluator, planes };
+        let divided = divide(&self.pruner, &work, work.canvas.plan(), &Progress::new(hook))?;
+        Ok(work.canvas.raster(&divided, [0.0; 4]))
+    }
+
+    /// An image of a rectangle, on the threads of the rayon pool in which this is called.
+    ///
+    /// The hook is told how far the work is, from 0 to 1, and cancels it by returning false.
+    ///
+    /// # Errors
+    /// See [`SliceError`].
+    pub fn picture(
+        &self,
+        rectangle: &Rectangle,
+        mode: &Mode,
+        detail: &ImageDetail,
+        hook: &mut (dyn FnMut(f32) -> bool + Send),
+    ) -> Result<Picture, SliceError> {
+        let shade = match mode {
+            Mode::Inside => return Ok(shade::mask(&self.inside(rectangle, detail, hook)?)),
+            Mode::Attribute(name) => return Ok(shade::paint(&self.painted(rectangle, name, detail, hook)?)),
+            Mode::Field => shade::diverging,
+            Mode::Grey => shade::grey,
+            Mode::Height => shade::relief,
+        };
+        Ok(shade(&self.field_values(rectangle, detail.fineness, hook)?, self.iso))
+    }
+}

@@ -1,0 +1,258 @@
+//! Contours and images: what a model is like in a plane.
+//!
+//! ```text
+//!        ,-----.                 a plane through the model, a rectangle in it, a resolution;
+//!      ,'  ,-.  `.    ,-.        the contour field = iso as closed loops: outer ones counter-clockwise,
+//!     (   (   )   )  (   )       holes clockwise, so that the inside is on the left;
+//!      `.  `-'  ,'    `-'        or an image of the field, of its sides, of an attribute
+//!        `-----'
+//! ```
+//!
+//! ```
+//! use jbt::contour::{Detail, Plane, Slicer};
+//! use jbt::{Compiler, Query};
+//! let tree = jbt::text::parse(b"jbt 1 ring { ring_radius 1 radius 0.5 }", &Default::default()).unwrap().check().unwrap();
+//! let slicer = Slicer::new(&Compiler::new(), &tree, &Plane::default(), Query::FIELD).unwrap(); // once
+//! let contour = slicer.contour(&slicer.rectangle().unwrap(), &Detail::default(), &mut |_| true).unwrap(); // many times
+//! let holes: Vec<bool> = contour.loops.iter().map(|one| one.is_hole).collect();
+//! assert_eq!(holes, [false, true]);
+//! assert_eq!(contour.loops[1].parent, Some(0));
+//! ```
+//!
+//! In pseudo-code:
+//!
+//! ```text
+//!     squares  = divide the lattice; drop squares that are inside or outside as a whole     (divide)
+//!     segments = the cells that the contour crosses, by the signs of their four corners     (cells)
+//!     vertex   = the root of the field on a crossed edge of the lattice                     (roots)
+//!     loops    = segments from end to end; which one is in which                            (link)
+//! ```
+//!
+//! Time and memory grow with the length of the contour. Every crossed edge of the lattice has one vertex, strictly inside of the edge (unless f32 has no
+//! number there), and every vertex is used once: loops neither cross nor touch themselves or each other. The result is the same to the
+//! bit for any number of threads and any size of squares.
+//!
+//! **The border.** Beyond the rectangle everything counts as outside. So where the rectangle cuts the solid, loops are closed along its border, and the area is
+//! that of the part in the rectangle. `Contour::cut_sides` says where that is so.
+
+mod cells;
+mod circles;
+mod divide;
+mod grid;
+mod image;
+mod link;
+mod plane;
+mod roots;
+mod shade;
+mod slicer;
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use jbt_ir::limits::MAX_CONTOUR_VERTICES;
+
+pub use circles::circles;
+pub use divide::{DividedSquare, Fate, Level};
+pub use grid::{Rectangle, RectangleError};
+pub use image::{ImageDetail, MAX_SAMPLES, Mode, Raster};
+pub use link::Loop;
+pub use plane::{Plane, PlaneError};
+pub use slicer::{SliceError, Slicer};
+
+use cells::{Block, Segments, border};
+use divide::{Plan, Square, Verdict, Work, divide};
+use grid::Grid;
+
+use crate::error::EvalError;
+use crate::mesh::Attribute;
+use crate::polygonize::Fineness;
+use crate::prune::Region;
+use crate::region::{Box3, Range};
+use crate::solid::progress::Progress;
+
+/// The largest [`Detail::block`].
+pub const MAX_BLOCK: usize = 64;
+
+/// How finely a contour is made.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub struct Detail {
+    /// The cells of the lattice, along the longer side of the rectangle or by their edge.
+    pub fineness: Fineness,
+    /// Cells along the side of the squares at which division ends, a power of two up to [`MAX_BLOCK`]. It changes what is evaluated, but no bit of the
+    /// contour. `None`: 8. 1 is the classic quadtree, down to single cells.
+    pub block: Option<usize>,
+    /// Whether to divide squares into four parts, and to keep all of them: the quadtree, for pictures. Else squares are divided into sixteen, which is faster.
+    pub quadtree: bool,
+}
+
+/// The contour of a model in a rectangle of a plane: see the module.
+#[derive(Clone, Debug)]
+pub struct Contour {
+    /// Where the vertices are, in coordinates of the plane, loop by loop.
+    pub positions: Vec<[f32; 2]>,
+    /// What the vertices have, if attributes were asked for.
+    pub attributes: Vec<Attribute>,
+    /// The loops, by their lowest vertices, from below.
+    pub loops: Vec<Loop>,
+    /// The rectangle of the lattice: that which was asked for, or a little more, to the right and above.
+    pub rectangle: Rectangle,
+    /// The edge of a cell.
+    pub cell: f64,
+    /// Cells along u and v.
+    pub cells: [usize; 2],
+    /// The sides of the rectangle that cut the solid: left, below, right, above.
+    pub cut_sides: [bool; 4],
+    /// How many squares there are of each size, and what became of them.
+    pub levels: Vec<Level>,
+    /// The squares, if they were to be kept: those that were divided before their parts.
+    pub squares: Vec<DividedSquare>,
+}
+
+impl Contour {
+    /// The area of the slice, in square units of the model.
+    #[must_use]
+    pub fn area(&self) -> f64 {
+        self.loops.iter().map(|one| one.area).sum()
+    }
+
+    /// The length of all loops, in units of the model; with the parts along the border, where it cuts the solid.
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        self.loops.iter().map(|one| one.length).sum()
+    }
+
+    /// Loops that are holes.
+    #[must_use]
+    pub fn holes(&self) -> usize {
+        self.loops.iter().filter(|one| one.is_hole).count()
+    }
+
+    /// The mean of an attribute over the vertices of a loop, channel by channel.
+    #[must_use]
+    pub fn mean(&self, attribute: &Attribute, one: &Loop) -> Vec<f32> {
+        let width = attribute.width;
+        let mut sums = vec![0.0_f64; width];
+        for values in attribute.values[one.start * width..one.end * width].chunks_exact(width) {
+            sums.iter_mut().zip(values).for_each(|(sum, &value)| *sum += f64::from(value));
+        }
+        sums.into_iter().map(|sum| (sum / (one.end - one.start) as f64) as f32).collect()
+    }
+}
+
+/// What a contour is made of, square by square.
+struct Contouring<'a> {
+    slicer: &'a Slicer,
+    grid: &'a Grid,
+    vertices: AtomicU64,
+}
+
+impl Contouring<'_> {
+    fn counted(&self, segments: Segments) -> Result<Segments, SliceError> {
+        let count = segments.list.len() as u64;
+        if self.vertices.fetch_add(count, Ordering::Relaxed) + count > MAX_CONTOUR_VERTICES {
+            return Err(SliceError::TooManyVertices { limit: MAX_CONTOUR_VERTICES });
+        }
+        Ok(segments)
+    }
+}
+
+impl Work for Contouring<'_> {
+    type Piece = Segments;
+
+    fn bounds(&self, square: &Square) -> Box3 {
+        self.slicer.bounds(self.grid.bounds(square.first, square.end))
+    }
+
+    fn verdict(&self, range: Range) -> Verdict {
+        Verdict::of(range, self.slicer.iso)
+    }
+
+    fn dropped(&self, square: &Square, inside: bool, around: &Region) -> Result<Option<Segments>, EvalError> {
+        if inside { border(self.slicer, self.grid, square, around) } else { Ok(None) }
+    }
+
+    fn is_told(&self, _: &Square, _: &Region) -> bool {
+        false
+    }
+
+    fn leaf(&self, square: &Square, region: &Region) -> Result<(Option<Segments>, bool), SliceError> {
+        let segments = Block::new(self.slicer, self.grid, square, region)?.segments(region)?;
+        let crossed = !segments.list.is_empty();
+        Ok((crossed.then(|| self.counted(segments)).transpose()?, crossed))
+    }
+}
+
+impl Slicer {
+    /// The contour in a rectangle of the plane, on the threads of the rayon pool in which this is called.
+    ///
+    /// The hook is told how far the work is, from 0 to 1, and cancels it by returning false.
+    ///
+    /// # Errors
+    /// See [`SliceError`].
+    ///
+    /// # Panics
+    /// If the field has two values at one point, or leaves a range of its own: a defect of jbt.
+    pub fn contour(
+        &self,
+        rectangle: &Rectangle,
+        detail: &Detail,
+        hook: &mut (dyn FnMut(f32) -> bool + Send),
+    ) -> Result<Contour, SliceError> {
+        let block = detail.block.unwrap_or(8);
+        if !block.is_power_of_two() || block > MAX_BLOCK {
+            return Err(SliceError::Block { block });
+        }
+        let grid = Grid::corners(rectangle, detail.fineness)?;
+        let cells = grid.points().map(|points| points - 1);
+        let plan = Plan {
+            cells: cells.map(|cells| cells as u32),
+            leaf: block as u32,
+            step: if detail.quadtree { 1 } else { 2 },
+            keep: detail.quadtree,
+        };
+        let work = Contouring { slicer: self, grid: &grid, vertices: AtomicU64::new(0) };
+        let divided = divide(&self.pruner, &work, plan, &Progress::new(hook))?;
+        let planes = self.attributes().map(|(_, width)| width).sum();
+        let cut_sides = cut_sides(&divided.pieces, cells);
+        let squares = divided.squares.iter().map(|(square, depth, fate)| {
+            let [low, high] = grid.bounds(square.first, square.end);
+            DividedSquare { low, high, depth: *depth, fate: *fate }
+        });
+        let squares = squares.collect();
+        let linked = link::link(divided.pieces, planes);
+        let corner =
+            |last: bool| [0, 1].map(|axis| f64::from(grid.axes[axis][if last { cells[axis] } else { 0 }]));
+        Ok(Contour {
+            attributes: self.interleaved(&linked.attributes, linked.positions.len()),
+            positions: linked.positions,
+            loops: linked.loops,
+            rectangle: Rectangle::new(corner(false), corner(true))?,
+            cell: grid.spacing,
+            cells,
+            cut_sides,
+            levels: divided.levels,
+            squares,
+        })
+    }
+
+    /// Attributes from their planes.
+    fn interleaved(&self, planes: &[Vec<f32>], vertices: usize) -> Vec<Attribute> {
+        let mut planes = planes.iter();
+        let attribute = |(name, width): (&str, usize)| {
+            let mine: Vec<&Vec<f32>> = planes.by_ref().take(width).collect();
+            let values = (0..vertices).flat_map(|vertex| mine.iter().map(move |plane| plane[vertex]));
+            Attribute { name: name.to_owned(), width, values: values.collect() }
+        };
+        self.attributes().map(attribute).collect()
+    }
+}
+
+/// The sides of the lattice with a point inside: left, below, right, above.
+fn cut_sides(pieces: &[Segments], cells: [usize; 2]) -> [bool; 4] {
+    let mut sides = [false; 4];
+    for segment in pieces.iter().flat_map(|piece| &piece.list).filter(|segment| segment.border) {
+        let axis = segment.from.axis();
+        let place = if axis == 0 { segment.from.column() } else { segment.from.row() };
+        sides[if place == 0 { axis } else { 2 + axis }] |= place == 0 || place as usize == cells[axis] + 1;
+    }
+    sides
+}

@@ -1,0 +1,244 @@
+//! A model that can be looked at in a plane, again and again.
+
+use jbt_frontend::check::CheckedTree;
+use jbt_frontend::query::Query;
+use thiserror::Error;
+
+use super::grid::{Rectangle, RectangleError};
+use super::plane::{Kind, Plane, others};
+use crate::counter::Counters;
+use crate::error::{CompileError, EvalError};
+use crate::evaluator::{Compiler, Evaluator};
+use crate::kernel::Engine;
+use crate::mesh::LatticeError;
+use crate::prune::{PruneCounters, Pruner, Region};
+use crate::region::Box3;
+
+/// A compiled model and a plane: makes contours and images, any number of them, from any thread.
+///
+/// In a plane across a coordinate axis the answers have the bits of the model itself. For any other plane the model is moved, so that the plane becomes
+/// z = 0: that is another model, whose last digits differ.
+pub struct Slicer {
+    plane: Plane,
+    view: View,
+    /// Where the field may differ from zero, in coordinates of the plane.
+    support: Support,
+    pub(super) iso: f32,
+    pub(super) pruner: Pruner,
+    pub(super) field: Evaluator,
+    /// Field and attributes, if they were asked for.
+    pub(super) full: Option<Evaluator>,
+}
+
+/// The part of a plane in which the field may differ from zero.
+#[derive(Clone, Copy, PartialEq, Debug)]
+enum Support {
+    Empty,
+    Unbounded,
+    Rectangle([[f64; 2]; 2]),
+}
+
+/// Which coordinates of the compiled model are those of the plane.
+#[derive(Clone, Copy, Debug)]
+struct View {
+    /// Along u and v.
+    axes: [usize; 2],
+    /// The value of the third one.
+    at: f32,
+}
+
+/// Why there is no contour or image.
+#[derive(Clone, Debug, Error)]
+pub enum SliceError {
+    /// The model's field is zero everywhere, and no rectangle was given.
+    #[error("the model is empty: its field is zero everywhere")]
+    Empty,
+    /// The model's field may differ from zero arbitrarily far away, and no rectangle was given.
+    #[error("the model is unbounded: its slice needs a region")]
+    Unbounded,
+    /// The rectangle cannot be.
+    #[error(transparent)]
+    Rectangle(#[from] RectangleError),
+    /// The lattice cannot be, or is beyond a limit.
+    #[error(transparent)]
+    Lattice(#[from] LatticeError),
+    /// The side of the smallest squares is no power of two, or beyond [`MAX_BLOCK`](super::MAX_BLOCK).
+    #[error("the side of a block is a power of two up to {}, and {block} was asked for", super::MAX_BLOCK)]
+    Block {
+        /// What was asked for.
+        block: usize,
+    },
+    /// The points of a pixel: none, or too many.
+    #[error(
+        "a pixel has from 1 x 1 to {0} x {0} points, and {samples} x {samples} were asked for",
+        super::MAX_SAMPLES
+    )]
+    Samples {
+        /// Along a side.
+        samples: usize,
+    },
+    /// More points than [`MAX_PIXELS`](jbt_ir::limits::MAX_PIXELS).
+    #[error("the image has more than {limit} points")]
+    TooManyPixels {
+        /// How many there may be.
+        limit: usize,
+    },
+    /// More squares than [`MAX_SQUARES`](jbt_ir::limits::MAX_SQUARES) were left to be evaluated.
+    #[error("the contour may pass through more than {limit} squares of the lattice")]
+    TooManySquares {
+        /// How many there may be.
+        limit: u64,
+    },
+    /// More vertices than [`MAX_CONTOUR_VERTICES`](jbt_ir::limits::MAX_CONTOUR_VERTICES).
+    #[error("the contour has more than {limit} vertices")]
+    TooManyVertices {
+        /// How many there may be.
+        limit: u64,
+    },
+    /// There is no attribute of this name, or attributes were not asked for.
+    #[error("there is no attribute `{name}`: there are {}", names.join(", "))]
+    Attribute {
+        /// What was asked for.
+        name: String,
+        /// What there is.
+        names: Vec<String>,
+    },
+    /// The field could not be evaluated.
+    #[error("the field cannot be evaluated: {0}")]
+    Eval(#[from] EvalError),
+    /// The hook said to stop.
+    #[error("the work was cancelled")]
+    Cancelled,
+}
+
+/// The part of its longer side by which the default rectangle exceeds the support, as that of a mesh.
+const MARGIN: f64 = 1.0 / 512.0;
+
+impl Slicer {
+    /// Compiles a model for a plane. With `attributes` in the query contours have them, and there are images of them; the gradient is never needed.
+    ///
+    /// # Errors
+    /// The model is beyond a limit, or the engine cannot be had.
+    pub fn new(
+        compiler: &Compiler,
+        tree: &CheckedTree,
+        plane: &Plane,
+        query: Query,
+    ) -> Result<Self, CompileError> {
+        let moved;
+        let (tree, view) = match plane.0 {
+            Kind::Across { axis, at } => (tree, View { axes: others(axis), at: at as f32 }),
+            Kind::Spanned { .. } => {
+                moved = tree.mapped(plane.rows());
+                (&moved, View { axes: [0, 1], at: 0.0 })
+            }
+        };
+        let full = if query.attributes { Some(compiler.evaluator(tree, Query::ATTRIBUTES)?) } else { None };
+        Ok(Self {
+            plane: *plane,
+            view,
+            support: support(tree, &view),
+            iso: tree.iso() as f32,
+            pruner: Pruner::new(compiler, tree)?,
+            field: compiler.evaluator(tree, Query::FIELD)?,
+            full,
+        })
+    }
+
+    /// The plane.
+    #[must_use]
+    pub fn plane(&self) -> &Plane {
+        &self.plane
+    }
+
+    /// What runs the field.
+    #[must_use]
+    pub fn engine(&self) -> Engine {
+        self.field.engine()
+    }
+
+    /// The rectangle of the plane that holds all of the model's support, and a little more.
+    ///
+    /// # Errors
+    /// [`SliceError::Empty`] and [`SliceError::Unbounded`]: it needs a rectangle then.
+    pub fn rectangle(&self) -> Result<Rectangle, SliceError> {
+        match self.support {
+            Support::Empty => Err(SliceError::Empty),
+            Support::Unbounded => Err(SliceError::Unbounded),
+            Support::Rectangle([low, high]) => {
+                let margin = MARGIN * (high[0] - low[0]).max(high[1] - low[1]);
+                Ok(Rectangle::new(low.map(|side| side - margin), high.map(|side| side + margin))?)
+            }
+        }
+    }
+
+    /// What was evaluated so far: ranges in squares, the field at points, and field and attributes at points.
+    #[must_use]
+    pub fn counters(&self) -> (PruneCounters, Counters, Counters) {
+        let full = self.full.as_ref().map(Evaluator::counters).unwrap_or_default();
+        (self.pruner.counters(), self.field.counters(), full)
+    }
+
+    /// The names and widths of the attributes that it answers.
+    pub fn attributes(&self) -> impl Iterator<Item = (&str, usize)> {
+        self.full.iter().flat_map(|full| full.layout().attributes().map(|(name, _, width)| (name, width)))
+    }
+
+    /// The first plane of an attribute among the answers, and its width.
+    pub(super) fn attribute(&self, name: &str) -> Result<(&Evaluator, usize, usize), SliceError> {
+        let found = self
+            .full
+            .as_ref()
+            .and_then(|full| full.layout().attribute(name).map(|(plane, width)| (full, plane, width)));
+        found.ok_or_else(|| SliceError::Attribute {
+            name: name.to_owned(),
+            names: self.attributes().map(|(name, _)| name.to_owned()).collect(),
+        })
+    }
+
+    /// The flat box over a rectangle of the plane.
+    pub(super) fn bounds(&self, [low, high]: [[f32; 2]; 2]) -> Box3 {
+        let corner = |[u, v]: [f32; 2]| {
+            let mut corner = [self.view.at; 3];
+            (corner[self.view.axes[0]], corner[self.view.axes[1]]) = (u, v);
+            corner
+        };
+        Box3::new(corner(low), corner(high))
+    }
+
+    /// Evaluates points of the plane in a region.
+    pub(super) fn eval(
+        &self,
+        evaluator: &Evaluator,
+        region: &Region,
+        [u, v]: [&[f32]; 2],
+        answers: &mut [&mut [f32]],
+    ) -> Result<(), EvalError> {
+        let across = vec![self.view.at; u.len()];
+        let mut planes = [&across[..]; 3];
+        (planes[self.view.axes[0]], planes[self.view.axes[1]]) = (u, v);
+        evaluator.eval_region(region, planes, answers)
+    }
+
+    /// The field at points of the plane in a region.
+    pub(super) fn values(
+        &self,
+        region: &Region,
+        points: [&[f32]; 2],
+        values: &mut Vec<f32>,
+    ) -> Result<(), EvalError> {
+        values.resize(points[0].len(), 0.0);
+        self.eval(&self.field, region, points, &mut [values])
+    }
+}
+
+/// The support in coordinates of the plane. Where the plane misses it, the field is zero, and the rectangle is where the support would be seen.
+fn support(tree: &CheckedTree, view: &View) -> Support {
+    let support = tree.support();
+    if support.is_empty() {
+        return Support::Empty;
+    }
+    let [low, high] = [support.low(), support.high()].map(|corner| view.axes.map(|axis| corner[axis]));
+    let is_finite = low.iter().chain(&high).all(|side| side.is_finite());
+    if is_finite { Support::Rectangle([low, high]) } else { Support::Unbounded }
+}
