@@ -1,11 +1,16 @@
 //! The command line: what can be asked, and how it is written.
 
+mod render;
+
+pub use render::{GroundName, RenderArguments};
+
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use jbt::contour::{Plane, PlaneError, Rectangle};
 use jbt::{Engine, Query, text};
 
-/// Compiles BlobTrees to SIMD machine code, and makes meshes and values of them.
+/// Compiles BlobTrees to SIMD machine code, and makes meshes, pictures and values of them.
 #[derive(Parser, Debug)]
 #[command(name = "jbt", version, max_term_width = 100, after_help = EXIT_CODES)]
 pub struct Arguments {
@@ -25,6 +30,8 @@ Exit codes: 0 done, 1 the scene has errors, 2 usage, 3 a limit was hit, 4 a file
 Examples:
   jbt mesh examples/hero.jbt -o hero.glb
   jbt mesh train.scene --cell 0.13 -o train.glb --json
+  jbt render hero.jbt -o hero.png
+  jbt contour circles.jbt --quadtree -o circles.svg
   jbt sample hero.jbt --resolution 64 -o field.npy
   jbt eval hero.jbt --points points.csv --query all -o answers.csv
   jbt show hero.jbt --stage ir
@@ -37,6 +44,10 @@ Examples:
 pub enum Command {
     /// Write the surface of a scene as a triangle mesh
     Mesh(MeshArguments),
+    /// Make a picture of a scene
+    Render(RenderArguments),
+    /// Cut a scene by a plane, and write the contour as a drawing or the slice as an image
+    Contour(ContourArguments),
     /// Evaluate a scene at the points of a lattice, and write an array for numpy
     Sample(SampleArguments),
     /// Evaluate a scene at the points of a CSV file
@@ -116,6 +127,75 @@ impl LatticeArguments {
     pub fn given(&self) -> bool {
         self.cell.is_some() || self.resolution.is_some() || self.region.is_some()
     }
+}
+
+/// What `jbt contour` takes.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+OUT.svg is a drawing: the contour as closed loops in units of the scene, outer ones counter-clockwise and holes clockwise. Where the region
+cuts the solid, loops follow its border. --quadtree divides down to single cells and draws the squares (those that the contour crosses in
+green), and circles where supports of points meet the plane.
+
+OUT.png is an image. Its modes: field (from blue outside over white to red inside), grey, height (a landscape), inside (white in black), attribute
+(inside; transparent outside).
+
+In the plane z=C coordinates are x and y, in x=C they are y and z, in y=C x and z. Any other plane is nine numbers: a point, and the
+directions of the two coordinates. Without --region the slice covers the support of the model.
+
+Examples:
+  jbt contour circles.jbt --region -1.75,-1.75,1.75,1.75 --quadtree -o circles.svg
+  jbt contour hero.jbt --plane y=0 --fill attribute -o slice.svg --json
+  jbt contour hero.jbt --plane 0,0,0,1,1,0,0,0,1 --mode height -o slice.png
+  jbt contour prospero.vm --region -1,-1,1,1 --resolution 1024 --mode inside -o text.png")]
+pub struct ContourArguments {
+    /// What to cut.
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// The .svg or .png file to write; `-` is the standard output and needs --format
+    #[arg(short, long, value_name = "OUT")]
+    pub output: PathBuf,
+    /// The file format, if the extension does not say it
+    #[arg(long, value_enum)]
+    pub format: Option<DrawingName>,
+    /// The plane: x=C, y=C, z=C, or nine numbers
+    #[arg(long, value_name = "PLANE", default_value = "z=0", value_parser = plane, allow_hyphen_values = true)]
+    pub plane: Plane,
+    /// The part of the plane, in its coordinates [default: the support of the model]
+    #[arg(long, value_name = "U0,V0,U1,V1", value_parser = rectangle, allow_hyphen_values = true)]
+    pub region: Option<Rectangle>,
+    /// Edge of a cell or pixel, in units of the scene
+    #[arg(long, value_name = "H", conflicts_with = "resolution", allow_negative_numbers = true)]
+    pub cell: Option<f64>,
+    /// Cells or pixels along the longer side of the region [default: 256 cells, 512 pixels]
+    #[arg(long, value_name = "N")]
+    pub resolution: Option<usize>,
+    /// Lines of a drawing: `none`, a colour as #rrggbb, or `attribute` [default: #000000]
+    #[arg(long, value_name = "PAINT", value_parser = paint)]
+    pub stroke: Option<PaintName>,
+    /// Areas of a drawing: `none`, a colour as #rrggbb, or `attribute` [default: #dde6f0; none with --quadtree]
+    #[arg(long, value_name = "PAINT", value_parser = paint)]
+    pub fill: Option<PaintName>,
+    /// Divide down to single cells, and draw the squares
+    #[arg(long)]
+    pub quadtree: bool,
+    /// What an image shows [default: field]
+    #[arg(long, value_enum)]
+    pub mode: Option<ModeName>,
+    /// The attribute that `attribute` stands for [default: color]
+    #[arg(long, value_name = "NAME")]
+    pub attribute: Option<String>,
+    /// Points along the side of a pixel, for smooth images inside and of attributes [default: 1]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=8))]
+    pub samples: Option<u8>,
+    /// What evaluates the field: all engines give the same bits
+    #[arg(long, value_enum, default_value_t = EngineName::Jit)]
+    pub engine: EngineName,
+    /// Number of threads; the slice does not depend on it [default: one for each processor]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+    /// Print one JSON object instead of a summary
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// What `jbt sample` takes.
@@ -357,6 +437,41 @@ pub enum FormatName {
     Stl,
 }
 
+/// The words for drawings and images, which are also the extensions of their files.
+#[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
+pub enum DrawingName {
+    /// The contour as a drawing
+    Svg,
+    /// The slice as an image
+    Png,
+}
+
+/// The words for images.
+#[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
+pub enum ModeName {
+    /// White inside, black outside
+    Inside,
+    /// The field, from blue outside over white to red inside
+    Field,
+    /// The field, from black to white
+    Grey,
+    /// The field as a landscape
+    Height,
+    /// An attribute, inside
+    Attribute,
+}
+
+/// The words for paints.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum PaintName {
+    /// Nothing.
+    None,
+    /// Red, green and blue.
+    Color([u8; 3]),
+    /// The attribute of the options.
+    Attribute,
+}
+
 /// A box: its smallest and its largest corner.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Region {
@@ -399,9 +514,53 @@ fn region(text: &str) -> Result<Region, String> {
     }
 }
 
+fn plane(text: &str) -> Result<Plane, String> {
+    text.parse().map_err(|error: PlaneError| error.to_string())
+}
+
+fn rectangle(text: &str) -> Result<Rectangle, String> {
+    let numbers: Vec<f64> = text
+        .split(',')
+        .map(|word| word.trim().parse().map_err(|_| format!("`{}` is not a number", word.trim())))
+        .collect::<Result<_, _>>()?;
+    let Ok([u0, v0, u1, v1]) = <[f64; 4]>::try_from(numbers) else {
+        return Err("expected four numbers, as U0,V0,U1,V1".to_owned());
+    };
+    Rectangle::new([u0, v0], [u1, v1]).map_err(|error| error.to_string())
+}
+
+fn paint(text: &str) -> Result<PaintName, String> {
+    match text {
+        "none" => return Ok(PaintName::None),
+        "attribute" => return Ok(PaintName::Attribute),
+        _ => {}
+    }
+    let digits = text
+        .strip_prefix('#')
+        .filter(|digits| digits.len() == 6 && digits.bytes().all(|digit| digit.is_ascii_hexdigit()));
+    let number = digits.and_then(|digits| u32::from_str_radix(digits, 16).ok());
+    let [_, red, green, blue] =
+        number.ok_or("expected `none`, `attribute`, or a colour as #ff8000")?.to_be_bytes();
+    Ok(PaintName::Color([red, green, blue]))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn planes_rectangles_and_paints() {
+        assert!(plane("z=0").is_ok() && plane("w=0").is_err() && plane("z=nan").is_err());
+        assert_eq!(rectangle(" -1,0, 1,2 "), Ok(Rectangle::new([-1.0, 0.0], [1.0, 2.0]).unwrap()));
+        for bad in ["", "0,0,1", "0,0,1,1,1", "0,0,1,nan", "0,0,0,1", "1,0,0,1", "0,0,1,inf", "0,0,1,x"] {
+            assert!(rectangle(bad).is_err(), "{bad}");
+        }
+        assert_eq!(paint("#ff8000"), Ok(PaintName::Color([255, 128, 0])));
+        assert_eq!((paint("none"), paint("attribute")), (Ok(PaintName::None), Ok(PaintName::Attribute)));
+        for bad in ["", "red", "#fff", "#ff80000", "#+f8000", "#gg0000"] {
+            assert!(paint(bad).is_err(), "{bad}");
+        }
+    }
 
     #[test]
     fn the_command_line_is_consistent() {

@@ -1,15 +1,16 @@
-//! The `jbt` command: scenes to meshes and values.
+//! The `jbt` command: scenes to meshes, pictures and values.
 //!
 //! | file | what it does |
 //! |---|---|
 //! | [`arguments`] | what can be asked |
 //! | [`scene`], [`points`] | reading |
-//! | [`mesh`], [`sample`], [`eval`], [`show`], [`count`], [`stats`], [`check`] | one command each |
+//! | [`mesh`], [`render`], [`contour`], [`sample`], [`eval`], [`show`], [`count`], [`stats`], [`check`] | one command each |
 //! | [`output`], [`progress`], [`logger`] | what comes out, and where |
 //! | [`failure`] | what went wrong, and the exit code for it |
 
 mod arguments;
 mod check;
+mod contour;
 mod count;
 mod eval;
 mod failure;
@@ -19,6 +20,7 @@ mod mesh;
 mod output;
 mod points;
 mod progress;
+mod render;
 mod sample;
 mod scene;
 mod show;
@@ -54,6 +56,8 @@ fn main() -> ExitCode {
 fn run(command: &Command, quiet: bool, start: Instant) -> Result<(), Failure> {
     match command {
         Command::Mesh(arguments) => mesh::run(arguments, quiet, start),
+        Command::Render(arguments) => render::run(arguments, quiet, start),
+        Command::Contour(arguments) => contour::run(arguments, quiet, start),
         Command::Sample(arguments) => sample::run(arguments, quiet, start),
         Command::Eval(arguments) => eval::run(arguments, quiet),
         Command::Show(arguments) => show::run(arguments, quiet),

@@ -73,3 +73,9 @@ pub const MAX_RAY_WORK: u64 = 1 << 22;
 pub const MAX_DIVISION_DEPTH: usize = 96;
 /// Boxes of one division: each keeps about 64 bytes.
 pub const MAX_DIVISION_BOXES: u64 = 1 << 24;
+/// Pixels along one side of a picture.
+pub const MAX_PICTURE_SIDE: usize = 1 << 14;
+/// Pixels of one picture: each keeps 16 bytes while it is made.
+pub const MAX_PICTURE_PIXELS: usize = 1 << 26;
+/// Rays along each side of a pixel.
+pub const MAX_ANTIALIAS: u32 = 16;

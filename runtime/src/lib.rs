@@ -37,7 +37,7 @@
 //!   [`Evaluator::update`] then writes numbers and compiles nothing.
 //! * An [`Evaluator`] answers one [`Query`] at any points, on the [`Engine`] that the machine has; all engines give the same bits.
 //!   A [`Probe`] asks about a single point, in any order, for one evaluation.
-//! * [`Polygonize`] meshes a model; [`export`] writes meshes.
+//! * [`Polygonize`] meshes a model, [`Render`] makes pictures of it; [`export`] writes both.
 //! * A [`contour::Slicer`] looks at a model in a plane: contours as closed loops, and images.
 //! * A [`Solid`] answers questions about the set that a model encloses: which side a point is on, which leaf decides there, how far it
 //!   reaches, how large it is.
@@ -53,10 +53,12 @@ mod evaluator;
 pub mod export;
 pub mod kernel;
 pub mod mesh;
+mod picture;
 mod polygonize;
 mod probe;
 pub mod prune;
 pub mod region;
+pub mod render;
 pub mod sample;
 pub mod solid;
 pub mod statistics;
@@ -88,9 +90,11 @@ pub use counter::Counters;
 pub use error::{CompileError, EvalError};
 pub use evaluator::{Compiler, Evaluator, Update};
 pub use kernel::Engine;
+pub use picture::Picture;
 pub use polygonize::{Fineness, MeshCounters, Polygonize, PolygonizeError, Polygonized};
 pub use probe::Probe;
 pub use prune::{PruneCounters, Pruner, Region};
 pub use region::{Box3, Range};
+pub use render::{Render, Renderer};
 pub use solid::{Membership, Solid};
 pub use trace::{Ray, Tracer};

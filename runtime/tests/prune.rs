@@ -400,3 +400,38 @@ fn rows_that_come_to_an_intersection_matter_everywhere() {
     let three = format!("jbt 1 intersection {{ {ball} {ball} point {{ at (0.9 0 0) radius 0.2 }} }}");
     assert_eq!(two.updated(&text(&three)).unwrap().edit(&two), Edit::Everywhere);
 }
+
+#[test]
+fn a_survey_is_ranges_and_regions_in_one() {
+    let bits = |range: [f32; 2]| range.map(f32::to_bits);
+    for shape in 0..setting("JBT_PRUNE_SHAPES", SHAPES).min(60) {
+        let tree = Random::new(shape, shape).model(12).check().expect("a good model");
+        let pruner = Pruner::new(&Compiler::for_engine(Engine::Lanes), &tree).expect("it compiles");
+        let around = Box3::new([-2.0; 3], [2.0; 3]);
+        let region = pruner.region(around).expect("a region");
+        let mut rng = Rng::with_seed(shape);
+        // More than one lane group of the interpreter, and not a whole number of anything.
+        let boxes: Vec<Box3> = (0..43)
+            .map(|_| {
+                let low = std::array::from_fn(|_| 3.5 * rng.f32() - 2.0);
+                Box3::new(low, low.map(|side: f32| (side + 0.5 * rng.f32()).min(2.0)))
+            })
+            .collect();
+        let iso = tree.iso() as f32;
+        let wanted = |[low, high]: [f32; 2]| low < iso && high >= iso;
+        let surveyed = pruner.survey(&region, &boxes, &wanted).expect("a survey");
+        assert_eq!(surveyed.len(), boxes.len());
+        for (bounds, (range, found)) in boxes.iter().zip(surveyed) {
+            let mut expected = [ANYTHING];
+            pruner.ranges(&region, &[*bounds], &mut expected).expect("a range");
+            assert_eq!(bits(range), bits(expected[0]), "shape {shape}");
+            assert_eq!(found.is_some(), wanted(range), "shape {shape}");
+            let mut narrowed = Vec::new();
+            pruner.narrow(&region, &[*bounds], &mut narrowed).expect("a region");
+            if let Some(found) = found {
+                assert_eq!(found.bounds(), *bounds);
+                assert_eq!(found.selection(), narrowed[0].selection(), "shape {shape}");
+            }
+        }
+    }
+}

@@ -357,8 +357,10 @@ fn random_models_are_hit_where_dense_sampling_says() {
     let Tally { hits, rays, points, dense } = tally;
     let [hits, rays, points, dense] = [hits, rays, points, dense].map(AtomicU64::into_inner);
     println!("{rays} rays, {hits} hits, {points} points; {dense} points of dense sampling");
-    assert!(2 * hits > rays, "most rays hit something");
-    assert!(points < dense / 4, "boxes spare points");
+    if trees >= 10 {
+        assert!(2 * hits > rays, "most rays hit something");
+        assert!(points < dense / 4, "boxes spare points");
+    }
 }
 
 fn try_model(seed: u64, count: usize, tally: &Tally) {
@@ -432,21 +434,15 @@ fn compare_dense(
     while start < times.len() {
         let run = inside[start..].iter().take_while(|&&side| side == inside[start]).count();
         let end = start + run;
-        if (times[end - 1] - times[start]) * length > tolerance * 1.0001 {
-            for &t in &times[start..end] {
-                if hits.iter().any(|hit| (hit.0 - t).abs() <= precise) {
-                    continue;
-                }
-                let told = told(t).unwrap_or_else(|| *always.get_or_insert(inside[start]));
-                assert_eq!(
-                    told,
-                    inside[start],
-                    "at {t} of {} .. {}, {hits:?}, {}",
-                    times[start],
-                    times[end - 1],
-                    what()
-                );
-            }
+        // A hit in a run is where something is too short for this sampling: that it is there, is checked below.
+        let cuts = hits.iter().map(|hit| hit.0).filter(|t| (times[start]..times[end - 1]).contains(t));
+        let mut ends: Vec<f64> = cuts.collect();
+        ends.insert(0, times[start]);
+        ends.push(times[end - 1]);
+        for piece in ends.windows(2).filter(|piece| (piece[1] - piece[0]) * length > tolerance * 1.0001) {
+            let told = told(0.5 * (piece[0] + piece[1]));
+            let told = told.unwrap_or_else(|| *always.get_or_insert(inside[start]));
+            assert_eq!(told, inside[start], "in {piece:?}, {hits:?}, {}", what());
         }
         start = end;
     }

@@ -10,9 +10,11 @@ fn folder() -> Folder {
 }
 
 /// Every command on a scene.
-fn commands(scene: &str) -> [Vec<&str>; 6] {
+fn commands(scene: &str) -> [Vec<&str>; 7] {
     [
         vec!["mesh", scene, "-o", "out.glb"],
+        vec!["render", scene, "-o", "out.png", "--size", "8"],
+        vec!["contour", scene, "-o", "out.svg"],
         vec!["eval", scene, "--points", "p.csv", "-o", "out.csv"],
         vec!["show", scene, "--stage", "ir"],
         vec!["count", scene],
@@ -40,7 +42,7 @@ fn bad_scenes_are_located_errors_for_every_command() {
             let ran = folder.jbt(&arguments).code(1).says(place);
             assert_eq!(ran.stdout(), "", "{arguments:?}");
         }
-        assert!(!folder.path("out.glb").exists() && !folder.path("out.csv").exists());
+        assert!(["out.glb", "out.png", "out.csv"].iter().all(|name| !folder.path(name).exists()));
     }
 }
 

@@ -1,5 +1,7 @@
 //! Tests that run the binary `jbt` on files of temporary folders.
 
 mod commands;
+mod contour;
 mod folder;
 mod hostile;
+mod render;

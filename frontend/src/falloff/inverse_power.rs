@@ -89,16 +89,16 @@ impl FalloffMember for InversePower {
     }
 
     fn emit<D: Domain>(d: &mut D, variant: u8, near: Nearness<D::Real>, row: &[D::Real]) -> D::Real {
-        let (s, one) = (near.s, d.constant(1.0));
+        let (s, one) = (near.square(d), d.constant(1.0));
         let power = match variant >> 1 {
             0 => d.pow(s, row[1]),
-            1 => near.distance(d),
+            1 => d.sqrt(s),
             n => {
                 let even = power(d, s, Exponent::Integer(u32::from(n / 2)));
                 if n % 2 == 0 {
                     even
                 } else {
-                    let r = near.distance(d);
+                    let r = d.sqrt(s);
                     d.mul(even, r)
                 }
             }

@@ -48,8 +48,9 @@ pub use edge::{Edge, Rim};
 pub struct Nearness<R> {
     /// `max(1 - s, 0)`: exactly 0 from the support radius outwards, with all its digits in front of it.
     pub u: R,
-    /// `min(s, 1)`, with all its digits near the skeleton. Where it moves, u is above 0.
-    pub s: R,
+    /// Two factors of `-s`.
+    square: R,
+    slope: R,
 }
 
 impl<R: Copy> Nearness<R> {
@@ -57,14 +58,20 @@ impl<R: Copy> Nearness<R> {
     pub fn emit<D: Domain<Real = R>>(d: &mut D, square: R, slope: R) -> Self {
         let (zero, one) = (d.constant(0.0), d.constant(1.0));
         let left = d.fma(square, slope, one);
-        let back = d.mul(square, slope);
-        let s = d.neg(back);
-        Self { u: d.max(left, zero), s: d.min(s, one) }
+        Self { u: d.max(left, zero), square, slope }
     }
 
-    /// `r = sqrt(s)`, from 0 to 1.
+    /// `min(s, 1)`, with all its digits near the skeleton. Where it moves, u is above 0.
+    fn square<D: Domain<Real = R>>(self, d: &mut D) -> R {
+        let (one, back) = (d.constant(1.0), d.mul(self.square, self.slope));
+        let s = d.neg(back);
+        d.min(s, one)
+    }
+
+    /// `r`, the root of that.
     fn distance<D: Domain<Real = R>>(self, d: &mut D) -> R {
-        d.sqrt(self.s)
+        let s = self.square(d);
+        d.sqrt(s)
     }
 }
 

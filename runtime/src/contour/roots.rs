@@ -104,12 +104,11 @@ impl Search {
     }
 }
 
-/// The places of the vertices on some edges. `field` gives the field at points by their coordinates along u and v.
-pub(super) fn solve(
-    edges: &[Edge],
-    iso: f32,
-    field: &mut dyn FnMut([&[f32]; 2], &mut Vec<f32>) -> Result<(), EvalError>,
-) -> Result<Vec<[f32; 2]>, EvalError> {
+/// What gives the field at points by their coordinates along u and v.
+pub(super) type FieldAt<'a> = dyn FnMut([&[f32]; 2], &mut Vec<f32>) -> Result<(), EvalError> + 'a;
+
+/// The places of the vertices on some edges.
+pub(super) fn solve(edges: &[Edge], iso: f32, field: &mut FieldAt<'_>) -> Result<Vec<[f32; 2]>, EvalError> {
     let mut searches: Vec<Search> = edges.iter().map(|&edge| Search::new(edge, iso)).collect();
     let (mut points, mut values) = ([Vec::new(), Vec::new()], Vec::new());
     for _ in 0..ROUNDS {

@@ -1,7 +1,7 @@
 //! Numbers become colours of pixels.
 
 use super::image::Raster;
-use crate::export::png::Picture;
+use crate::picture::Picture;
 
 /// The colours of [`diverging`]: as far outside and inside as the field goes, and at the iso-value.
 const OUTSIDE: [f32; 3] = [33.0, 102.0, 172.0];
@@ -16,7 +16,9 @@ const WATER: [f32; 3] = [176.0, 196.0, 214.0];
 
 fn picture<T>(raster: &Raster<T>, pixel: impl Fn(usize, &T) -> [u8; 4]) -> Picture {
     let pixels = raster.values.iter().enumerate().map(|(index, value)| pixel(index, value)).collect();
-    Picture { width: raster.width, height: raster.height, pixels }
+    let [width, height] =
+        [raster.width, raster.height].map(|side| u32::try_from(side).expect("sides are limited"));
+    Picture::new(width, height, pixels).expect("a raster has a point for each pixel")
 }
 
 /// White where it is inside, black where it is not.
@@ -101,14 +103,14 @@ pub(super) fn relief(field: &Raster<f32>, iso: f32) -> Picture {
     let slopes: Vec<[f32; 2]> = (0..field.values.len()).map(|index| slope(field, index)).collect();
     let squares = slopes.iter().map(|[a, b]| f64::from(a * a + b * b)).filter(|square| *square > 0.0);
     let (sum, count) = squares.fold((0.0, 0.0), |(sum, count), square| (sum + square, count + 1.0_f64));
-    // The slope that is as steep as the root of the mean square is 45 degrees.
-    let scale = if count > 0.0 && sum.is_finite() { (count / sum).sqrt() as f32 } else { 0.0 };
+    // The root of their mean square is shown as a slope of 0.6, or 31 degrees.
+    let scale = if count > 0.0 && sum.is_finite() { 0.6 * (count / sum).sqrt() as f32 } else { 0.0 };
     picture(field, |index, &value| {
         let [a, b] = slopes[index].map(|slope| scale * slope);
         let length = (a * a + b * b + 1.0).sqrt();
         let light = (LIGHT[2] - a * LIGHT[0] - b * LIGHT[1]) / length;
         let ground = if inside(value, iso) { LAND } else { WATER };
-        let shaded = mix([0.0; 3], ground, 0.25 + 1.05 * light.max(0.0));
+        let shaded = mix([0.0; 3], ground, 0.3 + 0.9 * light.max(0.0));
         opaque(if on_contour(field, index, iso) { mix(shaded, DARK, 0.7) } else { shaded })
     })
 }
@@ -138,12 +140,12 @@ mod tests {
     #[test]
     fn colours_of_a_row() {
         let field = raster(5, &[0.0, 0.25, 0.5, 0.75, 1.0]);
-        assert_eq!(diverging(&field, 0.5).pixels[0], opaque(OUTSIDE));
-        assert_eq!(diverging(&field, 0.5).pixels[2], opaque(DARK), "the first one inside");
-        assert_eq!(diverging(&field, 0.5).pixels[4], opaque(INSIDE));
-        assert_eq!(grey(&field, 0.5).pixels[0], [0, 0, 0, 255]);
-        assert_eq!(grey(&field, 0.5).pixels[2], opaque(RED));
-        assert_eq!(grey(&field, 0.5).pixels[3], [191, 191, 191, 255]);
+        assert_eq!(diverging(&field, 0.5).pixels()[0], opaque(OUTSIDE));
+        assert_eq!(diverging(&field, 0.5).pixels()[2], opaque(DARK), "the first one inside");
+        assert_eq!(diverging(&field, 0.5).pixels()[4], opaque(INSIDE));
+        assert_eq!(grey(&field, 0.5).pixels()[0], [0, 0, 0, 255]);
+        assert_eq!(grey(&field, 0.5).pixels()[2], opaque(RED));
+        assert_eq!(grey(&field, 0.5).pixels()[3], [191, 191, 191, 255]);
         assert_eq!(slope(&field, 2), [0.25, 0.0]);
     }
 
@@ -152,7 +154,7 @@ mod tests {
         for value in [0.0, 1.0, f32::NAN, f32::INFINITY] {
             let field = raster(2, &[value; 4]);
             for shade in [diverging, grey, relief] {
-                assert!(shade(&field, 0.5).pixels.iter().all(|pixel| pixel[3] == 255));
+                assert!(shade(&field, 0.5).pixels().iter().all(|pixel| pixel[3] == 255));
             }
         }
     }
@@ -162,7 +164,7 @@ mod tests {
         // It rises to the right: it looks to the left, where the light is.
         let up = raster(3, &[0.0, 0.1, 0.2, 0.0, 0.1, 0.2, 0.0, 0.1, 0.2]);
         let down = raster(3, &[0.2, 0.1, 0.0, 0.2, 0.1, 0.0, 0.2, 0.1, 0.0]);
-        let middle = |field: &Raster<f32>| relief(field, 0.5).pixels[4][0];
+        let middle = |field: &Raster<f32>| relief(field, 0.5).pixels()[4][0];
         assert!(middle(&up) > middle(&down) + 50);
     }
 }

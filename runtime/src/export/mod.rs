@@ -1,4 +1,4 @@
-//! Mesh files: GLB, PLY, OBJ and STL; contours as [`svg`], pictures as [`png`].
+//! Mesh files: GLB, PLY, OBJ and STL; contours: SVG; pictures: PNG.
 //!
 //! | format | positions | normals | colour | uv | other attributes |
 //! | --- | --- | --- | --- | --- | --- |
@@ -15,9 +15,11 @@
 mod glb;
 mod obj;
 mod ply;
-pub mod png;
+mod png;
 mod stl;
 pub mod svg;
+
+pub use png::write_png;
 
 use std::collections::HashSet;
 use std::fmt;

@@ -1,46 +1,37 @@
-//! PNG: pictures.
+//! Pictures as Portable Network Graphics: eight bits a channel, in the colours of screens (sRGB).
 
 use std::io::{self, Write};
 
-/// A picture: red, green, blue and alpha of 8 bits, row by row from above.
-#[derive(Clone, PartialEq, Eq, Debug)]
-pub struct Picture {
-    /// Pixels in a row.
-    pub width: usize,
-    /// Rows.
-    pub height: usize,
-    /// The pixels; `width * height` of them.
-    pub pixels: Vec<[u8; 4]>,
-}
+use crate::picture::Picture;
 
-/// Writes a picture. What is opaque everywhere has no alpha in the file.
+/// Writes a picture. What is opaque everywhere has no opacity in the file. The same picture gives the same bytes.
 ///
 /// # Errors
-/// Those of the writer, and a picture without pixels, with another number of them than its sides say, or with sides that are more than 2^31 - 1.
+/// Those of the writer.
 pub fn write_png(picture: &Picture, out: &mut dyn Write) -> io::Result<()> {
-    let wrong =
-        || io::Error::new(io::ErrorKind::InvalidInput, "the sides of the picture do not fit its pixels");
-    let side = |length: usize| u32::try_from(length).ok().filter(|&side| side > 0).ok_or_else(wrong);
-    let (width, height) = (side(picture.width)?, side(picture.height)?);
-    if picture.width.checked_mul(picture.height) != Some(picture.pixels.len()) {
-        return Err(wrong());
-    }
-    let opaque = picture.pixels.iter().all(|pixel| pixel[3] == u8::MAX);
-    let mut encoder = png::Encoder::new(out, width, height);
+    let opaque = picture.pixels().iter().all(|pixel| pixel[3] == u8::MAX);
+    let mut encoder = png::Encoder::new(out, picture.width(), picture.height());
     encoder.set_color(if opaque { png::ColorType::Rgb } else { png::ColorType::Rgba });
     encoder.set_depth(png::BitDepth::Eight);
-    let bytes: Vec<u8> = if opaque {
-        picture.pixels.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]).collect()
+    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+    let mut writer = encoder.write_header().map_err(plain)?;
+    if opaque {
+        let bytes: Vec<u8> = picture.pixels().iter().flat_map(|[r, g, b, _]| [*r, *g, *b]).collect();
+        writer.write_image_data(&bytes).map_err(plain)?;
     } else {
-        picture.pixels.as_flattened().to_vec()
-    };
-    let failed = |error: png::EncodingError| match error {
+        writer.write_image_data(picture.pixels().as_flattened()).map_err(plain)?;
+    }
+    writer.finish().map_err(plain)
+}
+
+/// The writer's own error, if it is one.
+fn plain(error: png::EncodingError) -> io::Error {
+    match error {
         png::EncodingError::IoError(error) => error,
-        other => io::Error::new(io::ErrorKind::InvalidInput, other.to_string()),
-    };
-    let mut writer = encoder.write_header().map_err(failed)?;
-    writer.write_image_data(&bytes).map_err(failed)?;
-    writer.finish().map_err(failed)
+        other @ (png::EncodingError::Format(_)
+        | png::EncodingError::Parameter(_)
+        | png::EncodingError::LimitsExceeded) => io::Error::other(other),
+    }
 }
 
 #[cfg(test)]
@@ -52,27 +43,25 @@ mod tests {
         let mut file = Vec::new();
         write_png(picture, &mut file).unwrap();
         assert!(file.starts_with(b"\x89PNG\r\n\x1a\n"));
-        let mut reader = png::Decoder::new(std::io::Cursor::new(file)).read_info().unwrap();
+        let mut reader = png::Decoder::new(io::Cursor::new(file)).read_info().unwrap();
         let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
         let info = reader.next_frame(&mut bytes).unwrap();
-        assert_eq!((info.width as usize, info.height as usize), (picture.width, picture.height));
+        assert_eq!((info.width, info.height), (picture.width(), picture.height()));
         (info.color_type, bytes)
     }
 
     #[test]
     fn pictures_come_back() {
-        let opaque = Picture { width: 2, height: 1, pixels: vec![[1, 2, 3, 255], [4, 5, 6, 255]] };
+        let opaque = Picture::new(2, 1, vec![[1, 2, 3, 255], [4, 5, 6, 255]]).unwrap();
         assert_eq!(round(&opaque), (png::ColorType::Rgb, vec![1, 2, 3, 4, 5, 6]));
-        let clear = Picture { width: 1, height: 2, pixels: vec![[1, 2, 3, 0], [4, 5, 6, 255]] };
+        let clear = Picture::new(1, 2, vec![[1, 2, 3, 0], [4, 5, 6, 255]]).unwrap();
         assert_eq!(round(&clear), (png::ColorType::Rgba, vec![1, 2, 3, 0, 4, 5, 6, 255]));
     }
 
     #[test]
-    fn pictures_without_pixels_or_with_wrong_sides_are_errors() {
-        for (width, height, count) in [(0, 1, 0), (1, 0, 0), (2, 2, 3), (usize::MAX, 2, 4)] {
-            let picture = Picture { width, height, pixels: vec![[0; 4]; count] };
-            let error = write_png(&picture, &mut Vec::new()).unwrap_err();
-            assert_eq!(error.kind(), io::ErrorKind::InvalidInput);
+    fn sides_fit_the_pixels() {
+        for (width, height, count) in [(0, 1, 0), (1, 0, 0), (2, 2, 3), (u32::MAX, u32::MAX, 1)] {
+            assert_eq!(Picture::new(width, height, vec![[0; 4]; count]), None);
         }
     }
 }

@@ -69,13 +69,13 @@ pub fn write_svg(contour: &Contour, style: &Style, out: &mut dyn Write) -> io::R
     writeln!(out, "<g transform=\"matrix(1 0 0 -1 0 {})\">", low + contour.rectangle.high()[1])?;
     let line = longest * style.stroke_width;
     if style.quadtree {
-        squares(contour, 0.25 * line, out)?;
+        squares(contour, longest / 2400.0, out)?;
     }
     areas(contour, &fill, out)?;
     if style.quadtree {
         crossed(contour, out)?;
     }
-    circles(&style.circles, 0.5 * line, out)?;
+    circles(&style.circles, longest / 800.0, out)?;
     lines(contour, &stroke, line, out)?;
     writeln!(out, "</g>\n</svg>")
 }
@@ -207,7 +207,7 @@ fn squares(contour: &Contour, width: f64, out: &mut dyn Write) -> io::Result<()>
         }
         let part = f32::from(depth) / f32::from(deepest.max(1));
         let shade = |light: f32, dark: f32| (light + part * (dark - light)) as u8;
-        let fill = hex([shade(255.0, 208.0), shade(253.0, 190.0), shade(245.0, 150.0)]);
+        let fill = hex([shade(255.0, 196.0), shade(252.0, 168.0), shade(240.0, 118.0)]);
         write!(out, "<path fill=\"{fill}\" stroke=\"#8a8172\" stroke-width=\"{width}\" d=\"")?;
         leaves.try_for_each(|square| outline(square.low, square.high, out))?;
         writeln!(out, "\"/>")?;
@@ -221,7 +221,7 @@ fn crossed(contour: &Contour, out: &mut dyn Write) -> io::Result<()> {
     if found.peek().is_none() {
         return Ok(());
     }
-    write!(out, "<path fill=\"#1a9850\" fill-opacity=\"0.55\" d=\"")?;
+    write!(out, "<path fill=\"#1a9850\" fill-opacity=\"0.75\" d=\"")?;
     found.try_for_each(|square| outline(square.low, square.high, out))?;
     writeln!(out, "\"/>")
 }

@@ -11,7 +11,8 @@ use crate::region::Box3;
 pub(super) struct Beam {
     origin: [[f64; 2]; 3],
     direction: [[f64; 2]; 3],
-    step: f64,
+    /// The step that all have.
+    pub(super) step: f64,
     /// The places that some ray has: from the first to the last.
     pub(super) places: [i64; 2],
     /// How many rays.
@@ -85,6 +86,7 @@ impl Beam {
 }
 
 fn widen([low, high]: &mut [f64; 2], number: f64) {
-    *low = low.min(number);
-    *high = high.max(number);
+    // One instruction each, as no number is NaN.
+    *low = if number < *low { number } else { *low };
+    *high = if number > *high { number } else { *high };
 }

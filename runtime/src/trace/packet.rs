@@ -41,36 +41,43 @@ pub(super) enum Want {
 struct Cell {
     /// The lines, of which some may be done.
     lines: Range<usize>,
+    /// Around those that were not done when it was made, or more.
+    beam: Beam,
     places: [i64; 2],
     region: Region,
     /// How many divisions in a row have dropped nothing.
     fruitless: u32,
 }
 
-/// Points by coordinates, their times and their fields.
+/// A part of a cell, before it is known whether it matters.
+#[derive(Clone)]
+struct Part {
+    lines: Range<usize>,
+    beam: Beam,
+    places: [i64; 2],
+}
+
+/// Points by coordinates and their fields.
 #[derive(Default)]
 pub(super) struct Batch {
-    pub(super) times: Vec<f64>,
-    pub(super) points: [Vec<f32>; 3],
+    points: [Vec<f32>; 3],
     pub(super) field: Vec<f32>,
 }
 
 impl Batch {
     pub(super) fn clear(&mut self) {
-        self.times.clear();
         self.points.iter_mut().for_each(Vec::clear);
     }
 
-    pub(super) fn push(&mut self, line: &Line, time: f64) {
-        self.times.push(time);
-        for (plane, x) in self.points.iter_mut().zip(line.position(time)) {
+    pub(super) fn push(&mut self, position: [f32; 3]) {
+        for (plane, x) in self.points.iter_mut().zip(position) {
             plane.push(x);
         }
     }
 
     /// Asks the field at all points, which are in the region.
     pub(super) fn ask(&mut self, tracer: &Tracer, region: &Region) -> Result<(), EvalError> {
-        self.field.resize(self.times.len(), 0.0);
+        self.field.resize(self.points[0].len(), 0.0);
         tracer.field.eval_region(region, self.points.each_ref().map(Vec::as_slice), &mut [&mut self.field])
     }
 }
@@ -86,6 +93,8 @@ pub(super) struct Run<'a> {
     done: Vec<bool>,
     cells: Vec<Cell>,
     batch: Batch,
+    /// The times of the places of a cell.
+    lattice: Vec<f64>,
     brackets: Vec<Bracket>,
     found: Found,
     /// Points and boxes that may still be asked.
@@ -98,14 +107,13 @@ const DIVISION: u64 = 2500;
 const RANGES: u64 = 34;
 /// What a point costs beside its distances, in distances at points.
 const POINT: u64 = 6;
-/// Dividing has to save some of the points before it saves anything: so many times its cost are asked at once.
-const PATIENCE: u64 = 3;
 /// Divisions that drop nothing, after which not more points are asked at once.
 const MOST_FRUITLESS: u32 = 3;
 
-/// The points of a cell up to which asking them is quicker than dividing it, where a point takes so many distances.
+/// The points of a cell up to which asking them is quicker than dividing it, where a point takes so many distances. The counts are of
+/// instructions, roughly; only time depends on them.
 fn worth_asking(each: u64) -> u64 {
-    PATIENCE * RANGES.saturating_mul(each).saturating_add(DIVISION) / each.saturating_add(POINT)
+    RANGES.saturating_mul(each).saturating_add(DIVISION) / each.saturating_add(POINT)
 }
 
 impl<'a> Run<'a> {
@@ -127,6 +135,7 @@ impl<'a> Run<'a> {
             lines,
             cells: Vec::new(),
             batch: Batch::default(),
+            lattice: Vec::new(),
             brackets: Vec::new(),
             found: Found::new(rays, tracer.layout().names().len()),
             // Hits are counted by 32 bits, and each takes a point.
@@ -154,7 +163,7 @@ impl<'a> Run<'a> {
             let Some(beam) = self.beam(lines.clone()) else { continue };
             if beam.places[0] < beam.places[1] {
                 let region = self.tracer.pruner.region(beam.bounds(beam.places))?;
-                self.cells.push(Cell { lines, places: beam.places, region, fruitless: 0 });
+                self.cells.push(Cell { lines, places: beam.places, beam, region, fruitless: 0 });
             }
         }
         Ok(())
@@ -171,20 +180,28 @@ impl<'a> Run<'a> {
     }
 
     fn visit(&mut self, mut cell: Cell) -> Result<(), TraceError> {
-        let Some(beam) = self.beam(cell.lines.clone()) else { return Ok(()) };
-        cell.places = common(cell.places, beam.places);
+        let open = self.open(cell.lines.clone()).count();
+        if open == 0 {
+            return Ok(());
+        }
+        if open < cell.beam.rays - cell.beam.rays / 4
+            && let Some(beam) = self.beam(cell.lines.clone())
+        {
+            cell.beam = beam;
+        }
+        cell.places = common(cell.places, cell.beam.places);
         let [first, last] = cell.places;
         if first >= last {
             return Ok(());
         }
-        let points = (beam.rays as u64).saturating_mul(last.abs_diff(first).saturating_add(1));
+        let points = (open as u64).saturating_mul(last.abs_diff(first).saturating_add(1));
         let each = self.tracer.field.evaluations_in(&cell.region);
         if points <= worth_asking(each) << cell.fruitless.min(MOST_FRUITLESS) {
             self.spend(points)?;
             self.sample(&cell, each)?;
         } else {
             self.spend(MAX_PARTS as u64)?;
-            self.divide(&cell, &beam)?;
+            self.divide(&cell, open)?;
         }
         Ok(())
     }
@@ -195,21 +212,19 @@ impl<'a> Run<'a> {
         Ok(())
     }
 
-    /// Cuts a cell across if that makes it shorter, else along its rays.
-    fn divide(&mut self, cell: &Cell, beam: &Beam) -> Result<(), EvalError> {
+    /// Cuts a cell across if that makes it shorter, else along its rays, of which so many are open.
+    fn divide(&mut self, cell: &Cell, open: usize) -> Result<(), EvalError> {
         let steps = cell.places[1] - cell.places[0];
-        let [length, width] = beam.proportions(cell.places);
-        let mut parts: Vec<(Range<usize>, [i64; 2])> = Vec::with_capacity(MAX_PARTS);
-        let mut boxes: Vec<Box3> = Vec::with_capacity(MAX_PARTS);
-        if beam.rays > 1 && (width >= length || steps == 1) {
+        let [length, width] = cell.beam.proportions(cell.places);
+        let mut parts: Vec<Part> = Vec::with_capacity(MAX_PARTS);
+        if open > 1 && (width >= length || steps == 1) {
             let count = cell.lines.len().min(MAX_PARTS);
             let cut = |part: usize| cell.lines.start + cell.lines.len() * part / count;
             for lines in (0..count).map(|part| cut(part)..cut(part + 1)) {
                 let Some(beam) = self.beam(lines.clone()) else { continue };
                 let places = common(cell.places, beam.places);
                 if places[0] < places[1] {
-                    boxes.push(beam.bounds(places));
-                    parts.push((lines, places));
+                    parts.push(Part { lines, beam, places });
                 }
             }
         } else {
@@ -218,33 +233,28 @@ impl<'a> Run<'a> {
             let (most, rest) = (steps / count, steps % count);
             let cut = |part: i64| cell.places[0] + most * part + rest.min(part);
             for places in (0..count).map(|part| [cut(part), cut(part + 1)]) {
-                boxes.push(beam.bounds(places));
-                parts.push((cell.lines.clone(), places));
+                parts.push(Part { lines: cell.lines.clone(), beam: cell.beam, places });
             }
         }
-        self.push_parts(cell, beam, &parts, &boxes)
+        if parts.is_empty() { Ok(()) } else { self.push_parts(cell, open, &parts) }
     }
 
     /// Puts the parts in which the surface may be onto the list.
-    fn push_parts(
-        &mut self,
-        cell: &Cell,
-        beam: &Beam,
-        parts: &[(Range<usize>, [i64; 2])],
-        boxes: &[Box3],
-    ) -> Result<(), EvalError> {
-        if boxes.is_empty() {
-            return Ok(());
+    fn push_parts(&mut self, cell: &Cell, open: usize, parts: &[Part]) -> Result<(), EvalError> {
+        let mut boxes = [Box3::default(); MAX_PARTS];
+        for (bounds, part) in boxes.iter_mut().zip(parts) {
+            *bounds = part.beam.bounds(part.places);
         }
         let iso = self.tracer.iso;
+        let undecided = |[low, high]: [f32; 2]| !(low >= iso || high < iso);
         let (kept, evaluations) =
-            self.tracer.pruner.split(&cell.region, boxes, &|[low, high]| low < iso && high >= iso)?;
+            self.tracer.pruner.split(&cell.region, &boxes[..parts.len()], &undecided)?;
         let fruitless = if kept.len() == parts.len() { cell.fruitless + 1 } else { 0 };
         for (part, region) in kept.into_iter().rev() {
-            let (lines, places) = parts[part].clone();
-            self.cells.push(Cell { lines, places, region, fruitless });
+            let Part { lines, beam, places } = parts[part].clone();
+            self.cells.push(Cell { lines, beam, places, region, fruitless });
         }
-        let share = evaluations as f32 / beam.rays as f32;
+        let share = evaluations as f32 / open as f32;
         for line in cell.lines.clone().filter(|&line| !self.done[line]) {
             self.found.count(self.lines[line].ray, share);
         }
@@ -255,20 +265,27 @@ impl<'a> Run<'a> {
     fn sample(&mut self, cell: &Cell, each: u64) -> Result<(), EvalError> {
         let mut batch = std::mem::take(&mut self.batch);
         batch.clear();
-        let mut ranges = Vec::with_capacity(cell.lines.len());
+        // Most rays have all places of the cell: their times are made once.
+        let [start, end] = cell.places;
+        self.lattice.clear();
+        self.lattice.extend(
+            (0..=(end - start) as i32).map(|place| (start as f64 + f64::from(place)) * cell.beam.step),
+        );
+        let mut asked = Vec::with_capacity(cell.lines.len());
         for index in self.open(cell.lines.clone()) {
             let line = &self.lines[index];
             let [first, last] = common(cell.places, line.places);
             if first < last {
-                ranges.push((index, batch.times.len()));
-                push_places(&mut batch, line, [first, last]);
+                asked.push((index, first, batch.points[0].len()));
+                let times = &self.lattice[(first - start) as usize..=(last - start) as usize];
+                push_places(&mut batch, line, [first, last], times);
             }
         }
         batch.ask(self.tracer, &cell.region)?;
-        let ends = ranges.iter().skip(1).map(|&(_, start)| start).chain([batch.times.len()]);
-        for (&(line, start), end) in ranges.iter().zip(ends) {
+        let ends = asked.iter().skip(1).map(|&(.., start)| start).chain([batch.field.len()]);
+        for (&(line, place, start), end) in asked.iter().zip(ends) {
             self.found.count(self.lines[line].ray, (end - start) as f32 * each as f32);
-            self.find_changes(line, &batch.times[start..end], &batch.field[start..end]);
+            self.find_changes(line, place, &batch.field[start..end]);
         }
         if !self.brackets.is_empty() {
             let mut brackets = std::mem::take(&mut self.brackets);
@@ -285,25 +302,25 @@ impl<'a> Run<'a> {
         Ok(())
     }
 
-    /// Finds neighbouring places of one ray that are on different sides.
-    fn find_changes(&mut self, line: usize, times: &[f64], field: &[f32]) {
+    /// Finds neighbouring places of one ray that are on different sides: the fields are those from some place on.
+    fn find_changes(&mut self, line: usize, first: i64, field: &[f32]) {
         let iso = self.tracer.iso;
-        for (pair, times) in field.windows(2).zip(times.windows(2)) {
+        let inside = field.iter().filter(|&&field| field >= iso).count();
+        if inside == 0 || inside == field.len() {
+            return;
+        }
+        let here = &self.lines[line];
+        for (offset, pair) in field.windows(2).enumerate() {
             if (pair[0] >= iso) == (pair[1] >= iso) {
                 continue;
             }
             match self.want {
-                Want::Any => self.found.block(self.lines[line].ray),
+                Want::Any => self.found.block(here.ray),
                 Want::First | Want::All => {
-                    let (fields, times) = ([pair[0], pair[1]], [times[0], times[1]]);
-                    self.brackets.push(Bracket::new(
-                        line,
-                        &self.lines[line],
-                        self.tolerance,
-                        iso,
-                        times,
-                        fields,
-                    ));
+                    let place = first + offset as i64;
+                    let times = [place, place + 1].map(|place| here.time(place));
+                    let fields = [pair[0], pair[1]];
+                    self.brackets.push(Bracket::new(line, here, self.tolerance, iso, times, fields));
                 }
             }
             if self.want != Want::All {
@@ -319,14 +336,18 @@ fn common(a: [i64; 2], b: [i64; 2]) -> [i64; 2] {
     [a[0].max(b[0]), a[1].min(b[1])]
 }
 
-/// Adds the points of a ray from one place to another, both included.
-fn push_places(batch: &mut Batch, line: &Line, [first, last]: [i64; 2]) {
-    let start = batch.times.len();
-    // Place numbers are exact in f64.
-    let base = first as f64;
-    batch.times.extend((0..=(last - first) as u32).map(|offset| line.time(base + f64::from(offset))));
+/// Adds the points of a ray from one place to another, both included, whose times are those of the lattice but for the ray's ends.
+fn push_places(batch: &mut Batch, line: &Line, places: [i64; 2], times: &[f64]) {
+    let ends = [0, 1].map(|end| (places[end] == line.places[end]).then(|| line.position(line.span[end])));
     for (axis, plane) in batch.points.iter_mut().enumerate() {
         let (origin, direction) = (line.origin[axis], line.direction[axis]);
-        plane.extend(batch.times[start..].iter().map(|t| (origin + t * direction) as f32));
+        let start = plane.len();
+        plane.extend(times.iter().map(|t| (origin + t * direction) as f32));
+        let last = plane.len() - 1;
+        for (place, position) in [start, last].into_iter().zip(&ends) {
+            if let Some(position) = position {
+                plane[place] = position[axis];
+            }
+        }
     }
 }

@@ -146,19 +146,22 @@ pub(super) fn polish(
     batch: &mut Batch,
 ) -> Result<(), EvalError> {
     let mut open: Vec<usize> = (0..brackets.len()).collect();
+    let mut times = Vec::with_capacity(open.len());
     while !open.is_empty() {
         batch.clear();
+        times.clear();
         open.retain(|&index| {
             let bracket = &mut brackets[index];
             let next = bracket.next();
             if let Some(time) = next {
-                batch.push(&lines[bracket.line], time);
+                batch.push(lines[bracket.line].position(time));
+                times.push(time);
             }
             next.is_some()
         });
         batch.ask(tracer, region)?;
-        for (place, &index) in open.iter().enumerate() {
-            brackets[index].take(batch.times[place], batch.field[place], tracer.iso);
+        for ((&index, &time), &field) in open.iter().zip(&times).zip(&batch.field) {
+            brackets[index].take(time, field, tracer.iso);
         }
     }
     Ok(())

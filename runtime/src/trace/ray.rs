@@ -120,21 +120,37 @@ impl Line {
             return Err(TraceError::Resolution { ray: index, tolerance, resolution });
         }
         let step = four_digits((tolerance / length).min(LONGEST));
-        // Below 2^50, because the tolerance is above the resolution.
-        let places = [(span[0] / step).floor() as i64, (span[1] / step).ceil() as i64];
+        let places = [last_before(span[0], step), -last_before(-span[1], step)];
         // Ray numbers are below 2^32: MAX_PACKET_RAYS.
         Ok(Some(Self { ray: index as u32, origin, direction, span, step, places, length }))
     }
 
-    /// The t of a place: rises with the place.
-    pub(super) fn time(&self, place: f64) -> f64 {
-        (place * self.step).clamp(self.span[0], self.span[1])
+    /// The t of a place: that of the lattice, or an end of the span.
+    pub(super) fn time(&self, place: i64) -> f64 {
+        match self.places.iter().position(|&end| end == place) {
+            Some(end) => self.span[end],
+            None => place as f64 * self.step,
+        }
     }
 
     /// The position at t, as the field is asked there: each coordinate rises with t, or falls.
     pub(super) fn position(&self, t: f64) -> [f32; 3] {
         [0, 1, 2].map(|axis| (self.origin[axis] + t * self.direction[axis]) as f32)
     }
+}
+
+/// The last place of the lattice that is not after t. Places between the first and the last one of a ray are inside of its span.
+fn last_before(t: f64, step: f64) -> i64 {
+    // Below 2^50, because the tolerance is above the resolution; times the step it has no rounding, but the quotient has.
+    let near = (t / step).floor();
+    let place = if near * step > t {
+        near - 1.0
+    } else if (near + 1.0) * step <= t {
+        near + 1.0
+    } else {
+        near
+    };
+    place as i64
 }
 
 /// A number's first four binary digits.
@@ -148,7 +164,7 @@ fn resolution(index: usize, ray: &Ray, span: [f64; 2]) -> Result<f64, TraceError
     for t in span {
         let position = [0, 1, 2].map(|axis| ray.origin[axis] + t * ray.direction[axis]);
         let farthest = position.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-        if !(farthest < f64::from(f32::MAX)) {
+        if farthest >= f64::from(f32::MAX) {
             return Err(TraceError::Far { ray: index, position });
         }
         let terms = (0..3).fold(0.0, |most: f64, axis| {

@@ -1,0 +1,409 @@
+//! `jbt contour`: a slice of a scene as a drawing or an image, and what it took.
+
+use std::time::{Duration, Instant};
+
+use jbt::Picture;
+use jbt::contour::{Contour, Detail, ImageDetail, Level, Mode, Rectangle, SliceError, Slicer, circles};
+use jbt::export::svg::{Paint, Style, write_svg};
+use jbt::export::write_png;
+use jbt::mesh::LatticeError;
+use jbt::{CheckedTree, Compiler, Fineness, Query};
+use jbt_frontend::diagnostic::{Diagnostic, escape};
+use serde_json::{Value, json};
+
+use crate::arguments::{ContourArguments, DrawingName, ModeName, PaintName};
+use crate::failure::Failure;
+use crate::output::{Output, grouped, plural, print, tell, warn};
+use crate::progress::Progress;
+use crate::scene::{Scene, is_standard};
+use crate::threads::in_pool;
+
+/// Runs the command. `start` is when the process began, for the total time.
+pub fn run(arguments: &ContourArguments, quiet: bool, start: Instant) -> Result<(), Failure> {
+    let to_stdout = is_standard(&arguments.output);
+    if to_stdout && arguments.json {
+        let message = "the slice and the JSON report cannot both go to the standard output";
+        return Err(Failure::Usage(message.to_owned()));
+    }
+    let drawing = drawing(arguments)?;
+    check_options(arguments, drawing)?;
+    let fineness = fineness(arguments, drawing)?;
+    let scene = Scene::load(&arguments.scene)?;
+    scene.warn(quiet);
+    let tree = scene.check()?;
+    check_attributes(arguments, drawing, &tree)?;
+    let compiler = arguments.engine.required().map_or_else(Compiler::new, Compiler::for_engine);
+    let query =
+        if drawing == DrawingName::Svg || mode(arguments).1 { Query::ATTRIBUTES } else { Query::FIELD };
+    let slicer = Slicer::new(&compiler, &tree, &arguments.plane, query)
+        .map_err(|error| Failure::compile(&scene.source(), &error))?;
+    let rectangle = match arguments.region {
+        Some(rectangle) => rectangle,
+        None => slicer.rectangle().map_err(|error| failure(&scene, &error))?,
+    };
+    let mut progress = Progress::new("slicing", quiet);
+    let mut work = || make(arguments, drawing, &slicer, &rectangle, fineness, &mut progress);
+    let made = in_pool(arguments.threads, &mut work)?.map_err(|error| failure(&scene, &error))?;
+    drop(progress);
+
+    let mut output = Output::open(&arguments.output)?;
+    match &made {
+        Made::Contour(contour) => write_svg(contour, &style(arguments, &tree), &mut output),
+        Made::Picture { picture, .. } => write_png(picture, &mut output),
+    }
+    .map_err(|error| output.failure(error))?;
+    output.finish()?;
+
+    let mut warnings = warnings(&made);
+    if !quiet {
+        warnings.iter().for_each(|warning| warn(warning));
+    }
+    warnings.splice(0..0, scene.warnings.iter().cloned());
+    let report = Report { made: &made, slicer: &slicer, warnings: &warnings, total: start.elapsed() };
+    if arguments.json {
+        return print(&report.json().to_string());
+    }
+    match (quiet, to_stdout) {
+        (true, _) => Ok(()),
+        (false, true) => {
+            tell(&report.text("<stdout>"));
+            Ok(())
+        }
+        (false, false) => print(&report.text(&arguments.output.display().to_string())),
+    }
+}
+
+/// The kind of file by option, else by extension.
+fn drawing(arguments: &ContourArguments) -> Result<DrawingName, Failure> {
+    if let Some(format) = arguments.format {
+        return Ok(format);
+    }
+    let extension = arguments.output.extension().and_then(|extension| extension.to_str());
+    match extension.map(str::to_ascii_lowercase).as_deref() {
+        Some("svg") => Ok(DrawingName::Svg),
+        Some("png") => Ok(DrawingName::Png),
+        _ if is_standard(&arguments.output) => {
+            Err(Failure::Usage("a slice on the standard output needs --format svg or png".to_owned()))
+        }
+        _ => {
+            let name = escape(&arguments.output.display().to_string());
+            Err(Failure::Usage(format!("{name} does not end with .svg or .png; --format says what to write")))
+        }
+    }
+}
+
+/// Options that mean nothing for what is made.
+fn check_options(arguments: &ContourArguments, drawing: DrawingName) -> Result<(), Failure> {
+    let wrong = match drawing {
+        DrawingName::Svg => {
+            [("--mode", arguments.mode.is_some()), ("--samples", arguments.samples.is_some()), ("", false)]
+        }
+        DrawingName::Png => [
+            ("--stroke", arguments.stroke.is_some()),
+            ("--fill", arguments.fill.is_some()),
+            ("--quadtree", arguments.quadtree),
+        ],
+    };
+    let (kind, other) = match drawing {
+        DrawingName::Svg => ("a drawing (.svg)", "an image (.png)"),
+        DrawingName::Png => ("an image (.png)", "a drawing (.svg)"),
+    };
+    match wrong.iter().find(|(_, given)| *given) {
+        Some((option, _)) => {
+            Err(Failure::Usage(format!("{option} is for {other}, and {kind} was asked for")))
+        }
+        None => Ok(()),
+    }
+}
+
+fn fineness(arguments: &ContourArguments, drawing: DrawingName) -> Result<Fineness, Failure> {
+    match (arguments.cell, arguments.resolution) {
+        (Some(cell), _) if cell.is_nan() || cell <= 0.0 => {
+            Err(Failure::Usage(format!("the edge of a cell must be greater than zero, and it is {cell}")))
+        }
+        (Some(cell), _) => Ok(Fineness::Cell(cell)),
+        (None, Some(0)) => Err(Failure::Usage("a slice needs at least one cell".to_owned())),
+        (None, Some(cells)) => Ok(Fineness::Resolution(cells)),
+        (None, None) => Ok(Fineness::Resolution(match drawing {
+            DrawingName::Svg => 256,
+            DrawingName::Png => 512,
+        })),
+    }
+}
+
+/// The attribute that the options speak of, where they do not name it.
+fn attribute(arguments: &ContourArguments) -> &str {
+    arguments.attribute.as_deref().unwrap_or("color")
+}
+
+/// The mode of an image, and whether it needs attributes.
+fn mode(arguments: &ContourArguments) -> (Mode, bool) {
+    match arguments.mode.unwrap_or(ModeName::Field) {
+        ModeName::Inside => (Mode::Inside, false),
+        ModeName::Field => (Mode::Field, false),
+        ModeName::Grey => (Mode::Grey, false),
+        ModeName::Height => (Mode::Height, false),
+        ModeName::Attribute => (Mode::Attribute(attribute(arguments).to_owned()), true),
+    }
+}
+
+/// An attribute that is asked for is there.
+fn check_attributes(
+    arguments: &ContourArguments,
+    drawing: DrawingName,
+    tree: &CheckedTree,
+) -> Result<(), Failure> {
+    let paints = [arguments.stroke, arguments.fill].contains(&Some(PaintName::Attribute));
+    let asked = match drawing {
+        DrawingName::Svg => paints || arguments.attribute.is_some(),
+        DrawingName::Png => mode(arguments).1 || arguments.attribute.is_some(),
+    };
+    let name = attribute(arguments);
+    if !asked || tree.attributes().iter().any(|group| &*group.name == name) {
+        return Ok(());
+    }
+    let names: Vec<&str> = tree.attributes().iter().map(|group| &*group.name).collect();
+    Err(Failure::Usage(format!("the scene has no attribute `{}`: it has {}", escape(name), names.join(", "))))
+}
+
+/// What was made.
+enum Made {
+    Contour(Contour),
+    Picture { picture: Picture, rectangle: Rectangle },
+}
+
+fn make(
+    arguments: &ContourArguments,
+    drawing: DrawingName,
+    slicer: &Slicer,
+    rectangle: &Rectangle,
+    fineness: Fineness,
+    progress: &mut Progress,
+) -> Result<Made, SliceError> {
+    let mut hook = |fraction| {
+        progress.set(fraction);
+        true
+    };
+    match drawing {
+        DrawingName::Svg => {
+            let block = arguments.quadtree.then_some(1);
+            let detail = Detail { fineness, block, quadtree: arguments.quadtree };
+            slicer.contour(rectangle, &detail, &mut hook).map(Made::Contour)
+        }
+        DrawingName::Png => {
+            let samples = arguments.samples.map_or(1, usize::from);
+            let (mode, _) = mode(arguments);
+            let picture = slicer.picture(rectangle, &mode, &ImageDetail { fineness, samples }, &mut hook)?;
+            Ok(Made::Picture { picture, rectangle: *rectangle })
+        }
+    }
+}
+
+fn style(arguments: &ContourArguments, tree: &CheckedTree) -> Style {
+    let paint = |name: PaintName| match name {
+        PaintName::None => Paint::None,
+        PaintName::Color(color) => Paint::Color(color),
+        PaintName::Attribute => Paint::Attribute(attribute(arguments).to_owned()),
+    };
+    let plain = Style::default();
+    let fill = match arguments.fill {
+        Some(fill) => paint(fill),
+        // The quadtree is to be seen.
+        None if arguments.quadtree => Paint::None,
+        None => plain.fill.clone(),
+    };
+    // A thin line leaves the cells that it crosses to be seen.
+    let stroke_width = if arguments.quadtree { 1.0 / 1600.0 } else { plain.stroke_width };
+    Style {
+        stroke: arguments.stroke.map_or(plain.stroke.clone(), paint),
+        stroke_width,
+        fill,
+        quadtree: arguments.quadtree,
+        circles: if arguments.quadtree { circles(tree, &arguments.plane) } else { Vec::new() },
+        ..plain
+    }
+}
+
+/// Whose fault it is that there is no slice.
+fn failure(scene: &Scene, error: &SliceError) -> Failure {
+    match error {
+        SliceError::Empty => {
+            Failure::diagnostics(&scene.source(), &[Diagnostic::error(None, error.to_string())])
+        }
+        SliceError::Unbounded => Failure::Usage(format!("{error}; --region gives it one")),
+        SliceError::Rectangle(_)
+        | SliceError::Samples { .. }
+        | SliceError::Attribute { .. }
+        | SliceError::Lattice(
+            LatticeError::NotFinite | LatticeError::Spacing { .. } | LatticeError::EmptyRegion { .. },
+        ) => Failure::Usage(error.to_string()),
+        SliceError::TooManyPixels { .. }
+        | SliceError::TooManySquares { .. }
+        | SliceError::TooManyVertices { .. }
+        | SliceError::Lattice(
+            LatticeError::Cells { .. } | LatticeError::TooManyPoints { .. } | LatticeError::TooFine { .. },
+        ) => Failure::Limit(error.to_string()),
+        SliceError::Block { .. } | SliceError::Eval(_) | SliceError::Cancelled => {
+            Failure::Defect(error.to_string())
+        }
+    }
+}
+
+/// What may not be as people expect.
+fn warnings(made: &Made) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if let Made::Contour(contour) = made {
+        if contour.loops.is_empty() {
+            let message = "the slice is empty: no cell is crossed by the contour; cells may be too large";
+            warnings.push(message.to_owned());
+        }
+        let cut = cut(contour);
+        if !cut.is_empty() {
+            warnings.push(format!(
+                "the region cuts the solid at its sides {cut}: the contour follows them there"
+            ));
+        }
+    }
+    warnings
+}
+
+/// The sides that cut the solid, in words.
+fn cut(contour: &Contour) -> String {
+    let names = ["-u", "-v", "+u", "+v"];
+    let cut: Vec<&str> =
+        names.into_iter().zip(contour.cut_sides).filter_map(|(name, cut)| cut.then_some(name)).collect();
+    cut.join(" ")
+}
+
+/// What is told about a slice.
+struct Report<'a> {
+    made: &'a Made,
+    slicer: &'a Slicer,
+    warnings: &'a [String],
+    total: Duration,
+}
+
+impl Report<'_> {
+    /// For machines.
+    fn json(&self) -> Value {
+        let (ranges, field, full) = self.slicer.counters();
+        let mut report = json!({
+            "plane": self.slicer.plane().to_string(),
+            "ranges": ranges.boxes,
+            "interval_evaluations": ranges.interval_evaluations,
+            "field_evaluations": field.points,
+            "full_evaluations": full.points,
+            "primitive_evaluations": field.primitive_evaluations + full.primitive_evaluations,
+            "evaluations_pruned": field.evaluations_pruned + full.evaluations_pruned,
+            "engine": self.slicer.engine().name(),
+            "total_ms": self.total.as_secs_f64() * 1e3,
+            "warnings": self.warnings,
+        });
+        let more = match self.made {
+            Made::Contour(contour) => contour_json(contour),
+            Made::Picture { picture, rectangle } => json!({
+                "pixels": [picture.width(), picture.height()],
+                "region": corners(rectangle),
+            }),
+        };
+        if let (Value::Object(report), Value::Object(more)) = (&mut report, more) {
+            report.extend(more);
+        }
+        report
+    }
+
+    /// For people.
+    fn text(&self, name: &str) -> String {
+        let (ranges, field, full) = self.slicer.counters();
+        let name = escape(name);
+        let what = match self.made {
+            Made::Contour(contour) => format!("{name}: {}", contour_text(contour)),
+            Made::Picture { picture, rectangle } => format!(
+                "{name}: {} x {} pixels\n  region       {}",
+                picture.width(),
+                picture.height(),
+                region_text(rectangle)
+            ),
+        };
+        format!(
+            "{what}\n\
+             \x20 evaluations  {} of the field, {} with attributes, {} of ranges of squares\n\
+             \x20 primitives   {} evaluated, {} over squares, {} left out at points, by engine {}\n\
+             \x20 time         {:.1} ms in total",
+            grouped(field.points),
+            grouped(full.points),
+            grouped(ranges.boxes),
+            grouped(field.primitive_evaluations + full.primitive_evaluations),
+            grouped(ranges.interval_evaluations),
+            grouped(field.evaluations_pruned + full.evaluations_pruned),
+            self.slicer.engine().name(),
+            self.total.as_secs_f64() * 1e3,
+        )
+    }
+}
+
+fn corners(rectangle: &Rectangle) -> [f64; 4] {
+    let ([u0, v0], [u1, v1]) = (rectangle.low(), rectangle.high());
+    [u0, v0, u1, v1]
+}
+
+fn region_text(rectangle: &Rectangle) -> String {
+    let [u0, v0, u1, v1] = corners(rectangle);
+    format!("from ({u0:.4} {v0:.4}) to ({u1:.4} {v1:.4})")
+}
+
+fn contour_json(contour: &Contour) -> Value {
+    let level = |level: &Level| {
+        json!({
+            "depth": level.depth,
+            "cells": level.cells,
+            "divided": level.divided,
+            "inside": level.inside,
+            "outside": level.outside,
+            "crossed": level.crossed,
+            "evaluated": level.evaluated,
+        })
+    };
+    json!({
+        "loops": contour.loops.len(),
+        "holes": contour.holes(),
+        "vertices": contour.positions.len(),
+        "area": contour.area(),
+        "length": contour.length(),
+        "cut_sides": cut(contour),
+        "region": corners(&contour.rectangle),
+        "cell": contour.cell,
+        "cells": contour.cells,
+        "squares": contour.levels.iter().map(level).collect::<Vec<Value>>(),
+    })
+}
+
+fn contour_text(contour: &Contour) -> String {
+    let [width, height] = contour.cells;
+    let mut text = format!(
+        "{}, {} of them holes, {}\n\
+         \x20 slice        area {:.6}, length {:.6}\n\
+         \x20 lattice      {width} x {height} cells of {:.6}, {}",
+        plural(contour.loops.len() as u64, "loop", "loops"),
+        contour.holes(),
+        plural(contour.positions.len() as u64, "vertex", "vertices"),
+        contour.area(),
+        contour.length(),
+        contour.cell,
+        region_text(&contour.rectangle),
+    );
+    for level in &contour.levels {
+        text += &format!(
+            "\n  depth {:<2}     {} of {}: {} divided, {} inside, {} outside, {} crossed, {} evaluated for nothing",
+            level.depth,
+            plural(level.squares(), "square", "squares"),
+            plural(level.cells.into(), "cell", "cells"),
+            grouped(level.divided),
+            grouped(level.inside),
+            grouped(level.outside),
+            grouped(level.crossed),
+            grouped(level.evaluated),
+        );
+    }
+    text
+}

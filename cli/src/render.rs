@@ -1,0 +1,230 @@
+//! `jbt render`: a picture of a scene, and what it took.
+
+use std::time::{Duration, Instant};
+
+use jbt::export::write_png;
+use jbt::render::{Camera, Mode, Render, RenderError, Rendered, Report as Taken, Stance, View};
+use jbt::solid::{BoundsError, RegionError};
+use jbt::{Box3, Compiler};
+use jbt_frontend::diagnostic::escape;
+use serde_json::json;
+
+use crate::arguments::{GroundName, RenderArguments};
+use crate::failure::Failure;
+use crate::output::{Output, grouped, plural, print, tell, warn};
+use crate::progress::Progress;
+use crate::scene::{Scene, is_standard};
+use crate::threads::in_pool;
+
+/// Runs the command. `start` is when the process began, for the total time.
+pub fn run(arguments: &RenderArguments, quiet: bool, start: Instant) -> Result<(), Failure> {
+    let to_stdout = is_standard(&arguments.output);
+    if to_stdout && arguments.json {
+        let message = "the picture and the JSON report cannot both go to the standard output";
+        return Err(Failure::Usage(message.to_owned()));
+    }
+    let settings = settings(arguments)?;
+    let scene = Scene::load(&arguments.scene)?;
+    scene.warn(quiet);
+    let tree = scene.check()?;
+    let compiler = arguments.engine.required().map_or_else(Compiler::new, Compiler::for_engine);
+
+    let mut progress = Progress::new("rendering", quiet);
+    let mut work = || {
+        settings.run(&compiler, &tree, &mut |fraction| {
+            progress.set(fraction);
+            true
+        })
+    };
+    let made = in_pool(arguments.threads, &mut work)?.map_err(|error| failure(&scene, error))?;
+    drop(progress);
+
+    let mut output = Output::open(&arguments.output)?;
+    write_png(&made.picture, &mut output).map_err(|error| output.failure(error))?;
+    output.finish()?;
+
+    let mut warnings: Vec<String> =
+        made.report.notice.iter().map(|notice| notice.text().to_owned()).collect();
+    if !quiet {
+        warnings.iter().for_each(|warning| warn(warning));
+    }
+    warnings.splice(0..0, scene.warnings.iter().cloned());
+    let report = Report { made: &made, mode: &settings.mode, warnings: &warnings, total: start.elapsed() };
+    if arguments.json {
+        return print(&report.json().to_string());
+    }
+    match (quiet, to_stdout) {
+        (true, _) => Ok(()),
+        (false, true) => {
+            tell(&report.text("<stdout>"));
+            Ok(())
+        }
+        (false, false) => print(&report.text(&arguments.output.display().to_string())),
+    }
+}
+
+/// What the options say.
+fn settings(arguments: &RenderArguments) -> Result<Render, Failure> {
+    let stance = match (arguments.eye, arguments.target, arguments.view) {
+        (Some(eye), Some(target), _) => Stance::At { eye, target },
+        (_, _, Some(stance)) => stance,
+        (None, _, None) | (_, None, None) => View::default().stance,
+    };
+    let view = View {
+        stance,
+        up: arguments.up,
+        lens: arguments.lens,
+        zoom: arguments.zoom,
+        orthographic: arguments.orthographic,
+    };
+    let corner = |corner: [f64; 3]| corner.map(|x| x as f32);
+    Ok(Render {
+        size: arguments.size,
+        view,
+        mode: mode(&arguments.mode)?,
+        quality: arguments.quality.quality(),
+        antialias: arguments.antialias,
+        background: arguments.background,
+        ground: arguments.ground == GroundName::Shadow,
+        region: arguments.region.map(|region| Box3::new(corner(region.low), corner(region.high))),
+    })
+}
+
+/// The mode that some words name.
+fn mode(words: &[String]) -> Result<Mode, Failure> {
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    match words[..] {
+        ["shaded"] => Ok(Mode::Shaded),
+        ["normal"] => Ok(Mode::Normal),
+        ["depth"] => Ok(Mode::Depth),
+        ["evaluations"] => Ok(Mode::Evaluations),
+        ["attribute", name] => Ok(Mode::Attribute(name.to_owned())),
+        ["attribute"] => Err(Failure::Usage("--mode attribute needs the name of an attribute".to_owned())),
+        _ => Err(Failure::Usage(format!(
+            "there is no mode `{}`; there are shaded, normal, depth, attribute NAME and evaluations",
+            words.join(" ")
+        ))),
+    }
+}
+
+/// Whose fault it is that there is no picture.
+fn failure(scene: &Scene, error: RenderError) -> Failure {
+    match error {
+        RenderError::Compile(error) => Failure::compile(&scene.source(), &error),
+        RenderError::Unbounded => Failure::Usage(format!("{error}; --region gives it one")),
+        RenderError::Empty { .. }
+        | RenderError::Camera(_)
+        | RenderError::Unusable
+        | RenderError::Inside { .. }
+        | RenderError::Region { .. }
+        | RenderError::Attribute { .. }
+        | RenderError::Bounds(BoundsError::Region(
+            RegionError::Bounds { .. } | RegionError::Empty | RegionError::Unbounded,
+        )) => Failure::Usage(error.to_string()),
+        RenderError::TooLarge { .. } | RenderError::Antialias { .. } | RenderError::Memory { .. } => {
+            Failure::Limit(error.to_string())
+        }
+        RenderError::Bounds(BoundsError::Tolerance { .. } | BoundsError::Eval(_))
+        | RenderError::Trace(_)
+        | RenderError::Eval(_)
+        | RenderError::Cancelled => Failure::Defect(error.to_string()),
+    }
+}
+
+/// What is told about a picture.
+struct Report<'a> {
+    made: &'a Rendered,
+    mode: &'a Mode,
+    warnings: &'a [String],
+    total: Duration,
+}
+
+impl Report<'_> {
+    fn pixels(&self) -> u64 {
+        u64::from(self.made.picture.width()) * u64::from(self.made.picture.height())
+    }
+
+    /// Evaluations for a pixel.
+    fn per_pixel(&self) -> f64 {
+        self.made.report.evaluations as f64 / self.pixels() as f64
+    }
+
+    /// For machines.
+    fn json(&self) -> serde_json::Value {
+        let Taken { pixels_hit, rays, evaluations, range, tolerance, camera, .. } = &self.made.report;
+        let camera = camera.map(|Camera { eye, right, up, back, half, orthographic }| {
+            json!({
+                "eye": eye, "right": right, "up": up, "back": back, "half": half, "orthographic": orthographic,
+            })
+        });
+        let [compile, frame, trace, shade] = self.times();
+        json!({
+            "width": self.made.picture.width(),
+            "height": self.made.picture.height(),
+            "pixels": self.pixels(),
+            "pixels_hit": pixels_hit,
+            "rays": { "camera": rays.camera, "shadow": rays.shadow, "sky": rays.sky, "total": rays.total() },
+            "evaluations": evaluations,
+            "evaluations_per_pixel": self.per_pixel(),
+            "range": range,
+            "camera": camera,
+            "tolerance": tolerance,
+            "engine": self.made.report.engine.name(),
+            "compile_ms": compile,
+            "frame_ms": frame,
+            "trace_ms": trace,
+            "shade_ms": shade,
+            "total_ms": milliseconds(self.total),
+            "warnings": self.warnings,
+        })
+    }
+
+    /// For people.
+    fn text(&self, name: &str) -> String {
+        let Taken { pixels_hit, rays, evaluations, range, tolerance, camera, engine, .. } = &self.made.report;
+        let (width, height) = (self.made.picture.width(), self.made.picture.height());
+        let mut out =
+            format!("{}: {width} x {height} pixels, {} of them hit\n", escape(name), grouped(*pixels_hit));
+        if let Some(camera) = camera {
+            let [x, y, z] = camera.eye;
+            out += &format!("  camera       at ({x:.4} {y:.4} {z:.4}), tolerance {tolerance:.6}\n");
+        }
+        if let Some([least, most]) = range {
+            out += &format!("  range        {} from {least} to {most}\n", self.what());
+        }
+        let [compile, frame, trace, shade] = self.times();
+        out + &format!(
+            "  rays         {}: {} of the camera, {} to the light, {} to the sky\n\
+             \x20 primitives   {} evaluated, {:.1} a pixel, by engine {}\n\
+             \x20 time         {compile:.1} ms to compile, {frame:.1} to frame, {trace:.1} to trace, {shade:.1} to shade, {:.1} ms in total",
+            plural(rays.total(), "ray", "rays"),
+            grouped(rays.camera),
+            grouped(rays.shadow),
+            grouped(rays.sky),
+            grouped(*evaluations),
+            self.per_pixel(),
+            engine.name(),
+            milliseconds(self.total),
+        )
+    }
+
+    /// What the range is one of.
+    fn what(&self) -> String {
+        match self.mode {
+            Mode::Shaded | Mode::Normal => "colours".to_owned(),
+            Mode::Depth => "distances from white to dark:".to_owned(),
+            Mode::Attribute(name) => format!("`{}` from blue to yellow:", escape(name)),
+            Mode::Evaluations => "evaluations of a pixel, from black to yellow:".to_owned(),
+        }
+    }
+
+    /// Milliseconds to compile, frame, trace and shade.
+    fn times(&self) -> [f64; 4] {
+        let Taken { compile_time, frame_time, trace_time, shade_time, .. } = &self.made.report;
+        [compile_time, frame_time, trace_time, shade_time].map(|time| milliseconds(*time))
+    }
+}
+
+fn milliseconds(time: Duration) -> f64 {
+    time.as_secs_f64() * 1e3
+}

@@ -1,0 +1,133 @@
+//! Rays of the camera: what each of them meets.
+
+use super::color::Rgb;
+use super::frame::Frame;
+use super::vector::{Vector, along, scale, unit};
+use super::{Mode, RenderError};
+use crate::buffer::{Points, Samples};
+use crate::trace::Ray;
+use jbt_frontend::check::CheckedTree;
+use jbt_frontend::tree::NodeKind;
+
+/// What a ray meets.
+pub struct Met {
+    /// Which of the rays.
+    pub cast: usize,
+    pub position: Vector,
+    /// The unit normal, away from the inside.
+    pub normal: Vector,
+    /// What the mode shows of it: the colour, or the attribute. Finite.
+    pub paint: Rgb,
+}
+
+/// What rays meet, and what each of them took.
+pub struct Meetings {
+    /// In the order of the rays; those that meet nothing are left out.
+    pub met: Vec<Met>,
+    /// For each ray, the distances to skeletons that were evaluated.
+    pub evaluations: Vec<f32>,
+}
+
+/// What the surface is painted with.
+pub enum Paint {
+    /// The same everywhere.
+    Plain(Rgb),
+    /// Up to three planes of the samples, from this one on.
+    Planes(usize, usize),
+}
+
+/// The colour of models that have none: clay, as linear light.
+const CLAY: Rgb = [0.60, 0.55, 0.50];
+
+impl Paint {
+    /// What a mode paints a model with.
+    fn new(frame: &Frame<'_>) -> Self {
+        let group = match &frame.render.mode {
+            Mode::Shaded if is_colored(frame.renderer.tree()) => "color",
+            Mode::Shaded | Mode::Normal | Mode::Depth | Mode::Evaluations => return Self::Plain(CLAY),
+            Mode::Attribute(name) => name,
+        };
+        match frame.renderer.evaluator.layout().attribute(group) {
+            Some((plane, width)) => Self::Planes(plane, width.min(3)),
+            None => Self::Plain(CLAY),
+        }
+    }
+
+    fn at(&self, samples: &Samples, index: usize) -> Rgb {
+        match *self {
+            Self::Plain(color) => color,
+            Self::Planes(first, count) => [0, 1, 2].map(|channel| {
+                let value = if channel < count { samples.planes()[first + channel][index] } else { 0.0 };
+                if value.is_finite() { value } else { 0.0 }
+            }),
+        }
+    }
+}
+
+/// Whether anything in a model gives it a colour.
+fn is_colored(tree: &CheckedTree) -> bool {
+    let is_white = tree.attributes()[0].default.iter().all(|&channel| channel == 1.0);
+    let gives = |kind: &NodeKind| matches!(kind, NodeKind::Attribute { name, .. } if &**name == "color");
+    !is_white || tree.nodes().iter().any(|node| gives(&node.kind))
+}
+
+/// Finds what rays meet first.
+pub fn cast(frame: &Frame<'_>, casts: &[Ray]) -> Result<Meetings, RenderError> {
+    let paint = Paint::new(frame);
+    let mut evaluations = vec![0.0; casts.len()];
+    let mut met = if frame.render.region.is_some() {
+        cuts(frame, casts, &paint, &mut evaluations)?
+    } else {
+        Vec::new()
+    };
+    let mut is_cut = vec![false; casts.len()];
+    met.iter().for_each(|met| is_cut[met.cast] = true);
+    let open: Vec<usize> = (0..casts.len()).filter(|&cast| !is_cut[cast]).collect();
+    let rays: Vec<Ray> = open.iter().map(|&cast| casts[cast]).collect();
+    let hits = frame.renderer.tracer.first_of(&rays, frame.tolerance)?;
+    for (ray, &cast) in open.iter().enumerate() {
+        evaluations[cast] += hits.evaluations[ray];
+        let hit = hits.starts[ray] as usize;
+        if hit < hits.starts[ray + 1] as usize {
+            met.push(Met {
+                cast,
+                position: hits.positions.get(hit).map(f64::from),
+                normal: normal(&hits.samples, hit, casts[cast].direction),
+                paint: paint.at(&hits.samples, hit),
+            });
+        }
+    }
+    met.sort_by_key(|met| met.cast);
+    Ok(Meetings { met, evaluations })
+}
+
+/// The rays that begin inside of the solid: they meet the cut that the region makes.
+fn cuts(
+    frame: &Frame<'_>,
+    casts: &[Ray],
+    paint: &Paint,
+    evaluations: &mut [f32],
+) -> Result<Vec<Met>, RenderError> {
+    let evaluator = &frame.renderer.evaluator;
+    let starts: Points = casts.iter().map(start).collect();
+    let mut samples = evaluator.samples();
+    evaluator.eval(&starts, &mut samples)?;
+    evaluations.fill(evaluator.evaluations_per_point() as f32);
+    let inside = |&index: &usize| samples.field()[index] >= frame.renderer.tracer.iso();
+    let meet = |index: usize| {
+        let position = starts.get(index).map(f64::from);
+        Met { cast: index, position, normal: frame.side(position), paint: paint.at(&samples, index) }
+    };
+    Ok((0..casts.len()).filter(inside).map(meet).collect())
+}
+
+/// Where a ray begins.
+pub fn start(ray: &Ray) -> [f32; 3] {
+    along(ray.origin, ray.span[0], ray.direction).map(|x| x as f32)
+}
+
+/// The unit normal of a hit; where the gradient vanishes, it is towards where the ray comes from.
+fn normal(samples: &Samples, hit: usize, direction: Vector) -> Vector {
+    let gradient = samples.gradient().map(|gradient| gradient.map(|plane| -f64::from(plane[hit])));
+    gradient.and_then(unit).unwrap_or_else(|| scale(direction, -1.0))
+}

@@ -1,0 +1,120 @@
+//! How what was gathered for each pixel becomes colours.
+
+use super::Background;
+use super::color::{Rgb, byte, decode, encode, inferno, viridis};
+use crate::picture::Picture;
+
+/// What the numbers of a film mean.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Meaning {
+    /// Linear light.
+    Light,
+    /// Numbers for the screen.
+    Screen,
+    /// One number, on the map viridis.
+    Number,
+    /// One number: the smallest one is white, the largest one dark.
+    Distance,
+    /// One number, its logarithm on the map inferno; 0 is black.
+    Cost,
+}
+
+/// What was gathered for a pixel, as means over its rays: three numbers, multiplied by the share of the rays that have any, and this share.
+pub type Gathered = [f32; 4];
+
+/// Develops a film into a picture. Also the range of its numbers, where a colour stands for one.
+pub fn develop(
+    film: &[Gathered],
+    [width, height]: [u32; 2],
+    meaning: Meaning,
+    background: Background,
+) -> (Picture, Option<[f32; 2]>) {
+    let range = match meaning {
+        Meaning::Light | Meaning::Screen => None,
+        Meaning::Number | Meaning::Distance => range(film, |_| true),
+        Meaning::Cost => range(film, |cost| cost > 0.0),
+    };
+    let mut made = Vec::with_capacity(film.len());
+    for (row, pixels) in film.chunks(width as usize).enumerate() {
+        let behind = background.at((row as f32 + 0.5) / height as f32);
+        for &[red, green, blue, share] in pixels {
+            let front = match (meaning, range) {
+                _ if share == 0.0 => [0.0; 3],
+                (Meaning::Light | Meaning::Screen, _) => [red, green, blue],
+                (Meaning::Number | Meaning::Distance | Meaning::Cost, None) => [0.0; 3],
+                (Meaning::Number, Some(range)) => viridis(part(red / share, range)).map(|x| x * share),
+                (Meaning::Distance, Some(range)) => [(1.0 - 0.85 * part(red / share, range)) * share; 3],
+                (Meaning::Cost, Some(range)) => {
+                    inferno(part((red / share).ln(), range.map(f32::ln))).map(|x| x * share)
+                }
+            };
+            made.push(over(front, share, behind, meaning == Meaning::Light));
+        }
+    }
+    (Picture::new(width, height, made).expect("a film has a pixel at least"), range)
+}
+
+/// The range of the numbers of a film that count.
+fn range(film: &[Gathered], counts: impl Fn(f32) -> bool) -> Option<[f32; 2]> {
+    let numbers = film.iter().filter(|pixel| pixel[3] > 0.0).map(|pixel| pixel[0] / pixel[3]);
+    let ends = numbers.filter(|&number| counts(number)).map(|number| [number, number]);
+    ends.reduce(|[low, high], [number, _]| [low.min(number), high.max(number)])
+}
+
+/// Where a number is in a range, from 0 to 1.
+fn part(number: f32, [low, high]: [f32; 2]) -> f32 {
+    if high > low { (number - low) / (high - low) } else { 0.0 }
+}
+
+/// A pixel in front of a background, as bytes. The front is multiplied by its opacity; light is mixed as light.
+fn over(front: Rgb, opacity: f32, behind: Option<Rgb>, is_light: bool) -> [u8; 4] {
+    let show = |x: f32| byte(if is_light { encode(x) } else { x });
+    match behind {
+        Some(behind) => {
+            let mix = |channel: usize| {
+                let back = behind[channel];
+                front[channel] + (1.0 - opacity) * if is_light { decode(back) } else { back }
+            };
+            let [red, green, blue] = [0, 1, 2].map(|channel| show(mix(channel)));
+            [red, green, blue, 255]
+        }
+        None if opacity > 0.0 => {
+            let [red, green, blue] = front.map(|x| show(x / opacity));
+            [red, green, blue, byte(opacity)]
+        }
+        None => [0; 4],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pixel(gathered: Gathered, meaning: Meaning, background: Background) -> [u8; 4] {
+        develop(&[gathered], [1, 1], meaning, background).0.pixel(0, 0)
+    }
+
+    #[test]
+    fn light_is_mixed_as_light() {
+        let white = Background::Color([255; 3]);
+        assert_eq!(pixel([0.0, 0.0, 0.0, 0.5], Meaning::Light, white), [188, 188, 188, 255]);
+        assert_eq!(pixel([0.0, 0.0, 0.0, 0.5], Meaning::Screen, white), [128, 128, 128, 255]);
+        assert_eq!(pixel([0.5, 0.0, 0.0, 0.5], Meaning::Light, Background::Transparent), [255, 0, 0, 128]);
+        assert_eq!(pixel([0.0; 4], Meaning::Light, Background::Transparent), [0; 4]);
+        assert_eq!(pixel([0.0; 4], Meaning::Light, Background::Color([1, 2, 3])), [1, 2, 3, 255]);
+    }
+
+    #[test]
+    fn numbers_have_a_range() {
+        let film = [[1.0, 0.0, 0.0, 1.0], [1.5, 0.0, 0.0, 0.5], [0.0; 4]];
+        let (picture, range) = develop(&film, [3, 1], Meaning::Distance, Background::Transparent);
+        assert_eq!(range, Some([1.0, 3.0]));
+        assert_eq!(picture.pixel(0, 0), [255; 4]);
+        assert_eq!(picture.pixel(1, 0), [38, 38, 38, 128]);
+        assert_eq!(picture.pixel(2, 0), [0; 4]);
+        assert_eq!(develop(&[[0.0; 4]], [1, 1], Meaning::Number, Background::Transparent).1, None);
+        // One number alone: no division by zero.
+        assert_eq!(pixel([2.0, 0.0, 0.0, 1.0], Meaning::Number, Background::Studio)[3], 255);
+        assert_eq!(pixel([0.0, 0.0, 0.0, 1.0], Meaning::Cost, Background::Studio)[3], 255);
+    }
+}

@@ -1,0 +1,188 @@
+//! What all tiles of a picture share: the camera, what is looked at, the ground, and how exact rays are.
+
+use super::camera::{Camera, Stance, View, is_usable};
+use super::cast::cast;
+use super::shade::Lights;
+use super::vector::{Vector, along, dot, length, sub};
+use super::{Mode, Quality, Render, RenderError, Renderer};
+use crate::region::Box3;
+use crate::trace::Ray;
+
+/// A picture that can be exposed.
+pub struct Frame<'a> {
+    pub render: &'a Render,
+    pub renderer: &'a Renderer,
+    pub camera: Camera,
+    /// What is looked at: rays end at its sides.
+    pub region: [Vector; 2],
+    /// The side of a pixel, at the near side of the model.
+    pub pixel: f64,
+    /// What is thinner along a ray of the camera may be missed; where a ray hits, it does so to a small part of this.
+    pub tolerance: f64,
+    /// The middle of the model, and half the diagonal of its bounds.
+    pub middle: Vector,
+    pub radius: f64,
+    /// What is up in space.
+    pub up: Vector,
+    /// How high the ground is along `up`, if there is one.
+    pub ground: Option<f64>,
+    pub lights: Lights,
+}
+
+/// The tolerance of the bounds, as a part of the region's longest side.
+const COARSE: f32 = 1.0 / 64.0;
+/// Rays along the longer side of the coarse picture that finds out how the model fills a view.
+const SCOUTS: u32 = 96;
+/// The share of the model's radius that is the nearest distance a pixel's size is measured at.
+const NEAREST: f64 = 0.02;
+/// What f32 can tell, as a part of the size of coordinates.
+const FINEST: f64 = 1e-6;
+
+impl<'a> Frame<'a> {
+    /// Frames the model. `None` if there is nothing to look at.
+    pub fn new(render: &'a Render, renderer: &'a Renderer) -> Result<Option<Self>, RenderError> {
+        let Some(region) = render.looked_at(renderer.tree())? else { return Ok(None) };
+        let tight = renderer.solid.tight_bounds(Some(region), COARSE * region.longest_side())?;
+        let Some(bounds) = tight.outer else { return Ok(None) };
+        let corners = corners(&bounds);
+        let (low, high) = (bounds.low.map(f64::from), bounds.high.map(f64::from));
+        let up = render.view.upwards();
+        let lowest = corners.iter().map(|&corner| dot(corner, up)).fold(f64::INFINITY, f64::min);
+        let with_ground = render.ground && render.mode == Mode::Shaded && render.quality != Quality::Draft;
+        let camera = render.view.camera(render.aspect(), &corners)?;
+        let mut frame = Self {
+            render,
+            renderer,
+            camera,
+            region: [region.low, region.high].map(|corner| corner.map(f64::from)),
+            pixel: 0.0,
+            tolerance: 0.0,
+            middle: [0, 1, 2].map(|axis| 0.5 * (low[axis] + high[axis])),
+            radius: 0.5 * length(sub(high, low)),
+            up,
+            ground: with_ground.then_some(lowest),
+            lights: Lights::new(&camera, up),
+        };
+        if let Stance::From(_) = render.view.stance {
+            frame.fit(&corners)?;
+        }
+        frame.set_tolerance(render.size[1], render.view.zoom)?;
+        // The plane of the ground is seen from above alone.
+        frame.ground = frame.ground.filter(|&height| dot(frame.camera.eye, up) > height);
+        frame.check_eye()?;
+        Ok(Some(frame))
+    }
+
+    /// Moves the camera so that what is seen of the model fills the picture, found out by a coarse picture of all of it.
+    fn fit(&mut self, corners: &[Vector]) -> Result<(), RenderError> {
+        let view = View { zoom: 1.0, ..self.render.view };
+        self.camera = view.camera(self.render.aspect(), corners)?;
+        self.set_tolerance(SCOUTS, 1.0)?;
+        let aspect = self.render.aspect();
+        let [columns, rows] = [aspect.min(1.0), (1.0 / aspect).min(1.0)]
+            .map(|part| ((f64::from(SCOUTS) * part).round() as u32).max(8));
+        let mut seen: Vec<Vector> = Vec::new();
+        for row in 0..rows {
+            let rays: Vec<Ray> = (0..columns)
+                .filter_map(|column| {
+                    let [x, y] = [(column, columns), (row, rows)]
+                        .map(|(index, count)| (f64::from(index) + 0.5) / f64::from(count));
+                    self.cast(x, y)
+                })
+                .collect();
+            seen.extend(cast(self, &rays)?.met.iter().map(|met| met.position));
+        }
+        let points = if seen.is_empty() { corners } else { &seen };
+        self.camera = self.render.view.camera(aspect, points)?;
+        Ok(())
+    }
+
+    /// A pixel at the near side of the model, and what is fine enough for it.
+    fn set_tolerance(&mut self, rows: u32, zoom: f64) -> Result<(), RenderError> {
+        if !is_usable(&self.camera) {
+            return Err(RenderError::Unusable);
+        }
+        let distance = if self.camera.orthographic {
+            1.0
+        } else {
+            (self.camera.depth(self.middle) - self.radius).max(NEAREST * self.radius / zoom.max(1.0))
+        };
+        self.pixel = 2.0 * self.camera.half[1] * distance / f64::from(rows);
+        let size = self.region.iter().flatten().fold(0.0, |size: f64, x| size.max(x.abs()));
+        self.pixel = self.pixel.max(FINEST * size);
+        self.tolerance = self.render.quality.fineness() * self.pixel;
+        if self.tolerance.is_finite() { Ok(()) } else { Err(RenderError::Unusable) }
+    }
+
+    /// Whether the camera can see the surface from outside.
+    fn check_eye(&self) -> Result<(), RenderError> {
+        let eye = self.camera.eye;
+        let within = (0..3).all(|axis| (self.region[0][axis]..=self.region[1][axis]).contains(&eye[axis]));
+        if within {
+            let value = self.renderer.evaluator.probe(eye.map(|x| x as f32)).value();
+            if value >= self.renderer.tracer.iso() {
+                return Err(RenderError::Inside { eye });
+            }
+        }
+        Ok(())
+    }
+
+    /// The ray of a place of the picture, as far as it is in the region, `None` if it misses that.
+    pub fn cast(&self, x: f64, y: f64) -> Option<Ray> {
+        let (origin, direction) = self.camera.ray(x, y);
+        self.clip(origin, direction)
+    }
+
+    /// The part in the region of what a unit direction leads to; `None` if there is none.
+    pub fn clip(&self, origin: Vector, direction: Vector) -> Option<Ray> {
+        let mut span = [0.0, f64::MAX];
+        for axis in 0..3 {
+            let [low, high] = self.region.map(|corner| corner[axis] - origin[axis]);
+            if direction[axis] == 0.0 {
+                if low > 0.0 || high < 0.0 {
+                    return None;
+                }
+                continue;
+            }
+            let ends = [low / direction[axis], high / direction[axis]];
+            span = [span[0].max(ends[0].min(ends[1])), span[1].min(ends[0].max(ends[1]))];
+        }
+        (span[0] < span[1]).then_some(Ray { origin, direction, span })
+    }
+
+    /// The outward normal of the region's side that a point is on, or nearest to.
+    pub fn side(&self, point: Vector) -> Vector {
+        let mut best = (f64::INFINITY, [0.0; 3]);
+        for axis in 0..3 {
+            for (corner, outwards) in [(self.region[0], -1.0), (self.region[1], 1.0)] {
+                let distance = (point[axis] - corner[axis]).abs();
+                if distance < best.0 {
+                    let mut normal = [0.0; 3];
+                    normal[axis] = outwards;
+                    best = (distance, normal);
+                }
+            }
+        }
+        best.1
+    }
+
+    /// Where a ray of the camera meets the ground.
+    pub fn on_ground(&self, x: f64, y: f64) -> Option<Vector> {
+        let height = self.ground?;
+        let (origin, direction) = self.camera.ray(x, y);
+        let t = (height - dot(origin, self.up)) / dot(direction, self.up);
+        (t > 0.0 && t.is_finite()).then(|| along(origin, t, direction))
+    }
+}
+
+impl Render {
+    /// How many times as wide as high it is.
+    fn aspect(&self) -> f64 {
+        f64::from(self.size[0]) / f64::from(self.size[1])
+    }
+}
+
+fn corners(bounds: &Box3) -> [Vector; 8] {
+    let sides = [bounds.low, bounds.high];
+    std::array::from_fn(|corner| [0, 1, 2].map(|axis| f64::from(sides[corner >> axis & 1][axis])))
+}

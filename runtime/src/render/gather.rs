@@ -1,0 +1,219 @@
+//! The light that reaches a place: of the key light, and of the sky.
+//!
+//! ```text
+//!      key light, a disc          each place sends some rays to the disc of the key light,
+//!        \ | /      sky           and some into the hemisphere above it, more of them
+//!         \|/    \  |  /          upright than flat: those that meet nothing bring light
+//!    ──────o────────o──────
+//! ```
+
+use super::cast::start;
+use super::color::Rgb;
+use super::frame::Frame;
+use super::noise::{Sequence, above, around};
+use super::shade::{KEY_SPREAD, sky, sky_above};
+use super::vector::{Vector, along, dot};
+use super::{Rays, RenderError};
+use crate::buffer::Points;
+use crate::trace::Ray;
+
+/// A place that light may reach.
+pub struct Spot {
+    /// A little above the surface.
+    pub position: Vector,
+    /// A unit vector.
+    pub normal: Vector,
+    /// The pixel that sees it: its column and row.
+    pub pixel: [u32; 2],
+    /// Which of the pixel's rays sees it.
+    pub sample: u32,
+}
+
+/// The light that reaches a spot.
+#[derive(Clone, Copy)]
+pub struct Light {
+    /// The share of the key light's disc that it sees, from 0 to 1.
+    pub key: f32,
+    /// The same, each part weighted with the cosine to the normal.
+    pub facing: f32,
+    /// Of the sky: the mean over the hemisphere, weighted with the cosine.
+    pub sky: Rgb,
+    /// The share of the sky that it sees, from 0 to 1, weighted alike.
+    pub open: f32,
+}
+
+/// What gathering took.
+#[derive(Default)]
+pub struct Cost {
+    pub rays: Rays,
+    pub evaluations: f64,
+}
+
+/// How far things darken others, as a part of the model's radius.
+const REACH: f64 = 0.7;
+/// The golden ratio's inverse: lengths of rays to the sky follow its multiples.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+
+/// The light that reaches spots.
+pub fn gather(frame: &Frame<'_>, spots: &[Spot]) -> Result<(Vec<Light>, Cost), RenderError> {
+    let [key_rays, sky_rays] = frame.render.quality.rays();
+    let mut cost = Cost::default();
+    let mut lights: Vec<Light> = spots.iter().map(|spot| unshadowed(frame, spot)).collect();
+    if key_rays > 0 {
+        add_key(frame, spots, key_rays, &mut lights, &mut cost)?;
+    }
+    if sky_rays > 0 {
+        add_sky(frame, spots, sky_rays, &mut lights, &mut cost)?;
+    }
+    Ok((lights, cost))
+}
+
+/// The light of a place that nothing is in front of.
+pub fn unshadowed(frame: &Frame<'_>, spot: &Spot) -> Light {
+    Light {
+        key: 1.0,
+        facing: dot(spot.normal, frame.lights.key).max(0.0) as f32,
+        sky: sky_above(dot(spot.normal, frame.up)),
+        open: 1.0,
+    }
+}
+
+fn add_key(
+    frame: &Frame<'_>,
+    spots: &[Spot],
+    count: u32,
+    lights: &mut [Light],
+    cost: &mut Cost,
+) -> Result<(), RenderError> {
+    let each = 1.0 / count as f32;
+    lights.iter_mut().for_each(|light| (light.key, light.facing) = (0.0, 0.0));
+    for index in 0..count {
+        let directions: Vec<Vector> = spots
+            .iter()
+            .map(|spot| {
+                let point = Sequence::new(spot.pixel, 0).point(spot.sample * count + index);
+                around(frame.lights.key, KEY_SPREAD, point)
+            })
+            .collect();
+        let rays = spots.iter().zip(&directions).map(|(spot, &direction)| {
+            let faces = dot(spot.normal, direction) > 0.0;
+            faces.then(|| frame.clip(spot.position, direction)).flatten()
+        });
+        let blocked =
+            blocked(frame, &rays.collect::<Vec<_>>(), &mut cost.evaluations, &mut cost.rays.shadow)?;
+        for (at, light) in lights.iter_mut().enumerate() {
+            let facing = dot(spots[at].normal, directions[at]);
+            if facing > 0.0 && !blocked[at] {
+                light.key += each;
+                light.facing += facing as f32 * each;
+            }
+        }
+    }
+    Ok(())
+}
+
+fn add_sky(
+    frame: &Frame<'_>,
+    spots: &[Spot],
+    count: u32,
+    lights: &mut [Light],
+    cost: &mut Cost,
+) -> Result<(), RenderError> {
+    let each = 1.0 / count as f32;
+    lights.iter_mut().for_each(|light| (light.sky, light.open) = ([0.0; 3], 0.0));
+    for index in 0..count {
+        let mut directions = Vec::with_capacity(spots.len());
+        let mut rays = Vec::with_capacity(spots.len());
+        for spot in spots {
+            let number = spot.sample * count + index;
+            let sequence = Sequence::new(spot.pixel, 1);
+            let direction = above(spot.normal, sequence.point(number));
+            // Near things darken more than far ones, because some rays are short.
+            let part = (sequence.point(0)[0] + f64::from(number) * GOLDEN).fract();
+            let reach = frame.radius * REACH * (0.1 + 0.9 * part);
+            let ray = frame.clip(spot.position, direction).and_then(|mut ray| {
+                ray.span[1] = ray.span[1].min(reach);
+                (ray.span[0] < ray.span[1]).then_some(ray)
+            });
+            directions.push(direction);
+            rays.push(ray);
+        }
+        let blocked = blocked(frame, &rays, &mut cost.evaluations, &mut cost.rays.sky)?;
+        for (at, light) in lights.iter_mut().enumerate() {
+            if !blocked[at] {
+                let open = open_ground(frame, spots[at].position, directions[at]) as f32 * each;
+                let color = sky(dot(directions[at], frame.up));
+                light.sky = [0, 1, 2].map(|channel| light.sky[channel] + color[channel] * open);
+                light.open += open;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// How much light comes from a direction that the ground may be in: the less, the nearer it is.
+fn open_ground(frame: &Frame<'_>, position: Vector, direction: Vector) -> f64 {
+    let (Some(ground), falls) = (frame.ground, -dot(direction, frame.up)) else { return 1.0 };
+    if falls <= 0.0 {
+        return 1.0;
+    }
+    let way = (dot(position, frame.up) - ground).max(0.0) / falls;
+    let part = (way / (frame.radius * REACH)).min(1.0);
+    0.25 + 0.75 * part * (2.0 - part)
+}
+
+/// The tolerance of rays to the light and the sky, in tolerances of the camera's: a shadow is softer than a rim.
+const COARSE: f64 = 4.0;
+
+/// Parts of a direction's coordinates by which rays are told apart that go different ways.
+const WAYS: f64 = 4.0;
+
+/// Which way a ray goes, roughly: rays of one way stay close to each other, which is what makes packets cheap.
+fn way(ray: &Ray) -> [i8; 3] {
+    ray.direction.map(|coordinate| (coordinate * WAYS).floor() as i8)
+}
+
+/// Whether something is in the way of rays. Those that are none meet nothing.
+fn blocked(
+    frame: &Frame<'_>,
+    rays: &[Option<Ray>],
+    evaluations: &mut f64,
+    count: &mut u64,
+) -> Result<Vec<bool>, RenderError> {
+    let mut asked: Vec<(usize, Ray)> =
+        rays.iter().enumerate().filter_map(|(at, ray)| ray.map(|ray| (at, ray))).collect();
+    asked.sort_by_key(|(_, ray)| way(ray));
+    let some: Vec<Ray> = asked.iter().map(|(_, ray)| *ray).collect();
+    *count += some.len() as u64;
+    let found = frame.renderer.tracer.any_of(&some, COARSE * frame.tolerance)?;
+    *evaluations += found.evaluations.iter().map(|&evaluations| f64::from(evaluations)).sum::<f64>();
+    let cut = cut(frame, &some, evaluations)?;
+    let mut answers = vec![false; rays.len()];
+    for ((&(at, _), &blocked), cut) in asked.iter().zip(&found.blocked).zip(cut) {
+        answers[at] = blocked || cut;
+    }
+    Ok(answers)
+}
+
+/// Whether rays come into the region where it cuts the solid: inside of it from the beginning, they may meet no surface.
+fn cut(frame: &Frame<'_>, rays: &[Ray], evaluations: &mut f64) -> Result<Vec<bool>, RenderError> {
+    let mut cut = vec![false; rays.len()];
+    if frame.render.region.is_none() {
+        return Ok(cut);
+    }
+    let enter: Vec<usize> = (0..rays.len()).filter(|&ray| rays[ray].span[0] > 0.0).collect();
+    let starts: Points = enter.iter().map(|&ray| start(&rays[ray])).collect();
+    let evaluator = &frame.renderer.evaluator;
+    let mut samples = evaluator.samples();
+    evaluator.eval(&starts, &mut samples)?;
+    *evaluations += (starts.len() as u64 * evaluator.evaluations_per_point()) as f64;
+    for (&ray, &value) in enter.iter().zip(samples.field()) {
+        cut[ray] = value >= frame.renderer.tracer.iso();
+    }
+    Ok(cut)
+}
+
+/// A spot a little above a place of the surface, so that its rays do not meet where they come from.
+pub fn spot(frame: &Frame<'_>, position: Vector, normal: Vector, pixel: [u32; 2], sample: u32) -> Spot {
+    Spot { position: along(position, frame.pixel, normal), normal, pixel, sample }
+}

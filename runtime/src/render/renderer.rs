@@ -1,0 +1,65 @@
+//! A model that is compiled for pictures.
+
+use jbt_frontend::check::CheckedTree;
+use jbt_frontend::query::Query;
+
+use crate::error::CompileError;
+use crate::evaluator::{Compiler, Evaluator};
+use crate::solid::Solid;
+use crate::trace::Tracer;
+
+/// A model, compiled for pictures of it: from any side, in any mode.
+///
+/// It is `Send + Sync`: threads may share it.
+pub struct Renderer {
+    compiler: Compiler,
+    pub(super) tracer: Tracer,
+    pub(super) solid: Solid,
+    /// What answers where a region cuts the solid: there is no surface to hit.
+    pub(super) evaluator: Evaluator,
+}
+
+impl Renderer {
+    /// Compiles a model.
+    ///
+    /// # Errors
+    /// The model is beyond a limit, or the engine cannot be had.
+    pub fn new(compiler: &Compiler, tree: &CheckedTree) -> Result<Self, CompileError> {
+        Self::of(compiler, tree, Tracer::new(compiler, tree, Query::ALL)?)
+    }
+
+    /// A renderer for another model, usually an edited one. If it has the shape of this one, nothing is compiled.
+    ///
+    /// # Errors
+    /// Those of [`new`](Self::new).
+    pub fn updated(&self, tree: &CheckedTree) -> Result<Self, CompileError> {
+        Self::of(&self.compiler, tree, self.tracer.updated(tree)?)
+    }
+
+    fn of(compiler: &Compiler, tree: &CheckedTree, tracer: Tracer) -> Result<Self, CompileError> {
+        Ok(Self {
+            compiler: compiler.clone(),
+            tracer,
+            solid: Solid::new(compiler, tree)?,
+            evaluator: compiler.evaluator(tree, Query::ALL)?,
+        })
+    }
+
+    /// The model.
+    #[must_use]
+    pub fn tree(&self) -> &CheckedTree {
+        self.tracer.tree()
+    }
+
+    /// What finds the surface.
+    #[must_use]
+    pub fn tracer(&self) -> &Tracer {
+        &self.tracer
+    }
+
+    /// What evaluates at points.
+    #[must_use]
+    pub fn evaluator(&self) -> &Evaluator {
+        &self.evaluator
+    }
+}

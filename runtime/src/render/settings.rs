@@ -1,0 +1,209 @@
+//! What a picture is asked to be.
+
+use jbt_frontend::attribute::AttributeGroup;
+use jbt_frontend::check::CheckedTree;
+use jbt_ir::limits::{MAX_ANTIALIAS, MAX_PICTURE_PIXELS, MAX_PICTURE_SIDE};
+
+use super::RenderError;
+use super::camera::View;
+use super::color::Rgb;
+use super::develop::Meaning;
+use crate::region::Box3;
+
+/// A picture to be made.
+///
+/// ```
+/// use jbt::render::{Render, View};
+/// # let tree = jbt::text::parse(b"jbt 1 point { surface_radius 1 }", &Default::default()).unwrap().check().unwrap();
+/// let render = Render { size: [32, 24], view: View::named("front").unwrap(), ..Render::default() };
+/// let made = render.run(&jbt::Compiler::new(), &tree, &mut |_| true).unwrap();
+/// assert_eq!(made.picture.bytes().len(), 4 * 32 * 24);
+/// assert!(made.report.pixels_hit > 200);
+/// ```
+#[derive(Clone, PartialEq, Debug)]
+pub struct Render {
+    /// Pixels of a row, and rows: 1 to [`MAX_PICTURE_SIDE`] each, and [`MAX_PICTURE_PIXELS`] in all.
+    pub size: [u32; 2],
+    /// From where, and how.
+    pub view: View,
+    /// What is shown of the surface.
+    pub mode: Mode,
+    /// How much trouble light takes; it matters only where the surface is shaded.
+    pub quality: Quality,
+    /// A pixel takes so many rays along each of its sides: 1 to [`MAX_ANTIALIAS`].
+    pub antialias: u32,
+    /// What is seen where nothing is. `None` is the studio for a shaded surface, and nothing for the other modes.
+    pub background: Option<Background>,
+    /// Whether the model stands on something that catches its shadow. It is seen from above alone, and only of a shaded surface; a draft has none.
+    pub ground: bool,
+    /// The box that is looked at; it cuts the model open, and the cut is shown. `None` is the model's support.
+    pub region: Option<Box3>,
+}
+
+impl Default for Render {
+    /// 800 x 600 pixels, four rays each, of the shaded surface in the studio, in good quality.
+    fn default() -> Self {
+        Self {
+            size: [800, 600],
+            view: View::default(),
+            mode: Mode::Shaded,
+            quality: Quality::Good,
+            antialias: 2,
+            background: None,
+            ground: true,
+            region: None,
+        }
+    }
+}
+
+/// What is shown of the surface.
+#[derive(Clone, PartialEq, Eq, Debug, Default)]
+pub enum Mode {
+    /// The surface in light: in the colour of the model, or in that of clay if it has none.
+    #[default]
+    Shaded,
+    /// The unit normal: x, y and z from -1 to 1 as red, green and blue from 0 to 255.
+    Normal,
+    /// How far the surface is in front of the eye: the nearest place is white, the farthest is dark.
+    Depth,
+    /// An attribute group: one real as its place between the smallest and the largest one that are seen, on the map viridis; more reals as red, green and blue of
+    /// linear light, clamped to 0 .. 1.
+    Attribute(String),
+    /// The distances to skeletons that the rays of each pixel took: their logarithm, on the map inferno. What takes the fewest is black, like
+    /// what takes none.
+    Evaluations,
+}
+
+/// How much trouble light takes.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum Quality {
+    /// No rays but those of the camera: no shadows, no dark corners. For interaction.
+    Draft,
+    /// Soft shadows and a sky, for looking.
+    #[default]
+    Good,
+    /// The same with less noise, for showing.
+    Best,
+}
+
+impl Quality {
+    /// The tolerance of the camera's rays, in pixels.
+    pub(super) fn fineness(self) -> f64 {
+        match self {
+            Self::Draft => 4.0,
+            Self::Good => 2.0,
+            Self::Best => 0.5,
+        }
+    }
+
+    /// Rays to the key light and rays to the sky, from each hit.
+    pub(super) fn rays(self) -> [u32; 2] {
+        match self {
+            Self::Draft => [0, 0],
+            Self::Good => [2, 4],
+            Self::Best => [8, 16],
+        }
+    }
+}
+
+/// What is seen where nothing is.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Background {
+    /// A bright wall, a little darker towards the ground.
+    Studio,
+    /// One colour: red, green and blue as screens take them.
+    Color([u8; 3]),
+    /// Nothing: the picture is not opaque there.
+    Transparent,
+}
+
+/// The wall of the studio at the top and at the bottom of the picture, as screens take it.
+const STUDIO: [Rgb; 2] = [[0.965, 0.972, 0.98], [0.845, 0.862, 0.885]];
+
+impl Background {
+    /// Its colour at a height of the picture, 0 at the top and 1 at the bottom, as screens take it; `None` where there is nothing.
+    pub(super) fn at(self, y: f32) -> Option<Rgb> {
+        match self {
+            Self::Studio => {
+                Some([0, 1, 2].map(|channel| STUDIO[0][channel] * (1.0 - y) + STUDIO[1][channel] * y))
+            }
+            Self::Color(color) => Some(color.map(|channel| f32::from(channel) / 255.0)),
+            Self::Transparent => None,
+        }
+    }
+}
+
+impl Render {
+    /// Checks what can be checked before anything is compiled.
+    pub(super) fn check(&self, tree: &CheckedTree) -> Result<(), RenderError> {
+        let [width, height] = self.size;
+        if width == 0 || height == 0 {
+            return Err(RenderError::Empty { width, height });
+        }
+        let sides = width.max(height) as usize;
+        if sides > MAX_PICTURE_SIDE || width as usize * height as usize > MAX_PICTURE_PIXELS {
+            return Err(RenderError::TooLarge { width, height });
+        }
+        if !(1..=MAX_ANTIALIAS).contains(&self.antialias) {
+            return Err(RenderError::Antialias { antialias: self.antialias });
+        }
+        self.view.check()?;
+        if let Mode::Attribute(name) = &self.mode
+            && width_of(tree, name).is_none()
+        {
+            let known = tree.attributes().iter().map(|group| group.name.to_string()).collect();
+            return Err(RenderError::Attribute { name: name.clone(), known });
+        }
+        self.looked_at(tree)?;
+        Ok(())
+    }
+
+    /// The box that is looked at; `None` if the model is empty.
+    pub(super) fn looked_at(&self, tree: &CheckedTree) -> Result<Option<Box3>, RenderError> {
+        if let Some(region) = self.region {
+            let full = (0..3).all(|axis| region.low[axis] < region.high[axis]);
+            if !(full && region.is_proper() && region.longest_side().is_finite()) {
+                return Err(RenderError::Region { region });
+            }
+            return Ok(Some(region));
+        }
+        let support = tree.support();
+        if support.is_empty() {
+            return Ok(None);
+        }
+        if !support.is_finite() {
+            return Err(RenderError::Unbounded);
+        }
+        let grown = support.grown(support.longest_side() * MARGIN);
+        let low = grown.low().map(|side| (side as f32).next_down());
+        Ok(Some(Box3::new(low, grown.high().map(|side| (side as f32).next_up()))))
+    }
+
+    /// What the numbers of the film mean.
+    pub(super) fn meaning(&self, tree: &CheckedTree) -> Meaning {
+        match &self.mode {
+            Mode::Shaded => Meaning::Light,
+            Mode::Normal => Meaning::Screen,
+            Mode::Depth => Meaning::Distance,
+            Mode::Attribute(name) if width_of(tree, name) == Some(1) => Meaning::Number,
+            Mode::Attribute(_) => Meaning::Light,
+            Mode::Evaluations => Meaning::Cost,
+        }
+    }
+
+    /// The background that was asked for, or that of the mode.
+    pub(super) fn background(&self) -> Background {
+        self.background.unwrap_or(match self.mode {
+            Mode::Shaded => Background::Studio,
+            Mode::Normal | Mode::Depth | Mode::Attribute(_) | Mode::Evaluations => Background::Transparent,
+        })
+    }
+}
+
+/// The part of the support's longest side by which the region that nobody gave exceeds it: more than f32 is off by.
+const MARGIN: f64 = 1.0 / 512.0;
+
+/// The reals of an attribute group.
+fn width_of(tree: &CheckedTree, name: &str) -> Option<usize> {
+    tree.attributes().iter().find(|group| &*group.name == name).map(AttributeGroup::width)
+}

@@ -1,0 +1,133 @@
+//! Light: where it comes from, and what surfaces and the ground make of it.
+//!
+//! All of it is linear. The key light is warm and comes over the left shoulder of whoever looks, a weak one from the right fills its shadows, and the sky is
+//! brighter and bluer the higher it is.
+
+use super::RenderError;
+use super::camera::Camera;
+use super::cast::Met;
+use super::color::{Rgb, shoulder};
+use super::frame::Frame;
+use super::gather::{Cost, Light, Spot, gather, spot, unshadowed};
+use super::vector::{Vector, add, along, dot, length, scale, sub, unit};
+
+/// The tangent of the angle that the key light's disc has to half: about 7 degrees.
+pub const KEY_SPREAD: f64 = 0.12;
+
+/// Light of the key light on a surface that faces it.
+const KEY: Rgb = [0.92, 0.87, 0.79];
+/// Light of the filling one.
+const FILL: Rgb = [0.06, 0.072, 0.095];
+/// The sky at the horizon, and what a unit of height adds.
+const HORIZON: Rgb = [0.215, 0.226, 0.245];
+const HEIGHT: Rgb = [0.10, 0.118, 0.145];
+/// How much of the light that is kept from a place comes to it by way of what keeps it.
+const AGAIN: f32 = 0.35;
+/// The shine of the key light: how sharp, and how bright.
+const SHINE: (f64, f32) = (56.0, 0.16);
+/// How much of what is straight ahead a surface mirrors, and how much more at a flat angle (Schlick, 1994).
+const MIRROR: [f32; 2] = [0.03, 0.42];
+/// The colour that shadows on the ground have, and how deep they are at most.
+const SHADE: Rgb = [0.035, 0.04, 0.055];
+const DEEPEST: f32 = 0.88;
+/// Between these distances from the model's middle shadows on the ground fade, in radii.
+const FADE: [f64; 2] = [1.3, 3.4];
+
+/// Where light comes from: unit vectors towards it.
+#[derive(Clone, Copy)]
+pub struct Lights {
+    pub key: Vector,
+    pub fill: Vector,
+}
+
+impl Lights {
+    /// The lights of a camera, for what is up in space.
+    pub fn new(camera: &Camera, up: Vector) -> Self {
+        // From below the lights are those of somebody who looks at a thing in the hand.
+        let up = if dot(camera.back, up) < -0.3 { camera.up } else { up };
+        let towards = |right: f64, high: f64, near: f64| {
+            let sum = add(scale(camera.right, right), add(scale(up, high), scale(camera.back, near)));
+            unit(sum).unwrap_or(camera.back)
+        };
+        Self { key: towards(-0.62, 0.92, 0.45), fill: towards(0.9, 0.15, 0.5) }
+    }
+}
+
+/// The sky in a direction whose unit vector goes up so far, from -1 to 1.
+pub fn sky(height: f64) -> Rgb {
+    [0, 1, 2].map(|channel| HORIZON[channel] + HEIGHT[channel] * height as f32)
+}
+
+/// The mean of the sky over the hemisphere above a surface whose unit normal goes up so far, weighted with the cosine: that of a linear function is its value
+/// at 2/3 of the normal.
+pub fn sky_above(height: f64) -> Rgb {
+    sky(height * 2.0 / 3.0)
+}
+
+/// What a screen shows of the hits of a tile: opaque colours. `pixel` and `sample` tell who sees a hit.
+pub fn surfaces(
+    frame: &Frame<'_>,
+    met: &[Met],
+    seen: impl Fn(&Met) -> ([u32; 2], u32, Vector),
+) -> Result<(Vec<Rgb>, Cost), RenderError> {
+    let spots: Vec<Spot> = met
+        .iter()
+        .map(|met| {
+            let (pixel, sample, _) = seen(met);
+            spot(frame, met.position, met.normal, pixel, sample)
+        })
+        .collect();
+    let (lights, cost) = gather(frame, &spots)?;
+    let colors = met.iter().zip(lights).map(|(met, light)| surface(frame, met, light, seen(met).2));
+    Ok((colors.collect(), cost))
+}
+
+/// What a screen shows of a surface, looked at along a unit vector.
+fn surface(frame: &Frame<'_>, met: &Met, light: Light, looking: Vector) -> Rgb {
+    let view = scale(looking, -1.0);
+    let facing = dot(met.normal, view).clamp(0.0, 1.0);
+    let fill = dot(met.normal, frame.lights.fill).max(0.0) as f32 * light.open;
+    let half = unit(add(frame.lights.key, view)).map_or(0.0, |half| dot(half, met.normal).max(0.0));
+    let shine = light.key * SHINE.1 * half.powf(SHINE.0) as f32;
+    let mirrored = along(scale(met.normal, 2.0 * facing), -1.0, view);
+    let mirror = (MIRROR[0] + MIRROR[1] * (1.0 - facing).powi(5) as f32) * light.open;
+    let reflection = sky(dot(mirrored, frame.up).clamp(-1.0, 1.0));
+    let around = sky_above(dot(met.normal, frame.up));
+    [0, 1, 2].map(|channel| {
+        let paint = met.paint[channel].clamp(0.0, 1.0);
+        let again = AGAIN * paint * (1.0 - light.open) * around[channel];
+        let falling = KEY[channel] * light.facing + FILL[channel] * fill + light.sky[channel] + again;
+        shoulder(paint * falling + KEY[channel] * shine + mirror * reflection[channel])
+    })
+}
+
+/// A place of the ground that a pixel sees.
+pub struct Ground {
+    pub position: Vector,
+    pub pixel: [u32; 2],
+    pub sample: u32,
+}
+
+/// How deep the shadow on the ground is: red, green and blue of it, multiplied by the opacity that comes last.
+pub fn shadows(frame: &Frame<'_>, places: &[Ground]) -> Result<(Vec<[f32; 4]>, Cost), RenderError> {
+    let spots: Vec<Spot> =
+        places.iter().map(|place| spot(frame, place.position, frame.up, place.pixel, place.sample)).collect();
+    let (lights, cost) = gather(frame, &spots)?;
+    let strength = |light: &Light| {
+        let sum = |channel: usize| KEY[channel] * light.facing + light.sky[channel];
+        sum(0) + sum(1) + sum(2)
+    };
+    let shadow = |(spot, light): (&Spot, &Light)| {
+        let missing = 1.0 - strength(light) / strength(&unshadowed(frame, spot));
+        let depth = DEEPEST * missing.clamp(0.0, 1.0) * fade(frame, spot.position);
+        [SHADE[0] * depth, SHADE[1] * depth, SHADE[2] * depth, depth]
+    };
+    Ok((spots.iter().zip(&lights).map(shadow).collect(), cost))
+}
+
+/// How much of a shadow is left at a place: 1 near the model, 0 far away.
+pub fn fade(frame: &Frame<'_>, position: Vector) -> f32 {
+    let distance = length(sub(position, frame.middle)) / frame.radius;
+    let part = ((FADE[1] - distance) / (FADE[1] - FADE[0])).clamp(0.0, 1.0);
+    (part * part * (3.0 - 2.0 * part)) as f32
+}

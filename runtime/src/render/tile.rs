@@ -1,0 +1,222 @@
+//! Tiles: parts of a picture whose rays are traced together.
+
+use std::time::{Duration, Instant};
+
+use super::cast::{Meetings, cast};
+use super::develop::Gathered;
+use super::frame::Frame;
+use super::shade::{Ground, fade, shadows, surfaces};
+use super::{Mode, Quality, Rays, RenderError};
+use crate::trace::Ray;
+
+/// Rays of a full tile, about.
+const PACKET: u32 = 1024;
+
+/// A part of a picture: its first column and row, and its size.
+#[derive(Clone, Copy)]
+pub struct Place {
+    pub x: u32,
+    pub y: u32,
+    pub width: u32,
+    pub height: u32,
+}
+
+impl Place {
+    /// The tiles of a picture, row by row. They do not depend on threads.
+    pub fn all([width, height]: [u32; 2], antialias: u32) -> Vec<Self> {
+        let side = ((f64::from(PACKET).sqrt() / f64::from(antialias)) as u32).max(2);
+        let mut places = Vec::new();
+        for y in (0..height).step_by(side as usize) {
+            for x in (0..width).step_by(side as usize) {
+                places.push(Self { x, y, width: side.min(width - x), height: side.min(height - y) });
+            }
+        }
+        places
+    }
+
+    /// A pixel of the picture by its number in the tile.
+    fn pixel(&self, index: usize) -> [u32; 2] {
+        [self.x + index as u32 % self.width, self.y + index as u32 / self.width]
+    }
+}
+
+/// A tile that has been exposed, or several: what was gathered, and what it took.
+#[derive(Default)]
+pub struct Tile {
+    pub pixels: Vec<Gathered>,
+    pub pixels_hit: u64,
+    pub rays: Rays,
+    pub evaluations: f64,
+    pub trace: Duration,
+    pub shade: Duration,
+}
+
+impl Tile {
+    /// Adds what another tile took.
+    pub fn add(&mut self, other: &Self) {
+        self.pixels_hit += other.pixels_hit;
+        self.rays.camera += other.rays.camera;
+        self.rays.shadow += other.rays.shadow;
+        self.rays.sky += other.rays.sky;
+        self.evaluations += other.evaluations;
+        self.trace += other.trace;
+        self.shade += other.shade;
+    }
+
+    /// The parts of a time that tracing and shading took, by the times that all threads spent.
+    pub fn shares(&self, time: Duration) -> [Duration; 2] {
+        let sum = (self.trace + self.shade).as_secs_f64();
+        let trace = if sum > 0.0 { time.mul_f64(self.trace.as_secs_f64() / sum) } else { time };
+        [trace, time.saturating_sub(trace)]
+    }
+}
+
+/// A ray of the camera that goes somewhere: the number of its pixel in the tile, of the ray in the pixel, and its place in the picture, 0 .. 1.
+#[derive(Clone, Copy)]
+struct Aim {
+    pixel: usize,
+    sample: u32,
+    place: [f64; 2],
+    /// Its number among the rays into the region.
+    cast: Option<usize>,
+}
+
+/// A tile at work.
+struct Exposure<'a> {
+    frame: &'a Frame<'a>,
+    place: Place,
+    aims: Vec<Aim>,
+    /// The aim of each ray into the region.
+    aim_of: Vec<usize>,
+    tile: Tile,
+}
+
+/// Exposes a tile.
+pub fn expose(frame: &Frame<'_>, place: &Place) -> Result<Tile, RenderError> {
+    let begin = Instant::now();
+    let (aims, casts) = aim(frame, place);
+    let aim_of = (0..aims.len()).filter(|&aim| aims[aim].cast.is_some()).collect();
+    let meetings = cast(frame, &casts)?;
+    let mut exposure = Exposure { frame, place: *place, aims, aim_of, tile: Tile::default() };
+    exposure.count(casts.len(), &meetings);
+    exposure.tile.trace = begin.elapsed();
+    let begin = Instant::now();
+    match frame.render.mode {
+        Mode::Shaded => exposure.light(&meetings, &casts)?,
+        Mode::Normal | Mode::Depth | Mode::Attribute(_) => exposure.show(&meetings),
+        Mode::Evaluations => exposure.charge(&meetings),
+    }
+    let each = 1.0 / (frame.render.antialias * frame.render.antialias) as f32;
+    exposure.tile.pixels.iter_mut().for_each(|pixel| *pixel = pixel.map(|sum| sum * each));
+    exposure.tile.shade = begin.elapsed();
+    Ok(exposure.tile)
+}
+
+/// All rays of a tile, pixel by pixel, and those that go into the region.
+fn aim(frame: &Frame<'_>, place: &Place) -> (Vec<Aim>, Vec<Ray>) {
+    let ([width, height], rays) = (frame.render.size, frame.render.antialias);
+    let (mut aims, mut casts) = (Vec::new(), Vec::new());
+    for pixel in 0..(place.width * place.height) as usize {
+        let [x, y] = place.pixel(pixel);
+        for sample in 0..rays * rays {
+            let at = |pixel: u32, part: u32, of: u32| {
+                (f64::from(pixel) + (f64::from(part) + 0.5) / f64::from(rays)) / f64::from(of)
+            };
+            let place = [at(x, sample % rays, width), at(y, sample / rays, height)];
+            let cast = frame.cast(place[0], place[1]);
+            aims.push(Aim { pixel, sample, place, cast: cast.is_some().then_some(casts.len()) });
+            casts.extend(cast);
+        }
+    }
+    (aims, casts)
+}
+
+impl Exposure<'_> {
+    /// Makes room for the pixels, and counts the camera's rays.
+    fn count(&mut self, rays: usize, meetings: &Meetings) {
+        let pixels = (self.place.width * self.place.height) as usize;
+        let mut is_hit = vec![false; pixels];
+        meetings.met.iter().for_each(|met| is_hit[self.aim(met.cast).pixel] = true);
+        self.tile.pixels = vec![[0.0; 4]; pixels];
+        self.tile.pixels_hit = is_hit.iter().filter(|&&hit| hit).count() as u64;
+        self.tile.rays.camera = rays as u64;
+        self.tile.evaluations = meetings.evaluations.iter().map(|&count| f64::from(count)).sum();
+    }
+
+    /// The aim of a ray into the region.
+    fn aim(&self, cast: usize) -> Aim {
+        self.aims[self.aim_of[cast]]
+    }
+
+    /// Adds what one of its rays sees to a pixel.
+    fn add(&mut self, pixel: usize, seen: Gathered) {
+        for (sum, seen) in self.tile.pixels[pixel].iter_mut().zip(seen) {
+            *sum += seen;
+        }
+    }
+
+    /// The surface in light, and its shadow on the ground.
+    fn light(&mut self, meetings: &Meetings, casts: &[Ray]) -> Result<(), RenderError> {
+        let (place, frame) = (self.place, self.frame);
+        let (colors, cost) = surfaces(frame, &meetings.met, |met| {
+            let aim = self.aim(met.cast);
+            (place.pixel(aim.pixel), aim.sample, casts[met.cast].direction)
+        })?;
+        self.tile.rays.shadow += cost.rays.shadow;
+        self.tile.rays.sky += cost.rays.sky;
+        self.tile.evaluations += cost.evaluations;
+        for (met, [red, green, blue]) in meetings.met.iter().zip(colors) {
+            self.add(self.aim(met.cast).pixel, [red, green, blue, 1.0]);
+        }
+        if frame.ground.is_some() && frame.render.quality != Quality::Draft {
+            self.ground(meetings)?;
+        }
+        Ok(())
+    }
+
+    /// Shadows where no surface is.
+    fn ground(&mut self, meetings: &Meetings) -> Result<(), RenderError> {
+        let mut is_met = vec![false; self.aim_of.len()];
+        meetings.met.iter().for_each(|met| is_met[met.cast] = true);
+        // One place of a pixel stands for all of them: shadows on the ground have no rims.
+        let (mut places, mut pixels): (Vec<Ground>, Vec<(usize, f32)>) = (Vec::new(), Vec::new());
+        for aim in self.aims.iter().filter(|aim| !aim.cast.is_some_and(|cast| is_met[cast])) {
+            let Some(position) = self.frame.on_ground(aim.place[0], aim.place[1]) else { continue };
+            if let Some((_, rays)) = pixels.last_mut().filter(|(pixel, _)| *pixel == aim.pixel) {
+                *rays += 1.0;
+            } else if fade(self.frame, position) > 0.0 {
+                places.push(Ground { position, pixel: self.place.pixel(aim.pixel), sample: aim.sample });
+                pixels.push((aim.pixel, 1.0));
+            }
+        }
+        let (shadows, cost) = shadows(self.frame, &places)?;
+        self.tile.rays.shadow += cost.rays.shadow;
+        self.tile.rays.sky += cost.rays.sky;
+        self.tile.evaluations += cost.evaluations;
+        for ((pixel, rays), shadow) in pixels.into_iter().zip(shadows) {
+            self.add(pixel, shadow.map(|part| part * rays));
+        }
+        Ok(())
+    }
+
+    /// A number or colour of the surface as it is.
+    fn show(&mut self, meetings: &Meetings) {
+        for met in &meetings.met {
+            let [a, b, c] = match &self.frame.render.mode {
+                Mode::Normal => met.normal.map(|x| (0.5 + 0.5 * x) as f32),
+                Mode::Depth => [self.frame.camera.depth(met.position) as f32, 0.0, 0.0],
+                Mode::Shaded | Mode::Attribute(_) | Mode::Evaluations => met.paint,
+            };
+            self.add(self.aim(met.cast).pixel, [a, b, c, 1.0]);
+        }
+    }
+
+    /// What the rays took: the sum of a pixel, whatever the number of its rays.
+    fn charge(&mut self, meetings: &Meetings) {
+        let rays = (self.frame.render.antialias * self.frame.render.antialias) as f32;
+        for aim in self.aims.clone() {
+            let evaluations = aim.cast.map_or(0.0, |cast| meetings.evaluations[cast]);
+            self.add(aim.pixel, [evaluations * rays, 0.0, 0.0, 1.0]);
+        }
+    }
+}
