@@ -58,9 +58,9 @@ mod tests {
     #[test]
     fn points_under_similarities_have_circles() {
         let text = b"jbt 1 sum {
-            point { center (1 0 0) radius 1 }
-            translate (0 2 0) { scale 2 { color (1 0 0) { point { center (0.5 0 0.3) radius 0.5 } } } }
-            point { center (0 0 5) radius 1 }
+            point { at (1 0 0) radius 1 }
+            translate (0 2 0) { scale 2 { color (1 0 0) { point { at (0.5 0 0.3) radius 0.5 } } } }
+            point { at (0 0 5) radius 1 }
             segment { from (0 0 0) to (1 0 0) radius 1 }
             twist axis z rate 1 { point { radius 1 } }
         }";

@@ -17,6 +17,7 @@ use super::shade;
 use super::slicer::{SliceError, Slicer};
 use crate::error::EvalError;
 use crate::evaluator::Evaluator;
+use crate::kernel::Engine;
 use crate::picture::Picture;
 use crate::polygonize::Fineness;
 use crate::prune::Region;
@@ -26,13 +27,21 @@ use crate::solid::progress::Progress;
 /// The largest [`ImageDetail::samples`].
 pub const MAX_SAMPLES: usize = 8;
 
-/// Pixels along the side of the smallest squares: a block of machine code has as many points.
-const BLOCK: u32 = 4;
+/// Pixels along the side of the smallest squares: an engine takes about as many points at once.
+const fn block(engine: Engine) -> u32 {
+    match engine {
+        Engine::Scalar | Engine::Jit => 4,
+        Engine::Lanes => 8,
+    }
+}
+
 /// Halvings of a side at once: 16 parts are asked about in one call.
 const STEP: u32 = 2;
 /// Points times ops of a square up to which its points are evaluated at once, because to divide it would take longer: with 100 ops a point that is at 16 x 16
 /// points, with 1,000 at 8 x 8.
 const CHEAP: u64 = 100_000;
+/// The same for each table of the program: finding its rows takes as long, whether there are any or not.
+const CHEAP_FOR_A_TABLE: u64 = 3_000;
 
 /// How finely an image is made.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -127,7 +136,8 @@ impl<'a> Canvas<'a> {
     }
 
     fn plan(&self) -> Plan {
-        Plan { cells: self.pixels().map(|pixels| pixels as u32), leaf: BLOCK, step: STEP, keep: false }
+        let leaf = block(self.slicer.engine());
+        Plan { cells: self.pixels().map(|pixels| pixels as u32), leaf, step: STEP, keep: false }
     }
 
     /// The points of a square: the first one, and those behind the last one.
@@ -148,7 +158,8 @@ impl<'a> Canvas<'a> {
     /// Whether the points of a square are evaluated sooner than it is divided.
     fn is_cheap(&self, square: &Square, region: &Region) -> bool {
         let points = (self.samples * self.samples) as u64 * u64::from(square.size) * u64::from(square.size);
-        points.saturating_mul(self.slicer.field.ops_in(region)) <= CHEAP
+        let tables = self.slicer.field.program().function().tables.len() as u64;
+        points.saturating_mul(self.slicer.field.ops_in(region)) <= CHEAP + CHEAP_FOR_A_TABLE * tables
     }
 
     /// The pixel (in its square) of each of the points of a square, in their order.

@@ -14,7 +14,7 @@ use crate::error::EvalError;
 /// Evaluations of a vertex at most.
 const ROUNDS: usize = 24;
 /// The field is the iso-value, if it differs from it by not more than this part of what the ends of the edge differ by.
-const TOLERANCE: f64 = 1e-6;
+const TOLERANCE: f64 = 1e-5;
 /// A place is known, if the ends are not farther apart than this part of the edge: where the field jumps.
 const WIDTH: f64 = 1.0 / 16384.0;
 /// How near a vertex may come to the end of its edge, in lengths of the edge. So no two vertices are at the same place.
@@ -152,9 +152,9 @@ mod tests {
         let (at, count) = root(|x| 1.0 - x);
         assert!((at - 0.5).abs() < 1e-6 && count == 1, "{at} {count}");
         let (at, count) = root(|x| 1.0 - x * x);
-        assert!((at - 0.5_f64.sqrt()).abs() < 2e-6 && count <= 5, "{at} {count}");
+        assert!((at - 0.5_f64.sqrt()).abs() < 3e-5 && count <= 6, "{at} {count}");
         let (at, count) = root(|x| (-10.0 * x * x).exp());
-        assert!((at - (0.5_f64.ln() / -10.0).sqrt()).abs() < 1e-5 && count <= 12, "{at} {count}");
+        assert!((at - (0.5_f64.ln() / -10.0).sqrt()).abs() < 1e-4 && count <= 12, "{at} {count}");
     }
 
     #[test]

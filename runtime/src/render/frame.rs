@@ -1,9 +1,11 @@
 //! What all tiles of a picture share: the camera, what is looked at, the ground, and how exact rays are.
 
+use rayon::prelude::*;
+
 use super::camera::{Camera, Stance, View, is_usable};
 use super::cast::cast;
 use super::shade::Lights;
-use super::vector::{Vector, along, dot, length, sub};
+use super::vector::{Vector, add, along, dot, length, scale, sub, tangents};
 use super::{Mode, Quality, Render, RenderError, Renderer};
 use crate::region::Box3;
 use crate::trace::Ray;
@@ -29,8 +31,8 @@ pub struct Frame<'a> {
     pub lights: Lights,
 }
 
-/// The tolerance of the bounds, as a part of the region's longest side.
-const COARSE: f32 = 1.0 / 64.0;
+/// The tolerance of the bounds, as a part of the region's longest side: rays find out the rest.
+const COARSE: f32 = 1.0 / 8.0;
 /// Rays along the longer side of the coarse picture that finds out how the model fills a view.
 const SCOUTS: u32 = 96;
 /// The share of the model's radius that is the nearest distance a pixel's size is measured at.
@@ -47,7 +49,6 @@ impl<'a> Frame<'a> {
         let corners = corners(&bounds);
         let (low, high) = (bounds.low.map(f64::from), bounds.high.map(f64::from));
         let up = render.view.upwards();
-        let lowest = corners.iter().map(|&corner| dot(corner, up)).fold(f64::INFINITY, f64::min);
         let with_ground = render.ground && render.mode == Mode::Shaded && render.quality != Quality::Draft;
         let camera = render.view.camera(render.aspect(), &corners)?;
         let mut frame = Self {
@@ -60,17 +61,47 @@ impl<'a> Frame<'a> {
             middle: [0, 1, 2].map(|axis| 0.5 * (low[axis] + high[axis])),
             radius: 0.5 * length(sub(high, low)),
             up,
-            ground: with_ground.then_some(lowest),
+            ground: None,
             lights: Lights::new(&camera, up),
         };
         if let Stance::From(_) = render.view.stance {
             frame.fit(&corners)?;
         }
         frame.set_tolerance(render.size[1], render.view.zoom)?;
-        // The plane of the ground is seen from above alone.
-        frame.ground = frame.ground.filter(|&height| dot(frame.camera.eye, up) > height);
+        if with_ground {
+            // The plane of the ground is seen from above alone.
+            frame.ground = Some(frame.lowest(&corners)?).filter(|&height| dot(frame.camera.eye, up) > height);
+        }
         frame.check_eye()?;
         Ok(Some(frame))
+    }
+
+    /// How low the model reaches, found out by a coarse picture from below.
+    fn lowest(&self, corners: &[Vector]) -> Result<f64, RenderError> {
+        let up = self.up;
+        let [right, ahead] = tangents(up);
+        let range = |axis: Vector| {
+            let along = corners.iter().map(|&corner| dot(corner, axis));
+            along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
+        };
+        let [[x0, x1], [y0, y1], [bottom, _]] = [right, ahead, up].map(range);
+        let start = bottom - self.radius;
+        let scouted = |row: u32| -> Result<f64, RenderError> {
+            let at = |index: u32, low: f64, high: f64| {
+                low + (high - low) * (f64::from(index) + 0.5) / f64::from(SCOUTS)
+            };
+            let rays: Vec<Ray> = (0..SCOUTS)
+                .filter_map(|column| {
+                    let place = add(scale(right, at(column, x0, x1)), scale(ahead, at(row, y0, y1)));
+                    self.clip(add(place, scale(up, start)), up)
+                })
+                .collect();
+            let met = cast(self, &rays)?.met;
+            Ok(met.iter().map(|met| dot(met.position, up)).fold(f64::INFINITY, f64::min))
+        };
+        let rows: Vec<f64> = (0..SCOUTS).into_par_iter().map(scouted).collect::<Result<_, _>>()?;
+        let lowest = rows.into_iter().fold(f64::INFINITY, f64::min);
+        Ok(if lowest.is_finite() { lowest } else { bottom })
     }
 
     /// Moves the camera so that what is seen of the model fills the picture, found out by a coarse picture of all of it.
@@ -81,8 +112,7 @@ impl<'a> Frame<'a> {
         let aspect = self.render.aspect();
         let [columns, rows] = [aspect.min(1.0), (1.0 / aspect).min(1.0)]
             .map(|part| ((f64::from(SCOUTS) * part).round() as u32).max(8));
-        let mut seen: Vec<Vector> = Vec::new();
-        for row in 0..rows {
+        let scouted = |row: u32| -> Result<Vec<Vector>, RenderError> {
             let rays: Vec<Ray> = (0..columns)
                 .filter_map(|column| {
                     let [x, y] = [(column, columns), (row, rows)]
@@ -90,8 +120,10 @@ impl<'a> Frame<'a> {
                     self.cast(x, y)
                 })
                 .collect();
-            seen.extend(cast(self, &rays)?.met.iter().map(|met| met.position));
-        }
+            Ok(cast(self, &rays)?.met.iter().map(|met| met.position).collect())
+        };
+        let seen: Vec<Vec<Vector>> = (0..rows).into_par_iter().map(scouted).collect::<Result<_, _>>()?;
+        let seen = seen.concat();
         let points = if seen.is_empty() { corners } else { &seen };
         self.camera = self.render.view.camera(aspect, points)?;
         Ok(())

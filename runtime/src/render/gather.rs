@@ -54,9 +54,9 @@ const REACH: f64 = 0.7;
 /// The golden ratio's inverse: lengths of rays to the sky follow its multiples.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
-/// The light that reaches spots.
-pub fn gather(frame: &Frame<'_>, spots: &[Spot]) -> Result<(Vec<Light>, Cost), RenderError> {
-    let [key_rays, sky_rays] = frame.render.quality.rays();
+/// The light that reaches spots, each of which stands for so many rays of its pixel.
+pub fn gather(frame: &Frame<'_>, spots: &[Spot], rays: u32) -> Result<(Vec<Light>, Cost), RenderError> {
+    let [key_rays, sky_rays] = frame.render.quality.rays().map(|count| count * rays);
     let mut cost = Cost::default();
     let mut lights: Vec<Light> = spots.iter().map(|spot| unshadowed(frame, spot)).collect();
     if key_rays > 0 {

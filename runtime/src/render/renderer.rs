@@ -12,7 +12,6 @@ use crate::trace::Tracer;
 ///
 /// It is `Send + Sync`: threads may share it.
 pub struct Renderer {
-    compiler: Compiler,
     pub(super) tracer: Tracer,
     pub(super) solid: Solid,
     /// What answers where a region cuts the solid: there is no surface to hit.
@@ -25,7 +24,11 @@ impl Renderer {
     /// # Errors
     /// The model is beyond a limit, or the engine cannot be had.
     pub fn new(compiler: &Compiler, tree: &CheckedTree) -> Result<Self, CompileError> {
-        Self::of(compiler, tree, Tracer::new(compiler, tree, Query::ALL)?)
+        Ok(Self {
+            tracer: Tracer::new(compiler, tree, Query::ALL)?,
+            solid: Solid::new(compiler, tree)?,
+            evaluator: compiler.evaluator(tree, Query::ALL)?,
+        })
     }
 
     /// A renderer for another model, usually an edited one. If it has the shape of this one, nothing is compiled.
@@ -33,15 +36,10 @@ impl Renderer {
     /// # Errors
     /// Those of [`new`](Self::new).
     pub fn updated(&self, tree: &CheckedTree) -> Result<Self, CompileError> {
-        Self::of(&self.compiler, tree, self.tracer.updated(tree)?)
-    }
-
-    fn of(compiler: &Compiler, tree: &CheckedTree, tracer: Tracer) -> Result<Self, CompileError> {
         Ok(Self {
-            compiler: compiler.clone(),
-            tracer,
-            solid: Solid::new(compiler, tree)?,
-            evaluator: compiler.evaluator(tree, Query::ALL)?,
+            tracer: self.tracer.updated(tree)?,
+            solid: self.solid.updated(tree)?,
+            evaluator: self.evaluator.updated(tree)?,
         })
     }
 

@@ -77,7 +77,7 @@ pub fn surfaces(
             spot(frame, met.position, met.normal, pixel, sample)
         })
         .collect();
-    let (lights, cost) = gather(frame, &spots)?;
+    let (lights, cost) = gather(frame, &spots, 1)?;
     let colors = met.iter().zip(lights).map(|(met, light)| surface(frame, met, light, seen(met).2));
     Ok((colors.collect(), cost))
 }
@@ -112,7 +112,8 @@ pub struct Ground {
 pub fn shadows(frame: &Frame<'_>, places: &[Ground]) -> Result<(Vec<[f32; 4]>, Cost), RenderError> {
     let spots: Vec<Spot> =
         places.iter().map(|place| spot(frame, place.position, frame.up, place.pixel, place.sample)).collect();
-    let (lights, cost) = gather(frame, &spots)?;
+    let rays = frame.render.antialias * frame.render.antialias;
+    let (lights, cost) = gather(frame, &spots, rays)?;
     let strength = |light: &Light| {
         let sum = |channel: usize| KEY[channel] * light.facing + light.sky[channel];
         sum(0) + sum(1) + sum(2)

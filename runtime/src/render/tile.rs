@@ -185,7 +185,7 @@ impl Exposure<'_> {
             if let Some((_, rays)) = pixels.last_mut().filter(|(pixel, _)| *pixel == aim.pixel) {
                 *rays += 1.0;
             } else if fade(self.frame, position) > 0.0 {
-                places.push(Ground { position, pixel: self.place.pixel(aim.pixel), sample: aim.sample });
+                places.push(Ground { position, pixel: self.place.pixel(aim.pixel), sample: 0 });
                 pixels.push((aim.pixel, 1.0));
             }
         }

@@ -87,6 +87,19 @@ impl Solid {
         })
     }
 
+    /// The same for another model, usually an edited one. If it has the shape of this one, nothing is compiled.
+    ///
+    /// # Errors
+    /// Those of [`new`](Self::new).
+    pub fn updated(&self, tree: &CheckedTree) -> Result<Self, CompileError> {
+        Ok(Self {
+            tree: tree.clone(),
+            iso: tree.iso() as f32,
+            pruner: self.pruner.updated(tree)?,
+            field: self.field.updated(tree)?,
+        })
+    }
+
     /// The model.
     #[must_use]
     pub fn tree(&self) -> &CheckedTree {
