@@ -119,7 +119,7 @@ impl Task {
     }
 }
 
-fn peer_threads(options: Options) -> Threads {
+pub(super) fn peer_threads(options: Options) -> Threads {
     if options.threads == 1 { Threads::One } else { Threads::All }
 }
 

@@ -10,10 +10,12 @@ mod contest;
 mod dense;
 mod mesh;
 mod oracle;
+mod picture;
 mod report;
 mod rows;
 mod train;
 
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 pub use contest::{Contestant, Effort, Standing, Standings};
@@ -38,6 +40,14 @@ impl Options {
         };
         Effort { budget, patience, endurance }
     }
+}
+
+/// A file of the samples, if it is here: in the folder that `JBT_SAMPLES` names, or beside the repository.
+fn sample(name: &str) -> Result<Vec<u8>, String> {
+    let root = std::env::var_os("JBT_SAMPLES")
+        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/samples"), PathBuf::from);
+    std::fs::read(root.join(name))
+        .map_err(|error| format!("no {name} in the folder that JBT_SAMPLES names: {error}"))
 }
 
 /// A case.
@@ -91,6 +101,16 @@ impl Case {
             name: "train",
             what: "the field of the ParsIP train on its lattice, cell 0.13",
             run: train::train,
+        },
+        Self {
+            name: "prospero",
+            what: "a page of text by 7,866 instructions, 1024 x 1024 pixels",
+            run: picture::prospero,
+        },
+        Self {
+            name: "picture",
+            what: "512 blobs seen along z after an edit, 512 x 512 pixels with normals",
+            run: picture::blobs,
         },
         Self {
             name: "scaling",

@@ -1,17 +1,16 @@
 //! A real scene: the locomotive of ParsIP (95 leaves, 31 operators) at every point of the lattice that it was published with.
 
 use std::cell::RefCell;
-use std::path::{Path, PathBuf};
 
 use jbt::{Compiler, Points, Query};
 use jbt_frontend::check::CheckedTree;
 use jbt_frontend::import;
 use serde_json::json;
 
-use super::Options;
 use super::contest::{Contest, Contestant, Standings};
 use super::oracle::{Oracle, Tolerance};
 use super::report::Row;
+use super::{Options, sample};
 use crate::naive::Walker;
 
 /// The edge of a cell.
@@ -23,10 +22,7 @@ const PUBLISHED: f64 = 2.6e6;
 
 /// The scene, if it is here: in the folder that `JBT_SAMPLES` names, or beside the repository.
 fn scene() -> Result<CheckedTree, String> {
-    let root = std::env::var_os("JBT_SAMPLES")
-        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/samples"), PathBuf::from);
-    let bytes = std::fs::read(root.join(SCENE))
-        .map_err(|error| format!("no {SCENE} in the folder that JBT_SAMPLES names: {error}"))?;
+    let bytes = sample(SCENE)?;
     let imported = import::parsip(&bytes).map_err(|_| "the scene has errors".to_owned())?;
     imported.model.check().map_err(|_| "the model has errors".to_owned())
 }

@@ -18,6 +18,7 @@
 use fidget::context::{Context, Node};
 use fidget::eval::{BulkEvaluator, Function, MathFunction};
 use fidget::mesh::{Octree, Settings};
+use fidget::raster::{pixel, voxel};
 use fidget::render::{CancelToken, RenderHints, ThreadPool};
 use fidget::shape::{BoundShape, EzShape, Shape, ShapeBulkEval, ShapeTape};
 use fidget::types::Grad;
@@ -193,14 +194,56 @@ impl<F: MathFunction + RenderHints> FidgetModel<F> {
     #[must_use]
     pub fn mesh(&self, depth: u8, threads: Threads) -> MeshSize {
         let shape: BoundShape<'_, F, f32> = self.surface.clone().try_into().expect("x, y and z alone");
-        let threads = match threads {
-            Threads::One => None,
-            Threads::All => Some(&ThreadPool::Global),
-        };
-        let settings = Settings { depth, threads, cancel: CancelToken::new(), ..Settings::default() };
+        let settings =
+            Settings { depth, threads: pool(threads), cancel: CancelToken::new(), ..Settings::default() };
         let octree = Octree::build(&shape, &settings).expect("nobody cancels");
         let mesh = octree.walk_dual();
         MeshSize { triangles: mesh.triangles.len(), vertices: mesh.vertices.len() }
+    }
+}
+
+impl<F: MathFunction + RenderHints> FidgetModel<F> {
+    /// A picture of the cube [-1, 1]^3 along z, of so many pixels along each side: the depth and the gradient of each. How many pixels see the
+    /// surface. Code is made on the way.
+    #[must_use]
+    pub fn picture(&self, side: u32, threads: Threads) -> usize {
+        let shape: BoundShape<'_, F, f32> = self.surface.clone().try_into().expect("x, y and z alone");
+        let config = voxel::RenderConfig::from_size(side.into());
+        let settings = voxel::EvalConfig { threads: pool(threads), ..Default::default() };
+        let image = voxel::render(shape, &config, &settings).expect("nobody cancels");
+        image.iter().filter(|pixel| pixel.depth > 0).count()
+    }
+}
+
+/// A program of instructions (`.vm`), negative inside.
+pub struct FidgetProgram<F>(Shape<F>);
+
+impl<F: MathFunction + RenderHints> FidgetProgram<F> {
+    /// Reads a program.
+    ///
+    /// # Errors
+    /// What fidget says about it.
+    pub fn new(text: &[u8]) -> Result<Self, String> {
+        let (context, root) = Context::from_text(text).map_err(|error| error.to_string())?;
+        Shape::new(&context, root).map(Self).map_err(|error| error.to_string())
+    }
+
+    /// The square [-1, 1]^2 of the plane z = 0, of so many pixels along each side: how many are inside. Code is made on the way.
+    #[must_use]
+    pub fn inside(&self, side: u32, threads: Threads) -> usize {
+        let shape: BoundShape<'_, F, f32> = self.0.clone().try_into().expect("x, y and z alone");
+        let config = pixel::RenderConfig::from_size(side.into());
+        let settings = pixel::EvalConfig { threads: pool(threads), ..Default::default() };
+        let image = pixel::render(shape, &config, &settings).expect("nobody cancels");
+        image.iter().filter(|pixel| pixel.inside()).count()
+    }
+}
+
+/// Fidget's way to say on which threads.
+fn pool(threads: Threads) -> Option<&'static ThreadPool> {
+    match threads {
+        Threads::One => None,
+        Threads::All => Some(&ThreadPool::Global),
     }
 }
 

@@ -1,0 +1,185 @@
+//! Pictures: a slice of a long program, and blobs seen from a side.
+
+use std::cell::{Cell, RefCell};
+use std::time::Instant;
+
+use jbt::contour::{ImageDetail, Plane, Rectangle, Slicer};
+use jbt::render::{Mode, Render, Renderer, View};
+use jbt::{Box3, Compiler, Engine, Fineness, Points, Query};
+use jbt_frontend::check::CheckedTree;
+use jbt_frontend::import;
+use jbt_frontend::walk::walk;
+use serde_json::json;
+
+use super::contest::{Contest, Contestant, Standings};
+use super::mesh::peer_threads;
+use super::report::Row;
+use super::{Options, sample};
+use crate::model;
+use crate::peers::fidget::{FidgetModel, FidgetProgram, Gate, JitFunction, VmFunction};
+
+/// The program, in the folder of samples: "Text of a monologue from The Tempest" (Keeter).
+const PROGRAM: &str = "vm/prospero.vm";
+/// Pixels along a side of its picture.
+const SIDE: u32 = 1024;
+/// Pixels of it that are compared with the oracle.
+const LOOKS: usize = 500;
+/// Where the field is nearer to the surface than this, f32 may see the other side.
+const NEAR: f64 = 1e-4;
+/// The part of the pixels by which contestants may differ: their pixels are half a pixel off each other.
+const PIXELS_OFF: f64 = 0.02;
+/// Points at which engines are timed.
+const POINTS: usize = 1 << 14;
+
+/// Blobs that are seen, and pixels along a side.
+const BLOBS: usize = 512;
+const PICTURE: u32 = 512;
+
+fn pool(options: Options) -> rayon::ThreadPool {
+    rayon::ThreadPoolBuilder::new().num_threads(options.threads).build().expect("threads can be made")
+}
+
+/// Which pixels of a slice are inside.
+pub(super) fn prospero(options: Options) -> Vec<Row> {
+    let pixels = (SIDE * SIDE) as usize;
+    let row = |primitives, standings, extra| Row {
+        case: "prospero",
+        primitives,
+        points: pixels,
+        unit: "run",
+        units: 1.0,
+        standings,
+        extra,
+    };
+    let (bytes, tree) = match program() {
+        Ok(program) => program,
+        Err(reason) => {
+            let standings = Standings { standings: Vec::new(), disagreements: vec![reason] };
+            return vec![row(0, standings, Vec::new())];
+        }
+    };
+    let plane: Plane = "z=0".parse().expect("a plane");
+    let start = Instant::now();
+    let slicer = Slicer::new(&Compiler::new(), &tree, &plane, Query::FIELD).expect("the program compiles");
+    let compile = start.elapsed();
+    let square = Rectangle::new([-1.0; 2], [1.0; 2]).expect("the corners are in order");
+    let detail = ImageDetail { fineness: Fineness::Resolution(SIDE as usize), samples: 1 };
+    let pool = pool(options);
+    let image = RefCell::new(Vec::new());
+    let ours = || {
+        let made = pool.install(|| slicer.inside(&square, &detail, &mut |_| true));
+        *image.borrow_mut() = made.expect("the slice has a picture").values;
+    };
+    ours();
+    let inside = image.borrow().iter().filter(|&&part| part > 0).count();
+    let jit = FidgetProgram::<JitFunction>::new(&bytes).expect("fidget reads the program");
+    let vm = FidgetProgram::<VmFunction>::new(&bytes).expect("fidget reads the program");
+    let mut contest = Contest::new();
+    contest.enter_checked(Contestant::Ours, "", ours, |(): &()| check(&tree, &image.borrow()));
+    let near = |count: &usize| {
+        let off = (*count as f64 / inside as f64 - 1.0).abs();
+        if off < PIXELS_OFF { Ok(()) } else { Err(format!("{count} pixels are inside, and not {inside}")) }
+    };
+    let threads = peer_threads(options);
+    contest.enter_checked(Contestant::FidgetJit, "", || jit.inside(SIDE, threads), near);
+    contest.enter_checked(Contestant::FidgetVm, "", || vm.inside(SIDE, threads), near);
+    let [lanes, machine] = [Engine::Lanes, Engine::Jit].map(|engine| nanoseconds(&tree, engine));
+    let extra = vec![
+        ("threads", json!(options.threads)),
+        ("compile_ms", json!(compile.as_secs_f64() * 1e3)),
+        ("lanes_ns_per_point", json!(lanes)),
+        ("jit_ns_per_point", json!(machine)),
+    ];
+    vec![row(bytes.iter().filter(|&&byte| byte == b'\n').count() - 1, contest.run(options.effort()), extra)]
+}
+
+/// The program's text, and its model.
+fn program() -> Result<(Vec<u8>, CheckedTree), String> {
+    let bytes = sample(PROGRAM)?;
+    let imported = import::vm(&bytes).map_err(|_| "the program has errors".to_owned())?;
+    let tree = imported.model.check().map_err(|_| "the model has errors".to_owned())?;
+    Ok((bytes, tree))
+}
+
+/// Compares some pixels with the oracle. The first row is at the top.
+fn check(tree: &CheckedTree, image: &[u8]) -> Result<(), String> {
+    let side = SIDE as usize;
+    let at = |index: usize| (index as f64 + 0.5) / f64::from(SIDE) * 2.0 - 1.0;
+    for index in (0..image.len()).step_by(image.len() / LOOKS + 1) {
+        let (x, y) = (at(index % side), -at(index / side));
+        let above = walk(tree, [x, y, 0.0]).field - tree.iso();
+        if above.abs() > NEAR && (above > 0.0) != (image[index] > 0) {
+            return Err(format!(
+                "the pixel at ({x}, {y}) is on the wrong side: the field is {above} above iso"
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Nanoseconds that the field takes at a point, unpruned, on one thread: the least of some runs.
+fn nanoseconds(tree: &CheckedTree, engine: Engine) -> f64 {
+    let evaluator = Compiler::for_engine(engine).evaluator(tree, Query::FIELD).expect("it compiles");
+    let flat = |[x, y, _]: [f32; 3]| [x, y, 0.0];
+    let cube = model::cube(POINTS, 3);
+    let points: Points = (0..cube.len()).map(|index| flat(cube.get(index))).collect();
+    let mut samples = evaluator.samples();
+    let run = || {
+        let start = Instant::now();
+        evaluator.eval(&points, &mut samples).expect("the buffers fit");
+        start.elapsed().as_secs_f64() * 1e9 / POINTS as f64
+    };
+    std::iter::repeat_with(run).take(7).fold(f64::INFINITY, f64::min)
+}
+
+/// A picture with normals of blobs, one of which has just been edited.
+pub(super) fn blobs(options: Options) -> Vec<Row> {
+    let blobs = model::blobs(BLOBS, 1);
+    let mut edited = blobs.clone();
+    edited[0].radius *= 1.1;
+    let trees = [&blobs, &edited].map(|blobs| model::tree(blobs));
+    let renderer = RefCell::new(Renderer::new(&Compiler::new(), &trees[0]).expect("blobs compile"));
+    let view = View { orthographic: true, ..View::named("top").expect("it is a view") };
+    let render = Render {
+        size: [PICTURE; 2],
+        view,
+        mode: Mode::Normal,
+        quality: jbt::render::Quality::Draft,
+        antialias: 1,
+        region: Some(Box3::new([-1.0; 3], [1.0; 3])),
+        ..Render::default()
+    };
+    let pool = pool(options);
+    let turn = Cell::new(0);
+    let ours = || {
+        turn.set(1 - turn.get());
+        let updated = renderer.borrow().updated(&trees[turn.get()]).expect("an edit compiles nothing");
+        *renderer.borrow_mut() = updated;
+        let current = renderer.borrow();
+        let renderer = &*current;
+        let made = pool.install(|| render.with(renderer, &mut |_| true));
+        made.expect("blobs have a picture").report.pixels_hit as usize
+    };
+    let mut contest = Contest::new();
+    let seen = ours();
+    contest.enter(Contestant::Ours, "", Ok(()), ours);
+    let threads = peer_threads(options);
+    for gate in Gate::ALL {
+        let run = move |blobs: &[model::Blob]| {
+            FidgetModel::<JitFunction>::new(blobs, gate).picture(PICTURE, threads)
+        };
+        let edited = &edited;
+        contest.enter(Contestant::FidgetJit, gate.name(), Ok(()), move || run(edited));
+    }
+    let extra = vec![("threads", json!(options.threads)), ("pixels_hit", json!(seen))];
+    let standings = contest.run(options.effort());
+    vec![Row {
+        case: "picture",
+        primitives: BLOBS,
+        points: (PICTURE * PICTURE) as usize,
+        unit: "run",
+        units: 1.0,
+        standings,
+        extra,
+    }]
+}
