@@ -1,5 +1,5 @@
 //! The pages of `docs/` are true: they name every member with all its parameters, their values and defaults; and every scene in them, in
-//! the README and in `docs/members/`, where each member has one that shows it, is a good model.
+//! the README and in `docs/members/`, where each member has one that shows it, is a good model. Every member and every example has its picture.
 
 use std::path::{Path, PathBuf};
 
@@ -262,6 +262,53 @@ fn has_scene(family: &str, name: &str) {
     assert!(words.any(|word| word == name), "{shown} shows `{name}`");
     let support = model(&shown, &text).support();
     assert!(support.low().iter().chain(&support.high()).all(|side| side.abs() < 4.0), "{shown} has an end");
+
+    let picture = format!("pictures/members/{family}/{name}.png");
+    has_picture(&picture);
+    assert!(page(&format!("{family}.md")).contains(&format!("({picture})")), "{family}.md shows {picture}");
+}
+
+/// There is such a file in `docs/`, and it is a picture.
+fn has_picture(name: &str) {
+    let bytes =
+        std::fs::read(root().join("docs").join(name)).unwrap_or_else(|error| panic!("{name}: {error}"));
+    let start: &[u8] = if name.ends_with(".svg") { b"<svg" } else { b"\x89PNG\r\n\x1a\n" };
+    assert!(bytes.starts_with(start), "{name} is a picture");
+}
+
+/// Every example has a picture in the gallery that leads to it, and a caption that begins with its name and its text.
+#[test]
+fn all_examples_are_in_the_gallery() {
+    let gallery = page("gallery.md");
+    for path in entries("examples", "jbt") {
+        let name = path.file_stem().and_then(|stem| stem.to_str()).expect("a name");
+        let shown = format!("<a href=\"../examples/{name}.jbt\"><img src=\"pictures/{name}.png\"");
+        assert!(gallery.contains(&shown), "gallery.md shows `{name}`");
+        let link = format!("[`{name}`](../examples/{name}.jbt). ");
+        let caption = gallery.split_once(&link).map(|(_, rest)| rest.split('|').next().unwrap_or_default());
+        assert!(caption.is_some_and(|caption| caption.len() > 20), "gallery.md says what `{name}` shows");
+    }
+}
+
+/// The pictures of all pages and of the README are there, and none is there that no page shows.
+#[test]
+fn pictures_and_pages_belong_together() {
+    let mut pages: Vec<PathBuf> = entries("docs", "md");
+    pages.push(root().join("README.md"));
+    let texts: Vec<String> =
+        pages.iter().map(|path| std::fs::read_to_string(path).expect("it can be read")).collect();
+    let all = texts.join("\n");
+    for (at, _) in all.match_indices("pictures/") {
+        let name = all[at..].split(['"', ')', '`', ' ', '\n']).next().unwrap_or_default();
+        if name != "pictures/" {
+            has_picture(name);
+        }
+    }
+    let pictures = ["png", "svg"].into_iter().flat_map(|extension| entries("docs/pictures", extension));
+    for path in pictures {
+        let name = format!("pictures/{}", path.file_name().expect("a name").display());
+        assert!(all.contains(&name), "a page shows {name}");
+    }
 }
 
 /// Reads a text and checks it. Panics with all that is wrong.

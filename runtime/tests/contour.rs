@@ -7,7 +7,6 @@ mod common;
 
 use std::collections::HashSet;
 use std::f64::consts::PI;
-use std::time::Instant;
 
 use fastrand::Rng;
 use jbt::build::{Axis, cuboid, point, segment, x, y, z};
@@ -557,62 +556,4 @@ fn a_program_of_instructions_is_drawn_as_its_field_says() {
     evaluator.eval(&points, &mut samples).expect("it evaluates");
     let expected: Vec<u8> = samples.field().iter().map(|&f| if f >= 0.5 { 255 } else { 0 }).collect();
     assert!(image.values == expected, "every pixel is what its point says");
-}
-
-/// What an image of a program takes: `cargo test --release --test contour -- --ignored --nocapture`.
-#[test]
-#[ignore = "it says how long something takes, which nobody asks for in a test"]
-fn what_an_image_of_a_program_takes() {
-    let Some(folder) = common::samples("vm") else { return };
-    let bytes = std::fs::read(folder.join("prospero.vm")).expect("a program");
-    let tree = jbt::import::vm(&bytes).expect("it reads").model.check().expect("a good model");
-    let detail = ImageDetail { fineness: Fineness::Resolution(1024), samples: 1 };
-    for compiler in [Compiler::for_engine(Engine::Jit), Compiler::new()] {
-        let start = Instant::now();
-        let slicer = Slicer::new(&compiler, &tree, &Plane::default(), Query::FIELD).expect("it compiles");
-        println!("compiled in {:?}, runs on {}", start.elapsed(), slicer.engine().name());
-        for _ in 0..2 {
-            let start = Instant::now();
-            slicer.inside(&square(1.0), &detail, &mut |_| true).expect("an image");
-            println!("{:?}", start.elapsed());
-        }
-        println!("{:?}", slicer.counters());
-    }
-    let compiler = Compiler::for_engine(Engine::Jit);
-    let pruner = jbt::Pruner::new(&compiler, &tree).unwrap();
-    let evaluator = compiler.evaluator(&tree, Query::FIELD).unwrap();
-    let mut regions = vec![pruner.everywhere()];
-    println!("all: {} rows, {} ops", regions[0].rows(), evaluator.ops_in(&regions[0]));
-    let mut side = 2.0_f32;
-    let mut boxes = vec![[-1.0_f32, -1.0]];
-    for parts in [4_u8, 4, 4, 2, 2] {
-        let start = Instant::now();
-        side /= f32::from(parts);
-        let (mut next, mut places) = (Vec::new(), Vec::new());
-        for (region, [u, v]) in regions.iter().zip(&boxes) {
-            let low: Vec<[f32; 2]> = (0..parts)
-                .flat_map(|j| (0..parts).map(move |i| [u + side * f32::from(i), v + side * f32::from(j)]))
-                .collect();
-            let cells: Vec<jbt::Box3> =
-                low.iter().map(|[u, v]| jbt::Box3::new([*u, *v, 0.0], [u + side, v + side, 0.0])).collect();
-            let surveyed = pruner.survey(region, &cells, &|[low, high]| low < 0.5 && high >= 0.5).unwrap();
-            for (place, (_, region)) in low.into_iter().zip(surveyed) {
-                if let Some(region) = region {
-                    next.push(region);
-                    places.push(place);
-                }
-            }
-        }
-        (regions, boxes) = (next, places);
-        let ops: Vec<u64> = regions.iter().map(|region| evaluator.ops_in(region)).collect();
-        let rows: usize = regions.iter().map(jbt::Region::rows).sum();
-        let count = regions.len();
-        println!(
-            "side {} px: {count} open, {} ops and {} rows on average, in {:?}",
-            side * 512.0,
-            ops.iter().sum::<u64>() / count as u64,
-            rows / count,
-            start.elapsed()
-        );
-    }
 }

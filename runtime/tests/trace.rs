@@ -349,7 +349,7 @@ struct Tally {
 
 #[test]
 fn random_models_are_hit_where_dense_sampling_says() {
-    let default = if cfg!(debug_assertions) { 12 } else { 1000 };
+    let default = if cfg!(debug_assertions) { 12 } else { 300 };
     let (trees, seed) = (setting("JBT_TRACE_TREES", default), setting("JBT_TRACE_SEED", 0));
     let rays = setting("JBT_TRACE_RAYS", 100) as usize;
     let tally = Tally::default();

@@ -10,7 +10,7 @@ fn folder() -> Folder {
 }
 
 /// Every command on a scene.
-fn commands(scene: &str) -> [Vec<&str>; 7] {
+fn commands(scene: &str) -> [Vec<&str>; 8] {
     [
         vec!["mesh", scene, "-o", "out.glb"],
         vec!["render", scene, "-o", "out.png", "--size", "8"],

@@ -1,4 +1,4 @@
-//! Pictures as Portable Network Graphics: eight bits a channel, in the colours of screens (sRGB).
+//! Pictures as Portable Network Graphics: eight bits a channel, in the colours of screens (sRGB), as small as the format's own filters and compression make them.
 
 use std::io::{self, Write};
 
@@ -13,6 +13,7 @@ pub fn write_png(picture: &Picture, out: &mut dyn Write) -> io::Result<()> {
     let mut encoder = png::Encoder::new(out, picture.width(), picture.height());
     encoder.set_color(if opaque { png::ColorType::Rgb } else { png::ColorType::Rgba });
     encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::High);
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
     let mut writer = encoder.write_header().map_err(plain)?;
     if opaque {

@@ -1,0 +1,88 @@
+//! Makes the file of a picture.
+
+use std::error::Error;
+use std::fs;
+use std::path::Path;
+
+use jbt::contour::{Detail, ImageDetail, Mode, Plane, Slicer, circles};
+use jbt::diagnostic::Source;
+use jbt::export::svg::{Paint, Style, write_svg};
+use jbt::export::write_png;
+use jbt::{CheckedTree, Compiler, Fineness, Picture, Query, text};
+
+use crate::list::{Drawing, Entry, Scene};
+use crate::splash;
+
+/// See [`coarse`].
+const STEP: u8 = 4;
+
+/// The bytes of a picture's file.
+pub fn draw(root: &Path, entry: &Entry) -> Result<Vec<u8>, Box<dyn Error>> {
+    let tree = tree(root, &entry.scene)?;
+    let compiler = Compiler::new();
+    let mut bytes = Vec::new();
+    match &entry.drawing {
+        Drawing::Render(render) => {
+            let made = render.run(&compiler, &tree, &mut |_| true)?;
+            write_png(&coarse(&made.picture), &mut bytes)?;
+        }
+        Drawing::Slice { plane, mode, pixels } => {
+            let query = if matches!(mode, Mode::Attribute(_)) { Query::ATTRIBUTES } else { Query::FIELD };
+            let slicer = Slicer::new(&compiler, &tree, plane, query)?;
+            let detail = ImageDetail { fineness: Fineness::Resolution(*pixels), samples: 1 };
+            let picture = slicer.picture(&slicer.rectangle()?, mode, &detail, &mut |_| true)?;
+            write_png(&coarse(&picture), &mut bytes)?;
+        }
+        Drawing::Quadtree { cells, pixels } => {
+            let plane = Plane::default();
+            let slicer = Slicer::new(&compiler, &tree, &plane, Query::FIELD)?;
+            let detail = Detail { fineness: Fineness::Resolution(*cells), block: Some(1), quadtree: true };
+            let contour = slicer.contour(&slicer.rectangle()?, &detail, &mut |_| true)?;
+            let style = Style {
+                stroke_width: 1.0 / 600.0,
+                fill: Paint::None,
+                quadtree: true,
+                circles: circles(&tree, &plane),
+                pixels: *pixels,
+                ..Style::default()
+            };
+            write_svg(&contour, &style, &mut bytes)?;
+        }
+    }
+    Ok(bytes)
+}
+
+/// The same picture with channels in steps of [`STEP`]: the last bits of soft shadows and slow
+/// gradients take half of a file, and nobody sees them.
+fn coarse(picture: &Picture) -> Picture {
+    let step = |channel: u8| channel.saturating_add(STEP / 2) / STEP * STEP;
+    let white = |channel: u8| if channel > u8::MAX - STEP { u8::MAX } else { step(channel) };
+    let pixels = picture.pixels().iter().map(|pixel| pixel.map(white)).collect();
+    Picture::new(picture.width(), picture.height(), pixels).expect("as many pixels as before")
+}
+
+/// Reads and checks a scene.
+fn tree(root: &Path, scene: &Scene) -> Result<CheckedTree, Box<dyn Error>> {
+    let (name, text) = match scene {
+        Scene::Splash => {
+            return splash::model().check().map_err(|errors| format!("{errors:?}").into());
+        }
+        Scene::File(path) => (path.clone(), fs::read_to_string(path)?),
+        Scene::Readme => {
+            let path = root.join("README.md");
+            let page = fs::read_to_string(&path)?;
+            (path, first_scene(&page))
+        }
+    };
+    let name = name.display().to_string();
+    let source = Source { name: &name, text: text.as_bytes() };
+    let shown = |errors: Vec<_>| errors.iter().map(|error| source.render(error) + "\n").collect::<String>();
+    let model = text::parse(text.as_bytes(), &text::Options::default()).map_err(shown)?;
+    Ok(model.check().map_err(shown)?)
+}
+
+/// The first scene of a page: indented lines that begin with the format.
+fn first_scene(page: &str) -> String {
+    let lines = page.lines().skip_while(|line| *line != "    jbt 1");
+    lines.take_while(|line| line.starts_with("    ")).flat_map(|line| [line, "\n"]).collect()
+}
