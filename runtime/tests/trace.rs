@@ -178,6 +178,19 @@ fn all_space_but_a_ball() {
 }
 
 #[test]
+fn hits_are_inside_where_the_field_jumps() {
+    let block = tracer("jbt 1 color (1 0 0) { expression within (-1 -1 -1) to (1 1 1) { 0.75 } }");
+    for step in 0..150 {
+        let at = f64::from(step) * 0.00917 - 0.9;
+        let hits = block.all(&ray([3.0, at, 0.5 * at], [-1.0, 0.1, 0.05], 9.0), 0.01).unwrap();
+        assert_eq!(hits.len(), 2, "in and out");
+        for hit in hits {
+            assert_eq!((hit.value(), hit.color()), (0.75, Some([1.0, 0.0, 0.0])), "at {:?}", hit.position);
+        }
+    }
+}
+
+#[test]
 fn creases() {
     // Of a ball, what is not in another one.
     let bowl = tracer(

@@ -26,9 +26,7 @@ const CHECKED: u32 = 3;
 pub(super) struct Bracket {
     line: usize,
     times: [f64; 2],
-    /// What the fields at the ends exceed the iso-value by.
-    excess: [f64; 2],
-    /// The same as false position sees them: that of an end that stays is halved.
+    /// What the fields at the ends exceed the iso-value by, as false position sees them: that of an end that stays is halved.
     weighed: [f64; 2],
     /// Which end stayed.
     stayed: Option<usize>,
@@ -52,12 +50,11 @@ impl Bracket {
         let positions = times.map(|t| line.position(t));
         let farthest = positions.as_flattened().iter().fold(0.0, |most: f32, x| most.max(x.abs()));
         let wanted = (PRECISION * tolerance).max(spacing(f64::from(farthest))) / line.length;
-        let excess = fields.map(|field| f64::from(field) - f64::from(iso));
+        let weighed = fields.map(|field| f64::from(field) - f64::from(iso));
         Self {
             line: index,
             times,
-            excess,
-            weighed: excess,
+            weighed,
             stayed: None,
             entering: fields[1] >= iso,
             wanted,
@@ -81,10 +78,9 @@ impl Bracket {
         self.rounds
     }
 
-    /// Where the side changes, as well as can be told: where the line through the ends meets the iso-value.
+    /// Where the ray hits: the end that is inside. Where a field jumps, the other one sees nothing of what is hit.
     pub(super) fn best(&self) -> f64 {
-        let guess = meet(self.times, self.excess);
-        if guess.is_finite() { guess.clamp(self.times[0], self.times[1]) } else { self.middle() }
+        self.times[usize::from(self.entering)]
     }
 
     fn width(&self) -> f64 {
@@ -121,10 +117,8 @@ impl Bracket {
     fn take(&mut self, time: f64, field: f32, iso: f32) {
         let replaced = usize::from((field >= iso) == self.entering);
         let stays = 1 - replaced;
-        let excess = f64::from(field) - f64::from(iso);
         self.times[replaced] = time;
-        self.excess[replaced] = excess;
-        self.weighed[replaced] = excess;
+        self.weighed[replaced] = f64::from(field) - f64::from(iso);
         if self.stayed == Some(stays) {
             self.weighed[stays] *= 0.5;
         }
