@@ -73,7 +73,8 @@ fn compare_point(what: &str, tree: &CheckedTree, point: [f32; 3], fused: &[f64],
 }
 
 /// Those made of what the compared models are made of; the walker knows no formulas and no textures.
-const EXAMPLES: [&str; 8] = ["attributes", "goblet", "hero", "holes", "mood", "peanut", "sharing", "twist"];
+const EXAMPLES: [&str; 9] =
+    ["attributes", "goblet", "hero", "holes", "mood", "blend", "peanut", "circles", "twist"];
 
 #[test]
 fn the_examples() {
