@@ -13,15 +13,14 @@ use serde_json::{Value, json};
 
 use crate::arguments::{ContourArguments, DrawingName, ModeName, PaintName};
 use crate::failure::Failure;
-use crate::output::{Output, grouped, plural, print, tell, warn};
+use crate::output::{Output, Told, grouped, plural, warn};
 use crate::progress::Progress;
 use crate::scene::{Scene, is_standard};
 use crate::threads::in_pool;
 
 /// Runs the command. `start` is when the process began, for the total time.
 pub fn run(arguments: &ContourArguments, quiet: bool, start: Instant) -> Result<(), Failure> {
-    let to_stdout = is_standard(&arguments.output);
-    if to_stdout && arguments.json {
+    if is_standard(&arguments.output) && arguments.json {
         let message = "the slice and the JSON report cannot both go to the standard output";
         return Err(Failure::Usage(message.to_owned()));
     }
@@ -60,17 +59,8 @@ pub fn run(arguments: &ContourArguments, quiet: bool, start: Instant) -> Result<
     }
     warnings.splice(0..0, scene.warnings.iter().cloned());
     let report = Report { made: &made, slicer: &slicer, warnings: &warnings, total: start.elapsed() };
-    if arguments.json {
-        return print(&report.json().to_string());
-    }
-    match (quiet, to_stdout) {
-        (true, _) => Ok(()),
-        (false, true) => {
-            tell(&report.text("<stdout>"));
-            Ok(())
-        }
-        (false, false) => print(&report.text(&arguments.output.display().to_string())),
-    }
+    let told = if arguments.json { Told::Json } else { Told::Text { quiet } };
+    told.report(&arguments.output, || report.json().to_string(), |name| report.text(name))
 }
 
 /// The kind of file by option, else by extension.

@@ -10,7 +10,7 @@ use serde_json::json;
 use crate::arguments::{FormatName, MeshArguments};
 use crate::failure::Failure;
 use crate::lattice;
-use crate::output::{Output, grouped, plural, print, tell, warn};
+use crate::output::{Output, Told, grouped, plural, warn};
 use crate::progress::Progress;
 use crate::scene::{Scene, is_standard};
 use crate::stages;
@@ -18,8 +18,7 @@ use crate::threads::in_pool;
 
 /// Runs the command. `start` is when the process began, for the total time.
 pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(), Failure> {
-    let to_stdout = is_standard(&arguments.output);
-    if to_stdout && arguments.json {
+    if is_standard(&arguments.output) && arguments.json {
         let message = "the mesh and the JSON report cannot both go to the standard output";
         return Err(Failure::Usage(message.to_owned()));
     }
@@ -56,17 +55,8 @@ pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(),
     }
     warnings.splice(0..0, scene.warnings);
     let report = Report { made: &made, warnings: &warnings, total: start.elapsed() };
-    if arguments.json {
-        return print(&format!("{}", report.json()));
-    }
-    match (quiet, to_stdout) {
-        (true, _) => Ok(()),
-        (false, true) => {
-            tell(&report.text("<stdout>"));
-            Ok(())
-        }
-        (false, false) => print(&report.text(&arguments.output.display().to_string())),
-    }
+    let told = if arguments.json { Told::Json } else { Told::Text { quiet } };
+    told.report(&arguments.output, || report.json().to_string(), |name| report.text(name))
 }
 
 /// The format by option, else by extension.

@@ -124,6 +124,35 @@ pub fn print(text: &str) -> Result<(), Failure> {
     writeln!(stdout, "{text}").and_then(|()| stdout.flush()).map_err(Failure::stdout)
 }
 
+/// How a command that writes a file tells what it has done.
+#[derive(Clone, Copy)]
+pub enum Told {
+    /// To machines.
+    Json,
+    /// To people, unless they want quiet.
+    Text { quiet: bool },
+}
+
+impl Told {
+    /// Tells about a result that was written to a path of the command line; people read of it beside the result if that is the standard output.
+    pub fn report(
+        self,
+        path: &Path,
+        json: impl FnOnce() -> String,
+        text: impl FnOnce(&str) -> String,
+    ) -> Result<(), Failure> {
+        match self {
+            Self::Json => print(&json()),
+            Self::Text { quiet: true } => Ok(()),
+            Self::Text { quiet: false } if is_standard(path) => {
+                tell(&text("<stdout>"));
+                Ok(())
+            }
+            Self::Text { quiet: false } => print(&text(&path.display().to_string())),
+        }
+    }
+}
+
 /// Tells people something. Where nobody listens there is nothing to do about it.
 pub fn tell(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{text}");

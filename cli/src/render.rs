@@ -11,15 +11,14 @@ use serde_json::json;
 
 use crate::arguments::{GroundName, RenderArguments};
 use crate::failure::Failure;
-use crate::output::{Output, grouped, plural, print, tell, warn};
+use crate::output::{Output, Told, grouped, plural, warn};
 use crate::progress::Progress;
 use crate::scene::{Scene, is_standard};
 use crate::threads::in_pool;
 
 /// Runs the command. `start` is when the process began, for the total time.
 pub fn run(arguments: &RenderArguments, quiet: bool, start: Instant) -> Result<(), Failure> {
-    let to_stdout = is_standard(&arguments.output);
-    if to_stdout && arguments.json {
+    if is_standard(&arguments.output) && arguments.json {
         let message = "the picture and the JSON report cannot both go to the standard output";
         return Err(Failure::Usage(message.to_owned()));
     }
@@ -50,17 +49,8 @@ pub fn run(arguments: &RenderArguments, quiet: bool, start: Instant) -> Result<(
     }
     warnings.splice(0..0, scene.warnings.iter().cloned());
     let report = Report { made: &made, mode: &settings.mode, warnings: &warnings, total: start.elapsed() };
-    if arguments.json {
-        return print(&report.json().to_string());
-    }
-    match (quiet, to_stdout) {
-        (true, _) => Ok(()),
-        (false, true) => {
-            tell(&report.text("<stdout>"));
-            Ok(())
-        }
-        (false, false) => print(&report.text(&arguments.output.display().to_string())),
-    }
+    let told = if arguments.json { Told::Json } else { Told::Text { quiet } };
+    told.report(&arguments.output, || report.json().to_string(), |name| report.text(name))
 }
 
 /// What the options say.

@@ -11,15 +11,14 @@ use serde_json::json;
 use crate::arguments::SampleArguments;
 use crate::failure::Failure;
 use crate::lattice;
-use crate::output::{Output, grouped, print, tell};
+use crate::output::{Output, Told, grouped};
 use crate::progress::Progress;
 use crate::scene::{Scene, is_standard};
 use crate::threads::in_pool;
 
 /// Runs the command. `start` is when the process began, for the total time.
 pub fn run(arguments: &SampleArguments, quiet: bool, start: Instant) -> Result<(), Failure> {
-    let to_stdout = is_standard(&arguments.output);
-    if to_stdout && arguments.json {
+    if is_standard(&arguments.output) && arguments.json {
         let message = "the samples and the JSON report cannot both go to the standard output";
         return Err(Failure::Usage(message.to_owned()));
     }
@@ -51,17 +50,8 @@ pub fn run(arguments: &SampleArguments, quiet: bool, start: Instant) -> Result<(
         warnings: &scene.warnings,
         total: start.elapsed(),
     };
-    if arguments.json {
-        return print(&report.json().to_string());
-    }
-    match (quiet, to_stdout) {
-        (true, _) => Ok(()),
-        (false, true) => {
-            tell(&report.text("<stdout>"));
-            Ok(())
-        }
-        (false, false) => print(&report.text(&arguments.output.display().to_string())),
-    }
+    let told = if arguments.json { Told::Json } else { Told::Text { quiet } };
+    told.report(&arguments.output, || report.json().to_string(), |name| report.text(name))
 }
 
 /// Whose fault it is that there are no samples.
