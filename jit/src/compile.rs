@@ -8,6 +8,7 @@ use jbt_ir::limits::{MAX_JIT_LIVE_VALUES, MAX_JIT_VALUES};
 use jbt_ir::{Function, Inst, InstKind, Op, Verified};
 
 use crate::memory::Code;
+use crate::strips::Plan;
 use crate::{isa, lower, pressure};
 
 /// Vectors of 4 lanes for each value.
@@ -93,6 +94,9 @@ pub struct Options {
     pub opt_level: OptLevel,
     /// Register allocator.
     pub allocator: Option<Allocator>,
+    /// Instructions of the IR, of each piece that a strip of 64 points runs through before the next piece does. A fold whose body is not
+    /// longer is not cut. `Some(usize::MAX)` for one piece.
+    pub piece: Option<usize>,
 }
 
 /// Why there is no machine code for a function. An interpreter can run it all the same.
@@ -160,9 +164,33 @@ const BACKTRACKING_UP_TO: usize = 100;
 /// halve that, and 16 would take seconds to compile.
 const LONG_FUNCTION: usize = 16_000;
 
+/// A function of at most so many values gains nothing by being cut.
+const WHOLE_UP_TO: usize = 1_000;
+/// Instructions of a piece: its code fits what the processor keeps decoded, and what one block of points waits for in it leaves room for
+/// the next block to begin. From 100 to 500 the speed is the same.
+const PIECE: usize = 200;
+/// Bytes of slots beyond which they would not be in the nearer caches when the next piece reads them.
+const MOST_SLOT_BYTES: usize = 256 << 10;
+
+/// What is made of a function, with nothing left open.
+struct Choice {
+    plan: Plan,
+    vectors: VectorCount,
+    allocator: Allocator,
+}
+
 impl Options {
-    /// Fills in what is open, for a function of which so many values are alive at once.
-    fn choose(&self, function: &Function, live: usize) -> (VectorCount, Allocator) {
+    /// Fills in what is open.
+    ///
+    /// # Errors
+    /// When the function is beyond our limits.
+    fn choose(&self, function: &Function) -> Result<Choice, CompileError> {
+        check(function)?;
+        let plan = self.plan(function);
+        let live = pressure::live_values(function, &plan);
+        if live > MAX_JIT_LIVE_VALUES {
+            return Err(CompileError::LiveValues { live, limit: MAX_JIT_LIVE_VALUES });
+        }
         let long = function.values.len() > LONG_FUNCTION;
         let field = pressure::carried_values(function) <= FIELD_CARRIES;
         let few = if field { TWO_VECTORS_OF_A_FIELD_UP_TO } else { TWO_VECTORS_UP_TO };
@@ -175,16 +203,28 @@ impl Options {
         } else {
             (VectorCount::One, Allocator::Backtracking)
         };
-        (self.vectors.unwrap_or(vectors), self.allocator.unwrap_or(allocator))
+        Ok(Choice {
+            plan,
+            vectors: self.vectors.unwrap_or(vectors),
+            allocator: self.allocator.unwrap_or(allocator),
+        })
+    }
+
+    /// The pieces.
+    fn plan(&self, function: &Function) -> Plan {
+        let is_short = function.values.len() <= WHOLE_UP_TO;
+        let longest = self.piece.unwrap_or(if is_short { usize::MAX } else { PIECE });
+        let plan = Plan::new(function, longest);
+        if plan.slot_bytes() > MOST_SLOT_BYTES { Plan::new(function, usize::MAX) } else { plan }
     }
 }
 
 /// Compiles a function.
 pub(crate) fn compile(function: &Verified, options: &Options) -> Result<(Code, VectorCount), CompileError> {
-    let live = check(function.function())?;
-    let (vectors, allocator) = options.choose(function.function(), live);
+    let function = function.function();
+    let Choice { plan, vectors, allocator } = options.choose(function)?;
     let isa = isa::host(options.opt_level, allocator)?;
-    let code = guard(|| Code::new(lower::lower(function, vectors), isa))??;
+    let code = guard(|| Code::new(lower::lower(function, &plan, vectors), isa))??;
     Ok((code, vectors))
 }
 
@@ -193,9 +233,9 @@ pub(crate) fn compile(function: &Verified, options: &Options) -> Result<(Code, V
 /// # Errors
 /// When the function is beyond our limits.
 pub fn clif(function: &Verified) -> Result<String, CompileError> {
-    let live = check(function.function())?;
-    let (vectors, _) = Options::default().choose(function.function(), live);
-    guard(|| lower::lower(function, vectors).into_function().display().to_string())
+    let function = function.function();
+    let Choice { plan, vectors, .. } = Options::default().choose(function)?;
+    guard(|| lower::lower(function, &plan, vectors).into_function().display().to_string())
 }
 
 /// The machine instructions that [`crate::Kernel::compile_with`] makes of a function, registers chosen, as text.
@@ -203,11 +243,11 @@ pub fn clif(function: &Verified) -> Result<String, CompileError> {
 /// # Errors
 /// Those of [`crate::Kernel::compile_with`].
 pub fn asm(function: &Verified, options: &Options) -> Result<String, CompileError> {
-    let live = check(function.function())?;
-    let (vectors, allocator) = options.choose(function.function(), live);
+    let function = function.function();
+    let Choice { plan, vectors, allocator } = options.choose(function)?;
     let isa = isa::host(options.opt_level, allocator)?;
     guard(|| {
-        let mut context = Context::for_function(lower::lower(function, vectors).into_function());
+        let mut context = Context::for_function(lower::lower(function, &plan, vectors).into_function());
         context.set_disasm(true);
         let compiled = context.compile(&*isa, &mut ControlPlane::default());
         let compiled = compiled.map_err(|error| CompileError::Cranelift(error.inner.to_string()))?;
@@ -215,8 +255,8 @@ pub fn asm(function: &Verified, options: &Options) -> Result<String, CompileErro
     })?
 }
 
-/// Looks for whatever we decline, and returns the number of values that are alive at once.
-fn check(function: &Function) -> Result<usize, CompileError> {
+/// Looks for what we decline before anything is planned.
+fn check(function: &Function) -> Result<(), CompileError> {
     let values = function.values.len();
     if values > MAX_JIT_VALUES {
         return Err(CompileError::Values { values, limit: MAX_JIT_VALUES });
@@ -232,11 +272,7 @@ fn check(function: &Function) -> Result<usize, CompileError> {
             | InstKind::Fold(_) => {}
         }
     }
-    let live = pressure::live_values(function);
-    if live > MAX_JIT_LIVE_VALUES {
-        return Err(CompileError::LiveValues { live, limit: MAX_JIT_LIVE_VALUES });
-    }
-    Ok(live)
+    Ok(())
 }
 
 /// Cranelift panics where one of its own limits is exceeded. Ours are below those; this is for the case that they are not.

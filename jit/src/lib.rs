@@ -50,6 +50,7 @@ mod isa;
 mod lower;
 mod memory;
 mod pressure;
+mod strips;
 mod vectors;
 
 pub use compile::{Allocator, CompileError, OptLevel, Options, VectorCount, asm, clif};

@@ -1,9 +1,13 @@
-//! From the IR to Cranelift's: blocks of points outside, folds inside, ops by [`Vectors`].
+//! From the IR to Cranelift's: strips of points outside, then pieces of the function, then blocks of points, then folds; ops by
+//! [`Vectors`].
 //!
 //! ```text
 //! entry(planes, bytes, tables):
-//!     jump points(0)
-//! points(offset):                                   once for each block of 4 K points
+//!     jump strip(0)
+//! strip(start):                                     once for each strip; once in all if the function is one piece
+//!     end = min(start + strip bytes, bytes)
+//!     jump points(start)
+//! points(offset):                                   a piece, once for each block of 4 K points
 //!     v0 = load planes[0] + offset                  an input
 //!     begin, end = active + starts[parent row]
 //!     jump header(begin, initial)
@@ -14,26 +18,31 @@
 //!     ...
 //!     jump header(cursor + 4, next)
 //! exit:                                             the accumulators are the fold's results
-//!     store planes[inputs + 0] + offset
-//!     brif offset + 16 K < bytes, points(offset + 16 K), done
+//!     store slots[v9] + offset - start              what other pieces read
+//!     store planes[inputs + 0] + offset             what the last piece gives
+//!     brif offset + 16 K < end, points(offset + 16 K), next piece
 //! ```
 //!
-//! Inputs, constants and columns are not kept alive from where the IR defines them: each Cranelift block that uses one reads it
-//! again, at the first use. An input or a constant is a 16 byte load, which is what a spilled value would cost, and a column a load and a
-//! broadcast; they leave the registers to the values that have to be computed. (Cranelift makes no memory operand of such a load
-//! unless nothing that follows from it is used twice, which is rare.)
+//! A fold that is cut ([`crate::strips`]) is the same loop over rows, around the `points` loops of its pieces; its accumulators are
+//! in slots.
+//!
+//! Inputs, constants, columns and what is in slots are not kept alive from where the IR defines them: each Cranelift block that uses
+//! one reads it again, at the first use. That is a 16 byte load, which is what a spilled value would cost, and for a column a
+//! load and a broadcast; they leave the registers to the values that have to be computed. (Cranelift makes no memory operand of
+//! such a load unless nothing that follows from it is used twice, which is rare.)
 
 use std::collections::HashMap;
 
 use cranelift_codegen::ir::condcodes::IntCC;
 use cranelift_codegen::ir::types::{F32, F32X4, I32X4, I64};
-use cranelift_codegen::ir::{self, AbiParam, BlockArg, InstBuilder, MemFlagsData, Signature, UserFuncName};
+use cranelift_codegen::ir::{self, AbiParam, BlockArg, InstBuilder, MemFlagsData, Signature, StackSlotData, StackSlotKind, UserFuncName};
 use cranelift_codegen::isa::CallConv;
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
-use jbt_ir::{Any, Block, Domain, Entity, Fold, Function, Inst, InstKind, Table, Value, Verified, apply};
+use jbt_ir::{Any, Block, Domain, Entity, Fold, Function, Inst, InstKind, Table, Type, Value, apply};
 
 use crate::compile::VectorCount;
 use crate::entry::TableView;
+use crate::strips::{Plan, STRIP_BYTES, Slot, Then};
 use crate::vectors::{VECTOR_BYTES, Vectors};
 
 /// A Cranelift function that keeps to the ABI of [`crate::entry`]: it reads the input planes, the table views and what
@@ -47,16 +56,15 @@ impl Lowered {
     }
 }
 
-/// Writes the Cranelift IR of a function.
-pub(crate) fn lower(function: &Verified, vectors: VectorCount) -> Lowered {
-    let function = function.function();
+/// Writes the Cranelift IR of a function, in the pieces of a plan that was made for it.
+pub(crate) fn lower(function: &Function, plan: &Plan, vectors: VectorCount) -> Lowered {
     let mut lowered = ir::Function::with_name_signature(UserFuncName::default(), signature());
     let mut context = FunctionBuilderContext::new();
     let builder = FunctionBuilder::new(&mut lowered, &mut context);
     match vectors {
-        VectorCount::One => Lowering::<1>::new(function, builder).function(),
-        VectorCount::Two => Lowering::<2>::new(function, builder).function(),
-        VectorCount::Four => Lowering::<4>::new(function, builder).function(),
+        VectorCount::One => Lowering::<1>::new(function, plan, builder).function(),
+        VectorCount::Two => Lowering::<2>::new(function, plan, builder).function(),
+        VectorCount::Four => Lowering::<4>::new(function, plan, builder).function(),
     }
     Lowered(lowered)
 }
@@ -71,6 +79,8 @@ fn signature() -> Signature {
 
 /// Numbers and pointers that the code reads are in place and stay as they are while it runs.
 const READ: MemFlagsData = MemFlagsData::trusted().with_readonly();
+/// What the frame keeps, which changes.
+const SLOT: MemFlagsData = MemFlagsData::trusted();
 /// Planes begin at any f32, so a vector of them is not aligned; and outputs change.
 const PLANE: MemFlagsData = MemFlagsData::new().with_notrap();
 
@@ -86,6 +96,8 @@ enum Place<'f, const K: usize> {
     Column(Table, usize),
     /// To be read where it is used.
     Input(usize),
+    /// To be read where it is used.
+    Kept(Slot, Type),
 }
 
 /// The current row of a table, inside its fold.
@@ -110,79 +122,232 @@ struct Active {
     end: ir::Value,
 }
 
-/// The parameters of the code, and where it is in the planes.
+/// The parameters of the code.
 #[derive(Clone, Copy)]
 struct Frame {
     planes: ir::Value,
     bytes: ir::Value,
     tables: ir::Value,
-    /// The head of the outer loop.
-    points: ir::Block,
-    /// Its parameter: bytes from the start of each plane.
+}
+
+/// A strip of points: bytes from the start of each plane.
+#[derive(Clone, Copy)]
+struct Strip {
+    /// To its first point.
+    start: ir::Value,
+    /// Behind its last point.
+    end: ir::Value,
+}
+
+/// The current block of points.
+struct Points {
+    /// Bytes from the start of each plane.
     offset: ir::Value,
+    /// The address in each input plane.
+    inputs: Vec<ir::Value>,
+    /// The address in the first slot, if there are slots.
+    slots: Option<ir::Value>,
 }
 
 /// The walk over a function.
 struct Lowering<'f, const K: usize> {
     function: &'f Function,
+    plan: &'f Plan,
     vectors: Vectors<'f, K>,
     frame: Frame,
+    /// Where the frame has the slots of the plan, if it needs any.
+    slots: Option<ir::StackSlot>,
     places: Vec<Option<Place<'f, K>>>,
-    /// Constants and columns that the current Cranelift block has made.
+    /// What the current Cranelift block has read anew.
     made: HashMap<Value, Any<Vectors<'f, K>>>,
+    /// What the current piece has put into slots, for the pieces after it.
+    kept: Vec<Value>,
     /// The current row of each table whose fold is open.
     rows: Vec<Option<Row>>,
-    /// Where the current block of points of each input plane is, once it has been read.
-    input_addresses: Vec<Option<ir::Value>>,
+    /// `None` outside of a piece.
+    points: Option<Points>,
 }
 
 impl<'f, const K: usize> Lowering<'f, K> {
-    /// Opens the entry block and the block of the outer loop.
-    fn new(function: &'f Function, mut builder: FunctionBuilder<'f>) -> Self {
+    /// Opens the entry block.
+    fn new(function: &'f Function, plan: &'f Plan, mut builder: FunctionBuilder<'f>) -> Self {
         let entry = builder.create_block();
         builder.append_block_params_for_function_params(entry);
         builder.switch_to_block(entry);
         let &[planes, bytes, tables] = builder.block_params(entry) else {
             unreachable!("the signature has three parameters")
         };
-        let start = builder.ins().iconst(I64, 0);
-        let points = builder.create_block();
-        let offset = builder.append_block_param(points, I64);
-        builder.ins().jump(points, &[BlockArg::Value(start)]);
-        builder.switch_to_block(points);
+        let slots = (plan.slot_bytes() > 0).then(|| {
+            let size = u32::try_from(plan.slot_bytes()).expect("limits::MAX_JIT_FRAME_BYTES is far below 2^32");
+            let align_shift = VECTOR_BYTES.ilog2() as u8;
+            let slots = StackSlotData::new(StackSlotKind::ExplicitSlot, size, align_shift);
+            builder.create_sized_stack_slot(slots)
+        });
         Self {
             function,
+            plan,
             vectors: Vectors::new(builder),
-            frame: Frame { planes, bytes, tables, points, offset },
+            frame: Frame { planes, bytes, tables },
+            slots,
             places: function.values.values().map(|_| None).collect(),
             made: HashMap::new(),
+            kept: Vec::new(),
             rows: vec![None; function.tables.len()],
-            input_addresses: vec![None; function.inputs.len()],
+            points: None,
         }
     }
 
-    /// Emits the body, the stores, and the end of the outer loop.
+    /// Emits everything.
     fn function(mut self) {
-        let outputs = self.block(self.function.body);
-        for (index, output) in outputs.into_iter().enumerate() {
-            let address = self.plane(self.function.inputs.len() + index);
-            for (vector, value) in output.real().into_iter().enumerate() {
-                self.vectors.builder.ins().store(PLANE, value, address, offset(vector, VECTOR_BYTES));
-            }
+        let bytes = self.frame.bytes;
+        let zero = self.vectors.builder.ins().iconst(I64, 0);
+        if self.plan.is_whole() {
+            self.pieces(self.function.body, Strip { start: zero, end: bytes });
+        } else {
+            self.repeat(zero, bytes, STRIP_BYTES, |lowering, start| {
+                let end = lowering.vectors.builder.ins().iadd_imm_s(start, STRIP_BYTES as i64);
+                let end = lowering.vectors.builder.ins().umin(end, bytes);
+                lowering.pieces(lowering.function.body, Strip { start, end });
+            });
         }
-        let Frame { bytes, points, offset, .. } = self.frame;
         let mut builder = self.vectors.builder;
-        let done = builder.create_block();
-        let next = builder.ins().iadd_imm_s(offset, (K * VECTOR_BYTES) as i64);
-        let more = builder.ins().icmp(IntCC::UnsignedLessThan, next, bytes);
-        builder.ins().brif(more, points, &[BlockArg::Value(next)], done, &[]);
-        builder.switch_to_block(done);
         builder.ins().return_(&[]);
         // Sealing is all that the function itself needs; finalizing would ready the context for another one.
         builder.seal_all_blocks();
     }
 
-    /// Emits the instructions of a block and returns its results.
+    /// Emits a loop over offsets in the planes, from one to another, which come after at least one step.
+    fn repeat(&mut self, from: ir::Value, to: ir::Value, step: usize, body: impl FnOnce(&mut Self, ir::Value)) {
+        let builder = &mut self.vectors.builder;
+        let [head, done] = [(); 2].map(|()| builder.create_block());
+        let offset = builder.append_block_param(head, I64);
+        builder.ins().jump(head, &[BlockArg::Value(from)]);
+        self.switch_to(head);
+        body(self, offset);
+        let builder = &mut self.vectors.builder;
+        let next = builder.ins().iadd_imm_s(offset, step as i64);
+        let more = builder.ins().icmp(IntCC::UnsignedLessThan, next, to);
+        builder.ins().brif(more, head, &[BlockArg::Value(next)], done, &[]);
+        self.switch_to(done);
+    }
+
+    /// Emits the function's body, or that of a fold that is cut: piece by piece, each for the whole strip.
+    fn pieces(&mut self, block: Block, strip: Strip) {
+        let (data, plan) = (&self.function.blocks[block], self.plan);
+        for piece in plan.pieces(block) {
+            self.repeat(strip.start, strip.end, K * VECTOR_BYTES, |lowering, offset| {
+                lowering.points = Some(lowering.points(strip, offset));
+                for &inst in &data.insts[piece.insts.clone()] {
+                    lowering.inst(inst);
+                }
+                match piece.then {
+                    Then::Next => {}
+                    Then::Fold(fold) => lowering.hand_over(fold),
+                    Then::End if block == lowering.function.body => lowering.outputs(&data.results),
+                    Then::End => lowering.keep_all(&data.params, &data.results),
+                }
+                lowering.points = None;
+            });
+            for value in std::mem::take(&mut self.kept) {
+                self.places[value.index()] = self.kept(value);
+            }
+            if let Then::Fold(fold) = piece.then {
+                self.cut_fold(fold, strip);
+            }
+        }
+    }
+
+    /// The addresses of a block of points.
+    fn points(&mut self, strip: Strip, offset: ir::Value) -> Points {
+        let inputs = (0..self.function.inputs.len()).map(|index| self.plane(index, offset)).collect();
+        let builder = &mut self.vectors.builder;
+        let slots = self.slots.map(|slots| {
+            let first = builder.ins().stack_addr(I64, slots, 0);
+            let within = builder.ins().isub(offset, strip.start);
+            builder.ins().iadd(first, within)
+        });
+        Points { offset, inputs, slots }
+    }
+
+    /// The current block of points.
+    fn here(&self) -> &Points {
+        self.points.as_ref().expect("instructions are in pieces")
+    }
+
+    /// Stores the function's outputs.
+    fn outputs(&mut self, results: &[Value]) {
+        for (index, output) in self.operands(results).into_iter().enumerate() {
+            let address = self.plane(self.function.inputs.len() + index, self.here().offset);
+            for (vector, value) in output.real().into_iter().enumerate() {
+                self.vectors.builder.ins().store(PLANE, value, address, offset(vector, VECTOR_BYTES));
+            }
+        }
+    }
+
+    /// Stores the initial accumulators of a fold that is cut.
+    fn hand_over(&mut self, inst: Inst) {
+        let (fold, _) = self.folded(inst);
+        self.keep_all(&self.function.blocks[fold.body].params, &fold.initial);
+    }
+
+    /// Emits a fold that is cut.
+    fn cut_fold(&mut self, inst: Inst, strip: Strip) {
+        let (fold, results) = self.folded(inst);
+        let params = &self.function.blocks[fold.body].params;
+        for &accumulator in params.iter().chain(results) {
+            self.places[accumulator.index()] = self.kept(accumulator);
+        }
+        self.each_row(fold.table, &[], |lowering, _| {
+            lowering.pieces(fold.body, strip);
+            Vec::new()
+        });
+    }
+
+    /// A fold and its results.
+    fn folded(&self, inst: Inst) -> (&'f Fold, &'f [Value]) {
+        let data = &self.function.insts[inst];
+        let InstKind::Fold(fold) = &data.kind else { unreachable!("a fold is cut, and nothing else") };
+        (fold, &data.results)
+    }
+
+    /// Where a value is that has a slot.
+    fn kept(&self, value: Value) -> Option<Place<'f, K>> {
+        self.plan.slot(value).map(|slot| Place::Kept(slot, self.function.values[value]))
+    }
+
+    /// Stores values of the current block of points into the slots of others, all of them read before the first is written.
+    fn keep_all(&mut self, targets: &[Value], values: &[Value]) {
+        let values = self.operands(values);
+        for (&target, value) in targets.iter().zip(&values) {
+            self.keep(target, value);
+        }
+    }
+
+    /// Stores a value into its slot, if it has one.
+    fn keep(&mut self, value: Value, computed: &Any<Vectors<'f, K>>) {
+        let Some(slot) = self.plan.slot(value) else { return };
+        let address = self.here().slots.expect("a plan with a slot has bytes for it");
+        let (Any::Real(vectors) | Any::Mask(vectors) | Any::Bits(vectors)) = *computed;
+        for (vector, part) in vectors.into_iter().enumerate() {
+            self.vectors.builder.ins().store(SLOT, part, address, slot_offset(slot, vector));
+        }
+    }
+
+    /// Loads what is in a slot.
+    fn load_kept(&mut self, slot: Slot, type_: Type) -> Any<Vectors<'f, K>> {
+        let address = self.here().slots.expect("a plan with a slot has bytes for it");
+        let builder = &mut self.vectors.builder;
+        let mut load = |lanes| {
+            std::array::from_fn(|vector| builder.ins().load(lanes, SLOT, address, slot_offset(slot, vector)))
+        };
+        match type_ {
+            Type::Real => Any::Real(load(F32X4)),
+            Type::Mask => Any::Mask(load(I32X4)),
+            Type::Bits => Any::Bits(load(I32X4)),
+        }
+    }
+
+    /// Emits the instructions of the body of a fold that is not cut, and returns its results.
     fn block(&mut self, block: Block) -> Vec<Any<Vectors<'f, K>>> {
         let data = &self.function.blocks[block];
         for &inst in &data.insts {
@@ -195,26 +360,33 @@ impl<'f, const K: usize> Lowering<'f, K> {
     fn inst(&mut self, inst: Inst) {
         let data = &self.function.insts[inst];
         let place = match &data.kind {
-            InstKind::Input(index) => {
-                self.input_address(*index);
-                Place::Input(*index)
-            }
+            InstKind::Input(index) => Place::Input(*index),
             InstKind::Constant(number) => Place::Constant(*number),
             InstKind::BitsConstant(bits) => Place::Bits(*bits),
             InstKind::Column { table, column } => Place::Column(*table, *column),
             InstKind::Op { op, args } => {
                 let args = self.operands(args);
-                Place::Computed(apply(&mut self.vectors, *op, &args))
+                let computed = apply(&mut self.vectors, *op, &args);
+                return self.define(data.results[0], computed);
             }
             InstKind::Fold(fold) => {
                 let accumulators = self.fold(fold);
                 for (&result, accumulator) in data.results.iter().zip(accumulators) {
-                    self.places[result.index()] = Some(Place::Computed(accumulator));
+                    self.define(result, accumulator);
                 }
                 return;
             }
         };
         self.places[data.results[0].index()] = Some(place);
+    }
+
+    /// Notes that a value has been computed, and keeps it if another piece reads it.
+    fn define(&mut self, value: Value, computed: Any<Vectors<'f, K>>) {
+        if self.plan.slot(value).is_some() {
+            self.keep(value, &computed);
+            self.kept.push(value);
+        }
+        self.places[value.index()] = Some(Place::Computed(computed));
     }
 
     fn operands(&mut self, values: &[Value]) -> Vec<Any<Vectors<'f, K>>> {
@@ -226,7 +398,7 @@ impl<'f, const K: usize> Lowering<'f, K> {
         let place = self.places[value.index()].as_ref();
         let made = match *place.expect("a verified function defines values before it uses them") {
             Place::Computed(computed) => return computed,
-            Place::Constant(_) | Place::Bits(_) | Place::Column(..) | Place::Input(_)
+            Place::Constant(_) | Place::Bits(_) | Place::Column(..) | Place::Input(_) | Place::Kept(..)
                 if self.made.contains_key(&value) =>
             {
                 return self.made[&value];
@@ -235,38 +407,28 @@ impl<'f, const K: usize> Lowering<'f, K> {
             Place::Bits(bits) => Any::Bits(self.vectors.bits_constant(bits)),
             Place::Column(table, column) => Any::Real(self.column(table, column)),
             Place::Input(index) => Any::Real(self.input(index)),
+            Place::Kept(slot, type_) => self.load_kept(slot, type_),
         };
         self.made.insert(value, made);
         made
     }
 
-    /// Goes on in another Cranelift block, which makes its own constants and columns.
+    /// Goes on in another Cranelift block, which reads for itself what is not computed.
     fn switch_to(&mut self, block: ir::Block) {
         self.vectors.builder.switch_to_block(block);
         self.made.clear();
     }
 
-    /// The address in a plane, inputs first, of the current block of points.
-    fn plane(&mut self, index: usize) -> ir::Value {
-        let ins = self.vectors.builder.ins();
-        let start = ins.load(I64, READ, self.frame.planes, offset(index, size_of::<*const f32>()));
-        self.vectors.builder.ins().iadd(start, self.frame.offset)
-    }
-
-    /// The address of the current block of points of an input plane. Made where the IR reads the plane, which all uses come after.
-    fn input_address(&mut self, index: usize) -> ir::Value {
-        assert!(index < self.function.inputs.len(), "a verified function reads the inputs that it has");
-        if let Some(address) = self.input_addresses[index] {
-            return address;
-        }
-        let address = self.plane(index);
-        self.input_addresses[index] = Some(address);
-        address
+    /// The address in a plane, inputs first, at an offset.
+    fn plane(&mut self, index: usize, at: ir::Value) -> ir::Value {
+        let builder = &mut self.vectors.builder;
+        let start = builder.ins().load(I64, READ, self.frame.planes, offset(index, size_of::<*const f32>()));
+        builder.ins().iadd(start, at)
     }
 
     /// Loads the current block of points of an input plane.
     fn input(&mut self, index: usize) -> [ir::Value; K] {
-        let address = self.input_address(index);
+        let address = self.here().inputs[index];
         std::array::from_fn(|vector| {
             self.vectors.builder.ins().load(F32X4, PLANE, address, offset(vector, VECTOR_BYTES))
         })
@@ -289,29 +451,42 @@ impl<'f, const K: usize> Lowering<'f, K> {
         self.rows[table.index()].expect("a verified function names a row inside the fold over its table")
     }
 
-    /// Emits the loop over the active rows that the parent's row owns, and returns the final accumulators.
+    /// Emits a fold that is not cut, and returns the final accumulators.
     fn fold(&mut self, fold: &Fold) -> Vec<Any<Vectors<'f, K>>> {
         let initial = self.operands(&fold.initial);
-        let Active { numbers, first, begin, end } = self.active(fold.table);
+        self.each_row(fold.table, &initial, |lowering, accumulators| {
+            for (&param, &accumulator) in lowering.function.blocks[fold.body].params.iter().zip(accumulators) {
+                lowering.places[param.index()] = Some(Place::Computed(accumulator));
+            }
+            lowering.block(fold.body)
+        })
+    }
+
+    /// Emits a loop over the active rows that the parent's row owns: `body` takes the accumulators and returns the next ones. Returns
+    /// the final ones.
+    fn each_row(
+        &mut self,
+        table: Table,
+        initial: &[Any<Vectors<'f, K>>],
+        body: impl FnOnce(&mut Self, &[Any<Vectors<'f, K>>]) -> Vec<Any<Vectors<'f, K>>>,
+    ) -> Vec<Any<Vectors<'f, K>>> {
+        let Active { numbers, first, begin, end } = self.active(table);
         let builder = &mut self.vectors.builder;
-        let [header, body, exit] = [(); 3].map(|()| builder.create_block());
+        let [header, row, exit] = [(); 3].map(|()| builder.create_block());
         let cursor = builder.append_block_param(header, I64);
         let accumulators: Vec<_> = initial.iter().map(|value| block_params(builder, header, value)).collect();
-        builder.ins().jump(header, &block_args(begin, &initial));
+        builder.ins().jump(header, &block_args(begin, initial));
 
         self.switch_to(header);
         let builder = &mut self.vectors.builder;
-        // Of two successors Cranelift places the second next in memory: the body, so that the loop is one stretch of code.
+        // Of two successors Cranelift places the second next in memory: the row, so that the loop is one stretch of code.
         let over = builder.ins().icmp(IntCC::Equal, cursor, end);
-        builder.ins().brif(over, exit, &[], body, &[]);
+        builder.ins().brif(over, exit, &[], row, &[]);
 
-        self.switch_to(body);
-        for (&param, &accumulator) in self.function.blocks[fold.body].params.iter().zip(&accumulators) {
-            self.places[param.index()] = Some(Place::Computed(accumulator));
-        }
-        self.rows[fold.table.index()] = Some(self.read_row(fold.table, numbers, first, cursor));
-        let next = self.block(fold.body);
-        self.rows[fold.table.index()] = None;
+        self.switch_to(row);
+        self.rows[table.index()] = Some(self.read_row(table, numbers, first, cursor));
+        let next = body(self, &accumulators);
+        self.rows[table.index()] = None;
         let builder = &mut self.vectors.builder;
         let next_cursor = builder.ins().iadd_imm_s(cursor, size_of::<u32>() as i64);
         builder.ins().jump(header, &block_args(next_cursor, &next));
@@ -359,6 +534,11 @@ impl<'f, const K: usize> Lowering<'f, K> {
 /// The offset of an item of an array.
 fn offset(index: usize, item_bytes: usize) -> i32 {
     i32::try_from(index * item_bytes).expect("our limits keep every offset within 2^31 bytes")
+}
+
+/// The offset of a vector of a block of points, from the block's place in the first slot.
+fn slot_offset(slot: Slot, vector: usize) -> i32 {
+    offset(slot.0, STRIP_BYTES) + offset(vector, VECTOR_BYTES)
 }
 
 /// Adds a block parameter for each vector of a value of the type of `like`.

@@ -1,8 +1,8 @@
 //! How many values are alive at once, before any code is made.
 //!
 //! A value is alive from its definition to its last use. A use inside a fold counts until the fold ends if the value
-//! comes from outside, because the next row reads it again. Inputs, constants and columns are read anew in each block that
-//! uses them and do not count.
+//! comes from outside, because the next row reads it again. Inputs, constants, columns and what another piece has computed
+//! are read anew in each block that uses them and do not count.
 //!
 //! ```text
 //! v2 = sqrt v1          ┐
@@ -12,11 +12,16 @@
 //!     yield v5          ┘
 //! ```
 
-use jbt_ir::{Block, Entity, Function, InstData, InstKind, Value};
+use jbt_ir::{Block, Entity, Function, Inst, InstData, InstKind, Value};
+
+use crate::strips::{Plan, Then};
 
 /// The walk over all instructions in order of execution.
 struct Walk<'a> {
     function: &'a Function,
+    plan: &'a Plan,
+    /// Pieces so far.
+    piece: usize,
     /// Instructions and block ends so far.
     position: usize,
     /// How many folds enclose the definition of each value.
@@ -28,11 +33,18 @@ struct Walk<'a> {
 }
 
 /// The largest number of values that are alive at the same time.
-pub(crate) fn live_values(function: &Function) -> usize {
+pub(crate) fn live_values(function: &Function, plan: &Plan) -> usize {
     let values = function.values.len();
-    let mut walk =
-        Walk { function, position: 0, depth: vec![0; values], alive: vec![(0, 0); values], captured: vec![] };
-    walk.block(function.body);
+    let mut walk = Walk {
+        function,
+        plan,
+        piece: 0,
+        position: 0,
+        depth: vec![0; values],
+        alive: vec![(0, 0); values],
+        captured: vec![],
+    };
+    walk.pieces(function.body);
     let mut change = vec![0_isize; walk.position + 2];
     for (from, to) in walk.alive.into_iter().filter(|(from, to)| from < to) {
         change[from] += 1;
@@ -54,16 +66,28 @@ pub(crate) fn carried_values(function: &Function) -> usize {
 }
 
 impl Walk<'_> {
-    fn block(&mut self, block: Block) {
+    /// The function's body, or that of a fold that is cut.
+    fn pieces(&mut self, block: Block) {
         let data = &self.function.blocks[block];
-        for &param in &data.params {
-            self.define(param);
-        }
-        for &inst in &data.insts {
-            self.position += 1;
-            for &operand in self.function.operands(inst) {
-                self.read(operand);
+        for piece in self.plan.pieces(block) {
+            self.insts(&data.insts[piece.insts.clone()]);
+            match piece.then {
+                Then::Next => {}
+                Then::Fold(fold) => self.reads(self.function.operands(fold)),
+                Then::End => self.reads(&data.results),
             }
+            self.piece += 1;
+            if let Then::Fold(fold) = piece.then
+                && let InstKind::Fold(fold) = &self.function.insts[fold].kind
+            {
+                self.pieces(fold.body);
+            }
+        }
+    }
+
+    fn insts(&mut self, insts: &[Inst]) {
+        for &inst in insts {
+            self.reads(self.function.operands(inst));
             let data = &self.function.insts[inst];
             match &data.kind {
                 InstKind::Input(_)
@@ -77,15 +101,17 @@ impl Walk<'_> {
                 self.define(result);
             }
         }
-        self.position += 1;
-        for &result in &data.results {
-            self.read(result);
-        }
     }
 
+    /// A fold that is not cut.
     fn fold(&mut self, body: Block) {
         self.captured.push(Vec::new());
-        self.block(body);
+        let data = &self.function.blocks[body];
+        for &param in &data.params {
+            self.define(param);
+        }
+        self.insts(&data.insts);
+        self.reads(&data.results);
         for value in self.captured.pop().into_iter().flatten() {
             self.alive[value.index()].1 = self.position + 1;
         }
@@ -97,7 +123,18 @@ impl Walk<'_> {
         self.alive[value.index()] = (self.position + 1, self.position + 1);
     }
 
+    /// Operands, one step later than whatever has been read or defined before.
+    fn reads(&mut self, values: &[Value]) {
+        self.position += 1;
+        for &value in values {
+            self.read(value);
+        }
+    }
+
     fn read(&mut self, value: Value) {
+        if self.plan.home(value) != self.piece {
+            return;
+        }
         let alive = &mut self.alive[value.index()];
         if alive.0 == 0 {
             return;
@@ -111,12 +148,17 @@ impl Walk<'_> {
 
 #[cfg(test)]
 mod tests {
-    use jbt_ir::{Domain, FunctionBuilder, Reduction, Schema, Value};
+    use jbt_ir::{Domain, Function, FunctionBuilder, Reduction, Schema, Value};
 
     use super::{carried_values, live_values};
+    use crate::strips::Plan;
+
+    fn live(function: &Function) -> usize {
+        live_values(function, &Plan::new(function, usize::MAX))
+    }
 
     fn count(b: FunctionBuilder, out: Value) -> usize {
-        live_values(&b.finish(&[("out".to_owned(), out)]))
+        live(&b.finish(&[("out".to_owned(), out)]))
     }
 
     #[test]
@@ -165,8 +207,23 @@ mod tests {
         }
         let out = b.end_fold(&[next]);
         let function = b.finish(&[("out".to_owned(), out[0])]);
-        assert_eq!(live_values(&function), 4);
+        assert_eq!(live(&function), 4);
         assert_eq!(carried_values(&function), 1);
+    }
+
+    #[test]
+    fn what_another_piece_has_computed_is_not_alive() {
+        let mut b = FunctionBuilder::new("pieces", &["x"]);
+        let mut values = vec![b.input(0)];
+        for index in 1..20 {
+            let next = b.sqrt(values[index - 1]);
+            values.push(next);
+        }
+        let first = values[0];
+        let sum = values.iter().skip(1).fold(first, |sum, &value| b.add(sum, value));
+        let function = b.finish(&[("sum".to_owned(), sum)]);
+        // In each piece the last root or sum waits for the next one; all roots are in slots for the sum.
+        assert_eq!(live_values(&function, &Plan::new(&function, 10)), 1);
     }
 
     #[test]

@@ -171,13 +171,20 @@ pub fn assert_same_bits(expected: &[Vec<f32>], given: &[Vec<f32>], what: &str) {
     }
 }
 
-/// All settings of the compiler.
+/// All settings of the compiler, with the function whole, in pieces of a few instructions, and in the smallest there are.
 pub fn all_options() -> Vec<Options> {
     let mut all = vec![Options::default()];
     for vectors in VectorCount::ALL {
         for opt_level in OptLevel::ALL {
             for allocator in Allocator::ALL {
-                all.push(Options { vectors: Some(vectors), opt_level, allocator: Some(allocator) });
+                for piece in [usize::MAX, 7, 1] {
+                    all.push(Options {
+                        vectors: Some(vectors),
+                        opt_level,
+                        allocator: Some(allocator),
+                        piece: Some(piece),
+                    });
+                }
             }
         }
     }
