@@ -141,6 +141,15 @@ pub enum InstKind {
 }
 
 impl InstKind {
+    /// Whether it computes nothing: an input, a constant or a column.
+    #[must_use]
+    pub const fn is_leaf(&self) -> bool {
+        match self {
+            Self::Input(_) | Self::Constant(_) | Self::BitsConstant(_) | Self::Column { .. } => true,
+            Self::Op { .. } | Self::Fold(_) => false,
+        }
+    }
+
     /// The type of what this defines. For a fold it is only the usual one: its accumulators have the types of its initial values.
     #[must_use]
     pub const fn result_type(&self) -> Type {

@@ -85,6 +85,15 @@ impl Allocator {
     }
 }
 
+/// How a function is cut. Each piece runs over a strip of points before the next piece does.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum Pieces {
+    /// Not at all: a block of points runs through the whole function before the next block does.
+    One,
+    /// Into pieces of at most so many instructions, with a cut before and behind every fold.
+    Of(usize),
+}
+
 /// Settings of the compiler. What is `None` is chosen by the size of the function.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub struct Options {
@@ -94,9 +103,8 @@ pub struct Options {
     pub opt_level: OptLevel,
     /// Register allocator.
     pub allocator: Option<Allocator>,
-    /// Instructions of the IR, of each piece that a strip of 64 points runs through before the next piece does. A fold whose body is not
-    /// longer is not cut. `Some(usize::MAX)` for one piece.
-    pub piece: Option<usize>,
+    /// How a function is cut.
+    pub pieces: Option<Pieces>,
 }
 
 /// Why there is no machine code for a function. An interpreter can run it all the same.
@@ -160,16 +168,16 @@ const TWO_VECTORS_OF_A_FIELD_UP_TO: usize = 64;
 /// Up to this many live values a good choice of registers is worth its time. Beyond, nearly everything lives in the frame
 /// whichever allocator chose, and the code of both runs at the same speed.
 const BACKTRACKING_UP_TO: usize = 100;
-/// A function with more values than this is straight-line code for the most part, which the processor fetches anew for every block: 8 points
-/// halve that, and 16 would take seconds to compile.
+/// A function with more values than this would take seconds to compile for 16 points in a block.
 const LONG_FUNCTION: usize = 16_000;
 
-/// A function of at most so many values gains nothing by being cut.
+/// A function of at most so many values gains nothing by being cut: with all its rows in the caches it is as fast, and where few
+/// points are asked it has less to do.
 const WHOLE_UP_TO: usize = 1_000;
 /// Instructions of a piece: its code fits what the processor keeps decoded, and what one block of points waits for in it leaves room for
 /// the next block to begin. From 100 to 500 the speed is the same.
 const PIECE: usize = 200;
-/// Bytes of slots beyond which they would not be in the nearer caches when the next piece reads them.
+/// Bytes of slots beyond which they are not in the nearer caches when the next piece reads them.
 const MOST_SLOT_BYTES: usize = 256 << 10;
 
 /// What is made of a function, with nothing left open.
@@ -213,9 +221,11 @@ impl Options {
     /// The pieces.
     fn plan(&self, function: &Function) -> Plan {
         let is_short = function.values.len() <= WHOLE_UP_TO;
-        let longest = self.piece.unwrap_or(if is_short { usize::MAX } else { PIECE });
-        let plan = Plan::new(function, longest);
-        if plan.slot_bytes() > MOST_SLOT_BYTES { Plan::new(function, usize::MAX) } else { plan }
+        let plan = match self.pieces.unwrap_or(if is_short { Pieces::One } else { Pieces::Of(PIECE) }) {
+            Pieces::One => Plan::whole(function),
+            Pieces::Of(longest) => Plan::cut(function, longest),
+        };
+        if plan.slot_bytes() > MOST_SLOT_BYTES { Plan::whole(function) } else { plan }
     }
 }
 

@@ -4,9 +4,9 @@
 //! planes of answers, and every lane has the bits that the scalar reference gives (a NaN for a NaN).
 //!
 //! ```text
-//!   Verified ──► pressure ──► lower ─────────► memory ──────────► Kernel ──bind(Tables)──► BoundKernel
-//!                how many     Cranelift IR,    machine code in                              run(inputs, outputs)
-//!                are alive    by `vectors`     pages of its own
+//!   Verified ──► strips ───► pressure ──► lower ─────────► memory ──────────► Kernel ──bind(Tables)──► BoundKernel
+//!                where it    how many     Cranelift IR,    machine code in                              run(inputs, outputs)
+//!                is cut      are alive    by `vectors`     pages of its own
 //! ```
 //!
 //! What the code does, in pseudo-code, with a block of K vectors of 4 points:
@@ -20,6 +20,8 @@
 //!         acc = body(row, acc)
 //!     outputs[0][offset..] = acc
 //! ```
+//!
+//! A long function is cut into pieces, and has rows outside and points inside: see `strips`.
 //!
 //! ```
 //! use std::sync::Arc;
@@ -53,5 +55,5 @@ mod pressure;
 mod strips;
 mod vectors;
 
-pub use compile::{Allocator, CompileError, OptLevel, Options, VectorCount, asm, clif};
+pub use compile::{Allocator, CompileError, OptLevel, Options, Pieces, VectorCount, asm, clif};
 pub use entry::{BoundKernel, Kernel, RunError};

@@ -6,6 +6,7 @@
 //!     jump strip(0)
 //! strip(start):                                     once for each strip; once in all if the function is one piece
 //!     end = min(start + strip bytes, bytes)
+//!     broadcast columns                             of folds that are cut
 //!     jump points(start)
 //! points(offset):                                   a piece, once for each block of 4 K points
 //!     v0 = load planes[0] + offset                  an input
@@ -35,14 +36,17 @@ use std::collections::HashMap;
 
 use cranelift_codegen::ir::condcodes::IntCC;
 use cranelift_codegen::ir::types::{F32, F32X4, I32X4, I64};
-use cranelift_codegen::ir::{self, AbiParam, BlockArg, InstBuilder, MemFlagsData, Signature, StackSlotData, StackSlotKind, UserFuncName};
+use cranelift_codegen::ir::{
+    self, AbiParam, BlockArg, InstBuilder, MemFlagsData, Signature, StackSlotData, StackSlotKind,
+    UserFuncName,
+};
 use cranelift_codegen::isa::CallConv;
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
 use jbt_ir::{Any, Block, Domain, Entity, Fold, Function, Inst, InstKind, Table, Type, Value, apply};
 
 use crate::compile::VectorCount;
 use crate::entry::TableView;
-use crate::strips::{Plan, STRIP_BYTES, Slot, Then};
+use crate::strips::{Column, Piece, Plan, Slot, Then};
 use crate::vectors::{VECTOR_BYTES, Vectors};
 
 /// A Cranelift function that keeps to the ABI of [`crate::entry`]: it reads the input planes, the table views and what
@@ -178,7 +182,8 @@ impl<'f, const K: usize> Lowering<'f, K> {
             unreachable!("the signature has three parameters")
         };
         let slots = (plan.slot_bytes() > 0).then(|| {
-            let size = u32::try_from(plan.slot_bytes()).expect("limits::MAX_JIT_FRAME_BYTES is far below 2^32");
+            let size =
+                u32::try_from(plan.slot_bytes()).expect("limits::MAX_JIT_FRAME_BYTES is far below 2^32");
             let align_shift = VECTOR_BYTES.ilog2() as u8;
             let slots = StackSlotData::new(StackSlotKind::ExplicitSlot, size, align_shift);
             builder.create_sized_stack_slot(slots)
@@ -204,8 +209,9 @@ impl<'f, const K: usize> Lowering<'f, K> {
         if self.plan.is_whole() {
             self.pieces(self.function.body, Strip { start: zero, end: bytes });
         } else {
-            self.repeat(zero, bytes, STRIP_BYTES, |lowering, start| {
-                let end = lowering.vectors.builder.ins().iadd_imm_s(start, STRIP_BYTES as i64);
+            let strip_bytes = self.plan.strip_bytes();
+            self.repeat(zero, bytes, strip_bytes, |lowering, start| {
+                let end = lowering.vectors.builder.ins().iadd_imm_s(start, strip_bytes as i64);
                 let end = lowering.vectors.builder.ins().umin(end, bytes);
                 lowering.pieces(lowering.function.body, Strip { start, end });
             });
@@ -217,7 +223,13 @@ impl<'f, const K: usize> Lowering<'f, K> {
     }
 
     /// Emits a loop over offsets in the planes, from one to another, which come after at least one step.
-    fn repeat(&mut self, from: ir::Value, to: ir::Value, step: usize, body: impl FnOnce(&mut Self, ir::Value)) {
+    fn repeat(
+        &mut self,
+        from: ir::Value,
+        to: ir::Value,
+        step: usize,
+        body: impl FnOnce(&mut Self, ir::Value),
+    ) {
         let builder = &mut self.vectors.builder;
         let [head, done] = [(); 2].map(|()| builder.create_block());
         let offset = builder.append_block_param(head, I64);
@@ -235,25 +247,55 @@ impl<'f, const K: usize> Lowering<'f, K> {
     fn pieces(&mut self, block: Block, strip: Strip) {
         let (data, plan) = (&self.function.blocks[block], self.plan);
         for piece in plan.pieces(block) {
-            self.repeat(strip.start, strip.end, K * VECTOR_BYTES, |lowering, offset| {
-                lowering.points = Some(lowering.points(strip, offset));
-                for &inst in &data.insts[piece.insts.clone()] {
-                    lowering.inst(inst);
+            let insts = &data.insts[piece.insts.clone()];
+            if self.has_no_work(insts, piece) {
+                // It says where columns and constants are.
+                insts.iter().for_each(|&inst| self.inst(inst));
+            } else {
+                self.broadcast(&piece.columns);
+                self.repeat(strip.start, strip.end, K * VECTOR_BYTES, |lowering, offset| {
+                    lowering.points = Some(lowering.points(strip, offset));
+                    insts.iter().for_each(|&inst| lowering.inst(inst));
+                    match piece.then {
+                        Then::Next => {}
+                        Then::Fold(fold) => lowering.hand_over(fold),
+                        Then::End if block == lowering.function.body => lowering.outputs(&data.results),
+                        Then::End => lowering.keep_all(&data.params, &data.results),
+                    }
+                    lowering.points = None;
+                });
+                for &Column { value, table, column } in &piece.columns {
+                    self.places[value.index()] = Some(Place::Column(table, column));
                 }
-                match piece.then {
-                    Then::Next => {}
-                    Then::Fold(fold) => lowering.hand_over(fold),
-                    Then::End if block == lowering.function.body => lowering.outputs(&data.results),
-                    Then::End => lowering.keep_all(&data.params, &data.results),
+                for value in std::mem::take(&mut self.kept) {
+                    self.places[value.index()] = self.kept(value);
                 }
-                lowering.points = None;
-            });
-            for value in std::mem::take(&mut self.kept) {
-                self.places[value.index()] = self.kept(value);
             }
             if let Then::Fold(fold) = piece.then {
                 self.cut_fold(fold, strip);
             }
+        }
+    }
+
+    /// Whether a piece computes nothing, and the fold behind it finds its accumulators where they have to be.
+    fn has_no_work(&self, insts: &[Inst], piece: &Piece) -> bool {
+        let is_ready = match piece.then {
+            Then::Next => true,
+            Then::Fold(fold) => {
+                let (fold, _) = self.folded(fold);
+                let mut pairs = self.function.blocks[fold.body].params.iter().zip(&fold.initial);
+                pairs.all(|(&param, &initial)| self.plan.slot(param) == self.plan.slot(initial))
+            }
+            Then::End => false,
+        };
+        is_ready && insts.iter().all(|&inst| self.function.insts[inst].kind.is_leaf())
+    }
+
+    /// Reads columns that a whole piece needs, once for all its blocks of points.
+    fn broadcast(&mut self, columns: &[Column]) {
+        for &Column { value, table, column } in columns {
+            let vectors = self.column(table, column);
+            self.places[value.index()] = Some(Place::Computed(Any::Real(vectors)));
         }
     }
 
@@ -317,9 +359,11 @@ impl<'f, const K: usize> Lowering<'f, K> {
 
     /// Stores values of the current block of points into the slots of others, all of them read before the first is written.
     fn keep_all(&mut self, targets: &[Value], values: &[Value]) {
-        let values = self.operands(values);
-        for (&target, value) in targets.iter().zip(&values) {
-            self.keep(target, value);
+        let computed = self.operands(values);
+        for ((&target, value), computed) in targets.iter().zip(values).zip(&computed) {
+            if self.plan.slot(target) != self.plan.slot(*value) {
+                self.keep(target, computed);
+            }
         }
     }
 
@@ -328,18 +372,24 @@ impl<'f, const K: usize> Lowering<'f, K> {
         let Some(slot) = self.plan.slot(value) else { return };
         let address = self.here().slots.expect("a plan with a slot has bytes for it");
         let (Any::Real(vectors) | Any::Mask(vectors) | Any::Bits(vectors)) = *computed;
-        for (vector, part) in vectors.into_iter().enumerate() {
-            self.vectors.builder.ins().store(SLOT, part, address, slot_offset(slot, vector));
+        let offsets = self.offsets(slot);
+        for (part, at) in vectors.into_iter().zip(offsets) {
+            self.vectors.builder.ins().store(SLOT, part, address, at);
         }
+    }
+
+    /// The vectors of a block of points in a slot, from the block's place in the first slot.
+    fn offsets(&self, slot: Slot) -> [i32; K] {
+        let start = offset(slot.0, self.plan.strip_bytes());
+        std::array::from_fn(|vector| start + offset(vector, VECTOR_BYTES))
     }
 
     /// Loads what is in a slot.
     fn load_kept(&mut self, slot: Slot, type_: Type) -> Any<Vectors<'f, K>> {
         let address = self.here().slots.expect("a plan with a slot has bytes for it");
+        let offsets = self.offsets(slot);
         let builder = &mut self.vectors.builder;
-        let mut load = |lanes| {
-            std::array::from_fn(|vector| builder.ins().load(lanes, SLOT, address, slot_offset(slot, vector)))
-        };
+        let mut load = |lanes| offsets.map(|at| builder.ins().load(lanes, SLOT, address, at));
         match type_ {
             Type::Real => Any::Real(load(F32X4)),
             Type::Mask => Any::Mask(load(I32X4)),
@@ -363,6 +413,8 @@ impl<'f, const K: usize> Lowering<'f, K> {
             InstKind::Input(index) => Place::Input(*index),
             InstKind::Constant(number) => Place::Constant(*number),
             InstKind::BitsConstant(bits) => Place::Bits(*bits),
+            // It may have been broadcast before its piece.
+            InstKind::Column { .. } if self.places[data.results[0].index()].is_some() => return,
             InstKind::Column { table, column } => Place::Column(*table, *column),
             InstKind::Op { op, args } => {
                 let args = self.operands(args);
@@ -455,7 +507,8 @@ impl<'f, const K: usize> Lowering<'f, K> {
     fn fold(&mut self, fold: &Fold) -> Vec<Any<Vectors<'f, K>>> {
         let initial = self.operands(&fold.initial);
         self.each_row(fold.table, &initial, |lowering, accumulators| {
-            for (&param, &accumulator) in lowering.function.blocks[fold.body].params.iter().zip(accumulators) {
+            for (&param, &accumulator) in lowering.function.blocks[fold.body].params.iter().zip(accumulators)
+            {
                 lowering.places[param.index()] = Some(Place::Computed(accumulator));
             }
             lowering.block(fold.body)
@@ -534,11 +587,6 @@ impl<'f, const K: usize> Lowering<'f, K> {
 /// The offset of an item of an array.
 fn offset(index: usize, item_bytes: usize) -> i32 {
     i32::try_from(index * item_bytes).expect("our limits keep every offset within 2^31 bytes")
-}
-
-/// The offset of a vector of a block of points, from the block's place in the first slot.
-fn slot_offset(slot: Slot, vector: usize) -> i32 {
-    offset(slot.0, STRIP_BYTES) + offset(vector, VECTOR_BYTES)
 }
 
 /// Adds a block parameter for each vector of a value of the type of `like`.

@@ -154,7 +154,7 @@ mod tests {
     use crate::strips::Plan;
 
     fn live(function: &Function) -> usize {
-        live_values(function, &Plan::new(function, usize::MAX))
+        live_values(function, &Plan::whole(function))
     }
 
     fn count(b: FunctionBuilder, out: Value) -> usize {
@@ -223,7 +223,7 @@ mod tests {
         let sum = values.iter().skip(1).fold(first, |sum, &value| b.add(sum, value));
         let function = b.finish(&[("sum".to_owned(), sum)]);
         // In each piece the last root or sum waits for the next one; all roots are in slots for the sum.
-        assert_eq!(live_values(&function, &Plan::new(&function, 10)), 1);
+        assert_eq!(live_values(&function, &Plan::cut(&function, 10)), 1);
     }
 
     #[test]

@@ -1,32 +1,35 @@
 //! Where a long function is cut: each piece runs over a strip of points before the next piece does.
 //!
 //! Code that is longer than the nearest caches is fetched anew for every block of points, and that takes longer than running it.
-//! A piece fits, so all blocks of a strip but the first find it there. The price is memory: a value that another piece
-//! reads is kept for the whole strip, in the frame.
+//! A piece fits, so all blocks of a strip but the first find it there. And one block need not wait for what another computes, which
+//! keeps the processor busy where a formula is one long chain. The price is memory: a value that another piece reads is kept for
+//! the whole strip, in the frame.
 //!
 //! ```text
 //! v3 = sqrt v0           ┐                     for each block of the strip
-//! v4 = fold t0 ...       ┘ piece 0, keeps v4
-//! v9 = fold t1 (v4):                           for each row of t1
-//!     v6 = mul v5, v3    ┐                         for each block of the strip
+//! v4 = mul v0, v3        ┘ piece 0, keeps v3, v4
+//! v9 = fold t0 (v4):                           for each row of t0
+//!     v6 = column t0.x   ┐                         broadcast once for the strip
+//!     v7 = mul v6, v3    ┤                         for each block of the strip
 //!     ...                ┘ piece 1
 //!     yield v8           ] piece 2, keeps v9       for each block of the strip
 //! yield v9               ] piece 3             for each block of the strip
 //! ```
 //!
-//! A fold whose body fits a piece is never cut. The accumulators of one that is cut live in the frame: piece 0 keeps the initial
-//! ones, the last piece of the body keeps the next ones.
+//! So the rows of a fold are outside and the points inside, where an uncut function has it the other way round. The
+//! accumulators of a fold live in the frame: piece 0 keeps the initial ones, the last piece of the body keeps the next ones.
 
 use std::cmp::Reverse;
-use std::collections::{BinaryHeap, HashMap};
+use std::collections::{BinaryHeap, HashMap, HashSet};
 use std::ops::Range;
 
-use jbt_ir::{Block, Entity, Fold, Function, Inst, InstKind, Value};
+use jbt_ir::{Block, Entity, Function, Inst, InstData, InstKind, Table, Value};
 
-/// Points of a strip: enough that fetching the code of a piece does not count.
-const STRIP_POINTS: usize = 64;
-/// Bytes of a strip in a plane, and of a slot.
-pub(crate) const STRIP_BYTES: usize = STRIP_POINTS * size_of::<f32>();
+/// Bytes of all slots that leave room for other things in the nearest cache.
+const NEAR_BYTES: usize = 32 << 10;
+/// Points of the shortest and of the longest strip: enough that fetching the code of a piece does not count, and no more than a caller
+/// may be expected to have.
+const STRIP_POINTS: [usize; 2] = [64, 1024];
 
 /// A stretch of the instructions of one block.
 pub(crate) struct Piece {
@@ -34,6 +37,16 @@ pub(crate) struct Piece {
     pub(crate) insts: Range<usize>,
     /// What comes after it.
     pub(crate) then: Then,
+    /// The columns that it reads, if folds are cut.
+    pub(crate) columns: Vec<Column>,
+}
+
+/// A column of the current row of a table.
+#[derive(Clone, Copy)]
+pub(crate) struct Column {
+    pub(crate) value: Value,
+    pub(crate) table: Table,
+    pub(crate) column: usize,
 }
 
 /// What follows a piece.
@@ -48,12 +61,12 @@ pub(crate) enum Then {
 }
 
 /// A place for one value at all points of a strip.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) struct Slot(pub(crate) usize);
 
 /// The pieces of a function, and what they hand to each other.
 pub(crate) struct Plan {
-    /// Of the function's body and of the bodies of folds that are cut.
+    /// Of the function's body and of the bodies of folds, if these are cut.
     pieces: HashMap<Block, Vec<Piece>>,
     /// Where a value is kept, if a piece reads it that does not define it.
     slots: Vec<Option<Slot>>,
@@ -63,10 +76,24 @@ pub(crate) struct Plan {
 }
 
 impl Plan {
-    /// Cuts a function into pieces of at most so many instructions, where it can be cut.
-    pub(crate) fn new(function: &Function, longest: usize) -> Self {
-        let mut pieces = HashMap::new();
-        cut(function, function.body, longest, &mut pieces);
+    /// One piece, in which all folds are.
+    pub(crate) fn whole(function: &Function) -> Self {
+        let insts = 0..function.blocks[function.body].insts.len();
+        let all = Piece { insts, then: Then::End, columns: Vec::new() };
+        let values = function.values.len();
+        Self {
+            pieces: HashMap::from([(function.body, vec![all])]),
+            slots: vec![None; values],
+            slot_count: 0,
+            homes: vec![0; values],
+        }
+    }
+
+    /// Pieces of at most so many instructions, with a cut before and behind every fold.
+    pub(crate) fn cut(function: &Function, longest: usize) -> Self {
+        let mut cutter = Cutter::new(function, longest);
+        cutter.cut(function.body);
+        let pieces = cutter.pieces;
         let lives = Lives::new(function, &pieces);
         let (slots, slot_count) = lives.slots();
         let homes = lives.homes;
@@ -88,9 +115,17 @@ impl Plan {
         self.slots[value.index()]
     }
 
+    /// Bytes of a strip in a plane, and of a slot: as many points as let all slots be near.
+    pub(crate) fn strip_bytes(&self) -> usize {
+        let number = size_of::<f32>();
+        let points = NEAR_BYTES / number / self.slot_count.max(1);
+        let [shortest, longest] = STRIP_POINTS;
+        number * (1 << points.clamp(shortest, longest).ilog2())
+    }
+
     /// Bytes of all slots. Values that are not alive together share one.
     pub(crate) fn slot_bytes(&self) -> usize {
-        self.slot_count * STRIP_BYTES
+        self.slot_count * self.strip_bytes()
     }
 
     /// The piece that defines a value, in order of execution.
@@ -99,42 +134,66 @@ impl Plan {
     }
 }
 
-/// Instructions of a block and of all folds in it.
-fn length(function: &Function, block: Block) -> usize {
-    let inst_length = |&inst: &Inst| match fold(function, inst) {
-        Some(fold) => 1 + length(function, fold.body),
-        None => 1,
-    };
-    function.blocks[block].insts.iter().map(inst_length).sum()
+/// The walk that cuts.
+struct Cutter<'a> {
+    function: &'a Function,
+    longest: usize,
+    /// The values that are columns.
+    columns: HashMap<Value, Column>,
+    pieces: HashMap<Block, Vec<Piece>>,
 }
 
-/// What the instruction folds, if it does.
-fn fold(function: &Function, inst: Inst) -> Option<&Fold> {
-    if let InstKind::Fold(fold) = &function.insts[inst].kind { Some(fold) } else { None }
-}
-
-/// Cuts a block, and the bodies of folds that are too long for a piece.
-fn cut(function: &Function, block: Block, longest: usize, pieces: &mut HashMap<Block, Vec<Piece>>) {
-    let insts = &function.blocks[block].insts;
-    let mut done = Vec::new();
-    let (mut from, mut so_far) = (0, 0);
-    for (position, &inst) in insts.iter().enumerate() {
-        let fold = fold(function, inst);
-        let length = 1 + fold.map_or(0, |fold| length(function, fold.body));
-        if let Some(fold) = fold.filter(|_| length > longest) {
-            done.push(Piece { insts: from..position, then: Then::Fold(inst) });
-            cut(function, fold.body, longest, pieces);
-            (from, so_far) = (position + 1, 0);
-        } else {
-            if so_far + length > longest && from < position {
-                done.push(Piece { insts: from..position, then: Then::Next });
-                (from, so_far) = (position, 0);
+impl<'a> Cutter<'a> {
+    fn new(function: &'a Function, longest: usize) -> Self {
+        let column = |data: &InstData| match data.kind {
+            InstKind::Column { table, column } => {
+                let value = data.results[0];
+                Some((value, Column { value, table, column }))
             }
-            so_far += length;
-        }
+            InstKind::Input(_)
+            | InstKind::Constant(_)
+            | InstKind::BitsConstant(_)
+            | InstKind::Op { .. }
+            | InstKind::Fold(_) => None,
+        };
+        let columns = function.insts.values().filter_map(column).collect();
+        Self { function, longest, columns, pieces: HashMap::new() }
     }
-    done.push(Piece { insts: from..insts.len(), then: Then::End });
-    pieces.insert(block, done);
+
+    /// Cuts a block, and the bodies of its folds.
+    fn cut(&mut self, block: Block) {
+        let insts = &self.function.blocks[block].insts;
+        let mut pieces = Vec::new();
+        let mut from = 0;
+        for (position, &inst) in insts.iter().enumerate() {
+            if let InstKind::Fold(fold) = &self.function.insts[inst].kind {
+                pieces.push(self.piece(block, from..position, Then::Fold(inst)));
+                self.cut(fold.body);
+                from = position + 1;
+            } else if position == from + self.longest.max(1) {
+                pieces.push(self.piece(block, from..position, Then::Next));
+                from = position;
+            }
+        }
+        pieces.push(self.piece(block, from..insts.len(), Then::End));
+        self.pieces.insert(block, pieces);
+    }
+
+    /// A piece of a block.
+    fn piece(&self, block: Block, insts: Range<usize>, then: Then) -> Piece {
+        let data = &self.function.blocks[block];
+        let last: &[Value] = match then {
+            Then::Next => &[],
+            Then::Fold(inst) => self.function.operands(inst),
+            Then::End => &data.results,
+        };
+        let read =
+            data.insts[insts.clone()].iter().flat_map(|&inst| self.function.operands(inst)).chain(last);
+        let mut seen = HashSet::new();
+        let columns = read.filter_map(|value| self.columns.get(value).copied());
+        let columns = columns.filter(|column| seen.insert(column.value)).collect();
+        Piece { insts, then, columns }
+    }
 }
 
 /// The walk over all pieces in order of execution: which of them define and read a value.
@@ -143,16 +202,25 @@ struct Lives<'a> {
     pieces: &'a HashMap<Block, Vec<Piece>>,
     /// Pieces so far.
     piece: usize,
-    /// The piece that defines a value. For accumulators of a fold that is cut: the one before the fold.
+    /// The piece that defines a value. For an accumulator, the one before the fold.
     homes: Vec<usize>,
     /// The last piece that reads a value; its home if none does.
     last: Vec<usize>,
-    /// How many cut folds enclose the definition of each value.
+    /// How many folds enclose the definition of each value.
     depth: Vec<usize>,
-    /// For each cut fold that is being walked, what it reads from outside.
+    /// For each fold that is being walked, what it reads from outside.
     captured: Vec<Vec<Value>>,
-    /// Accumulators of cut folds: as the body binds them, and as the fold's results.
-    accumulators: Vec<[Value; 2]>,
+    accumulators: Vec<Accumulator>,
+}
+
+/// What a fold hands from row to row.
+struct Accumulator {
+    /// As the fold is given it.
+    initial: Value,
+    /// As the body binds it.
+    param: Value,
+    /// As the fold gives it.
+    result: Value,
 }
 
 impl<'a> Lives<'a> {
@@ -168,57 +236,45 @@ impl<'a> Lives<'a> {
             captured: Vec::new(),
             accumulators: Vec::new(),
         };
-        lives.cut_block(function.body);
+        lives.block(function.body);
         lives
     }
 
-    fn cut_block(&mut self, block: Block) {
+    fn block(&mut self, block: Block) {
         let data = &self.function.blocks[block];
         for piece in &self.pieces[&block] {
-            self.insts(&data.insts[piece.insts.clone()]);
+            for &inst in &data.insts[piece.insts.clone()] {
+                self.read(self.function.operands(inst));
+                self.define(&self.function.insts[inst].results);
+            }
             match piece.then {
                 Then::Next => {}
-                Then::Fold(inst) => self.cut_fold(inst),
+                Then::Fold(inst) => self.fold(inst),
                 Then::End => self.read(&data.results),
             }
             self.piece += 1;
         }
     }
 
-    /// Instructions of the current piece.
-    fn insts(&mut self, insts: &[Inst]) {
-        for &inst in insts {
-            self.read(self.function.operands(inst));
-            if let Some(fold) = fold(self.function, inst) {
-                let body = &self.function.blocks[fold.body];
-                self.define(&body.params);
-                self.insts(&body.insts);
-                self.read(&body.results);
-            }
-            self.define(&self.function.insts[inst].results);
-        }
-    }
-
-    /// A fold that is cut, behind the current piece.
-    fn cut_fold(&mut self, inst: Inst) {
-        let Some(fold) = fold(self.function, inst) else { unreachable!("a fold is cut, and nothing else") };
-        let (params, results) = (&self.function.blocks[fold.body].params, &self.function.insts[inst].results);
+    /// The fold behind the current piece.
+    fn fold(&mut self, inst: Inst) {
+        let data = &self.function.insts[inst];
+        let InstKind::Fold(fold) = &data.kind else { unreachable!("a piece ends before a fold") };
+        let params = &self.function.blocks[fold.body].params;
         self.read(&fold.initial);
-        let before = self.piece;
-        self.define(results);
+        self.define(&data.results);
         self.captured.push(Vec::new());
         self.define(params);
         self.piece += 1;
-        self.cut_block(fold.body);
-        // The last piece that counts is the one that ends the body; the caller goes on behind it.
+        self.block(fold.body);
+        // The body's last piece is the fold's. The caller goes on behind it.
         self.piece -= 1;
         for value in self.captured.pop().into_iter().flatten() {
             self.last[value.index()] = self.piece;
         }
-        for (&param, &result) in params.iter().zip(results) {
+        for ((&initial, &param), &result) in fold.initial.iter().zip(params).zip(&data.results) {
             self.last[result.index()] = self.piece;
-            self.homes[result.index()] = before;
-            self.accumulators.push([param, result]);
+            self.accumulators.push(Accumulator { initial, param, result });
         }
     }
 
@@ -239,59 +295,53 @@ impl<'a> Lives<'a> {
         }
     }
 
-    /// A slot for every value that is read away from home, and for every accumulator of a fold that is cut. And how many there are.
+    /// A slot for every value that is read away from home, and for every accumulator. And how many slots there are.
     fn slots(&self) -> (Vec<Option<Slot>>, usize) {
-        let mut slots = vec![None; self.function.values.len()];
-        // An accumulator has one slot, which is that of its result.
-        let mut is_result = vec![false; slots.len()];
-        for [_, result] in &self.accumulators {
-            is_result[result.index()] = true;
+        let mut slots: Vec<Option<Slot>> = vec![None; self.function.values.len()];
+        // What the body binds has the slot of the result.
+        let (mut is_param, mut initial) = (vec![false; slots.len()], vec![None; slots.len()]);
+        for accumulator in &self.accumulators {
+            is_param[accumulator.param.index()] = true;
+            initial[accumulator.result.index()] = Some(accumulator.initial.index());
         }
-        let mut is_param = vec![false; slots.len()];
-        for [param, _] in &self.accumulators {
-            is_param[param.index()] = true;
+        let mut is_leaf = vec![false; slots.len()];
+        for data in self.function.insts.values().filter(|data| data.kind.is_leaf()) {
+            is_leaf[data.results[0].index()] = true;
         }
-        let remade = self.remade();
         let mut wanted: Vec<usize> = (0..slots.len())
-            .filter(|&value| is_result[value] || self.last[value] > self.homes[value])
-            .filter(|&value| !is_param[value] && !remade[value])
+            .filter(|&value| initial[value].is_some() || self.last[value] > self.homes[value])
+            .filter(|&value| !is_param[value] && !is_leaf[value])
             .collect();
         wanted.sort_by_key(|&value| self.homes[value]);
-        let (mut free, mut count) = (BinaryHeap::new(), 0);
-        let mut taken = BinaryHeap::new();
+        // The last piece that reads what is in each slot.
+        let mut taken: Vec<usize> = Vec::new();
+        let (mut free, mut ends) = (BinaryHeap::new(), BinaryHeap::new());
         for value in wanted {
-            while let Some(&Reverse((last, slot))) = taken.peek()
-                && last < self.homes[value]
+            let home = self.homes[value];
+            while let Some(&Reverse((last, slot))) = ends.peek()
+                && last < home
             {
-                taken.pop();
-                free.push(Reverse(slot));
+                ends.pop();
+                // Unless it has been handed on.
+                if taken[slot] == last {
+                    free.push(Reverse(slot));
+                }
             }
-            let Reverse(slot) = free.pop().unwrap_or_else(|| {
-                count += 1;
-                Reverse(Slot(count - 1))
+            // An accumulator begins where its initial value is, if the fold is the last to read that.
+            let handed_on = initial[value].and_then(|initial| slots[initial]);
+            let handed_on = handed_on.filter(|&Slot(slot)| taken[slot] == home).map(|Slot(slot)| slot);
+            let slot = handed_on.or_else(|| free.pop().map(|Reverse(slot)| slot)).unwrap_or_else(|| {
+                taken.push(0);
+                taken.len() - 1
             });
-            taken.push(Reverse((self.last[value], slot)));
-            slots[value] = Some(slot);
+            taken[slot] = self.last[value];
+            ends.push(Reverse((self.last[value], slot)));
+            slots[value] = Some(Slot(slot));
         }
-        for [param, result] in &self.accumulators {
-            slots[param.index()] = slots[result.index()];
+        for accumulator in &self.accumulators {
+            slots[accumulator.param.index()] = slots[accumulator.result.index()];
         }
-        (slots, count)
-    }
-
-    /// By value: whether it is read anew wherever it is used, from where it is anyway.
-    fn remade(&self) -> Vec<bool> {
-        let mut remade = vec![false; self.function.values.len()];
-        for data in self.function.insts.values() {
-            match data.kind {
-                InstKind::Input(_)
-                | InstKind::Constant(_)
-                | InstKind::BitsConstant(_)
-                | InstKind::Column { .. } => remade[data.results[0].index()] = true,
-                InstKind::Op { .. } | InstKind::Fold(_) => {}
-            }
-        }
-        remade
+        (slots, taken.len())
     }
 }
 
@@ -299,7 +349,7 @@ impl<'a> Lives<'a> {
 mod tests {
     use jbt_ir::{Domain, Function, FunctionBuilder, InstKind, Reduction, Schema, Value};
 
-    use super::{Plan, STRIP_BYTES, Then};
+    use super::{Plan, Then};
 
     fn finish(b: FunctionBuilder, out: Value) -> Function {
         b.finish(&[("out".to_owned(), out)])
@@ -314,54 +364,88 @@ mod tests {
     }
 
     #[test]
-    fn what_fits_a_piece_is_not_cut() {
-        let mut b = FunctionBuilder::new("whole", &["x"]);
-        let x = b.input(0);
-        let out = roots(&mut b, x, 9);
-        let function = finish(b, out);
-        assert!(Plan::new(&function, 10).is_whole());
-        assert_eq!(Plan::new(&function, 10).slot_bytes(), 0);
-        assert!(!Plan::new(&function, 9).is_whole());
-    }
-
-    #[test]
     fn slots_are_shared_by_values_that_are_not_alive_together() {
         let mut b = FunctionBuilder::new("chain", &["x"]);
         let x = b.input(0);
         let out = roots(&mut b, x, 99);
         let function = finish(b, out);
-        let plan = Plan::new(&function, 10);
+        let plan = Plan::cut(&function, 10);
         assert_eq!(plan.pieces(function.body).len(), 10);
         // Each piece hands one root to the next one: a piece reads one slot and writes the other.
-        assert_eq!(plan.slot_bytes(), 2 * STRIP_BYTES);
+        assert_eq!(plan.slot_bytes(), 2 * plan.strip_bytes());
         assert_eq!(plan.slot(x), None, "an input is read where it is");
+        let whole = Plan::whole(&function);
+        assert!(whole.is_whole() && whole.slot_bytes() == 0);
     }
 
     #[test]
-    fn a_fold_that_is_cut_keeps_its_accumulators_and_what_it_reads_from_outside() {
+    fn many_slots_make_short_strips() {
+        let mut b = FunctionBuilder::new("wait", &["x"]);
+        let mut values = vec![b.input(0)];
+        for index in 1..=100 {
+            let next = b.sqrt(values[index - 1]);
+            values.push(next);
+        }
+        let sum = values.into_iter().reduce(|sum, value| b.add(sum, value)).expect("there are values");
+        let function = finish(b, sum);
+        let [few, many] = [150, 10].map(|longest| Plan::cut(&function, longest));
+        assert!(few.strip_bytes() > many.strip_bytes());
+        // All roots but the last few wait for the sum.
+        assert!(many.slot_bytes() / many.strip_bytes() > 90);
+        assert!(many.slot_bytes() <= super::NEAR_BYTES);
+    }
+
+    /// A fold whose accumulator begins with a root, its body a chain of so many roots.
+    fn fold(length: usize) -> (Function, [Value; 5]) {
         let mut b = FunctionBuilder::new("fold", &["x"]);
         let columns = vec!["c".to_owned()];
         let t = b.table(Schema { name: "t".to_owned(), columns, parent: None, slots: Vec::new() });
         let x = b.input(0);
-        let [outside, zero] = [b.sqrt(x), b.constant(0.0)];
-        let acc = b.begin_fold(t, Reduction::Sum, &[zero]);
+        let outside = b.sqrt(x);
+        let initial = b.abs(outside);
+        let acc = b.begin_fold(t, Reduction::Sum, &[initial]);
         let c = b.column(t, 0);
         let inside = b.mul(c, outside);
-        let inside = roots(&mut b, inside, 20);
+        let inside = roots(&mut b, inside, length);
         let next = b.add(acc[0], inside);
         let out = b.end_fold(&[next])[0];
-        let function = finish(b, out);
+        (finish(b, out), [outside, initial, acc[0], c, out])
+    }
 
-        let plan = Plan::new(&function, 8);
+    #[test]
+    fn a_fold_keeps_its_accumulators_and_what_it_reads_from_outside() {
+        let (function, [outside, initial, acc, c, out]) = fold(20);
+        let plan = Plan::cut(&function, 8);
         let before = &plan.pieces(function.body)[0];
-        let Then::Fold(fold) = before.then else { panic!("the fold is longer than a piece") };
+        let Then::Fold(fold) = before.then else { panic!("a piece ends before a fold") };
         let InstKind::Fold(fold) = &function.insts[fold].kind else { panic!("a fold is cut") };
-        assert!(plan.pieces(fold.body).len() > 2);
-        assert_eq!(plan.slot(acc[0]), plan.slot(out));
-        let [outside, accumulator] = [outside, out].map(|value| plan.slot(value).expect("pieces read it"));
-        assert_ne!(outside, accumulator, "the next row reads both");
+        let body = plan.pieces(fold.body);
+        assert_eq!(body.len(), 3);
+        assert!(body[0].columns.iter().map(|column| column.value).eq([c]) && body[1].columns.is_empty());
         assert_eq!(plan.slot(c), None, "a column is read where it is");
+        assert_eq!(plan.slot(acc), plan.slot(out));
+        let [outside, out] = [outside, out].map(|value| plan.slot(value).expect("pieces read it"));
+        assert_ne!(outside, out, "the next row reads both");
+        assert_eq!(plan.slot(initial), None, "the piece that computes it hands it over");
+    }
 
-        assert!(Plan::new(&function, 40).is_whole());
+    #[test]
+    fn an_accumulator_begins_where_its_initial_value_is() {
+        let mut b = FunctionBuilder::new("folds", &["x"]);
+        let x = b.input(0);
+        let first = b.sqrt(x);
+        let mut last = first;
+        for index in 0..4 {
+            let schema = Schema { name: index.to_string(), columns: vec![], parent: None, slots: Vec::new() };
+            let t = b.table(schema);
+            let acc = b.begin_fold(t, Reduction::Sum, &[last]);
+            let next = b.add(acc[0], first);
+            last = b.end_fold(&[next])[0];
+        }
+        let function = finish(b, last);
+        let plan = Plan::cut(&function, 100);
+        // One for the root, which all folds read, and one for the accumulators of all.
+        assert_eq!(plan.slot_bytes(), 2 * plan.strip_bytes());
+        assert_ne!(plan.slot(first), plan.slot(last));
     }
 }

@@ -10,7 +10,7 @@ use std::sync::Arc;
 use common::{assert_same_bits, finish, reference, rows, run, spicy_plane, table, tables};
 use jbt_ir::limits::{MAX_JIT_LIVE_VALUES, MAX_JIT_VALUES};
 use jbt_ir::{Domain, FunctionBuilder, Reduction, Tables, Value, Verified};
-use jbt_jit::{Allocator, CompileError, Kernel, Options, RunError, VectorCount, clif};
+use jbt_jit::{Allocator, CompileError, Kernel, Options, Pieces, RunError, VectorCount, clif};
 
 /// The sum over rows of `c0 * x`, and `y`.
 fn function() -> Verified {
@@ -224,7 +224,8 @@ fn a_frame_that_is_too_large_is_refused() {
     }
     let function = finish(b, &values);
     let vectors = Some(VectorCount::Four);
-    let options = Options { vectors, allocator: Some(Allocator::SinglePass), ..Options::default() };
+    let (allocator, pieces) = (Some(Allocator::SinglePass), Some(Pieces::One));
+    let options = Options { vectors, allocator, pieces, ..Options::default() };
     let error = Kernel::compile_with(&function, &options).expect_err("the frame is too large");
     assert!(matches!(error, CompileError::Frame { bytes, limit } if bytes > limit), "{error}");
 }

@@ -8,7 +8,7 @@ use jbt_ir::{
     Function, FunctionBuilder, Rows, Schema, Selection, Store, Table, Tables, Value, Verified, interpret,
     verify,
 };
-use jbt_jit::{Allocator, Kernel, OptLevel, Options, VectorCount};
+use jbt_jit::{Allocator, Kernel, OptLevel, Options, Pieces, VectorCount};
 
 /// Numbers on which engines have been seen to differ.
 pub const SPICE: [f32; 22] = [
@@ -177,18 +177,26 @@ pub fn all_options() -> Vec<Options> {
     for vectors in VectorCount::ALL {
         for opt_level in OptLevel::ALL {
             for allocator in Allocator::ALL {
-                for piece in [usize::MAX, 7, 1] {
+                for pieces in [Pieces::One, Pieces::Of(7), Pieces::Of(1)] {
                     all.push(Options {
                         vectors: Some(vectors),
                         opt_level,
                         allocator: Some(allocator),
-                        piece: Some(piece),
+                        pieces: Some(pieces),
                     });
                 }
             }
         }
     }
     all
+}
+
+/// More points than two strips of any plan have.
+const POINTS: usize = 2_100;
+
+/// Whole copies of planes, until they are longer than two strips. They are whole blocks if the planes are.
+fn repeated(planes: &[Vec<f32>]) -> Vec<Vec<f32>> {
+    planes.iter().map(|plane| plane.repeat(POINTS.div_ceil(plane.len()))).collect()
 }
 
 /// Asserts that every setting of the compiler gives the reference's bits. Inputs are cut to whole blocks.
@@ -200,6 +208,7 @@ pub fn check(function: &Verified, tables: &Tables, mut inputs: Vec<Vec<f32>>) {
     let selections = [Selection::new(function.function(), tables), thinned(function, tables)];
     let expected =
         selections.each_ref().map(|selection| reference_selected(function, (tables, selection), &inputs));
+    let (inputs, expected) = (repeated(&inputs), expected.map(|planes| repeated(&planes)));
     let tables = Arc::new(tables.clone());
     for options in all_options() {
         let kernel = Kernel::compile_with(function, &options).expect("the test's function compiles");
