@@ -40,8 +40,8 @@ const STEP: u32 = 2;
 /// Points times ops of a square up to which its points are evaluated at once, because to divide it would take longer: with 100 ops a point that is at 16 x 16
 /// points, with 1,000 at 8 x 8.
 const CHEAP: u64 = 100_000;
-/// The same for each table of the program: finding its rows takes as long, whether there are any or not.
-const CHEAP_FOR_A_TABLE: u64 = 3_000;
+/// The same for each table of the program: to ask about a part takes a look at every table, whether it has rows or not.
+const CHEAP_FOR_A_TABLE: u64 = 12_000;
 
 /// How finely an image is made.
 #[derive(Clone, Copy, PartialEq, Debug)]
