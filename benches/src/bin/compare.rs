@@ -46,12 +46,13 @@ Keys of --json: case, what (it measures), primitives, points, unit (what the tim
 forms, NAME_form, the fastest. NAME is one of:
   ours        the compiler, on its best engine (key engine); the lanes interpreter for the case interpreter
   limit       hand-written loops for sums of points (key limit_level: their instruction set)
+  lanes       the lanes interpreter, beside ours where both take part
   fidget_jit  fidget's machine code          fidget_vm  its interpreter
   splashsurf  another surface of the same particles
   walk        a tree walker                  separate   a walk for each answer; gradients by differences
 ratio_limit is ours / limit, ratio_fidget is fidget / ours; checksum is ok, or says who disagrees. Cases that mesh have threads and
-triangles, too; the train has evaluations_per_second, and what its authors published. Its scene is not bundled: the environment
-variable JBT_SAMPLES names a folder that has it as parsip/train_corrected.scene.
+triangles, too; the train has evaluations_per_second, and what its authors published. Its scene and the programs are not bundled:
+the environment variable JBT_SAMPLES names a folder that has them as parsip/train_corrected.scene and vm/*.vm.
 
 All are built alike: opt-level 3, one codegen unit for each crate, no link-time optimisation, for any CPU of the architecture.
 

@@ -10,6 +10,8 @@ pub enum Contestant {
     Ours,
     /// The hand-written program for sums of points, see [`crate::limit`].
     Limit,
+    /// The compiler's interpreter, beside its machine code.
+    Lanes,
     /// fidget's machine code.
     FidgetJit,
     /// fidget's interpreter.
@@ -24,9 +26,10 @@ pub enum Contestant {
 
 impl Contestant {
     /// All of them.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Ours,
         Self::Limit,
+        Self::Lanes,
         Self::FidgetJit,
         Self::FidgetVm,
         Self::Splashsurf,
@@ -40,6 +43,7 @@ impl Contestant {
         match self {
             Self::Ours => "ours",
             Self::Limit => "limit",
+            Self::Lanes => "lanes",
             Self::FidgetJit => "fidget_jit",
             Self::FidgetVm => "fidget_vm",
             Self::Splashsurf => "splashsurf",
@@ -51,7 +55,7 @@ impl Contestant {
     /// Whether it is what we measure, and not what we measure against.
     const fn is_measured_well(self) -> bool {
         match self {
-            Self::Ours | Self::Limit => true,
+            Self::Ours | Self::Limit | Self::Lanes => true,
             Self::FidgetJit | Self::FidgetVm | Self::Splashsurf | Self::Walk | Self::Separate => false,
         }
     }

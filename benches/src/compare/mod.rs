@@ -11,6 +11,7 @@ mod dense;
 mod mesh;
 mod oracle;
 mod picture;
+mod programs;
 mod report;
 mod rows;
 mod train;
@@ -101,6 +102,11 @@ impl Case {
             name: "train",
             what: "the field of the ParsIP train on its lattice, cell 0.13",
             run: train::train,
+        },
+        Self {
+            name: "programs",
+            what: "the fields of imported programs of up to 7,866 instructions, no culling",
+            run: programs::programs,
         },
         Self {
             name: "prospero",

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use jbt::contour::{ImageDetail, Plane, Rectangle, Slicer};
 use jbt::render::{Mode, Render, Renderer, View};
-use jbt::{Box3, Compiler, Engine, Fineness, Points, Query};
+use jbt::{Box3, Compiler, Fineness, Query};
 use jbt_frontend::check::CheckedTree;
 use jbt_frontend::import;
 use jbt_frontend::walk::walk;
@@ -28,8 +28,6 @@ const LOOKS: usize = 500;
 const NEAR: f64 = 1e-4;
 /// The part of the pixels by which contestants may differ: their pixels are half a pixel off each other.
 const PIXELS_OFF: f64 = 0.02;
-/// Points at which engines are timed.
-const POINTS: usize = 1 << 14;
 
 /// Blobs that are seen, and pixels along a side.
 const BLOBS: usize = 512;
@@ -83,13 +81,7 @@ pub(super) fn prospero(options: Options) -> Vec<Row> {
     let threads = peer_threads(options);
     contest.enter_checked(Contestant::FidgetJit, "", || jit.inside(SIDE, threads), near);
     contest.enter_checked(Contestant::FidgetVm, "", || vm.inside(SIDE, threads), near);
-    let [lanes, machine] = [Engine::Lanes, Engine::Jit].map(|engine| nanoseconds(&tree, engine));
-    let extra = vec![
-        ("threads", json!(options.threads)),
-        ("compile_ms", json!(compile.as_secs_f64() * 1e3)),
-        ("lanes_ns_per_point", json!(lanes)),
-        ("jit_ns_per_point", json!(machine)),
-    ];
+    let extra = vec![("threads", json!(options.threads)), ("compile_ms", json!(compile.as_secs_f64() * 1e3))];
     vec![row(bytes.iter().filter(|&&byte| byte == b'\n').count() - 1, contest.run(options.effort()), extra)]
 }
 
@@ -115,21 +107,6 @@ fn check(tree: &CheckedTree, image: &[u8]) -> Result<(), String> {
         }
     }
     Ok(())
-}
-
-/// Nanoseconds that the field takes at a point, unpruned, on one thread: the least of some runs.
-fn nanoseconds(tree: &CheckedTree, engine: Engine) -> f64 {
-    let evaluator = Compiler::for_engine(engine).evaluator(tree, Query::FIELD).expect("it compiles");
-    let flat = |[x, y, _]: [f32; 3]| [x, y, 0.0];
-    let cube = model::cube(POINTS, 3);
-    let points: Points = (0..cube.len()).map(|index| flat(cube.get(index))).collect();
-    let mut samples = evaluator.samples();
-    let run = || {
-        let start = Instant::now();
-        evaluator.eval(&points, &mut samples).expect("the buffers fit");
-        start.elapsed().as_secs_f64() * 1e9 / POINTS as f64
-    };
-    std::iter::repeat_with(run).take(7).fold(f64::INFINITY, f64::min)
 }
 
 /// A picture with normals of blobs, one of which has just been edited.

@@ -228,6 +228,12 @@ impl<F: MathFunction + RenderHints> FidgetProgram<F> {
         Shape::new(&context, root).map(Self).map_err(|error| error.to_string())
     }
 
+    /// Code that answers with its value at points.
+    #[must_use]
+    pub fn tape(&self) -> FieldTape<F> {
+        FieldTape::new(&self.0)
+    }
+
     /// The square [-1, 1]^2 of the plane z = 0, of so many pixels along each side: how many are inside. Code is made on the way.
     #[must_use]
     pub fn inside(&self, side: u32, threads: Threads) -> usize {
