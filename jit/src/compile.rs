@@ -90,7 +90,8 @@ impl Allocator {
 pub enum Pieces {
     /// Not at all: a block of points runs through the whole function before the next block does.
     One,
-    /// Into pieces of at most so many instructions, with a cut before and behind every fold.
+    /// Into pieces of at most so many instructions, with a cut before and behind every fold. If the values that pieces hand to each
+    /// other are too many for the nearer caches, not at all.
     Of(usize),
 }
 

@@ -6,7 +6,6 @@
 //!     jump strip(0)
 //! strip(start):                                     once for each strip; once in all if the function is one piece
 //!     end = min(start + strip bytes, bytes)
-//!     broadcast columns                             of folds that are cut
 //!     jump points(start)
 //! points(offset):                                   a piece, once for each block of 4 K points
 //!     v0 = load planes[0] + offset                  an input
@@ -19,20 +18,35 @@
 //!     ...
 //!     jump header(cursor + 4, next)
 //! exit:                                             the accumulators are the fold's results
-//!     store slots[v9] + offset - start              what other pieces read
 //!     store planes[inputs + 0] + offset             what the last piece gives
 //!     brif offset + 16 K < end, points(offset + 16 K), next piece
 //! ```
 //!
-//! A fold that is cut ([`crate::strips`]) is the same loop over rows, around the `points` loops of its pieces; its accumulators are
-//! in slots.
+//! If there are several pieces, no fold is in one ([`crate::strips`]). A fold is then the same loop over rows around the `points` loops
+//! of its body's pieces, with its accumulators in slots:
 //!
-//! Inputs, constants, columns and what is in slots are not kept alive from where the IR defines them: each Cranelift block that uses
-//! one reads it again, at the first use. That is a 16 byte load, which is what a spilled value would cost, and for a column a
-//! load and a broadcast; they leave the registers to the values that have to be computed. (Cranelift makes no memory operand of
-//! such a load unless nothing that follows from it is used twice, which is rare.)
+//! ```text
+//! header(cursor):
+//!     brif cursor == end, exit, body
+//! body:
+//!     row = load cursor;  numbers + row * stride
+//!     broadcast columns                             that the piece reads
+//!     jump points(start)
+//! points(offset):                                   a piece
+//!     v7 = ...
+//!     store slots[v7] + offset - start              what other pieces read, where it is computed
+//!     brif offset + 16 K < end, points(offset + 16 K), next piece
+//! next piece:
+//!     ...
+//!     jump header(cursor + 4)
+//! ```
+//!
+//! Inputs, constants, columns that are not broadcast and what is in slots are not kept alive from where the IR defines them: each
+//! Cranelift block that uses one reads it again, at the first use. That is a 16 byte load, which is what a spilled value would cost, and
+//! for a column a load and a broadcast; they leave the registers to the values that have to be computed. (Cranelift makes no memory
+//! operand of such a load unless nothing that follows from it is used twice, which is rare.)
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use cranelift_codegen::ir::condcodes::IntCC;
 use cranelift_codegen::ir::types::{F32, F32X4, I32X4, I64};
@@ -50,7 +64,7 @@ use crate::strips::{Column, Piece, Plan, Slot, Then};
 use crate::vectors::{VECTOR_BYTES, Vectors};
 
 /// A Cranelift function that keeps to the ABI of [`crate::entry`]: it reads the input planes, the table views and what
-/// these point to as far as checked tables go, writes the output planes, and touches no other memory.
+/// these point to as far as checked tables go, writes the output planes, and touches no other memory but its own frame.
 pub(crate) struct Lowered(ir::Function);
 
 impl Lowered {
@@ -96,7 +110,7 @@ enum Place<'f, const K: usize> {
     Constant(f32),
     /// To be made where it is used.
     Bits(u32),
-    /// To be read where it is used.
+    /// To be read where it is used, unless it is broadcast for a piece: then it is computed.
     Column(Table, usize),
     /// To be read where it is used.
     Input(usize),
@@ -147,7 +161,7 @@ struct Strip {
 struct Points {
     /// Bytes from the start of each plane.
     offset: ir::Value,
-    /// The address in each input plane.
+    /// The address in each input plane, for all folds of the one piece that there is; empty if there are several.
     inputs: Vec<ir::Value>,
     /// The address in the first slot, if there are slots.
     slots: Option<ir::Value>,
@@ -182,8 +196,7 @@ impl<'f, const K: usize> Lowering<'f, K> {
             unreachable!("the signature has three parameters")
         };
         let slots = (plan.slot_bytes() > 0).then(|| {
-            let size =
-                u32::try_from(plan.slot_bytes()).expect("limits::MAX_JIT_FRAME_BYTES is far below 2^32");
+            let size = u32::try_from(plan.slot_bytes()).expect("a plan with so many slots is not made");
             let align_shift = VECTOR_BYTES.ilog2() as u8;
             let slots = StackSlotData::new(StackSlotKind::ExplicitSlot, size, align_shift);
             builder.create_sized_stack_slot(slots)
@@ -222,7 +235,7 @@ impl<'f, const K: usize> Lowering<'f, K> {
         builder.seal_all_blocks();
     }
 
-    /// Emits a loop over offsets in the planes, from one to another, which come after at least one step.
+    /// Emits a loop over offsets in the planes, which runs at least once: `from` is before `to`. Its last step may end behind `to`.
     fn repeat(
         &mut self,
         from: ir::Value,
@@ -283,8 +296,7 @@ impl<'f, const K: usize> Lowering<'f, K> {
             Then::Next => true,
             Then::Fold(fold) => {
                 let (fold, _) = self.folded(fold);
-                let mut pairs = self.function.blocks[fold.body].params.iter().zip(&fold.initial);
-                pairs.all(|(&param, &initial)| self.plan.slot(param) == self.plan.slot(initial))
+                self.moves(&self.function.blocks[fold.body].params, &fold.initial).is_empty()
             }
             Then::End => false,
         };
@@ -301,7 +313,8 @@ impl<'f, const K: usize> Lowering<'f, K> {
 
     /// The addresses of a block of points.
     fn points(&mut self, strip: Strip, offset: ir::Value) -> Points {
-        let inputs = (0..self.function.inputs.len()).map(|index| self.plane(index, offset)).collect();
+        let inputs = if self.plan.is_whole() { self.function.inputs.len() } else { 0 };
+        let inputs = (0..inputs).map(|index| self.plane(index, offset)).collect();
         let builder = &mut self.vectors.builder;
         let slots = self.slots.map(|slots| {
             let first = builder.ins().stack_addr(I64, slots, 0);
@@ -318,9 +331,9 @@ impl<'f, const K: usize> Lowering<'f, K> {
 
     /// Stores the function's outputs.
     fn outputs(&mut self, results: &[Value]) {
-        for (index, output) in self.operands(results).into_iter().enumerate() {
+        for (index, &result) in results.iter().enumerate() {
             let address = self.plane(self.function.inputs.len() + index, self.here().offset);
-            for (vector, value) in output.real().into_iter().enumerate() {
+            for (vector, value) in self.operand(result).real().into_iter().enumerate() {
                 self.vectors.builder.ins().store(PLANE, value, address, offset(vector, VECTOR_BYTES));
             }
         }
@@ -357,14 +370,26 @@ impl<'f, const K: usize> Lowering<'f, K> {
         self.plan.slot(value).map(|slot| Place::Kept(slot, self.function.values[value]))
     }
 
-    /// Stores values of the current block of points into the slots of others, all of them read before the first is written.
+    /// Stores values of the current block of points into the slots of others, as if all were read before the first is written.
     fn keep_all(&mut self, targets: &[Value], values: &[Value]) {
-        let computed = self.operands(values);
-        for ((&target, value), computed) in targets.iter().zip(values).zip(&computed) {
-            if self.plan.slot(target) != self.plan.slot(*value) {
-                self.keep(target, computed);
+        let moves = self.moves(targets, values);
+        let written: HashSet<Slot> = moves.iter().filter_map(|&(target, _)| self.plan.slot(target)).collect();
+        for &(_, value) in &moves {
+            if self.plan.slot(value).is_some_and(|slot| written.contains(&slot)) {
+                // Read now, it stays in `made`.
+                self.operand(value);
             }
         }
+        for (target, value) in moves {
+            let computed = self.operand(value);
+            self.keep(target, &computed);
+        }
+    }
+
+    /// Pairs of values of which the first is to have what the second is, without those that share a slot: they have it.
+    fn moves(&self, targets: &[Value], values: &[Value]) -> Vec<(Value, Value)> {
+        let pairs = targets.iter().copied().zip(values.iter().copied());
+        pairs.filter(|&(target, value)| self.plan.slot(target) != self.plan.slot(value)).collect()
     }
 
     /// Stores a value into its slot, if it has one.
@@ -480,7 +505,9 @@ impl<'f, const K: usize> Lowering<'f, K> {
 
     /// Loads the current block of points of an input plane.
     fn input(&mut self, index: usize) -> [ir::Value; K] {
-        let address = self.here().inputs[index];
+        let Points { offset: here, inputs, .. } = self.here();
+        let (here, address) = (*here, inputs.get(index).copied());
+        let address = address.unwrap_or_else(|| self.plane(index, here));
         std::array::from_fn(|vector| {
             self.vectors.builder.ins().load(F32X4, PLANE, address, offset(vector, VECTOR_BYTES))
         })

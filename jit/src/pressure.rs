@@ -2,7 +2,8 @@
 //!
 //! A value is alive from its definition to its last use. A use inside a fold counts until the fold ends if the value
 //! comes from outside, because the next row reads it again. Inputs, constants, columns and what another piece has computed
-//! are read anew in each block that uses them and do not count.
+//! are read anew in each block that uses them and do not count. (Columns that are broadcast for a piece are alive in it, and do not
+//! count either: where there are many of them they are spilled, and read from the frame where they are used.)
 //!
 //! ```text
 //! v2 = sqrt v1          ┐
@@ -58,7 +59,8 @@ pub(crate) fn live_values(function: &Function, plan: &Plan) -> usize {
     most.max().unwrap_or(0).unsigned_abs()
 }
 
-/// The largest number of values that a loop hands from row to row: they compete for registers with all that its body computes.
+/// The largest number of values that a loop hands from row to row: few for a field, more for a gradient, and more for attributes. Where the
+/// function is one piece they compete for registers with all that the body computes.
 pub(crate) fn carried_values(function: &Function) -> usize {
     let carried =
         |inst: &InstData| if let InstKind::Fold(fold) = &inst.kind { fold.initial.len() } else { 0 };

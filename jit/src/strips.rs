@@ -7,12 +7,13 @@
 //!
 //! ```text
 //! v3 = sqrt v0           ┐                     for each block of the strip
-//! v4 = mul v0, v3        ┘ piece 0, keeps v3, v4
-//! v9 = fold t0 (v4):                           for each row of t0
-//!     v6 = column t0.x   ┐                         broadcast once for the strip
+//! v4 = mul v0, v3        ┘ piece 0, keeps v3, and v4 as the fold's accumulator
+//! v9 = fold t0 (v4) block1(v5):                for each row of t0
+//!     v6 = column t0.x   ┐                         broadcast before the piece
 //!     v7 = mul v6, v3    ┤                         for each block of the strip
-//!     ...                ┘ piece 1
-//!     yield v8           ] piece 2, keeps v9       for each block of the strip
+//!     ...                ┘ piece 1, keeps v7
+//!     v8 = add v5, v7    ┐                         for each block of the strip
+//!     yield v8           ┘ piece 2, keeps the accumulator
 //! yield v9               ] piece 3             for each block of the strip
 //! ```
 //!
@@ -61,7 +62,7 @@ pub(crate) enum Then {
 }
 
 /// A place for one value at all points of a strip.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub(crate) struct Slot(pub(crate) usize);
 
 /// The pieces of a function, and what they hand to each other.
@@ -170,7 +171,7 @@ impl<'a> Cutter<'a> {
                 pieces.push(self.piece(block, from..position, Then::Fold(inst)));
                 self.cut(fold.body);
                 from = position + 1;
-            } else if position == from + self.longest.max(1) {
+            } else if position - from == self.longest.max(1) {
                 pieces.push(self.piece(block, from..position, Then::Next));
                 from = position;
             }
@@ -204,7 +205,7 @@ struct Lives<'a> {
     piece: usize,
     /// The piece that defines a value. For an accumulator, the one before the fold.
     homes: Vec<usize>,
-    /// The last piece that reads a value; its home if none does.
+    /// The last piece in which a value is needed: one that reads it, or the last of a fold that does or whose result it is.
     last: Vec<usize>,
     /// How many folds enclose the definition of each value.
     depth: Vec<usize>,
@@ -298,19 +299,18 @@ impl<'a> Lives<'a> {
     /// A slot for every value that is read away from home, and for every accumulator. And how many slots there are.
     fn slots(&self) -> (Vec<Option<Slot>>, usize) {
         let mut slots: Vec<Option<Slot>> = vec![None; self.function.values.len()];
-        // What the body binds has the slot of the result.
-        let (mut is_param, mut initial) = (vec![false; slots.len()], vec![None; slots.len()]);
+        // What the body binds has the slot of the result, and leaves are read where they are.
+        let (mut is_elsewhere, mut initial) = (vec![false; slots.len()], vec![None; slots.len()]);
         for accumulator in &self.accumulators {
-            is_param[accumulator.param.index()] = true;
+            is_elsewhere[accumulator.param.index()] = true;
             initial[accumulator.result.index()] = Some(accumulator.initial.index());
         }
-        let mut is_leaf = vec![false; slots.len()];
         for data in self.function.insts.values().filter(|data| data.kind.is_leaf()) {
-            is_leaf[data.results[0].index()] = true;
+            is_elsewhere[data.results[0].index()] = true;
         }
         let mut wanted: Vec<usize> = (0..slots.len())
             .filter(|&value| initial[value].is_some() || self.last[value] > self.homes[value])
-            .filter(|&value| !is_param[value] && !is_leaf[value])
+            .filter(|&value| !is_elsewhere[value])
             .collect();
         wanted.sort_by_key(|&value| self.homes[value]);
         // The last piece that reads what is in each slot.

@@ -174,6 +174,36 @@ fn nested_folds_run_over_the_rows_that_the_parent_owns() {
     check(&nested(), &tables(none), points());
 }
 
+/// A loop over all rows of a table inside a loop over another, which does not own them; masks, bits and one value twice go round in it.
+#[test]
+fn folds_may_stand_in_folds_that_own_nothing() {
+    let mut b = FunctionBuilder::new("types", &["x", "y", "z"]);
+    let (t0, t1) = (table(&mut b, None, 1), table(&mut b, None, 2));
+    let (x, y, zero) = (b.input(0), b.input(1), b.constant(0.0));
+    let never = b.lt(zero, zero);
+    let seed = b.bits_constant(0x9E37_79B9);
+    let root = b.sqrt(x);
+    let outer = b.begin_fold(t0, Reduction::Sum, &[root, root, never, seed]);
+    let c = b.column(t0, 0);
+    let scaled = b.mul(outer[0], c);
+    let inner = b.begin_fold(t1, Reduction::Sum, &[scaled, scaled, outer[2], outer[3]]);
+    let (c0, c1) = (b.column(t1, 0), b.column(t1, 1));
+    let inside = b.lt(inner[1], c0);
+    let any = b.either(inner[2], inside);
+    let (five, encoding) = (b.bits_constant(5), b.to_bits(inner[0]));
+    let shifted = b.shl(inner[3], five);
+    let hash = b.bit_xor(shifted, encoding);
+    let next = b.fma(inner[1], c1, y);
+    let inner = b.end_fold(&[next, inner[0], any, hash]);
+    let next = b.add(inner[1], outer[1]);
+    let outer = b.end_fold(&[inner[0], next, inner[2], inner[3]]);
+    let chosen = b.select(outer[2], outer[0], outer[1]);
+    let hash = b.from_bits(outer[3]);
+    let function = finish(b, &[chosen, hash, outer[1]]);
+    let all = [rows(1, 4, &[0, 1, 3], &[0, 3], number), rows(2, 6, &[1, 2, 5], &[0, 3], number)];
+    check(&function, &tables(all), points());
+}
+
 #[test]
 fn a_table_without_columns_counts() {
     let mut b = FunctionBuilder::new("count", &["x", "y", "z"]);

@@ -171,13 +171,13 @@ pub fn assert_same_bits(expected: &[Vec<f32>], given: &[Vec<f32>], what: &str) {
     }
 }
 
-/// All settings of the compiler, with the function whole, in pieces of a few instructions, and in the smallest there are.
+/// All settings of the compiler, with the function whole, cut at folds, in pieces of a few instructions, and in the smallest there are.
 pub fn all_options() -> Vec<Options> {
     let mut all = vec![Options::default()];
     for vectors in VectorCount::ALL {
         for opt_level in OptLevel::ALL {
             for allocator in Allocator::ALL {
-                for pieces in [Pieces::One, Pieces::Of(7), Pieces::Of(1)] {
+                for pieces in [Pieces::One, Pieces::Of(usize::MAX), Pieces::Of(7), Pieces::Of(1)] {
                     all.push(Options {
                         vectors: Some(vectors),
                         opt_level,
