@@ -176,18 +176,22 @@ mod tests {
         assert_eq!(count(b, last), 1);
     }
 
-    #[test]
-    fn values_that_wait_are_alive() {
+    /// The sum of x, its root, the root of that and so on, 20 in all, which are added up in the order in which they were made.
+    fn waiting() -> Function {
         let mut b = FunctionBuilder::new("wait", &["x"]);
         let mut values = vec![b.input(0)];
         for index in 1..20 {
             let next = b.sqrt(values[index - 1]);
             values.push(next);
         }
-        // The last root is alive together with the 18 before it, which are added up in the order in which they were made.
-        let first = values[0];
-        let sum = values.iter().skip(1).fold(first, |sum, &value| b.add(sum, value));
-        assert_eq!(count(b, sum), 19);
+        let sum = values.into_iter().reduce(|sum, value| b.add(sum, value)).expect("there are values");
+        b.finish(&[("sum".to_owned(), sum)])
+    }
+
+    #[test]
+    fn values_that_wait_are_alive() {
+        // The last root together with the 18 before it.
+        assert_eq!(live(&waiting()), 19);
     }
 
     #[test]
@@ -215,16 +219,8 @@ mod tests {
 
     #[test]
     fn what_another_piece_has_computed_is_not_alive() {
-        let mut b = FunctionBuilder::new("pieces", &["x"]);
-        let mut values = vec![b.input(0)];
-        for index in 1..20 {
-            let next = b.sqrt(values[index - 1]);
-            values.push(next);
-        }
-        let first = values[0];
-        let sum = values.iter().skip(1).fold(first, |sum, &value| b.add(sum, value));
-        let function = b.finish(&[("sum".to_owned(), sum)]);
         // In each piece the last root or sum waits for the next one; all roots are in slots for the sum.
+        let function = waiting();
         assert_eq!(live_values(&function, &Plan::cut(&function, 10)), 1);
     }
 
