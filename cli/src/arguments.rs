@@ -1,8 +1,10 @@
 //! The command line: what can be asked, and how it is written.
 
 mod render;
+mod work;
 
 pub use render::{GroundName, RenderArguments};
+pub use work::WorkArguments;
 
 use std::path::PathBuf;
 
@@ -97,15 +99,8 @@ pub struct MeshArguments {
     /// Where the field is asked.
     #[command(flatten)]
     pub lattice: LatticeArguments,
-    /// What evaluates the field: all engines give the same bits
-    #[arg(long, value_enum, default_value_t = EngineName::Jit)]
-    pub engine: EngineName,
-    /// Number of threads; the mesh does not depend on it [default: one for each processor]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    pub threads: Option<u16>,
-    /// Print one JSON object instead of a summary
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub work: WorkArguments,
 }
 
 /// The lattice of points that a mesh asks the field at.
@@ -187,15 +182,8 @@ pub struct ContourArguments {
     /// Points along the side of a pixel, for smooth images inside and of attributes [default: 1]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=8))]
     pub samples: Option<u8>,
-    /// What evaluates the field: all engines give the same bits
-    #[arg(long, value_enum, default_value_t = EngineName::Jit)]
-    pub engine: EngineName,
-    /// Number of threads; the slice does not depend on it [default: one for each processor]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    pub threads: Option<u16>,
-    /// Print one JSON object instead of a summary
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub work: WorkArguments,
 }
 
 /// What `jbt sample` takes.
@@ -222,15 +210,8 @@ pub struct SampleArguments {
     /// Where they are wanted.
     #[command(flatten)]
     pub lattice: LatticeArguments,
-    /// What evaluates the field: all engines give the same bits
-    #[arg(long, value_enum, default_value_t = EngineName::Jit)]
-    pub engine: EngineName,
-    /// Number of threads; the samples do not depend on it [default: one for each processor]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    pub threads: Option<u16>,
-    /// Print one JSON object instead of a summary
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub work: WorkArguments,
 }
 
 /// What `jbt eval` takes.

@@ -7,23 +7,19 @@ use jbt::contour::{Contour, Detail, ImageDetail, Level, Mode, Rectangle, SliceEr
 use jbt::export::svg::{Paint, Style, write_svg};
 use jbt::export::write_png;
 use jbt::mesh::LatticeError;
-use jbt::{CheckedTree, Compiler, Fineness, Query};
+use jbt::{CheckedTree, Fineness, Query};
 use jbt_frontend::diagnostic::{Diagnostic, escape};
 use serde_json::{Value, json};
 
 use crate::arguments::{ContourArguments, DrawingName, ModeName, PaintName};
 use crate::failure::Failure;
-use crate::output::{Output, Told, grouped, plural, warn};
+use crate::output::{Output, grouped, plural, warn};
 use crate::progress::Progress;
 use crate::scene::{Scene, is_standard};
-use crate::threads::in_pool;
 
 /// Runs the command. `start` is when the process began, for the total time.
 pub fn run(arguments: &ContourArguments, quiet: bool, start: Instant) -> Result<(), Failure> {
-    if is_standard(&arguments.output) && arguments.json {
-        let message = "the slice and the JSON report cannot both go to the standard output";
-        return Err(Failure::Usage(message.to_owned()));
-    }
+    arguments.work.check_output(&arguments.output, "slice")?;
     let drawing = drawing(arguments)?;
     check_options(arguments, drawing)?;
     let fineness = fineness(arguments, drawing)?;
@@ -31,7 +27,7 @@ pub fn run(arguments: &ContourArguments, quiet: bool, start: Instant) -> Result<
     scene.warn(quiet);
     let tree = scene.check()?;
     check_attributes(arguments, drawing, &tree)?;
-    let compiler = arguments.engine.required().map_or_else(Compiler::new, Compiler::for_engine);
+    let compiler = arguments.work.compiler();
     let query =
         if drawing == DrawingName::Svg || mode(arguments).1 { Query::ATTRIBUTES } else { Query::FIELD };
     let slicer = Slicer::new(&compiler, &tree, &arguments.plane, query)
@@ -42,7 +38,7 @@ pub fn run(arguments: &ContourArguments, quiet: bool, start: Instant) -> Result<
     };
     let mut progress = Progress::new("slicing", quiet);
     let mut work = || make(arguments, drawing, &slicer, &rectangle, fineness, &mut progress);
-    let made = in_pool(arguments.threads, &mut work)?.map_err(|error| failure(&scene, &error))?;
+    let made = arguments.work.run(&mut work)?.map_err(|error| failure(&scene, &error))?;
     drop(progress);
 
     let mut output = Output::open(&arguments.output)?;
@@ -59,7 +55,7 @@ pub fn run(arguments: &ContourArguments, quiet: bool, start: Instant) -> Result<
     }
     warnings.splice(0..0, scene.warnings.iter().cloned());
     let report = Report { made: &made, slicer: &slicer, warnings: &warnings, total: start.elapsed() };
-    let told = if arguments.json { Told::Json } else { Told::Text { quiet } };
+    let told = arguments.work.told(quiet);
     told.report(&arguments.output, || report.json().to_string(), |name| report.text(name))
 }
 

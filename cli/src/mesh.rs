@@ -2,32 +2,28 @@
 
 use std::time::{Duration, Instant};
 
+use jbt::Polygonized;
 use jbt::export::{self, ExportError, Format};
-use jbt::{Compiler, Polygonized};
 use jbt_frontend::diagnostic::escape;
 use serde_json::json;
 
 use crate::arguments::{FormatName, MeshArguments};
 use crate::failure::Failure;
 use crate::lattice;
-use crate::output::{Output, Told, grouped, plural, warn};
+use crate::output::{Output, grouped, plural, warn};
 use crate::progress::Progress;
 use crate::scene::{Scene, is_standard};
 use crate::stages;
-use crate::threads::in_pool;
 
 /// Runs the command. `start` is when the process began, for the total time.
 pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(), Failure> {
-    if is_standard(&arguments.output) && arguments.json {
-        let message = "the mesh and the JSON report cannot both go to the standard output";
-        return Err(Failure::Usage(message.to_owned()));
-    }
+    arguments.work.check_output(&arguments.output, "mesh")?;
     let format = format(arguments)?;
     let settings = lattice::settings(&arguments.lattice)?;
     let scene = Scene::load(&arguments.scene)?;
     scene.warn(quiet);
     let tree = scene.check()?;
-    let compiler = arguments.engine.required().map_or_else(Compiler::new, Compiler::for_engine);
+    let compiler = arguments.work.compiler();
 
     let mut progress = Progress::new("meshing", quiet);
     let mut work = || {
@@ -36,7 +32,7 @@ pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(),
             true
         })
     };
-    let made = in_pool(arguments.threads, &mut work)?.map_err(|error| lattice::failure(&scene, error))?;
+    let made = arguments.work.run(&mut work)?.map_err(|error| lattice::failure(&scene, error))?;
     drop(progress);
 
     let mut output = Output::open(&arguments.output)?;
@@ -55,7 +51,7 @@ pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(),
     }
     warnings.splice(0..0, scene.warnings);
     let report = Report { made: &made, warnings: &warnings, total: start.elapsed() };
-    let told = if arguments.json { Told::Json } else { Told::Text { quiet } };
+    let told = arguments.work.told(quiet);
     told.report(&arguments.output, || report.json().to_string(), |name| report.text(name))
 }
 

@@ -2,31 +2,27 @@
 
 use std::time::{Duration, Instant};
 
+use jbt::Box3;
 use jbt::export::write_png;
 use jbt::render::{Camera, Mode, Render, RenderError, Rendered, Report as Taken, Stance, View};
 use jbt::solid::{BoundsError, RegionError};
-use jbt::{Box3, Compiler};
 use jbt_frontend::diagnostic::escape;
 use serde_json::json;
 
 use crate::arguments::{GroundName, RenderArguments};
 use crate::failure::Failure;
-use crate::output::{Output, Told, grouped, plural, warn};
+use crate::output::{Output, grouped, plural, warn};
 use crate::progress::Progress;
-use crate::scene::{Scene, is_standard};
-use crate::threads::in_pool;
+use crate::scene::Scene;
 
 /// Runs the command. `start` is when the process began, for the total time.
 pub fn run(arguments: &RenderArguments, quiet: bool, start: Instant) -> Result<(), Failure> {
-    if is_standard(&arguments.output) && arguments.json {
-        let message = "the picture and the JSON report cannot both go to the standard output";
-        return Err(Failure::Usage(message.to_owned()));
-    }
+    arguments.work.check_output(&arguments.output, "picture")?;
     let settings = settings(arguments)?;
     let scene = Scene::load(&arguments.scene)?;
     scene.warn(quiet);
     let tree = scene.check()?;
-    let compiler = arguments.engine.required().map_or_else(Compiler::new, Compiler::for_engine);
+    let compiler = arguments.work.compiler();
 
     let mut progress = Progress::new("rendering", quiet);
     let mut work = || {
@@ -35,7 +31,7 @@ pub fn run(arguments: &RenderArguments, quiet: bool, start: Instant) -> Result<(
             true
         })
     };
-    let made = in_pool(arguments.threads, &mut work)?.map_err(|error| failure(&scene, error))?;
+    let made = arguments.work.run(&mut work)?.map_err(|error| failure(&scene, error))?;
     drop(progress);
 
     let mut output = Output::open(&arguments.output)?;
@@ -49,7 +45,7 @@ pub fn run(arguments: &RenderArguments, quiet: bool, start: Instant) -> Result<(
     }
     warnings.splice(0..0, scene.warnings.iter().cloned());
     let report = Report { made: &made, mode: &settings.mode, warnings: &warnings, total: start.elapsed() };
-    let told = if arguments.json { Told::Json } else { Told::Text { quiet } };
+    let told = arguments.work.told(quiet);
     told.report(&arguments.output, || report.json().to_string(), |name| report.text(name))
 }
 

@@ -5,29 +5,25 @@ use std::time::{Duration, Instant};
 use jbt::divide::DivideError;
 use jbt::mesh::Lattice;
 use jbt::sample::{SampleError, Sampler, write_npy};
-use jbt::{Compiler, Counters, EvalError};
+use jbt::{Counters, EvalError};
 use serde_json::json;
 
 use crate::arguments::SampleArguments;
 use crate::failure::Failure;
 use crate::lattice;
-use crate::output::{Output, Told, grouped};
+use crate::output::{Output, grouped};
 use crate::progress::Progress;
-use crate::scene::{Scene, is_standard};
-use crate::threads::in_pool;
+use crate::scene::Scene;
 
 /// Runs the command. `start` is when the process began, for the total time.
 pub fn run(arguments: &SampleArguments, quiet: bool, start: Instant) -> Result<(), Failure> {
-    if is_standard(&arguments.output) && arguments.json {
-        let message = "the samples and the JSON report cannot both go to the standard output";
-        return Err(Failure::Usage(message.to_owned()));
-    }
+    arguments.work.check_output(&arguments.output, "samples")?;
     let settings = lattice::settings(&arguments.lattice)?;
     let scene = Scene::load(&arguments.scene)?;
     scene.warn(quiet);
     let tree = scene.check()?;
     let lattice = settings.lattice(&tree).map_err(|error| lattice::failure(&scene, error))?;
-    let compiler = arguments.engine.required().map_or_else(Compiler::new, Compiler::for_engine);
+    let compiler = arguments.work.compiler();
     let sampler = Sampler::new(&compiler, &tree, arguments.query.query())
         .map_err(|error| Failure::compile(&scene.source(), &error))?;
     let mut progress = Progress::new("sampling", quiet);
@@ -37,7 +33,7 @@ pub fn run(arguments: &SampleArguments, quiet: bool, start: Instant) -> Result<(
             true
         })
     };
-    let planes = in_pool(arguments.threads, &mut work)?.map_err(|error| failure(&scene, error))?;
+    let planes = arguments.work.run(&mut work)?.map_err(|error| failure(&scene, error))?;
     drop(progress);
 
     let mut output = Output::open(&arguments.output)?;
@@ -50,7 +46,7 @@ pub fn run(arguments: &SampleArguments, quiet: bool, start: Instant) -> Result<(
         warnings: &scene.warnings,
         total: start.elapsed(),
     };
-    let told = if arguments.json { Told::Json } else { Told::Text { quiet } };
+    let told = arguments.work.told(quiet);
     told.report(&arguments.output, || report.json().to_string(), |name| report.text(name))
 }
 

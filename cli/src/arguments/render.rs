@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use jbt::render::{Background, Quality, Stance, VIEWS};
 
-use super::{EngineName, Region, SceneArguments, region};
+use super::{Region, SceneArguments, WorkArguments, region};
 
 /// What `jbt render` takes.
 #[derive(Args, Debug)]
@@ -60,15 +60,8 @@ pub struct RenderArguments {
     /// The box to look at: its smallest and its largest corner; it cuts the model open [default: the support of the model]
     #[arg(long, value_name = "X0,Y0,Z0,X1,Y1,Z1", value_parser = region, allow_hyphen_values = true)]
     pub region: Option<Region>,
-    /// What evaluates the field: all engines give the same bits
-    #[arg(long, value_enum, default_value_t = EngineName::Jit)]
-    pub engine: EngineName,
-    /// Number of threads; the picture does not depend on it [default: one for each processor]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    pub threads: Option<u16>,
-    /// Print one JSON object instead of a summary
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub work: WorkArguments,
 }
 
 const HELP: &str = "\

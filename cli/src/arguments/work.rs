@@ -1,0 +1,52 @@
+//! What all commands take that write a file: how to do the work, and how to tell of it.
+
+use std::path::Path;
+
+use clap::Args;
+use jbt::Compiler;
+
+use super::EngineName;
+use crate::failure::Failure;
+use crate::output::Told;
+use crate::scene::is_standard;
+use crate::threads::in_pool;
+
+/// How a command that writes a file does its work, and what it tells.
+#[derive(Args, Debug)]
+pub struct WorkArguments {
+    /// What evaluates the field: all engines give the same bits
+    #[arg(long, value_enum, default_value_t = EngineName::Jit)]
+    pub engine: EngineName,
+    /// Number of threads; what is written does not depend on it [default: one for each processor]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+    /// Print one JSON object instead of a summary
+    #[arg(long)]
+    pub json: bool,
+}
+
+impl WorkArguments {
+    /// A compiler for the engine.
+    pub fn compiler(&self) -> Compiler {
+        self.engine.required().map_or_else(Compiler::new, Compiler::for_engine)
+    }
+
+    /// Refuses to write a report into the midst of `what` is written.
+    pub fn check_output(&self, output: &Path, what: &str) -> Result<(), Failure> {
+        if is_standard(output) && self.json {
+            let message = format!("the {what} and the JSON report cannot both go to the standard output");
+            return Err(Failure::Usage(message));
+        }
+        Ok(())
+    }
+
+    /// Does it on so many threads.
+    pub fn run<T: Send>(&self, work: &mut (impl FnMut() -> T + Send)) -> Result<T, Failure> {
+        in_pool(self.threads, work)
+    }
+
+    /// How to tell what has been done.
+    pub fn told(&self, quiet: bool) -> Told {
+        if self.json { Told::Json } else { Told::Text { quiet } }
+    }
+}
