@@ -78,6 +78,30 @@ pub fn unshadowed(frame: &Frame<'_>, spot: &Spot) -> Light {
     }
 }
 
+/// What a spot sends out: where to, and the ray, if anything can be in its way that matters.
+type Sent = (Vector, Option<Ray>);
+
+/// Sends `count` rays from each spot, and lets those arrive that meet nothing. Counts them by `number`.
+fn send(
+    frame: &Frame<'_>,
+    (spots, lights): (&[Spot], &mut [Light]),
+    count: u32,
+    aim: impl Fn(&Spot, u32) -> Sent,
+    mut arrive: impl FnMut(&mut Light, &Spot, Vector),
+    (evaluations, number): (&mut f64, &mut u64),
+) -> Result<(), RenderError> {
+    for index in 0..count {
+        let (directions, rays): (Vec<Vector>, Vec<Option<Ray>>) =
+            spots.iter().map(|spot| aim(spot, spot.sample * count + index)).unzip();
+        let blocked = blocked(frame, &rays, evaluations, number)?;
+        let free = spots.iter().zip(directions).zip(blocked).zip(lights.iter_mut());
+        for (((spot, direction), _), light) in free.filter(|((_, blocked), _)| !blocked) {
+            arrive(light, spot, direction);
+        }
+    }
+    Ok(())
+}
+
 fn add_key(
     frame: &Frame<'_>,
     spots: &[Spot],
@@ -87,29 +111,20 @@ fn add_key(
 ) -> Result<(), RenderError> {
     let each = 1.0 / count as f32;
     lights.iter_mut().for_each(|light| (light.key, light.facing) = (0.0, 0.0));
-    for index in 0..count {
-        let directions: Vec<Vector> = spots
-            .iter()
-            .map(|spot| {
-                let point = Sequence::new(spot.pixel, 0).point(spot.sample * count + index);
-                around(frame.lights.key, KEY_SPREAD, point)
-            })
-            .collect();
-        let rays = spots.iter().zip(&directions).map(|(spot, &direction)| {
-            let faces = dot(spot.normal, direction) > 0.0;
-            faces.then(|| frame.clip(spot.position, direction)).flatten()
-        });
-        let blocked =
-            blocked(frame, &rays.collect::<Vec<_>>(), &mut cost.evaluations, &mut cost.rays.shadow)?;
-        for (at, light) in lights.iter_mut().enumerate() {
-            let facing = dot(spots[at].normal, directions[at]);
-            if facing > 0.0 && !blocked[at] {
-                light.key += each;
-                light.facing += facing as f32 * each;
-            }
+    let aim = |spot: &Spot, number: u32| {
+        let point = Sequence::new(spot.pixel, 0).point(number);
+        let direction = around(frame.lights.key, KEY_SPREAD, point);
+        let faces = dot(spot.normal, direction) > 0.0;
+        (direction, faces.then(|| frame.clip(spot.position, direction)).flatten())
+    };
+    let arrive = |light: &mut Light, spot: &Spot, direction: Vector| {
+        let facing = dot(spot.normal, direction);
+        if facing > 0.0 {
+            light.key += each;
+            light.facing += facing as f32 * each;
         }
-    }
-    Ok(())
+    };
+    send(frame, (spots, lights), count, aim, arrive, (&mut cost.evaluations, &mut cost.rays.shadow))
 }
 
 fn add_sky(
@@ -121,34 +136,25 @@ fn add_sky(
 ) -> Result<(), RenderError> {
     let each = 1.0 / count as f32;
     lights.iter_mut().for_each(|light| (light.sky, light.open) = ([0.0; 3], 0.0));
-    for index in 0..count {
-        let mut directions = Vec::with_capacity(spots.len());
-        let mut rays = Vec::with_capacity(spots.len());
-        for spot in spots {
-            let number = spot.sample * count + index;
-            let sequence = Sequence::new(spot.pixel, 1);
-            let direction = above(spot.normal, sequence.point(number));
-            // Near things darken more than far ones, because some rays are short.
-            let part = (sequence.point(0)[0] + f64::from(number) * GOLDEN).fract();
-            let reach = frame.radius * REACH * (0.1 + 0.9 * part);
-            let ray = frame.clip(spot.position, direction).and_then(|mut ray| {
-                ray.span[1] = ray.span[1].min(reach);
-                (ray.span[0] < ray.span[1]).then_some(ray)
-            });
-            directions.push(direction);
-            rays.push(ray);
-        }
-        let blocked = blocked(frame, &rays, &mut cost.evaluations, &mut cost.rays.sky)?;
-        for (at, light) in lights.iter_mut().enumerate() {
-            if !blocked[at] {
-                let open = open_ground(frame, spots[at].position, directions[at]) as f32 * each;
-                let color = sky(dot(directions[at], frame.up));
-                light.sky = [0, 1, 2].map(|channel| light.sky[channel] + color[channel] * open);
-                light.open += open;
-            }
-        }
-    }
-    Ok(())
+    let aim = |spot: &Spot, number: u32| {
+        let sequence = Sequence::new(spot.pixel, 1);
+        let direction = above(spot.normal, sequence.point(number));
+        // Near things darken more than far ones, because some rays are short.
+        let part = (sequence.point(0)[0] + f64::from(number) * GOLDEN).fract();
+        let reach = frame.radius * REACH * (0.1 + 0.9 * part);
+        let ray = frame.clip(spot.position, direction).and_then(|mut ray| {
+            ray.span[1] = ray.span[1].min(reach);
+            (ray.span[0] < ray.span[1]).then_some(ray)
+        });
+        (direction, ray)
+    };
+    let arrive = |light: &mut Light, spot: &Spot, direction: Vector| {
+        let open = open_ground(frame, spot.position, direction) as f32 * each;
+        let color = sky(dot(direction, frame.up));
+        light.sky = [0, 1, 2].map(|channel| light.sky[channel] + color[channel] * open);
+        light.open += open;
+    };
+    send(frame, (spots, lights), count, aim, arrive, (&mut cost.evaluations, &mut cost.rays.sky))
 }
 
 /// How much light comes from a direction that the ground may be in: the less, the nearer it is.
