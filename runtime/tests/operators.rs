@@ -68,3 +68,46 @@ fn children_of_a_formula_that_share_a_field_have_weights_of_their_own() {
         assert_eq!([color[0][0], color[1][0], color[2][0]], [1.0, 0.0, 0.0], "{}", engine.name());
     }
 }
+
+/// Formulas that leave every bound, are no numbers, or are -0, as operands: where the field alone is asked, they are kept within bounds after one is chosen,
+/// else before.
+#[test]
+fn operands_that_leave_all_bounds_give_the_same_field_to_every_query() {
+    let formulas =
+        ["1 / x", "sqrt(y)", "0 - 0 * y", "exp(x * 100)", "-exp(y * 100)", "x * y - 1", "sqrt(y)^2"];
+    let operands = |some: &[&str]| {
+        let formula = |formula: &&str| format!("color (1 0 0) {{ expression {{ {formula} }} }}\n");
+        some.iter().map(formula).collect::<String>()
+    };
+    let ball = "point { radius 2 strength -3 }";
+    for operator in ["union", "intersection"] {
+        let other = if operator == "union" { "intersection" } else { "union" };
+        let all = operands(&formulas);
+        let scenes = [
+            format!("{operator} {{ {all} }}"),
+            format!("{operator} {{ {} }}", operands(&formulas[1..2])),
+            format!("{operator} {{ {} }}", operands(&formulas[6..])),
+            format!("{operator} {{ {all} {other} {{ {} }} }}", operands(&formulas[2..5])),
+            format!("{operator} {{ {all} {ball} }}"),
+        ];
+        for scene in scenes {
+            let tree = jbt::text::parse(format!("jbt 1\n{scene}").as_bytes(), &Default::default()).unwrap();
+            let tree = tree.check().unwrap();
+            let special = [0.0, -0.0, 1.0, -1.0, 0.3, -7.0, 1e30, -1e30, f32::INFINITY, f32::NAN];
+            let points: Points =
+                special.iter().flat_map(|&x| special.iter().map(move |&y| [x, y, 0.5])).collect();
+            let field = |engine, query| {
+                let evaluator = Compiler::for_engine(engine).evaluator(&tree, query).unwrap();
+                let mut samples = evaluator.samples();
+                evaluator.eval(&points, &mut samples).unwrap();
+                samples.field().iter().map(|field| field.to_bits()).collect::<Vec<u32>>()
+            };
+            let expected = field(Engine::Scalar, Query::ALL);
+            for engine in Engine::ALL {
+                for query in [Query::FIELD, Query::GRADIENT, Query::ATTRIBUTES, Query::ALL] {
+                    assert_eq!(field(engine, query), expected, "{query:?} by {}: {scene}", engine.name());
+                }
+            }
+        }
+    }
+}

@@ -126,6 +126,8 @@ struct Reduce {
     order: Option<Value>,
     /// Where operands are rows, and each may be left out while it is not zero: the extreme of their fields.
     extreme: Option<(Extreme, Value)>,
+    /// Whether operands have not been kept within bounds on the far side, the upper one of a union: that is done in the end.
+    open: bool,
 }
 
 struct Emitter<'a> {
@@ -301,7 +303,10 @@ impl<'a> Emitter<'a> {
             }
             Task::FinishReduce => {
                 let reduce = self.reduces.pop().expect("it was started");
-                let answer = reduce.state.finish(&mut self.builder, &reduce.operator, &self.defaults);
+                let mut answer = reduce.state.finish(&mut self.builder, &reduce.operator, &self.defaults);
+                if reduce.open {
+                    answer.field = self.closed(reduce.operator.code, answer.field);
+                }
                 self.end_operator(answer.field);
                 self.answers.push(answer);
             }

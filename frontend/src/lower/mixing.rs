@@ -17,6 +17,7 @@ use jbt_ir::{Domain, FunctionBuilder, Value};
 use super::shape::{ReducerCode, RicciCode};
 use crate::attribute::Mixing;
 use crate::combine::{intersection, product, ricci, sum, union};
+use crate::expression::LARGEST_FIELD;
 
 /// One attribute group of an answer.
 #[derive(Clone, Debug)]
@@ -47,6 +48,8 @@ pub(super) struct Operator {
     pub(super) iso2: Value,
     /// Whether no operand can be negative.
     pub(super) non_negative: bool,
+    /// Whether no operand is further from 0 than [`LARGEST_FIELD`].
+    pub(super) bounded: bool,
     /// Whether operands come in several groups: then ties need their order in the file.
     pub(super) ordered: bool,
     /// Whether the field will be differentiated.
@@ -65,6 +68,12 @@ impl Operator {
 
     fn blend(&self) -> ricci::Blend<Value> {
         self.blend.expect("a Ricci blend has an exponent")
+    }
+
+    /// Whether it gives the field of one operand and tells nobody which. Then bounds may wait until that is known.
+    pub(super) fn only_chooses(&self) -> bool {
+        let chooses = matches!(self.code, ReducerCode::Union | ReducerCode::Intersection);
+        chooses && !self.moving && self.mixing.is_empty()
     }
 
     /// Whether operands need their place in the file: something is decided among several groups, and somebody sees by whom.
@@ -120,8 +129,10 @@ impl State {
             // Zero takes part without a row: whoever is above zero wins all the same, and where nobody is there is only the default.
             ReducerCode::Union if operator.non_negative => vec![zero],
             // Finite, because a range with an infinite end says nothing: every field is nearer to zero.
-            ReducerCode::Union => vec![d.constant(f32::MIN)],
-            ReducerCode::Intersection => vec![d.constant(f32::MAX)],
+            ReducerCode::Union => vec![d.constant(if operator.bounded { -LARGEST_FIELD } else { f32::MIN })],
+            ReducerCode::Intersection => {
+                vec![d.constant(if operator.bounded { LARGEST_FIELD } else { f32::MAX })]
+            }
         };
         let weighs = operator.weighs();
         let wants_attributes = !defaults.is_empty();
@@ -373,6 +384,7 @@ pub(super) fn weighted(
         // Sums do not ask for it.
         iso2: zero,
         non_negative: true,
+        bounded: false,
         ordered: false,
         moving: false,
         mixing: Rc::clone(mixing),

@@ -150,6 +150,8 @@ pub(super) struct Occurrence {
     pub(super) uses: u32,
     /// Whether its field can never be negative.
     pub(super) non_negative: bool,
+    /// Whether its field is never further from 0 than [`LARGEST_FIELD`](crate::expression::LARGEST_FIELD), wherever the point is.
+    pub(super) bounded: bool,
 }
 
 /// All occurrences of a tree, children before parents.

@@ -562,6 +562,11 @@ pub(super) fn non_negative(scene: &Scene<'_>, groups: &[Group]) -> bool {
     members.all(|(member, _)| scene.occurrence(*member).non_negative)
 }
 
+/// Whether no operand is further from 0 than [`LARGEST_FIELD`](crate::expression::LARGEST_FIELD).
+pub(super) fn bounded(scene: &Scene<'_>, groups: &[Group]) -> bool {
+    groups.iter().flat_map(|group| &group.members).all(|(member, _)| scene.occurrence(*member).bounded)
+}
+
 /// Which operators dissolve into the operator that uses them: same kind, one use, and the same answers either way.
 ///
 /// A sum of sums mixes attributes in the same way only if no partial sum can be negative: a negative one has no weight as a whole.

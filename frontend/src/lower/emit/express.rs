@@ -6,14 +6,19 @@
 //!        0 where all children are 0            if F is 0 there for all points, so that children may be left out
 //!        0 outside of the box                  if there is one, so that the row may be left out
 //! ```
+//!
+//! The operands of a union or an intersection of bounded fields, of which nothing but the field is asked, are left open: bounds and +0
+//! change neither which of them is chosen nor what is chosen, so they wait until it is. Only a NaN has to be seen to before, where it would not count as
+//! the lowest field: a union passes it over anyway, as far as its start is as low.
 
 use jbt_ir::{Domain, FunctionBuilder, Origin, Value};
 use rustc_hash::FxHashSet;
 
-use super::Emitter;
+use super::{Emitter, Reduce, Task};
 use crate::expression::{Form, LARGEST_FIELD, Operand};
 use crate::lower::mixing::{Answer, GroupAnswer, weighted};
 use crate::lower::occurrence::{OccurrenceId, OccurrenceKind};
+use crate::lower::shape::ReducerCode;
 use crate::lower::slopes::{Tape, slopes};
 
 /// What a formula is about.
@@ -72,8 +77,13 @@ impl Emitter<'_> {
         let mut tape = Tape::new(&mut self.builder, weighs);
         let value = form.emit(&mut tape, |operand| leaves.of(operand))[0];
         let tape = tape.finish();
-        let field =
-            self.bounded(value, form, &leaves, occurrence.non_negative, self.scene.vanishes(occurrence.node));
+        let lowest = if occurrence.non_negative { 0.0 } else { -LARGEST_FIELD };
+        let vanishes = self.scene.vanishes(occurrence.node);
+        let field = if !vanishes && !form.bounded && self.leaves_open() {
+            self.opened(value, lowest)
+        } else {
+            self.bounded(value, form, &leaves, lowest, vanishes)
+        };
         let groups = match &answers[..] {
             [] => self.leaf_attributes(id),
             [child] => self.passed_on(child),
@@ -87,18 +97,38 @@ impl Emitter<'_> {
         self.answers.push(Answer { field, groups });
     }
 
-    /// The field of a formula with this value.
-    fn bounded(
-        &mut self,
-        value: Value,
-        form: &Form,
-        leaves: &Leaves,
-        non_negative: bool,
-        vanishes: bool,
-    ) -> Value {
+    /// Whether what is emitted now is the operand of an operator that keeps it within bounds.
+    fn leaves_open(&self) -> bool {
+        let Some(Reduce { operator, .. }) = self.reduces.last() else { return false };
+        let is_operand = matches!(self.tasks.last(), Some(Task::Step));
+        is_operand && operator.bounded && operator.only_chooses() && self.probes.is_none()
+    }
+
+    /// A value as such an operator takes it.
+    fn opened(&mut self, value: Value, lowest: f32) -> Value {
+        let reduce = self.reduces.last_mut().expect("it is the operand of an operator");
+        reduce.open = true;
+        let start = if reduce.operator.non_negative { 0.0 } else { -LARGEST_FIELD };
+        if reduce.operator.code == ReducerCode::Union && lowest.to_bits() == start.to_bits() {
+            return value;
+        }
+        let lowest = self.builder.constant(lowest);
+        self.builder.max(value, lowest)
+    }
+
+    /// The field of an operator whose operands were left open.
+    pub(super) fn closed(&mut self, code: ReducerCode, field: Value) -> Value {
         let d = &mut self.builder;
-        let zero = d.constant(0.0);
-        let lowest = if non_negative { zero } else { d.constant(-LARGEST_FIELD) };
+        let (zero, largest) = (d.constant(0.0), d.constant(LARGEST_FIELD));
+        // An intersection begins with the largest.
+        let field = if code == ReducerCode::Union { d.min(field, largest) } else { field };
+        d.add(field, zero)
+    }
+
+    /// The field of a formula with this value.
+    fn bounded(&mut self, value: Value, form: &Form, leaves: &Leaves, lowest: f32, vanishes: bool) -> Value {
+        let d = &mut self.builder;
+        let (zero, lowest) = (d.constant(0.0), d.constant(lowest));
         let largest = d.constant(LARGEST_FIELD);
         // In this order a NaN gives the lowest.
         let field = d.max(value, lowest);

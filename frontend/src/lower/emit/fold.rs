@@ -10,7 +10,7 @@ use crate::combine::ricci::{Blend, Exponent};
 use crate::lower::guide::{DecidedRows, Rule};
 use crate::lower::mixing::{Operator, State};
 use crate::lower::occurrence::{OccurrenceId, OccurrenceKind, SpaceId};
-use crate::lower::shape::{ReducerCode, RicciCode, non_negative};
+use crate::lower::shape::{ReducerCode, RicciCode, bounded, non_negative};
 
 impl Emitter<'_> {
     /// An operator: its accumulators, and what is to be done for its operands.
@@ -40,13 +40,14 @@ impl Emitter<'_> {
             row,
             iso2: self.iso2.expect("the scene's row is open"),
             non_negative,
+            bounded: bounded(self.scene, groups),
             ordered: groups.len() > 1,
             moving,
             mixing: Rc::clone(&self.mixing),
         };
         let state = State::new(&mut self.builder, &operator, &self.defaults);
         let guard = Guard::of(code, operator.non_negative);
-        self.reduces.push(Reduce { operator, state, order: None, extreme: None });
+        self.reduces.push(Reduce { operator, state, order: None, extreme: None, open: false });
         self.begin_operator();
         self.tasks.push(Task::FinishReduce);
         for group in groups.iter().rev() {

@@ -294,7 +294,7 @@ impl<'a> Finder<'a> {
 
     fn push(&mut self, node: NodeId, position: PositionId, kind: OccurrenceKind) -> OccurrenceId {
         let space = self.scene.position(position).space;
-        let non_negative = self.non_negative(node, &kind);
+        let (non_negative, bounded) = (self.non_negative(node, &kind), self.bounded(&kind));
         for child in children(&kind) {
             self.scene.occurrences[child.0 as usize].uses += 1;
         }
@@ -302,7 +302,7 @@ impl<'a> Finder<'a> {
             // The point inside uses it once more, so that it is lifted: known before any row that enters.
             self.scene.occurrences[weight.0 as usize].uses += 1;
         }
-        self.scene.occurrences.push(Occurrence { node, kind, space, uses: 0, non_negative });
+        self.scene.occurrences.push(Occurrence { node, kind, space, uses: 0, non_negative, bounded });
         OccurrenceId(self.scene.occurrences.len() as u32 - 1)
     }
 
@@ -333,6 +333,23 @@ impl<'a> Finder<'a> {
                 Reducer::Union => children.iter().any(of),
                 Reducer::Step(kind, _) => kind.is_non_negative(children.iter().map(of)),
             },
+        }
+    }
+
+    /// Of a formula, and of whatever gives the field of one of its children and nothing else.
+    fn bounded(&self, kind: &OccurrenceKind) -> bool {
+        let of = |id: &OccurrenceId| self.scene.occurrence(*id).bounded;
+        match kind {
+            OccurrenceKind::Expression { .. } => true,
+            OccurrenceKind::Warp { child, .. } => of(child),
+            OccurrenceKind::Select { children, .. }
+            | OccurrenceKind::Reduce { reducer: Reducer::Union | Reducer::Intersection, children } => {
+                children.iter().all(of)
+            }
+            OccurrenceKind::Leaf { .. }
+            | OccurrenceKind::Difference { .. }
+            | OccurrenceKind::Map { .. }
+            | OccurrenceKind::Reduce { .. } => false,
         }
     }
 
