@@ -1,4 +1,4 @@
-//! Executable memory: the one home of `unsafe`.
+//! Executable memory: this crate's one home of `unsafe`.
 //!
 //! ```text
 //! Pages   owns a Cranelift module: its memory is freed when it goes, on every path
@@ -48,7 +48,7 @@ pub(crate) struct Code {
 // SAFETY: the module is `Send`, and the address is that of memory which belongs to it.
 unsafe impl Send for Code {}
 // SAFETY: through a shared reference one can only read the numbers and call the code, which changes no memory but what its
-// arguments name. The module, which is not `Sync`, cannot be reached.
+// arguments name and the stack of the thread that calls it. The module, which is not `Sync`, cannot be reached.
 unsafe impl Sync for Code {}
 
 impl Code {
@@ -93,7 +93,9 @@ impl Code {
         // SAFETY: the contract of `Code` says that this is a function of the ABI that `enter` expects. `Arguments` come from
         // `BoundKernel::run_selected`: there is a plane of this many bytes for each input and output, at least one block long and whole
         // blocks; outputs come from exclusive borrows, so that no other plane overlaps them; the tables have been
-        // checked against the function, the selection fits them, and both are borrowed by the caller.
+        // checked against the function, the selection fits them, and both are borrowed by the caller. What else the code writes is
+        // its frame, which is no larger than `limits::MAX_JIT_FRAME_BYTES` and is touched page by page: a stack that is too short for it
+        // ends at the guard page.
         unsafe { enter(self.address, planes.as_ptr(), *bytes, tables.as_ptr()) };
     }
 }

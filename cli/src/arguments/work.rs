@@ -31,7 +31,7 @@ impl WorkArguments {
         self.engine.required().map_or_else(Compiler::new, Compiler::for_engine)
     }
 
-    /// Refuses to write a report into the midst of `what` is written.
+    /// Refuses to write the report to the standard output where `what` the command makes goes there, too.
     pub fn check_output(&self, output: &Path, what: &str) -> Result<(), Failure> {
         if is_standard(output) && self.json {
             let message = format!("the {what} and the JSON report cannot both go to the standard output");
