@@ -16,7 +16,7 @@ fn mesh(c: &mut Criterion) {
             // The compiler remembers the code, so that none is made while the clock runs.
             let compiler = Compiler::new();
             let settings = Polygonize { fineness: Fineness::Resolution(cells), ..Polygonize::default() };
-            let run = || settings.run(&compiler, &tree, &mut |_| true).expect("the model has a surface");
+            let run = || settings.mesh(&compiler, &tree).run().expect("the model has a surface");
             let made = run();
             check::mesh(&tree, &made);
             group.throughput(Throughput::Elements(made.lattice.point_count()));

@@ -166,20 +166,18 @@ fn make(
     fineness: Fineness,
     progress: &mut Progress,
 ) -> Result<Made, SliceError> {
-    let mut hook = |fraction| {
-        progress.set(fraction);
-        true
-    };
+    let watch = |part| progress.set(part);
     match drawing {
         DrawingName::Svg => {
             let block = arguments.quadtree.then_some(1);
             let detail = Detail { fineness, block, quadtree: arguments.quadtree };
-            slicer.contour(rectangle, &detail, &mut hook).map(Made::Contour)
+            slicer.contour(rectangle, &detail).on_progress(watch).run().map(Made::Contour)
         }
         DrawingName::Png => {
             let samples = arguments.samples.map_or(1, usize::from);
             let (mode, _) = mode(arguments);
-            let picture = slicer.picture(rectangle, &mode, &ImageDetail { fineness, samples }, &mut hook)?;
+            let detail = ImageDetail { fineness, samples };
+            let picture = slicer.picture(rectangle, &mode, &detail).on_progress(watch).run()?;
             Ok(Made::Picture { picture, rectangle: *rectangle })
         }
     }

@@ -95,10 +95,7 @@ fn supports(
     quiet: bool,
 ) -> Result<Supports, Failure> {
     let mut progress = Progress::new("counting", quiet);
-    let counted = statistics.supports(&Compiler::new(), lattice, &mut |fraction| {
-        progress.set(fraction);
-        true
-    });
+    let counted = statistics.supports(&Compiler::new(), lattice).on_progress(|part| progress.set(part)).run();
     counted.map_err(|error| match error {
         SupportsError::Compile(error) => Failure::compile(&scene.source(), &error),
         SupportsError::Lattice(error) => Failure::Limit(error.to_string()),
@@ -114,10 +111,7 @@ fn mesh(
     quiet: bool,
 ) -> Result<MeshCounters, Failure> {
     let mut progress = Progress::new("meshing", quiet);
-    let made = settings.run(&Compiler::new(), tree, &mut |fraction| {
-        progress.set(fraction);
-        true
-    });
+    let made = settings.mesh(&Compiler::new(), tree).on_progress(|part| progress.set(part)).run();
     made.map(|made| made.counters).map_err(|error| lattice::failure(scene, error))
 }
 

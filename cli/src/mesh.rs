@@ -26,12 +26,7 @@ pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(),
     let compiler = arguments.work.compiler();
 
     let mut progress = Progress::new("meshing", quiet);
-    let mut work = || {
-        settings.run(&compiler, &tree, &mut |fraction| {
-            progress.set(fraction);
-            true
-        })
-    };
+    let mut work = || settings.mesh(&compiler, &tree).on_progress(|part| progress.set(part)).run();
     let made = arguments.work.run(&mut work)?.map_err(|error| lattice::failure(&scene, error))?;
     drop(progress);
 

@@ -25,12 +25,7 @@ pub fn run(arguments: &RenderArguments, quiet: bool, start: Instant) -> Result<(
     let compiler = arguments.work.compiler();
 
     let mut progress = Progress::new("rendering", quiet);
-    let mut work = || {
-        settings.run(&compiler, &tree, &mut |fraction| {
-            progress.set(fraction);
-            true
-        })
-    };
+    let mut work = || settings.picture(&compiler, &tree).on_progress(|part| progress.set(part)).run();
     let made = arguments.work.run(&mut work)?.map_err(|error| failure(&scene, error))?;
     drop(progress);
 

@@ -27,12 +27,7 @@ pub fn run(arguments: &SampleArguments, quiet: bool, start: Instant) -> Result<(
     let sampler = Sampler::new(&compiler, &tree, arguments.query.query())
         .map_err(|error| Failure::compile(&scene.source(), &error))?;
     let mut progress = Progress::new("sampling", quiet);
-    let mut work = || {
-        sampler.dense(&lattice, &mut |fraction| {
-            progress.set(fraction);
-            true
-        })
-    };
+    let mut work = || sampler.dense(&lattice).on_progress(|part| progress.set(part)).run();
     let planes = arguments.work.run(&mut work)?.map_err(|error| failure(&scene, error))?;
     drop(progress);
 

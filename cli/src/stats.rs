@@ -35,10 +35,7 @@ pub fn run(arguments: &StatsArguments, quiet: bool, start: Instant) -> Result<()
     let solid =
         Solid::new(&Compiler::new(), &tree).map_err(|error| Failure::compile(&scene.source(), &error))?;
     let mut progress = Progress::new("measuring", quiet);
-    let measured = solid.measure(&settings, &mut |fraction| {
-        progress.set(fraction);
-        true
-    });
+    let measured = solid.measure(&settings).on_progress(|part| progress.set(part)).run();
     let measures = measured.map_err(|error| not_measured(&scene, error))?;
     drop(progress);
     let tolerance = arguments.tolerance.unwrap_or(TOLERANCE * measures.region.longest_side());

@@ -15,6 +15,7 @@ use jbt_frontend::check::CheckedTree;
 use crate::counter::Counters;
 use crate::error::{CompileError, EvalError};
 use crate::evaluator::Compiler;
+use crate::job::{Hook, Job};
 use crate::kernel::Engine;
 use crate::mesh::{self, Lattice, LatticeError, Mesh, MeshError, Report};
 use crate::prune::PruneCounters;
@@ -44,7 +45,7 @@ impl Default for Fineness {
 /// use jbt::{Compiler, Polygonize};
 /// let model = parse(b"jbt 1 point { surface_radius 1 }", &Options::default()).unwrap();
 /// let tree = model.check().unwrap();
-/// let made = Polygonize::default().run(&Compiler::new(), &tree, &mut |_| true).unwrap();
+/// let made = Polygonize::default().mesh(&Compiler::new(), &tree).run().unwrap();
 /// assert!(made.report.closed);
 /// ```
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
@@ -171,17 +172,24 @@ impl Polygonize {
         })
     }
 
-    /// Meshes a model, on the threads of the rayon pool in which this is called.
-    ///
-    /// The hook is told how far the work is, from 0 to 1, and cancels it by returning false.
+    /// The mesh of a model.
     ///
     /// # Errors
     /// See [`PolygonizeError`].
-    pub fn run(
+    pub fn mesh<'a>(
+        &self,
+        compiler: &'a Compiler,
+        tree: &'a CheckedTree,
+    ) -> Job<'a, Polygonized, PolygonizeError> {
+        let settings = *self;
+        Job::new(move |hook| settings.mesh_hooked(compiler, tree, hook))
+    }
+
+    fn mesh_hooked(
         &self,
         compiler: &Compiler,
         tree: &CheckedTree,
-        hook: &mut (dyn FnMut(f32) -> bool + Send),
+        hook: Hook<'_>,
     ) -> Result<Polygonized, PolygonizeError> {
         let lattice = self.lattice(tree)?;
         let start = Instant::now();
@@ -189,7 +197,7 @@ impl Polygonize {
         let compile_time = start.elapsed();
         let options =
             mesh::Options { iso: tree.iso() as f32, verify: self.verify, ..mesh::Options::default() };
-        let (mesh, report) = mesh::extract_with_progress(&kernels, &lattice, &options, hook)?;
+        let (mesh, report) = mesh::extract_hooked(&kernels, &lattice, &options, hook)?;
         let counters = MeshCounters::new(&kernels, &report, &lattice);
         Ok(Polygonized {
             mesh,
@@ -234,7 +242,7 @@ mod tests {
             fineness: Fineness::Resolution(4),
             verify: true,
         };
-        let made = here.run(&Compiler::for_engine(Engine::Scalar), &tree, &mut |_| true).unwrap();
+        let made = here.mesh(&Compiler::for_engine(Engine::Scalar), &tree).run().unwrap();
         assert!(made.mesh.triangles.is_empty() && made.report.closed);
         // A range tells that there is nothing: no point is asked.
         assert_eq!(made.primitive_evaluations, 0);
@@ -245,7 +253,7 @@ mod tests {
     fn a_point_becomes_a_sphere() {
         let tree = tree("jbt 1 point { surface_radius 1 }");
         let settings = Polygonize { fineness: Fineness::Cell(0.1), ..Polygonize::default() };
-        let made = settings.run(&Compiler::for_engine(Engine::Lanes), &tree, &mut |_| true).unwrap();
+        let made = settings.mesh(&Compiler::for_engine(Engine::Lanes), &tree).run().unwrap();
         assert!(made.report.closed);
         let length = |p: &[f32; 3]| p.iter().map(|x| f64::from(*x).powi(2)).sum::<f64>().sqrt();
         assert!(made.mesh.positions.iter().all(|p| (length(p) - 1.0).abs() < 1e-5));

@@ -19,6 +19,7 @@ use rayon::prelude::*;
 
 use crate::error::CompileError;
 use crate::evaluator::{Compiler, Evaluator};
+use crate::job::{Hook, Job};
 use crate::mesh::{Lattice, LatticeError};
 
 /// Walks of the tree that separate evaluations take: 1 for the field; 4 more for the gradient by forward differences, at the point and a
@@ -99,18 +100,23 @@ impl<'a> Statistics<'a> {
     ///
     /// Every point near the box of a support is tried by the compiled field of that leaf alone, in the same f32 arithmetic as in the
     /// whole model; points far from the box are outside. Maps and warps are those above the leaf; operators and strengths, which may
-    /// silence a leaf, do not count. Runs on the threads of the rayon pool in which this is called; the answer does not
-    /// depend on them.
-    ///
-    /// The hook is told how far the work is, from 0 to 1, and cancels it by returning false.
+    /// silence a leaf, do not count. The answer does not depend on the threads.
     ///
     /// # Errors
-    /// The hook cancelled, a leaf could not be compiled, or the lattice has too many points to visit all.
-    pub fn supports(
+    /// It was cancelled, a leaf could not be compiled, or the lattice has too many points to visit all.
+    pub fn supports<'b>(
+        &'b self,
+        compiler: &'b Compiler,
+        lattice: &'b Lattice,
+    ) -> Job<'b, Supports, SupportsError> {
+        Job::new(move |hook| self.supports_hooked(compiler, lattice, hook))
+    }
+
+    fn supports_hooked(
         &self,
         compiler: &Compiler,
         lattice: &Lattice,
-        hook: &mut dyn FnMut(f32) -> bool,
+        hook: Hook<'_>,
     ) -> Result<Supports, SupportsError> {
         lattice.check_points()?;
         let axes = lattice.axes();
@@ -163,7 +169,7 @@ pub enum SupportsError {
     /// The lattice has too many points.
     #[error(transparent)]
     Lattice(#[from] LatticeError),
-    /// The hook said to stop.
+    /// It was told to stop.
     #[error("cancelled")]
     Cancelled,
 }

@@ -11,7 +11,7 @@ fn tree(text: &str) -> CheckedTree {
 
 fn meshed(tree: &CheckedTree, resolution: usize) -> Polygonized {
     let polygonize = Polygonize { fineness: Fineness::Resolution(resolution), ..Polygonize::default() };
-    polygonize.run(&Compiler::new(), tree, &mut |_| true).expect("it has a surface")
+    polygonize.mesh(&Compiler::new(), tree).run().expect("it has a surface")
 }
 
 /// Two balls with a group of `width` reals each, mixed.

@@ -12,7 +12,7 @@ use fastrand::Rng;
 use jbt::build::{Axis, cuboid, point, segment, x, y, z};
 use jbt::contour::{Contour, Detail, Fate, ImageDetail, Mode, Plane, Rectangle, SliceError, Slicer, circles};
 use jbt::export::svg::{Paint, Style, write_svg};
-use jbt::{Combinator, Compiler, Engine, Evaluator, Fineness, Model, Points, Query, Tree, text};
+use jbt::{CancelToken, Combinator, Compiler, Engine, Evaluator, Fineness, Model, Points, Query, Tree, text};
 
 fn checked(text: &str) -> jbt::CheckedTree {
     text::parse(text.as_bytes(), &text::Options::default()).expect("it reads").check().expect("a good model")
@@ -31,7 +31,7 @@ fn detail(cells: usize) -> Detail {
 }
 
 fn contour(slicer: &Slicer, rectangle: &Rectangle, detail: &Detail) -> Contour {
-    slicer.contour(rectangle, detail, &mut |_| true).expect("a contour")
+    slicer.contour(rectangle, detail).run().expect("a contour")
 }
 
 fn of_text(text: &str, half: f64, cells: usize) -> Contour {
@@ -186,7 +186,7 @@ fn random(rng: &mut Rng) -> Model {
 fn has_its_area(slicer: &Slicer, rectangle: &Rectangle, cells: usize) -> bool {
     let found = contour(slicer, rectangle, &detail(cells));
     let fine = ImageDetail { fineness: Fineness::Resolution(3 * cells), samples: 1 };
-    let inside = slicer.inside(rectangle, &fine, &mut |_| true).expect("an image");
+    let inside = slicer.inside(rectangle, &fine).run().expect("an image");
     let pixel = found.cell / 3.0;
     let area = pixel.powi(2) * inside.values.iter().filter(|&&part| part == 255).count() as f64;
     (found.area() - area).abs() <= 0.01 * area + 0.02 * found.cell * found.length() + 4.0 * pixel.powi(2)
@@ -382,7 +382,7 @@ fn images_have_the_bits_of_the_field() {
             Slicer::new(&Compiler::new(), &tree, &Plane::default(), Query::ALL).expect("it compiles");
         let rectangle = Rectangle::new([-1.9, -1.4], [1.7, 1.2]).unwrap();
         let detail = ImageDetail { fineness: Fineness::Resolution(150), samples: 1 };
-        let field = slicer.field_values(&rectangle, detail.fineness, &mut |_| true).unwrap();
+        let field = slicer.field_values(&rectangle, detail.fineness).run().unwrap();
         let step = 3.6 / 150.0;
         let points: Points = (0..field.values.len())
             .map(|index| {
@@ -395,15 +395,15 @@ fn images_have_the_bits_of_the_field() {
         evaluator.eval(&points, &mut samples).unwrap();
         let bits = |values: &[f32]| values.iter().map(|value| value.to_bits()).collect::<Vec<u32>>();
         assert_eq!(bits(&field.values), bits(samples.field()), "model {seed}");
-        let inside = slicer.inside(&rectangle, &detail, &mut |_| true).unwrap();
+        let inside = slicer.inside(&rectangle, &detail).run().unwrap();
         let iso = tree.iso() as f32;
         let expected: Vec<u8> = samples.field().iter().map(|&f| if f >= iso { 255 } else { 0 }).collect();
         assert_eq!(inside.values, expected, "model {seed}");
-        let color = slicer.picture(&rectangle, &Mode::Attribute("color".to_owned()), &detail, &mut |_| true);
+        let color = slicer.picture(&rectangle, &Mode::Attribute("color".to_owned()), &detail).run();
         let alpha: Vec<u8> = color.unwrap().pixels().iter().map(|pixel| pixel[3]).collect();
         assert_eq!(alpha, expected, "model {seed}");
         let pool = rayon::ThreadPoolBuilder::new().num_threads(5).build().unwrap();
-        assert_eq!(pool.install(|| slicer.inside(&rectangle, &detail, &mut |_| true)).unwrap(), inside);
+        assert_eq!(pool.install(|| slicer.inside(&rectangle, &detail).run()).unwrap(), inside);
     }
 }
 
@@ -412,7 +412,7 @@ fn several_samples_smooth_an_image() {
     let tree = checked("jbt 1 point { surface_radius 1 }");
     let slicer = slicer(&tree, "z=0", Query::FIELD);
     let smooth = ImageDetail { fineness: Fineness::Resolution(40), samples: 4 };
-    let inside = slicer.inside(&square(1.2), &smooth, &mut |_| true).unwrap();
+    let inside = slicer.inside(&square(1.2), &smooth).run().unwrap();
     let area = inside.values.iter().map(|&part| f64::from(part) / 255.0).sum::<f64>() * 0.06 * 0.06;
     assert!((area / PI - 1.0).abs() < 2e-3, "{area}");
     let grey = inside.values.iter().filter(|part| !matches!(part, 0 | 255)).count();
@@ -426,16 +426,15 @@ fn errors_say_what_is_wrong() {
     assert!(matches!(unbounded.rectangle(), Err(SliceError::Unbounded)));
     let empty = checked("jbt 1 intersection { point { radius 1 } translate (5 0 0) { point { radius 1 } } }");
     assert!(matches!(slicer(&empty, "z=0", Query::FIELD).rectangle(), Err(SliceError::Empty)));
-    let fails = |detail: &Detail| unbounded.contour(&square(1.0), detail, &mut |_| true).unwrap_err();
+    let fails = |detail: &Detail| unbounded.contour(&square(1.0), detail).run().unwrap_err();
     for block in [0, 3, 128] {
         let error = fails(&Detail { block: Some(block), ..Detail::default() });
         assert!(matches!(error, SliceError::Block { .. }), "{error}");
     }
     assert!(matches!(fails(&detail(0)), SliceError::Lattice(_)));
     assert!(matches!(fails(&detail(1 << 21)), SliceError::Lattice(_)));
-    let image = |detail: ImageDetail, mode: Mode| {
-        unbounded.picture(&square(1.0), &mode, &detail, &mut |_| true).unwrap_err()
-    };
+    let image =
+        |detail: ImageDetail, mode: Mode| unbounded.picture(&square(1.0), &mode, &detail).run().unwrap_err();
     let plain = ImageDetail::default();
     for samples in [0, 9] {
         let error = image(ImageDetail { samples, ..plain }, Mode::Inside);
@@ -445,7 +444,9 @@ fn errors_say_what_is_wrong() {
     assert!(matches!(image(many, Mode::Inside), SliceError::TooManyPixels { .. }));
     let error = image(plain, Mode::Attribute("color".to_owned())).to_string();
     assert!(error.contains("no attribute `color`"), "{error}");
-    let cancelled = unbounded.contour(&square(1.0), &detail(64), &mut |_| false);
+    let token = CancelToken::new();
+    token.cancel();
+    let cancelled = unbounded.contour(&square(1.0), &detail(64)).cancel(&token).run();
     assert!(matches!(cancelled, Err(SliceError::Cancelled)));
 }
 
@@ -544,7 +545,7 @@ fn a_program_of_instructions_is_drawn_as_its_field_says() {
     let tree = jbt::import::vm(&bytes).expect("it reads").model.check().expect("a good model");
     let slicer = slicer(&tree, "z=0", Query::FIELD);
     let detail = ImageDetail { fineness: Fineness::Resolution(256), samples: 1 };
-    let image = slicer.inside(&square(1.0), &detail, &mut |_| true).expect("an image");
+    let image = slicer.inside(&square(1.0), &detail).run().expect("an image");
     let points: Points = (0..256 * 256)
         .map(|index| {
             let at = |index: usize| (-1.0 + (index as f64 + 0.5) / 128.0) as f32;

@@ -22,7 +22,7 @@ fn vertices_at_creases_are_on_the_surface() {
     let evaluator = Evaluator::compile(&tree, Query::GRADIENT).expect("it compiles");
     for resolution in [60, 110, 150, 170] {
         let polygonize = Polygonize { fineness: Fineness::Resolution(resolution), ..Polygonize::default() };
-        let made = polygonize.run(&Compiler::new(), &tree, &mut |_| true).expect("it has a surface");
+        let made = polygonize.mesh(&Compiler::new(), &tree).run().expect("it has a surface");
         assert!(made.report.closed);
         let points: Points = made.mesh.positions.iter().copied().collect();
         let mut samples = evaluator.samples();
@@ -41,9 +41,8 @@ fn vertices_at_creases_are_on_the_surface() {
 fn every_engine_makes_the_same_mesh() {
     let tree = tree(CREASE);
     let polygonize = Polygonize { fineness: Fineness::Resolution(30), ..Polygonize::default() };
-    let mesh = |engine| {
-        polygonize.run(&Compiler::for_engine(engine), &tree, &mut |_| true).expect("it has a surface").mesh
-    };
+    let mesh =
+        |engine| polygonize.mesh(&Compiler::for_engine(engine), &tree).run().expect("it has a surface").mesh;
     let reference = mesh(Engine::Scalar);
     assert!(!reference.triangles.is_empty());
     for engine in [Engine::Lanes, Engine::Jit] {
@@ -57,7 +56,7 @@ fn what_is_unbounded_needs_a_region() {
     let half = "half_space { at (0 0 0.25) normal (1 0 2) radius 1 }";
     let alone = tree(&format!("jbt 1 {half}"));
     let polygonize = Polygonize { fineness: Fineness::Resolution(24), ..Polygonize::default() };
-    let error = polygonize.run(&Compiler::new(), &alone, &mut |_| true).map(|_| ()).expect_err("no region");
+    let error = polygonize.mesh(&Compiler::new(), &alone).run().map(|_| ()).expect_err("no region");
     assert!(matches!(error, PolygonizeError::Unbounded), "{error}");
     assert_eq!(error.to_string(), "the model is unbounded: its mesh needs a region");
     let solid = Solid::new(&Compiler::new(), &alone).expect("it compiles");
@@ -65,7 +64,7 @@ fn what_is_unbounded_needs_a_region() {
     assert_eq!(error.to_string(), RegionError::Unbounded.to_string());
 
     let region = Polygonize { region: Some(([-1.0; 3], [1.0; 3])), ..polygonize };
-    let made = region.run(&Compiler::new(), &alone, &mut |_| true).expect("it has a surface there");
+    let made = region.mesh(&Compiler::new(), &alone).run().expect("it has a surface there");
     assert!(!made.report.closed && made.mesh.triangles.len() > 500);
     for &[x, _, z] in &made.mesh.positions {
         // Half the radius from the plane.
@@ -73,6 +72,6 @@ fn what_is_unbounded_needs_a_region() {
         assert!((distance - 0.5).abs() < 1e-4, "{distance}");
     }
     let cut = tree(&format!("jbt 1 intersection {{ {half} point {{ radius 1 }} }}"));
-    let made = polygonize.run(&Compiler::new(), &cut, &mut |_| true).expect("it is bounded");
+    let made = polygonize.mesh(&Compiler::new(), &cut).run().expect("it is bounded");
     assert!(made.report.closed);
 }

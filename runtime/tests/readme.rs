@@ -19,7 +19,7 @@ fn the_scene_on_the_first_screen_is_a_closed_surface() {
     assert_eq!(scene.len(), 12, "a scene of twelve lines");
     let model = parse(scene.join("\n").as_bytes(), &Options::default()).expect("it reads");
     let tree = model.check().expect("it is a good model");
-    let made = Polygonize::default().run(&Compiler::new(), &tree, &mut |_| true).expect("it has a surface");
+    let made = Polygonize::default().mesh(&Compiler::new(), &tree).run().expect("it has a surface");
     assert!(made.report.closed && !made.mesh.triangles.is_empty());
 }
 

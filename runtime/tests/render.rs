@@ -6,7 +6,7 @@ use jbt::Picture;
 use jbt::export::write_png;
 use jbt::limits::{MAX_ANTIALIAS, MAX_PICTURE_SIDE};
 use jbt::render::{Background, Mode, Notice, Quality, RenderError, Rendered, Stance, VIEWS, View};
-use jbt::{Box3, CheckedTree, Compiler, Render, Renderer};
+use jbt::{Box3, CancelToken, CheckedTree, Compiler, Render, Renderer};
 use jbt_frontend::text::{Options, parse};
 
 fn tree(text: &str) -> CheckedTree {
@@ -37,7 +37,7 @@ fn on_axis(distance: f64, half: f64, orthographic: bool) -> View {
 }
 
 fn make(render: &Render, tree: &CheckedTree) -> Rendered {
-    render.run(&Compiler::new(), tree, &mut |_| true).unwrap()
+    render.picture(&Compiler::new(), tree).run().unwrap()
 }
 
 /// A small picture with one ray for each pixel.
@@ -111,7 +111,7 @@ fn attributes_are_shown_as_they_are() {
     assert!(much[0] > 240 && much[2] < 50, "{much:?}");
     assert!(little[0] < 80 && little[1] < 10, "{little:?}");
     let unknown = plain([8, 8], Mode::Attribute("colour".to_owned()), view);
-    let error = unknown.run(&Compiler::new(), &two(), &mut |_| true).unwrap_err();
+    let error = unknown.picture(&Compiler::new(), &two()).run().unwrap_err();
     assert_eq!(error.to_string(), "the model has no attribute `colour`; it has color, weight");
 }
 
@@ -123,7 +123,7 @@ fn the_bytes_do_not_depend_on_threads() {
         let render = Render { size: [90, 50], mode, ..Render::default() };
         let on = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| render.with(&renderer, &mut |_| true)).unwrap()
+            pool.install(|| render.with(&renderer).run()).unwrap()
         };
         let one = on(1);
         for threads in [2, 5] {
@@ -142,7 +142,7 @@ fn a_model_fills_the_picture_from_every_side() {
         for size in [[96, 64], [48, 96]] {
             for orthographic in [false, true] {
                 let view = View { orthographic, ..View::named(name).unwrap() };
-                let made = plain(size, Mode::Depth, view).with(&renderer, &mut |_| true).unwrap();
+                let made = plain(size, Mode::Depth, view).with(&renderer).run().unwrap();
                 let hit = opaque(&made.picture);
                 let part = |axis: usize| {
                     let low = hit.iter().map(|pixel| pixel[axis]).min().unwrap();
@@ -193,7 +193,7 @@ fn a_region_cuts_the_model_open() {
     let half_space = tree("jbt 1 half_space { normal (0 0 1) radius 1 }");
     let shaded = Render { mode: Mode::Shaded, ground: false, region, ..plain([16, 16], Mode::Shaded, view) };
     assert!(make(&shaded, &half_space).report.pixels_hit > 60);
-    let error = plain([16, 16], Mode::Shaded, view).run(&Compiler::new(), &half_space, &mut |_| true);
+    let error = plain([16, 16], Mode::Shaded, view).picture(&Compiler::new(), &half_space).run();
     assert!(matches!(error, Err(RenderError::Unbounded)));
 }
 
@@ -237,7 +237,7 @@ fn an_edited_model_is_that_of_a_new_renderer() {
     let large = small.with_parameters(&[("r", 0.8)]).unwrap();
     let render = plain([40, 30], Mode::Shaded, on_axis(4.0, 1.5, false));
     let renderer = Renderer::new(&Compiler::new(), &small).unwrap();
-    let edited = render.with(&renderer.updated(&large).unwrap(), &mut |_| true).unwrap();
+    let edited = render.with(&renderer.updated(&large).unwrap()).run().unwrap();
     assert!(edited.picture == make(&render, &large).picture);
     assert!(edited.report.pixels_hit > make(&render, &small).report.pixels_hit);
     assert_eq!(edited.report.compile_time, std::time::Duration::ZERO);
@@ -287,14 +287,14 @@ fn what_is_no_picture_says_why() {
         ),
         (Render { region: Some(flat), ..good.clone() }, "a region has finite corners"),
     ] {
-        let error = render.run(&Compiler::new(), &ball(), &mut |_| true).expect_err(words).to_string();
+        let error = render.picture(&Compiler::new(), &ball()).run().expect_err(words).to_string();
         assert!(error.contains(words), "{error}");
     }
     // At the limits it is something else that is wrong.
     let unbounded = tree("jbt 1 half_space { radius 1 }");
     for size in [[side, 4096], [8192, 8192]] {
         let render = Render { size, antialias: MAX_ANTIALIAS, ..good.clone() };
-        let error = render.run(&Compiler::new(), &unbounded, &mut |_| true);
+        let error = render.picture(&Compiler::new(), &unbounded).run();
         assert!(matches!(error, Err(RenderError::Unbounded)));
     }
     let line = Render { size: [side, 1], quality: Quality::Draft, ..good.clone() };
@@ -302,22 +302,26 @@ fn what_is_no_picture_says_why() {
 }
 
 #[test]
-fn a_picture_is_cancelled_by_its_hook() {
+fn a_picture_is_watched_and_cancelled() {
     let render = Render { size: [300, 300], quality: Quality::Draft, antialias: 1, ..Render::default() };
     let renderer = Renderer::new(&Compiler::new(), &ball()).unwrap();
     for patience in [0, 1, 2] {
         let mut calls = 0;
-        let mut hook = |_| {
+        let token = CancelToken::new();
+        let watch = |_| {
             calls += 1;
-            calls <= patience
+            if calls > patience {
+                token.cancel();
+            }
         };
-        assert!(matches!(render.with(&renderer, &mut hook), Err(RenderError::Cancelled)));
+        let made = render.with(&renderer).on_progress(watch).cancel(&token).run();
+        assert!(matches!(made, Err(RenderError::Cancelled)));
     }
     let mut last = -1.0;
-    let made = render.with(&renderer, &mut |fraction| {
-        assert!((0.0..=1.0).contains(&fraction) && fraction > last);
-        last = fraction;
-        true
-    });
+    let watch = |part| {
+        assert!((0.0..=1.0).contains(&part) && part > last);
+        last = part;
+    };
+    let made = render.with(&renderer).on_progress(watch).run();
     assert!(made.is_ok() && last == 1.0);
 }

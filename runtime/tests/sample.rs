@@ -2,7 +2,7 @@
 
 use jbt::mesh::Lattice;
 use jbt::sample::{SampleError, Sampler, Wanted};
-use jbt::{CheckedTree, Compiler, Engine, Points, Query};
+use jbt::{CancelToken, CheckedTree, Compiler, Engine, Points, Query};
 use jbt_frontend::text::{Options, parse};
 
 fn tree(text: &str) -> CheckedTree {
@@ -55,7 +55,7 @@ fn dense_samples_have_the_bits_of_points() {
     for query in Query::EVERY {
         let sampler = Sampler::new(&Compiler::for_engine(Engine::Lanes), &tree, query).unwrap();
         let lattice = lattice();
-        let dense = sampler.dense(&lattice, &mut |_| true).unwrap();
+        let dense = sampler.dense(&lattice).run().unwrap();
         let done = sampler.evaluator().counters();
         assert!(done.points < lattice.point_count(), "constant blocks take one point");
         assert!(done.evaluations_pruned > done.primitive_evaluations);
@@ -67,7 +67,7 @@ fn dense_samples_have_the_bits_of_points() {
 fn a_formula_is_not_constant_where_no_primitive_is() {
     for query in Query::EVERY {
         let sampler = Sampler::new(&Compiler::for_engine(Engine::Lanes), &formula(), query).unwrap();
-        let dense = sampler.dense(&lattice(), &mut |_| true).unwrap();
+        let dense = sampler.dense(&lattice()).run().unwrap();
         assert_eq!(bits(&dense), bits(&expected(&sampler, &lattice())), "{}", query.name());
     }
 }
@@ -80,10 +80,10 @@ fn sparse_blocks_are_where_they_are_wanted() {
 fn check_sparse_blocks(tree: &CheckedTree) {
     let sampler = Sampler::new(&Compiler::for_engine(Engine::Lanes), tree, Query::FIELD).unwrap();
     let lattice = lattice();
-    let dense = sampler.dense(&lattice, &mut |_| true).unwrap();
+    let dense = sampler.dense(&lattice).run().unwrap();
     let [nx, ny, _] = lattice.points();
     let iso = tree.iso() as f32;
-    let blocks = |wanted| sampler.blocks(&lattice, wanted, &mut |_| true).unwrap();
+    let blocks = |wanted| sampler.blocks(&lattice, wanted).run().unwrap();
     let mut counts = Vec::new();
     for wanted in [Wanted::Everywhere, Wanted::Support, Wanted::Surface(iso)] {
         let mut seen = vec![false; dense[0].len()];
@@ -115,7 +115,7 @@ fn any_number_of_threads_samples_alike() {
     let sampler = Sampler::new(&Compiler::for_engine(Engine::Lanes), &tree, Query::ALL).unwrap();
     let [one, five] = [1, 5].map(|threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| sampler.dense(&lattice(), &mut |_| true).unwrap())
+        pool.install(|| sampler.dense(&lattice()).run().unwrap())
     });
     assert_eq!(bits(&one), bits(&five));
 }
@@ -126,17 +126,16 @@ fn too_many_numbers_are_refused_before_memory_is_taken() {
     let compiler = Compiler::for_engine(Engine::Scalar);
     let huge = Lattice::new([-3.0; 3], 0.001, [4096; 3]).unwrap();
     let sampler = Sampler::new(&compiler, &tree, Query::FIELD).unwrap();
-    let error = sampler.dense(&huge, &mut |_| true).unwrap_err();
+    let error = sampler.dense(&huge).run().unwrap_err();
     assert!(matches!(error, SampleError::TooMany { points: 68_769_820_673, planes: 1 }), "{error}");
     // As many points as there may be numbers are too many for two answers.
     let sampler = Sampler::new(&compiler, &tree, Query::GRADIENT).unwrap();
     let large = Lattice::new([-3.0; 3], 0.005, [1023; 3]).unwrap();
-    assert!(matches!(sampler.dense(&large, &mut |_| true), Err(SampleError::TooMany { planes: 4, .. })));
+    assert!(matches!(sampler.dense(&large).run(), Err(SampleError::TooMany { planes: 4, .. })));
+    let token = CancelToken::new();
+    token.cancel();
     let mut calls = 0;
-    let cancelled = sampler.dense(&lattice(), &mut |_| {
-        calls += 1;
-        false
-    });
+    let cancelled = sampler.dense(&lattice()).on_progress(|_| calls += 1).cancel(&token).run();
     assert!(matches!(cancelled, Err(SampleError::Cancelled)));
     assert_eq!(calls, 1);
 }

@@ -5,7 +5,7 @@ use jbt::solid::{
 };
 use jbt::text::{Options, parse};
 use jbt::walk::walk;
-use jbt::{Box3, CheckedTree, Compiler, Engine, Fineness, Points, Polygonize};
+use jbt::{Box3, CancelToken, CheckedTree, Compiler, Engine, Fineness, Points, Polygonize};
 use jbt_frontend::check::NodeId;
 use jbt_frontend::tree::NodeKind;
 
@@ -52,7 +52,7 @@ fn solid(text: &str) -> Solid {
 
 fn measured(text: &str, resolution: usize) -> Measures {
     let settings = Measure { fineness: Fineness::Resolution(resolution), ..Measure::default() };
-    solid(text).measure(&settings, &mut |_| true).unwrap()
+    solid(text).measure(&settings).run().unwrap()
 }
 
 #[track_caller]
@@ -111,7 +111,7 @@ fn volumes_without_closed_forms_are_those_of_meshes() {
     for text in [APART, NESTED, SCENE] {
         let tree = tree(text);
         let settings = Polygonize { fineness: Fineness::Resolution(64), ..Polygonize::default() };
-        let made = settings.run(&Compiler::for_engine(Engine::Lanes), &tree, &mut |_| true).unwrap();
+        let made = settings.mesh(&Compiler::for_engine(Engine::Lanes), &tree).run().unwrap();
         assert!(made.report.closed);
         let (mut volume, mut area) = (0.0, 0.0);
         for corners in &made.mesh.triangles {
@@ -137,14 +137,14 @@ fn centers_and_regions() {
     // An eighth of a ball: 3/8 of the radius away from each wall. The cut does not count as surface.
     let settings =
         Measure { region: Some(Box3::new([0.0; 3], [2.0, 1.5, 1.0])), fineness: Fineness::Cell(1.0 / 32.0) };
-    let eighth = solid(BALL).measure(&settings, &mut |_| true).unwrap();
+    let eighth = solid(BALL).measure(&settings).run().unwrap();
     near(eighth.volume.estimate, PI / 6.0, 0.002);
     near(eighth.area, PI / 2.0, 0.005);
     eighth.center.unwrap().iter().for_each(|&x| near(x, 0.375, 0.01));
     assert_eq!(eighth.total(), 3.0);
     // Nothing is there.
     let settings = Measure { region: Some(Box3::new([2.0; 3], [3.0; 3])), ..settings };
-    let nothing = solid(BALL).measure(&settings, &mut |_| true).unwrap();
+    let nothing = solid(BALL).measure(&settings).run().unwrap();
     assert_eq!((nothing.volume.high, nothing.center, nothing.air), (0.0, None, 1.0));
     assert_eq!(nothing.levels.len(), 1);
 }
@@ -175,16 +175,21 @@ fn any_number_of_threads_measures_alike() {
 
 #[test]
 fn measuring_can_be_cancelled() {
-    let cancelled = solid(BALL).measure(&Measure::default(), &mut |fraction| fraction < 0.2);
+    let token = CancelToken::new();
+    let watch = |part: f32| {
+        if part >= 0.2 {
+            token.cancel();
+        }
+    };
+    let cancelled = solid(BALL).measure(&Measure::default()).on_progress(watch).cancel(&token).run();
     assert!(matches!(cancelled, Err(MeasureError::Cancelled)));
     let mut last = 0.0;
     let settings = Measure { fineness: Fineness::Resolution(16), ..Measure::default() };
-    let told = &mut |fraction: f32| {
-        assert!(fraction >= last && fraction <= 1.0);
-        last = fraction;
-        true
+    let watch = |part: f32| {
+        assert!(part >= last && part <= 1.0);
+        last = part;
     };
-    solid(BALL).measure(&settings, told).unwrap();
+    solid(BALL).measure(&settings).on_progress(watch).run().unwrap();
     assert!(last > 0.9, "{last}");
 }
 
@@ -438,10 +443,10 @@ fn questions_that_make_no_sense_are_named() {
         let error = ball.tight_bounds(Some(bounds), 0.1).unwrap_err();
         assert!(matches!(error, BoundsError::Region(RegionError::Bounds { .. })), "{error}");
         let settings = Measure { region: Some(bounds), ..Measure::default() };
-        let error = ball.measure(&settings, &mut |_| true).unwrap_err();
+        let error = ball.measure(&settings).run().unwrap_err();
         assert!(matches!(error, MeasureError::Region(RegionError::Bounds { .. })), "{error}");
     }
-    let measure = |fineness| ball.measure(&Measure { region: None, fineness }, &mut |_| true).unwrap_err();
+    let measure = |fineness| ball.measure(&Measure { region: None, fineness }).run().unwrap_err();
     for cell in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert!(matches!(measure(Fineness::Cell(cell)), MeasureError::Cell { .. }));
     }
@@ -449,6 +454,6 @@ fn questions_that_make_no_sense_are_named() {
         assert!(matches!(measure(fineness), MeasureError::Resolution { .. }));
     }
     let empty = solid("jbt 1 intersection { point { radius 1 } translate (5 0 0) { point { radius 1 } } }");
-    let error = empty.measure(&Measure::default(), &mut |_| true).unwrap_err();
+    let error = empty.measure(&Measure::default()).run().unwrap_err();
     assert!(matches!(error, MeasureError::Region(RegionError::Empty)));
 }

@@ -3,7 +3,7 @@
 use glam::{DAffine3, DVec3};
 use jbt::mesh::Lattice;
 use jbt::statistics::{PerPoint, Statistics, Supports, SupportsError};
-use jbt::{Compiler, Fineness, Polygonize, Query};
+use jbt::{CancelToken, Compiler, Fineness, Polygonize, Query};
 use jbt_frontend::check::{CheckedTree, NodeId};
 use jbt_frontend::text;
 use jbt_frontend::tree::NodeKind;
@@ -16,7 +16,7 @@ fn tree(text: &str) -> CheckedTree {
 }
 
 fn supports(tree: &CheckedTree, lattice: &Lattice) -> Supports {
-    Statistics::new(tree).supports(&Compiler::new(), lattice, &mut |_| true).expect("it compiles")
+    Statistics::new(tree).supports(&Compiler::new(), lattice).run().expect("it compiles")
 }
 
 /// Points of a lattice, rounded as everybody sees them.
@@ -197,6 +197,8 @@ fn the_supports_of_all_examples_are_those_of_plain_formulas() {
 fn counting_can_be_cancelled() {
     let tree = tree("jbt 1 point { radius 1 }");
     let lattice = Polygonize::default().lattice(&tree).unwrap();
-    let stopped = Statistics::new(&tree).supports(&Compiler::new(), &lattice, &mut |_| false);
+    let token = CancelToken::new();
+    token.cancel();
+    let stopped = Statistics::new(&tree).supports(&Compiler::new(), &lattice).cancel(&token).run();
     assert!(matches!(stopped, Err(SupportsError::Cancelled)));
 }

@@ -49,7 +49,7 @@ impl Task {
         let region = Some(([-1.0; 3], [1.0; 3]));
         let polygonize =
             Polygonize { region, fineness: jbt::Fineness::Resolution(self.cells), verify: false };
-        let run = || polygonize.run(&Compiler::new(), &self.tree, &mut |_| true);
+        let run = || polygonize.mesh(&Compiler::new(), &self.tree).run();
         self.pool.install(run).expect("blobs have a mesh")
     }
 

@@ -65,7 +65,7 @@ pub(super) fn prospero(options: Options) -> Vec<Row> {
     let pool = pool(options);
     let image = RefCell::new(Vec::new());
     let ours = || {
-        let made = pool.install(|| slicer.inside(&square, &detail, &mut |_| true));
+        let made = pool.install(|| slicer.inside(&square, &detail).run());
         *image.borrow_mut() = made.expect("the slice has a picture").values;
     };
     ours();
@@ -134,7 +134,7 @@ pub(super) fn blobs(options: Options) -> Vec<Row> {
         *renderer.borrow_mut() = updated;
         let current = renderer.borrow();
         let renderer = &*current;
-        let made = pool.install(|| render.with(renderer, &mut |_| true));
+        let made = pool.install(|| render.with(renderer).run());
         made.expect("blobs have a picture").report.pixels_hit as usize
     };
     let mut contest = Contest::new();

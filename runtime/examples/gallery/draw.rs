@@ -23,21 +23,21 @@ pub fn draw(root: &Path, entry: &Entry) -> Result<Vec<u8>, Box<dyn Error>> {
     let mut bytes = Vec::new();
     match &entry.drawing {
         Drawing::Render(render) => {
-            let made = render.run(&compiler, &tree, &mut |_| true)?;
+            let made = render.picture(&compiler, &tree).run()?;
             write_png(&coarse(&made.picture), &mut bytes)?;
         }
         Drawing::Slice { plane, mode, pixels } => {
             let query = if matches!(mode, Mode::Attribute(_)) { Query::ATTRIBUTES } else { Query::FIELD };
             let slicer = Slicer::new(&compiler, &tree, plane, query)?;
             let detail = ImageDetail { fineness: Fineness::Resolution(*pixels), samples: 1 };
-            let picture = slicer.picture(&slicer.rectangle()?, mode, &detail, &mut |_| true)?;
+            let picture = slicer.picture(&slicer.rectangle()?, mode, &detail).run()?;
             write_png(&coarse(&picture), &mut bytes)?;
         }
         Drawing::Quadtree { cells, pixels } => {
             let plane = Plane::default();
             let slicer = Slicer::new(&compiler, &tree, &plane, Query::FIELD)?;
             let detail = Detail { fineness: Fineness::Resolution(*cells), block: Some(1), quadtree: true };
-            let contour = slicer.contour(&slicer.rectangle()?, &detail, &mut |_| true)?;
+            let contour = slicer.contour(&slicer.rectangle()?, &detail).run()?;
             let style = Style {
                 stroke_width: 1.0 / 600.0,
                 fill: Paint::None,

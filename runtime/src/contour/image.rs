@@ -17,6 +17,7 @@ use super::shade;
 use super::slicer::{SliceError, Slicer};
 use crate::error::EvalError;
 use crate::evaluator::Evaluator;
+use crate::job::{Hook, Job};
 use crate::kernel::Engine;
 use crate::picture::Picture;
 use crate::polygonize::Fineness;
@@ -315,16 +316,20 @@ impl Work for Painted<'_> {
 impl Slicer {
     /// Which pixels of a rectangle are inside: 255 for those that are, 0 for those that are not, and with several samples the part of 255.
     ///
-    /// The same for any number of threads, and at each point what the field there says. The hook is told how far the work is, from 0 to 1, and cancels it by
-    /// returning false.
+    /// The same for any number of threads, and at each point what the field there says.
     ///
     /// # Errors
     /// See [`SliceError`].
-    pub fn inside(
+    pub fn inside(&self, rectangle: &Rectangle, detail: &ImageDetail) -> Job<'_, Raster<u8>, SliceError> {
+        let (rectangle, detail) = (*rectangle, *detail);
+        Job::new(move |hook| self.inside_hooked(&rectangle, &detail, hook))
+    }
+
+    fn inside_hooked(
         &self,
         rectangle: &Rectangle,
         detail: &ImageDetail,
-        hook: &mut (dyn FnMut(f32) -> bool + Send),
+        hook: Hook<'_>,
     ) -> Result<Raster<u8>, SliceError> {
         let work = Inside(Canvas::new(self, rectangle, detail)?);
         let divided = divide(&self.pruner, &work, work.0.plan(), &Progress::new(hook))?;
@@ -339,7 +344,16 @@ impl Slicer {
         &self,
         rectangle: &Rectangle,
         fineness: Fineness,
-        hook: &mut (dyn FnMut(f32) -> bool + Send),
+    ) -> Job<'_, Raster<f32>, SliceError> {
+        let rectangle = *rectangle;
+        Job::new(move |hook| self.values_hooked(&rectangle, fineness, hook))
+    }
+
+    fn values_hooked(
+        &self,
+        rectangle: &Rectangle,
+        fineness: Fineness,
+        hook: Hook<'_>,
     ) -> Result<Raster<f32>, SliceError> {
         let work = Values(Canvas::new(self, rectangle, &ImageDetail { fineness, samples: 1 })?);
         let divided = divide(&self.pruner, &work, work.0.plan(), &Progress::new(hook))?;
@@ -352,7 +366,7 @@ impl Slicer {
         rectangle: &Rectangle,
         name: &str,
         detail: &ImageDetail,
-        hook: &mut (dyn FnMut(f32) -> bool + Send),
+        hook: Hook<'_>,
     ) -> Result<Raster<[f32; 4]>, SliceError> {
         let (evaluator, first, width) = self.attribute(name)?;
         let planes = match width {
@@ -365,9 +379,7 @@ impl Slicer {
         Ok(work.canvas.raster(&divided, [0.0; 4]))
     }
 
-    /// An image of a rectangle, on the threads of the rayon pool in which this is called.
-    ///
-    /// The hook is told how far the work is, from 0 to 1, and cancels it by returning false.
+    /// An image of a rectangle.
     ///
     /// # Errors
     /// See [`SliceError`].
@@ -376,15 +388,25 @@ impl Slicer {
         rectangle: &Rectangle,
         mode: &Mode,
         detail: &ImageDetail,
-        hook: &mut (dyn FnMut(f32) -> bool + Send),
+    ) -> Job<'_, Picture, SliceError> {
+        let (rectangle, mode, detail) = (*rectangle, mode.clone(), *detail);
+        Job::new(move |hook| self.picture_hooked(&rectangle, &mode, &detail, hook))
+    }
+
+    fn picture_hooked(
+        &self,
+        rectangle: &Rectangle,
+        mode: &Mode,
+        detail: &ImageDetail,
+        hook: Hook<'_>,
     ) -> Result<Picture, SliceError> {
         let shade = match mode {
-            Mode::Inside => return Ok(shade::mask(&self.inside(rectangle, detail, hook)?)),
+            Mode::Inside => return Ok(shade::mask(&self.inside_hooked(rectangle, detail, hook)?)),
             Mode::Attribute(name) => return Ok(shade::paint(&self.painted(rectangle, name, detail, hook)?)),
             Mode::Field => shade::diverging,
             Mode::Grey => shade::grey,
             Mode::Height => shade::relief,
         };
-        Ok(shade(&self.field_values(rectangle, detail.fineness, hook)?, self.iso))
+        Ok(shade(&self.values_hooked(rectangle, detail.fineness, hook)?, self.iso))
     }
 }

@@ -13,7 +13,7 @@
 //! use jbt::{Compiler, Query};
 //! let tree = jbt::text::parse(b"jbt 1 ring { ring_radius 1 radius 0.5 }", &Default::default()).unwrap().check().unwrap();
 //! let slicer = Slicer::new(&Compiler::new(), &tree, &Plane::default(), Query::FIELD).unwrap(); // once
-//! let contour = slicer.contour(&slicer.rectangle().unwrap(), &Detail::default(), &mut |_| true).unwrap(); // many times
+//! let contour = slicer.contour(&slicer.rectangle().unwrap(), &Detail::default()).run().unwrap(); // many times
 //! let holes: Vec<bool> = contour.loops.iter().map(|one| one.is_hole).collect();
 //! assert_eq!(holes, [false, true]);
 //! assert_eq!(contour.loops[1].parent, Some(0));
@@ -63,6 +63,7 @@ use divide::{Plan, Square, Verdict, Work, divide};
 use grid::Grid;
 
 use crate::error::EvalError;
+use crate::job::{Hook, Job};
 use crate::mesh::Attribute;
 use crate::polygonize::Fineness;
 use crate::prune::Region;
@@ -182,20 +183,23 @@ impl Work for Contouring<'_> {
 }
 
 impl Slicer {
-    /// The contour in a rectangle of the plane, on the threads of the rayon pool in which this is called.
-    ///
-    /// The hook is told how far the work is, from 0 to 1, and cancels it by returning false.
+    /// The contour in a rectangle of the plane.
     ///
     /// # Errors
     /// See [`SliceError`].
     ///
     /// # Panics
     /// If the field has two values at one point, or leaves a range of its own: a defect of jbt.
-    pub fn contour(
+    pub fn contour(&self, rectangle: &Rectangle, detail: &Detail) -> Job<'_, Contour, SliceError> {
+        let (rectangle, detail) = (*rectangle, *detail);
+        Job::new(move |hook| self.contour_hooked(&rectangle, &detail, hook))
+    }
+
+    fn contour_hooked(
         &self,
         rectangle: &Rectangle,
         detail: &Detail,
-        hook: &mut (dyn FnMut(f32) -> bool + Send),
+        hook: Hook<'_>,
     ) -> Result<Contour, SliceError> {
         let block = detail.block.unwrap_or(8);
         if !block.is_power_of_two() || block > MAX_BLOCK {

@@ -106,7 +106,7 @@ pub enum SliceError {
     /// The field could not be evaluated.
     #[error("the field cannot be evaluated: {0}")]
     Eval(#[from] EvalError),
-    /// The hook said to stop.
+    /// It was told to stop.
     #[error("the work was cancelled")]
     Cancelled,
 }

@@ -58,6 +58,8 @@ pub use lattice::{Lattice, LatticeError};
 
 pub(crate) use surface::facet_normal;
 
+use crate::job::{Hook, Job};
+
 use divide::Division;
 use progress::Progress;
 use vertex::Source;
@@ -69,7 +71,7 @@ pub const MAX_BRICK: usize = 32;
 /// The largest [`Options::pulls`]. Newton's step has converged long before.
 pub const MAX_PULLS: usize = 64;
 
-/// How to mesh. The number of threads is that of the rayon pool in which [`extract`] is called.
+/// How to mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
     /// The surface is where the field has this value. Any finite number.
@@ -194,7 +196,7 @@ pub enum MeshError<E: Error + 'static> {
     /// The field could not be evaluated.
     #[error("the field cannot be evaluated")]
     Field(#[source] E),
-    /// The progress hook said to stop.
+    /// It was told to stop.
     #[error("meshing was cancelled")]
     Cancelled,
     /// The iso-value is infinite or NaN.
@@ -255,26 +257,21 @@ pub enum MeshError<E: Error + 'static> {
 ///
 /// # Panics
 /// If the field does not keep its promises: that it gives each box a region, and that it is within its ranges.
-pub fn extract<F: Field>(
-    field: &F,
-    lattice: &Lattice,
+pub fn extract<'a, F: Field>(
+    field: &'a F,
+    lattice: &'a Lattice,
     options: &Options,
-) -> Result<(Mesh, Report), MeshError<F::Error>> {
-    extract_with_progress(field, lattice, options, &mut |_| true)
+) -> Job<'a, (Mesh, Report), MeshError<F::Error>> {
+    let options = options.clone();
+    Job::new(move |hook| extract_hooked(field, lattice, &options, hook))
 }
 
-/// As [`extract`]; reports how far it is to a hook, which may cancel.
-///
-/// The hook is called from worker threads, never twice at once, with ascending fractions from 0 to 1. When it returns false,
-/// the work stops soon with [`MeshError::Cancelled`].
-///
-/// # Errors
-/// See [`MeshError`].
-pub fn extract_with_progress<F: Field>(
+/// As [`extract`], told to a hook.
+pub(crate) fn extract_hooked<F: Field>(
     field: &F,
     lattice: &Lattice,
     options: &Options,
-    hook: &mut (dyn FnMut(f32) -> bool + Send),
+    hook: Hook<'_>,
 ) -> Result<(Mesh, Report), MeshError<F::Error>> {
     check_options(options)?;
     let progress = Progress::new(hook);

@@ -37,6 +37,7 @@ use jbt_ir::limits::{MAX_ANTIALIAS, MAX_PICTURE_PIXELS, MAX_PICTURE_SIDE};
 
 use crate::error::{CompileError, EvalError};
 use crate::evaluator::Compiler;
+use crate::job::{Hook, Job};
 use crate::kernel::Engine;
 use crate::picture::Picture;
 use crate::region::Box3;
@@ -208,7 +209,7 @@ pub enum RenderError {
     /// The field could not be evaluated.
     #[error(transparent)]
     Eval(#[from] EvalError),
-    /// The hook said to stop.
+    /// It was told to stop.
     #[error("the picture was cancelled")]
     Cancelled,
 }
@@ -217,37 +218,46 @@ pub enum RenderError {
 const STRIDE: usize = 32;
 
 impl Render {
-    /// Makes a picture of a model, on the threads of the rayon pool in which this is called. To make several, of a model that is edited or from other sides, keep a
-    /// [`Renderer`] and use [`with`](Self::with).
+    /// A picture of a model. To make several, of a model that is edited or from other sides, keep a [`Renderer`] and use [`with`](Self::with).
     ///
-    /// The hook is told how far the work is, from 0 to 1, and cancels it by returning false. Memory: 16 bytes a pixel.
+    /// Memory: 16 bytes a pixel.
     ///
     /// # Errors
     /// See [`RenderError`].
-    pub fn run(
+    pub fn picture<'a>(
+        &self,
+        compiler: &'a Compiler,
+        tree: &'a CheckedTree,
+    ) -> Job<'a, Rendered, RenderError> {
+        let render = self.clone();
+        Job::new(move |hook| render.picture_hooked(compiler, tree, hook))
+    }
+
+    /// As [`picture`](Self::picture), of a model that has been compiled: nothing is compiled here.
+    ///
+    /// # Errors
+    /// See [`RenderError`].
+    pub fn with<'a>(&self, renderer: &'a Renderer) -> Job<'a, Rendered, RenderError> {
+        let render = self.clone();
+        Job::new(move |hook| render.with_hooked(renderer, hook))
+    }
+
+    fn picture_hooked(
         &self,
         compiler: &Compiler,
         tree: &CheckedTree,
-        hook: &mut dyn FnMut(f32) -> bool,
+        hook: Hook<'_>,
     ) -> Result<Rendered, RenderError> {
         self.check(tree)?;
         let start = Instant::now();
         let renderer = Renderer::new(compiler, tree)?;
         let compile_time = start.elapsed();
-        let mut rendered = self.with(&renderer, hook)?;
+        let mut rendered = self.with_hooked(&renderer, hook)?;
         rendered.report.compile_time = compile_time;
         Ok(rendered)
     }
 
-    /// As [`run`](Self::run), with a model that has been compiled: nothing is compiled here.
-    ///
-    /// # Errors
-    /// See [`RenderError`].
-    pub fn with(
-        &self,
-        renderer: &Renderer,
-        hook: &mut dyn FnMut(f32) -> bool,
-    ) -> Result<Rendered, RenderError> {
+    fn with_hooked(&self, renderer: &Renderer, hook: Hook<'_>) -> Result<Rendered, RenderError> {
         self.check(renderer.tree())?;
         if !hook(0.0) {
             return Err(RenderError::Cancelled);
@@ -296,11 +306,7 @@ impl Render {
 }
 
 /// Exposes all tiles of a film. Returns what they took together.
-fn expose(
-    frame: &Frame<'_>,
-    film: &mut [Gathered],
-    hook: &mut dyn FnMut(f32) -> bool,
-) -> Result<Tile, RenderError> {
+fn expose(frame: &Frame<'_>, film: &mut [Gathered], hook: Hook<'_>) -> Result<Tile, RenderError> {
     let width = frame.render.size[0] as usize;
     let places = Place::all(frame.render.size, frame.render.antialias);
     let mut all = Tile::default();

@@ -16,7 +16,7 @@ use crate::region::Box3;
 /// use jbt::render::{Render, View};
 /// # let tree = jbt::text::parse(b"jbt 1 point { surface_radius 1 }", &Default::default()).unwrap().check().unwrap();
 /// let render = Render { size: [32, 24], view: View::named("front").unwrap(), ..Render::default() };
-/// let made = render.run(&jbt::Compiler::new(), &tree, &mut |_| true).unwrap();
+/// let made = render.picture(&jbt::Compiler::new(), &tree).run().unwrap();
 /// assert_eq!(made.picture.pixels().len(), 32 * 24);
 /// assert!(made.report.pixels_hit > 200);
 /// ```

@@ -26,6 +26,7 @@ use crate::buffer::Layout;
 use crate::divide::{Cell, Decision, DivideError, Limits, divide};
 use crate::error::{CompileError, EvalError};
 use crate::evaluator::{Compiler, Evaluator};
+use crate::job::{Hook, Job};
 use crate::mesh::Lattice;
 use crate::prune::{Pruner, Region};
 use crate::region::Box3;
@@ -75,7 +76,7 @@ pub enum SampleError {
     /// The lattice could not be divided.
     #[error(transparent)]
     Divide(#[from] DivideError<EvalError>),
-    /// The hook said to stop.
+    /// It was told to stop.
     #[error("sampling was cancelled")]
     Cancelled,
 }
@@ -116,31 +117,27 @@ impl Sampler {
 
     /// The wanted blocks of a lattice, in the order of a walk down its octree. No two have a point in common.
     ///
-    /// Memory: the answers at the points of the wanted blocks. Runs on the threads of the rayon pool in which this is called; the answers do not
-    /// depend on them. The hook is told how far the work is, from 0 to 1, and cancels it by returning false.
+    /// Memory: the answers at the points of the wanted blocks. The answers do not depend on the threads.
     ///
     /// # Errors
     /// See [`SampleError`].
-    pub fn blocks(
-        &self,
-        lattice: &Lattice,
-        wanted: Wanted,
-        hook: &mut dyn FnMut(f32) -> bool,
-    ) -> Result<Vec<Block>, SampleError> {
-        let mut blocks = Vec::new();
-        self.each_block(lattice, wanted, hook, &mut |block| blocks.push(block))?;
-        Ok(blocks)
+    pub fn blocks<'a>(&'a self, lattice: &'a Lattice, wanted: Wanted) -> Job<'a, Vec<Block>, SampleError> {
+        Job::new(move |hook| {
+            let mut blocks = Vec::new();
+            self.each_block(lattice, wanted, hook, &mut |block| blocks.push(block))?;
+            Ok(blocks)
+        })
     }
 
     /// The answers at all points of a lattice: a plane for each name of the [`layout`](Evaluator::layout), x fastest, then y, then z.
     ///
     /// # Errors
     /// See [`SampleError`]. The number of numbers is checked before memory is taken.
-    pub fn dense(
-        &self,
-        lattice: &Lattice,
-        hook: &mut dyn FnMut(f32) -> bool,
-    ) -> Result<Vec<Vec<f32>>, SampleError> {
+    pub fn dense<'a>(&'a self, lattice: &'a Lattice) -> Job<'a, Vec<Vec<f32>>, SampleError> {
+        Job::new(move |hook| self.dense_hooked(lattice, hook))
+    }
+
+    fn dense_hooked(&self, lattice: &Lattice, hook: Hook<'_>) -> Result<Vec<Vec<f32>>, SampleError> {
         let count = self.check_size(lattice)?;
         let planes = self.layout().names().len();
         let mut dense = Vec::new();
@@ -174,7 +171,7 @@ impl Sampler {
         &self,
         lattice: &Lattice,
         wanted: Wanted,
-        hook: &mut dyn FnMut(f32) -> bool,
+        hook: Hook<'_>,
         take: &mut dyn FnMut(Block),
     ) -> Result<(), SampleError> {
         if !hook(0.0) {

@@ -20,6 +20,7 @@ use super::progress::Progress;
 use super::{Batch, RegionError, Solid, center};
 use crate::divide::{Cell, Decision, DivideError, Division, Limits, Node, Outcome, divide};
 use crate::error::EvalError;
+use crate::job::{Hook, Job};
 use crate::polygonize::Fineness;
 use crate::prune::{Pruner, Region};
 use crate::region::Box3;
@@ -132,7 +133,7 @@ pub enum MeasureError {
     /// The field could not be evaluated.
     #[error(transparent)]
     Eval(#[from] EvalError),
-    /// The hook said to stop.
+    /// It was told to stop.
     #[error("measuring was cancelled")]
     Cancelled,
 }
@@ -153,16 +154,16 @@ const DIVISION_SHARE: f64 = 0.7;
 impl Solid {
     /// Measures the solid.
     ///
-    /// Runs on the threads of the rayon pool in which this is called; the answer does not depend on them. The hook is told how far the work is, from 0 to 1, and cancels it
-    /// by returning false.
+    /// The answer does not depend on the threads.
     ///
     /// # Errors
-    /// A region or a cell that cannot be; an empty or an unbounded model without a region; more than [`MAX_MEASURE_BOXES`] boxes; the hook cancelled.
-    pub fn measure(
-        &self,
-        settings: &Measure,
-        hook: &mut (dyn FnMut(f32) -> bool + Send),
-    ) -> Result<Measures, MeasureError> {
+    /// A region or a cell that cannot be; an empty or an unbounded model without a region; more than [`MAX_MEASURE_BOXES`] boxes; it was cancelled.
+    pub fn measure(&self, settings: &Measure) -> Job<'_, Measures, MeasureError> {
+        let settings = *settings;
+        Job::new(move |hook| self.measure_hooked(&settings, hook))
+    }
+
+    fn measure_hooked(&self, settings: &Measure, hook: Hook<'_>) -> Result<Measures, MeasureError> {
         let bounds = self.region(settings.region)?;
         let cell = cell(&bounds, settings.fineness)?;
         let progress = Progress::new(hook);

@@ -166,10 +166,10 @@ where
     F: Fn([f32; 3]) -> Sample + Sync,
     R: Fn(&Box3) -> [f32; 2] + Sync,
 {
-    let (dense, expected) = extract(&Closed(field()), lattice, &Options::default()).unwrap();
+    let (dense, expected) = extract(&Closed(field()), lattice, &Options::default()).run().unwrap();
     let of = |brick| {
         let checked = Checked::new(field(), range());
-        let (mesh, report) = extract(&checked, lattice, &with_brick(brick)).unwrap();
+        let (mesh, report) = extract(&checked, lattice, &with_brick(brick)).run().unwrap();
         assert!(bits(&mesh) == bits(&dense), "bricks of {brick}");
         assert_eq!((report.closed, report.cut_sides), (expected.closed, expected.cut_sides));
         assert_eq!(report.crossing_cells, expected.crossing_cells);
@@ -253,7 +253,7 @@ fn a_large_lattice_costs_what_its_surface_costs() {
     let lattice = Lattice::with_resolution([-1.0; 3], [1.0; 3], 4096).unwrap();
     assert_eq!(lattice.points(), [4097; 3]);
     let checked = Checked::new(sphere(center, 0.02), sphere_range(center, 0.02));
-    let (mesh, report) = extract(&checked, &lattice, &Options::default()).unwrap();
+    let (mesh, report) = extract(&checked, &lattice, &Options::default()).run().unwrap();
     assert!(report.closed);
     assert_eq!(mesh.positions.len() as u64, report.crossing_cells);
     // The radius is 41 cells: a crossed cell for each of 3/2 the area, and in the bricks less than 15 points for each.

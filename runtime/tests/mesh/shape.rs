@@ -4,13 +4,10 @@ use std::convert::Infallible;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use jbt::Box3;
 use jbt::limits::MAX_ATTRIBUTE_WIDTH;
-use jbt::mesh::{
-    Field, Lattice, Mesh, MeshError, Options, Report, Sides, Work, check_manifold, extract,
-    extract_with_progress,
-};
+use jbt::mesh::{Field, Lattice, Mesh, MeshError, Options, Report, Sides, Work, check_manifold, extract};
 use jbt::region::Divisible;
+use jbt::{Box3, CancelToken};
 
 use crate::fields::{Closed, Sample, cubic, no_ranges, sphere, torus, union};
 
@@ -21,7 +18,7 @@ fn lattice(half: f64, spacing: f64) -> Lattice {
 }
 
 fn mesh(field: impl Fn([f32; 3]) -> Sample + Sync, lattice: &Lattice) -> (Mesh, Report) {
-    extract(&Closed(field), lattice, &Options::default()).unwrap()
+    extract(&Closed(field), lattice, &Options::default()).run().unwrap()
 }
 
 fn corners(mesh: &Mesh, triangle: [u32; 3]) -> [[f64; 3]; 3] {
@@ -115,7 +112,7 @@ fn a_soft_field_is_pulled_onto_its_surface() {
 fn more_pulls_come_nearer() {
     let worst = |pulls| {
         let options = Options { pulls, ..Options::default() };
-        let (mesh, report) = extract(&Closed(cubic(1.0)), &lattice(1.0, 0.25), &options).unwrap();
+        let (mesh, report) = extract(&Closed(cubic(1.0)), &lattice(1.0, 0.25), &options).run().unwrap();
         let vertices = mesh.positions.len() as u64;
         // One pull leaves vertices of such large cells off the surface; those are pulled on, and evaluated once more.
         let more = report.gradient_evaluations - pulls as u64 * vertices;
@@ -180,6 +177,7 @@ fn every_lattice_point_is_asked_once_and_by_its_global_coordinate() {
         };
         let (mesh, report) =
             extract(&Closed(record), &lattice, &Options { brick: Some(brick), ..Options::default() })
+                .run()
                 .unwrap();
         assert_eq!(mesh.positions.len(), 0);
         assert_eq!(report.field_evaluations, 38 * 19 * 6);
@@ -278,7 +276,8 @@ fn assert_unit_normals(mesh: &Mesh) {
 
 #[test]
 fn bad_options_are_errors() {
-    let with = |options: Options| extract(&Closed(cubic(1.0)), &lattice(1.0, 0.5), &options).map(|_| ());
+    let with =
+        |options: Options| extract(&Closed(cubic(1.0)), &lattice(1.0, 0.5), &options).run().map(|_| ());
     let default = Options::default();
     for brick in [0, 1, 3, 12, 33, 64] {
         assert_eq!(with(Options { brick: Some(brick), ..default.clone() }), Err(MeshError::Brick { brick }));
@@ -294,11 +293,14 @@ fn progress_ascends_and_cancels() {
     let run = |stop: f32| {
         let mut seen = Vec::new();
         let lattice = lattice(1.0, 0.02);
-        let result =
-            extract_with_progress(&Closed(cubic(1.0)), &lattice, &Options::default(), &mut |fraction| {
-                seen.push(fraction);
-                fraction < stop
-            });
+        let token = CancelToken::new();
+        let (field, watch) = (Closed(cubic(1.0)), |fraction| {
+            seen.push(fraction);
+            if fraction >= stop {
+                token.cancel();
+            }
+        });
+        let result = extract(&field, &lattice, &Options::default()).on_progress(watch).cancel(&token).run();
         assert!(seen.is_sorted());
         (result.map(|_| ()), seen)
     };
@@ -396,10 +398,10 @@ fn an_error_of_the_field_is_handed_on() {
     let needed = 4 + 8 * (1 + 2 + 1);
     for calls in 0..needed {
         let field = Failing(AtomicU64::new(calls));
-        let result = extract(&field, &lattice, &Options::default());
+        let result = extract(&field, &lattice, &Options::default()).run();
         assert_eq!(result.map(|_| ()), Err(MeshError::Field(NoMore)), "after {calls}");
     }
-    assert!(extract(&Failing(AtomicU64::new(needed)), &lattice, &Options::default()).is_ok());
+    assert!(extract(&Failing(AtomicU64::new(needed)), &lattice, &Options::default()).run().is_ok());
 }
 
 /// The sphere with one attribute, of any width.
@@ -469,14 +471,14 @@ impl Field for Wide {
 #[test]
 fn attributes_have_a_width() {
     for width in [1, 4, MAX_ATTRIBUTE_WIDTH] {
-        let (mesh, _) = extract(&Wide(width), &lattice(1.0, 0.1), &Options::default()).unwrap();
+        let (mesh, _) = extract(&Wide(width), &lattice(1.0, 0.1), &Options::default()).run().unwrap();
         let values = &mesh.attributes[0].values;
         assert_eq!(values.len(), width * mesh.positions.len());
         let channels: Vec<f32> = (1_u8..).take(width).map(f32::from).collect();
         assert!(values.chunks_exact(width).all(|chunk| chunk == channels));
     }
     for width in [0, MAX_ATTRIBUTE_WIDTH + 1, usize::MAX] {
-        let error = extract(&Wide(width), &lattice(1.0, 0.1), &Options::default()).unwrap_err();
+        let error = extract(&Wide(width), &lattice(1.0, 0.1), &Options::default()).run().unwrap_err();
         assert_eq!(error, MeshError::Width { name: "wide".to_owned(), width });
     }
 }

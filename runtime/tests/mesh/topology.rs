@@ -5,7 +5,7 @@ use jbt::mesh::{Lattice, Mesh, Options, Report, check_manifold, extract};
 use crate::fields::{Closed, Sample, cubic, hash, signs, sphere, torus, union};
 
 fn mesh(field: impl Fn([f32; 3]) -> Sample + Sync, cells: [usize; 3]) -> (Mesh, Report) {
-    extract(&Closed(field), &Lattice::new([0.0; 3], 1.0, cells).unwrap(), &Options::default()).unwrap()
+    extract(&Closed(field), &Lattice::new([0.0; 3], 1.0, cells).unwrap(), &Options::default()).run().unwrap()
 }
 
 #[track_caller]
@@ -106,7 +106,8 @@ fn vertices_stay_in_their_cells() {
         (if inside { 1.0 } else { 0.0 }, [p[1] * 0.1, -p[0], 1e-3])
     };
     let lattice = Lattice::new([0.0; 3], 1.0, [10; 3]).unwrap();
-    let pulled = |pulls| extract(&Closed(field), &lattice, &Options { pulls, ..Options::default() }).unwrap();
+    let pulled =
+        |pulls| extract(&Closed(field), &lattice, &Options { pulls, ..Options::default() }).run().unwrap();
     let ((start, _), (end, report)) = (pulled(0), pulled(5));
     assert_manifold(&end, &report, String::new);
     assert_eq!(start.positions.len(), end.positions.len());
@@ -142,8 +143,8 @@ fn the_same_bits_for_any_threads_and_bricks() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let options = Options { brick: Some(brick), ..Options::default() };
         pool.install(|| {
-            let (a, report_a) = extract(&smooth.1, &smooth.0, &options).unwrap();
-            let (b, report_b) = extract(&rough.1, &rough.0, &options).unwrap();
+            let (a, report_a) = extract(&smooth.1, &smooth.0, &options).run().unwrap();
+            let (b, report_b) = extract(&rough.1, &rough.0, &options).run().unwrap();
             assert!(report_a.closed && report_b.closed);
             (bits(&a), without_boxes(report_a), bits(&b), without_boxes(report_b))
         })

@@ -74,7 +74,7 @@ fn the_compiler_makes_as_many_triangles() {
         fineness: Fineness::Cell(3.0 / cells as f64),
         verify: true,
     };
-    let compiled = settings.run(&Compiler::new(), &tree(&model), &mut |_| true).expect("blobs have a mesh");
+    let compiled = settings.mesh(&Compiler::new(), &tree(&model)).run().expect("blobs have a mesh");
     // A corner that is on the surface to within rounding may be inside for one of them only.
     assert!(by_hand.triangles.len().abs_diff(compiled.mesh.triangles.len()) <= 8);
 }

@@ -1,0 +1,109 @@
+//! Long work, described before it is done: it may be watched, and cancelled from elsewhere.
+
+use std::fmt;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// What inner loops are given: it is told how far the work is, from 0 to 1, and says whether to go on.
+pub(crate) type Hook<'h> = &'h mut (dyn FnMut(f32) -> bool + Send);
+
+/// Work that tells a hook how far it is.
+type Work<'a, T, E> = dyn FnOnce(Hook<'_>) -> Result<T, E> + 'a;
+
+/// Long work that is ready to run: a mesh, a picture, a slice, samples, measures. Nothing is done before [`run`](Self::run).
+///
+/// It runs on the threads of the rayon pool in which `run` is called.
+///
+/// ```
+/// use jbt::build::point;
+/// use jbt::{CancelToken, Compiler, Model, Polygonize};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let tree = Model::new(point([0.0; 3], 1.0)).check().expect("a good model");
+/// let compiler = Compiler::new();
+/// let made = Polygonize::default().mesh(&compiler, &tree).run()?;
+/// assert!(made.report.closed);
+///
+/// let token = CancelToken::new(); // its clones may go to other threads
+/// let mut seen = 0.0;
+/// let again = Polygonize::default()
+///     .mesh(&compiler, &tree)
+///     .on_progress(|part| {
+///         seen = part;
+///         if part > 0.5 {
+///             token.cancel();
+///         }
+///     })
+///     .cancel(&token)
+///     .run();
+/// assert!(again.is_err() && seen > 0.5);
+/// # Ok(())
+/// # }
+/// ```
+#[must_use = "nothing is done before it runs"]
+pub struct Job<'a, T, E> {
+    work: Box<Work<'a, T, E>>,
+    watchers: Vec<Box<dyn FnMut(f32) + Send + 'a>>,
+    tokens: Vec<CancelToken>,
+}
+
+impl<'a, T, E> Job<'a, T, E> {
+    /// Work that tells a hook how far it is, and stops soon with an error of its own once that returns false.
+    pub(crate) fn new(work: impl FnOnce(Hook<'_>) -> Result<T, E> + 'a) -> Self {
+        Self { work: Box::new(work), watchers: Vec::new(), tokens: Vec::new() }
+    }
+
+    /// The same, and `watch` is told how far the work is: ascending parts of it, from 0 to 1. It is called from any of the threads that work, never
+    /// twice at once; the work waits for it.
+    pub fn on_progress(mut self, watch: impl FnMut(f32) + Send + 'a) -> Self {
+        self.watchers.push(Box::new(watch));
+        self
+    }
+
+    /// The same, and it stops soon with its error `Cancelled` once the token is cancelled, from any thread.
+    pub fn cancel(mut self, token: &CancelToken) -> Self {
+        self.tokens.push(token.clone());
+        self
+    }
+
+    /// Does the work.
+    ///
+    /// # Errors
+    /// Those of the work, and its `Cancelled`.
+    pub fn run(self) -> Result<T, E> {
+        let Self { work, mut watchers, tokens } = self;
+        work(&mut move |part| {
+            watchers.iter_mut().for_each(|watch| watch(part));
+            !tokens.iter().any(CancelToken::is_cancelled)
+        })
+    }
+}
+
+impl<T, E> fmt::Debug for Job<'_, T, E> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Job").field("watchers", &self.watchers.len()).finish_non_exhaustive()
+    }
+}
+
+/// Tells work to stop, from any thread. Clones are one token; it stays cancelled.
+#[derive(Clone, Debug, Default)]
+pub struct CancelToken(Arc<AtomicBool>);
+
+impl CancelToken {
+    /// A token that nobody has cancelled.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Tells all work that has it to stop soon.
+    pub fn cancel(&self) {
+        self.0.store(true, Ordering::Release);
+    }
+
+    /// Whether it has been cancelled.
+    #[must_use]
+    pub fn is_cancelled(&self) -> bool {
+        self.0.load(Ordering::Acquire)
+    }
+}
