@@ -217,8 +217,8 @@ pub struct SampleArguments {
 /// What `jbt eval` takes.
 #[derive(Args, Debug)]
 #[command(after_help = "\
-The points are read from the columns x, y and z, found by the header; other columns are ignored. The answers keep their
-order. Columns: x,y,z,field, then gx,gy,gz, then color.r,color.g,color.b and the other attributes of the scene.
+The points are read from the columns x, y and z, found by the header; other columns are ignored. Coordinates are finite:
+`nan`, `inf` and what is beyond 3.4e38 are errors, with their place. The answers keep the order of the points. Columns: x,y,z,field, then gx,gy,gz, then color.r,color.g,color.b and the other attributes of the scene.
 
 Examples:
   jbt eval hero.jbt --points points.csv --query all -o answers.csv

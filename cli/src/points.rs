@@ -1,12 +1,13 @@
 //! Points from CSV text, a batch at a time, with the place of whatever is wrong with them.
 //!
 //! The first line names the columns; `x`, `y` and `z` are taken wherever they stand. Fields may be quoted, but a quoted field
-//! does not go over the end of its line. Blank lines mean nothing.
+//! does not go over the end of its line. Blank lines mean nothing. A coordinate is a finite f32: `nan`, `inf` and what overflows are
+//! errors; what is too small is the nearest f32, as always.
 
 use std::io::{self, BufRead, Read as _};
 
 use jbt::Points;
-use jbt_frontend::diagnostic::{Severity, escape};
+use jbt_frontend::diagnostic::{Diagnostic, Severity, Source, Span, escape};
 
 use crate::failure::Failure;
 
@@ -23,10 +24,11 @@ pub struct PointReader<R> {
     columns: [usize; 3],
 }
 
-/// A field of a line: its text without quotes, and the byte where it begins.
+/// A field of a line: its text without quotes, and the bytes from which to which it goes with them.
 struct Word {
     text: Vec<u8>,
     start: usize,
+    end: usize,
 }
 
 impl<R: BufRead> PointReader<R> {
@@ -34,7 +36,7 @@ impl<R: BufRead> PointReader<R> {
     pub fn new(reader: R, name: String) -> Result<Self, Failure> {
         let mut points = Self { reader, name, buffer: Vec::new(), line: 0, bytes: 0, columns: [0; 3] };
         if !points.next_line()? {
-            return Err(points.error(0, "there is no header; expected one with the columns x, y and z"));
+            return Err(points.error(0, 0, "there is no header; expected one with the columns x, y and z"));
         }
         if points.buffer.starts_with(b"\xef\xbb\xbf") {
             points.buffer.drain(..3);
@@ -46,10 +48,16 @@ impl<R: BufRead> PointReader<R> {
             match (found.next(), found.next()) {
                 (Some((index, _)), None) => *column = index,
                 (Some(_), Some((_, again))) => {
-                    let start = again.start;
-                    return Err(points.error(start, &format!("there is another column `{name}`")));
+                    let Word { start, end, .. } = *again;
+                    return Err(points.error(start, end, &format!("there is another column `{name}`")));
                 }
-                (None, _) => return Err(points.error(0, &format!("there is no column `{name}`"))),
+                (None, _) => {
+                    return Err(points.error(
+                        0,
+                        points.buffer.len(),
+                        &format!("there is no column `{name}`"),
+                    ));
+                }
             }
         }
         Ok(points)
@@ -77,12 +85,12 @@ impl<R: BufRead> PointReader<R> {
             let axis = ["x", "y", "z"][axis];
             let Some(word) = words.get(column) else {
                 let message = format!("the line ends before its column `{axis}`");
-                return Err(self.error(self.buffer.len(), &message));
+                return Err(self.error(self.buffer.len(), self.buffer.len(), &message));
             };
             let text = String::from_utf8_lossy(word.text.trim_ascii());
-            *number = text.parse().map_err(|_| {
+            *number = coordinate(&text).map_err(|wrong| {
                 let shown: String = text.chars().take(40).collect();
-                self.error(word.start, &format!("`{shown}` is not a number, for {axis}"))
+                self.error(word.start, word.end, &format!("`{shown}` is {wrong}, for {axis}"))
             })?;
         }
         Ok(point)
@@ -135,7 +143,9 @@ impl<R: BufRead> PointReader<R> {
                             text.push(byte);
                             at += 1;
                         }
-                        (None, _) => return Err(self.error(start, "the quote is not closed on this line")),
+                        (None, _) => {
+                            return Err(self.error(start, at, "the quote is not closed on this line"));
+                        }
                     }
                 }
                 at += 1;
@@ -145,7 +155,7 @@ impl<R: BufRead> PointReader<R> {
                 .position(|&byte| byte == b',')
                 .map_or(line.len(), |n| at + n);
             text.extend_from_slice(&line[at.min(end)..end]);
-            words.push(Word { text, start });
+            words.push(Word { text, start, end });
             if end == line.len() {
                 return Ok(words);
             }
@@ -153,13 +163,26 @@ impl<R: BufRead> PointReader<R> {
         }
     }
 
-    /// A located error in the line of the buffer.
-    fn error(&self, byte: usize, message: &str) -> Failure {
-        let before = &self.buffer[..byte.min(self.buffer.len())];
-        let column = String::from_utf8_lossy(before).chars().count() + 1;
-        let message =
-            format!("{}:{}:{column}: error: {}", escape(&self.name), self.line.max(1), escape(message));
+    /// A located error in the line of the buffer, between these bytes of it.
+    fn error(&self, start: usize, end: usize, message: &str) -> Failure {
+        let span = Span::new(start, end);
+        let source = Source { name: &self.name, text: &self.buffer };
+        let message = source.render_from(self.line.max(1), &Diagnostic::error(Some(span), message));
         Failure::Input { messages: vec![(Severity::Error, message)] }
+    }
+}
+
+/// The coordinate that a text names, or what is wrong with it.
+fn coordinate(text: &str) -> Result<f32, String> {
+    let number: f32 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if number.is_finite() {
+        Ok(number)
+    } else if number.is_nan() {
+        Err("not a number".to_owned())
+    } else if text.contains(|c: char| c.is_ascii_digit()) {
+        Err(format!("too large: a coordinate is at most {:e}", f32::MAX))
+    } else {
+        Err("not finite".to_owned())
     }
 }
 
@@ -184,9 +207,9 @@ mod tests {
 
     #[test]
     fn columns_are_found_by_name_and_order_is_kept() {
-        let text = "\u{feff}z,\"a,b\", y ,x\r\n3,\"q\"\"\",2,1\r\n\n-0,,1e-45,+.5\n1,2,3,inf";
+        let text = "\u{feff}z,\"a,b\", y ,x\r\n3,\"q\"\"\",2,1\r\n\n-0,,1e-45,+.5\n1e-400,2,3,3.4028235e38";
         let points = read(text).unwrap();
-        assert_eq!(points, [[1.0, 2.0, 3.0], [0.5, 1e-45, 0.0], [f32::INFINITY, 3.0, 1.0]]);
+        assert_eq!(points, [[1.0, 2.0, 3.0], [0.5, 1e-45, 0.0], [f32::MAX, 3.0, 0.0]]);
         assert!(points[1][2].is_sign_negative());
         assert_eq!(read("x,y,z\n"), Ok(vec![]));
     }
@@ -195,12 +218,39 @@ mod tests {
     fn errors_have_a_place() {
         let error = |text: &str| read(text).unwrap_err();
         assert!(error("").starts_with("p.csv:1:1: error: there is no header"));
-        assert_eq!(error("x,z\n"), "p.csv:1:1: error: there is no column `y`");
-        assert_eq!(error("x,y,z,y\n"), "p.csv:1:7: error: there is another column `y`");
-        assert_eq!(error("x,y,z\n\n1,2,\u{1b}[2J"), "p.csv:3:5: error: `\\u{1b}[2J` is not a number, for z");
-        assert_eq!(error("é,x,y,z\né,1,é,3"), "p.csv:2:5: error: `é` is not a number, for y");
-        assert_eq!(error("x,y,z\n1,2"), "p.csv:2:4: error: the line ends before its column `z`");
-        assert_eq!(error("x,y,z\n1,\"2,3"), "p.csv:2:3: error: the quote is not closed on this line");
+        let shown = |place: &str, wrong: &str, line: &str, caret: &str| {
+            let number = place.split(':').next().unwrap();
+            format!("p.csv:{place}: error: {wrong}\n  {number} | {line}\n    | {caret}")
+        };
+        for (text, expected) in [
+            ("x,z\n", shown("1:1", "there is no column `y`", "x,z", "^^^")),
+            ("x,y,z,y\n", shown("1:7", "there is another column `y`", "x,y,z,y", "      ^")),
+            (
+                "x,y,z\n\n1,2,\u{1b}[2J",
+                shown("3:5", "`\\u{1b}[2J` is not a number, for z", "1,2,\\u{1b}[2J", "    ^^^^^^^^^"),
+            ),
+            ("é,x,y,z\né,1,é,3", shown("2:5", "`é` is not a number, for y", "é,1,é,3", "    ^")),
+            ("x,y,z\n1,2", shown("2:4", "the line ends before its column `z`", "1,2", "   ^")),
+            ("x,y,z\n1,\"2,3", shown("2:3", "the quote is not closed on this line", "1,\"2,3", "  ^^^^")),
+        ] {
+            assert_eq!(error(text), expected);
+        }
+    }
+
+    #[test]
+    fn coordinates_are_finite() {
+        for (word, wrong) in [
+            ("nan", "`nan` is not a number, for y"),
+            ("-NaN", "`-NaN` is not a number, for y"),
+            ("1e400", "`1e400` is too large: a coordinate is at most 3.4028235e38, for y"),
+            ("-3.5e38", "`-3.5e38` is too large: a coordinate is at most 3.4028235e38, for y"),
+            ("inf", "`inf` is not finite, for y"),
+            ("-infinity", "`-infinity` is not finite, for y"),
+        ] {
+            let error = read(&format!("x,y,z\n0,0,0\n1,{word},3\n")).unwrap_err();
+            let caret = "^".repeat(word.len());
+            assert_eq!(error, format!("p.csv:3:3: error: {wrong}\n  3 | 1,{word},3\n    |   {caret}"));
+        }
     }
 
     #[test]

@@ -110,6 +110,12 @@ impl Source<'_> {
     /// The diagnostic as people read it: place, message, the line, a caret. Control characters of the file are escaped.
     #[must_use]
     pub fn render(&self, diagnostic: &Diagnostic) -> String {
+        self.render_from(1, diagnostic)
+    }
+
+    /// As [`render`](Self::render), where the text is a part of a longer one and begins with this line of it, counted from 1.
+    #[must_use]
+    pub fn render_from(&self, first_line: u64, diagnostic: &Diagnostic) -> String {
         let mut out = String::new();
         let message = escape(&diagnostic.message);
         let severity = diagnostic.severity.name();
@@ -121,6 +127,7 @@ impl Source<'_> {
             return out;
         };
         let (line, column) = self.position(span.start as usize);
+        let line = first_line + line as u64 - 1;
         let _ = writeln!(out, "{}:{line}:{column}: {severity}: {message}", escape(self.name));
         let (excerpt, before, under) = self.excerpt(span);
         let number = line.to_string();
@@ -190,6 +197,13 @@ mod tests {
             shown,
             "a.jbt:2:10: error: bad \\u{1b}[2J\n  2 |   radius \\u{1b}[31m0\n    |          ^^^^^^^^^^^ a number"
         );
+    }
+
+    #[test]
+    fn a_part_of_a_text_has_the_lines_of_the_whole() {
+        let source = Source { name: "p.csv", text: b"1,nan,3" };
+        let shown = source.render_from(1000, &Diagnostic::error(Some(Span::new(2, 5)), "bad"));
+        assert_eq!(shown, "p.csv:1000:3: error: bad\n  1000 | 1,nan,3\n       |   ^^^");
     }
 
     #[test]

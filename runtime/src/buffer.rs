@@ -3,6 +3,9 @@
 use jbt_frontend::attribute::AttributeGroup;
 
 /// Points in space: three planes of equal length.
+///
+/// Any f32 may be a coordinate. An infinity counts as the largest finite number of its sign; a point with a NaN has a field that is NaN, which is
+/// outside (see [`Evaluator::eval`](crate::Evaluator::eval)).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Points {
     x: Vec<f32>,
@@ -116,6 +119,18 @@ impl Layout {
     /// Names of the attribute groups, their first plane and their number of planes.
     pub fn attributes(&self) -> impl Iterator<Item = (&str, usize, usize)> {
         self.groups.iter().map(|(group, plane)| (&*group.name, *plane, group.width()))
+    }
+
+    /// What is answered, plane by plane, where there is no place: NaN for field and gradient, and the defaults of attributes.
+    pub(crate) fn blanks(&self) -> Vec<f32> {
+        let mut blanks = vec![f32::NAN; self.names.len()];
+        for (group, first) in &self.groups {
+            for (blank, &default) in blanks[*first..].iter_mut().zip(&group.default) {
+                // No answer is -0.
+                *blank = default as f32 + 0.0;
+            }
+        }
+        blanks
     }
 
     /// The first plane of an attribute group and its number of planes.

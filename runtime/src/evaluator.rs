@@ -7,14 +7,16 @@ use jbt_frontend::check::{CheckedTree, NodeId};
 use jbt_frontend::lower::{Lowered, Lowering};
 use jbt_frontend::query::Query;
 use jbt_ir::domain::counting::{Evaluations, evaluations, of_selection};
-use jbt_ir::{Function, Tables, Verified};
+use jbt_ir::{Function, Selection, Tables, Verified};
 
 use crate::buffer::{Layout, Points, Samples};
 use crate::counter::{Counters, Tally};
 use crate::error::{CompileError, EvalError};
 use crate::kernel::{Bound, Engine, Kernel, Purpose, optimise};
+use crate::places;
 use crate::probe::Probe;
 use crate::prune::Region;
+use crate::region::Box3;
 use crate::statistics::walks;
 
 /// Makes evaluators, and remembers the code of every shape that it has met: models of one shape share it.
@@ -204,6 +206,9 @@ impl Evaluator {
 
     /// The answers at all points. `samples` is resized; keep it for the next call to save the allocation.
     ///
+    /// A coordinate that is infinite counts as the largest finite number of its sign. At a point with a coordinate that is NaN, field and gradient
+    /// are NaN and attributes have their defaults, on all engines; such a point is outside, as `field >= iso` says.
+    ///
     /// # Errors
     /// If `samples` was made for another query or model.
     pub fn eval(&self, points: &Points, samples: &mut Samples) -> Result<(), EvalError> {
@@ -221,7 +226,11 @@ impl Evaluator {
     /// # Errors
     /// If there are too many or too few planes, or their lengths differ.
     pub fn eval_planes(&self, points: [&[f32]; 3], answers: &mut [&mut [f32]]) -> Result<(), EvalError> {
-        let lanes = self.bound.run(&self.bound.all, &points, answers)?;
+        let lanes = if places::are_places(&points) {
+            self.bound.run(&self.bound.all, &points, answers)?
+        } else {
+            self.run_placed(&self.bound.all, points, answers)?
+        };
         self.tally.add(points[0].len(), lanes, 0);
         Ok(())
     }
@@ -237,10 +246,30 @@ impl Evaluator {
         points: [&[f32]; 3],
         answers: &mut [&mut [f32]],
     ) -> Result<(), EvalError> {
-        let lanes = self.bound.run(region.selection(), &points, answers)?;
+        // Points of a box that ends are places; the box of everything is one for any points.
+        let ends = |x: &f32| x.abs() < f32::MAX;
+        let Box3 { low, high } = region.bounds();
+        let lanes = if low.iter().chain(&high).all(ends) || places::are_places(&points) {
+            self.bound.run(region.selection(), &points, answers)?
+        } else {
+            self.run_placed(region.selection(), points, answers)?
+        };
         let left_out = self.evaluations_per_point().saturating_sub(self.evaluations_in(region));
         self.tally.add(points[0].len(), lanes, left_out);
         Ok(())
+    }
+
+    /// Runs points of which some are no places; returns how many lanes were computed.
+    fn run_placed(
+        &self,
+        selection: &Selection,
+        points: [&[f32]; 3],
+        answers: &mut [&mut [f32]],
+    ) -> Result<usize, EvalError> {
+        let placed = places::placed(&points);
+        let lanes = self.bound.run(selection, &placed.each_ref().map(Vec::as_slice), answers)?;
+        places::blank(&self.layout, &points, answers);
+        Ok(lanes)
     }
 
     /// Begins to ask about one point: see [`Probe`].

@@ -55,6 +55,7 @@ mod job;
 pub mod kernel;
 pub mod mesh;
 mod picture;
+mod places;
 mod polygonize;
 mod probe;
 pub mod prune;

@@ -123,8 +123,11 @@ fn usage_errors() {
 #[test]
 fn bad_points_are_located() {
     let folder = folder().with("out.csv", "old");
-    let cases: [(&str, i32, &str); 5] = [
+    let cases: [(&str, i32, &str); 8] = [
         ("", 1, "q.csv:1:1: error: there is no header"),
+        ("x,y,z\n0,0,0\n0,nan,0\n", 1, "q.csv:3:3: error: `nan` is not a number, for y"),
+        ("x,y,z\n0,0,1e400\n", 1, "q.csv:2:5: error: `1e400` is too large"),
+        ("x,y,z\n-inf,0,0\n", 1, "q.csv:2:1: error: `-inf` is not finite"),
         ("x,y\n0,0\n", 1, "q.csv:1:1: error: there is no column `z`"),
         ("x,y,z\n0,0,0\n0,\x1b[31m,0\n", 1, "q.csv:3:3: error: `\\u{1b}[31m` is not a number"),
         ("x,y,z\n0,0\n", 1, "q.csv:2:4: error: the line ends before its column `z`"),
