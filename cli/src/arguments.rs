@@ -6,10 +6,15 @@ mod work;
 pub use render::{GroundName, RenderArguments};
 pub use work::WorkArguments;
 
+use std::collections::HashSet;
+use std::error::Error;
 use std::path::PathBuf;
+use std::str::FromStr;
 
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use jbt::contour::{Plane, PlaneError, Rectangle};
+use jbt::export::{ColorEncoding, Format, Up};
 use jbt::{Engine, Query, text};
 
 /// Compiles BlobTrees to SIMD machine code, and makes meshes, pictures and values of them.
@@ -79,7 +84,7 @@ pub struct SceneArguments {
 #[derive(Args, Debug)]
 #[command(after_help = "\
 The format is that of OUT's extension: .glb, .ply, .obj or .stl. Without --region the mesh covers the support of the
-model: where its field can differ from zero.
+model: where its field can differ from zero. docs/files.md says what each format holds, and how other programs read it.
 
 Examples:
   jbt mesh hero.jbt -o hero.glb
@@ -94,13 +99,56 @@ pub struct MeshArguments {
     #[arg(short, long, value_name = "OUT")]
     pub output: PathBuf,
     /// The file format, if the extension does not say it
-    #[arg(long, value_enum)]
-    pub format: Option<FormatName>,
+    #[arg(long, value_parser = words(Format::ALL, |format| (format.extension(), format.conventions().title)))]
+    pub format: Option<Format>,
+    #[arg(long, value_name = "AXIS", value_parser = words(Up::ALL, up_in_words), help = up_help())]
+    pub up: Option<Up>,
+    #[arg(long, value_name = "ENCODING", value_parser = words(ColorEncoding::ALL, colors_in_words), help = colors_help())]
+    pub colors: Option<ColorEncoding>,
     /// Where the field is asked.
     #[command(flatten)]
     pub lattice: LatticeArguments,
     #[command(flatten)]
     pub work: WorkArguments,
+}
+
+fn up_in_words(up: Up) -> (&'static str, &'static str) {
+    let help = match up {
+        Up::Y => "The scene's (x, y, z) is (x, z, -y) in the file",
+        Up::Z => "As in the scene",
+    };
+    (up.name(), help)
+}
+
+fn colors_in_words(encoding: ColorEncoding) -> (&'static str, &'static str) {
+    let help = match encoding {
+        ColorEncoding::Srgb => "As screens take them: 0.5 in the scene is 188 of 255",
+        ColorEncoding::Linear => "As in the scene: 0.5 is 128 of 255",
+    };
+    (encoding.name(), help)
+}
+
+fn up_help() -> String {
+    let usual = |format: Format| Some(format.conventions().up.name());
+    format!("The axis of the file that points up [default: {}]", by_format(usual))
+}
+
+fn colors_help() -> String {
+    let usual = |format: Format| format.conventions().colors.map(|colors| colors.encoding.name());
+    format!("What the numbers of colours mean [default: {}]", by_format(usual))
+}
+
+/// What formats do by themselves, those that do the same together: `y in .glb and .obj, z in .ply and .stl`.
+fn by_format(usual: impl Fn(Format) -> Option<&'static str>) -> String {
+    let mut words: Vec<&str> = Format::ALL.into_iter().filter_map(&usual).collect();
+    let mut seen = HashSet::new();
+    words.retain(|word| seen.insert(*word));
+    let entry = |word: &str| {
+        let formats = Format::ALL.into_iter().filter(|&format| usual(format) == Some(word));
+        let endings: Vec<String> = formats.map(|format| format!(".{format}")).collect();
+        format!("{word} in {}", endings.join(" and "))
+    };
+    words.into_iter().map(entry).collect::<Vec<_>>().join(", ")
 }
 
 /// The lattice of points that a mesh asks the field at.
@@ -405,19 +453,6 @@ impl QueryName {
     }
 }
 
-/// The words for mesh formats, which are also the extensions of their files.
-#[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
-pub enum FormatName {
-    /// glTF, binary: normals and colours
-    Glb,
-    /// Stanford triangles, binary: normals and colours
-    Ply,
-    /// Wavefront text: normals
-    Obj,
-    /// Stereolithography, binary: triangles alone
-    Stl,
-}
-
 /// The words for drawings and images, which are also the extensions of their files.
 #[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
 pub enum DrawingName {
@@ -460,6 +495,18 @@ pub struct Region {
     pub low: [f64; 3],
     /// The largest corner.
     pub high: [f64; 3],
+}
+
+/// One of the members of a list, by its word; `tell` gives the word and a line of help.
+fn words<T>(
+    all: impl IntoIterator<Item = T>,
+    tell: fn(T) -> (&'static str, &'static str),
+) -> impl TypedValueParser<Value = T>
+where
+    T: FromStr<Err: Error + Send + Sync> + Clone + Send + Sync + 'static,
+{
+    let words = all.into_iter().map(tell).map(|(word, help)| PossibleValue::new(word).help(help));
+    PossibleValuesParser::new(words).try_map(|word| word.parse())
 }
 
 fn definition(text: &str) -> Result<(String, f64), String> {

@@ -3,11 +3,11 @@
 use std::time::{Duration, Instant};
 
 use jbt::Polygonized;
-use jbt::export::{self, ExportError, Format};
+use jbt::export::{self, ExportError, ExportOptions, Format};
 use jbt_frontend::diagnostic::escape;
 use serde_json::json;
 
-use crate::arguments::{FormatName, MeshArguments};
+use crate::arguments::MeshArguments;
 use crate::failure::Failure;
 use crate::lattice;
 use crate::output::{Output, grouped, plural, warn};
@@ -19,6 +19,7 @@ use crate::stages;
 pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(), Failure> {
     arguments.work.check_output(&arguments.output, "mesh")?;
     let format = format(arguments)?;
+    let options = options(arguments, format)?;
     let settings = lattice::settings(&arguments.lattice)?;
     let scene = Scene::load(&arguments.scene)?;
     scene.warn(quiet);
@@ -31,7 +32,7 @@ pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(),
     drop(progress);
 
     let mut output = Output::open(&arguments.output)?;
-    export::write(&made.mesh, format, &mut output).map_err(|error| match error {
+    export::write_with(&made.mesh, format, &options, &mut output).map_err(|error| match error {
         ExportError::Write(error) => output.failure(error),
         ExportError::TooLarge { .. } => Failure::Limit(error.to_string()),
         ExportError::Extension { .. } | ExportError::File { .. } | ExportError::Malformed(_) => {
@@ -52,25 +53,26 @@ pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(),
 
 /// The format by option, else by extension.
 fn format(arguments: &MeshArguments) -> Result<Format, Failure> {
-    if let Some(name) = arguments.format {
-        return Ok(match name {
-            FormatName::Glb => Format::Glb,
-            FormatName::Ply => Format::Ply,
-            FormatName::Obj => Format::Obj,
-            FormatName::Stl => Format::Stl,
-        });
+    if let Some(format) = arguments.format {
+        return Ok(format);
     }
     if is_standard(&arguments.output) {
-        return Err(Failure::Usage(
-            "a mesh on the standard output needs --format glb, ply, obj or stl".to_owned(),
-        ));
+        let known = Format::ALL.map(|format| format.to_string()).join(", ");
+        return Err(Failure::Usage(format!("a mesh on the standard output needs --format, one of {known}")));
     }
     Format::of(&arguments.output).map_err(|_| {
         let name = escape(&arguments.output.display().to_string());
-        Failure::Usage(format!(
-            "{name} does not end with .glb, .ply, .obj or .stl; --format says what to write"
-        ))
+        let known = Format::extensions();
+        Failure::Usage(format!("{name} does not end with {known}; --format says what to write"))
     })
+}
+
+/// How the file is to be written.
+fn options(arguments: &MeshArguments, format: Format) -> Result<ExportOptions, Failure> {
+    if arguments.colors.is_some() && format.conventions().colors.is_none() {
+        return Err(Failure::Usage(format!("a .{format} file has no colours that --colors could be about")));
+    }
+    Ok(ExportOptions { up: arguments.up, colors: arguments.colors })
 }
 
 /// What may not be as people expect.

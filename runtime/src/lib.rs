@@ -63,6 +63,7 @@ pub mod region;
 pub mod render;
 pub mod sample;
 pub mod solid;
+mod srgb;
 pub mod statistics;
 pub mod trace;
 

@@ -112,7 +112,10 @@ fn usage_errors() {
     mesh(&["-D", "bulge"]).code(2).says("NAME=VALUE");
     folder.jbt(&[]).code(2).says("Usage");
     folder.jbt(&["mesh", "scene.jbt", "-o", "a.txt"]).code(2).says(".glb, .ply, .obj or .stl");
-    folder.jbt(&["mesh", "scene.jbt", "-o", "-"]).code(2).says("--format");
+    folder.jbt(&["mesh", "scene.jbt", "-o", "-"]).code(2).says("--format, one of glb, ply, obj, stl");
+    mesh(&["--up", "x"]).code(2).says("y, z");
+    mesh(&["--colors", "rgb"]).code(2).says("srgb, linear");
+    folder.jbt(&["mesh", "scene.jbt", "-o", "a.stl", "--colors", "srgb"]).code(2).says("no colours");
     folder.jbt(&["mesh", "scene.jbt", "-o", "-", "--format", "glb", "--json"]).code(2).says("JSON");
     folder.jbt(&["eval", "-", "--points", "-", "-o", "-"]).code(2).says("both");
     folder.jbt(&["check", "scene.blob", "-D", "r=1"]).code(2).says("no parameter `r`");

@@ -4,17 +4,18 @@
 //!     "glTF" 2 length | length "JSON" text, padded by spaces | length "BIN" positions normals color uv others indices
 //! ```
 //!
-//! One mesh of one primitive with one white, rough, non-metallic material. Colours are linear, as glTF takes them, in `COLOR_0`;
-//! uv in `TEXCOORD_0`, as (u, 1 - v), because glTF's v goes down; every other attribute is `_NAME` in capitals, as glTF wants
+//! One node, which turns the model's z upwards to glTF's y; one mesh of one primitive with one white, rough, non-metallic material.
+//! Colours are in `COLOR_0`, linear as glTF takes them; uv in `TEXCOORD_0`, as (u, 1 - v), because glTF's v goes down; every other attribute is `_NAME` in capitals, as glTF wants
 //! application-specific ones. An accessor has at most four reals, so wider ones are `_NAME_0`, `_NAME_1` and so on, of four reals each but for
 //! the last. Accessors must not be empty, so a mesh
 //! without triangles is a scene without nodes.
 
+use std::f64::consts::FRAC_1_SQRT_2;
 use std::io::Write;
 
 use serde_json::{Map, Value, json};
 
-use super::{ExportError, Format, Named, clamp_color, colors, finite, others, uvs, write_reals};
+use super::{Choices, ExportError, Format, Named, Up, colors, finite, others, uvs, write_reals};
 use crate::mesh::Mesh;
 
 const HEADER_BYTES: u64 = 12;
@@ -29,9 +30,9 @@ const UNSIGNED_INT: u32 = 5125;
 /// The most reals of an accessor's element.
 const WIDEST: usize = 4;
 
-pub(super) fn write(mesh: &Mesh, out: &mut impl Write) -> Result<(), ExportError> {
+pub(super) fn write(mesh: &Mesh, choices: Choices, out: &mut impl Write) -> Result<(), ExportError> {
     let attributes = others(mesh, &[], spell);
-    let (json, binary) = describe(mesh, &attributes);
+    let (json, binary) = describe(mesh, choices.up, &attributes);
     // Printing a JSON value cannot fail.
     let mut text = json.to_string().into_bytes();
     text.resize(text.len().next_multiple_of(4), b' ');
@@ -51,7 +52,7 @@ pub(super) fn write(mesh: &Mesh, out: &mut impl Write) -> Result<(), ExportError
     if binary > 0 {
         out.write_all(&(binary as u32).to_le_bytes())?;
         out.write_all(b"BIN\0")?;
-        write_binary(mesh, &attributes, out)?;
+        write_binary(mesh, choices, &attributes, out)?;
     }
     Ok(())
 }
@@ -65,11 +66,16 @@ fn spell(stem: &str, width: usize) -> Vec<String> {
     }
 }
 
-fn write_binary(mesh: &Mesh, attributes: &[Named<'_>], out: &mut impl Write) -> Result<(), ExportError> {
+fn write_binary(
+    mesh: &Mesh,
+    choices: Choices,
+    attributes: &[Named<'_>],
+    out: &mut impl Write,
+) -> Result<(), ExportError> {
     write_reals(out, mesh.positions.iter().flatten().copied())?;
     write_reals(out, mesh.normals.iter().flatten().copied())?;
     if let Some(colors) = colors(mesh) {
-        write_reals(out, colors.iter().map(|&value| clamp_color(value)))?;
+        write_reals(out, colors.iter().flatten().map(|&channel| choices.colors.encode(channel)))?;
     }
     // glTF forbids infinities and NaN.
     if let Some(uvs) = uvs(mesh) {
@@ -112,7 +118,7 @@ impl Layout {
 }
 
 /// The JSON text, and how many bytes the binary chunk has.
-fn describe(mesh: &Mesh, attributes: &[Named<'_>]) -> (Value, u64) {
+fn describe(mesh: &Mesh, up: Up, attributes: &[Named<'_>]) -> (Value, u64) {
     let asset = json!({ "version": "2.0", "generator": "jbt" });
     if mesh.triangles.is_empty() {
         return (json!({ "asset": asset, "scene": 0, "scenes": [{}] }), 0);
@@ -144,7 +150,7 @@ fn describe(mesh: &Mesh, attributes: &[Named<'_>]) -> (Value, u64) {
         "asset": asset,
         "scene": 0,
         "scenes": [{ "nodes": [0] }],
-        "nodes": [{ "mesh": 0 }],
+        "nodes": [node(up)],
         "meshes": [{ "primitives": [{ "attributes": vertex, "indices": indices, "material": 0 }] }],
         "materials": [{ "pbrMetallicRoughness": {
             "baseColorFactor": [1.0, 1.0, 1.0, 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.7
@@ -154,6 +160,15 @@ fn describe(mesh: &Mesh, attributes: &[Named<'_>]) -> (Value, u64) {
         "buffers": [{ "byteLength": layout.bytes }],
     });
     (json, layout.bytes)
+}
+
+/// The node that places the mesh. Positions and normals are those of the model; glTF is y-up, and the node turns it there.
+fn node(up: Up) -> Value {
+    match up {
+        // A quaternion (x, y, z, w): by -90 degrees about x.
+        Up::Y => json!({ "mesh": 0, "rotation": [-FRAC_1_SQRT_2, 0.0, 0.0, FRAC_1_SQRT_2] }),
+        Up::Z => json!({ "mesh": 0 }),
+    }
 }
 
 /// The exact bounds of the positions. In f64, so that their decimals are those of the same numbers in any parser.

@@ -1,17 +1,14 @@
 //! Mesh files: GLB, PLY, OBJ and STL; contours: SVG; pictures: PNG.
 //!
-//! | format | positions | normals | colour | uv | other attributes |
-//! | --- | --- | --- | --- | --- | --- |
-//! | GLB (glTF 2.0, binary) | yes | yes | yes, linear | `TEXCOORD_0` | yes, as `_NAME` |
-//! | PLY (binary) | yes | yes | 8 bits, linear | `s` and `t` | yes, as properties |
-//! | OBJ (text) | yes | yes | yes, linear | `vt` | no |
-//! | STL (binary) | yes | of the triangles | no | no | no |
+//! [`Format::conventions`] says for each format of meshes which axis points up in its files, how its colours are written, and what it
+//! has room for; `docs/files.md` has the table, and what other programs make of it. [`ExportOptions`] write it otherwise.
 //!
-//! The colour is the attribute named `color` with three reals; values are never converted, and are clamped to 0 .. 1 where
-//! a format asks for it. The uv is the attribute named `uv` with two reals, v upwards: GLB, where v goes down, gets 1 - v. Every vertex has one uv,
-//! so a triangle across a seam shows the picture backwards. [`write()`] writes to anything; [`save`] writes a file under a temporary name and renames it, so that nobody
+//! The colour is the attribute named `color` with three reals, which are linear, and are clamped to 0 .. 1. The uv is the attribute
+//! named `uv` with two reals, v upwards: GLB, where v goes down, gets 1 - v. Every vertex has one uv, so a triangle across a seam shows
+//! the picture backwards. [`write()`] writes to anything; [`save`] writes a file under a temporary name and renames it, so that nobody
 //! ever sees half a file.
 
+mod format;
 mod glb;
 mod obj;
 mod ply;
@@ -19,10 +16,10 @@ mod png;
 mod stl;
 pub mod svg;
 
+pub use format::{ColorEncoding, Colors, Conventions, ExportOptions, Format, UnknownWord, Up};
 pub use png::write_png;
 
 use std::collections::HashSet;
-use std::fmt;
 use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -32,60 +29,16 @@ use tempfile::NamedTempFile;
 use thiserror::Error;
 
 use crate::mesh::{Attribute, Mesh};
+use format::Choices;
 
 /// Bytes that are collected before they go to a file.
 const BUFFER: usize = 1 << 18;
-
-/// A kind of mesh file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Format {
-    /// Binary glTF 2.0.
-    Glb,
-    /// Polygon file format, binary little-endian.
-    Ply,
-    /// Wavefront OBJ.
-    Obj,
-    /// Stereolithography, binary.
-    Stl,
-}
-
-impl Format {
-    /// Every format.
-    pub const ALL: [Format; 4] = [Format::Glb, Format::Ply, Format::Obj, Format::Stl];
-
-    /// The extension of its files, without a dot.
-    pub fn extension(self) -> &'static str {
-        match self {
-            Format::Glb => "glb",
-            Format::Ply => "ply",
-            Format::Obj => "obj",
-            Format::Stl => "stl",
-        }
-    }
-
-    /// The format that the extension of a path names, in any case.
-    ///
-    /// # Errors
-    /// [`ExportError::Extension`].
-    pub fn of(path: &Path) -> Result<Self, ExportError> {
-        let extension = path.extension().unwrap_or_default();
-        let format =
-            Format::ALL.into_iter().find(|format| extension.eq_ignore_ascii_case(format.extension()));
-        format.ok_or_else(|| ExportError::Extension { path: path.to_owned() })
-    }
-}
-
-impl fmt::Display for Format {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.extension())
-    }
-}
 
 /// Why a mesh was not written.
 #[derive(Debug, Error)]
 pub enum ExportError {
     /// The extension of the path names no format.
-    #[error("the name of a mesh file ends in .glb, .ply, .obj or .stl, and not like {path:?}")]
+    #[error("the name of a mesh file ends in {}, and not like {path:?}", Format::extensions())]
     Extension {
         /// The path.
         path: PathBuf,
@@ -114,18 +67,32 @@ pub enum ExportError {
     },
 }
 
-/// Writes a mesh.
+/// Writes a mesh as the readers of a format expect it.
 ///
 /// # Errors
 /// [`ExportError::Malformed`] and [`ExportError::TooLarge`] before anything is written; [`ExportError::Write`] later.
 pub fn write(mesh: &Mesh, format: Format, out: &mut impl Write) -> Result<(), ExportError> {
+    write_with(mesh, format, &ExportOptions::default(), out)
+}
+
+/// Writes a mesh as options say.
+///
+/// # Errors
+/// As [`write()`].
+pub fn write_with(
+    mesh: &Mesh,
+    format: Format,
+    options: &ExportOptions,
+    out: &mut impl Write,
+) -> Result<(), ExportError> {
     check(mesh)?;
+    let choices = Choices::new(format, options);
     let mut out = BufWriter::with_capacity(BUFFER, out);
     match format {
-        Format::Glb => glb::write(mesh, &mut out)?,
-        Format::Ply => ply::write(mesh, &mut out)?,
-        Format::Obj => obj::write(mesh, &mut out)?,
-        Format::Stl => stl::write(mesh, &mut out)?,
+        Format::Glb => glb::write(mesh, choices, &mut out)?,
+        Format::Ply => ply::write(mesh, choices, &mut out)?,
+        Format::Obj => obj::write(mesh, choices, &mut out)?,
+        Format::Stl => stl::write(mesh, choices, &mut out)?,
     }
     out.flush()?;
     Ok(())
@@ -148,6 +115,19 @@ pub fn save(path: &Path, mesh: &Mesh) -> Result<(), ExportError> {
 /// # Errors
 /// As [`save`].
 pub fn save_as(path: &Path, mesh: &Mesh, format: Format) -> Result<(), ExportError> {
+    save_with(path, mesh, format, &ExportOptions::default())
+}
+
+/// As [`save`], in a given format and as options say.
+///
+/// # Errors
+/// As [`save`].
+pub fn save_with(
+    path: &Path,
+    mesh: &Mesh,
+    format: Format,
+    options: &ExportOptions,
+) -> Result<(), ExportError> {
     check(mesh)?;
     let at_path = |source| ExportError::File { path: path.to_owned(), source };
     let located = |error| match error {
@@ -166,14 +146,14 @@ pub fn save_as(path: &Path, mesh: &Mesh, format: Format) -> Result<(), ExportErr
     };
     if existing.as_ref().is_some_and(|existing| !existing.is_file()) {
         let mut out = fs::OpenOptions::new().write(true).open(&target).map_err(at_path)?;
-        return write(mesh, format, &mut out).map_err(located);
+        return write_with(mesh, format, options, &mut out).map_err(located);
     }
     let folder = match target.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         Some(_) | None => Path::new("."),
     };
     let mut file = temporary(folder).map_err(at_path)?;
-    write(mesh, format, file.as_file_mut()).map_err(located)?;
+    write_with(mesh, format, options, file.as_file_mut()).map_err(located)?;
     if let Some(existing) = existing {
         file.as_file().set_permissions(existing.permissions()).map_err(at_path)?;
     }
@@ -230,9 +210,11 @@ fn check(mesh: &Mesh) -> Result<(), ExportError> {
     Ok(())
 }
 
-/// The colours of a mesh, if it has the attribute `color` of width 3: as many chunks of three as vertices.
-fn colors(mesh: &Mesh) -> Option<&[f32]> {
-    mesh.attributes.iter().find(|attribute| is_color(attribute)).map(|attribute| attribute.values.as_slice())
+/// The linear colours of a mesh, if it has the attribute `color` of width 3: one for each vertex.
+fn colors(mesh: &Mesh) -> Option<&[[f32; 3]]> {
+    let color = mesh.attributes.iter().find(|attribute| is_color(attribute));
+    // Without a rest: the check has counted them.
+    color.map(|attribute| attribute.values.as_chunks().0)
 }
 
 fn is_color(attribute: &Attribute) -> bool {
@@ -251,11 +233,6 @@ fn is_uv(attribute: &Attribute) -> bool {
 /// A real as formats without infinities and NaN have it: those are 0.
 fn finite(value: f32) -> f32 {
     if value.is_finite() { value } else { 0.0 }
-}
-
-/// A real of a colour, in 0 .. 1. What is no number is black.
-fn clamp_color(value: f32) -> f32 {
-    if value.is_nan() { 0.0 } else { value.clamp(0.0, 1.0) }
 }
 
 /// An attribute and the names that a file has for it.

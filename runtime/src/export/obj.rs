@@ -1,24 +1,28 @@
 //! Wavefront OBJ: text, with colours behind the positions as many programs read them. Numbers are the shortest that give
-//! the same f32 back. A uv is `vt`; the format has no place for other attributes.
+//! the same f32 back (or the same encoded colour). A uv is `vt`; the format has no place for other attributes.
 
 use std::io::Write;
 
-use super::{ExportError, clamp_color, colors, finite, uvs};
+use super::{Choices, ExportError, colors, finite, uvs};
 use crate::mesh::Mesh;
 
-pub(super) fn write(mesh: &Mesh, out: &mut impl Write) -> Result<(), ExportError> {
-    writeln!(out, "# jbt")?;
+pub(super) fn write(mesh: &Mesh, choices: Choices, out: &mut impl Write) -> Result<(), ExportError> {
+    let Choices { up, colors: encoding } = choices;
+    writeln!(out, "# jbt, {up} up")?;
+    let mut places = mesh.positions.iter().map(|&position| up.place(position));
     match colors(mesh) {
         Some(colors) => {
-            writeln!(out, "# v x y z red green blue: linear, clamped to 0..1")?;
-            for ([x, y, z], color) in mesh.positions.iter().zip(colors.chunks_exact(3)) {
-                let [r, g, b] = [0, 1, 2].map(|c| clamp_color(color[c]));
+            writeln!(out, "# v x y z red green blue: {encoding}, clamped to 0..1")?;
+            for ([x, y, z], color) in places.zip(colors) {
+                let [r, g, b] = color.map(|channel| encoding.encode(channel));
                 writeln!(out, "v {x} {y} {z} {r} {g} {b}")?;
             }
         }
-        None => mesh.positions.iter().try_for_each(|[x, y, z]| writeln!(out, "v {x} {y} {z}"))?,
+        None => places.try_for_each(|[x, y, z]| writeln!(out, "v {x} {y} {z}"))?,
     }
-    mesh.normals.iter().try_for_each(|[x, y, z]| writeln!(out, "vn {x} {y} {z}"))?;
+    for [x, y, z] in mesh.normals.iter().map(|&normal| up.place(normal)) {
+        writeln!(out, "vn {x} {y} {z}")?;
+    }
     let uvs = uvs(mesh);
     for uv in uvs.into_iter().flat_map(|uvs| uvs.chunks_exact(2)) {
         writeln!(out, "vt {} {}", finite(uv[0]), finite(uv[1]))?;

@@ -5,18 +5,20 @@
 
 use std::io::Write;
 
-use super::{ExportError, Named, clamp_color, colors, others, uvs, write_reals};
+use super::{Choices, ExportError, Named, colors, others, uvs, write_reals};
 use crate::mesh::Mesh;
+use crate::srgb;
 
 /// The names of the properties that are always what they are.
 const RESERVED: [&str; 11] = ["x", "y", "z", "nx", "ny", "nz", "red", "green", "blue", "s", "t"];
 
-pub(super) fn write(mesh: &Mesh, out: &mut impl Write) -> Result<(), ExportError> {
+pub(super) fn write(mesh: &Mesh, choices: Choices, out: &mut impl Write) -> Result<(), ExportError> {
+    let Choices { up, colors: encoding } = choices;
     let attributes = others(mesh, &RESERVED, spell);
     let (colors, uvs) = (colors(mesh), uvs(mesh));
-    writeln!(out, "ply\nformat binary_little_endian 1.0\ncomment jbt")?;
+    writeln!(out, "ply\nformat binary_little_endian 1.0\ncomment jbt, {up} up")?;
     if colors.is_some() {
-        writeln!(out, "comment red, green and blue are linear, clamped to 0..1 and rounded to 8 bits")?;
+        writeln!(out, "comment red, green and blue are {encoding}, clamped to 0..1 and rounded to 8 bits")?;
     }
     writeln!(out, "element vertex {}", mesh.positions.len())?;
     for name in ["x", "y", "z", "nx", "ny", "nz"] {
@@ -35,11 +37,9 @@ pub(super) fn write(mesh: &Mesh, out: &mut impl Write) -> Result<(), ExportError
     writeln!(out, "property list uchar uint vertex_indices\nend_header")?;
 
     for (vertex, (position, normal)) in mesh.positions.iter().zip(&mesh.normals).enumerate() {
-        write_reals(out, position.iter().chain(normal).copied())?;
+        write_reals(out, [*position, *normal].into_iter().flat_map(|vector| up.place(vector)))?;
         if let Some(colors) = colors {
-            let color = &colors[3 * vertex..3 * vertex + 3];
-            // In 0 .. 255 after the clamp.
-            out.write_all(&[0, 1, 2].map(|c| (clamp_color(color[c]) * 255.0).round() as u8))?;
+            out.write_all(&colors[vertex].map(|channel| srgb::byte(encoding.encode(channel))))?;
         }
         if let Some(uvs) = uvs {
             write_reals(out, uvs[2 * vertex..2 * vertex + 2].iter().copied())?;

@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use super::{ExportError, Format, write_reals};
+use super::{Choices, ExportError, Format, write_reals};
 use crate::mesh::{Mesh, facet_normal};
 
 /// Readers take a file for text if it begins with "solid"; this does not.
@@ -17,7 +17,7 @@ const HEADER: [u8; 80] = {
     header
 };
 
-pub(super) fn write(mesh: &Mesh, out: &mut impl Write) -> Result<(), ExportError> {
+pub(super) fn write(mesh: &Mesh, choices: Choices, out: &mut impl Write) -> Result<(), ExportError> {
     let size = mesh.triangles.len() as u64;
     let Ok(count) = u32::try_from(size) else {
         return Err(ExportError::TooLarge { format: Format::Stl, size });
@@ -25,7 +25,7 @@ pub(super) fn write(mesh: &Mesh, out: &mut impl Write) -> Result<(), ExportError
     out.write_all(&HEADER)?;
     out.write_all(&count.to_le_bytes())?;
     for triangle in &mesh.triangles {
-        let corners = triangle.map(|vertex| mesh.positions[vertex as usize]);
+        let corners = triangle.map(|vertex| choices.up.place(mesh.positions[vertex as usize]));
         let normal = facet_normal(corners).unwrap_or([0.0; 3]);
         write_reals(out, normal.into_iter().chain(corners.into_iter().flatten()))?;
         // The attribute byte count, which has no agreed meaning.

@@ -120,7 +120,7 @@ fn ply_has_the_size_that_its_header_says() {
     let header = file.windows(end.len()).position(|w| w == end).unwrap() + end.len();
     let text = std::str::from_utf8(&file[..header]).unwrap();
     assert!(text.starts_with("ply\nformat binary_little_endian 1.0\n"));
-    assert!(text.lines().any(|line| line.starts_with("comment") && line.contains("linear")));
+    assert!(text.lines().any(|line| line.starts_with("comment") && line.contains("srgb")));
     let properties: Vec<&str> = text.lines().filter_map(|line| line.strip_prefix("property ")).collect();
     assert_eq!(
         properties.join(", "),
@@ -133,9 +133,9 @@ fn ply_has_the_size_that_its_header_says() {
     let body = &file[header..];
     assert_eq!(body.len(), 4 * vertex + 4 * 13);
     assert_eq!(reals(&body[vertex..vertex + 24]), [1.0, 0.0, 0.1, 1.0, 0.0, 0.0]);
-    assert_eq!(body[24..27], [0, 128, 255]);
+    assert_eq!(body[24..27], [0, 188, 255]);
     assert_eq!(body[vertex + 24..vertex + 27], [0, 255, 0]);
-    assert_eq!(body[2 * vertex + 24..2 * vertex + 27], [51, 102, 153]);
+    assert_eq!(body[2 * vertex + 24..2 * vertex + 27], [124, 170, 203]);
     assert_eq!(reals(&body[27..31]), [0.25]);
     let face = &body[4 * vertex + 13..4 * vertex + 26];
     assert_eq!((face[0], u32_at(face, 1), u32_at(face, 5), u32_at(face, 9)), (3, 0, 1, 3));
@@ -154,16 +154,17 @@ fn obj_gives_every_number_back() {
     for (line, position) in lines("v").iter().zip(&mesh.positions) {
         let parsed = numbers(line);
         assert_eq!(parsed.len(), 6);
-        assert!(parsed.iter().zip(position).all(|(a, b)| a.to_bits() == b.to_bits()));
+        let [x, y, z] = *position;
+        assert!(parsed.iter().zip([x, z, 0.0 - y]).all(|(a, b)| a.to_bits() == b.to_bits()));
         assert!(parsed[3..].iter().all(|c| (0.0..=1.0).contains(c)));
     }
     let normals: Vec<f32> = lines("vn").iter().flat_map(|line| numbers(line)).collect();
-    assert_eq!(normals, mesh.normals.concat());
+    assert_eq!(normals, [-1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 1.0, 0.0]);
     assert_eq!(lines("f")[1], ["f", "1//1", "2//2", "4//4"]);
     assert_eq!((lines("v").len(), lines("f").len()), (4, 4));
 
     let plain = Mesh { attributes: Vec::new(), ..mesh };
-    assert!(String::from_utf8(bytes(&plain, Format::Obj)).unwrap().contains("\nv 1 0 0.1\n"));
+    assert!(String::from_utf8(bytes(&plain, Format::Obj)).unwrap().contains("\nv 1 0.1 0\n"));
 }
 
 /// The tetrahedron with a uv and an attribute of six reals.
@@ -227,12 +228,125 @@ fn stl_has_facets_with_normals() {
     assert_eq!(facet(4)[..3], [0.0; 3]);
 }
 
+/// The positions in a file of the tetrahedron as other programs place them.
+fn placed(options: &ExportOptions, format: Format) -> Vec<[f32; 3]> {
+    let mut file = Vec::new();
+    write_with(&tetrahedron(), format, options, &mut file).unwrap();
+    let triples = |bytes: &[u8]| reals(bytes).as_chunks().0.to_vec();
+    match format {
+        Format::Glb => {
+            let (json, binary) = parse_glb(&file);
+            let rotation = &json["nodes"][0]["rotation"];
+            let turned = rotation.is_array();
+            if turned {
+                // Half the angle is 45 degrees, and x turns from y to z: (x, y, z) to (x, z, -y).
+                let half = 0.5_f64.sqrt();
+                let expected = [-half, 0.0, 0.0, half];
+                let near = |(index, expected): (usize, f64)| {
+                    (rotation[index].as_f64().unwrap() - expected).abs() < 1e-15
+                };
+                assert!(expected.into_iter().enumerate().all(near));
+            }
+            let places = triples(&binary[..48]);
+            places.into_iter().map(|[x, y, z]| if turned { [x, z, 0.0 - y] } else { [x, y, z] }).collect()
+        }
+        Format::Ply => {
+            let end = b"end_header\n";
+            let start = file.windows(end.len()).position(|w| w == end).unwrap() + end.len();
+            (0..4).flat_map(|vertex| triples(&file[start + 67 * vertex..start + 67 * vertex + 12])).collect()
+        }
+        Format::Obj => {
+            let text = String::from_utf8(file).unwrap();
+            let lines = text.lines().filter_map(|line| line.strip_prefix("v "));
+            lines
+                .map(|line| [0, 1, 2].map(|axis| line.split(' ').nth(axis).unwrap().parse().unwrap()))
+                .collect()
+        }
+        Format::Stl => {
+            // The first corner of the first triangle, then the second of the second, and so on.
+            let corner = |facet: usize, corner: usize| {
+                let start = 84 + 50 * facet + 12 + 12 * corner;
+                triples(&file[start..start + 12])[0]
+            };
+            vec![corner(0, 0), corner(1, 1), corner(0, 1), corner(1, 2)]
+        }
+    }
+}
+
+#[test]
+fn files_are_the_right_way_up() {
+    let third = 1.0_f32 / 3.0;
+    let z_up = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.1], [0.0, 1.0, 0.0], [-0.0, third, 1e-7]];
+    let y_up = vec![[0.0, 0.0, 0.0], [1.0, 0.1, 0.0], [0.0, 0.0, -1.0], [-0.0, 1e-7, -third]];
+    let usual = [(Format::Glb, &y_up), (Format::Ply, &z_up), (Format::Obj, &y_up), (Format::Stl, &z_up)];
+    for (format, expected) in usual {
+        assert_eq!(&placed(&ExportOptions::default(), format), expected, "{format}");
+        for (up, expected) in [(Up::Y, &y_up), (Up::Z, &z_up)] {
+            let options = ExportOptions { up: Some(up), ..ExportOptions::default() };
+            assert_eq!(&placed(&options, format), expected, "{format}, {up} up");
+        }
+    }
+    // The normal of a facet turns with it.
+    let options = ExportOptions { up: Some(Up::Y), ..ExportOptions::default() };
+    let (mut turned, plain) = (Vec::new(), bytes(&tetrahedron(), Format::Stl));
+    write_with(&tetrahedron(), Format::Stl, &options, &mut turned).unwrap();
+    let ([x, y, z], turned) = (reals(&plain[84..96]).try_into().unwrap(), reals(&turned[84..96]));
+    assert_eq!(turned, Up::Y.place([x, y, z]));
+}
+
+#[test]
+fn half_the_light_is_188() {
+    let grey = Attribute { name: "color".to_owned(), width: 3, values: vec![0.5; 12] };
+    let mesh = Mesh { attributes: vec![grey], ..tetrahedron() };
+    let file = |format, colors| {
+        let mut file = Vec::new();
+        write_with(&mesh, format, &ExportOptions { colors, ..ExportOptions::default() }, &mut file).unwrap();
+        file
+    };
+    let ply = |colors| {
+        let file = file(Format::Ply, colors);
+        let end = b"end_header\n";
+        let start = file.windows(end.len()).position(|w| w == end).unwrap() + end.len() + 24;
+        [file[start], file[start + 1], file[start + 2]]
+    };
+    assert_eq!(ply(None), [188; 3]);
+    assert_eq!(ply(Some(ColorEncoding::Srgb)), [188; 3]);
+    assert_eq!(ply(Some(ColorEncoding::Linear)), [128; 3]);
+    let obj = |colors| {
+        let text = String::from_utf8(file(Format::Obj, colors)).unwrap();
+        let line = text.lines().find(|line| line.starts_with("v ")).unwrap().to_owned();
+        line.split(' ').skip(4).map(|word| word.parse().unwrap()).collect::<Vec<f32>>()
+    };
+    assert_eq!(obj(None), [0.735_357; 3]);
+    assert_eq!(obj(Some(ColorEncoding::Linear)), [0.5; 3]);
+    let glb = |colors| {
+        let file = file(Format::Glb, colors);
+        reals(&parse_glb(&file).1[96..108])
+    };
+    assert_eq!(glb(None), [0.5; 3]);
+    assert_eq!(glb(Some(ColorEncoding::Srgb)), [0.735_357; 3]);
+}
+
+#[test]
+fn words_are_those_that_print() {
+    for format in Format::ALL {
+        assert_eq!(format.to_string().parse(), Ok(format));
+    }
+    for up in Up::ALL {
+        assert_eq!(up.to_string().parse(), Ok(up));
+    }
+    for encoding in ColorEncoding::ALL {
+        assert_eq!(encoding.to_string().parse(), Ok(encoding));
+    }
+    assert_eq!("x".parse::<Up>().unwrap_err().to_string(), "\"x\" is none of: y, z");
+}
+
 #[test]
 fn empty_meshes_are_written() {
     let empty = Mesh::default();
     assert_eq!(bytes(&empty, Format::Stl).len(), 84);
     assert!(bytes(&empty, Format::Ply).ends_with(b"end_header\n"));
-    assert_eq!(bytes(&empty, Format::Obj), b"# jbt\n");
+    assert_eq!(bytes(&empty, Format::Obj), b"# jbt, y up\n");
 }
 
 #[test]

@@ -1,29 +1,9 @@
 //! Colours: what a screen shows, and how numbers become colours.
 
+pub use crate::srgb::{byte, decode, encode, unit};
+
 /// Red, green and blue.
 pub type Rgb = [f32; 3];
-
-/// From linear light to the number that a screen is given, 0 .. 1 (IEC 61966-2-1, sRGB).
-pub fn encode(linear: f32) -> f32 {
-    let x = unit(linear);
-    if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 }
-}
-
-/// From the number that a screen is given to linear light: the inverse of [`encode`].
-pub fn decode(encoded: f32) -> f32 {
-    let x = unit(encoded);
-    if x <= 0.040_45 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }
-}
-
-/// Eight bits of a number from 0 to 1.
-pub fn byte(x: f32) -> u8 {
-    (unit(x) * 255.0 + 0.5) as u8
-}
-
-/// A number as 0 .. 1; what is no number is 0.
-pub fn unit(x: f32) -> f32 {
-    if x.is_nan() { 0.0 } else { x.clamp(0.0, 1.0) }
-}
 
 /// Light of any strength as light that a screen has: as it is up to 0.6, then ever less, up to 1. Continuous with its derivative.
 pub fn shoulder(light: f32) -> f32 {
@@ -80,19 +60,6 @@ const INFERNO: [Rgb; 7] = [
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_screens_curve() {
-        assert_eq!(byte(encode(0.0)), 0);
-        assert_eq!(byte(encode(0.5)), 188);
-        assert_eq!(byte(encode(1.0)), 255);
-        assert_eq!(byte(encode(f32::NAN)), 0);
-        assert_eq!(byte(encode(7.0)), 255);
-        for step in 0..=255 {
-            let x = step as f32 / 255.0;
-            assert!((encode(decode(x)) - x).abs() < 1e-5);
-        }
-    }
 
     #[test]
     fn the_shoulder_keeps_order_and_stays_below_one() {
