@@ -1,8 +1,10 @@
 //! The command line: what can be asked, and how it is written.
 
+mod output;
 mod render;
 mod work;
 
+pub use output::{Destination, OutputArguments};
 pub use render::{GroundName, RenderArguments};
 pub use work::WorkArguments;
 
@@ -16,6 +18,8 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use jbt::contour::{Plane, PlaneError, Rectangle};
 use jbt::export::{ColorEncoding, Format, Up};
 use jbt::{Engine, Query, text};
+
+use crate::formats::{ArrayKind, SliceKind, TableKind};
 
 /// Compiles BlobTrees to SIMD machine code, and makes meshes, pictures and values of them.
 #[derive(Parser, Debug)]
@@ -83,8 +87,8 @@ pub struct SceneArguments {
 /// What `jbt mesh` takes.
 #[derive(Args, Debug)]
 #[command(after_help = "\
-The format is that of OUT's extension: .glb, .ply, .obj or .stl. Without --region the mesh covers the support of the
-model: where its field can differ from zero. docs/files.md says what each format holds, and how other programs read it.
+The format is that of OUT's extension. Without --region the mesh covers the support of the model: where its field can
+differ from zero. docs/files.md says what each format holds, and how other programs read it.
 
 Examples:
   jbt mesh hero.jbt -o hero.glb
@@ -95,12 +99,9 @@ pub struct MeshArguments {
     /// What to mesh.
     #[command(flatten)]
     pub scene: SceneArguments,
-    /// The file to write; `-` is the standard output and needs --format
-    #[arg(short, long, value_name = "OUT")]
-    pub output: PathBuf,
-    /// The file format, if the extension does not say it
-    #[arg(long, value_parser = words(Format::ALL, |format| (format.extension(), format.conventions().title)))]
-    pub format: Option<Format>,
+    /// Where the mesh goes.
+    #[command(flatten)]
+    pub output: OutputArguments<Format>,
     #[arg(long, value_name = "AXIS", value_parser = words(Up::ALL, up_in_words), help = up_help())]
     pub up: Option<Up>,
     #[arg(long, value_name = "ENCODING", value_parser = words(ColorEncoding::ALL, colors_in_words), help = colors_help())]
@@ -194,12 +195,9 @@ pub struct ContourArguments {
     /// What to cut.
     #[command(flatten)]
     pub scene: SceneArguments,
-    /// The .svg or .png file to write; `-` is the standard output and needs --format
-    #[arg(short, long, value_name = "OUT")]
-    pub output: PathBuf,
-    /// The file format, if the extension does not say it
-    #[arg(long, value_enum)]
-    pub format: Option<DrawingName>,
+    /// Where the slice goes.
+    #[command(flatten)]
+    pub output: OutputArguments<SliceKind>,
     /// The plane: x=C, y=C, z=C, or nine numbers
     #[arg(long, value_name = "PLANE", default_value = "z=0", value_parser = plane, allow_hyphen_values = true)]
     pub plane: Plane,
@@ -249,9 +247,9 @@ pub struct SampleArguments {
     /// What to sample.
     #[command(flatten)]
     pub scene: SceneArguments,
-    /// The .npy file to write; `-` is the standard output
-    #[arg(short, long, value_name = "OUT.npy")]
-    pub output: PathBuf,
+    /// Where the samples go.
+    #[command(flatten)]
+    pub output: OutputArguments<ArrayKind>,
     /// The answers wanted
     #[arg(long, value_enum, default_value_t = QueryName::Field)]
     pub query: QueryName,
@@ -284,9 +282,9 @@ pub struct EvalArguments {
     /// What evaluates the field: all engines give the same bits
     #[arg(long, value_enum, default_value_t = EngineName::Jit)]
     pub engine: EngineName,
-    /// CSV file to write; `-` is the standard output
-    #[arg(short, long, value_name = "OUT.csv")]
-    pub output: PathBuf,
+    /// Where the answers go.
+    #[command(flatten)]
+    pub output: OutputArguments<TableKind>,
 }
 
 /// What `jbt show` takes.
@@ -453,15 +451,6 @@ impl QueryName {
     }
 }
 
-/// The words for drawings and images, which are also the extensions of their files.
-#[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
-pub enum DrawingName {
-    /// The contour as a drawing
-    Svg,
-    /// The slice as an image
-    Png,
-}
-
 /// The words for images.
 #[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
 pub enum ModeName {
@@ -522,24 +511,39 @@ fn definition(text: &str) -> Result<(String, f64), String> {
     Ok((name.to_owned(), value))
 }
 
-fn region(text: &str) -> Result<Region, String> {
-    let numbers: Vec<f64> = text
-        .split(',')
-        .map(|word| word.trim().parse().map_err(|_| format!("`{}` is not a number", word.trim())))
-        .collect::<Result<_, _>>()?;
-    let Ok([x0, y0, z0, x1, y1, z1]) = <[f64; 6]>::try_from(numbers) else {
-        return Err("expected six numbers, as X0,Y0,Z0,X1,Y1,Z1".to_owned());
-    };
-    let region = Region { low: [x0, y0, z0], high: [x1, y1, z1] };
-    // Written so that a NaN is refused as well.
-    let proper = (0..3).all(|axis| {
-        region.low[axis] < region.high[axis] && (region.high[axis] - region.low[axis]).is_finite()
-    });
-    if proper {
-        Ok(region)
-    } else {
-        Err("every number of the first corner must be below that of the second".to_owned())
+/// The corners of a region whose numbers have these names: finite, and the first below the last along each axis.
+fn corners<const N: usize>(text: &str, names: [[&str; N]; 2]) -> Result<[[f64; N]; 2], String> {
+    let words: Vec<&str> = text.split(',').map(str::trim).collect();
+    let all = names.concat();
+    if words.len() != all.len() {
+        let count = if N == 3 { "six" } else { "four" };
+        return Err(format!("expected {count} numbers, as {}", all.join(",")));
     }
+    let mut numbers = [[0.0_f64; N]; 2];
+    for ((number, word), name) in numbers.as_flattened_mut().iter_mut().zip(words).zip(all) {
+        *number = word.parse().map_err(|_| format!("{name} is `{word}`, and that is no number"))?;
+        if !number.is_finite() {
+            return Err(format!("{name} is `{word}`, and a region has finite corners"));
+        }
+    }
+    for axis in 0..N {
+        let ([low, high], [from, to]) =
+            (names.map(|corner| corner[axis]), numbers.map(|corner| corner[axis]));
+        if from >= to {
+            return Err(format!(
+                "{high} must be greater than {low}, and the region goes from {from} to {to}"
+            ));
+        }
+        if !(to - from).is_finite() {
+            return Err(format!("{low} and {high} are too far apart"));
+        }
+    }
+    Ok(numbers)
+}
+
+fn region(text: &str) -> Result<Region, String> {
+    let [low, high] = corners(text, [["X0", "Y0", "Z0"], ["X1", "Y1", "Z1"]])?;
+    Ok(Region { low, high })
 }
 
 fn plane(text: &str) -> Result<Plane, String> {
@@ -547,14 +551,8 @@ fn plane(text: &str) -> Result<Plane, String> {
 }
 
 fn rectangle(text: &str) -> Result<Rectangle, String> {
-    let numbers: Vec<f64> = text
-        .split(',')
-        .map(|word| word.trim().parse().map_err(|_| format!("`{}` is not a number", word.trim())))
-        .collect::<Result<_, _>>()?;
-    let Ok([u0, v0, u1, v1]) = <[f64; 4]>::try_from(numbers) else {
-        return Err("expected four numbers, as U0,V0,U1,V1".to_owned());
-    };
-    Rectangle::new([u0, v0], [u1, v1]).map_err(|error| error.to_string())
+    let [low, high] = corners(text, [["U0", "V0"], ["U1", "V1"]])?;
+    Rectangle::new(low, high).map_err(|error| error.to_string())
 }
 
 fn paint(text: &str) -> Result<PaintName, String> {

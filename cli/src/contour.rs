@@ -11,16 +11,18 @@ use jbt::{CheckedTree, Fineness, Query};
 use jbt_frontend::diagnostic::{Diagnostic, escape};
 use serde_json::{Value, json};
 
-use crate::arguments::{ContourArguments, DrawingName, ModeName, PaintName};
+use crate::arguments::{ContourArguments, ModeName, PaintName};
 use crate::failure::Failure;
+use crate::formats::SliceKind;
 use crate::output::{Output, grouped, plural, warn};
 use crate::progress::Progress;
-use crate::scene::{Scene, is_standard};
+use crate::scene::Scene;
 
 /// Runs the command. `start` is when the process began, for the total time.
 pub fn run(arguments: &ContourArguments, quiet: bool, start: Instant) -> Result<(), Failure> {
-    arguments.work.check_output(&arguments.output, "slice")?;
-    let drawing = drawing(arguments)?;
+    let destination = arguments.output.destination(&arguments.scene.path)?;
+    arguments.work.check_output(&destination.path, "slice")?;
+    let drawing = destination.kind;
     check_options(arguments, drawing)?;
     let fineness = fineness(arguments, drawing)?;
     let scene = Scene::load(&arguments.scene)?;
@@ -28,8 +30,7 @@ pub fn run(arguments: &ContourArguments, quiet: bool, start: Instant) -> Result<
     let tree = scene.check()?;
     check_attributes(arguments, drawing, &tree)?;
     let compiler = arguments.work.compiler();
-    let query =
-        if drawing == DrawingName::Svg || mode(arguments).1 { Query::ATTRIBUTES } else { Query::FIELD };
+    let query = if drawing == SliceKind::Svg || mode(arguments).1 { Query::ATTRIBUTES } else { Query::FIELD };
     let slicer = Slicer::new(&compiler, &tree, &arguments.plane, query)
         .map_err(|error| Failure::compile(&scene.source(), &error))?;
     let rectangle = match arguments.region {
@@ -41,7 +42,7 @@ pub fn run(arguments: &ContourArguments, quiet: bool, start: Instant) -> Result<
     let made = arguments.work.run(&mut work)?.map_err(|error| failure(&scene, &error))?;
     drop(progress);
 
-    let mut output = Output::open(&arguments.output)?;
+    let mut output = Output::open(&destination)?;
     match &made {
         Made::Contour(contour) => write_svg(contour, &style(arguments, &tree), &mut output),
         Made::Picture { picture, .. } => write_png(picture, &mut output),
@@ -56,43 +57,24 @@ pub fn run(arguments: &ContourArguments, quiet: bool, start: Instant) -> Result<
     warnings.splice(0..0, scene.warnings.iter().cloned());
     let report = Report { made: &made, slicer: &slicer, warnings: &warnings, total: start.elapsed() };
     let told = arguments.work.told(quiet);
-    told.report(&arguments.output, || report.json().to_string(), |name| report.text(name))
-}
-
-/// The kind of file by option, else by extension.
-fn drawing(arguments: &ContourArguments) -> Result<DrawingName, Failure> {
-    if let Some(format) = arguments.format {
-        return Ok(format);
-    }
-    let extension = arguments.output.extension().and_then(|extension| extension.to_str());
-    match extension.map(str::to_ascii_lowercase).as_deref() {
-        Some("svg") => Ok(DrawingName::Svg),
-        Some("png") => Ok(DrawingName::Png),
-        _ if is_standard(&arguments.output) => {
-            Err(Failure::Usage("a slice on the standard output needs --format svg or png".to_owned()))
-        }
-        _ => {
-            let name = escape(&arguments.output.display().to_string());
-            Err(Failure::Usage(format!("{name} does not end with .svg or .png; --format says what to write")))
-        }
-    }
+    told.report(&destination.path, || report.json().to_string(), |name| report.text(name))
 }
 
 /// Options that mean nothing for what is made.
-fn check_options(arguments: &ContourArguments, drawing: DrawingName) -> Result<(), Failure> {
+fn check_options(arguments: &ContourArguments, drawing: SliceKind) -> Result<(), Failure> {
     let wrong = match drawing {
-        DrawingName::Svg => {
+        SliceKind::Svg => {
             [("--mode", arguments.mode.is_some()), ("--samples", arguments.samples.is_some()), ("", false)]
         }
-        DrawingName::Png => [
+        SliceKind::Png => [
             ("--stroke", arguments.stroke.is_some()),
             ("--fill", arguments.fill.is_some()),
             ("--quadtree", arguments.quadtree),
         ],
     };
     let (kind, other) = match drawing {
-        DrawingName::Svg => ("a drawing (.svg)", "an image (.png)"),
-        DrawingName::Png => ("an image (.png)", "a drawing (.svg)"),
+        SliceKind::Svg => ("a drawing (.svg)", "an image (.png)"),
+        SliceKind::Png => ("an image (.png)", "a drawing (.svg)"),
     };
     match wrong.iter().find(|(_, given)| *given) {
         Some((option, _)) => {
@@ -102,7 +84,7 @@ fn check_options(arguments: &ContourArguments, drawing: DrawingName) -> Result<(
     }
 }
 
-fn fineness(arguments: &ContourArguments, drawing: DrawingName) -> Result<Fineness, Failure> {
+fn fineness(arguments: &ContourArguments, drawing: SliceKind) -> Result<Fineness, Failure> {
     match (arguments.cell, arguments.resolution) {
         (Some(cell), _) if cell.is_nan() || cell <= 0.0 => {
             Err(Failure::Usage(format!("the edge of a cell must be greater than zero, and it is {cell}")))
@@ -111,8 +93,8 @@ fn fineness(arguments: &ContourArguments, drawing: DrawingName) -> Result<Finene
         (None, Some(0)) => Err(Failure::Usage("a slice needs at least one cell".to_owned())),
         (None, Some(cells)) => Ok(Fineness::Resolution(cells)),
         (None, None) => Ok(Fineness::Resolution(match drawing {
-            DrawingName::Svg => 256,
-            DrawingName::Png => 512,
+            SliceKind::Svg => 256,
+            SliceKind::Png => 512,
         })),
     }
 }
@@ -136,13 +118,13 @@ fn mode(arguments: &ContourArguments) -> (Mode, bool) {
 /// An attribute that is asked for is there.
 fn check_attributes(
     arguments: &ContourArguments,
-    drawing: DrawingName,
+    drawing: SliceKind,
     tree: &CheckedTree,
 ) -> Result<(), Failure> {
     let paints = [arguments.stroke, arguments.fill].contains(&Some(PaintName::Attribute));
     let asked = match drawing {
-        DrawingName::Svg => paints || arguments.attribute.is_some(),
-        DrawingName::Png => mode(arguments).1 || arguments.attribute.is_some(),
+        SliceKind::Svg => paints || arguments.attribute.is_some(),
+        SliceKind::Png => mode(arguments).1 || arguments.attribute.is_some(),
     };
     let name = attribute(arguments);
     if !asked || tree.attributes().iter().any(|group| &*group.name == name) {
@@ -160,7 +142,7 @@ enum Made {
 
 fn make(
     arguments: &ContourArguments,
-    drawing: DrawingName,
+    drawing: SliceKind,
     slicer: &Slicer,
     rectangle: &Rectangle,
     fineness: Fineness,
@@ -168,12 +150,12 @@ fn make(
 ) -> Result<Made, SliceError> {
     let watch = |part| progress.set(part);
     match drawing {
-        DrawingName::Svg => {
+        SliceKind::Svg => {
             let block = arguments.quadtree.then_some(1);
             let detail = Detail { fineness, block, quadtree: arguments.quadtree };
             slicer.contour(rectangle, &detail).on_progress(watch).run().map(Made::Contour)
         }
-        DrawingName::Png => {
+        SliceKind::Png => {
             let samples = arguments.samples.map_or(1, usize::from);
             let (mode, _) = mode(arguments);
             let detail = ImageDetail { fineness, samples };

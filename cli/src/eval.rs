@@ -5,8 +5,9 @@ use std::io::{self, BufRead, BufReader, Write as _};
 
 use jbt::{Evaluator, Points, Samples};
 
-use crate::arguments::EvalArguments;
+use crate::arguments::{Destination, EvalArguments};
 use crate::failure::Failure;
+use crate::formats::TableKind;
 use crate::output::Output;
 use crate::points::PointReader;
 use crate::progress::Progress;
@@ -22,6 +23,7 @@ pub fn run(arguments: &EvalArguments, quiet: bool) -> Result<(), Failure> {
             "the scene and the points cannot both come from the standard input".to_owned(),
         ));
     }
+    let destination = arguments.output.destination(&arguments.scene.path)?;
     let scene = Scene::load(&arguments.scene)?;
     scene.warn(quiet);
     let tree = scene.check()?;
@@ -31,7 +33,7 @@ pub fn run(arguments: &EvalArguments, quiet: bool) -> Result<(), Failure> {
             &evaluator,
             PointReader::new(io::stdin().lock(), "<stdin>".to_owned())?,
             None,
-            arguments,
+            &destination,
             quiet,
         );
     }
@@ -40,7 +42,7 @@ pub fn run(arguments: &EvalArguments, quiet: bool) -> Result<(), Failure> {
     let file = File::open(&arguments.points).map_err(fail)?;
     let length = file.metadata().map_err(fail)?.len();
     let points = PointReader::new(BufReader::with_capacity(1 << 16, file), name)?;
-    stream(&evaluator, points, Some(length), arguments, quiet)
+    stream(&evaluator, points, Some(length), &destination, quiet)
 }
 
 /// Evaluates batch after batch.
@@ -48,10 +50,10 @@ fn stream(
     evaluator: &Evaluator,
     mut points: PointReader<impl BufRead>,
     length: Option<u64>,
-    arguments: &EvalArguments,
+    destination: &Destination<TableKind>,
     quiet: bool,
 ) -> Result<(), Failure> {
-    let mut output = Output::open(&arguments.output)?;
+    let mut output = Output::open(destination)?;
     let mut progress = Progress::new("evaluating", quiet);
     let mut samples = evaluator.samples();
     let names = evaluator.layout().names().join(",");

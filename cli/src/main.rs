@@ -5,6 +5,7 @@
 //! | [`arguments`] | what can be asked |
 //! | [`scene`], [`points`] | reading |
 //! | [`mesh`], [`render`], [`contour`], [`sample`], [`eval`], [`show`], [`count`], [`stats`], [`check`] | one command each |
+//! | [`formats`] | the kinds of files that each command writes |
 //! | [`output`], [`progress`], [`logger`] | what comes out, and where |
 //! | [`failure`] | what went wrong, and the exit code for it |
 
@@ -14,6 +15,7 @@ mod contour;
 mod count;
 mod eval;
 mod failure;
+mod formats;
 mod lattice;
 mod logger;
 mod mesh;

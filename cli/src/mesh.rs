@@ -12,14 +12,14 @@ use crate::failure::Failure;
 use crate::lattice;
 use crate::output::{Output, grouped, plural, warn};
 use crate::progress::Progress;
-use crate::scene::{Scene, is_standard};
+use crate::scene::Scene;
 use crate::stages;
 
 /// Runs the command. `start` is when the process began, for the total time.
 pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(), Failure> {
-    arguments.work.check_output(&arguments.output, "mesh")?;
-    let format = format(arguments)?;
-    let options = options(arguments, format)?;
+    let destination = arguments.output.destination(&arguments.scene.path)?;
+    arguments.work.check_output(&destination.path, "mesh")?;
+    let options = options(arguments, destination.kind)?;
     let settings = lattice::settings(&arguments.lattice)?;
     let scene = Scene::load(&arguments.scene)?;
     scene.warn(quiet);
@@ -31,8 +31,8 @@ pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(),
     let made = arguments.work.run(&mut work)?.map_err(|error| lattice::failure(&scene, error))?;
     drop(progress);
 
-    let mut output = Output::open(&arguments.output)?;
-    export::write_with(&made.mesh, format, &options, &mut output).map_err(|error| match error {
+    let mut output = Output::open(&destination)?;
+    export::write_with(&made.mesh, destination.kind, &options, &mut output).map_err(|error| match error {
         ExportError::Write(error) => output.failure(error),
         ExportError::TooLarge { .. } => Failure::Limit(error.to_string()),
         ExportError::Extension { .. } | ExportError::File { .. } | ExportError::Malformed(_) => {
@@ -48,23 +48,7 @@ pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(),
     warnings.splice(0..0, scene.warnings);
     let report = Report { made: &made, warnings: &warnings, total: start.elapsed() };
     let told = arguments.work.told(quiet);
-    told.report(&arguments.output, || report.json().to_string(), |name| report.text(name))
-}
-
-/// The format by option, else by extension.
-fn format(arguments: &MeshArguments) -> Result<Format, Failure> {
-    if let Some(format) = arguments.format {
-        return Ok(format);
-    }
-    if is_standard(&arguments.output) {
-        let known = Format::ALL.map(|format| format.to_string()).join(", ");
-        return Err(Failure::Usage(format!("a mesh on the standard output needs --format, one of {known}")));
-    }
-    Format::of(&arguments.output).map_err(|_| {
-        let name = escape(&arguments.output.display().to_string());
-        let known = Format::extensions();
-        Failure::Usage(format!("{name} does not end with {known}; --format says what to write"))
-    })
+    told.report(&destination.path, || report.json().to_string(), |name| report.text(name))
 }
 
 /// How the file is to be written.

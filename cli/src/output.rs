@@ -8,6 +8,7 @@ use clap::builder::styling::{AnsiColor, Style};
 use jbt_frontend::diagnostic::{Severity, escape};
 use tempfile::{NamedTempFile, TempPath};
 
+use crate::arguments::Destination;
 use crate::failure::Failure;
 use crate::scene::is_standard;
 
@@ -26,6 +27,8 @@ enum Target {
         file: File,
         temporary: TempPath,
         path: PathBuf,
+        /// Whether it may take the place of a file.
+        replace: bool,
     },
 }
 
@@ -46,13 +49,14 @@ impl Write for Target {
 }
 
 impl Output {
-    /// Opens a path of the command line; `-` is the standard output.
-    pub fn open(path: &Path) -> Result<Self, Failure> {
+    /// Opens a place of the command line; `-` is the standard output.
+    pub fn open<K>(destination: &Destination<K>) -> Result<Self, Failure> {
+        let path = &destination.path;
         let name = path.display().to_string();
         let target = if is_standard(path) {
             Target::Standard(io::stdout())
         } else {
-            open_file(path).map_err(|error| Failure::io("write", &name, error))?
+            open_file(path, destination.replace).map_err(|error| Failure::io("write", &name, error))?
         };
         Ok(Self { writer: BufWriter::with_capacity(1 << 16, target), name })
     }
@@ -73,9 +77,13 @@ impl Output {
         let (target, _) = writer.into_parts();
         match target {
             Target::Standard(_) | Target::Direct(_) => Ok(()),
-            Target::Replacement { file, temporary, path } => file
+            Target::Replacement { file, temporary, path, replace } => file
                 .sync_all()
-                .and_then(|()| temporary.persist(path).map_err(|error| error.error))
+                .and_then(|()| {
+                    let put =
+                        if replace { temporary.persist(path) } else { temporary.persist_noclobber(path) };
+                    put.map_err(|error| error.error)
+                })
                 .map_err(|error| Failure::io("write", name, error)),
         }
     }
@@ -91,31 +99,69 @@ impl Write for Output {
     }
 }
 
-fn open_file(path: &Path) -> io::Result<Target> {
-    // Through a link it is the file behind it that is replaced; the link stays.
-    let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-    let old = fs::metadata(&path).ok();
-    if old.as_ref().is_some_and(|old| !old.is_file()) {
-        return File::options().write(true).open(path).map(Target::Direct);
+/// What stands at a path, and so how it is written to.
+enum Place {
+    /// A pipe or a device.
+    Direct(PathBuf),
+    /// A file, or nothing as yet: its path, its folder, and the permissions that it has.
+    File { path: PathBuf, folder: PathBuf, old: Option<fs::Permissions> },
+}
+
+impl Place {
+    fn at(path: &Path) -> io::Result<Self> {
+        // Through a link it is the file behind it that is replaced; the link stays.
+        let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let old = match fs::metadata(&path) {
+            Ok(old) if old.is_dir() => return Err(io::ErrorKind::IsADirectory.into()),
+            Ok(old) if !old.is_file() => return Ok(Self::Direct(path)),
+            Ok(old) if old.permissions().readonly() => {
+                return Err(io::Error::new(io::ErrorKind::PermissionDenied, "the file is read-only"));
+            }
+            Ok(old) => Some(old.permissions()),
+            Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
+            Err(_) if !folder.is_dir() => {
+                let message = format!("there is no folder {}", escape(&folder.display().to_string()));
+                return Err(io::Error::new(io::ErrorKind::NotFound, message));
+            }
+            Err(_) => None,
+        };
+        Ok(Self::File { folder: folder.to_owned(), path, old })
     }
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let (file, temporary) = temporary(folder)?.into_parts();
-    if let Some(old) = old {
-        file.set_permissions(old.permissions())?;
+}
+
+/// Refuses a path of the command line that cannot be written to. Nothing is left there.
+pub fn check_place(path: &Path) -> Result<(), Failure> {
+    let check = || match Place::at(path)? {
+        // To open a pipe is to wait for its reader.
+        Place::Direct(_) => Ok(()),
+        Place::File { folder, .. } => temporary(&folder).map(drop),
+    };
+    if is_standard(path) {
+        return Ok(());
     }
-    Ok(Target::Replacement { file, temporary, path })
+    check().map_err(|error| Failure::io("write", path.display(), error))
+}
+
+fn open_file(path: &Path, replace: bool) -> io::Result<Target> {
+    match Place::at(path)? {
+        Place::Direct(path) => File::options().write(true).open(path).map(Target::Direct),
+        Place::File { path, folder, old } => {
+            let (file, temporary) = temporary(&folder)?.into_parts();
+            if let Some(old) = old {
+                file.set_permissions(old)?;
+            }
+            Ok(Target::Replacement { file, temporary, path, replace })
+        }
+    }
 }
 
 /// A new file with the permissions that the process gives to any new file.
 fn temporary(folder: &Path) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".jbt-");
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt as _;
-        builder.permissions(fs::Permissions::from_mode(0o666));
-    }
-    builder.tempfile_in(folder)
+    // The system's own words about a file that cannot be made: the temporary name means nothing to anybody.
+    builder.make_in(folder, |path| File::options().read(true).write(true).create_new(true).open(path))
 }
 
 /// Prints a report to the standard output.
@@ -247,15 +293,20 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a");
         fs::write(&path, "old").unwrap();
-        let mut output = Output::open(&path).unwrap();
+        let destination = |replace| Destination { path: path.clone(), kind: (), replace };
+        let mut output = Output::open(&destination(true)).unwrap();
         output.write_all(b"half").unwrap();
         output.flush().unwrap();
         drop(output);
         assert_eq!(fs::read(&path).unwrap(), b"old");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "nothing is left behind");
-        let mut output = Output::open(&path).unwrap();
+        let mut output = Output::open(&destination(true)).unwrap();
         output.write_all(b"new").unwrap();
         output.finish().unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"new");
+        let mut output = Output::open(&destination(false)).unwrap();
+        output.write_all(b"newer").unwrap();
+        assert!(output.finish().is_err(), "it came to be there in the meantime");
         assert_eq!(fs::read(&path).unwrap(), b"new");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
     }

@@ -11,13 +11,15 @@ use serde_json::json;
 
 use crate::arguments::{GroundName, RenderArguments};
 use crate::failure::Failure;
+use crate::formats::PictureKind;
 use crate::output::{Output, grouped, plural, warn};
 use crate::progress::Progress;
 use crate::scene::Scene;
 
 /// Runs the command. `start` is when the process began, for the total time.
 pub fn run(arguments: &RenderArguments, quiet: bool, start: Instant) -> Result<(), Failure> {
-    arguments.work.check_output(&arguments.output, "picture")?;
+    let destination = arguments.output.destination(&arguments.scene.path)?;
+    arguments.work.check_output(&destination.path, "picture")?;
     let settings = settings(arguments)?;
     let scene = Scene::load(&arguments.scene)?;
     scene.warn(quiet);
@@ -29,8 +31,11 @@ pub fn run(arguments: &RenderArguments, quiet: bool, start: Instant) -> Result<(
     let made = arguments.work.run(&mut work)?.map_err(|error| failure(&scene, error))?;
     drop(progress);
 
-    let mut output = Output::open(&arguments.output)?;
-    write_png(&made.picture, &mut output).map_err(|error| output.failure(error))?;
+    let mut output = Output::open(&destination)?;
+    match destination.kind {
+        PictureKind::Png => write_png(&made.picture, &mut output),
+    }
+    .map_err(|error| output.failure(error))?;
     output.finish()?;
 
     let mut warnings: Vec<String> =
@@ -41,7 +46,7 @@ pub fn run(arguments: &RenderArguments, quiet: bool, start: Instant) -> Result<(
     warnings.splice(0..0, scene.warnings.iter().cloned());
     let report = Report { made: &made, mode: &settings.mode, warnings: &warnings, total: start.elapsed() };
     let told = arguments.work.told(quiet);
-    told.report(&arguments.output, || report.json().to_string(), |name| report.text(name))
+    told.report(&destination.path, || report.json().to_string(), |name| report.text(name))
 }
 
 /// What the options say.

@@ -10,6 +10,7 @@ use serde_json::json;
 
 use crate::arguments::SampleArguments;
 use crate::failure::Failure;
+use crate::formats::ArrayKind;
 use crate::lattice;
 use crate::output::{Output, grouped};
 use crate::progress::Progress;
@@ -17,7 +18,8 @@ use crate::scene::Scene;
 
 /// Runs the command. `start` is when the process began, for the total time.
 pub fn run(arguments: &SampleArguments, quiet: bool, start: Instant) -> Result<(), Failure> {
-    arguments.work.check_output(&arguments.output, "samples")?;
+    let destination = arguments.output.destination(&arguments.scene.path)?;
+    arguments.work.check_output(&destination.path, "samples")?;
     let settings = lattice::settings(&arguments.lattice)?;
     let scene = Scene::load(&arguments.scene)?;
     scene.warn(quiet);
@@ -31,8 +33,11 @@ pub fn run(arguments: &SampleArguments, quiet: bool, start: Instant) -> Result<(
     let planes = arguments.work.run(&mut work)?.map_err(|error| failure(&scene, error))?;
     drop(progress);
 
-    let mut output = Output::open(&arguments.output)?;
-    write_npy(lattice.points(), &planes, &mut output).map_err(|error| output.failure(error))?;
+    let mut output = Output::open(&destination)?;
+    match destination.kind {
+        ArrayKind::Npy => write_npy(lattice.points(), &planes, &mut output),
+    }
+    .map_err(|error| output.failure(error))?;
     output.finish()?;
     let report = Report {
         sampler: &sampler,
@@ -42,7 +47,7 @@ pub fn run(arguments: &SampleArguments, quiet: bool, start: Instant) -> Result<(
         total: start.elapsed(),
     };
     let told = arguments.work.told(quiet);
-    told.report(&arguments.output, || report.json().to_string(), |name| report.text(name))
+    told.report(&destination.path, || report.json().to_string(), |name| report.text(name))
 }
 
 /// Whose fault it is that there are no samples.

@@ -1,11 +1,10 @@
 //! What `jbt render` takes, and how it is written.
 
-use std::path::PathBuf;
-
 use clap::{Args, ValueEnum};
 use jbt::render::{Background, Quality, Stance, VIEWS};
 
-use super::{Region, SceneArguments, WorkArguments, region};
+use super::{OutputArguments, Region, SceneArguments, WorkArguments, region};
+use crate::formats::PictureKind;
 
 /// What `jbt render` takes.
 #[derive(Args, Debug)]
@@ -14,9 +13,9 @@ pub struct RenderArguments {
     /// What to look at.
     #[command(flatten)]
     pub scene: SceneArguments,
-    /// The .png file to write; `-` is the standard output
-    #[arg(short, long, value_name = "OUT.png")]
-    pub output: PathBuf,
+    /// Where the picture goes.
+    #[command(flatten)]
+    pub output: OutputArguments<PictureKind>,
     /// Pixels: width and height, or one number for both
     #[arg(long, value_name = "WxH|N", default_value = "800x600", value_parser = size)]
     pub size: [u32; 2],

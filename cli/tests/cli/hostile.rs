@@ -101,7 +101,7 @@ fn usage_errors() {
     let folder = folder();
     let mesh = |extra: &[&str]| folder.jbt(&[&["mesh", "scene.jbt", "-o", "a.glb"], extra].concat());
     mesh(&["--region", "0,0,0,1,1"]).code(2).says("six numbers");
-    mesh(&["--region", "1,0,0,0,1,1"]).code(2).says("below");
+    mesh(&["--region", "1,0,0,0,1,1"]).code(2).says("must be greater than X0");
     mesh(&["--cell", "0"]).code(2).says("greater than zero");
     mesh(&["--cell", "-1"]).code(2).says("greater than zero");
     mesh(&["--cell", "nan"]).code(2).says("greater than zero");

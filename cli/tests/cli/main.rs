@@ -4,4 +4,5 @@ mod commands;
 mod contour;
 mod folder;
 mod hostile;
+mod outputs;
 mod render;

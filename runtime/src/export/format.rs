@@ -97,7 +97,7 @@ impl Format {
 
     /// Its row in the table of formats.
     #[must_use]
-    pub fn conventions(self) -> &'static Conventions {
+    pub const fn conventions(self) -> &'static Conventions {
         match self {
             Format::Glb => &GLB,
             Format::Ply => &PLY,
@@ -108,7 +108,7 @@ impl Format {
 
     /// The extension of its files, without a dot.
     #[must_use]
-    pub fn extension(self) -> &'static str {
+    pub const fn extension(self) -> &'static str {
         self.conventions().extension
     }
 

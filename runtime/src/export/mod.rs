@@ -166,13 +166,8 @@ pub fn save_with(
 fn temporary(folder: &Path) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".jbt-").suffix(".tmp");
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        // The system takes the umask away from this, as for every file; the default here would be private (0600).
-        builder.permissions(fs::Permissions::from_mode(0o666));
-    }
-    builder.tempfile_in(folder)
+    // The system's own words about a file that cannot be made: the temporary name means nothing to anybody.
+    builder.make_in(folder, |path| fs::File::options().read(true).write(true).create_new(true).open(path))
 }
 
 /// Checks what every writer relies on.

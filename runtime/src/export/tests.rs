@@ -467,3 +467,15 @@ fn permissions_links_and_devices() {
     assert!(!fs::metadata("/dev/null").unwrap().is_file());
     assert_eq!(names(folder.path()), ["a.stl", "link.stl", "other"]);
 }
+
+/// The kernel lets nobody make files there.
+#[cfg(target_os = "linux")]
+#[test]
+fn what_the_system_refuses_is_told_without_the_temporary_name() {
+    let ExportError::File { path, source } = save(Path::new("/proc/a.stl"), &tetrahedron()).unwrap_err()
+    else {
+        panic!("a file");
+    };
+    assert_eq!(path, Path::new("/proc/a.stl"));
+    assert!(!source.to_string().contains(".jbt-"), "{source}");
+}

@@ -1,0 +1,149 @@
+//! The kinds of files that commands write: a table for each command, in which a kind is a row. Help, defaults and messages derive
+//! from it.
+//!
+//! ```text
+//! mesh      .glb .ply .obj .stl        the first one is written where nothing says which
+//! render    .png
+//! contour   .svg .png
+//! sample    .npy
+//! eval      .csv
+//! ```
+
+use std::fmt::Debug;
+use std::path::Path;
+
+use jbt::export::Format;
+
+/// The kinds of files that one command writes.
+pub trait FileKind: Copy + Debug + Send + Sync + 'static {
+    /// What a file of them holds, with its article.
+    const RESULT: &'static str;
+    /// The table. Its first row counts where nothing says what to write.
+    const ROWS: &'static [Row<Self>];
+}
+
+/// A kind of file.
+#[derive(Debug)]
+pub struct Row<K> {
+    /// What is written.
+    pub kind: K,
+    /// How names of its files end, without the dot; also the word of `--format`.
+    pub extension: &'static str,
+    /// What such a file holds.
+    pub about: &'static str,
+}
+
+const fn row<K>(kind: K, extension: &'static str, about: &'static str) -> Row<K> {
+    Row { kind, extension, about }
+}
+
+/// The row of a format of the library.
+const fn mesh_row(format: Format) -> Row<Format> {
+    row(format, format.extension(), format.conventions().title)
+}
+
+impl FileKind for Format {
+    const RESULT: &'static str = "a mesh";
+    const ROWS: &'static [Row<Self>] =
+        &[mesh_row(Self::Glb), mesh_row(Self::Ply), mesh_row(Self::Obj), mesh_row(Self::Stl)];
+}
+
+/// What `jbt render` writes.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum PictureKind {
+    /// Portable Network Graphics.
+    Png,
+}
+
+impl FileKind for PictureKind {
+    const RESULT: &'static str = "a picture";
+    const ROWS: &'static [Row<Self>] = &[row(Self::Png, "png", "An image")];
+}
+
+/// What `jbt contour` writes.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum SliceKind {
+    /// Lines.
+    Svg,
+    /// Pixels.
+    Png,
+}
+
+impl FileKind for SliceKind {
+    const RESULT: &'static str = "a slice";
+    const ROWS: &'static [Row<Self>] =
+        &[row(Self::Svg, "svg", "The contour as a drawing"), row(Self::Png, "png", "The slice as an image")];
+}
+
+/// What `jbt sample` writes.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum ArrayKind {
+    /// An array of numpy.
+    Npy,
+}
+
+impl FileKind for ArrayKind {
+    const RESULT: &'static str = "an array";
+    const ROWS: &'static [Row<Self>] = &[row(Self::Npy, "npy", "An array for numpy")];
+}
+
+/// What `jbt eval` writes.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum TableKind {
+    /// Values with commas between.
+    Csv,
+}
+
+impl FileKind for TableKind {
+    const RESULT: &'static str = "a table";
+    const ROWS: &'static [Row<Self>] = &[row(Self::Csv, "csv", "A table with a header")];
+}
+
+/// The row that counts where nothing says which.
+pub fn first<K: FileKind>() -> &'static Row<K> {
+    &K::ROWS[0]
+}
+
+/// The row that a word of `--format` means.
+pub fn named<K: FileKind>(word: &str) -> Option<&'static Row<K>> {
+    K::ROWS.iter().find(|row| row.extension == word)
+}
+
+/// The row that the end of a path names, in any case.
+pub fn of_path<K: FileKind>(path: &Path) -> Option<&'static Row<K>> {
+    let extension = path.extension()?;
+    K::ROWS.iter().find(|row| extension.eq_ignore_ascii_case(row.extension))
+}
+
+/// All endings in words, each behind `before`: `.glb, .ply, .obj or .stl`.
+pub fn listed<K: FileKind>(before: &str) -> String {
+    let all: Vec<String> = K::ROWS.iter().map(|row| format!("{before}{}", row.extension)).collect();
+    match all.split_last() {
+        Some((last, [])) => last.clone(),
+        Some((last, others)) => format!("{} or {last}", others.join(", ")),
+        None => String::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_format_of_the_library_has_a_row() {
+        let rows: Vec<Format> = Format::ROWS.iter().map(|row| row.kind).collect();
+        assert_eq!(rows, Format::ALL);
+    }
+
+    #[test]
+    fn kinds_by_word_and_by_path() {
+        let kind = |row: Option<&Row<SliceKind>>| row.map(|row| row.kind);
+        assert_eq!(kind(named("png")), Some(SliceKind::Png));
+        assert_eq!(kind(named("jpg")), None);
+        assert_eq!(kind(of_path(Path::new("a.b.SVG"))), Some(SliceKind::Svg));
+        assert_eq!(kind(of_path(Path::new("svg"))), None);
+        assert_eq!(listed::<Format>("."), ".glb, .ply, .obj or .stl");
+        assert_eq!(listed::<SliceKind>(""), "svg or png");
+        assert_eq!(listed::<PictureKind>("."), ".png");
+    }
+}
