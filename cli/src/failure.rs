@@ -12,7 +12,7 @@ use std::fmt;
 use std::io;
 
 use jbt::CompileError;
-use jbt_frontend::diagnostic::{Diagnostic, Severity, Source, escape};
+use jbt_frontend::diagnostic::{Diagnostic, Diagnostics, Severity, Source, escape};
 
 /// Why a command did not do its work.
 #[derive(Debug)]
@@ -57,6 +57,25 @@ impl Failure {
     /// Messages about a file.
     pub fn diagnostics(source: &Source<'_>, diagnostics: &[Diagnostic]) -> Self {
         Self::Input { messages: diagnostics.iter().map(|d| (d.severity, source.render(d))).collect() }
+    }
+
+    /// A scene that could not be read.
+    pub fn scene(name: &impl fmt::Display, error: &Diagnostics) -> Self {
+        if let Some(cause) = error.io() {
+            return Self::io("read", name, io::Error::new(cause.kind(), cause.to_string()));
+        }
+        if let Some(text) = error.source_text() {
+            return Self::diagnostics(&text.source(), error);
+        }
+        // Without a text it is about the file as a whole: its length, its ending, what was defined.
+        let message = |one: &Diagnostic| {
+            let help = one.help.as_ref().map_or_else(String::new, |help| format!("; {help}"));
+            one.message.clone() + &help
+        };
+        let messages: Vec<String> = error.iter().map(message).collect();
+        let is_limit = error.iter().any(|one| one.severity == Severity::Limit);
+        let message = messages.join("\n");
+        if is_limit { Self::Limit(message) } else { Self::Usage(message) }
     }
 
     /// A model that could not be compiled.

@@ -68,6 +68,7 @@ pub use self::primitive::{
 };
 pub use crate::falloff::Edge;
 pub use crate::number::{Number, Vector, param};
+pub use crate::scopes::{ScopeError, Scopes};
 pub use crate::term::{Term, x, y, z};
 pub use pattern::{Pattern, checker, gradient, marble, noise, rings, stripes};
 

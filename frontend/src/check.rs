@@ -28,7 +28,7 @@ use crate::attribute::AttributeGroup;
 use crate::bounds::Bounds;
 use crate::combine::Form;
 use crate::combine::extent::Extent;
-use crate::diagnostic::{Diagnostic, Span};
+use crate::diagnostic::{Diagnostic, Diagnostics, SourceText, Span};
 use crate::expression::Expression;
 use crate::falloff::Falloff;
 use crate::field::{Field, FieldKind, FieldValue};
@@ -69,16 +69,36 @@ pub struct CheckedNode {
 }
 
 /// A model that makes sense, as an arena: children before parents, shared nodes once, the root last.
-#[derive(Clone, PartialEq, Debug)]
+#[derive(Clone, Debug)]
 pub struct CheckedTree {
     iso: f64,
     attributes: Vec<AttributeGroup>,
     nodes: Arc<[CheckedNode]>,
     parameters: Vec<Parameter>,
     dependence: Arc<Dependence>,
+    /// The text that places are in.
+    source: Option<SourceText>,
+}
+
+impl PartialEq for CheckedTree {
+    /// The same nodes, attributes and parameters; the text that they came from does not matter.
+    fn eq(&self, other: &Self) -> bool {
+        let Self { iso, attributes, nodes, parameters, dependence, source: _ } = self;
+        *iso == other.iso
+            && *attributes == other.attributes
+            && *nodes == other.nodes
+            && *parameters == other.parameters
+            && *dependence == other.dependence
+    }
 }
 
 impl CheckedTree {
+    /// Messages about this tree, located in the text that it came from.
+    #[must_use]
+    pub fn diagnostics(&self, list: Vec<Diagnostic>) -> Diagnostics {
+        Diagnostics::new(list, self.source.clone())
+    }
+
     /// The field value of the surface.
     #[must_use]
     pub fn iso(&self) -> f64 {
@@ -201,6 +221,7 @@ impl CheckedTree {
             nodes: nodes.into(),
             parameters: Vec::new(),
             dependence: Arc::default(),
+            source: self.source.clone(),
         }
     }
 }
@@ -213,8 +234,9 @@ impl Model {
     /// # Errors
     ///
     /// All errors, in the order of their places in the text; after [`limits::MAX_ERRORS`] of them, one more that counts the rest.
-    pub fn check(&self) -> Result<CheckedTree, Vec<Diagnostic>> {
-        self.check_within(limits::MAX_NODES, limits::MAX_OCCURRENCES)
+    pub fn check(&self) -> Result<CheckedTree, Diagnostics> {
+        let checked = self.check_within(limits::MAX_NODES, limits::MAX_OCCURRENCES);
+        checked.map_err(|list| Diagnostics::new(list, self.source.clone()))
     }
 
     fn check_within(&self, max_nodes: usize, max_occurrences: usize) -> Result<CheckedTree, Vec<Diagnostic>> {
@@ -241,7 +263,8 @@ impl Model {
             return Err(report.finish());
         }
         let (attributes, dependence) = (self.attributes.clone(), Arc::new(dependence));
-        Ok(CheckedTree { iso, attributes, nodes: nodes.into(), parameters, dependence })
+        let (nodes, source) = (nodes.into(), self.source.clone());
+        Ok(CheckedTree { iso, attributes, nodes, parameters, dependence, source })
     }
 
     /// All nodes, children before parents, each checked by itself.

@@ -6,7 +6,11 @@
 //!     |            ^ expected a number of at least 1e-15
 //! ```
 
+mod list;
+
 use std::fmt::Write as _;
+
+pub use list::{Diagnostics, SourceText};
 
 /// A range of bytes of a source text.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, PartialOrd, Ord, Hash)]

@@ -26,7 +26,7 @@ pub mod parameter;
 pub mod query;
 pub mod recipe;
 mod report;
-pub mod scene;
+pub mod scopes;
 pub mod skeleton;
 pub mod term;
 pub mod text;

@@ -1,12 +1,17 @@
 //! A model: a tree, and what its field means.
 
+use std::fmt;
+use std::str::FromStr;
+
 use crate::attribute::AttributeGroup;
+use crate::diagnostic::{Diagnostics, SourceText};
 use crate::number::Number;
 use crate::parameter::{Parameter, collect};
+use crate::text;
 use crate::tree::Tree;
 
 /// A tree with the iso-value of its surface and its attribute groups. Inside means `field >= iso`.
-#[derive(Clone, PartialEq, Debug)]
+#[derive(Clone, Debug)]
 pub struct Model {
     /// The field value of the surface.
     pub iso: Number,
@@ -17,6 +22,8 @@ pub struct Model {
     /// The named parameters, in the order of their declarations. Those that the tree mentions and that are not here have the
     /// defaults of their first uses.
     pub parameters: Vec<Parameter>,
+    /// The text that places of nodes are in, for messages; `None` if the model came from none.
+    pub source: Option<SourceText>,
 }
 
 impl Model {
@@ -28,6 +35,43 @@ impl Model {
     pub fn new(root: Tree) -> Self {
         let iso = Number::from(Self::DEFAULT_ISO);
         let (parameters, _) = collect(&[], &iso, &root);
-        Self { iso, attributes: vec![AttributeGroup::color()], root, parameters }
+        Self { iso, attributes: vec![AttributeGroup::color()], root, parameters, source: None }
+    }
+}
+
+impl PartialEq for Model {
+    /// The same field, attributes and parameters; where they were written does not matter.
+    fn eq(&self, other: &Self) -> bool {
+        let Self { iso, attributes, root, parameters, source: _ } = self;
+        *iso == other.iso
+            && *attributes == other.attributes
+            && *root == other.root
+            && *parameters == other.parameters
+    }
+}
+
+impl fmt::Display for Model {
+    /// In the [text format](text), from which it can be parsed again.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&text::print(self))
+    }
+}
+
+impl FromStr for Model {
+    type Err = Diagnostics;
+
+    /// The model of a text.
+    ///
+    /// ```
+    /// use jbt_frontend::model::Model;
+    /// let model: Model = "jbt 1 point { surface_radius 1 }".parse()?;
+    /// assert_eq!(model.to_string().parse::<Model>()?, model);
+    /// # Ok::<(), jbt_frontend::diagnostic::Diagnostics>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Those of [`text::parse`].
+    fn from_str(text: &str) -> Result<Self, Diagnostics> {
+        text::parse(text.as_bytes(), &text::Options::default())
     }
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use jbt_frontend::check::CheckedTree;
 use jbt_frontend::combine::{Combinator, Family, SetOperation};
-use jbt_frontend::diagnostic::Source;
+use jbt_frontend::diagnostic::{Diagnostics, Source};
 use jbt_frontend::falloff::FalloffKind;
 use jbt_frontend::field::{Field, FieldKind, FieldValue};
 use jbt_frontend::skeleton::SkeletonKind;
@@ -315,7 +315,7 @@ fn pictures_and_pages_belong_together() {
 fn model(name: &str, text: &str) -> CheckedTree {
     let source = Source { name, text: text.as_bytes() };
     let shown =
-        |errors: Vec<_>| -> String { errors.iter().map(|error| source.render(error) + "\n").collect() };
+        |errors: Diagnostics| -> String { errors.iter().map(|error| source.render(error) + "\n").collect() };
     let model =
         parse(text.as_bytes(), &Options::default()).unwrap_or_else(|errors| panic!("{}", shown(errors)));
     model.check().unwrap_or_else(|errors| panic!("{}", shown(errors)))

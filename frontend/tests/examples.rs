@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use jbt_frontend::diagnostic::Source;
+use jbt_frontend::diagnostic::{Diagnostics, Source};
 use jbt_frontend::text::{Options, parse, print};
 
 #[test]
@@ -19,8 +19,9 @@ fn every_example_is_a_model() {
         let text = std::fs::read(&path).unwrap();
         assert!(text.starts_with(b"# "), "{name} opens with a comment that says what it shows");
         let source = Source { name: &name, text: &text };
-        let shown =
-            |errors: Vec<_>| -> String { errors.iter().map(|error| source.render(error) + "\n").collect() };
+        let shown = |errors: Diagnostics| -> String {
+            errors.iter().map(|error| source.render(error) + "\n").collect()
+        };
         let model = parse(&text, &Options::default()).unwrap_or_else(|errors| panic!("{}", shown(errors)));
         let checked = model.check().unwrap_or_else(|errors| panic!("{}", shown(errors)));
         assert_eq!(parse(print(&model).as_bytes(), &Options::default()).unwrap(), model, "{name}");

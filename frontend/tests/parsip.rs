@@ -102,7 +102,7 @@ fn read(nodes: &[&str]) -> Imported {
     let text = scene(nodes);
     let imported =
         parsip(text.as_bytes()).unwrap_or_else(|errors| panic!("{}", message(text.as_bytes(), &errors)));
-    assert_eq!(imported.warnings, [], "{text}");
+    assert_eq!(imported.warnings.list(), [], "{text}");
     imported.model.check().unwrap_or_else(|errors| panic!("{}", message(text.as_bytes(), &errors)));
     imported
 }

@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let [nodes, paths] = [Visit::Nodes, Visit::Paths].map(|visit| model.root.prefix(visit).count());
     println!("{nodes} nodes, {paths} with each path to them counted\n");
 
-    let tree = model.check().map_err(|errors| format!("{errors:?}"))?;
+    let tree = model.check()?;
     let evaluator = Evaluator::compile(&tree, Query::ATTRIBUTES)?;
     for step in -8..=8 {
         let x = step as f32 / 10.0;

@@ -1,14 +1,14 @@
 //! Why a model has no evaluator.
 
-use jbt_frontend::diagnostic::Diagnostic;
+use jbt_frontend::diagnostic::Diagnostics;
 use jbt_ir::VerifyError;
 
 /// Why a model could not be compiled.
 #[derive(Clone, Debug, thiserror::Error)]
 pub enum CompileError {
     /// The model is beyond a limit, or its numbers leave the range of f32: located messages for its author.
-    #[error("{}", .0.first().map_or("the model cannot be compiled", |first| first.message.as_str()))]
-    Model(Vec<Diagnostic>),
+    #[error(transparent)]
+    Model(#[from] Diagnostics),
     /// The engine that was asked for by name cannot be had on this machine.
     #[error("the engine `{engine}` is not available: {reason}")]
     Engine {

@@ -75,7 +75,8 @@ impl Compiler {
         query: Query,
         present: Option<&Arc<Kernel>>,
     ) -> Result<(Arc<Kernel>, Tables), CompileError> {
-        let Lowered { function, tables } = lowering.answers(query).map_err(CompileError::Model)?;
+        let Lowered { function, tables } =
+            lowering.answers(query).map_err(|list| lowering.tree().diagnostics(list))?;
         Ok((self.kernel(function, Purpose::Answers(query), present)?, tables))
     }
 

@@ -89,7 +89,7 @@ pub fn optimise(
                 "after the pass {}, the model's program has {values} values; it may have {most}",
                 pass.name
             );
-            return Err(CompileError::Model(vec![Diagnostic::limit(None, message)]));
+            return Err(CompileError::Model(vec![Diagnostic::limit(None, message)].into()));
         }
     }
     verify(function).map_err(CompileError::Internal)

@@ -11,11 +11,8 @@ fn readme() -> String {
 #[test]
 fn the_scene_on_the_first_screen_is_a_closed_surface() {
     let readme = readme();
-    let scene: Vec<&str> = readme
-        .lines()
-        .skip_while(|line| *line != "    jbt 1")
-        .take_while(|line| line.starts_with("    "))
-        .collect();
+    let scene: Vec<&str> =
+        readme.lines().skip_while(|line| *line != "jbt 1").take_while(|line| *line != "```").collect();
     assert_eq!(scene.len(), 12, "a scene of twelve lines");
     let model = parse(scene.join("\n").as_bytes(), &Options::default()).expect("it reads");
     let tree = model.check().expect("it is a good model");

@@ -7,7 +7,7 @@ use jbt_ir::limits;
 
 use super::numbers::check_number;
 use super::{CheckedNode, CheckedTree, NodeId, check_node, check_occurrences, widths};
-use crate::diagnostic::{Diagnostic, Span};
+use crate::diagnostic::{Diagnostic, Diagnostics, Span};
 use crate::number::{Formula, Number, Values};
 use crate::parameter::{Parameter, is_name, refresh};
 use crate::recipe::Recipe;
@@ -171,7 +171,11 @@ impl CheckedTree {
     ///
     /// Parameters that are not there, formulas without a value, and numbers that the [check](crate::check) refuses; located where the
     /// tree came from a text.
-    pub fn with_parameters(&self, settings: &[(&str, f64)]) -> Result<Self, Vec<Diagnostic>> {
+    pub fn with_parameters(&self, settings: &[(&str, f64)]) -> Result<Self, Diagnostics> {
+        self.with_settings(settings).map_err(|list| self.diagnostics(list))
+    }
+
+    fn with_settings(&self, settings: &[(&str, f64)]) -> Result<Self, Vec<Diagnostic>> {
         let mut report = Report::default();
         let mut parameters = self.parameters.clone();
         for &(name, value) in settings {
@@ -205,7 +209,8 @@ impl CheckedTree {
             return Err(report.finish());
         }
         let (attributes, dependence) = (self.attributes.clone(), Arc::clone(&self.dependence));
-        Ok(Self { iso, attributes, nodes, parameters, dependence })
+        let source = self.source.clone();
+        Ok(Self { iso, attributes, nodes, parameters, dependence, source })
     }
 
     /// The nodes, those that follow parameters that have moved made and checked again.

@@ -6,7 +6,7 @@
 mod parsip;
 mod vm;
 
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Diagnostics, SourceText};
 use crate::model::Model;
 
 pub use parsip::parsip;
@@ -18,5 +18,22 @@ pub struct Imported {
     /// The model.
     pub model: Model,
     /// What in the file is odd, and was read as best it could be.
-    pub warnings: Vec<Diagnostic>,
+    pub warnings: Diagnostics,
+}
+
+impl Imported {
+    /// What was read from these bytes.
+    fn from(
+        bytes: &[u8],
+        read: Result<(Model, Vec<Diagnostic>), Vec<Diagnostic>>,
+    ) -> Result<Self, Diagnostics> {
+        let source = Some(SourceText::new(SourceText::UNNAMED, bytes));
+        match read {
+            Ok((model, warnings)) => {
+                let warnings = Diagnostics::new(warnings, source.clone());
+                Ok(Self { model: Model { source, ..model }, warnings })
+            }
+            Err(list) => Err(Diagnostics::new(list, source)),
+        }
+    }
 }

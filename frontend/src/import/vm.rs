@@ -23,7 +23,7 @@ use jbt_ir::limits::MAX_SCENE_BYTES;
 
 use super::Imported;
 use crate::combine::Combinator;
-use crate::diagnostic::{Diagnostic, Span};
+use crate::diagnostic::{Diagnostic, Diagnostics, Span};
 use crate::expression::{Assembler, Draft, Formula};
 use crate::model::Model;
 use crate::number::{Binary, Function, Number, Step};
@@ -113,7 +113,11 @@ impl Instruction {
 ///
 /// Everything that is wrong with the file, with its place: operations and names that are not there, operands that are missing, numbers that
 /// cannot be read, a name that is given twice, and a file without instructions.
-pub fn vm(bytes: &[u8]) -> Result<Imported, Vec<Diagnostic>> {
+pub fn vm(bytes: &[u8]) -> Result<Imported, Diagnostics> {
+    Imported::from(bytes, read(bytes))
+}
+
+fn read(bytes: &[u8]) -> Result<(Model, Vec<Diagnostic>), Vec<Diagnostic>> {
     if bytes.len() > MAX_SCENE_BYTES {
         let message = format!("the file has {} bytes; at most {MAX_SCENE_BYTES} are read", bytes.len());
         return Err(vec![Diagnostic::limit(None, message)]);
@@ -133,7 +137,7 @@ pub fn vm(bytes: &[u8]) -> Result<Imported, Vec<Diagnostic>> {
         return Err(reader.report.finish());
     }
     let program = Program { instructions: reader.instructions, iso: Model::DEFAULT_ISO.into() };
-    Ok(Imported { model: Model::new(program.tree()), warnings: Vec::new() })
+    Ok((Model::new(program.tree()), Vec::new()))
 }
 
 struct Reader<'a> {

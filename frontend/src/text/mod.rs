@@ -95,7 +95,7 @@
 //!
 //! `parse(print(model)) == model` for every model that passes the check, with the same bits in every number, and with the same
 //! subtrees shared, as long as its text is not longer than [`jbt_ir::limits::MAX_SCENE_BYTES`]. Reading is iterative, takes
-//! memory for the model and not for the text, and reports every error with its place. Parameters are printed as such, with their
+//! memory for the model, and a copy of the text for messages, and reports every error with its place. Parameters are printed as such, with their
 //! present values, and so are the expressions that mention them.
 
 mod attribute;
@@ -113,7 +113,7 @@ mod value;
 
 use std::borrow::Cow;
 
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostics, SourceText};
 use crate::field::{Field, FieldKind};
 use crate::model::Model;
 use crate::number::Function;
@@ -143,8 +143,12 @@ pub struct Options {
 ///
 /// All that is wrong with the text, in its order, up to [`jbt_ir::limits::MAX_ERRORS`] and a count of the others. Whether the
 /// model makes sense, [`check`](crate::check) says.
-pub fn parse(text: &[u8], options: &Options) -> Result<Model, Vec<Diagnostic>> {
-    parse::read(text, options)
+pub fn parse(text: &[u8], options: &Options) -> Result<Model, Diagnostics> {
+    let source = || Some(SourceText::new(SourceText::UNNAMED, text));
+    match parse::read(text, options) {
+        Ok(model) => Ok(Model { source: source(), ..model }),
+        Err(list) => Err(Diagnostics::new(list, source())),
+    }
 }
 
 /// The names of the functions of expressions, as `sqrt`; in formulas of fields, falloffs are functions too.
@@ -157,8 +161,9 @@ pub fn functions() -> impl Iterator<Item = &'static str> {
 /// # Errors
 ///
 /// All that is wrong with it.
-pub fn number(text: &str) -> Result<f64, Vec<Diagnostic>> {
-    parse::read_number(text)
+pub fn number(text: &str) -> Result<f64, Diagnostics> {
+    let source = || SourceText::new(SourceText::UNNAMED, text.as_bytes());
+    parse::read_number(text).map_err(|list| Diagnostics::new(list, Some(source())))
 }
 
 /// The word before the name of an attribute group that is called like a word of the format.

@@ -488,9 +488,13 @@ impl<'a> Parser<'a> {
         }
         let report = std::mem::take(&mut self.report);
         match self.root {
-            Some(root) if report.is_empty() => {
-                Ok(Model { iso: self.iso, attributes: self.attributes, root, parameters: self.parameters })
-            }
+            Some(root) if report.is_empty() => Ok(Model {
+                iso: self.iso,
+                attributes: self.attributes,
+                root,
+                parameters: self.parameters,
+                source: None,
+            }),
             _ => Err(report.finish()),
         }
     }

@@ -5,10 +5,9 @@ use std::fs;
 use std::path::Path;
 
 use jbt::contour::{Detail, ImageDetail, Mode, Plane, Slicer, circles};
-use jbt::diagnostic::Source;
 use jbt::export::svg::{Paint, Style, write_svg};
 use jbt::export::write_png;
-use jbt::{CheckedTree, Compiler, Fineness, Picture, Query, text};
+use jbt::{CheckedTree, Compiler, Diagnostics, Fineness, Picture, Query, text};
 
 use crate::list::{Drawing, Entry, Scene};
 use crate::splash;
@@ -65,7 +64,7 @@ fn coarse(picture: &Picture) -> Picture {
 fn tree(root: &Path, scene: &Scene) -> Result<CheckedTree, Box<dyn Error>> {
     let (name, text) = match scene {
         Scene::Splash => {
-            return splash::model().check().map_err(|errors| format!("{errors:?}").into());
+            return Ok(splash::model().check()?);
         }
         Scene::File(path) => (path.clone(), fs::read_to_string(path)?),
         Scene::Readme => {
@@ -75,14 +74,13 @@ fn tree(root: &Path, scene: &Scene) -> Result<CheckedTree, Box<dyn Error>> {
         }
     };
     let name = name.display().to_string();
-    let source = Source { name: &name, text: text.as_bytes() };
-    let shown = |errors: Vec<_>| errors.iter().map(|error| source.render(error) + "\n").collect::<String>();
-    let model = text::parse(text.as_bytes(), &text::Options::default()).map_err(shown)?;
-    Ok(model.check().map_err(shown)?)
+    let named = |error: Diagnostics| error.named(&name);
+    let model = text::parse(text.as_bytes(), &text::Options::default()).map_err(named)?;
+    Ok(model.check().map_err(named)?)
 }
 
-/// The first scene of a page: indented lines that begin with the format.
+/// The first scene of a page: a fenced block that begins with the format.
 fn first_scene(page: &str) -> String {
-    let lines = page.lines().skip_while(|line| *line != "    jbt 1");
-    lines.take_while(|line| line.starts_with("    ")).flat_map(|line| [line, "\n"]).collect()
+    let lines = page.lines().skip_while(|line| *line != "jbt 1");
+    lines.take_while(|line| *line != "```").flat_map(|line| [line, "\n"]).collect()
 }

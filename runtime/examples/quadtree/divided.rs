@@ -62,10 +62,7 @@ pub fn model(circles: &[Circle]) -> Model {
 /// # Errors
 /// The model is not a good one, or cannot be compiled or evaluated.
 pub fn run(compiler: &Compiler, circles: &[Circle]) -> Result<Divided, Box<dyn Error>> {
-    let tree = model(circles).check().map_err(|wrong| {
-        let messages: Vec<String> = wrong.into_iter().map(|diagnostic| diagnostic.message).collect();
-        messages.join("; ")
-    })?;
+    let tree = model(circles).check()?;
     let pruner = Pruner::new(compiler, &tree)?;
     let evaluator = compiler.evaluator(&tree, Query::FIELD)?;
     let division = divide(&pruner, bounds(&Block::WHOLE), Block::WHOLE, &Limits::default(), &decide)?;

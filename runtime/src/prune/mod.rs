@@ -122,7 +122,8 @@ impl Pruner {
         lowering: &Lowering<'_>,
         present: Option<&Arc<Kernel>>,
     ) -> Result<Self, CompileError> {
-        let Guided { function, tables, guide } = lowering.guided().map_err(CompileError::Model)?;
+        let Guided { function, tables, guide } =
+            lowering.guided().map_err(|list| lowering.tree().diagnostics(list))?;
         let kernel = compiler.kernel(function, Purpose::Ranges, present)?;
         Ok(Self {
             compiler: compiler.clone(),

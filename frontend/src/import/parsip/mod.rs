@@ -35,7 +35,7 @@ use self::node::Reading;
 use self::scan::{Key, Section, Sections};
 use super::Imported;
 use crate::combine::Combinator;
-use crate::diagnostic::{Diagnostic, Span};
+use crate::diagnostic::{Diagnostic, Diagnostics, Span};
 use crate::model::Model;
 use crate::report::Report;
 use crate::tree::{NodeKind, Primitive, Tree};
@@ -80,7 +80,11 @@ struct Importer<'a> {
 ///
 /// Everything that is wrong with the file, with its place: numbers and names that cannot be read, nodes that are missing or
 /// contain themselves, zero scales, a root that is missing or not alone, operators that have no counterpart here.
-pub fn parsip(bytes: &[u8]) -> Result<Imported, Vec<Diagnostic>> {
+pub fn parsip(bytes: &[u8]) -> Result<Imported, Diagnostics> {
+    Imported::from(bytes, read(bytes))
+}
+
+fn read(bytes: &[u8]) -> Result<(Model, Vec<Diagnostic>), Vec<Diagnostic>> {
     if bytes.len() > MAX_SCENE_BYTES {
         let message = format!("the file has {} bytes; at most {MAX_SCENE_BYTES} are read", bytes.len());
         return Err(vec![Diagnostic::limit(None, message)]);
@@ -93,7 +97,7 @@ pub fn parsip(bytes: &[u8]) -> Result<Imported, Vec<Diagnostic>> {
     match root {
         Some(root) if importer.errors.is_empty() => {
             importer.count();
-            Ok(Imported { model: Model::new(root), warnings: importer.warnings.finish() })
+            Ok((Model::new(root), importer.warnings.finish()))
         }
         _ => Err([importer.errors.finish(), importer.warnings.finish()].concat()),
     }

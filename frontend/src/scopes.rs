@@ -3,9 +3,9 @@
 //! ```
 //! use jbt_frontend::builder::point;
 //! use jbt_frontend::combine::Combinator;
-//! use jbt_frontend::scene::Scene;
+//! use jbt_frontend::scopes::Scopes;
 //!
-//! let mut scene = Scene::new(Combinator::Union);
+//! let mut scene = Scopes::new(Combinator::Union);
 //! scene.begin(Combinator::Sum);
 //! for (y, color) in [(0.4, [1.0, 0.0, 0.0]), (-0.4, [0.0, 0.0, 1.0])] {
 //!     scene.begin(Combinator::Sum).attribute("color", &color).translate([0.0, y, 0.0]);
@@ -14,7 +14,7 @@
 //! }
 //! scene.end()?;
 //! let peanut = scene.finish()?;
-//! # Ok::<(), jbt_frontend::scene::ScopeError>(())
+//! # Ok::<(), jbt_frontend::scopes::ScopeError>(())
 //! ```
 
 use crate::combine::Combinator;
@@ -27,7 +27,7 @@ use crate::tree::{NodeKind, Tree};
 /// Attributes and maps hold for what follows them, up to the end of their scope. A map that comes later acts first, as if written
 /// further inside; of attributes with one name the later one counts.
 #[derive(Debug)]
-pub struct Scene {
+pub struct Scopes {
     root: Scope,
     open: Vec<Scope>,
 }
@@ -76,7 +76,7 @@ impl Scope {
     }
 }
 
-impl Scene {
+impl Scopes {
     /// An empty scene, whose parts will be combined so.
     #[must_use]
     pub fn new(combinator: Combinator) -> Self {
@@ -149,7 +149,7 @@ mod tests {
     #[test]
     fn scopes_nest_and_state_ends_with_them() {
         let ball = || point([0.0; 3], 1.0);
-        let mut scene = Scene::new(Combinator::Union);
+        let mut scene = Scopes::new(Combinator::Union);
         scene.begin(Combinator::Sum).attribute("color", &[1.0, 0.0, 0.0]).translate([0.0, 1.0, 0.0]);
         scene.primitive(ball()).translate([2.0, 0.0, 0.0]).primitive(ball());
         scene.end().unwrap().primitive(ball());
@@ -160,7 +160,7 @@ mod tests {
 
     #[test]
     fn unbalanced_scopes_are_errors() {
-        let mut scene = Scene::new(Combinator::Sum);
+        let mut scene = Scopes::new(Combinator::Sum);
         assert_eq!(scene.end().map(|_| ()), Err(ScopeError::NothingOpen));
         scene.begin(Combinator::Sum).begin(Combinator::Union);
         let error = scene.finish().unwrap_err();
