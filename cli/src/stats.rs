@@ -92,6 +92,7 @@ fn not_measured(scene: &Scene, error: MeasureError) -> Failure {
         MeasureError::Divide(
             DivideError::Bounds { .. } | DivideError::Place { .. } | DivideError::Field(_),
         )
+        | MeasureError::Compile(_)
         | MeasureError::Eval(_)
         | MeasureError::Cancelled => Failure::Defect(error.to_string()),
     }
@@ -132,8 +133,14 @@ struct Report<'a> {
 impl Report<'_> {
     /// Points, evaluations of primitives at them, boxes, evaluations of primitives over them.
     fn evaluations(&self) -> [u64; 4] {
-        let (field, ranges) = (self.solid.evaluator().counters(), self.solid.pruner().counters());
-        [field.points, field.primitive_evaluations, ranges.boxes, ranges.interval_evaluations]
+        let [field, normals] = self.solid.counters();
+        let ranges = self.solid.pruner().counters();
+        [
+            field.points + normals.points,
+            field.primitive_evaluations + normals.primitive_evaluations,
+            ranges.boxes,
+            ranges.interval_evaluations,
+        ]
     }
 
     /// The shares of solid, air and surface boxes in the region.

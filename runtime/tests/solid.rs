@@ -106,6 +106,100 @@ fn estimates_converge() {
     assert!(errors[2].0 < errors[0].0 && errors[2].1 < errors[0].1, "{errors:?}");
 }
 
+/// A solid in the cube from -2 to 2, its area, and whether it has edges.
+fn areas() -> [(&'static str, f64, bool); 10] {
+    let [.., (_, _, round_skin), (_, _, lens), (_, _, bowl)] = closed_forms();
+    // A ball of radius 1/2, stretched to twice that along z: a prolate spheroid.
+    let eccentricity = 0.75_f64.sqrt();
+    let spheroid = 2.0 * PI * 0.25 * (1.0 + 2.0 / eccentricity * eccentricity.asin());
+    [
+        (r"point { surface_radius 1 }", 4.0 * PI, false),
+        (r"ring { ring_radius 1 surface_radius 0.25 }", 4.0 * PI * PI * 0.25, false),
+        (r"box { half (0.5 0.3 0.2) surface_radius 0.1 }", round_skin, false),
+        (
+            r"segment { from (-0.5 0 0) to (0.5 0 0) surface_radius 0.4 }",
+            2.0 * PI * 0.4 * 1.0 + 4.0 * PI * 0.16,
+            false,
+        ),
+        (r"scale (1 1 2) { point { surface_radius 0.5 } }", spheroid, false),
+        (
+            r"intersection { point { at (0 0 0.8) surface_radius 1 } point { at (0 0 -0.8) surface_radius 1 } }",
+            lens,
+            true,
+        ),
+        (r"difference { point { surface_radius 1 } point { at (0 0 1) surface_radius 1 } }", bowl, true),
+        // A cube and a capped cylinder, whose flat faces are walls.
+        (r"within (-1 -1 -1) to (1 1 1) { expression { 0.5 + 0.01 * (x + 2) } }", 24.0, true),
+        (
+            r"within (-2 -2 -0.5) to (2 2 0.5) { segment { from (0 0 -2) to (0 0 2) surface_radius 0.6 } }",
+            2.0 * PI * 0.6 * 1.0 + 2.0 * PI * 0.36,
+            true,
+        ),
+        // Half a ball, whose flat face is a field of its own.
+        (
+            r"intersection {
+                sphere { sphere_radius 0.5 surface_radius 0.2 }
+                difference { sphere { sphere_radius 0.9 radius 1 } expression { 0.5 + z } }
+            }",
+            3.0 * PI * 0.49,
+            true,
+        ),
+    ]
+}
+
+/// The errors of an area, as a part of it, with so many boxes along the cube.
+fn area_error(text: &str, area: f64, boxes: usize) -> f64 {
+    let region = Some(Box3::new([-2.0; 3], [2.0; 3]));
+    let settings = Measure { region, fineness: Fineness::Resolution(boxes) };
+    solid(text).measure(&settings, &mut |_| true).unwrap().area / area - 1.0
+}
+
+/// Aligned: the flat faces lie in the planes between boxes. Shifted and turned: nothing does.
+#[test]
+fn areas_converge_aligned_shifted_and_turned() {
+    let (mut smooth, mut edged) = ([0.0_f64; 3], [0.0_f64; 3]);
+    for (text, area, has_edges) in areas() {
+        let placed = [
+            format!("jbt 1 {text}"),
+            format!("jbt 1 translate (0.0137 -0.0291 0.0433) {{ {text} }}"),
+            format!("jbt 1 rotate axis (1 2 3) degrees 37 {{ {text} }}"),
+        ];
+        for (place, scene) in ["aligned", "shifted", "turned"].into_iter().zip(&placed) {
+            // The radii of the smooth ones are of a few boxes at least.
+            let boxes = if has_edges { [16, 32, 64] } else { [24, 48, 96] };
+            let errors = boxes.map(|boxes| area_error(scene, area, boxes));
+            let bound = if has_edges { 0.02 } else { 0.004 };
+            assert!(errors[2].abs() < bound, "{text} {place}: {errors:?}");
+            let sums = if has_edges { &mut edged } else { &mut smooth };
+            sums.iter_mut().zip(errors).for_each(|(sum, error)| *sum += error * error / 15.0);
+        }
+    }
+    let [smooth, edged] = [smooth, edged].map(|sums| sums.map(f64::sqrt));
+    // With a quarter of the box: by 16 where there are only smooth surfaces, by 4 where there are edges.
+    assert!(smooth[2] < smooth[0] / 10.0, "{smooth:?}");
+    assert!(edged[2] < edged[0] / 4.0, "{edged:?}");
+    assert!(smooth[2] < 2e-3 && edged[2] < 8e-3, "{smooth:?} {edged:?}");
+}
+
+/// A face in the plane between two boxes counts once, whichever of its sides is inside.
+#[test]
+fn flat_faces_between_boxes_count_once() {
+    let cases = [
+        // Four of the eight octants are inside.
+        ("(-1 -1 -1) to (1 1 1)", "0.5 + x * y * z", 24.0),
+        ("(0 0 0) to (1 1 1)", "0.5 + x * y * z", 6.0),
+        ("(-1 -0.5 0) to (0 0.5 1)", "0.6 + 0.05 * x * y", 6.0),
+        ("(-1 -0.5 0) to (0 0.5 1.5)", "5 - x", 8.0),
+    ];
+    for (corners, field, area) in cases {
+        let scene = format!("jbt 1 within {corners} {{ expression {{ {field} }} }}");
+        for boxes in [16, 32] {
+            let error = area_error(&scene, area, boxes);
+            assert!(error.abs() < 1e-6, "{scene} {boxes}: {error}");
+        }
+    }
+}
+
 #[test]
 fn volumes_without_closed_forms_are_those_of_meshes() {
     for text in [APART, NESTED, SCENE] {

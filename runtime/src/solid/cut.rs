@@ -1,4 +1,4 @@
-//! A box cut by a plane: the linear field that fits a field best, how much of the box is on its upper side, and how large the cut is.
+//! A box cut by a plane: the linear field that fits a field best, and how much of the box is on its upper side.
 //!
 //! The fit takes the field at Gauss's eight points of the box. The mean of a field of the third degree there is its mean in the box; so what
 //! curvature moves the plane by cancels out over many boxes.
@@ -9,8 +9,8 @@
 //! V(a) = (a^3 - sum (a - m_i)+^3 + sum (a - m_i - m_j)+^3 - (a - m_1 - m_2 - m_3)+^3) / (6 m_1 m_2 m_3)
 //! ```
 //!
-//! of its volume, and the cut is `|g| V'(a)` times its volume (Scardovelli and Zaleski 2000, "Analytical relations connecting linear
-//! interfaces and volume fractions in rectangular grids").
+//! of its volume (Scardovelli and Zaleski 2000, "Analytical relations connecting linear interfaces and volume fractions in rectangular
+//! grids").
 
 /// How far Gauss's points are from the middle of an edge of length 1: `1 / (2 sqrt(3))`.
 const GAUSS: f64 = 0.288_675_134_594_812_9;
@@ -52,47 +52,32 @@ impl Linear {
     }
 }
 
-/// The part of a box that is on the upper side of a plane.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub(super) struct Cut {
-    /// Its part of the box's volume, in [0, 1].
-    pub(super) fraction: f64,
-    /// The area of the plane in the box.
-    pub(super) area: f64,
-}
-
 /// Components of the gradient that are smaller than this part of the largest count as this much: the formula divides by all of them.
 const FLATTEST: f64 = 1e-4;
 
-/// Cuts a box with these sides where the linear field of this gradient is zero; `middle` is its value in the middle of the box.
+/// The part of a box with these sides, in [0, 1], where the linear field of this gradient is not negative; `middle` is its value in the middle
+/// of the box.
 ///
 /// A gradient of zero, or one that is no number, cuts nothing: the box is above if the middle is not negative.
-pub(super) fn cut(sides: [f64; 3], middle: f64, gradient: [f64; 3]) -> Cut {
+pub(super) fn fraction(sides: [f64; 3], middle: f64, gradient: [f64; 3]) -> f64 {
     let slopes: [f64; 3] = std::array::from_fn(|axis| gradient[axis].abs() * sides[axis]);
     let steepest = slopes.iter().fold(0.0, |most: f64, &slope| most.max(slope));
     let sum: f64 = slopes.iter().sum();
     if !(steepest > 0.0 && sum.is_finite() && middle.is_finite()) {
-        return Cut { fraction: if middle >= 0.0 { 1.0 } else { 0.0 }, area: 0.0 };
+        return if middle >= 0.0 { 1.0 } else { 0.0 };
     }
     let m = slopes.map(|slope| (slope / steepest).max(FLATTEST));
     // From the highest corner down to the plane.
     let a = middle / steepest + 0.5 * m.iter().sum::<f64>();
     let whole: f64 = m.iter().sum();
     if a <= 0.0 || a >= whole {
-        return Cut { fraction: if a > 0.0 { 1.0 } else { 0.0 }, area: 0.0 };
+        return if a > 0.0 { 1.0 } else { 0.0 };
     }
     let product: f64 = m.iter().product();
-    let power = |n: i32| {
-        let part = |offset: f64| (a - offset).max(0.0).powi(n);
-        let pairs = part(m[0] + m[1]) + part(m[1] + m[2]) + part(m[2] + m[0]);
-        part(0.0) - m.iter().map(|&m| part(m)).sum::<f64>() + pairs
-    };
-    let length = (0..3).map(|axis| (m[axis] / sides[axis]).powi(2)).sum::<f64>().sqrt();
-    let volume: f64 = sides.iter().product();
-    Cut {
-        fraction: (power(3) / (6.0 * product)).clamp(0.0, 1.0),
-        area: (volume * length * power(2) / (2.0 * product)).max(0.0),
-    }
+    let part = |offset: f64| (a - offset).max(0.0).powi(3);
+    let pairs = part(m[0] + m[1]) + part(m[1] + m[2]) + part(m[2] + m[0]);
+    let cut_off = part(0.0) - m.iter().map(|&m| part(m)).sum::<f64>() + pairs;
+    (cut_off / (6.0 * product)).clamp(0.0, 1.0)
 }
 
 #[cfg(test)]
@@ -105,27 +90,19 @@ mod tests {
 
     #[test]
     fn planes_across_an_axis() {
-        let cut = |middle| cut([1.0, 2.0, 4.0], middle, [0.0, 3.0, 0.0]);
-        near(cut(0.0).fraction, 0.5);
-        near(cut(0.0).area, 4.0);
-        near(cut(1.5).fraction, 0.75);
-        near(cut(1.5).area, 4.0);
-        assert_eq!(cut(3.1), Cut { fraction: 1.0, area: 0.0 });
-        assert_eq!(cut(-3.1), Cut { fraction: 0.0, area: 0.0 });
+        let fraction = |middle| fraction([1.0, 2.0, 4.0], middle, [0.0, 3.0, 0.0]);
+        near(fraction(0.0), 0.5);
+        near(fraction(1.5), 0.75);
+        assert_eq!(fraction(3.1), 1.0);
+        assert_eq!(fraction(-3.1), 0.0);
     }
 
     #[test]
-    fn a_diagonal_plane_is_a_hexagon_or_a_triangle() {
-        let middle = cut([1.0; 3], 0.0, [-1.0, 1.0, 1.0]);
-        near(middle.fraction, 0.5);
-        near(middle.area, 0.75 * 3.0_f64.sqrt());
+    fn a_diagonal_plane_halves_a_cube_or_cuts_a_corner_off() {
+        near(fraction([1.0; 3], 0.0, [-1.0, 1.0, 1.0]), 0.5);
         // A corner of edge 1/2 is left.
-        let corner = cut([1.0; 3], -1.0, [1.0, 1.0, 1.0]);
-        near(corner.fraction, 1.0 / 48.0);
-        near(corner.area, 3.0_f64.sqrt() / 8.0);
-        let rest = cut([1.0; 3], 1.0, [1.0, -1.0, 1.0]);
-        near(rest.fraction, 47.0 / 48.0);
-        near(rest.area, 3.0_f64.sqrt() / 8.0);
+        near(fraction([1.0; 3], -1.0, [1.0, 1.0, 1.0]), 1.0 / 48.0);
+        near(fraction([1.0; 3], 1.0, [1.0, -1.0, 1.0]), 47.0 / 48.0);
     }
 
     #[test]
@@ -147,9 +124,9 @@ mod tests {
     #[test]
     fn what_has_no_slope_is_not_cut() {
         for gradient in [[0.0; 3], [f64::NAN, 0.0, 0.0], [f64::INFINITY, 0.0, 0.0]] {
-            assert_eq!(cut([1.0; 3], 0.0, gradient), Cut { fraction: 1.0, area: 0.0 });
-            assert_eq!(cut([1.0; 3], -1.0, gradient), Cut { fraction: 0.0, area: 0.0 });
+            assert_eq!(fraction([1.0; 3], 0.0, gradient), 1.0);
+            assert_eq!(fraction([1.0; 3], -1.0, gradient), 0.0);
         }
-        assert_eq!(cut([1.0; 3], f64::NAN, [1.0; 3]).fraction, 0.0);
+        assert_eq!(fraction([1.0; 3], f64::NAN, [1.0; 3]), 0.0);
     }
 }

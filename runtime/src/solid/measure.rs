@@ -9,17 +9,20 @@
 //! ```
 //!
 //! The bounds of the volume are proven. The estimates converge at least with the square of the edge of the smallest boxes where the surface is
-//! smooth, and with the edge at creases.
+//! smooth, and with the edge at creases. The area is that of crossings with lines (`crossings.rs`); where the surface is a wall, a jump of the
+//! field, the volume is that of the same lines.
 
 use rayon::prelude::*;
 
 use jbt_ir::limits::{MAX_MEASURE_BOXES, MAX_RESOLUTION};
 
+use super::crossings::crossed;
 use super::cut::{self, Linear};
 use super::progress::Progress;
 use super::{Batch, RegionError, Solid, center};
 use crate::divide::{Cell, Decision, DivideError, Division, Limits, Node, Outcome, divide};
-use crate::error::EvalError;
+use crate::error::{CompileError, EvalError};
+use crate::evaluator::Evaluator;
 use crate::job::{Hook, Job};
 use crate::polygonize::Fineness;
 use crate::prune::{Pruner, Region};
@@ -133,6 +136,9 @@ pub enum MeasureError {
     /// The field could not be evaluated.
     #[error(transparent)]
     Eval(#[from] EvalError),
+    /// The gradient, for normals, could not be compiled.
+    #[error(transparent)]
+    Compile(#[from] CompileError),
     /// It was told to stop.
     #[error("measuring was cancelled")]
     Cancelled,
@@ -183,6 +189,7 @@ impl Solid {
         if progress.is_cancelled() {
             return Err(MeasureError::Cancelled);
         }
+        let normals = self.normals()?;
         let leaves: Vec<(&Node<()>, &Region)> = division.leaves().collect();
         let share = (1.0 - DIVISION_SHARE) / leaves.len() as f64;
         let pieces: Vec<Piece> = leaves
@@ -191,7 +198,7 @@ impl Solid {
                 if !progress.add(share) {
                     return Err(MeasureError::Cancelled);
                 }
-                Ok(self.piece(&node.bounds, region)?)
+                Ok(self.piece(normals, &node.bounds, region)?)
             })
             .collect::<Result<_, _>>()?;
         let empty = Measures { region: bounds, cell, ..Measures::default() };
@@ -217,10 +224,20 @@ impl Solid {
         Ok(Decision::Split { axis, at: at[axis], data: [(); 2] })
     }
 
-    /// What a box that may hold surface holds, about: it is cut where the linear field is zero that fits best. Where none fits well, as at creases,
-    /// its parts are asked.
-    fn piece(&self, bounds: &Box3, region: &Region) -> Result<Piece, EvalError> {
-        let mut piece = Piece { volume: 0.0, area: 0.0, primitives: self.field.evaluations_in(region) };
+    /// What a box that may hold surface holds, about.
+    fn piece(&self, normals: &Evaluator, bounds: &Box3, region: &Region) -> Result<Piece, EvalError> {
+        let crossed = crossed(self, normals, bounds, region)?;
+        let volume = match crossed.walled_part {
+            Some(part) => part * volume_of(bounds),
+            None => self.linear_volume(bounds, region)?,
+        };
+        Ok(Piece { volume, area: crossed.area, primitives: self.field.evaluations_in(region) })
+    }
+
+    /// The volume of the solid in a box that may hold surface, about. The box is cut where the linear field that fits best is zero; where none
+    /// fits well, as at creases, its parts are asked.
+    fn linear_volume(&self, bounds: &Box3, region: &Region) -> Result<f64, EvalError> {
+        let mut volume = 0.0;
         let mut batch = Batch::default();
         let mut parts = vec![(*bounds, 0)];
         while let Some((bounds, depth)) = parts.pop() {
@@ -239,11 +256,9 @@ impl Solid {
                 parts.extend(super::cut(&bounds, [2; 3]).into_iter().map(|part| (part, depth + 1)));
                 continue;
             }
-            let cut = cut::cut(sides, middle, linear.gradient);
-            piece.volume += cut.fraction * volume_of(&bounds);
-            piece.area += cut.area;
+            volume += cut::fraction(sides, middle, linear.gradient) * volume_of(&bounds);
         }
-        Ok(piece)
+        Ok(volume)
     }
 
     /// Adds everything up, in the order of the division.

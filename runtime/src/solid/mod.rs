@@ -12,6 +12,7 @@
 //! After Bowyer's svLis (1999): its membership test, its tight fit and the report of its divisions.
 
 mod bounds;
+mod crossings;
 mod cut;
 mod measure;
 mod membership;
@@ -23,10 +24,13 @@ pub use jbt_frontend::owner::Owner;
 pub use measure::{Contents, Level, Measure, MeasureError, Measures, Volume};
 pub use membership::{Membership, MembershipError};
 
+use std::sync::OnceLock;
+
 use jbt_frontend::check::CheckedTree;
 use jbt_frontend::owner;
 use jbt_frontend::query::Query;
 
+use crate::counter::Counters;
 use crate::error::{CompileError, EvalError};
 use crate::evaluator::{Compiler, Evaluator};
 use crate::prune::{Pruner, Region};
@@ -51,6 +55,9 @@ pub struct Solid {
     iso: f32,
     pruner: Pruner,
     field: Evaluator,
+    compiler: Compiler,
+    /// What answers the field and its gradient, from the first measure on.
+    normals: OnceLock<Evaluator>,
 }
 
 /// Why a question has no region.
@@ -84,6 +91,8 @@ impl Solid {
             iso: tree.iso() as f32,
             pruner: Pruner::new(compiler, tree)?,
             field: compiler.evaluator(tree, Query::FIELD)?,
+            compiler: compiler.clone(),
+            normals: OnceLock::new(),
         })
     }
 
@@ -97,6 +106,8 @@ impl Solid {
             iso: tree.iso() as f32,
             pruner: self.pruner.updated(tree)?,
             field: self.field.updated(tree)?,
+            compiler: self.compiler.clone(),
+            normals: OnceLock::new(),
         })
     }
 
@@ -112,10 +123,26 @@ impl Solid {
         &self.pruner
     }
 
-    /// What evaluates the field at points. Its counters tell what the questions so far took of that.
+    /// What evaluates the field at points.
     #[must_use]
     pub fn evaluator(&self) -> &Evaluator {
         &self.field
+    }
+
+    /// What the questions so far took at points: of the field, and of the field with its gradient.
+    #[must_use]
+    pub fn counters(&self) -> [Counters; 2] {
+        [self.field.counters(), self.normals.get().map(Evaluator::counters).unwrap_or_default()]
+    }
+
+    /// What answers the field and its gradient. The code is that of the compiler, which remembers it.
+    fn normals(&self) -> Result<&Evaluator, CompileError> {
+        if self.normals.get().is_none() {
+            let made = self.compiler.evaluator(&self.tree, Query::GRADIENT)?;
+            // Another thread may have been quicker; both are the same.
+            let _ = self.normals.set(made);
+        }
+        Ok(self.normals.get().expect("it has just been set"))
     }
 
     /// The leaf that decides the field at a point, in f64 by a plain walk: see [`jbt_frontend::owner`].
