@@ -151,7 +151,7 @@ fn areas() -> [(&'static str, f64, bool); 10] {
 fn area_error(text: &str, area: f64, boxes: usize) -> f64 {
     let region = Some(Box3::new([-2.0; 3], [2.0; 3]));
     let settings = Measure { region, fineness: Fineness::Resolution(boxes) };
-    solid(text).measure(&settings, &mut |_| true).unwrap().area / area - 1.0
+    solid(text).measure(&settings).run().unwrap().area / area - 1.0
 }
 
 /// Aligned: the flat faces lie in the planes between boxes. Shifted and turned: nothing does.

@@ -344,7 +344,8 @@ fn halve(solid: &Solid, region: &Region, crossings: &mut [&mut Crossing]) -> Res
         crossings.iter().for_each(|crossing| batch.push(crossing.point(crossing.along(0.5))));
         let values = batch.values(solid, region)?.to_vec();
         for (index, (crossing, value)) in crossings.iter_mut().zip(values).enumerate() {
-            let end = usize::from(!(value >= solid.iso));
+            // A NaN is outside.
+            let end = if value >= solid.iso { 0 } else { 1 };
             crossing.ends[end] = batch.point(index);
             crossing.values[end] = value;
         }
