@@ -21,6 +21,7 @@ use jbt::mesh::Lattice;
 use jbt::statistics::{PerPoint, Statistics, Supports, SupportsError, walks};
 use jbt::{Compiler, Engine, MeshCounters, Polygonize, PolygonizeError, Query};
 use jbt_frontend::check::CheckedTree;
+use jbt_frontend::diagnostic::Source;
 use jbt_frontend::tree::NodeKind;
 use serde_json::{Value, json};
 
@@ -151,7 +152,7 @@ struct Leaf {
 
 fn leaves(scene: &Scene, tree: &CheckedTree) -> Vec<Leaf> {
     let uses = tree.asked();
-    let lines = Lines::new(scene.source().text);
+    let lines = Lines::new(scene.source());
     let leaf = |(index, node): (usize, &jbt_frontend::check::CheckedNode)| match &node.kind {
         NodeKind::Primitive(primitive) => Some(Leaf {
             node: index as u32,
@@ -178,9 +179,8 @@ struct Lines<'a> {
 }
 
 impl<'a> Lines<'a> {
-    fn new(text: &'a [u8]) -> Self {
-        let ends = text.iter().enumerate().filter(|&(_, &byte)| byte == b'\n').map(|(at, _)| at + 1);
-        Self { text, starts: std::iter::once(0).chain(ends).collect() }
+    fn new(source: Source<'a>) -> Self {
+        Self { text: source.text, starts: source.line_starts() }
     }
 
     /// Line and column, counted from 1; the column counts characters.

@@ -105,10 +105,30 @@ impl Source<'_> {
     /// Line and column of a byte, counted from 1. The column counts characters; bytes that are not UTF-8 count one each.
     #[must_use]
     pub fn position(&self, byte: usize) -> (usize, usize) {
-        let before = &self.text[..byte.min(self.text.len())];
-        let line = before.iter().filter(|&&b| b == b'\n').count() + 1;
-        let start = before.iter().rposition(|&b| b == b'\n').map_or(0, |newline| newline + 1);
-        (line, characters(&before[start..]) + 1)
+        let byte = byte.min(self.text.len());
+        let line = (0..byte).filter(|&at| self.ends_line(at)).count() + 1;
+        (line, characters(&self.text[self.line_start(byte)..byte]) + 1)
+    }
+
+    /// Whether a line ends with this byte: a line feed, or a carriage return with none behind it.
+    fn ends_line(&self, at: usize) -> bool {
+        match self.text[at] {
+            b'\n' => true,
+            b'\r' => self.text.get(at + 1) != Some(&b'\n'),
+            _ => false,
+        }
+    }
+
+    /// The bytes at which lines begin, in their order.
+    #[must_use]
+    pub fn line_starts(&self) -> Vec<usize> {
+        let ends = (0..self.text.len()).filter(|&at| self.ends_line(at));
+        std::iter::once(0).chain(ends.map(|end| end + 1)).collect()
+    }
+
+    /// Where the line of a byte begins.
+    fn line_start(&self, byte: usize) -> usize {
+        (0..byte).rev().find(|&at| self.ends_line(at)).map_or(0, |end| end + 1)
     }
 
     /// The diagnostic as people read it: place, message, the line, a caret. Control characters of the file are escaped.
@@ -148,14 +168,13 @@ impl Source<'_> {
     fn excerpt(&self, span: Span) -> (String, usize, usize) {
         let start = (span.start as usize).min(self.text.len());
         let end = (span.end as usize).clamp(start, self.text.len());
-        let line_start =
-            self.text[..start].iter().rposition(|&b| b == b'\n').map_or(0, |newline| newline + 1);
-        let line_end =
-            self.text[start..].iter().position(|&b| b == b'\n').map_or(self.text.len(), |n| start + n);
-        let from = line_start.max(start.saturating_sub(EXCERPT / 2));
+        let is_end = |b: &u8| matches!(b, b'\n' | b'\r');
+        let line_end = self.text[start..].iter().position(is_end).map_or(self.text.len(), |n| start + n);
+        let from = self.line_start(start).max(start.saturating_sub(EXCERPT / 2));
         let to = line_end.min(from + EXCERPT);
         let show = |range: &[u8]| escape(&String::from_utf8_lossy(range));
-        let before = show(&self.text[from..start]);
+        let before = &self.text[from..start];
+        let before = show(before.strip_suffix(b"\r").unwrap_or(before));
         let under = show(&self.text[start..end.clamp(start, to.max(start))]);
         let after = show(&self.text[end.clamp(start, to.max(start))..to.max(start)]);
         (
@@ -208,6 +227,27 @@ mod tests {
         let source = Source { name: "p.csv", text: b"1,nan,3" };
         let shown = source.render_from(1000, &Diagnostic::error(Some(Span::new(2, 5)), "bad"));
         assert_eq!(shown, "p.csv:1000:3: error: bad\n  1000 | 1,nan,3\n       |   ^^^");
+    }
+
+    #[test]
+    fn lines_end_as_on_any_system() {
+        let shown = |text: &str| {
+            let start = text.find("bad").unwrap();
+            let source = Source { name: "a.jbt", text: text.as_bytes() };
+            source.render(&Diagnostic::error(Some(Span::new(start, start + 3)), "m"))
+        };
+        let expected = "a.jbt:3:4: error: m\n  3 |    bad x\n    |    ^^^";
+        for end in ["\n", "\r\n", "\r"] {
+            assert_eq!(shown(&["jbt 1", "", "   bad x", "y", ""].join(end)), expected, "{end:?}");
+        }
+        // An end that is no place of a token, and one that is two.
+        let source = Source { name: "a", text: b"x\r\ny\r\rz" };
+        assert_eq!(
+            [1, 2, 3, 5, 6].map(|byte| source.position(byte)),
+            [(1, 2), (1, 3), (2, 1), (3, 1), (4, 1)]
+        );
+        let last = source.render(&Diagnostic::error(Some(Span::new(2, 9)), "m"));
+        assert_eq!(last, "a:1:3: error: m\n  1 | x\n    |  ^");
     }
 
     #[test]

@@ -266,6 +266,68 @@ fn spans_are_bytes() {
     assert_eq!(shown(&children[1]), "translate (1 0 0)");
 }
 
+/// Files of any system: the same model, and the same messages, which have no character that no terminal shows.
+#[test]
+fn lines_end_as_on_any_system() {
+    let good = "jbt 1 # a comment\nparam r = 1 // another\npoint {\n    radius r # the last\n}\n";
+    let bad = "jbt 1\n# a comment\nunion {\n    point { radus 1 } # one\n    piont { }\n    color #ff8800 {\n    }\n}\n";
+    let read = |text: &str, end: &str| {
+        let text = text.replace('\n', end);
+        let read = parse(text.as_bytes(), &Options::default());
+        let source = Source { name: "a.jbt", text: text.as_bytes() };
+        let show =
+            |errors: Vec<Diagnostic>| errors.iter().map(|error| source.render(error)).collect::<Vec<_>>();
+        read.map(|model| print(&model)).map_err(show)
+    };
+    assert!(read(good, "\n").is_ok() && read(bad, "\n").is_err());
+    for end in ["\r\n", "\r"] {
+        assert_eq!(read(good, end), read(good, "\n"));
+        assert_eq!(read(bad, end), read(bad, "\n"));
+    }
+    assert!(
+        read(bad, "\r\n").unwrap_err().iter().all(|shown| !shown.contains("\\u{") && !shown.contains('\r'))
+    );
+}
+
+#[test]
+fn colours_of_screens_become_linear_as_they_are_read() {
+    let root = |color: &str| {
+        let text = format!("jbt 1 param r = 1 attribute glass 4 color {color} {{ point {{ radius 1 }} }}");
+        let options = Options { parameters: vec![("r".to_owned(), 0.2)] };
+        let model =
+            parse(text.as_bytes(), &options).unwrap_or_else(|errors| panic!("{}", marked(&text, &errors)));
+        let again = parse(print(&model).as_bytes(), &Options::default()).unwrap();
+        assert_eq!((&again, bits(&again.root)), (&model, bits(&model.root)), "{color}");
+        let NodeKind::Attribute { value: AttributeValue::Numbers(numbers), .. } = model.root.node().kind()
+        else {
+            panic!("numbers")
+        };
+        numbers.clone()
+    };
+    // IEC 61966-2-1, in another form: what is dark is a line.
+    let linear = |byte: u8| {
+        let screen = f64::from(byte) / 255.0;
+        if byte < 11 { screen / 12.92 } else { ((screen * 200.0 + 11.0) / 211.0).powf(2.4) }
+    };
+    let near = |found: &[f64], expected: [u8; 3]| {
+        let close = |(a, b): (&f64, u8)| (a - linear(b)).abs() < 1e-12;
+        assert!(found.iter().zip(expected).all(close) && found.len() == 3, "{found:?} {expected:?}");
+    };
+    near(&root("\"#ff8800\""), [255, 136, 0]);
+    near(&root("\"#F80\""), [255, 136, 0]);
+    near(&root("\"#0a0B0c\""), [10, 11, 12]);
+    near(&root("srgb(1 128/255 0)"), [255, 128, 0]);
+    near(&root("srgb (1, 10 / 255, 0)"), [255, 10, 0]);
+    near(&root("srgb(r 1 - r 0)"), [51, 204, 0]);
+    assert_eq!(root("\"#fff\""), [1.0; 3]);
+    assert_eq!(root("\"#000\""), [0.0; 3]);
+    assert_eq!(
+        root("srgb(r r r)"),
+        root("srgb(0.2 0.2 0.2)"),
+        "a parameter and its value give the same bits"
+    );
+}
+
 #[test]
 fn bytes_that_are_no_text() {
     let errors = parse(b"jbt 1\npoint { \xff radius 1 }", &Options::default()).unwrap_err();

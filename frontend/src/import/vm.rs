@@ -124,7 +124,7 @@ fn read(bytes: &[u8]) -> Result<(Model, Vec<Diagnostic>), Vec<Diagnostic>> {
     }
     let mut reader = Reader { names: HashMap::new(), instructions: Vec::new(), report: Report::default() };
     let mut start = 0;
-    for line in bytes.split(|&byte| byte == b'\n') {
+    for line in bytes.split(|byte| matches!(byte, b'\n' | b'\r')) {
         reader.line(line, start);
         start += line.len() + 1;
     }

@@ -7,6 +7,7 @@
 //! uv scale (2 2) rotate 90 shift (0 0.5) { child }           a group of two reals; all three may be left out
 //! ```
 
+use super::color::color_hint;
 use super::expression::{Place, is_builtin};
 use super::formula::EXPRESSION;
 use super::lex::{Token, TokenKind};
@@ -29,9 +30,17 @@ pub(super) fn texture_named(word: &str) -> Option<TextureKind> {
     TextureKind::ALL.iter().copied().find(|kind| kind.name() == word)
 }
 
+/// Whether a word begins what is no list of numbers.
+pub(super) fn is_value_word(word: &str) -> bool {
+    word == EXPRESSION || texture_named(word).is_some()
+}
+
 impl Parser<'_> {
     /// The value of the attribute `name`, whose token is `at`; nothing after an error in what is no list of numbers.
     pub(super) fn attribute_value(&mut self, at: Token, name: &str, width: usize) -> Option<AttributeRecipe> {
+        if self.begins_color(Some(width)) {
+            return Some(AttributeRecipe::Numbers(self.group_values(Some(width))));
+        }
         let word = self.peek_word();
         if let Some(kind) = word.and_then(texture_named) {
             let token = self.next();
@@ -51,28 +60,31 @@ impl Parser<'_> {
         }
         match word {
             Some(word) if !is_number(word) => {
-                self.unknown_texture(word);
+                self.unknown_texture(word, width);
                 None
             }
             _ => Some(AttributeRecipe::Numbers(self.group_values(Some(width)))),
         }
     }
 
-    fn unknown_texture(&mut self, word: &str) {
+    fn unknown_texture(&mut self, word: &str, width: usize) {
         let token = self.next();
         self.report_with(|parser| {
             let message = format!("no texture or parameter is called `{}`", clip(word));
             let textures = || TextureKind::ALL.iter().map(|kind| kind.name());
             let words = textures().chain([EXPRESSION]).chain(parser.parameter_names());
-            Diagnostic::error(Some(token.span()), message).expected(match nearest(word, words) {
-                Some(near) => format!("perhaps `{near}`"),
-                None => format!(
+            let color = color_hint(word).filter(|_| matches!(width, 3 | 4));
+            Diagnostic::error(Some(token.span()), message).expected(match (color, nearest(word, words)) {
+                (Some(hint), _) => hint,
+                (None, Some(near)) => format!("perhaps `{near}`"),
+                (None, None) => format!(
                     "`{EXPRESSION}` is a formula, textures are {}",
                     textures().collect::<Vec<_>>().join(", ")
                 ),
             })
         });
         self.stay_lost();
+        self.skip_arguments();
         if self.peek().is(b'{') {
             self.skip_block();
         }
@@ -153,7 +165,7 @@ impl Parser<'_> {
                     self.stay_lost();
                     return None;
                 }
-                TokenKind::Mark(_) | TokenKind::Number | TokenKind::Unknown => {
+                TokenKind::Mark(_) | TokenKind::Number | TokenKind::Quoted | TokenKind::Unknown => {
                     self.expected_at(token, "expected a parameter or `}`");
                     self.skip_token();
                 }

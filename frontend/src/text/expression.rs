@@ -161,7 +161,9 @@ impl Parser<'_> {
             TokenKind::Mark(mark) => {
                 Binary::of_mark(mark).is_some_and(|binary| !self.begins_element(binary, place))
             }
-            TokenKind::Number | TokenKind::Word | TokenKind::Unknown | TokenKind::End => false,
+            TokenKind::Number | TokenKind::Word | TokenKind::Quoted | TokenKind::Unknown | TokenKind::End => {
+                false
+            }
         };
         if goes_on {
             return self.expression_after(place, sign, Some((&value.into(), token.span())));
@@ -294,7 +296,7 @@ impl Parser<'_> {
                 stacks.waiting.push((Waiting::Group, at));
                 Some(true)
             }
-            TokenKind::Mark(_) | TokenKind::Unknown | TokenKind::End => {
+            TokenKind::Mark(_) | TokenKind::Quoted | TokenKind::Unknown | TokenKind::End => {
                 self.expected_at(token, "expected a number");
                 None
             }

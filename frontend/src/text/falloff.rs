@@ -21,8 +21,9 @@ impl Parser<'_> {
         self.next();
         let Some(kind) = FalloffKind::named(word) else {
             self.report(|| {
+                let near = nearest(word, names()).map(|near| format!("perhaps `{near}`"));
                 Diagnostic::error(Some(token.span()), format!("no falloff is called `{}`", clip(word)))
-                    .expected(expected())
+                    .expected(near.unwrap_or_else(expected))
             });
             if self.peek().is(b'{') {
                 self.skip_block();
@@ -76,7 +77,7 @@ impl Parser<'_> {
                     self.unclosed(open.start as u32, token);
                     return false;
                 }
-                TokenKind::Mark(_) | TokenKind::Number | TokenKind::Unknown => {
+                TokenKind::Mark(_) | TokenKind::Number | TokenKind::Quoted | TokenKind::Unknown => {
                     self.expected_at(token, "expected a parameter or `}`");
                     self.skip_token();
                 }

@@ -328,7 +328,11 @@ impl<'a> Parser<'a> {
                     self.unclosed(open.start as u32, token);
                     return false;
                 }
-                TokenKind::Word | TokenKind::Mark(_) | TokenKind::Number | TokenKind::Unknown => {
+                TokenKind::Word
+                | TokenKind::Mark(_)
+                | TokenKind::Number
+                | TokenKind::Quoted
+                | TokenKind::Unknown => {
                     self.skip_token();
                 }
             }

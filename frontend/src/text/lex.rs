@@ -11,6 +11,8 @@ pub(super) enum TokenKind {
     Number,
     /// One of `{ } ( ) , = + - * / ^`.
     Mark(u8),
+    /// Text in double quotes, all on one line.
+    Quoted,
     /// Bytes that begin no token.
     Unknown,
     /// The end of the text.
@@ -93,6 +95,12 @@ impl<'a> Lexer<'a> {
         self.token.start > self.previous_end && !blank
     }
 
+    /// Goes back into what has been skipped as a comment.
+    pub(super) fn resume(&mut self, at: usize) {
+        self.previous_end = at;
+        self.token = self.scan(at);
+    }
+
     /// Goes to the end of the text.
     pub(super) fn finish(&mut self) {
         let end = self.text.len();
@@ -119,6 +127,14 @@ impl<'a> Lexer<'a> {
             Some(&mark @ (b'{' | b'}' | b'(' | b')' | b',' | b'=' | b'+' | b'-' | b'*' | b'/' | b'^')) => {
                 token(TokenKind::Mark(mark), start + 1)
             }
+            Some(b'"') => match bytes[start + 1..].iter().position(|b| matches!(b, b'"' | b'\n' | b'\r')) {
+                Some(n) if bytes[start + 1 + n] == b'"' => token(TokenKind::Quoted, start + n + 2),
+                // Without its end, a quote goes as far as a word, so that what it holds begins no comment.
+                _ => token(
+                    TokenKind::Unknown,
+                    run(start, |b| !b.is_ascii_whitespace() && !matches!(b, b'{' | b'}' | b'(' | b')')),
+                ),
+            },
             Some(byte) if byte.is_ascii() => token(TokenKind::Unknown, start + 1),
             Some(_) => token(TokenKind::Unknown, run(start, |b| !b.is_ascii())),
         }
@@ -135,7 +151,10 @@ fn skip_blanks(bytes: &[u8], mut at: usize) -> usize {
         match (bytes.get(at), bytes.get(at + 1)) {
             (Some(b' ' | b'\t' | b'\n' | b'\r'), _) => at += 1,
             (Some(b'#'), _) | (Some(b'/'), Some(b'/')) => {
-                at = bytes[at..].iter().position(|&b| b == b'\n').map_or(bytes.len(), |n| at + n);
+                at = bytes[at..]
+                    .iter()
+                    .position(|b| matches!(b, b'\n' | b'\r'))
+                    .map_or(bytes.len(), |n| at + n);
             }
             (Some(_), _) => return at,
             (None, _) => return bytes.len(),
@@ -175,7 +194,7 @@ mod tests {
 
     #[test]
     fn every_kind() {
-        let text = "# c\na_1{2.5e-3//x\n.5 3. 1e 2x é$ - -1";
+        let text = "# c\na_1{2.5e-3//x\n.5 3. 1e 2x é$ - -1 #\r\"#f80\" \"#f8 {\"\n\"";
         let mut lexer = Lexer::new(text);
         let mut shown = Vec::new();
         loop {
@@ -188,7 +207,7 @@ mod tests {
         assert_eq!(
             shown.join("; "),
             "Word a_1; Mark(123) {; Number 2.5e-3; Number .5; Number 3.; Unknown 1e; Unknown 2x; Unknown é; \
-             Unknown $; Mark(45) -; Mark(45) -; Number 1"
+             Unknown $; Mark(45) -; Mark(45) -; Number 1; Quoted \"#f80\"; Quoted \"#f8 {\"; Unknown \""
         );
     }
 

@@ -19,6 +19,11 @@ impl Parser<'_> {
     }
 
     pub(super) fn rotate(&mut self, start: Token) -> Begun {
+        if self.peek().is(b'(') {
+            self.expected_at(self.peek(), "expected an axis and an angle: rotate axis z degrees 90 { .. }");
+            self.skip_arguments();
+            return self.block(start, Head::Broken);
+        }
         let mut slots = self.slots(ROTATE, "`rotate`");
         let [axis, degrees, radians] = [0, 1, 2].map(|index| slots.take(index));
         let span = Span::new(start.start, self.previous_end());

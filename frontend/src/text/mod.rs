@@ -58,7 +58,8 @@
 //!            | TEXTURE "{" { "a" values | "b" values | FIELD value } "}"     a pattern in the node's space: a where it is 0, b where it is 1
 //!            | { "scale" ( expression | vector ) | "rotate" expression | "shift" vector } ;   uv of the skeletons, for groups of 2 reals
 //! value      = expression | vector | WORD ;                  as the field's kind asks
-//! values     = vector | expression ;                         as many as the group is wide
+//! values     = vector | expression                           as many as the group is wide
+//!            | HEX | "srgb" vector ;                         a colour as screens have it, made linear: 3 reals, or 4 with an opacity
 //! vector     = "(" expression { [ "," ] expression } ")" ;
 //! expression = NUMBER | NAME | "pi" | "-" expression | "+" expression | "(" expression ")"
 //!            | expression ( "+" | "-" | "*" | "/" | "^" ) expression
@@ -67,6 +68,7 @@
 //! FUNCTION   = "sqrt" | "sin" | "cos" | "tan" | "asin" | "acos" | "atan" | "atan2" | "abs" | "sign" | "floor" | "ceil" | "round"
 //!            | "mod" | "exp" | "ln" | "square" | "min" | "max" | "clamp" | "mix" | "step" | "length" | "pow" ;
 //!            in formulas also FALLOFF, of a distance of which 1 is the end
+//! HEX        = a double quote, "#", 3, 4, 6 or 8 digits in hex, a double quote ;
 //! NAME       = letter { letter | digit | "_" } ;
 //! ```
 //!
@@ -74,7 +76,9 @@
 //! [`falloff`](crate::falloff), [`warp`](crate::warp) and [`texture`](crate::texture) give themselves. Where a skeleton's own parameter is called like one
 //! that every primitive has, the skeleton's name goes before it: a disc has a `disc_radius`, and a `radius` around it.
 //!
-//! * `#` and `//` begin a comment that ends with the line. Line ends are blanks like others.
+//! * `#` and `//` begin a comment that ends with the line: at a line feed, a carriage return, or both. Line ends are blanks like others.
+//! * Colours in hex stand in quotes, `color "#ff8800"`: without them they are comments. `srgb` takes numbers from 0 to 1, which may follow
+//!   parameters. Both become linear as they are read.
 //! * A parameter can be set from outside, `-D bulge=2`, and again at run time
 //!   ([`CheckedTree::with_parameters`](crate::check::CheckedTree::with_parameters)): numbers that mention it follow it, and so do
 //!   parameters whose defaults mention it, unless they are set themselves. Parameters in the width or the default of an attribute group
@@ -99,9 +103,11 @@
 //! present values, and so are the expressions that mention them.
 
 mod attribute;
+mod color;
 mod expression;
 mod falloff;
 mod formula;
+mod hints;
 mod lex;
 mod map;
 mod node;

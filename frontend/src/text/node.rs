@@ -3,6 +3,7 @@
 use jbt_ir::limits::MAX_NODES;
 
 use super::expression::Place;
+use super::hints::foreign_word;
 use super::lex::{Token, TokenKind};
 use super::parse::{Parser, is_statement};
 use super::{GROUP_NODE, REFLECT, SHEAR, STRETCH, WEIGHTED, operator};
@@ -143,7 +144,7 @@ impl<'a> Parser<'a> {
                     }
                     return self.broken.clone();
                 }
-                TokenKind::Mark(_) | TokenKind::Number | TokenKind::Unknown => {
+                TokenKind::Mark(_) | TokenKind::Number | TokenKind::Quoted | TokenKind::Unknown => {
                     let Some(frame) = frames.last_mut() else {
                         self.expected_at(token, "expected a node");
                         return self.broken.clone();
@@ -182,11 +183,40 @@ impl<'a> Parser<'a> {
                     self.unclosed(open.start as u32, token);
                     return;
                 }
-                TokenKind::Mark(_) | TokenKind::Word | TokenKind::Number | TokenKind::Unknown => {}
+                TokenKind::Mark(_)
+                | TokenKind::Word
+                | TokenKind::Number
+                | TokenKind::Quoted
+                | TokenKind::Unknown => {}
             }
             if depth == 0 {
                 return;
             }
+        }
+    }
+
+    /// Past the parentheses that are next, whatever is in them, and a semicolon behind them; not into a block.
+    pub(super) fn skip_arguments(&mut self) {
+        let mut depth = 0usize;
+        loop {
+            match self.peek().kind {
+                TokenKind::Mark(b'(') => depth += 1,
+                TokenKind::Mark(b')') if depth > 0 => depth -= 1,
+                TokenKind::Mark(b'{' | b'}') | TokenKind::End => return,
+                TokenKind::Mark(_)
+                | TokenKind::Word
+                | TokenKind::Number
+                | TokenKind::Quoted
+                | TokenKind::Unknown => {
+                    if depth == 0 {
+                        break;
+                    }
+                }
+            }
+            self.next();
+        }
+        if self.text(self.peek()) == ";" {
+            self.next();
         }
     }
 
@@ -297,6 +327,10 @@ impl<'a> Parser<'a> {
 
     /// The opening brace of a node, after an error also a later one that must be meant.
     pub(super) fn open(&mut self) -> Option<Token> {
+        if self.peek().is(b'(') {
+            self.expected_at(self.peek(), "expected `{`: no parentheses stand before a block");
+            self.skip_arguments();
+        }
         if !self.peek().is(b'{') {
             self.expected_at(self.peek(), "expected `{`");
             while let token = self.peek()
@@ -417,15 +451,24 @@ impl<'a> Parser<'a> {
 
     /// A word that begins nothing. A block with values before it is read as that of a misspelt attribute, others are skipped.
     fn unknown_node(&mut self, start: Token, word: &'a str) -> Begun {
-        let valued = self.peek().is(b'(') || self.peek().kind == TokenKind::Number;
+        let foreign = foreign_word(word);
+        let valued = foreign.is_none() && (self.peek().is(b'(') || self.peek().kind == TokenKind::Number);
+        let assigned = self.peek().is(b'=');
         self.report_with(|parser| {
             let known = parser.node_words();
             let error = Diagnostic::error(Some(start.span()), format!("no node is called `{}`", clip(word)));
             if parser.lets.contains_key(word) {
                 return error.expected(format!("perhaps `use {word}`"));
             }
+            if let Some(hint) = foreign {
+                return error.expected(hint);
+            }
             match nearest(word, known) {
                 Some(near) => error.expected(format!("perhaps `{near}`")),
+                None if assigned => {
+                    let name = clip(word);
+                    error.expected(format!("a number is `param {name} = ..`, a node `let {name} = ..`"))
+                }
                 None if word == "uv" => error.expected("declare it first: attribute uv 2"),
                 None if valued => error.expected(parser.known_groups()),
                 None => error,
@@ -436,6 +479,7 @@ impl<'a> Parser<'a> {
             return self.block(start, Head::Broken);
         }
         self.stay_lost();
+        self.skip_arguments();
         if self.peek().is(b'{') {
             self.skip_block();
             self.find_place();

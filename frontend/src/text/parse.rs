@@ -11,6 +11,7 @@ use jbt_ir::limits::{MAX_ATTRIBUTE_WIDTH, MAX_ATTRIBUTES, MAX_SCENE_BYTES};
 use super::Options;
 use super::expression::{Place, is_builtin};
 use super::formula::Scope;
+use super::hints::foreign_mark;
 use super::lex::{Lexer, Token, TokenKind};
 use crate::attribute::{AttributeGroup, Mixing};
 use crate::check::{not_finite, unknown};
@@ -126,6 +127,11 @@ impl<'a> Parser<'a> {
         self.lexer.peek_behind()
     }
 
+    /// Goes back to a byte that has been skipped as a part of a comment.
+    pub(super) fn resume(&mut self, at: usize) {
+        self.lexer.resume(at);
+    }
+
     pub(super) fn leans_right(&self) -> bool {
         self.lexer.leans_right()
     }
@@ -203,8 +209,13 @@ impl<'a> Parser<'a> {
     /// Loses the place at a token that is not what was expected.
     pub(super) fn expected_at(&mut self, token: Token, expected: &str) {
         let found = if self.lost { String::new() } else { self.describe(token) };
+        let hint = if token.kind == TokenKind::End { None } else { foreign_mark(self.text(token)) };
         self.lose_place(|| {
-            Diagnostic::error(Some(token.span()), format!("unexpected {found}")).expected(expected)
+            let error = Diagnostic::error(Some(token.span()), format!("unexpected {found}"));
+            match hint {
+                Some(hint) => error.expected(format!("{expected}; {hint}")),
+                None => error.expected(expected),
+            }
         });
     }
 
@@ -212,7 +223,11 @@ impl<'a> Parser<'a> {
     pub(super) fn describe(&self, token: Token) -> String {
         match token.kind {
             TokenKind::End => "end of the file".to_owned(),
-            TokenKind::Word | TokenKind::Number | TokenKind::Mark(_) | TokenKind::Unknown => {
+            TokenKind::Word
+            | TokenKind::Number
+            | TokenKind::Mark(_)
+            | TokenKind::Quoted
+            | TokenKind::Unknown => {
                 format!("`{}`", clip(self.text(token)))
             }
         }
@@ -267,7 +282,7 @@ impl<'a> Parser<'a> {
                     self.expected_at(token, "no block is open here");
                     self.next();
                 }
-                TokenKind::Mark(_) | TokenKind::Number | TokenKind::Unknown => {
+                TokenKind::Mark(_) | TokenKind::Number | TokenKind::Quoted | TokenKind::Unknown => {
                     self.expected_at(token, "expected a statement or a node");
                     self.next();
                 }
@@ -466,9 +481,11 @@ impl<'a> Parser<'a> {
 
     fn root(&mut self, token: Token) {
         let tree = self.tree();
-        if self.root.is_none() {
+        // What could not be read is no root that another one would be the second beside.
+        let broken = self.broken.identity();
+        if self.root.as_ref().is_none_or(|root| root.identity() == broken) {
             self.root = Some(tree);
-        } else if tree.identity() != self.broken.identity() {
+        } else if tree.identity() != broken {
             self.report(|| {
                 Diagnostic::error(Some(token.span()), "a second root")
                     .expected("expected one node; `sum { .. }` or `union { .. }` around both makes them one")

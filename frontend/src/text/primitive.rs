@@ -1,6 +1,7 @@
 //! Named parameters in a text, and the block of a primitive.
 
 use super::expression::Place;
+use super::hints::{in_braces, radii};
 use super::lex::{Token, TokenKind};
 use super::parse::{Parser, is_statement};
 use super::{OWN_FIELDS, WEIGHTED, field_word};
@@ -115,6 +116,14 @@ impl Parser<'_> {
     pub(super) fn primitive(&mut self, kind: SkeletonKind, start: Token) -> Tree {
         let mut slots = Slots::new(kind.fields());
         let mut own = Own::default();
+        if self.peek().is(b'(') {
+            self.expected_at(self.peek(), &in_braces(kind));
+            self.skip_arguments();
+            if !self.peek().is(b'{') {
+                self.find_place();
+                return self.broken.clone();
+            }
+        }
         let Some(open) = self.open() else {
             return self.broken.clone();
         };
@@ -134,7 +143,7 @@ impl Parser<'_> {
                     self.unclosed(open.start as u32, token);
                     return self.broken.clone();
                 }
-                TokenKind::Mark(_) | TokenKind::Number | TokenKind::Unknown => {
+                TokenKind::Mark(_) | TokenKind::Number | TokenKind::Quoted | TokenKind::Unknown => {
                     self.expected_at(token, "expected a parameter or `}`");
                     self.skip_token();
                 }
@@ -201,7 +210,9 @@ impl Parser<'_> {
         }
         if !missing.is_empty() {
             self.report(|| {
-                Diagnostic::error(Some(span), format!("`{}` needs {}", kind.name(), missing.join(" and ")))
+                let needs = format!("`{}` needs {}", kind.name(), missing.join(" and "));
+                let help = radii(kind, own.radius.is_some() || own.surface_radius.is_some());
+                Diagnostic { help, ..Diagnostic::error(Some(span), needs) }
             });
         }
         let falloff = own.falloff.unwrap_or_else(|| Falloff::Soft.into());

@@ -12,6 +12,7 @@ use crate::diagnostic::{Diagnostic, Span};
 use crate::field::{FieldKind, FieldValue};
 use crate::number::Number;
 use crate::recipe::FieldNumber;
+use crate::report::nearest;
 
 /// The most elements that a vector may have: those of the widest attribute. A 3x4 matrix has 12.
 const LONGEST: usize = MAX_ATTRIBUTE_WIDTH;
@@ -99,7 +100,11 @@ impl Parser<'_> {
                 }
                 TokenKind::Mark(b')') => depth -= 1,
                 TokenKind::Mark(b'{' | b'}') | TokenKind::End => return,
-                TokenKind::Mark(_) | TokenKind::Word | TokenKind::Number | TokenKind::Unknown => {}
+                TokenKind::Mark(_)
+                | TokenKind::Word
+                | TokenKind::Number
+                | TokenKind::Quoted
+                | TokenKind::Unknown => {}
             }
             self.next();
         }
@@ -137,7 +142,8 @@ impl Parser<'_> {
     /// The values of an attribute group; zeros after an error. The width is nothing if it has an error itself.
     pub(super) fn group_values(&mut self, width: Option<usize>) -> Vec<Number> {
         let zeros = vec![Number::from(0.0); width.unwrap_or(1)];
-        let Some(all) = self.number_or_elements() else {
+        let all = if self.begins_color(width) { self.color(width) } else { self.number_or_elements() };
+        let Some(all) = all else {
             return zeros;
         };
         match width {
@@ -191,7 +197,12 @@ impl Parser<'_> {
                 place as f64
             }
             None => {
-                self.expected_at(self.peek(), &format!("expected one of {}", words.join(", ")));
+                let near = self.peek_word().and_then(|word| nearest(word, words.iter().copied()));
+                let expected = match near {
+                    Some(near) => format!("perhaps `{near}`"),
+                    None => format!("expected one of {}", words.join(", ")),
+                };
+                self.expected_at(self.peek(), &expected);
                 f64::NAN
             }
         }
