@@ -15,6 +15,7 @@ use std::str::FromStr;
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
 use jbt::contour::{Plane, PlaneError, Rectangle};
 use jbt::export::{ColorEncoding, Format, Up};
 use jbt::{Engine, Query, text};
@@ -34,7 +35,8 @@ pub struct Arguments {
 }
 
 const EXIT_CODES: &str = "\
-A SCENE is a .jbt text or a ParsIP scene (.blob, .scene); `-` reads it from the standard input.
+A SCENE is a .jbt text, a ParsIP scene (.blob, .scene) or a program of instructions (.vm); `-` reads it from the standard
+input, where its first line tells which. Without -o a result is called like the scene, in the current folder.
 
 Exit codes: 0 done, 1 the scene has errors, 2 usage, 3 a limit was hit, 4 a file could not be read or written.
 
@@ -69,14 +71,18 @@ pub enum Command {
     Count(CountArguments),
     /// Measure the solid of a scene: tight bounds, volume, area, and what a division of space by it is like
     Stats(StatsArguments),
-    /// Report everything that is wrong with a scene
+    /// Report everything that is wrong with scenes
     Check(CheckArguments),
+    /// Print a script by which a shell completes the words of jbt
+    Completions(CompletionsArguments),
+    /// Write manual pages into a folder
+    Man(ManArguments),
 }
 
 /// The scene, and what its text leaves open.
 #[derive(Args, Debug)]
 pub struct SceneArguments {
-    /// The scene: a .jbt text or a ParsIP .blob or .scene; `-` is the standard input
+    /// The scene: a .jbt text, a ParsIP .blob or .scene, or a .vm program; `-` is the standard input
     #[arg(value_name = "SCENE")]
     pub path: PathBuf,
     /// Set a parameter of a .jbt text; the value is a number or an expression of numbers, as 2*pi
@@ -282,6 +288,9 @@ pub struct EvalArguments {
     /// What evaluates the field: all engines give the same bits
     #[arg(long, value_enum, default_value_t = EngineName::Jit)]
     pub engine: EngineName,
+    /// Number of threads; what is written does not depend on it [default: one for each processor]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
     /// Where the answers go.
     #[command(flatten)]
     pub output: OutputArguments<TableKind>,
@@ -398,10 +407,54 @@ Examples:
 
 /// What `jbt check` takes.
 #[derive(Args, Debug)]
+#[command(after_help = CHECK_HELP)]
 pub struct CheckArguments {
-    /// What to check.
-    #[command(flatten)]
-    pub scene: SceneArguments,
+    /// The scenes: .jbt texts, ParsIP .blob or .scene, .vm programs; `-` is the standard input
+    #[arg(value_name = "SCENE", required = true)]
+    pub scenes: Vec<PathBuf>,
+    /// Set a parameter of the .jbt texts; the value is a number or an expression of numbers, as 2*pi
+    #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = definition)]
+    pub definitions: Vec<(String, f64)>,
+    /// Print one JSON object instead of messages and summaries
+    #[arg(long)]
+    pub json: bool,
+}
+
+const CHECK_HELP: &str = "\
+All files are checked. The exit code is that of the first one with which something is wrong.
+
+Keys of --json:
+  files: [{file, ok, model: {nodes, leaves, occurrences, iso, parameters: {NAME: value}, bounds: [x0, y0, z0, x1, y1, z1]
+  (null if empty or unbounded), attributes: [{name, width, mixing}]}}] (model is null where something is wrong),
+  diagnostics: [{file, severity (error, warning or limit), line, column, end: {line, column}, message, hint}], where end
+  is one past the last character, columns count characters from 1, and what is not there is null
+
+Examples:
+  jbt check hero.jbt
+  jbt check examples/*.jbt -q
+  jbt check hero.jbt --json | jq '.diagnostics[].message'";
+
+/// What `jbt completions` takes.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  jbt completions bash > ~/.local/share/bash-completion/completions/jbt
+  jbt completions zsh > ~/.zfunc/_jbt
+  jbt completions fish > ~/.config/fish/completions/jbt.fish")]
+pub struct CompletionsArguments {
+    /// The shell
+    pub shell: Shell,
+}
+
+/// What `jbt man` takes.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  mkdir -p ~/.local/share/man/man1 && jbt man ~/.local/share/man/man1 && man jbt-mesh")]
+pub struct ManArguments {
+    /// The folder, which is there already; pages of the same names are replaced
+    #[arg(value_name = "DIR")]
+    pub folder: PathBuf,
 }
 
 /// The words for engines.

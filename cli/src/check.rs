@@ -1,6 +1,7 @@
-//! `jbt check`: everything that is wrong with a scene, or a line that says that nothing is.
+//! `jbt check`: everything that is wrong with scenes, or a few lines about each that nothing is wrong with.
 
 use std::fmt::Write as _;
+use std::path::Path;
 
 use jbt::{Engine, Query};
 use jbt_frontend::attribute::AttributeGroup;
@@ -8,49 +9,130 @@ use jbt_frontend::bounds::Bounds;
 use jbt_frontend::check::CheckedTree;
 use jbt_frontend::diagnostic::escape;
 use jbt_frontend::tree::NodeKind;
+use serde_json::{Map, Value, json};
 
-use crate::arguments::CheckArguments;
+use crate::arguments::{CheckArguments, SceneArguments};
 use crate::failure::Failure;
-use crate::output::{grouped, print};
-use crate::scene::Scene;
+use crate::message::Message;
+use crate::output::{grouped, print, report};
+use crate::scene::{Scene, is_standard};
 
 /// Runs the command.
 pub fn run(arguments: &CheckArguments, quiet: bool) -> Result<(), Failure> {
-    let scene = Scene::load(&arguments.scene)?;
+    if arguments.scenes.iter().filter(|path| is_standard(path)).count() > 1 {
+        return Err(Failure::Usage("the standard input can be read once".to_owned()));
+    }
+    let mut told = Told::default();
+    for path in &arguments.scenes {
+        let scene = SceneArguments { path: path.clone(), definitions: arguments.definitions.clone() };
+        let checked = check(&scene, quiet || arguments.json);
+        if arguments.json {
+            told.add(path, &checked);
+        }
+        match checked {
+            Ok(checked) if !quiet && !arguments.json => print(&checked.text())?,
+            Ok(_) => {}
+            Err(failure) => {
+                if !arguments.json {
+                    report(&failure);
+                }
+                told.code = told.code.or(Some(failure.code()));
+            }
+        }
+    }
+    if arguments.json {
+        print(&json!({ "files": told.files, "diagnostics": told.diagnostics }).to_string())?;
+    }
+    told.code.map_or(Ok(()), |code| Err(Failure::Told { code }))
+}
+
+/// A scene that nothing is wrong with.
+struct Checked {
+    scene: Scene,
+    tree: CheckedTree,
+    occurrences: u64,
+}
+
+fn check(arguments: &SceneArguments, quiet: bool) -> Result<Checked, Failure> {
+    let scene = Scene::load(arguments)?;
     scene.warn(quiet);
     let tree = scene.check()?;
     // Some numbers leave the range of f32, and some limits are reached, only in the program for all answers.
     let evaluator = scene.evaluator(&tree, Query::ALL, Some(Engine::Scalar))?;
-    if quiet {
-        return Ok(());
-    }
-    print(&summary(scene.name(), &tree, evaluator.evaluations_per_point()))
+    Ok(Checked { scene, tree, occurrences: evaluator.evaluations_per_point() })
 }
 
-/// What the model is, in short.
-fn summary(name: &str, tree: &CheckedTree, occurrences: u64) -> String {
-    let primitive = |kind: &NodeKind| match kind {
-        NodeKind::Primitive(_) => true,
-        NodeKind::Combine(_)
-        | NodeKind::Expression(_)
-        | NodeKind::Select(_)
-        | NodeKind::Affine(_)
-        | NodeKind::Warp(_)
-        | NodeKind::Attribute { .. } => false,
-    };
-    let leaves = tree.nodes().iter().filter(|node| primitive(&node.kind)).count();
-    let mut out = format!("{}: no errors\n", escape(name));
-    let _ = writeln!(out, "  nodes        {}", grouped(tree.nodes().len() as u64));
-    let _ = writeln!(out, "  leaves       {}", grouped(leaves as u64));
-    let _ = writeln!(out, "  occurrences  {}", grouped(occurrences));
-    let _ = writeln!(out, "  iso          {}", tree.iso());
-    if !tree.parameters().is_empty() {
-        let _ = writeln!(out, "  parameters   {}", parameters(tree));
+/// What has been found out about the files so far.
+#[derive(Default)]
+struct Told {
+    files: Vec<Value>,
+    diagnostics: Vec<Value>,
+    /// Of the first failure.
+    code: Option<u8>,
+}
+
+impl Told {
+    fn add(&mut self, path: &Path, checked: &Result<Checked, Failure>) {
+        let name = if is_standard(path) { "<stdin>".to_owned() } else { path.display().to_string() };
+        match checked {
+            Ok(checked) => self.diagnostics.extend(checked.scene.notices.iter().map(Message::json)),
+            Err(Failure::Input { messages }) => self.diagnostics.extend(messages.iter().map(Message::json)),
+            Err(failure) => self.diagnostics.push(Message::of_file(&name, failure).json()),
+        }
+        let model = checked.as_ref().ok().map(Checked::json);
+        self.files.push(json!({ "file": name, "ok": checked.is_ok(), "model": model }));
     }
-    let _ = writeln!(out, "  bounds       {}", bounds(tree.support()));
-    let groups: Vec<String> = tree.attributes().iter().map(attribute).collect();
-    let _ = write!(out, "  attributes   {}", groups.join(", "));
-    out
+}
+
+impl Checked {
+    fn leaves(&self) -> usize {
+        let primitive = |kind: &NodeKind| match kind {
+            NodeKind::Primitive(_) => true,
+            NodeKind::Combine(_)
+            | NodeKind::Expression(_)
+            | NodeKind::Select(_)
+            | NodeKind::Affine(_)
+            | NodeKind::Warp(_)
+            | NodeKind::Attribute { .. } => false,
+        };
+        self.tree.nodes().iter().filter(|node| primitive(&node.kind)).count()
+    }
+
+    /// For machines.
+    fn json(&self) -> Value {
+        let tree = &self.tree;
+        let parameters = tree.parameters().iter().map(|p| (p.name().to_owned(), json!(p.value())));
+        let support = tree.support();
+        let bounds =
+            (!support.is_empty() && support.is_finite()).then(|| [support.low(), support.high()].concat());
+        let attribute = |group: &AttributeGroup| json!({ "name": &*group.name, "width": group.width(), "mixing": group.mixing.name() });
+        json!({
+            "nodes": tree.nodes().len(),
+            "leaves": self.leaves(),
+            "occurrences": self.occurrences,
+            "iso": tree.iso(),
+            "parameters": parameters.collect::<Map<String, Value>>(),
+            "bounds": bounds,
+            "attributes": tree.attributes().iter().map(attribute).collect::<Vec<Value>>(),
+        })
+    }
+
+    /// For people.
+    fn text(&self) -> String {
+        let tree = &self.tree;
+        let mut out = format!("{}: no errors\n", escape(self.scene.name()));
+        let _ = writeln!(out, "  nodes        {}", grouped(tree.nodes().len() as u64));
+        let _ = writeln!(out, "  leaves       {}", grouped(self.leaves() as u64));
+        let _ = writeln!(out, "  occurrences  {}", grouped(self.occurrences));
+        let _ = writeln!(out, "  iso          {}", tree.iso());
+        if !tree.parameters().is_empty() {
+            let _ = writeln!(out, "  parameters   {}", parameters(tree));
+        }
+        let _ = writeln!(out, "  bounds       {}", bounds(tree.support()));
+        let groups: Vec<String> = tree.attributes().iter().map(attribute).collect();
+        let _ = write!(out, "  attributes   {}", groups.join(", "));
+        out
+    }
 }
 
 /// The parameters, and of derived and set ones their present values.

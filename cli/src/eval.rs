@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader, Write as _};
 
 use jbt::{Evaluator, Points, Samples};
+use rayon::prelude::*;
 
 use crate::arguments::{Destination, EvalArguments};
 use crate::failure::Failure;
@@ -12,8 +13,9 @@ use crate::output::Output;
 use crate::points::PointReader;
 use crate::progress::Progress;
 use crate::scene::{Scene, is_standard};
+use crate::threads::Threads;
 
-/// Points that are kept in memory at once.
+/// Points that a thread answers at once.
 const BATCH: usize = 1 << 14;
 
 /// Runs the command.
@@ -28,11 +30,13 @@ pub fn run(arguments: &EvalArguments, quiet: bool) -> Result<(), Failure> {
     scene.warn(quiet);
     let tree = scene.check()?;
     let evaluator = scene.evaluator(&tree, arguments.query.query(), arguments.engine.required())?;
+    let threads = Threads::new(arguments.threads)?;
     if is_standard(&arguments.points) {
         return stream(
             &evaluator,
             PointReader::new(io::stdin().lock(), "<stdin>".to_owned())?,
             None,
+            &threads,
             &destination,
             quiet,
         );
@@ -42,37 +46,56 @@ pub fn run(arguments: &EvalArguments, quiet: bool) -> Result<(), Failure> {
     let file = File::open(&arguments.points).map_err(fail)?;
     let length = file.metadata().map_err(fail)?.len();
     let points = PointReader::new(BufReader::with_capacity(1 << 16, file), name)?;
-    stream(&evaluator, points, Some(length), &destination, quiet)
+    stream(&evaluator, points, Some(length), &threads, &destination, quiet)
 }
 
-/// Evaluates batch after batch.
+/// Evaluates batches, one on each thread, and writes the answers in the order of the points.
 fn stream(
     evaluator: &Evaluator,
     mut points: PointReader<impl BufRead>,
     length: Option<u64>,
+    threads: &Threads,
     destination: &Destination<TableKind>,
     quiet: bool,
 ) -> Result<(), Failure> {
     let mut output = Output::open(destination)?;
     let mut progress = Progress::new("evaluating", quiet);
-    let mut samples = evaluator.samples();
     let names = evaluator.layout().names().join(",");
     writeln!(output, "x,y,z,{names}").map_err(|error| output.failure(error))?;
     loop {
-        let batch = points.batch(BATCH)?;
-        if batch.is_empty() {
+        let mut batches = Vec::new();
+        while batches.len() < threads.count() {
+            let batch = points.batch(BATCH)?;
+            if batch.is_empty() {
+                break;
+            }
+            batches.push(batch);
+        }
+        if batches.is_empty() {
             return output.finish();
         }
-        evaluator.eval(&batch, &mut samples).map_err(|error| Failure::Defect(error.to_string()))?;
-        write(&mut output, &batch, &samples).map_err(|error| output.failure(error))?;
+        let answers: Vec<_> =
+            threads.run(|| batches.par_iter().map(|batch| answers(evaluator, batch)).collect());
+        for text in answers {
+            output.write_all(&text?).map_err(|error| output.failure(error))?;
+        }
         if let Some(length) = length {
             progress.set(points.bytes() as f32 / length.max(1) as f32);
         }
     }
 }
 
+/// The lines of some points.
+fn answers(evaluator: &Evaluator, points: &Points) -> Result<Vec<u8>, Failure> {
+    let mut samples = evaluator.samples();
+    evaluator.eval(points, &mut samples).map_err(|error| Failure::Defect(error.to_string()))?;
+    let mut text = Vec::new();
+    write(&mut text, points, &samples).map_err(|error| Failure::Defect(error.to_string()))?;
+    Ok(text)
+}
+
 /// One line for each point. Numbers are the shortest decimals that read back as the same f32.
-fn write(output: &mut Output, points: &Points, samples: &Samples) -> io::Result<()> {
+fn write(output: &mut Vec<u8>, points: &Points, samples: &Samples) -> io::Result<()> {
     for index in 0..points.len() {
         let [x, y, z] = points.get(index);
         write!(output, "{x},{y},{z}")?;

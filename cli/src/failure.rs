@@ -14,13 +14,15 @@ use std::io;
 use jbt::CompileError;
 use jbt_frontend::diagnostic::{Diagnostic, Diagnostics, Severity, Source, escape};
 
+use crate::message::Message;
+
 /// Why a command did not do its work.
 #[derive(Debug)]
 pub enum Failure {
-    /// Located messages about a file, rendered one by one, with what they amount to.
+    /// Located messages about a file.
     Input {
-        /// How much each matters, and its text.
-        messages: Vec<(Severity, String)>,
+        /// In the order of their places.
+        messages: Vec<Message>,
     },
     /// The options contradict each other or the scene.
     Usage(String),
@@ -35,6 +37,11 @@ pub enum Failure {
     },
     /// A defect of jbt itself.
     Defect(String),
+    /// Something that has been told already.
+    Told {
+        /// Its exit code.
+        code: u8,
+    },
     /// Whoever read our output has had enough of it: no error.
     BrokenPipe,
 }
@@ -56,7 +63,7 @@ impl Failure {
 
     /// Messages about a file.
     pub fn diagnostics(source: &Source<'_>, diagnostics: &[Diagnostic]) -> Self {
-        Self::Input { messages: diagnostics.iter().map(|d| (d.severity, source.render(d))).collect() }
+        Self::Input { messages: diagnostics.iter().map(|one| Message::new(source, one)).collect() }
     }
 
     /// A scene that could not be read.
@@ -92,16 +99,13 @@ impl Failure {
         match self {
             Self::BrokenPipe => 0,
             // A file with both is wrong first and large second.
-            Self::Input { messages } if messages.iter().any(|(severity, _)| *severity == Severity::Error) => {
-                1
-            }
-            Self::Input { messages } if messages.iter().any(|(severity, _)| *severity == Severity::Limit) => {
-                3
-            }
+            Self::Input { messages } if messages.iter().any(|one| one.severity == Severity::Error) => 1,
+            Self::Input { messages } if messages.iter().any(|one| one.severity == Severity::Limit) => 3,
             Self::Input { .. } | Self::Defect(_) => 1,
             Self::Usage(_) => 2,
             Self::Limit(_) => 3,
             Self::Io { .. } => 4,
+            Self::Told { code } => *code,
         }
     }
 }
@@ -111,16 +115,15 @@ impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Input { messages } => {
-                for (index, (_, message)) in messages.iter().enumerate() {
-                    write!(f, "{}{message}", if index == 0 { "" } else { "\n" })?;
-                }
-                Ok(())
+                let all: Vec<&str> = messages.iter().map(|message| message.rendered.as_str()).collect();
+                f.write_str(&all.join("\n"))
             }
             Self::Usage(message) | Self::Limit(message) | Self::Defect(message) => {
                 let lines: Vec<String> = message.lines().map(escape).collect();
                 f.write_str(&lines.join("\n"))
             }
             Self::Io { what, error } => write!(f, "{}: {error}", escape(what)),
+            Self::Told { .. } => f.write_str("something is wrong, as has been told"),
             Self::BrokenPipe => f.write_str("the reader of the output went away"),
         }
     }

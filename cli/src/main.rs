@@ -4,10 +4,10 @@
 //! |---|---|
 //! | [`arguments`] | what can be asked |
 //! | [`scene`], [`points`] | reading |
-//! | [`mesh`], [`render`], [`contour`], [`sample`], [`eval`], [`show`], [`count`], [`stats`], [`check`] | one command each |
+//! | [`mesh`], [`render`], [`contour`], [`sample`], [`eval`], [`show`], [`count`], [`stats`], [`check`], [`manual`] | one command each |
 //! | [`formats`] | the kinds of files that each command writes |
 //! | [`output`], [`progress`], [`logger`] | what comes out, and where |
-//! | [`failure`] | what went wrong, and the exit code for it |
+//! | [`failure`], [`message`] | what went wrong, and the exit code for it |
 
 mod arguments;
 mod check;
@@ -18,7 +18,9 @@ mod failure;
 mod formats;
 mod lattice;
 mod logger;
+mod manual;
 mod mesh;
+mod message;
 mod output;
 mod points;
 mod progress;
@@ -66,6 +68,8 @@ fn run(command: &Command, quiet: bool, start: Instant) -> Result<(), Failure> {
         Command::Count(arguments) => count::run(arguments, quiet),
         Command::Stats(arguments) => stats::run(arguments, quiet, start),
         Command::Check(arguments) => check::run(arguments, quiet),
+        Command::Completions(arguments) => manual::completions(arguments),
+        Command::Man(arguments) => manual::man(arguments, quiet),
     }
 }
 

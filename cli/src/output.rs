@@ -164,6 +164,12 @@ fn temporary(folder: &Path) -> io::Result<NamedTempFile> {
     builder.make_in(folder, |path| File::options().read(true).write(true).create_new(true).open(path))
 }
 
+/// Writes to the standard output what is no line of text.
+pub fn print_bytes(bytes: &[u8]) -> Result<(), Failure> {
+    let mut stdout = io::stdout().lock();
+    stdout.write_all(bytes).and_then(|()| stdout.flush()).map_err(Failure::stdout)
+}
+
 /// Prints a report to the standard output.
 pub fn print(text: &str) -> Result<(), Failure> {
     let mut stdout = io::stdout().lock();
@@ -212,10 +218,10 @@ pub fn warn(text: &str) {
 /// Tells why a command has ended.
 pub fn report(failure: &Failure) {
     let label = match failure {
-        Failure::BrokenPipe => return,
+        Failure::BrokenPipe | Failure::Told { .. } => return,
         Failure::Input { messages } => {
-            for (severity, message) in messages {
-                tell(&highlight(message, *severity));
+            for message in messages {
+                tell(&highlight(&message.rendered, message.severity));
             }
             return;
         }

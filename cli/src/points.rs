@@ -10,6 +10,7 @@ use jbt::Points;
 use jbt_frontend::diagnostic::{Diagnostic, Severity, Source, Span, escape};
 
 use crate::failure::Failure;
+use crate::message::Message;
 
 /// The longest line that is read, in bytes: a file without line ends is not kept in memory.
 const MAX_LINE: usize = 1 << 20;
@@ -168,7 +169,7 @@ impl<R: BufRead> PointReader<R> {
         let span = Span::new(start, end);
         let source = Source { name: &self.name, text: &self.buffer };
         let message = source.render_from(self.line.max(1), &Diagnostic::error(Some(span), message));
-        Failure::Input { messages: vec![(Severity::Error, message)] }
+        Failure::Input { messages: vec![Message::rendered(Severity::Error, &self.name, message)] }
     }
 }
 

@@ -10,6 +10,7 @@ use jbt_frontend::diagnostic::{Severity, Source, SourceText};
 
 use crate::arguments::SceneArguments;
 use crate::failure::Failure;
+use crate::message::Message;
 use crate::output::{highlight, tell};
 
 /// A scene: its text for messages, and its model.
@@ -19,6 +20,8 @@ pub struct Scene {
     pub model: Model,
     /// What is odd about the text, rendered.
     pub warnings: Vec<String>,
+    /// The same for machines.
+    pub notices: Vec<Message>,
 }
 
 impl Scene {
@@ -33,8 +36,9 @@ impl Scene {
         };
         let jbt::Scene { model, warnings, text, .. } =
             loaded.map_err(|error| Failure::scene(&path.display(), &error))?;
-        let warnings = warnings.iter().map(|warning| text.source().render(warning)).collect();
-        Ok(Self { text, model, warnings })
+        let notices: Vec<_> = warnings.iter().map(|one| Message::new(&text.source(), one)).collect();
+        let warnings = notices.iter().map(|notice| notice.rendered.clone()).collect();
+        Ok(Self { text, model, warnings, notices })
     }
 
     /// Tells people what is odd about the text.

@@ -41,7 +41,9 @@ pub enum Severity {
 }
 
 impl Severity {
-    const fn name(self) -> &'static str {
+    /// The word for it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
         match self {
             Self::Error => "error",
             Self::Warning => "warning",

@@ -12,7 +12,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use jbt_frontend::attribute::{AttributeValue, Textured};
-use jbt_frontend::diagnostic::{Diagnostic, Severity, Source};
+use jbt_frontend::diagnostic::{Diagnostic, Diagnostics, Severity, Source};
 use jbt_frontend::field::FieldValue;
 use jbt_frontend::text::{Options, parse, print};
 use jbt_frontend::tree::{NodeKind, Tree};
@@ -275,8 +275,7 @@ fn lines_end_as_on_any_system() {
         let text = text.replace('\n', end);
         let read = parse(text.as_bytes(), &Options::default());
         let source = Source { name: "a.jbt", text: text.as_bytes() };
-        let show =
-            |errors: Vec<Diagnostic>| errors.iter().map(|error| source.render(error)).collect::<Vec<_>>();
+        let show = |errors: Diagnostics| errors.iter().map(|error| source.render(error)).collect::<Vec<_>>();
         read.map(|model| print(&model)).map_err(show)
     };
     assert!(read(good, "\n").is_ok() && read(bad, "\n").is_err());

@@ -9,7 +9,7 @@ use super::EngineName;
 use crate::failure::Failure;
 use crate::output::Told;
 use crate::scene::is_standard;
-use crate::threads::in_pool;
+use crate::threads::Threads;
 
 /// How a command that writes a file does its work, and what it tells.
 #[derive(Args, Debug)]
@@ -42,7 +42,7 @@ impl WorkArguments {
 
     /// Does it on so many threads.
     pub fn run<T: Send>(&self, work: &mut (impl FnMut() -> T + Send)) -> Result<T, Failure> {
-        in_pool(self.threads, work)
+        Ok(Threads::new(self.threads)?.run(work))
     }
 
     /// How to tell what has been done.

@@ -198,6 +198,11 @@ fn eval_of_many_points_and_of_none() {
     let ran = folder.jbt(&["eval", "scene.jbt", "--points", "many.csv", "-o", "-"]).code(0);
     assert_eq!(ran.stdout().lines().count(), 40_001);
     assert!(ran.stdout().lines().last().is_some_and(|line| line == "39999,0,0,0"));
+    for threads in ["1", "2", "7"] {
+        let arguments = ["eval", "scene.jbt", "--points", "many.csv", "--threads", threads, "-o", "-"];
+        assert!(folder.jbt(&arguments).code(0).stdout() == ran.stdout(), "{threads} threads");
+    }
+    folder.jbt(&["eval", "scene.jbt", "--points", "many.csv", "--threads", "0", "-o", "-"]).code(2);
     let ran = folder.jbt(&["eval", "scene.jbt", "--points", "none.csv", "-o", "-"]).code(0);
     assert_eq!(ran.stdout(), "x,y,z,field\n");
 }
@@ -415,9 +420,16 @@ fn check_summarises_a_good_scene() {
 fn help_and_version() {
     let folder = Folder::new();
     assert_eq!(folder.jbt(&["--version"]).code(0).stdout(), concat!("jbt ", env!("CARGO_PKG_VERSION"), "\n"));
-    for command in ["mesh", "eval", "show", "count", "stats", "check"] {
-        assert!(folder.jbt(&["--help"]).code(0).stdout().contains(command));
-        assert!(folder.jbt(&[command, "--help"]).code(0).stdout().contains("SCENE"));
+    let all = folder.jbt(&["--help"]).code(0).stdout();
+    assert!(all.contains("(.vm)"), "{all}");
+    for command in ["mesh", "render", "contour", "sample", "eval", "show", "count", "stats", "check"] {
+        assert!(all.contains(command));
+        let help = folder.jbt(&[command, "--help"]).code(0).stdout();
+        assert!(help.contains("SCENE"));
+        let flat = help.split_whitespace().collect::<Vec<_>>().join(" ");
+        for ending in [".jbt", ".blob", ".scene", ".vm"] {
+            assert!(flat.contains(ending), "{command}: {ending}: {help}");
+        }
     }
 }
 

@@ -112,7 +112,7 @@ fn usage_errors() {
     mesh(&["-D", "bulge"]).code(2).says("NAME=VALUE");
     folder.jbt(&[]).code(2).says("Usage");
     folder.jbt(&["mesh", "scene.jbt", "-o", "a.txt"]).code(2).says(".glb, .ply, .obj or .stl");
-    folder.jbt(&["mesh", "scene.jbt", "-o", "-"]).code(2).says("--format, one of glb, ply, obj, stl");
+    folder.jbt(&["mesh", "scene.jbt", "-o", "-"]).code(2).says("needs --format glb, ply, obj or stl");
     mesh(&["--up", "x"]).code(2).says("y, z");
     mesh(&["--colors", "rgb"]).code(2).says("srgb, linear");
     folder.jbt(&["mesh", "scene.jbt", "-o", "a.stl", "--colors", "srgb"]).code(2).says("no colours");

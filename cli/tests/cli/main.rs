@@ -1,8 +1,10 @@
 //! Tests that run the binary `jbt` on files of temporary folders.
 
+mod check;
 mod commands;
 mod contour;
 mod folder;
 mod hostile;
+mod manual;
 mod outputs;
 mod render;

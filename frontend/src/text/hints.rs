@@ -65,7 +65,7 @@ const WORDS: &[(&[&str], &str)] = &[
 /// What stands here for a word of another program.
 pub(super) fn foreign_word(word: &str) -> Option<&'static str> {
     let known = |known: &&str| known.eq_ignore_ascii_case(word);
-    WORDS.iter().find(|(words, _)| words.iter().any(|word| known(word))).map(|(_, hint)| *hint)
+    WORDS.iter().find(|(words, _)| words.iter().any(&known)).map(|(_, hint)| *hint)
 }
 
 /// What stands here for a mark of another program.

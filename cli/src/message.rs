@@ -1,0 +1,62 @@
+//! A message about a file, for people and for machines.
+
+use jbt_frontend::diagnostic::{Diagnostic, Severity, Source};
+use serde_json::{Value, json};
+
+use crate::failure::Failure;
+
+/// A message about a file.
+#[derive(Clone, Debug)]
+pub struct Message {
+    /// How much it matters.
+    pub severity: Severity,
+    /// For people: place, message, the line, a caret.
+    pub rendered: String,
+    file: String,
+    /// Lines and columns from 1: those of the first character, and those behind the last.
+    place: Option<[(usize, usize); 2]>,
+    message: String,
+    hint: Option<String>,
+}
+
+impl Message {
+    /// A diagnostic about a text.
+    pub fn new(source: &Source<'_>, diagnostic: &Diagnostic) -> Self {
+        let Diagnostic { severity, span, message, help } = diagnostic;
+        let place = span.map(|span| [span.start, span.end.max(span.start)]);
+        Self {
+            severity: *severity,
+            rendered: source.render(diagnostic),
+            file: source.name.to_owned(),
+            place: place.map(|place| place.map(|byte| source.position(byte as usize))),
+            message: message.clone(),
+            hint: help.clone(),
+        }
+    }
+
+    /// A message whose text says its place.
+    pub fn rendered(severity: Severity, file: &str, rendered: String) -> Self {
+        Self { severity, file: file.to_owned(), place: None, message: rendered.clone(), hint: None, rendered }
+    }
+
+    /// What is wrong with a file as a whole.
+    pub fn of_file(file: &str, failure: &Failure) -> Self {
+        let severity = if failure.code() == 3 { Severity::Limit } else { Severity::Error };
+        Self::rendered(severity, file, failure.to_string())
+    }
+
+    /// For machines.
+    pub fn json(&self) -> Value {
+        let (line, column) = self.place.map(|[start, _]| start).unzip();
+        let end = self.place.map(|[_, (line, column)]| json!({ "line": line, "column": column }));
+        json!({
+            "file": self.file,
+            "severity": self.severity.name(),
+            "line": line,
+            "column": column,
+            "end": end,
+            "message": self.message,
+            "hint": self.hint,
+        })
+    }
+}
