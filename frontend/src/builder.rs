@@ -18,12 +18,13 @@
 //!
 //! | Rust | node |
 //! |---|---|
-//! | `a + b` | sum: the plain blend |
+//! | `a + b`, `Tree::sum([a, b, c])`, `trees.into_iter().sum()` | sum: the plain blend |
 //! | `a.ricci(n, &b)`, `Tree::blend(n, [a, b, c])` | Ricci's blend |
-//! | `a \| b` | union |
-//! | `a & b` | intersection |
-//! | `a - b` | difference |
-//! | `a ^ b` | symmetric difference |
+//! | `a \| b`, `Tree::union([a, b, c])` | union |
+//! | `a & b`, `Tree::intersection([a, b, c])` | intersection |
+//! | `a - b`, `Tree::difference([a, b, c])` | difference |
+//! | `a ^ b`, `Tree::symmetric_difference([a, b, c])` | symmetric difference |
+//! | `a += b`, `\|=`, `&=`, `-=`, `^=` | the same, grown in place |
 //! | `!a` | complement |
 //! | `Tree::product([a, b])` | product |
 //! | `a.smooth_union(width, &b)`, and so on, `Tree::smooth(set, width, [a, b, c])` | smooth set operations |
@@ -32,7 +33,7 @@
 //! | `Tree::select(which, [a, b, c])` | one of them |
 //! | `Tree::expression(0.7 * a.field() * b.field() + x())` | a formula of fields and coordinates |
 //!
-//! Wherever a number is asked for, one that follows a parameter will do; it can be set again without compiling anything:
+//! Numbers may be `f64`, `f32` or integers: `point([0, 1, 0], 1)`. Wherever a number is asked for, one that follows a parameter will do; it can be set again without compiling anything:
 //!
 //! ```
 //! use jbt_frontend::builder::{param, point};
@@ -67,7 +68,7 @@ pub use self::primitive::{
     triangle,
 };
 pub use crate::falloff::Edge;
-pub use crate::number::{Number, Vector, param};
+pub use crate::number::{Number, Rows, Vector, param};
 pub use crate::scopes::{ScopeError, Scopes};
 pub use crate::term::{Term, x, y, z};
 pub use pattern::{Pattern, checker, gradient, marble, noise, rings, stripes};

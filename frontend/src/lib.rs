@@ -18,6 +18,8 @@ pub mod expression;
 pub mod falloff;
 pub mod field;
 pub mod import;
+#[cfg(any(feature = "glam", feature = "mint"))]
+mod interop;
 pub mod lower;
 pub mod model;
 pub mod number;

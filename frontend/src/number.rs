@@ -30,7 +30,8 @@ pub(crate) type Values = HashMap<Arc<str>, f64>;
 
 /// A number of a model: a plain one, or one that follows parameters.
 ///
-/// It converts from `f64`, and has the operators `+ - * /` and functions of the text format. See the module.
+/// It converts from `f64`, `f32`, and integers of up to 32 bits, all exactly (so that 0.1f32 is 0.10000000149011612), and has the operators
+/// `+ - * /` with `f64`, `i32` and its own kind, and functions of the text format. See the module.
 #[derive(Clone)]
 pub struct Number {
     value: f64,
@@ -200,6 +201,19 @@ impl From<f64> for Number {
     }
 }
 
+macro_rules! lossless {
+    ($($type:ty)+) => { $(
+        impl From<$type> for Number {
+            /// The same number, exactly.
+            fn from(value: $type) -> Self {
+                Self::from(f64::from(value))
+            }
+        }
+    )+ };
+}
+
+lossless! { f32 i8 i16 i32 u8 u16 u32 }
+
 impl From<&Self> for Number {
     fn from(number: &Self) -> Self {
         number.clone()
@@ -278,6 +292,10 @@ macro_rules! operators {
         operators! { @ $trait $method &Number, f64 }
         operators! { @ $trait $method f64, Number }
         operators! { @ $trait $method f64, &Number }
+        operators! { @ $trait $method Number, i32 }
+        operators! { @ $trait $method &Number, i32 }
+        operators! { @ $trait $method i32, Number }
+        operators! { @ $trait $method i32, &Number }
     )+ };
     (@ $trait:ident $method:ident $left:ty, $right:ty) => {
         impl $trait<$right> for $left {
@@ -297,7 +315,7 @@ operators! {
     Div div Divide,
 }
 
-/// Three numbers: from an array, or from a tuple where some are plain and some follow parameters.
+/// Three numbers: from an array, or from a tuple where some are plain and some follow parameters; with the features `glam` and `mint` from their vectors.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Vector(pub(crate) [Number; 3]);
 
@@ -310,6 +328,16 @@ impl<T: Into<Number>> From<[T; 3]> for Vector {
 impl<X: Into<Number>, Y: Into<Number>, Z: Into<Number>> From<(X, Y, Z)> for Vector {
     fn from((x, y, z): (X, Y, Z)) -> Self {
         Self([x.into(), y.into(), z.into()])
+    }
+}
+
+/// The rows of a 3x4 matrix, an affine map: the last column is the shift. From arrays of rows, and with the features `glam` and `mint` from their maps.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Rows(pub(crate) [[Number; 4]; 3]);
+
+impl<T: Into<Number>> From<[[T; 4]; 3]> for Rows {
+    fn from(rows: [[T; 4]; 3]) -> Self {
+        Self(rows.map(|row| row.map(Into::into)))
     }
 }
 

@@ -2,6 +2,7 @@
 
 /// A set of answers. The field is always among them.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Query {
     /// The gradient of the field.
     pub gradient: bool,

@@ -352,6 +352,19 @@ impl From<f64> for Term {
     }
 }
 
+macro_rules! constants {
+    ($($type:ty)+) => { $(
+        impl From<$type> for Term {
+            /// The same number, exactly.
+            fn from(number: $type) -> Self {
+                Self::from(f64::from(number))
+            }
+        }
+    )+ };
+}
+
+constants! { f32 i8 i16 i32 u8 u16 u32 }
+
 impl From<Number> for Term {
     fn from(number: Number) -> Self {
         Self::leaf(Kind::Constant(number))
@@ -412,6 +425,8 @@ macro_rules! operators {
         }
         operators! { @ $trait $method $binary f64, Term }
         operators! { @ $trait $method $binary f64, &Term }
+        operators! { @ $trait $method $binary i32, Term }
+        operators! { @ $trait $method $binary i32, &Term }
         operators! { @ $trait $method $binary Number, Term }
         operators! { @ $trait $method $binary Number, &Term }
         operators! { @ $trait $method $binary &Number, Term }

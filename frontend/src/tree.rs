@@ -86,6 +86,23 @@ impl NodeKind {
         }
     }
 
+    /// The rows of an affine map, the last column of which is the shift; `None` for any other node.
+    #[must_use]
+    pub fn rows(&self) -> Option<[[f64; 4]; 3]> {
+        match self {
+            Self::Affine(map) => {
+                let columns = map.to_cols_array_2d();
+                Some([0, 1, 2].map(|row| columns.map(|column| column[row])))
+            }
+            Self::Primitive(_)
+            | Self::Combine(_)
+            | Self::Expression(_)
+            | Self::Select(_)
+            | Self::Warp(_)
+            | Self::Attribute { .. } => None,
+        }
+    }
+
     /// The children that answer: of a selector the chosen one, of any other node all. Panics, if a selector's number is near no child:
     /// the check has excluded it.
     #[must_use]
@@ -200,6 +217,18 @@ impl Tree {
     #[must_use]
     pub fn at(span: Span, kind: NodeKind, children: Vec<Self>) -> Self {
         Self::assemble(kind, None, children, Some(span))
+    }
+
+    /// Adds a last child to the root. Trees that share the root keep it as it was.
+    pub(crate) fn push(&mut self, child: Self) {
+        if let Some(node) = Arc::get_mut(&mut self.0) {
+            node.follows |= child.0.follows;
+            node.children.push(child);
+            return;
+        }
+        let Node { kind, recipe, children, span, .. } = &*self.0;
+        let children = children.iter().cloned().chain([child]).collect();
+        *self = Self::assemble(kind.clone(), recipe.clone(), children, *span);
     }
 
     /// The root node.

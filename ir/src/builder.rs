@@ -21,6 +21,8 @@
 //! verify(b.finish(&[("sum".to_owned(), sum)])).unwrap();
 //! ```
 
+use std::fmt;
+
 use rustc_hash::FxHashMap as HashMap;
 
 use crate::entity::{Block, Entity, Inst, Table, Value};
@@ -59,6 +61,13 @@ pub struct FunctionBuilder {
     /// For each value, whether it is the same at all points of a row.
     uniform: Vec<bool>,
     origin: Origin,
+}
+
+impl fmt::Debug for FunctionBuilder {
+    /// What has been written so far.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("FunctionBuilder").field("function", &self.function).finish_non_exhaustive()
+    }
 }
 
 impl FunctionBuilder {

@@ -53,6 +53,7 @@ impl fmt::Display for Type {
 }
 
 /// A value of a domain whose type is known only at run time.
+#[derive(Debug)]
 pub enum Any<D: Domain + ?Sized> {
     /// A real.
     Real(D::Real),

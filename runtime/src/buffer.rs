@@ -1,85 +1,6 @@
-//! Points and samples, as structures of arrays: one plane of numbers for each coordinate and each answer.
+//! Samples, as structures of arrays: one plane of numbers for each answer.
 
 use jbt_frontend::attribute::AttributeGroup;
-
-/// Points in space: three planes of equal length.
-///
-/// Any f32 may be a coordinate. An infinity counts as the largest finite number of its sign; a point with a NaN has a field that is NaN, which is
-/// outside (see [`Evaluator::eval`](crate::Evaluator::eval)).
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Points {
-    x: Vec<f32>,
-    y: Vec<f32>,
-    z: Vec<f32>,
-}
-
-impl Points {
-    /// No points.
-    #[must_use]
-    pub fn new() -> Self {
-        Self::default()
-    }
-
-    /// Points from their planes.
-    ///
-    /// # Errors
-    /// The lengths, if they differ.
-    pub fn from_planes(x: Vec<f32>, y: Vec<f32>, z: Vec<f32>) -> Result<Self, LengthError> {
-        if x.len() != y.len() || x.len() != z.len() {
-            return Err(LengthError { lengths: [x.len(), y.len(), z.len()] });
-        }
-        Ok(Self { x, y, z })
-    }
-
-    /// Adds a point.
-    pub fn push(&mut self, [x, y, z]: [f32; 3]) {
-        self.x.push(x);
-        self.y.push(y);
-        self.z.push(z);
-    }
-
-    /// Number of points.
-    #[must_use]
-    pub fn len(&self) -> usize {
-        self.x.len()
-    }
-
-    /// Whether there are none.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.x.is_empty()
-    }
-
-    /// The planes of x, y and z.
-    #[must_use]
-    pub fn planes(&self) -> [&[f32]; 3] {
-        [&self.x, &self.y, &self.z]
-    }
-
-    /// One point. Panics if there are not as many.
-    #[must_use]
-    pub fn get(&self, index: usize) -> [f32; 3] {
-        [self.x[index], self.y[index], self.z[index]]
-    }
-}
-
-impl FromIterator<[f32; 3]> for Points {
-    fn from_iter<I: IntoIterator<Item = [f32; 3]>>(iter: I) -> Self {
-        let mut points = Self::new();
-        for point in iter {
-            points.push(point);
-        }
-        points
-    }
-}
-
-/// Planes of different lengths were given.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the planes of x, y and z have {}, {} and {} points", lengths[0], lengths[1], lengths[2])]
-pub struct LengthError {
-    /// The lengths of x, y and z.
-    pub lengths: [usize; 3],
-}
 
 /// Which plane holds what: the field first, then the gradient, then the attributes, as far as they were asked for.
 #[derive(Clone, Debug, PartialEq)]
@@ -214,5 +135,20 @@ impl Samples {
     pub fn attribute(&self, name: &str) -> Option<&[Vec<f32>]> {
         let (plane, width) = self.layout.attribute(name)?;
         Some(&self.planes[plane..plane + width])
+    }
+
+    /// Linear red, green and blue at every point; `None` if attributes were not asked for.
+    #[must_use]
+    pub fn colors(&self) -> Option<[&[f32]; 3]> {
+        let [red, green, blue] = self.attribute("color")? else { return None };
+        Some([red, green, blue])
+    }
+}
+
+#[cfg(feature = "serde")]
+impl serde::Serialize for Samples {
+    /// A map from the names of planes to their numbers.
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.layout.names().iter().zip(&self.planes))
     }
 }

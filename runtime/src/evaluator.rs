@@ -1,6 +1,7 @@
 //! The evaluator: a model and a query become a kernel once; points become samples many times.
 
 use std::collections::BTreeSet;
+use std::fmt;
 use std::sync::{Arc, Mutex};
 
 use jbt_frontend::check::{CheckedTree, NodeId};
@@ -8,12 +9,14 @@ use jbt_frontend::lower::{Lowered, Lowering};
 use jbt_frontend::query::Query;
 use jbt_ir::domain::counting::{Evaluations, evaluations, of_selection};
 use jbt_ir::{Function, Selection, Tables, Verified};
+use rayon::prelude::*;
 
-use crate::buffer::{Layout, Points, Samples};
+use crate::buffer::{Layout, Samples};
 use crate::counter::{Counters, Tally};
 use crate::error::{CompileError, EvalError};
 use crate::kernel::{Bound, Engine, Kernel, Purpose, optimise};
 use crate::places;
+use crate::points::AsPoints;
 use crate::probe::Probe;
 use crate::prune::Region;
 use crate::region::Box3;
@@ -110,6 +113,18 @@ impl Compiler {
     }
 }
 
+/// Points that are brought into planes at once: a multiple of every kernel's width, small enough for the nearest cache.
+const BLOCK: usize = 512;
+/// Points that one thread evaluates at once.
+const PART: usize = 4096;
+
+/// The beginning of a plane; what is left stays in its place.
+fn split<'s>(plane: &mut &'s mut [f32], count: usize) -> &'s mut [f32] {
+    let (first, rest) = std::mem::take(plane).split_at_mut(count);
+    *plane = rest;
+    first
+}
+
 /// What an update of an evaluator took.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Update {
@@ -130,6 +145,23 @@ pub struct Evaluator {
     /// What separate walks would compute at a point.
     separate: u64,
     tally: Tally,
+}
+
+impl fmt::Debug for Compiler {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Compiler").field("engine", &self.engine).finish_non_exhaustive()
+    }
+}
+
+impl fmt::Debug for Evaluator {
+    /// What it answers and what runs it, without code and numbers.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Evaluator")
+            .field("query", &self.query)
+            .field("engine", &self.engine())
+            .field("counters", &self.counters())
+            .finish_non_exhaustive()
+    }
 }
 
 impl Evaluator {
@@ -205,19 +237,81 @@ impl Evaluator {
         Samples::new(self.layout.clone())
     }
 
-    /// The answers at all points. `samples` is resized; keep it for the next call to save the allocation.
+    /// The answers at all points: [`Points`], or a slice, an array or a vector of points as they are. `samples` is resized; keep it for the next call
+    /// to save the allocation.
+    ///
+    /// It is serial: everything is done on the thread that calls. [`par_eval`](Self::par_eval) uses others too.
+    ///
+    /// ```
+    /// use jbt::{Evaluator, Model, Query, build::point};
+    /// let tree = Model::new(point([0, 0, 0], 1)).check()?;
+    /// let evaluator = Evaluator::compile(&tree, Query::FIELD)?;
+    /// let mut samples = evaluator.samples();
+    /// evaluator.eval(&[[0.0, 0.0, 0.0], [0.5, 0.0, 0.0], [2.0, 0.0, 0.0]], &mut samples)?;
+    /// assert_eq!(samples.field(), [1.0, 0.5, 0.0]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// A coordinate that is infinite counts as the largest finite number of its sign. At a point with a coordinate that is NaN, field and gradient
     /// are NaN and attributes have their defaults, on all engines; such a point is outside, as `field >= iso` says.
     ///
     /// # Errors
     /// If `samples` was made for another query or model.
-    pub fn eval(&self, points: &Points, samples: &mut Samples) -> Result<(), EvalError> {
+    pub fn eval<P: AsPoints + ?Sized>(&self, points: &P, samples: &mut Samples) -> Result<(), EvalError> {
+        let answers = self.room(points.count(), samples)?;
+        self.eval_part(points, 0, points.count(), answers)
+    }
+
+    /// As [`eval`](Self::eval), on the threads of the rayon pool in which this is called. The answers have the same bits, for any number of threads.
+    ///
+    /// # Errors
+    /// Those of [`eval`](Self::eval).
+    pub fn par_eval<P: AsPoints + ?Sized>(&self, points: &P, samples: &mut Samples) -> Result<(), EvalError> {
+        let count = points.count();
+        let mut rest = self.room(count, samples)?;
+        let parts: Vec<(usize, usize, Vec<&mut [f32]>)> = (0..count)
+            .step_by(PART)
+            .map(|start| {
+                let points = PART.min(count - start);
+                (start, points, rest.iter_mut().map(|plane| split(plane, points)).collect())
+            })
+            .collect();
+        parts
+            .into_par_iter()
+            .try_for_each(|(start, count, answers)| self.eval_part(points, start, count, answers))
+    }
+
+    /// Room for the answers at so many points.
+    fn room<'s>(&self, points: usize, samples: &'s mut Samples) -> Result<Vec<&'s mut [f32]>, EvalError> {
         if *samples.layout() != self.layout {
             return Err(EvalError::Layout);
         }
-        samples.resize(points.len());
-        self.eval_planes(points.planes(), &mut samples.planes_mut())
+        samples.resize(points);
+        Ok(samples.planes_mut())
+    }
+
+    /// The answers at some of the points. Those that are no planes are transposed block by block.
+    fn eval_part<P: AsPoints + ?Sized>(
+        &self,
+        points: &P,
+        mut start: usize,
+        mut count: usize,
+        mut answers: Vec<&mut [f32]>,
+    ) -> Result<(), EvalError> {
+        if let Some(planes) = points.planes() {
+            return self.eval_planes(planes.map(|plane| &plane[start..][..count]), &mut answers);
+        }
+        let mut scratch = [[0.0; BLOCK]; 3];
+        let mut block = Vec::with_capacity(answers.len());
+        while count > 0 {
+            let some = count.min(BLOCK);
+            points.copy_to(start, scratch.each_mut().map(|plane| &mut plane[..some]));
+            block.extend(answers.iter_mut().map(|plane| split(plane, some)));
+            self.eval_planes(scratch.each_ref().map(|plane| &plane[..some]), &mut block)?;
+            block.clear();
+            (start, count) = (start + some, count - some);
+        }
+        Ok(())
     }
 
     /// The answers at all points, into planes of the caller: one for each name of the [`layout`](Self::layout), as long as those of x, y and z.

@@ -19,7 +19,7 @@ type Work<'a, T, E> = dyn FnOnce(Hook<'_>) -> Result<T, E> + 'a;
 /// use jbt::{CancelToken, Compiler, Model, Polygonize};
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-/// let tree = Model::new(point([0.0; 3], 1.0)).check().expect("a good model");
+/// let tree = Model::new(point([0, 0, 0], 1)).check()?;
 /// let compiler = Compiler::new();
 /// let made = Polygonize::default().mesh(&compiler, &tree).run()?;
 /// assert!(made.report.closed);

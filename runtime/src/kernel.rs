@@ -8,6 +8,8 @@
 //!
 //! All give the same bits.
 
+use std::fmt;
+use std::str::FromStr;
 use std::sync::Arc;
 use std::sync::Mutex;
 
@@ -20,9 +22,12 @@ use jbt_ir::pass::{GRADIENT, INTERVAL, PIPELINE, Pass, run_pipeline};
 use jbt_ir::{Function, Selection, Tables, Verified, interpret, limits, verify};
 
 use crate::error::{CompileError, EvalError};
+use crate::export::{UnknownWord, find};
 
 /// What runs a program.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 pub enum Engine {
     /// The reference: one point after the other.
     Scalar,
@@ -44,6 +49,21 @@ impl Engine {
             Self::Lanes => "lanes",
             Self::Jit => "jit",
         }
+    }
+}
+
+impl fmt::Display for Engine {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+impl FromStr for Engine {
+    type Err = UnknownWord;
+
+    /// The engine of a [`name`](Self::name).
+    fn from_str(word: &str) -> Result<Self, UnknownWord> {
+        find(&Self::ALL, word)
     }
 }
 

@@ -6,24 +6,23 @@
 //!
 //! ```
 //! use jbt::build::{Axis, point};
-//! use jbt::{Evaluator, Model, Points, Query};
+//! use jbt::{Evaluator, Model, Query};
 //!
-//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! let orange = point([0.0, 0.4, 0.0], 1.0).color([1.0, 0.6, 0.1]);
-//! let blue = point([0.0, -0.4, 0.0], 1.0).color([0.1, 0.4, 1.0]);
-//! let tree = Model::new((orange + blue).twist(Axis::Y, 0.5)).check().expect("a good model");
+//! fn main() -> Result<(), Box<dyn std::error::Error>> {
+//!     let orange = point([0.0, 0.4, 0.0], 1).color([1.0, 0.6, 0.1]);
+//!     let blue = point([0.0, -0.4, 0.0], 1).color([0.1, 0.4, 1.0]);
+//!     let tree = Model::new((orange + blue).twist(Axis::Y, 0.5)).check()?;
 //!
-//! let evaluator = Evaluator::compile(&tree, Query::ALL)?; // once; threads may share it
-//! let points: Points = [[0.0, 0.1, 0.0], [0.3, 0.0, 0.0]].into_iter().collect();
-//! let mut samples = evaluator.samples();
-//! evaluator.eval(&points, &mut samples)?; // many times
+//!     let evaluator = Evaluator::compile(&tree, Query::ALL)?; // once; threads may share it
+//!     let mut samples = evaluator.samples();
+//!     evaluator.eval(&[[0.0, 0.1, 0.0], [0.3, 0.0, 0.0]], &mut samples)?; // many times
 //!
-//! // The published figures of this peanut: fields 0.794976 and 1/2, and the colours mixed by them.
-//! assert!((samples.field()[0] - 1.294976).abs() < 1e-6);
-//! let red = &samples.attribute("color").expect("asked for")[0];
-//! assert!((red[0] - (0.613892 * 1.0 + 0.386108 * 0.1)).abs() < 1e-5);
-//! # Ok(())
-//! # }
+//!     // The published figures of this peanut: fields 0.794976 and 1/2, and the colours mixed by them.
+//!     assert!((samples.field()[0] - 1.294976).abs() < 1e-6);
+//!     let [red, _, _] = samples.colors().ok_or("attributes were asked for")?;
+//!     assert!((red[0] - (0.613892 * 1.0 + 0.386108 * 0.1)).abs() < 1e-5);
+//!     Ok(())
+//! }
 //! ```
 //!
 //! ```text
@@ -32,7 +31,8 @@
 //! text, build, import                              Polygonize ──► Mesh ──► export
 //! ```
 //!
-//! * [`build`], [`text`] and [`import`] make a [`Model`]; [`Model::check`] says everything that is wrong with it.
+//! * [`Scene::load`], [`build`], [`text`] and [`import`] make a [`Model`]; [`Model::check`] says everything that is wrong with it. [`tree`] is for
+//!   programs that read one.
 //! * Numbers may follow named parameters ([`build::param`], `param` in a text): [`CheckedTree::with_parameters`] sets them, and
 //!   [`Evaluator::update`] then writes numbers and compiles nothing.
 //! * An [`Evaluator`] answers one [`Query`] at any points, on the [`Engine`] that the machine has; all engines give the same bits.
@@ -44,9 +44,34 @@
 //! * A [`Tracer`] follows rays to where they hit the surface, singly or in packets, and misses nothing that is longer than a tolerance.
 //! * [`Counters`] say what was done, and what separate walks would have done; [`statistics`] foretell it, and say how much of it matters.
 
+//!
+//! # Errors
+//!
+//! Reading, checking and setting parameters have one error, [`Diagnostics`]: a list of all that is wrong, which shows each place with its line and a caret.
+//! Every other door has a small error of its own. All are `Send + Sync + 'static` and go into `Box<dyn Error>`; none is a panic, whatever a file says.
+//!
+//! # Threads
+//!
+//! [`Evaluator::eval`] is serial. [`Evaluator::par_eval`] and all long work run on the rayon pool in which they are called; the answers have the same bits
+//! for any number of threads. Long work is a [`Job`]: `.run()` does it, `.on_progress(..)` watches it, `.cancel(&token)` stops it. Evaluators, tracers,
+//! solids, slicers and renderers are `Send + Sync`.
+//!
+//! # Features
+//!
+//! | feature | what for |
+//! |---|---|
+//! | `jit` (default) | machine code by Cranelift; without it the SIMD interpreter runs, with the same bits |
+//! | `glam` | vectors and affine maps of glam 0.34 wherever numbers and points go |
+//! | `mint` | the same for mint 0.5, for any other library of vectors |
+//! | `serde` | meshes, points, samples, settings and reports can be written, and read where nothing can be wrong with them |
+//!
+//! glam's major version is a matter of that feature alone: nothing else here has its types. A new major of glam is a change for those who have
+//! turned it on, and for nobody else; `mint` stays as it is. What the nodes of a [`tree`] hold is the compiler's own, and read by plain numbers.
+
 mod buffer;
 pub mod contour;
 mod counter;
+mod debug;
 pub mod divide;
 mod error;
 mod evaluator;
@@ -56,6 +81,7 @@ pub mod kernel;
 pub mod mesh;
 mod picture;
 mod places;
+mod points;
 mod polygonize;
 mod probe;
 pub mod prune;
@@ -67,6 +93,12 @@ pub mod solid;
 mod srgb;
 pub mod statistics;
 pub mod trace;
+pub mod tree;
+
+/// README's program runs.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+mod readme {}
 
 pub use jbt_ir as ir;
 #[cfg(feature = "jit")]
@@ -88,13 +120,14 @@ pub use jbt_frontend::tree::Tree;
 pub use jbt_frontend::walk;
 pub use jbt_ir::limits;
 
-pub use buffer::{Layout, LengthError, Points, Samples};
+pub use buffer::{Layout, Samples};
 pub use counter::Counters;
 pub use error::{CompileError, EvalError};
 pub use evaluator::{Compiler, Evaluator, Update};
 pub use job::{CancelToken, Job};
 pub use kernel::Engine;
 pub use picture::Picture;
+pub use points::{AsPoint, AsPoints, LengthError, Points, PointsIter};
 pub use polygonize::{Fineness, MeshCounters, Polygonize, PolygonizeError, Polygonized};
 pub use probe::Probe;
 pub use prune::{PruneCounters, Pruner, Region};
@@ -103,3 +136,4 @@ pub use render::{Render, Renderer};
 pub use scene::{Scene, SceneFormat};
 pub use solid::{Membership, Solid};
 pub use trace::{Ray, Tracer};
+pub use tree::{Node, NodeKind};

@@ -24,6 +24,7 @@ use kernels::Kernels;
 
 /// How fine a lattice is.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Fineness {
     /// The edge of a cell, in units of the model. Greater than zero.
     Cell(f64),
@@ -49,6 +50,7 @@ impl Default for Fineness {
 /// assert!(made.report.closed);
 /// ```
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Polygonize {
     /// The smallest and the largest corner of the box to mesh; `None` is the model's support, grown a little.
     pub region: Option<([f64; 3], [f64; 3])>,
@@ -60,6 +62,7 @@ pub struct Polygonize {
 
 /// A mesh, and what it took.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Polygonized {
     /// The mesh.
     pub mesh: Mesh,
@@ -79,6 +82,7 @@ pub struct Polygonized {
 
 /// What the stages of a mesh evaluated, and what they did not have to.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MeshCounters {
     /// Dividing: boxes, and ranges of distances to skeletons over them.
     pub division: PruneCounters,

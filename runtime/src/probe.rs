@@ -2,6 +2,7 @@
 
 use std::cell::OnceCell;
 
+use crate::debug::brief_debug;
 use crate::evaluator::Evaluator;
 
 /// One point of a model: what is asked was declared by the evaluator's query, and everything is computed by the first question.
@@ -21,6 +22,8 @@ pub struct Probe<'a> {
     point: [f32; 3],
     answers: OnceCell<Vec<f32>>,
 }
+
+brief_debug!(Probe<'_>, "Probe", this: point = this.point, answers = this.answers.get());
 
 impl<'a> Probe<'a> {
     pub(crate) fn new(evaluator: &'a Evaluator, point: [f32; 3]) -> Self {

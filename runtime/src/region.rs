@@ -4,6 +4,7 @@ use std::error::Error;
 
 /// A closed axis-aligned box: its sides belong to it. Corners are finite and in order where a function says so.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Box3 {
     /// The smallest corner.
     pub low: [f32; 3],

@@ -17,6 +17,7 @@ use jbt_frontend::lower::LeafOccurrences;
 use jbt_frontend::query::Query;
 use rayon::prelude::*;
 
+use crate::debug::brief_debug;
 use crate::error::CompileError;
 use crate::evaluator::{Compiler, Evaluator};
 use crate::job::{Hook, Job};
@@ -43,6 +44,7 @@ pub fn leaf_uses(tree: &CheckedTree) -> u64 {
 
 /// Evaluations of primitives for one point.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PerPoint {
     /// By separate walks of the tree.
     pub separate: u64,
@@ -57,6 +59,8 @@ pub struct Statistics<'a> {
     uses: u64,
     occurrences: LeafOccurrences<'a>,
 }
+
+brief_debug!(Statistics<'_>, "Statistics", this: uses = this.uses, occurrences = this.occurrences());
 
 /// How far around a leaf's support lattice points are tried, as a part of the largest coordinate: more than f32 is off by.
 const ROUNDING: f64 = 1.0 / (1 << 18) as f64;
@@ -143,6 +147,7 @@ impl<'a> Statistics<'a> {
 
 /// What matters on a lattice: how many points are inside of supports.
 #[derive(Clone, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Supports {
     /// Points of the lattice.
     pub points: u64,

@@ -63,7 +63,7 @@ fn children_of_a_formula_that_share_a_field_have_weights_of_their_own() {
     for engine in Engine::ALL {
         let evaluator = Compiler::for_engine(engine).evaluator(&tree, Query::ALL).unwrap();
         let mut samples = evaluator.samples();
-        evaluator.eval(&[[0.3, 0.2, 0.1]].into_iter().collect(), &mut samples).unwrap();
+        evaluator.eval(&[[0.3, 0.2, 0.1]], &mut samples).unwrap();
         let color = samples.attribute("color").unwrap();
         assert_eq!([color[0][0], color[1][0], color[2][0]], [1.0, 0.0, 0.0], "{}", engine.name());
     }

@@ -70,7 +70,7 @@ fn an_infinity_is_the_largest_number() {
             let evaluator = Compiler::for_engine(engine).evaluator(&tree, Query::ALL).expect("it compiles");
             let answers = |points: Vec<[f32; 3]>| {
                 let mut samples = evaluator.samples();
-                evaluator.eval(&points.into_iter().collect(), &mut samples).expect("the buffers fit");
+                evaluator.eval(&points, &mut samples).expect("the buffers fit");
                 bits(&samples)
             };
             let infinite = answers(with(&[f32::INFINITY, f32::NEG_INFINITY]));

@@ -1,6 +1,9 @@
 //! Trees of several children: combinators by their names and by Rust's operators, maps of one field, and selectors.
 
-use std::ops::{Add, BitAnd, BitOr, BitXor, Not, Sub};
+use std::iter::{Product, Sum};
+use std::ops::{
+    Add, AddAssign, BitAnd, BitAndAssign, BitOr, BitOrAssign, BitXor, BitXorAssign, Not, Sub, SubAssign,
+};
 
 use super::Number;
 use crate::combine::{Combinator, Family, SetOperation};
@@ -22,6 +25,48 @@ impl Tree {
     ) -> Self {
         let numbers = numbers.into_iter().collect();
         Self::of(Recipe::Combine { combinator, numbers }, children.into_iter().collect())
+    }
+
+    /// The sum of fields: the plain blend.
+    ///
+    /// ```
+    /// use jbt_frontend::builder::point;
+    /// use jbt_frontend::tree::Tree;
+    ///
+    /// let ball = |x: i32| point([x, 0, 0], 1);
+    /// let row = Tree::sum((0..3).map(ball));
+    /// assert_eq!(row, (0..3).map(ball).sum());
+    /// let mut grown = ball(0) + ball(1);
+    /// grown += ball(2);
+    /// assert_eq!(row, grown);
+    /// ```
+    #[must_use]
+    pub fn sum(children: impl IntoIterator<Item = Self>) -> Self {
+        Self::combine(Combinator::Sum, children)
+    }
+
+    /// The largest field: what is inside of any.
+    #[must_use]
+    pub fn union(children: impl IntoIterator<Item = Self>) -> Self {
+        Self::combine(Combinator::Union, children)
+    }
+
+    /// The smallest field: what is inside of all.
+    #[must_use]
+    pub fn intersection(children: impl IntoIterator<Item = Self>) -> Self {
+        Self::combine(Combinator::Intersection, children)
+    }
+
+    /// What is inside of the first and of no other.
+    #[must_use]
+    pub fn difference(children: impl IntoIterator<Item = Self>) -> Self {
+        Self::combine(Combinator::Difference, children)
+    }
+
+    /// What is inside of an odd number of them.
+    #[must_use]
+    pub fn symmetric_difference(children: impl IntoIterator<Item = Self>) -> Self {
+        Self::combine(Combinator::SymmetricDifference, children)
     }
 
     /// Ricci's blend with exponent `n`: in [1, 1024], where 1 is the sum and large ones are near the union, or in [-1024, -1], near the
@@ -164,6 +209,61 @@ operators! {
     BitAnd bitand Intersection,
     Sub sub Difference,
     BitXor bitxor SymmetricDifference,
+}
+
+macro_rules! assignments {
+    ($($trait:ident $method:ident $combinator:ident),+ $(,)?) => { $(
+        impl $trait for Tree {
+            /// A root that is this operator already, without other parameters, gets one more child: a loop gives one node, and no chain of them.
+            fn $method(&mut self, other: Self) {
+                if *self.node().kind() == NodeKind::Combine(Combinator::$combinator) {
+                    self.push(other);
+                } else {
+                    *self = Self::combine(Combinator::$combinator, [self.clone(), other]);
+                }
+            }
+        }
+
+        impl $trait<&Self> for Tree {
+            fn $method(&mut self, other: &Self) {
+                $trait::$method(self, other.clone());
+            }
+        }
+    )+ };
+}
+
+assignments! {
+    AddAssign add_assign Sum,
+    BitOrAssign bitor_assign Union,
+    BitAndAssign bitand_assign Intersection,
+    SubAssign sub_assign Difference,
+    BitXorAssign bitxor_assign SymmetricDifference,
+}
+
+impl Sum for Tree {
+    /// [`Tree::sum`]; of nothing it is a node without children, which the check refuses.
+    fn sum<I: Iterator<Item = Self>>(trees: I) -> Self {
+        Self::combine(Combinator::Sum, trees)
+    }
+}
+
+impl<'a> Sum<&'a Self> for Tree {
+    fn sum<I: Iterator<Item = &'a Self>>(trees: I) -> Self {
+        trees.cloned().sum()
+    }
+}
+
+impl Product for Tree {
+    /// [`Tree::product`]; of nothing it is a node without children, which the check refuses.
+    fn product<I: Iterator<Item = Self>>(trees: I) -> Self {
+        Self::combine(Combinator::Product, trees)
+    }
+}
+
+impl<'a> Product<&'a Self> for Tree {
+    fn product<I: Iterator<Item = &'a Self>>(trees: I) -> Self {
+        Product::product(trees.cloned())
+    }
 }
 
 impl Not for Tree {

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Number, Vector, real, vector};
+use super::{Number, Rows, Vector, real, vector};
 use crate::field::FieldValue;
 use crate::recipe::{Angle, FieldNumber, Map, Recipe};
 use crate::tree::Tree;
@@ -53,8 +53,8 @@ impl Tree {
 
     /// Mapped by a 3x4 matrix, given by rows, that takes this tree's space to its parent's: the last column is the shift.
     #[must_use]
-    pub fn affine<T: Into<Number>>(&self, rows: [[T; 4]; 3]) -> Self {
-        let [[xx, xy, xz, x], [yx, yy, yz, y], [zx, zy, zz, z]] = rows.map(|row| row.map(Into::into));
+    pub fn affine(&self, rows: impl Into<Rows>) -> Self {
+        let Rows([[xx, xy, xz, x], [yx, yy, yz, y], [zx, zy, zz, z]]) = rows.into();
         self.mapped(Map::Affine(Box::new([xx, xy, xz, x, yx, yy, yz, y, zx, zy, zz, z])))
     }
 

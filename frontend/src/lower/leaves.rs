@@ -1,5 +1,7 @@
 //! Every leaf where it stands, each as a model of its own: what statistics ask about one primitive at a time.
 
+use std::fmt;
+
 use super::occurrence::{FieldId, Scene};
 use super::shape::Lift;
 use crate::check::{CheckedTree, NodeId};
@@ -24,6 +26,12 @@ pub struct LeafOccurrences<'a> {
     scene: Scene<'a>,
     /// Those that selectors do not leave out.
     asked: Vec<FieldId>,
+}
+
+impl fmt::Debug for LeafOccurrences<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("LeafOccurrences").field("len", &self.len()).finish_non_exhaustive()
+    }
 }
 
 impl<'a> LeafOccurrences<'a> {

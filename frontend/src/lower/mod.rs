@@ -35,6 +35,7 @@ mod shape;
 mod slopes;
 mod support;
 
+use std::fmt;
 use std::sync::OnceLock;
 
 use jbt_ir::{Function, Tables};
@@ -61,6 +62,13 @@ pub struct Lowering<'a> {
     shapes: shape::Shapes,
     /// See [`leaf_uses`](Self::leaf_uses).
     leaf_uses: OnceLock<u64>,
+}
+
+impl fmt::Debug for Lowering<'_> {
+    /// The tree, and not what was found in it.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Lowering").field("tree", self.tree()).finish_non_exhaustive()
+    }
 }
 
 impl<'a> Lowering<'a> {

@@ -60,6 +60,7 @@ impl Verdict {
 
 /// What became of a square.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Fate {
     /// It was divided.
     Divided,
@@ -75,6 +76,7 @@ pub enum Fate {
 
 /// A square of the division, in coordinates of the plane.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct DividedSquare {
     /// Its lowest corner.
     pub low: [f32; 2],
@@ -88,6 +90,7 @@ pub struct DividedSquare {
 
 /// How many squares of one size have which fate.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Level {
     /// How often the side of the whole was halved to get theirs.
     pub depth: u8,

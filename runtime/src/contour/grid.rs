@@ -8,6 +8,7 @@ use crate::polygonize::Fineness;
 
 /// A rectangle in coordinates of a plane, with u to the right and v upwards. Its corners are finite and in order.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Rectangle {
     low: [f64; 2],
     high: [f64; 2],

@@ -46,6 +46,7 @@ const CHEAP_FOR_A_TABLE: u64 = 12_000;
 
 /// How finely an image is made.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ImageDetail {
     /// The pixels, along the longer side of the rectangle or by their edge.
     pub fineness: Fineness,
@@ -62,6 +63,7 @@ impl Default for ImageDetail {
 
 /// What an image shows.
 #[derive(Clone, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Mode {
     /// White inside, black outside.
     Inside,

@@ -75,6 +75,7 @@ pub const MAX_BLOCK: usize = 64;
 
 /// How finely a contour is made.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Detail {
     /// The cells of the lattice, along the longer side of the rectangle or by their edge.
     pub fineness: Fineness,
@@ -87,6 +88,7 @@ pub struct Detail {
 
 /// The contour of a model in a rectangle of a plane: see the module.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Contour {
     /// Where the vertices are, in coordinates of the plane, loop by loop.
     pub positions: Vec<[f32; 2]>,

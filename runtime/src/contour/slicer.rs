@@ -7,6 +7,7 @@ use thiserror::Error;
 use super::grid::{Rectangle, RectangleError};
 use super::plane::{Kind, Plane, others};
 use crate::counter::Counters;
+use crate::debug::brief_debug;
 use crate::error::{CompileError, EvalError};
 use crate::evaluator::{Compiler, Evaluator};
 use crate::kernel::Engine;
@@ -29,6 +30,8 @@ pub struct Slicer {
     /// Field and attributes, if they were asked for.
     pub(super) full: Option<Evaluator>,
 }
+
+brief_debug!(Slicer, "Slicer", this: plane = this.plane, engine = this.field.engine());
 
 /// The part of a plane in which the field may differ from zero.
 #[derive(Clone, Copy, PartialEq, Debug)]

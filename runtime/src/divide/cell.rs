@@ -1,6 +1,7 @@
 //! A box as a decider sees it: what is asked for is found then, for all parts of one box at once.
 
 use std::cell::{Cell as Slot, OnceCell};
+use std::fmt;
 
 use crate::region::{ANYTHING, Box3, Divisible, MAX_PARTS, Range};
 
@@ -68,6 +69,15 @@ pub struct Cell<'a, F: Divisible> {
     pub(super) group: &'a Group<'a, F>,
     pub(super) part: usize,
     pub(super) depth: usize,
+}
+
+impl<F: Divisible> fmt::Debug for Cell<'_, F> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Cell")
+            .field("bounds", &self.bounds())
+            .field("depth", &self.depth)
+            .finish_non_exhaustive()
+    }
 }
 
 impl<F: Divisible> Cell<'_, F> {

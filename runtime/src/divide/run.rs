@@ -14,6 +14,7 @@ use crate::region::{Box3, Divisible, MAX_PARTS};
 
 /// How far a division may go.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Limits {
     /// How often a box may be split on the way to a part of it; at most [`limits::MAX_DIVISION_DEPTH`].
     pub depth: usize,

@@ -133,6 +133,7 @@ impl Format {
 
 /// Which axis of a file points up. Models are z-up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Up {
     /// The model is turned by -90 degrees about x: its (x, y, z) is (x, z, -y) in the file. The model's -y is the file's +z.
     Y,
@@ -166,6 +167,7 @@ impl Up {
 
 /// What the numbers of a colour mean. Those of a model are linear: twice the number is twice the light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ColorEncoding {
     /// As screens take them, in even steps for the eye (sRGB, IEC 61966-2-1): half the light is 0.735, or 188 of 255.
     Srgb,
@@ -198,6 +200,7 @@ impl ColorEncoding {
 
 /// How a mesh is written where users may want it otherwise than a format's readers do. `None` is what [`Conventions`] say.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ExportOptions {
     /// The axis of the file that points up.
     pub up: Option<Up>,
@@ -231,7 +234,7 @@ pub struct UnknownWord {
 }
 
 /// The member of a list that prints as a word.
-fn find<T: Copy + fmt::Display>(all: &[T], word: &str) -> Result<T, UnknownWord> {
+pub(crate) fn find<T: Copy + fmt::Display>(all: &[T], word: &str) -> Result<T, UnknownWord> {
     let words: Vec<String> = all.iter().map(T::to_string).collect();
     let found = words.iter().position(|known| known == word).map(|index| all[index]);
     found.ok_or_else(|| UnknownWord { word: word.to_owned(), known: words.join(", ") })

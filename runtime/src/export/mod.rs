@@ -30,6 +30,7 @@ use thiserror::Error;
 
 use crate::mesh::{Attribute, Mesh};
 use format::Choices;
+pub(crate) use format::find;
 
 /// Bytes that are collected before they go to a file.
 const BUFFER: usize = 1 << 18;

@@ -67,6 +67,7 @@ fn axis_name(axis: usize) -> &'static str {
 ///
 /// A value of this type has at most [`MAX_RESOLUTION`] cells along an axis, and strictly increasing finite f32 coordinates.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Lattice {
     origin: [f64; 3],
     spacing: f64,

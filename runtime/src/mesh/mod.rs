@@ -73,6 +73,7 @@ pub const MAX_PULLS: usize = 64;
 
 /// How to mesh.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Options {
     /// The surface is where the field has this value. Any finite number.
     pub iso: f32,
@@ -96,6 +97,7 @@ impl Default for Options {
 
 /// Named reals at each vertex of a mesh.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Attribute {
     /// The name, as in the model.
     pub name: String,
@@ -107,6 +109,7 @@ pub struct Attribute {
 
 /// An indexed triangle mesh with normals and attributes.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Mesh {
     /// One for each vertex.
     pub positions: Vec<[f32; 3]>,
@@ -118,8 +121,40 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 3]>,
 }
 
+impl Attribute {
+    /// The reals of a vertex. Panics if there is no such vertex.
+    #[must_use]
+    pub fn at(&self, vertex: usize) -> &[f32] {
+        &self.values[vertex * self.width..][..self.width]
+    }
+}
+
+impl Mesh {
+    /// The attribute of this name.
+    #[must_use]
+    pub fn attribute(&self, name: &str) -> Option<&Attribute> {
+        self.attributes.iter().find(|attribute| attribute.name == name)
+    }
+
+    /// Linear red, green and blue for each vertex; `None` if the mesh has no attribute `color` of three reals.
+    ///
+    /// ```
+    /// use jbt::{Compiler, Model, Polygonize, build::point};
+    /// let tree = Model::new(point([0, 0, 0], 1).color([1.0, 0.5, 0.0])).check()?;
+    /// let mesh = Polygonize::default().mesh(&Compiler::new(), &tree).run()?.mesh;
+    /// assert!(mesh.colors().ok_or("no colours")?.iter().all(|&color| color == [1.0, 0.5, 0.0]));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn colors(&self) -> Option<&[[f32; 3]]> {
+        let color = self.attribute("color").filter(|color| color.width == 3)?;
+        Some(color.values.as_chunks().0)
+    }
+}
+
 /// Some of the six sides of a lattice. Prints as `-x +z`, or `none`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Sides {
     /// The low sides, at the first corners along x, y and z.
     pub low: [bool; 3],
@@ -161,6 +196,7 @@ impl fmt::Display for Sides {
 
 /// What was done to make a mesh, and what it is like.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Report {
     /// Whether every edge has exactly two triangles, in opposite directions. A mesh without triangles is closed. It has been looked at if
     /// [`Options::verify`] said so, and follows from `cut_sides` otherwise.

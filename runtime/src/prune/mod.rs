@@ -33,6 +33,7 @@ use jbt_ir::domain::counting::of_selection;
 use jbt_ir::selection::Extent;
 use jbt_ir::{Selection, Tables};
 
+use crate::debug::brief_debug;
 use crate::error::{CompileError, EvalError};
 use crate::evaluator::Compiler;
 use crate::kernel::{Bound, Kernel, Purpose};
@@ -87,6 +88,8 @@ pub struct Pruner {
     counts: Counts,
 }
 
+brief_debug!(Pruner, "Pruner", this: counters = this.counters());
+
 /// What a pruner has done so far.
 #[derive(Debug, Default)]
 struct Counts {
@@ -96,6 +99,7 @@ struct Counts {
 
 /// What a pruner has done so far. A snapshot: see [`Pruner::counters`].
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PruneCounters {
     /// Boxes for which a range was computed.
     pub boxes: u64,

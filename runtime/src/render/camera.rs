@@ -27,6 +27,7 @@ const THREE_QUARTER: Vector = [1.0, -0.62, 0.5];
 
 /// Where the camera stands.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Stance {
     /// It looks at the model from this direction, of any length, and stands where the model fills the picture.
     From([f64; 3]),
@@ -41,6 +42,7 @@ pub enum Stance {
 
 /// How the model is looked at.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct View {
     /// Where the camera stands.
     pub stance: Stance,
@@ -121,6 +123,7 @@ const PARALLEL: f64 = 1e-9;
 
 /// Where the rays of a picture begin and go.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Camera {
     /// Where it stands.
     pub eye: [f64; 3],

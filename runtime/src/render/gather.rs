@@ -14,7 +14,7 @@ use super::noise::{Sequence, above, around};
 use super::shade::{KEY_SPREAD, sky, sky_above};
 use super::vector::{Vector, along, dot};
 use super::{Rays, RenderError};
-use crate::buffer::Points;
+use crate::points::Points;
 use crate::trace::Ray;
 
 /// A place that light may reach.

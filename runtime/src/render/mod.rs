@@ -59,6 +59,7 @@ pub struct Rendered {
 
 /// What a picture took.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Report {
     /// Where the camera stood; `None` if there was nothing to look at.
     pub camera: Option<Camera>,
@@ -90,6 +91,7 @@ pub struct Report {
 
 /// Numbers of rays.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Rays {
     /// From the camera into the region; those that frame the model are not counted.
     pub camera: u64,
@@ -109,6 +111,7 @@ impl Rays {
 
 /// Why a picture is only background.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Notice {
     /// The model has no inside in the region.
     Empty,

@@ -3,6 +3,7 @@
 use jbt_frontend::check::CheckedTree;
 use jbt_frontend::query::Query;
 
+use crate::debug::brief_debug;
 use crate::error::CompileError;
 use crate::evaluator::{Compiler, Evaluator};
 use crate::solid::Solid;
@@ -17,6 +18,8 @@ pub struct Renderer {
     /// What answers where a region cuts the solid: there is no surface to hit.
     pub(super) evaluator: Evaluator,
 }
+
+brief_debug!(Renderer, "Renderer", this: evaluator = this.evaluator);
 
 impl Renderer {
     /// Compiles a model.

@@ -21,6 +21,7 @@ use crate::region::Box3;
 /// assert!(made.report.pixels_hit > 200);
 /// ```
 #[derive(Clone, PartialEq, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Render {
     /// Pixels of a row, and rows: 1 to [`MAX_PICTURE_SIDE`] each, and [`MAX_PICTURE_PIXELS`] in all.
     pub size: [u32; 2],
@@ -58,6 +59,7 @@ impl Default for Render {
 
 /// What is shown of the surface.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Mode {
     /// The surface in light: in the colour of the model, or in that of clay if it has none.
     #[default]
@@ -76,6 +78,7 @@ pub enum Mode {
 
 /// How much trouble light takes.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Quality {
     /// No rays but those of the camera: no shadows, no dark corners. For interaction.
     Draft,
@@ -108,6 +111,7 @@ impl Quality {
 
 /// What is seen where nothing is.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Background {
     /// A bright wall, a little darker towards the ground.
     Studio,

@@ -23,6 +23,7 @@ use jbt_frontend::tree::NodeKind;
 use jbt_ir::limits::MAX_LATTICE_POINTS;
 
 use crate::buffer::Layout;
+use crate::debug::brief_debug;
 use crate::divide::{Cell, Decision, DivideError, Limits, divide};
 use crate::error::{CompileError, EvalError};
 use crate::evaluator::{Compiler, Evaluator};
@@ -49,6 +50,8 @@ pub struct Sampler {
     /// Whether the model has formulas: their fields change from place to place where no primitive reaches.
     formulas: bool,
 }
+
+brief_debug!(Sampler, "Sampler", this: evaluator = this.evaluator);
 
 /// Why a lattice was not sampled.
 #[derive(Debug, thiserror::Error)]

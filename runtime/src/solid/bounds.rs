@@ -22,6 +22,7 @@ use crate::region::{ANYTHING, Box3, Divisible as _, MAX_PARTS};
 
 /// A box around a solid, and one that the solid fills up to its sides.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TightBounds {
     /// Every point of the region that is inside is in this box: proven. `None`: the region holds no inside point.
     pub outer: Option<Box3>,

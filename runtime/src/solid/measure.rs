@@ -30,6 +30,7 @@ use crate::region::Box3;
 
 /// Where to measure a solid, and how finely.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Measure {
     /// The box to measure in; `None` is the model's support, grown a little.
     pub region: Option<Box3>,
@@ -39,6 +40,7 @@ pub struct Measure {
 
 /// Bounds and an estimate of a volume, in units of the model, cubed.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Volume {
     /// It is at least this much: the boxes that are all inside.
     pub low: f64,
@@ -50,6 +52,7 @@ pub struct Volume {
 
 /// The boxes that were split equally often.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Level {
     /// Boxes that were split.
     pub splits: u64,
@@ -63,6 +66,7 @@ pub struct Level {
 
 /// How much of a model matters in boxes that may hold surface: primitives that a point there takes.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Contents {
     /// On average; 0 without such boxes.
     pub mean: f64,
@@ -72,6 +76,7 @@ pub struct Contents {
 
 /// What was measured.
 #[derive(Clone, PartialEq, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Measures {
     /// Where.
     pub region: Box3,

@@ -15,13 +15,14 @@ use std::collections::VecDeque;
 use jbt_ir::limits::MAX_MEMBERSHIP_BOXES;
 
 use super::{Batch, Solid, center, cut};
-use crate::buffer::Points;
 use crate::error::EvalError;
+use crate::points::Points;
 use crate::prune::Region;
 use crate::region::{ANYTHING, Box3, Divisible as _, MAX_PARTS};
 
 /// Where a point is.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Membership {
     /// Inside: so is every f32 point of the cube around it.
     Inside,

@@ -31,6 +31,7 @@ use jbt_frontend::owner;
 use jbt_frontend::query::Query;
 
 use crate::counter::Counters;
+use crate::debug::brief_debug;
 use crate::error::{CompileError, EvalError};
 use crate::evaluator::{Compiler, Evaluator};
 use crate::prune::{Pruner, Region};
@@ -59,6 +60,8 @@ pub struct Solid {
     /// What answers the field and its gradient, from the first measure on.
     normals: OnceLock<Evaluator>,
 }
+
+brief_debug!(Solid, "Solid", this: iso = this.iso, engine = this.field.engine());
 
 /// Why a question has no region.
 #[derive(Clone, Copy, PartialEq, Debug, thiserror::Error)]

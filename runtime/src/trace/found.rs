@@ -4,8 +4,9 @@ use super::Tracer;
 use super::hits::Hits;
 use super::polish::Bracket;
 use super::ray::Line;
-use crate::buffer::{Points, Samples};
+use crate::buffer::Samples;
 use crate::error::EvalError;
+use crate::points::Points;
 use crate::prune::Region;
 
 /// A hit, but for its samples.

@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use crate::buffer::{Layout, Points, Samples};
+use crate::buffer::{Layout, Samples};
+use crate::points::Points;
 
 /// The hits of a packet of rays, ordered by ray, then by t.
 #[derive(Clone, PartialEq, Debug)]

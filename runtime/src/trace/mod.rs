@@ -43,6 +43,7 @@ use jbt_frontend::query::Query;
 use jbt_ir::limits::MAX_PACKET_RAYS;
 
 use crate::buffer::Layout;
+use crate::debug::brief_debug;
 use crate::error::{CompileError, EvalError};
 use crate::evaluator::{Compiler, Evaluator};
 use crate::prune::Pruner;
@@ -86,8 +87,11 @@ pub struct Tracer {
     hits: AtomicU64,
 }
 
+brief_debug!(Tracer, "Tracer", this: engine = this.field.engine(), counters = this.counters());
+
 /// What a tracer has done so far. A snapshot: see [`Tracer::counters`].
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TraceCounters {
     /// Rays that were given.
     pub rays: u64,

@@ -16,6 +16,7 @@ use super::error::TraceError;
 
 /// The points `origin + t * direction` for t in the span. The direction may have any length but 0: t counts in lengths of it.
 #[derive(Clone, Copy, PartialEq, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Ray {
     /// Where t is 0.
     pub origin: [f64; 3],

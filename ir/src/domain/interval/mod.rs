@@ -52,6 +52,7 @@ use facts::{Facts, Sign};
 use crate::op::{Domain, Op};
 
 /// A real: two bounds, what is known of them, and which value they belong to.
+#[derive(Debug)]
 pub struct Range<D: Domain> {
     /// No number that the value can be is below this.
     pub low: D::Real,
@@ -62,6 +63,7 @@ pub struct Range<D: Domain> {
 }
 
 /// A mask: at most one of both holds.
+#[derive(Debug)]
 pub struct Certainty<D: Domain> {
     /// It certainly holds.
     pub yes: D::Mask,
@@ -72,6 +74,7 @@ pub struct Certainty<D: Domain> {
 }
 
 /// Bits, if they are known.
+#[derive(Debug)]
 pub struct Known<D: Domain>(Option<D::Bits>);
 
 macro_rules! copies {
@@ -88,6 +91,7 @@ macro_rules! copies {
 copies!(Range Certainty Known);
 
 /// The interval domain over `D`.
+#[derive(Debug)]
 pub struct Interval<D: Domain> {
     /// Where bounds are computed.
     pub domain: D,

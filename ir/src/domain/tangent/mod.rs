@@ -33,6 +33,7 @@ pub struct Dual {
 }
 
 /// The tangent domain, emitting into a builder. Masks and bits do not move.
+#[derive(Debug)]
 pub struct Tangent {
     /// Where the instructions go.
     pub builder: FunctionBuilder,
