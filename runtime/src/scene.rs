@@ -40,9 +40,9 @@ pub struct Scene {
 pub enum SceneFormat {
     /// The [text format](crate::text) of jbt.
     Jbt,
-    /// A ParsIP scene: see [`parsip`](crate::import::parsip).
+    /// A ParsIP scene: see [`parsip`](fn@crate::import::parsip).
     Parsip,
-    /// A program of instructions: see [`vm`](crate::import::vm).
+    /// A program of instructions: see [`vm`](fn@crate::import::vm).
     Vm,
 }
 
