@@ -96,6 +96,10 @@ pub struct SceneArguments {
 The format is that of OUT's extension. Without --region the mesh covers the support of the model: where its field can
 differ from zero. docs/files.md says what each format holds, and how other programs read it.
 
+Keys of --json that measure the mesh, in units and axes of the scene:
+  bounds: [x0, y0, z0, x1, y1, z1] and size: [x, y, z] (null if it is empty), volume (null if it is not closed: it encloses
+  nothing then), area; of the file: format, up, colors (null if it has none)
+
 Examples:
   jbt mesh hero.jbt -o hero.glb
   jbt mesh hero.jbt --resolution 200 -D radius=2 -o hero.ply

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use jbt::Polygonized;
-use jbt::export::{self, ExportError, ExportOptions, Format};
+use jbt::export::{self, ColorEncoding, ExportError, ExportOptions, Format};
 use jbt_frontend::diagnostic::escape;
 use serde_json::json;
 
@@ -46,7 +46,13 @@ pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(),
         warnings.iter().for_each(|warning| warn(warning));
     }
     warnings.splice(0..0, scene.warnings);
-    let report = Report { made: &made, warnings: &warnings, total: start.elapsed() };
+    let report = Report {
+        made: &made,
+        format: destination.kind,
+        options,
+        warnings: &warnings,
+        total: start.elapsed(),
+    };
     let told = arguments.work.told(quiet);
     told.report(&destination.path, || report.json().to_string(), |name| report.text(name))
 }
@@ -80,6 +86,8 @@ fn warnings(made: &Polygonized) -> Vec<String> {
 /// What is told about a mesh.
 struct Report<'a> {
     made: &'a Polygonized,
+    format: Format,
+    options: ExportOptions,
     warnings: &'a [String],
     total: Duration,
 }
@@ -89,10 +97,19 @@ impl Report<'_> {
     fn json(&self) -> serde_json::Value {
         let Polygonized { mesh, report, lattice, counters, .. } = self.made;
         let (low, high) = lattice::corners(lattice);
+        let bounds =
+            mesh.bounds().map(|bounds| [bounds.low, bounds.high].map(|corner| corner.map(f64::from)));
         json!({
             "triangles": mesh.triangles.len(),
             "vertices": mesh.positions.len(),
             "closed": report.closed,
+            "bounds": bounds.map(|corners| corners.concat()),
+            "size": bounds.map(size),
+            "volume": report.closed.then(|| mesh.volume()),
+            "area": mesh.area(),
+            "format": self.format.extension(),
+            "up": self.options.up_in(self.format).name(),
+            "colors": self.options.colors_in(self.format).map(ColorEncoding::name),
             "cut_sides": report.cut_sides.to_string(),
             "field_evaluations": report.field_evaluations,
             "gradient_evaluations": report.gradient_evaluations,
@@ -115,6 +132,15 @@ impl Report<'_> {
         })
     }
 
+    /// The size of the mesh in words: `2 x 2 x 2, volume 4.18854, area 12.5661`.
+    fn measures(&self) -> String {
+        let Polygonized { mesh, report, .. } = self.made;
+        let Some(bounds) = mesh.bounds() else { return "nothing".to_owned() };
+        let sides = size([bounds.low, bounds.high].map(|corner| corner.map(f64::from))).map(digits);
+        let volume = if report.closed { digits(mesh.volume()) } else { "none (open)".to_owned() };
+        format!("{}, volume {volume}, area {}", sides.join(" x "), digits(mesh.area()))
+    }
+
     /// For people.
     fn text(&self, name: &str) -> String {
         let Polygonized { mesh, report, lattice, counters, .. } = self.made;
@@ -127,6 +153,7 @@ impl Report<'_> {
         };
         format!(
             "{}: {}, {}, {closed}\n\
+             \x20 size         {}\n\
              \x20 lattice      {}\n\
              \x20 evaluations  {} of the field, {} with gradient, {} with everything\n\
              \x20 primitives   {} evaluated, {} over boxes, by engine {}\n\
@@ -135,6 +162,7 @@ impl Report<'_> {
             escape(name),
             plural(mesh.triangles.len() as u64, "triangle", "triangles"),
             plural(mesh.positions.len() as u64, "vertex", "vertices"),
+            self.measures(),
             lattice::describe(lattice),
             grouped(report.field_evaluations),
             grouped(report.gradient_evaluations),
@@ -148,6 +176,18 @@ impl Report<'_> {
             milliseconds(self.total),
         )
     }
+}
+
+/// The sides of a box.
+fn size([low, high]: [[f64; 3]; 2]) -> [f64; 3] {
+    std::array::from_fn(|axis| high[axis] - low[axis])
+}
+
+/// A number in six digits.
+fn digits(number: f64) -> String {
+    // A number that has been printed as such is one.
+    let rounded: f64 = format!("{number:.5e}").parse().unwrap_or(number);
+    rounded.to_string()
 }
 
 fn milliseconds(time: Duration) -> f64 {

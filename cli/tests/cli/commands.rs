@@ -34,6 +34,47 @@ fn mesh_writes_every_format_and_says_what_it_took() {
     assert_eq!(folder.read("a.glb"), folder.read("b.glb"));
 }
 
+/// A ball: its size, its volume and its area are those of the mesh, a little below the exact ones; half of it encloses nothing.
+#[test]
+fn mesh_measures_what_it_has_made() {
+    let folder = folder().with("ball.jbt", "jbt 1 point { at (1 2 3) surface_radius 1 }");
+    let ran = folder.jbt(&["mesh", "ball.jbt", "-o", "a.glb", "--resolution", "64", "--json"]).code(0);
+    let report = ran.json();
+    let numbers = |key: &str| -> Vec<f64> {
+        report[key].as_array().unwrap().iter().map(|number| number.as_f64().unwrap()).collect()
+    };
+    let near = |found: f64, exact: f64, part: f64| {
+        assert!(found < exact * (1.0 + 1e-6) && found > exact * (1.0 - part), "{found}, exactly {exact}");
+    };
+    numbers("size").into_iter().for_each(|side| near(side, 2.0, 0.005));
+    let bounds = numbers("bounds");
+    for axis in 0..3 {
+        assert!((0.5 * (bounds[axis] + bounds[axis + 3]) - (axis + 1) as f64).abs() < 1e-3, "{bounds:?}");
+    }
+    let ball = std::f64::consts::PI * 4.0;
+    near(report["volume"].as_f64().unwrap(), ball / 3.0, 0.01);
+    near(report["area"].as_f64().unwrap(), ball, 0.01);
+    assert_eq!((&report["up"], &report["colors"]), (&"y".into(), &"linear".into()));
+    let ran = folder.jbt(&["mesh", "ball.jbt", "-o", "a.stl", "--resolution", "64"]).code(0);
+    assert!(
+        ran.stdout().contains("\n  size         ") && ran.stdout().contains(", volume 4.1"),
+        "{}",
+        ran.stdout()
+    );
+
+    let cut = ["mesh", "ball.jbt", "-o", "a.stl", "--resolution", "64", "--region=-1,0,1,1,4,5", "--json"];
+    let report = folder.jbt(&cut).code(0).json();
+    assert!(report["volume"].is_null() && report["colors"].is_null() && report["up"] == "z");
+    near(report["area"].as_f64().unwrap(), 0.5 * ball, 0.03);
+    let text = folder.jbt(&cut[..cut.len() - 1]).code(0).stdout();
+    assert!(text.contains("volume none (open), area 6."), "{text}");
+
+    let far = ["mesh", "ball.jbt", "-o", "b.obj", "--region", "8,8,8,9,9,9", "--resolution", "4", "--json"];
+    let report = folder.jbt(&far).code(0).json();
+    assert!(report["size"].is_null() && report["bounds"].is_null());
+    assert_eq!((&report["volume"], &report["area"]), (&0.0.into(), &0.0.into()));
+}
+
 #[test]
 fn mesh_reports_for_machines() {
     let ran =

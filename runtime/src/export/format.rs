@@ -208,18 +208,31 @@ pub struct ExportOptions {
     pub colors: Option<ColorEncoding>,
 }
 
+impl ExportOptions {
+    /// The axis that points up in a file of this format.
+    #[must_use]
+    pub fn up_in(&self, format: Format) -> Up {
+        self.up.unwrap_or(format.conventions().up)
+    }
+
+    /// What the numbers of colours mean in a file of this format, if it has any.
+    #[must_use]
+    pub fn colors_in(&self, format: Format) -> Option<ColorEncoding> {
+        format.conventions().colors.map(|colors| self.colors.unwrap_or(colors.encoding))
+    }
+}
+
 /// What a file is like: what options say, else the conventions of its format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Choices {
     pub up: Up,
+    /// Any, where there are no colours.
     pub colors: ColorEncoding,
 }
 
 impl Choices {
     pub fn new(format: Format, options: &ExportOptions) -> Self {
-        let conventions = format.conventions();
-        let usual = conventions.colors.map_or(ColorEncoding::Linear, |colors| colors.encoding);
-        Self { up: options.up.unwrap_or(conventions.up), colors: options.colors.unwrap_or(usual) }
+        Self { up: options.up_in(format), colors: options.colors_in(format).unwrap_or(ColorEncoding::Linear) }
     }
 }
 

@@ -4,11 +4,15 @@
 //!     "glTF" 2 length | length "JSON" text, padded by spaces | length "BIN" positions normals color uv others indices
 //! ```
 //!
-//! One node, which turns the model's z upwards to glTF's y; one mesh of one primitive with one white, rough, non-metallic material.
-//! Colours are in `COLOR_0`, linear as glTF takes them; uv in `TEXCOORD_0`, as (u, 1 - v), because glTF's v goes down; every other attribute is `_NAME` in capitals, as glTF wants
-//! application-specific ones. An accessor has at most four reals, so wider ones are `_NAME_0`, `_NAME_1` and so on, of four reals each but for
-//! the last. Accessors must not be empty, so a mesh
-//! without triangles is a scene without nodes.
+//! One node, which turns the model's z upwards to glTF's y, and one mesh of one primitive.
+//!
+//! Colours are in `COLOR_0`, linear as glTF takes them; uv in `TEXCOORD_0`, as (u, 1 - v), because glTF's v goes down; every other
+//! attribute is `_NAME` in capitals, as glTF wants application-specific ones. An accessor has at most four reals, so wider ones are
+//! `_NAME_0`, `_NAME_1` and so on, of four reals each but for the last. Accessors must not be empty, so a mesh without triangles is a
+//! scene without nodes.
+//!
+//! A coloured mesh has no material, and so glTF's default, which is white: trimesh gives colours up for any material, and everybody
+//! else shows them with none. A mesh without colours has a white, rough, non-metallic one.
 
 use std::f64::consts::FRAC_1_SQRT_2;
 use std::io::Write;
@@ -146,19 +150,22 @@ fn describe(mesh: &Mesh, up: Up, attributes: &[Named<'_>]) -> (Value, u64) {
         }
     }
     let indices = layout.add(ELEMENT_ARRAY_BUFFER, UNSIGNED_INT, 1, 3 * mesh.triangles.len());
-    let json = json!({
+    let mut json = json!({
         "asset": asset,
         "scene": 0,
         "scenes": [{ "nodes": [0] }],
         "nodes": [node(up)],
-        "meshes": [{ "primitives": [{ "attributes": vertex, "indices": indices, "material": 0 }] }],
-        "materials": [{ "pbrMetallicRoughness": {
-            "baseColorFactor": [1.0, 1.0, 1.0, 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.7
-        } }],
+        "meshes": [{ "primitives": [{ "attributes": vertex, "indices": indices }] }],
         "accessors": layout.accessors,
         "bufferViews": layout.views,
         "buffers": [{ "byteLength": layout.bytes }],
     });
+    if colors(mesh).is_none() {
+        json["meshes"][0]["primitives"][0]["material"] = json!(0);
+        json["materials"] = json!([{ "pbrMetallicRoughness": {
+            "baseColorFactor": [1.0, 1.0, 1.0, 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.7
+        } }]);
+    }
     (json, layout.bytes)
 }
 

@@ -100,6 +100,20 @@ fn glb_says_what_it_holds() {
     assert_eq!(position["min"], serde_json::json!([0.0, 0.0, 0.0]));
 }
 
+/// What trimesh takes for the look of a mesh: the material if there is one, whatever the colours are.
+#[test]
+fn glb_has_colours_or_a_material() {
+    let coloured = bytes(&tetrahedron(), Format::Glb);
+    let (json, _) = parse_glb(&coloured);
+    let primitive = &json["meshes"][0]["primitives"][0];
+    assert!(primitive["attributes"]["COLOR_0"].is_u64() && primitive.get("material").is_none());
+    assert!(json.get("materials").is_none());
+    let plain = bytes(&Mesh { attributes: Vec::new(), ..tetrahedron() }, Format::Glb);
+    let (json, _) = parse_glb(&plain);
+    assert_eq!(json["meshes"][0]["primitives"][0]["material"], 0);
+    assert_eq!(json["materials"][0]["pbrMetallicRoughness"]["metallicFactor"], 0.0);
+}
+
 #[test]
 fn glb_of_an_empty_mesh_is_an_empty_scene() {
     let mut empty = Mesh::default();

@@ -39,6 +39,7 @@ mod crossing;
 mod divide;
 mod field;
 mod lattice;
+mod measure;
 mod progress;
 mod pull;
 mod sample;

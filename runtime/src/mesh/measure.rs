@@ -1,0 +1,95 @@
+//! How large a mesh is: its bounds, its area and what it encloses.
+
+use crate::region::Box3;
+
+use super::Mesh;
+use super::surface::area_vector;
+
+impl Mesh {
+    /// The smallest box that holds all positions, in units of the model. `None` if there are none.
+    #[must_use]
+    pub fn bounds(&self) -> Option<Box3> {
+        let (&first, rest) = self.positions.split_first()?;
+        let mut bounds = Box3::new(first, first);
+        for position in rest {
+            for (axis, &coordinate) in position.iter().enumerate() {
+                bounds.low[axis] = bounds.low[axis].min(coordinate);
+                bounds.high[axis] = bounds.high[axis].max(coordinate);
+            }
+        }
+        Some(bounds)
+    }
+
+    /// The area of all triangles together, in squared units of the model: half the lengths of the cross products of their edges, in f64.
+    #[must_use]
+    pub fn area(&self) -> f64 {
+        let twice = |&triangle: &[u32; 3]| {
+            let vector = area_vector(self.corners(triangle));
+            vector.iter().map(|c| c * c).sum::<f64>().sqrt()
+        };
+        0.5 * self.triangles.iter().map(twice).sum::<f64>()
+    }
+
+    /// The volume that the mesh encloses, in cubed units of the model: by the divergence theorem, of the signed tetrahedra between each
+    /// triangle and the middle of the bounds, in f64. Where the mesh is inside out it is negative.
+    ///
+    /// Only a closed mesh encloses anything: for others this number depends on where they stand, and means nothing.
+    #[must_use]
+    pub fn volume(&self) -> f64 {
+        let bounds = self.bounds().unwrap_or_default();
+        // Far from the origin, tetrahedra to it would be so large that the digits of the volume were lost.
+        let middle: [f64; 3] =
+            std::array::from_fn(|axis| 0.5 * (f64::from(bounds.low[axis]) + f64::from(bounds.high[axis])));
+        let six = |&triangle: &[u32; 3]| {
+            let corners = self.corners(triangle);
+            let (vector, [corner, ..]) = (area_vector(corners), corners);
+            (0..3).map(|axis| vector[axis] * (f64::from(corner[axis]) - middle[axis])).sum::<f64>()
+        };
+        self.triangles.iter().map(six).sum::<f64>() / 6.0
+    }
+
+    fn corners(&self, triangle: [u32; 3]) -> [[f32; 3]; 3] {
+        triangle.map(|vertex| self.positions[vertex as usize])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A block with sides 2, 3 and 5 around a place, turned outwards.
+    fn block(place: [f32; 3]) -> Mesh {
+        let corner = |index: usize| {
+            let side = |axis: usize, half: f32| if index >> axis & 1 == 1 { half } else { -half };
+            [place[0] + side(0, 1.0), place[1] + side(1, 1.5), place[2] + side(2, 2.5)]
+        };
+        let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let triangles = quads.into_iter().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+        Mesh { positions: (0..8).map(corner).collect(), triangles, ..Mesh::default() }
+    }
+
+    #[test]
+    fn a_block_has_the_size_of_a_block() {
+        // Far away too, where the tetrahedra to the origin would be 10^15 times as large as the block.
+        for place in [[0.0; 3], [7.0, -3.0, 11.0], [131_072.0, -524_288.0, 65_536.0]] {
+            let mut mesh = block(place);
+            assert_eq!((mesh.volume(), mesh.area()), (30.0, 62.0));
+            let bounds = mesh.bounds().unwrap();
+            assert!(bounds.contains(place));
+            assert_eq!([0, 1, 2].map(|axis| bounds.high[axis] - bounds.low[axis]), [2.0, 3.0, 5.0]);
+            mesh.triangles.iter_mut().for_each(|triangle| triangle.swap(0, 1));
+            assert_eq!((mesh.volume(), mesh.area()), (-30.0, 62.0));
+        }
+    }
+
+    #[test]
+    fn nothing_has_no_size() {
+        let empty = Mesh::default();
+        assert_eq!((empty.bounds(), empty.volume(), empty.area()), (None, 0.0, 0.0));
+        let mut point = block([1.0; 3]);
+        point.positions = vec![[1.0, 2.0, 3.0]];
+        point.triangles = vec![[0, 0, 0]];
+        assert_eq!(point.bounds(), Some(Box3::new([1.0, 2.0, 3.0], [1.0, 2.0, 3.0])));
+        assert_eq!((point.volume(), point.area()), (0.0, 0.0));
+    }
+}
