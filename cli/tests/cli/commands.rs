@@ -65,7 +65,8 @@ fn mesh_measures_what_it_has_made() {
     let cut = ["mesh", "ball.jbt", "-o", "a.stl", "--resolution", "64", "--region=-1,0,1,1,4,5", "--json"];
     let report = folder.jbt(&cut).code(0).json();
     assert!(report["volume"].is_null() && report["colors"].is_null() && report["up"] == "z");
-    near(report["area"].as_f64().unwrap(), 0.5 * ball, 0.03);
+    // The mesh ends in the last cells before the cut.
+    near(report["area"].as_f64().unwrap(), 0.5 * ball, 0.05);
     let text = folder.jbt(&cut[..cut.len() - 1]).code(0).stdout();
     assert!(text.contains("volume none (open), area 6."), "{text}");
 
