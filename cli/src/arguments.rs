@@ -1,11 +1,17 @@
 //! The command line: what can be asked, and how it is written.
 
+mod contour;
 mod output;
 mod render;
+mod tools;
 mod work;
 
+pub use contour::{ContourArguments, ModeName, PaintName};
 pub use output::{Destination, OutputArguments};
 pub use render::{GroundName, RenderArguments};
+pub use tools::{
+    CheckArguments, CompletionsArguments, CountArguments, ManArguments, ShowArguments, StatsArguments,
+};
 pub use work::WorkArguments;
 
 use std::collections::HashSet;
@@ -15,12 +21,10 @@ use std::str::FromStr;
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use clap_complete::Shell;
-use jbt::contour::{Plane, PlaneError, Rectangle};
 use jbt::export::{ColorEncoding, Format, Up};
 use jbt::{Engine, Query, text};
 
-use crate::formats::{ArrayKind, SliceKind, TableKind};
+use crate::formats::{ArrayKind, TableKind};
 
 /// Compiles BlobTrees to SIMD machine code, and makes meshes, pictures and values of them.
 #[derive(Parser, Debug)]
@@ -169,7 +173,7 @@ pub struct LatticeArguments {
     #[arg(long, value_name = "H", conflicts_with = "resolution", allow_negative_numbers = true)]
     pub cell: Option<f64>,
     /// Cells along the longest side of the region [default: 128]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = cells, allow_negative_numbers = true)]
     pub resolution: Option<usize>,
     /// The box that the lattice fills: its smallest and its largest corner [default: the support of the model]
     #[arg(long, value_name = "X0,Y0,Z0,X1,Y1,Z1", value_parser = region, allow_hyphen_values = true)]
@@ -181,65 +185,6 @@ impl LatticeArguments {
     pub fn given(&self) -> bool {
         self.cell.is_some() || self.resolution.is_some() || self.region.is_some()
     }
-}
-
-/// What `jbt contour` takes.
-#[derive(Args, Debug)]
-#[command(after_help = "\
-OUT.svg is a drawing: the contour as closed loops in units of the scene, outer ones counter-clockwise and holes clockwise. Where the region
-cuts the solid, loops follow its border. --quadtree divides down to single cells and draws the squares (those that the contour crosses in
-green), and circles where supports of points meet the plane.
-
-OUT.png is an image. Its modes: field (from blue outside over white to red inside), grey, height (a landscape), inside (white in black), attribute
-(inside; transparent outside).
-
-In the plane z=C coordinates are x and y, in x=C they are y and z, in y=C x and z. Any other plane is nine numbers: a point, and the
-directions of the two coordinates. Without --region the slice covers the support of the model.
-
-Examples:
-  jbt contour circles.jbt --region -1.75,-1.75,1.75,1.75 --quadtree -o circles.svg
-  jbt contour hero.jbt --plane y=0 --fill attribute -o slice.svg --json
-  jbt contour hero.jbt --plane 0,0,0,1,1,0,0,0,1 --mode height -o slice.png
-  jbt contour prospero.vm --region -1,-1,1,1 --resolution 1024 --mode inside -o text.png")]
-pub struct ContourArguments {
-    /// What to cut.
-    #[command(flatten)]
-    pub scene: SceneArguments,
-    /// Where the slice goes.
-    #[command(flatten)]
-    pub output: OutputArguments<SliceKind>,
-    /// The plane: x=C, y=C, z=C, or nine numbers
-    #[arg(long, value_name = "PLANE", default_value = "z=0", value_parser = plane, allow_hyphen_values = true)]
-    pub plane: Plane,
-    /// The part of the plane, in its coordinates [default: the support of the model]
-    #[arg(long, value_name = "U0,V0,U1,V1", value_parser = rectangle, allow_hyphen_values = true)]
-    pub region: Option<Rectangle>,
-    /// Edge of a cell or pixel, in units of the scene
-    #[arg(long, value_name = "H", conflicts_with = "resolution", allow_negative_numbers = true)]
-    pub cell: Option<f64>,
-    /// Cells or pixels along the longer side of the region [default: 256 cells, 512 pixels]
-    #[arg(long, value_name = "N")]
-    pub resolution: Option<usize>,
-    /// Lines of a drawing: `none`, a colour as #rrggbb, or `attribute` [default: #000000]
-    #[arg(long, value_name = "PAINT", value_parser = paint)]
-    pub stroke: Option<PaintName>,
-    /// Areas of a drawing: `none`, a colour as #rrggbb, or `attribute` [default: #dde6f0; none with --quadtree]
-    #[arg(long, value_name = "PAINT", value_parser = paint)]
-    pub fill: Option<PaintName>,
-    /// Divide down to single cells, and draw the squares
-    #[arg(long)]
-    pub quadtree: bool,
-    /// What an image shows [default: field]
-    #[arg(long, value_enum)]
-    pub mode: Option<ModeName>,
-    /// The attribute that `attribute` stands for [default: color]
-    #[arg(long, value_name = "NAME")]
-    pub attribute: Option<String>,
-    /// Points along the side of a pixel, for smooth images inside and of attributes [default: 1]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=8))]
-    pub samples: Option<u8>,
-    #[command(flatten)]
-    pub work: WorkArguments,
 }
 
 /// What `jbt sample` takes.
@@ -300,167 +245,6 @@ pub struct EvalArguments {
     pub output: OutputArguments<TableKind>,
 }
 
-/// What `jbt show` takes.
-#[derive(Args, Debug)]
-#[command(after_help = "\
-Stages: `tree` (the scene as .jbt text), `ir` (the lowered program), the name of a pass (the program after it), and, where
-machine code is built in, `clif` (Cranelift's own language) and `asm` (the machine's instructions). A wrong name lists them all.
-
-Examples:
-  jbt show train.scene --stage tree > train.jbt
-  jbt show hero.jbt --stage schedule --query field")]
-pub struct ShowArguments {
-    /// What to show.
-    #[command(flatten)]
-    pub scene: SceneArguments,
-    /// The stage to print
-    #[arg(long, value_name = "STAGE")]
-    pub stage: String,
-    /// The answers that the program gives
-    #[arg(long, value_enum, default_value_t = QueryName::All)]
-    pub query: QueryName,
-}
-
-/// What `jbt count` takes.
-#[derive(Args, Debug)]
-#[command(after_help = COUNT_HELP)]
-pub struct CountArguments {
-    /// What to count.
-    #[command(flatten)]
-    pub scene: SceneArguments,
-    /// Count for one query only
-    #[arg(long, value_enum)]
-    pub query: Option<QueryName>,
-    /// The points of the totals.
-    #[command(flatten)]
-    pub lattice: LatticeArguments,
-    /// Print one JSON object instead of a table
-    #[arg(long)]
-    pub json: bool,
-}
-
-const COUNT_HELP: &str = "\
-An evaluation is the distance to one skeleton at one place. It is counted for one point, and for the lattice that `jbt
-mesh` would take with the same options.
-
-  separate  a walk of the tree for the field, four for the gradient by differences (the point and a step along each
-            axis), one for the attributes; each meets a shared leaf again at every use
-  cached    the same walks with a memory for each point: a leaf at a position once for each of the four places
-  fused     what the compiled program evaluates
-  waste     evaluations of the field on the lattice for each pair of a point and a primitive whose support the point
-            is inside of; 1 is none
-
-Keys of --json. For one point:
-  formula, occurrences, uses, queries: [{query, walks, separate, cached, fused, total: {separate, cached, fused}}],
-  leaves: [{node, kind, line, column, uses, evaluations: {QUERY: count}, pairs_in_support}]
-For the lattice (`total` and `pairs_in_support` too):
-  lattice: {region: [x0, y0, z0, x1, y1, z1], cell, cells: [nx, ny, nz]}, points, evaluations (of primitives, for the
-  field, if no point and no primitive is left out), pairs_in_support, waste, warnings; interval_evaluations (of primitives
-  over boxes, for a mesh) and mesh: {stages: {division: {boxes, interval_evaluations}, lattice, pulls, vertices: {points,
-  evaluations}}, avoided_by_support, avoided_by_interval} (evaluations of the lattice that a mesh does without)
-A model that is empty or unbounded has no lattice without --region: `lattice`, `waste` and `mesh` are null, and the counts are 0.
-
-Examples:
-  jbt count hero.jbt
-  jbt count train.scene --cell 0.13 --json";
-
-/// What `jbt stats` takes.
-#[derive(Args, Debug)]
-#[command(after_help = STATS_HELP)]
-pub struct StatsArguments {
-    /// What to measure.
-    #[command(flatten)]
-    pub scene: SceneArguments,
-    /// Where, and how small boxes get.
-    #[command(flatten)]
-    pub lattice: LatticeArguments,
-    /// How often the region's longest side is halved, instead of --cell or --resolution
-    #[arg(long, value_name = "N", conflicts_with_all = ["cell", "resolution"], value_parser = clap::value_parser!(u8).range(0..=20))]
-    pub depth: Option<u8>,
-    /// How tight the bounds are, in units of the scene [default: 1/1024 of the region's longest side]
-    #[arg(long, value_name = "T", allow_negative_numbers = true)]
-    pub tolerance: Option<f32>,
-    /// Print one JSON object instead of a table
-    #[arg(long)]
-    pub json: bool,
-}
-
-const STATS_HELP: &str = "\
-The solid is where the field is at least the iso-value. A region (without --region the support of the model) is divided
-into boxes that are proven to be all inside (solid) or all outside (air), and boxes of one cell that may hold surface.
-
-  volume    between the solid boxes and these with the surface boxes: proven; and an estimate
-  area      an estimate: in each surface box, of the plane that the field has there; it converges with the cell
-  tight     a box that holds all of the solid in the region: proven; each side is within the tolerance of the solid
-            if it has converged
-  contents  primitives that matter in a surface box
-
-Keys of --json:
-  support: [x0, y0, z0, x1, y1, z1] (null if empty or unbounded), region: [...], cell,
-  tight: {outer: [...], inner: [...], tolerance, converged} (null: no inside point is there, or none was found),
-  volume: {low, high, estimate}, area, center: [x, y, z] (of mass; null if nothing is there),
-  division: {boxes, splits, solid, air, surface, levels: [{depth, splits, solid, air, surface}]}, counts of boxes,
-  shares: {solid, air, surface} of the region's volume, contents: {mean, most},
-  points, evaluations (of primitives, at points), ranges (of the field in boxes), interval_evaluations (of primitives
-  over boxes), total_ms, warnings
-
-Examples:
-  jbt stats hero.jbt
-  jbt stats hero.jbt --depth 6
-  jbt stats train.scene --cell 0.13 --tolerance 0.001 --json";
-
-/// What `jbt check` takes.
-#[derive(Args, Debug)]
-#[command(after_help = CHECK_HELP)]
-pub struct CheckArguments {
-    /// The scenes: .jbt texts, ParsIP .blob or .scene, .vm programs; `-` is the standard input
-    #[arg(value_name = "SCENE", required = true)]
-    pub scenes: Vec<PathBuf>,
-    /// Set a parameter of the .jbt texts; the value is a number or an expression of numbers, as 2*pi
-    #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = definition)]
-    pub definitions: Vec<(String, f64)>,
-    /// Print one JSON object instead of messages and summaries
-    #[arg(long)]
-    pub json: bool,
-}
-
-const CHECK_HELP: &str = "\
-All files are checked. The exit code is that of the first one with which something is wrong.
-
-Keys of --json:
-  files: [{file, ok, model: {nodes, leaves, occurrences, iso, parameters: {NAME: value}, bounds: [x0, y0, z0, x1, y1, z1]
-  (null if empty or unbounded), attributes: [{name, width, mixing}]}}] (model is null where something is wrong),
-  diagnostics: [{file, severity (error, warning or limit), line, column, end: {line, column}, message, hint}], where end
-  is one past the last character, columns count characters from 1, and what is not there is null
-
-Examples:
-  jbt check hero.jbt
-  jbt check examples/*.jbt -q
-  jbt check hero.jbt --json | jq '.diagnostics[].message'";
-
-/// What `jbt completions` takes.
-#[derive(Args, Debug)]
-#[command(after_help = "\
-Examples:
-  jbt completions bash > ~/.local/share/bash-completion/completions/jbt
-  jbt completions zsh > ~/.zfunc/_jbt
-  jbt completions fish > ~/.config/fish/completions/jbt.fish")]
-pub struct CompletionsArguments {
-    /// The shell
-    pub shell: Shell,
-}
-
-/// What `jbt man` takes.
-#[derive(Args, Debug)]
-#[command(after_help = "\
-Examples:
-  mkdir -p ~/.local/share/man/man1 && jbt man ~/.local/share/man/man1 && man jbt-mesh")]
-pub struct ManArguments {
-    /// The folder, which is there already; pages of the same names are replaced
-    #[arg(value_name = "DIR")]
-    pub folder: PathBuf,
-}
-
 /// The words for engines.
 #[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
 pub enum EngineName {
@@ -508,32 +292,6 @@ impl QueryName {
     }
 }
 
-/// The words for images.
-#[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
-pub enum ModeName {
-    /// White inside, black outside
-    Inside,
-    /// The field, from blue outside over white to red inside
-    Field,
-    /// The field, from black to white
-    Grey,
-    /// The field as a landscape
-    Height,
-    /// An attribute, inside
-    Attribute,
-}
-
-/// The words for paints.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum PaintName {
-    /// Nothing.
-    None,
-    /// Red, green and blue.
-    Color([u8; 3]),
-    /// The attribute of the options.
-    Attribute,
-}
-
 /// A box: its smallest and its largest corner.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Region {
@@ -566,6 +324,11 @@ fn definition(text: &str) -> Result<(String, f64), String> {
         format!("expected a number after `{name}=`, as 2 or 2*pi{reason}")
     })?;
     Ok((name.to_owned(), value))
+}
+
+/// A number of cells. How many there may be, others say.
+fn cells(text: &str) -> Result<usize, String> {
+    text.trim().parse().map_err(|_| "expected a whole number of cells, as 128".to_owned())
 }
 
 /// The corners of a region whose numbers have these names: finite, and the first below the last along each axis.
@@ -603,47 +366,9 @@ fn region(text: &str) -> Result<Region, String> {
     Ok(Region { low, high })
 }
 
-fn plane(text: &str) -> Result<Plane, String> {
-    text.parse().map_err(|error: PlaneError| error.to_string())
-}
-
-fn rectangle(text: &str) -> Result<Rectangle, String> {
-    let [low, high] = corners(text, [["U0", "V0"], ["U1", "V1"]])?;
-    Rectangle::new(low, high).map_err(|error| error.to_string())
-}
-
-fn paint(text: &str) -> Result<PaintName, String> {
-    match text {
-        "none" => return Ok(PaintName::None),
-        "attribute" => return Ok(PaintName::Attribute),
-        _ => {}
-    }
-    let digits = text
-        .strip_prefix('#')
-        .filter(|digits| digits.len() == 6 && digits.bytes().all(|digit| digit.is_ascii_hexdigit()));
-    let number = digits.and_then(|digits| u32::from_str_radix(digits, 16).ok());
-    let [_, red, green, blue] =
-        number.ok_or("expected `none`, `attribute`, or a colour as #ff8000")?.to_be_bytes();
-    Ok(PaintName::Color([red, green, blue]))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn planes_rectangles_and_paints() {
-        assert!(plane("z=0").is_ok() && plane("w=0").is_err() && plane("z=nan").is_err());
-        assert_eq!(rectangle(" -1,0, 1,2 "), Ok(Rectangle::new([-1.0, 0.0], [1.0, 2.0]).unwrap()));
-        for bad in ["", "0,0,1", "0,0,1,1,1", "0,0,1,nan", "0,0,0,1", "1,0,0,1", "0,0,1,inf", "0,0,1,x"] {
-            assert!(rectangle(bad).is_err(), "{bad}");
-        }
-        assert_eq!(paint("#ff8000"), Ok(PaintName::Color([255, 128, 0])));
-        assert_eq!((paint("none"), paint("attribute")), (Ok(PaintName::None), Ok(PaintName::Attribute)));
-        for bad in ["", "red", "#fff", "#ff80000", "#+f8000", "#gg0000"] {
-            assert!(paint(bad).is_err(), "{bad}");
-        }
-    }
 
     #[test]
     fn the_command_line_is_consistent() {

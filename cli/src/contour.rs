@@ -86,9 +86,9 @@ fn check_options(arguments: &ContourArguments, drawing: SliceKind) -> Result<(),
 
 fn fineness(arguments: &ContourArguments, drawing: SliceKind) -> Result<Fineness, Failure> {
     match (arguments.cell, arguments.resolution) {
-        (Some(cell), _) if cell.is_nan() || cell <= 0.0 => {
-            Err(Failure::Usage(format!("the edge of a cell must be greater than zero, and it is {cell}")))
-        }
+        (Some(cell), _) if !cell.is_finite() || cell <= 0.0 => Err(Failure::Usage(format!(
+            "the edge of a cell must be a finite number greater than zero, and it is {cell}"
+        ))),
         (Some(cell), _) => Ok(Fineness::Cell(cell)),
         (None, Some(0)) => Err(Failure::Usage("a slice needs at least one cell".to_owned())),
         (None, Some(cells)) => Ok(Fineness::Resolution(cells)),

@@ -11,9 +11,9 @@ use crate::scene::Scene;
 /// What the options say.
 pub fn settings(arguments: &LatticeArguments) -> Result<Polygonize, Failure> {
     let fineness = match (arguments.cell, arguments.resolution) {
-        (Some(cell), _) if cell.is_nan() || cell <= 0.0 => {
+        (Some(cell), _) if !cell.is_finite() || cell <= 0.0 => {
             return Err(Failure::Usage(format!(
-                "the edge of a cell must be greater than zero, and it is {cell}"
+                "the edge of a cell must be a finite number greater than zero, and it is {cell}"
             )));
         }
         (Some(cell), _) => Fineness::Cell(cell),

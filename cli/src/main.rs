@@ -36,6 +36,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use clap::Parser as _;
+use clap::error::{ContextKind, ContextValue};
 
 use arguments::{Arguments, Command};
 use failure::Failure;
@@ -73,8 +74,23 @@ fn run(command: &Command, quiet: bool, start: Instant) -> Result<(), Failure> {
     }
 }
 
+/// The scene that stands where a command should.
+fn scene_without_command(error: &clap::Error) -> Option<String> {
+    let ContextValue::String(word) = error.get(ContextKind::InvalidSubcommand)? else { return None };
+    let endings = jbt::SceneFormat::ALL.into_iter().flat_map(jbt::SceneFormat::extensions);
+    let extension = std::path::Path::new(word).extension()?;
+    endings.into_iter().any(|ending| extension.eq_ignore_ascii_case(ending)).then(|| word.clone())
+}
+
 /// Help, the version, or what is wrong with the command line.
 fn usage(error: &clap::Error) -> ExitCode {
+    if let Some(scene) = scene_without_command(error) {
+        let scene = jbt_frontend::diagnostic::escape(&scene);
+        output::tell(&format!(
+            "jbt: error: a command stands before the scene, as `jbt render {scene}`; see jbt --help"
+        ));
+        return ExitCode::from(2);
+    }
     let hostile = std::env::args_os().any(|word| word.to_string_lossy().chars().any(char::is_control));
     if error.use_stderr() && hostile {
         // The message repeats words of the command line, which a script may have taken from anywhere.
@@ -83,7 +99,10 @@ fn usage(error: &clap::Error) -> ExitCode {
         output::tell(&lines.join("\n"));
     } else {
         // A reader of the help may go away before its end.
-        let _ = error.print();
+        let full = error.print().is_err_and(|error| error.kind() != std::io::ErrorKind::BrokenPipe);
+        if full && !error.use_stderr() {
+            return ExitCode::from(4);
+        }
     }
     ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2))
 }

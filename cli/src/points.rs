@@ -4,7 +4,7 @@
 //! does not go over the end of its line. Blank lines mean nothing. A coordinate is a finite f32: `nan`, `inf` and what overflows are
 //! errors; what is too small is the nearest f32, as always.
 
-use std::io::{self, BufRead, Read as _};
+use std::io::{self, BufRead};
 
 use jbt::Points;
 use jbt_frontend::diagnostic::{Diagnostic, Severity, Source, Span, escape};
@@ -23,6 +23,8 @@ pub struct PointReader<R> {
     line: u64,
     bytes: u64,
     columns: [usize; 3],
+    /// The last line ended with a carriage return: a line feed belongs to it.
+    after_return: bool,
 }
 
 /// A field of a line: its text without quotes, and the bytes from which to which it goes with them.
@@ -35,7 +37,15 @@ struct Word {
 impl<R: BufRead> PointReader<R> {
     /// Reads the header.
     pub fn new(reader: R, name: String) -> Result<Self, Failure> {
-        let mut points = Self { reader, name, buffer: Vec::new(), line: 0, bytes: 0, columns: [0; 3] };
+        let mut points = Self {
+            reader,
+            name,
+            buffer: Vec::new(),
+            line: 0,
+            bytes: 0,
+            columns: [0; 3],
+            after_return: false,
+        };
         if !points.next_line()? {
             return Err(points.error(0, 0, "there is no header; expected one with the columns x, y and z"));
         }
@@ -56,7 +66,7 @@ impl<R: BufRead> PointReader<R> {
                     return Err(points.error(
                         0,
                         points.buffer.len(),
-                        &format!("there is no column `{name}`"),
+                        &format!("there is no column `{name}`; the first line names the columns, x, y and z among them"),
                     ));
                 }
             }
@@ -101,24 +111,45 @@ impl<R: BufRead> PointReader<R> {
     fn next_line(&mut self) -> Result<bool, Failure> {
         loop {
             self.buffer.clear();
-            let mut bounded = (&mut self.reader).take(MAX_LINE as u64 + 1);
-            let read = bounded
-                .read_until(b'\n', &mut self.buffer)
-                .map_err(|error: io::Error| Failure::io("read", &self.name, error))?;
+            let read = self.read_line().map_err(|error| Failure::io("read", &self.name, error))?;
             if read == 0 {
                 return Ok(false);
             }
             self.line += 1;
             self.bytes += read as u64;
-            if read > MAX_LINE {
+            if self.buffer.len() > MAX_LINE {
                 let place = format!("{}:{}", escape(&self.name), self.line);
                 return Err(Failure::Limit(format!("{place}: a line is longer than {MAX_LINE} bytes")));
             }
-            while let Some(b'\n' | b'\r') = self.buffer.last() {
-                self.buffer.pop();
-            }
             if !self.buffer.trim_ascii().is_empty() {
                 return Ok(true);
+            }
+        }
+    }
+
+    /// Brings what is left of the line into the buffer, without its end: a line feed, a carriage return, or both. Of a line that is too long it is one
+    /// byte more than a line may have. Returns how many bytes have been read.
+    fn read_line(&mut self) -> io::Result<usize> {
+        let mut read = 0;
+        loop {
+            let bytes = match self.reader.fill_buf() {
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
+                bytes => bytes?,
+            };
+            if std::mem::take(&mut self.after_return) && bytes.first() == Some(&b'\n') {
+                self.reader.consume(1);
+                read += 1;
+                continue;
+            }
+            let part = &bytes[..bytes.len().min(MAX_LINE + 1 - self.buffer.len())];
+            let end = part.iter().position(|byte| matches!(byte, b'\n' | b'\r'));
+            self.buffer.extend_from_slice(&part[..end.unwrap_or(part.len())]);
+            self.after_return = end.is_some_and(|end| part[end] == b'\r');
+            let taken = end.map_or(part.len(), |end| end + 1);
+            self.reader.consume(taken);
+            read += taken;
+            if end.is_some() || taken == 0 {
+                return Ok(read);
             }
         }
     }
@@ -224,7 +255,15 @@ mod tests {
             format!("p.csv:{place}: error: {wrong}\n  {number} | {line}\n    | {caret}")
         };
         for (text, expected) in [
-            ("x,z\n", shown("1:1", "there is no column `y`", "x,z", "^^^")),
+            (
+                "x,z\n",
+                shown(
+                    "1:1",
+                    "there is no column `y`; the first line names the columns, x, y and z among them",
+                    "x,z",
+                    "^^^",
+                ),
+            ),
             ("x,y,z,y\n", shown("1:7", "there is another column `y`", "x,y,z,y", "      ^")),
             (
                 "x,y,z\n\n1,2,\u{1b}[2J",

@@ -1,5 +1,6 @@
 //! Where commands write their results: the name, or what it is when nobody gives one, and the kind of file.
 
+use std::io;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -42,6 +43,14 @@ impl<K: FileKind> OutputArguments<K> {
             None => self.named_after(scene)?,
         };
         check_place(&destination.path)?;
+        let same = |scene: PathBuf| destination.path.canonicalize().is_ok_and(|path| path == scene);
+        if !is_standard(scene) && scene.canonicalize().is_ok_and(same) {
+            let name = destination.path.display();
+            return Err(Failure::Usage(format!(
+                "{name} is the scene itself, and {} would replace it",
+                K::RESULT
+            )));
+        }
         Ok(destination)
     }
 
@@ -65,6 +74,9 @@ impl<K: FileKind> OutputArguments<K> {
 
     /// The file in the current folder that is called like the scene.
     fn named_after(&self, scene: &Path) -> Result<Destination<K>, Failure> {
+        if scene.is_dir() {
+            return Err(Failure::io("read", scene.display(), io::ErrorKind::IsADirectory.into()));
+        }
         let Some(stem) = scene.file_stem().filter(|_| !is_standard(scene)) else {
             let what = K::RESULT;
             let message = format!("{what} of a scene without a name needs -o; -o - is the standard output");

@@ -250,6 +250,25 @@ fn eval_of_many_points_and_of_none() {
 }
 
 #[test]
+fn points_have_lines_as_on_any_system() {
+    let text = "x,y,z\n0.5,0,0\n\n0,0.25,0.5\n";
+    let folder = folder().with("p.csv", text);
+    let plain = folder.jbt(&["eval", "scene.jbt", "--points", "p.csv", "-o", "-"]).code(0).stdout();
+    assert_eq!(plain.lines().count(), 3);
+    for end in ["\r\n", "\r"] {
+        let folder = folder.jbt_with_input(
+            &["eval", "scene.jbt", "--points", "-", "-o", "-"],
+            text.replace('\n', end).as_bytes(),
+        );
+        assert_eq!(folder.code(0).stdout(), plain, "{end:?}");
+    }
+    let bad = text.replace("0.25", "q").replace('\n', "\r");
+    let ran = folder.jbt_with_input(&["eval", "scene.jbt", "--points", "-", "-o", "-"], bad.as_bytes());
+    let told = ran.code(1).says("<stdin>:4:3: error: `q` is not a number").stderr();
+    assert!(!told.contains("\\u{d}"), "{told}");
+}
+
+#[test]
 fn definitions_set_parameters() {
     let folder = folder().with("p.csv", "x,y,z\n0.5,0,0.6\n");
     let eval = |extra: &[&str]| {
@@ -503,4 +522,30 @@ fn sample_writes_an_array() {
     let huge = ["sample", "ball.jbt", "-o", "b.npy", "--resolution", "5000"];
     folder.jbt(&huge).code(3).says("more than 1073741824 numbers");
     folder.jbt(&["sample", "ball.jbt", "-o", "b.npy", "--cell", "0"]).code(2);
+}
+
+/// From a screen's number to linear light, through the field, and back to a screen's number in the file.
+#[test]
+fn a_colour_in_hex_comes_out_as_it_went_in() {
+    let folder = folder();
+    for color in ["\"#ff8800\"", "\"#f80\"", "srgb(1 136/255 0)"] {
+        let text = format!("jbt 1 color {color} {{ point {{ surface_radius 1 }} }}");
+        let folder = Folder::new().with("ball.jbt", text);
+        folder.jbt(&["mesh", "ball.jbt", "-o", "ball.obj", "--resolution", "8"]).code(0);
+        let file = String::from_utf8(folder.read("ball.obj")).unwrap();
+        let vertices = file.lines().filter_map(|line| line.strip_prefix("v "));
+        let colors: Vec<Vec<f64>> = vertices
+            .map(|line| line.split(' ').skip(3).map(|word| word.parse().unwrap()).collect())
+            .collect();
+        assert!(colors.len() > 10);
+        for found in colors {
+            let bytes: Vec<f64> = found.iter().map(|x| x * 255.0).collect();
+            assert!((bytes[0] - 255.0).abs() < 0.01 && (bytes[1] - 136.0).abs() < 0.01, "{color}: {bytes:?}");
+            assert!(bytes[2].abs() < 0.01 && bytes.len() == 3, "{color}: {bytes:?}");
+        }
+    }
+    let told = folder.with("bare.jbt", "jbt 1\ncolor #ff8800 { point { surface_radius 1 } }\n");
+    let told =
+        told.jbt(&["check", "bare.jbt"]).code(1).says("bare.jbt:2:7: error: `#ff8800` begins a comment");
+    assert_eq!(told.stderr().matches("error: ").count(), 1, "{}", told.stderr());
 }

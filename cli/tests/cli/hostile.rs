@@ -26,7 +26,7 @@ fn commands(scene: &str) -> [Vec<&str>; 8] {
 #[test]
 fn bad_scenes_are_located_errors_for_every_command() {
     let cases: [(&str, &[u8], &str); 9] = [
-        ("empty.jbt", b"", "empty.jbt:1:1: error: "),
+        ("empty.jbt", b"", "empty.jbt:1:1: error: the file is empty"),
         ("garbage.jbt", b"\x00\xff\xfe\x1b]0;x\x07 %%% \x9b", "garbage.jbt:1:2: error: "),
         ("nan.jbt", b"jbt 1\npoint { radius 0 / 0 }", "nan.jbt:2:"),
         ("zero.jbt", b"jbt 1\npoint { radius 0 }", "zero.jbt:2:"),
@@ -110,6 +110,11 @@ fn usage_errors() {
     mesh(&["--threads", "0"]).code(2).says("--threads");
     mesh(&["--engine", "gpu"]).code(2).says("scalar, lanes, jit");
     mesh(&["-D", "bulge"]).code(2).says("NAME=VALUE");
+    mesh(&["--cell", "inf"]).code(2).says("a finite number greater than zero");
+    mesh(&["--resolution", "1e3"]).code(2).says("expected a whole number of cells, as 128");
+    mesh(&["--resolution", "-5"]).code(2).says("expected a whole number of cells, as 128");
+    folder.jbt(&["scene.jbt"]).code(2).says("a command stands before the scene, as `jbt render scene.jbt`");
+    folder.jbt(&["nothing"]).code(2).says("unrecognized subcommand");
     folder.jbt(&[]).code(2).says("Usage");
     folder.jbt(&["mesh", "scene.jbt", "-o", "a.txt"]).code(2).says(".glb, .ply, .obj or .stl");
     folder.jbt(&["mesh", "scene.jbt", "-o", "-"]).code(2).says("needs --format glb, ply, obj or stl");

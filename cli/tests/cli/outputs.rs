@@ -112,6 +112,20 @@ fn a_place_that_cannot_be_written_to_is_refused_before_the_work() {
     assert_eq!(count, 6, "nothing is left behind");
 }
 
+#[test]
+fn no_result_takes_the_place_of_its_scene() {
+    let folder = folder();
+    for (command, ending, quick) in WRITERS {
+        for name in ["scene.jbt", "./scene.jbt"] {
+            let arguments = [&[command, "scene.jbt", "--format", ending, "-o", name], quick].concat();
+            folder.jbt(&arguments).code(2).says(&format!("{name} is the scene itself, and "));
+        }
+        folder.jbt(&[&[command, "scenes"], quick].concat()).code(4).says("cannot read scenes: ");
+        folder.jbt(&[&[command, "."], quick].concat()).code(4).says("cannot read .: ");
+    }
+    assert_eq!(folder.read("scene.jbt"), SCENE.as_bytes());
+}
+
 #[cfg(unix)]
 #[test]
 fn messages_name_the_path_of_the_command_line() {

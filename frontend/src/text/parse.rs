@@ -292,6 +292,9 @@ impl<'a> Parser<'a> {
 
     fn header(&mut self) {
         let token = self.peek();
+        if self.whole.trim().is_empty() {
+            return;
+        }
         if !self.accept_word("jbt") {
             let span = Span::new(
                 token.start,
@@ -500,6 +503,10 @@ impl<'a> Parser<'a> {
         if self.root.is_none() {
             let end = Span::new(self.whole.len(), self.whole.len());
             self.report(|| {
+                if self.whole.trim().is_empty() {
+                    let empty = Diagnostic::error(Some(end), "the file is empty");
+                    return empty.expected("expected `jbt 1` and a node, as point { surface_radius 1 }");
+                }
                 Diagnostic::error(Some(end), "the file has no node").expected("expected the tree")
             });
         }

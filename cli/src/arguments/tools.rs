@@ -1,0 +1,169 @@
+//! What the commands take that tell about scenes, and those about jbt itself.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use clap_complete::Shell;
+
+use super::{LatticeArguments, QueryName, SceneArguments, definition};
+
+/// What `jbt show` takes.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Stages: `tree` (the scene as .jbt text), `ir` (the lowered program), the name of a pass (the program after it), and, where
+machine code is built in, `clif` (Cranelift's own language) and `asm` (the machine's instructions). A wrong name lists them all.
+
+Examples:
+  jbt show train.scene --stage tree > train.jbt
+  jbt show hero.jbt --stage schedule --query field")]
+pub struct ShowArguments {
+    /// What to show.
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// The stage to print
+    #[arg(long, value_name = "STAGE")]
+    pub stage: String,
+    /// The answers that the program gives
+    #[arg(long, value_enum, default_value_t = QueryName::All)]
+    pub query: QueryName,
+}
+
+/// What `jbt count` takes.
+#[derive(Args, Debug)]
+#[command(after_help = COUNT_HELP)]
+pub struct CountArguments {
+    /// What to count.
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// Count for one query only
+    #[arg(long, value_enum)]
+    pub query: Option<QueryName>,
+    /// The points of the totals.
+    #[command(flatten)]
+    pub lattice: LatticeArguments,
+    /// Print one JSON object instead of a table
+    #[arg(long)]
+    pub json: bool,
+}
+
+const COUNT_HELP: &str = "\
+An evaluation is the distance to one skeleton at one place. It is counted for one point, and for the lattice that `jbt
+mesh` would take with the same options.
+
+  separate  a walk of the tree for the field, four for the gradient by differences (the point and a step along each
+            axis), one for the attributes; each meets a shared leaf again at every use
+  cached    the same walks with a memory for each point: a leaf at a position once for each of the four places
+  fused     what the compiled program evaluates
+  waste     evaluations of the field on the lattice for each pair of a point and a primitive whose support the point
+            is inside of; 1 is none
+
+Keys of --json. For one point:
+  formula, occurrences, uses, queries: [{query, walks, separate, cached, fused, total: {separate, cached, fused}}],
+  leaves: [{node, kind, line, column, uses, evaluations: {QUERY: count}, pairs_in_support}]
+For the lattice (`total` and `pairs_in_support` too):
+  lattice: {region: [x0, y0, z0, x1, y1, z1], cell, cells: [nx, ny, nz]}, points, evaluations (of primitives, for the
+  field, if no point and no primitive is left out), pairs_in_support, waste, warnings; interval_evaluations (of primitives
+  over boxes, for a mesh) and mesh: {stages: {division: {boxes, interval_evaluations}, lattice, pulls, vertices: {points,
+  evaluations}}, avoided_by_support, avoided_by_interval} (evaluations of the lattice that a mesh does without)
+A model that is empty or unbounded has no lattice without --region: `lattice`, `waste` and `mesh` are null, and the counts are 0.
+
+Examples:
+  jbt count hero.jbt
+  jbt count train.scene --cell 0.13 --json";
+
+/// What `jbt stats` takes.
+#[derive(Args, Debug)]
+#[command(after_help = STATS_HELP)]
+pub struct StatsArguments {
+    /// What to measure.
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// Where, and how small boxes get.
+    #[command(flatten)]
+    pub lattice: LatticeArguments,
+    /// How often the region's longest side is halved, instead of --cell or --resolution
+    #[arg(long, value_name = "N", conflicts_with_all = ["cell", "resolution"], value_parser = clap::value_parser!(u8).range(0..=20))]
+    pub depth: Option<u8>,
+    /// How tight the bounds are, in units of the scene [default: 1/1024 of the region's longest side]
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
+    pub tolerance: Option<f32>,
+    /// Print one JSON object instead of a table
+    #[arg(long)]
+    pub json: bool,
+}
+
+const STATS_HELP: &str = "\
+The solid is where the field is at least the iso-value. A region (without --region the support of the model) is divided
+into boxes that are proven to be all inside (solid) or all outside (air), and boxes of one cell that may hold surface.
+
+  volume    between the solid boxes and these with the surface boxes: proven; and an estimate
+  area      an estimate: in each surface box, of the plane that the field has there; it converges with the cell
+  tight     a box that holds all of the solid in the region: proven; each side is within the tolerance of the solid
+            if it has converged
+  contents  primitives that matter in a surface box
+
+Keys of --json:
+  support: [x0, y0, z0, x1, y1, z1] (null if empty or unbounded), region: [...], cell,
+  tight: {outer: [...], inner: [...], tolerance, converged} (null: no inside point is there, or none was found),
+  volume: {low, high, estimate}, area, center: [x, y, z] (of mass; null if nothing is there),
+  division: {boxes, splits, solid, air, surface, levels: [{depth, splits, solid, air, surface}]}, counts of boxes,
+  shares: {solid, air, surface} of the region's volume, contents: {mean, most},
+  points, evaluations (of primitives, at points), ranges (of the field in boxes), interval_evaluations (of primitives
+  over boxes), total_ms, warnings
+
+Examples:
+  jbt stats hero.jbt
+  jbt stats hero.jbt --depth 6
+  jbt stats train.scene --cell 0.13 --tolerance 0.001 --json";
+
+/// What `jbt check` takes.
+#[derive(Args, Debug)]
+#[command(after_help = CHECK_HELP)]
+pub struct CheckArguments {
+    /// The scenes: .jbt texts, ParsIP .blob or .scene, .vm programs; `-` is the standard input
+    #[arg(value_name = "SCENE", required = true)]
+    pub scenes: Vec<PathBuf>,
+    /// Set a parameter of the .jbt texts; the value is a number or an expression of numbers, as 2*pi
+    #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = definition)]
+    pub definitions: Vec<(String, f64)>,
+    /// Print one JSON object instead of messages and summaries
+    #[arg(long)]
+    pub json: bool,
+}
+
+const CHECK_HELP: &str = "\
+All files are checked. The exit code is that of the first one with which something is wrong.
+
+Keys of --json:
+  files: [{file, ok, model: {nodes, leaves, occurrences, iso, parameters: {NAME: value}, bounds: [x0, y0, z0, x1, y1, z1]
+  (null if empty or unbounded), attributes: [{name, width, mixing}]}}] (model is null where something is wrong),
+  diagnostics: [{file, severity (error, warning or limit), line, column, end: {line, column}, message, hint}], where end
+  is one past the last character, columns count characters from 1, and what is not there is null
+
+Examples:
+  jbt check hero.jbt
+  jbt check examples/*.jbt -q
+  jbt check hero.jbt --json | jq '.diagnostics[].message'";
+
+/// What `jbt completions` takes.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  jbt completions bash > ~/.local/share/bash-completion/completions/jbt
+  jbt completions zsh > ~/.zfunc/_jbt
+  jbt completions fish > ~/.config/fish/completions/jbt.fish")]
+pub struct CompletionsArguments {
+    /// The shell
+    pub shell: Shell,
+}
+
+/// What `jbt man` takes.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  mkdir -p ~/.local/share/man/man1 && jbt man ~/.local/share/man/man1 && man jbt-mesh")]
+pub struct ManArguments {
+    /// The folder, which is there already; pages of the same names are replaced
+    #[arg(value_name = "DIR")]
+    pub folder: PathBuf,
+}
