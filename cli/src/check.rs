@@ -13,6 +13,7 @@ use serde_json::{Map, Value, json};
 
 use crate::arguments::{CheckArguments, SceneArguments};
 use crate::failure::Failure;
+use crate::lattice;
 use crate::message::Message;
 use crate::output::{grouped, print, report};
 use crate::scene::{Scene, is_standard};
@@ -113,6 +114,7 @@ impl Checked {
             "iso": tree.iso(),
             "parameters": parameters.collect::<Map<String, Value>>(),
             "bounds": bounds,
+            "origin": tree.origin().point(),
             "attributes": tree.attributes().iter().map(attribute).collect::<Vec<Value>>(),
         })
     }
@@ -128,7 +130,8 @@ impl Checked {
         if !tree.parameters().is_empty() {
             let _ = writeln!(out, "  parameters   {}", parameters(tree));
         }
-        let _ = writeln!(out, "  bounds       {}", bounds(tree.support()));
+        let _ =
+            writeln!(out, "  bounds       {}{}", bounds(tree.support()), lattice::origin_line(tree.origin()));
         let groups: Vec<String> = tree.attributes().iter().map(attribute).collect();
         let _ = write!(out, "  attributes   {}", groups.join(", "));
         out

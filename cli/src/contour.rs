@@ -7,13 +7,14 @@ use jbt::contour::{Contour, Detail, ImageDetail, Level, Mode, Rectangle, SliceEr
 use jbt::export::svg::{Paint, Style, write_svg};
 use jbt::export::write_png;
 use jbt::mesh::LatticeError;
-use jbt::{CheckedTree, Fineness, Query};
+use jbt::{CheckedTree, Fineness, ModelOrigin, Query};
 use jbt_frontend::diagnostic::{Diagnostic, escape};
 use serde_json::{Value, json};
 
 use crate::arguments::{ContourArguments, ModeName, PaintName};
 use crate::failure::Failure;
 use crate::formats::SliceKind;
+use crate::lattice;
 use crate::output::{Output, grouped, plural, warn};
 use crate::progress::Progress;
 use crate::scene::Scene;
@@ -55,7 +56,13 @@ pub fn run(arguments: &ContourArguments, quiet: bool, start: Instant) -> Result<
         warnings.iter().for_each(|warning| warn(warning));
     }
     warnings.splice(0..0, scene.warnings.iter().cloned());
-    let report = Report { made: &made, slicer: &slicer, warnings: &warnings, total: start.elapsed() };
+    let report = Report {
+        made: &made,
+        slicer: &slicer,
+        origin: tree.origin(),
+        warnings: &warnings,
+        total: start.elapsed(),
+    };
     let told = arguments.work.told(quiet);
     told.report(&destination.path, || report.json().to_string(), |name| report.text(name))
 }
@@ -245,6 +252,7 @@ fn cut(contour: &Contour) -> String {
 struct Report<'a> {
     made: &'a Made,
     slicer: &'a Slicer,
+    origin: ModelOrigin,
     warnings: &'a [String],
     total: Duration,
 }
@@ -255,6 +263,7 @@ impl Report<'_> {
         let (ranges, field, full) = self.slicer.counters();
         let mut report = json!({
             "plane": self.slicer.plane().to_string(),
+            "origin": self.origin.point(),
             "ranges": ranges.boxes,
             "interval_evaluations": ranges.interval_evaluations,
             "field_evaluations": field.points,
@@ -292,10 +301,11 @@ impl Report<'_> {
             ),
         };
         format!(
-            "{what}\n\
+            "{what}{}\n\
              \x20 evaluations  {} of the field, {} with attributes, {} of ranges of squares\n\
              \x20 primitives   {} evaluated, {} over squares, {} left out at points, by engine {}\n\
              \x20 time         {:.1} ms in total",
+            lattice::origin_line(self.origin),
             grouped(field.points),
             grouped(full.points),
             grouped(ranges.boxes),

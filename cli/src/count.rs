@@ -19,7 +19,7 @@ use std::fmt::Write as _;
 
 use jbt::mesh::Lattice;
 use jbt::statistics::{PerPoint, Statistics, Supports, SupportsError, walks};
-use jbt::{Compiler, Engine, MeshCounters, Polygonize, PolygonizeError, Query};
+use jbt::{Compiler, Engine, MeshCounters, ModelOrigin, Polygonize, PolygonizeError, Query};
 use jbt_frontend::check::CheckedTree;
 use jbt_frontend::diagnostic::Source;
 use jbt_frontend::tree::NodeKind;
@@ -71,6 +71,7 @@ pub fn run(arguments: &CountArguments, quiet: bool) -> Result<(), Failure> {
     }
     warnings.splice(0..0, scene.warnings.iter().cloned());
     let report = Report {
+        origin: tree.origin(),
         counts,
         leaves: leaves(&scene, &tree),
         uses: statistics.uses(),
@@ -194,6 +195,8 @@ impl<'a> Lines<'a> {
 
 /// What is told.
 struct Report {
+    /// That of the model.
+    origin: ModelOrigin,
     counts: Vec<Count>,
     leaves: Vec<Leaf>,
     uses: u64,
@@ -243,7 +246,7 @@ impl Report {
         let _ = writeln!(out, "{}\n", FORMULA.replace("; cached", "\ncached"));
         if let Some((lattice, supports)) = &self.lattice {
             let points = plural(supports.points, "point", "points");
-            let _ = writeln!(out, "lattice: {points}, {}\n", lattice::describe(lattice));
+            let _ = writeln!(out, "lattice: {points}, {}\n", lattice::describe(lattice, self.origin));
             self.write_queries(&mut out, supports.points);
             let waste =
                 self.waste().map_or("no pair".to_owned(), |waste| format!("{waste:.2} for each pair"));
@@ -299,7 +302,7 @@ impl Report {
     /// For machines.
     fn json(&self) -> Value {
         let lattice = self.lattice.as_ref().map(|(lattice, _)| {
-            let (low, high) = lattice::corners(lattice);
+            let (low, high) = lattice::corners(lattice, self.origin);
             let region = [low, high].concat();
             json!({ "region": region, "cell": lattice.spacing(), "cells": lattice.cells() })
         });
@@ -310,6 +313,7 @@ impl Report {
             "queries": self.counts.iter().map(|count| self.json_query(count)).collect::<Vec<_>>(),
             "leaves": self.leaves.iter().map(|leaf| self.json_leaf(leaf)).collect::<Vec<_>>(),
             "lattice": lattice,
+            "origin": self.origin.point(),
             "points": self.points(),
             "evaluations": self.field_of_lattice(),
             "interval_evaluations": self.interval_evaluations(),

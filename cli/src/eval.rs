@@ -3,7 +3,7 @@
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Write as _};
 
-use jbt::{Evaluator, Points, Samples};
+use jbt::{Evaluator, Samples};
 use rayon::prelude::*;
 
 use crate::arguments::{Destination, EvalArguments};
@@ -86,19 +86,27 @@ fn stream(
 }
 
 /// The lines of some points.
-fn answers(evaluator: &Evaluator, points: &Points) -> Result<Vec<u8>, Failure> {
+fn answers(evaluator: &Evaluator, points: &[[f64; 3]]) -> Result<Vec<u8>, Failure> {
+    let mut local = evaluator.points();
+    points.iter().for_each(|&point| local.push_world(point));
     let mut samples = evaluator.samples();
-    evaluator.eval(points, &mut samples).map_err(|error| Failure::Defect(error.to_string()))?;
+    evaluator.eval(&local, &mut samples).map_err(|error| Failure::Defect(error.to_string()))?;
     let mut text = Vec::new();
-    write(&mut text, points, &samples).map_err(|error| Failure::Defect(error.to_string()))?;
+    let is_far = !evaluator.origin().is_world();
+    write(&mut text, (points, is_far), &samples).map_err(|error| Failure::Defect(error.to_string()))?;
     Ok(text)
 }
 
-/// One line for each point. Numbers are the shortest decimals that read back as the same f32.
-fn write(output: &mut Vec<u8>, points: &Points, samples: &Samples) -> io::Result<()> {
-    for index in 0..points.len() {
-        let [x, y, z] = points.get(index);
-        write!(output, "{x},{y},{z}")?;
+/// One line for each point. Numbers are the shortest decimals that read back as the same f32; coordinates of
+/// a model that is far away, as the same f64.
+fn write(output: &mut Vec<u8>, (points, is_far): (&[[f64; 3]], bool), samples: &Samples) -> io::Result<()> {
+    for (index, &[x, y, z]) in points.iter().enumerate() {
+        if is_far {
+            write!(output, "{x},{y},{z}")?;
+        } else {
+            let [x, y, z] = [x, y, z].map(|x| x as f32);
+            write!(output, "{x},{y},{z}")?;
+        }
         for plane in samples.planes() {
             write!(output, ",{}", plane[index])?;
         }

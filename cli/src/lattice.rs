@@ -1,7 +1,7 @@
 //! The lattice of the command line: what its options mean, and whose fault it is when there is none.
 
 use jbt::mesh::{Lattice, LatticeError, MeshError};
-use jbt::{Fineness, Polygonize, PolygonizeError};
+use jbt::{Box3, Fineness, ModelOrigin, Polygonize, PolygonizeError};
 use jbt_frontend::diagnostic::Diagnostic;
 
 use crate::arguments::LatticeArguments;
@@ -55,15 +55,27 @@ pub fn failure(scene: &Scene, error: PolygonizeError) -> Failure {
     }
 }
 
-/// The first and the last corner of a lattice.
-pub fn corners(lattice: &Lattice) -> ([f64; 3], [f64; 3]) {
+/// The first and the last corner of a lattice about the origin of a model, in the world.
+pub fn corners(lattice: &Lattice, origin: ModelOrigin) -> ([f64; 3], [f64; 3]) {
     let (low, cells) = (lattice.origin(), lattice.cells());
-    (low, std::array::from_fn(|axis| low[axis] + lattice.spacing() * cells[axis] as f64))
+    let high = std::array::from_fn(|axis| low[axis] + lattice.spacing() * cells[axis] as f64);
+    (origin.world(low), origin.world(high))
+}
+
+/// A region of the world as a box about the origin of a model.
+pub fn local(region: ([f64; 3], [f64; 3]), origin: ModelOrigin) -> Box3 {
+    Box3::new(origin.rounded(region.0), origin.rounded(region.1))
+}
+
+/// Where a model has its origin, as a line of a summary; nothing for most models.
+pub fn origin_line(origin: ModelOrigin) -> String {
+    let [x, y, z] = origin.point();
+    if origin.is_world() { String::new() } else { format!("\n  origin       ({x} {y} {z})") }
 }
 
 /// A lattice in words: `40 x 40 x 20 cells of 0.100000, from (0.0000 0.0000 0.0000) to (4.0000 4.0000 2.0000)`.
-pub fn describe(lattice: &Lattice) -> String {
-    let ([x0, y0, z0], [x1, y1, z1]) = corners(lattice);
+pub fn describe(lattice: &Lattice, origin: ModelOrigin) -> String {
+    let ([x0, y0, z0], [x1, y1, z1]) = corners(lattice, origin);
     let ([nx, ny, nz], spacing) = (lattice.cells(), lattice.spacing());
     format!(
         "{nx} x {ny} x {nz} cells of {spacing:.6}, from ({x0:.4} {y0:.4} {z0:.4}) to ({x1:.4} {y1:.4} {z1:.4})"

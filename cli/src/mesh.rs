@@ -2,8 +2,8 @@
 
 use std::time::{Duration, Instant};
 
-use jbt::Polygonized;
 use jbt::export::{self, ColorEncoding, ExportError, ExportOptions, Format};
+use jbt::{ModelOrigin, Polygonized};
 use jbt_frontend::diagnostic::escape;
 use serde_json::json;
 
@@ -41,7 +41,7 @@ pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(),
     })?;
     output.finish()?;
 
-    let mut warnings = warnings(&made);
+    let mut warnings = warnings(&made, destination.kind);
     if !quiet {
         warnings.iter().for_each(|warning| warn(warning));
     }
@@ -66,8 +66,15 @@ fn options(arguments: &MeshArguments, format: Format) -> Result<ExportOptions, F
 }
 
 /// What may not be as people expect.
-fn warnings(made: &Polygonized) -> Vec<String> {
+fn warnings(made: &Polygonized, format: Format) -> Vec<String> {
     let mut warnings = Vec::new();
+    if export::loses_digits(&made.mesh, format) {
+        let [x, y, z] = made.mesh.origin;
+        warnings.push(format!(
+            "the model stands near ({x} {y} {z}), where a .{format} file has not enough digits: its vertices are rounded; \
+             .glb, .ply and .obj keep them"
+        ));
+    }
     if made.mesh.triangles.is_empty() {
         warnings
             .push("the mesh is empty: no cell is crossed by the surface; cells may be too large".to_owned());
@@ -96,9 +103,10 @@ impl Report<'_> {
     /// For machines.
     fn json(&self) -> serde_json::Value {
         let Polygonized { mesh, report, lattice, counters, .. } = self.made;
-        let (low, high) = lattice::corners(lattice);
-        let bounds =
-            mesh.bounds().map(|bounds| [bounds.low, bounds.high].map(|corner| corner.map(f64::from)));
+        let origin = ModelOrigin::new(mesh.origin);
+        let (low, high) = lattice::corners(lattice, origin);
+        let world = |corner: [f32; 3]| origin.world(corner.map(f64::from));
+        let bounds = mesh.bounds().map(|bounds| [bounds.low, bounds.high].map(world));
         json!({
             "triangles": mesh.triangles.len(),
             "vertices": mesh.positions.len(),
@@ -126,6 +134,7 @@ impl Report<'_> {
             "region": [low[0], low[1], low[2], high[0], high[1], high[2]],
             "cell": lattice.spacing(),
             "cells": lattice.cells(),
+            "origin": mesh.origin,
             "compile_ms": milliseconds(self.made.compile_time),
             "total_ms": milliseconds(self.total),
             "warnings": self.warnings,
@@ -154,7 +163,7 @@ impl Report<'_> {
         format!(
             "{}: {}, {}, {closed}\n\
              \x20 size         {}\n\
-             \x20 lattice      {}\n\
+             \x20 lattice      {}{}\n\
              \x20 evaluations  {} of the field, {} with gradient, {} with everything\n\
              \x20 primitives   {} evaluated, {} over boxes, by engine {}\n\
              \x20 avoided      {} out of reach, {} where no surface is\n\
@@ -163,7 +172,8 @@ impl Report<'_> {
             plural(mesh.triangles.len() as u64, "triangle", "triangles"),
             plural(mesh.positions.len() as u64, "vertex", "vertices"),
             self.measures(),
-            lattice::describe(lattice),
+            lattice::describe(lattice, ModelOrigin::new(mesh.origin)),
+            lattice::origin_line(ModelOrigin::new(mesh.origin)),
             grouped(report.field_evaluations),
             grouped(report.gradient_evaluations),
             grouped(report.full_evaluations),

@@ -1,12 +1,12 @@
 //! Points from CSV text, a batch at a time, with the place of whatever is wrong with them.
 //!
 //! The first line names the columns; `x`, `y` and `z` are taken wherever they stand. Fields may be quoted, but a quoted field
-//! does not go over the end of its line. Blank lines mean nothing. A coordinate is a finite f32: `nan`, `inf` and what overflows are
-//! errors; what is too small is the nearest f32, as always.
+//! does not go over the end of its line. Blank lines mean nothing. A coordinate is a number that is finite in
+//! f32: `nan`, `inf` and what overflows there are errors. It is read as an f64, so that points far away keep
+//! their digits up to the origin of the model.
 
 use std::io::{self, BufRead};
 
-use jbt::Points;
 use jbt_frontend::diagnostic::{Diagnostic, Severity, Source, Span, escape};
 
 use crate::failure::Failure;
@@ -80,8 +80,8 @@ impl<R: BufRead> PointReader<R> {
     }
 
     /// The next points, at most `limit`; none at the end.
-    pub fn batch(&mut self, limit: usize) -> Result<Points, Failure> {
-        let mut points = Points::new();
+    pub fn batch(&mut self, limit: usize) -> Result<Vec<[f64; 3]>, Failure> {
+        let mut points = Vec::new();
         while points.len() < limit && self.next_line()? {
             points.push(self.point()?);
         }
@@ -89,7 +89,7 @@ impl<R: BufRead> PointReader<R> {
     }
 
     /// The point of the line in the buffer.
-    fn point(&self) -> Result<[f32; 3], Failure> {
+    fn point(&self) -> Result<[f64; 3], Failure> {
         let words = self.words()?;
         let mut point = [0.0; 3];
         for (axis, (number, &column)) in point.iter_mut().zip(&self.columns).enumerate() {
@@ -205,9 +205,9 @@ impl<R: BufRead> PointReader<R> {
 }
 
 /// The coordinate that a text names, or what is wrong with it.
-fn coordinate(text: &str) -> Result<f32, String> {
-    let number: f32 = text.parse().map_err(|_| "not a number".to_owned())?;
-    if number.is_finite() {
+fn coordinate(text: &str) -> Result<f64, String> {
+    let number: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if (number as f32).is_finite() {
         Ok(number)
     } else if number.is_nan() {
         Err("not a number".to_owned())
@@ -222,7 +222,7 @@ fn coordinate(text: &str) -> Result<f32, String> {
 mod tests {
     use super::*;
 
-    fn read(text: &str) -> Result<Vec<[f32; 3]>, String> {
+    fn read(text: &str) -> Result<Vec<[f64; 3]>, String> {
         let all = || {
             let mut reader = PointReader::new(text.as_bytes(), "p.csv".to_owned())?;
             let mut all = Vec::new();
@@ -231,7 +231,7 @@ mod tests {
                 if batch.is_empty() {
                     return Ok(all);
                 }
-                all.extend((0..batch.len()).map(|index| batch.get(index)));
+                all.extend(batch);
             }
         };
         all().map_err(|failure: Failure| failure.to_string())
@@ -241,7 +241,7 @@ mod tests {
     fn columns_are_found_by_name_and_order_is_kept() {
         let text = "\u{feff}z,\"a,b\", y ,x\r\n3,\"q\"\"\",2,1\r\n\n-0,,1e-45,+.5\n1e-400,2,3,3.4028235e38";
         let points = read(text).unwrap();
-        assert_eq!(points, [[1.0, 2.0, 3.0], [0.5, 1e-45, 0.0], [f32::MAX, 3.0, 0.0]]);
+        assert_eq!(points, [[1.0, 2.0, 3.0], [0.5, 1e-45, 0.0], [3.4028235e38, 3.0, 0.0]]);
         assert!(points[1][2].is_sign_negative());
         assert_eq!(read("x,y,z\n"), Ok(vec![]));
     }

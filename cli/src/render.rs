@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use jbt::Box3;
+use jbt::ModelOrigin;
 use jbt::export::write_png;
 use jbt::render::{Camera, Mode, Render, RenderError, Rendered, Report as Taken, Stance, View};
 use jbt::solid::{BoundsError, RegionError};
@@ -12,6 +12,7 @@ use serde_json::json;
 use crate::arguments::{GroundName, RenderArguments};
 use crate::failure::Failure;
 use crate::formats::PictureKind;
+use crate::lattice;
 use crate::output::{Output, grouped, plural, warn};
 use crate::progress::Progress;
 use crate::scene::Scene;
@@ -20,10 +21,12 @@ use crate::scene::Scene;
 pub fn run(arguments: &RenderArguments, quiet: bool, start: Instant) -> Result<(), Failure> {
     let destination = arguments.output.destination(&arguments.scene.path)?;
     arguments.work.check_output(&destination.path, "picture")?;
-    let settings = settings(arguments)?;
+    let mut settings = settings(arguments)?;
     let scene = Scene::load(&arguments.scene)?;
     scene.warn(quiet);
     let tree = scene.check()?;
+    let region = arguments.region.map(|region| (region.low, region.high));
+    settings.region = region.map(|region| lattice::local(region, tree.origin()));
     let compiler = arguments.work.compiler();
 
     let mut progress = Progress::new("rendering", quiet);
@@ -44,7 +47,13 @@ pub fn run(arguments: &RenderArguments, quiet: bool, start: Instant) -> Result<(
         warnings.iter().for_each(|warning| warn(warning));
     }
     warnings.splice(0..0, scene.warnings.iter().cloned());
-    let report = Report { made: &made, mode: &settings.mode, warnings: &warnings, total: start.elapsed() };
+    let report = Report {
+        made: &made,
+        mode: &settings.mode,
+        origin: tree.origin(),
+        warnings: &warnings,
+        total: start.elapsed(),
+    };
     let told = arguments.work.told(quiet);
     told.report(&destination.path, || report.json().to_string(), |name| report.text(name))
 }
@@ -63,7 +72,6 @@ fn settings(arguments: &RenderArguments) -> Result<Render, Failure> {
         zoom: arguments.zoom,
         orthographic: arguments.orthographic,
     };
-    let corner = |corner: [f64; 3]| corner.map(|x| x as f32);
     Ok(Render {
         size: arguments.size,
         view,
@@ -72,7 +80,8 @@ fn settings(arguments: &RenderArguments) -> Result<Render, Failure> {
         antialias: arguments.antialias,
         background: arguments.background,
         ground: arguments.ground == GroundName::Shadow,
-        region: arguments.region.map(|region| Box3::new(corner(region.low), corner(region.high))),
+        // That counts from the origin of the model.
+        region: None,
     })
 }
 
@@ -121,6 +130,7 @@ fn failure(scene: &Scene, error: RenderError) -> Failure {
 struct Report<'a> {
     made: &'a Rendered,
     mode: &'a Mode,
+    origin: ModelOrigin,
     warnings: &'a [String],
     total: Duration,
 }
@@ -154,6 +164,7 @@ impl Report<'_> {
             "evaluations_per_pixel": self.per_pixel(),
             "range": range,
             "camera": camera,
+            "origin": self.origin.point(),
             "tolerance": tolerance,
             "engine": self.made.report.engine.name(),
             "compile_ms": compile,
@@ -173,7 +184,10 @@ impl Report<'_> {
             format!("{}: {width} x {height} pixels, {} of them hit\n", escape(name), grouped(*pixels_hit));
         if let Some(camera) = camera {
             let [x, y, z] = camera.eye;
-            out += &format!("  camera       at ({x:.4} {y:.4} {z:.4}), tolerance {tolerance:.6}\n");
+            out += &format!(
+                "  camera       at ({x:.4} {y:.4} {z:.4}), tolerance {tolerance:.6}{}\n",
+                lattice::origin_line(self.origin)
+            );
         }
         if let Some([least, most]) = range {
             out += &format!("  range        {} from {least} to {most}\n", self.what());

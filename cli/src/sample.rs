@@ -85,12 +85,13 @@ struct Report<'a> {
 impl Report<'_> {
     /// For machines.
     fn json(&self) -> serde_json::Value {
-        let (low, high) = lattice::corners(self.lattice);
+        let (low, high) = lattice::corners(self.lattice, self.sampler.evaluator().origin());
         json!({
             "planes": self.sampler.evaluator().layout().names(),
             "points": self.lattice.points(),
             "region": [low[0], low[1], low[2], high[0], high[1], high[2]],
             "cell": self.lattice.spacing(),
+            "origin": self.sampler.evaluator().origin().point(),
             "points_evaluated": self.counters.points,
             "primitive_evaluations": self.counters.primitive_evaluations,
             "evaluations_pruned": self.counters.evaluations_pruned,
@@ -105,12 +106,13 @@ impl Report<'_> {
         let [x, y, z] = self.lattice.points();
         format!(
             "{}: {} at {x} x {y} x {z} points\n\
-             \x20 lattice      {}\n\
+             \x20 lattice      {}{}\n\
              \x20 primitives   {} evaluated at {} points, {} left out there, by engine {}\n\
              \x20 time         {:.1} ms in total",
             jbt_frontend::diagnostic::escape(name),
             self.sampler.evaluator().layout().names().join(", "),
-            lattice::describe(self.lattice),
+            lattice::describe(self.lattice, self.sampler.evaluator().origin()),
+            lattice::origin_line(self.sampler.evaluator().origin()),
             grouped(self.counters.primitive_evaluations),
             grouped(self.counters.points),
             grouped(self.counters.evaluations_pruned),

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use jbt::divide::DivideError;
 use jbt::solid::{BoundsError, Level, Measure, MeasureError, Measures, RegionError, Solid, TightBounds};
-use jbt::{Box3, Compiler, Fineness};
+use jbt::{Box3, Compiler, Fineness, ModelOrigin, Polygonize};
 use jbt_frontend::bounds::Bounds;
 use jbt_frontend::diagnostic::{Diagnostic, escape};
 use serde_json::{Value, json};
@@ -28,10 +28,11 @@ const TOLERANCE: f32 = 1.0 / 1024.0;
 
 /// Runs the command. `start` is when the process began, for the total time.
 pub fn run(arguments: &StatsArguments, quiet: bool, start: Instant) -> Result<(), Failure> {
-    let settings = settings(arguments)?;
+    let asked = lattice::settings(&arguments.lattice)?;
     let scene = Scene::load(&arguments.scene)?;
     scene.warn(quiet);
     let tree = scene.check()?;
+    let settings = settings(arguments, &asked, tree.origin());
     let solid =
         Solid::new(&Compiler::new(), &tree).map_err(|error| Failure::compile(&scene.source(), &error))?;
     let mut progress = Progress::new("measuring", quiet);
@@ -59,14 +60,12 @@ pub fn run(arguments: &StatsArguments, quiet: bool, start: Instant) -> Result<()
 }
 
 /// What the options say.
-fn settings(arguments: &StatsArguments) -> Result<Measure, Failure> {
-    let lattice = lattice::settings(&arguments.lattice)?;
+fn settings(arguments: &StatsArguments, asked: &Polygonize, origin: ModelOrigin) -> Measure {
     let fineness = match arguments.depth {
         Some(depth) => Fineness::Resolution(1 << depth),
-        None => lattice.fineness,
+        None => asked.fineness,
     };
-    let region = lattice.region.map(|(low, high)| Box3::new(low.map(|x| x as f32), high.map(|x| x as f32)));
-    Ok(Measure { region, fineness })
+    Measure { region: asked.region.map(|region| lattice::local(region, origin)), fineness }
 }
 
 /// Whose fault it is that there is no region.
@@ -131,6 +130,19 @@ struct Report<'a> {
 }
 
 impl Report<'_> {
+    fn origin(&self) -> ModelOrigin {
+        self.solid.tree().origin()
+    }
+
+    /// Both corners of a box, in the world; in f32, as they are, where that is where they count from.
+    fn six(&self, bounds: &Box3) -> Value {
+        let corners = [bounds.low, bounds.high];
+        if self.origin().is_world() {
+            return json!(corners.concat());
+        }
+        json!(corners.map(|corner| self.origin().world(corner.map(f64::from))).concat())
+    }
+
     /// Points, evaluations of primitives at them, boxes, evaluations of primitives over them.
     fn evaluations(&self) -> [u64; 4] {
         let [field, normals] = self.solid.counters();
@@ -162,9 +174,10 @@ impl Report<'_> {
         } else {
             "unbounded".to_owned()
         };
-        let box3 = |bounds: &Box3| corners(bounds.low.map(f64::from), bounds.high.map(f64::from));
+        let world = |corner: [f32; 3]| self.origin().world(corner.map(f64::from));
+        let box3 = |bounds: &Box3| corners(world(bounds.low), world(bounds.high));
         let tight = self.tight.outer.as_ref().map_or("empty".to_owned(), box3);
-        let _ = writeln!(out, "  support      {support}");
+        let _ = writeln!(out, "  support      {support}{}", lattice::origin_line(self.origin()));
         let _ = writeln!(out, "  tight        {tight}, tolerance {}", self.tolerance);
         let _ = writeln!(out, "  volume       at least {:.6}, at most {:.6}", volume.low, volume.high);
         let _ = writeln!(out, "  centre       {}", center.map_or("none".to_owned(), point));
@@ -211,11 +224,12 @@ impl Report<'_> {
         };
         json!({
             "support": support,
-            "region": six(region),
+            "region": self.six(region),
+            "origin": self.origin().point(),
             "cell": cell,
             "tight": {
-                "outer": self.tight.outer.as_ref().map(six),
-                "inner": self.tight.inner.as_ref().map(six),
+                "outer": self.tight.outer.as_ref().map(|bounds| self.six(bounds)),
+                "inner": self.tight.inner.as_ref().map(|bounds| self.six(bounds)),
                 "tolerance": self.tolerance,
                 "converged": self.tight.converged,
             },
@@ -246,9 +260,4 @@ fn write_level(out: &mut String, depth: &str, level: &Level) {
 
 fn point([x, y, z]: [f64; 3]) -> String {
     format!("({x:.6} {y:.6} {z:.6})")
-}
-
-/// Both corners of a box.
-fn six(bounds: &Box3) -> Vec<f32> {
-    [bounds.low, bounds.high].concat()
 }

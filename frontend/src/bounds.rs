@@ -78,6 +78,12 @@ impl Bounds {
         Self { min: self.min - by, max: self.max + by }
     }
 
+    /// The box somewhere else.
+    #[must_use]
+    pub fn moved(self, by: DVec3) -> Self {
+        Self { min: self.min + by, max: self.max + by }
+    }
+
     /// Its eight corners.
     #[must_use]
     pub fn corners(self) -> [DVec3; 8] {

@@ -13,6 +13,7 @@
 //!   there. A Ricci exponent is in
 //!   [1, [`limits::MAX_RICCI_EXPONENT`]], or the negative of such a number; other numbers of operators are what their files say.
 //! * Every affine map can be undone, and the numbers of its inverse are finite in f32.
+//! * The origin has finite coordinates.
 //! * The first attribute group is `color` with three reals; names are unique; attribute nodes name a group and fit its width.
 //! * There are at most [`limits::MAX_NODES`] nodes and [`limits::MAX_OCCURRENCES`] paths from the root to leaves,
 //!   those to each piece of a skeleton counted.
@@ -34,6 +35,7 @@ use crate::falloff::Falloff;
 use crate::field::{Field, FieldKind, FieldValue};
 use crate::model::Model;
 use crate::number::Values;
+use crate::origin::ModelOrigin;
 use crate::parameter::{Parameter, collect, refresh};
 use crate::recipe::Recipe;
 use crate::report::Report;
@@ -76,6 +78,7 @@ pub struct CheckedTree {
     nodes: Arc<[CheckedNode]>,
     parameters: Vec<Parameter>,
     dependence: Arc<Dependence>,
+    origin: ModelOrigin,
     /// The text that places are in.
     source: Option<SourceText>,
 }
@@ -83,12 +86,13 @@ pub struct CheckedTree {
 impl PartialEq for CheckedTree {
     /// The same nodes, attributes and parameters; the text that they came from does not matter.
     fn eq(&self, other: &Self) -> bool {
-        let Self { iso, attributes, nodes, parameters, dependence, source: _ } = self;
+        let Self { iso, attributes, nodes, parameters, dependence, origin, source: _ } = self;
         *iso == other.iso
             && *attributes == other.attributes
             && *nodes == other.nodes
             && *parameters == other.parameters
             && *dependence == other.dependence
+            && *origin == other.origin
     }
 }
 
@@ -109,6 +113,23 @@ impl CheckedTree {
     #[must_use]
     pub fn attributes(&self) -> &[AttributeGroup] {
         &self.attributes
+    }
+
+    /// Where its local coordinates begin: programs, lattices, boxes and meshes of it are about them. The tree
+    /// itself, its [support](Self::support) and the oracle are about the world.
+    ///
+    /// It is the one that the model sets, or else one that was found at the check; other values of parameters
+    /// leave it.
+    #[must_use]
+    pub fn origin(&self) -> ModelOrigin {
+        self.origin
+    }
+
+    /// The same tree with another origin, as that of a model of which it is an edit. Its coordinates are
+    /// finite.
+    #[must_use]
+    pub fn with_origin(&self, origin: ModelOrigin) -> Self {
+        Self { origin, ..self.clone() }
     }
 
     /// All nodes.
@@ -159,7 +180,7 @@ impl CheckedTree {
     }
 
     /// A leaf under maps, the nearest first, each with the node of this tree that gives its weight, if it has one. They are those of a checked tree,
-    /// or products of them, so they are not checked again.
+    /// or products of them, so they are not checked again. Its origin is that of the world.
     pub(crate) fn leaf_under(
         &self,
         leaf: Primitive,
@@ -175,16 +196,19 @@ impl CheckedTree {
         self.of_nodes(nodes)
     }
 
-    /// A subtree as a tree of its own, with the iso-value of this one and no parameters.
+    /// A subtree as a tree of its own, with the iso-value of this one, no parameters, and an origin that is
+    /// found for it.
     #[must_use]
     pub fn subtree(&self, root: NodeId) -> Self {
         let mut nodes = Vec::new();
         self.copy_below(root, &mut nodes);
-        self.of_nodes(nodes)
+        let tree = self.of_nodes(nodes);
+        Self { origin: ModelOrigin::of(tree.support()), ..tree }
     }
 
     /// The tree in other coordinates, with the iso-value and the attributes of this one and no parameters: under one more affine node, whose
-    /// map takes points of this tree's space to the new ones. It is given by rows, the last column is the shift; it can be undone.
+    /// map takes points of this tree's space to the new ones. It is given by rows, the last column is the
+    /// shift; it can be undone. An origin that is not that of the world is mapped too.
     #[must_use]
     pub fn mapped(&self, rows: [[f64; 4]; 3]) -> Self {
         let column = |place: usize| rows.map(|row| row[place]);
@@ -192,7 +216,9 @@ impl CheckedTree {
         let mut nodes = self.nodes.to_vec();
         let map = DAffine3::from_cols_array_2d(&columns);
         nodes.push(CheckedNode { kind: NodeKind::Affine(map), children: vec![self.root()], span: None });
-        self.of_nodes(nodes)
+        let mapped = || ModelOrigin::new(map.transform_point3(self.origin.point().into()).to_array());
+        let origin = if self.origin.is_world() { self.origin } else { mapped() };
+        Self { origin, ..self.of_nodes(nodes) }
     }
 
     /// Copies a subtree behind other nodes; gives the place of its root.
@@ -221,6 +247,7 @@ impl CheckedTree {
             nodes: nodes.into(),
             parameters: Vec::new(),
             dependence: Arc::default(),
+            origin: ModelOrigin::WORLD,
             source: self.source.clone(),
         }
     }
@@ -253,6 +280,9 @@ impl Model {
         }
         let iso = check_iso(&mut report, &self.iso, &values);
         check_groups(&mut report, &self.attributes);
+        if let Some(point) = self.origin {
+            check_numbers(&mut report, None, "the origin", &point, f64::NEG_INFINITY);
+        }
         let mut dependence = Dependence::new(&parameters, &self.iso);
         let nodes = self.arena(max_nodes, &mut report, (iso, &values), &mut dependence);
         if report.is_empty() {
@@ -264,7 +294,10 @@ impl Model {
         }
         let (attributes, dependence) = (self.attributes.clone(), Arc::new(dependence));
         let (nodes, source) = (nodes.into(), self.source.clone());
-        Ok(CheckedTree { iso, attributes, nodes, parameters, dependence, source })
+        let origin = self.origin.map_or(ModelOrigin::WORLD, ModelOrigin::new);
+        let tree = CheckedTree { iso, attributes, nodes, parameters, dependence, origin, source };
+        let found = || ModelOrigin::of(tree.support());
+        Ok(if self.origin.is_some() { tree } else { CheckedTree { origin: found(), ..tree } })
     }
 
     /// All nodes, children before parents, each checked by itself.
@@ -342,6 +375,12 @@ impl CheckedTree {
             done.push(node_extent(&node.kind, &children, self.iso));
         }
         done.last().map_or(Bounds::EMPTY, |root| root.support)
+    }
+
+    /// The [support](Self::support) in local coordinates.
+    #[must_use]
+    pub fn local_support(&self) -> Bounds {
+        self.origin.local_bounds(self.support())
     }
 }
 

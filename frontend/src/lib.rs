@@ -23,6 +23,7 @@ mod interop;
 pub mod lower;
 pub mod model;
 pub mod number;
+pub mod origin;
 pub mod owner;
 pub mod parameter;
 pub mod query;

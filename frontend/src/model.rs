@@ -24,6 +24,9 @@ pub struct Model {
     pub parameters: Vec<Parameter>,
     /// The text that places of nodes are in, for messages; `None` if the model came from none.
     pub source: Option<SourceText>,
+    /// Where its local coordinates begin, as the statement `origin` sets it; `None` leaves it to the
+    /// [check](crate::check), which finds one for a model that is far away. See [`origin`](crate::origin).
+    pub origin: Option<[f64; 3]>,
 }
 
 impl Model {
@@ -35,18 +38,26 @@ impl Model {
     pub fn new(root: Tree) -> Self {
         let iso = Number::from(Self::DEFAULT_ISO);
         let (parameters, _) = collect(&[], &iso, &root);
-        Self { iso, attributes: vec![AttributeGroup::color()], root, parameters, source: None }
+        let attributes = vec![AttributeGroup::color()];
+        Self { iso, attributes, root, parameters, origin: None, source: None }
+    }
+
+    /// The same with its local coordinates beginning at a point of the world: see [`origin`](crate::origin).
+    #[must_use]
+    pub fn with_origin(self, point: [f64; 3]) -> Self {
+        Self { origin: Some(point), ..self }
     }
 }
 
 impl PartialEq for Model {
     /// The same field, attributes and parameters; where they were written does not matter.
     fn eq(&self, other: &Self) -> bool {
-        let Self { iso, attributes, root, parameters, source: _ } = self;
+        let Self { iso, attributes, root, parameters, origin, source: _ } = self;
         *iso == other.iso
             && *attributes == other.attributes
             && *root == other.root
             && *parameters == other.parameters
+            && *origin == other.origin
     }
 }
 

@@ -19,7 +19,7 @@ pub struct Parameter {
     pub(crate) setting: Option<f64>,
     /// Where it is declared in its source text.
     pub(crate) span: Option<Span>,
-    /// Where it stands in a declaration of attributes, which no setting reaches.
+    /// Where it stands in a declaration of attributes or of the origin, which no setting reaches.
     pub(crate) declares: Option<Span>,
 }
 

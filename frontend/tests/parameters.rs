@@ -77,7 +77,7 @@ fn what_a_setting_breaks_is_shown_where_it_stands() {
          number of at least 1e-15\na.jbt:7:20: error: division by zero\n  7 |     point { radius 1 / (p - 3) + 2 }\n\
          \x20   |                    ^^^^^^^^^^^^^^^"
     );
-    assert!(shown(&[("q", 2.0)]).starts_with("a.jbt:4:24: error: `q` stands in a declaration of attributes"));
+    assert!(shown(&[("q", 2.0)]).starts_with("a.jbt:4:24: error: `q` stands in a declaration"));
     assert_eq!(
         shown(&[("pp", 1.0), ("p", f64::NAN)]),
         "a.jbt: error: the model has no parameter `pp` to set\n  perhaps `p`; it has p, q\na.jbt: error: the value of `p` \

@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex};
 
 use jbt_frontend::check::{CheckedTree, NodeId};
 use jbt_frontend::lower::{Lowered, Lowering};
+use jbt_frontend::origin::ModelOrigin;
 use jbt_frontend::query::Query;
 use jbt_ir::domain::counting::{Evaluations, evaluations, of_selection};
 use jbt_ir::{Function, Selection, Tables, Verified};
@@ -16,7 +17,7 @@ use crate::counter::{Counters, Tally};
 use crate::error::{CompileError, EvalError};
 use crate::kernel::{Bound, Engine, Kernel, Purpose, optimise};
 use crate::places;
-use crate::points::AsPoints;
+use crate::points::{AsPoints, Points};
 use crate::probe::Probe;
 use crate::prune::Region;
 use crate::region::Box3;
@@ -141,6 +142,7 @@ pub struct Evaluator {
     compiler: Compiler,
     bound: Bound,
     query: Query,
+    origin: ModelOrigin,
     layout: Layout,
     /// What separate walks would compute at a point.
     separate: u64,
@@ -189,10 +191,12 @@ impl Evaluator {
         );
         let separate = walks(query).saturating_mul(lowering.leaf_uses());
         let bound = kernel.bind(Arc::new(tables));
-        Self { compiler, bound, query, layout, separate, tally: Tally::default() }
+        let origin = lowering.tree().origin();
+        Self { compiler, bound, query, origin, layout, separate, tally: Tally::default() }
     }
 
-    /// Takes another model, usually an edited one. If it has the shape of the present one, only numbers are written.
+    /// Takes another model, usually an edited one. If it has the shape of the present one, only numbers are
+    /// written. The [origin](Self::origin) stays, wherever the other model is.
     ///
     /// # Errors
     /// Those of [`Compiler::evaluator`]; the evaluator stays as it was.
@@ -208,7 +212,8 @@ impl Evaluator {
     /// # Errors
     /// Those of [`Compiler::evaluator`].
     pub fn updated(&self, tree: &CheckedTree) -> Result<Self, CompileError> {
-        let lowering = Lowering::new(tree);
+        let tree = tree.with_origin(self.origin);
+        let lowering = Lowering::new(&tree);
         let (kernel, tables) = self.compiler.compile(&lowering, self.query, Some(&self.bound.kernel))?;
         Ok(Self::new(self.compiler.clone(), kernel, tables, &lowering, self.query))
     }
@@ -217,6 +222,19 @@ impl Evaluator {
     #[must_use]
     pub fn query(&self) -> Query {
         self.query
+    }
+
+    /// Where its coordinates count from: that of the model for which it was made. Points, planes, boxes and
+    /// probes in f32 are about it; for most models it is the origin of the world.
+    #[must_use]
+    pub fn origin(&self) -> ModelOrigin {
+        self.origin
+    }
+
+    /// No points: those to come count from its origin.
+    #[must_use]
+    pub fn points(&self) -> Points {
+        Points::about(self.origin)
     }
 
     /// What runs it.
@@ -239,6 +257,9 @@ impl Evaluator {
 
     /// The answers at all points: [`Points`], or a slice, an array or a vector of points as they are. `samples` is resized; keep it for the next call
     /// to save the allocation.
+    ///
+    /// Points of f32 as they are count from the origin of the world; [`Points`] know where theirs count from.
+    /// What counts from another [origin](Self::origin) than this evaluator is moved, in f64, and rounded once.
     ///
     /// It is serial: everything is done on the thread that calls. [`par_eval`](Self::par_eval) uses others too.
     ///
@@ -298,7 +319,8 @@ impl Evaluator {
         mut count: usize,
         mut answers: Vec<&mut [f32]>,
     ) -> Result<(), EvalError> {
-        if let Some(planes) = points.planes() {
+        let moves = points.origin() != self.origin;
+        if let Some(planes) = points.planes().filter(|_| !moves) {
             return self.eval_planes(planes.map(|plane| &plane[start..][..count]), &mut answers);
         }
         let mut scratch = [[0.0; BLOCK]; 3];
@@ -306,6 +328,9 @@ impl Evaluator {
         while count > 0 {
             let some = count.min(BLOCK);
             points.copy_to(start, scratch.each_mut().map(|plane| &mut plane[..some]));
+            if moves {
+                self.bring(points.origin(), scratch.each_mut().map(|plane| &mut plane[..some]));
+            }
             block.extend(answers.iter_mut().map(|plane| split(plane, some)));
             self.eval_planes(scratch.each_ref().map(|plane| &plane[..some]), &mut block)?;
             block.clear();
@@ -314,7 +339,17 @@ impl Evaluator {
         Ok(())
     }
 
-    /// The answers at all points, into planes of the caller: one for each name of the [`layout`](Self::layout), as long as those of x, y and z.
+    /// Moves coordinates that count from another origin here.
+    fn bring(&self, from: ModelOrigin, planes: [&mut [f32]; 3]) {
+        let (from, to) = (from.point(), self.origin.point());
+        for (axis, plane) in planes.into_iter().enumerate() {
+            let moved = |x: f32| (f64::from(x) + from[axis] - to[axis]) as f32;
+            plane.iter_mut().for_each(|x| *x = moved(*x));
+        }
+    }
+
+    /// The answers at all points, into planes of the caller: one for each name of the
+    /// [`layout`](Self::layout), as long as those of x, y and z, which count from the [origin](Self::origin).
     ///
     /// Any length will do; a multiple of 16 is fastest.
     ///
@@ -367,7 +402,7 @@ impl Evaluator {
         Ok(lanes)
     }
 
-    /// Begins to ask about one point: see [`Probe`].
+    /// Begins to ask about one point, whose coordinates count from the [origin](Self::origin): see [`Probe`].
     #[must_use]
     pub fn probe(&self, point: [f32; 3]) -> Probe<'_> {
         Probe::new(self, point)

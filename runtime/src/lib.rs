@@ -113,6 +113,7 @@ pub use jbt_frontend::falloff::Falloff;
 pub use jbt_frontend::import;
 pub use jbt_frontend::model::Model;
 pub use jbt_frontend::number::Number;
+pub use jbt_frontend::origin::ModelOrigin;
 pub use jbt_frontend::parameter::Parameter;
 pub use jbt_frontend::query::Query;
 pub use jbt_frontend::text;

@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use jbt_frontend::origin::ModelOrigin;
+
 /// A point of f32: an array, or a type of another library (features `glam` and `mint`).
 pub trait AsPoint {
     /// Its coordinates.
@@ -46,6 +48,11 @@ pub trait AsPoints: Sync {
 
     /// Writes the coordinates of points from `start` on, as many as a plane is long. The planes are equally long, and there are as many points.
     fn copy_to(&self, start: usize, planes: [&mut [f32]; 3]);
+
+    /// Where their coordinates count from: the origin of the world, but for [`Points`] about another one.
+    fn origin(&self) -> ModelOrigin {
+        ModelOrigin::WORLD
+    }
 
     /// The planes of all points, if that is how they are kept: nothing is copied then.
     fn planes(&self) -> Option<[&[f32]; 3]> {
@@ -95,12 +102,16 @@ impl<P: AsPoints + ?Sized> AsPoints for &P {
         (**self).copy_to(start, planes);
     }
 
+    fn origin(&self) -> ModelOrigin {
+        (**self).origin()
+    }
+
     fn planes(&self) -> Option<[&[f32]; 3]> {
         (**self).planes()
     }
 }
 
-/// Points in space: three planes of equal length.
+/// Points in space: three planes of equal length, and the origin from which their coordinates count.
 ///
 /// Any f32 may be a coordinate. An infinity counts as the largest finite number of its sign; a point with a NaN has a field that is NaN, which is
 /// outside (see [`Evaluator::eval`](crate::Evaluator::eval)).
@@ -112,6 +123,23 @@ impl<P: AsPoints + ?Sized> AsPoints for &P {
 /// assert_eq!(points.iter().last(), Some([1.0, 2.0, 3.0]));
 /// assert_eq!(points.planes()[2], [0.0, 0.0, 3.0]);
 /// ```
+///
+/// They count from the origin of the world, unless they were made [about](Self::about) another one. An
+/// evaluator moves points that count from another origin than its model; far away it is better to give it
+/// points about its own, which are rounded there:
+///
+/// ```
+/// use jbt::{Evaluator, Model, Query, build::point};
+/// let tree = Model::new(point([1e6, 0.0, 0.0], 1.0)).check().unwrap();
+/// let evaluator = Evaluator::compile(&tree, Query::FIELD).unwrap();
+/// let mut points = evaluator.points();
+/// points.push_world([1e6 + 0.7, 0.0, 0.001]);
+/// assert_eq!(points.get(0), [0.7, 0.0, 0.001]);
+/// let mut samples = evaluator.samples();
+/// evaluator.eval(&points, &mut samples).unwrap();
+/// let oracle = jbt::walk::walk(&tree, points.world(0)).field;
+/// assert!((f64::from(samples.field()[0]) - oracle).abs() < 1e-6);
+/// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(from = "Vec<[f32; 3]>", into = "Vec<[f32; 3]>"))]
@@ -119,6 +147,7 @@ pub struct Points {
     x: Vec<f32>,
     y: Vec<f32>,
     z: Vec<f32>,
+    origin: ModelOrigin,
 }
 
 impl Points {
@@ -132,10 +161,30 @@ impl Points {
     #[must_use]
     pub fn with_capacity(points: usize) -> Self {
         let plane = || Vec::with_capacity(points);
-        Self { x: plane(), y: plane(), z: plane() }
+        Self { x: plane(), y: plane(), z: plane(), origin: ModelOrigin::WORLD }
     }
 
-    /// Points from their planes.
+    /// No points; coordinates of those to come count from an origin.
+    #[must_use]
+    pub fn about(origin: ModelOrigin) -> Self {
+        Self { origin, ..Self::default() }
+    }
+
+    /// Where their coordinates count from.
+    #[must_use]
+    pub fn origin(&self) -> ModelOrigin {
+        self.origin
+    }
+
+    /// The same points, their coordinates counting from another origin: moved in f64 and rounded once.
+    #[must_use]
+    pub fn moved(&self, origin: ModelOrigin) -> Self {
+        let mut moved = Self::about(origin);
+        (0..self.len()).for_each(|index| moved.push_world(self.world(index)));
+        moved
+    }
+
+    /// Points from their planes, which count from the origin of the world.
     ///
     /// # Errors
     /// The lengths, if they differ.
@@ -143,10 +192,21 @@ impl Points {
         if x.len() != y.len() || x.len() != z.len() {
             return Err(LengthError { lengths: [x.len(), y.len(), z.len()] });
         }
-        Ok(Self { x, y, z })
+        Ok(Self { x, y, z, origin: ModelOrigin::WORLD })
     }
 
-    /// Adds a point.
+    /// Points from planes of equal length.
+    pub(crate) fn from_planes_about(origin: ModelOrigin, [x, y, z]: [Vec<f32>; 3]) -> Self {
+        debug_assert!(x.len() == y.len() && x.len() == z.len(), "the planes are equally long");
+        Self { x, y, z, origin }
+    }
+
+    /// Adds a point of the world: what is left of it from the origin is rounded to f32.
+    pub fn push_world(&mut self, point: [f64; 3]) {
+        self.push(self.origin.rounded(point));
+    }
+
+    /// Adds a point, its coordinates counting from the origin.
     pub fn push(&mut self, point: impl AsPoint) {
         let [x, y, z] = point.coordinates();
         self.x.push(x);
@@ -179,13 +239,19 @@ impl Points {
         [&self.x, &self.y, &self.z]
     }
 
-    /// One point. Panics if there are not as many.
+    /// Where one point is in the world. Panics if there are not as many.
+    #[must_use]
+    pub fn world(&self, index: usize) -> [f64; 3] {
+        self.origin.world(self.get(index).map(f64::from))
+    }
+
+    /// One point, from the origin. Panics if there are not as many.
     #[must_use]
     pub fn get(&self, index: usize) -> [f32; 3] {
         [self.x[index], self.y[index], self.z[index]]
     }
 
-    /// All points, in order.
+    /// All points, in order, from the origin.
     #[must_use]
     pub fn iter(&self) -> PointsIter<'_> {
         PointsIter { points: self, range: 0..self.len() }
@@ -201,6 +267,10 @@ impl AsPoints for Points {
         for (plane, own) in planes.into_iter().zip(self.planes()) {
             plane.copy_from_slice(&own[start..][..plane.len()]);
         }
+    }
+
+    fn origin(&self) -> ModelOrigin {
+        self.origin
     }
 
     fn planes(&self) -> Option<[&[f32]; 3]> {
@@ -256,8 +326,12 @@ impl<T: AsPoint> From<Vec<T>> for Points {
 }
 
 impl From<Points> for Vec<[f32; 3]> {
+    /// The points in the world, rounded there.
     fn from(points: Points) -> Self {
-        points.iter().collect()
+        if points.origin.is_world() {
+            return points.iter().collect();
+        }
+        points.moved(ModelOrigin::WORLD).iter().collect()
     }
 }
 

@@ -52,7 +52,8 @@ impl Default for Fineness {
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Polygonize {
-    /// The smallest and the largest corner of the box to mesh; `None` is the model's support, grown a little.
+    /// The smallest and the largest corner of the box to mesh, in the world; `None` is the model's support,
+    /// grown a little.
     pub region: Option<([f64; 3], [f64; 3])>,
     /// How fine.
     pub fineness: Fineness,
@@ -68,7 +69,7 @@ pub struct Polygonized {
     pub mesh: Mesh,
     /// Whether it is closed, and the evaluations by kind.
     pub report: Report,
-    /// Where the field was asked.
+    /// Where the field was asked, in coordinates about the [origin](Mesh::origin) of the mesh.
     pub lattice: Lattice,
     /// What ran the kernels.
     pub engine: Engine,
@@ -145,15 +146,23 @@ pub enum PolygonizeError {
 const MARGIN: f64 = 1.0 / 512.0;
 
 impl Polygonize {
-    /// The region to mesh: its smallest and its largest corner.
+    /// The region to mesh: its smallest and its largest corner, in the world.
     ///
     /// # Errors
     /// No region was given, and the model's support is empty or unbounded.
     pub fn region(&self, tree: &CheckedTree) -> Result<([f64; 3], [f64; 3]), PolygonizeError> {
-        if let Some(region) = self.region {
-            return Ok(region);
+        let (low, high) = self.local_region(tree)?;
+        let origin = tree.origin();
+        Ok(self.region.unwrap_or((origin.world(low), origin.world(high))))
+    }
+
+    /// The region in local coordinates.
+    fn local_region(&self, tree: &CheckedTree) -> Result<([f64; 3], [f64; 3]), PolygonizeError> {
+        let origin = tree.origin();
+        if let Some((low, high)) = self.region {
+            return Ok((origin.local(low), origin.local(high)));
         }
-        let support = tree.support();
+        let support = tree.local_support();
         if support.is_empty() {
             return Err(PolygonizeError::Empty);
         }
@@ -164,12 +173,12 @@ impl Polygonize {
         Ok((grown.low(), grown.high()))
     }
 
-    /// The lattice over the region.
+    /// The lattice over the region, in coordinates about the model's [origin](CheckedTree::origin).
     ///
     /// # Errors
     /// Those of [`region`](Self::region), and a lattice that cannot be or is beyond a limit.
     pub fn lattice(&self, tree: &CheckedTree) -> Result<Lattice, PolygonizeError> {
-        let (low, high) = self.region(tree)?;
+        let (low, high) = self.local_region(tree)?;
         Ok(match self.fineness {
             Fineness::Cell(cell) => Lattice::covering(low, high, cell)?,
             Fineness::Resolution(cells) => Lattice::with_resolution(low, high, cells)?,
@@ -201,7 +210,8 @@ impl Polygonize {
         let compile_time = start.elapsed();
         let options =
             mesh::Options { iso: tree.iso() as f32, verify: self.verify, ..mesh::Options::default() };
-        let (mesh, report) = mesh::extract_hooked(&kernels, &lattice, &options, hook)?;
+        let (mut mesh, report) = mesh::extract_hooked(&kernels, &lattice, &options, hook)?;
+        mesh.origin = tree.origin().point();
         let counters = MeshCounters::new(&kernels, &report, &lattice);
         Ok(Polygonized {
             mesh,

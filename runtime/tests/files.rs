@@ -3,13 +3,16 @@
 use jbt::export::{Conventions, Format};
 
 fn row(conventions: &Conventions) -> String {
-    let &Conventions { extension, title, up, normals, colors, uv, attributes } = conventions;
+    let &Conventions { extension, title, up, normals, colors, uv, attributes, far } = conventions;
     let (place, encoding) = match colors {
         Some(colors) => (colors.place, colors.encoding.name()),
         None => ("none", ""),
     };
     let (uv, attributes) = (uv.unwrap_or("none"), attributes.unwrap_or("none"));
-    format!("| `.{extension}` | {title} | {up} | {place} | {encoding} | {normals} | {uv} | {attributes} |")
+    format!(
+        "| `.{extension}` | {title} | {up} | {place} | {encoding} | {normals} | {uv} | {attributes} | {} |",
+        far.name()
+    )
 }
 
 #[test]

@@ -62,7 +62,7 @@ Keys of --json. For one point:
   leaves: [{node, kind, line, column, uses, evaluations: {QUERY: count}, pairs_in_support}]
 For the lattice (`total` and `pairs_in_support` too):
   lattice: {region: [x0, y0, z0, x1, y1, z1], cell, cells: [nx, ny, nz]}, points, evaluations (of primitives, for the
-  field, if no point and no primitive is left out), pairs_in_support, waste, warnings; interval_evaluations (of primitives
+  field, if no point and no primitive is left out), origin: [x, y, z] (see docs/text.md; 0 for most scenes), pairs_in_support, waste, warnings; interval_evaluations (of primitives
   over boxes, for a mesh) and mesh: {stages: {division: {boxes, interval_evaluations}, lattice, pulls, vertices: {points,
   evaluations}}, avoided_by_support, avoided_by_interval} (evaluations of the lattice that a mesh does without)
 A model that is empty or unbounded has no lattice without --region: `lattice`, `waste` and `mesh` are null, and the counts are 0.
@@ -104,6 +104,7 @@ into boxes that are proven to be all inside (solid) or all outside (air), and bo
 
 Keys of --json:
   support: [x0, y0, z0, x1, y1, z1] (null if empty or unbounded), region: [...], cell,
+  origin: [x, y, z] (from which 32-bit coordinates count, see docs/text.md; 0 for most scenes),
   tight: {outer: [...], inner: [...], tolerance, converged} (null: no inside point is there, or none was found),
   volume: {low, high, estimate}, area, center: [x, y, z] (of mass; null if nothing is there),
   division: {boxes, splits, solid, air, surface, levels: [{depth, splits, solid, air, surface}]}, counts of boxes,
@@ -136,7 +137,7 @@ All files are checked. The exit code is that of the first one with which somethi
 
 Keys of --json:
   files: [{file, ok, model: {nodes, leaves, occurrences, iso, parameters: {NAME: value}, bounds: [x0, y0, z0, x1, y1, z1]
-  (null if empty or unbounded), attributes: [{name, width, mixing}]}}] (model is null where something is wrong),
+  (null if empty or unbounded), origin: [x, y, z], attributes: [{name, width, mixing}]}}] (model is null where something is wrong),
   diagnostics: [{file, severity (error, warning or limit), line, column, end: {line, column}, message, hint}], where end
   is one past the last character, columns count characters from 1, and what is not there is null
 

@@ -3,6 +3,7 @@
 mod check;
 mod commands;
 mod contour;
+mod far;
 mod folder;
 mod hostile;
 mod manual;

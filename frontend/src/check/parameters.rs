@@ -209,8 +209,8 @@ impl CheckedTree {
             return Err(report.finish());
         }
         let (attributes, dependence) = (self.attributes.clone(), Arc::clone(&self.dependence));
-        let source = self.source.clone();
-        Ok(Self { iso, attributes, nodes, parameters, dependence, source })
+        let (origin, source) = (self.origin, self.source.clone());
+        Ok(Self { iso, attributes, nodes, parameters, dependence, origin, source })
     }
 
     /// The nodes, those that follow parameters that have moved made and checked again.
@@ -301,7 +301,6 @@ pub(crate) fn not_finite(name: &str) -> Diagnostic {
 }
 
 fn declares(name: &str, place: Span) -> Diagnostic {
-    let message =
-        format!("`{}` stands in a declaration of attributes, which stays as it was read", clip(name));
+    let message = format!("`{}` stands in a declaration, which stays as it was read", clip(name));
     Diagnostic::error(Some(place), message).expected("set it before the text is read")
 }

@@ -81,8 +81,13 @@ impl Form {
 
     /// Whether anything depends on where the point is, apart from the children.
     pub(crate) fn asks_point(&self) -> bool {
+        self.bounded || self.asks_coordinates()
+    }
+
+    /// Whether the formula itself is about coordinates.
+    pub(crate) fn asks_coordinates(&self) -> bool {
         let coordinate = |operand: &Operand| matches!(operand, Operand::Coordinate(_));
-        self.bounded || self.results.iter().any(coordinate) || self.operands.iter().any(coordinate)
+        self.results.iter().any(coordinate) || self.operands.iter().any(coordinate)
     }
 
     /// Of all numbers, those of the box.

@@ -87,6 +87,13 @@ impl Expression {
         &self.numbers
     }
 
+    /// Its [numbers](Self::numbers), the corners of its box counted from a point.
+    pub(crate) fn numbers_from(&self, point: DVec3) -> impl Iterator<Item = f64> {
+        let first = self.numbers.len() - self.form.box_numbers(&self.numbers).map_or(0, <[f64]>::len);
+        let from = move |place: usize| if place < first { 0.0 } else { point[(place - first) % 3] };
+        self.numbers.iter().enumerate().map(move |(place, number)| number - from(place))
+    }
+
     /// The box outside of which it is 0, in its own space.
     #[must_use]
     pub fn bounds(&self) -> Option<Bounds> {

@@ -62,7 +62,8 @@ impl<'a> LeafOccurrences<'a> {
         self.scene.field(self.asked[index]).node
     }
 
-    /// A model of this leaf alone, where it stands in the whole, with strength 1: its field is above zero exactly inside the
+    /// A model of this leaf alone, where it stands in the whole, in local coordinates of that and with
+    /// strength 1: its field is above zero exactly inside the
     /// primitive's support. Its numbers are, to the bit, those that it has in the program of the whole model, unless they follow
     /// parameters: then to within rounding. Panics if there are not as many.
     #[must_use]

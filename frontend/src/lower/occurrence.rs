@@ -3,7 +3,7 @@
 //! An *occurrence* is a node at a position with attribute bindings. A node that is reached twice with the same of each is one
 //! occurrence with two uses; under other coordinates it is another one.
 
-use glam::DAffine3;
+use glam::{DAffine3, DVec3};
 
 use super::computed::{Computed, ComputedId};
 use super::demand::Demand;
@@ -128,6 +128,8 @@ pub(super) enum OccurrenceKind {
     /// A formula of the point and of the children's fields: a leaf with attributes of its own, if there are none.
     Expression {
         position: PositionId,
+        /// What the sides of its box are counted from, in the space of the node.
+        shift: DVec3,
         bindings: BindingsId,
         children: Vec<OccurrenceId>,
         /// As for a leaf.

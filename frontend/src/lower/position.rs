@@ -21,6 +21,7 @@ use jbt_ir::Domain;
 use super::occurrence::SpaceId;
 use crate::affine::Similarity;
 use crate::check::NodeId;
+use crate::origin::ModelOrigin;
 use crate::recipe::{Freedom, Recipe};
 use crate::skeleton::{Skeleton, Symmetry};
 
@@ -103,6 +104,15 @@ impl Position {
     /// Where a space begins.
     pub(super) const fn start(space: SpaceId) -> Self {
         Self { space, map: DAffine3::IDENTITY, trail: Trail::START }
+    }
+
+    /// The world, of which points are given in local coordinates.
+    pub(super) fn world(origin: ModelOrigin) -> Self {
+        if origin.is_world() {
+            return Self::start(SpaceId(0));
+        }
+        let map = DAffine3::from_translation(-DVec3::from(origin.point()));
+        Self { space: SpaceId(0), map, trail: Trail { since: map, ..Trail::START } }
     }
 
     /// What its inverse is as code.

@@ -327,7 +327,8 @@ impl<'a> Writer<'a> {
     /// The numbers of a formula: the map to its space, its own, and those of the leaf that it is without children.
     fn express(&mut self, id: OccurrenceId) {
         let occurrence = self.scene.occurrence(id);
-        let OccurrenceKind::Expression { position, bindings, children, computed } = &occurrence.kind else {
+        let OccurrenceKind::Expression { position, shift, bindings, children, computed } = &occurrence.kind
+        else {
             unreachable!("only formulas are expressed")
         };
         let expression = self.scene.expression(occurrence.node);
@@ -335,7 +336,7 @@ impl<'a> Writer<'a> {
             let position = self.scene.position(*position);
             position.kind().push_columns(&position.map, &mut self.row);
         }
-        self.row.extend(expression.numbers());
+        self.row.extend(expression.numbers_from(*shift));
         if children.is_empty() {
             self.attributes(*bindings, computed);
         }

@@ -161,8 +161,8 @@ impl<'a> Supports<'a> {
             OccurrenceKind::Map { child, .. } => {
                 Extent::of(self.scene.combinator(occurrence.node), &[of(child)], iso)
             }
-            OccurrenceKind::Expression { position, children, .. } => {
-                let support = self.of_expression(occurrence.node, *position, &all(children));
+            OccurrenceKind::Expression { position, shift, children, .. } => {
+                let support = self.of_expression(occurrence.node, (*position, *shift), &all(children));
                 let negative = if occurrence.non_negative { Bounds::EMPTY } else { support };
                 Extent { support, negative }
             }
@@ -171,7 +171,12 @@ impl<'a> Supports<'a> {
     }
 
     /// Where a formula's field can be something else than zero.
-    fn of_expression(&self, node: NodeId, position: PositionId, children: &[Extent]) -> Bounds {
+    fn of_expression(
+        &self,
+        node: NodeId,
+        (position, shift): (PositionId, DVec3),
+        children: &[Extent],
+    ) -> Bounds {
         let reach = if self.scene.vanishes(node) {
             children.iter().fold(Bounds::EMPTY, |all, child| all.hull(child.support))
         } else {
@@ -180,7 +185,8 @@ impl<'a> Supports<'a> {
         match self.scene.expression(node).bounds() {
             None => reach,
             // The program compares with these sides as they are in f32.
-            Some(Bounds { min, max }) => {
+            Some(bounds) => {
+                let Bounds { min, max } = bounds.moved(-shift);
                 let sides = Bounds::new(min.as_vec3().as_dvec3(), max.as_vec3().as_dvec3());
                 around_map(self.scene.position(position), sides).intersection(reach)
             }

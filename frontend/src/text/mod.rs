@@ -18,6 +18,7 @@
 //! ```text
 //! file       = "jbt" "1" { statement } ;                     exactly one statement is a node: the root
 //! statement  = "iso" expression                              before all nodes; 0.5 if not written
+//!            | "origin" vector                               where local coordinates begin; found by the check if not written
 //!            | "param" NAME "=" expression                   its default; options may set another value
 //!            | "attribute" NAME width [ "default" values ] [ "blend" | "dominant" ]
 //!            | "let" NAME "=" node
@@ -81,8 +82,9 @@
 //!   parameters. Both become linear as they are read.
 //! * A parameter can be set from outside, `-D bulge=2`, and again at run time
 //!   ([`CheckedTree::with_parameters`](crate::check::CheckedTree::with_parameters)): numbers that mention it follow it, and so do
-//!   parameters whose defaults mention it, unless they are set themselves. Parameters in the width or the default of an attribute group
-//!   count as they were read. An exponent of `ricci` that follows a parameter is a blend also where it is 1: unlike the plain sum, it
+//!   parameters whose defaults mention it, unless they are set themselves. Parameters in the width or the
+//!   default of an attribute group, or in the origin, count as they were read. An exponent of `ricci` that
+//!   follows a parameter is a blend also where it is 1: unlike the plain sum, it
 //!   takes negative fields as 0.
 //! * `select which { a b c }` is one of its children, and the others do not count: `a` for 0, `b` for 1, `c` for 2, and what is
 //!   between is rounded. A number that is near no child is an error.

@@ -24,7 +24,7 @@ use crate::report::{Report, clip};
 use crate::tree::{NodeKind, Tree};
 
 /// The words that begin a statement.
-const STATEMENTS: [&str; 5] = ["jbt", "iso", "param", "attribute", "let"];
+const STATEMENTS: [&str; 6] = ["jbt", "iso", "origin", "param", "attribute", "let"];
 
 /// Whether a word begins a statement.
 pub(crate) fn is_statement(word: &str) -> bool {
@@ -50,6 +50,7 @@ pub(super) struct Parser<'a> {
     pub(super) attributes: Vec<AttributeGroup>,
     pub(super) iso: Number,
     iso_at: Option<Span>,
+    origin: Option<[f64; 3]>,
     /// Nodes so far, shared ones once.
     pub(super) nodes: usize,
     root: Option<Tree>,
@@ -106,6 +107,7 @@ impl<'a> Parser<'a> {
             attributes: vec![AttributeGroup::color()],
             iso: Model::DEFAULT_ISO.into(),
             iso_at: None,
+            origin: None,
             nodes: 0,
             root: None,
             ended: false,
@@ -323,6 +325,7 @@ impl<'a> Parser<'a> {
     fn statement(&mut self, word: &str, span: Span) {
         match word {
             "iso" => self.iso_statement(span),
+            "origin" => self.origin_statement(span),
             "param" => self.param_statement(),
             "attribute" => self.attribute_statement(),
             "let" => self.let_statement(),
@@ -348,6 +351,17 @@ impl<'a> Parser<'a> {
         }
         self.iso_at = Some(span);
         self.iso = value;
+    }
+
+    fn origin_statement(&mut self, span: Span) {
+        let from = self.peek().start;
+        let numbers: [Number; 3] = self.vector();
+        for number in &numbers {
+            self.declares(number, Span::new(from, self.previous_end()));
+        }
+        if self.origin.replace(numbers.map(|number| number.value())).is_some() {
+            self.report(|| Diagnostic::error(Some(span), "a second `origin`").expected("expected it once"));
+        }
     }
 
     /// A name that is being defined.
@@ -517,6 +531,7 @@ impl<'a> Parser<'a> {
                 attributes: self.attributes,
                 root,
                 parameters: self.parameters,
+                origin: self.origin,
                 source: None,
             }),
             _ => Err(report.finish()),

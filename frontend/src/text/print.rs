@@ -37,6 +37,9 @@ pub fn print(model: &Model) -> String {
         let _ = writeln!(out, "param {} = {}", parameter.name(), parameter.source());
     }
     let _ = writeln!(out, "iso {}", model.iso);
+    if let Some(point) = model.origin {
+        let _ = writeln!(out, "origin {}", vector(point));
+    }
     for group in &model.attributes {
         if *group != AttributeGroup::color() {
             declaration(&mut out, group);

@@ -49,6 +49,12 @@ impl Rectangle {
         Ok(Self { low, high })
     }
 
+    /// The rectangle somewhere else. A sum with 0 would lose the sign of a zero.
+    pub(super) fn moved(&self, by: [f64; 2]) -> Result<Self, RectangleError> {
+        let moved = |corner: [f64; 2]| [0, 1].map(|axis| corner[axis] + by[axis]);
+        if by == [0.0; 2] { Ok(*self) } else { Self::new(moved(self.low), moved(self.high)) }
+    }
+
     /// The smallest corner.
     #[must_use]
     pub fn low(&self) -> [f64; 2] {

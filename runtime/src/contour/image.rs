@@ -129,7 +129,7 @@ impl<'a> Canvas<'a> {
         if !(1..=MAX_SAMPLES).contains(&samples) {
             return Err(SliceError::Samples { samples });
         }
-        let grid = Grid::pixels(rectangle, detail.fineness, samples)?;
+        let grid = Grid::pixels(&slicer.local(rectangle)?, detail.fineness, samples)?;
         let grid = grid.ok_or(SliceError::TooManyPixels { limit: MAX_PIXELS })?;
         Ok(Self { slicer, grid, samples })
     }

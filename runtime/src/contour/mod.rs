@@ -90,7 +90,10 @@ pub struct Detail {
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Contour {
-    /// Where the vertices are, in coordinates of the plane, loop by loop.
+    /// Where the coordinates of vertices and squares count from, in coordinates of the plane: see
+    /// [`Slicer::origin`].
+    pub origin: [f64; 2],
+    /// Where the vertices are, in coordinates of the plane from the origin, loop by loop.
     pub positions: Vec<[f32; 2]>,
     /// What the vertices have, if attributes were asked for.
     pub attributes: Vec<Attribute>,
@@ -207,7 +210,7 @@ impl Slicer {
         if !block.is_power_of_two() || block > MAX_BLOCK {
             return Err(SliceError::Block { block });
         }
-        let grid = Grid::corners(rectangle, detail.fineness)?;
+        let grid = Grid::corners(&self.local(rectangle)?, detail.fineness)?;
         let cells = grid.points().map(|points| points - 1);
         let plan = Plan {
             cells: cells.map(|cells| cells as u32),
@@ -231,7 +234,8 @@ impl Slicer {
             attributes: self.interleaved(&linked.attributes, linked.positions.len()),
             positions: linked.positions,
             loops: linked.loops,
-            rectangle: Rectangle::new(corner(false), corner(true))?,
+            origin: self.origin(),
+            rectangle: Rectangle::new(corner(false), corner(true))?.moved(self.origin())?,
             cell: grid.spacing,
             cells,
             cut_sides,

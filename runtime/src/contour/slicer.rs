@@ -21,8 +21,10 @@ use crate::region::Box3;
 /// z = 0: that is another model, whose last digits differ.
 pub struct Slicer {
     plane: Plane,
+    /// Where coordinates of points of the plane count from, in coordinates of the plane.
+    origin: [f64; 2],
     view: View,
-    /// Where the field may differ from zero, in coordinates of the plane.
+    /// Where the field may differ from zero, in coordinates of the plane from the origin.
     support: Support,
     pub(super) iso: f32,
     pub(super) pruner: Pruner,
@@ -130,15 +132,18 @@ impl Slicer {
     ) -> Result<Self, CompileError> {
         let moved;
         let (tree, view) = match plane.0 {
-            Kind::Across { axis, at } => (tree, View { axes: others(axis), at: at as f32 }),
+            Kind::Across { axis, at } => {
+                (tree, View { axes: others(axis), at: tree.origin().rounded([at; 3])[axis] })
+            }
             Kind::Spanned { .. } => {
                 moved = tree.mapped(plane.rows());
-                (&moved, View { axes: [0, 1], at: 0.0 })
+                (&moved, View { axes: [0, 1], at: moved.origin().rounded([0.0; 3])[2] })
             }
         };
         let full = if query.attributes { Some(compiler.evaluator(tree, Query::ATTRIBUTES)?) } else { None };
         Ok(Self {
             plane: *plane,
+            origin: view.axes.map(|axis| tree.origin().point()[axis]),
             view,
             support: support(tree, &view),
             iso: tree.iso() as f32,
@@ -170,9 +175,22 @@ impl Slicer {
             Support::Unbounded => Err(SliceError::Unbounded),
             Support::Rectangle([low, high]) => {
                 let margin = MARGIN * (high[0] - low[0]).max(high[1] - low[1]);
-                Ok(Rectangle::new(low.map(|side| side - margin), high.map(|side| side + margin))?)
+                let local = Rectangle::new(low.map(|side| side - margin), high.map(|side| side + margin))?;
+                Ok(local.moved(self.origin)?)
             }
         }
+    }
+
+    /// Where the coordinates of vertices and squares count from, in coordinates of the plane: 0 but for
+    /// models that are far away.
+    #[must_use]
+    pub fn origin(&self) -> [f64; 2] {
+        self.origin
+    }
+
+    /// A rectangle in coordinates from the origin.
+    pub(super) fn local(&self, rectangle: &Rectangle) -> Result<Rectangle, RectangleError> {
+        rectangle.moved(self.origin.map(|shift| -shift))
     }
 
     /// What was evaluated so far: ranges in squares, the field at points, and field and attributes at points.
@@ -237,7 +255,7 @@ impl Slicer {
 
 /// The support in coordinates of the plane. Where the plane misses it, the field is zero, and the rectangle is where the support would be seen.
 fn support(tree: &CheckedTree, view: &View) -> Support {
-    let support = tree.support();
+    let support = tree.local_support();
     if support.is_empty() {
         return Support::Empty;
     }

@@ -40,6 +40,31 @@ pub struct Conventions {
     pub uv: Option<&'static str>,
     /// How it has other attributes, if it has any.
     pub attributes: Option<&'static str>,
+    /// How it has the place of a mesh that is far from the origin of the world.
+    pub far: FarMeshes,
+}
+
+/// How a format has the place of a mesh with an [origin](crate::mesh::Mesh::origin) of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FarMeshes {
+    /// Vertices are as in the mesh, and a node moves them.
+    Node,
+    /// Vertices are in the world, in numbers that have the digits for it.
+    Digits,
+    /// Vertices are in the world, rounded to f32.
+    Rounded,
+}
+
+impl FarMeshes {
+    /// In words.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            FarMeshes::Node => "a node's translation",
+            FarMeshes::Digits => "64-bit floats or decimals",
+            FarMeshes::Rounded => "rounded to 32 bits",
+        }
+    }
 }
 
 /// How a format has colours.
@@ -59,6 +84,7 @@ const GLB: Conventions = Conventions {
     colors: Some(Colors { place: "`COLOR_0`, 32-bit floats", encoding: ColorEncoding::Linear }),
     uv: Some("`TEXCOORD_0`, v downwards"),
     attributes: Some("`_NAME`, 32-bit floats"),
+    far: FarMeshes::Node,
 };
 
 const PLY: Conventions = Conventions {
@@ -69,6 +95,7 @@ const PLY: Conventions = Conventions {
     colors: Some(Colors { place: "`red green blue`, 8 bits", encoding: ColorEncoding::Srgb }),
     uv: Some("`s t`"),
     attributes: Some("properties, 32-bit floats"),
+    far: FarMeshes::Digits,
 };
 
 const OBJ: Conventions = Conventions {
@@ -79,6 +106,7 @@ const OBJ: Conventions = Conventions {
     colors: Some(Colors { place: "behind the position, decimals", encoding: ColorEncoding::Srgb }),
     uv: Some("`vt`"),
     attributes: None,
+    far: FarMeshes::Digits,
 };
 
 const STL: Conventions = Conventions {
@@ -89,6 +117,7 @@ const STL: Conventions = Conventions {
     colors: None,
     uv: None,
     attributes: None,
+    far: FarMeshes::Rounded,
 };
 
 impl Format {

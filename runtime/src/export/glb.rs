@@ -4,7 +4,8 @@
 //!     "glTF" 2 length | length "JSON" text, padded by spaces | length "BIN" positions normals color uv others indices
 //! ```
 //!
-//! One node, which turns the model's z upwards to glTF's y, and one mesh of one primitive.
+//! One node, which turns the model's z upwards to glTF's y and moves the mesh to its origin, and one mesh of one
+//! primitive.
 //!
 //! Colours are in `COLOR_0`, linear as glTF takes them; uv in `TEXCOORD_0`, as (u, 1 - v), because glTF's v goes down; every other
 //! attribute is `_NAME` in capitals, as glTF wants application-specific ones. An accessor has at most four reals, so wider ones are
@@ -154,7 +155,7 @@ fn describe(mesh: &Mesh, up: Up, attributes: &[Named<'_>]) -> (Value, u64) {
         "asset": asset,
         "scene": 0,
         "scenes": [{ "nodes": [0] }],
-        "nodes": [node(up)],
+        "nodes": [node(mesh, up)],
         "meshes": [{ "primitives": [{ "attributes": vertex, "indices": indices }] }],
         "accessors": layout.accessors,
         "bufferViews": layout.views,
@@ -169,13 +170,18 @@ fn describe(mesh: &Mesh, up: Up, attributes: &[Named<'_>]) -> (Value, u64) {
     (json, layout.bytes)
 }
 
-/// The node that places the mesh. Positions and normals are those of the model; glTF is y-up, and the node turns it there.
-fn node(up: Up) -> Value {
-    match up {
+/// The node that places the mesh. Positions and normals are those of the model; glTF is y-up, and the node
+/// turns it there, then moves it to its origin.
+fn node(mesh: &Mesh, up: Up) -> Value {
+    let mut node = match up {
         // A quaternion (x, y, z, w): by -90 degrees about x.
         Up::Y => json!({ "mesh": 0, "rotation": [-FRAC_1_SQRT_2, 0.0, 0.0, FRAC_1_SQRT_2] }),
         Up::Z => json!({ "mesh": 0 }),
+    };
+    if !mesh.is_about_world() {
+        node["translation"] = json!(up.place(mesh.origin));
     }
+    node
 }
 
 /// The exact bounds of the positions. In f64, so that their decimals are those of the same numbers in any parser.

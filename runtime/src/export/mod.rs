@@ -7,6 +7,10 @@
 //! named `uv` with two reals, v upwards: GLB, where v goes down, gets 1 - v. Every vertex has one uv, so a triangle across a seam shows
 //! the picture backwards. [`write()`] writes to anything; [`save`] writes a file under a temporary name and renames it, so that nobody
 //! ever sees half a file.
+//!
+//! A mesh may have an [origin](Mesh::origin) of its own. GLB has it in its node, and vertices as they are in
+//! the mesh; in PLY and OBJ vertices are in the world, with all digits; in STL too, but rounded to f32, which
+//! [loses digits](loses_digits).
 
 mod format;
 mod glb;
@@ -16,7 +20,7 @@ mod png;
 mod stl;
 pub mod svg;
 
-pub use format::{ColorEncoding, Colors, Conventions, ExportOptions, Format, UnknownWord, Up};
+pub use format::{ColorEncoding, Colors, Conventions, ExportOptions, FarMeshes, Format, UnknownWord, Up};
 pub use png::write_png;
 
 use std::collections::HashSet;
@@ -66,6 +70,18 @@ pub enum ExportError {
         /// Bytes of a GLB, triangles of an STL.
         size: u64,
     },
+}
+
+/// Whether a mesh loses digits in a format: an STL has room for the world in f32 alone, whatever the origin
+/// of the mesh.
+#[must_use]
+pub fn loses_digits(mesh: &Mesh, format: Format) -> bool {
+    !mesh.is_about_world() && format.conventions().far == FarMeshes::Rounded
+}
+
+/// The writers' view of where a vertex is in the world.
+fn world(mesh: &Mesh) -> impl Iterator<Item = [f64; 3]> + '_ {
+    (0..mesh.positions.len()).map(|vertex| mesh.world(vertex))
 }
 
 /// Writes a mesh as the readers of a format expect it.

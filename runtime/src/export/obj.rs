@@ -1,24 +1,24 @@
 //! Wavefront OBJ: text, with colours behind the positions as many programs read them. Numbers are the shortest that give
-//! the same f32 back (or the same encoded colour). A uv is `vt`; the format has no place for other attributes.
+//! the same f32 back (or the same encoded colour, or the same f64 where the mesh has an origin of its own). A
+//! uv is `vt`; the format has no place for other attributes.
 
+use std::fmt::Display;
 use std::io::Write;
+use std::ops::Sub;
 
-use super::{Choices, ExportError, colors, finite, uvs};
+use super::{Choices, ExportError, colors, finite, uvs, world};
 use crate::mesh::Mesh;
 
 pub(super) fn write(mesh: &Mesh, choices: Choices, out: &mut impl Write) -> Result<(), ExportError> {
     let Choices { up, colors: encoding } = choices;
     writeln!(out, "# jbt, {up} up")?;
-    let mut places = mesh.positions.iter().map(|&position| up.place(position));
-    match colors(mesh) {
-        Some(colors) => {
-            writeln!(out, "# v x y z red green blue: {encoding}, clamped to 0..1")?;
-            for ([x, y, z], color) in places.zip(colors) {
-                let [r, g, b] = color.map(|channel| encoding.encode(channel));
-                writeln!(out, "v {x} {y} {z} {r} {g} {b}")?;
-            }
-        }
-        None => places.try_for_each(|[x, y, z]| writeln!(out, "v {x} {y} {z}"))?,
+    if colors(mesh).is_some() {
+        writeln!(out, "# v x y z red green blue: {encoding}, clamped to 0..1")?;
+    }
+    if mesh.is_about_world() {
+        write_vertices(mesh, choices, mesh.positions.iter().copied(), out)?;
+    } else {
+        write_vertices(mesh, choices, world(mesh), out)?;
     }
     for [x, y, z] in mesh.normals.iter().map(|&normal| up.place(normal)) {
         writeln!(out, "vn {x} {y} {z}")?;
@@ -34,6 +34,26 @@ pub(super) fn write(mesh: &Mesh, choices: Choices, out: &mut impl Write) -> Resu
             Some(_) => writeln!(out, "f {a}/{a}/{a} {b}/{b}/{b} {c}/{c}/{c}")?,
             None => writeln!(out, "f {a}//{a} {b}//{b} {c}//{c}")?,
         }
+    }
+    Ok(())
+}
+
+/// The vertices, at these positions, and their colours.
+fn write_vertices<T: Default + Display + Sub<Output = T>>(
+    mesh: &Mesh,
+    Choices { up, colors: encoding }: Choices,
+    positions: impl Iterator<Item = [T; 3]>,
+    out: &mut impl Write,
+) -> Result<(), ExportError> {
+    let colors = colors(mesh);
+    for (vertex, position) in positions.enumerate() {
+        let [x, y, z] = up.place(position);
+        write!(out, "v {x} {y} {z}")?;
+        if let Some(colors) = colors {
+            let [r, g, b] = colors[vertex].map(|channel| encoding.encode(channel));
+            write!(out, " {r} {g} {b}")?;
+        }
+        writeln!(out)?;
     }
     Ok(())
 }

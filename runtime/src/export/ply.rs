@@ -1,6 +1,7 @@
 //! PLY, binary little-endian (Turk 1994).
 //!
-//! Per vertex `x y z nx ny nz` in f32, `red green blue` in eight bits if there is a colour, `s t` in f32 if there is a uv, and every
+//! Per vertex `x y z` in f32, or in f64 if the mesh has an origin of its own, `nx ny nz` in f32, `red green
+//! blue` in eight bits if there is a colour, `s t` in f32 if there is a uv, and every
 //! other attribute in f32: `name` if it is one real, `name_0 name_1 ...` if it is more.
 
 use std::io::Write;
@@ -21,7 +22,11 @@ pub(super) fn write(mesh: &Mesh, choices: Choices, out: &mut impl Write) -> Resu
         writeln!(out, "comment red, green and blue are {encoding}, clamped to 0..1 and rounded to 8 bits")?;
     }
     writeln!(out, "element vertex {}", mesh.positions.len())?;
-    for name in ["x", "y", "z", "nx", "ny", "nz"] {
+    let is_far = !mesh.is_about_world();
+    for name in ["x", "y", "z"] {
+        writeln!(out, "property {} {name}", if is_far { "double" } else { "float" })?;
+    }
+    for name in ["nx", "ny", "nz"] {
         writeln!(out, "property float {name}")?;
     }
     if colors.is_some() {
@@ -37,7 +42,13 @@ pub(super) fn write(mesh: &Mesh, choices: Choices, out: &mut impl Write) -> Resu
     writeln!(out, "property list uchar uint vertex_indices\nend_header")?;
 
     for (vertex, (position, normal)) in mesh.positions.iter().zip(&mesh.normals).enumerate() {
-        write_reals(out, [*position, *normal].into_iter().flat_map(|vector| up.place(vector)))?;
+        if is_far {
+            let place = up.place(mesh.world(vertex));
+            place.iter().try_for_each(|x| out.write_all(&x.to_le_bytes()))?;
+        } else {
+            write_reals(out, up.place(*position))?;
+        }
+        write_reals(out, up.place(*normal))?;
         if let Some(colors) = colors {
             out.write_all(&colors[vertex].map(|channel| srgb::byte(encoding.encode(channel))))?;
         }

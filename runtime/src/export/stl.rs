@@ -27,7 +27,8 @@ pub(super) fn write(mesh: &Mesh, choices: Choices, out: &mut impl Write) -> Resu
     for triangle in &mesh.triangles {
         let corners = triangle.map(|vertex| choices.up.place(mesh.positions[vertex as usize]));
         let normal = facet_normal(corners).unwrap_or([0.0; 3]);
-        write_reals(out, normal.into_iter().chain(corners.into_iter().flatten()))?;
+        let rounded = |vertex: u32| choices.up.place(mesh.world(vertex as usize).map(|x| x as f32));
+        write_reals(out, normal.into_iter().chain(triangle.map(rounded).into_iter().flatten()))?;
         // The attribute byte count, which has no agreed meaning.
         out.write_all(&[0, 0])?;
     }

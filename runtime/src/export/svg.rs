@@ -66,7 +66,10 @@ pub fn write_svg(contour: &Contour, style: &Style, out: &mut dyn Write) -> io::R
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"{left} {low} {} {}\" width=\"{}\" height=\"{}\">",
         sides[0], sides[1], pixels[0], pixels[1]
     )?;
-    writeln!(out, "<g transform=\"matrix(1 0 0 -1 0 {})\">", low + contour.rectangle.high()[1])?;
+    // Vertices count from the origin: paths are short, and keep their digits in programs that draw in f32.
+    let [right, up] = contour.origin;
+    let down = low + contour.rectangle.high()[1] - up;
+    writeln!(out, "<g transform=\"matrix(1 0 0 -1 {right} {down})\">")?;
     let line = longest * style.stroke_width;
     if style.quadtree {
         squares(contour, longest / 2400.0, out)?;
@@ -75,7 +78,7 @@ pub fn write_svg(contour: &Contour, style: &Style, out: &mut dyn Write) -> io::R
     if style.quadtree {
         crossed(contour, out)?;
     }
-    circles(&style.circles, longest / 800.0, out)?;
+    circles(&style.circles, contour.origin, longest / 800.0, out)?;
     lines(contour, &stroke, line, out)?;
     writeln!(out, "</g>\n</svg>")
 }
@@ -230,12 +233,13 @@ fn outline([left, low]: [f32; 2], [right, high]: [f32; 2], out: &mut dyn Write) 
     write!(out, "M{left} {low}H{right}V{high}H{left}Z")
 }
 
-fn circles(circles: &[([f64; 2], f64)], width: f64, out: &mut dyn Write) -> io::Result<()> {
+fn circles(circles: &[([f64; 2], f64)], origin: [f64; 2], width: f64, out: &mut dyn Write) -> io::Result<()> {
     if circles.is_empty() {
         return Ok(());
     }
     writeln!(out, "<g fill=\"none\" stroke=\"#c6362c\" stroke-width=\"{width}\">")?;
     for ([u, v], radius) in circles {
+        let [u, v] = [u - origin[0], v - origin[1]];
         writeln!(out, "<circle cx=\"{u}\" cy=\"{v}\" r=\"{radius}\"/>")?;
     }
     writeln!(out, "</g>")

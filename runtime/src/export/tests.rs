@@ -11,6 +11,7 @@ fn tetrahedron() -> Mesh {
     };
     let third = 1.0_f32 / 3.0;
     Mesh {
+        origin: [0.0; 3],
         positions: vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.1], [0.0, 1.0, 0.0], [-0.0, third, 1e-7]],
         normals: vec![[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
         attributes: vec![

@@ -6,7 +6,8 @@ use super::Mesh;
 use super::surface::area_vector;
 
 impl Mesh {
-    /// The smallest box that holds all positions, in units of the model. `None` if there are none.
+    /// The smallest box that holds all positions, counted from the origin as they are, in units of the model.
+    /// `None` if there are none.
     #[must_use]
     pub fn bounds(&self) -> Option<Box3> {
         let (&first, rest) = self.positions.split_first()?;

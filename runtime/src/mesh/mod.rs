@@ -50,6 +50,7 @@ mod vertex;
 use std::error::Error;
 use std::fmt;
 
+use jbt_frontend::origin::ModelOrigin;
 use jbt_ir::limits::{MAX_ATTRIBUTE_WIDTH, MAX_BRICKS};
 use thiserror::Error;
 
@@ -60,6 +61,7 @@ pub use lattice::{Lattice, LatticeError};
 pub(crate) use surface::facet_normal;
 
 use crate::job::{Hook, Job};
+use crate::points::Points;
 
 use divide::Division;
 use progress::Progress;
@@ -112,7 +114,10 @@ pub struct Attribute {
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Mesh {
-    /// One for each vertex.
+    /// Where positions count from, in the world: the origin of the model, 0 for most. A mesh of a field that
+    /// is not a model's counts from 0.
+    pub origin: [f64; 3],
+    /// One for each vertex, from the origin.
     pub positions: Vec<[f32; 3]>,
     /// One for each vertex, of length 1, away from the inside.
     pub normals: Vec<[f32; 3]>,
@@ -150,6 +155,26 @@ impl Mesh {
     pub fn colors(&self) -> Option<&[[f32; 3]]> {
         let color = self.attribute("color").filter(|color| color.width == 3)?;
         Some(color.values.as_chunks().0)
+    }
+
+    /// The positions as points to evaluate.
+    #[must_use]
+    pub fn points(&self) -> Points {
+        let mut points = Points::about(ModelOrigin::new(self.origin));
+        self.positions.iter().for_each(|&position| points.push(position));
+        points
+    }
+
+    /// Whether positions are those of the world.
+    #[must_use]
+    pub fn is_about_world(&self) -> bool {
+        ModelOrigin::new(self.origin).is_world()
+    }
+
+    /// Where a vertex is in the world. Panics if there are not as many.
+    #[must_use]
+    pub fn world(&self, vertex: usize) -> [f64; 3] {
+        ModelOrigin::new(self.origin).world(self.positions[vertex].map(f64::from))
     }
 }
 

@@ -72,6 +72,7 @@ pub(crate) fn finish<F: Field>(
     let attribute =
         |(name, width): (String, usize)| Attribute { name, width, values: vec![0.0; width * count] };
     let mut mesh = Mesh {
+        origin: [0.0; 3],
         positions: vec![[0.0; 3]; count],
         normals: vec![[0.0; 3]; count],
         attributes: attributes.into_iter().map(attribute).collect(),

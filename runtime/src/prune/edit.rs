@@ -58,7 +58,7 @@ impl Pruner {
     /// Cost: a comparison of all numbers.
     #[must_use]
     pub fn edit(&self, before: &Self) -> Edit {
-        if !Arc::ptr_eq(&self.kernel.kernel, &before.kernel.kernel) {
+        if !Arc::ptr_eq(&self.kernel.kernel, &before.kernel.kernel) || self.origin != before.origin {
             return Edit::Everywhere;
         }
         // Which rows are active is compared by their numbers, which are not the same where rows come and go.

@@ -29,6 +29,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use jbt_frontend::check::CheckedTree;
 use jbt_frontend::lower::Lowering;
 use jbt_frontend::lower::guide::{Guide, Guided, Rule, SpaceGuide, TableGuide};
+use jbt_frontend::origin::ModelOrigin;
 use jbt_ir::domain::counting::of_selection;
 use jbt_ir::selection::Extent;
 use jbt_ir::{Selection, Tables};
@@ -81,6 +82,8 @@ impl Region {
 /// A model that can be asked about boxes: see the module.
 pub struct Pruner {
     compiler: Compiler,
+    /// Boxes are in coordinates about this.
+    origin: ModelOrigin,
     guide: Guide,
     /// By table; `None` where rows are not left out by their supports.
     supports: Vec<Option<Supports>>,
@@ -131,6 +134,7 @@ impl Pruner {
         let kernel = compiler.kernel(function, Purpose::Ranges, present)?;
         Ok(Self {
             compiler: compiler.clone(),
+            origin: lowering.tree().origin(),
             supports: guide.tables.values().map(supports).collect(),
             guide,
             kernel: kernel.bind(Arc::new(tables)),
@@ -138,12 +142,20 @@ impl Pruner {
         })
     }
 
-    /// A pruner for another model, usually an edited one. If it has the shape of this one, nothing is compiled.
+    /// A pruner for another model, usually an edited one. If it has the shape of this one, nothing is
+    /// compiled. The origin of this one stays.
     ///
     /// # Errors
     /// Those of [`new`](Self::new).
     pub fn updated(&self, tree: &CheckedTree) -> Result<Self, CompileError> {
-        Self::of(&self.compiler, &Lowering::new(tree), Some(&self.kernel.kernel))
+        let tree = tree.with_origin(self.origin);
+        Self::of(&self.compiler, &Lowering::new(&tree), Some(&self.kernel.kernel))
+    }
+
+    /// Where the coordinates of boxes count from: as for [`Evaluator::origin`](crate::Evaluator::origin).
+    #[must_use]
+    pub fn origin(&self) -> ModelOrigin {
+        self.origin
     }
 
     /// What it has done so far.

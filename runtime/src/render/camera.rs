@@ -9,6 +9,8 @@
 //!        o------- x  forward
 //! ```
 
+use jbt_frontend::origin::ModelOrigin;
+
 use super::vector::{Vector, add, along, cross, dot, is_finite, length, scale, sub, unit};
 
 /// The views that have names, and from where they look. A model looks along x, and z is up.
@@ -25,7 +27,7 @@ pub const VIEWS: [(&str, Vector); 8] = [
 
 const THREE_QUARTER: Vector = [1.0, -0.62, 0.5];
 
-/// Where the camera stands.
+/// Where the camera stands, in the world.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Stance {
@@ -125,7 +127,7 @@ const PARALLEL: f64 = 1e-9;
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Camera {
-    /// Where it stands.
+    /// Where it stands, in the world.
     pub eye: [f64; 3],
     /// To the right in the picture; a unit vector, like the others.
     pub right: [f64; 3],
@@ -156,6 +158,15 @@ impl View {
             return Err(CameraError::Zoom { zoom: self.zoom });
         }
         Ok(())
+    }
+
+    /// The same view where coordinates count from an origin.
+    pub(super) fn about(&self, origin: ModelOrigin) -> Self {
+        let stance = match self.stance {
+            Stance::From(_) => self.stance,
+            Stance::At { eye, target } => Stance::At { eye: origin.local(eye), target: origin.local(target) },
+        };
+        Self { stance, ..*self }
     }
 
     /// What is up in space: the picture's up, if it was given, or z.

@@ -5,7 +5,6 @@ use super::frame::Frame;
 use super::vector::{Vector, along, scale, unit};
 use super::{Mode, RenderError};
 use crate::buffer::Samples;
-use crate::points::Points;
 use crate::trace::Ray;
 use jbt_frontend::check::CheckedTree;
 use jbt_frontend::tree::NodeKind;
@@ -14,6 +13,7 @@ use jbt_frontend::tree::NodeKind;
 pub struct Met {
     /// Which of the rays.
     pub cast: usize,
+    /// Counted from the model's origin.
     pub position: Vector,
     /// The unit normal, away from the inside.
     pub normal: Vector,
@@ -85,7 +85,7 @@ pub fn cast(frame: &Frame<'_>, casts: &[Ray]) -> Result<Meetings, RenderError> {
     met.iter().for_each(|met| is_cut[met.cast] = true);
     let open: Vec<usize> = (0..casts.len()).filter(|&cast| !is_cut[cast]).collect();
     let rays: Vec<Ray> = open.iter().map(|&cast| casts[cast]).collect();
-    let hits = frame.renderer.tracer.first_of(&rays, frame.tolerance)?;
+    let hits = frame.renderer.tracer.first_of_local(&rays, frame.tolerance)?;
     for (ray, &cast) in open.iter().enumerate() {
         evaluations[cast] += hits.evaluations[ray];
         let hit = hits.starts[ray] as usize;
@@ -110,7 +110,8 @@ fn cuts(
     evaluations: &mut [f32],
 ) -> Result<Vec<Met>, RenderError> {
     let evaluator = &frame.renderer.evaluator;
-    let starts: Points = casts.iter().map(start).collect();
+    let mut starts = evaluator.points();
+    casts.iter().for_each(|ray| starts.push(start(ray)));
     let mut samples = evaluator.samples();
     evaluator.eval(&starts, &mut samples)?;
     evaluations.fill(evaluator.evaluations_per_point() as f32);

@@ -10,10 +10,11 @@ use super::{Mode, Quality, Render, RenderError, Renderer};
 use crate::region::Box3;
 use crate::trace::Ray;
 
-/// A picture that can be exposed.
+/// A picture that can be exposed. All coordinates count from the model's origin.
 pub struct Frame<'a> {
     pub render: &'a Render,
     pub renderer: &'a Renderer,
+    pub view: View,
     pub camera: Camera,
     /// What is looked at: rays end at its sides.
     pub region: [Vector; 2],
@@ -50,10 +51,12 @@ impl<'a> Frame<'a> {
         let (low, high) = (bounds.low.map(f64::from), bounds.high.map(f64::from));
         let up = render.view.upwards();
         let with_ground = render.ground && render.mode == Mode::Shaded && render.quality != Quality::Draft;
-        let camera = render.view.camera(render.aspect(), &corners)?;
+        let view = render.view.about(renderer.tree().origin());
+        let camera = view.camera(render.aspect(), &corners)?;
         let mut frame = Self {
             render,
             renderer,
+            view,
             camera,
             region: [region.low, region.high].map(|corner| corner.map(f64::from)),
             pixel: 0.0,
@@ -106,7 +109,7 @@ impl<'a> Frame<'a> {
 
     /// Moves the camera so that what is seen of the model fills the picture, found out by a coarse picture of all of it.
     fn fit(&mut self, corners: &[Vector]) -> Result<(), RenderError> {
-        let view = View { zoom: 1.0, ..self.render.view };
+        let view = View { zoom: 1.0, ..self.view };
         self.camera = view.camera(self.render.aspect(), corners)?;
         self.set_tolerance(SCOUTS, 1.0)?;
         let aspect = self.render.aspect();
@@ -125,7 +128,7 @@ impl<'a> Frame<'a> {
         let seen: Vec<Vec<Vector>> = (0..rows).into_par_iter().map(scouted).collect::<Result<_, _>>()?;
         let seen = seen.concat();
         let points = if seen.is_empty() { corners } else { &seen };
-        self.camera = self.render.view.camera(aspect, points)?;
+        self.camera = self.view.camera(aspect, points)?;
         Ok(())
     }
 
@@ -153,10 +156,15 @@ impl<'a> Frame<'a> {
         if within {
             let value = self.renderer.evaluator.probe(eye.map(|x| x as f32)).value();
             if value >= self.renderer.tracer.iso() {
-                return Err(RenderError::Inside { eye });
+                return Err(RenderError::Inside { eye: self.seen_from().eye });
             }
         }
         Ok(())
+    }
+
+    /// The camera in the world.
+    pub fn seen_from(&self) -> Camera {
+        Camera { eye: self.renderer.tree().origin().world(self.camera.eye), ..self.camera }
     }
 
     /// The ray of a place of the picture, as far as it is in the region, `None` if it misses that.

@@ -14,7 +14,6 @@ use super::noise::{Sequence, above, around};
 use super::shade::{KEY_SPREAD, sky, sky_above};
 use super::vector::{Vector, along, dot};
 use super::{Rays, RenderError};
-use crate::points::Points;
 use crate::trace::Ray;
 
 /// A place that light may reach.
@@ -191,7 +190,7 @@ fn blocked(
     asked.sort_by_key(|(_, ray)| way(ray));
     let some: Vec<Ray> = asked.iter().map(|(_, ray)| *ray).collect();
     *count += some.len() as u64;
-    let found = frame.renderer.tracer.any_of(&some, COARSE * frame.tolerance)?;
+    let found = frame.renderer.tracer.any_of_local(&some, COARSE * frame.tolerance)?;
     *evaluations += found.evaluations.iter().map(|&evaluations| f64::from(evaluations)).sum::<f64>();
     let cut = cut(frame, &some, evaluations)?;
     let mut answers = vec![false; rays.len()];
@@ -208,8 +207,9 @@ fn cut(frame: &Frame<'_>, rays: &[Ray], evaluations: &mut f64) -> Result<Vec<boo
         return Ok(cut);
     }
     let enter: Vec<usize> = (0..rays.len()).filter(|&ray| rays[ray].span[0] > 0.0).collect();
-    let starts: Points = enter.iter().map(|&ray| start(&rays[ray])).collect();
     let evaluator = &frame.renderer.evaluator;
+    let mut starts = evaluator.points();
+    enter.iter().for_each(|&ray| starts.push(start(&rays[ray])));
     let mut samples = evaluator.samples();
     evaluator.eval(&starts, &mut samples)?;
     *evaluations += (starts.len() as u64 * evaluator.evaluations_per_point()) as f64;

@@ -282,7 +282,7 @@ impl Render {
             Some(_) => None,
         };
         let report = Report {
-            camera: frame.as_ref().map(|frame| frame.camera),
+            camera: frame.as_ref().map(Frame::seen_from),
             pixels_hit: done.pixels_hit,
             tolerance: frame.as_ref().map_or(0.0, |frame| frame.tolerance),
             rays: done.rays,

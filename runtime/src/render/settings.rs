@@ -37,7 +37,8 @@ pub struct Render {
     pub background: Option<Background>,
     /// Whether the model stands on something that catches its shadow. It is seen from above alone, and only of a shaded surface; a draft has none.
     pub ground: bool,
-    /// The box that is looked at; it cuts the model open, and the cut is shown. `None` is the model's support.
+    /// The box that is looked at, about the origin of the model; it cuts the model open, and the cut is
+    /// shown. `None` is the model's support.
     pub region: Option<Box3>,
 }
 
@@ -171,7 +172,7 @@ impl Render {
             }
             return Ok(Some(region));
         }
-        let support = tree.support();
+        let support = tree.local_support();
         if support.is_empty() {
             return Ok(None);
         }

@@ -32,7 +32,7 @@ use crate::region::Box3;
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Measure {
-    /// The box to measure in; `None` is the model's support, grown a little.
+    /// The box to measure in, about the origin of the model; `None` is the model's support, grown a little.
     pub region: Option<Box3>,
     /// How small boxes get where the surface may be: their longest side is at most a cell.
     pub fineness: Fineness,
@@ -78,7 +78,7 @@ pub struct Contents {
 #[derive(Clone, PartialEq, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Measures {
-    /// Where.
+    /// Where, about the origin of the model.
     pub region: Box3,
     /// The longest side that was allowed to boxes that may hold surface.
     pub cell: f64,
@@ -86,7 +86,7 @@ pub struct Measures {
     pub volume: Volume,
     /// The area of the surface in the region, about; where the region cuts the solid, the cut does not count.
     pub area: f64,
-    /// The centre of mass of a solid of one density, about; `None` if the estimated volume is 0.
+    /// The centre of mass of a solid of one density, about, in the world; `None` if the estimated volume is 0.
     pub center: Option<[f64; 3]>,
     /// Boxes by how often they were split and what became of them.
     pub levels: Vec<Level>,
@@ -313,7 +313,7 @@ impl Solid {
         let surfaces = sums.boxes().surface;
         sums.contents.mean = if surfaces == 0 { 0.0 } else { primitives as f64 / surfaces as f64 };
         let mass = sums.volume.estimate;
-        sums.center = (mass > 0.0).then(|| moment.map(|sum| sum / mass));
+        sums.center = (mass > 0.0).then(|| self.tree.origin().world(moment.map(|sum| sum / mass)));
         sums
     }
 }

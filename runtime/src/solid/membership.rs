@@ -77,7 +77,8 @@ impl Solid {
     /// # Errors
     /// Those of [`memberships`](Self::memberships).
     pub fn membership(&self, point: [f32; 3], eps: f32) -> Result<Membership, MembershipError> {
-        let points: Points = std::iter::once(point).collect();
+        let mut points = self.field.points();
+        points.push(point);
         Ok(self.memberships(&points, eps)?[0])
     }
 
@@ -95,7 +96,8 @@ impl Solid {
         if !(eps >= 0.0 && eps.is_finite()) {
             return Err(MembershipError::Distance { eps });
         }
-        let planes = points.planes();
+        let moved = (points.origin() != self.field.origin()).then(|| points.moved(self.field.origin()));
+        let planes = moved.as_ref().unwrap_or(points).planes();
         let point = |index: usize| planes.map(|plane| plane[index]);
         if let Some(index) = (0..points.len()).find(|&index| point(index).iter().any(|x| !x.is_finite())) {
             return Err(MembershipError::Point { index, point: point(index) });

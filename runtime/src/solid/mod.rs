@@ -39,7 +39,8 @@ use crate::region::{Box3, Divisible as _, Range};
 
 /// A model, compiled for questions about its solid: the set where `field >= iso`.
 ///
-/// It is `Send + Sync`: threads may share it and ask at once.
+/// It is `Send + Sync`: threads may share it and ask at once. Boxes, and points in f32, count from the
+/// [origin](CheckedTree::origin) of the model; points in f64 are in the world.
 ///
 /// ```
 /// use jbt::solid::{Membership, Solid};
@@ -99,13 +100,14 @@ impl Solid {
         })
     }
 
-    /// The same for another model, usually an edited one. If it has the shape of this one, nothing is compiled.
+    /// The same for another model, usually an edited one. If it has the shape of this one, nothing is
+    /// compiled. The origin of this one stays.
     ///
     /// # Errors
     /// Those of [`new`](Self::new).
     pub fn updated(&self, tree: &CheckedTree) -> Result<Self, CompileError> {
         Ok(Self {
-            tree: tree.clone(),
+            tree: tree.with_origin(self.tree.origin()),
             iso: tree.iso() as f32,
             pruner: self.pruner.updated(tree)?,
             field: self.field.updated(tree)?,
@@ -148,7 +150,8 @@ impl Solid {
         Ok(self.normals.get().expect("it has just been set"))
     }
 
-    /// The leaf that decides the field at a point, in f64 by a plain walk: see [`jbt_frontend::owner`].
+    /// The leaf that decides the field at a point of the world, in f64 by a plain walk: see
+    /// [`jbt_frontend::owner`].
     ///
     /// `None` where the field is 0, or where it is negative because nothing with a positive field is left. Cost: all paths of the tree.
     #[must_use]
@@ -185,7 +188,7 @@ impl Solid {
         let bounds = match given {
             Some(bounds) => bounds,
             None => {
-                let support = self.tree.support();
+                let support = self.tree.local_support();
                 if support.is_empty() {
                     return Err(RegionError::Empty);
                 }

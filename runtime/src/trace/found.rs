@@ -101,7 +101,7 @@ impl Found {
             starts,
             t: order.iter().map(|&index| self.records[index].t).collect(),
             entering: order.iter().map(|&index| self.records[index].entering).collect(),
-            positions: Points::from_planes(x, y, z).expect("the planes are as long as there are hits"),
+            positions: Points::from_planes_about(tracer.tree.origin(), [x, y, z]),
             samples: Samples::from_planes(
                 tracer.layout().clone(),
                 self.answers.iter().map(ordered).collect(),

@@ -14,7 +14,8 @@ pub struct Hits {
     pub t: Vec<f64>,
     /// Whether the ray comes in there: from `field < iso` to `field >= iso`.
     pub entering: Vec<bool>,
-    /// Where each hit is, as the samples were taken: origin + t * direction, rounded to f32. It is on the inner side: the field is at least the iso-value.
+    /// Where each hit is, as the samples were taken: origin + t * direction, counted from the model's origin
+    /// and rounded to f32. It is on the inner side: the field is at least the iso-value.
     pub positions: Points,
     /// The answers to the tracer's query at these positions.
     pub samples: Samples,
@@ -67,7 +68,8 @@ pub struct Blocked {
 pub struct Hit {
     /// Where on the ray.
     pub t: f64,
-    /// Where in space, as the samples were taken: on the inner side, so the field is at least the iso-value.
+    /// Where in space, counted from the model's origin, as the samples were taken: on the inner side, so the
+    /// field is at least the iso-value.
     pub position: [f32; 3],
     /// Whether the ray comes in: from `field < iso` to `field >= iso`.
     pub entering: bool,

@@ -19,6 +19,8 @@
 //! * Packets are quicker than single rays: rays side by side share boxes, rows and calls. Whatever the packet, each ray is answered as if it were alone, to the bit.
 //!   Rays that are neighbours should follow each other, as in the tiles of a picture.
 //! * All answers about a hit come from one evaluation at its position.
+//! * Rays are in the world, in f64; the f32 positions of hits count from the model's origin
+//!   ([`jbt_frontend::origin`]), which is 0 for most models.
 
 mod beam;
 mod error;
@@ -33,6 +35,7 @@ pub use hits::{Blocked, Hit, Hits};
 pub use jbt_frontend::owner::Owner;
 pub use ray::Ray;
 
+use std::borrow::Cow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -117,10 +120,11 @@ impl Tracer {
         let pruner = Pruner::of(compiler, &lowering, None)?;
         let field = compiler.evaluator_of(&lowering, Query::FIELD)?;
         let full = (query != Query::FIELD).then(|| compiler.evaluator_of(&lowering, query)).transpose()?;
-        Ok(Self::of(compiler.clone(), tree, pruner, field, full))
+        Ok(Self::of(compiler.clone(), tree.clone(), pruner, field, full))
     }
 
-    /// A tracer for another model, usually an edited one. If it has the shape of this one, nothing is compiled.
+    /// A tracer for another model, usually an edited one. If it has the shape of this one, nothing is
+    /// compiled. The origin of this one stays.
     ///
     /// # Errors
     /// Those of [`new`](Self::new).
@@ -128,12 +132,13 @@ impl Tracer {
         let pruner = self.pruner.updated(tree)?;
         let field = self.field.updated(tree)?;
         let full = self.full.as_ref().map(|full| full.updated(tree)).transpose()?;
+        let tree = tree.with_origin(self.tree.origin());
         Ok(Self::of(self.compiler.clone(), tree, pruner, field, full))
     }
 
     fn of(
         compiler: Compiler,
-        tree: &CheckedTree,
+        tree: CheckedTree,
         pruner: Pruner,
         field: Evaluator,
         full: Option<Evaluator>,
@@ -141,9 +146,9 @@ impl Tracer {
         let layout = Arc::new(full.as_ref().unwrap_or(&field).layout().clone());
         Self {
             compiler,
-            tree: tree.clone(),
             iso: tree.iso() as f32,
-            reach: Reach::new(tree.support()),
+            reach: Reach::new(tree.local_support()),
+            tree,
             pruner,
             field,
             full,
@@ -204,6 +209,11 @@ impl Tracer {
     /// # Errors
     /// See [`TraceError`].
     pub fn first_of(&self, rays: &[Ray], tolerance: f64) -> Result<Hits, TraceError> {
+        self.hits(Want::First, &self.localized(rays), tolerance)
+    }
+
+    /// As [`first_of`](Self::first_of), of rays that count from the model's origin.
+    pub(crate) fn first_of_local(&self, rays: &[Ray], tolerance: f64) -> Result<Hits, TraceError> {
         self.hits(Want::First, rays, tolerance)
     }
 
@@ -212,7 +222,7 @@ impl Tracer {
     /// # Errors
     /// See [`TraceError`].
     pub fn all_of(&self, rays: &[Ray], tolerance: f64) -> Result<Hits, TraceError> {
-        self.hits(Want::All, rays, tolerance)
+        self.hits(Want::All, &self.localized(rays), tolerance)
     }
 
     /// Whether each ray has a hit.
@@ -220,6 +230,11 @@ impl Tracer {
     /// # Errors
     /// See [`TraceError`].
     pub fn any_of(&self, rays: &[Ray], tolerance: f64) -> Result<Blocked, TraceError> {
+        self.any_of_local(&self.localized(rays), tolerance)
+    }
+
+    /// As [`any_of`](Self::any_of), of rays that count from the model's origin.
+    pub(crate) fn any_of_local(&self, rays: &[Ray], tolerance: f64) -> Result<Blocked, TraceError> {
         let found = self.follow(Want::Any, rays, tolerance)?;
         Ok(Blocked { blocked: found.blocked, evaluations: found.evaluations })
     }
@@ -240,13 +255,14 @@ impl Tracer {
         }
     }
 
-    /// The leaf that decides at a position, and the way down to it: see [`jbt_frontend::owner`].
+    /// The leaf that decides at a position, which counts from the model's origin as those of hits do, and the
+    /// way down to it: see [`jbt_frontend::owner`].
     ///
     /// `None` where the field is 0, or where it is negative because nothing with a positive field is left: neither is so at hits. Cost: a plain walk over
     /// all paths of the tree.
     #[must_use]
     pub fn owner(&self, position: [f32; 3]) -> Option<Owner> {
-        owner::owner(&self.tree, position.map(f64::from))
+        owner::owner(&self.tree, self.tree.origin().world(position.map(f64::from)))
     }
 
     /// The leaf that decides at a position: that of [`owner`](Self::owner). If no other leaf matters at the position, no walk is needed to
@@ -263,6 +279,15 @@ impl Tracer {
             }
         }
         Ok(self.owner(position).map(|owner| owner.node))
+    }
+
+    /// Rays that count from the model's origin.
+    fn localized<'a>(&self, rays: &'a [Ray]) -> Cow<'a, [Ray]> {
+        let origin = self.tree.origin();
+        if origin.is_world() {
+            return Cow::Borrowed(rays);
+        }
+        rays.iter().map(|ray| Ray { origin: origin.local(ray.origin), ..*ray }).collect()
     }
 
     fn hits(&self, want: Want, rays: &[Ray], tolerance: f64) -> Result<Hits, TraceError> {

@@ -1,5 +1,6 @@
 //! How occurrences are found: a walk from the root that remembers what it has met, by node, position and bindings.
 
+use glam::{DAffine3, DVec3};
 use rustc_hash::FxHashMap as HashMap;
 
 use super::{
@@ -8,10 +9,12 @@ use super::{
 };
 use crate::check::{CheckedTree, NodeId};
 use crate::combine::{Combinator, Form};
+use crate::expression::Expression;
 use crate::lower::computed::{ComputedId, share};
 use crate::lower::demand::Demand;
 use crate::lower::position::{Position, PositionKey, Trails, position_key};
-use crate::recipe::Recipe;
+use crate::origin::ModelOrigin;
+use crate::recipe::{Freedom, Recipe};
 use crate::tree::{NodeKind, Primitive, chosen};
 
 /// A node and what its ancestors say about it.
@@ -85,7 +88,7 @@ impl<'a> Finder<'a> {
     }
 
     pub(super) fn run(mut self) -> Scene<'a> {
-        let world = self.name_position(Position::start(SpaceId(0)));
+        let world = self.name_position(Position::world(self.scene.tree.origin()));
         self.bound = vec![None; self.scene.tree.attributes().len()];
         self.unbound = self.name_bindings();
         let root = self.resolve((self.scene.tree.root(), world, self.unbound));
@@ -211,11 +214,12 @@ impl<'a> Finder<'a> {
                 OccurrenceKind::Warp { position, inside, child: frame.children[0], weight }
             }
             NodeKind::Combine(combinator) => self.operator(node, *combinator, position, frame.children),
-            NodeKind::Expression(_) => {
+            NodeKind::Expression(expression) => {
                 let children = frame.children;
                 let is_leaf = children.is_empty();
                 let computed = if is_leaf { self.computed(bindings, node, position) } else { Box::default() };
-                OccurrenceKind::Expression { position, bindings, children, computed }
+                let (position, shift) = self.near_box(node, expression, position);
+                OccurrenceKind::Expression { position, shift, bindings, children, computed }
             }
             NodeKind::Select(which) => {
                 self.selects = true;
@@ -224,6 +228,35 @@ impl<'a> Finder<'a> {
             NodeKind::Affine(_) | NodeKind::Attribute { .. } => unreachable!("resolve walks through these"),
         };
         self.push(node, position, kind)
+    }
+
+    /// Where a formula is asked that compares the point with the sides of its box and with nothing else: in
+    /// coordinates that begin near the box, and where these begin. In a model that counts from the world they
+    /// are those of its space.
+    fn near_box(
+        &mut self,
+        node: NodeId,
+        expression: &Expression,
+        position: PositionId,
+    ) -> (PositionId, DVec3) {
+        let is_world = self.scene.tree.origin().is_world();
+        let Some(bounds) = expression.bounds().filter(|_| !is_world && !expression.form().asks_coordinates())
+        else {
+            return (position, DVec3::ZERO);
+        };
+        let shift = DVec3::from(ModelOrigin::of(bounds).point());
+        let inner = DAffine3::from_translation(shift);
+        let Position { space, map, trail } = *self.scene.position(position);
+        let trail = match self.scene.tree.recipe(node) {
+            None if shift == DVec3::ZERO => return (position, shift),
+            None => trail.fixed(&inner, false),
+            // A box that follows parameters may come near and go far.
+            Some(recipe) => {
+                let name = self.trails.name(position_key(space, trail.name, &trail.since), node, recipe);
+                trail.free(name, Freedom::Fixed)
+            }
+        };
+        (self.name_position(Position { space, map: map * inner, trail }), shift)
     }
 
     /// The occurrence of an operator whose children are done.
