@@ -255,7 +255,7 @@ impl Evaluator {
         Samples::new(self.layout.clone())
     }
 
-    /// The answers at all points: [`Points`], or a slice, an array or a vector of points as they are. `samples` is resized; keep it for the next call
+    /// The answers at all points: [`Points`](crate::Points), or a slice, an array or a vector of points as they are. `samples` is resized; keep it for the next call
     /// to save the allocation.
     ///
     /// Points of f32 as they are count from the origin of the world; [`Points`] know where theirs count from.
