@@ -87,6 +87,13 @@ fn warnings(made: &Polygonized, format: Format) -> Vec<String> {
     } else if !made.report.closed {
         warnings.push("the mesh is not closed".to_owned());
     }
+    if made.report.crowded {
+        let cell = made.lattice.spacing();
+        warnings.push(format!(
+            "cells of {cell} are hardly longer than the steps of f32 so far from the origin: \
+             the mesh is coarse, and vertices may coincide"
+        ));
+    }
     warnings
 }
 
@@ -119,7 +126,9 @@ impl Report<'_> {
             "up": self.options.up_in(self.format).name(),
             "colors": self.options.colors_in(self.format).map(ColorEncoding::name),
             "cut_sides": report.cut_sides.to_string(),
-            "field_evaluations": report.field_evaluations,
+            "field_evaluations": report.field_evaluations + report.jump_evaluations,
+            "jump_evaluations": report.jump_evaluations,
+            "jump_vertices": report.jump_vertices,
             "gradient_evaluations": report.gradient_evaluations,
             "full_evaluations": report.full_evaluations,
             "primitive_evaluations": self.made.primitive_evaluations,
@@ -174,7 +183,7 @@ impl Report<'_> {
             self.measures(),
             lattice::describe(lattice, ModelOrigin::new(mesh.origin)),
             lattice::origin_line(ModelOrigin::new(mesh.origin)),
-            grouped(report.field_evaluations),
+            grouped(report.field_evaluations + report.jump_evaluations),
             grouped(report.gradient_evaluations),
             grouped(report.full_evaluations),
             grouped(self.made.primitive_evaluations),

@@ -87,7 +87,7 @@ pub struct Polygonized {
 pub struct MeshCounters {
     /// Dividing: boxes, and ranges of distances to skeletons over them.
     pub division: PruneCounters,
-    /// The field at lattice points.
+    /// The field at lattice points, and where jumps are looked for.
     pub lattice: Counters,
     /// Field and gradient, to pull vertices.
     pub pulls: Counters,

@@ -227,6 +227,31 @@ const fn number(group: [u8; 12], pinched: u8) -> Sheets {
     Sheets { of_edge, count, pinched }
 }
 
+/// The way around the sheets of a cell, from its corners inside and its flipped faces, a bit each: for each
+/// crossed edge the next one of its sheet, counter-clockwise as seen from outside of the surface. An edge that
+/// is not crossed has itself.
+pub(crate) fn following(signs: u8, flips: u8) -> [u8; 12] {
+    let mut next: [u8; 12] = std::array::from_fn(|edge| edge as u8);
+    for face in 0..6 {
+        let (corners, edges) = (ring(face), ring_edges(face));
+        let is_inside = |i: usize| inside(signs, corners[i % 4]);
+        // A segment joins where the walk around the face comes in to where it then goes out; on a flipped face,
+        // to where it went out before.
+        let back = flips >> face & 1 == 1 && ambiguous(signs, face);
+        for enter in (0..4).filter(|&i| !is_inside(i) && is_inside(i + 1)) {
+            let goes_out = |&i: &usize| is_inside(i) && !is_inside(i + 1);
+            let leave = (1..4).map(|step| if back { enter + 4 - step } else { enter + step }).find(goes_out);
+            let Some(leave) = leave else { continue };
+            let (enter, leave) = (edges[enter], edges[leave % 4]);
+            // A ring goes counter-clockwise as seen from the high side of its axis: from outside of the cell for
+            // high faces alone.
+            let [from, to] = if face & 1 == 1 { [enter, leave] } else { [leave, enter] };
+            next[from] = to as u8;
+        }
+    }
+    next
+}
+
 /// The sheets of every case without flipped faces.
 static DEFAULT: [Sheets; 256] = {
     let mut sheets = [Sheets { of_edge: [NO_SHEET; 12], count: 0, pinched: 0 }; 256];
@@ -257,7 +282,7 @@ pub(crate) fn sheets_with_quads(signs: u8, flips: u8, sides: u8) -> Sheets {
     if sides == 0 { sheets } else { sheets.with_quads(sides) }
 }
 
-/// Some edges of a cell, made ready for [`mean_crossing`].
+/// Some crossed edges of a cell, made ready for [`mean_crossing`].
 #[derive(Clone, Copy)]
 pub(crate) struct Edges {
     /// A bit for each edge.
@@ -266,14 +291,19 @@ pub(crate) struct Edges {
     high: [f32; 3],
     /// One for each edge.
     part: f32,
+    /// The sum of the unit vectors along the edges, from outside to inside.
+    pub(crate) rise: [f32; 3],
 }
 
 impl Edges {
-    /// From a bit for each edge.
-    pub(crate) const fn new(mask: u16) -> Self {
-        let mut high = [0.0; 3];
+    /// From the corners inside and the edges, a bit each.
+    pub(crate) const fn new(signs: u8, mask: u16) -> Self {
+        let (mut high, mut rise) = ([0.0; 3], [0.0; 3]);
         let mut edge = 0;
         while edge < 12 {
+            if mask >> edge & 1 == 1 {
+                rise[edge / 4] += if inside(signs, EDGE_CORNERS[edge][1]) { 1.0 } else { -1.0 };
+            }
             let mut axis = 0;
             while axis < 3 {
                 let is_high = mask >> edge & 1 == 1 && EDGE_FACES[edge] >> (2 * axis + 1) & 1 == 1;
@@ -282,13 +312,13 @@ impl Edges {
             }
             edge += 1;
         }
-        Self { mask, high, part: 1.0 / mask.count_ones() as f32 }
+        Self { mask, high, part: 1.0 / mask.count_ones() as f32, rise }
     }
 }
 
 /// The crossed edges of every case.
 pub(crate) static CROSSED_EDGES: [Edges; 256] = {
-    let mut crossed = [Edges::new(0); 256];
+    let mut crossed = [Edges::new(0, 0); 256];
     let mut signs = 0;
     while signs < 256 {
         let (mut mask, mut edge) = (0, 0);
@@ -297,7 +327,7 @@ pub(crate) static CROSSED_EDGES: [Edges; 256] = {
             mask |= ((inside(signs as u8, low) != inside(signs as u8, high)) as u16) << edge;
             edge += 1;
         }
-        crossed[signs] = Edges::new(mask);
+        crossed[signs] = Edges::new(signs as u8, mask);
         signs += 1;
     }
     crossed
@@ -477,6 +507,30 @@ mod tests {
         // Opposite corners 0 and 7: one sheet is left, and it is the first.
         let left = sheets_with_quads(0b1000_0001, 0, 0b01_0101);
         assert_eq!((left.count(), left.of_edge(0), left.of_edge(3)), (1, None, Some(0)));
+    }
+
+    /// For all signs and all flips, each cycle is a sheet; where one corner is cut off it goes the right way.
+    #[test]
+    fn the_way_around_a_sheet_meets_all_its_edges() {
+        for signs in 0..=255_u8 {
+            for flips in 0..64 {
+                let (sheets, next) = (sheets(signs, flips), following(signs, flips));
+                for sheet in 0..sheets.count() {
+                    let edges = sheets.edges(sheet);
+                    let first = edges.trailing_zeros() as usize;
+                    let (mut met, mut edge) = (0, first);
+                    while met >> edge & 1 == 0 {
+                        met |= 1 << edge;
+                        edge = usize::from(next[edge]);
+                    }
+                    assert_eq!((met, edge), (edges, first), "{signs:08b}, flips {flips:06b}, sheet {sheet}");
+                }
+            }
+        }
+        // Corner 0 is inside: from x to y to z, which is counter-clockwise as seen from the other corners.
+        // Corner 7 is the mirror image.
+        assert_eq!([0, 4, 8].map(|edge| following(1, 0)[edge]), [4, 8, 0]);
+        assert_eq!([3, 7, 11].map(|edge| following(128, 0)[edge]), [11, 3, 7]);
     }
 
     #[test]

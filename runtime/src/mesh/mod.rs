@@ -16,7 +16,8 @@
 //!     cells  = the cells that the surface crosses, from their eight signs                   (crossing)
 //!     faces  = flip the few ambiguous faces that would pinch the mesh                       (crossing, cell)
 //!     vertex = mean of its sheet's crossings, pulled onto the surface by Newton's step,
-//!              kept in its cell; normal and attributes                                      (vertex, pull)
+//!              kept off the sides of its cell; normal and attributes                        (vertex, pull)
+//!              those at jumps of the field are put where halved edges say                   (vertex/suspect)
 //!              those that a crease keeps off the surface are brought onto it                (settle)
 //!     quads  = one for each crossed edge, through the four cells around it,
 //!              split along its shorter diagonal                                             (surface)
@@ -244,8 +245,16 @@ pub struct Report {
     /// Points at which field and gradient were evaluated: at each vertex once for each pull, and some more for those that a crease keeps off the surface.
     pub gradient_evaluations: u64,
     /// Points at which everything was evaluated: once for each vertex, and once more for those that a crease has kept off
-    /// the surface.
+    /// the surface, or that are at a jump.
     pub full_evaluations: u64,
+    /// Points at which the field alone was evaluated to find out where it jumps: on crossed edges of cells that
+    /// raise suspicion, and at walls.
+    pub jump_evaluations: u64,
+    /// Vertices at which the field jumps, as at the walls of `within`.
+    pub jump_vertices: u64,
+    /// Whether cells are shorter than 16 steps of f32 somewhere in the lattice: then vertices of different cells
+    /// may coincide.
+    pub crowded: bool,
     /// Cells that the surface crosses.
     pub crossing_cells: u64,
     /// Ambiguous faces that were resolved the other way, to keep the mesh manifold.
@@ -312,7 +321,8 @@ pub enum MeshError<E: Error + 'static> {
 /// Meshes the surface `field = iso` over a lattice.
 ///
 /// Vertices are in the order of their cells, which is Morton order (the bits of z, y and x interleaved, that of x lowest); triangles are in the order of the
-/// last cell that they touch. A vertex stays in its closed cell.
+/// last cell that they touch. A vertex stays within its cell, off its sides; so positions differ, unless
+/// [`Report::crowded`] says otherwise.
 ///
 /// # Errors
 /// See [`MeshError`].
@@ -375,6 +385,9 @@ fn polygonize<F: Field>(
         field_evaluations: samples.len() as u64,
         gradient_evaluations: done.gradient_evaluations,
         full_evaluations: done.full_evaluations,
+        jump_evaluations: done.jump_evaluations,
+        jump_vertices: done.jump_vertices,
+        crowded: vertex::is_crowded(&bricks.axes),
         crossing_cells: crossings.cells.len() as u64,
         flipped_faces: crossings.flipped_faces,
         closed: false,
@@ -382,9 +395,7 @@ fn polygonize<F: Field>(
     report.cut_sides.add(boxes.cut);
     drop(samples);
     mesh.triangles = surface::triangles(bricks, &crossings, &mesh.positions);
-    if done.lacks_normals {
-        surface::repair_normals(&mut mesh);
-    }
+    surface::repair_normals(&mut mesh, bricks, &crossings, &done.doubtful);
     Ok((mesh, report))
 }
 

@@ -9,7 +9,7 @@
 //! ```
 
 use super::Field;
-use super::pull::{LANES, Lanes, pull, squares};
+use super::pull::{LANES, Lanes, pull};
 
 /// Pulls that a stray gets on top.
 const ROUNDS: usize = 6;
@@ -18,22 +18,18 @@ const HALVINGS: usize = 10;
 /// A vertex strays when its distance to the surface, by its own gradient, is more than this part of its cell.
 const TOLERANCE: f32 = 1e-3;
 
-/// Which vertices stray, 1 or 0 each, in cells with these low and high sides along x. Where the gradient is no number nothing can be said, and
-/// a vertex does not.
+/// Which vertices are far from the surface, 1 or 0 each, in cells with these low and high sides along x; `square`
+/// is that of the length of their gradient. Where the gradient is no number nothing can be said, and a vertex is
+/// not.
 #[inline(always)]
-pub(super) fn strays(
-    iso: f32,
-    [low, high]: [&Lanes; 2],
-    values: &Lanes,
-    gradient: &[Lanes; 3],
-) -> [u32; LANES] {
-    let (square, mut strays) = (squares(gradient), [0; LANES]);
+pub(super) fn is_far(iso: f32, [low, high]: [&Lanes; 2], values: &Lanes, square: &Lanes) -> [u32; LANES] {
+    let mut far = [0; LANES];
     for i in 0..LANES {
         let error = (values[i] - iso).abs();
-        let far = error > TOLERANCE * (high[i] - low[i]) * square[i].sqrt();
-        strays[i] = u32::from(far) & u32::from(square[i] < f32::INFINITY);
+        let is_off = error > TOLERANCE * (high[i] - low[i]) * square[i].sqrt();
+        far[i] = u32::from(is_off) & u32::from(square[i] < f32::INFINITY);
     }
-    strays
+    far
 }
 
 /// Where a vertex may be.
@@ -112,13 +108,16 @@ impl Stray {
     }
 }
 
-/// Brings strays, of which there are some, nearer to the surface. Returns at how many points the gradient was asked.
+/// Brings strays nearer to the surface. Returns at how many points the gradient was asked.
 pub(super) fn settle<F: Field>(
     field: &F,
     region: &F::Region,
     iso: f32,
     strays: &mut [Stray],
 ) -> Result<u64, F::Error> {
+    if strays.is_empty() {
+        return Ok(0);
+    }
     let plane = vec![0.0f32; strays.len()];
     let mut values = plane.clone();
     let mut gradient = [plane.clone(), plane.clone(), plane];

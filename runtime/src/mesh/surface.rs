@@ -161,22 +161,67 @@ fn halves([p, q, r, s]: [u32; 4], positions: &[[f32; 3]]) -> [[u32; 3]; 2] {
     [[q, r, d], [e, s, p]]
 }
 
-/// Gives the vertices without a normal (the gradient vanishes there, or is no number) that of their triangles, weighted by
-/// area; or up, if they have no area either.
-pub(crate) fn repair_normals(mesh: &mut Mesh) {
+/// Looks at some vertices, ascending, with their triangles. One without a normal (the gradient vanishes there, or
+/// is no number) gets that of its triangles, weighted by area; or up, if they have no area either. One whose normal
+/// is more than 90 degrees off that gets it too: where two surfaces are closer than a cell the gradient may be that
+/// of the other one.
+pub(crate) fn repair_normals(mesh: &mut Mesh, bricks: &Bricks, crossings: &Crossings, vertices: &[u32]) {
+    if vertices.is_empty() {
+        return;
+    }
     let Mesh { positions, normals, triangles, .. } = mesh;
-    let mut sums = vec![[0.0_f64; 3]; normals.len()];
-    for triangle in &*triangles {
-        let area = area_vector(triangle.map(|vertex| positions[vertex as usize]));
-        for &vertex in triangle {
-            for axis in 0..3 {
-                sums[vertex as usize][axis] += area[axis];
+    // The place of each of them in the list, and one; 0 for all others.
+    let mut places = vec![0_u32; normals.len()];
+    for (place, &vertex) in (1..).zip(vertices) {
+        places[vertex as usize] = place;
+    }
+    let mut sums = vec![[0.0_f64; 3]; vertices.len()];
+    for brick in bricks_around(bricks, crossings, vertices) {
+        for triangle in &triangles[2 * crossings.quads[brick]..2 * crossings.quads[brick + 1]] {
+            let wanted = triangle.map(|vertex| places[vertex as usize]);
+            if wanted == [0; 3] {
+                continue;
+            }
+            let area = area_vector(triangle.map(|vertex| positions[vertex as usize]));
+            for place in wanted.into_iter().filter(|&place| place > 0) {
+                sums[place as usize - 1].iter_mut().zip(area).for_each(|(sum, area)| *sum += area);
             }
         }
     }
-    for (normal, sum) in normals.iter_mut().zip(sums).filter(|(normal, _)| **normal == [0.0; 3]) {
-        *normal = unit(sum).unwrap_or([0.0, 0.0, 1.0]);
+    for (&vertex, sum) in vertices.iter().zip(sums) {
+        let normal = &mut normals[vertex as usize];
+        let along: f64 = (0..3).map(|axis| f64::from(normal[axis]) * sum[axis]).sum();
+        if *normal == [0.0; 3] {
+            *normal = unit(sum).unwrap_or([0.0, 0.0, 1.0]);
+        } else if along < 0.0 {
+            *normal = unit(sum).unwrap_or(*normal);
+        }
     }
+}
+
+/// The bricks that have triangles of some vertices, which ascend: a quad belongs to the last cell around its edge,
+/// so these are the vertices' own and those above. They ascend too, so that sums are the same for bricks of any
+/// size.
+fn bricks_around(bricks: &Bricks, crossings: &Crossings, vertices: &[u32]) -> Vec<usize> {
+    let (mut own, mut around) = (0, Vec::new());
+    let mut last = None;
+    for &vertex in vertices {
+        while crossings.vertices[own + 1] <= vertex as usize {
+            own += 1;
+        }
+        if last == Some(own) {
+            continue;
+        }
+        last = Some(own);
+        for above in 0..8 {
+            let steps = [0, 1, 2].map(|axis| (above >> axis & 1) as i8);
+            let brick = bricks.neighbours[own][direction(steps)];
+            around.extend((brick != NONE).then_some(brick as usize));
+        }
+    }
+    around.sort_unstable();
+    around.dedup();
+    around
 }
 
 /// The normal of a triangle, counter-clockwise, if it has an area.

@@ -1,38 +1,57 @@
 //! Vertices: where they start, how they are pulled onto the surface, and what they carry. Brick by brick: everything stays at hand, and each
 //! evaluation is of all vertices of a brick, in the brick's region.
 
-use std::ops::{Range, RangeInclusive};
+mod bracket;
+mod normal;
+mod room;
+mod sheet;
+mod suspect;
+mod wall;
+
+use std::ops::Range;
 
 use jbt_ir::limits::MAX_ATTRIBUTE_WIDTH;
 use rayon::prelude::*;
 
 use super::brick::{Bricks, cell_sides, place, split};
-use super::cell::{CROSSED_EDGES, EDGE_CORNERS, Edges, default_sheets, mean_crossing, sheets_with_quads};
+use super::cell::{CROSSED_EDGES, Edges, default_sheets, mean_crossing, sheets_with_quads};
 use super::crossing::Crossings;
 use super::progress::{Phase, Progress};
-use super::pull::{LANES, Lanes, all, pull_lanes, squares};
+use super::pull::{LANES, Lanes, pull_lanes};
 use super::sample::Samples;
-use super::settle::{Place, Stray, settle, strays};
-use super::surface::unit;
-use super::{Attribute, Field, Mesh, MeshError, Options};
+use super::{Attribute, Field, MAX_BRICK, Mesh, MeshError, Options};
+
+use bracket::CrossedEdges;
+use normal::normals_of;
+use room::room;
+
+pub(super) use room::is_crowded;
 
 /// What was done at vertices.
-#[derive(Clone, Copy, Default)]
+#[derive(Default)]
 pub(crate) struct Done {
     /// Points at which the gradient was evaluated.
     pub(crate) gradient_evaluations: u64,
     /// Points at which everything was evaluated.
     pub(crate) full_evaluations: u64,
-    /// Whether some vertex has no normal yet: its normal is zero.
-    pub(crate) lacks_normals: bool,
+    /// Points at which the field was evaluated to look for jumps and to follow walls.
+    pub(crate) jump_evaluations: u64,
+    /// Vertices at jumps.
+    pub(crate) jump_vertices: u64,
+    /// Vertices the normals of which are to be compared with their triangles, ascending. A normal that is not
+    /// known is zero.
+    pub(crate) doubtful: Vec<u32>,
 }
 
 impl Done {
-    fn and(self, other: Self) -> Self {
+    fn and(mut self, other: Self) -> Self {
+        self.doubtful.extend(other.doubtful);
         Self {
             gradient_evaluations: self.gradient_evaluations + other.gradient_evaluations,
             full_evaluations: self.full_evaluations + other.full_evaluations,
-            lacks_normals: self.lacks_normals || other.lacks_normals,
+            jump_evaluations: self.jump_evaluations + other.jump_evaluations,
+            jump_vertices: self.jump_vertices + other.jump_vertices,
+            doubtful: self.doubtful,
         }
     }
 }
@@ -127,7 +146,8 @@ fn finish_group<F: Field>(
         }
         batch.start(source, brick, range.len());
         done = done.and(batch.evaluate(source, brick, widths.iter().sum())?);
-        done.lacks_normals |= batch.write(&mut target, range, widths);
+        batch.write(&mut target, range, widths);
+        done.doubtful.extend(batch.doubtful.iter().map(|&vertex| (starts[brick] + vertex) as u32));
     }
     Ok(done)
 }
@@ -145,13 +165,24 @@ struct Batch {
     /// The cell of each, counted in the brick, and its sheet.
     owners: Vec<(u32, u32)>,
     points: Planes,
-    /// The corners of their cells.
+    /// The low and the high corners of the boxes in which they stay.
     low: Planes,
     high: Planes,
+    /// By how much the field rises along the axes, roughly: from the low corners of their cells to the high ones,
+    /// or along the edges that their sheets cross.
+    rise: Planes,
+    /// By how much the field differs at most among the corners of their cells.
+    spread: Vec<f32>,
     values: Vec<f32>,
     gradient: Planes,
     /// One plane after the other, each for `count` vertices.
     attributes: Vec<f32>,
+    /// The vertices of all sheets of a cell but its first, with the means of their crossings.
+    doubles: Vec<(usize, [f32; 3])>,
+    /// Those whose normals are doubtful, ascending.
+    doubtful: Vec<usize>,
+    /// Edges at vertices that were looked at twice.
+    crossed: CrossedEdges,
 }
 
 impl Batch {
@@ -164,22 +195,38 @@ impl Batch {
         let (origin, extent, sides) = (bricks.origin(brick), bricks.extent(brick), bricks.sides(brick));
         let axes: [&[f32]; 3] =
             std::array::from_fn(|axis| &bricks.axes[axis][origin[axis]..][..extent[axis] + 1]);
+        let rooms = [0, 1, 2].map(|axis| rooms(axes[axis]));
+        self.doubles.clear();
+        self.doubtful.clear();
         let mut next = 0;
         for (index, cell) in (0..).zip(source.crossings.of(brick)) {
             let corners = corners(&self.table, bricks.in_table(cell.number), bricks.stride());
             let place = place(cell.number);
-            let low = std::array::from_fn(|axis| axes[axis][place[axis]]);
-            let high = std::array::from_fn(|axis| axes[axis][place[axis] + 1]);
+            let home = Home {
+                spread: spread(&corners),
+                sides: std::array::from_fn(|axis| [axes[axis][place[axis]], axes[axis][place[axis] + 1]]),
+                room: std::array::from_fn(|axis| rooms[axis][place[axis]]),
+            };
             if sides == 0 && cell.flips == 0 && default_sheets(cell.signs).count() == 1 {
                 let edges = &CROSSED_EDGES[usize::from(cell.signs)];
-                self.put(next, (index, 0), mean_crossing(options.iso, &corners, edges), low, high);
+                self.put(
+                    next,
+                    (index, 0),
+                    mean_crossing(options.iso, &corners, edges),
+                    rise(&corners),
+                    &home,
+                );
                 next += 1;
                 continue;
             }
             let sheets = sheets_with_quads(cell.signs, cell.flips, cell_sides(sides, extent, place));
             for sheet in 0..sheets.count() {
-                let edges = Edges::new(sheets.edges(sheet));
-                self.put(next, (index, sheet), mean_crossing(options.iso, &corners, &edges), low, high);
+                let edges = Edges::new(cell.signs, sheets.edges(sheet));
+                let mean = mean_crossing(options.iso, &corners, &edges);
+                self.put(next, (index, sheet), mean, edges.rise, &home);
+                if sheet > 0 {
+                    self.doubles.push((next, self.points.each_ref().map(|plane| plane[next])));
+                }
                 next += 1;
             }
         }
@@ -187,15 +234,18 @@ impl Batch {
 
     /// Puts a vertex at a place that is given in units of its cell.
     #[inline(always)]
-    fn put(&mut self, index: usize, owner: (u32, u32), place: [f32; 3], low: [f32; 3], high: [f32; 3]) {
+    fn put(&mut self, index: usize, owner: (u32, u32), place: [f32; 3], rise: [f32; 3], home: &Home) {
         self.owners[index] = owner;
+        self.spread[index] = home.spread;
         for axis in 0..3 {
+            let ([first, last], [low, high]) = (home.sides[axis], home.room[axis]);
             // Nothing overflows on the way, however large the cell.
-            let start = low[axis] * (1.0 - place[axis]) + high[axis] * place[axis];
-            let start = if start < low[axis] { low[axis] } else { start };
-            self.points[axis][index] = if start > high[axis] { high[axis] } else { start };
-            self.low[axis][index] = low[axis];
-            self.high[axis][index] = high[axis];
+            let start = first * (1.0 - place[axis]) + last * place[axis];
+            let start = if start < low { low } else { start };
+            self.points[axis][index] = if start > high { high } else { start };
+            self.low[axis][index] = low;
+            self.rise[axis][index] = rise[axis];
+            self.high[axis][index] = high;
         }
     }
 
@@ -203,9 +253,10 @@ impl Batch {
         self.count = count;
         let padded = count.next_multiple_of(LANES);
         self.owners.resize(padded, (0, 0));
-        let planes = [&mut self.points, &mut self.low, &mut self.high, &mut self.gradient];
+        let planes = [&mut self.points, &mut self.low, &mut self.high, &mut self.rise, &mut self.gradient];
         planes.into_iter().flatten().for_each(|plane| plane.resize(padded, 0.0));
         self.values.resize(padded, 0.0);
+        self.spread.resize(padded, 0.0);
     }
 
     /// Pulls the vertices and evaluates everything at them, `width` attributes among it.
@@ -231,9 +282,11 @@ impl Batch {
         let done = Done {
             gradient_evaluations: (options.pulls * count) as u64,
             full_evaluations: count as u64,
-            lacks_normals: false,
+            ..Done::default()
         };
-        if options.pulls == 0 { Ok(done) } else { Ok(done.and(self.settle(source, brick)?)) }
+        let again = if options.pulls == 0 { Done::default() } else { self.look_again(source, brick)? };
+        self.separate();
+        Ok(done.and(again))
     }
 
     /// A pull of all vertices.
@@ -256,71 +309,8 @@ impl Batch {
         }
     }
 
-    /// Brings those that a crease has kept off the surface onto it, and evaluates everything at them again.
-    fn settle<F: Field>(&mut self, source: &Source<'_, F>, brick: usize) -> Result<Done, F::Error> {
-        let Source { field, options, regions, .. } = source;
-        let mut strays = self.strays(source, brick);
-        if strays.is_empty() {
-            return Ok(Done::default());
-        }
-        let gradient_evaluations = settle(*field, &regions[brick], options.iso, &mut strays)?;
-        let count = strays.len();
-        let [x, y, z] =
-            [0, 1, 2].map(|axis| strays.iter().map(|stray| stray.best()[axis]).collect::<Vec<f32>>());
-        let (mut values, mut gradient) = (vec![0.0; count], [0; 3].map(|_| vec![0.0; count]));
-        let mut attributes = vec![0.0; self.attributes.len() / self.count * count];
-        let mut planes: Vec<&mut [f32]> = attributes.chunks_exact_mut(count).collect();
-        let slopes = gradient.each_mut().map(Vec::as_mut_slice);
-        field.all(&regions[brick], &x, &y, &z, &mut values, slopes, &mut planes)?;
-        for (n, stray) in strays.iter().enumerate() {
-            let index = stray.index;
-            for (axis, slope) in gradient.iter().enumerate() {
-                self.points[axis][index] = stray.best()[axis];
-                self.gradient[axis][index] = slope[n];
-            }
-            self.values[index] = values[n];
-            let planes = self.attributes.chunks_exact_mut(self.count).zip(attributes.chunks_exact(count));
-            planes.for_each(|(plane, settled)| plane[index] = settled[n]);
-        }
-        Ok(Done { gradient_evaluations, full_evaluations: count as u64, lacks_normals: false })
-    }
-
-    /// The vertices that are off the surface.
-    fn strays<F: Field>(&self, source: &Source<'_, F>, brick: usize) -> Vec<Stray> {
-        let iso = source.options.iso;
-        let mut found = Vec::new();
-        for start in (0..self.count).step_by(LANES) {
-            let chunk = start / LANES;
-            let (values, gradient) = (lane(&self.values, chunk), lanes(&self.gradient, chunk));
-            let (low, high) = (lane(&self.low[0], chunk), lane(&self.high[0], chunk));
-            let is_stray = strays(iso, [&low, &high], &values, &gradient);
-            if is_stray == [0; LANES] {
-                continue;
-            }
-            let indices = (start..self.count).zip(is_stray).filter(|&(_, is_stray)| is_stray == 1);
-            found.extend(indices.map(|(index, _)| self.stray(source, brick, index)));
-        }
-        found
-    }
-
-    fn stray<F: Field>(&self, source: &Source<'_, F>, brick: usize, index: usize) -> Stray {
-        let (cell, sheet) = self.owners[index];
-        let cell = source.crossings.of(brick)[cell as usize];
-        let bricks = source.bricks;
-        let sides = cell_sides(bricks.sides(brick), bricks.extent(brick), place(cell.number));
-        let edges = sheets_with_quads(cell.signs, cell.flips, sides).edges(sheet);
-        let mut corners = [0_u8; 2];
-        let ends = EDGE_CORNERS.iter().enumerate().filter(|(edge, _)| edges >> edge & 1 == 1);
-        for &corner in ends.flat_map(|(_, ends)| ends) {
-            corners[usize::from(cell.signs >> corner & 1)] |= 1 << corner;
-        }
-        let at = |planes: &Planes| planes.each_ref().map(|plane| plane[index]);
-        let place = Place { bounds: [at(&self.low), at(&self.high)], corners };
-        Stray::new(source.options.iso, index, place, at(&self.points), self.values[index], at(&self.gradient))
-    }
-
-    /// Writes the vertices to their range of the target. Returns whether one has no normal.
-    fn write(&self, target: &mut Target<'_>, range: Range<usize>, widths: &[usize]) -> bool {
+    /// Writes the vertices to their range of the target, and notes those that have no normal.
+    fn write(&mut self, target: &mut Target<'_>, range: Range<usize>, widths: &[usize]) {
         let [x, y, z] = &self.points;
         for (i, position) in target.positions[range.clone()].iter_mut().enumerate() {
             *position = [x[i], y[i], z[i]];
@@ -342,8 +332,62 @@ impl Batch {
                 }
             }
         }
-        lacks_normals
+        if lacks_normals {
+            let normals = target.normals[range].iter().enumerate();
+            self.doubtful
+                .extend(normals.filter(|(_, normal)| **normal == [0.0; 3]).map(|(vertex, _)| vertex));
+            self.doubtful.sort_unstable();
+            self.doubtful.dedup();
+        }
     }
+}
+
+/// A cell of which vertices are put.
+struct Home {
+    /// By how much the field differs at most among its corners.
+    spread: f32,
+    /// Along each axis its sides.
+    sides: [[f32; 2]; 3],
+    /// Along each axis between what vertices stay.
+    room: [[f32; 2]; 3],
+}
+
+/// Along one axis of a brick, between what the vertices of its cells stay.
+#[inline]
+fn rooms(axis: &[f32]) -> [[f32; 2]; MAX_BRICK] {
+    let mut rooms = [[0.0; 2]; MAX_BRICK];
+    for (bounds, sides) in rooms.iter_mut().zip(axis.array_windows()) {
+        *bounds = room(*sides);
+    }
+    rooms
+}
+
+/// By how much the field differs among the corners of a cell; infinite if one has no number.
+#[inline(always)]
+fn spread(corners: &[f32; 8]) -> f32 {
+    let (mut low, mut high, mut sum) = ([0.0_f32; 4], [0.0_f32; 4], [0.0_f32; 4]);
+    for n in 0..4 {
+        let (a, b) = (corners[n], corners[n + 4]);
+        (low[n], high[n]) = if a < b { (a, b) } else { (b, a) };
+        sum[n] = a + b;
+    }
+    let least = |a: f32, b: f32| if a < b { a } else { b };
+    let most = |a: f32, b: f32| if a > b { a } else { b };
+    let spread = most(most(high[0], high[1]), most(high[2], high[3]))
+        - least(least(low[0], low[1]), least(low[2], low[3]));
+    // An infinite sum is no number if another one of the other sign comes to it.
+    let sum = (sum[0] + sum[1]) + (sum[2] + sum[3]);
+    if sum.is_nan() { f32::INFINITY } else { spread }
+}
+
+/// By how much the field rises along the axes, from the low corners of a cell to the high ones.
+#[inline(always)]
+fn rise([a, b, c, d, e, f, g, h]: &[f32; 8]) -> [f32; 3] {
+    [
+        ((b - a) + (d - c)) + ((f - e) + (h - g)),
+        ((c - a) + (d - b)) + ((g - e) + (h - f)),
+        ((e - a) + (f - b)) + ((g - c) + (h - d)),
+    ]
 }
 
 /// The field at the corners of the cell at a place of a table.
@@ -363,26 +407,4 @@ fn lane(plane: &[f32], chunk: usize) -> Lanes {
 #[inline(always)]
 fn lanes(planes: &Planes, chunk: usize) -> [Lanes; 3] {
     planes.each_ref().map(|plane| lane(plane, chunk))
-}
-
-/// The directions away from the inside, or zero where the gradient vanishes or is no number.
-#[inline]
-fn normals_of(gradient: &[Lanes; 3]) -> [Lanes; 3] {
-    /// Squares of lengths whose terms neither overflow nor lose digits.
-    const TAME: RangeInclusive<f32> = 1e-24..=1e30;
-    let square = squares(gradient);
-    let (mut normals, mut is_tame) = (*gradient, [0_u32; LANES]);
-    for i in 0..LANES {
-        let scale = -1.0 / square[i].sqrt();
-        normals.iter_mut().for_each(|plane| plane[i] *= scale);
-        is_tame[i] = u32::from(square[i] >= *TAME.start()) & u32::from(square[i] <= *TAME.end());
-    }
-    if !all(&is_tame) {
-        for i in (0..LANES).filter(|&i| is_tame[i] == 0) {
-            let slope = gradient.map(|plane| -f64::from(plane[i]));
-            let normal = unit(slope).unwrap_or([0.0; 3]);
-            normals.iter_mut().zip(normal).for_each(|(plane, component)| plane[i] = component);
-        }
-    }
-    normals
 }

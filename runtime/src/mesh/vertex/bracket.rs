@@ -1,0 +1,264 @@
+//! Brackets: two points on a segment, one inside and one outside, between which the surface is; and the
+//! crossed edges of the lattice as such.
+//!
+//! ```text
+//!     outside o-----------------------------------o inside     halved again and again,
+//!                               o-----------------o            the surface stays between the ends
+//!                               o--------o
+//! ```
+//!
+//! How the values at the ends come together tells a *jump* from everything else: where the field is
+//! continuous, their difference becomes about half as large with each halving; at a jump it stays. The ends
+//! of edges are points of the lattice, and a middle is made of two ends and of nothing else, so all cells
+//! around an edge, in whatever bricks, find the same.
+
+use super::super::Field;
+
+/// Two points, and the field at them: the first is outside, the second inside.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bracket {
+    pub(super) ends: [[f32; 3]; 2],
+    pub(super) values: [f32; 2],
+}
+
+impl Bracket {
+    /// The middle of its ends. A coordinate that the ends share is that of the middle.
+    pub(super) fn middle(&self) -> [f32; 3] {
+        let [outside, inside] = self.ends;
+        [0, 1, 2].map(|axis| 0.5 * outside[axis] + 0.5 * inside[axis])
+    }
+
+    /// By how much the field rises. NaN where an end has no number.
+    fn rise(&self) -> f32 {
+        self.values[1] - self.values[0]
+    }
+
+    /// How far apart the ends are, along the axis where they are farthest apart.
+    fn width(&self) -> f32 {
+        let [outside, inside] = self.ends;
+        (0..3).fold(0.0, |width, axis| (outside[axis] - inside[axis]).abs().max(width))
+    }
+
+    /// Goes on with the half that holds the surface.
+    fn cut(&mut self, iso: f32, middle: [f32; 3], value: f32) {
+        let end = usize::from(value >= iso);
+        (self.ends[end], self.values[end]) = (middle, value);
+    }
+}
+
+/// Room for points and the field at them.
+#[derive(Default)]
+pub(super) struct Points {
+    planes: [Vec<f32>; 3],
+    values: Vec<f32>,
+}
+
+impl Points {
+    /// The field at some points.
+    pub(super) fn ask<F: Field>(
+        &mut self,
+        field: &F,
+        region: &F::Region,
+        points: impl Iterator<Item = [f32; 3]>,
+    ) -> Result<&[f32], F::Error> {
+        self.planes.iter_mut().for_each(Vec::clear);
+        for point in points {
+            self.planes.iter_mut().zip(point).for_each(|(plane, coordinate)| plane.push(coordinate));
+        }
+        let [x, y, z] = &self.planes;
+        self.values.resize(x.len(), 0.0);
+        if !x.is_empty() {
+            field.field(region, x, y, z, &mut self.values)?;
+        }
+        Ok(&self.values)
+    }
+
+    /// Halves brackets so many times. Returns at how many points the field was asked.
+    pub(super) fn halve<F: Field>(
+        &mut self,
+        field: &F,
+        region: &F::Region,
+        iso: f32,
+        brackets: &mut [&mut Bracket],
+        times: usize,
+    ) -> Result<u64, F::Error> {
+        for _ in 0..times {
+            let values = self.ask(field, region, brackets.iter().map(|bracket| bracket.middle()))?;
+            for (bracket, &value) in brackets.iter_mut().zip(values) {
+                bracket.cut(iso, bracket.middle(), value);
+            }
+        }
+        Ok((times * brackets.len()) as u64)
+    }
+}
+
+/// How often an edge is halved when its ends are looked at: the last is as fine as a bracket of an edge gets.
+const LOOKS: [usize; 4] = [0, 3, 6, 12];
+
+/// A crossed edge of the lattice.
+pub(super) struct CrossedEdge {
+    bracket: Bracket,
+    /// The rises and the widths at [`LOOKS`], as far as it has come.
+    rises: [f32; LOOKS.len()],
+    widths: [f32; LOOKS.len()],
+    /// The last look.
+    look: usize,
+}
+
+impl CrossedEdge {
+    /// An edge between two lattice points, the first outside and the second inside.
+    pub(super) fn new(bracket: Bracket) -> Self {
+        let mut edge = Self { bracket, rises: [0.0; LOOKS.len()], widths: [0.0; LOOKS.len()], look: 0 };
+        edge.look(0);
+        edge
+    }
+
+    fn look(&mut self, look: usize) {
+        (self.rises[look], self.widths[look]) = (self.bracket.rise(), self.bracket.width());
+        self.look = look;
+    }
+
+    /// By how much the field rises along the whole of it; infinite where an end has no number.
+    fn whole_rise(&self) -> f32 {
+        if self.rises[0].is_nan() { f32::INFINITY } else { self.rises[0] }
+    }
+
+    /// Where the surface crosses: after the last look within 2^-13 of the edge.
+    pub(super) fn crossing(&self) -> [f32; 3] {
+        self.bracket.middle()
+    }
+
+    /// A point inside, next to the crossing.
+    pub(super) fn inside(&self) -> [f32; 3] {
+        self.bracket.ends[1]
+    }
+
+    /// Whether the rise has not come down to a quarter since the look before, where an eighth is usual; at
+    /// the last look, whether it jumps.
+    fn may_jump(&self, look: usize) -> bool {
+        if look + 1 == LOOKS.len() {
+            return self.is_jump();
+        }
+        let [before, rise] = [self.rises[look - 1], self.rises[look]];
+        !rise.is_finite() || rise > 0.25 * before
+    }
+
+    /// Whether the field jumps at the crossing: in the last six halvings the rise has not come down to a
+    /// quarter, where 1/64 is usual. So a rise within 2^-12 of an edge is a jump for all purposes.
+    ///
+    /// Far from the origin there may be no f32 between the ends any more. Then all halvings count, and if
+    /// they were few, more is asked of the rise. Where they were fewer than four, nobody can say.
+    pub(super) fn is_jump(&self) -> bool {
+        let [first, _, middle, last] = [0, 1, 2, 3].map(|look| (self.rises[look], self.widths[look]));
+        if !last.0.is_finite() {
+            return true;
+        }
+        let stays = |before: (f32, f32), narrowing: f32, limit: f32| {
+            last.1 <= narrowing * before.1 && last.0 > limit * before.0
+        };
+        if last.1 <= middle.1 / 32.0 {
+            return stays(middle, 1.0, 0.25);
+        }
+        stays(first, 1.0 / 32.0, 0.25) || stays(first, 1.0 / 16.0, 0.5)
+    }
+}
+
+/// The crossed edges of a brick that somebody has asked about, each once.
+#[derive(Default)]
+pub(super) struct CrossedEdges {
+    edges: Vec<CrossedEdge>,
+    /// By the place of the low end in the table of the brick's points, and the axis: the number of the edge
+    /// and one, or 0.
+    numbers: Vec<u32>,
+    /// What is not 0 there.
+    used: Vec<usize>,
+    points: Points,
+}
+
+impl CrossedEdges {
+    /// Forgets all edges. The next ones are of a brick with so many points.
+    pub(super) fn clear(&mut self, points: usize) {
+        self.edges.clear();
+        for key in self.used.drain(..) {
+            self.numbers[key] = 0;
+        }
+        self.numbers.resize(3 * points, 0);
+    }
+
+    /// The number of the edge along an axis at a point of the brick's table.
+    pub(super) fn number(&mut self, low: usize, axis: usize, edge: impl FnOnce() -> CrossedEdge) -> u32 {
+        let key = 3 * low + axis;
+        if self.numbers[key] == 0 {
+            self.edges.push(edge());
+            self.numbers[key] = self.edges.len() as u32;
+            self.used.push(key);
+        }
+        self.numbers[key] - 1
+    }
+
+    /// The edge with a number.
+    pub(super) fn get(&self, number: u32) -> &CrossedEdge {
+        &self.edges[number as usize]
+    }
+
+    /// Halves the edges of sheets until it is known which sheets have no edge that may jump. Of a sheet that
+    /// is hardly suspect, as a `true` beside its edges says, the steepest edge goes first. Returns which
+    /// sheets are left, the edges of which have gone to the end, and at how many points the field was asked.
+    ///
+    /// Whether a sheet is left depends on its own edges alone, and not on how far others have brought these.
+    pub(super) fn bracket<F: Field>(
+        &mut self,
+        field: &F,
+        region: &F::Region,
+        iso: f32,
+        sheets: &[(&[u32], bool)],
+    ) -> Result<(Vec<bool>, u64), F::Error> {
+        let mut is_left = vec![true; sheets.len()];
+        let mut asked = 0;
+        for look in 1..LOOKS.len() {
+            let next: Vec<(usize, &[u32])> = (0..sheets.len())
+                .filter(|&sheet| is_left[sheet])
+                .map(|sheet| {
+                    let (edges, is_near) = sheets[sheet];
+                    (sheet, if is_near && look == 1 { self.steepest(edges) } else { edges })
+                })
+                .collect();
+            asked += self.halve(field, region, iso, next.iter().flat_map(|(_, edges)| *edges), look)?;
+            for (sheet, edges) in next {
+                is_left[sheet] = edges.iter().any(|&edge| self.get(edge).may_jump(look));
+            }
+        }
+        Ok((is_left, asked))
+    }
+
+    /// The edge of a sheet along which the field differs most; the first of equal ones.
+    fn steepest<'a>(&self, edges: &'a [u32]) -> &'a [u32] {
+        let rise = |edge: u32| self.get(edge).whole_rise();
+        let steepest =
+            (1..edges.len()).fold(0, |best, n| if rise(edges[n]) > rise(edges[best]) { n } else { best });
+        &edges[steepest..=steepest]
+    }
+
+    /// Halves some edges up to a look. Returns at how many points the field was asked.
+    fn halve<'a, F: Field>(
+        &mut self,
+        field: &F,
+        region: &F::Region,
+        iso: f32,
+        edges: impl Iterator<Item = &'a u32>,
+        last: usize,
+    ) -> Result<u64, F::Error> {
+        let mut wanted = vec![false; self.edges.len()];
+        edges.for_each(|&edge| wanted[edge as usize] = true);
+        let mut asked = 0;
+        for look in 1..=last {
+            let both = self.edges.iter_mut().zip(&wanted);
+            let mut behind: Vec<&mut CrossedEdge> =
+                both.filter(|(edge, wanted)| **wanted && edge.look < look).map(|(edge, _)| edge).collect();
+            let mut brackets: Vec<&mut Bracket> = behind.iter_mut().map(|edge| &mut edge.bracket).collect();
+            asked += self.points.halve(field, region, iso, &mut brackets, LOOKS[look] - LOOKS[look - 1])?;
+            behind.into_iter().for_each(|edge| edge.look(look));
+        }
+        Ok(asked)
+    }
+}

@@ -1,0 +1,104 @@
+//! A sheet of a cell with its crossings in order: all that is known of the surface there. Where its vertex is
+//! put, and what its normal is, is decided from this by others.
+
+use super::super::brick::{Bricks, cell_sides, place};
+use super::super::cell::{EDGE_CORNERS, following, sheets_with_quads};
+use super::super::crossing::Cell;
+use super::bracket::{Bracket, CrossedEdge, CrossedEdges};
+use super::corners;
+use super::normal::sheet_normal;
+
+/// What a crossing may be off after the last halving, in parts of its edge.
+const ERROR: f32 = 1.0 / 8192.0;
+
+/// What a vertex knows of its sheet from the start.
+#[derive(Clone, Copy)]
+pub(super) struct Start {
+    /// Which vertex of the brick it is.
+    pub(super) vertex: usize,
+    /// Where it may be: the low and the high corner of a box in the cell.
+    pub(super) bounds: [[f32; 3]; 2],
+}
+
+/// One sheet of a cell.
+pub(super) struct Sheet {
+    /// Its vertex.
+    pub(super) start: Start,
+    /// The corners that the sheet separates: those outside and those inside, a bit for each corner.
+    pub(super) corners: [u8; 2],
+    /// The edges that the sheet crosses, counter-clockwise as seen from outside: their numbers among the
+    /// [`CrossedEdges`] of the brick.
+    numbers: [u32; 12],
+    /// How many they are.
+    count: usize,
+    /// The sum of the unit vectors along them, from inside to outside.
+    outward: [f32; 3],
+    /// The edge of the cell.
+    pub(super) size: f32,
+}
+
+impl Sheet {
+    /// The sheet with a number in a cell of a brick, its edges put among the others of the brick. `table` has
+    /// the field at the points of the brick.
+    pub(super) fn new(
+        bricks: &Bricks,
+        brick: usize,
+        (cell, sheet): (&Cell, u32),
+        start: Start,
+        table: &[f32],
+        crossed: &mut CrossedEdges,
+    ) -> Self {
+        let (origin, place) = (bricks.origin(brick), place(cell.number));
+        let sides = cell_sides(bricks.sides(brick), bricks.extent(brick), place);
+        let mask = sheets_with_quads(cell.signs, cell.flips, sides).edges(sheet);
+        let next = following(cell.signs, cell.flips);
+        let first = bricks.in_table(cell.number);
+        let values = corners(table, first, bricks.stride());
+        let ends = [0, 1, 2].map(|axis| {
+            let at = origin[axis] + place[axis];
+            [bricks.axes[axis][at], bricks.axes[axis][at + 1]]
+        });
+        let position = |corner: usize| [0, 1, 2].map(|axis| ends[axis][corner >> axis & 1]);
+        let size = (0..3).fold(0.0, |size, axis| (ends[axis][1] - ends[axis][0]).max(size));
+        let mut made = Self { start, corners: [0; 2], numbers: [0; 12], count: 0, outward: [0.0; 3], size };
+        let steps = [1, bricks.stride(), bricks.stride().pow(2)];
+        let mut edge = mask.trailing_zeros() as usize;
+        for _ in 0..mask.count_ones() {
+            let [low, high] = EDGE_CORNERS[edge];
+            let is_rising = cell.signs >> high & 1 == 1;
+            let [outside, inside] = if is_rising { [low, high] } else { [high, low] };
+            made.corners[0] |= 1 << outside;
+            made.corners[1] |= 1 << inside;
+            let at = first + (0..3).map(|axis| (low >> axis & 1) * steps[axis]).sum::<usize>();
+            let ends = [outside, inside];
+            let bracket = || Bracket { ends: ends.map(position), values: ends.map(|end| values[end]) };
+            made.numbers[made.count] = crossed.number(at, edge / 4, || CrossedEdge::new(bracket()));
+            made.count += 1;
+            made.outward[edge / 4] += if is_rising { -1.0 } else { 1.0 };
+            edge = usize::from(next[edge]);
+        }
+        made
+    }
+
+    /// Its edges by their numbers.
+    pub(super) fn numbers(&self) -> &[u32] {
+        &self.numbers[..self.count]
+    }
+
+    /// Its crossed edges, in order.
+    pub(super) fn crossed<'a>(
+        &'a self,
+        crossed: &'a CrossedEdges,
+    ) -> impl ExactSizeIterator<Item = &'a CrossedEdge> {
+        self.numbers().iter().map(|&number| crossed.get(number))
+    }
+
+    /// Its normal, from where it crosses edges: see [`sheet_normal`].
+    pub(super) fn normal(&self, crossed: &CrossedEdges) -> Option<[f32; 3]> {
+        let mut crossings = [[0.0; 3]; 12];
+        for (place, edge) in crossings.iter_mut().zip(self.crossed(crossed)) {
+            *place = edge.crossing();
+        }
+        sheet_normal(&crossings[..self.count], self.outward, ERROR * self.size)
+    }
+}

@@ -1,0 +1,190 @@
+//! A second look at vertices that Newton's steps may not have put onto the surface.
+//!
+//! ```text
+//! suspects = vertices off the surface by their own gradient (strays),
+//!            and those whose gradient does not explain how much the field differs within their cell
+//! crossed  = the edges that their sheets cross, halved until it is known which sheets jump  (bracket, sheet)
+//! at a jump: the vertex is put where crossings say, and has a normal that they say          (wall, normal)
+//! strays without: a crease keeps them off; they are brought onto the surface                (settle)
+//! ```
+//!
+//! The normals of all these are doubtful, and so are those that are far from how the field rises in the cell:
+//! they are compared with the triangles later. For a smooth surface all this costs a few multiplications a
+//! vertex.
+
+use super::super::Field;
+use super::super::pull::{LANES, Lanes, squares};
+use super::super::settle::{Place, Stray, is_far, settle};
+use super::sheet::{Sheet, Start};
+use super::wall::{Wall, follow};
+use super::{Batch, Done, Planes, Source, lane, lanes};
+
+/// How many times as much as its gradient says the field may differ within a cell without raising suspicion.
+/// A linear field differs by just what its gradient says.
+const EXCESS: f32 = 1.5;
+
+/// The cosine of the angle from which on a gradient is far from how the field rises in its cell: about 30
+/// degrees.
+const ASTRAY: f32 = 0.85;
+
+/// What there is to say about vertices, as 1 or 0 each.
+struct Verdict {
+    /// Far from the surface.
+    far: [u32; LANES],
+    /// With a gradient that does not explain how the field differs in the cell, or none that is a number.
+    odd: [u32; LANES],
+    /// With a gradient that is far from how the field rises in the cell.
+    turned: [u32; LANES],
+}
+
+/// What raises suspicion, in cells with these low and high sides along x, at the corners of which the field
+/// differs by `spread` and rises by `rise`.
+#[inline(always)]
+fn judge(
+    iso: f32,
+    sides: [&Lanes; 2],
+    (spread, rise): (&Lanes, &[Lanes; 3]),
+    values: &Lanes,
+    gradient: &[Lanes; 3],
+) -> Verdict {
+    let (square, rises) = (squares(gradient), squares(rise));
+    let far = is_far(iso, sides, values, &square);
+    let ([low, high], [x, y, z], [u, v, w]) = (sides, gradient, rise);
+    let (mut odd, mut turned) = ([0; LANES], [0; LANES]);
+    for i in 0..LANES {
+        let slope = x[i].abs() + y[i].abs() + z[i].abs();
+        let is_explained = spread[i] < EXCESS * (high[i] - low[i]) * slope;
+        let is_number = square[i] < f32::INFINITY;
+        odd[i] = u32::from(!is_explained) | u32::from(!is_number);
+        let along = x[i] * u[i] + y[i] * v[i] + z[i] * w[i];
+        turned[i] = u32::from(along < ASTRAY * (square[i] * rises[i]).sqrt());
+    }
+    Verdict { far, odd, turned }
+}
+
+/// What is evaluated again: a vertex, where it is, and where it is asked.
+struct Again {
+    vertex: usize,
+    position: [f32; 3],
+    asked: [f32; 3],
+    normal: Option<[f32; 3]>,
+}
+
+impl Batch {
+    /// Puts suspects where they belong, and evaluates everything at them again.
+    pub(super) fn look_again<F: Field>(
+        &mut self,
+        source: &Source<'_, F>,
+        brick: usize,
+    ) -> Result<Done, F::Error> {
+        let Source { field, options, regions, .. } = source;
+        let (region, iso) = (&regions[brick], options.iso);
+        let suspects = self.suspects(iso);
+        if suspects.is_empty() {
+            return Ok(Done::default());
+        }
+        self.crossed.clear(source.bricks.table_len());
+        let sheets: Vec<Sheet> =
+            suspects.iter().map(|&(vertex, _)| self.sheet(source, brick, vertex)).collect();
+        let edges: Vec<(&[u32], bool)> =
+            sheets.iter().zip(&suspects).map(|(sheet, (_, is_far))| (sheet.numbers(), !is_far)).collect();
+        let (jumps, mut jump_evaluations) = self.crossed.bracket(*field, region, iso, &edges)?;
+        let (mut walls, mut strays) = (Vec::new(), Vec::new());
+        for ((sheet, (_, is_far)), jumps) in sheets.iter().zip(suspects).zip(jumps) {
+            if jumps {
+                walls.push(Wall::new(sheet, &self.crossed));
+            } else if is_far {
+                strays.push(self.stray(iso, sheet));
+            }
+        }
+        jump_evaluations += follow(*field, region, iso, &mut walls)?;
+        let gradient_evaluations = settle(*field, region, iso, &mut strays)?;
+        let placed = walls.iter().map(|wall| {
+            let &Wall { vertex, position, inside, normal, .. } = wall;
+            Again { vertex, position, asked: inside, normal }
+        });
+        let settled = strays.iter().map(|stray| {
+            let (vertex, position) = (stray.index, stray.best());
+            Again { vertex, position, asked: position, normal: None }
+        });
+        let again: Vec<Again> = placed.chain(settled).collect();
+        self.evaluate_again(source, brick, &again)?;
+        Ok(Done {
+            gradient_evaluations,
+            full_evaluations: again.len() as u64,
+            jump_evaluations,
+            jump_vertices: walls.len() as u64,
+            doubtful: Vec::new(),
+        })
+    }
+
+    /// The suspects, and whether each is far from the surface. Notes those whose normal is doubtful.
+    fn suspects(&mut self, iso: f32) -> Vec<(usize, bool)> {
+        let mut found = Vec::new();
+        for start in (0..self.count).step_by(LANES) {
+            let chunk = start / LANES;
+            let (values, gradient) = (lane(&self.values, chunk), lanes(&self.gradient, chunk));
+            let (low, high) = (lane(&self.low[0], chunk), lane(&self.high[0], chunk));
+            let (spread, rise) = (lane(&self.spread, chunk), lanes(&self.rise, chunk));
+            let Verdict { far, odd, turned } =
+                judge(iso, [&low, &high], (&spread, &rise), &values, &gradient);
+            if [far, odd, turned] == [[0; LANES]; 3] {
+                continue;
+            }
+            for lane in 0..LANES.min(self.count - start) {
+                if far[lane] | odd[lane] == 1 {
+                    found.push((start + lane, far[lane] == 1));
+                }
+                if far[lane] | odd[lane] | turned[lane] == 1 {
+                    self.doubtful.push(start + lane);
+                }
+            }
+        }
+        found
+    }
+
+    fn sheet<F: Field>(&mut self, source: &Source<'_, F>, brick: usize, vertex: usize) -> Sheet {
+        let (cell, sheet) = self.owners[vertex];
+        let cell = &source.crossings.of(brick)[cell as usize];
+        let at = |planes: &Planes| planes.each_ref().map(|plane| plane[vertex]);
+        let start = Start { vertex, bounds: [at(&self.low), at(&self.high)] };
+        Sheet::new(source.bricks, brick, (cell, sheet), start, &self.table, &mut self.crossed)
+    }
+
+    fn stray(&self, iso: f32, sheet: &Sheet) -> Stray {
+        let Start { vertex, bounds, .. } = sheet.start;
+        let at = |planes: &Planes| planes.each_ref().map(|plane| plane[vertex]);
+        let place = Place { bounds, corners: sheet.corners };
+        Stray::new(iso, vertex, place, at(&self.points), self.values[vertex], at(&self.gradient))
+    }
+
+    fn evaluate_again<F: Field>(
+        &mut self,
+        source: &Source<'_, F>,
+        brick: usize,
+        again: &[Again],
+    ) -> Result<(), F::Error> {
+        let count = again.len();
+        if count == 0 {
+            return Ok(());
+        }
+        let [x, y, z] = [0, 1, 2].map(|axis| again.iter().map(|one| one.asked[axis]).collect::<Vec<f32>>());
+        let (mut values, mut gradient) = (vec![0.0; count], [0; 3].map(|_| vec![0.0; count]));
+        let mut attributes = vec![0.0; self.attributes.len() / self.count * count];
+        let mut planes: Vec<&mut [f32]> = attributes.chunks_exact_mut(count).collect();
+        let slopes = gradient.each_mut().map(Vec::as_mut_slice);
+        source.field.all(&source.regions[brick], &x, &y, &z, &mut values, slopes, &mut planes)?;
+        for (n, one) in again.iter().enumerate() {
+            let vertex = one.vertex;
+            for (axis, slope) in gradient.iter().enumerate() {
+                self.points[axis][vertex] = one.position[axis];
+                // A wall has the gradient of a field that falls along its normal.
+                self.gradient[axis][vertex] = one.normal.map_or(slope[n], |normal| -normal[axis]);
+            }
+            self.values[vertex] = values[n];
+            let planes = self.attributes.chunks_exact_mut(self.count).zip(attributes.chunks_exact(count));
+            planes.for_each(|(plane, answers)| plane[vertex] = answers[n]);
+        }
+        Ok(())
+    }
+}
