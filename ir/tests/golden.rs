@@ -7,7 +7,7 @@ use std::fs;
 
 use common::golden::{check_golden, differ, files, folder};
 use jbt_ir::domain::scalar::Scalar;
-use jbt_ir::pass::{GRADIENT, INTERVAL, PIPELINE};
+use jbt_ir::pass::{GRADIENT, GUARDED_GRADIENT, INTERVAL, PIPELINE};
 use jbt_ir::text::annotated;
 use jbt_ir::{Any, Function, Op, Type, apply, parse, verify};
 
@@ -26,7 +26,7 @@ fn lines<T: ToString>(items: &[T]) -> String {
 /// A pass is a stage from text to text. Its golden files are in `tests/golden/<name>`; both sides obey every rule.
 #[test]
 fn passes() {
-    for pass in [&GRADIENT, &INTERVAL].into_iter().chain(PIPELINE) {
+    for pass in [&GRADIENT, &GUARDED_GRADIENT, &INTERVAL].into_iter().chain(PIPELINE) {
         check_golden(pass.name, |input| verified(&(pass.run)(&verified(input)).to_string()).to_string());
     }
 }

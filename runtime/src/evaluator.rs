@@ -357,7 +357,7 @@ impl Evaluator {
     /// If there are too many or too few planes, or their lengths differ.
     pub fn eval_planes(&self, points: [&[f32]; 3], answers: &mut [&mut [f32]]) -> Result<(), EvalError> {
         let lanes = if places::are_places(&points) {
-            self.bound.run(&self.bound.all, &points, answers)?
+            self.bound.run_finite(&self.bound.all, &points, answers)?
         } else {
             self.run_placed(&self.bound.all, points, answers)?
         };
@@ -380,7 +380,7 @@ impl Evaluator {
         let ends = |x: &f32| x.abs() < f32::MAX;
         let Box3 { low, high } = region.bounds();
         let lanes = if low.iter().chain(&high).all(ends) || places::are_places(&points) {
-            self.bound.run(region.selection(), &points, answers)?
+            self.bound.run_finite(region.selection(), &points, answers)?
         } else {
             self.run_placed(region.selection(), points, answers)?
         };
@@ -397,7 +397,7 @@ impl Evaluator {
         answers: &mut [&mut [f32]],
     ) -> Result<usize, EvalError> {
         let placed = places::placed(&points);
-        let lanes = self.bound.run(selection, &placed.each_ref().map(Vec::as_slice), answers)?;
+        let lanes = self.bound.run_finite(selection, &placed.each_ref().map(Vec::as_slice), answers)?;
         places::blank(&self.layout, &points, answers);
         Ok(lanes)
     }

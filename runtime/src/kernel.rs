@@ -10,15 +10,14 @@
 
 use std::fmt;
 use std::str::FromStr;
-use std::sync::Arc;
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex, OnceLock};
 
 use jbt_frontend::diagnostic::Diagnostic;
 use jbt_frontend::query::Query;
 use jbt_ir::domain::counting::{evaluations_per_row, ops_per_row};
 use jbt_ir::domain::lanes::{Scratch, Tape};
 use jbt_ir::domain::scalar::Scalar;
-use jbt_ir::pass::{GRADIENT, INTERVAL, PIPELINE, Pass, run_pipeline};
+use jbt_ir::pass::{GRADIENT, GUARDED_GRADIENT, INTERVAL, PIPELINE, Pass, dce, run_pipeline};
 use jbt_ir::{Function, Selection, Tables, Verified, interpret, limits, verify};
 
 use crate::error::{CompileError, EvalError};
@@ -72,6 +71,8 @@ impl FromStr for Engine {
 pub enum Purpose {
     /// To answer a query at points.
     Answers(Query),
+    /// To answer with field and gradient where the gradient is not finite otherwise.
+    Guarded,
     /// To enclose the field in boxes.
     Ranges,
 }
@@ -81,6 +82,7 @@ impl Purpose {
     fn first_pass(self) -> Option<&'static Pass> {
         match self {
             Self::Answers(query) => query.gradient.then_some(&GRADIENT),
+            Self::Guarded => Some(&GUARDED_GRADIENT),
             Self::Ranges => Some(&INTERVAL),
         }
     }
@@ -132,6 +134,8 @@ pub(crate) struct Kernel {
     /// For each table, the ops that an active row takes.
     pub(crate) ops_per_row: Vec<u64>,
     code: Code,
+    /// What runs where the gradient is not finite, once that has been met; see [`guarded`](Self::guarded).
+    guarded: OnceLock<Option<Arc<Kernel>>>,
 }
 
 impl Kernel {
@@ -156,7 +160,14 @@ impl Kernel {
         };
         let per_row = evaluations_per_row(function.function());
         let ops_per_row = ops_per_row(function.function());
-        Ok(Self { lowered, function: Arc::new(function), per_row, ops_per_row, code })
+        Ok(Self {
+            lowered,
+            function: Arc::new(function),
+            per_row,
+            ops_per_row,
+            code,
+            guarded: OnceLock::new(),
+        })
     }
 
     pub(crate) fn engine(&self) -> Engine {
@@ -166,6 +177,25 @@ impl Kernel {
             #[cfg(feature = "jit")]
             Code::Jit(_) => Engine::Jit,
         }
+    }
+
+    /// A kernel for field and gradient at points where the gradient by this one is not finite; `None` if guards make its program too long. It
+    /// interprets: there are few such points as a rule, and a guarded program is several times as long.
+    pub(crate) fn guarded(&self) -> Option<&Arc<Self>> {
+        let make = || {
+            let mut field = self.lowered.clone();
+            field.outputs.truncate(1);
+            let body = field.body;
+            field.blocks[body].results.truncate(1);
+            let field = dce(&field);
+            let verified = optimise(field.clone(), Purpose::Guarded, &mut |_, _| {}).ok()?;
+            let engine = match self.engine() {
+                Engine::Scalar => Engine::Scalar,
+                Engine::Lanes | Engine::Jit => Engine::Lanes,
+            };
+            Self::new(field, verified, Some(engine)).ok().map(Arc::new)
+        };
+        self.guarded.get_or_init(make).as_ref()
     }
 
     /// Points that run together.
@@ -200,6 +230,7 @@ impl Kernel {
             #[cfg(feature = "jit")]
             machine,
             scratch: Mutex::new(Vec::new()),
+            guarded: OnceLock::new(),
         }
     }
 }
@@ -238,6 +269,8 @@ pub(crate) struct Bound {
     machine: Option<jbt_jit::BoundKernel>,
     /// Memory of interpreter runs, one for each thread that runs at once.
     scratch: Mutex<Vec<Scratch>>,
+    /// The guarded kernel with the same numbers.
+    pub(crate) guarded: OnceLock<Option<Box<Bound>>>,
 }
 
 /// The most points that fill up a last block.

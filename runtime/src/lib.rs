@@ -76,6 +76,7 @@ pub mod divide;
 mod error;
 mod evaluator;
 pub mod export;
+mod finite;
 mod job;
 pub mod kernel;
 pub mod mesh;

@@ -3,6 +3,7 @@
 //! * scalar = lanes = machine code, **bit for bit**, for every query and every length of the last block (a NaN equals any NaN);
 //! * the field has the same bits whatever else is asked;
 //! * a new set of numbers compiles nothing;
+//! * wherever coordinates are finite, so are all answers: engines agree on a NaN, so this is asked for by itself;
 //! * field, attributes and gradient agree with the f64 oracle `walk`, which shares no code with the compiler.
 //!
 //! `JBT_DIFFERENTIAL_SHAPES` sets the number of shapes, `JBT_DIFFERENTIAL_SEED` the first seed. A failure prints the model.
@@ -12,7 +13,7 @@ mod common;
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use common::{Random, points};
+use common::{HOSTILE, Random, points};
 use jbt::{Compiler, Engine, Evaluator, Model, Points, Query, Samples, Update};
 use jbt_frontend::check::CheckedTree;
 use jbt_frontend::text::print;
@@ -91,7 +92,41 @@ fn try_shape(shape: u64, tally: &Tally) {
         let points = points(&mut rng, 1 + (shape + 7 * set) as usize % 45, 1.6);
         let what = format!("shape {shape}, set {set}");
         let answers = compare_engines(&what, &model, all.as_ref().expect("made above"), &points);
+        check_finite(&what, &model, &points, &answers);
+        let hostile = hostile(&mut rng, &points);
+        let far = compare_engines(&what, &model, all.as_ref().expect("made above"), &hostile);
+        check_finite(&what, &model, &hostile, &far);
         compare_oracle(&what, &model, &tree, &points, &answers, tally);
+    }
+}
+
+/// The points, each with coordinates that overflow or underflow.
+fn hostile(rng: &mut fastrand::Rng, points: &Points) -> Points {
+    let one = |index| {
+        let mut point = points.get(index);
+        for _ in 0..rng.usize(1..4) {
+            point[rng.usize(0..3)] = HOSTILE[rng.usize(0..HOSTILE.len())];
+        }
+        point
+    };
+    (0..points.len()).map(one).collect()
+}
+
+/// All answers at points with finite coordinates are finite.
+fn check_finite(what: &str, model: &Model, points: &Points, answers: &Samples) {
+    for index in 0..points.len() {
+        let point = points.get(index);
+        if !point.iter().all(|x| x.is_finite()) {
+            continue;
+        }
+        for (name, plane) in answers.layout().names().iter().zip(answers.planes()) {
+            assert!(
+                plane[index].is_finite(),
+                "{what}: {name} is {} at {point:?} of\n{}",
+                plane[index],
+                print(model)
+            );
+        }
     }
 }
 

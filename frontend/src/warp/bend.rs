@@ -42,6 +42,8 @@ pub const SMALLEST_DISTANCE: f64 = 1.0 / 65_536.0;
 pub const LARGEST_RATE: f64 = 1e6;
 /// Products of rate and coordinates up to this have finite squares.
 const LARGEST_PRODUCT: f64 = (1_u64 << 60) as f64;
+/// Two squares of coordinates up to this, and of products of them with a rate up to 1, have a finite sum in f32: 2^63.
+const FARTHEST: f32 = (1_u64 << 63) as f32;
 
 /// A bend of a spine through the origin.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -289,9 +291,19 @@ impl WarpMember for Bend {
     fn emit<D: Domain>(d: &mut D, variant: u8, p: [D::Real; 3], row: &[D::Real]) -> [D::Real; 3] {
         let [_, u, v] = order(variant);
         let [rate, center, half_turn] = row[..3] else { unreachable!("a bend has thirteen columns") };
-        let (y, z) = (d.sub(p[u], center), p[v]);
+        let (far_y, far_z) = (d.sub(p[u], center), p[v]);
         let one = d.constant(1.0);
         let back = d.neg(rate);
+        // Where squares of coordinates in radii would overflow, the bend sees a nearer place: far away from all of its spine, too.
+        let (steep, farthest) = (d.abs(rate), d.constant(FARTHEST));
+        let steep = d.max(steep, one);
+        let farthest = d.div(farthest, steep);
+        let nearest = d.neg(farthest);
+        let mut near = |far| {
+            let near = d.min(far, farthest);
+            d.max(near, nearest)
+        };
+        let (y, z) = (near(far_y), near(far_z));
         let across = d.fma(back, z, one);
         let along = d.mul(rate, y);
         let spine = angle::emit(d, [across, along], y, half_turn, SMALLEST_DISTANCE as f32);
@@ -307,8 +319,8 @@ impl WarpMember for Bend {
         let inside = d.min(row[8], inside);
         let inside = d.add(inside, center);
 
-        let lower = rigid(d, y, z, &row[4..8]);
-        let upper = rigid(d, y, z, &row[9..13]);
+        let lower = rigid(d, far_y, far_z, &row[4..8]);
+        let upper = rigid(d, far_y, far_z, &row[9..13]);
         let (below, above) = (d.lt(spine.angle, row[3]), d.lt(row[8], spine.angle));
         let mut q = p;
         for ((axis, inside), (lower, upper)) in

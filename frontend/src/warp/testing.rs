@@ -89,6 +89,7 @@ where
         assert_eq!(warp.fault(), None, "{warp:?}");
         boxes_hold(&warp, &mut rng);
         growth_bounds(&warp, &mut rng);
+        far_is_far(&warp, &mut rng);
         for _ in 0..34 {
             compared += usize::from(forms_agree(&warp, vector(&mut rng, 2.0).as_vec3()));
         }
@@ -101,6 +102,7 @@ pub fn judge_formulas(warp: &Warp, rng: &mut fastrand::Rng) -> usize {
     assert_eq!(warp.fault(), None, "{warp:?}");
     boxes_hold(warp, rng);
     growth_bounds(warp, rng);
+    far_is_far(warp, rng);
     (0..34).filter(|_| forms_agree(warp, vector(rng, 2.0).as_vec3())).count()
 }
 
@@ -151,6 +153,28 @@ fn boxes_hold(warp: &Warp, rng: &mut fastrand::Rng) {
             }
             if holds(child, emitted_of(warp, p).as_dvec3()) {
                 assert!(holds(reach, p.as_dvec3()), "{warp:?} brings {p} into {child:?}: {reach:?}");
+            }
+        }
+    }
+}
+
+/// Coordinates whose squares overflow, and some that are small, are taken to numbers, and into no box that does not reach there.
+fn far_is_far(warp: &Warp, rng: &mut fastrand::Rng) {
+    const COORDINATES: [f32; 12] =
+        [0.0, -0.0, 1e-45, 1.0, -7.0, 1e6, -1e10, 1e19, -2e19, 1e30, -3e38, f32::MAX];
+    let (a, b) = (vector(rng, 1.0), vector(rng, 1.0));
+    let child = Bounds::new(a.min(b), a.max(b));
+    let reach = warp.reach(child);
+    for x in COORDINATES {
+        for y in COORDINATES {
+            for z in COORDINATES {
+                let p = Vec3::new(x, y, z);
+                let q = emitted_of(warp, p);
+                assert!(!q.is_nan(), "{warp:?} takes {p} to {q}");
+                assert!(
+                    !holds(child, q.as_dvec3()) || holds(reach, p.as_dvec3()),
+                    "{warp:?} brings {p} into {child:?}: {reach:?}"
+                );
             }
         }
     }

@@ -90,6 +90,10 @@ impl WarpMember for Twist {
     fn emit<D: Domain>(d: &mut D, variant: u8, p: [D::Real; 3], row: &[D::Real]) -> [D::Real; 3] {
         let [h, u, v] = order(variant);
         let angle = d.mul(row[0], p[h]);
+        // An infinite angle has no sine; so large a one turns nothing.
+        let (largest, smallest) = (d.constant(f32::MAX), d.constant(f32::MIN));
+        let angle = d.min(angle, largest);
+        let angle = d.max(angle, smallest);
         let (sin, cos) = (d.sin(angle), d.cos(angle));
         let mut q = p;
         let sv = d.mul(sin, p[v]);

@@ -23,12 +23,19 @@ pub const GRADIENT_OUTPUTS: [&str; 3] = ["gx", "gy", "gz"];
 /// The function with the gradient of its first output.
 #[must_use]
 pub fn gradient(function: &Function) -> Function {
-    let mut pass = Pass {
-        function,
-        moves: moving(function),
-        tangent: Tangent::new(FunctionBuilder::like(function)),
-        values: vec![None; function.values.len()],
-    };
+    with_gradient(function, Tangent::new(FunctionBuilder::like(function)))
+}
+
+/// As [`gradient`], but of the same ops with guards: every component is finite and within [`LARGEST_SLOPE`](crate::domain::tangent::LARGEST_SLOPE), whatever
+/// overflows on the way. Where nothing does, the bits are the same. It costs several times as many ops.
+#[must_use]
+pub fn guarded_gradient(function: &Function) -> Function {
+    with_gradient(function, Tangent::guarded(FunctionBuilder::like(function)))
+}
+
+fn with_gradient(function: &Function, tangent: Tangent) -> Function {
+    let mut pass =
+        Pass { function, moves: moving(function), tangent, values: vec![None; function.values.len()] };
     pass.block(function.body);
     let body = &function.blocks[function.body];
     let mut outputs = Vec::new();
@@ -39,6 +46,7 @@ pub fn gradient(function: &Function) -> Function {
             let slope = pass.tangent.components(dual.slope);
             let zero = pass.tangent.builder.constant(0.0);
             for (name, component) in GRADIENT_OUTPUTS.iter().zip(pass.with_zeros(slope)) {
+                let component = pass.tangent.saturated(component);
                 // The sign of a zero may depend on rows that add nothing; no answer shows it.
                 let component = pass.tangent.builder.add(component, zero);
                 outputs.push(((*name).to_owned(), component));
@@ -230,7 +238,8 @@ impl Pass<'_> {
                 Type::Mask => Any::Mask(primal),
                 Type::Bits => Any::Bits(primal),
                 Type::Real if self.moves[value.index()] => {
-                    let slope = [Some(next()), Some(next()), Some(next())];
+                    // What components gave, or a fold made of them.
+                    let slope = [0; 3].map(|_| Some(self.tangent.note(next())));
                     Any::Real(self.tangent.moving(primal, slope))
                 }
                 Type::Real => Any::Real(Tangent::still(primal)),

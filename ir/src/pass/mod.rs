@@ -22,7 +22,7 @@ mod simplify;
 
 pub use dce::dce;
 pub use fold_constants::fold_constants;
-pub use gradient::{GRADIENT_OUTPUTS, gradient};
+pub use gradient::{GRADIENT_OUTPUTS, gradient, guarded_gradient};
 pub use interval::{BOUND_SUFFIXES, interval};
 pub use legalize::legalize;
 pub use liveness::max_live;
@@ -49,6 +49,13 @@ pub const GRADIENT: Pass = Pass {
     name: "gradient",
     what: "Adds the gradient of the first output, by forward differentiation.",
     run: gradient,
+};
+
+/// The pass that goes in the place of [`GRADIENT`] for the points where that gives a gradient that is not finite.
+pub const GUARDED_GRADIENT: Pass = Pass {
+    name: "guarded-gradient",
+    what: "Adds the gradient of the first output, finite whatever overflows on the way.",
+    run: guarded_gradient,
 };
 
 /// The pass that goes before the others, and behind the gradient, where ranges are asked for.

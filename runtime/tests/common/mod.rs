@@ -385,6 +385,34 @@ fn glam(vector: [f64; 3]) -> glam::DVec3 {
 pub const SPICE: [f32; 12] =
     [0.0, -0.0, 1.0, -0.5, 1e-45, -1e-39, 1e30, -1e30, f32::MAX, f32::INFINITY, f32::NEG_INFINITY, f32::NAN];
 
+/// Finite coordinates at which squares, cubes and products of lengths overflow or underflow.
+pub const HOSTILE: [f32; 24] = [
+    0.0,
+    -0.0,
+    1e-45,
+    -1e-39,
+    1e-20,
+    0.25,
+    -1.0,
+    5.0,
+    -1e4,
+    1_048_576.0,
+    1e9,
+    -1e12,
+    1e15,
+    1e19,
+    -1e19,
+    2e19,
+    -2e19,
+    4e25,
+    -1e30,
+    1e30,
+    2e38,
+    -3e38,
+    f32::MIN,
+    f32::MAX,
+];
+
 /// Ordinary points within `size` of the origin, with spicy ones among them.
 pub fn points(rng: &mut Rng, count: usize, size: f32) -> jbt::Points {
     (0..count)

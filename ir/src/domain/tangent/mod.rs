@@ -10,15 +10,20 @@
 //! because along a chain of one variable (a squared distance, its falloff, a strength) only the scalar factors change: the
 //! derivative of a falloff is computed once and not three times. Components that are zero are not there at all, and squares keep
 //! their 2 in the constant, so that the gradient of `|p - c|^2` is `2 * (dx, dy, dz)` and costs nothing.
+//!
+//! A factor of 0 and a base that has overflowed make a NaN of a slope that is 0. A *guarded* domain ([`Tangent::guarded`]) emits the same products
+//! and sums, and keeps what goes into them and what comes out finite ([`guard`]).
 
-use rustc_hash::FxHashMap as HashMap;
+use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 
 use crate::builder::FunctionBuilder;
 use crate::entity::Value;
 use crate::op::{Domain, Op};
 
+mod guard;
 mod slope;
 
+pub use guard::LARGEST_SLOPE;
 pub use slope::{Factors, Slope, Vector};
 
 use slope::Factor;
@@ -37,6 +42,8 @@ pub struct Dual {
 pub struct Tangent {
     /// Where the instructions go.
     pub builder: FunctionBuilder,
+    /// Values that are known to be finite, if the domain is guarded.
+    tame: Option<HashSet<Value>>,
     bases: Vec<Vector>,
     base_names: HashMap<Vector, usize>,
     lists: Vec<Vec<Factor>>,
@@ -49,6 +56,7 @@ impl Tangent {
     pub fn new(builder: FunctionBuilder) -> Self {
         Self {
             builder,
+            tame: None,
             bases: Vec::new(),
             base_names: HashMap::default(),
             lists: vec![Vec::new()],
@@ -313,6 +321,7 @@ impl Domain for Tangent {
                 let positive = d.builder.lt(zero, a.value);
                 let ratio = d.builder.select(positive, quotient, zero);
                 let derivative = d.builder.mul(b.value, ratio);
+                let derivative = d.power_slope(derivative, [a.value, b.value, value], positive);
                 slope = d.scaled(a.slope, derivative);
             }
             if b.slope != Slope::Zero {

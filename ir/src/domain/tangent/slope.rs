@@ -138,7 +138,11 @@ impl Tangent {
             let count = left.iter().take_while(|&&other| other == factor).count();
             left = &left[count..];
             let Factor::Value(value) = factor else { continue };
-            let power = (1..count).fold(value, |power, _| self.builder.mul(power, value));
+            let value = self.tame(value);
+            let power = (1..count).fold(value, |power, _| {
+                let product = self.builder.mul(power, value);
+                self.tame_result(product)
+            });
             if self.builder.is_uniform(value) {
                 row = self.times(row, power);
             } else {
@@ -149,10 +153,11 @@ impl Tangent {
         let zero = self.builder.constant(0.0);
         for &factor in list {
             product = match factor {
-                Factor::Value(_) => product,
+                Factor::Value(_) => continue,
                 Factor::Where(mask) => self.builder.select(mask, product, zero),
                 Factor::Unless(mask) => self.builder.select(mask, zero, product),
             };
+            self.note(product);
         }
         product
     }
@@ -177,7 +182,11 @@ impl Tangent {
         let Slope::Scaled { constant, factors, base } = slope else { return [None; 3] };
         let scale = self.scale(constant, factors);
         let base = self.bases[base];
-        base.map(|component| component.map(|value| self.times(scale, value)))
+        base.map(|component| {
+            let value = component?;
+            let product = self.times(scale, value);
+            Some(self.tame(product))
+        })
     }
 
     /// `constant * factors * vector` as a slope.
@@ -201,12 +210,14 @@ impl Tangent {
 
     /// `a * b`, where 1 is not multiplied.
     pub(super) fn times(&mut self, a: Value, b: Value) -> Value {
+        let [a, b] = [a, b].map(|value| self.tame(value));
         if self.builder.as_constant(a) == Some(1.0) {
             b
         } else if self.builder.as_constant(b) == Some(1.0) {
             a
         } else {
-            self.builder.mul(a, b)
+            let product = self.builder.mul(a, b);
+            self.tame_result(product)
         }
     }
 
@@ -271,7 +282,7 @@ impl Tangent {
         let (first, second) = (self.product_of(1.0, &left), self.product_of(1.0, &right));
         let ratio = cb / ca;
         let sum = if ratio == 1.0 {
-            self.builder.add(first, second)
+            self.plus(first, second)
         } else {
             let ratio = self.builder.constant(ratio);
             self.multiply_add(ratio, second, first)
@@ -289,7 +300,7 @@ impl Tangent {
             (Some(a), None) => Some(fa.map_or(a, |f| self.times(f, a))),
             (None, Some(b)) => Some(fb.map_or(b, |f| self.times(f, b))),
             (Some(a), Some(b)) => Some(match (fa, fb) {
-                (None, None) => self.builder.add(a, b),
+                (None, None) => self.plus(a, b),
                 (Some(fa), None) => self.multiply_add(fa, a, b),
                 (None, Some(fb)) => self.multiply_add(fb, b, a),
                 (Some(fa), Some(fb)) => {
@@ -300,15 +311,24 @@ impl Tangent {
         })
     }
 
+    /// `a + b`.
+    fn plus(&mut self, a: Value, b: Value) -> Value {
+        let [a, b] = [a, b].map(|value| self.tame(value));
+        let sum = self.builder.add(a, b);
+        self.tame_result(sum)
+    }
+
     /// `a * b + c`, where 1 is not multiplied.
     fn multiply_add(&mut self, a: Value, b: Value, c: Value) -> Value {
         if self.builder.as_constant(a) == Some(1.0) {
-            self.builder.add(b, c)
-        } else if self.builder.as_constant(b) == Some(1.0) {
-            self.builder.add(a, c)
-        } else {
-            self.builder.fma(a, b, c)
+            return self.plus(b, c);
         }
+        if self.builder.as_constant(b) == Some(1.0) {
+            return self.plus(a, c);
+        }
+        let [a, b, c] = [a, b, c].map(|value| self.tame(value));
+        let sum = self.builder.fma(a, b, c);
+        self.tame_result(sum)
     }
 
     /// The slope of `condition ? a : b`.
@@ -333,6 +353,7 @@ impl Tangent {
                 let [shared, left, right] = self.common(fa, fb);
                 let (a, b) = (self.product_of(ca, &left), self.product_of(cb, &right));
                 let chosen = self.builder.select(condition, a, b);
+                self.note(chosen);
                 let shared = self.name(shared);
                 let factors = self.with(shared, Factor::Value(chosen));
                 Slope::Scaled { constant: 1.0, factors, base: ba }
@@ -342,7 +363,10 @@ impl Tangent {
                 let zero = self.builder.constant(0.0);
                 let vector = std::array::from_fn(|axis| match (a[axis], b[axis]) {
                     (None, None) => None,
-                    (a, b) => Some(self.builder.select(condition, a.unwrap_or(zero), b.unwrap_or(zero))),
+                    (a, b) => {
+                        let chosen = self.builder.select(condition, a.unwrap_or(zero), b.unwrap_or(zero));
+                        Some(self.note(chosen))
+                    }
                 });
                 self.vector(1.0, Factors::default(), vector)
             }

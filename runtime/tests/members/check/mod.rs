@@ -1,6 +1,7 @@
 //! What every row is judged by. Each check has one file, and says in its first words what it holds a member to.
 
 mod engines;
+mod finite;
 mod oracle;
 mod ranges;
 mod support;
@@ -18,10 +19,11 @@ type Verdict = Result<(), String>;
 type Check = fn(&Subject) -> Verdict;
 
 /// Every check and its name.
-const CHECKS: [(&str, Check); 6] = [
+const CHECKS: [(&str, Check); 7] = [
     ("values", values::check),
     ("round trip", text::check),
     ("engines", engines::check),
+    ("finite", finite::check),
     ("oracle", oracle::check),
     ("support", support::check),
     ("ranges", ranges::check),
