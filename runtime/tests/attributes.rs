@@ -106,3 +106,113 @@ fn a_checker_is_where_it_should_be_on_a_mesh() {
         "{black} black and {near} of {count}"
     );
 }
+
+/// What answers where no field is: a leaf has its own values everywhere, operators give the default where nothing has weight.
+#[test]
+fn where_nothing_has_weight() {
+    const RED: &str = "color (1 0 0) { point { radius 1 } }";
+    const BLUE: &str = "color (0 0 1) { point { at (0.5 0 0) radius 1 } }";
+    let (own, default) = ([1.0, 0.0, 0.0], [1.0, 1.0, 1.0]);
+    let far = [5.0, 5.0, 5.0];
+    for (root, expected) in [
+        (RED.to_owned(), own),
+        (format!("translate (1 0 0) {{ twist axis z rate 1 {{ {RED} }} }}"), own),
+        ("color (1 0 0) { expression { x - 9 } }".to_owned(), own),
+        (format!("select 0 {{ {RED} {BLUE} }}"), own),
+        (format!("union {{ {RED} }}"), own),
+        (format!("intersection {{ {RED} }}"), own),
+        (format!("product {{ {RED} }}"), own),
+        (format!("difference {{ {RED} }}"), own),
+        (format!("smooth_union width 0.2 {{ {RED} }}"), own),
+        (format!("rfunction union {{ {RED} }}"), own),
+        (format!("sum {{ {RED} }}"), default),
+        (format!("ricci 3 {{ {RED} }}"), default),
+        (format!("clamp low 0 high 0.8 {{ {RED} }}"), default),
+        (format!("complement {{ {RED} }}"), default),
+        (format!("within (-1 -1 -1) to (1 1 1) {{ {RED} }}"), default),
+        (format!("sum {{ {RED} {BLUE} }}"), default),
+        (format!("ricci 3 {{ {RED} {BLUE} }}"), default),
+        (format!("product {{ {RED} {BLUE} }}"), default),
+        (format!("union {{ {RED} {BLUE} }}"), default),
+        (format!("intersection {{ {RED} {BLUE} }}"), default),
+        (format!("difference {{ {RED} {BLUE} }}"), default),
+        (format!("symmetric_difference {{ {RED} {BLUE} }}"), default),
+        (format!("smooth_union width 0.2 {{ {RED} {BLUE} }}"), default),
+        (format!("smooth_intersection width 0.2 {{ {RED} {BLUE} }}"), default),
+        (format!("smooth_difference width 0.2 {{ {RED} {BLUE} }}"), default),
+        (format!("rfunction union {{ {RED} {BLUE} }}"), default),
+        (format!("rfunction intersection power 3 {{ {RED} {BLUE} }}"), default),
+        (format!("rfunction difference order 2 {{ {RED} {BLUE} }}"), default),
+    ] {
+        let tree = tree(&format!("jbt 1 {root}"));
+        assert_eq!(walk(&tree, far).attributes[0], expected, "the oracle on {root}");
+        for engine in Engine::ALL {
+            let evaluator =
+                Compiler::for_engine(engine).evaluator(&tree, Query::ATTRIBUTES).expect("it compiles");
+            let color = evaluator.probe(far.map(|x| x as f32)).color().expect("it is there");
+            assert_eq!(color.map(f64::from), expected, "{} on {root}", engine.name());
+        }
+    }
+}
+
+/// Steps of more than two children mix as they fold: the formulas of the page on attributes, with derivatives by differences.
+#[test]
+fn steps_weigh_two_sides_at_a_time() {
+    let at = [0.1, 0.2, -0.15];
+    let children = [[0.0, 0.3, 0.1], [0.4, -0.1, 0.0], [-0.2, 0.2, -0.5]];
+    let leaf = |[x, y, z]: [f64; 3], color: &str| {
+        format!("color {color} {{ point {{ at ({x} {y} {z}) radius 1 }} }}")
+    };
+    let leaves = [leaf(children[0], "(1 0 0)"), leaf(children[1], "(0 1 0)"), leaf(children[2], "(0 0 1)")];
+    let fields = children.map(|center| {
+        let square: f64 = (0..3).map(|axis| (at[axis] - center[axis]).powi(2)).sum();
+        // The soft falloff of radius 1.
+        let sample = walk(&tree(&format!("jbt 1 {}", leaf(center, "(1 1 1)"))), at);
+        assert!(square < 1.0 && sample.field > 0.0);
+        sample.field
+    });
+    for operator in [
+        "smooth_union width 0.4",
+        "smooth_intersection width 0.4",
+        "rfunction union",
+        "rfunction union power 64",
+        "rfunction intersection power 3",
+        "rfunction union order 2",
+    ] {
+        let field = |[a, b]: [f64; 2]| {
+            let constant = |f: f64| format!("expression {{ {f:?} }}");
+            walk(&tree(&format!("jbt 1 {operator} {{ {} {} }}", constant(a), constant(b))), at).field
+        };
+        // `max(0, f dF/df)` of both sides, normalised.
+        let shares = |sides: [f64; 2]| {
+            let slope = |side: usize| {
+                let step = 1e-6;
+                let by = |offset: f64| {
+                    let mut moved = sides;
+                    moved[side] += offset;
+                    field(moved)
+                };
+                (by(step) - by(-step)) / (2.0 * step)
+            };
+            let weights = [0, 1].map(|side| (sides[side] * slope(side)).max(0.0));
+            weights.map(|weight| weight / (weights[0] + weights[1]))
+        };
+        let [a, b] = shares([fields[0], fields[1]]);
+        let [before, last] = shares([field([fields[0], fields[1]]), fields[2]]);
+        let expected = [a * before, b * before, last];
+        let tree = tree(&format!("jbt 1 {operator} {{ {} }}", leaves.join(" ")));
+        let oracle = &walk(&tree, at).attributes[0];
+        let evaluator = Compiler::new().evaluator(&tree, Query::ATTRIBUTES).expect("it compiles");
+        let color = evaluator.probe(at.map(|x| x as f32)).color().expect("it is there");
+        for channel in 0..3 {
+            assert!(
+                (oracle[channel] - expected[channel]).abs() < 1e-6,
+                "{operator}: {oracle:?}, not {expected:?}"
+            );
+            assert!(
+                (f64::from(color[channel]) - expected[channel]).abs() < 1e-5,
+                "{operator}: {color:?}, not {expected:?}"
+            );
+        }
+    }
+}

@@ -3,13 +3,13 @@
 //! ```text
 //! union         max(a, b) + D          D = (K - |a - b|)^2 / (4 K) where |a - b| < K, else 0
 //! intersection  min(a, b) - D          K = k - max(0, 2 k - (a + b))^2 / (4 k), and 0 where a + b <= 0
-//! difference    the intersection of a and max(0, 2 iso - b), with k limited by b as K is by a + b
+//! difference    the intersection of a and max(0, 2 iso - b), where k has been limited by b first, in the way that a + b limits it
 //! ```
 //!
 //! D is the quadratic kernel of smooth distances (Quilez 2013). With K = k alone the union of nothing and nothing were k / 4. The limit of K by the
 //! fields, which is reached with its slope, makes D vanish exactly where a side is 0: so supports are those of the operations without
 //! `smooth`, zeros are left out by the same rules, and gradients are continuous wherever those of the fields are. Where `a + b >= 2 k`,
-//! K is k: with k up to 2/3 iso (1/2 iso for the difference) that is so at every point of the surface.
+//! K is k: with k up to 2/3 iso (4/3 iso for the intersection, 1/3 iso for the difference) that is so at every point of the surface.
 //!
 //! Both operations grow with either field. Where the fields are small against k they are homogeneous: `max + min^2 / (a + b)`, `a b / (a + b)`.
 //! Fields that are negative are not rounded. Weights are `f dF/df`; what is subtracted counts by its complement, where it is there.
@@ -233,4 +233,72 @@ fn emit_rounded<D: Domain>(
     let left_is_smaller = if is_union { d.lt(a, b) } else { d.le(a, b) };
     let slopes = [d.select(left_is_smaller, smaller, larger), d.select(left_is_smaller, larger, smaller)];
     (field, slopes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Sides on the surface, by bisection of the left one.
+    fn on_surface(set: SetOperation, b: f64, width: f64, iso: f64) -> Option<[f64; 2]> {
+        let field = |a: f64| Smooth(set).pair([a, b], width, iso).field - iso;
+        let (mut low, mut high) = (0.0, 4.0 * iso);
+        if field(low) > 0.0 || field(high) < 0.0 {
+            return None;
+        }
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if field(middle) < 0.0 { low = middle } else { high = middle }
+        }
+        Some([low, b])
+    }
+
+    /// How much the surface is rounded, and how much it were with all of the width.
+    fn roundings(set: SetOperation, [a, b]: [f64; 2], width: f64, iso: f64) -> [f64; 2] {
+        let field = Smooth(set).pair([a, b], width, iso).field;
+        let [b, sharp] = match set {
+            SetOperation::Union => [b, a.max(b)],
+            SetOperation::Intersection => [b, a.min(b)],
+            SetOperation::Difference => [2.0 * iso - b, a.min(2.0 * iso - b)],
+        };
+        [(field - sharp).abs(), (width - (a - b).abs()).max(0.0).powi(2) / (4.0 * width)]
+    }
+
+    /// The most that all of the surface may have, as a part of the iso-value.
+    #[test]
+    fn narrow_widths_are_not_limited_on_the_surface() {
+        let iso = 0.5;
+        for (set, most) in [
+            (SetOperation::Union, 2.0 / 3.0),
+            (SetOperation::Intersection, 4.0 / 3.0),
+            (SetOperation::Difference, 1.0 / 3.0),
+        ] {
+            let is_full = |width: f64| {
+                (0..=2000).filter_map(|step| on_surface(set, f64::from(step) * 1e-3, width, iso)).all(
+                    |sides| {
+                        let [found, full] = roundings(set, sides, width, iso);
+                        (found - full).abs() < 1e-9
+                    },
+                )
+            };
+            assert!(is_full(0.99 * most * iso), "{set:?}");
+            assert!(!is_full(1.2 * most * iso), "{set:?}");
+        }
+    }
+
+    /// The formulas of the page, at fields where both limits are at work.
+    #[test]
+    fn a_difference_is_limited_by_what_is_subtracted_and_by_the_sum() {
+        let limited =
+            |k: f64, s: f64| if s > 0.0 { k - (2.0 * k - s).max(0.0).powi(2) / (4.0 * k) } else { 0.0 };
+        let (iso, width) = (0.5, 0.4);
+        for (a, b) in [(0.3, 0.5), (0.2, 0.75), (0.1, 0.95), (0.4, 0.6), (0.9, 0.1), (0.5, 0.0)] {
+            let other = 2.0 * iso - b;
+            let k = limited(limited(width, b), a + other);
+            let apart = f64::abs(a - other);
+            let by = if apart < k { (k - apart).powi(2) / (4.0 * k) } else { 0.0 };
+            let found = Smooth(SetOperation::Difference).pair([a, b], width, iso).field;
+            assert!((found - (a.min(other) - by)).abs() < 1e-12, "{a} {b}: {found}");
+        }
+    }
 }
