@@ -67,6 +67,27 @@ fn unsafe_code_has_its_homes() {
     }
 }
 
+/// Scenes are read and meshes are saved by two files of the library, besides the binary.
+#[test]
+fn files_are_opened_at_two_doors() {
+    let doors = ["runtime/src/scene.rs", "runtime/src/export/mod.rs", "runtime/src/export/tests.rs"];
+    for name in ["frontend", "ir", "jit", "runtime"] {
+        for (path, text) in sources(name) {
+            let is_door = doors.iter().any(|door| path.ends_with(door));
+            let mut code = text.lines().filter(|line| !line.trim_start().starts_with("//"));
+            let opens = code.any(|line| {
+                ["std::fs", "File::", "fs::read", "fs::write"].iter().any(|word| line.contains(word))
+            });
+            // What the system says of its pages of memory is no file of anybody's.
+            assert!(
+                is_door || !opens || path.ends_with("jit/src/memory.rs"),
+                "{} opens files",
+                path.display()
+            );
+        }
+    }
+}
+
 #[test]
 fn every_file_says_what_it_is() {
     for name in ["frontend", "ir", "jit", "runtime", "cli", "benches"] {
