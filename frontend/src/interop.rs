@@ -1,6 +1,7 @@
 //! Vectors and affine maps of other libraries: features `glam` and `mint`.
 //!
-//! glam is used inside of this crate whatever the features are; its types are in the interface of the builder with the feature alone, because its
+//! glam is used inside of this crate whatever the features are; its types are in the interface of the builder
+//! with the feature alone, because its
 //! major versions move.
 
 use crate::number::{Rows, Vector};

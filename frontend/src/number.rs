@@ -30,7 +30,8 @@ pub(crate) type Values = HashMap<Arc<str>, f64>;
 
 /// A number of a model: a plain one, or one that follows parameters.
 ///
-/// It converts from `f64`, `f32`, and integers of up to 32 bits, all exactly (so that 0.1f32 is 0.10000000149011612), and has the operators
+/// It converts from `f64`, `f32`, and integers of up to 32 bits, all exactly (so that 0.1f32 is
+/// 0.10000000149011612), and has the operators
 /// `+ - * /` with `f64`, `i32` and its own kind, and functions of the text format. See the module.
 #[derive(Clone)]
 pub struct Number {
@@ -315,7 +316,8 @@ operators! {
     Div div Divide,
 }
 
-/// Three numbers: from an array, or from a tuple where some are plain and some follow parameters; with the features `glam` and `mint` from their vectors.
+/// Three numbers: from an array, or from a tuple where some are plain and some follow parameters; with the
+/// features `glam` and `mint` from their vectors.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Vector(pub(crate) [Number; 3]);
 
@@ -331,7 +333,8 @@ impl<X: Into<Number>, Y: Into<Number>, Z: Into<Number>> From<(X, Y, Z)> for Vect
     }
 }
 
-/// The rows of a 3x4 matrix, an affine map: the last column is the shift. From arrays of rows, and with the features `glam` and `mint` from their maps.
+/// The rows of a 3x4 matrix, an affine map: the last column is the shift. From arrays of rows, and with the
+/// features `glam` and `mint` from their maps.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Rows(pub(crate) [[Number; 4]; 3]);
 

@@ -42,7 +42,8 @@ impl Layout {
         self.groups.iter().map(|(group, plane)| (&*group.name, *plane, group.width()))
     }
 
-    /// What is answered, plane by plane, where there is no place: NaN for field and gradient, and the defaults of attributes.
+    /// What is answered, plane by plane, where there is no place: NaN for field and gradient, and the
+    /// defaults of attributes.
     pub(crate) fn blanks(&self) -> Vec<f32> {
         let mut blanks = vec![f32::NAN; self.names.len()];
         for (group, first) in &self.groups {

@@ -114,7 +114,8 @@ impl Compiler {
     }
 }
 
-/// Points that are brought into planes at once: a multiple of every kernel's width, small enough for the nearest cache.
+/// Points that are brought into planes at once: a multiple of every kernel's width, small enough for the
+/// nearest cache.
 const BLOCK: usize = 512;
 /// Points that one thread evaluates at once.
 const PART: usize = 4096;
@@ -255,13 +256,16 @@ impl Evaluator {
         Samples::new(self.layout.clone())
     }
 
-    /// The answers at all points: [`Points`](crate::Points), or a slice, an array or a vector of points as they are. `samples` is resized; keep it for the next call
+    /// The answers at all points: [`Points`](crate::Points), or a slice, an array or a vector of points as
+    /// they are. `samples` is resized; keep it for the next call
     /// to save the allocation.
     ///
     /// Points of f32 as they are count from the origin of the world; [`Points`] know where theirs count from.
-    /// What counts from another [origin](Self::origin) than this evaluator is moved, in f64, and rounded once.
+    /// What counts from another [origin](Self::origin) than this evaluator is moved, in f64, and rounded
+    /// once.
     ///
-    /// It is serial: everything is done on the thread that calls. [`par_eval`](Self::par_eval) uses others too.
+    /// It is serial: everything is done on the thread that calls. [`par_eval`](Self::par_eval) uses others
+    /// too.
     ///
     /// ```
     /// use jbt::{Evaluator, Model, Query, build::point};
@@ -273,8 +277,10 @@ impl Evaluator {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
-    /// A coordinate that is infinite counts as the largest finite number of its sign. At a point with a coordinate that is NaN, field and gradient
-    /// are NaN and attributes have their defaults, on all engines; such a point is outside, as `field >= iso` says.
+    /// A coordinate that is infinite counts as the largest finite number of its sign. At a point with a
+    /// coordinate that is NaN, field and gradient
+    /// are NaN and attributes have their defaults, on all engines; such a point is outside, as `field >= iso`
+    /// says.
     ///
     /// # Errors
     /// If `samples` was made for another query or model.
@@ -283,7 +289,8 @@ impl Evaluator {
         self.eval_part(points, 0, points.count(), answers)
     }
 
-    /// As [`eval`](Self::eval), on the threads of the rayon pool in which this is called. The answers have the same bits, for any number of threads.
+    /// As [`eval`](Self::eval), on the threads of the rayon pool in which this is called. The answers have
+    /// the same bits, for any number of threads.
     ///
     /// # Errors
     /// Those of [`eval`](Self::eval).

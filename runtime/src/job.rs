@@ -10,7 +10,8 @@ pub(crate) type Hook<'h> = &'h mut (dyn FnMut(f32) -> bool + Send);
 /// Work that tells a hook how far it is.
 type Work<'a, T, E> = dyn FnOnce(Hook<'_>) -> Result<T, E> + 'a;
 
-/// Long work that is ready to run: a mesh, a picture, a slice, samples, measures. Nothing is done before [`run`](Self::run).
+/// Long work that is ready to run: a mesh, a picture, a slice, samples, measures. Nothing is done before
+/// [`run`](Self::run).
 ///
 /// It runs on the threads of the rayon pool in which `run` is called.
 ///
@@ -53,7 +54,8 @@ impl<'a, T, E> Job<'a, T, E> {
         Self { work: Box::new(work), watchers: Vec::new(), tokens: Vec::new() }
     }
 
-    /// The same, and `watch` is told how far the work is: ascending parts of it, from 0 to 1. It is called from any of the threads that work, never
+    /// The same, and `watch` is told how far the work is: ascending parts of it, from 0 to 1. It is called
+    /// from any of the threads that work, never
     /// twice at once; the work waits for it.
     pub fn on_progress(mut self, watch: impl FnMut(f32) + Send + 'a) -> Self {
         self.watchers.push(Box::new(watch));

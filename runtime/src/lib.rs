@@ -31,8 +31,8 @@
 //! text, build, import                              Polygonize ──► Mesh ──► export
 //! ```
 //!
-//! * [`Scene::load`], [`build`], [`text`] and [`import`] make a [`Model`]; [`Model::check`] says everything that is wrong with it. [`tree`] is for
-//!   programs that read one.
+//! * [`Scene::load`], [`build`], [`text`] and [`import`] make a [`Model`]; [`Model::check`] says everything
+//!   that is wrong with it. [`tree`] is for programs that read one.
 //! * Numbers may follow named parameters ([`build::param`], `param` in a text): [`CheckedTree::with_parameters`] sets them, and
 //!   [`Evaluator::update`] then writes numbers and compiles nothing.
 //! * An [`Evaluator`] answers one [`Query`] at any points, on the [`Engine`] that the machine has; all engines give the same bits.
@@ -43,17 +43,20 @@
 //!   reaches, how large it is.
 //! * A [`Tracer`] follows rays to where they hit the surface, singly or in packets, and misses nothing that is longer than a tolerance.
 //! * [`Counters`] say what was done, and what separate walks would have done; [`statistics`] foretell it, and say how much of it matters.
-
 //!
 //! # Errors
 //!
-//! Reading, checking and setting parameters have one error, [`Diagnostics`]: a list of all that is wrong, which shows each place with its line and a caret.
-//! Every other door has a small error of its own. All are `Send + Sync + 'static` and go into `Box<dyn Error>`; none is a panic, whatever a file says.
+//! Reading, checking and setting parameters have one error, [`Diagnostics`]: a list of all that is wrong,
+//! which shows each place with its line and a caret.
+//! Every other door has a small error of its own. All are `Send + Sync + 'static` and go into `Box<dyn
+//! Error>`; none is a panic, whatever a file says.
 //!
 //! # Threads
 //!
-//! [`Evaluator::eval`] is serial. [`Evaluator::par_eval`] and all long work run on the rayon pool in which they are called; the answers have the same bits
-//! for any number of threads. Long work is a [`Job`]: `.run()` does it, `.on_progress(..)` watches it, `.cancel(&token)` stops it. Evaluators, tracers,
+//! [`Evaluator::eval`] is serial. [`Evaluator::par_eval`] and all long work run on the rayon pool in which
+//! they are called; the answers have the same bits
+//! for any number of threads. Long work is a [`Job`]: `.run()` does it, `.on_progress(..)` watches it,
+//! `.cancel(&token)` stops it. Evaluators, tracers,
 //! solids, slicers and renderers are `Send + Sync`.
 //!
 //! # Features
@@ -65,8 +68,10 @@
 //! | `mint` | the same for mint 0.5, for any other library of vectors |
 //! | `serde` | meshes, points, samples, settings and reports can be written, and read where nothing can be wrong with them |
 //!
-//! glam's major version is a matter of that feature alone: nothing else here has its types. A new major of glam is a change for those who have
-//! turned it on, and for nobody else; `mint` stays as it is. What the nodes of a [`tree`] hold is the compiler's own, and read by plain numbers.
+//! glam's major version is a matter of that feature alone: nothing else here has its types. A new major of
+//! glam is a change for those who have
+//! turned it on, and for nobody else; `mint` stays as it is. What the nodes of a [`tree`] hold is the
+//! compiler's own, and read by plain numbers.
 
 mod buffer;
 pub mod contour;

@@ -39,14 +39,16 @@ impl<T: AsPoint + ?Sized> AsPoint for &T {
     }
 }
 
-/// Any number of points that can be evaluated as they are: [`Points`], and slices, arrays and vectors of [points](AsPoint).
+/// Any number of points that can be evaluated as they are: [`Points`], and slices, arrays and vectors of
+/// [points](AsPoint).
 ///
 /// Kernels run over planes. Points that are none are brought into planes block by block, on the stack.
 pub trait AsPoints: Sync {
     /// Number of points.
     fn count(&self) -> usize;
 
-    /// Writes the coordinates of points from `start` on, as many as a plane is long. The planes are equally long, and there are as many points.
+    /// Writes the coordinates of points from `start` on, as many as a plane is long. The planes are equally
+    /// long, and there are as many points.
     fn copy_to(&self, start: usize, planes: [&mut [f32]; 3]);
 
     /// Where their coordinates count from: the origin of the world, but for [`Points`] about another one.
@@ -113,7 +115,8 @@ impl<P: AsPoints + ?Sized> AsPoints for &P {
 
 /// Points in space: three planes of equal length, and the origin from which their coordinates count.
 ///
-/// Any f32 may be a coordinate. An infinity counts as the largest finite number of its sign; a point with a NaN has a field that is NaN, which is
+/// Any f32 may be a coordinate. An infinity counts as the largest finite number of its sign; a point with a
+/// NaN has a field that is NaN, which is
 /// outside (see [`Evaluator::eval`](crate::Evaluator::eval)).
 ///
 /// ```

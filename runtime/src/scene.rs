@@ -90,7 +90,8 @@ impl SceneFormat {
         Err(vec![error].into())
     }
 
-    /// The format by the first line that means something. ParsIP scenes are sections, the first of which begins with a bracket, and instructions have
+    /// The format by the first line that means something. ParsIP scenes are sections, the first of which
+    /// begins with a bracket, and instructions have
     /// names that begin with an underscore as a rule; no `.jbt` text begins with either. All have comments.
     #[must_use]
     pub fn of_content(text: &[u8]) -> Self {
@@ -111,7 +112,8 @@ impl Scene {
     /// Reads a file: `.jbt`, `.blob`, `.scene` or `.vm`, or one whose name has no ending, by its first line.
     ///
     /// # Errors
-    /// A file that cannot be read ([`Diagnostics::io`] says why), an ending that is not known, a file of more than [`MAX_SCENE_BYTES`], and
+    /// A file that cannot be read ([`Diagnostics::io`] says why), an ending that is not known, a file of more
+    /// than [`MAX_SCENE_BYTES`], and
     /// everything that is wrong with its text. What is wrong with the model, [`check`](Self::check) says.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, Diagnostics> {
         Self::load_with(path, &Options::default())
@@ -144,7 +146,8 @@ impl Scene {
         Self::read(name, &bytes, options)
     }
 
-    /// A scene that somebody else has read, with a name for messages. The format is that of the name, as if it were a file's; a name without an ending
+    /// A scene that somebody else has read, with a name for messages. The format is that of the name, as if
+    /// it were a file's; a name without an ending
     /// leaves it to the first line.
     ///
     /// ```

@@ -30,7 +30,8 @@
 //! );
 //! ```
 //!
-//! Numbers of nodes are best read by [`Skeleton::to_fields`] and its kind, and by [`NodeKind::rows`]: the structures in their variants are those of
+//! Numbers of nodes are best read by [`Skeleton::to_fields`] and its kind, and by [`NodeKind::rows`]: the
+//! structures in their variants are those of
 //! the compiler, in vectors of its own glam.
 
 pub use jbt_frontend::attribute::{AttributeValue, Textured, UvMap};

@@ -1,4 +1,5 @@
-//! The first hour with the library: errors that show their places, scenes by their endings, and the traits that people expect.
+//! The first hour with the library: errors that show their places, scenes by their endings, and the traits
+//! that people expect.
 
 use std::error::Error;
 use std::path::Path;

@@ -214,7 +214,8 @@ operators! {
 macro_rules! assignments {
     ($($trait:ident $method:ident $combinator:ident),+ $(,)?) => { $(
         impl $trait for Tree {
-            /// A root that is this operator already, without other parameters, gets one more child: a loop gives one node, and no chain of them.
+            /// A root that is this operator already, without other parameters, gets one more child: a loop
+            /// gives one node, and no chain of them.
             fn $method(&mut self, other: Self) {
                 if *self.node().kind() == NodeKind::Combine(Combinator::$combinator) {
                     self.push(other);

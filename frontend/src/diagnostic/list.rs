@@ -21,7 +21,8 @@ impl SourceText {
     /// What a text is called that has no name.
     pub const UNNAMED: &'static str = "<text>";
 
-    /// A text, copied, with the name of its file or something like `<stdin>`. More than [`MAX_SCENE_BYTES`] are not kept, as nobody reads them.
+    /// A text, copied, with the name of its file or something like `<stdin>`. More than [`MAX_SCENE_BYTES`]
+    /// are not kept, as nobody reads them.
     #[must_use]
     pub fn new(name: &str, text: &[u8]) -> Self {
         Self { name: name.into(), text: text[..text.len().min(MAX_SCENE_BYTES)].into() }
@@ -61,7 +62,8 @@ impl fmt::Debug for SourceText {
 
 /// All that is wrong with a model or its file: the one error of reading, checking and setting parameters.
 ///
-/// It is a list of [`Diagnostic`]s, by [`Deref`] and by iteration. As text it is what people read, with the line of each place and a caret, where the
+/// It is a list of [`Diagnostic`]s, by [`Deref`] and by iteration. As text it is what people read, with the
+/// line of each place and a caret, where the
 /// model came from a text. So is its `Debug`, which a `main` that returns an error prints.
 ///
 /// ```

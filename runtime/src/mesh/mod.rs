@@ -143,7 +143,8 @@ impl Mesh {
         self.attributes.iter().find(|attribute| attribute.name == name)
     }
 
-    /// Linear red, green and blue for each vertex; `None` if the mesh has no attribute `color` of three reals.
+    /// Linear red, green and blue for each vertex; `None` if the mesh has no attribute `color` of three
+    /// reals.
     ///
     /// ```
     /// use jbt::{Compiler, Model, Polygonize, build::point};

@@ -221,7 +221,8 @@ pub enum RenderError {
 const STRIDE: usize = 32;
 
 impl Render {
-    /// A picture of a model. To make several, of a model that is edited or from other sides, keep a [`Renderer`] and use [`with`](Self::with).
+    /// A picture of a model. To make several, of a model that is edited or from other sides, keep a
+    /// [`Renderer`] and use [`with`](Self::with).
     ///
     /// Memory: 16 bytes a pixel.
     ///
