@@ -311,6 +311,29 @@ fn pictures_and_pages_belong_together() {
     }
 }
 
+/// Every step of the tutorial is in its page as it is in its file, in order, and has a picture.
+#[test]
+fn the_tutorial_has_its_steps() {
+    let page = page("tutorial.md");
+    let mut steps = entries("docs/tutorial", "jbt");
+    steps.sort();
+    assert!(steps.len() >= 5);
+    let mut rest = page.as_str();
+    for path in steps {
+        let name = path.file_stem().and_then(|stem| stem.to_str()).expect("a name");
+        let text = std::fs::read_to_string(&path).expect("it can be read");
+        let picture = format!("pictures/tutorial/{name}.png");
+        let shown = format!(
+            "[`{name}.jbt`](tutorial/{name}.jbt):\n\n```jbt\n{text}```\n\n![Step {}]({picture})",
+            &name[..1]
+        );
+        let (_, after) =
+            rest.split_once(&shown).unwrap_or_else(|| panic!("the tutorial shows {name} in its place"));
+        has_picture(&picture);
+        rest = after;
+    }
+}
+
 /// Reads a text and checks it. Panics with all that is wrong.
 fn model(name: &str, text: &str) -> CheckedTree {
     let source = Source { name, text: text.as_bytes() };

@@ -1,4 +1,5 @@
-//! Draws every picture of the documentation again, into `docs/pictures/`: a scene of `examples/`, of `docs/members/`, of the README each.
+//! Draws every picture of the documentation again, into `docs/pictures/`: a scene of `examples/`, of `docs/members/`, of the README each. The
+//! steps of the tutorial are put into its page as well, `docs/tutorial.md`.
 //! The same files every time, on any number of threads. Two threads take a few minutes, and most of that for the particles.
 //!
 //! ```text
@@ -15,6 +16,8 @@ mod draw;
 mod list;
 #[path = "gallery/looks.rs"]
 mod looks;
+#[path = "gallery/page.rs"]
+mod page;
 #[path = "particles/splash.rs"]
 mod splash;
 
@@ -55,6 +58,8 @@ fn run(root: &Path, names: &[String]) -> Result<(), Box<dyn Error>> {
         total += bytes.len();
         println!("{:40}{:>9} bytes {:>7.2} s", entry.file(), bytes.len(), start.elapsed().as_secs_f64());
     }
+    let names = entries.iter().map(|entry| entry.name.as_str());
+    page::write(root, &names.filter(|name| name.starts_with("tutorial/")).collect::<Vec<_>>())?;
     println!("{} pictures, {total} bytes", entries.len());
     Ok(())
 }

@@ -60,7 +60,7 @@ impl Entry {
     }
 }
 
-/// All pictures: the examples, what the table has besides, the members.
+/// All pictures: the examples, what the table has besides, the steps of the tutorial, the members.
 pub fn entries(root: &Path) -> Result<Vec<Entry>, Box<dyn Error>> {
     let mut entries = Vec::new();
     for scene in scenes(&root.join("examples"))? {
@@ -69,6 +69,14 @@ pub fn entries(root: &Path) -> Result<Vec<Entry>, Box<dyn Error>> {
         entries.push(Entry { name, scene: Scene::File(scene), drawing });
     }
     entries.extend(looks::extras(root)?);
+    for scene in scenes(&root.join("docs/tutorial"))? {
+        let drawing = Drawing::Render(Box::new(looks::step()));
+        entries.push(Entry {
+            name: format!("tutorial/{}", stem(&scene)),
+            scene: Scene::File(scene),
+            drawing,
+        });
+    }
     let mut families: Vec<PathBuf> = paths(&root.join("docs/members"))?;
     families.sort();
     for family in families {

@@ -52,6 +52,11 @@ pub fn member(family: &str, size: [u32; 2]) -> Render {
     rendered(&Look { from, size, ..USUAL })
 }
 
+/// The picture of a step of the tutorial.
+pub fn step() -> Render {
+    rendered(&USUAL)
+}
+
 fn rendered(look: &Look) -> Render {
     let view = View { stance: Stance::From(look.from), zoom: look.zoom, ..View::default() };
     Render { size: look.size, view, quality: Quality::Good, antialias: 2, ..Render::default() }
