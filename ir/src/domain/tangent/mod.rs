@@ -12,7 +12,7 @@
 //! their 2 in the constant, so that the gradient of `|p - c|^2` is `2 * (dx, dy, dz)` and costs nothing.
 //!
 //! A factor of 0 and a base that has overflowed make a NaN of a slope that is 0. A *guarded* domain ([`Tangent::guarded`]) emits the same products
-//! and sums, and keeps what goes into them and what comes out finite ([`guard`]).
+//! and sums, and keeps what goes into them and what comes out finite (`guard.rs`).
 
 use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 
