@@ -1,0 +1,161 @@
+//! Random scenes with walls, and far from the origin: their meshes are closed, their normals point outwards, and their volume is that of dense
+//! sampling.
+//!
+//! `JBT_HARD_SCENES` sets how many there are; the seeds begin at [`FIRST`].
+
+mod scenes;
+
+use jbt::mesh::{Mesh, check_manifold};
+use jbt::text::{Options, parse};
+use jbt::{CheckedTree, Compiler, Engine, Evaluator, Fineness, Points, Polygonize, Query};
+use rayon::prelude::*;
+use scenes::{HALF, RESOLUTION, Scene, scene};
+
+/// The first seed.
+const FIRST: u64 = 7_000;
+
+/// How far the volume of a mesh is from that of dense sampling, at most.
+const VOLUME: f64 = 0.005;
+
+/// Cells along each side of the dense sampling, with one point anywhere in each.
+const DENSE: usize = 160;
+
+/// A vertex whose triangles nearly cancel out, with a sum of vectors below this part of the sum of areas, is a needle: it has no outside.
+const NEEDLE: f64 = 0.2;
+
+/// What became of a scene.
+#[derive(Default)]
+struct Found {
+    /// What is wrong with it.
+    faults: Vec<String>,
+    has_walls: bool,
+    is_far: bool,
+    needles: usize,
+    vertices: usize,
+}
+
+#[test]
+fn hard_scenes_have_good_meshes() {
+    let count: u64 = std::env::var("JBT_HARD_SCENES").map_or(200, |count| count.parse().expect("a number"));
+    let found: Vec<Found> = (0..count).into_par_iter().map(|index| judge(FIRST + index)).collect();
+    let faults: Vec<&String> = found.iter().flat_map(|found| &found.faults).collect();
+    assert!(faults.is_empty(), "{} faults, first {:#?}", faults.len(), &faults[..faults.len().min(8)]);
+    let needles: usize = found.iter().map(|found| found.needles).sum();
+    let vertices: usize = found.iter().map(|found| found.vertices).sum();
+    assert!(1000 * needles < vertices, "{needles} needles among {vertices} vertices");
+    // The generator makes some of each.
+    if count >= 50 {
+        assert!(found.iter().any(|found| found.has_walls) && found.iter().any(|found| found.is_far));
+    }
+}
+
+fn judge(seed: u64) -> Found {
+    let scene = scene(seed);
+    let tree =
+        parse(scene.text.as_bytes(), &Options::default()).expect("it reads").check().expect("it is a model");
+    let low = scene.center.map(|x| x - HALF);
+    let high = scene.center.map(|x| x + HALF);
+    let settings =
+        Polygonize { region: Some((low, high)), fineness: Fineness::Resolution(RESOLUTION), verify: true };
+    let made = settings.mesh(&Compiler::for_engine(Engine::Lanes), &tree).run().expect("it has a mesh");
+    let mut found = Found {
+        has_walls: scene.has_walls,
+        is_far: scene.center != [0.0; 3],
+        vertices: made.mesh.positions.len(),
+        ..Found::default()
+    };
+    let mut fault = |what: String| found.faults.push(format!("seed {seed}: {what}\n{}", scene.text));
+    if !made.report.closed || check_manifold(made.mesh.positions.len(), &made.mesh.triangles).is_err() {
+        fault("the mesh is not closed".to_owned());
+    }
+    let (inward, needles) = normals(&made.mesh);
+    if inward > 0 {
+        fault(format!("{inward} normals point inward"));
+    }
+    let (meshed, sampled) = (volume(&made.mesh), dense_volume(&tree, &scene, seed));
+    if (meshed / sampled - 1.0).abs() > VOLUME {
+        fault(format!("the volume of the mesh is {meshed}, and {sampled} by dense sampling"));
+    }
+    found.needles = needles;
+    found
+}
+
+/// How many normals are more than 90 degrees off the sum of the normals of their triangles, and how many vertices are needles.
+fn normals(mesh: &Mesh) -> (usize, usize) {
+    let mut sums = vec![([0.0_f64; 3], 0.0_f64); mesh.positions.len()];
+    for &triangle in &mesh.triangles {
+        let normal = area_vector(mesh, triangle);
+        let area = dot(normal, normal).sqrt();
+        for vertex in triangle {
+            let (sum, areas) = &mut sums[vertex as usize];
+            (0..3).for_each(|axis| sum[axis] += normal[axis]);
+            *areas += area;
+        }
+    }
+    let (mut inward, mut needles) = (0, 0);
+    for ((sum, areas), normal) in sums.into_iter().zip(&mesh.normals) {
+        if dot(sum, sum).sqrt() < NEEDLE * areas {
+            needles += 1;
+        } else if dot(sum, normal.map(f64::from)) <= 0.0 {
+            inward += 1;
+        }
+    }
+    (inward, needles)
+}
+
+fn corners(mesh: &Mesh, triangle: [u32; 3]) -> [[f64; 3]; 3] {
+    triangle.map(|vertex| mesh.positions[vertex as usize].map(f64::from))
+}
+
+/// Twice the area, along the normal.
+fn area_vector(mesh: &Mesh, triangle: [u32; 3]) -> [f64; 3] {
+    let [p, q, r] = corners(mesh, triangle);
+    cross(minus(q, p), minus(r, p))
+}
+
+/// By the divergence theorem, about the first vertex.
+fn volume(mesh: &Mesh) -> f64 {
+    let about = mesh.positions[0].map(f64::from);
+    let of = |triangle: &[u32; 3]| {
+        let [p, q, r] = corners(mesh, *triangle).map(|corner| minus(corner, about));
+        dot(p, cross(q, r)) / 6.0
+    };
+    mesh.triangles.iter().map(of).sum()
+}
+
+/// One point anywhere in each cell of the region; the part of them that is inside.
+fn dense_volume(tree: &CheckedTree, scene: &Scene, seed: u64) -> f64 {
+    let evaluator = Compiler::for_engine(Engine::Lanes).evaluator(tree, Query::FIELD).expect("it compiles");
+    let mut rng = fastrand::Rng::with_seed(seed);
+    let step = 2.0 * HALF / DENSE as f64;
+    let mut inside = 0_usize;
+    for z in 0..DENSE {
+        let mut points = evaluator.points();
+        for index in 0..DENSE * DENSE {
+            let cell = [index % DENSE, index / DENSE, z];
+            points.push_world(
+                [0, 1, 2].map(|axis| scene.center[axis] - HALF + (cell[axis] as f64 + rng.f64()) * step),
+            );
+        }
+        inside += inside_of(&evaluator, &points, tree.iso() as f32);
+    }
+    inside as f64 * step.powi(3)
+}
+
+fn inside_of(evaluator: &Evaluator, points: &Points, iso: f32) -> usize {
+    let mut samples = evaluator.samples();
+    evaluator.eval(points, &mut samples).expect("it evaluates");
+    samples.field().iter().filter(|&&field| field >= iso).count()
+}
+
+fn minus(u: [f64; 3], v: [f64; 3]) -> [f64; 3] {
+    [u[0] - v[0], u[1] - v[1], u[2] - v[2]]
+}
+
+fn dot(u: [f64; 3], v: [f64; 3]) -> f64 {
+    u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
+}
+
+fn cross(u: [f64; 3], v: [f64; 3]) -> [f64; 3] {
+    [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
+}
