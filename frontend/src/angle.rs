@@ -10,10 +10,12 @@
 //! `atan(u) / u` is a polynomial in `u^2`, so a quotient `angle / k` of an angle whose y is `k t` costs no division by k either: it is
 //! `2 t / (h + |x|) * (atan(u) / u)`.
 //!
-//! The squares in h are for coordinates from about 1e-19 to 1e19. [`atan2`] takes any: it divides both by the larger one first, which turns
-//! nothing, and so need not be differentiated.
+//! The squares in h are for coordinates from about 1e-19 to 1e19. [`atan2`] takes any: it divides both by the larger
+//! one first, which turns nothing, and so need not be differentiated. Where |y| > |x| it takes the angle from the
+//! y axis, `+-pi/2 - angle(|y|, x)`. There the slope of u along y is the difference of two nearly equal numbers,
+//! and `atan(x)` would lose digits of its slope in proportion to x.
 
-use std::f32::consts::PI;
+use std::f32::consts::{FRAC_PI_2, PI};
 
 use jbt_ir::Domain;
 
@@ -99,9 +101,20 @@ pub(crate) fn atan2<D: Domain>(d: &mut D, y: D::Real, x: D::Real) -> D::Real {
         let part = d.min(one, part);
         d.select(origin, zero, part)
     };
-    let point = [part(x), part(y)];
+    let (x, y) = (part(x), part(y));
+    // About the axis that is nearer the quotient's slopes cancel nothing: they are products alone.
+    let (width, height) = (d.abs(x), d.abs(y));
+    let steep = d.lt(width, height);
+    let along = d.select(steep, height, x);
+    let across = d.select(steep, x, y);
     let half_turn = d.constant(PI);
-    let angle = emit(d, point, point[1], half_turn, LEAST_OF_PARTS).angle;
+    let angle = emit(d, [along, across], across, half_turn, LEAST_OF_PARTS).angle;
+    let quarter = d.constant(FRAC_PI_2);
+    let up = d.sub(quarter, angle);
+    let down = d.neg(up);
+    let below = d.lt(y, zero);
+    let from_quarter = d.select(below, down, up);
+    let angle = d.select(steep, from_quarter, angle);
     let minus = d.neg(half_turn);
     let angle = d.max(minus, angle);
     d.min(half_turn, angle)

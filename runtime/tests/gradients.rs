@@ -160,3 +160,24 @@ fn ordinary_gradients_gain_no_op() {
     };
     assert_eq!([Query::FIELD, Query::GRADIENT].map(ops), [26, 41]);
 }
+
+#[test]
+fn slopes_of_angles_keep_their_digits_far_from_the_axis() {
+    for x in [1e-3_f32, 0.5, 1.0, 30.0, 1e3, 1e6, 1e12] {
+        for sign in [1.0, -1.0] {
+            let x = sign * x;
+            let wide = f64::from(x);
+            for (root, slope) in [
+                ("expression { atan(x) }", 1.0 / (1.0 + wide * wide)),
+                ("expression { atan2(x, 1) }", 1.0 / (1.0 + wide * wide)),
+                ("expression { atan2(1, x) }", -1.0 / (1.0 + wide * wide)),
+                ("expression { atan2(x, -1) }", -1.0 / (1.0 + wide * wide)),
+            ] {
+                let (_, [gx, gy, gz]) = at(root, [x, 0.5, 0.0]);
+                assert_eq!([gy, gz], [0.0; 2]);
+                let error = (f64::from(gx) - slope).abs() / slope.abs();
+                assert!(error < 3e-6, "{root} at {x:e}: {gx:e} instead of {slope:e}, off by {error:e}");
+            }
+        }
+    }
+}

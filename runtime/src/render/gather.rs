@@ -50,8 +50,6 @@ pub struct Cost {
 
 /// How far things darken others, as a part of the model's radius.
 const REACH: f64 = 0.7;
-/// The golden ratio's inverse: lengths of rays to the sky follow its multiples.
-const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// The light that reaches spots, each of which stands for so many rays of its pixel.
 pub fn gather(frame: &Frame<'_>, spots: &[Spot], rays: u32) -> Result<(Vec<Light>, Cost), RenderError> {
@@ -65,6 +63,12 @@ pub fn gather(frame: &Frame<'_>, spots: &[Spot], rays: u32) -> Result<(Vec<Light
         add_sky(frame, spots, sky_rays, &mut lights, &mut cost)?;
     }
     Ok((lights, cost))
+}
+
+/// How many rays a pixel sends to the key light, and to the sky.
+fn rays_of_a_pixel(frame: &Frame<'_>) -> [u32; 2] {
+    let rays = frame.render.antialias * frame.render.antialias;
+    frame.render.quality.rays().map(|count| count * rays)
 }
 
 /// The light of a place that nothing is in front of.
@@ -89,14 +93,17 @@ fn send(
     mut arrive: impl FnMut(&mut Light, &Spot, Vector),
     (evaluations, number): (&mut f64, &mut u64),
 ) -> Result<(), RenderError> {
-    for index in 0..count {
-        let (directions, rays): (Vec<Vector>, Vec<Option<Ray>>) =
-            spots.iter().map(|spot| aim(spot, spot.sample * count + index)).unzip();
-        let blocked = blocked(frame, &rays, evaluations, number)?;
-        let free = spots.iter().zip(directions).zip(blocked).zip(lights.iter_mut());
-        for (((spot, direction), _), light) in free.filter(|((_, blocked), _)| !blocked) {
-            arrive(light, spot, direction);
-        }
+    // All together: the more rays there are, the more of them go one way.
+    let sent: Vec<Sent> = (0..count)
+        .flat_map(|index| spots.iter().map(move |spot| (spot, index)))
+        .map(|(spot, index)| aim(spot, spot.sample * count + index))
+        .collect();
+    let rays: Vec<Option<Ray>> = sent.iter().map(|&(_, ray)| ray).collect();
+    let blocked = blocked(frame, &rays, evaluations, number)?;
+    for (at, ((direction, _), _)) in sent.iter().zip(blocked).enumerate().filter(|(_, (_, blocked))| !blocked)
+    {
+        let spot = at % spots.len();
+        arrive(&mut lights[spot], &spots[spot], *direction);
     }
     Ok(())
 }
@@ -108,10 +115,10 @@ fn add_key(
     lights: &mut [Light],
     cost: &mut Cost,
 ) -> Result<(), RenderError> {
-    let each = 1.0 / count as f32;
+    let (each, length) = (1.0 / count as f32, rays_of_a_pixel(frame)[0]);
     lights.iter_mut().for_each(|light| (light.key, light.facing) = (0.0, 0.0));
     let aim = |spot: &Spot, number: u32| {
-        let point = Sequence::new(spot.pixel, 0).point(number);
+        let point = Sequence::new(spot.pixel, 0, length).point(number);
         let direction = around(frame.lights.key, KEY_SPREAD, point);
         let faces = dot(spot.normal, direction) > 0.0;
         (direction, faces.then(|| frame.clip(spot.position, direction)).flatten())
@@ -133,13 +140,12 @@ fn add_sky(
     lights: &mut [Light],
     cost: &mut Cost,
 ) -> Result<(), RenderError> {
-    let each = 1.0 / count as f32;
+    let (each, length) = (1.0 / count as f32, rays_of_a_pixel(frame)[1]);
     lights.iter_mut().for_each(|light| (light.sky, light.open) = ([0.0; 3], 0.0));
     let aim = |spot: &Spot, number: u32| {
-        let sequence = Sequence::new(spot.pixel, 1);
-        let direction = above(spot.normal, sequence.point(number));
+        let direction = above(spot.normal, Sequence::new(spot.pixel, 1, length).point(number));
         // Near things darken more than far ones, because some rays are short.
-        let part = (sequence.point(0)[0] + f64::from(number) * GOLDEN).fract();
+        let [part, _] = Sequence::new(spot.pixel, 2, length).point(number);
         let reach = frame.radius * REACH * (0.1 + 0.9 * part);
         let ray = frame.clip(spot.position, direction).and_then(|mut ray| {
             ray.span[1] = ray.span[1].min(reach);

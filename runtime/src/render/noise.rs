@@ -2,33 +2,70 @@
 
 use super::vector::{Vector, add, scale, tangents};
 
-/// The steps of the sequence R2: it fills the square evenly, whatever the number of points (Roberts, The Unreasonable Effectiveness of
-/// Quasirandom Sequences, 2018). They are 1/p and 1/p^2 with p^3 = p + 1.
-const STEPS: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3];
-
-/// Evenly spread points of the unit square for one pixel: a sequence, shifted as a whole by a number that depends on the pixel (Cranley and
-/// Patterson, 1976), such that pixels next to each other differ as much as they can (interleaved gradient noise, Jimenez, 2014): then noise is fine.
+/// Evenly spread points of the unit square for one pixel.
+///
+/// All pixels share one sequence, a Sobol' sequence of two dimensions: any 2^k points of it that begin at a
+/// multiple of 2^k are spread evenly in every way of dividing the square into 2^k equal boxes. Pixels take their
+/// points from it in Morton order, so those of a pixel are spread evenly, and those of its block of 2 x 2, 4 x 4,
+/// ... pixels as well: what one pixel has too much of its neighbours have too little of, and noise is fine and
+/// without a pattern (Ahmed and Wonka, Screen-space blue-noise diffusion, 2020).
 #[derive(Clone, Copy)]
 pub struct Sequence {
-    shift: [f64; 2],
+    /// The number of the pixel's first point in the sequence.
+    first: u32,
+    /// The order of the points, and the bits of both coordinates, are scrambled by these.
+    seeds: [u32; 3],
 }
 
 impl Sequence {
-    /// The sequence of a pixel; `stream` tells apart what it is used for.
-    pub fn new(pixel: [u32; 2], stream: u32) -> Self {
-        // Far enough apart that neither the streams nor the axes look alike.
-        let shift = |axis: u32| {
-            let [x, y] = pixel.map(|at| f64::from(at) + 5.588_238 * f64::from(2 * stream + axis));
-            (52.982_918_9 * (0.067_110_56 * x + 0.005_837_15 * y).fract()).fract()
-        };
-        Self { shift: [shift(0), shift(1)] }
+    /// The points of a pixel that takes `length` of them; `stream` tells apart what they are used for.
+    pub fn new(pixel: [u32; 2], stream: u32, length: u32) -> Self {
+        // Morton order, for 2^13 columns and rows; behind them it begins again.
+        let spread = |at: u32| (0..13).fold(0, |bits, bit| bits | (at >> bit & 1) << (2 * bit));
+        let place = spread(pixel[0]) | spread(pixel[1]) << 1;
+        let seed = |use_of: u32| hashed(3 * stream + use_of);
+        Self { first: place.wrapping_mul(length.next_power_of_two()), seeds: [seed(0), seed(1), seed(2)] }
     }
 
     /// A point of the unit square; its sides 1 do not belong to it.
     pub fn point(self, index: u32) -> [f64; 2] {
-        let at = |axis: usize| (self.shift[axis] + f64::from(index) * STEPS[axis]).fract();
-        [at(0), at(1)]
+        let [order, first, second] = self.seeds;
+        let index = scrambled(self.first.wrapping_add(index), order);
+        let part = |bits: u32| f64::from(bits) / 2f64.powi(32);
+        [part(scrambled(index.reverse_bits(), first)), part(scrambled(sobol(index), second))]
     }
+}
+
+/// A point's second coordinate in Sobol' sequence, as 32 bits behind the point; the first is its number with
+/// the bits reversed.
+fn sobol(index: u32) -> u32 {
+    let (mut sum, mut direction, mut rest) = (0, 1 << 31, index);
+    while rest != 0 {
+        sum ^= direction * (rest & 1);
+        direction ^= direction >> 1;
+        rest >>= 1;
+    }
+    sum
+}
+
+/// Owen's scrambling (1995): each bit is flipped or not by a hash of the bits above it. Evenly spread points stay
+/// evenly spread. The hash is that of Laine and Karras (2011), with the constants of Vegdahl.
+fn scrambled(bits: u32, seed: u32) -> u32 {
+    let mut low_first = bits.reverse_bits();
+    low_first ^= low_first.wrapping_mul(0x3d20_adea);
+    low_first = low_first.wrapping_add(seed);
+    low_first = low_first.wrapping_mul(seed >> 16 | 1);
+    low_first ^= low_first.wrapping_mul(0x0552_6c56);
+    low_first ^= low_first.wrapping_mul(0x53a2_2864);
+    low_first.reverse_bits()
+}
+
+/// A number of which every bit depends on all bits of another one (Wellons, lowbias32).
+fn hashed(number: u32) -> u32 {
+    let mut bits = number.wrapping_add(0x9e37_79b9);
+    bits = (bits ^ bits >> 16).wrapping_mul(0x7feb_352d);
+    bits = (bits ^ bits >> 15).wrapping_mul(0x846c_a68b);
+    bits ^ bits >> 16
 }
 
 /// A unit vector above a surface with this unit normal, as likely as the cosine of the angle to the normal, from a point of the unit square.
@@ -54,12 +91,41 @@ mod tests {
     use super::super::vector::{dot, length};
     use super::*;
 
+    /// Points of a block of 2 x 2 pixels, and of each pixel, are one in each part of the square, whatever its shape.
+    #[test]
+    fn points_of_a_pixel_and_of_its_neighbours_are_spread_evenly() {
+        for (stream, corner) in [(0, [0, 0]), (1, [6, 2]), (2, [8190, 4])] {
+            let pixel = |number: u32| [corner[0] + number % 2, corner[1] + number / 2];
+            let of =
+                |number: u32| (0..16).map(move |index| Sequence::new(pixel(number), stream, 16).point(index));
+            let parts = |points: &mut dyn Iterator<Item = [f64; 2]>, columns: f64, rows: f64| {
+                let mut parts: Vec<u32> =
+                    points.map(|[u, v]| (u * columns) as u32 + columns as u32 * (v * rows) as u32).collect();
+                parts.sort_unstable();
+                parts
+            };
+            for halvings in 0..=6 {
+                let (columns, rows) = (f64::from(1 << halvings), f64::from(64 >> halvings));
+                let all = parts(&mut (0..4).flat_map(of), columns, rows);
+                assert_eq!(all, (0..64).collect::<Vec<u32>>(), "{columns} x {rows}");
+            }
+            for (number, halvings) in
+                (0..4).flat_map(|number| (0..=4).map(move |halvings| (number, halvings)))
+            {
+                let (columns, rows) = (f64::from(1 << halvings), f64::from(16 >> halvings));
+                assert_eq!(parts(&mut of(number), columns, rows), (0..16).collect::<Vec<u32>>());
+            }
+        }
+        assert_ne!(Sequence::new([0, 0], 0, 16).point(0), Sequence::new([1, 0], 0, 16).point(0));
+        assert_ne!(Sequence::new([0, 0], 0, 16).point(0), Sequence::new([0, 0], 1, 16).point(0));
+    }
+
     /// The mean of the cosine over directions weighted by it is 2/3.
     #[test]
     fn directions_above_a_surface() {
         let normal = [0.6, 0.0, -0.8];
-        let sequence = Sequence::new([17, 4], 1);
-        let count = 1000;
+        let count = 1024;
+        let sequence = Sequence::new([17, 4], 1, count);
         let mut mean = 0.0;
         for index in 0..count {
             let direction = above(normal, sequence.point(index));
@@ -74,7 +140,7 @@ mod tests {
     fn directions_in_a_cone() {
         let axis = [0.0, 1.0, 0.0];
         for index in 0..100 {
-            let direction = around(axis, 0.1, Sequence::new([index, 0], 0).point(index));
+            let direction = around(axis, 0.1, Sequence::new([index, 0], 0, 1).point(index));
             assert!((direction[1] - 1.0).abs() < 1e-12);
             assert!(direction[0].hypot(direction[2]) < 0.1);
         }
@@ -82,7 +148,7 @@ mod tests {
 
     #[test]
     fn pixels_and_streams_differ() {
-        let first = |pixel, stream| Sequence::new(pixel, stream).point(0);
+        let first = |pixel, stream| Sequence::new(pixel, stream, 16).point(0);
         assert_ne!(first([0, 0], 0), first([1, 0], 0));
         assert_ne!(first([0, 1], 0), first([1, 0], 0));
         assert_ne!(first([0, 0], 0), first([0, 0], 1));
