@@ -1,7 +1,7 @@
 //! The op table: one row per op, and everything that derives from a row.
 //!
-//! A row gives the op's name in Rust and in text, its operand types, its result type, the flag `expanded` where `legalize` writes it out, and a doc that *defines* it:
-//! rounding, NaN and signed zero. From the table come
+//! A row gives the op's name in Rust and in text, its operand types, its result type, flags (`Flags` tells
+//! what they mean), and a doc that *defines* it: rounding, NaN and signed zero. From the table come
 //!
 //! * [`Op`], its names and its type rule (the printer, the parser and the verifier read these),
 //! * [`Domain`], the trait with one method per op and **no default**: a meaning of the ops is one `impl Domain` in one
@@ -140,20 +140,25 @@ macro_rules! of_type {
     };
 }
 
-/// The flags of a row.
-macro_rules! flag {
-    () => {
-        false
-    };
-    (expanded) => {
-        true
-    };
+/// What a row says of its op beside the types. Flags that a row does not name are false.
+#[derive(Clone, Copy)]
+struct Flags {
+    /// The `legalize` pass writes it out.
+    expanded: bool,
+    /// The first two operands may be swapped.
+    commutes: bool,
+    /// The result has the bits of the operand.
+    renames: bool,
+}
+
+impl Flags {
+    const NONE: Self = Self { expanded: false, commutes: false, renames: false };
 }
 
 macro_rules! op_table {
     ($(
         $(#[doc = $doc:literal])*
-        $variant:ident $name:ident ( $($arg:ident : $type:ident),+ ) -> $result:ident $(, $flag:ident)?;
+        $variant:ident $name:ident ( $($arg:ident : $type:ident),+ ) -> $result:ident $(, $flag:ident)*;
     )+) => {
         /// An operation on lanes: pure, total, and the same in each lane.
         #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
@@ -183,10 +188,26 @@ macro_rules! op_table {
                 match self { $( Self::$variant => of_type!(value $result), )+ }
             }
 
+            const fn flags(self) -> Flags {
+                match self { $( Self::$variant => Flags { $($flag: true,)* ..Flags::NONE }, )+ }
+            }
+
             /// Whether the `legalize` pass replaces it by other ops: engines never meet it.
             #[must_use]
             pub const fn is_expanded(self) -> bool {
-                match self { $( Self::$variant => flag!($($flag)?), )+ }
+                self.flags().expanded
+            }
+
+            /// Whether swapping the first two operands gives the same bits (a NaN for a NaN).
+            #[must_use]
+            pub const fn commutes(self) -> bool {
+                self.flags().commutes
+            }
+
+            /// Whether the result has the bits of the operand: then it costs nothing.
+            #[must_use]
+            pub const fn renames(self) -> bool {
+                self.flags().renames
             }
 
             /// The definition: the doc of the row.
@@ -237,15 +258,15 @@ op_table! {
     // ── arithmetic ──────────────────────────────────────────────────────────────────────────────────────────────
 
     /// `a + b`, rounded once. `-0 + -0 = -0`, every other zero sum is `+0`. `inf - inf` gives NaN.
-    Add add(a: real, b: real) -> real;
+    Add add(a: real, b: real) -> real, commutes;
     /// `a - b`, rounded once. `x - x = +0` for finite x.
     Sub sub(a: real, b: real) -> real;
     /// `a * b`, rounded once; the sign is the exclusive or of the signs. `0 * inf` gives NaN.
-    Mul mul(a: real, b: real) -> real;
+    Mul mul(a: real, b: real) -> real, commutes;
     /// `a / b`, rounded once. `x / 0` is an infinity with the sign of both, `0 / 0` and `inf / inf` give NaN.
     Div div(a: real, b: real) -> real;
     /// `a * b + c` with **one** rounding, in every engine. An exact zero sum is `+0` unless both parts are `-0`.
-    Fma fma(a: real, b: real, c: real) -> real;
+    Fma fma(a: real, b: real, c: real) -> real, commutes;
     /// Flips the sign bit, of zeros and NaNs too.
     Neg neg(a: real) -> real;
     /// Clears the sign bit, of zeros and NaNs too.
@@ -264,11 +285,11 @@ op_table! {
     /// `a <= b`; false if either is NaN. Zeros of either sign are equal.
     Le le(a: real, b: real) -> mask;
     /// `a == b`; false if either is NaN. Zeros of either sign are equal.
-    Eq eq(a: real, b: real) -> mask;
+    Eq eq(a: real, b: real) -> mask, commutes;
     /// True where both are.
-    Both both(a: mask, b: mask) -> mask;
+    Both both(a: mask, b: mask) -> mask, commutes;
     /// True where at least one is.
-    Either either(a: mask, b: mask) -> mask;
+    Either either(a: mask, b: mask) -> mask, commutes;
     /// True where the operand is not.
     Not not(a: mask) -> mask;
     /// `if condition { a } else { b }`: the bits of one of them, whatever the other holds.
@@ -277,17 +298,17 @@ op_table! {
     // ── bits ────────────────────────────────────────────────────────────────────────────────────────────────────
 
     /// The encoding of a real.
-    ToBits to_bits(a: real) -> bits;
+    ToBits to_bits(a: real) -> bits, renames;
     /// The real with this encoding.
-    FromBits from_bits(a: bits) -> real;
+    FromBits from_bits(a: bits) -> real, renames;
     /// Bitwise and.
-    BitAnd bit_and(a: bits, b: bits) -> bits;
+    BitAnd bit_and(a: bits, b: bits) -> bits, commutes;
     /// Bitwise or.
-    BitOr bit_or(a: bits, b: bits) -> bits;
+    BitOr bit_or(a: bits, b: bits) -> bits, commutes;
     /// Bitwise exclusive or.
-    BitXor bit_xor(a: bits, b: bits) -> bits;
+    BitXor bit_xor(a: bits, b: bits) -> bits, commutes;
     /// Sum modulo 2^32.
-    IntAdd int_add(a: bits, b: bits) -> bits;
+    IntAdd int_add(a: bits, b: bits) -> bits, commutes;
     /// Difference modulo 2^32.
     IntSub int_sub(a: bits, b: bits) -> bits;
     /// `a << (by mod 32)`. The verifier wants `by` to be a constant: vector units shift all lanes alike.
@@ -315,5 +336,5 @@ op_table! {
     // ── differentiation ─────────────────────────────────────────────────────────────────────────────────────────
 
     /// `a`, bit for bit, with zero tangent: a running scale that cancels must not be differentiated.
-    Hold hold(a: real) -> real;
+    Hold hold(a: real) -> real, renames;
 }

@@ -24,7 +24,8 @@ pub fn simplify(function: &Function) -> Function {
             }
         }
         let (op, mut args) = current;
-        if commutes(op) && args[1] < args[0] {
+        // Then equal ops look equal.
+        if op.commutes() && args[1] < args[0] {
             args.swap(0, 1);
         }
         builder.op(op, &args)
@@ -44,44 +45,6 @@ enum Step {
 impl Step {
     fn op(op: Op, args: &[Value]) -> Self {
         Self::Op(op, args.to_vec())
-    }
-}
-
-/// Whether the first two operands can be swapped: then they stand in the order of their values, so that equal ops look equal.
-fn commutes(op: Op) -> bool {
-    match op {
-        Op::Add
-        | Op::Mul
-        | Op::Fma
-        | Op::Eq
-        | Op::Both
-        | Op::Either
-        | Op::BitAnd
-        | Op::BitOr
-        | Op::BitXor
-        | Op::IntAdd => true,
-        Op::Sub
-        | Op::Div
-        | Op::Neg
-        | Op::Abs
-        | Op::Sqrt
-        | Op::Min
-        | Op::Max
-        | Op::Lt
-        | Op::Le
-        | Op::Not
-        | Op::Select
-        | Op::ToBits
-        | Op::FromBits
-        | Op::IntSub
-        | Op::Shl
-        | Op::Shr
-        | Op::Sin
-        | Op::Cos
-        | Op::Exp
-        | Op::Ln
-        | Op::Pow
-        | Op::Hold => false,
     }
 }
 
@@ -577,7 +540,7 @@ mod tests {
             (Op::Shr, 1, 5),
         ] {
             for swapped in [false, true] {
-                if swapped && !commutes(op) {
+                if swapped && !op.commutes() {
                     continue;
                 }
                 let count = left(&format!("{op:?} {number}"), |b, x, _| {

@@ -4,8 +4,9 @@ use crate::entity::{Entity, Inst, Table, Value};
 use crate::function::{Function, InstKind};
 
 use super::assign::{Place, Places, assign};
-use super::schedule::{Accumulator, Event, Schedule};
-use super::tape::{FoldStep, OpStep, Step, Tape};
+use super::pairs::MOST_OPERANDS;
+use super::schedule::{Accumulator, Event, Paired, Schedule};
+use super::tape::{Code, FoldStep, OpStep, Step, Tape};
 
 pub(super) fn compile(function: &Function) -> Tape {
     let schedule = Schedule::new(function);
@@ -14,9 +15,9 @@ pub(super) fn compile(function: &Function) -> Tape {
     for event in &schedule.events {
         match *event {
             Event::Inst(inst) => {
-                if schedule.holder[function.insts[inst].results[0].index()] == function.insts[inst].results[0]
-                {
-                    compiler.inst(inst);
+                let result = function.insts[inst].results[0];
+                if !schedule.is_first[inst.index()] && schedule.holder[result.index()] == result {
+                    compiler.inst(inst, schedule.pair_of(inst));
                 }
             }
             Event::Begin(inst) => {
@@ -72,7 +73,8 @@ impl<'a> Compiler<'a> {
         self.places.places[value.index()]
     }
 
-    fn inst(&mut self, inst: Inst) {
+    /// Writes an instruction, or the pair of which it is the second.
+    fn inst(&mut self, inst: Inst, pair: Option<&Paired>) {
         let data = &self.function.insts[inst];
         let result = self.place(data.results[0]);
         match &data.kind {
@@ -88,11 +90,15 @@ impl<'a> Compiler<'a> {
                 folds[fold].columns.push((narrow(*column), narrow(result.index())));
             }
             InstKind::Op { op, args } => {
-                let mut places = [result; 3];
-                for (place, &arg) in places.iter_mut().zip(args) {
-                    *place = self.place(arg);
+                let (code, values) = match pair {
+                    Some(pair) => (Code::Pair(pair.pair), &pair.args[..]),
+                    None => (Code::Op(*op), &args[..]),
+                };
+                let mut places = [result; MOST_OPERANDS];
+                for (place, &value) in places.iter_mut().zip(values) {
+                    *place = self.place(value);
                 }
-                self.op(OpStep { op: *op, args: places, result });
+                self.op(OpStep { code, args: places, result });
             }
             InstKind::Fold(_) => unreachable!("a fold has a beginning and an end"),
         }

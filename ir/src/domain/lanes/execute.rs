@@ -9,7 +9,7 @@ use crate::table::Tables;
 
 use super::assign::Place;
 use super::ops::{Handle, Lanes, WIDTH};
-use super::tape::{FoldStep, OpStep, OpenFold, Scratch, Step, Tape};
+use super::tape::{Code, FoldStep, OpStep, OpenFold, Scratch, Step, Tape};
 
 /// What to run, on what. Planes and scratch have been checked against the tape.
 pub(super) struct Job<'a, 'o> {
@@ -74,7 +74,7 @@ impl Block<'_> {
                 Step::Move { from, to } => self.copy(from, to),
                 Step::Ops { first, end } => {
                     for op in &self.tape.ops[first as usize..end as usize] {
-                        self.op(op);
+                        self.step(op);
                     }
                 }
                 Step::Begin { fold } => {
@@ -134,14 +134,25 @@ impl Block<'_> {
         }
     }
 
+    #[inline(always)]
+    fn step(&mut self, step: &OpStep) {
+        match step.code {
+            Code::Op(op) => self.op(op, step),
+            Code::Pair(pair) => {
+                self.lanes.result = step.result.index();
+                self.lanes.pair(pair, &step.args, self.splats);
+            }
+        }
+    }
+
     /// The method of an op. What [`apply`](crate::op::apply) does, without looking at types that the verifier has checked.
     #[inline(always)]
-    fn op(&mut self, step: &OpStep) {
-        let [a, b, c] = step.args;
+    fn op(&mut self, op: Op, step: &OpStep) {
+        let [a, b, c, ..] = step.args;
         let [a, b, c] = [self.handle(a), self.handle(b), self.handle(c)];
         self.lanes.result = step.result.index();
         let lanes = &mut self.lanes;
-        let result = match step.op {
+        let result = match op {
             Op::Add => lanes.add(a, b),
             Op::Sub => lanes.sub(a, b),
             Op::Mul => lanes.mul(a, b),

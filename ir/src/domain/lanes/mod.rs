@@ -8,6 +8,7 @@
 //!    Function ──schedule──► events in order, live ranges, which values are splats
 //!             ──assign────► a register for each value; a loop's accumulator and its next value share one
 //!             ──compile───► Tape: steps, constants, folds
+//!                          two ops of which one feeds the other become one step (pairs)
 //!             ──execute───► for each block of points: for each step: one loop over the lanes, vectorised by the compiler
 //!
 //!    register file, `stride` chunks a row:     r0       r1       r2      ...
@@ -29,6 +30,7 @@ mod execute;
 #[allow(unsafe_code)]
 pub mod level;
 mod ops;
+mod pairs;
 mod schedule;
 mod tape;
 #[cfg(test)]

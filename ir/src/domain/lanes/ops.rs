@@ -89,7 +89,7 @@ impl Lanes<'_> {
 
     /// Fills the result register, lane by lane, from a row of chunks and the number of the lane.
     #[inline(always)]
-    fn each(&mut self, f: impl Fn(&[Chunk], usize) -> u32) -> Handle {
+    pub(super) fn each(&mut self, f: impl Fn(&[Chunk], usize) -> u32) -> Handle {
         let mut file = &mut *self.file;
         // Not `chunks_exact_mut`: that divides first, which takes as long as a short loop.
         while let Some((row, rest)) = file.split_at_mut_checked(self.stride) {

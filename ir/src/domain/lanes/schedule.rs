@@ -16,7 +16,8 @@
 
 use crate::entity::{Entity, Inst, Value};
 use crate::function::{Fold, Function, InstKind};
-use crate::op::Op;
+
+use super::pairs::{MOST_OPERANDS, Pair, find};
 
 /// What happens at a position.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -46,15 +47,38 @@ pub(super) struct Schedule<'a> {
     pub splat: Vec<bool>,
     /// For each holder, when it is alive.
     pub live: Vec<Range>,
+    /// By instruction, whether it runs in the loop of the one behind it.
+    pub is_first: Vec<bool>,
+    /// The pairs, by their second instruction, in order.
+    pairs: Vec<Paired>,
+}
+
+/// Two instructions that run in one loop.
+pub(super) struct Paired {
+    second: Inst,
+    pub pair: Pair,
+    pub args: [Value; MOST_OPERANDS],
 }
 
 impl<'a> Schedule<'a> {
     pub fn new(function: &'a Function) -> Self {
-        let events = line_up(function);
+        let mut events = line_up(function);
         let holder = holders(function, &events);
         let splat = splats(function, &holder);
+        let mut pairing = Pairing::new(function, &holder, &splat);
+        let insts = |event: &Event| matches!(event, Event::Inst(_));
+        for run in events.chunk_by_mut(|a, b| insts(a) && insts(b)) {
+            pairing.run(run);
+        }
+        let Pairing { is_first, mut pairs, .. } = pairing;
+        pairs.sort_unstable_by_key(|pair| pair.second);
         let live = ranges(function, &events, &holder);
-        Self { function, events, holder, splat, live }
+        Self { function, events, holder, splat, live, is_first, pairs }
+    }
+
+    /// The pair of which an instruction is the second.
+    pub fn pair_of(&self, inst: Inst) -> Option<&Paired> {
+        self.pairs.binary_search_by_key(&inst, |pair| pair.second).ok().map(|at| &self.pairs[at])
     }
 
     /// The fold of an instruction that the events call one.
@@ -123,23 +147,108 @@ fn line_up(function: &Function) -> Vec<Event> {
     events
 }
 
-/// Whether the op gives the bits of its operand: then it costs nothing.
-fn renames(op: Op) -> bool {
-    match op {
-        Op::ToBits | Op::FromBits | Op::Hold => true,
-        Op::Add
-        | Op::Sub
-        | Op::Mul
-        | Op::Div
-        | Op::Fma
-        | Op::Neg
-        | Op::Abs
-        | Op::Sqrt
-        | Op::Min
-        | Op::Max => false,
-        Op::Lt | Op::Le | Op::Eq | Op::Both | Op::Either | Op::Not | Op::Select => false,
-        Op::BitAnd | Op::BitOr | Op::BitXor | Op::IntAdd | Op::IntSub | Op::Shl | Op::Shr => false,
-        Op::Sin | Op::Cos | Op::Exp | Op::Ln | Op::Pow => false,
+/// The search for pairs.
+struct Pairing<'a> {
+    function: &'a Function,
+    holder: &'a [Value],
+    splat: &'a [bool],
+    /// By holder: how often it is read.
+    reads: Vec<u32>,
+    /// By holder: the instruction of the present run that computes it, where that may be the first of a pair.
+    writer: Vec<Option<Inst>>,
+    is_first: Vec<bool>,
+    pairs: Vec<Paired>,
+}
+
+impl<'a> Pairing<'a> {
+    fn new(function: &'a Function, holder: &'a [Value], splat: &'a [bool]) -> Self {
+        let mut reads = vec![0; function.values.len()];
+        let mut read = |values: &[Value]| {
+            for value in values {
+                reads[holder[value.index()].index()] += 1;
+            }
+        };
+        for inst in function.insts.keys() {
+            let result = function.insts[inst].results.first();
+            if result.is_none_or(|result| holder[result.index()] == *result) {
+                read(function.operands(inst));
+            }
+        }
+        function.blocks.values().for_each(|block| read(&block.results));
+        let (insts, values) = (function.insts.len(), function.values.len());
+        Self {
+            function,
+            holder,
+            splat,
+            reads,
+            writer: vec![None; values],
+            is_first: vec![false; insts],
+            pairs: Vec::new(),
+        }
+    }
+
+    /// Finds the pairs among instructions that follow each other, and puts each first one directly before its second.
+    fn run(&mut self, events: &mut [Event]) {
+        let mut first_of: Vec<(Inst, Inst)> = Vec::new();
+        for event in events.iter() {
+            if let Event::Inst(inst) = *event
+                && let Some(first) = self.pair(inst)
+            {
+                first_of.push((inst, first));
+            }
+        }
+        let mut order: Vec<Event> = Vec::with_capacity(events.len());
+        let mut first_of = first_of.into_iter().peekable();
+        for event in events.iter() {
+            let Event::Inst(inst) = *event else {
+                order.push(*event);
+                continue;
+            };
+            if let Some((_, first)) = first_of.next_if(|&(second, _)| second == inst) {
+                order.push(Event::Inst(first));
+            }
+            if !self.is_first[inst.index()] {
+                order.push(*event);
+            }
+        }
+        events.copy_from_slice(&order);
+        for event in order {
+            if let Event::Inst(inst) = event {
+                self.writer[self.function.insts[inst].results[0].index()] = None;
+            }
+        }
+    }
+
+    /// The instruction that forms a pair with this one and comes before it.
+    fn pair(&mut self, inst: Inst) -> Option<Inst> {
+        let data = &self.function.insts[inst];
+        let InstKind::Op { op, .. } = data.kind else { return None };
+        let result = data.results[0];
+        if self.splat[result.index()] || self.holder[result.index()] != result {
+            return None;
+        }
+        let args = self.holders_of(inst);
+        for &t in &args {
+            let Some(first) = self.writer[t.index()] else { continue };
+            let reads = args.iter().filter(|&&arg| arg == t).count();
+            let InstKind::Op { op: first_op, .. } = self.function.insts[first].kind else { continue };
+            if self.reads[t.index()] as usize != reads {
+                continue;
+            }
+            let of_first = self.holders_of(first);
+            let is_splat = |value: Value| self.splat[value.index()];
+            if let Some((pair, args)) = find((first_op, &of_first), t, (op, &args), is_splat) {
+                self.is_first[first.index()] = true;
+                self.pairs.push(Paired { second: inst, pair, args });
+                return Some(first);
+            }
+        }
+        self.writer[result.index()] = Some(inst);
+        None
+    }
+
+    fn holders_of(&self, inst: Inst) -> Vec<Value> {
+        self.function.operands(inst).iter().map(|value| self.holder[value.index()]).collect()
     }
 }
 
@@ -149,7 +258,7 @@ fn holders(function: &Function, events: &[Event]) -> Vec<Value> {
         let Event::Inst(inst) = *event else { continue };
         let data = &function.insts[inst];
         if let InstKind::Op { op, args } = &data.kind
-            && renames(*op)
+            && op.renames()
         {
             holder[data.results[0].index()] = holder[args[0].index()];
         }

@@ -12,6 +12,7 @@ use super::compile::compile;
 use super::execute::Job;
 use super::level::{self, Level};
 use super::ops::{Chunk, WIDTH};
+use super::pairs::{MOST_OPERANDS, Pair};
 
 /// A function that is ready to run on blocks of points. It never changes, so threads may share it, each with its own
 /// [`Scratch`].
@@ -68,13 +69,20 @@ pub(super) enum Step {
     End { fold: u32 },
 }
 
-/// One op.
+/// One op, or two in one loop.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) struct OpStep {
-    pub op: Op,
-    /// As many as the op has operands, then anything.
-    pub args: [Place; 3],
+    pub code: Code,
+    /// As many as it has operands, then anything.
+    pub args: [Place; MOST_OPERANDS],
     pub result: Place,
+}
+
+/// What an [`OpStep`] does.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Code {
+    Op(Op),
+    Pair(Pair),
 }
 
 /// One fold.
@@ -196,6 +204,15 @@ impl Tape {
     /// all sets of the cache.
     pub(super) const fn stride(&self) -> usize {
         self.registers | 1
+    }
+
+    /// The steps that are two ops.
+    #[cfg(test)]
+    pub(super) fn pairs(&self) -> impl Iterator<Item = Pair> {
+        self.ops.iter().filter_map(|step| match step.code {
+            Code::Op(_) => None,
+            Code::Pair(pair) => Some(pair),
+        })
     }
 
     /// Runs the function: output planes from input planes, point by point the same bits as the scalar domain.
