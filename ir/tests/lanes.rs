@@ -306,7 +306,7 @@ fn a_function_without_inputs_fills_its_planes() {
 
 #[test]
 fn many_registers_make_short_blocks() {
-    // All 3,000 values are alive at once: each is used again after the last one.
+    // All 3,000 values are alive at once: each is used twice after the last one, so none is the first of a pair.
     let mut b = FunctionBuilder::new("wide", &["x"]);
     let x = b.input(0);
     let values: Vec<Value> = (0..3000_u16)
@@ -316,7 +316,7 @@ fn many_registers_make_short_blocks() {
         })
         .collect();
     let mut sum = b.constant(0.0);
-    for &value in values.iter().rev() {
+    for &value in values.iter().rev().chain(&values) {
         sum = b.add(sum, value);
     }
     let function = finish(b, &[sum]);
