@@ -280,145 +280,32 @@ impl FunctionBuilder {
     }
 }
 
-/// Emitting: every op becomes an instruction, or the one that exists already.
-impl Domain for FunctionBuilder {
-    type Real = Value;
-    type Mask = Value;
-    type Bits = Value;
+macro_rules! emitting {
+    ($(
+        $(#[doc = $doc:literal])*
+        $variant:ident $name:ident ( $($arg:ident : $type:ident),+ ) -> $result:ident $(, $flag:ident)*;
+    )+) => {
+        /// Emitting: every op becomes an instruction, or the one that exists already.
+        impl Domain for FunctionBuilder {
+            type Real = Value;
+            type Mask = Value;
+            type Bits = Value;
 
-    fn constant(&mut self, value: f32) -> Value {
-        self.insert(Key::Constant(value.to_bits()), 0, InstKind::Constant(value), Type::Real)
-    }
+            fn constant(&mut self, value: f32) -> Value {
+                self.insert(Key::Constant(value.to_bits()), 0, InstKind::Constant(value), Type::Real)
+            }
 
-    fn bits_constant(&mut self, value: u32) -> Value {
-        self.insert(Key::BitsConstant(value), 0, InstKind::BitsConstant(value), Type::Bits)
-    }
+            fn bits_constant(&mut self, value: u32) -> Value {
+                self.insert(Key::BitsConstant(value), 0, InstKind::BitsConstant(value), Type::Bits)
+            }
 
-    fn add(&mut self, a: Value, b: Value) -> Value {
-        self.op(Op::Add, &[a, b])
-    }
-
-    fn sub(&mut self, a: Value, b: Value) -> Value {
-        self.op(Op::Sub, &[a, b])
-    }
-
-    fn mul(&mut self, a: Value, b: Value) -> Value {
-        self.op(Op::Mul, &[a, b])
-    }
-
-    fn div(&mut self, a: Value, b: Value) -> Value {
-        self.op(Op::Div, &[a, b])
-    }
-
-    fn fma(&mut self, a: Value, b: Value, c: Value) -> Value {
-        self.op(Op::Fma, &[a, b, c])
-    }
-
-    fn neg(&mut self, a: Value) -> Value {
-        self.op(Op::Neg, &[a])
-    }
-
-    fn abs(&mut self, a: Value) -> Value {
-        self.op(Op::Abs, &[a])
-    }
-
-    fn sqrt(&mut self, a: Value) -> Value {
-        self.op(Op::Sqrt, &[a])
-    }
-
-    fn min(&mut self, a: Value, b: Value) -> Value {
-        self.op(Op::Min, &[a, b])
-    }
-
-    fn max(&mut self, a: Value, b: Value) -> Value {
-        self.op(Op::Max, &[a, b])
-    }
-
-    fn lt(&mut self, a: Value, b: Value) -> Value {
-        self.op(Op::Lt, &[a, b])
-    }
-
-    fn le(&mut self, a: Value, b: Value) -> Value {
-        self.op(Op::Le, &[a, b])
-    }
-
-    fn eq(&mut self, a: Value, b: Value) -> Value {
-        self.op(Op::Eq, &[a, b])
-    }
-
-    fn both(&mut self, a: Value, b: Value) -> Value {
-        self.op(Op::Both, &[a, b])
-    }
-
-    fn either(&mut self, a: Value, b: Value) -> Value {
-        self.op(Op::Either, &[a, b])
-    }
-
-    fn not(&mut self, a: Value) -> Value {
-        self.op(Op::Not, &[a])
-    }
-
-    fn select(&mut self, condition: Value, a: Value, b: Value) -> Value {
-        self.op(Op::Select, &[condition, a, b])
-    }
-
-    fn to_bits(&mut self, a: Value) -> Value {
-        self.op(Op::ToBits, &[a])
-    }
-
-    fn from_bits(&mut self, a: Value) -> Value {
-        self.op(Op::FromBits, &[a])
-    }
-
-    fn bit_and(&mut self, a: Value, b: Value) -> Value {
-        self.op(Op::BitAnd, &[a, b])
-    }
-
-    fn bit_or(&mut self, a: Value, b: Value) -> Value {
-        self.op(Op::BitOr, &[a, b])
-    }
-
-    fn bit_xor(&mut self, a: Value, b: Value) -> Value {
-        self.op(Op::BitXor, &[a, b])
-    }
-
-    fn int_add(&mut self, a: Value, b: Value) -> Value {
-        self.op(Op::IntAdd, &[a, b])
-    }
-
-    fn int_sub(&mut self, a: Value, b: Value) -> Value {
-        self.op(Op::IntSub, &[a, b])
-    }
-
-    fn shl(&mut self, a: Value, by: Value) -> Value {
-        self.op(Op::Shl, &[a, by])
-    }
-
-    fn shr(&mut self, a: Value, by: Value) -> Value {
-        self.op(Op::Shr, &[a, by])
-    }
-
-    fn sin(&mut self, a: Value) -> Value {
-        self.op(Op::Sin, &[a])
-    }
-
-    fn cos(&mut self, a: Value) -> Value {
-        self.op(Op::Cos, &[a])
-    }
-
-    fn exp(&mut self, a: Value) -> Value {
-        self.op(Op::Exp, &[a])
-    }
-
-    fn ln(&mut self, a: Value) -> Value {
-        self.op(Op::Ln, &[a])
-    }
-
-    fn pow(&mut self, a: Value, b: Value) -> Value {
-        self.op(Op::Pow, &[a, b])
-    }
-
-    fn hold(&mut self, a: Value) -> Value {
-        self.op(Op::Hold, &[a])
-    }
+            $(
+                fn $name(&mut self, $($arg: Value),+) -> Value {
+                    self.op(Op::$variant, &[$($arg),+])
+                }
+            )+
+        }
+    };
 }
+
+crate::for_each_op!(emitting);

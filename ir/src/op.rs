@@ -7,7 +7,9 @@
 //! * [`Domain`], the trait with one method per op and **no default**: a meaning of the ops is one `impl Domain` in one
 //!   file of [`crate::domain`] (or the machine-code lowering of the `jit` crate), and an op that lacks a meaning
 //!   somewhere does not compile,
-//! * [`apply`], which calls the method of an op that is known only at run time.
+//! * [`apply`], which calls the method of an op that is known only at run time,
+//! * [`for_each_op!`](crate::for_each_op), which hands the rows to any macro: what does the same for every op
+//!   derives from it.
 //!
 //! ```text
 //!                 op table ──► enum Op ──► text, verifier, passes
@@ -254,87 +256,102 @@ macro_rules! op_table {
     };
 }
 
-op_table! {
-    // ── arithmetic ──────────────────────────────────────────────────────────────────────────────────────────────
+/// Hands the rows of the op table to a macro, which takes them in this form:
+///
+/// ```text
+/// $( $(#[doc = $doc:literal])*
+///    $variant:ident $name:ident ( $($arg:ident : $type:ident),+ ) -> $result:ident $(, $flag:ident)*; )+
+/// ```
+///
+/// So whatever does the same for every op is written once: a builder, a counter, a dispatch.
+#[macro_export]
+macro_rules! for_each_op {
+    ($callback:ident) => {
+        $callback! {
+            // ── arithmetic ──────────────────────────────────────────────────────────────────────────────────────────────
 
-    /// `a + b`, rounded once. `-0 + -0 = -0`, every other zero sum is `+0`. `inf - inf` gives NaN.
-    Add add(a: real, b: real) -> real, commutes;
-    /// `a - b`, rounded once. `x - x = +0` for finite x.
-    Sub sub(a: real, b: real) -> real;
-    /// `a * b`, rounded once; the sign is the exclusive or of the signs. `0 * inf` gives NaN.
-    Mul mul(a: real, b: real) -> real, commutes;
-    /// `a / b`, rounded once. `x / 0` is an infinity with the sign of both, `0 / 0` and `inf / inf` give NaN.
-    Div div(a: real, b: real) -> real;
-    /// `a * b + c` with **one** rounding, in every engine. An exact zero sum is `+0` unless both parts are `-0`.
-    Fma fma(a: real, b: real, c: real) -> real, commutes;
-    /// Flips the sign bit, of zeros and NaNs too.
-    Neg neg(a: real) -> real;
-    /// Clears the sign bit, of zeros and NaNs too.
-    Abs abs(a: real) -> real;
-    /// The square root, rounded once. `sqrt(-0) = -0`; below zero it gives NaN. Its tangent at 0 is 0.
-    Sqrt sqrt(a: real) -> real;
-    /// `if a < b { a } else { b }`: b if either is NaN, b if both are zeros. Does not commute.
-    Min min(a: real, b: real) -> real;
-    /// `if a > b { a } else { b }`: b if either is NaN, b if both are zeros. Does not commute.
-    Max max(a: real, b: real) -> real;
+            /// `a + b`, rounded once. `-0 + -0 = -0`, every other zero sum is `+0`. `inf - inf` gives NaN.
+            Add add(a: real, b: real) -> real, commutes;
+            /// `a - b`, rounded once. `x - x = +0` for finite x.
+            Sub sub(a: real, b: real) -> real;
+            /// `a * b`, rounded once; the sign is the exclusive or of the signs. `0 * inf` gives NaN.
+            Mul mul(a: real, b: real) -> real, commutes;
+            /// `a / b`, rounded once. `x / 0` is an infinity with the sign of both, `0 / 0` and `inf / inf` give NaN.
+            Div div(a: real, b: real) -> real;
+            /// `a * b + c` with **one** rounding, in every engine. An exact zero sum is `+0` unless both parts are `-0`.
+            Fma fma(a: real, b: real, c: real) -> real, commutes;
+            /// Flips the sign bit, of zeros and NaNs too.
+            Neg neg(a: real) -> real;
+            /// Clears the sign bit, of zeros and NaNs too.
+            Abs abs(a: real) -> real;
+            /// The square root, rounded once. `sqrt(-0) = -0`; below zero it gives NaN. Its tangent at 0 is 0.
+            Sqrt sqrt(a: real) -> real;
+            /// `if a < b { a } else { b }`: b if either is NaN, b if both are zeros. Does not commute.
+            Min min(a: real, b: real) -> real;
+            /// `if a > b { a } else { b }`: b if either is NaN, b if both are zeros. Does not commute.
+            Max max(a: real, b: real) -> real;
 
-    // ── decisions ───────────────────────────────────────────────────────────────────────────────────────────────
+            // ── decisions ───────────────────────────────────────────────────────────────────────────────────────────────
 
-    /// `a < b`; false if either is NaN. Zeros of either sign are equal.
-    Lt lt(a: real, b: real) -> mask;
-    /// `a <= b`; false if either is NaN. Zeros of either sign are equal.
-    Le le(a: real, b: real) -> mask;
-    /// `a == b`; false if either is NaN. Zeros of either sign are equal.
-    Eq eq(a: real, b: real) -> mask, commutes;
-    /// True where both are.
-    Both both(a: mask, b: mask) -> mask, commutes;
-    /// True where at least one is.
-    Either either(a: mask, b: mask) -> mask, commutes;
-    /// True where the operand is not.
-    Not not(a: mask) -> mask;
-    /// `if condition { a } else { b }`: the bits of one of them, whatever the other holds.
-    Select select(condition: mask, a: real, b: real) -> real;
+            /// `a < b`; false if either is NaN. Zeros of either sign are equal.
+            Lt lt(a: real, b: real) -> mask;
+            /// `a <= b`; false if either is NaN. Zeros of either sign are equal.
+            Le le(a: real, b: real) -> mask;
+            /// `a == b`; false if either is NaN. Zeros of either sign are equal.
+            Eq eq(a: real, b: real) -> mask, commutes;
+            /// True where both are.
+            Both both(a: mask, b: mask) -> mask, commutes;
+            /// True where at least one is.
+            Either either(a: mask, b: mask) -> mask, commutes;
+            /// True where the operand is not.
+            Not not(a: mask) -> mask;
+            /// `if condition { a } else { b }`: the bits of one of them, whatever the other holds.
+            Select select(condition: mask, a: real, b: real) -> real;
 
-    // ── bits ────────────────────────────────────────────────────────────────────────────────────────────────────
+            // ── bits ────────────────────────────────────────────────────────────────────────────────────────────────────
 
-    /// The encoding of a real.
-    ToBits to_bits(a: real) -> bits, renames;
-    /// The real with this encoding.
-    FromBits from_bits(a: bits) -> real, renames;
-    /// Bitwise and.
-    BitAnd bit_and(a: bits, b: bits) -> bits, commutes;
-    /// Bitwise or.
-    BitOr bit_or(a: bits, b: bits) -> bits, commutes;
-    /// Bitwise exclusive or.
-    BitXor bit_xor(a: bits, b: bits) -> bits, commutes;
-    /// Sum modulo 2^32.
-    IntAdd int_add(a: bits, b: bits) -> bits, commutes;
-    /// Difference modulo 2^32.
-    IntSub int_sub(a: bits, b: bits) -> bits;
-    /// `a << (by mod 32)`. The verifier wants `by` to be a constant: vector units shift all lanes alike.
-    Shl shl(a: bits, by: bits) -> bits;
-    /// `a >> (by mod 32)`, zeros coming in. The verifier wants `by` to be a constant.
-    Shr shr(a: bits, by: bits) -> bits;
+            /// The encoding of a real.
+            ToBits to_bits(a: real) -> bits, renames;
+            /// The real with this encoding.
+            FromBits from_bits(a: bits) -> real, renames;
+            /// Bitwise and.
+            BitAnd bit_and(a: bits, b: bits) -> bits, commutes;
+            /// Bitwise or.
+            BitOr bit_or(a: bits, b: bits) -> bits, commutes;
+            /// Bitwise exclusive or.
+            BitXor bit_xor(a: bits, b: bits) -> bits, commutes;
+            /// Sum modulo 2^32.
+            IntAdd int_add(a: bits, b: bits) -> bits, commutes;
+            /// Difference modulo 2^32.
+            IntSub int_sub(a: bits, b: bits) -> bits;
+            /// `a << (by mod 32)`. The verifier wants `by` to be a constant: vector units shift all lanes alike.
+            Shl shl(a: bits, by: bits) -> bits;
+            /// `a >> (by mod 32)`, zeros coming in. The verifier wants `by` to be a constant.
+            Shr shr(a: bits, by: bits) -> bits;
 
-    // ── transcendentals: stay whole through the gradient, then `legalize` expands them by `crate::math` ─────────
+            // ── transcendentals: stay whole through the gradient, then `legalize` expands them by `crate::math` ─────────
 
-    /// The sine of radians. `sin(-0) = -0`; infinities give NaN; a finite angle beyond [`crate::math::LARGEST_ANGLE`] counts as a zero
-    /// of its sign. See [`crate::math`] for its error.
-    Sin sin(a: real) -> real, expanded;
-    /// The cosine of radians; infinities give NaN; a finite angle beyond [`crate::math::LARGEST_ANGLE`] counts as zero.
-    /// See [`crate::math`] for its error.
-    Cos cos(a: real) -> real, expanded;
-    /// e to the power a. Overflows to infinity, underflows through the subnormals; `exp(0) = 1`, `exp(-inf) = 0`. See [`crate::math`] for its error.
-    Exp exp(a: real) -> real, expanded;
-    /// The natural logarithm. `ln(1) = +0`, `ln(-0) = ln(0) = -inf`; below zero it gives NaN. See [`crate::math`] for its error.
-    Ln ln(a: real) -> real, expanded;
-    /// `a` to the power `b`, for `a >= 0`. `pow(1, b) = 1` and `pow(a, 0) = 1` for every other operand, NaN and negative ones too;
-    /// else a NaN or a negative `a` gives NaN. Exactly: `pow(0, b)` is `+0` for b > 0 and inf for b < 0, for zeros of either sign.
-    /// See [`crate::math`] for its error.
-    Pow pow(a: real, b: real) -> real, expanded;
+            /// The sine of radians. `sin(-0) = -0`; infinities give NaN; a finite angle beyond [`crate::math::LARGEST_ANGLE`] counts as a zero
+            /// of its sign. See [`crate::math`] for its error.
+            Sin sin(a: real) -> real, expanded;
+            /// The cosine of radians; infinities give NaN; a finite angle beyond [`crate::math::LARGEST_ANGLE`] counts as zero.
+            /// See [`crate::math`] for its error.
+            Cos cos(a: real) -> real, expanded;
+            /// e to the power a. Overflows to infinity, underflows through the subnormals; `exp(0) = 1`, `exp(-inf) = 0`. See [`crate::math`] for its error.
+            Exp exp(a: real) -> real, expanded;
+            /// The natural logarithm. `ln(1) = +0`, `ln(-0) = ln(0) = -inf`; below zero it gives NaN. See [`crate::math`] for its error.
+            Ln ln(a: real) -> real, expanded;
+            /// `a` to the power `b`, for `a >= 0`. `pow(1, b) = 1` and `pow(a, 0) = 1` for every other operand, NaN and negative ones too;
+            /// else a NaN or a negative `a` gives NaN. Exactly: `pow(0, b)` is `+0` for b > 0 and inf for b < 0, for zeros of either sign.
+            /// See [`crate::math`] for its error.
+            Pow pow(a: real, b: real) -> real, expanded;
 
-    // ── differentiation ─────────────────────────────────────────────────────────────────────────────────────────
+            // ── differentiation ─────────────────────────────────────────────────────────────────────────────────────────
 
-    /// `a`, bit for bit, with zero tangent: a running scale that cancels must not be differentiated.
-    Hold hold(a: real) -> real, renames;
+            /// `a`, bit for bit, with zero tangent: a running scale that cancels must not be differentiated.
+            Hold hold(a: real) -> real, renames;
+        }
+    };
 }
+
+for_each_op!(op_table);

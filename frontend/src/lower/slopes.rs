@@ -181,7 +181,10 @@ fn back(d: &mut FunctionBuilder, entry: &Entry, slope: Value, slopes: &mut HashM
 }
 
 macro_rules! recorded {
-    ($($name:ident $op:ident ( $($arg:ident),+ ));+ $(;)?) => {
+    ($(
+        $(#[doc = $doc:literal])*
+        $variant:ident $name:ident ( $($arg:ident : $type:ident),+ ) -> $result:ident $(, $flag:ident)*;
+    )+) => {
         impl Domain for Tape<'_> {
             type Real = Value;
             type Mask = Value;
@@ -197,44 +200,11 @@ macro_rules! recorded {
 
             $(
                 fn $name(&mut self, $($arg: Value),+) -> Value {
-                    self.op(Op::$op, &[$($arg),+])
+                    self.op(Op::$variant, &[$($arg),+])
                 }
             )+
         }
     };
 }
 
-recorded! {
-    add Add(a, b);
-    sub Sub(a, b);
-    mul Mul(a, b);
-    div Div(a, b);
-    fma Fma(a, b, c);
-    neg Neg(a);
-    abs Abs(a);
-    sqrt Sqrt(a);
-    min Min(a, b);
-    max Max(a, b);
-    lt Lt(a, b);
-    le Le(a, b);
-    eq Eq(a, b);
-    both Both(a, b);
-    either Either(a, b);
-    not Not(a);
-    select Select(condition, a, b);
-    to_bits ToBits(a);
-    from_bits FromBits(a);
-    bit_and BitAnd(a, b);
-    bit_or BitOr(a, b);
-    bit_xor BitXor(a, b);
-    int_add IntAdd(a, b);
-    int_sub IntSub(a, b);
-    shl Shl(a, by);
-    shr Shr(a, by);
-    sin Sin(a);
-    cos Cos(a);
-    exp Exp(a);
-    ln Ln(a);
-    pow Pow(a, b);
-    hold Hold(a);
-}
+jbt_ir::for_each_op!(recorded);

@@ -288,140 +288,34 @@ impl<'a> Chain<'a> {
     }
 }
 
-impl Domain for Counting {
-    type Real = ();
-    type Mask = ();
-    type Bits = ();
-
-    fn constant(&mut self, _value: f32) {}
-
-    fn bits_constant(&mut self, _value: u32) {}
-
-    fn add(&mut self, (): (), (): ()) {
-        self.add_one(Op::Add);
-    }
-
-    fn sub(&mut self, (): (), (): ()) {
-        self.add_one(Op::Sub);
-    }
-
-    fn mul(&mut self, (): (), (): ()) {
-        self.add_one(Op::Mul);
-    }
-
-    fn div(&mut self, (): (), (): ()) {
-        self.add_one(Op::Div);
-    }
-
-    fn fma(&mut self, (): (), (): (), (): ()) {
-        self.add_one(Op::Fma);
-    }
-
-    fn neg(&mut self, (): ()) {
-        self.add_one(Op::Neg);
-    }
-
-    fn abs(&mut self, (): ()) {
-        self.add_one(Op::Abs);
-    }
-
-    fn sqrt(&mut self, (): ()) {
-        self.add_one(Op::Sqrt);
-    }
-
-    fn min(&mut self, (): (), (): ()) {
-        self.add_one(Op::Min);
-    }
-
-    fn max(&mut self, (): (), (): ()) {
-        self.add_one(Op::Max);
-    }
-
-    fn lt(&mut self, (): (), (): ()) {
-        self.add_one(Op::Lt);
-    }
-
-    fn le(&mut self, (): (), (): ()) {
-        self.add_one(Op::Le);
-    }
-
-    fn eq(&mut self, (): (), (): ()) {
-        self.add_one(Op::Eq);
-    }
-
-    fn both(&mut self, (): (), (): ()) {
-        self.add_one(Op::Both);
-    }
-
-    fn either(&mut self, (): (), (): ()) {
-        self.add_one(Op::Either);
-    }
-
-    fn not(&mut self, (): ()) {
-        self.add_one(Op::Not);
-    }
-
-    fn select(&mut self, (): (), (): (), (): ()) {
-        self.add_one(Op::Select);
-    }
-
-    fn to_bits(&mut self, (): ()) {
-        self.add_one(Op::ToBits);
-    }
-
-    fn from_bits(&mut self, (): ()) {
-        self.add_one(Op::FromBits);
-    }
-
-    fn bit_and(&mut self, (): (), (): ()) {
-        self.add_one(Op::BitAnd);
-    }
-
-    fn bit_or(&mut self, (): (), (): ()) {
-        self.add_one(Op::BitOr);
-    }
-
-    fn bit_xor(&mut self, (): (), (): ()) {
-        self.add_one(Op::BitXor);
-    }
-
-    fn int_add(&mut self, (): (), (): ()) {
-        self.add_one(Op::IntAdd);
-    }
-
-    fn int_sub(&mut self, (): (), (): ()) {
-        self.add_one(Op::IntSub);
-    }
-
-    fn shl(&mut self, (): (), (): ()) {
-        self.add_one(Op::Shl);
-    }
-
-    fn shr(&mut self, (): (), (): ()) {
-        self.add_one(Op::Shr);
-    }
-
-    fn sin(&mut self, (): ()) {
-        self.add_one(Op::Sin);
-    }
-
-    fn cos(&mut self, (): ()) {
-        self.add_one(Op::Cos);
-    }
-
-    fn exp(&mut self, (): ()) {
-        self.add_one(Op::Exp);
-    }
-
-    fn ln(&mut self, (): ()) {
-        self.add_one(Op::Ln);
-    }
-
-    fn pow(&mut self, (): (), (): ()) {
-        self.add_one(Op::Pow);
-    }
-
-    fn hold(&mut self, (): ()) {
-        self.add_one(Op::Hold);
-    }
+/// The operand of an op that only counts.
+macro_rules! nothing {
+    ($arg:ident) => {
+        ()
+    };
 }
+
+macro_rules! counting {
+    ($(
+        $(#[doc = $doc:literal])*
+        $variant:ident $name:ident ( $($arg:ident : $type:ident),+ ) -> $result:ident $(, $flag:ident)*;
+    )+) => {
+        impl Domain for Counting {
+            type Real = ();
+            type Mask = ();
+            type Bits = ();
+
+            fn constant(&mut self, _value: f32) {}
+
+            fn bits_constant(&mut self, _value: u32) {}
+
+            $(
+                fn $name(&mut self, $((): nothing!($arg)),+) {
+                    self.add_one(Op::$variant);
+                }
+            )+
+        }
+    };
+}
+
+crate::for_each_op!(counting);

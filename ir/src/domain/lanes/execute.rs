@@ -149,43 +149,23 @@ impl Block<'_> {
     #[inline(always)]
     fn op(&mut self, op: Op, step: &OpStep) {
         let [a, b, c, ..] = step.args;
-        let [a, b, c] = [self.handle(a), self.handle(b), self.handle(c)];
+        let args = [self.handle(a), self.handle(b), self.handle(c)];
         self.lanes.result = step.result.index();
         let lanes = &mut self.lanes;
-        let result = match op {
-            Op::Add => lanes.add(a, b),
-            Op::Sub => lanes.sub(a, b),
-            Op::Mul => lanes.mul(a, b),
-            Op::Div => lanes.div(a, b),
-            Op::Fma => lanes.fma(a, b, c),
-            Op::Neg => lanes.neg(a),
-            Op::Abs => lanes.abs(a),
-            Op::Sqrt => lanes.sqrt(a),
-            Op::Min => lanes.min(a, b),
-            Op::Max => lanes.max(a, b),
-            Op::Lt => lanes.lt(a, b),
-            Op::Le => lanes.le(a, b),
-            Op::Eq => lanes.eq(a, b),
-            Op::Both => lanes.both(a, b),
-            Op::Either => lanes.either(a, b),
-            Op::Not => lanes.not(a),
-            Op::Select => lanes.select(a, b, c),
-            Op::ToBits => lanes.to_bits(a),
-            Op::FromBits => lanes.from_bits(a),
-            Op::BitAnd => lanes.bit_and(a, b),
-            Op::BitOr => lanes.bit_or(a, b),
-            Op::BitXor => lanes.bit_xor(a, b),
-            Op::IntAdd => lanes.int_add(a, b),
-            Op::IntSub => lanes.int_sub(a, b),
-            Op::Shl => lanes.shl(a, b),
-            Op::Shr => lanes.shr(a, b),
-            Op::Sin => lanes.sin(a),
-            Op::Cos => lanes.cos(a),
-            Op::Exp => lanes.exp(a),
-            Op::Ln => lanes.ln(a),
-            Op::Pow => lanes.pow(a, b),
-            Op::Hold => lanes.hold(a),
-        };
+        macro_rules! dispatch {
+            ($(
+                $(#[doc = $doc:literal])*
+                $variant:ident $name:ident ( $($arg:ident : $type:ident),+ ) -> $result:ident $(, $flag:ident)*;
+            )+) => {
+                match op {
+                    $(Op::$variant => {
+                        let [$($arg,)+ ..] = args;
+                        lanes.$name($($arg),+)
+                    })+
+                }
+            };
+        }
+        let result = crate::for_each_op!(dispatch);
         if let Handle::Splat(bits) = result {
             self.splats[step.result.index()] = bits;
         }
