@@ -104,6 +104,13 @@ Keys of --json that measure the mesh, in units and axes of the scene:
   bounds: [x0, y0, z0, x1, y1, z1] and size: [x, y, z] (null if it is empty), volume (null if it is not closed: it encloses
   nothing then), area; of the file: format, up, colors (null if it has none)
 
+Parts that are thinner than a cell are searched for, since no cell can show them. Keys of thin in --json (null
+with --no-thin):
+  places: how many places may hold some, near: points of the first eight, cell: the edge of cells that would
+  show them (null without places); in blocks of 4^3 cells: missed, where a point of such a part was found;
+  shredded, where the mesh is in shreds; unproven, where neither a part was found nor ranges exclude one;
+  boxes: ranges that the search took
+
 Examples:
   jbt mesh hero.jbt -o hero.glb
   jbt mesh hero.jbt --resolution 200 -D radius=2 -o hero.ply
@@ -123,6 +130,9 @@ pub struct MeshArguments {
     /// Where the field is asked.
     #[command(flatten)]
     pub lattice: LatticeArguments,
+    /// Do not search for parts that are thinner than a cell
+    #[arg(long)]
+    pub no_thin: bool,
     #[command(flatten)]
     pub work: WorkArguments,
 }

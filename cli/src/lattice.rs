@@ -22,7 +22,7 @@ pub fn settings(arguments: &LatticeArguments) -> Result<Polygonize, Failure> {
         (None, None) => Fineness::default(),
     };
     let region = arguments.region.map(|region| (region.low, region.high));
-    Ok(Polygonize { region, fineness, verify: true })
+    Ok(Polygonize { region, fineness, verify: true, thin_parts: true })
 }
 
 /// Whose fault it is that there is no lattice or mesh.

@@ -3,7 +3,8 @@
 use std::time::{Duration, Instant};
 
 use jbt::export::{self, ColorEncoding, ExportError, ExportOptions, Format};
-use jbt::{ModelOrigin, Polygonized};
+use jbt::mesh::ThinReport;
+use jbt::{MeshCounters, ModelOrigin, Polygonize, Polygonized};
 use jbt_frontend::diagnostic::escape;
 use serde_json::json;
 
@@ -20,7 +21,7 @@ pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(),
     let destination = arguments.output.destination(&arguments.scene.path)?;
     arguments.work.check_output(&destination.path, "mesh")?;
     let options = options(arguments, destination.kind)?;
-    let settings = lattice::settings(&arguments.lattice)?;
+    let settings = Polygonize { thin_parts: !arguments.no_thin, ..lattice::settings(&arguments.lattice)? };
     let scene = Scene::load(&arguments.scene)?;
     scene.warn(quiet);
     let tree = scene.check()?;
@@ -94,7 +95,20 @@ fn warnings(made: &Polygonized, format: Format) -> Vec<String> {
              the mesh is coarse, and vertices may coincide"
         ));
     }
+    warnings.extend(made.report.thin.as_ref().and_then(thin_warning));
     warnings
+}
+
+/// Points that a warning about thin parts names.
+const NAMED: usize = 3;
+
+/// That parts are too thin for the cells, if any were found.
+fn thin_warning(thin: &ThinReport) -> Option<String> {
+    let cell = thin.cell?;
+    let named: Vec<String> =
+        thin.near.iter().take(NAMED).map(|point| format!("({})", point.map(digits).join(", "))).collect();
+    let places = plural(thin.places, "place", "places");
+    Some(format!("{places} may hold parts thinner than a cell, near {}; try --cell {cell}", named.join(", ")))
 }
 
 /// What is told about a mesh.
@@ -139,6 +153,7 @@ impl Report<'_> {
             "interval_evaluations": counters.division.interval_evaluations,
             "bricks": report.bricks,
             "crossing_cells": report.crossing_cells,
+            "thin": report.thin.as_ref().map(|thin| thin_json(thin, counters)),
             "engine": self.made.engine.name(),
             "region": [low[0], low[1], low[2], high[0], high[1], high[2]],
             "cell": lattice.spacing(),
@@ -195,6 +210,21 @@ impl Report<'_> {
             milliseconds(self.total),
         )
     }
+}
+
+/// Thin parts, for machines.
+fn thin_json(thin: &ThinReport, counters: &MeshCounters) -> serde_json::Value {
+    json!({
+        "places": thin.places,
+        "near": thin.near,
+        "cell": thin.cell,
+        "missed": thin.missed,
+        "shredded": thin.shredded,
+        "unproven": thin.unproven,
+        "boxes": thin.boxes,
+        "evaluations": counters.thin,
+        "interval_evaluations": counters.thin_intervals,
+    })
 }
 
 /// The sides of a box.

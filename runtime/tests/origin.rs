@@ -109,8 +109,12 @@ fn moved_by_a_multiple_of_a_power_of_two_everything_has_the_bits_of_home() {
         // A region, so that no rounding of the support's sides is in it.
         let region = |by: [f64; 3]| Some((by.map(|x| x - 2.0), by.map(|x| x + 2.0)));
         let mesh = |tree: &CheckedTree, by| {
-            let settings =
-                Polygonize { region: region(by), fineness: Fineness::Resolution(40), verify: true };
+            let settings = Polygonize {
+                region: region(by),
+                fineness: Fineness::Resolution(40),
+                verify: true,
+                ..Polygonize::default()
+            };
             settings.mesh(&Compiler::new(), tree).run().expect("it has a surface").mesh
         };
         let (mut at_home, there) = (mesh(&home, [0.0; 3]), mesh(&far, by));

@@ -47,8 +47,12 @@ impl Task {
 
     fn ours(&self) -> Polygonized {
         let region = Some(([-1.0; 3], [1.0; 3]));
-        let polygonize =
-            Polygonize { region, fineness: jbt::Fineness::Resolution(self.cells), verify: false };
+        let polygonize = Polygonize {
+            region,
+            fineness: jbt::Fineness::Resolution(self.cells),
+            verify: false,
+            ..Polygonize::default()
+        };
         let run = || polygonize.mesh(&Compiler::new(), &self.tree).run();
         self.pool.install(run).expect("blobs have a mesh")
     }

@@ -29,7 +29,12 @@ fn scene() -> Result<CheckedTree, String> {
 
 /// All points of the lattice.
 fn lattice(tree: &CheckedTree) -> Points {
-    let polygonize = jbt::Polygonize { region: None, fineness: jbt::Fineness::Cell(CELL), verify: false };
+    let polygonize = jbt::Polygonize {
+        region: None,
+        fineness: jbt::Fineness::Cell(CELL),
+        verify: false,
+        ..jbt::Polygonize::default()
+    };
     let lattice = polygonize.lattice(tree).expect("the train is bounded");
     let [nx, ny, nz] = lattice.points();
     let at = |axis, index| lattice.coordinate(axis, index);

@@ -549,3 +549,33 @@ fn a_colour_in_hex_comes_out_as_it_went_in() {
         told.jbt(&["check", "bare.jbt"]).code(1).says("bare.jbt:2:7: error: `#ff8800` begins a comment");
     assert_eq!(told.stderr().matches("error: ").count(), 1, "{}", told.stderr());
 }
+
+#[test]
+fn parts_thinner_than_a_cell_are_told() {
+    let scene = "jbt 1 union { point { surface_radius 0.5 } \
+                 segment { from (1 -1 1) to (1.2 1 0.9) surface_radius 0.005 } }";
+    let folder = folder().with("hair.jbt", scene);
+    let arguments = ["mesh", "hair.jbt", "-o", "a.obj", "--force", "--cell", "0.05"];
+    let ran = folder.jbt(&arguments).code(0).says("1 place may hold parts thinner than a cell, near (");
+    ran.says("); try --cell 0.00");
+    let json = folder.jbt(&[&arguments[..], &["--json"]].concat()).code(0).json();
+    let warning = json["warnings"][0].as_str().expect("it warns");
+    assert!(warning.starts_with("1 place may hold parts thinner than a cell, near (1"), "{warning}");
+    let thin = &json["thin"];
+    assert_eq!((&thin["places"], thin["near"].as_array().map(Vec::len)), (&1.into(), Some(1)));
+    assert!(thin["missed"].as_u64().is_some_and(|missed| missed > 4), "{thin}");
+    let cell = thin["cell"].as_f64().expect("it advises");
+    assert!((0.002..=0.005).contains(&cell), "{cell}");
+    for key in ["shredded", "unproven", "boxes", "evaluations", "interval_evaluations"] {
+        assert!(thin[key].is_u64(), "{key}");
+    }
+    // As fine as advised, the hair is there.
+    let cell = cell.to_string();
+    let region = ["--cell", &cell, "--region", "1,-0.1,0.9,1.2,0.1,1", "--json"];
+    let fine = folder.jbt(&[&["mesh", "hair.jbt", "-o", "b.obj"], &region[..]].concat()).code(0).json();
+    assert_eq!(fine["thin"]["places"], 0);
+    assert!(fine["triangles"].as_u64().is_some_and(|triangles| triangles > 100));
+
+    let ran = folder.jbt(&[&arguments[..], &["--no-thin", "--json"]].concat()).code(0).json();
+    assert_eq!((&ran["warnings"], &ran["thin"]), (&serde_json::json!([]), &serde_json::Value::Null));
+}

@@ -19,7 +19,7 @@ use rayon::prelude::*;
 use super::brick::{Bricks, NONE, SELF, box_of};
 use super::field::Field;
 use super::progress::{Phase, Progress};
-use super::{MeshError, Options, Sides};
+use super::{MAX_BRICK, MeshError, Options, Sides};
 use crate::region::{ANYTHING, Box3, MAX_PARTS};
 
 /// What division found.
@@ -30,7 +30,13 @@ pub(crate) struct Division<R> {
     pub(crate) regions: Vec<R>,
     /// What became of the boxes.
     pub(crate) boxes: Boxes,
+    /// The boxes of [`CHUNK`] cells along an edge that the surface may be in, and what the field knows of
+    /// them, if bricks are smaller and these are wanted.
+    pub(crate) chunks: Option<Kept<R>>,
 }
+
+/// The places of some boxes, in units of their size and in Morton order, and their regions.
+pub(crate) type Kept<R> = (Vec<[u32; 3]>, Vec<R>);
 
 /// What became of boxes.
 #[derive(Clone, Copy, Default)]
@@ -65,6 +71,11 @@ struct Level<R> {
     neighbours: Vec<[u32; 27]>,
 }
 
+/// The boxes of the next size, and the chunks if they have been met.
+type Descended<R> = (Level<R>, Option<Kept<R>>);
+
+/// The edge of boxes that are kept for the search for thin parts, whatever the edge of bricks is.
+pub(crate) const CHUNK: usize = 8;
 /// The edge of bricks, if the points are cheap.
 const DEFAULT_BRICK: usize = 8;
 /// The ops of a point, on average, from which on it pays to halve bricks: to have fewer points and more bricks.
@@ -107,20 +118,25 @@ pub(crate) fn divide<F: Field>(
     let mut edge = options.brick.unwrap_or(DEFAULT_BRICK);
     let work = Work { field, axes: &axes, iso: options.iso, limit, progress };
     let most = axes.iter().map(|axis| axis.len() - 1).fold(1, usize::max);
-    let halvings = most.div_ceil(edge).next_power_of_two().ilog2();
+    // The search for thin parts wants the same boxes around each box, whatever the edge of bricks is: the
+    // first has room for the largest brick.
+    let least = if options.thin_parts { MAX_BRICK } else { edge };
+    let halvings = most.next_power_of_two().max(least).ilog2() - edge.ilog2();
     progress.begin(Phase::Divide)?;
     let mut boxes = Boxes::default();
     let mut level = work.root(edge << halvings, &mut boxes)?;
+    let mut chunks = None;
     for halving in (0..halvings).rev() {
-        level = work.descend(level, edge << halving, &mut boxes)?;
+        let above = (edge << halving) * 2;
+        (level, chunks) = work.descend_and_keep(level, above, (options.thin_parts, chunks), &mut boxes)?;
         progress.advance(Phase::Divide, halvings as usize)?;
     }
     if options.brick.is_none() && level.is_costly(field) {
+        (level, chunks) = work.descend_and_keep(level, edge, (options.thin_parts, chunks), &mut boxes)?;
         edge /= 2;
-        level = work.descend(level, edge, &mut boxes)?;
     }
     let Level { places, regions, neighbours } = level;
-    Ok(Division { bricks: Bricks::new(edge, axes, places, neighbours), regions, boxes })
+    Ok(Division { bricks: Bricks::new(edge, axes, places, neighbours), regions, boxes, chunks })
 }
 
 impl<F: Field> Work<'_, '_, F> {
@@ -139,10 +155,24 @@ impl<F: Field> Work<'_, '_, F> {
         Ok(Level { places: vec![[0; 3]], regions: vec![region], neighbours: vec![neighbours] })
     }
 
+    /// The children of all boxes, which have this size. The boxes themselves stay if they are wanted: they
+    /// are chunks.
+    fn descend_and_keep(
+        &self,
+        level: Level<F::Region>,
+        size: usize,
+        (wanted, chunks): (bool, Option<Kept<F::Region>>),
+        boxes: &mut Boxes,
+    ) -> Result<Descended<F::Region>, MeshError<F::Error>> {
+        let children = self.descend(&level, size / 2, boxes)?;
+        let chunks = if wanted && size == CHUNK { Some((level.places, level.regions)) } else { chunks };
+        Ok((children, chunks))
+    }
+
     /// The children, of this size, of all boxes.
     fn descend(
         &self,
-        level: Level<F::Region>,
+        level: &Level<F::Region>,
         size: usize,
         boxes: &mut Boxes,
     ) -> Result<Level<F::Region>, MeshError<F::Error>> {
@@ -413,7 +443,7 @@ mod tests {
 
     #[test]
     fn bricks_are_those_that_the_surface_may_be_in_and_know_each_other() {
-        let Division { bricks, regions, boxes } = divided([48, 31, 40], usize::MAX).unwrap();
+        let Division { bricks, regions, boxes, chunks: _ } = divided([48, 31, 40], usize::MAX).unwrap();
         assert_eq!(bricks.len(), regions.len());
         assert!(boxes.examined > boxes.inside + boxes.outside && boxes.inside > 0 && boxes.outside > 0);
         // The lattice ends at y = 0.875 and z = 2.

@@ -22,6 +22,7 @@
 //!     quads  = one for each crossed edge, through the four cells around it,
 //!              split along its shorter diagonal                                             (surface)
 //!     check that the mesh is closed                                                         (check)
+//!     search for parts that are too thin for the lattice, and report them                   (thin)
 //! ```
 //!
 //! No point is evaluated twice, and nothing is asked about a box without surface but its range. So time and memory grow with
@@ -46,6 +47,7 @@ mod pull;
 mod sample;
 mod settle;
 mod surface;
+mod thin;
 mod vertex;
 
 use std::error::Error;
@@ -58,12 +60,14 @@ use thiserror::Error;
 pub use check::{Defect, check_manifold, is_closed};
 pub use field::{Field, Work};
 pub use lattice::{Lattice, LatticeError};
+pub use thin::{MAX_NEAR, ThinReport};
 
 pub(crate) use surface::facet_normal;
 
 use crate::job::{Hook, Job};
 use crate::points::Points;
 
+use crossing::Crossings;
 use divide::Division;
 use progress::Progress;
 use vertex::Source;
@@ -90,12 +94,15 @@ pub struct Options {
     pub brick: Option<usize>,
     /// Whether to look at every edge of the mesh to say that it is closed. Where no side of the lattice cuts the body it is, by construction.
     pub verify: bool,
+    /// Whether to search for parts that are thinner than a cell: see [`Report::thin`]. It takes a field that
+    /// knows ranges of boxes, and changes nothing of the mesh.
+    pub thin_parts: bool,
 }
 
 impl Default for Options {
-    /// Iso 0.5, two pulls, bricks as they are best, verified.
+    /// Iso 0.5, two pulls, bricks as they are best, verified, no search for thin parts.
     fn default() -> Self {
-        Options { iso: 0.5, pulls: 2, brick: None, verify: true }
+        Options { iso: 0.5, pulls: 2, brick: None, verify: true, thin_parts: false }
     }
 }
 
@@ -223,7 +230,7 @@ impl fmt::Display for Sides {
 }
 
 /// What was done to make a mesh, and what it is like.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Report {
     /// Whether every edge has exactly two triangles, in opposite directions. A mesh without triangles is closed. It has been looked at if
@@ -260,6 +267,8 @@ pub struct Report {
     pub crossing_cells: u64,
     /// Ambiguous faces that were resolved the other way, to keep the mesh manifold.
     pub flipped_faces: u64,
+    /// Parts that are thinner than a cell, if [`Options::thin_parts`] said to search for them.
+    pub thin: Option<ThinReport>,
 }
 
 /// Why there is no mesh. `E` is the error of the field.
@@ -336,21 +345,27 @@ pub fn extract<'a, F: Field>(
     options: &Options,
 ) -> Job<'a, (Mesh, Report), MeshError<F::Error>> {
     let options = options.clone();
-    Job::new(move |hook| extract_hooked(field, lattice, &options, hook))
+    Job::new(move |hook| extract_hooked(field, lattice, &options, hook, |_| ()))
 }
 
-/// As [`extract`], told to a hook.
+/// As [`extract`], told to a hook. The report is shown before the search for thin parts, when all that the
+/// mesh takes has been evaluated.
 pub(crate) fn extract_hooked<F: Field>(
     field: &F,
     lattice: &Lattice,
     options: &Options,
     hook: Hook<'_>,
+    meshed: impl FnOnce(&Report),
 ) -> Result<(Mesh, Report), MeshError<F::Error>> {
     check_options(options)?;
     let progress = Progress::new(hook);
     let division = divide::divide(field, lattice.axes(), options, MAX_BRICKS, &progress)?;
-    let (mesh, mut report) = polygonize(field, &division, options, &progress)?;
-    drop(division);
+    let (mesh, mut report, crossings) = polygonize(field, &division, options, &progress)?;
+    meshed(&report);
+    if options.thin_parts {
+        report.thin = Some(thin::find(field, &division, (&crossings, &mesh), options.iso, &progress)?);
+    }
+    drop((division, crossings));
     report.closed = if options.verify {
         is_closed(mesh.positions.len(), &mesh.triangles)
     } else {
@@ -366,8 +381,8 @@ fn polygonize<F: Field>(
     division: &Division<F::Region>,
     options: &Options,
     progress: &Progress<'_>,
-) -> Result<(Mesh, Report), MeshError<F::Error>> {
-    let Division { bricks, regions, boxes } = division;
+) -> Result<(Mesh, Report, Crossings), MeshError<F::Error>> {
+    let Division { bricks, regions, boxes, chunks: _ } = division;
     let samples = sample::sample(field, bricks, regions, progress)?;
     let crossings = crossing::find(bricks, &samples, options.iso);
     let count = crossings.vertex_count();
@@ -392,16 +407,17 @@ fn polygonize<F: Field>(
         crossing_cells: crossings.cells.len() as u64,
         flipped_faces: crossings.flipped_faces,
         closed: false,
+        thin: None,
     };
     report.cut_sides.add(boxes.cut);
     drop(samples);
     mesh.triangles = surface::triangles(bricks, &crossings, &mesh.positions);
     surface::repair_normals(&mut mesh, bricks, &crossings, &done.doubtful);
-    Ok((mesh, report))
+    Ok((mesh, report, crossings))
 }
 
 fn check_options<E: Error + 'static>(options: &Options) -> Result<(), MeshError<E>> {
-    let &Options { iso, pulls, brick, verify: _ } = options;
+    let &Options { iso, pulls, brick, verify: _, thin_parts: _ } = options;
     if !iso.is_finite() {
         return Err(MeshError::Iso { iso });
     }

@@ -14,6 +14,8 @@ pub(crate) enum Phase {
     Lattice,
     /// Everything at the vertices.
     Vertices,
+    /// Parts that are thinner than a cell.
+    Thin,
 }
 
 impl Phase {
@@ -22,7 +24,8 @@ impl Phase {
         match self {
             Phase::Divide => [0.0, 0.1],
             Phase::Lattice => [0.1, 0.6],
-            Phase::Vertices => [0.6, 1.0],
+            Phase::Vertices => [0.6, 0.97],
+            Phase::Thin => [0.97, 1.0],
         }
     }
 }

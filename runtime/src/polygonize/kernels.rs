@@ -56,11 +56,6 @@ impl Kernels {
     pub(super) fn evaluations_per_point(&self) -> u64 {
         self.field.evaluations_per_point()
     }
-
-    /// Distances to skeletons that were computed so far.
-    pub(super) fn primitive_evaluations(&self) -> u64 {
-        self.counters().iter().map(|counters| counters.primitive_evaluations).sum()
-    }
 }
 
 impl Divisible for Kernels {

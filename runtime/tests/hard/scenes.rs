@@ -1,6 +1,9 @@
-//! Random scenes that are hard to mesh: walls where the field jumps, places far from the origin.
+//! Random scenes that are hard to mesh: walls where the field jumps, places far from the origin, parts that
+//! are thinner than a cell.
 
 use fastrand::Rng;
+
+use crate::planted::{Made, Planted, Thin, planted};
 
 /// Cells along the longest side that a scene is made for.
 pub const RESOLUTION: usize = 96;
@@ -15,7 +18,12 @@ pub struct Scene {
     pub center: [f64; 3],
     /// Whether some of its surface is a wall.
     pub has_walls: bool,
+    /// A part that is thinner than a cell, in a corner of the region; its place is from the middle of it.
+    pub part: Option<Planted>,
 }
+
+/// How far from the middle of the region a planted part is along each axis.
+const CORNER: f64 = 1.02;
 
 /// A scene from a seed.
 pub fn scene(seed: u64) -> Scene {
@@ -24,8 +32,21 @@ pub fn scene(seed: u64) -> Scene {
     let solid = if has_walls { walled(&mut rng) } else { smooth(&mut rng) };
     let center = if rng.u8(0..3) == 0 { far(&mut rng) } else { [0.0; 3] };
     let [x, y, z] = center;
+    // From a seed of its own, so that the rest of a scene does not depend on it.
+    let part = corner_part(&mut Rng::with_seed(!seed));
+    let solid = part.iter().fold(solid, |solid, part| format!("union {{ {solid} {} }}", part.text));
     let text = format!("jbt 1\ntranslate ({x} {y} {z}) {{ {solid} }}\n");
-    Scene { text, center, has_walls }
+    Scene { text, center, has_walls, part }
+}
+
+/// A part that is thinner than a cell, in every other scene.
+fn corner_part(rng: &mut Rng) -> Option<Planted> {
+    if rng.bool() {
+        return None;
+    }
+    let kind = (Thin::ALL[rng.usize(0..Thin::ALL.len())], Made::ALL[rng.usize(0..Made::ALL.len())]);
+    let center = [0; 3].map(|_| if rng.bool() { CORNER } else { -CORNER });
+    Some(planted(rng, kind, center, 2.0 * HALF / RESOLUTION as f64))
 }
 
 fn between(rng: &mut Rng, low: f64, high: f64) -> f64 {

@@ -18,7 +18,7 @@ pub fn mesh(text: &str, resolution: usize) -> Polygonized {
 
 /// The mesh of a model in a region.
 pub fn mesh_in(text: &str, region: Option<([f64; 3], [f64; 3])>, fineness: Fineness) -> Polygonized {
-    let polygonize = Polygonize { region, fineness, verify: true };
+    let polygonize = Polygonize { region, fineness, verify: true, ..Polygonize::default() };
     polygonize.mesh(&Compiler::new(), &tree(text)).run().unwrap_or_else(|e| panic!("{e} in {text}"))
 }
 

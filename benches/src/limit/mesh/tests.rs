@@ -73,6 +73,7 @@ fn the_compiler_makes_as_many_triangles() {
         region: Some(([-1.5; 3], [1.5; 3])),
         fineness: Fineness::Cell(3.0 / cells as f64),
         verify: true,
+        ..Polygonize::default()
     };
     let compiled = settings.mesh(&Compiler::new(), &tree(&model)).run().expect("blobs have a mesh");
     // A corner that is on the surface to within rounding may be inside for one of them only.

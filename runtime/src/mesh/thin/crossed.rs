@@ -1,0 +1,365 @@
+//! The cells that the surface crosses, by blocks of 4^3 cells of the lattice, and what their corners tell of
+//! parts that are too thin for it.
+//!
+//! ```text
+//!     .   .   .   .   .        A *lone* point is on the other side of both of its neighbours along an axis:
+//! here o and all of its
+//!     .   o   .   .   .        neighbours in the row. A *scrap* is on the other side of all that is around
+//! it. What is thinner than
+//!     .   .   o   .   .        a cell leaves nothing else; a smooth body has a few lone points where a line
+//! of the lattice touches it.
+//! ```
+//!
+//! All of this is made of the signs of lattice points, so it is the same whatever the bricks are.
+
+use crate::mesh::brick::{Bricks, place};
+use crate::mesh::crossing::{Cell, Crossings};
+
+/// Cells along the edge of a block.
+pub(super) const EDGE: usize = 4;
+/// Bits of the place of a cell in a block.
+const BITS: u32 = 6;
+/// Along each axis the cells of a block at its low end, a bit each, and those at its high end.
+const LOW: [u64; 3] = [layer(0, 0), layer(1, 0), layer(2, 0)];
+const HIGH: [u64; 3] = [layer(0, 3), layer(1, 3), layer(2, 3)];
+
+const fn layer(axis: usize, index: u64) -> u64 {
+    let (mut cells, mut cell) = (0, 0);
+    while cell < 64 {
+        let along = (cell >> axis & 1) | (cell >> (axis + 3) & 1) << 1;
+        if along == index {
+            cells |= 1 << cell;
+        }
+        cell += 1;
+    }
+    cells
+}
+
+/// Cells along the edge of a table of a block's cells and those behind it.
+const STRIDE: usize = EDGE + 1;
+/// The distances of neighbours in the table.
+const STEPS: [usize; 3] = [1, STRIDE, STRIDE * STRIDE];
+/// Where each cell of a block is in the table.
+const AT: [usize; 64] = {
+    let (mut at, mut cell) = ([0; 64], 0);
+    while cell < 64 {
+        let mut axis = 0;
+        while axis < 3 {
+            at[cell] += ((cell >> axis & 1) + 2 * (cell >> (axis + 3) & 1)) * STEPS[axis];
+            axis += 1;
+        }
+        cell += 1;
+    }
+    at
+};
+
+/// For the corners of a cell that are inside, which edges at its first corner are crossed, a bit for each
+/// axis.
+const CROSSED: [u8; 256] = {
+    let (mut crossed, mut signs) = ([0; 256], 0);
+    while signs < 256 {
+        let mut axis = 0;
+        while axis < 3 {
+            crossed[signs] |= (((signs ^ signs >> (1 << axis)) & 1) << axis) as u8;
+            axis += 1;
+        }
+        signs += 1;
+    }
+    crossed
+};
+
+/// The bits of x, y and z interleaved, that of x lowest.
+pub(super) fn morton(place: [u32; 3]) -> u64 {
+    let spread = |index: u32| {
+        let mut bits = u64::from(index);
+        for (shift, mask) in [
+            (32, 0x001f_0000_0000_ffff),
+            (16, 0x001f_0000_ff00_00ff),
+            (8, 0x100f_00f0_0f00_f00f),
+            (4, 0x10c3_0c30_c30c_30c3),
+            (2, 0x1249_2492_4924_9249),
+        ] {
+            bits = (bits | bits << shift) & mask;
+        }
+        bits
+    };
+    spread(place[0]) | spread(place[1]) << 1 | spread(place[2]) << 2
+}
+
+/// The inverse of [`morton`].
+fn unwoven(code: u64) -> [u32; 3] {
+    let gather = |mut bits: u64| {
+        bits &= 0x1249_2492_4924_9249;
+        for (shift, mask) in [
+            (2, 0x10c3_0c30_c30c_30c3),
+            (4, 0x100f_00f0_0f00_f00f),
+            (8, 0x001f_0000_ff00_00ff),
+            (16, 0x001f_0000_0000_ffff),
+            (32, 0x0000_0000_001f_ffff),
+        ] {
+            bits = (bits | bits >> shift) & mask;
+        }
+        bits as u32
+    };
+    [gather(code), gather(code >> 1), gather(code >> 2)]
+}
+
+/// A place a step further, unless that is below 0.
+pub(super) fn step(place: [u32; 3], steps: [i32; 3]) -> Option<[u32; 3]> {
+    let mut other = place;
+    for (index, step) in other.iter_mut().zip(steps) {
+        *index = index.checked_add_signed(step)?;
+    }
+    Some(other)
+}
+
+/// The blocks that the surface crosses, in Morton order.
+pub(super) struct Crossed<'a> {
+    cells: &'a [Cell],
+    codes: Vec<u64>,
+    /// The crossed cells of each, a bit each in Morton order.
+    masks: Vec<u64>,
+    /// Where the cells of each begin.
+    firsts: Vec<usize>,
+}
+
+/// What the corners of a block's cells tell.
+#[derive(Clone, Copy, Default, Debug)]
+pub(super) struct Signs {
+    /// Crossed edges of the lattice that begin in the block.
+    pub(super) edges: u32,
+    /// Edges at lone points, each counted once for each of them.
+    pub(super) lone: u32,
+    /// A lone point, or one that is a scrap, by its place in the lattice.
+    pub(super) first: Option<[u32; 3]>,
+    /// Whether `first` is a scrap.
+    pub(super) is_scrap: bool,
+}
+
+impl<'a> Crossed<'a> {
+    pub(super) fn new(bricks: &Bricks, crossings: &'a Crossings) -> Self {
+        let mut crossed =
+            Self { cells: &crossings.cells, codes: Vec::new(), masks: Vec::new(), firsts: Vec::new() };
+        let bits = 3 * bricks.edge.ilog2();
+        for (brick, &place) in bricks.places.iter().enumerate() {
+            let before = morton(place) << bits;
+            for (index, cell) in (crossings.starts[brick]..).zip(crossings.of(brick)) {
+                let code = before | u64::from(cell.number);
+                let bit = 1 << (code & ((1 << BITS) - 1));
+                match crossed.codes.last() {
+                    Some(&last) if last == code >> BITS => *crossed.masks.last_mut().expect("as many") |= bit,
+                    _ => {
+                        crossed.codes.push(code >> BITS);
+                        crossed.masks.push(bit);
+                        crossed.firsts.push(index);
+                    }
+                }
+            }
+        }
+        crossed
+    }
+
+    /// How many blocks there are.
+    pub(super) fn len(&self) -> usize {
+        self.codes.len()
+    }
+
+    /// Where a block is, in units of blocks.
+    pub(super) fn place(&self, block: usize) -> [u32; 3] {
+        unwoven(self.codes[block])
+    }
+
+    /// The crossed cells of the block in a place, a bit each in Morton order. It is looked for near another
+    /// block.
+    pub(super) fn mask(&self, place: [u32; 3], near: usize) -> u64 {
+        self.find(morton(place), near).map_or(0, |block| self.masks[block])
+    }
+
+    /// The crossed cells of a block, by their numbers among all.
+    pub(super) fn cells(&self, block: usize) -> std::ops::Range<usize> {
+        self.firsts[block]..self.firsts[block] + self.masks[block].count_ones() as usize
+    }
+
+    /// The first block that has this code or a larger one.
+    pub(super) fn first_from(&self, code: u64, near: usize) -> usize {
+        let (mut low, mut high) = (near.min(self.len()), near.min(self.len()));
+        let mut stride = 1;
+        while low > 0 && self.codes[low - 1] >= code {
+            high = low - 1;
+            low = low.saturating_sub(stride);
+            stride *= 2;
+        }
+        while high < self.len() && self.codes[high] < code {
+            low = high + 1;
+            high = (high + stride).min(self.len());
+            stride *= 2;
+        }
+        low + self.codes[low..high].partition_point(|&other| other < code)
+    }
+
+    fn find(&self, code: u64, near: usize) -> Option<usize> {
+        let first = self.first_from(code, near);
+        (self.codes.get(first) == Some(&code)).then_some(first)
+    }
+
+    /// Whether a block is in a chunk, of eight blocks.
+    pub(super) fn is_in_chunk(&self, block: usize, chunk: [u32; 3]) -> bool {
+        self.codes.get(block).is_some_and(|&code| code >> 3 == morton(chunk))
+    }
+
+    /// The corners of a cell that are inside; `None` if it is not crossed.
+    fn signs(&self, cell: [u32; 3], near: usize) -> Option<u8> {
+        let code = morton(cell);
+        let block = self.find(code >> BITS, near)?;
+        self.signs_in(block, code & ((1 << BITS) - 1))
+    }
+
+    fn signs_in(&self, block: usize, bit: u64) -> Option<u8> {
+        let mask = self.masks[block];
+        let before = (mask & ((1 << bit) - 1)).count_ones() as usize;
+        (mask >> bit & 1 == 1).then(|| self.cells[self.firsts[block] + before].signs)
+    }
+
+    /// Looks at the corners of a block's cells.
+    pub(super) fn look(&self, block: usize) -> Signs {
+        // The edges of its cells that are crossed, and of those behind its high sides.
+        let mut table = [0_u8; STRIDE * STRIDE * STRIDE];
+        let (origin, mask) = (self.place(block), self.masks[block]);
+        let cells = &self.cells[self.cells(block)];
+        for (bit, cell) in bits(mask).zip(cells) {
+            table[AT[bit as usize]] = CROSSED[usize::from(cell.signs)];
+        }
+        for axis in (0..3).filter(|&axis| mask & HIGH[axis] != 0) {
+            self.look_behind(block, axis, &mut table);
+        }
+        let (mut found, mut lone) = (Signs::default(), None);
+        for bit in bits(mask) {
+            let at = AT[bit as usize];
+            let edges = table[at];
+            let next = STEPS.map(|step| table[at + step]);
+            let both = edges & (next[0] & 1 | next[1] & 2 | next[2] & 4);
+            found.edges += edges.count_ones();
+            if both != 0 {
+                found.lone += 2 * both.count_ones();
+                lone.get_or_insert((bit, both.trailing_zeros() as usize));
+            }
+        }
+        if let Some((bit, axis)) = lone {
+            let mut point = self.cell(origin, bit);
+            point[axis] += 1;
+            found.first = Some(point);
+            let is_scrap = |&(bit, cell): &(u64, &Cell)| {
+                matches!(cell.signs, 0x80 | 0x7f) && self.is_scrap(self.cell(origin, bit), cell.signs, block)
+            };
+            if let Some((bit, _)) = bits(mask).zip(cells).find(is_scrap) {
+                found.first = Some(self.cell(origin, bit).map(|index| index + 1));
+                found.is_scrap = true;
+            }
+        }
+        found
+    }
+
+    /// Puts the crossed edges of the cells behind a high side of a block into its table.
+    fn look_behind(&self, block: usize, axis: usize, table: &mut [u8]) {
+        let mut steps = [0; 3];
+        steps[axis] = 1;
+        let other = step(self.place(block), steps).and_then(|place| self.find(morton(place), block));
+        let Some(other) = other else { return };
+        for bit in bits(self.masks[other] & LOW[axis]) {
+            let signs = self.signs_in(other, bit).expect("its bit says so");
+            table[AT[bit as usize] + EDGE * STEPS[axis]] = CROSSED[usize::from(signs)];
+        }
+    }
+
+    /// The cells of a block beside which none is crossed, a bit each.
+    pub(super) fn free(&self, at: [u32; 3], near: usize) -> u64 {
+        // Layers of 6 x 6 cells, a bit each in rows of 8: the block, and one cell more on each side.
+        let mut layers = [0_u64; EDGE + 2];
+        for direction in 0..27 {
+            let steps = [direction % 3 - 1, direction / 3 % 3 - 1, direction / 9 - 1];
+            let Some(mut mask) = step(at, steps).map(|other| self.mask(other, near)) else { continue };
+            for axis in 0..3 {
+                mask &= [HIGH[axis], !0, LOW[axis]][(steps[axis] + 1) as usize];
+            }
+            for bit in bits(mask) {
+                let place = place(bit as u16);
+                let [x, y, z] = [0, 1, 2].map(|axis| place[axis] as i32 + EDGE as i32 * steps[axis] + 1);
+                layers[z as usize] |= 1 << (x + 8 * y);
+            }
+        }
+        for layer in &mut layers {
+            *layer |= *layer << 1 | *layer >> 1;
+            *layer |= *layer << 8 | *layer >> 8;
+        }
+        let beside: [u64; EDGE] = std::array::from_fn(|z| layers[z] | layers[z + 1] | layers[z + 2]);
+        let is_free = |&bit: &u64| {
+            let [x, y, z] = place(bit as u16);
+            beside[z] >> (x + 1 + 8 * (y + 1)) & 1 == 0
+        };
+        (0..64).filter(is_free).fold(0, |free, bit| free | 1 << bit)
+    }
+
+    /// The place of a cell of a block.
+    fn cell(&self, origin: [u32; 3], bit: u64) -> [u32; 3] {
+        let place = place(bit as u16);
+        [0, 1, 2].map(|axis| origin[axis] * EDGE as u32 + place[axis] as u32)
+    }
+
+    /// Whether the last corner of a cell is alone in all eight cells around it, as it is in this one.
+    fn is_scrap(&self, cell: [u32; 3], signs: u8, near: usize) -> bool {
+        (1..8_u8).all(|other| {
+            let cell = [0, 1, 2].map(|axis| cell[axis] + u32::from(other >> axis & 1));
+            let alone = 1 << (7 ^ other);
+            self.signs(cell, near) == Some(if signs == 0x80 { alone } else { !alone })
+        })
+    }
+}
+
+/// The bits that are set, the lowest first.
+pub(super) fn bits(mut mask: u64) -> impl Iterator<Item = u64> {
+    std::iter::from_fn(move || {
+        let bit = (mask != 0).then(|| u64::from(mask.trailing_zeros()))?;
+        mask &= mask - 1;
+        Some(bit)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn codes_are_woven_of_places() {
+        let mut rng = fastrand::Rng::with_seed(1);
+        for _ in 0..1000 {
+            let place = [0; 3].map(|_| rng.u32(0..1 << 20));
+            let code = morton(place);
+            let expected = (0..20).fold(0, |code, bit| {
+                (0..3).fold(code, |code, axis| code | u64::from(place[axis] >> bit & 1) << (3 * bit + axis))
+            });
+            assert_eq!((code, unwoven(code)), (expected, place));
+        }
+    }
+
+    #[test]
+    fn codes_are_found_from_anywhere() {
+        let codes: Vec<u64> = (0..100).map(|n| n * n).collect();
+        let crossed = Crossed { cells: &[], masks: vec![0; 100], firsts: vec![0; 100], codes };
+        for near in [0, 1, 17, 99, 100, 200] {
+            for code in 0..10_000 {
+                let expected = crossed.codes.partition_point(|&other| other < code);
+                assert_eq!(crossed.first_from(code, near), expected, "{code} from {near}");
+            }
+        }
+    }
+
+    #[test]
+    fn layers_are_the_sides_of_a_block() {
+        for bit in 0..64_u64 {
+            for axis in 0..3 {
+                let along = place(bit as u16)[axis];
+                assert_eq!((LOW[axis] >> bit & 1 == 1, HIGH[axis] >> bit & 1 == 1), (along == 0, along == 3));
+            }
+        }
+    }
+}

@@ -1,0 +1,140 @@
+//! Parts that are thinner than a cell: a lattice cannot show them, so they are reported.
+//!
+//! ```text
+//! crossed blocks (4^3 cells)      what the corners of their cells tell: scraps, rows of lone points    
+//! (crossed) the others, in bricks           ranges exclude the other side, or a point on it is found        
+//!      (search) alarms, joined to places        a point of each, and how fine cells would have to be        
+//!          (measure)
+//! ```
+//!
+//! What is found is a function of the field and the lattice: neither bricks nor threads change it.
+
+mod crossed;
+mod measure;
+mod search;
+mod shreds;
+
+use rayon::prelude::*;
+
+use super::crossing::Crossings;
+use super::divide::Division;
+use super::field::Field;
+use super::progress::{Phase, Progress};
+use super::{Mesh, MeshError};
+
+use crossed::{Crossed, EDGE, morton, step};
+use search::{Found, Search};
+use shreds::{Chunks, Looked};
+
+/// The most points of [`ThinReport::near`].
+pub const MAX_NEAR: usize = 8;
+
+/// Parts that are thinner than a cell: what was found of them.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct ThinReport {
+    /// Blocks of 4^3 cells that the surface seems to stay out of, in which a point on the other side of it
+    /// was found.
+    pub missed: u64,
+    /// Blocks in which the surface is in shreds: its sides pass between neighbouring points of the lattice.
+    pub shredded: u64,
+    /// Blocks that the search left before it knew: neither was a point found, nor could ranges exclude one. A
+    /// field with wide ranges has many, and a thin part may be in any of them.
+    pub unproven: u64,
+    /// Blocks that were missed or are in shreds, those that touch counted as one place.
+    pub places: u64,
+    /// A point of each place, [`MAX_NEAR`] at most. Those of a [`Polygonized`](crate::Polygonized) are in the
+    /// world.
+    pub near: Vec<[f64; 3]>,
+    /// The edge of cells that would show the thinnest of the parts at these points: half of its thickness.
+    pub cell: Option<f64>,
+    /// Boxes whose range was asked within blocks.
+    pub boxes: u64,
+}
+
+/// Something thin in a block.
+struct Alarm {
+    place: [u32; 3],
+    point: [f32; 3],
+    /// Votes, or enough for an alarm of its own.
+    weight: u32,
+}
+
+/// The weight that makes an alarm, in a group of blocks that touch: votes of vertices, of which a groove or a
+/// tip has a few.
+const ALARM: u32 = 24;
+
+/// Searches the bricks of a division.
+pub(super) fn find<F: Field>(
+    field: &F,
+    division: &Division<F::Region>,
+    (crossings, mesh): (&Crossings, &Mesh),
+    iso: f32,
+    progress: &Progress<'_>,
+) -> Result<ThinReport, MeshError<F::Error>> {
+    let bricks = &division.bricks;
+    let crossed = Crossed::new(bricks, crossings);
+    let (edge, places, regions) = match &division.chunks {
+        Some((places, regions)) => (2 * EDGE, places, regions),
+        None => (bricks.edge, &bricks.places, &division.regions),
+    };
+    let chunks = &Chunks { edge, places, regions };
+    let looked = Looked { field, iso, bricks, crossings, crossed: &crossed, chunks, mesh };
+    let mut alarms = looked.shreds()?;
+    let mut report = ThinReport { shredded: alarms.len() as u64, ..ThinReport::default() };
+    let search = Search { field, axes: &bricks.axes, iso, crossed: &crossed };
+    let group = 64;
+    let total = places.len().div_ceil(group);
+    progress.begin(Phase::Thin)?;
+    let groups = places.par_chunks(group).zip(regions.par_chunks(group));
+    let found = groups.map(|(places, regions)| {
+        let (mut found, mut near) = (Found::default(), 0);
+        for (&place, region) in places.iter().zip(regions) {
+            search.chunk((edge, place), region, &mut near, &mut found)?;
+        }
+        progress.advance(Phase::Thin, total)?;
+        Ok(found)
+    });
+    for found in found.collect::<Result<Vec<Found>, MeshError<F::Error>>>()? {
+        report.missed += found.missed.len() as u64;
+        report.unproven += found.unproven;
+        report.boxes += found.boxes;
+        let missed = found.missed.into_iter();
+        alarms.extend(missed.map(|(place, point)| Alarm { place, point, weight: ALARM }));
+    }
+    alarms.sort_by_key(|alarm| morton(alarm.place));
+    let places = join(&alarms);
+    report.places = places.len() as u64;
+    let points: Vec<[f32; 3]> = places.iter().take(MAX_NEAR).map(|&alarm| alarms[alarm].point).collect();
+    report.cell = measure::cell(field, &bricks.axes, iso, &points)?;
+    report.near = points.iter().map(|point| point.map(f64::from)).collect();
+    Ok(report)
+}
+
+/// Joins alarms, which are in Morton order, to places; returns the first alarm of each.
+fn join(alarms: &[Alarm]) -> Vec<usize> {
+    let codes: Vec<u64> = alarms.iter().map(|alarm| morton(alarm.place)).collect();
+    let mut seen = vec![false; alarms.len()];
+    let mut places = Vec::new();
+    for first in 0..alarms.len() {
+        let (mut waiting, mut weight) = (vec![first], 0_u32);
+        if std::mem::replace(&mut seen[first], true) {
+            continue;
+        }
+        while let Some(alarm) = waiting.pop() {
+            weight = weight.saturating_add(alarms[alarm].weight);
+            for direction in 0..27 {
+                let steps = [direction % 3 - 1, direction / 3 % 3 - 1, direction / 9 - 1];
+                let Some(place) = step(alarms[alarm].place, steps) else { continue };
+                let Ok(other) = codes.binary_search(&morton(place)) else { continue };
+                if !std::mem::replace(&mut seen[other], true) {
+                    waiting.push(other);
+                }
+            }
+        }
+        if weight >= ALARM {
+            places.push(first);
+        }
+    }
+    places
+}

@@ -1,0 +1,328 @@
+//! The search for what no cell shows: blocks of 4^3 cells that the surface does not cross, whose range does
+//! not exclude it.
+//!
+//! ```text
+//! chunk of 8^3 cells, not crossed ─ ranges of its blocks ─► a block is *open* if the other side may be in it
+//! open block ─ ranges of 2^3 cells ─► of cells ─► of halved cells ─► ...
+//!                 8 boxes a step, the best first; a point on the other side in the middle of one ends it
+//! ```
+//!
+//! A step costs one, and what it proves to be empty pays for others: the search goes on while it gets somewhere,
+//! and no further than [`MAX_STEPS`]. Chunks are boxes of the division, whose regions are found by halving the
+//! lattice again and again; so all of this is a function of the lattice, whatever the bricks are.
+//!
+//! A chunk that the surface crosses is left out: nearly all of space beside a smooth surface is in such, and would
+//! cost more than the mesh.
+
+use super::crossed::{Crossed, EDGE, bits, morton};
+use crate::mesh::MeshError;
+use crate::mesh::brick::{box_of, place};
+use crate::mesh::field::Field;
+use crate::region::{ANYTHING, Box3, MAX_PARTS, Range};
+
+/// The steps of eight boxes that a block may take. A speck is found after nine as a rule: two down to its
+/// cell, and one for each halving.
+pub(super) const MAX_STEPS: u32 = 32;
+/// The boxes that may stay open in a block, all together. A speck leaves one or two of eight open; where
+/// ranges are wide, or the field is near iso all over, half of them stay, and the search ends soon.
+const MAX_OPEN: u32 = 40;
+/// How often a cell is halved: parts of a fiftieth of a cell are found.
+const HALVINGS: u32 = 6;
+/// What a step pays in, if it proves that all of its boxes are empty. A sheet passes through six of eight
+/// boxes at most, so the search for one pays for itself; where ranges say nothing it ends with its first
+/// step.
+const GAIN: f32 = 4.0;
+/// Ops of a point from which on a block has a region of its own.
+const COSTLY: u64 = 1000;
+
+/// What became of a block.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Outcome {
+    /// Nothing is there.
+    Empty,
+    /// This point is on the other side.
+    Missed([f32; 3]),
+    /// The search ended before it knew.
+    Unproven,
+}
+
+/// What the blocks of a chunk are like.
+#[derive(Default)]
+pub(super) struct Found {
+    /// Points on the other side, each with the place of its block.
+    pub(super) missed: Vec<([u32; 3], [f32; 3])>,
+    pub(super) unproven: u64,
+    pub(super) boxes: u64,
+}
+
+/// What stays the same for all blocks.
+pub(super) struct Search<'a, F: Field> {
+    pub(super) field: &'a F,
+    pub(super) axes: &'a [Vec<f32>; 3],
+    pub(super) iso: f32,
+    pub(super) crossed: &'a Crossed<'a>,
+}
+
+/// A box that the other side may be in.
+#[derive(Clone, Copy)]
+struct Open {
+    bounds: Box3,
+    /// How far the range goes beyond iso.
+    reach: f32,
+    /// Halvings that are left.
+    halvings: u32,
+}
+
+/// A search in one block.
+struct Block<'a, R> {
+    region: &'a R,
+    /// Whether the corners of its cells are inside.
+    inside: bool,
+    credit: f32,
+    steps: u32,
+    /// Boxes that have stayed open so far.
+    opened: u32,
+    open: Vec<Open>,
+    unproven: bool,
+}
+
+impl<F: Field> Search<'_, F> {
+    /// Searches a box of this many cells along an edge, 8 or more, and all blocks in it.
+    pub(super) fn chunk(
+        &self,
+        (size, at): (usize, [u32; 3]),
+        region: &F::Region,
+        near: &mut usize,
+        found: &mut Found,
+    ) -> Result<(), MeshError<F::Error>> {
+        let half = size / 2;
+        if half == EDGE {
+            *near = self.crossed.first_from(morton(at) << 3, *near);
+            if self.crossed.is_in_chunk(*near, at) {
+                return Ok(());
+            }
+        }
+        let (mut boxes, mut places) = ([Box3::default(); MAX_PARTS], [[0; 3]; MAX_PARTS]);
+        let mut count = 0;
+        for child in 0..8_u32 {
+            let place = [0, 1, 2].map(|axis| 2 * at[axis] + (child >> axis & 1));
+            let first = place.map(|index| index as usize * half);
+            if (0..3).all(|axis| first[axis] + 1 < self.axes[axis].len()) {
+                (boxes[count], places[count]) =
+                    (box_of(self.axes, first, first.map(|index| index + half)), place);
+                count += 1;
+            }
+        }
+        if count == 0 {
+            return Ok(());
+        }
+        let ranges = self.ranges(region, &boxes[..count])?;
+        let may_cross = |range: Range| !(range[0] >= self.iso || range[1] < self.iso);
+        let kept: Vec<usize> = (0..count).filter(|&n| may_cross(ranges[n])).collect();
+        if half == EDGE {
+            for n in kept {
+                self.block(places[n], (boxes[n], region), *near, found)?;
+            }
+            return Ok(());
+        }
+        let bounds: Vec<Box3> = kept.iter().map(|&n| boxes[n]).collect();
+        for (n, region) in kept.iter().zip(self.narrow(region, &bounds)?) {
+            self.chunk((half, places[*n]), &region, near, found)?;
+        }
+        Ok(())
+    }
+
+    /// Searches a block.
+    fn block(
+        &self,
+        at: [u32; 3],
+        (bounds, region): (Box3, &F::Region),
+        near: usize,
+        found: &mut Found,
+    ) -> Result<(), MeshError<F::Error>> {
+        let free = self.free(at, near);
+        if free == 0 {
+            return Ok(());
+        }
+        let own;
+        let mut region = region;
+        if self.field.work(region).ops > COSTLY {
+            own = self.narrow(region, &[bounds])?.pop().expect("one box has one region");
+            region = &own;
+        }
+        let corner = bounds.low.map(|coordinate| [coordinate]);
+        let mut value = [0.0];
+        self.field.field(region, &corner[0], &corner[1], &corner[2], &mut value).map_err(MeshError::Field)?;
+        let mut block = Block {
+            region,
+            inside: value[0] >= self.iso,
+            credit: 1.0,
+            steps: 0,
+            opened: 0,
+            open: Vec::new(),
+            unproven: false,
+        };
+        let outcome = self.search(&mut block, at, free, found)?;
+        match outcome {
+            Outcome::Empty => {}
+            Outcome::Missed(point) => found.missed.push((at, point)),
+            Outcome::Unproven => found.unproven += 1,
+        }
+        Ok(())
+    }
+
+    /// The cells of a block that are in the lattice, and beside which none is crossed, a bit each.
+    fn free(&self, at: [u32; 3], near: usize) -> u64 {
+        let is_cut = |axis: usize| (at[axis] as usize + 1) * EDGE + 1 > self.axes[axis].len();
+        let free = self.crossed.free(at, near);
+        if !(0..3).any(is_cut) {
+            return free;
+        }
+        let is_there = |&bit: &u64| {
+            let place = place(bit as u16);
+            (0..3).all(|axis| at[axis] as usize * EDGE + place[axis] + 1 < self.axes[axis].len())
+        };
+        bits(free).filter(is_there).fold(0, |free, bit| free | 1 << bit)
+    }
+
+    fn search(
+        &self,
+        block: &mut Block<'_, F::Region>,
+        at: [u32; 3],
+        free: u64,
+        found: &mut Found,
+    ) -> Result<Outcome, MeshError<F::Error>> {
+        let first = at.map(|index| index as usize * EDGE);
+        let cells = |bit: u64, size: usize| {
+            let place = place(bit as u16);
+            let low = [0, 1, 2].map(|axis| first[axis] + place[axis]);
+            box_of(self.axes, low, low.map(|index| index + size))
+        };
+        let octants: Vec<u64> = (0..8).filter(|octant| free >> (8 * octant) & 0xff != 0).collect();
+        let boxes: Vec<Box3> = octants.iter().map(|octant| cells(8 * octant, 2)).collect();
+        let ranges = self.ask(block, &boxes, found)?;
+        let mut left: Vec<(f32, u64)> = Vec::new();
+        for (octant, range) in octants.into_iter().zip(ranges) {
+            left.extend(self.reach(block, range).map(|reach| (reach, octant)));
+        }
+        left.sort_by(|a, b| a.0.total_cmp(&b.0));
+        while let Some((_, octant)) = left.pop() {
+            if !block.may_go_on() {
+                return Ok(Outcome::Unproven);
+            }
+            let boxes: Vec<Box3> =
+                bits(free >> (8 * octant) & 0xff).map(|bit| cells(8 * octant + bit, 1)).collect();
+            if let Some(point) = self.divide(block, &boxes, HALVINGS, found)? {
+                return Ok(Outcome::Missed(point));
+            }
+            while let Some(open) = block.open.pop() {
+                if !block.may_go_on() {
+                    return Ok(Outcome::Unproven);
+                }
+                let Some(parts) = parts(&open.bounds).filter(|_| open.halvings > 0) else {
+                    block.unproven = true;
+                    continue;
+                };
+                if let Some(point) = self.divide(block, &parts, open.halvings - 1, found)? {
+                    return Ok(Outcome::Missed(point));
+                }
+            }
+        }
+        Ok(if block.unproven { Outcome::Unproven } else { Outcome::Empty })
+    }
+
+    /// Asks for the ranges of some boxes, and puts those that stay open on the list, the best last; or a
+    /// point on the other side.
+    fn divide(
+        &self,
+        block: &mut Block<'_, F::Region>,
+        boxes: &[Box3],
+        halvings: u32,
+        found: &mut Found,
+    ) -> Result<Option<[f32; 3]>, MeshError<F::Error>> {
+        let ranges = self.ask(block, boxes, found)?;
+        let mut open = [Open { bounds: Box3::default(), reach: 0.0, halvings }; MAX_PARTS];
+        let mut count = 0;
+        for (&bounds, range) in boxes.iter().zip(ranges) {
+            if let Some(reach) = self.reach(block, range) {
+                open[count] = Open { bounds, reach, halvings };
+                count += 1;
+            }
+        }
+        let open = &mut open[..count];
+        if open.is_empty() {
+            return Ok(None);
+        }
+        let mut planes = [[0.0; MAX_PARTS]; 3];
+        for (n, part) in open.iter().enumerate() {
+            (0..3).for_each(|axis| planes[axis][n] = part.bounds.middle(axis));
+        }
+        let mut values = [0.0; MAX_PARTS];
+        let [x, y, z] = planes.each_ref().map(|plane| &plane[..count]);
+        self.field.field(block.region, x, y, z, &mut values[..count]).map_err(MeshError::Field)?;
+        if let Some(n) = (0..count).find(|&n| (values[n] >= self.iso) != block.inside) {
+            return Ok(Some([x[n], y[n], z[n]]));
+        }
+        open.sort_by(|a, b| a.reach.total_cmp(&b.reach));
+        block.open.extend_from_slice(open);
+        Ok(None)
+    }
+
+    /// How far a range goes beyond iso on the other side; `None` if it does not.
+    fn reach(&self, block: &Block<'_, F::Region>, [low, high]: Range) -> Option<f32> {
+        let reach = if block.inside { self.iso - low } else { high - self.iso };
+        let is_clear = if block.inside { low >= self.iso } else { high < self.iso };
+        (!is_clear).then_some(reach)
+    }
+
+    /// The ranges of some boxes, for what that costs.
+    fn ask(
+        &self,
+        block: &mut Block<'_, F::Region>,
+        boxes: &[Box3],
+        found: &mut Found,
+    ) -> Result<[Range; MAX_PARTS], MeshError<F::Error>> {
+        found.boxes += boxes.len() as u64;
+        let ranges = self.ranges(block.region, boxes)?;
+        let clear = ranges[..boxes.len()].iter().filter(|&&range| self.reach(block, range).is_none()).count();
+        block.steps += 1;
+        block.opened += (boxes.len() - clear) as u32;
+        block.credit += GAIN * clear as f32 / boxes.len() as f32 - 1.0;
+        Ok(ranges)
+    }
+
+    fn ranges(&self, region: &F::Region, boxes: &[Box3]) -> Result<[Range; MAX_PARTS], MeshError<F::Error>> {
+        let mut ranges = [ANYTHING; MAX_PARTS];
+        self.field.ranges(region, boxes, &mut ranges[..boxes.len()]).map_err(MeshError::Field)?;
+        Ok(ranges)
+    }
+
+    fn narrow(&self, region: &F::Region, boxes: &[Box3]) -> Result<Vec<F::Region>, MeshError<F::Error>> {
+        let mut regions = Vec::with_capacity(boxes.len());
+        if !boxes.is_empty() {
+            self.field.narrow(region, boxes, &mut regions).map_err(MeshError::Field)?;
+        }
+        Ok(regions)
+    }
+}
+
+impl<R> Block<'_, R> {
+    fn may_go_on(&self) -> bool {
+        self.credit > 0.0 && self.steps < MAX_STEPS && self.opened < MAX_OPEN
+    }
+}
+
+/// The halves of a box along all three axes; `None` if f32 has no middle for it.
+fn parts(bounds: &Box3) -> Option<[Box3; 8]> {
+    let middle = [0, 1, 2].map(|axis| bounds.middle(axis));
+    let splits = |axis: usize| bounds.low[axis] < middle[axis] && middle[axis] < bounds.high[axis];
+    (0..3).all(splits).then(|| {
+        std::array::from_fn(|part| {
+            let is_high = |axis: usize| part >> axis & 1 == 1;
+            Box3 {
+                low: [0, 1, 2].map(|axis| if is_high(axis) { middle[axis] } else { bounds.low[axis] }),
+                high: [0, 1, 2].map(|axis| if is_high(axis) { bounds.high[axis] } else { middle[axis] }),
+            }
+        })
+    })
+}
