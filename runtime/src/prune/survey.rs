@@ -75,6 +75,32 @@ impl Pruner {
         Ok((kept.into_iter().zip(regions).collect(), evaluations))
     }
 
+    /// The ranges of the field in any number of proper boxes inside a region, and how many ranges of distances to
+    /// skeletons each of them took.
+    pub(crate) fn many_ranges(
+        &self,
+        region: &Region,
+        boxes: &[Box3],
+    ) -> Result<(Vec<Range>, u64), EvalError> {
+        if region.rows() > MAX_RANGED_ROWS || boxes.is_empty() {
+            return Ok((vec![ANYTHING; boxes.len()], 0));
+        }
+        let count = boxes.len();
+        let mut inputs = vec![0.0; 6 * count];
+        for (index, bounds) in boxes.iter().enumerate() {
+            for axis in 0..3 {
+                inputs[2 * axis * count + index] = bounds.low[axis];
+                inputs[(2 * axis + 1) * count + index] = bounds.high[axis];
+            }
+        }
+        let mut outputs = vec![0.0; self.planes() * count];
+        let mut planes: Vec<&mut [f32]> = outputs.chunks_exact_mut(count).collect();
+        let inputs: [&[f32]; 6] = std::array::from_fn(|plane| &inputs[plane * count..][..count]);
+        self.run(&region.selection, &inputs, &mut planes)?;
+        let ranges = planes[0].iter().zip(&*planes[1]).map(|(&low, &high)| [low, high]).collect();
+        Ok((ranges, self.evaluations(&region.selection, 1)))
+    }
+
     /// Ranges of the field and of all probes: plane by plane, the low and the high ends, one for each box.
     fn evaluate_many(&self, region: &Region, boxes: &[Box3]) -> Result<Vec<Vec<f32>>, EvalError> {
         let side = |plane: usize| {

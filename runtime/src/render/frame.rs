@@ -145,8 +145,14 @@ impl<'a> Frame<'a> {
         self.pixel = 2.0 * self.camera.half[1] * distance / f64::from(rows);
         let size = self.region.iter().flatten().fold(0.0, |size: f64, x| size.max(x.abs()));
         self.pixel = self.pixel.max(FINEST * size);
-        self.tolerance = self.render.quality.fineness() * self.pixel;
+        // Rays have to tell their places apart.
+        self.tolerance = (self.render.quality.fineness() * self.pixel).max(0.25 * FINEST * size);
         if self.tolerance.is_finite() { Ok(()) } else { Err(RenderError::Unusable) }
+    }
+
+    /// The tolerance of rays to the light and the sky.
+    pub fn light_tolerance(&self) -> f64 {
+        self.render.quality.softness() * self.pixel
     }
 
     /// Whether the camera can see the surface from outside.

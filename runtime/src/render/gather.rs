@@ -173,9 +173,6 @@ fn open_ground(frame: &Frame<'_>, position: Vector, direction: Vector) -> f64 {
     0.25 + 0.75 * part * (2.0 - part)
 }
 
-/// The tolerance of rays to the light and the sky, in tolerances of the camera's: a shadow is softer than a rim.
-const COARSE: f64 = 4.0;
-
 /// Parts of a direction's coordinates by which rays are told apart that go different ways.
 const WAYS: f64 = 4.0;
 
@@ -196,7 +193,7 @@ fn blocked(
     asked.sort_by_key(|(_, ray)| way(ray));
     let some: Vec<Ray> = asked.iter().map(|(_, ray)| *ray).collect();
     *count += some.len() as u64;
-    let found = frame.renderer.tracer.any_of_local(&some, COARSE * frame.tolerance)?;
+    let found = frame.renderer.tracer.any_of_local(&some, frame.light_tolerance())?;
     *evaluations += found.evaluations.iter().map(|&evaluations| f64::from(evaluations)).sum::<f64>();
     let cut = cut(frame, &some, evaluations)?;
     let mut answers = vec![false; rays.len()];

@@ -65,8 +65,8 @@ pub struct Report {
     pub camera: Option<Camera>,
     /// The pixels in which a ray met the surface.
     pub pixels_hit: u64,
-    /// What is thinner along a ray of the camera may be missed, in units of the model: some pixels where the model is nearest, by the quality. 0 if there was
-    /// nothing to look at.
+    /// What is thinner along a ray of the camera may be missed, in units of the model: a part of a pixel where the model is nearest, by the quality
+    /// (an eighth for the best one, a quarter, half for a draft). 0 if there was nothing to look at.
     pub tolerance: f64,
     /// Rays, by kind.
     pub rays: Rays,

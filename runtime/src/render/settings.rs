@@ -94,9 +94,18 @@ impl Quality {
     /// The tolerance of the camera's rays, in pixels.
     pub(super) fn fineness(self) -> f64 {
         match self {
-            Self::Draft => 4.0,
-            Self::Good => 2.0,
-            Self::Best => 0.5,
+            Self::Draft => 0.5,
+            Self::Good => 0.25,
+            Self::Best => 0.125,
+        }
+    }
+
+    /// The tolerance of rays to the light and the sky, in pixels: a shadow is softer than a rim, so what is thinner may cast none.
+    pub(super) fn softness(self) -> f64 {
+        match self {
+            Self::Draft => 16.0,
+            Self::Good => 8.0,
+            Self::Best => 2.0,
         }
     }
 

@@ -10,6 +10,10 @@
 //!                ^            ^
 //! ```
 //!
+//! Only every 16th place, a coarse one, is asked at once. What is between two coarse places on one side is shorter than 16 tolerances, or it is not there: ranges
+//! of short boxes prove that, and where these do not, the places between are asked. So a tolerance that is much finer than what is seen of a model costs
+//! little more, and a sheet, a rod or a speck is found if it is as thick along the ray as the tolerance.
+//!
 //! Most places are never asked: ranges of the field ([`Divisible`](crate::region::Divisible)) prove of whole boxes that all of them are on one side. What is found
 //! is what asking all of them would find, to the bit. Everything is about the field that the kernels compute in f32, at positions rounded to f32: between the
 //! ends of a part of a ray each coordinate stays between those at the ends, rounding included, so the box of the ends holds all that is asked between them.
@@ -29,6 +33,7 @@ mod hits;
 mod packet;
 mod polish;
 mod ray;
+mod refine;
 
 pub use error::TraceError;
 pub use hits::{Blocked, Hit, Hits};
@@ -54,7 +59,7 @@ use crate::region::{Box3, Divisible as _};
 
 use found::Found;
 use packet::{Run, Want};
-use ray::{Line, Reach};
+use ray::{Line, Reach, STRIDE};
 
 /// A model, compiled for rays.
 ///
@@ -230,13 +235,12 @@ impl Tracer {
     /// # Errors
     /// See [`TraceError`].
     pub fn any_of(&self, rays: &[Ray], tolerance: f64) -> Result<Blocked, TraceError> {
-        self.any_of_local(&self.localized(rays), tolerance)
+        self.blocked(STRIDE, &self.localized(rays), tolerance)
     }
 
-    /// As [`any_of`](Self::any_of), of rays that count from the model's origin.
+    /// As [`any_of`](Self::any_of), of rays that count from the model's origin, with a tolerance that is about as long as what is to be found.
     pub(crate) fn any_of_local(&self, rays: &[Ray], tolerance: f64) -> Result<Blocked, TraceError> {
-        let found = self.follow(Want::Any, rays, tolerance)?;
-        Ok(Blocked { blocked: found.blocked, evaluations: found.evaluations })
+        self.blocked(1, rays, tolerance)
     }
 
     /// What it has done so far.
@@ -290,13 +294,18 @@ impl Tracer {
         rays.iter().map(|ray| Ray { origin: origin.local(ray.origin), ..*ray }).collect()
     }
 
+    fn blocked(&self, stride: i64, rays: &[Ray], tolerance: f64) -> Result<Blocked, TraceError> {
+        let found = self.follow(Want::Any, stride, rays, tolerance)?;
+        Ok(Blocked { blocked: found.blocked, evaluations: found.evaluations })
+    }
+
     fn hits(&self, want: Want, rays: &[Ray], tolerance: f64) -> Result<Hits, TraceError> {
-        let hits = self.follow(want, rays, tolerance)?.into_hits(self);
+        let hits = self.follow(want, STRIDE, rays, tolerance)?.into_hits(self);
         self.hits.fetch_add(hits.len() as u64, Ordering::Relaxed);
         Ok(hits)
     }
 
-    fn follow(&self, want: Want, rays: &[Ray], tolerance: f64) -> Result<Found, TraceError> {
+    fn follow(&self, want: Want, stride: i64, rays: &[Ray], tolerance: f64) -> Result<Found, TraceError> {
         if !(tolerance > 0.0 && tolerance.is_finite()) {
             return Err(TraceError::Tolerance { tolerance });
         }
@@ -306,9 +315,9 @@ impl Tracer {
         self.rays.fetch_add(rays.len() as u64, Ordering::Relaxed);
         let mut lines = Vec::with_capacity(rays.len());
         for (index, ray) in rays.iter().enumerate() {
-            lines.extend(Line::new(index, ray, tolerance, self.reach.as_ref())?);
+            lines.extend(Line::new(index, ray, tolerance, stride, self.reach.as_ref())?);
         }
-        Run::new(self, want, tolerance, rays.len(), lines).finish()
+        Run::new(self, (want, stride), tolerance, rays.len(), lines).finish()
     }
 
     /// What answers at hits.

@@ -1,16 +1,16 @@
 //! Following a packet of rays: cells, from the nearest to the farthest.
 //!
 //! ```text
-//! cell = a run of rays, from one place of their lattice to another, and the rows that matter there
+//! cell = a run of rays, from one coarse place of their lattice to another, and the rows that matter there
 //! take the next cell; without the rays that have their answer
-//!     few points left in it    ask all of them: two neighbours on different sides hold a hit        (sample)
+//!     few points left in it    ask all of them, and what is between them                          (sample, refine)
 //!     else                     cut it, along or across, into up to 8 parts; ask for ranges          (divide)
 //!                                  all of a part on one side: dropped, no neighbours differ there
 //!                                  else: its rows, and onto the list, the nearest part on top
 //! ```
 //!
-//! Cells are closed: both sides of a cut ask the place of the cut, and get the same bits, because leaving rows out changes none. So every pair of neighbouring places
-//! belongs to one cell, and what is found is what asking all places would find.
+//! Cells are closed: both sides of a cut ask the place of the cut, and get the same bits, because leaving rows out changes none. So every pair of neighbouring
+//! coarse places belongs to one cell, and what is found is what asking all places would find.
 
 use std::ops::Range;
 
@@ -20,6 +20,7 @@ use super::error::TraceError;
 use super::found::Found;
 use super::polish::{Bracket, polish};
 use super::ray::Line;
+use super::refine::{Refiner, Segment, Stretch};
 use crate::error::EvalError;
 use crate::prune::Region;
 use crate::region::{Box3, Divisible as _, MAX_PARTS};
@@ -35,6 +36,19 @@ pub(super) enum Want {
     All,
     /// Whether there is one.
     Any,
+}
+
+/// Points and boxes that may still be asked, for so many rays.
+pub(super) struct Work {
+    left: u64,
+    rays: usize,
+}
+
+impl Work {
+    pub(super) fn spend(&mut self, work: u64) -> Result<(), TraceError> {
+        self.left = self.left.checked_sub(work).ok_or(TraceError::Work { rays: self.rays })?;
+        Ok(())
+    }
 }
 
 /// A part of a packet that is still to be looked at.
@@ -86,6 +100,8 @@ impl Batch {
 pub(super) struct Run<'a> {
     tracer: &'a Tracer,
     want: Want,
+    /// Steps of the lattice from one coarse place to the next one.
+    stride: i64,
     tolerance: f64,
     /// The rays that may hit something; those with the same step are neighbours.
     lines: Vec<Line>,
@@ -96,9 +112,12 @@ pub(super) struct Run<'a> {
     /// The times of the places of a cell.
     lattice: Vec<f64>,
     brackets: Vec<Bracket>,
+    /// What of a cell is on one side, as far as coarse places tell.
+    stretches: Vec<Stretch>,
+    /// What of a cell is not.
+    segments: Vec<Segment>,
     found: Found,
-    /// Points and boxes that may still be asked.
-    work: u64,
+    work: Work,
 }
 
 /// What dividing a cell costs beside its distances, in distances at points: finding boxes, rows, calls.
@@ -119,7 +138,7 @@ fn worth_asking(each: u64) -> u64 {
 impl<'a> Run<'a> {
     pub(super) fn new(
         tracer: &'a Tracer,
-        want: Want,
+        (want, stride): (Want, i64),
         tolerance: f64,
         rays: usize,
         mut lines: Vec<Line>,
@@ -130,6 +149,7 @@ impl<'a> Run<'a> {
         Self {
             tracer,
             want,
+            stride,
             tolerance,
             done: vec![false; lines.len()],
             lines,
@@ -137,9 +157,11 @@ impl<'a> Run<'a> {
             batch: Batch::default(),
             lattice: Vec::new(),
             brackets: Vec::new(),
+            stretches: Vec::new(),
+            segments: Vec::new(),
             found: Found::new(rays, tracer.layout().names().len()),
             // Hits are counted by 32 bits, and each takes a point.
-            work: MAX_RAY_WORK.saturating_mul(rays as u64).min(u32::MAX.into()),
+            work: Work { left: MAX_RAY_WORK.saturating_mul(rays as u64).min(u32::MAX.into()), rays },
         }
     }
 
@@ -197,18 +219,12 @@ impl<'a> Run<'a> {
         let points = (open as u64).saturating_mul(last.abs_diff(first).saturating_add(1));
         let each = self.tracer.field.evaluations_in(&cell.region);
         if points <= worth_asking(each) << cell.fruitless.min(MOST_FRUITLESS) {
-            self.spend(points)?;
+            self.work.spend(points)?;
             self.sample(&cell, each)?;
         } else {
-            self.spend(MAX_PARTS as u64)?;
+            self.work.spend(MAX_PARTS as u64)?;
             self.divide(&cell, open)?;
         }
-        Ok(())
-    }
-
-    fn spend(&mut self, work: u64) -> Result<(), TraceError> {
-        let rays = self.found.rays();
-        self.work = self.work.checked_sub(work).ok_or(TraceError::Work { rays })?;
         Ok(())
     }
 
@@ -262,7 +278,7 @@ impl<'a> Run<'a> {
     }
 
     /// Asks the field at all places of a cell, and finds what is between them.
-    fn sample(&mut self, cell: &Cell, each: u64) -> Result<(), EvalError> {
+    fn sample(&mut self, cell: &Cell, each: u64) -> Result<(), TraceError> {
         let mut batch = std::mem::take(&mut self.batch);
         batch.clear();
         // Most rays have all places of the cell: their times are made once.
@@ -285,49 +301,98 @@ impl<'a> Run<'a> {
         let ends = asked.iter().skip(1).map(|&(.., start)| start).chain([batch.field.len()]);
         for (&(line, place, start), end) in asked.iter().zip(ends) {
             self.found.count(self.lines[line].ray, (end - start) as f32 * each as f32);
-            self.find_changes(line, place, &batch.field[start..end]);
+            self.find_changes(line, place, &batch.field, start..end);
         }
-        if !self.brackets.is_empty() {
-            let mut brackets = std::mem::take(&mut self.brackets);
-            polish(self.tracer, &cell.region, &self.lines, &mut brackets, &mut batch)?;
-            let evaluations = |bracket: &Bracket| u64::from(bracket.rounds()) * each;
-            for bracket in &brackets {
-                self.found.count(self.lines[bracket.line()].ray, evaluations(bracket) as f32);
-            }
-            self.found.add(self.tracer, &cell.region, &self.lines, &brackets)?;
-            brackets.clear();
-            self.brackets = brackets;
-        }
+        self.refine(&cell.region, &mut batch)?;
+        self.close(&cell.region, each, &mut batch)?;
         self.batch = batch;
         Ok(())
     }
 
-    /// Finds neighbouring places of one ray that are on different sides: the fields are those from some place on.
-    fn find_changes(&mut self, line: usize, first: i64, field: &[f32]) {
+    /// Finds neighbouring coarse places of one ray that are on different sides, and the stretches between them: of the fields, some are
+    /// those from some place on.
+    fn find_changes(&mut self, line: usize, first: i64, fields: &[f32], of: Range<usize>) {
         let iso = self.tracer.iso;
-        let inside = field.iter().filter(|&&field| field >= iso).count();
-        if inside == 0 || inside == field.len() {
-            return;
-        }
         let here = &self.lines[line];
-        for (offset, pair) in field.windows(2).enumerate() {
-            if (pair[0] >= iso) == (pair[1] >= iso) {
+        let place = |at: usize| first + (at - of.start) as i64;
+        let known = self.stretches.len();
+        let mut start = of.start;
+        for at in of.start..of.end - 1 {
+            let ends = [fields[at], fields[at + 1]];
+            if (ends[0] >= iso) == (ends[1] >= iso) {
                 continue;
             }
-            match self.want {
-                Want::Any => self.found.block(here.ray),
-                Want::First | Want::All => {
-                    let place = first + offset as i64;
-                    let times = [place, place + 1].map(|place| here.time(place));
-                    let fields = [pair[0], pair[1]];
-                    self.brackets.push(Bracket::new(line, here, self.tolerance, iso, times, fields));
-                }
-            }
-            if self.want != Want::All {
+            if self.want == Want::Any {
+                self.stretches.truncate(known);
+                self.found.block(here.ray);
                 self.done[line] = true;
                 return;
             }
+            if self.stride == 1 {
+                let times = [place(at), place(at + 1)].map(|place| here.time(place));
+                self.brackets.push(Bracket::new(line, here, self.tolerance, iso, times, ends));
+            } else {
+                if start < at {
+                    let places = [place(start), place(at)];
+                    self.stretches.push(Stretch { line, places, field: start });
+                }
+                self.segments.push(Segment { line, place: place(at), fields: ends });
+            }
+            start = at + 1;
+            if self.want == Want::First {
+                return;
+            }
         }
+        if self.stride > 1 && start + 1 < of.end {
+            let places = [place(start), place(of.end - 1)];
+            self.stretches.push(Stretch { line, places, field: start });
+        }
+    }
+
+    /// Finds what is between coarse places; the batch holds the fields at these.
+    fn refine(&mut self, region: &Region, batch: &mut Batch) -> Result<(), TraceError> {
+        if self.stretches.is_empty() && self.segments.is_empty() {
+            return Ok(());
+        }
+        let mut refiner = Refiner {
+            tracer: self.tracer,
+            region,
+            lines: &self.lines,
+            stride: self.stride,
+            tolerance: self.tolerance,
+            found: &mut self.found,
+            work: &mut self.work,
+        };
+        refiner.refine(&self.stretches, &mut self.segments, batch, &mut self.brackets)?;
+        self.stretches.clear();
+        self.segments.clear();
+        let order =
+            |a: &Bracket, b: &Bracket| a.line().cmp(&b.line()).then_with(|| a.start().total_cmp(&b.start()));
+        self.brackets.sort_by(order);
+        if self.want != Want::All {
+            self.brackets.dedup_by_key(|bracket| bracket.line());
+        }
+        Ok(())
+    }
+
+    /// Makes hits of the brackets of a cell, as far as they are wanted.
+    fn close(&mut self, region: &Region, each: u64, batch: &mut Batch) -> Result<(), EvalError> {
+        for bracket in &self.brackets {
+            self.done[bracket.line()] = self.want != Want::All;
+            if self.want == Want::Any {
+                self.found.block(self.lines[bracket.line()].ray);
+            }
+        }
+        if self.want != Want::Any && !self.brackets.is_empty() {
+            polish(self.tracer, region, &self.lines, &mut self.brackets, batch)?;
+            for bracket in &self.brackets {
+                let evaluations = u64::from(bracket.rounds()) * each;
+                self.found.count(self.lines[bracket.line()].ray, evaluations as f32);
+            }
+            self.found.add(self.tracer, region, &self.lines, &self.brackets)?;
+        }
+        self.brackets.clear();
+        Ok(())
     }
 }
 

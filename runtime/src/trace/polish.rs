@@ -68,6 +68,11 @@ impl Bracket {
         self.line
     }
 
+    /// Where it starts.
+    pub(super) fn start(&self) -> f64 {
+        self.times[0]
+    }
+
     /// Whether the ray comes in.
     pub(super) fn entering(&self) -> bool {
         self.entering

@@ -6,6 +6,9 @@
 //! lattice     |  *--+-----+-----+-----+-----+-*   |     |     |        multiples of the step; the ends of the span close it
 //! ```
 //!
+//! A place of the lattice is asked only if it matters; one of each `stride` of them is a *coarse place*, and cells are made of these. Answers do
+//! not depend on the stride.
+//!
 //! The step is the tolerance divided by the length of the direction, cut to four binary digits: so rays of about the same length of direction have the same
 //! step, and one lattice of t. A number of a place times the step is exact. The lattice is counted from t = 0, and so a ray's places are those of the ray alone, whatever
 //! packet it is in and wherever its span begins.
@@ -25,6 +28,9 @@ pub struct Ray {
     /// The smallest and the largest t. Both are finite and belong to it.
     pub span: [f64; 2],
 }
+
+/// Steps of the lattice from one coarse place to the next one, where the tolerance is much finer than the model. Only time depends on it.
+pub(super) const STRIDE: i64 = 16;
 
 /// The box outside of which the field is 0, and a little more.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -88,10 +94,12 @@ pub(super) struct Line {
     pub(super) direction: [f64; 3],
     /// The clipped span.
     pub(super) span: [f64; 2],
-    /// From one place of the lattice to the next one.
+    /// From one coarse place to the next one.
     pub(super) step: f64,
-    /// The places at the ends of the span, which stand for the ends.
+    /// The coarse places at the ends of the span, which stand for the ends.
     pub(super) places: [i64; 2],
+    /// How many steps of the lattice that is.
+    stride: i64,
     /// The length of the direction.
     pub(super) length: f64,
 }
@@ -102,6 +110,7 @@ impl Line {
         index: usize,
         ray: &Ray,
         tolerance: f64,
+        stride: i64,
         reach: Option<&Reach>,
     ) -> Result<Option<Self>, TraceError> {
         let Ray { origin, direction, span } = *ray;
@@ -120,18 +129,23 @@ impl Line {
         if tolerance < resolution {
             return Err(TraceError::Resolution { ray: index, tolerance, resolution });
         }
-        let step = four_digits((tolerance / length).min(LONGEST));
+        let step = four_digits((tolerance / length).min(LONGEST)) * stride as f64;
         let places = [last_before(span[0], step), -last_before(-span[1], step)];
         // Ray numbers are below 2^32: MAX_PACKET_RAYS.
-        Ok(Some(Self { ray: index as u32, origin, direction, span, step, places, length }))
+        Ok(Some(Self { ray: index as u32, origin, direction, span, step, places, stride, length }))
     }
 
-    /// The t of a place: that of the lattice, or an end of the span.
+    /// The t of a coarse place: that of the lattice, or an end of the span.
     pub(super) fn time(&self, place: i64) -> f64 {
         match self.places.iter().position(|&end| end == place) {
             Some(end) => self.span[end],
             None => place as f64 * self.step,
         }
+    }
+
+    /// The t of a place of the lattice, counted in single steps: those beyond the span stand for its ends. It rises with the place.
+    pub(super) fn time_between(&self, place: i64) -> f64 {
+        (place as f64 * (self.step / self.stride as f64)).clamp(self.span[0], self.span[1])
     }
 
     /// The position at t, as the field is asked there: each coordinate rises with t, or falls.

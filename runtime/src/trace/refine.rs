@@ -1,0 +1,233 @@
+//! What is between neighbouring coarse places of rays.
+//!
+//! ```text
+//! coarse places  |-------------------------------|-------------------------------|     all on one side: a stretch of two segments
+//! places         |---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|
+//!
+//! a group, stretches of rays side by side    a range of the field on one side of iso: nothing is there
+//!                                            else: cut, along or across, until few segments are left
+//! a segment                                  all of its places are asked, and neighbours on different sides hold a hit
+//! ```
+//!
+//! A segment of which the ends are on different sides is asked without further ado. What is found is what asking all places finds: ranges only
+//! spare questions whose answers they prove.
+
+use std::ops::Range;
+
+use super::Tracer;
+use super::error::TraceError;
+use super::found::Found;
+use super::packet::{Batch, Work};
+use super::polish::Bracket;
+use super::ray::Line;
+use crate::prune::Region;
+use crate::region::Box3;
+
+/// Neighbouring coarse places of a ray that are on one side.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(super) struct Stretch {
+    pub(super) line: usize,
+    /// The first and the last one.
+    pub(super) places: [i64; 2],
+    /// Which of the fields is that of the first place; those of the others follow.
+    pub(super) field: usize,
+}
+
+/// Stretches of rays side by side, as far as they are between two coarse places.
+struct Group {
+    stretches: Range<usize>,
+    places: [i64; 2],
+}
+
+/// From a coarse place of a ray to the next one.
+pub(super) struct Segment {
+    pub(super) line: usize,
+    pub(super) place: i64,
+    /// The fields at both.
+    pub(super) fields: [f32; 2],
+}
+
+/// Stretches that begin as one group: about the rays of a pixel.
+const TOGETHER: usize = 4;
+/// Boxes whose ranges cost as much as that of one of them.
+const LANES: usize = 16;
+/// The places up to which asking them is quicker than one more run of ranges. Only time depends on it.
+const WORTH_ASKING: usize = 140;
+
+/// What a cell is refined with.
+pub(super) struct Refiner<'a> {
+    pub(super) tracer: &'a Tracer,
+    /// All stretches are in it.
+    pub(super) region: &'a Region,
+    pub(super) lines: &'a [Line],
+    /// Steps of the lattice from one coarse place to the next one, on all lines.
+    pub(super) stride: i64,
+    pub(super) tolerance: f64,
+    pub(super) found: &'a mut Found,
+    pub(super) work: &'a mut Work,
+}
+
+impl Refiner<'_> {
+    /// Finds the changes of side in segments, and in stretches, whose fields are among those given; in no order.
+    pub(super) fn refine(
+        &mut self,
+        stretches: &[Stretch],
+        segments: &mut Vec<Segment>,
+        batch: &mut Batch,
+        brackets: &mut Vec<Bracket>,
+    ) -> Result<(), TraceError> {
+        let fields = std::mem::take(&mut batch.field);
+        self.undecided(stretches, &fields, segments)?;
+        batch.field = fields;
+        if segments.is_empty() {
+            return Ok(());
+        }
+        batch.clear();
+        for &Segment { line, place, .. } in &*segments {
+            let line = &self.lines[line];
+            for step in 1..self.stride {
+                batch.push(line.position(line.time_between(place * self.stride + step)));
+            }
+        }
+        let inner = self.stride as usize - 1;
+        self.work.spend((segments.len() * inner) as u64)?;
+        batch.ask(self.tracer, self.region)?;
+        let each = self.tracer.field.evaluations_in(self.region) as f32;
+        for (segment, asked) in segments.iter().zip(batch.field.chunks_exact(inner)) {
+            self.found.count(self.lines[segment.line].ray, inner as f32 * each);
+            self.find(segment, asked, brackets);
+        }
+        Ok(())
+    }
+
+    /// Adds the segments of stretches whose ranges are not all on one side.
+    fn undecided(
+        &mut self,
+        stretches: &[Stretch],
+        fields: &[f32],
+        segments: &mut Vec<Segment>,
+    ) -> Result<(), TraceError> {
+        let iso = self.tracer.iso;
+        let starts = (0..stretches.len()).step_by(TOGETHER);
+        let mut groups: Vec<Group> = starts
+            .map(|start| Group {
+                stretches: start..(start + TOGETHER).min(stretches.len()),
+                places: [i64::MIN, i64::MAX],
+            })
+            .collect();
+        let known = |(stretch, place): (&Stretch, i64)| {
+            let field = stretch.field + (place - stretch.places[0]) as usize;
+            Segment { line: stretch.line, place, fields: [fields[field], fields[field + 1]] }
+        };
+        let worth_asking = WORTH_ASKING / (self.stride as usize - 1);
+        let mut boxes = Vec::with_capacity(groups.len());
+        loop {
+            boxes.clear();
+            groups.retain_mut(|group| {
+                let bounds = group.tighten(stretches, self.lines);
+                boxes.extend(bounds);
+                bounds.is_some()
+            });
+            let asked: usize = groups.iter().map(|group| group.segments(stretches).count()).sum();
+            if asked <= worth_asking * boxes.len().div_ceil(LANES) {
+                groups.iter().for_each(|group| segments.extend(group.segments(stretches).map(known)));
+                return Ok(());
+            }
+            self.work.spend(boxes.len() as u64)?;
+            let (ranges, each) = self.tracer.pruner.many_ranges(self.region, &boxes)?;
+            let mut parts = Vec::new();
+            for (group, [low, high]) in groups.iter().zip(ranges) {
+                let share = each as f32 / group.stretches.len() as f32;
+                for stretch in &stretches[group.stretches.clone()] {
+                    self.found.count(self.lines[stretch.line].ray, share);
+                }
+                if low >= iso || high < iso {
+                    continue;
+                }
+                if group.is_segment() {
+                    segments.extend(group.segments(stretches).map(known));
+                } else {
+                    group.cut(&mut parts);
+                }
+            }
+            groups = parts;
+        }
+    }
+
+    /// The changes of side in a segment, between the fields at places in it.
+    fn find(&self, segment: &Segment, asked: &[f32], brackets: &mut Vec<Bracket>) {
+        let iso = self.tracer.iso;
+        let line = &self.lines[segment.line];
+        let [start, end] = segment.fields;
+        let mut before = start;
+        for (place, &field) in (segment.place * self.stride..).zip(asked.iter().chain([&end])) {
+            if (before >= iso) != (field >= iso) {
+                let times = [place, place + 1].map(|place| line.time_between(place));
+                brackets.push(Bracket::new(segment.line, line, self.tolerance, iso, times, [before, field]));
+            }
+            before = field;
+        }
+    }
+}
+
+impl Group {
+    /// Leaves out what of it is empty; `None` if nothing is left, else the box around it.
+    fn tighten(&mut self, stretches: &[Stretch], lines: &[Line]) -> Option<Box3> {
+        let mut bounds: Option<Box3> = None;
+        let (mut members, mut places) = (self.stretches.end..self.stretches.start, [i64::MAX, i64::MIN]);
+        for index in self.stretches.clone() {
+            let Stretch { line, places: mine, .. } = stretches[index];
+            let [first, last] = [mine[0].max(self.places[0]), mine[1].min(self.places[1])];
+            if first >= last {
+                continue;
+            }
+            members = members.start.min(index)..index + 1;
+            places = [places[0].min(first), places[1].max(last)];
+            for place in [first, last] {
+                let position = lines[line].position(lines[line].time(place));
+                let bounds = bounds.get_or_insert(Box3::new(position, position));
+                for (axis, x) in position.into_iter().enumerate() {
+                    bounds.low[axis] = bounds.low[axis].min(x);
+                    bounds.high[axis] = bounds.high[axis].max(x);
+                }
+            }
+        }
+        (self.stretches, self.places) = (members, places);
+        bounds
+    }
+
+    /// Its segments, each with its stretch.
+    fn segments<'a>(&self, stretches: &'a [Stretch]) -> impl Iterator<Item = (&'a Stretch, i64)> + use<'a> {
+        let [first, last] = self.places;
+        stretches[self.stretches.clone()].iter().flat_map(move |stretch| {
+            let [from, to] = [stretch.places[0].max(first), stretch.places[1].min(last)];
+            (from..to).map(move |place| (stretch, place))
+        })
+    }
+
+    fn is_segment(&self) -> bool {
+        self.stretches.len() == 1 && self.places[1] - self.places[0] == 1
+    }
+
+    /// Adds its quarters, or what there is of them: it is cut along its rays where it is longer than wide, counted in segments
+    /// and rays.
+    fn cut(&self, parts: &mut Vec<Self>) {
+        for half in self.halves() {
+            parts.extend(half.halves());
+        }
+    }
+
+    fn halves(&self) -> impl Iterator<Item = Self> + use<> {
+        let [first, last] = self.places;
+        let Range { start, end } = self.stretches;
+        let halves = if (last - first) as usize >= end - start {
+            let cut = first + (last - first) / 2;
+            [(start..end, [first, cut]), (start..end, [cut, last])]
+        } else {
+            let cut = start + (end - start) / 2;
+            [(start..cut, [first, last]), (cut..end, [first, last])]
+        };
+        let halves = halves.into_iter().map(|(stretches, places)| Self { stretches, places });
+        halves.filter(|half| half.places[0] < half.places[1] && !half.stretches.is_empty())
+    }
+}
