@@ -408,7 +408,7 @@ fn threads_share_a_tape() {
 #[test]
 fn levels_ascend_from_the_baseline() {
     let levels = Level::available();
-    assert_eq!(levels[0], Level::BASELINE);
+    assert_eq!(levels[0], Level::Baseline);
     assert!(levels.is_sorted());
     assert_eq!(levels.last(), Some(&Level::best()));
 }

@@ -28,7 +28,7 @@ mod assign;
 mod compile;
 mod execute;
 #[allow(unsafe_code)]
-pub mod level;
+mod level;
 mod ops;
 mod pairs;
 mod schedule;
@@ -36,6 +36,6 @@ mod tape;
 #[cfg(test)]
 mod tests;
 
-pub use level::Level;
+pub use crate::level::Level;
 pub use ops::WIDTH;
 pub use tape::{NotLegalized, RunError, Scratch, Tape};

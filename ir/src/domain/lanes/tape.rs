@@ -2,6 +2,7 @@
 
 use crate::entity::{Inst, Table};
 use crate::function::InstKind;
+use crate::level::Level;
 use crate::op::Op;
 use crate::selection::Selection;
 use crate::table::Tables;
@@ -10,7 +11,7 @@ use crate::verify::Verified;
 use super::assign::Place;
 use super::compile::compile;
 use super::execute::Job;
-use super::level::{self, Level};
+use super::level;
 use super::ops::{Chunk, WIDTH};
 use super::pairs::{MOST_OPERANDS, Pair};
 
