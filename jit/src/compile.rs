@@ -5,20 +5,21 @@ use std::panic::{self, AssertUnwindSafe};
 use cranelift_codegen::Context;
 use cranelift_codegen::control::ControlPlane;
 use jbt_ir::limits::{MAX_JIT_LIVE_VALUES, MAX_JIT_VALUES};
-use jbt_ir::{Function, Inst, InstKind, Op, Verified};
+use jbt_ir::{Function, Inst, InstKind, Level, Op, Verified};
 
 use crate::memory::Code;
 use crate::strips::Plan;
+use crate::wide::{self, Blob, Wish};
 use crate::{isa, lower, pressure};
 
-/// Vectors of 4 lanes for each value.
+/// Vectors for each value. A vector has as many lanes as the [`Backend`] says.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum VectorCount {
-    /// Blocks of 4 points.
+    /// One.
     One,
-    /// Blocks of 8 points.
+    /// Two.
     Two,
-    /// Blocks of 16 points.
+    /// Four.
     Four,
 }
 
@@ -26,13 +27,56 @@ impl VectorCount {
     /// All counts.
     pub const ALL: [Self; 3] = [Self::One, Self::Two, Self::Four];
 
-    /// Points in a block.
+    /// How many.
+    #[must_use]
+    pub const fn count(self) -> usize {
+        match self {
+            Self::One => 1,
+            Self::Two => 2,
+            Self::Four => 4,
+        }
+    }
+}
+
+/// What makes the machine code. All give the same bits.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum Backend {
+    /// Cranelift: vectors of 128 bits.
+    Cranelift,
+    /// An emitter of our own for x86-64, at a level from [`Level::Avx2`] on. [`Level::Baseline`] is taken for that one.
+    Wide(Level),
+}
+
+impl Backend {
+    /// The one that is used where nobody wishes another: wide code, if [`Level::best`] has it.
+    #[must_use]
+    pub fn best() -> Self {
+        Self::at(Level::best())
+    }
+
+    /// The one for a level.
+    #[must_use]
+    pub const fn at(level: Level) -> Self {
+        match level {
+            Level::Baseline => Self::Cranelift,
+            level @ (Level::Avx2 | Level::Avx512Vl | Level::Avx512) => Self::Wide(level),
+        }
+    }
+
+    /// All whose code this CPU can run.
+    #[must_use]
+    pub fn available() -> Vec<Self> {
+        let wide = Level::available().into_iter().filter(|&level| level > Level::Baseline);
+        std::iter::once(Self::Cranelift).chain(wide.map(Self::Wide)).collect()
+    }
+
+    /// Lanes of one vector.
     #[must_use]
     pub const fn lanes(self) -> usize {
         match self {
-            Self::One => 4,
-            Self::Two => 8,
-            Self::Four => 16,
+            Self::Cranelift => 4,
+            Self::Wide(Level::Baseline | Level::Avx2 | Level::Avx512Vl) => 8,
+            Self::Wide(Level::Avx512) => 16,
         }
     }
 }
@@ -95,17 +139,33 @@ pub enum Pieces {
     Of(usize),
 }
 
-/// Settings of the compiler. What is `None` is chosen by the size of the function.
+/// Settings of the compiler. What is `None` is chosen by the CPU and the function.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub struct Options {
+    /// What makes the code.
+    pub backend: Option<Backend>,
     /// Vectors for each value.
     pub vectors: Option<VectorCount>,
-    /// Effort.
+    /// Effort of Cranelift.
     pub opt_level: OptLevel,
-    /// Register allocator.
+    /// Register allocator of Cranelift.
     pub allocator: Option<Allocator>,
     /// How a function is cut.
     pub pieces: Option<Pieces>,
+    /// How wide code is checked while it is made.
+    pub check: Check,
+}
+
+/// How wide code is checked while it is made. For tests: it takes time, and code with few registers is slow.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
+pub enum Check {
+    /// Not at all.
+    #[default]
+    Off,
+    /// The finished code is replayed: each instruction has to find the values that it is meant to read.
+    Registers,
+    /// The same for code in 3 vector registers and 1 mask register, in which nearly everything is in the frame.
+    FewRegisters,
 }
 
 /// Why there is no machine code for a function. An interpreter can run it all the same.
@@ -149,6 +209,12 @@ pub enum CompileError {
         /// The first instruction that has it.
         inst: Inst,
     },
+    /// Code was checked, and reads what it should not: a defect of the emitter.
+    #[error("wide code is wrong: {0}")]
+    Registers(String),
+    /// The build has no decoder to list wide code with.
+    #[error("this build lists no wide code (cargo feature `listing`)")]
+    Listing,
     /// The system refuses executable memory.
     #[error("the system refuses memory for machine code: {0}")]
     Memory(String),
@@ -175,6 +241,8 @@ const LONG_FUNCTION: usize = 16_000;
 /// A function of at most so many values gains nothing by being cut: with all its rows in the caches it is as fast, and where few
 /// points are asked it has less to do.
 const WHOLE_UP_TO: usize = 1_000;
+/// The same for wide code.
+const WIDE_WHOLE_UP_TO: usize = 1_000;
 /// Instructions of a piece: its code fits what the processor keeps decoded, and what one block of points waits for in it leaves room for
 /// the next block to begin. From 100 to 500 the speed is the same.
 const PIECE: usize = 200;
@@ -195,7 +263,7 @@ impl Options {
     /// When the function is beyond our limits.
     fn choose(&self, function: &Function) -> Result<Choice, CompileError> {
         check(function)?;
-        let plan = self.plan(function);
+        let plan = self.plan(function, WHOLE_UP_TO);
         let live = pressure::live_values(function, &plan);
         if live > MAX_JIT_LIVE_VALUES {
             return Err(CompileError::LiveValues { live, limit: MAX_JIT_LIVE_VALUES });
@@ -220,8 +288,8 @@ impl Options {
     }
 
     /// The pieces.
-    fn plan(&self, function: &Function) -> Plan {
-        let is_short = function.values.len() <= WHOLE_UP_TO;
+    fn plan(&self, function: &Function, whole_up_to: usize) -> Plan {
+        let is_short = function.values.len() <= whole_up_to;
         let plan = match self.pieces.unwrap_or(if is_short { Pieces::One } else { Pieces::Of(PIECE) }) {
             Pieces::One => Plan::whole(function),
             Pieces::Of(longest) => Plan::cut(function, longest),
@@ -230,9 +298,37 @@ impl Options {
     }
 }
 
-/// Compiles a function.
-pub(crate) fn compile(function: &Verified, options: &Options) -> Result<(Code, VectorCount), CompileError> {
+/// Compiles a function. The code, and the points in a block.
+pub(crate) fn compile(function: &Verified, options: &Options) -> Result<(Code, usize), CompileError> {
+    let backend = options.backend.unwrap_or_else(Backend::best);
+    let (code, vectors) = match backend {
+        Backend::Cranelift => by_cranelift(function.function(), options)?,
+        Backend::Wide(level) if !level.max(Level::Avx2).is_available() => {
+            return Err(CompileError::Processor { missing: level.max(Level::Avx2).name() });
+        }
+        Backend::Wide(level) => {
+            let blob = emit(function, level, options)?;
+            let isa = isa::host(options.opt_level, Allocator::SinglePass)?;
+            (Code::from_blob(&blob, isa)?, blob.vectors)
+        }
+    };
+    Ok((code, vectors.count() * backend.lanes()))
+}
+
+/// Wide code for a level, which this CPU need not have.
+pub(crate) fn emit(function: &Verified, level: Level, options: &Options) -> Result<Blob, CompileError> {
     let function = function.function();
+    check(function)?;
+    let wish = Wish {
+        level: level.max(Level::Avx2),
+        vectors: options.vectors,
+        is_checked: options.check != Check::Off,
+        few_registers: options.check == Check::FewRegisters,
+    };
+    wide::emit(function, &options.plan(function, WIDE_WHOLE_UP_TO), &wish)
+}
+
+fn by_cranelift(function: &Function, options: &Options) -> Result<(Code, VectorCount), CompileError> {
     let Choice { plan, vectors, allocator } = options.choose(function)?;
     let isa = isa::host(options.opt_level, allocator)?;
     let code = guard(|| Code::new(lower::lower(function, &plan, vectors), isa))??;
@@ -249,11 +345,15 @@ pub fn clif(function: &Verified) -> Result<String, CompileError> {
     guard(|| lower::lower(function, &plan, vectors).into_function().display().to_string())
 }
 
-/// The machine instructions that [`crate::Kernel::compile_with`] makes of a function, registers chosen, as text.
+/// The machine instructions that [`crate::Kernel::compile_with`] makes of a function, registers chosen, as text. Wide code of any level is
+/// listed on any machine, if the build has the feature `listing`.
 ///
 /// # Errors
 /// Those of [`crate::Kernel::compile_with`].
 pub fn asm(function: &Verified, options: &Options) -> Result<String, CompileError> {
+    if let Backend::Wide(level) = options.backend.unwrap_or_else(Backend::best) {
+        return listing(&emit(function, level, options)?);
+    }
     let function = function.function();
     let Choice { plan, vectors, allocator } = options.choose(function)?;
     let isa = isa::host(options.opt_level, allocator)?;
@@ -264,6 +364,16 @@ pub fn asm(function: &Verified, options: &Options) -> Result<String, CompileErro
         let compiled = compiled.map_err(|error| CompileError::Cranelift(error.inner.to_string()))?;
         Ok(compiled.vcode.clone().unwrap_or_default())
     })?
+}
+
+#[cfg(feature = "listing")]
+fn listing(blob: &Blob) -> Result<String, CompileError> {
+    Ok(wide::listing::listing(blob))
+}
+
+#[cfg(not(feature = "listing"))]
+const fn listing(_: &Blob) -> Result<String, CompileError> {
+    Err(CompileError::Listing)
 }
 
 /// Looks for what we decline before anything is planned.

@@ -68,7 +68,7 @@ pub struct Kernel {
 
 impl Kernel {
     /// A multiple of [`lanes`](Self::lanes) of every kernel: planes padded to a multiple of this suit them all.
-    pub const MAX_LANES: usize = 16;
+    pub const MAX_LANES: usize = 32;
 
     /// Compiles a function, with the settings that measurements favour for one of its size.
     ///
@@ -83,12 +83,12 @@ impl Kernel {
     /// # Errors
     /// As for [`compile`](Self::compile).
     pub fn compile_with(function: &Verified, options: &Options) -> Result<Self, CompileError> {
-        let (code, vectors) = compile::compile(function, options)?;
+        let (code, lanes) = compile::compile(function, options)?;
         let mut interface = Function::new(&function.function().name, &[]);
         interface.inputs.clone_from(&function.function().inputs);
         interface.outputs.clone_from(&function.function().outputs);
         interface.tables.clone_from(&function.function().tables);
-        Ok(Self { shared: Arc::new(Shared { code, lanes: vectors.lanes(), interface }) })
+        Ok(Self { shared: Arc::new(Shared { code, lanes, interface }) })
     }
 
     /// Points in one block: the length of planes must be a multiple of it.

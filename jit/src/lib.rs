@@ -1,4 +1,4 @@
-//! Machine code for jbt programs, by Cranelift.
+//! Machine code for jbt programs: wide code of our own on x86-64 with AVX2 or AVX-512, elsewhere by Cranelift.
 //!
 //! A verified function goes in, a [`Kernel`] comes out. Bound to the rows of its tables it takes planes of numbers to
 //! planes of answers, and every lane has the bits that the scalar reference gives (a NaN for a NaN).
@@ -9,7 +9,13 @@
 //!                is cut      are alive    by `vectors`     pages of its own
 //! ```
 //!
-//! What the code does, in pseudo-code, with a block of K vectors of 4 points:
+//! Wide code has a way of its own from the plan on, with the same result (`wide/`):
+//!
+//! ```text
+//!   Verified ──► strips ───► wide: one list, registers in one walk, bytes ──► memory ──► Kernel
+//! ```
+//!
+//! What the code does, in pseudo-code, with a block of K vectors of 4 points (8 or 16 in wide code):
 //!
 //! ```text
 //! for offset in (0 .. points).step_by(4 * K):
@@ -54,6 +60,9 @@ mod memory;
 mod pressure;
 mod strips;
 mod vectors;
+mod wide;
 
-pub use compile::{Allocator, CompileError, OptLevel, Options, Pieces, VectorCount, asm, clif};
+pub use compile::{
+    Allocator, Backend, Check, CompileError, OptLevel, Options, Pieces, VectorCount, asm, clif,
+};
 pub use entry::{BoundKernel, Kernel, RunError};

@@ -19,6 +19,7 @@ use jbt_ir::limits;
 use crate::compile::CompileError;
 use crate::entry::{Arguments, TableView};
 use crate::lower::Lowered;
+use crate::wide::Blob;
 
 /// A module whose memory goes with it. The module's own drop would leak it.
 struct Pages(Option<JITModule>);
@@ -35,8 +36,8 @@ impl Drop for Pages {
 
 /// Finished machine code.
 ///
-/// Contract: `address` is a function in `pages` which was compiled from a [`Lowered`], so it keeps to the ABI of
-/// [`crate::entry`]; the pages are executable, are not writable, and stay until the `Code` is dropped.
+/// Contract: `address` is a function in `pages` which was compiled from a [`Lowered`] or emitted as a [`Blob`], so it keeps to the ABI
+/// of [`crate::entry`]; the pages are executable, are not writable, and stay until the `Code` is dropped.
 pub(crate) struct Code {
     address: *const u8,
     bytes: usize,
@@ -69,6 +70,19 @@ impl Code {
         module.finalize_definitions()?;
         let address = module.get_finalized_function(function);
         Ok(Self { address, bytes, frame_bytes, _pages: pages })
+    }
+
+    /// Makes finished bytes executable. The caller has asked the CPU for what they need.
+    pub(crate) fn from_blob(blob: &Blob, isa: OwnedTargetIsa) -> Result<Self, CompileError> {
+        let mut pages = Pages(Some(JITModule::new(JITBuilder::with_isa(isa, default_libcall_names()))));
+        let module = pages.0.as_mut().expect("the module stays until the pages are dropped");
+        let signature = module.make_signature();
+        let function = module.declare_function("kernel", Linkage::Export, &signature)?;
+        // Constants are read by whole vectors.
+        module.define_function_bytes(function, 64, &blob.bytes, &[])?;
+        module.finalize_definitions()?;
+        let address = module.get_finalized_function(function);
+        Ok(Self { address, bytes: blob.bytes.len(), frame_bytes: blob.frame_bytes, _pages: pages })
     }
 
     /// Bytes of code and constants.
@@ -197,8 +211,8 @@ mod tests {
     fn a_kernel_runs_in_the_default_environment_and_leaves_that_of_its_caller() {
         let Ok(kernel) = Kernel::compile(&arithmetic()) else { return };
         let kernel = kernel.bind(Arc::new(Tables::default())).expect("there are no tables");
-        let (subnormal, third) = (vec![1e-40_f32; 16], vec![3.0_f32; 16]);
-        let (mut product, mut quotient) = (vec![0.0; 16], vec![0.0; 16]);
+        let (subnormal, third) = (vec![1e-40_f32; 32], vec![3.0_f32; 32]);
+        let (mut product, mut quotient) = (vec![0.0; 32], vec![0.0; 32]);
         // Flush to zero, subnormals are zeros, round toward zero; all exceptions masked, one flag raised.
         let odd = 0x1F80 | 1 << 15 | 1 << 6 | 0b11 << 13 | 1;
         let before = mxcsr();

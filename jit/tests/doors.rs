@@ -8,9 +8,9 @@ mod common;
 use std::sync::Arc;
 
 use common::{assert_same_bits, finish, reference, rows, run, spicy_plane, table, tables};
-use jbt_ir::limits::{MAX_JIT_LIVE_VALUES, MAX_JIT_VALUES};
-use jbt_ir::{Domain, FunctionBuilder, Reduction, Tables, Value, Verified};
-use jbt_jit::{Allocator, CompileError, Kernel, Options, Pieces, RunError, VectorCount, clif};
+use jbt_ir::limits::{MAX_JIT_FRAME_BYTES, MAX_JIT_LIVE_VALUES, MAX_JIT_VALUES};
+use jbt_ir::{Domain, FunctionBuilder, Level, Reduction, Tables, Value, Verified};
+use jbt_jit::{Allocator, Backend, CompileError, Kernel, Options, Pieces, RunError, VectorCount, clif};
 
 /// The sum over rows of `c0 * x`, and `y`.
 fn function() -> Verified {
@@ -30,7 +30,8 @@ fn three_rows() -> Tables {
 
 #[test]
 fn planes_that_do_not_fit_are_refused_and_nothing_is_written() {
-    let options = Options { vectors: Some(VectorCount::Two), ..Options::default() };
+    let options =
+        Options { backend: Some(Backend::Cranelift), vectors: Some(VectorCount::Two), ..Options::default() };
     let kernel = Kernel::compile_with(&function(), &options).expect("it compiles");
     assert_eq!(kernel.lanes(), 8);
     let kernel = kernel.bind(Arc::new(three_rows())).expect("the tables fit");
@@ -159,7 +160,7 @@ fn more_planes_than_the_stack_holds_are_fine() {
         .collect();
     let function = finish(b, &outputs);
     let kernel = Kernel::compile(&function).expect("it compiles");
-    let inputs = [spicy_plane(5, 16)];
+    let inputs = [spicy_plane(5, 32)];
     let expected = reference(&function, &Tables::default(), &inputs);
     assert_same_bits(&expected, &run(&kernel, &Arc::default(), &inputs, 100), "100 planes");
 }
@@ -203,10 +204,12 @@ fn the_limit_of_values_compiles_and_one_more_does_not() {
 fn the_limit_of_live_values_compiles_and_one_more_does_not() {
     let kernel = Kernel::compile(&crowd(MAX_JIT_LIVE_VALUES)).expect("it is within the limit");
     assert!(kernel.frame_bytes() > 16 * MAX_JIT_LIVE_VALUES, "so many values need a frame");
-    let inputs = [vec![0.5; 16]];
+    let inputs = [vec![0.5; 32]];
     let expected = reference(&crowd(MAX_JIT_LIVE_VALUES), &Tables::default(), &inputs);
     assert_same_bits(&expected, &run(&kernel, &Arc::default(), &inputs, 1), "a crowd");
-    let error = Kernel::compile(&crowd(MAX_JIT_LIVE_VALUES + 1)).expect_err("it is too crowded");
+    let options = Options { backend: Some(Backend::Cranelift), ..Options::default() };
+    let too_many = crowd(MAX_JIT_LIVE_VALUES + 1);
+    let error = Kernel::compile_with(&too_many, &options).expect_err("it is too crowded");
     assert_eq!(error, CompileError::LiveValues { live: MAX_JIT_LIVE_VALUES + 1, limit: MAX_JIT_LIVE_VALUES });
 }
 
@@ -225,9 +228,52 @@ fn a_frame_that_is_too_large_is_refused() {
     let function = finish(b, &values);
     let vectors = Some(VectorCount::Four);
     let (allocator, pieces) = (Some(Allocator::SinglePass), Some(Pieces::One));
-    let options = Options { vectors, allocator, pieces, ..Options::default() };
+    let backend = Some(Backend::Cranelift);
+    let options = Options { backend, vectors, allocator, pieces, ..Options::default() };
     let error = Kernel::compile_with(&function, &options).expect_err("the frame is too large");
     assert!(matches!(error, CompileError::Frame { bytes, limit } if bytes > limit), "{error}");
+}
+
+/// Code that this CPU cannot run is refused, and the error names what is missing.
+#[test]
+fn levels_that_the_cpu_lacks_are_refused() {
+    for level in Level::ALL {
+        let options = Options { backend: Some(Backend::Wide(level)), ..Options::default() };
+        match Kernel::compile_with(&function(), &options) {
+            // There is no wide code for the baseline: it is that for AVX2.
+            Ok(_) => assert!(level.max(Level::Avx2).is_available()),
+            Err(CompileError::Processor { missing }) => {
+                assert!(!level.is_available() && missing == level.name());
+            }
+            Err(error) => panic!("{error}"),
+        }
+    }
+}
+
+/// Wide code has no limit of live values but that of its frame, and takes fewer vectors for a value before it gives up.
+#[test]
+fn a_frame_of_wide_code_that_is_too_large_is_refused() {
+    let whole = |backend, vectors| Options {
+        backend: Some(backend),
+        vectors,
+        pieces: Some(Pieces::One),
+        ..Options::default()
+    };
+    for backend in Backend::available().into_iter().filter(|&backend| backend != Backend::Cranelift) {
+        let bytes = 4 * backend.lanes();
+        let fits = crowd(MAX_JIT_FRAME_BYTES / bytes - 50);
+        let kernel =
+            Kernel::compile_with(&fits, &whole(backend, None)).expect("the frame is as large as allowed");
+        assert!(kernel.frame_bytes() > MAX_JIT_FRAME_BYTES * 9 / 10 && kernel.lanes() == backend.lanes());
+        let inputs = [spicy_plane(6, 32)];
+        let expected = reference(&fits, &Tables::default(), &inputs);
+        assert_same_bits(&expected, &run(&kernel, &Arc::default(), &inputs, 1), "a large frame");
+        let two = Kernel::compile_with(&fits, &whole(backend, Some(VectorCount::Two)));
+        assert!(matches!(two, Err(CompileError::Frame { bytes, limit }) if bytes > limit));
+        let crowd = crowd(MAX_JIT_FRAME_BYTES / bytes + 50);
+        let error = Kernel::compile_with(&crowd, &whole(backend, None)).expect_err("the frame is too large");
+        assert!(matches!(error, CompileError::Frame { bytes, limit } if bytes > limit), "{error}");
+    }
 }
 
 #[test]
@@ -241,7 +287,10 @@ fn the_text_shows_the_loop_over_rows() {
 #[test]
 fn every_block_divides_the_padding() {
     for vectors in VectorCount::ALL {
-        assert!(Kernel::MAX_LANES.is_multiple_of(vectors.lanes()));
+        assert!(
+            Backend::available().iter().all(|backend| backend.lanes() * vectors.count() > Kernel::MAX_LANES
+                || Kernel::MAX_LANES.is_multiple_of(backend.lanes() * vectors.count()))
+        );
     }
 }
 

@@ -34,7 +34,7 @@ fn compiling_and_dropping_does_not_grow_the_process() {
         let kernel = Kernel::compile(&function).expect("it compiles");
         let second = kernel.clone();
         drop(kernel);
-        assert_eq!(run(&second, &tables, &[vec![2.0; 16]], 1), [vec![6.0; 16]]);
+        assert_eq!(run(&second, &tables, &[vec![2.0; 32]], 1), [vec![6.0; 32]]);
     };
     (0..20).for_each(|_| once()); // The allocator takes what it needs.
     let (maps, pages) = mappings();

@@ -8,7 +8,7 @@ use jbt_ir::{
     Function, FunctionBuilder, Rows, Schema, Selection, Store, Table, Tables, Value, Verified, interpret,
     verify,
 };
-use jbt_jit::{Allocator, Kernel, OptLevel, Options, Pieces, VectorCount};
+use jbt_jit::{Allocator, Backend, Check, Kernel, OptLevel, Options, Pieces, VectorCount};
 
 /// Numbers on which engines have been seen to differ.
 pub const SPICE: [f32; 22] = [
@@ -174,15 +174,31 @@ pub fn assert_same_bits(expected: &[Vec<f32>], given: &[Vec<f32>], what: &str) {
 /// All settings of the compiler, with the function whole, cut at folds, in pieces of a few instructions, and in the smallest there are.
 pub fn all_options() -> Vec<Options> {
     let mut all = vec![Options::default()];
+    let pieces = [Pieces::One, Pieces::Of(usize::MAX), Pieces::Of(7), Pieces::Of(1)];
+    for backend in Backend::available().into_iter().filter(|&backend| backend != Backend::Cranelift) {
+        for vectors in VectorCount::ALL {
+            if backend.lanes() * vectors.count() > Kernel::MAX_LANES {
+                continue;
+            }
+            for pieces in pieces {
+                for check in [Check::Registers, Check::FewRegisters] {
+                    let (backend, vectors, pieces) = (Some(backend), Some(vectors), Some(pieces));
+                    all.push(Options { backend, vectors, pieces, check, ..Options::default() });
+                }
+            }
+        }
+    }
     for vectors in VectorCount::ALL {
         for opt_level in OptLevel::ALL {
             for allocator in Allocator::ALL {
-                for pieces in [Pieces::One, Pieces::Of(usize::MAX), Pieces::Of(7), Pieces::Of(1)] {
+                for pieces in pieces {
                     all.push(Options {
+                        backend: Some(Backend::Cranelift),
                         vectors: Some(vectors),
                         opt_level,
                         allocator: Some(allocator),
                         pieces: Some(pieces),
+                        check: Check::Off,
                     });
                 }
             }

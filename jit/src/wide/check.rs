@@ -1,0 +1,212 @@
+//! A second opinion on the choice of registers: replays the code and knows what each register and each place
+//! in the frame holds.
+//!
+//! The walk that chooses says of each instruction which values it reads and writes. Here nobody asks where
+//! that walk believes them to be: the places are those of the finished instructions. A loop is replayed until
+//! what its top can rely on does not shrink any more.
+
+use std::collections::HashMap;
+
+use super::inst::{Base, Gpr, Inst, Memory, Operand};
+use super::linear::{Home, Kind, Linear, NONE};
+use super::state::{MASKS, Part};
+
+/// What happens between two instructions.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Event {
+    /// A loop begins.
+    Open,
+    /// Its last instruction on values is behind.
+    Close,
+    /// Wherever one part is, it is the other one from now on.
+    Rename { from: Part, to: Part },
+    /// A part that is at a place is the next value of an accumulator there.
+    Next { from: Part, to: Part, at: Place },
+}
+
+/// Marks an accumulator as that of the next round, until the loop closes: so it is told from that of this
+/// round.
+pub(crate) const NEXT: Part = 1 << 31;
+
+/// Where a value can be.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub(crate) enum Place {
+    /// With masks behind vectors.
+    Register(u8),
+    /// So many bytes from the stack pointer.
+    Frame(i32),
+    /// Among numbers that the code does not write.
+    Elsewhere(Memory),
+}
+
+/// What is where.
+type Contents = HashMap<Place, Part>;
+
+/// A finished walk.
+pub(crate) struct Replay<'a> {
+    pub(crate) linear: &'a Linear,
+    pub(crate) vectors: u32,
+    pub(crate) vector_bytes: usize,
+    pub(crate) has_masks: bool,
+    pub(crate) code: &'a [Inst],
+    pub(crate) notes: &'a [([Part; 3], Part)],
+    pub(crate) events: &'a [(usize, Event)],
+    pub(crate) constants: &'a [u8],
+}
+
+impl Replay<'_> {
+    /// The first instruction that reads something else than it should, in words.
+    pub(crate) fn check(&self) -> Result<(), String> {
+        let mut contents = Contents::new();
+        self.walk(0, 0, &mut contents)?;
+        Ok(())
+    }
+
+    /// Replays from an instruction and an event to the end of the innermost loop; where it ends.
+    fn walk(
+        &self,
+        mut at: usize,
+        mut event: usize,
+        contents: &mut Contents,
+    ) -> Result<(usize, usize), String> {
+        loop {
+            let next = self.events.get(event);
+            match next {
+                Some(&(place, what)) if place == at => {
+                    event += 1;
+                    match what {
+                        Event::Rename { from, to } => {
+                            let mut places = contents.values_mut().filter(|part| **part == from).peekable();
+                            if places.peek().is_none() {
+                                return Err(format!("{at}: part {from} is nowhere and becomes {to}"));
+                            }
+                            places.for_each(|part| *part = to);
+                        }
+                        Event::Next { from, to, at: place } => {
+                            let there = contents.insert(place, to | NEXT);
+                            if there != Some(from) {
+                                return Err(format!("{at}: part {from} is not at {place:?}, to become {to}"));
+                            }
+                        }
+                        Event::Close => {
+                            let next: Vec<Part> = contents
+                                .values()
+                                .filter(|&&part| part & NEXT != 0)
+                                .map(|part| part ^ NEXT)
+                                .collect();
+                            contents.retain(|_, part| !next.contains(part));
+                            contents.values_mut().for_each(|part| *part &= !NEXT);
+                            return Ok((at, event));
+                        }
+                        Event::Open => loop {
+                            let mut round = contents.clone();
+                            let end = self.walk(at, event, &mut round)?;
+                            let before = contents.len();
+                            contents.retain(|place, part| round.get(place) == Some(part));
+                            if contents.len() == before {
+                                (at, event) = end;
+                                break;
+                            }
+                        },
+                    }
+                }
+                Some(_) | None if at < self.code.len() => {
+                    self.step(at, contents)?;
+                    at += 1;
+                }
+                Some(_) | None => return Ok((at, event)),
+            }
+        }
+    }
+
+    /// Replays one instruction.
+    fn step(&self, at: usize, contents: &mut Contents) -> Result<(), String> {
+        let inst = &self.code[at];
+        let (reads, write) = self.places(inst);
+        let (read_parts, written) = &self.notes[at];
+        for (place, &part) in reads.into_iter().zip(read_parts) {
+            let (Some(place), true) = (place, part != NONE) else { continue };
+            let is_there = match place {
+                Place::Elsewhere(memory) => self.is_home(memory, part),
+                Place::Register(_) | Place::Frame(_) => contents.get(&place) == Some(&part),
+            };
+            if !is_there {
+                let there = contents.get(&place);
+                return Err(format!("{at}: {inst:?} reads part {part} at {place:?}, where {there:?} is"));
+            }
+        }
+        match write {
+            Some(place @ (Place::Register(_) | Place::Frame(_))) => {
+                contents.insert(place, *written);
+            }
+            Some(Place::Elsewhere(_)) | None => {}
+        }
+        Ok(())
+    }
+
+    /// Whether a leaf is at an address.
+    fn is_home(&self, memory: Memory, part: Part) -> bool {
+        let data = &self.linear.names[(part / self.vectors) as usize];
+        let vector = (part % self.vectors) as i32 * self.vector_bytes as i32;
+        match data.kind {
+            Kind::Computed | Kind::Phi(_) => false,
+            Kind::Leaf(Home::Number(bits)) => {
+                let at = memory.displacement as usize;
+                memory.base == Base::Constants && self.constants[at..at + 4] == bits.to_le_bytes()
+            }
+            Kind::Leaf(Home::Column(_, column)) => memory.is_one && memory.displacement == 4 * column as i32,
+            Kind::Leaf(Home::Input(_)) => !memory.is_one && memory.displacement == vector,
+            Kind::Leaf(Home::Slot(_)) => memory.base == Base::Register(Gpr::R8),
+        }
+    }
+
+    /// The places that an instruction reads, in the order of its note, and the one that it writes.
+    fn places(&self, inst: &Inst) -> ([Option<Place>; 3], Option<Place>) {
+        let vector = |number: u8| Some(Place::Register(number));
+        let mask = |number: u8| Some(Place::Register(MASKS + number));
+        let operand = |operand: Operand| match operand {
+            Operand::Register(number) => vector(number),
+            Operand::Memory(memory) => Some(in_memory(memory)),
+        };
+        let condition = |number| if self.has_masks { mask(number) } else { vector(number) };
+        match *inst {
+            Inst::Binary { to, a, b, .. } => ([vector(a), operand(b), None], vector(to)),
+            Inst::Sqrt { to, a } => ([operand(a), None, None], vector(to)),
+            Inst::Fma { to, b, c, .. } => ([vector(to), vector(b), operand(c)], vector(to)),
+            Inst::Shift { to, a, .. } => ([vector(a), None, None], vector(to)),
+            Inst::Compare { to, a, b, .. } => ([vector(a), operand(b), None], condition(to)),
+            Inst::Blend { to, mask, no, yes } => ([condition(mask), vector(no), operand(yes)], vector(to)),
+            Inst::Zero { to } => ([None; 3], vector(to)),
+            Inst::Move { to, from } => ([vector(from), None, None], vector(to)),
+            Inst::Load { to, from } => ([Some(in_memory(from)), None, None], vector(to)),
+            Inst::Store { to, from } => ([vector(from), None, None], Some(in_memory(to))),
+            Inst::MaskAnd { to, a, b } | Inst::MaskOr { to, a, b } => ([mask(a), mask(b), None], mask(to)),
+            Inst::MaskNot { to, a } => ([mask(a), None, None], mask(to)),
+            Inst::MaskMove { to, from } => ([mask(from), None, None], mask(to)),
+            Inst::MaskLoad { to, from } => ([Some(in_memory(from)), None, None], mask(to)),
+            Inst::MaskStore { to, from } => ([mask(from), None, None], Some(in_memory(to))),
+            Inst::LoadPointer { .. }
+            | Inst::StorePointer { .. }
+            | Inst::LoadWord { .. }
+            | Inst::AddPointer { .. }
+            | Inst::SubPointer { .. }
+            | Inst::AddRegister { .. }
+            | Inst::AddConstant { .. }
+            | Inst::Multiply { .. }
+            | Inst::Address { .. }
+            | Inst::ClearRegister { .. }
+            | Inst::TakeIfAbove { .. }
+            | Inst::Compare64 { .. }
+            | Inst::CompareMemory { .. }
+            | Inst::Jump { .. }
+            | Inst::Here(_) => ([None; 3], None),
+        }
+    }
+}
+
+fn in_memory(memory: Memory) -> Place {
+    match memory.base {
+        Base::Register(Gpr::Rsp) => Place::Frame(memory.displacement),
+        Base::Register(_) | Base::Sum(..) | Base::Constants => Place::Elsewhere(memory),
+    }
+}

@@ -1,0 +1,163 @@
+//! Where values are in memory: leaves in their homes, computed values in the frame.
+
+use jbt_ir::Entity;
+
+use super::counters::SAVED_BYTES;
+use super::inst::{Base, Gpr, Inst, Memory};
+use super::linear::{Home, Kind, NONE, Name};
+use super::state::{NOWHERE, Part, Register, SAVED, State, load, store};
+
+impl State<'_> {
+    /// Where the frame has a part, or will.
+    pub(super) fn frame_memory(&mut self, part: Part) -> Memory {
+        if self.frame[part as usize] == NONE {
+            self.frame[part as usize] = self.fresh_slot().0;
+        }
+        Memory::at(Gpr::Rsp, self.slot_displacement(self.frame[part as usize]))
+    }
+
+    fn slot_displacement(&self, slot: u32) -> i32 {
+        let saved = SAVED as usize + SAVED_BYTES * self.linear.depth.saturating_sub(2);
+        let first = saved.next_multiple_of(self.shape.bytes);
+        i32::try_from(first + slot as usize * self.shape.bytes).expect("values and vectors are limited")
+    }
+
+    /// Bytes of the frame, without slots of strips.
+    pub(crate) fn frame_bytes(&self) -> usize {
+        self.slot_displacement(self.frame_slots) as usize
+    }
+
+    /// Gives the frame's place of a part to another, which has the same number there.
+    pub(super) fn hand_over_frame(&mut self, from: Part, to: Part) {
+        self.frame[to as usize] = std::mem::replace(&mut self.frame[from as usize], NONE);
+        self.stored[from as usize] = false;
+    }
+
+    /// Sees to it that memory has a part.
+    pub(super) fn store(&mut self, part: Part) {
+        if self.stored[part as usize] || self.is_leaf(self.name(part)) {
+            return;
+        }
+        let from = self.place[part as usize];
+        debug_assert_ne!(from, NOWHERE, "a value is somewhere");
+        let to = self.frame_memory(part);
+        self.emit(store(from, to), &[part], part);
+        self.stored[part as usize] = true;
+        self.journal.push(part);
+    }
+
+    /// Ends the life of a name.
+    pub(super) fn bury(&mut self, name: Name) {
+        for part in self.parts(name) {
+            self.release(part);
+            let slot = std::mem::replace(&mut self.frame[part as usize], NONE);
+            if slot != NONE {
+                self.free.push(slot);
+            }
+            self.stored[part as usize] = false;
+        }
+    }
+
+    /// Ends a life of a name at the current position: of an accumulator perhaps only that inside of its loop.
+    pub(crate) fn end_life(&mut self, name: Name) {
+        if self.lives.last[name as usize] == self.position {
+            return self.bury(name);
+        }
+        if let Kind::Phi(id) = self.linear.names[name as usize].kind
+            && self.linear.loops[id as usize].close != self.position
+        {
+            // It is set again at the end of the round, at the place where it was.
+            for part in self.parts(name) {
+                self.release(part);
+            }
+        }
+    }
+
+    /// Where memory has a part. May need `rax` until the next instruction.
+    pub(super) fn home(&mut self, part: Part) -> Memory {
+        let name = self.name(part);
+        let vector = (part - name * self.vectors) as i32;
+        let displacement = vector * self.shape.bytes as i32;
+        match self.linear.names[name as usize].kind {
+            Kind::Computed | Kind::Phi(_) => {
+                debug_assert!(self.stored[part as usize], "a value is somewhere");
+                self.frame_memory(part)
+            }
+            Kind::Leaf(Home::Number(bits)) => self.number(bits),
+            Kind::Leaf(Home::Column(table, column)) => {
+                let base = Base::Register(self.row(table.index()));
+                let displacement = i32::try_from(4 * column).expect("a row has fewer bytes");
+                Memory { base, displacement, is_one: true }
+            }
+            Kind::Leaf(Home::Input(plane)) => self.input(plane, displacement),
+            Kind::Leaf(Home::Slot(slot)) => {
+                Memory::at(Gpr::R8, self.strip_displacement(slot.0) + displacement)
+            }
+        }
+    }
+
+    pub(super) fn strip_displacement(&self, slot: usize) -> i32 {
+        i32::try_from(slot * self.strip_bytes).expect("a plan with so many slots is not made")
+    }
+
+    /// Where a number is among the constants.
+    pub(super) fn number(&mut self, bits: u32) -> Memory {
+        let copies = if self.shape.has_masks { 1 } else { self.shape.bytes / 4 };
+        let constants = &mut self.constants;
+        let displacement = *self.numbers.entry(bits).or_insert_with(|| {
+            let at = constants.len() as i32;
+            (0..copies).for_each(|_| constants.extend(bits.to_le_bytes()));
+            at
+        });
+        Memory { base: Base::Constants, displacement, is_one: self.shape.has_masks }
+    }
+
+    /// Whether an instruction that computes can read a part where memory has it.
+    pub(super) fn can_be_operand(&self, name: Name) -> bool {
+        let is_column = matches!(self.linear.names[name as usize].kind, Kind::Leaf(Home::Column(..)));
+        self.class(name) == 0 && (self.shape.has_masks || !is_column)
+    }
+
+    /// A place in the frame that belongs to no part, and its number.
+    pub(super) fn fresh_slot(&mut self) -> (u32, Memory) {
+        let slot = self.free.pop().unwrap_or_else(|| {
+            self.frame_slots += 1;
+            self.frame_slots - 1
+        });
+        (slot, Memory::at(Gpr::Rsp, self.slot_displacement(slot)))
+    }
+
+    /// Ends the use of places that belonged to no part.
+    pub(super) fn give_back(&mut self, slots: Vec<u32>) {
+        self.free.extend(slots);
+    }
+
+    /// Puts what memory has of a part into a register.
+    pub(super) fn load_into(&mut self, register: Register, part: Part) {
+        self.load_as(register, part, part);
+    }
+
+    /// The same, where it becomes another part.
+    pub(super) fn load_as(&mut self, register: Register, part: Part, to: Part) {
+        let is_zero = matches!(self.linear.names[self.name(part) as usize].kind, Kind::Leaf(Home::Number(0)));
+        if is_zero {
+            self.emit(Inst::Zero { to: register }, &[], to);
+            return;
+        }
+        let from = self.home(part);
+        self.emit(load(register, from), &[part], to);
+    }
+
+    /// The register of a part, which may be loaded for that.
+    pub(super) fn fetch(&mut self, part: Part) -> Register {
+        let name = self.name(part);
+        let register = self.register_of(part).unwrap_or_else(|| {
+            let register = self.take(self.class(name));
+            self.load_into(register, part);
+            self.bind(part, register);
+            register
+        });
+        self.lock(register);
+        register
+    }
+}

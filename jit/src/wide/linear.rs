@@ -1,0 +1,461 @@
+//! The function as one list: every instruction, loop and store in the order of the code.
+//!
+//! ```text
+//! open points                      once for each block of points
+//!   n3 = mul n0, n1                    a name for each value
+//!   open rows t0: n5 = phi(n4, n9)     a fold; after it n5 is its result
+//!     n9 = fma n7, n3, n5
+//!   close rows
+//!   output 0, n5
+//! close points
+//! ```
+//!
+//! *Leaves* (constants, columns, inputs, what other pieces have kept) are not in the list. They have a home
+//! in memory, and whoever reads them finds them there. Ops that change no bit (`hold`, `to_bits`,
+//! `from_bits`) are not there either: their result has the name of their operand.
+
+use jbt_ir::{Block, Entity, Fold, Function, Inst, InstKind, Op, Reduction, Table, Type, Value};
+
+use crate::strips::{Plan, Slot, Then};
+
+/// A value of the list.
+pub(crate) type Name = u32;
+
+/// A loop of the list.
+pub(crate) type LoopId = u32;
+
+/// Nothing of its kind.
+pub(crate) const NONE: u32 = u32::MAX;
+
+/// Where a leaf is.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Home {
+    /// Among the constants.
+    Number(u32),
+    /// In the current row of a table.
+    Column(Table, usize),
+    /// In the current block of points of an input plane.
+    Input(usize),
+    /// In the current block of points of a slot.
+    Slot(Slot),
+}
+
+/// What a name stands for.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Kind {
+    Leaf(Home),
+    /// Computed by one item.
+    Computed,
+    /// An accumulator: bound by a loop, set again at its end, and its result.
+    Phi(LoopId),
+}
+
+/// A value.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Data {
+    pub(crate) kind: Kind,
+    /// Whether all lanes have the same number.
+    pub(crate) is_uniform: bool,
+    pub(crate) is_mask: bool,
+    /// The innermost loop that changes it: outside of this loop there is nothing to read. For a phi, the loop
+    /// around its own.
+    pub(crate) scope: LoopId,
+}
+
+/// One thing to do.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Item {
+    Op {
+        op: Op,
+        to: Name,
+        args: [Name; 3],
+    },
+    /// Reads a leaf now, because its home will be written.
+    Read {
+        to: Name,
+        from: Name,
+    },
+    Keep {
+        slot: Slot,
+        value: Name,
+    },
+    Output {
+        plane: usize,
+        value: Name,
+    },
+    Open(LoopId),
+    Close(LoopId),
+}
+
+/// An accumulator of a loop.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Phi {
+    pub(crate) value: Name,
+    pub(crate) initial: Name,
+    pub(crate) next: Name,
+}
+
+/// What a loop goes over.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Over {
+    /// Strips of points.
+    Strips,
+    /// Blocks of points.
+    Points,
+    /// Rows of a table, with points inside.
+    RowsOfStrip(Table),
+    /// Rows of a table, for one block of points.
+    Rows(Table),
+    /// The same, where there is one row or none as a rule.
+    Guard(Table),
+}
+
+impl Over {
+    /// The table, if it goes over rows.
+    pub(crate) fn table(self) -> Option<Table> {
+        match self {
+            Self::Strips | Self::Points => None,
+            Self::RowsOfStrip(table) | Self::Rows(table) | Self::Guard(table) => Some(table),
+        }
+    }
+}
+
+/// A loop.
+#[derive(Debug)]
+pub(crate) struct Loop {
+    pub(crate) over: Over,
+    /// The loop around it, or [`NONE`].
+    pub(crate) parent: LoopId,
+    /// Positions of its items.
+    pub(crate) open: u32,
+    pub(crate) close: u32,
+    pub(crate) phis: Vec<Phi>,
+    /// Of a loop over points: the input planes that it reads, a bit each, for the first [`POINTERS`] planes.
+    pub(crate) inputs: u32,
+}
+
+impl Loop {
+    /// Whether it goes over rows for one block of points.
+    pub(crate) fn is_row_loop(&self) -> bool {
+        matches!(self.over, Over::Rows(_))
+    }
+}
+
+/// Input planes whose place in the current block of points has a register.
+pub(crate) const POINTERS: usize = 3;
+
+/// The list.
+#[derive(Debug, Default)]
+pub(crate) struct Linear {
+    pub(crate) items: Vec<Item>,
+    pub(crate) loops: Vec<Loop>,
+    pub(crate) names: Vec<Data>,
+    /// Folds in each other.
+    pub(crate) depth: usize,
+}
+
+/// What an IR value is bound to.
+#[derive(Clone, Copy)]
+enum Binding {
+    Nothing,
+    Name(Name),
+    /// To a leaf that is another one in each loop over points: the name of the last such loop and there.
+    PerPiece(Home, LoopId, Name),
+}
+
+impl Linear {
+    /// The list of a function in the pieces of a plan that was made for it.
+    pub(crate) fn new(function: &Function, plan: &Plan) -> Self {
+        let mut builder = Builder {
+            function,
+            plan,
+            linear: Self::default(),
+            bindings: vec![Binding::Nothing; function.values.len()],
+            rows: vec![NONE; function.tables.len()],
+            current: NONE,
+            points: NONE,
+            depth: 0,
+            kept: Vec::new(),
+        };
+        if plan.is_whole() {
+            builder.pieces(function.body);
+        } else {
+            builder.open(Over::Strips, Vec::new());
+            builder.pieces(function.body);
+            builder.close();
+        }
+        builder.linear
+    }
+
+    /// The loops around a position, from one to the loop that is not among them.
+    pub(crate) fn outwards(&self, from: LoopId, to: LoopId) -> impl Iterator<Item = LoopId> {
+        let mut next = from;
+        std::iter::from_fn(move || {
+            let this = next;
+            if this == to || this == NONE {
+                return None;
+            }
+            next = self.loops[this as usize].parent;
+            Some(this)
+        })
+    }
+}
+
+/// The walk over a function.
+struct Builder<'a> {
+    function: &'a Function,
+    plan: &'a Plan,
+    linear: Linear,
+    bindings: Vec<Binding>,
+    /// The loop over each table that is open.
+    rows: Vec<LoopId>,
+    current: LoopId,
+    /// The loop over points that is open.
+    points: LoopId,
+    depth: usize,
+    /// What the current piece keeps.
+    kept: Vec<Value>,
+}
+
+impl<'a> Builder<'a> {
+    fn push(&mut self, item: Item) {
+        self.linear.items.push(item);
+    }
+
+    fn name(&mut self, data: Data) -> Name {
+        self.linear.names.push(data);
+        self.linear.names.len() as Name - 1
+    }
+
+    fn open(&mut self, over: Over, phis: Vec<Phi>) -> LoopId {
+        let id = self.linear.loops.len() as LoopId;
+        let open = self.linear.items.len() as u32;
+        self.linear.loops.push(Loop { over, parent: self.current, open, close: open, phis, inputs: 0 });
+        self.push(Item::Open(id));
+        self.current = id;
+        if let Some(table) = over.table() {
+            self.rows[table.index()] = id;
+            self.depth += 1;
+            self.linear.depth = self.linear.depth.max(self.depth);
+        }
+        id
+    }
+
+    fn close(&mut self) {
+        let id = self.current;
+        self.push(Item::Close(id));
+        let close = self.linear.items.len() as u32 - 1;
+        let data = &mut self.linear.loops[id as usize];
+        data.close = close;
+        self.current = data.parent;
+        if let Some(table) = data.over.table() {
+            self.rows[table.index()] = NONE;
+            self.depth -= 1;
+        }
+    }
+
+    /// The function's body, or that of a fold that is cut.
+    fn pieces(&mut self, block: Block) {
+        let (function, plan) = (self.function, self.plan);
+        let data = &function.blocks[block];
+        for piece in plan.pieces(block) {
+            let insts = &data.insts[piece.insts.clone()];
+            if self.has_no_work(insts, piece.then) {
+                insts.iter().for_each(|&inst| self.inst(inst));
+            } else {
+                self.points = self.open(Over::Points, Vec::new());
+                insts.iter().for_each(|&inst| self.inst(inst));
+                match piece.then {
+                    Then::Next => {}
+                    Then::Fold(fold) => {
+                        let (fold, _) = self.folded(fold);
+                        self.keep_all(&function.blocks[fold.body].params, &fold.initial);
+                    }
+                    Then::End if block == function.body => self.outputs(&data.results),
+                    Then::End => self.keep_all(&data.params, &data.results),
+                }
+                self.close();
+                self.points = NONE;
+                for value in std::mem::take(&mut self.kept) {
+                    self.bind_slot(value);
+                }
+            }
+            if let Then::Fold(fold) = piece.then {
+                let (fold, results) = self.folded(fold);
+                for &value in function.blocks[fold.body].params.iter().chain(results) {
+                    self.bind_slot(value);
+                }
+                self.open(Over::RowsOfStrip(fold.table), Vec::new());
+                self.pieces(fold.body);
+                self.close();
+            }
+        }
+    }
+
+    /// Whether a piece computes nothing, and the fold behind it finds its accumulators where they have to be.
+    fn has_no_work(&self, insts: &[Inst], then: Then) -> bool {
+        let is_ready = match then {
+            Then::Next => true,
+            Then::Fold(fold) => {
+                let (fold, _) = self.folded(fold);
+                self.moves(&self.function.blocks[fold.body].params, &fold.initial).next().is_none()
+            }
+            Then::End => false,
+        };
+        is_ready && insts.iter().all(|&inst| self.function.insts[inst].kind.is_leaf())
+    }
+
+    /// A fold and its results.
+    fn folded(&self, inst: Inst) -> (&'a Fold, &'a [Value]) {
+        let data = &self.function.insts[inst];
+        let InstKind::Fold(fold) = &data.kind else { unreachable!("a fold is cut, and nothing else") };
+        (fold, &data.results)
+    }
+
+    fn bind_slot(&mut self, value: Value) {
+        if let Some(slot) = self.plan.slot(value) {
+            self.bindings[value.index()] = Binding::PerPiece(Home::Slot(slot), NONE, NONE);
+        }
+    }
+
+    /// Pairs of values of which the first is to have what the second is, without those that share a slot:
+    /// they have it.
+    fn moves(&self, targets: &[Value], values: &[Value]) -> impl Iterator<Item = (Value, Value)> {
+        let pairs = targets.iter().copied().zip(values.iter().copied());
+        pairs.filter(|&(target, value)| self.plan.slot(target) != self.plan.slot(value))
+    }
+
+    /// Stores values into the slots of others, as if all were read before the first is written.
+    fn keep_all(&mut self, targets: &[Value], values: &[Value]) {
+        let moves: Vec<_> = self.moves(targets, values).collect();
+        let written: Vec<Slot> = moves.iter().filter_map(|&(target, _)| self.plan.slot(target)).collect();
+        let mut names = Vec::with_capacity(moves.len());
+        for &(_, value) in &moves {
+            let mut name = self.read(value);
+            let data = self.linear.names[name as usize];
+            if let Kind::Leaf(Home::Slot(slot)) = data.kind
+                && written.contains(&slot)
+            {
+                let from = name;
+                name = self.name(Data { kind: Kind::Computed, ..data });
+                self.push(Item::Read { to: name, from });
+            }
+            names.push(name);
+        }
+        for ((target, _), value) in moves.into_iter().zip(names) {
+            if let Some(slot) = self.plan.slot(target) {
+                self.push(Item::Keep { slot, value });
+            }
+        }
+    }
+
+    fn outputs(&mut self, results: &[Value]) {
+        for (plane, &result) in results.iter().enumerate() {
+            let value = self.read(result);
+            self.push(Item::Output { plane, value });
+        }
+    }
+
+    fn inst(&mut self, inst: Inst) {
+        let function = self.function;
+        let data = &function.insts[inst];
+        let result = data.results.first().copied();
+        match &data.kind {
+            InstKind::Input(index) => self.bind_leaf(result, Home::Input(*index)),
+            InstKind::Constant(number) => self.bind_leaf(result, Home::Number(number.to_bits())),
+            InstKind::BitsConstant(bits) => self.bind_leaf(result, Home::Number(*bits)),
+            InstKind::Column { table, column } => self.bind_leaf(result, Home::Column(*table, *column)),
+            InstKind::Op { op, args } => {
+                let result = data.results[0];
+                self.op(*op, args, result);
+                if let Some(slot) = self.plan.slot(result) {
+                    let value = self.read(result);
+                    self.push(Item::Keep { slot, value });
+                    self.kept.push(result);
+                }
+            }
+            InstKind::Fold(fold) => self.fold(fold, &data.results),
+        }
+    }
+
+    fn bind_leaf(&mut self, value: Option<Value>, home: Home) {
+        let value = value.expect("a verified leaf defines one value").index();
+        let scope = match home {
+            Home::Number(_) => NONE,
+            Home::Column(table, _) => self.rows[table.index()],
+            Home::Input(_) | Home::Slot(_) => {
+                self.bindings[value] = Binding::PerPiece(home, NONE, NONE);
+                return;
+            }
+        };
+        let data = Data { kind: Kind::Leaf(home), is_uniform: true, is_mask: false, scope };
+        self.bindings[value] = Binding::Name(self.name(data));
+    }
+
+    /// The name of a value that is read here.
+    fn read(&mut self, value: Value) -> Name {
+        match self.bindings[value.index()] {
+            Binding::Nothing => unreachable!("a verified function defines values before it uses them"),
+            Binding::Name(name) => name,
+            Binding::PerPiece(_, points, name) if points == self.points => name,
+            Binding::PerPiece(home, ..) => {
+                let is_mask = self.function.values[value] == Type::Mask;
+                let data = Data { kind: Kind::Leaf(home), is_uniform: false, is_mask, scope: self.points };
+                let name = self.name(data);
+                if let Home::Input(index) = home
+                    && index < POINTERS
+                {
+                    self.linear.loops[self.points as usize].inputs |= 1 << index;
+                }
+                self.bindings[value.index()] = Binding::PerPiece(home, self.points, name);
+                name
+            }
+        }
+    }
+
+    fn op(&mut self, op: Op, args: &[Value], result: Value) {
+        if matches!(op, Op::Hold | Op::ToBits | Op::FromBits) {
+            let name = self.read(args[0]);
+            self.bindings[result.index()] = Binding::Name(name);
+            return;
+        }
+        let mut names = [NONE; 3];
+        for (name, &arg) in names.iter_mut().zip(args) {
+            *name = self.read(arg);
+        }
+        let mut known = names.iter().filter(|&&name| name != NONE);
+        let is_uniform = known.all(|&name| self.linear.names[name as usize].is_uniform);
+        let is_mask = op.result() == Type::Mask;
+        let to = self.name(Data { kind: Kind::Computed, is_uniform, is_mask, scope: self.current });
+        self.push(Item::Op { op, to, args: names });
+        self.bindings[result.index()] = Binding::Name(to);
+    }
+
+    /// A fold that is not cut.
+    fn fold(&mut self, fold: &Fold, results: &[Value]) {
+        let function = self.function;
+        let body = &function.blocks[fold.body];
+        let id = self.linear.loops.len() as LoopId;
+        let mut phis = Vec::with_capacity(fold.initial.len());
+        for (&initial, &param) in fold.initial.iter().zip(&body.params) {
+            let initial = self.read(initial);
+            let is_mask = function.values[param] == Type::Mask;
+            let scope = self.current;
+            let value = self.name(Data { kind: Kind::Phi(id), is_uniform: false, is_mask, scope });
+            phis.push(Phi { value, initial, next: NONE });
+            self.bindings[param.index()] = Binding::Name(value);
+        }
+        let is_guard = fold.reduction == Reduction::Only;
+        let over = if is_guard { Over::Guard(fold.table) } else { Over::Rows(fold.table) };
+        self.open(over, phis);
+        body.insts.iter().for_each(|&inst| self.inst(inst));
+        for (index, &next) in body.results.iter().enumerate() {
+            let next = self.read(next);
+            self.linear.loops[id as usize].phis[index].next = next;
+        }
+        self.close();
+        for (&result, phi) in results.iter().zip(&self.linear.loops[id as usize].phis) {
+            self.bindings[result.index()] = Binding::Name(phi.value);
+        }
+    }
+}

@@ -1,0 +1,284 @@
+//! Where values are used, how long they live, and what loops need of the registers.
+//!
+//! A value lives from the item that defines it to its last use. A use inside a loop counts until the loop
+//! ends if the value comes from outside, because the next round reads it again. An accumulator has two lives:
+//! in a round of its loop from the top to its last use there (then it is set again), and from the end of the
+//! loop to its last use behind it.
+
+use super::linear::{Item, Kind, Linear, LoopId, NONE, Name, Over};
+
+/// What a loop reads that it does not compute.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Captured {
+    pub(crate) name: Name,
+    /// How often in a round, more in loops inside of it.
+    pub(crate) weight: f32,
+}
+
+/// How many rows the compiler thinks that a loop has.
+const ROWS: f32 = 8.0;
+
+/// See the module.
+pub(crate) struct Lives {
+    /// Where the positions of each name's uses begin, and the end.
+    starts: Vec<u32>,
+    positions: Vec<u32>,
+    /// The last position of each name, loops counted as a whole.
+    pub(crate) last: Vec<u32>,
+    /// The last position of an accumulator inside of its loop.
+    pub(crate) last_in_body: Vec<u32>,
+    /// Names whose life, or whose life inside of their loop, ends at each position.
+    death_starts: Vec<u32>,
+    deaths: Vec<Name>,
+    /// What each loop reads from outside, each name once. Accumulators of the loop are among them.
+    pub(crate) captured: Vec<Vec<Captured>>,
+}
+
+/// The operands of an item, without those of loops.
+fn operands(item: &Item) -> ([Name; 3], usize) {
+    match *item {
+        Item::Op { op, args, .. } => (args, op.operands().len()),
+        Item::Read { from, .. } => ([from, NONE, NONE], 1),
+        Item::Keep { value, .. } | Item::Output { value, .. } => ([value, NONE, NONE], 1),
+        Item::Open(_) | Item::Close(_) => ([NONE; 3], 0),
+    }
+}
+
+/// What an item computes.
+pub(crate) fn computed(item: &Item) -> Option<Name> {
+    match *item {
+        Item::Op { to, .. } | Item::Read { to, .. } => Some(to),
+        Item::Keep { .. } | Item::Output { .. } | Item::Open(_) | Item::Close(_) => None,
+    }
+}
+
+/// Calls back with each use, in order: the name, the position, the loop that it is in.
+fn for_each_use(linear: &Linear, mut each: impl FnMut(Name, u32, LoopId)) {
+    let mut current = NONE;
+    for (position, item) in (0..).zip(&linear.items) {
+        let (args, count) = operands(item);
+        for (index, &name) in args[..count].iter().enumerate() {
+            if !args[..index].contains(&name) {
+                each(name, position, current);
+            }
+        }
+        match *item {
+            Item::Open(id) => {
+                for phi in &linear.loops[id as usize].phis {
+                    each(phi.initial, position, current);
+                }
+                current = id;
+            }
+            Item::Close(id) => {
+                for phi in &linear.loops[id as usize].phis {
+                    each(phi.next, position, current);
+                }
+                current = linear.loops[id as usize].parent;
+            }
+            Item::Op { .. } | Item::Read { .. } | Item::Keep { .. } | Item::Output { .. } => {}
+        }
+    }
+}
+
+/// Lists of items by key: where each key's begin, and the items.
+fn by_key(keys: usize, pairs: impl Iterator<Item = (u32, u32)> + Clone) -> (Vec<u32>, Vec<u32>) {
+    let mut starts = vec![0; keys + 1];
+    for (key, _) in pairs.clone() {
+        starts[key as usize + 1] += 1;
+    }
+    for key in 0..keys {
+        starts[key + 1] += starts[key];
+    }
+    let (mut next, mut items) = (starts.clone(), vec![0; starts[keys] as usize]);
+    for (key, item) in pairs {
+        items[next[key as usize] as usize] = item;
+        next[key as usize] += 1;
+    }
+    (starts, items)
+}
+
+impl Lives {
+    pub(crate) fn new(linear: &Linear) -> Self {
+        let names = linear.names.len();
+        let (mut last, mut last_in_body) = (vec![0; names], vec![0; names]);
+        for (position, item) in (0..).zip(&linear.items) {
+            if let Some(name) = computed(item) {
+                last[name as usize] = position;
+            }
+        }
+        for data in &linear.loops {
+            for phi in &data.phis {
+                last[phi.value as usize] = data.close;
+                last_in_body[phi.value as usize] = data.open;
+            }
+        }
+        let mut uses = Vec::new();
+        let mut raw: Vec<Vec<Captured>> = linear.loops.iter().map(|_| Vec::new()).collect();
+        for_each_use(linear, |name, position, at| {
+            uses.push((name, position));
+            let (scope, is_in_body) = scope_at(linear, name, position);
+            let mut end = position;
+            for id in linear.outwards(at, scope) {
+                end = linear.loops[id as usize].close;
+            }
+            let last = if is_in_body { &mut last_in_body } else { &mut last };
+            last[name as usize] = last[name as usize].max(end);
+            if at != scope {
+                raw[at as usize].push(Captured { name, weight: 1.0 });
+            }
+        });
+        let (starts, positions) = by_key(names, uses.iter().copied());
+        let ends = ends(linear, &last, &last_in_body);
+        let (death_starts, deaths) = by_key(linear.items.len(), ends.iter().copied());
+        let captured = captured(linear, raw);
+        Self { starts, positions, last, last_in_body, death_starts, deaths, captured }
+    }
+
+    /// The positions at which a name is used, ascending.
+    pub(crate) fn uses(&self, name: Name) -> &[u32] {
+        let [start, end] = [0, 1].map(|side| self.starts[name as usize + side] as usize);
+        &self.positions[start..end]
+    }
+
+    /// The names whose life, or life inside of their loop, ends at a position.
+    pub(crate) fn deaths(&self, position: u32) -> std::ops::Range<usize> {
+        let [start, end] = [0, 1].map(|side| self.death_starts[position as usize + side] as usize);
+        start..end
+    }
+
+    pub(crate) fn death(&self, index: usize) -> Name {
+        self.deaths[index]
+    }
+
+    /// The position behind which nobody reads what a name is at a position.
+    pub(crate) fn end(&self, linear: &Linear, name: Name, position: u32) -> u32 {
+        let (_, is_in_body) = scope_at(linear, name, position);
+        if is_in_body { self.last_in_body[name as usize] } else { self.last[name as usize] }
+    }
+}
+
+/// The loop whose rounds change a name, as seen from a position; and whether it is an accumulator inside of
+/// its loop.
+fn scope_at(linear: &Linear, name: Name, position: u32) -> (LoopId, bool) {
+    let data = &linear.names[name as usize];
+    if let Kind::Phi(id) = data.kind {
+        let own = &linear.loops[id as usize];
+        if own.open < position && position <= own.close {
+            return (id, true);
+        }
+    }
+    (data.scope, false)
+}
+
+/// All positions at which lives end, with the names.
+fn ends(linear: &Linear, last: &[u32], last_in_body: &[u32]) -> Vec<(u32, Name)> {
+    let mut ends = Vec::with_capacity(linear.names.len());
+    for (name, data) in (0..).zip(&linear.names) {
+        ends.push((last[name as usize], name));
+        if let Kind::Phi(_) = data.kind {
+            ends.push((last_in_body[name as usize], name));
+        }
+    }
+    ends
+}
+
+/// What each loop reads from outside, from what stands directly in each.
+fn captured(linear: &Linear, mut raw: Vec<Vec<Captured>>) -> Vec<Vec<Captured>> {
+    // A loop is behind the loops around it.
+    for id in (0..linear.loops.len()).rev() {
+        let mut list = std::mem::take(&mut raw[id]);
+        list.sort_unstable_by_key(|captured| captured.name);
+        list.dedup_by(|next, first| {
+            let is_same = next.name == first.name;
+            if is_same {
+                first.weight += next.weight;
+            }
+            is_same
+        });
+        let data = &linear.loops[id];
+        if data.parent != NONE {
+            let rounds = if matches!(data.over, Over::Guard(_)) { 1.0 } else { ROWS };
+            let is_outside =
+                |captured: &&Captured| scope_at(linear, captured.name, data.open).0 != data.parent;
+            let outside = list.iter().filter(is_outside);
+            let outside =
+                outside.map(|&Captured { name, weight }| Captured { name, weight: weight * rounds });
+            let outside: Vec<_> = outside.collect();
+            raw[data.parent as usize].extend(outside);
+        }
+        for phi in &data.phis {
+            let weight = linear_weight(phi.next == phi.value);
+            list.push(Captured { name: phi.value, weight });
+        }
+        raw[id] = list;
+    }
+    raw
+}
+
+/// How much it is worth to have an accumulator in a register: it is read and written in each round.
+const fn linear_weight(is_constant: bool) -> f32 {
+    if is_constant { 0.5 } else { 3.0 }
+}
+
+/// The most registers that are needed at once, for what each loop computes itself: vectors and masks, for so
+/// many vectors a value.
+pub(crate) fn pressure(linear: &Linear, lives: &Lives, vectors: usize, has_masks: bool) -> Vec<[usize; 2]> {
+    let mut most = vec![[0; 2]; linear.loops.len()];
+    // For each open loop, what is alive of what it computes directly.
+    let mut alive: Vec<(LoopId, [isize; 2])> = vec![(NONE, [0; 2])];
+    let size = |name: Name| {
+        let data = &linear.names[name as usize];
+        let count = if data.is_uniform { 1 } else { vectors as isize };
+        (count, usize::from(data.is_mask && has_masks))
+    };
+    let mut add = |alive: &mut Vec<(LoopId, [isize; 2])>, level: usize, name: Name| {
+        let (count, class) = size(name);
+        alive[level].1[class] += count;
+        let mut sum = [0; 2];
+        for (id, alive) in alive.iter().rev() {
+            sum = [sum[0] + alive[0], sum[1] + alive[1]];
+            if *id != NONE {
+                let most = &mut most[*id as usize];
+                *most = [0, 1].map(|class| most[class].max(usize::try_from(sum[class]).unwrap_or(0)));
+            }
+        }
+        level as u32
+    };
+    let mut levels = vec![NONE; linear.names.len()];
+    for (position, item) in (0..).zip(&linear.items) {
+        for index in lives.deaths(position) {
+            let name = lives.death(index);
+            let level = levels[name as usize];
+            if level != NONE && lives.last[name as usize] == position {
+                let (count, class) = size(name);
+                alive[level as usize].1[class] -= count;
+                levels[name as usize] = NONE;
+            }
+        }
+        match *item {
+            Item::Op { to, .. } | Item::Read { to, .. } => {
+                let level = alive.len() - 1;
+                let level = add(&mut alive, level, to);
+                // Nobody reads it: gone at once.
+                if lives.last[to as usize] == position {
+                    let (count, class) = size(to);
+                    alive[level as usize].1[class] -= count;
+                } else {
+                    levels[to as usize] = level;
+                }
+            }
+            Item::Open(id) => {
+                for phi in &linear.loops[id as usize].phis {
+                    let level = alive.len() - 1;
+                    levels[phi.value as usize] = add(&mut alive, level, phi.value);
+                }
+                alive.push((id, [0; 2]));
+            }
+            Item::Close(_) => {
+                alive.pop();
+            }
+            Item::Keep { .. } | Item::Output { .. } => {}
+        }
+    }
+    most
+}

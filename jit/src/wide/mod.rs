@@ -1,0 +1,193 @@
+//! Machine code for x86-64 in vectors of 256 and 512 bits, by an emitter of our own.
+//!
+//! ```text
+//! Function, Plan ──► linear ────► lives ──────────► state, ops, loops ────► encode ──► bytes
+//!                    one list     where values      one walk: registers     VEX, EVEX
+//!                                 are used          and instructions
+//! ```
+//!
+//! The code keeps to the same ABI as that of Cranelift, see [`crate::entry`], and every op gives the same
+//! bits. It differs in how it is made: one walk over a list, in time that grows with its length alone.
+//!
+//! * A *leaf* (a constant, a column, an input, a slot of a strip) is read from where it is, as an operand of
+//!   the instruction that wants it. With AVX-512 that may be one number for all lanes. It is loaded if it is
+//!   wanted again soon and a register is free.
+//! * A value that is the same in all lanes is one vector; any other is as many as the block has.
+//! * Registers are given as the walk goes. What a loop needs inside is counted before, and what is worth most
+//!   outside of it gets the rest.
+//!
+//! Emitting needs no CPU that can run it.
+
+mod assemble;
+pub(crate) mod check;
+mod counters;
+mod encode;
+mod frame;
+mod inst;
+mod linear;
+#[cfg(feature = "listing")]
+pub(crate) mod listing;
+mod lives;
+mod loops;
+mod ops;
+mod state;
+#[cfg(test)]
+mod tests;
+mod transfers;
+
+use jbt_ir::{Entity, Function, Level, limits};
+
+use self::check::Replay;
+use self::encode::Shape;
+use self::linear::{Item, Linear};
+use self::lives::Lives;
+use self::state::{Count, State, Task};
+use crate::compile::{CompileError, VectorCount};
+use crate::strips::Plan;
+
+/// Finished code: a function of [`crate::entry`]'s ABI, with its constants, that runs at any address which is
+/// a multiple of 64.
+#[derive(Clone, Debug)]
+pub(crate) struct Blob {
+    pub(crate) bytes: Vec<u8>,
+    /// Bytes of `bytes` that are instructions, at its start.
+    #[cfg_attr(not(any(feature = "listing", test)), expect(dead_code, reason = "for listings"))]
+    pub(crate) code_bytes: usize,
+    /// Bytes of `bytes` that are constants, at its end.
+    #[cfg_attr(not(feature = "listing"), expect(dead_code, reason = "for listings"))]
+    pub(crate) constants: usize,
+    /// Bytes of stack.
+    pub(crate) frame_bytes: usize,
+    pub(crate) vectors: VectorCount,
+}
+
+/// What is asked of the emitter.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Wish {
+    pub(crate) level: Level,
+    pub(crate) vectors: Option<VectorCount>,
+    /// Replays the code, and fails if it is wrong; and gives it few registers if wanted.
+    pub(crate) is_checked: bool,
+    pub(crate) few_registers: bool,
+}
+
+/// Registers of a test that makes everything spill: vectors, masks.
+const FEW: Count = Count([3, 1]);
+
+/// The vectors and registers of a level.
+const fn shape(level: Level) -> (Shape, Count) {
+    match level {
+        // Nobody emits for less than AVX2.
+        Level::Baseline | Level::Avx2 => (Shape { bytes: 32, has_masks: false }, Count([16, 0])),
+        Level::Avx512Vl => (Shape { bytes: 32, has_masks: true }, Count([32, 6])),
+        Level::Avx512 => (Shape { bytes: 64, has_masks: true }, Count([32, 6])),
+    }
+}
+
+/// Emits a function in the pieces of a plan that was made for it.
+///
+/// # Errors
+/// When the frame is too large; when it is checked and found wrong, which is a defect of the emitter.
+pub(crate) fn emit(function: &Function, plan: &Plan, wish: &Wish) -> Result<Blob, CompileError> {
+    let linear = Linear::new(function, plan);
+    let lives = Lives::new(&linear);
+    let (shape, mut count) = shape(wish.level);
+    if wish.few_registers {
+        count = Count([FEW.0[0], if shape.has_masks { FEW.0[1] } else { 0 }]);
+    }
+    let mut vectors = wish.vectors.unwrap_or_else(|| unrolling(&linear, &lives, shape, plan));
+    if shape.bytes == 64 && vectors == VectorCount::Four {
+        // A block has at most [`crate::Kernel::MAX_LANES`] points.
+        vectors = VectorCount::Two;
+    }
+    loop {
+        let (count_of, is_checked) = (vectors.count(), wish.is_checked);
+        let tables = function.tables.values();
+        let tables =
+            tables.map(|schema| (4 * schema.columns.len(), schema.parent.map(|table| table.index())));
+        let mut state = State::new(Task {
+            linear: &linear,
+            lives: &lives,
+            vectors: count_of,
+            shape,
+            count,
+            planes: function.inputs.len(),
+            strip_bytes: plan.strip_bytes(),
+            tables: tables.collect(),
+            is_checked,
+        });
+        walk(&mut state);
+        check(&state, &linear, count_of, shape)?;
+        let frame_bytes = assemble::frame_bytes(&state, plan.slot_bytes());
+        if frame_bytes <= limits::MAX_JIT_FRAME_BYTES {
+            let constants = state.constants.len();
+            let (bytes, code_bytes) = assemble::assemble(state, frame_bytes, shape);
+            return Ok(Blob { bytes, code_bytes, constants, frame_bytes, vectors });
+        }
+        vectors = match vectors {
+            VectorCount::Four if wish.vectors.is_none() => VectorCount::Two,
+            VectorCount::Two if wish.vectors.is_none() => VectorCount::One,
+            VectorCount::One | VectorCount::Two | VectorCount::Four => {
+                let limit = limits::MAX_JIT_FRAME_BYTES;
+                return Err(CompileError::Frame { bytes: frame_bytes, limit });
+            }
+        };
+    }
+}
+
+/// Emits all items.
+fn walk(state: &mut State<'_>) {
+    let (linear, lives) = (state.linear, state.lives);
+    for (position, item) in (0..).zip(&linear.items) {
+        state.position = position;
+        match *item {
+            Item::Op { op, to, args } => state.op(op, to, args),
+            Item::Read { to, from } => state.read(to, from),
+            Item::Keep { slot, value } => state.keep(slot.0, value),
+            Item::Output { plane, value } => state.output(plane, value),
+            Item::Open(id) => state.open_loop(id),
+            Item::Close(id) => state.close_loop(id),
+        }
+        for index in lives.deaths(position) {
+            state.end_life(lives.death(index));
+        }
+    }
+}
+
+/// Replays the code, if notes have been taken.
+fn check(state: &State<'_>, linear: &Linear, vectors: usize, shape: Shape) -> Result<(), CompileError> {
+    let Some(notes) = &state.notes else { return Ok(()) };
+    let replay = Replay {
+        linear,
+        vectors: vectors as u32,
+        vector_bytes: shape.bytes,
+        has_masks: shape.has_masks,
+        code: &state.code,
+        notes,
+        events: &state.events,
+        constants: &state.constants,
+    };
+    replay.check().map_err(CompileError::Registers)
+}
+
+/// Vectors of a value. Two hide the latency of most instructions, and share what is loaded for a row. With 16
+/// registers a field takes four, if they leave everything that its loops need in registers.
+fn unrolling(linear: &Linear, lives: &Lives, shape: Shape, plan: &Plan) -> VectorCount {
+    if shape.has_masks || !plan.is_whole() {
+        return VectorCount::Two;
+    }
+    let fits = |vectors: VectorCount| {
+        let pressure = lives::pressure(linear, lives, vectors.count(), false);
+        (0..linear.loops.len()).all(|id| {
+            let around = lives.captured[id].iter().map(|captured| {
+                let data = &linear.names[captured.name as usize];
+                if data.is_uniform { 0 } else { vectors.count() }
+            });
+            !linear.loops[id].is_row_loop() || pressure[id][0] + around.sum::<usize>() <= 14
+        })
+    };
+    [VectorCount::Four, VectorCount::Two]
+        .into_iter()
+        .find(|&vectors| fits(vectors))
+        .unwrap_or(VectorCount::One)
+}

@@ -1,0 +1,432 @@
+//! Op by op: operands in registers or memory, the register of the result, the instruction.
+//!
+//! An op is emitted for each vector of its value before the next op, so that an instruction rarely waits for
+//! the one before it.
+
+use jbt_ir::Op;
+
+use super::inst::{Base, Binary, Form, Gpr, Inst, Memory, Operand, Predicate};
+use super::linear::{Home, Kind, NONE, Name};
+use super::state::{MASKS, NOWHERE, Part, Register, SPARE_MASK, State, copy, load, store};
+
+/// How far ahead a use may be for which a number is loaded: beyond, it is read from memory again.
+const NEAR: u32 = 64;
+
+/// An operand that is read once by the current instruction.
+#[derive(Clone, Copy)]
+enum Source {
+    Register(Register),
+    /// Where memory has the part.
+    Home(Part),
+}
+
+impl State<'_> {
+    /// Emits an op for all vectors.
+    pub(super) fn op(&mut self, op: Op, to: Name, args: [Name; 3]) {
+        let count = self.parts(to).len() as u32;
+        for vector in 0..count {
+            let is_last = vector + 1 == count;
+            let part = self.part(to, vector);
+            let args = args.map(|arg| if arg == NONE { NONE } else { self.part(arg, vector) });
+            self.op_part(op, part, args, is_last);
+            self.locked = 0;
+        }
+    }
+
+    fn op_part(&mut self, op: Op, to: Part, [a, b, c]: [Part; 3], is_last: bool) {
+        let has_masks = self.shape.has_masks;
+        match op {
+            Op::Add => self.binary(Binary::Add, to, [a, b], is_last),
+            Op::Sub => self.binary(Binary::Sub, to, [a, b], is_last),
+            Op::Mul => self.binary(Binary::Mul, to, [a, b], is_last),
+            Op::Div => self.binary(Binary::Div, to, [a, b], is_last),
+            Op::Min => self.binary(Binary::Min, to, [a, b], is_last),
+            Op::Max => self.binary(Binary::Max, to, [a, b], is_last),
+            Op::BitAnd => self.binary(Binary::And, to, [a, b], is_last),
+            Op::BitOr => self.binary(Binary::Or, to, [a, b], is_last),
+            Op::BitXor => self.binary(Binary::Xor, to, [a, b], is_last),
+            Op::IntAdd => self.binary(Binary::IntAdd, to, [a, b], is_last),
+            Op::IntSub => self.binary(Binary::IntSub, to, [a, b], is_last),
+            Op::Fma => self.fma(to, [a, b, c], is_last),
+            Op::Neg => self.with_number(Binary::Xor, 0x8000_0000, to, a, is_last),
+            Op::Abs => self.with_number(Binary::And, 0x7FFF_FFFF, to, a, is_last),
+            Op::Sqrt => self.sqrt(to, a, is_last),
+            Op::Lt => self.compare(Predicate::Less, to, [a, b], is_last),
+            Op::Le => self.compare(Predicate::LessOrEqual, to, [a, b], is_last),
+            Op::Eq => self.compare(Predicate::Equal, to, [a, b], is_last),
+            Op::Both | Op::Either | Op::Not if has_masks => self.mask(op, to, [a, b], is_last),
+            Op::Both => self.binary(Binary::And, to, [a, b], is_last),
+            Op::Either => self.binary(Binary::Or, to, [a, b], is_last),
+            Op::Not => self.with_number(Binary::Xor, u32::MAX, to, a, is_last),
+            Op::Select => self.select(to, [a, b, c], is_last),
+            Op::Shl => self.shift(true, to, [a, b], is_last),
+            Op::Shr => self.shift(false, to, [a, b], is_last),
+            Op::ToBits | Op::FromBits | Op::Hold => unreachable!("the list has other names for these"),
+            Op::Sin | Op::Cos | Op::Exp | Op::Ln | Op::Pow => unreachable!("functions are checked first"),
+        }
+    }
+
+    // ── operands ─────────────────────────────────────────────────────────────────────────────────
+
+    /// Whether a part is in no register, and may be read from memory by an instruction, and that is better
+    /// than to load it.
+    fn stays_in_memory(&mut self, part: Part, is_last: bool) -> bool {
+        let name = self.name(part);
+        if self.register_of(part).is_some() || !self.can_be_operand(name) {
+            return false;
+        }
+        if self.free_register(self.class(name)).is_none() {
+            return true;
+        }
+        // One load for all that read it soon.
+        let data = self.linear.names[name as usize];
+        let soon = self.later_use(name).is_some_and(|at| at - self.position <= NEAR);
+        let again = if data.is_uniform { !is_last && self.vectors > 2 } else { false };
+        !(soon || again)
+    }
+
+    /// An operand that may be in memory.
+    fn source(&mut self, part: Part, is_last: bool) -> Source {
+        if self.stays_in_memory(part, is_last) {
+            Source::Home(part)
+        } else {
+            Source::Register(self.fetch(part))
+        }
+    }
+
+    /// The operand, just before the instruction that reads it.
+    fn operand(&mut self, source: Source) -> Operand {
+        match source {
+            Source::Register(register) => Operand::Register(register),
+            Source::Home(part) => Operand::Memory(self.home(part)),
+        }
+    }
+
+    /// Whether a part is read for the last time by the instruction of one vector.
+    fn ends(&self, part: Part, is_last: bool) -> bool {
+        let name = self.name(part);
+        (is_last || !self.linear.names[name as usize].is_uniform) && self.dies(name)
+    }
+
+    /// The register that an accumulator begins a round in, if the part is its next value and may be there.
+    fn wish(&self, to: Part) -> Option<Register> {
+        let name = self.name(to);
+        let phi = self.becomes[name as usize];
+        if phi == NONE {
+            return None;
+        }
+        let phi = self.part(phi, to - name * self.vectors);
+        let header = &self.open.last()?.header;
+        let class = self.class(name);
+        self.registers(class).find(|&register| header[register as usize] == phi)
+    }
+
+    /// A register for a result: that of an operand which nobody needs any more, if there is one, but not
+    /// `taboo`. Operands that end here are released.
+    fn target(&mut self, to: Part, args: &[Part], is_last: bool, taboo: Option<Register>) -> Register {
+        let class = self.class(self.name(to));
+        let mut ending = [NOWHERE; 3];
+        for (place, &arg) in ending.iter_mut().zip(args) {
+            if let Some(register) = self.register_of(arg)
+                && self.ends(arg, is_last)
+                && (register >= MASKS) == (class == 1)
+                && Some(register) != taboo
+            {
+                *place = register;
+            }
+        }
+        let wish = self.wish(to).filter(|&wish| {
+            Some(wish) != taboo
+                && (self.occupant[wish as usize] == NONE && self.locked >> wish & 1 == 0
+                    || ending.contains(&wish))
+        });
+        let is_reserved = |register: Register| self.reserved >> register & 1 == 1;
+        let ended = ending.into_iter().filter(|&register| register != NOWHERE);
+        let register = wish
+            .or_else(|| ended.clone().find(|&register| !is_reserved(register)))
+            .or_else(|| self.free_register(class).filter(|&register| !is_reserved(register)))
+            .or_else(|| ended.clone().next())
+            .unwrap_or_else(|| self.take_or_overwrite(class, args, taboo));
+        let there = self.occupant[register as usize];
+        if there != NONE {
+            self.release(there);
+        }
+        self.bind(to, register);
+        self.lock(register);
+        register
+    }
+
+    /// A register that holds nothing any more. If the instruction needs all others, that of an operand, which
+    /// is stored: an instruction reads before it writes.
+    fn take_or_overwrite(&mut self, class: usize, args: &[Part], taboo: Option<Register>) -> Register {
+        let mut registers = self.registers(class);
+        if registers.any(|register| self.locked >> register & 1 == 0) {
+            return self.take(class);
+        }
+        let of_class = |state: &Self, part| {
+            state
+                .register_of(part)
+                .filter(|&register| (register >= MASKS) == (class == 1) && Some(register) != taboo)
+        };
+        let overwritten = args.iter().find_map(|&part| of_class(self, part));
+        let register = overwritten.expect("an instruction needs fewer registers than there are");
+        self.vacate(register);
+        register
+    }
+
+    // ── vectors ──────────────────────────────────────────────────────────────────────────────────
+
+    fn binary(&mut self, op: Binary, to: Part, [mut a, mut b]: [Part; 2], is_last: bool) {
+        let in_register = |state: &Self, part| state.register_of(part).is_some();
+        if op.commutes() && !in_register(self, a) && in_register(self, b) {
+            (a, b) = (b, a);
+        }
+        if a == b {
+            let register = self.fetch(a);
+            let target = self.target(to, &[a], is_last, None);
+            let inst = Inst::Binary { op, to: target, a: register, b: Operand::Register(register) };
+            return self.emit(inst, &[a, a], to);
+        }
+        if self.stays_in_memory(a, is_last) {
+            // Straight into the register of the result, which has to be another one than that of b.
+            let source = self.source(b, is_last);
+            let taboo = if let Source::Register(register) = source { Some(register) } else { None };
+            let target = self.target(to, &[], is_last, taboo);
+            self.load_into(target, a);
+            let operand = self.operand(source);
+            return self.emit(Inst::Binary { op, to: target, a: target, b: operand }, &[a, b], to);
+        }
+        let register = self.fetch(a);
+        let source = self.source(b, is_last);
+        let target = self.target(to, &[a, b], is_last, None);
+        let operand = self.operand(source);
+        self.emit(Inst::Binary { op, to: target, a: register, b: operand }, &[a, b], to);
+    }
+
+    /// An instruction whose second operand is a number.
+    fn with_number(&mut self, op: Binary, bits: u32, to: Part, a: Part, is_last: bool) {
+        if self.stays_in_memory(a, is_last) {
+            let target = self.target(to, &[], is_last, None);
+            self.load_into(target, a);
+            let b = Operand::Memory(self.number(bits));
+            return self.emit(Inst::Binary { op, to: target, a: target, b }, &[a], to);
+        }
+        let register = self.fetch(a);
+        let target = self.target(to, &[a], is_last, None);
+        let b = Operand::Memory(self.number(bits));
+        self.emit(Inst::Binary { op, to: target, a: register, b }, &[a], to);
+    }
+
+    fn sqrt(&mut self, to: Part, a: Part, is_last: bool) {
+        let source = self.source(a, is_last);
+        let target = self.target(to, &[a], is_last, None);
+        let a_operand = self.operand(source);
+        self.emit(Inst::Sqrt { to: target, a: a_operand }, &[a], to);
+    }
+
+    fn shift(&mut self, left: bool, to: Part, [a, by]: [Part; 2], is_last: bool) {
+        let Kind::Leaf(Home::Number(amount)) = self.linear.names[self.name(by) as usize].kind else {
+            unreachable!("a verified function shifts by constants")
+        };
+        let register = self.fetch(a);
+        let target = self.target(to, &[a], is_last, None);
+        let inst = Inst::Shift { left, to: target, a: register, amount: (amount % 32) as u8 };
+        self.emit(inst, &[a], to);
+    }
+
+    fn compare(&mut self, mut predicate: Predicate, to: Part, [mut a, mut b]: [Part; 2], is_last: bool) {
+        if self.register_of(a).is_none() && self.register_of(b).is_some() {
+            (a, b, predicate) = (b, a, predicate.swapped());
+        }
+        let register = self.fetch(a);
+        let source = if a == b { Source::Register(register) } else { self.source(b, is_last) };
+        let target = self.target(to, &[a, b], is_last, None);
+        let b_operand = self.operand(source);
+        let number = if target < MASKS { target } else { target - MASKS };
+        self.emit(Inst::Compare { predicate, to: number, a: register, b: b_operand }, &[a, b], to);
+    }
+
+    /// The register of a mask: the spare one, if it has none.
+    fn mask_register(&mut self, part: Part) -> u8 {
+        if let Some(register) = self.register_of(part) {
+            self.lock(register);
+            return register - MASKS;
+        }
+        if self.free_register(1).is_some() {
+            return self.fetch(part) - MASKS;
+        }
+        self.load_into(MASKS + SPARE_MASK, part);
+        SPARE_MASK
+    }
+
+    /// `if mask { yes } else { no }`.
+    fn select(&mut self, to: Part, [mask, yes, no]: [Part; 3], is_last: bool) {
+        let has_masks = self.shape.has_masks;
+        let mask_number = if has_masks { self.mask_register(mask) } else { self.fetch(mask) };
+        if yes != no && self.stays_in_memory(no, is_last) {
+            let source = self.source(yes, is_last);
+            let yes_register = if let Source::Register(register) = source { Some(register) } else { None };
+            // The mask is a vector where it could be in the way; it stays locked.
+            let target = self.target(to, &[], is_last, yes_register);
+            self.load_into(target, no);
+            let operand = self.operand(source);
+            let inst = Inst::Blend { to: target, mask: mask_number, no: target, yes: operand };
+            return self.emit(inst, &[mask, no, yes], to);
+        }
+        let no_register = self.fetch(no);
+        let source = if yes == no { Source::Register(no_register) } else { self.source(yes, is_last) };
+        let target = self.target(to, &[no, yes, mask], is_last, None);
+        let operand = self.operand(source);
+        let inst = Inst::Blend { to: target, mask: mask_number, no: no_register, yes: operand };
+        self.emit(inst, &[mask, no, yes], to);
+    }
+
+    /// Ops on mask registers.
+    fn mask(&mut self, op: Op, to: Part, [a, b]: [Part; 2], is_last: bool) {
+        if op == Op::Not {
+            let register = self.mask_register(a);
+            let target = self.target(to, &[a], is_last, None) - MASKS;
+            return self.emit(Inst::MaskNot { to: target, a: register }, &[a], to);
+        }
+        // One of them may pass through the spare register, so the other one has a register of its own.
+        let first = self.fetch(a) - MASKS;
+        let second = if a == b { first } else { self.mask_register(b) };
+        let target = self.target(to, &[a, b], is_last, None) - MASKS;
+        let inst = if op == Op::Both {
+            Inst::MaskAnd { to: target, a: first, b: second }
+        } else {
+            Inst::MaskOr { to: target, a: first, b: second }
+        };
+        self.emit(inst, &[a, b], to);
+    }
+
+    // ── fma ──────────────────────────────────────────────────────────────────────────────────────
+
+    /// `a * b + c`. The result takes the place of one operand: of one that ends, of one that is loaded for
+    /// it, or of a copy.
+    fn fma(&mut self, to: Part, [mut a, mut b, c]: [Part; 3], is_last: bool) {
+        // Of the operands in memory one may stay there: the last of these.
+        let mut in_memory = NONE;
+        for part in [c, b, a] {
+            if part == in_memory {
+                continue;
+            }
+            let is_twice = [a, b, c].iter().filter(|&&other| other == part).count() > 1;
+            if in_memory == NONE && !is_twice && self.stays_in_memory(part, is_last) {
+                in_memory = part;
+            } else {
+                self.fetch(part);
+            }
+        }
+        if a == in_memory {
+            (a, b) = (b, a);
+        }
+        // Now a is in a register, and at most one of b and c is not.
+        let register = |state: &Self, part| state.register_of(part).unwrap_or(NOWHERE);
+        let [ra, rb, rc] = [a, b, c].map(|part| register(self, part));
+        let any_ends = [a, b, c].iter().any(|&part| part != in_memory && self.ends(part, is_last));
+        if !any_ends && in_memory != NONE {
+            let target = self.target(to, &[], is_last, None);
+            self.load_into(target, in_memory);
+            let (form, other, last) =
+                if b == in_memory { (Form::F213, ra, rc) } else { (Form::F231, ra, rb) };
+            // 213: to = other * to + last.  231: to = other * last + to.
+            let reads = if b == in_memory { [b, a, c] } else { [c, a, b] };
+            let inst = Inst::Fma { form, to: target, b: other, c: Operand::Register(last) };
+            return self.emit(inst, &reads, to);
+        }
+        let target = self.fma_target(to, [a, b, c], in_memory, is_last);
+        if target == rc && c != in_memory {
+            let (other, last, other_part, last_part) = (ra, b, a, b);
+            let operand =
+                if last == in_memory { Operand::Memory(self.home(b)) } else { Operand::Register(rb) };
+            let inst = Inst::Fma { form: Form::F231, to: target, b: other, c: operand };
+            return self.emit(inst, &[c, other_part, last_part], to);
+        }
+        // The target is a, or b, or a copy of a.
+        let (factor, other, other_register) =
+            if target == rb && b != in_memory { (b, a, ra) } else { (a, b, rb) };
+        if target != ra && target != rb {
+            self.emit(copy(target, ra), &[a], a);
+        }
+        let inst = if other == in_memory {
+            let operand = Operand::Memory(self.home(other));
+            (Inst::Fma { form: Form::F132, to: target, b: rc, c: operand }, [factor, c, other])
+        } else {
+            let operand = if c == in_memory { Operand::Memory(self.home(c)) } else { Operand::Register(rc) };
+            (Inst::Fma { form: Form::F213, to: target, b: other_register, c: operand }, [factor, other, c])
+        };
+        self.emit(inst.0, &inst.1, to);
+    }
+
+    /// The register of an fma's result: that of an operand that ends, or one that a copy goes to.
+    fn fma_target(&mut self, to: Part, args: [Part; 3], in_memory: Part, is_last: bool) -> Register {
+        let ending: Vec<(Part, Register)> = args
+            .iter()
+            .filter(|&&part| part != in_memory && self.ends(part, is_last))
+            .filter_map(|&part| Some((part, self.register_of(part)?)))
+            .collect();
+        let wish = self.wish(to);
+        let is_wish = |&&(_, register): &&(Part, Register)| Some(register) == wish;
+        let is_free = |&&(_, register): &&(Part, Register)| self.reserved >> register & 1 == 0;
+        let chosen = ending.iter().find(is_wish).or_else(|| ending.iter().find(is_free)).or(ending.first());
+        match chosen {
+            Some(&(part, register)) => {
+                self.release(part);
+                self.bind(to, register);
+                register
+            }
+            None => self.target(to, &args[..1], is_last, None),
+        }
+    }
+
+    // ── stores ───────────────────────────────────────────────────────────────────────────────────
+
+    /// Makes a computed value of a leaf.
+    pub(super) fn read(&mut self, to: Name, from: Name) {
+        for vector in 0..self.parts(to).len() as u32 {
+            let [to, from] = [to, from].map(|name| self.part(name, vector));
+            let class = self.class(self.name(to));
+            let there = self.register_of(from);
+            if let Some(register) = there {
+                self.lock(register);
+            }
+            let register = self.take(class);
+            self.bind(to, register);
+            match there {
+                Some(there) => self.emit(copy(register, there), &[from], to),
+                None => {
+                    let memory = self.home(from);
+                    self.emit(load(register, memory), &[from], to);
+                }
+            }
+            self.locked = 0;
+        }
+    }
+
+    /// Stores all vectors of a value at consecutive addresses.
+    fn store_at(&mut self, value: Name, first: impl Fn(&mut Self) -> Memory) {
+        let class = self.class(value);
+        for vector in 0..self.vectors {
+            let part = self.part(value, vector);
+            let register = if class == 1 { self.mask_register(part) + MASKS } else { self.fetch(part) };
+            let mut to = first(self);
+            to.displacement += (vector as usize * self.shape.bytes) as i32;
+            self.emit(store(register, to), &[part], NONE);
+            self.locked = 0;
+        }
+    }
+
+    pub(super) fn keep(&mut self, slot: usize, value: Name) {
+        let displacement = self.strip_displacement(slot);
+        self.store_at(value, |_| Memory::at(Gpr::R8, displacement));
+    }
+
+    pub(super) fn output(&mut self, plane: usize, value: Name) {
+        let plane = i32::try_from(8 * (self.planes + plane)).expect("planes are limited");
+        self.store_at(value, |state| {
+            state.integer(Inst::LoadPointer { to: Gpr::Rax, from: Memory::at(Gpr::Rdi, plane) });
+            Memory { base: Base::Sum(Gpr::Rax, Gpr::Rcx, 1), displacement: 0, is_one: false }
+        });
+    }
+}

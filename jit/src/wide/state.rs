@@ -1,0 +1,360 @@
+//! Which value is in which register, and what is done when registers run out.
+//!
+//! The list is walked once. At each item the registers hold what they hold; a value that is read has a
+//! register, or is read from memory if the instruction can do that; a result takes the register of an operand
+//! that nobody needs any more, a free one, or that of the value which is needed last. A value is stored once,
+//! when it has to leave its register for the first time, and a leaf never.
+//!
+//! What a loop begins with is decided when it opens ([`super::loops`]), and is put back at its end. So a
+//! register holds the same thing at the top of each round.
+
+use std::collections::HashMap;
+
+use super::check::Event;
+use super::encode::Shape;
+use super::inst::{Inst, Label, Memory};
+use super::linear::{Kind, Linear, LoopId, NONE, Name};
+use super::lives::Lives;
+
+/// One vector of a value: its name times the vectors of a value, plus which.
+pub(crate) type Part = u32;
+
+/// A register: 0 to 31 are vectors, from 32 on masks, of which the first is none.
+pub(crate) type Register = u8;
+
+/// The first mask register's number, less the number that it has in an instruction.
+pub(crate) const MASKS: Register = 32;
+/// All registers.
+pub(crate) const REGISTERS: usize = 40;
+/// No register.
+pub(crate) const NOWHERE: Register = u8::MAX;
+/// The mask register that operands pass through which have none.
+pub(crate) const SPARE_MASK: u8 = 7;
+
+/// Words at the start of the frame. The first one is where the caller's stack is; then come a strip's start,
+/// and the planes' bytes.
+pub(crate) const STRIP_START: i32 = 8;
+pub(crate) const ALL_BYTES: i32 = 16;
+/// Where the registers of outer loops are kept.
+pub(crate) const SAVED: i32 = 24;
+
+/// How many registers may be used: vectors and masks.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) struct Count(pub(crate) [u8; 2]);
+
+/// An open loop.
+pub(super) struct Open {
+    pub(super) id: LoopId,
+    /// What the registers hold at the top of each round.
+    pub(super) header: [Part; REGISTERS],
+    /// How much was in the journal.
+    pub(super) journal: usize,
+    /// Where a round begins, and where the loop is left.
+    pub(super) top: Label,
+    pub(super) exit: Label,
+}
+
+/// The walk over a list.
+pub(crate) struct State<'a> {
+    pub(super) linear: &'a Linear,
+    pub(super) lives: &'a Lives,
+    /// Registers that each loop needs for what it computes.
+    pub(super) pressure: Vec<[usize; 2]>,
+    /// Vectors of a value.
+    pub(super) vectors: u32,
+    pub(super) shape: Shape,
+    pub(super) count: Count,
+    /// Input planes of the function: outputs come behind them.
+    pub(super) planes: usize,
+    pub(super) strip_bytes: usize,
+    pub(super) strides: Vec<usize>,
+    pub(super) parents: Vec<Option<usize>>,
+
+    pub(crate) code: Vec<Inst>,
+    /// The parts that each instruction reads and writes, if somebody wants to check them.
+    pub(crate) notes: Option<Vec<([Part; 3], Part)>>,
+    /// What happens between instructions, for the same purpose.
+    pub(crate) events: Vec<(usize, Event)>,
+    pub(crate) labels: u32,
+    pub(crate) constants: Vec<u8>,
+    pub(super) numbers: HashMap<u32, i32>,
+    /// Instructions that take the address of the first slot of a strip, which is known in the end.
+    pub(crate) slot_addresses: Vec<usize>,
+
+    /// What each register holds.
+    pub(super) occupant: [Part; REGISTERS],
+    /// Where each part is.
+    pub(super) place: Vec<Register>,
+    /// Whether the frame has it.
+    pub(super) stored: Vec<bool>,
+    /// Where the frame has it, or will.
+    pub(super) frame: Vec<u32>,
+    pub(super) free: Vec<u32>,
+    pub(crate) frame_slots: u32,
+    /// Parts that have been stored since loops were opened.
+    pub(super) journal: Vec<Part>,
+    /// How many uses of each name are behind.
+    passed: Vec<u32>,
+    /// Registers that the current instruction needs, a bit each.
+    pub(super) locked: u64,
+    pub(super) position: u32,
+    pub(super) open: Vec<Open>,
+    /// Registers that accumulators of the innermost loop begin a round in.
+    pub(super) reserved: u64,
+    /// The accumulator that a name becomes in the end of a round.
+    pub(super) becomes: Vec<Name>,
+    /// The loop over each table.
+    pub(super) rows: Vec<Option<usize>>,
+    /// Folds that are open.
+    pub(super) depth: usize,
+}
+
+/// What a walk begins with.
+pub(crate) struct Task<'a> {
+    pub(crate) linear: &'a Linear,
+    pub(crate) lives: &'a Lives,
+    pub(crate) vectors: usize,
+    pub(crate) shape: Shape,
+    pub(crate) count: Count,
+    pub(crate) planes: usize,
+    pub(crate) strip_bytes: usize,
+    /// Of each table, the bytes of a row and the parent.
+    pub(crate) tables: Vec<(usize, Option<usize>)>,
+    pub(crate) is_checked: bool,
+}
+
+impl<'a> State<'a> {
+    pub(crate) fn new(task: Task<'a>) -> Self {
+        let Task { linear, lives, vectors, shape, count, planes, strip_bytes, tables, is_checked } = task;
+        let parts = linear.names.len() * vectors;
+        let mut becomes = vec![NONE; linear.names.len()];
+        for phi in linear.loops.iter().flat_map(|data| &data.phis) {
+            becomes[phi.next as usize] = phi.value;
+        }
+        Self {
+            linear,
+            lives,
+            pressure: super::lives::pressure(linear, lives, vectors, shape.has_masks),
+            vectors: vectors as u32,
+            shape,
+            count,
+            planes,
+            strip_bytes,
+            strides: tables.iter().map(|&(stride, _)| stride).collect(),
+            parents: tables.iter().map(|&(_, parent)| parent).collect(),
+            code: Vec::with_capacity(2 * linear.items.len() * vectors),
+            notes: is_checked.then(Vec::new),
+            events: Vec::new(),
+            labels: 0,
+            constants: Vec::new(),
+            numbers: HashMap::new(),
+            slot_addresses: Vec::new(),
+            occupant: [NONE; REGISTERS],
+            place: vec![NOWHERE; parts],
+            stored: vec![false; parts],
+            frame: vec![NONE; parts],
+            free: Vec::new(),
+            frame_slots: 0,
+            journal: Vec::new(),
+            passed: vec![0; linear.names.len()],
+            locked: 0,
+            position: 0,
+            open: Vec::new(),
+            reserved: 0,
+            becomes,
+            rows: vec![None; tables.len()],
+            depth: 0,
+        }
+    }
+
+    // ── code ─────────────────────────────────────────────────────────────────────────────────────
+
+    /// Appends an instruction on values: what it reads, in the order of its fields, and what it writes.
+    pub(super) fn emit(&mut self, inst: Inst, reads: &[Part], write: Part) {
+        self.code.push(inst);
+        if let Some(notes) = &mut self.notes {
+            let mut all = [NONE; 3];
+            all[..reads.len()].copy_from_slice(reads);
+            notes.push((all, write));
+        }
+    }
+
+    /// Appends an instruction on integers.
+    pub(super) fn integer(&mut self, inst: Inst) {
+        self.emit(inst, &[], NONE);
+    }
+
+    pub(super) fn event(&mut self, event: Event) {
+        if self.notes.is_some() {
+            self.events.push((self.code.len(), event));
+        }
+    }
+
+    pub(super) fn label(&mut self) -> Label {
+        self.labels += 1;
+        Label(self.labels - 1)
+    }
+
+    // ── values ───────────────────────────────────────────────────────────────────────────────────
+
+    pub(super) fn name(&self, part: Part) -> Name {
+        part / self.vectors
+    }
+
+    pub(super) fn part(&self, name: Name, vector: u32) -> Part {
+        let is_uniform = self.linear.names[name as usize].is_uniform;
+        name * self.vectors + if is_uniform { 0 } else { vector }
+    }
+
+    /// The parts of a name.
+    pub(super) fn parts(&self, name: Name) -> std::ops::Range<Part> {
+        let count = if self.linear.names[name as usize].is_uniform { 1 } else { self.vectors };
+        name * self.vectors..name * self.vectors + count
+    }
+
+    /// 0 for a value in vectors, 1 for one in mask registers.
+    pub(super) fn class(&self, name: Name) -> usize {
+        usize::from(self.linear.names[name as usize].is_mask && self.shape.has_masks)
+    }
+
+    pub(super) fn is_leaf(&self, name: Name) -> bool {
+        matches!(self.linear.names[name as usize].kind, Kind::Leaf(_))
+    }
+
+    /// The register that a part is in.
+    pub(super) fn register_of(&self, part: Part) -> Option<Register> {
+        let register = self.place[part as usize];
+        (register != NOWHERE).then_some(register)
+    }
+
+    /// The next position, this one or a later one, where somebody wants the name.
+    pub(super) fn next_use(&mut self, name: Name) -> u32 {
+        let (uses, passed) = (self.lives.uses(name), &mut self.passed[name as usize]);
+        while uses.get(*passed as usize).is_some_and(|&at| at < self.position) {
+            *passed += 1;
+        }
+        let end = self.lives.end(self.linear, name, self.position);
+        match uses.get(*passed as usize) {
+            Some(&at) if at <= end => at,
+            // Alive for the next round, or for nobody.
+            Some(_) | None => end.max(self.position),
+        }
+    }
+
+    /// Whether the name is read behind the current position, and how soon.
+    pub(super) fn later_use(&mut self, name: Name) -> Option<u32> {
+        self.next_use(name);
+        let uses = self.lives.uses(name);
+        let mut index = self.passed[name as usize] as usize;
+        while uses.get(index).is_some_and(|&at| at <= self.position) {
+            index += 1;
+        }
+        let end = self.lives.end(self.linear, name, self.position);
+        uses.get(index).copied().filter(|&at| at <= end)
+    }
+
+    /// Whether nobody reads the name behind the current position.
+    pub(super) fn dies(&self, name: Name) -> bool {
+        self.lives.end(self.linear, name, self.position) <= self.position
+    }
+
+    // ── registers ────────────────────────────────────────────────────────────────────────────────
+
+    /// The registers of a class.
+    pub(super) fn registers(&self, class: usize) -> std::ops::Range<Register> {
+        let Count(count) = self.count;
+        if class == 0 { 0..count[0] } else { MASKS + 1..MASKS + 1 + count[1] }
+    }
+
+    pub(super) fn lock(&mut self, register: Register) {
+        self.locked |= 1 << register;
+    }
+
+    /// A register that holds nothing: one that no accumulator waits for, if there is one.
+    pub(super) fn free_register(&self, class: usize) -> Option<Register> {
+        let mut reserved = None;
+        for register in self.registers(class) {
+            if self.occupant[register as usize] == NONE && self.locked >> register & 1 == 0 {
+                if self.reserved >> register & 1 == 0 {
+                    return Some(register);
+                }
+                reserved.get_or_insert(register);
+            }
+        }
+        reserved
+    }
+
+    /// A register that holds nothing, or nothing any more.
+    pub(super) fn take(&mut self, class: usize) -> Register {
+        if let Some(register) = self.free_register(class) {
+            return register;
+        }
+        let (mut best, mut best_score) = (NOWHERE, 0);
+        for register in self.registers(class) {
+            if self.locked >> register & 1 == 1 {
+                continue;
+            }
+            let part = self.occupant[register as usize];
+            let score = 1 + self.reluctance(register, part);
+            if score > best_score {
+                (best, best_score) = (register, score);
+            }
+        }
+        assert!(best != NOWHERE, "an instruction needs fewer registers than there are");
+        self.vacate(best);
+        best
+    }
+
+    /// How long a register may do without its part: more if nothing has to be stored.
+    fn reluctance(&mut self, register: Register, part: Part) -> u64 {
+        let name = self.name(part);
+        let mut next = self.next_use(name);
+        if let Some(open) = self.open.last()
+            && open.header[register as usize] == part
+        {
+            next = next.min(self.linear.loops[open.id as usize].close);
+        }
+        let distance = u64::from(next.saturating_sub(self.position));
+        if self.is_leaf(name) || self.stored[part as usize] { 3 * distance } else { 2 * distance }
+    }
+
+    /// Makes a register empty; the frame has what was in it, if somebody needs that.
+    pub(super) fn vacate(&mut self, register: Register) {
+        let part = self.occupant[register as usize];
+        if part == NONE {
+            return;
+        }
+        self.store(part);
+        self.release(part);
+    }
+
+    /// Forgets that a part is in a register.
+    pub(super) fn release(&mut self, part: Part) {
+        let register = std::mem::replace(&mut self.place[part as usize], NOWHERE);
+        if register != NOWHERE {
+            self.occupant[register as usize] = NONE;
+        }
+    }
+
+    /// Says that a part is in a register, which is empty.
+    pub(super) fn bind(&mut self, part: Part, register: Register) {
+        debug_assert_eq!(self.occupant[register as usize], NONE, "a register holds one thing");
+        self.occupant[register as usize] = part;
+        self.place[part as usize] = register;
+    }
+}
+
+/// The instruction that loads a register of either class.
+pub(super) fn load(to: Register, from: Memory) -> Inst {
+    if to < MASKS { Inst::Load { to, from } } else { Inst::MaskLoad { to: to - MASKS, from } }
+}
+
+/// The instruction that stores a register of either class.
+pub(super) fn store(from: Register, to: Memory) -> Inst {
+    if from < MASKS { Inst::Store { to, from } } else { Inst::MaskStore { to, from: from - MASKS } }
+}
+
+/// The instruction that copies a register to one of the same class.
+pub(super) fn copy(to: Register, from: Register) -> Inst {
+    if to < MASKS { Inst::Move { to, from } } else { Inst::MaskMove { to: to - MASKS, from: from - MASKS } }
+}

@@ -1,0 +1,199 @@
+//! What has to move at the end of a round, so that everything is where it was at the top: next values of
+//! accumulators, and what had to leave its register in between. All is read before anything is written, in an
+//! order that needs few places besides.
+
+use std::collections::{HashMap, HashSet};
+
+use super::check::{Event, NEXT, Place};
+use super::inst::Memory;
+use super::linear::{Kind, LoopId, NONE};
+use super::state::{MASKS, Part, REGISTERS, Register, SPARE_MASK, State, copy, load, store};
+
+/// Where a value is that a transfer reads.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+enum Source {
+    Register(Register),
+    Memory(Memory),
+    Leaf,
+}
+
+/// A value that has to be at another place when a round begins.
+#[derive(Clone, Copy)]
+struct Transfer {
+    from: Part,
+    source: Source,
+    /// What it is there.
+    to: Part,
+    /// [`Source::Register`] or [`Source::Memory`].
+    target: Source,
+}
+
+impl State<'_> {
+    /// Puts everything where it is at the top of a round.
+    pub(super) fn put_back(&mut self, id: LoopId) {
+        let header = self.open.last().expect("the loop is open").header;
+        let (mut transfers, mut renames) = self.transfers(id, &header);
+        // From memory to memory, or perhaps by way of memory, because somebody else reads what is there.
+        let sources: HashSet<Source> = transfers.iter().map(|transfer| transfer.source).collect();
+        let needs_register = transfers.iter().any(|transfer| {
+            matches!(transfer.target, Source::Memory(_))
+                && self.class(self.name(transfer.to)) == 0
+                && (!matches!(transfer.source, Source::Register(_)) || sources.contains(&transfer.target))
+        });
+        let mut spare = MASKS;
+        if needs_register {
+            // One that is empty at the top: there is one, since not all are given away
+            // ([`choose`](Self::choose)).
+            let mut registers = self.registers(0);
+            spare = registers.find(|&register| header[register as usize] == NONE).unwrap_or(0);
+            self.vacate(spare);
+            (transfers, renames) = self.transfers(id, &header);
+        }
+        self.transfer_all(transfers, spare);
+        for (from, to, at) in renames {
+            if from != to {
+                self.event(Event::Next { from, to, at });
+            }
+        }
+        for register in 0..REGISTERS {
+            let part = self.occupant[register];
+            if part != NONE {
+                self.release(part);
+            }
+        }
+        for (register, &part) in header.iter().enumerate().filter(|&(_, &part)| part != NONE) {
+            self.bind(part, register as Register);
+        }
+    }
+
+    /// Transfers as if all were read before the first is written.
+    fn transfer_all(&mut self, mut transfers: Vec<Transfer>, spare: Register) {
+        if transfers.is_empty() {
+            return;
+        }
+        // Registers first: where all that is left goes round in circles, one in a register goes out of the way.
+        transfers.sort_by_key(|transfer| !matches!(transfer.source, Source::Register(_)));
+        // Who reads a place, how many of them have not done so yet, and who writes it.
+        let mut readers: HashMap<Source, (Vec<usize>, usize)> = HashMap::new();
+        let mut writer: HashMap<Source, usize> = HashMap::new();
+        for (index, transfer) in transfers.iter().enumerate() {
+            let (list, left) = readers.entry(transfer.source).or_default();
+            list.push(index);
+            *left += 1;
+            writer.insert(transfer.target, index);
+        }
+        let is_read = |index: &usize| readers.contains_key(&transfers[*index].target);
+        let mut ready: Vec<usize> = (0..transfers.len()).filter(|index| !is_read(index)).collect();
+        let (mut is_done, mut first) = (vec![false; transfers.len()], 0);
+        let mut fresh = Vec::new();
+        while first < transfers.len() {
+            let Some(index) = ready.pop() else {
+                if is_done[first] {
+                    first += 1;
+                    continue;
+                }
+                let aside = transfers[first].source;
+                let memory = self.set_aside(transfers[first], spare, &mut fresh);
+                let (list, _) = readers.remove(&aside).unwrap_or_default();
+                for index in list {
+                    transfers[index].source = Source::Memory(memory);
+                }
+                ready.extend(writer.get(&aside));
+                continue;
+            };
+            is_done[index] = true;
+            self.transfer(transfers[index], spare);
+            let source = transfers[index].source;
+            if let Some((_, left)) = readers.get_mut(&source) {
+                *left -= 1;
+                if *left == 0 {
+                    ready.extend(writer.get(&source).filter(|&&next| !is_done[next]));
+                }
+            }
+        }
+        self.give_back(fresh);
+    }
+
+    /// All that is not where it has to be, and all accumulators that are.
+    fn transfers(
+        &mut self,
+        id: LoopId,
+        header: &[Part; REGISTERS],
+    ) -> (Vec<Transfer>, Vec<(Part, Part, Place)>) {
+        let linear = self.linear;
+        let (mut transfers, mut renames) = (Vec::new(), Vec::new());
+        for phi in &linear.loops[id as usize].phis {
+            for vector in 0..self.vectors {
+                let (from, to) = (self.part(phi.next, vector), self.part(phi.value, vector));
+                let target = match header.iter().position(|&part| part == to) {
+                    Some(register) => Source::Register(register as Register),
+                    None => Source::Memory(self.frame_memory(to)),
+                };
+                let source = self.whereabouts(from);
+                if source == target {
+                    let place = match target {
+                        Source::Register(register) => Place::Register(register),
+                        Source::Memory(memory) => Place::Frame(memory.displacement),
+                        Source::Leaf => unreachable!("leaves are not written"),
+                    };
+                    renames.push((from, to, place));
+                } else {
+                    transfers.push(Transfer { from, source, to, target });
+                }
+            }
+        }
+        for (register, &part) in header.iter().enumerate() {
+            let is_phi = part != NONE && linear.names[self.name(part) as usize].kind == Kind::Phi(id);
+            if part == NONE || is_phi || usize::from(self.place[part as usize]) == register {
+                continue;
+            }
+            let (source, target) = (self.whereabouts(part), Source::Register(register as Register));
+            transfers.push(Transfer { from: part, source, to: part, target });
+        }
+        (transfers, renames)
+    }
+
+    fn whereabouts(&mut self, part: Part) -> Source {
+        match self.register_of(part) {
+            Some(register) => Source::Register(register),
+            None if self.is_leaf(self.name(part)) => Source::Leaf,
+            None => Source::Memory(self.frame_memory(part)),
+        }
+    }
+
+    fn transfer(&mut self, Transfer { from, source, to, target }: Transfer, spare: Register) {
+        let next = |part: Part| if part == from { part } else { part | NEXT };
+        let mask = MASKS + SPARE_MASK;
+        let spare = if self.class(self.name(to)) == 1 { mask } else { spare };
+        match (source, target) {
+            (Source::Register(source), Source::Register(target)) => {
+                self.emit(copy(target, source), &[from], next(to));
+            }
+            (Source::Register(source), Source::Memory(target)) => {
+                self.emit(store(source, target), &[from], next(to));
+            }
+            (Source::Memory(source), Source::Register(target)) => {
+                self.emit(load(target, source), &[from], next(to));
+            }
+            (Source::Leaf, Source::Register(target)) => self.load_as(target, from, next(to)),
+            (Source::Memory(source), Source::Memory(target)) => {
+                self.emit(load(spare, source), &[from], from);
+                self.emit(store(spare, target), &[from], next(to));
+            }
+            (Source::Leaf, Source::Memory(target)) => {
+                self.load_into(spare, from);
+                self.emit(store(spare, target), &[from], next(to));
+            }
+            (_, Source::Leaf) => unreachable!("leaves are not written"),
+        }
+    }
+
+    /// Copies the source of a transfer to a place that nobody writes to.
+    fn set_aside(&mut self, transfer: Transfer, spare: Register, fresh: &mut Vec<u32>) -> Memory {
+        let (slot, memory) = self.fresh_slot();
+        fresh.push(slot);
+        let target = Source::Memory(memory);
+        self.transfer(Transfer { to: transfer.from, target, ..transfer }, spare);
+        memory
+    }
+}
