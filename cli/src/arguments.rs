@@ -1,12 +1,14 @@
 //! The command line: what can be asked, and how it is written.
 
 mod contour;
+mod engine;
 mod output;
 mod render;
 mod tools;
 mod work;
 
 pub use contour::{ContourArguments, ModeName, PaintName};
+pub use engine::{EngineArguments, LevelName};
 pub use output::{Destination, OutputArguments};
 pub use render::{GroundName, RenderArguments};
 pub use tools::{
@@ -244,9 +246,9 @@ pub struct EvalArguments {
     /// The answers wanted
     #[arg(long, value_enum, default_value_t = QueryName::Field)]
     pub query: QueryName,
-    /// What evaluates the field: all engines give the same bits
-    #[arg(long, value_enum, default_value_t = EngineName::Jit)]
-    pub engine: EngineName,
+    /// What computes.
+    #[command(flatten)]
+    pub engine: EngineArguments,
     /// Number of threads; what is written does not depend on it [default: one for each processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,

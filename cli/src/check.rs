@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use jbt::{Engine, Query};
+use jbt::{Compiler, Engine, Query};
 use jbt_frontend::attribute::AttributeGroup;
 use jbt_frontend::bounds::Bounds;
 use jbt_frontend::check::CheckedTree;
@@ -59,7 +59,7 @@ fn check(arguments: &SceneArguments, quiet: bool) -> Result<Checked, Failure> {
     scene.warn(quiet);
     let tree = scene.check()?;
     // Some numbers leave the range of f32, and some limits are reached, only in the program for all answers.
-    let evaluator = scene.evaluator(&tree, Query::ALL, Some(Engine::Scalar))?;
+    let evaluator = scene.evaluator(&tree, Query::ALL, &Compiler::for_engine(Engine::Scalar))?;
     Ok(Checked { scene, tree, occurrences: evaluator.evaluations_per_point() })
 }
 

@@ -30,7 +30,7 @@ pub fn run(arguments: &ContourArguments, quiet: bool, start: Instant) -> Result<
     scene.warn(quiet);
     let tree = scene.check()?;
     check_attributes(arguments, drawing, &tree)?;
-    let compiler = arguments.work.compiler();
+    let compiler = arguments.work.compiler()?;
     let query = if drawing == SliceKind::Svg || mode(arguments).1 { Query::ATTRIBUTES } else { Query::FIELD };
     let slicer = Slicer::new(&compiler, &tree, &arguments.plane, query)
         .map_err(|error| Failure::compile(&scene.source(), &error))?;

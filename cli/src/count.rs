@@ -132,7 +132,7 @@ impl Count {
         query: Query,
     ) -> Result<Self, Failure> {
         // All engines run the same program; this one needs no compilation.
-        let evaluator = scene.evaluator(tree, query, Some(Engine::Scalar))?;
+        let evaluator = scene.evaluator(tree, query, &Compiler::for_engine(Engine::Scalar))?;
         let by_node = evaluator.evaluations_by_node().per_node;
         Ok(Self { query, evaluations: statistics.per_point(&evaluator), by_node })
     }

@@ -29,7 +29,7 @@ pub fn run(arguments: &EvalArguments, quiet: bool) -> Result<(), Failure> {
     let scene = Scene::load(&arguments.scene)?;
     scene.warn(quiet);
     let tree = scene.check()?;
-    let evaluator = scene.evaluator(&tree, arguments.query.query(), arguments.engine.required())?;
+    let evaluator = scene.evaluator(&tree, arguments.query.query(), &arguments.engine.compiler()?)?;
     let threads = Threads::new(arguments.threads)?;
     if is_standard(&arguments.points) {
         return stream(

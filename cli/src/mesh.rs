@@ -25,7 +25,7 @@ pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(),
     let scene = Scene::load(&arguments.scene)?;
     scene.warn(quiet);
     let tree = scene.check()?;
-    let compiler = arguments.work.compiler();
+    let compiler = arguments.work.compiler()?;
 
     let mut progress = Progress::new("meshing", quiet);
     let mut work = || settings.mesh(&compiler, &tree).on_progress(|part| progress.set(part)).run();

@@ -27,7 +27,7 @@ pub fn run(arguments: &RenderArguments, quiet: bool, start: Instant) -> Result<(
     let tree = scene.check()?;
     let region = arguments.region.map(|region| (region.low, region.high));
     settings.region = region.map(|region| lattice::local(region, tree.origin()));
-    let compiler = arguments.work.compiler();
+    let compiler = arguments.work.compiler()?;
 
     let mut progress = Progress::new("rendering", quiet);
     let mut work = || settings.picture(&compiler, &tree).on_progress(|part| progress.set(part)).run();

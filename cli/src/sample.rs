@@ -25,7 +25,7 @@ pub fn run(arguments: &SampleArguments, quiet: bool, start: Instant) -> Result<(
     scene.warn(quiet);
     let tree = scene.check()?;
     let lattice = settings.lattice(&tree).map_err(|error| lattice::failure(&scene, error))?;
-    let compiler = arguments.work.compiler();
+    let compiler = arguments.work.compiler()?;
     let sampler = Sampler::new(&compiler, &tree, arguments.query.query())
         .map_err(|error| Failure::compile(&scene.source(), &error))?;
     let mut progress = Progress::new("sampling", quiet);

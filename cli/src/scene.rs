@@ -4,7 +4,7 @@ use std::io;
 use std::path::Path;
 
 use jbt::text::Options;
-use jbt::{Compiler, Engine, Evaluator, Model, Query};
+use jbt::{Compiler, Evaluator, Model, Query};
 use jbt_frontend::check::CheckedTree;
 use jbt_frontend::diagnostic::{Severity, Source, SourceText};
 
@@ -65,14 +65,13 @@ impl Scene {
         self.model.check().map_err(|error| Failure::diagnostics(&self.source(), &error))
     }
 
-    /// An evaluator. Without an engine to insist on, it is the best one.
+    /// An evaluator.
     pub fn evaluator(
         &self,
         tree: &CheckedTree,
         query: Query,
-        engine: Option<Engine>,
+        compiler: &Compiler,
     ) -> Result<Evaluator, Failure> {
-        let compiler = engine.map_or_else(Compiler::new, Compiler::for_engine);
         compiler.evaluator(tree, query).map_err(|error| Failure::compile(&self.source(), &error))
     }
 }

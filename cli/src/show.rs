@@ -1,12 +1,12 @@
 //! `jbt show`: a scene as one of the stages on its way to machine code.
 
 use jbt::kernel::{Purpose, optimise, passes};
-use jbt::{CompileError, Query};
+use jbt::{CompileError, Level, Query};
 use jbt_frontend::diagnostic::escape;
 use jbt_frontend::lower::lower;
 use jbt_frontend::text;
 
-use crate::arguments::ShowArguments;
+use crate::arguments::{LevelName, ShowArguments};
 use crate::failure::Failure;
 use crate::output::print;
 use crate::scene::Scene;
@@ -45,23 +45,24 @@ pub fn run(arguments: &ShowArguments, quiet: bool) -> Result<(), Failure> {
     .map_err(|error| fail(&error))?;
     match shown {
         Some(text) => print(text.trim_end()),
-        None => print(machine(&verified, stage)?.trim_end()),
+        None => print(machine(&verified, stage, arguments.level.map(LevelName::level))?.trim_end()),
     }
 }
 
 /// The program as the code generator has it.
 #[cfg(feature = "jit")]
-fn machine(function: &jbt::ir::Verified, stage: &str) -> Result<String, Failure> {
+fn machine(function: &jbt::ir::Verified, stage: &str, level: Option<Level>) -> Result<String, Failure> {
+    let backend = level.map(jbt::jit::Backend::at);
     let text = if stage == CLIF {
         jbt::jit::clif(function)
     } else {
-        jbt::jit::asm(function, &jbt::jit::Options::default())
+        jbt::jit::asm(function, &jbt::jit::Options { backend, ..jbt::jit::Options::default() })
     };
     text.map_err(|error| Failure::Limit(error.to_string()))
 }
 
 #[cfg(not(feature = "jit"))]
-fn machine(_function: &jbt::ir::Verified, _stage: &str) -> Result<String, Failure> {
+fn machine(_function: &jbt::ir::Verified, _stage: &str, _level: Option<Level>) -> Result<String, Failure> {
     Err(Failure::Usage("this build has no machine code (cargo feature `jit`)".to_owned()))
 }
 

@@ -9,13 +9,13 @@ use jbt_frontend::lower::{Lowered, Lowering};
 use jbt_frontend::origin::ModelOrigin;
 use jbt_frontend::query::Query;
 use jbt_ir::domain::counting::{Evaluations, evaluations, of_selection};
-use jbt_ir::{Function, Selection, Tables, Verified};
+use jbt_ir::{Function, Level, Selection, Tables, Verified};
 use rayon::prelude::*;
 
 use crate::buffer::{Layout, Samples};
 use crate::counter::{Counters, Tally};
 use crate::error::{CompileError, EvalError};
-use crate::kernel::{Bound, Engine, Kernel, Purpose, optimise};
+use crate::kernel::{Bound, Engine, Kernel, Purpose, Wish, optimise};
 use crate::places;
 use crate::points::{AsPoints, Points};
 use crate::probe::Probe;
@@ -28,7 +28,7 @@ use crate::statistics::walks;
 /// Cloning gives another handle to the same memory.
 #[derive(Clone, Default)]
 pub struct Compiler {
-    engine: Option<Engine>,
+    wish: Wish,
     known: Arc<Mutex<Vec<Known>>>,
 }
 
@@ -51,7 +51,23 @@ impl Compiler {
     /// A compiler for one engine.
     #[must_use]
     pub fn for_engine(engine: Engine) -> Self {
-        Self { engine: Some(engine), ..Self::default() }
+        Self::default().on_engine(engine)
+    }
+
+    /// The same compiler for one engine.
+    #[must_use]
+    pub fn on_engine(mut self, engine: Engine) -> Self {
+        self.wish.engine = Some(engine);
+        self.known = Arc::default();
+        self
+    }
+
+    /// The same compiler for a level of the instruction set, of the interpreter and of machine code. Without it, it is [`Level::best`].
+    #[must_use]
+    pub fn at_level(mut self, level: Level) -> Self {
+        self.wish.level = Some(level);
+        self.known = Arc::default();
+        self
     }
 
     /// An evaluator for a model and a query.
@@ -96,7 +112,7 @@ impl Compiler {
             return Ok(kernel);
         }
         let verified = optimise(function.clone(), purpose, &mut |_, _| {})?;
-        let kernel = Arc::new(Kernel::new(function, verified, self.engine)?);
+        let kernel = Arc::new(Kernel::new(function, verified, self.wish)?);
         if let Ok(mut known) = self.known.lock() {
             if known.len() == REMEMBERED {
                 known.remove(0);
@@ -152,7 +168,7 @@ pub struct Evaluator {
 
 impl fmt::Debug for Compiler {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Compiler").field("engine", &self.engine).finish_non_exhaustive()
+        f.debug_struct("Compiler").field("wish", &self.wish).finish_non_exhaustive()
     }
 }
 

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `scalar` | the reference: one point after the other, in the simplest way |
 //! | `lanes` | the SIMD interpreter |
-//! | `jit` | machine code by Cranelift |
+//! | `jit` | machine code: wide code of our own where the CPU has AVX2, else by Cranelift |
 //!
 //! All give the same bits.
 
@@ -17,6 +17,7 @@ use jbt_frontend::query::Query;
 use jbt_ir::domain::counting::{evaluations_per_row, ops_per_row};
 use jbt_ir::domain::lanes::{Scratch, Tape};
 use jbt_ir::domain::scalar::Scalar;
+use jbt_ir::level::{self, Level};
 use jbt_ir::pass::{GRADIENT, GUARDED_GRADIENT, INTERVAL, PIPELINE, Pass, dce, run_pipeline};
 use jbt_ir::{Function, Selection, Tables, Verified, interpret, limits, verify};
 
@@ -117,6 +118,14 @@ pub fn optimise(
     verify(function).map_err(CompileError::Internal)
 }
 
+/// What a kernel is asked to run on. `None` is the best that there is.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub(crate) struct Wish {
+    pub(crate) engine: Option<Engine>,
+    /// The level of the instruction set, of the interpreter and of machine code.
+    pub(crate) level: Option<Level>,
+}
+
 enum Code {
     Scalar,
     Lanes(Tape),
@@ -134,23 +143,25 @@ pub(crate) struct Kernel {
     /// For each table, the ops that an active row takes.
     pub(crate) ops_per_row: Vec<u64>,
     code: Code,
+    level: Level,
     /// What runs where the gradient is not finite, once that has been met; see [`guarded`](Self::guarded).
     guarded: OnceLock<Option<Arc<Kernel>>>,
 }
 
 impl Kernel {
     /// Prepares a function for an engine. Without an engine in mind, machine code is tried first and the interpreter then.
-    pub(crate) fn new(
-        lowered: Function,
-        function: Verified,
-        engine: Option<Engine>,
-    ) -> Result<Self, CompileError> {
-        let code = match engine {
+    pub(crate) fn new(lowered: Function, function: Verified, wish: Wish) -> Result<Self, CompileError> {
+        let level = wish.level.unwrap_or_else(best_level);
+        if !level.is_available() {
+            let engine = wish.engine.unwrap_or(Engine::Jit).name();
+            return Err(CompileError::Engine { engine, reason: unavailable(level) });
+        }
+        let code = match wish.engine {
             Some(Engine::Scalar) => Code::Scalar,
             Some(Engine::Lanes) => lanes(&function)?,
-            Some(Engine::Jit) => jit(&function)
+            Some(Engine::Jit) => jit(&function, level)
                 .map_err(|reason| CompileError::Engine { engine: Engine::Jit.name(), reason })?,
-            None => match jit(&function) {
+            None => match jit(&function, level) {
                 Ok(code) => code,
                 Err(reason) => {
                     warn_once(&reason);
@@ -166,6 +177,7 @@ impl Kernel {
             per_row,
             ops_per_row,
             code,
+            level,
             guarded: OnceLock::new(),
         })
     }
@@ -193,7 +205,8 @@ impl Kernel {
                 Engine::Scalar => Engine::Scalar,
                 Engine::Lanes | Engine::Jit => Engine::Lanes,
             };
-            Self::new(field, verified, Some(engine)).ok().map(Arc::new)
+            let wish = Wish { engine: Some(engine), level: Some(self.level) };
+            Self::new(field, verified, wish).ok().map(Arc::new)
         };
         self.guarded.get_or_init(make).as_ref()
     }
@@ -244,13 +257,35 @@ fn lanes(function: &Verified) -> Result<Code, CompileError> {
 }
 
 #[cfg(feature = "jit")]
-fn jit(function: &Verified) -> Result<Code, String> {
-    jbt_jit::Kernel::compile(function).map(Code::Jit).map_err(|error| error.to_string())
+fn jit(function: &Verified, level: Level) -> Result<Code, String> {
+    let backend = Some(jbt_jit::Backend::at(level));
+    let options = jbt_jit::Options { backend, ..jbt_jit::Options::default() };
+    jbt_jit::Kernel::compile_with(function, &options).map(Code::Jit).map_err(|error| error.to_string())
 }
 
 #[cfg(not(feature = "jit"))]
-fn jit(_function: &Verified) -> Result<Code, String> {
+fn jit(_function: &Verified, _level: Level) -> Result<Code, String> {
     Err("this build has no JIT (cargo feature `jit`)".to_owned())
+}
+
+/// What is wrong with a level that this CPU lacks.
+fn unavailable(level: Level) -> String {
+    let available: Vec<&str> = Level::available().into_iter().map(Level::name).collect();
+    format!("this CPU has no level {level}; it has {}", available.join(", "))
+}
+
+/// The best level that may be used. Says once for each process what is wrong with the variable that bounds it.
+fn best_level() -> Level {
+    static WARNED: std::sync::Once = std::sync::Once::new();
+    WARNED.call_once(|| {
+        let Ok(word) = std::env::var(level::VARIABLE) else { return };
+        match word.parse::<Level>() {
+            Ok(level) if level.is_available() => {}
+            Ok(level) => log::warn!("{}: {}", level::VARIABLE, unavailable(level)),
+            Err(error) => log::warn!("{}: {error}", level::VARIABLE),
+        }
+    });
+    Level::best()
 }
 
 /// Says once for each process that there is no machine code, and why.
@@ -275,7 +310,7 @@ pub(crate) struct Bound {
 
 /// The most points that fill up a last block.
 #[cfg(feature = "jit")]
-const MAX_BLOCK: usize = 16;
+const MAX_BLOCK: usize = jbt_jit::Kernel::MAX_LANES;
 /// The most input planes: a range along each axis.
 #[cfg(feature = "jit")]
 const MAX_INPUTS: usize = 6;
@@ -294,7 +329,8 @@ impl Bound {
             Code::Lanes(tape) => {
                 let mut scratch =
                     self.scratch.lock().map(|mut pool| pool.pop()).ok().flatten().unwrap_or_default();
-                let ran = tape.run((&self.tables, selection), inputs, outputs, &mut scratch);
+                let (level, rows) = (self.kernel.level, (&*self.tables, selection));
+                let ran = tape.run_at(level, rows, inputs, outputs, &mut scratch);
                 debug_assert_eq!(ran, Ok(()), "the planes have been checked");
                 if let Ok(mut pool) = self.scratch.lock() {
                     pool.push(scratch);

@@ -125,6 +125,7 @@ pub use jbt_frontend::query::Query;
 pub use jbt_frontend::text;
 pub use jbt_frontend::tree::Tree;
 pub use jbt_frontend::walk;
+pub use jbt_ir::level::{self, Level};
 pub use jbt_ir::limits;
 
 pub use buffer::{Layout, Samples};

@@ -1,6 +1,6 @@
 //! The strongest test there is: random shapes, each with many sets of numbers, at friendly and at hostile points.
 //!
-//! * scalar = lanes = machine code, **bit for bit**, for every query and every length of the last block (a NaN equals any NaN);
+//! * scalar = lanes = machine code at every level of the instruction set that this CPU has, **bit for bit**, for every query and every length of the last block (a NaN equals any NaN);
 //! * the field has the same bits whatever else is asked;
 //! * a new set of numbers compiles nothing;
 //! * wherever coordinates are finite, so are gradients, and fields and attributes unless operators multiply fields that are at the bounds of formulas: engines agree
@@ -15,7 +15,7 @@ mod common;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use common::{HOSTILE, Random, points};
-use jbt::{Combinator, Compiler, Engine, Evaluator, Model, Points, Query, Samples, Update};
+use jbt::{Combinator, Compiler, Engine, Evaluator, Level, Model, Points, Query, Samples, Update};
 use jbt_frontend::check::CheckedTree;
 use jbt_frontend::text::print;
 use jbt_frontend::tree::NodeKind;
@@ -57,12 +57,15 @@ fn engines_agree_to_the_bit_and_with_the_oracle() {
     assert!(gradients * 4 > compared, "most gradients are compared");
 }
 
-/// All evaluators of one shape: for each query, for each engine.
+/// All evaluators of one shape: for each query, for each engine and each level that this CPU has.
 fn evaluators(tree: &CheckedTree) -> Vec<Vec<Evaluator>> {
     let of = |query| {
-        let compile =
-            |engine| Compiler::for_engine(engine).evaluator(tree, query).expect("the model compiles");
-        Engine::ALL.map(compile).into_iter().collect()
+        let compile = |compiler: Compiler| compiler.evaluator(tree, query).expect("the model compiles");
+        // The reference knows no levels.
+        let engines = Level::available().into_iter().flat_map(|level| {
+            [Engine::Lanes, Engine::Jit].map(|engine| Compiler::for_engine(engine).at_level(level))
+        });
+        std::iter::once(Compiler::for_engine(Engine::Scalar)).chain(engines).map(compile).collect()
     };
     Query::EVERY.map(of).into_iter().collect()
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use clap_complete::Shell;
 
-use super::{LatticeArguments, QueryName, SceneArguments, definition};
+use super::{LatticeArguments, LevelName, QueryName, SceneArguments, definition};
 
 /// What `jbt show` takes.
 #[derive(Args, Debug)]
@@ -15,7 +15,8 @@ machine code is built in, `clif` (Cranelift's own language) and `asm` (the machi
 
 Examples:
   jbt show train.scene --stage tree > train.jbt
-  jbt show hero.jbt --stage schedule --query field")]
+  jbt show hero.jbt --stage schedule --query field
+  jbt show hero.jbt --stage asm --level avx512")]
 pub struct ShowArguments {
     /// What to show.
     #[command(flatten)]
@@ -26,6 +27,9 @@ pub struct ShowArguments {
     /// The answers that the program gives
     #[arg(long, value_enum, default_value_t = QueryName::All)]
     pub query: QueryName,
+    /// The instruction set of `asm`, which this CPU need not have [default: the best that it has, or JBT_LEVEL]
+    #[arg(long, value_enum)]
+    pub level: Option<LevelName>,
 }
 
 /// What `jbt count` takes.

@@ -5,7 +5,7 @@ use std::path::Path;
 use clap::Args;
 use jbt::Compiler;
 
-use super::EngineName;
+use super::EngineArguments;
 use crate::failure::Failure;
 use crate::output::Told;
 use crate::scene::is_standard;
@@ -14,9 +14,9 @@ use crate::threads::Threads;
 /// How a command that writes a file does its work, and what it tells.
 #[derive(Args, Debug)]
 pub struct WorkArguments {
-    /// What evaluates the field: all engines give the same bits
-    #[arg(long, value_enum, default_value_t = EngineName::Jit)]
-    pub engine: EngineName,
+    /// What computes.
+    #[command(flatten)]
+    pub engine: EngineArguments,
     /// Number of threads; what is written does not depend on it [default: one for each processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
@@ -26,9 +26,9 @@ pub struct WorkArguments {
 }
 
 impl WorkArguments {
-    /// A compiler for the engine.
-    pub fn compiler(&self) -> Compiler {
-        self.engine.required().map_or_else(Compiler::new, Compiler::for_engine)
+    /// A compiler for the engine and the level.
+    pub fn compiler(&self) -> Result<Compiler, Failure> {
+        self.engine.compiler()
     }
 
     /// Refuses to write the report to the standard output where `what` the command makes goes there, too.

@@ -303,6 +303,12 @@ fn show_prints_every_stage() {
         assert!(clif.contains("f32x4"), "{clif}");
         let asm = folder.jbt(&["show", "scene.jbt", "--stage", "asm"]).code(0).stdout();
         assert!(asm.contains("vfmadd"), "{asm}");
+        // On any machine.
+        for (level, register) in [("avx2", "ymm0"), ("avx512vl", "{1to8}"), ("avx512", "{1to16}")] {
+            let arguments = ["show", "scene.jbt", "--stage", "asm", "--level", level];
+            let asm = folder.jbt(&arguments).code(0).stdout();
+            assert!(asm.contains("vfmadd") && asm.contains(register), "{level}: {asm}");
+        }
     }
     let unknown =
         folder.jbt(&["show", "scene.jbt", "--stage", "nonsense"]).code(2).says("has no stage `nonsense`");
@@ -313,6 +319,29 @@ fn show_prints_every_stage() {
         .jbt(&["show", "scene.jbt", "--stage", "gradient", "--query", "field"])
         .code(2)
         .says("has no stage");
+}
+
+/// The same bytes at every level that this CPU has, and an error that lists them for others.
+#[test]
+fn levels_change_no_byte() {
+    let folder = folder();
+    let mut meshes = Vec::new();
+    for level in jbt::Level::ALL {
+        for engine in ["lanes", "jit"] {
+            let arguments =
+                ["mesh", "scene.jbt", "-o", "m.ply", "--force", "--engine", engine, "--level", level.name()];
+            if level.is_available() {
+                folder.jbt(&arguments).code(0);
+                meshes.push(folder.read("m.ply"));
+            } else {
+                folder
+                    .jbt(&arguments)
+                    .code(2)
+                    .says(&format!("this CPU has no level {level}; it has baseline"));
+            }
+        }
+    }
+    assert!(meshes.len() >= 2 && meshes.iter().all(|mesh| *mesh == meshes[0]));
 }
 
 #[test]

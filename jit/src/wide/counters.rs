@@ -31,7 +31,7 @@ impl State<'_> {
             Over::Strips => {}
             Over::Points => self.find_points(id),
             Over::RowsOfStrip(table) | Over::Rows(table) | Over::Guard(table) => {
-                self.find_rows(table.index())
+                self.find_rows(table.index());
             }
         }
     }
@@ -42,7 +42,7 @@ impl State<'_> {
             Over::Strips => self.begin_strips(top),
             Over::Points => self.integer(Inst::Here(top)),
             Over::RowsOfStrip(table) | Over::Rows(table) | Over::Guard(table) => {
-                self.begin_rows(table.index())
+                self.begin_rows(table.index());
             }
         }
     }

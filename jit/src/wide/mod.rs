@@ -103,8 +103,7 @@ pub(crate) fn emit(function: &Function, plan: &Plan, wish: &Wish) -> Result<Blob
     loop {
         let (count_of, is_checked) = (vectors.count(), wish.is_checked);
         let tables = function.tables.values();
-        let tables =
-            tables.map(|schema| (4 * schema.columns.len(), schema.parent.map(|table| table.index())));
+        let tables = tables.map(|schema| (4 * schema.columns.len(), schema.parent.map(Entity::index)));
         let mut state = State::new(Task {
             linear: &linear,
             lives: &lives,

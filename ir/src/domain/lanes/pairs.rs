@@ -330,9 +330,9 @@ fn ordered(args: &[Value], swap: bool) -> impl Iterator<Item = Value> {
 mod tests {
     use super::super::ops::WIDTH;
     use super::*;
-    use crate::domain::lanes::level::Level;
     use crate::domain::lanes::{Scratch, Tape};
     use crate::interpret::run;
+    use crate::level::Level;
     use crate::op::Type;
     use crate::{FunctionBuilder, Selection, Tables, verify};
 
