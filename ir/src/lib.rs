@@ -18,6 +18,9 @@ pub mod op;
 pub mod origin;
 pub mod pass;
 pub mod selection;
+#[cfg(test)]
+#[path = "../tests/common/spicy.rs"]
+mod spicy;
 pub mod table;
 pub mod text;
 pub mod translate;

@@ -4,9 +4,9 @@
 //! what they mean), and a doc that *defines* it: rounding, NaN and signed zero. From the table come
 //!
 //! * [`Op`], its names and its type rule (the printer, the parser and the verifier read these),
-//! * [`Domain`], the trait with one method per op and **no default**: a meaning of the ops is one `impl Domain` in one
-//!   file of [`crate::domain`] (or the machine-code lowering of the `jit` crate), and an op that lacks a meaning
-//!   somewhere does not compile,
+//! * [`Domain`], the trait with one method per op and **no default**: a meaning of the ops is one
+//!   `impl Domain` in one file of [`crate::domain`] (or the machine-code lowering of the `jit` crate), and an op
+//!   that lacks a meaning somewhere does not compile,
 //! * [`apply`], which calls the method of an op that is known only at run time,
 //! * [`for_each_op!`](crate::for_each_op), which hands the rows to any macro: what does the same for every op
 //!   derives from it.
@@ -17,8 +17,8 @@
 //!                     └──► trait Domain ◄── scalar, lanes, interval, tangent, counting, FunctionBuilder, Cranelift
 //! ```
 //!
-//! All arithmetic is IEEE 754 binary32, round to nearest even, subnormals kept, no traps. "Gives NaN" means some NaN:
-//! its sign and payload are unspecified, and two engines agree when both give a NaN.
+//! All arithmetic is IEEE 754 binary32, round to nearest even, subnormals kept, no traps. "Gives NaN" means
+//! some NaN: its sign and payload are unspecified, and two engines agree when both give a NaN.
 
 use std::fmt;
 
@@ -219,7 +219,8 @@ macro_rules! op_table {
             }
         }
 
-        /// A meaning of the ops. One method per op, and no defaults: a new op that lacks a meaning does not compile.
+        /// A meaning of the ops. One method per op, and no defaults: a new op that lacks a meaning does not
+        /// compile.
         // `from_bits` takes the domain, as every op does.
         #[allow(clippy::wrong_self_convention)]
         pub trait Domain {
@@ -241,13 +242,16 @@ macro_rules! op_table {
             )+
         }
 
-        /// Calls the method of `op`. Panics if `args` do not fit [`Op::operands`]: the verifier has excluded it.
+        /// Calls the method of `op`. Panics if `args` do not fit [`Op::operands`]: the verifier has excluded
+        /// it.
         #[inline(always)]
         pub fn apply<D: Domain + ?Sized>(domain: &mut D, op: Op, args: &[Any<D>]) -> Any<D> {
             match op {
                 $(
                     Op::$variant => {
-                        let [$($arg),+] = args else { panic!("a verified function has the operands of the table") };
+                        let [$($arg),+] = args else {
+                            panic!("a verified function has the operands of the table")
+                        };
                         of_type!(wrap $result domain.$name($( of_type!(get $type (*$arg)) ),+))
                     }
                 )+
@@ -268,7 +272,7 @@ macro_rules! op_table {
 macro_rules! for_each_op {
     ($callback:ident) => {
         $callback! {
-            // ── arithmetic ──────────────────────────────────────────────────────────────────────────────────────────────
+            // ── arithmetic ───────────────────────────────────────────────────────────────────────────
 
             /// `a + b`, rounded once. `-0 + -0 = -0`, every other zero sum is `+0`. `inf - inf` gives NaN.
             Add add(a: real, b: real) -> real, commutes;
@@ -276,22 +280,25 @@ macro_rules! for_each_op {
             Sub sub(a: real, b: real) -> real;
             /// `a * b`, rounded once; the sign is the exclusive or of the signs. `0 * inf` gives NaN.
             Mul mul(a: real, b: real) -> real, commutes;
-            /// `a / b`, rounded once. `x / 0` is an infinity with the sign of both, `0 / 0` and `inf / inf` give NaN.
+            /// `a / b`, rounded once. `x / 0` is an infinity with the sign of both, `0 / 0` and `inf / inf`
+            /// give NaN.
             Div div(a: real, b: real) -> real;
-            /// `a * b + c` with **one** rounding, in every engine. An exact zero sum is `+0` unless both parts are `-0`.
+            /// `a * b + c` with **one** rounding, in every engine. An exact zero sum is `+0` unless both
+            /// parts are `-0`.
             Fma fma(a: real, b: real, c: real) -> real, commutes;
             /// Flips the sign bit, of zeros and NaNs too.
             Neg neg(a: real) -> real;
             /// Clears the sign bit, of zeros and NaNs too.
             Abs abs(a: real) -> real;
-            /// The square root, rounded once. `sqrt(-0) = -0`; below zero it gives NaN. Its tangent at 0 is 0.
+            /// The square root, rounded once. `sqrt(-0) = -0`; below zero it gives NaN. Its tangent at 0 is
+            /// 0.
             Sqrt sqrt(a: real) -> real;
             /// `if a < b { a } else { b }`: b if either is NaN, b if both are zeros. Does not commute.
             Min min(a: real, b: real) -> real;
             /// `if a > b { a } else { b }`: b if either is NaN, b if both are zeros. Does not commute.
             Max max(a: real, b: real) -> real;
 
-            // ── decisions ───────────────────────────────────────────────────────────────────────────────────────────────
+            // ── decisions ────────────────────────────────────────────────────────────────────────────
 
             /// `a < b`; false if either is NaN. Zeros of either sign are equal.
             Lt lt(a: real, b: real) -> mask;
@@ -308,7 +315,7 @@ macro_rules! for_each_op {
             /// `if condition { a } else { b }`: the bits of one of them, whatever the other holds.
             Select select(condition: mask, a: real, b: real) -> real;
 
-            // ── bits ────────────────────────────────────────────────────────────────────────────────────────────────────
+            // ── bits ─────────────────────────────────────────────────────────────────────────────────
 
             /// The encoding of a real.
             ToBits to_bits(a: real) -> bits, renames;
@@ -324,29 +331,34 @@ macro_rules! for_each_op {
             IntAdd int_add(a: bits, b: bits) -> bits, commutes;
             /// Difference modulo 2^32.
             IntSub int_sub(a: bits, b: bits) -> bits;
-            /// `a << (by mod 32)`. The verifier wants `by` to be a constant: vector units shift all lanes alike.
+            /// `a << (by mod 32)`. The verifier wants `by` to be a constant: vector units shift all lanes
+            /// alike.
             Shl shl(a: bits, by: bits) -> bits;
             /// `a >> (by mod 32)`, zeros coming in. The verifier wants `by` to be a constant.
             Shr shr(a: bits, by: bits) -> bits;
 
-            // ── transcendentals: stay whole through the gradient, then `legalize` expands them by `crate::math` ─────────
+            // ── transcendentals: stay whole through the gradient, then `legalize` expands them by `crate::math`
 
-            /// The sine of radians. `sin(-0) = -0`; infinities give NaN; a finite angle beyond [`crate::math::LARGEST_ANGLE`] counts as a zero
-            /// of its sign. See [`crate::math`] for its error.
+            /// The sine of radians. `sin(-0) = -0`; infinities give NaN; a finite angle beyond
+            /// [`crate::math::LARGEST_ANGLE`] counts as a zero of its sign. See [`crate::math`] for its
+            /// error.
             Sin sin(a: real) -> real, expanded;
-            /// The cosine of radians; infinities give NaN; a finite angle beyond [`crate::math::LARGEST_ANGLE`] counts as zero.
-            /// See [`crate::math`] for its error.
+            /// The cosine of radians; infinities give NaN; a finite angle beyond
+            /// [`crate::math::LARGEST_ANGLE`] counts as zero. See [`crate::math`] for its error.
             Cos cos(a: real) -> real, expanded;
-            /// e to the power a. Overflows to infinity, underflows through the subnormals; `exp(0) = 1`, `exp(-inf) = 0`. See [`crate::math`] for its error.
+            /// e to the power a. Overflows to infinity, underflows through the subnormals; `exp(0) = 1`,
+            /// `exp(-inf) = 0`. See [`crate::math`] for its error.
             Exp exp(a: real) -> real, expanded;
-            /// The natural logarithm. `ln(1) = +0`, `ln(-0) = ln(0) = -inf`; below zero it gives NaN. See [`crate::math`] for its error.
+            /// The natural logarithm. `ln(1) = +0`, `ln(-0) = ln(0) = -inf`; below zero it gives NaN. See
+            /// [`crate::math`] for its error.
             Ln ln(a: real) -> real, expanded;
-            /// `a` to the power `b`, for `a >= 0`. `pow(1, b) = 1` and `pow(a, 0) = 1` for every other operand, NaN and negative ones too;
-            /// else a NaN or a negative `a` gives NaN. Exactly: `pow(0, b)` is `+0` for b > 0 and inf for b < 0, for zeros of either sign.
-            /// See [`crate::math`] for its error.
+            /// `a` to the power `b`, for `a >= 0`. `pow(1, b) = 1` and `pow(a, 0) = 1` for every other
+            /// operand, NaN and negative ones too; else a NaN or a negative `a` gives NaN. Exactly:
+            /// `pow(0, b)` is `+0` for b > 0 and inf for b < 0, for zeros of either sign. See [`crate::math`] for its
+            /// error.
             Pow pow(a: real, b: real) -> real, expanded;
 
-            // ── differentiation ─────────────────────────────────────────────────────────────────────────────────────────
+            // ── differentiation ──────────────────────────────────────────────────────────────────────
 
             /// `a`, bit for bit, with zero tangent: a running scale that cancels must not be differentiated.
             Hold hold(a: real) -> real, renames;

@@ -43,7 +43,8 @@ impl VectorCount {
 pub enum Backend {
     /// Cranelift: vectors of 128 bits.
     Cranelift,
-    /// An emitter of our own for x86-64, at a level from [`Level::Avx2`] on. [`Level::Baseline`] is taken for that one.
+    /// An emitter of our own for x86-64, at a level from [`Level::Avx2`] on. [`Level::Baseline`] is taken for
+    /// that one.
     Wide(Level),
 }
 
@@ -134,8 +135,8 @@ impl Allocator {
 pub enum Pieces {
     /// Not at all: a block of points runs through the whole function before the next block does.
     One,
-    /// Into pieces of at most so many instructions, with a cut before and behind every fold. If the values that pieces hand to each
-    /// other are too many for the nearer caches, not at all.
+    /// Into pieces of at most so many instructions, with a cut before and behind every fold. If the values
+    /// that pieces hand to each other are too many for the nearer caches, not at all.
     Of(usize),
 }
 
@@ -164,7 +165,8 @@ pub enum Check {
     Off,
     /// The finished code is replayed: each instruction has to find the values that it is meant to read.
     Registers,
-    /// The same for code in 3 vector registers and 1 mask register, in which nearly everything is in the frame.
+    /// The same for code in 3 vector registers and 1 mask register, in which nearly everything is in the
+    /// frame.
     FewRegisters,
 }
 
@@ -223,28 +225,30 @@ pub enum CompileError {
     Cranelift(String),
 }
 
-/// Up to this many live values the code is faster for having 16 points in a block: what is spilled costs less than reading every
-/// number of a row four times.
+/// Up to this many live values the code is faster for having 16 points in a block: what is spilled costs less
+/// than reading every number of a row four times.
 const FOUR_VECTORS_UP_TO: usize = 14;
-/// Where loops carry at most this many, a function is a field, and not a gradient or attributes: more points in a block pay longer.
+/// Where loops carry at most this many, a function is a field, and not a gradient or attributes: more points
+/// in a block pay longer.
 const FIELD_CARRIES: usize = 3;
-/// Up to this many live values 8 points are faster than 16; beyond, than 4 by so little that compiling twice as much is a waste.
+/// Up to this many live values 8 points are faster than 16; beyond, than 4 by so little that compiling twice
+/// as much is a waste.
 const TWO_VECTORS_UP_TO: usize = 27;
 /// The same for a field.
 const TWO_VECTORS_OF_A_FIELD_UP_TO: usize = 64;
-/// Up to this many live values a good choice of registers is worth its time. Beyond, nearly everything lives in the frame
-/// whichever allocator chose, and the code of both runs at the same speed.
+/// Up to this many live values a good choice of registers is worth its time. Beyond, nearly everything lives
+/// in the frame whichever allocator chose, and the code of both runs at the same speed.
 const BACKTRACKING_UP_TO: usize = 100;
 /// A function with more values than this would take seconds to compile for 16 points in a block.
 const LONG_FUNCTION: usize = 16_000;
 
-/// A function of at most so many values gains nothing by being cut: with all its rows in the caches it is as fast, and where few
-/// points are asked it has less to do.
+/// A function of at most so many values gains nothing by being cut: with all its rows in the caches it is as
+/// fast, and where few points are asked it has less to do.
 const WHOLE_UP_TO: usize = 1_000;
 /// The same for wide code.
 const WIDE_WHOLE_UP_TO: usize = 1_000;
-/// Instructions of a piece: its code fits what the processor keeps decoded, and what one block of points waits for in it leaves room for
-/// the next block to begin. From 100 to 500 the speed is the same.
+/// Instructions of a piece: its code fits what the processor keeps decoded, and what one block of points
+/// waits for in it leaves room for the next block to begin. From 100 to 500 the speed is the same.
 const PIECE: usize = 200;
 /// Bytes of slots beyond which they are not in the nearer caches when the next piece reads them.
 const MOST_SLOT_BYTES: usize = 256 << 10;
@@ -335,7 +339,8 @@ fn by_cranelift(function: &Function, options: &Options) -> Result<(Code, VectorC
     Ok((code, vectors))
 }
 
-/// The Cranelift IR that [`crate::Kernel::compile`] makes of a function, as text. Needs no particular processor.
+/// The Cranelift IR that [`crate::Kernel::compile`] makes of a function, as text. Needs no particular
+/// processor.
 ///
 /// # Errors
 /// When the function is beyond our limits.
@@ -345,8 +350,8 @@ pub fn clif(function: &Verified) -> Result<String, CompileError> {
     guard(|| lower::lower(function, &plan, vectors).into_function().display().to_string())
 }
 
-/// The machine instructions that [`crate::Kernel::compile_with`] makes of a function, registers chosen, as text. Wide code of any level is
-/// listed on any machine, if the build has the feature `listing`.
+/// The machine instructions that [`crate::Kernel::compile_with`] makes of a function, registers chosen, as
+/// text. Wide code of any level is listed on any machine, if the build has the feature `listing`.
 ///
 /// # Errors
 /// Those of [`crate::Kernel::compile_with`].
@@ -396,7 +401,8 @@ fn check(function: &Function) -> Result<(), CompileError> {
     Ok(())
 }
 
-/// Cranelift panics where one of its own limits is exceeded. Ours are below those; this is for the case that they are not.
+/// Cranelift panics where one of its own limits is exceeded. Ours are below those; this is for the case that
+/// they are not.
 fn guard<T>(work: impl FnOnce() -> T) -> Result<T, CompileError> {
     panic::catch_unwind(AssertUnwindSafe(work)).map_err(|panic| {
         let text = panic.downcast_ref::<String>().map(String::as_str);

@@ -7,9 +7,9 @@
 //!   tables  one view for each table:  numbers | active | starts   (three pointers)
 //! ```
 //!
-//! The code follows every pointer and index blindly. So the tables are checked once, when a [`Kernel`] is bound to them;
-//! a [`Selection`] leads only to rows that exist by the way it is made, if it was made for as many; and the planes are checked at each
-//! [`run`](BoundKernel::run), which costs nothing beside the run.
+//! The code follows every pointer and index blindly. So the tables are checked once, when a [`Kernel`] is
+//! bound to them; a [`Selection`] leads only to rows that exist by the way it is made, if it was made for as
+//! many; and the planes are checked at each [`run`](BoundKernel::run), which costs nothing beside the run.
 
 use std::fmt;
 use std::mem::offset_of;
@@ -42,7 +42,8 @@ impl TableView {
     pub(crate) const STARTS: usize = offset_of!(Self, starts);
 }
 
-/// Everything that one call of a kernel is given. Made by [`BoundKernel::run_selected`] alone, from what it has checked.
+/// Everything that one call of a kernel is given. Made by [`BoundKernel::run_selected`] alone, from what it
+/// has checked.
 pub(crate) struct Arguments<'a> {
     /// Input planes, then output planes.
     pub(crate) planes: &'a [*const f32],
@@ -67,18 +68,21 @@ pub struct Kernel {
 }
 
 impl Kernel {
-    /// A multiple of [`lanes`](Self::lanes) of every kernel: planes padded to a multiple of this suit them all.
+    /// A multiple of [`lanes`](Self::lanes) of every kernel: planes padded to a multiple of this suit them
+    /// all.
     pub const MAX_LANES: usize = 32;
 
     /// Compiles a function, with the settings that measurements favour for one of its size.
     ///
     /// # Errors
-    /// When the processor, a limit or the system forbids it; an interpreter then gives the same bits, and needs more time.
+    /// When the processor, a limit or the system forbids it; an interpreter then gives the same bits, and
+    /// needs more time.
     pub fn compile(function: &Verified) -> Result<Self, CompileError> {
         Self::compile_with(function, &Options::default())
     }
 
-    /// Compiles a function with given settings. They change the time that compiling and running takes, and no bit of an answer.
+    /// Compiles a function with given settings. They change the time that compiling and running takes, and no
+    /// bit of an answer.
     ///
     /// # Errors
     /// As for [`compile`](Self::compile).
@@ -115,7 +119,8 @@ impl Kernel {
         self.shared.code.address()
     }
 
-    /// Gives the kernel the rows that it will run over. Costs one look at every active row, so do it once for many runs.
+    /// Gives the kernel the rows that it will run over. Costs one look at every active row, so do it once for
+    /// many runs.
     ///
     /// # Errors
     /// When the tables do not fit the function that the kernel was compiled from.
@@ -225,11 +230,12 @@ impl BoundKernel {
 
     /// Answers for all points: `inputs[plane][point]` to `outputs[plane][point]`.
     ///
-    /// Any number is fine as an input, NaN and infinities included. Allocates nothing for up to 48 planes and tables.
+    /// Any number is fine as an input, NaN and infinities included. Allocates nothing for up to 48 planes and
+    /// tables.
     ///
     /// # Errors
-    /// When the planes are not as many as the function's, not of one length, or that length is not a multiple of
-    /// [`Kernel::lanes`]. Nothing is written then.
+    /// When the planes are not as many as the function's, not of one length, or that length is not a multiple
+    /// of [`Kernel::lanes`]. Nothing is written then.
     pub fn run(&self, inputs: &[&[f32]], outputs: &mut [&mut [f32]]) -> Result<(), RunError> {
         self.run_selected(&self.all, inputs, outputs)
     }

@@ -1,4 +1,5 @@
-//! The processor that we compile for: the one that we run on, with the flags that suit short-lived vector code.
+//! The processor that we compile for: the one that we run on, with the flags that suit short-lived vector
+//! code.
 
 use cranelift_codegen::isa::OwnedTargetIsa;
 use cranelift_codegen::settings::{self, Configurable};
@@ -7,8 +8,8 @@ use crate::compile::{Allocator, CompileError, OptLevel};
 
 /// The host, or what it lacks.
 ///
-/// `fma` is an op whose result is rounded once, and without the instruction it would be a call for each lane: then we
-/// decline. AVX is wanted for its three operand forms and its unaligned memory operands.
+/// `fma` is an op whose result is rounded once, and without the instruction it would be a call for each lane:
+/// then we decline. AVX is wanted for its three operand forms and its unaligned memory operands.
 pub(crate) fn host(opt_level: OptLevel, allocator: Allocator) -> Result<OwnedTargetIsa, CompileError> {
     if let Some(missing) = missing_feature() {
         return Err(CompileError::Processor { missing });

@@ -1,12 +1,14 @@
-//! Machine code for jbt programs: wide code of our own on x86-64 with AVX2 or AVX-512, elsewhere by Cranelift.
+//! Machine code for jbt programs: wide code of our own on x86-64 with AVX2 or AVX-512, elsewhere by
+//! Cranelift.
 //!
-//! A verified function goes in, a [`Kernel`] comes out. Bound to the rows of its tables it takes planes of numbers to
-//! planes of answers, and every lane has the bits that the scalar reference gives (a NaN for a NaN).
+//! A verified function goes in, a [`Kernel`] comes out. Bound to the rows of its tables it takes planes of
+//! numbers to planes of answers, and every lane has the bits that the scalar reference gives (a NaN for a
+//! NaN).
 //!
 //! ```text
-//!   Verified ──► strips ───► pressure ──► lower ─────────► memory ──────────► Kernel ──bind(Tables)──► BoundKernel
-//!                where it    how many     Cranelift IR,    machine code in                              run(inputs, outputs)
-//!                is cut      are alive    by `vectors`     pages of its own
+//!   Verified ──► strips ───► pressure ──► lower ─────────► memory ──► Kernel ──bind(Tables)──► BoundKernel
+//!                where it    how many     Cranelift IR,    machine code                       run(inputs, outputs)
+//!                is cut      are alive    by `vectors`     in pages
 //! ```
 //!
 //! Wide code has a way of its own from the plan on, with the same result (`wide/`):

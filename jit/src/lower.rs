@@ -1,5 +1,5 @@
-//! From the IR to Cranelift's: strips of points outside, then pieces of the function, then blocks of points, then folds; ops by
-//! [`Vectors`].
+//! From the IR to Cranelift's: strips of points outside, then pieces of the function, then blocks of points,
+//! then folds; ops by [`Vectors`].
 //!
 //! ```text
 //! entry(planes, bytes, tables):
@@ -22,8 +22,8 @@
 //!     brif offset + 16 K < end, points(offset + 16 K), next piece
 //! ```
 //!
-//! If there are several pieces, no fold is in one ([`crate::strips`]). A fold is then the same loop over rows around the `points` loops
-//! of its body's pieces, with its accumulators in slots:
+//! If there are several pieces, no fold is in one ([`crate::strips`]). A fold is then the same loop over rows
+//! around the `points` loops of its body's pieces, with its accumulators in slots:
 //!
 //! ```text
 //! header(cursor):
@@ -41,10 +41,11 @@
 //!     jump header(cursor + 4)
 //! ```
 //!
-//! Inputs, constants, columns that are not broadcast and what is in slots are not kept alive from where the IR defines them: each
-//! Cranelift block that uses one reads it again, at the first use. That is a 16 byte load, which is what a spilled value would cost, and
-//! for a column a load and a broadcast; they leave the registers to the values that have to be computed. (Cranelift makes no memory
-//! operand of such a load unless nothing that follows from it is used twice, which is rare.)
+//! Inputs, constants, columns that are not broadcast and what is in slots are not kept alive from where the
+//! IR defines them: each Cranelift block that uses one reads it again, at the first use. That is a 16 byte
+//! load, which is what a spilled value would cost, and for a column a load and a broadcast; they leave the
+//! registers to the values that have to be computed. (Cranelift makes no memory operand of such a load unless
+//! nothing that follows from it is used twice, which is rare.)
 
 use std::collections::{HashMap, HashSet};
 
@@ -63,8 +64,9 @@ use crate::entry::TableView;
 use crate::strips::{Column, Piece, Plan, Slot, Then};
 use crate::vectors::{VECTOR_BYTES, Vectors};
 
-/// A Cranelift function that keeps to the ABI of [`crate::entry`]: it reads the input planes, the table views and what
-/// these point to as far as checked tables go, writes the output planes, and touches no other memory but its own frame.
+/// A Cranelift function that keeps to the ABI of [`crate::entry`]: it reads the input planes, the table views
+/// and what these point to as far as checked tables go, writes the output planes, and touches no other memory
+/// but its own frame.
 pub(crate) struct Lowered(ir::Function);
 
 impl Lowered {
@@ -87,8 +89,8 @@ pub(crate) fn lower(function: &Function, plan: &Plan, vectors: VectorCount) -> L
     Lowered(lowered)
 }
 
-/// `fn(planes, bytes, tables)`, see [`crate::entry`]. System V also where the system has another convention: the caller is
-/// our own assembly.
+/// `fn(planes, bytes, tables)`, see [`crate::entry`]. System V also where the system has another convention:
+/// the caller is our own assembly.
 fn signature() -> Signature {
     let mut signature = Signature::new(CallConv::SystemV);
     signature.params = vec![AbiParam::new(I64); 3];
@@ -161,7 +163,8 @@ struct Strip {
 struct Points {
     /// Bytes from the start of each plane.
     offset: ir::Value,
-    /// The address in each input plane, for all folds of the one piece that there is; empty if there are several.
+    /// The address in each input plane, for all folds of the one piece that there is; empty if there are
+    /// several.
     inputs: Vec<ir::Value>,
     /// The address in the first slot, if there are slots.
     slots: Option<ir::Value>,
@@ -235,7 +238,8 @@ impl<'f, const K: usize> Lowering<'f, K> {
         builder.seal_all_blocks();
     }
 
-    /// Emits a loop over offsets in the planes, which runs at least once: `from` is before `to`. Its last step may end behind `to`.
+    /// Emits a loop over offsets in the planes, which runs at least once: `from` is before `to`. Its last
+    /// step may end behind `to`.
     fn repeat(
         &mut self,
         from: ir::Value,
@@ -370,7 +374,8 @@ impl<'f, const K: usize> Lowering<'f, K> {
         self.plan.slot(value).map(|slot| Place::Kept(slot, self.function.values[value]))
     }
 
-    /// Stores values of the current block of points into the slots of others, as if all were read before the first is written.
+    /// Stores values of the current block of points into the slots of others, as if all were read before the
+    /// first is written.
     fn keep_all(&mut self, targets: &[Value], values: &[Value]) {
         let moves = self.moves(targets, values);
         let written: HashSet<Slot> = moves.iter().filter_map(|&(target, _)| self.plan.slot(target)).collect();
@@ -386,7 +391,8 @@ impl<'f, const K: usize> Lowering<'f, K> {
         }
     }
 
-    /// Pairs of values of which the first is to have what the second is, without those that share a slot: they have it.
+    /// Pairs of values of which the first is to have what the second is, without those that share a slot:
+    /// they have it.
     fn moves(&self, targets: &[Value], values: &[Value]) -> Vec<(Value, Value)> {
         let pairs = targets.iter().copied().zip(values.iter().copied());
         pairs.filter(|&(target, value)| self.plan.slot(target) != self.plan.slot(value)).collect()
@@ -542,8 +548,8 @@ impl<'f, const K: usize> Lowering<'f, K> {
         })
     }
 
-    /// Emits a loop over the active rows that the parent's row owns: `body` takes the accumulators and returns the next ones. Returns
-    /// the final ones.
+    /// Emits a loop over the active rows that the parent's row owns: `body` takes the accumulators and
+    /// returns the next ones. Returns the final ones.
     fn each_row(
         &mut self,
         table: Table,
@@ -559,7 +565,8 @@ impl<'f, const K: usize> Lowering<'f, K> {
 
         self.switch_to(header);
         let builder = &mut self.vectors.builder;
-        // Of two successors Cranelift places the second next in memory: the row, so that the loop is one stretch of code.
+        // Of two successors Cranelift places the second next in memory: the row, so that the loop is one
+        // stretch of code.
         let over = builder.ins().icmp(IntCC::Equal, cursor, end);
         builder.ins().brif(over, exit, &[], row, &[]);
 
@@ -575,7 +582,8 @@ impl<'f, const K: usize> Lowering<'f, K> {
         accumulators
     }
 
-    /// The address of a table's numbers, and where its active rows begin and end for the parent's current row.
+    /// The address of a table's numbers, and where its active rows begin and end for the parent's current
+    /// row.
     fn active(&mut self, table: Table) -> Active {
         let parent = self.function.tables[table].parent.map(|parent| self.row(parent).position);
         let view = self.frame.tables;

@@ -5,8 +5,8 @@
 //! Code    Pages with finished code, and the address of its one function
 //! ```
 //!
-//! No page is writable and executable at once: the module writes the code, then finalizing takes the right to write away
-//! and gives the right to execute.
+//! No page is writable and executable at once: the module writes the code, then finalizing takes the right to
+//! write away and gives the right to execute.
 #![allow(unsafe_code)]
 
 use cranelift_codegen::Context;
@@ -27,8 +27,9 @@ struct Pages(Option<JITModule>);
 impl Drop for Pages {
     fn drop(&mut self) {
         if let Some(module) = self.0.take() {
-            // SAFETY: the address of the code is kept in `Code` alone, beside these pages, and is used in `Code::call`
-            // alone, which borrows the `Code`. So nothing runs in these pages now, and nothing will.
+            // SAFETY: the address of the code is kept in `Code` alone, beside these pages, and is used in
+            // `Code::call` alone, which borrows the `Code`. So nothing runs in these pages now, and nothing
+            // will.
             unsafe { module.free_memory() };
         }
     }
@@ -36,8 +37,9 @@ impl Drop for Pages {
 
 /// Finished machine code.
 ///
-/// Contract: `address` is a function in `pages` which was compiled from a [`Lowered`] or emitted as a [`Blob`], so it keeps to the ABI
-/// of [`crate::entry`]; the pages are executable, are not writable, and stay until the `Code` is dropped.
+/// Contract: `address` is a function in `pages` which was compiled from a [`Lowered`] or emitted as a
+/// [`Blob`], so it keeps to the ABI of [`crate::entry`]; the pages are executable, are not writable, and stay
+/// until the `Code` is dropped.
 pub(crate) struct Code {
     address: *const u8,
     bytes: usize,
@@ -48,8 +50,9 @@ pub(crate) struct Code {
 
 // SAFETY: the module is `Send`, and the address is that of memory which belongs to it.
 unsafe impl Send for Code {}
-// SAFETY: through a shared reference one can only read the numbers and call the code, which changes no memory but what its
-// arguments name and the stack of the thread that calls it. The module, which is not `Sync`, cannot be reached.
+// SAFETY: through a shared reference one can only read the numbers and call the code, which changes no memory
+// but what its arguments name and the stack of the thread that calls it. The module, which is not `Sync`,
+// cannot be reached.
 unsafe impl Sync for Code {}
 
 impl Code {
@@ -104,12 +107,13 @@ impl Code {
     /// Runs the code. The arguments were made for the function that this is compiled from, see [`Arguments`].
     pub(crate) fn call(&self, arguments: &Arguments<'_>) {
         let Arguments { planes, bytes, tables } = arguments;
-        // SAFETY: the contract of `Code` says that this is a function of the ABI that `enter` expects. `Arguments` come from
-        // `BoundKernel::run_selected`: there is a plane of this many bytes for each input and output, at least one block long and whole
-        // blocks; outputs come from exclusive borrows, so that no other plane overlaps them; the tables have been
-        // checked against the function, the selection fits them, and both are borrowed by the caller. What else the code writes is
-        // its frame, which is no larger than `limits::MAX_JIT_FRAME_BYTES` and is touched page by page: a stack that is too short for it
-        // ends at the guard page.
+        // SAFETY: the contract of `Code` says that this is a function of the ABI that `enter` expects.
+        // `Arguments` come from `BoundKernel::run_selected`: there is a plane of this many bytes for each
+        // input and output, at least one block long and whole blocks; outputs come from exclusive borrows, so
+        // that no other plane overlaps them; the tables have been checked against the function, the selection
+        // fits them, and both are borrowed by the caller. What else the code writes is its frame, which is no
+        // larger than `limits::MAX_JIT_FRAME_BYTES` and is touched page by page: a stack that is too short
+        // for it ends at the guard page.
         unsafe { enter(self.address, planes.as_ptr(), *bytes, tables.as_ptr()) };
     }
 }
@@ -120,19 +124,19 @@ static DEFAULT_MXCSR: u32 = 0x1F80;
 
 /// Calls code in the default floating-point environment, and puts the caller's back.
 ///
-/// All of it is one piece of assembly, because Rust promises nothing about code of its own that runs in another environment.
-/// The upper halves of the vector registers are cleared first: Cranelift writes its moves in the legacy encoding, which
-/// waits for whatever the caller has left there.
+/// All of it is one piece of assembly, because Rust promises nothing about code of its own that runs in
+/// another environment. The upper halves of the vector registers are cleared first: Cranelift writes its
+/// moves in the legacy encoding, which waits for whatever the caller has left there.
 ///
 /// # Safety
-/// `code` is a System V function of these three parameters, which may do what it does with these arguments, does not
-/// unwind, and leaves the floating-point environment as it is.
+/// `code` is a System V function of these three parameters, which may do what it does with these arguments,
+/// does not unwind, and leaves the floating-point environment as it is.
 #[cfg(target_arch = "x86_64")]
 unsafe fn enter(code: *const u8, planes: *const *const f32, bytes: usize, tables: *const TableView) {
     let mut saved = 0_u32;
-    // SAFETY: the stack is aligned for a call, as it is wherever assembly may use it. r12 and r13 survive the call by its
-    // convention, and they point at two words that live here. Everything that the convention lets a callee change is
-    // named, and the environment, with its exception flags, is what it was.
+    // SAFETY: the stack is aligned for a call, as it is wherever assembly may use it. r12 and r13 survive the
+    // call by its convention, and they point at two words that live here. Everything that the convention lets
+    // a callee change is named, and the environment, with its exception flags, is what it was.
     unsafe {
         std::arch::asm!(
             "vzeroupper",

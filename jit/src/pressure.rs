@@ -1,9 +1,10 @@
 //! How many values are alive at once, before any code is made.
 //!
-//! A value is alive from its definition to its last use. A use inside a fold counts until the fold ends if the value
-//! comes from outside, because the next row reads it again. Inputs, constants, columns and what another piece has computed
-//! are read anew in each block that uses them and do not count. (Columns that are broadcast for a piece are alive in it, and do not
-//! count either: where there are many of them they are spilled, and read from the frame where they are used.)
+//! A value is alive from its definition to its last use. A use inside a fold counts until the fold ends if
+//! the value comes from outside, because the next row reads it again. Inputs, constants, columns and what
+//! another piece has computed are read anew in each block that uses them and do not count. (Columns that are
+//! broadcast for a piece are alive in it, and do not count either: where there are many of them they are
+//! spilled, and read from the frame where they are used.)
 //!
 //! ```text
 //! v2 = sqrt v1          ┐
@@ -59,8 +60,9 @@ pub(crate) fn live_values(function: &Function, plan: &Plan) -> usize {
     most.max().unwrap_or(0).unsigned_abs()
 }
 
-/// The largest number of values that a loop hands from row to row: few for a field, more for a gradient, and more for attributes. Where the
-/// function is one piece they compete for registers with all that the body computes.
+/// The largest number of values that a loop hands from row to row: few for a field, more for a gradient, and
+/// more for attributes. Where the function is one piece they compete for registers with all that the body
+/// computes.
 pub(crate) fn carried_values(function: &Function) -> usize {
     let carried =
         |inst: &InstData| if let InstKind::Fold(fold) = &inst.kind { fold.initial.len() } else { 0 };
@@ -176,7 +178,8 @@ mod tests {
         assert_eq!(count(b, last), 1);
     }
 
-    /// The sum of x, its root, the root of that and so on, 20 in all, which are added up in the order in which they were made.
+    /// The sum of x, its root, the root of that and so on, 20 in all, which are added up in the order in
+    /// which they were made.
     fn waiting() -> Function {
         let mut b = FunctionBuilder::new("wait", &["x"]);
         let mut values = vec![b.input(0)];
@@ -206,7 +209,8 @@ mod tests {
         let zero = b.constant(0.0);
         let acc = b.begin_fold(t, Reduction::Sum, &[zero]);
         let c = b.column(t, 0);
-        // Each value from outside is read once, and for the last time in its row, but the next row reads it again.
+        // Each value from outside is read once, and for the last time in its row, but the next row reads it
+        // again.
         let mut next = b.add(acc[0], c);
         for value in outside {
             next = b.fma(value, c, next);

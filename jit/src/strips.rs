@@ -1,9 +1,9 @@
 //! Where a long function is cut: each piece runs over a strip of points before the next piece does.
 //!
-//! Code that is longer than the nearest caches is fetched anew for every block of points, and that takes longer than running it.
-//! A piece fits, so all blocks of a strip but the first find it there. And one block need not wait for what another computes, which
-//! keeps the processor busy where a formula is one long chain. The price is memory: a value that another piece reads is kept for
-//! the whole strip, in the frame.
+//! Code that is longer than the nearest caches is fetched anew for every block of points, and that takes
+//! longer than running it. A piece fits, so all blocks of a strip but the first find it there. And one block
+//! need not wait for what another computes, which keeps the processor busy where a formula is one long chain.
+//! The price is memory: a value that another piece reads is kept for the whole strip, in the frame.
 //!
 //! ```text
 //! v3 = sqrt v0           ┐                     for each block of the strip
@@ -17,8 +17,9 @@
 //! yield v9               ] piece 3             for each block of the strip
 //! ```
 //!
-//! So the rows of a fold are outside and the points inside, where an uncut function has it the other way round. The
-//! accumulators of a fold live in the frame: piece 0 keeps the initial ones, the last piece of the body keeps the next ones.
+//! So the rows of a fold are outside and the points inside, where an uncut function has it the other way
+//! round. The accumulators of a fold live in the frame: piece 0 keeps the initial ones, the last piece of the
+//! body keeps the next ones.
 
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashMap, HashSet};
@@ -28,8 +29,8 @@ use jbt_ir::{Block, Entity, Function, Inst, InstData, InstKind, Table, Value};
 
 /// Bytes of all slots that leave room for other things in the nearest cache.
 const NEAR_BYTES: usize = 32 << 10;
-/// Points of the shortest and of the longest strip: enough that fetching the code of a piece does not count, and no more than a caller
-/// may be expected to have.
+/// Points of the shortest and of the longest strip: enough that fetching the code of a piece does not count,
+/// and no more than a caller may be expected to have.
 const STRIP_POINTS: [usize; 2] = [64, 1024];
 
 /// A stretch of the instructions of one block.
@@ -205,7 +206,8 @@ struct Lives<'a> {
     piece: usize,
     /// The piece that defines a value. For an accumulator, the one before the fold.
     homes: Vec<usize>,
-    /// The last piece in which a value is needed: one that reads it, or the last of a fold that does or whose result it is.
+    /// The last piece in which a value is needed: one that reads it, or the last of a fold that does or whose
+    /// result it is.
     last: Vec<usize>,
     /// How many folds enclose the definition of each value.
     depth: Vec<usize>,
@@ -296,7 +298,8 @@ impl<'a> Lives<'a> {
         }
     }
 
-    /// A slot for every value that is read away from home, and for every accumulator. And how many slots there are.
+    /// A slot for every value that is read away from home, and for every accumulator. And how many slots
+    /// there are.
     fn slots(&self) -> (Vec<Option<Slot>>, usize) {
         let mut slots: Vec<Option<Slot>> = vec![None; self.function.values.len()];
         // What the body binds has the slot of the result, and leaves are read where they are.

@@ -6,9 +6,9 @@
 //! bits   [I32X4; K]
 //! ```
 //!
-//! Several vectors for each value hide the latency of an operation behind the same operation on the others. A value
-//! that is the same in all lanes (a constant, a column, and whatever is made of these alone) is one vector that stands
-//! K times in the array, and an op on such values is emitted once.
+//! Several vectors for each value hide the latency of an operation behind the same operation on the others. A
+//! value that is the same in all lanes (a constant, a column, and whatever is made of these alone) is one
+//! vector that stands K times in the array, and an op on such values is emitted once.
 
 use std::array;
 use std::collections::HashMap;
@@ -65,8 +65,8 @@ impl<'f, const K: usize> Vectors<'f, K> {
         self.each([a, b], |builder, [a, b]| builder.ins().fcmp(code, a, b))
     }
 
-    /// `if less[0] < less[1] { a } else { b }`. Where these are a and b, in either order, the backend knows it as `minps` or
-    /// `maxps`: one instruction.
+    /// `if less[0] < less[1] { a } else { b }`. Where these are a and b, in either order, the backend knows
+    /// it as `minps` or `maxps`: one instruction.
     fn extremum(builder: &mut FunctionBuilder<'f>, less: [Value; 2], a: Value, b: Value) -> Value {
         let mask = builder.ins().fcmp(FloatCC::LessThan, less[0], less[1]);
         let mask = reinterpret(builder, F32X4, mask);
@@ -167,7 +167,8 @@ impl<const K: usize> Domain for Vectors<'_, K> {
         self.each([a], |builder, [a]| builder.ins().bnot(a))
     }
 
-    /// By `blendv`, which is one instruction for any mask; `bitselect` is three unless the mask is a comparison.
+    /// By `blendv`, which is one instruction for any mask; `bitselect` is three unless the mask is a
+    /// comparison.
     fn select(&mut self, condition: [Value; K], a: [Value; K], b: [Value; K]) -> [Value; K] {
         self.each([condition, a, b], |builder, [condition, a, b]| {
             let (a, b) = (reinterpret(builder, I32X4, a), reinterpret(builder, I32X4, b));

@@ -296,27 +296,9 @@ mod tests {
     use crate::domain::scalar::Scalar;
     use crate::interpret::run;
     use crate::pass::dce;
+    use crate::spicy::SPICY;
     use crate::table::Tables;
     use crate::verify::verify;
-
-    const SPICY: [f32; 16] = [
-        0.0,
-        -0.0,
-        1.0,
-        -1.0,
-        0.1,
-        -3.7,
-        1e-45,
-        -1e-45,
-        1.1e-38,
-        f32::MIN_POSITIVE,
-        1.7e30,
-        f32::MAX,
-        f32::MIN,
-        f32::INFINITY,
-        f32::NEG_INFINITY,
-        f32::NAN,
-    ];
 
     /// How many instructions that are not inputs or constants are left, after checking that every spicy pair gives the same bits.
     fn left(name: &str, write: impl FnOnce(&mut FunctionBuilder, Value, Value) -> Value) -> usize {

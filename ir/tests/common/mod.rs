@@ -4,3 +4,4 @@
 pub mod golden;
 pub mod random;
 pub mod sample;
+pub mod spicy;

@@ -2,33 +2,8 @@
 
 use jbt_ir::{Domain, Function, FunctionBuilder, Op, Reduction, Rows, Schema, Table, Tables, Type, Value};
 
-/// Numbers at the edges of everything.
-pub const SPICY: [f32; 24] = [
-    0.0,
-    -0.0,
-    1.0,
-    -1.0,
-    0.5,
-    2.0,
-    -4.0,
-    0.1,
-    -3.7,
-    100.25,
-    1e-45,
-    -1e-45,
-    1e-39,
-    f32::MIN_POSITIVE,
-    f32::EPSILON,
-    1.0 + f32::EPSILON,
-    16_777_216.0,
-    1e30,
-    f32::MAX,
-    f32::MIN,
-    f32::INFINITY,
-    f32::NEG_INFINITY,
-    f32::NAN,
-    std::f32::consts::PI,
-];
+use super::spicy::SPICY;
+
 /// The input planes of every random function.
 pub const INPUTS: [&str; 3] = ["x", "y", "z"];
 

@@ -11,7 +11,7 @@
 //! ```
 
 use super::encode::{Encoder, Shape};
-use super::inst::Inst;
+use super::inst::{Inst, Integer};
 use super::state::State;
 
 /// The frame begins at a multiple of this.
@@ -28,7 +28,7 @@ pub(super) fn frame_bytes(state: &State<'_>, slot_bytes: usize) -> usize {
 pub(super) fn assemble(mut state: State<'_>, frame_bytes: usize, shape: Shape) -> (Vec<u8>, usize) {
     let slots = state.frame_bytes().next_multiple_of(ALIGNMENT);
     for &index in &state.slot_addresses {
-        if let Inst::Address { of, .. } = &mut state.code[index] {
+        if let Inst::Integer(Integer::Address { of, .. }) = &mut state.code[index] {
             of.displacement = i32::try_from(slots).expect("frames are limited");
         }
     }

@@ -185,21 +185,7 @@ impl Replay<'_> {
             Inst::MaskMove { to, from } => ([mask(from), None, None], mask(to)),
             Inst::MaskLoad { to, from } => ([Some(in_memory(from)), None, None], mask(to)),
             Inst::MaskStore { to, from } => ([mask(from), None, None], Some(in_memory(to))),
-            Inst::LoadPointer { .. }
-            | Inst::StorePointer { .. }
-            | Inst::LoadWord { .. }
-            | Inst::AddPointer { .. }
-            | Inst::SubPointer { .. }
-            | Inst::AddRegister { .. }
-            | Inst::AddConstant { .. }
-            | Inst::Multiply { .. }
-            | Inst::Address { .. }
-            | Inst::ClearRegister { .. }
-            | Inst::TakeIfAbove { .. }
-            | Inst::Compare64 { .. }
-            | Inst::CompareMemory { .. }
-            | Inst::Jump { .. }
-            | Inst::Here(_) => ([None; 3], None),
+            Inst::Integer(_) | Inst::Jump { .. } | Inst::Here(_) => ([None; 3], None),
         }
     }
 }

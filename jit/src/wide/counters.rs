@@ -10,7 +10,7 @@
 
 use jbt_ir::Entity;
 
-use super::inst::{Base, Condition, Gpr, Inst, Label, Memory};
+use super::inst::{Base, Condition, Gpr, Inst, Integer, Label, Memory};
 use super::linear::{LoopId, NONE, Over, POINTERS};
 use super::state::{ALL_BYTES, Open, SAVED, STRIP_START, State};
 use crate::entry::TableView;
@@ -70,7 +70,7 @@ impl State<'_> {
         if depth + 2 >= self.depth {
             return BANKS[depth % 2][2];
         }
-        self.integer(Inst::LoadPointer { to: Gpr::Rax, from: Self::saved(depth, 2) });
+        self.integer(Integer::LoadPointer { to: Gpr::Rax, from: Self::saved(depth, 2) });
         Gpr::Rax
     }
 
@@ -79,7 +79,7 @@ impl State<'_> {
         if let Some(&register) = INPUTS.get(plane) {
             return Memory::at(register, displacement);
         }
-        self.integer(Inst::LoadPointer { to: Gpr::Rax, from: plane_pointer(plane) });
+        self.integer(Integer::LoadPointer { to: Gpr::Rax, from: plane_pointer(plane) });
         Memory { base: Base::Sum(Gpr::Rax, Gpr::Rcx, 1), displacement, is_one: false }
     }
 
@@ -92,29 +92,29 @@ impl State<'_> {
         let depth = self.depth;
         if depth >= 2 {
             for (which, from) in BANKS[depth % 2].into_iter().enumerate() {
-                self.integer(Inst::StorePointer { to: Self::saved(depth - 2, which), from });
+                self.integer(Integer::StorePointer { to: Self::saved(depth - 2, which), from });
             }
         }
         let [cursor, end, _] = BANKS[depth % 2];
-        self.integer(Inst::LoadPointer { to: cursor, from: view(table, TableView::ACTIVE) });
-        self.integer(Inst::LoadPointer { to: Gpr::Rax, from: view(table, TableView::STARTS) });
+        self.integer(Integer::LoadPointer { to: cursor, from: view(table, TableView::ACTIVE) });
+        self.integer(Integer::LoadPointer { to: Gpr::Rax, from: view(table, TableView::STARTS) });
         if let Some(parent) = self.parents[table] {
             // A start is as long as an active row, so the bytes are the same.
             let above = self.rows[parent].expect("a verified fold stands inside that of its parent");
             let parent_cursor = BANKS[above % 2][0];
             self.integer(if above + 1 == depth {
-                Inst::AddRegister { to: Gpr::Rax, from: parent_cursor }
+                Integer::AddRegister { to: Gpr::Rax, from: parent_cursor }
             } else {
-                Inst::AddPointer { to: Gpr::Rax, from: Self::saved(above, 0) }
+                Integer::AddPointer { to: Gpr::Rax, from: Self::saved(above, 0) }
             });
-            self.integer(Inst::SubPointer { to: Gpr::Rax, from: view(parent, TableView::ACTIVE) });
+            self.integer(Integer::SubPointer { to: Gpr::Rax, from: view(parent, TableView::ACTIVE) });
         }
         let word = |base, displacement| Memory::at(base, displacement);
         let rows = |first, count| Memory { base: Base::Sum(first, count, 4), displacement: 0, is_one: false };
-        self.integer(Inst::LoadWord { to: end, from: word(Gpr::Rax, 4) });
-        self.integer(Inst::Address { to: end, of: rows(cursor, end) });
-        self.integer(Inst::LoadWord { to: Gpr::Rax, from: word(Gpr::Rax, 0) });
-        self.integer(Inst::Address { to: cursor, of: rows(cursor, Gpr::Rax) });
+        self.integer(Integer::LoadWord { to: end, from: word(Gpr::Rax, 4) });
+        self.integer(Integer::Address { to: end, of: rows(cursor, end) });
+        self.integer(Integer::LoadWord { to: Gpr::Rax, from: word(Gpr::Rax, 0) });
+        self.integer(Integer::Address { to: cursor, of: rows(cursor, Gpr::Rax) });
         self.rows[table] = Some(depth);
         self.depth += 1;
     }
@@ -123,28 +123,28 @@ impl State<'_> {
     fn begin_rows(&mut self, table: usize) {
         let [cursor, end, row] = BANKS[(self.depth - 1) % 2];
         let Some(&Open { top, exit, .. }) = self.open.last() else { return };
-        self.integer(Inst::Compare64 { a: cursor, b: end });
+        self.integer(Integer::Compare64 { a: cursor, b: end });
         self.integer(Inst::Jump { condition: Condition::Equal, to: exit });
         self.integer(Inst::Here(top));
-        self.integer(Inst::LoadWord { to: row, from: Memory::at(cursor, 0) });
+        self.integer(Integer::LoadWord { to: row, from: Memory::at(cursor, 0) });
         let number = i32::try_from(self.strides[table]).expect("a row has fewer bytes");
-        self.integer(Inst::Multiply { to: row, number });
+        self.integer(Integer::Multiply { to: row, number });
         let numbers = i32::try_from(table * size_of::<TableView>() + TableView::NUMBERS);
         let numbers = numbers.expect("limits::MAX_TABLES keeps every view within 2^31 bytes");
-        self.integer(Inst::AddPointer { to: row, from: Memory::at(Gpr::Rdx, numbers) });
+        self.integer(Integer::AddPointer { to: row, from: Memory::at(Gpr::Rdx, numbers) });
     }
 
     /// Ends a loop over rows.
     fn end_rows(&mut self, table: usize, open: &Open) {
         let depth = self.depth - 1;
         let [cursor, end, _] = BANKS[depth % 2];
-        self.integer(Inst::AddConstant { to: cursor, number: size_of::<u32>() as i32 });
-        self.integer(Inst::Compare64 { a: cursor, b: end });
+        self.integer(Integer::AddConstant { to: cursor, number: size_of::<u32>() as i32 });
+        self.integer(Integer::Compare64 { a: cursor, b: end });
         self.integer(Inst::Jump { condition: Condition::NotEqual, to: open.top });
         self.integer(Inst::Here(open.exit));
         if depth >= 2 {
             for (which, to) in BANKS[depth % 2].into_iter().enumerate() {
-                self.integer(Inst::LoadPointer { to, from: Self::saved(depth - 2, which) });
+                self.integer(Integer::LoadPointer { to, from: Self::saved(depth - 2, which) });
             }
         }
         self.rows[table] = None;
@@ -155,17 +155,17 @@ impl State<'_> {
     fn find_points(&mut self, id: LoopId) {
         let is_whole = self.linear.loops[id as usize].parent == NONE;
         self.integer(if is_whole {
-            Inst::ClearRegister { to: Gpr::Rcx }
+            Integer::ClearRegister { to: Gpr::Rcx }
         } else {
-            Inst::LoadPointer { to: Gpr::Rcx, from: Memory::at(Gpr::Rsp, STRIP_START) }
+            Integer::LoadPointer { to: Gpr::Rcx, from: Memory::at(Gpr::Rsp, STRIP_START) }
         });
         if !is_whole {
             self.slot_addresses.push(self.code.len());
-            self.integer(Inst::Address { to: Gpr::R8, of: Memory::at(Gpr::Rsp, 0) });
+            self.integer(Integer::Address { to: Gpr::R8, of: Memory::at(Gpr::Rsp, 0) });
         }
         for (plane, to) in self.inputs(id) {
-            self.integer(Inst::LoadPointer { to, from: plane_pointer(plane) });
-            self.integer(Inst::AddRegister { to, from: Gpr::Rcx });
+            self.integer(Integer::LoadPointer { to, from: plane_pointer(plane) });
+            self.integer(Integer::AddRegister { to, from: Gpr::Rcx });
         }
     }
 
@@ -179,33 +179,33 @@ impl State<'_> {
         let number = (self.vectors as usize * self.shape.bytes) as i32;
         let is_whole = self.linear.loops[id as usize].parent == NONE;
         for (_, to) in self.inputs(id) {
-            self.integer(Inst::AddConstant { to, number });
+            self.integer(Integer::AddConstant { to, number });
         }
         if !is_whole {
-            self.integer(Inst::AddConstant { to: Gpr::R8, number });
+            self.integer(Integer::AddConstant { to: Gpr::R8, number });
         }
-        self.integer(Inst::AddConstant { to: Gpr::Rcx, number });
-        self.integer(Inst::Compare64 { a: Gpr::Rcx, b: Gpr::Rsi });
+        self.integer(Integer::AddConstant { to: Gpr::Rcx, number });
+        self.integer(Integer::Compare64 { a: Gpr::Rcx, b: Gpr::Rsi });
         self.integer(Inst::Jump { condition: Condition::Below, to: open.top });
     }
 
     fn begin_strips(&mut self, top: Label) {
         let all = Memory::at(Gpr::Rsp, ALL_BYTES);
         let number = i32::try_from(self.strip_bytes).expect("a strip is short");
-        self.integer(Inst::StorePointer { to: all, from: Gpr::Rsi });
-        self.integer(Inst::ClearRegister { to: Gpr::Rcx });
+        self.integer(Integer::StorePointer { to: all, from: Gpr::Rsi });
+        self.integer(Integer::ClearRegister { to: Gpr::Rcx });
         self.integer(Inst::Here(top));
-        self.integer(Inst::StorePointer { to: Memory::at(Gpr::Rsp, STRIP_START), from: Gpr::Rcx });
-        self.integer(Inst::Address { to: Gpr::Rsi, of: Memory::at(Gpr::Rcx, number) });
-        self.integer(Inst::CompareMemory { a: Gpr::Rsi, b: all });
-        self.integer(Inst::TakeIfAbove { to: Gpr::Rsi, from: all });
+        self.integer(Integer::StorePointer { to: Memory::at(Gpr::Rsp, STRIP_START), from: Gpr::Rcx });
+        self.integer(Integer::Address { to: Gpr::Rsi, of: Memory::at(Gpr::Rcx, number) });
+        self.integer(Integer::CompareMemory { a: Gpr::Rsi, b: all });
+        self.integer(Integer::TakeIfAbove { to: Gpr::Rsi, from: all });
     }
 
     fn end_strips(&mut self, open: &Open) {
         let number = i32::try_from(self.strip_bytes).expect("a strip is short");
-        self.integer(Inst::LoadPointer { to: Gpr::Rcx, from: Memory::at(Gpr::Rsp, STRIP_START) });
-        self.integer(Inst::AddConstant { to: Gpr::Rcx, number });
-        self.integer(Inst::CompareMemory { a: Gpr::Rcx, b: Memory::at(Gpr::Rsp, ALL_BYTES) });
+        self.integer(Integer::LoadPointer { to: Gpr::Rcx, from: Memory::at(Gpr::Rsp, STRIP_START) });
+        self.integer(Integer::AddConstant { to: Gpr::Rcx, number });
+        self.integer(Integer::CompareMemory { a: Gpr::Rcx, b: Memory::at(Gpr::Rsp, ALL_BYTES) });
         self.integer(Inst::Jump { condition: Condition::Below, to: open.top });
     }
 }

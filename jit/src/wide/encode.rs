@@ -10,7 +10,7 @@
 //! number for all lanes), and the shorter VEX form elsewhere. Instructions on mask registers and integers
 //! have no EVEX form.
 
-use super::inst::{Base, Binary, Condition, Form, Gpr, Inst, Label, Memory, Operand};
+use super::inst::{Base, Binary, Condition, Form, Gpr, Inst, Integer, Label, Memory, Operand};
 
 /// How wide vectors are, and what else there is.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -141,19 +141,7 @@ impl Encoder {
             | Inst::MaskStore { .. } => self.mask(inst),
             Inst::Jump { condition, to } => self.jump(condition, to),
             Inst::Here(label) => self.labels[label.0 as usize] = Some(self.bytes.len()),
-            Inst::LoadPointer { .. }
-            | Inst::StorePointer { .. }
-            | Inst::LoadWord { .. }
-            | Inst::AddPointer { .. }
-            | Inst::SubPointer { .. }
-            | Inst::AddRegister { .. }
-            | Inst::AddConstant { .. }
-            | Inst::Multiply { .. }
-            | Inst::Address { .. }
-            | Inst::ClearRegister { .. }
-            | Inst::TakeIfAbove { .. }
-            | Inst::Compare64 { .. }
-            | Inst::CompareMemory { .. } => self.integer(inst),
+            Inst::Integer(ref inst) => self.integer(inst),
         }
     }
 
@@ -290,20 +278,20 @@ impl Encoder {
     }
 
     /// Instructions on integers, all of 64 bits but for a word that is read.
-    fn integer(&mut self, inst: &Inst) {
+    fn integer(&mut self, inst: &Integer) {
         match *inst {
-            Inst::LoadPointer { to, from } => self.rex(true, &[0x8B], to, Operand::Memory(from)),
-            Inst::StorePointer { to, from } => self.rex(true, &[0x89], from, Operand::Memory(to)),
-            Inst::LoadWord { to, from } => self.rex(false, &[0x8B], to, Operand::Memory(from)),
-            Inst::AddPointer { to, from } => self.rex(true, &[0x03], to, Operand::Memory(from)),
-            Inst::SubPointer { to, from } => self.rex(true, &[0x2B], to, Operand::Memory(from)),
-            Inst::AddRegister { to, from } => self.rex(true, &[0x03], to, Operand::Register(from as u8)),
-            Inst::Address { to, of } => self.rex(true, &[0x8D], to, Operand::Memory(of)),
-            Inst::ClearRegister { to } => self.rex(false, &[0x33], to, Operand::Register(to as u8)),
-            Inst::TakeIfAbove { to, from } => self.rex(true, &[0x0F, 0x47], to, Operand::Memory(from)),
-            Inst::Compare64 { a, b } => self.rex(true, &[0x3B], a, Operand::Register(b as u8)),
-            Inst::CompareMemory { a, b } => self.rex(true, &[0x3B], a, Operand::Memory(b)),
-            Inst::AddConstant { to, number } => {
+            Integer::LoadPointer { to, from } => self.rex(true, &[0x8B], to, Operand::Memory(from)),
+            Integer::StorePointer { to, from } => self.rex(true, &[0x89], from, Operand::Memory(to)),
+            Integer::LoadWord { to, from } => self.rex(false, &[0x8B], to, Operand::Memory(from)),
+            Integer::AddPointer { to, from } => self.rex(true, &[0x03], to, Operand::Memory(from)),
+            Integer::SubPointer { to, from } => self.rex(true, &[0x2B], to, Operand::Memory(from)),
+            Integer::AddRegister { to, from } => self.rex(true, &[0x03], to, Operand::Register(from as u8)),
+            Integer::Address { to, of } => self.rex(true, &[0x8D], to, Operand::Memory(of)),
+            Integer::ClearRegister { to } => self.rex(false, &[0x33], to, Operand::Register(to as u8)),
+            Integer::TakeIfAbove { to, from } => self.rex(true, &[0x0F, 0x47], to, Operand::Memory(from)),
+            Integer::Compare64 { a, b } => self.rex(true, &[0x3B], a, Operand::Register(b as u8)),
+            Integer::CompareMemory { a, b } => self.rex(true, &[0x3B], a, Operand::Memory(b)),
+            Integer::AddConstant { to, number } => {
                 let short = i8::try_from(number).ok();
                 let opcode = if short.is_some() { 0x83 } else { 0x81 };
                 self.rex(true, &[opcode], Gpr::Rax, Operand::Register(to as u8));
@@ -312,11 +300,10 @@ impl Encoder {
                     None => self.bytes.extend(number.to_le_bytes()),
                 }
             }
-            Inst::Multiply { to, number } => {
+            Integer::Multiply { to, number } => {
                 self.rex(true, &[0x69], to, Operand::Register(to as u8));
                 self.bytes.extend(number.to_le_bytes());
             }
-            _ => unreachable!("only instructions on integers come here"),
         }
     }
 

@@ -241,6 +241,23 @@ pub(crate) enum Inst {
         from: u8,
     },
 
+    Integer(Integer),
+    Jump {
+        condition: Condition,
+        to: Label,
+    },
+    Here(Label),
+}
+
+impl From<Integer> for Inst {
+    fn from(inst: Integer) -> Self {
+        Self::Integer(inst)
+    }
+}
+
+/// An instruction on integer registers, of 64 bits but for a word that is read.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Integer {
     /// Reads an address.
     LoadPointer {
         to: Gpr,
@@ -296,9 +313,4 @@ pub(crate) enum Inst {
         a: Gpr,
         b: Memory,
     },
-    Jump {
-        condition: Condition,
-        to: Label,
-    },
-    Here(Label),
 }

@@ -5,7 +5,7 @@
 
 use jbt_ir::Op;
 
-use super::inst::{Base, Binary, Form, Gpr, Inst, Memory, Operand, Predicate};
+use super::inst::{Base, Binary, Form, Gpr, Inst, Integer, Memory, Operand, Predicate};
 use super::linear::{Home, Kind, NONE, Name};
 use super::state::{MASKS, NOWHERE, Part, Register, SPARE_MASK, State, copy, load, store};
 
@@ -425,7 +425,7 @@ impl State<'_> {
     pub(super) fn output(&mut self, plane: usize, value: Name) {
         let plane = i32::try_from(8 * (self.planes + plane)).expect("planes are limited");
         self.store_at(value, |state| {
-            state.integer(Inst::LoadPointer { to: Gpr::Rax, from: Memory::at(Gpr::Rdi, plane) });
+            state.integer(Integer::LoadPointer { to: Gpr::Rax, from: Memory::at(Gpr::Rdi, plane) });
             Memory { base: Base::Sum(Gpr::Rax, Gpr::Rcx, 1), displacement: 0, is_one: false }
         });
     }

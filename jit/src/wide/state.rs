@@ -179,9 +179,9 @@ impl<'a> State<'a> {
         }
     }
 
-    /// Appends an instruction on integers.
-    pub(super) fn integer(&mut self, inst: Inst) {
-        self.emit(inst, &[], NONE);
+    /// Appends an instruction on integers, a jump, or a label.
+    pub(super) fn integer(&mut self, inst: impl Into<Inst>) {
+        self.emit(inst.into(), &[], NONE);
     }
 
     pub(super) fn event(&mut self, event: Event) {

@@ -7,7 +7,7 @@ use jbt_ir::{Domain, FunctionBuilder, Level, Reduction, Schema, Value, Verified,
 use crate::compile::{Check, Options, Pieces, VectorCount, emit};
 
 use super::encode::{Encoder, Shape};
-use super::inst::{Base, Binary, Condition, Form, Gpr, Inst, Label, Memory, Operand, Predicate};
+use super::inst::{Base, Binary, Condition, Form, Gpr, Inst, Integer, Label, Memory, Operand, Predicate};
 
 const AVX2: Shape = Shape { bytes: 32, has_masks: false };
 const AVX512VL: Shape = Shape { bytes: 32, has_masks: true };
@@ -62,7 +62,8 @@ fn registers(shape: Shape) -> impl Iterator<Item = u8> + Clone {
 }
 
 /// The decoded form of one instruction, which takes all its bytes.
-fn decode(shape: Shape, inst: Inst) -> Instruction {
+fn decode(shape: Shape, inst: impl Into<Inst>) -> Instruction {
+    let inst = inst.into();
     let mut encoder = Encoder::new(shape, 1);
     encoder.inst(&inst);
     let bytes = encoder.bytes;
@@ -308,26 +309,27 @@ fn masks_are_encoded() {
 fn integers_are_encoded() {
     for (to, memory) in GPRS.iter().flat_map(|&to| memories(false).into_iter().map(move |m| (to, m))) {
         for (inst, mnemonic, register) in [
-            (Inst::LoadPointer { to, from: memory }, Mnemonic::Mov, 0),
-            (Inst::StorePointer { to: memory, from: to }, Mnemonic::Mov, 1),
-            (Inst::AddPointer { to, from: memory }, Mnemonic::Add, 0),
-            (Inst::SubPointer { to, from: memory }, Mnemonic::Sub, 0),
-            (Inst::Address { to, of: memory }, Mnemonic::Lea, 0),
-            (Inst::TakeIfAbove { to, from: memory }, Mnemonic::Cmova, 0),
-            (Inst::CompareMemory { a: to, b: memory }, Mnemonic::Cmp, 0),
+            (Integer::LoadPointer { to, from: memory }, Mnemonic::Mov, 0),
+            (Integer::StorePointer { to: memory, from: to }, Mnemonic::Mov, 1),
+            (Integer::AddPointer { to, from: memory }, Mnemonic::Add, 0),
+            (Integer::SubPointer { to, from: memory }, Mnemonic::Sub, 0),
+            (Integer::Address { to, of: memory }, Mnemonic::Lea, 0),
+            (Integer::TakeIfAbove { to, from: memory }, Mnemonic::Cmova, 0),
+            (Integer::CompareMemory { a: to, b: memory }, Mnemonic::Cmp, 0),
         ] {
             let decoded = decode(AVX2, inst);
             assert_eq!(decoded.mnemonic(), mnemonic, "{inst:?}: {decoded}");
             assert_eq!(decoded.op_register(register), gpr(to), "{inst:?}: {decoded}");
             assert_eq!(decoded.memory_displacement64() as i64, i64::from(memory.displacement));
         }
-        let word = decode(AVX2, Inst::LoadWord { to, from: memory });
+        let word = decode(AVX2, Integer::LoadWord { to, from: memory });
         assert_eq!((word.mnemonic(), word.op_register(0)), (Mnemonic::Mov, Register::EAX + to as u32));
     }
     for (a, b) in GPRS.iter().flat_map(|&a| GPRS.map(|b| (a, b))) {
-        for (inst, mnemonic) in
-            [(Inst::AddRegister { to: a, from: b }, Mnemonic::Add), (Inst::Compare64 { a, b }, Mnemonic::Cmp)]
-        {
+        for (inst, mnemonic) in [
+            (Integer::AddRegister { to: a, from: b }, Mnemonic::Add),
+            (Integer::Compare64 { a, b }, Mnemonic::Cmp),
+        ] {
             let decoded = decode(AVX2, inst);
             assert_eq!(decoded.mnemonic(), mnemonic);
             assert_eq!((decoded.op_register(0), decoded.op_register(1)), (gpr(a), gpr(b)));
@@ -335,13 +337,13 @@ fn integers_are_encoded() {
     }
     for (to, number) in GPRS.iter().flat_map(|&to| [0, 1, -1, 127, 128, -128, -129, 1 << 30].map(|n| (to, n)))
     {
-        let add = decode(AVX2, Inst::AddConstant { to, number });
+        let add = decode(AVX2, Integer::AddConstant { to, number });
         assert_eq!((add.mnemonic(), add.op_register(0)), (Mnemonic::Add, gpr(to)));
         assert_eq!(add.immediate(1) as i64, i64::from(number));
-        let multiply = decode(AVX2, Inst::Multiply { to, number });
+        let multiply = decode(AVX2, Integer::Multiply { to, number });
         assert_eq!((multiply.mnemonic(), multiply.op_register(0)), (Mnemonic::Imul, gpr(to)));
         assert_eq!(multiply.immediate(2) as i64, i64::from(number));
-        let clear = decode(AVX2, Inst::ClearRegister { to });
+        let clear = decode(AVX2, Integer::ClearRegister { to });
         assert_eq!((clear.mnemonic(), clear.op_register(0)), (Mnemonic::Xor, Register::EAX + to as u32));
     }
 }

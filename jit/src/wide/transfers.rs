@@ -71,7 +71,8 @@ impl State<'_> {
         if transfers.is_empty() {
             return;
         }
-        // Registers first: where all that is left goes round in circles, one in a register goes out of the way.
+        // Registers first: where all that is left goes round in circles, one in a register goes out of the
+        // way.
         transfers.sort_by_key(|transfer| !matches!(transfer.source, Source::Register(_)));
         // Who reads a place, how many of them have not done so yet, and who writes it.
         let mut readers: HashMap<Source, (Vec<usize>, usize)> = HashMap::new();

@@ -1,9 +1,10 @@
 //! Gives every value a place: a register for a block, a slot for a splat.
 //!
-//! First, values that a copy would connect are put into one *class*, where their lives do not overlap: a fold's parameter
-//! and its result always, its next value and its initial value where possible. So `acc' = fma(a, b, acc)` writes where it
-//! read, and a sum of sums carries one register through all its folds. Then classes get registers in order of their
-//! first definition, a free one with the lowest number each (Poletto and Sarkar 1999, "Linear scan register allocation").
+//! First, values that a copy would connect are put into one *class*, where their lives do not overlap: a
+//! fold's parameter and its result always, its next value and its initial value where possible. So
+//! `acc' = fma(a, b, acc)` writes where it read, and a sum of sums carries one register through all its folds. Then
+//! classes get registers in order of their first definition, a free one with the lowest number each (Poletto
+//! and Sarkar 1999, "Linear scan register allocation").
 
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashMap};
@@ -11,42 +12,8 @@ use std::collections::{BinaryHeap, HashMap};
 use crate::entity::{Entity, Inst, Value};
 use crate::function::InstKind;
 
+use super::place::Place;
 use super::schedule::{Event, Range, Schedule};
-
-/// Where a value is while the tape runs: the number of a register, or the number of a splat with the top bit set.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
-pub(super) struct Place(u32);
-
-impl Place {
-    const SPLAT: u32 = 1 << 31;
-
-    pub fn block(register: usize) -> Self {
-        Self(narrow(register))
-    }
-
-    pub fn splat(slot: usize) -> Self {
-        Self(narrow(slot) | Self::SPLAT)
-    }
-
-    /// Whether this is a splat.
-    #[inline(always)]
-    pub const fn is_splat(self) -> bool {
-        self.0 & Self::SPLAT != 0
-    }
-
-    /// The number of the register or of the splat.
-    #[inline(always)]
-    pub const fn index(self) -> usize {
-        (self.0 & !Self::SPLAT) as usize
-    }
-}
-
-fn narrow(index: usize) -> u32 {
-    u32::try_from(index)
-        .ok()
-        .filter(|index| index & Place::SPLAT == 0)
-        .expect("limits::MAX_VALUES is far below 2^31")
-}
 
 /// The places of all values.
 pub(super) struct Places {
@@ -168,7 +135,8 @@ struct Classes {
     parent: Vec<Value>,
     /// Number of values in the class of a root.
     size: Vec<u32>,
-    /// When the class of a root is alive: ascending, never touching. A root that is not here is alone in its class.
+    /// When the class of a root is alive: ascending, never touching. A root that is not here is alone in its
+    /// class.
     ranges: HashMap<Value, Vec<Range>>,
 }
 
@@ -194,11 +162,13 @@ impl Classes {
         };
         for &fold in &folds {
             for accumulator in schedule.accumulators(fold) {
-                // These never overlap: the parameter dies where the fold ends, at the latest, and there the result is born.
+                // These never overlap: the parameter dies where the fold ends, at the latest, and there the
+                // result is born.
                 join(&mut classes, accumulator.param, accumulator.result);
             }
         }
-        // Copies at the end of a body run once per row, those at its beginning once per fold: the former are saved first.
+        // Copies at the end of a body run once per row, those at its beginning once per fold: the former are
+        // saved first.
         for &fold in &folds {
             for accumulator in schedule.accumulators(fold) {
                 join(&mut classes, accumulator.param, accumulator.next);

@@ -3,8 +3,9 @@
 use crate::entity::{Entity, Inst, Table, Value};
 use crate::function::{Function, InstKind};
 
-use super::assign::{Place, Places, assign};
+use super::assign::{Places, assign};
 use super::pairs::MOST_OPERANDS;
+use super::place::Place;
 use super::schedule::{Accumulator, Event, Paired, Schedule};
 use super::tape::{Code, FoldStep, OpStep, Step, Tape};
 
@@ -131,8 +132,8 @@ impl<'a> Compiler<'a> {
         self.tape.folds[fold].after = self.tape.steps.len();
     }
 
-    /// Copies values as if all at once: a place is written only when nobody waits to read it any more. Where all wait for
-    /// each other, one of them steps aside.
+    /// Copies values as if all at once: a place is written only when nobody waits to read it any more. Where
+    /// all wait for each other, one of them steps aside.
     fn moves(&mut self, moves: impl Iterator<Item = (Value, Value)>) {
         let mut pending: Vec<(Place, Place)> = moves
             .map(|(from, to)| (self.place(from), self.place(to)))
@@ -165,7 +166,8 @@ impl<'a> Compiler<'a> {
                 }
             }
             if !done[start] {
-                // Only cycles are left, and in a cycle each place has one reader: the one that is about to lose `to`.
+                // Only cycles are left, and in a cycle each place has one reader: the one that is about to
+                // lose `to`.
                 let (_, to) = pending[start];
                 let aside = self.aside(to);
                 self.tape.steps.push(Step::Move { from: to, to: aside });

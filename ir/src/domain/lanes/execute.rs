@@ -1,14 +1,15 @@
 //! Runs a tape: for each block of points, step after step.
 //!
-//! Everything here is inlined into one function per [`Level`](super::level::Level), and so is every op's loop.
+//! Everything here is inlined into one function per [`Level`](super::level::Level), and so is every op's
+//! loop.
 
 use crate::entity::Entity;
 use crate::op::{Domain, Op};
 use crate::selection::Selection;
 use crate::table::Tables;
 
-use super::assign::Place;
 use super::ops::{Handle, Lanes, WIDTH};
+use super::place::Place;
 use super::tape::{Code, FoldStep, OpStep, OpenFold, Scratch, Step, Tape};
 
 /// What to run, on what. Planes and scratch have been checked against the tape.
@@ -145,7 +146,8 @@ impl Block<'_> {
         }
     }
 
-    /// The method of an op. What [`apply`](crate::op::apply) does, without looking at types that the verifier has checked.
+    /// The method of an op. What [`apply`](crate::op::apply) does, without looking at types that the verifier
+    /// has checked.
     #[inline(always)]
     fn op(&mut self, op: Op, step: &OpStep) {
         let [a, b, c, ..] = step.args;

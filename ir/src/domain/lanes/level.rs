@@ -1,5 +1,6 @@
-//! Runs a tape at a [`Level`] of the instruction set. The `unsafe` here has one contract: a function that is compiled for an instruction set
-//! is called on a CPU that has it. So a level that this CPU lacks is never run: the largest one that it has takes its place.
+//! Runs a tape at a [`Level`] of the instruction set. The `unsafe` here has one contract: a function that is
+//! compiled for an instruction set is called on a CPU that has it. So a level that this CPU lacks is never
+//! run: the largest one that it has takes its place.
 
 use crate::environment::Standard;
 use crate::level::Level;

@@ -1,28 +1,29 @@
 //! The SIMD interpreter: each op runs over a block of points before the next op starts.
 //!
-//! A [`Tape`] is compiled once from a function, and then run on planes of points of any length. Two things make it fast:
-//! the cost of finding out *what* to do is paid once per op and block instead of once per op and point, and what is the
-//! same for all points is never spread out.
+//! A [`Tape`] is compiled once from a function, and then run on planes of points of any length. Two things
+//! make it fast: the cost of finding out *what* to do is paid once per op and block instead of once per op
+//! and point, and what is the same for all points is never spread out.
 //!
 //! ```text
 //!    Function ──schedule──► events in order, live ranges, which values are splats
 //!             ──assign────► a register for each value; a loop's accumulator and its next value share one
 //!             ──compile───► Tape: steps, constants, folds
 //!                          two ops of which one feeds the other become one step (pairs)
-//!             ──execute───► for each block of points: for each step: one loop over the lanes, vectorised by the compiler
+//!             ──execute───► for each block of points: for each step: a loop over lanes, vectorised
 //!
 //!    register file, `stride` chunks a row:     r0       r1       r2      ...
 //!      points  0..32                        [ chunk ][ chunk ][ chunk ]         a chunk: 32 lanes of 4 bytes
 //!      points 32..64                        [ chunk ][ chunk ][ chunk ]
-//!      ...                                                                      as many rows as fit the first-level cache
+//!      ...                                                        as many rows as fit the first-level cache
 //! ```
 //!
-//! A value is a *block* (a register: one number per point) or a *splat* (one number for all points: constants, columns
-//! of the current row, and whatever is computed from these alone). Every op takes either in each operand, through a loop
-//! made for that combination.
+//! A value is a *block* (a register: one number per point) or a *splat* (one number for all points:
+//! constants, columns of the current row, and whatever is computed from these alone). Every op takes either
+//! in each operand, through a loop made for that combination.
 //!
-//! **The bits are those of [`Scalar`](super::scalar::Scalar)**, because each lane loop calls its methods. The loops are plain Rust that
-//! is inlined into one function per [`Level`] of the instruction set, chosen when the program runs.
+//! **The bits are those of [`Scalar`](super::scalar::Scalar)**, because each lane loop calls its methods. The
+//! loops are plain Rust that is inlined into one function per [`Level`] of the instruction set, chosen when
+//! the program runs.
 
 mod assign;
 mod compile;
@@ -31,6 +32,7 @@ mod execute;
 mod level;
 mod ops;
 mod pairs;
+mod place;
 mod schedule;
 mod tape;
 #[cfg(test)]

@@ -1,13 +1,14 @@
 //! The lanes domain: each op as a loop over the lanes of a block.
 //!
-//! A loop takes [`WIDTH`] lanes at a time: it reads them from the operands' registers, calls the scalar op on each, and
-//! writes them to the result's register. All reads of a chunk come before its writes, so the result may go to the
-//! register of an operand.
+//! A loop takes [`WIDTH`] lanes at a time: it reads them from the operands' registers, calls the scalar op on
+//! each, and writes them to the result's register. All reads of a chunk come before its writes, so the result
+//! may go to the register of an operand.
 
 use crate::domain::scalar::Scalar;
 use crate::op::Domain;
 
-/// Lanes of a chunk, the least that runs together: four vectors of AVX2, two of AVX-512, eight of the baseline.
+/// Lanes of a chunk, the least that runs together: four vectors of AVX2, two of AVX-512, eight of the
+/// baseline.
 pub const WIDTH: usize = 32;
 
 /// The bits of consecutive points of one register. A mask is 0 or all ones in each lane.

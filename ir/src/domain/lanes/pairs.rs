@@ -1,22 +1,23 @@
 //! Pairs: two ops in one loop, where the second one is all that reads what the first one computes.
 //!
-//! An op that runs alone reads its operands from registers in memory and writes its result there, and that takes longer
-//! than to compute it. In a pair the first result stays in the CPU. About two of five ops go away this way.
+//! An op that runs alone reads its operands from registers in memory and writes its result there, and that
+//! takes longer than to compute it. In a pair the first result stays in the CPU. About two of five ops go
+//! away this way.
 //!
 //! ```text
 //!     r3 = sub r0, s4                                              r3 = SubSquareAdd r0, s4, r2
 //!     r3 = fma r3, r3, r2        becomes                           t = sub(a, s), fma(t, t, b)
 //! ```
 //!
-//! Each row of the table is a loop of its own. The rows are those pairs that programs of examples and of other people's
-//! models have most often; a pair that is not here runs as two ops, and gives the same bits.
+//! Each row of the table is a loop of its own. The rows are those pairs that programs of examples and of
+//! other people's models have most often; a pair that is not here runs as two ops, and gives the same bits.
 
 use crate::domain::scalar::Scalar;
 use crate::entity::Value;
 use crate::op::{Domain, Op};
 
-use super::assign::Place;
 use super::ops::{Chunk, Lanes};
+use super::place::Place;
 
 /// Operands of a pair, at most.
 pub(super) const MOST_OPERANDS: usize = 5;
@@ -34,43 +35,38 @@ trait Operand: Copy {
     fn at(self, row: &[Chunk], lane: usize) -> Self::Value;
 }
 
-/// A register of reals.
-#[derive(Clone, Copy)]
-struct Real(usize);
+/// A register whose lanes are read as a type.
+macro_rules! register {
+    ($(#[$doc:meta])* $name:ident, $value:ty, |$bits:ident| $read:expr) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy)]
+        struct $name(usize);
 
-impl Operand for Real {
-    type Value = f32;
-    const IS_SPLAT: bool = false;
+        impl Operand for $name {
+            type Value = $value;
+            const IS_SPLAT: bool = false;
 
-    #[inline(always)]
-    fn new(place: Place, _: &[u32]) -> Self {
-        Self(place.index())
-    }
+            #[inline(always)]
+            fn new(place: Place, _: &[u32]) -> Self {
+                Self(place.index())
+            }
 
-    #[inline(always)]
-    fn at(self, row: &[Chunk], lane: usize) -> f32 {
-        f32::from_bits(row[self.0].0[lane])
-    }
+            #[inline(always)]
+            fn at(self, row: &[Chunk], lane: usize) -> $value {
+                let $bits = row[self.0].0[lane];
+                $read
+            }
+        }
+    };
 }
 
-/// A register of masks.
-#[derive(Clone, Copy)]
-struct Mask(usize);
-
-impl Operand for Mask {
-    type Value = bool;
-    const IS_SPLAT: bool = false;
-
-    #[inline(always)]
-    fn new(place: Place, _: &[u32]) -> Self {
-        Self(place.index())
-    }
-
-    #[inline(always)]
-    fn at(self, row: &[Chunk], lane: usize) -> bool {
-        // One bit alone: the sign test of a vector blend.
-        row[self.0].0[lane].cast_signed() < 0
-    }
+register! {
+    /// A register of reals.
+    Real, f32, |bits| f32::from_bits(bits)
+}
+register! {
+    /// A register of masks. One bit alone is read: the sign test of a vector blend.
+    Mask, bool, |bits| bits.cast_signed() < 0
 }
 
 /// A real that is the same in all lanes.
@@ -334,23 +330,8 @@ mod tests {
     use crate::interpret::run;
     use crate::level::Level;
     use crate::op::Type;
+    use crate::spicy::SPICY;
     use crate::{FunctionBuilder, Selection, Tables, verify};
-
-    const SPICY: [f32; 13] = [
-        0.0,
-        -0.0,
-        1.0,
-        -1.0,
-        0.1,
-        -3.7,
-        1e-45,
-        f32::MIN_POSITIVE,
-        1.7e30,
-        f32::MAX,
-        f32::INFINITY,
-        f32::NEG_INFINITY,
-        f32::NAN,
-    ];
 
     /// A function that is one pair: registers are inputs, masks are their signs.
     fn function_of(pattern: &Pattern, numbers: &[f32]) -> crate::Function {

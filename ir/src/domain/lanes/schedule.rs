@@ -1,4 +1,5 @@
-//! Puts the instructions of a function in one line, and finds out how long each value lives and which values are splats.
+//! Puts the instructions of a function in one line, and finds out how long each value lives and which values
+//! are splats.
 //!
 //! ```text
 //!     position   event                     a value that is defined at 1 and used at 4 lives to 6:
@@ -11,8 +12,8 @@
 //!        6       end fold (v4 → v3), v5    v4 is used here, the result v5 is defined here
 //! ```
 //!
-//! Time is counted in half positions: an event at `p` reads at `2 p` and writes at `2 p + 1`, so a value that dies where
-//! another one is born may share its register.
+//! Time is counted in half positions: an event at `p` reads at `2 p` and writes at `2 p + 1`, so a value that
+//! dies where another one is born may share its register.
 
 use crate::entity::{Entity, Inst, Value};
 use crate::function::{Fold, Function, InstKind};
@@ -41,7 +42,8 @@ pub(super) struct Range {
 pub(super) struct Schedule<'a> {
     pub function: &'a Function,
     pub events: Vec<Event>,
-    /// The value that holds the bits of each value: itself, unless an op like `hold` or `to_bits` only renames it.
+    /// The value that holds the bits of each value: itself, unless an op like `hold` or `to_bits` only
+    /// renames it.
     pub holder: Vec<Value>,
     /// For each holder, whether it is the same in all lanes.
     pub splat: Vec<bool>,
@@ -86,7 +88,8 @@ impl<'a> Schedule<'a> {
         fold(self.function, inst)
     }
 
-    /// The fold's parameters, each with the value that it begins with, the next one and the result: all as holders.
+    /// The fold's parameters, each with the value that it begins with, the next one and the result: all as
+    /// holders.
     pub fn accumulators(&self, inst: Inst) -> impl Iterator<Item = Accumulator> + use<'_, 'a> {
         let fold = self.fold(inst);
         let body = &self.function.blocks[fold.body];
@@ -187,7 +190,8 @@ impl<'a> Pairing<'a> {
         }
     }
 
-    /// Finds the pairs among instructions that follow each other, and puts each first one directly before its second.
+    /// Finds the pairs among instructions that follow each other, and puts each first one directly before its
+    /// second.
     fn run(&mut self, events: &mut [Event]) {
         let mut first_of: Vec<(Inst, Inst)> = Vec::new();
         for event in events.iter() {

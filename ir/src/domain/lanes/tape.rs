@@ -8,15 +8,15 @@ use crate::selection::Selection;
 use crate::table::Tables;
 use crate::verify::Verified;
 
-use super::assign::Place;
 use super::compile::compile;
 use super::execute::Job;
 use super::level;
 use super::ops::{Chunk, WIDTH};
 use super::pairs::{MOST_OPERANDS, Pair};
+use super::place::Place;
 
-/// A function that is ready to run on blocks of points. It never changes, so threads may share it, each with its own
-/// [`Scratch`].
+/// A function that is ready to run on blocks of points. It never changes, so threads may share it, each with
+/// its own [`Scratch`].
 ///
 /// ```
 /// use jbt_ir::domain::lanes::{Scratch, Tape};
@@ -66,7 +66,8 @@ pub(super) enum Step {
     Ops { first: u32, end: u32 },
     /// Makes the first active row the current one, or steps behind the end of the fold if there is none.
     Begin { fold: u32 },
-    /// Makes the next active row the current one and steps back to the beginning of the body, if there is one.
+    /// Makes the next active row the current one and steps back to the beginning of the body, if there is
+    /// one.
     End { fold: u32 },
 }
 
@@ -139,7 +140,8 @@ pub enum RunError {
     },
 }
 
-/// The memory of a run: registers and splats. It grows to what the largest tape needs, and then is used again and again.
+/// The memory of a run: registers and splats. It grows to what the largest tape needs, and then is used again
+/// and again.
 #[derive(Clone, Default, Debug)]
 pub struct Scratch {
     pub(super) file: Vec<Chunk>,
@@ -164,9 +166,11 @@ impl Scratch {
     }
 }
 
-/// Bytes for the registers of a block: three quarters of a common first-level cache, for rows and the program live there too.
+/// Bytes for the registers of a block: three quarters of a common first-level cache, for rows and the program
+/// live there too.
 const FILE_BYTES: usize = 24 << 10;
-/// Fewer chunks than this, and an op costs more to find than to do: a wide function rather leaves the first-level cache.
+/// Fewer chunks than this, and an op costs more to find than to do: a wide function rather leaves the
+/// first-level cache.
 const MIN_CHUNKS: usize = 2;
 /// More chunks than this gain nothing.
 const MAX_CHUNKS: usize = 24;
@@ -194,15 +198,15 @@ impl Tape {
         self.registers
     }
 
-    /// Number of points that run together: a multiple of [`WIDTH`](super::WIDTH). The last block of a plane is shorter: it has the points
-    /// that are left, rounded up to a multiple of `WIDTH`.
+    /// Number of points that run together: a multiple of [`WIDTH`](super::WIDTH). The last block of a plane
+    /// is shorter: it has the points that are left, rounded up to a multiple of `WIDTH`.
     #[must_use]
     pub fn block(&self) -> usize {
         (FILE_BYTES / (self.stride() * size_of::<Chunk>())).clamp(MIN_CHUNKS, MAX_CHUNKS) * WIDTH
     }
 
-    /// Chunks from one register's points to its next ones. It is odd, so that the chunks of one register are spread over
-    /// all sets of the cache.
+    /// Chunks from one register's points to its next ones. It is odd, so that the chunks of one register are
+    /// spread over all sets of the cache.
     pub(super) const fn stride(&self) -> usize {
         self.registers | 1
     }
@@ -218,9 +222,10 @@ impl Tape {
 
     /// Runs the function: output planes from input planes, point by point the same bits as the scalar domain.
     ///
-    /// All planes have one length, any length. `tables` fit the function: call [`Tables::check`] when they change; `selection` says which of their
-    /// rows run. (What does not fit gives wrong numbers or a panic, nothing worse.) The floating-point environment of the caller does not matter: the
-    /// run has its own, with subnormals and round to nearest, and restores the caller's.
+    /// All planes have one length, any length. `tables` fit the function: call [`Tables::check`] when they
+    /// change; `selection` says which of their rows run. (What does not fit gives wrong numbers or a panic,
+    /// nothing worse.) The floating-point environment of the caller does not matter: the run has its own,
+    /// with subnormals and round to nearest, and restores the caller's.
     ///
     /// # Errors
     /// When the planes are not as many as the function's, or differ in length.
@@ -234,7 +239,8 @@ impl Tape {
         self.run_at(Level::best(), (tables, selection), inputs, outputs, scratch)
     }
 
-    /// Like [`run`](Self::run), at a chosen level of the instruction set. The bits are the same at every level.
+    /// Like [`run`](Self::run), at a chosen level of the instruction set. The bits are the same at every
+    /// level.
     ///
     /// # Errors
     /// Those of [`run`](Self::run).

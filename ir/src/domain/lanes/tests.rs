@@ -1,34 +1,13 @@
-//! Every op of the lanes domain against the scalar one: all kinds of operands, all ways in which registers can coincide.
+//! Every op of the lanes domain against the scalar one: all kinds of operands, all ways in which registers
+//! can coincide.
 
 use super::ops::{Chunk, Handle, Lanes, WIDTH};
 use crate::domain::scalar::Scalar;
 use crate::op::{Any, Op, Type, apply};
+use crate::spicy::SPICY;
 
-/// Numbers at which ops decide, round, overflow or give NaN.
-const SPICY: [f32; 20] = [
-    0.0,
-    -0.0,
-    1.0,
-    -1.0,
-    0.5,
-    -2.75,
-    std::f32::consts::PI,
-    1.0e-45,
-    -1.0e-45,
-    f32::MIN_POSITIVE,
-    -f32::MIN_POSITIVE * 0.5,
-    1.0e30,
-    -1.0e30,
-    f32::MAX,
-    f32::MIN,
-    f32::INFINITY,
-    f32::NEG_INFINITY,
-    f32::NAN,
-    0.333_333_34,
-    16_777_217.0,
-];
-
-/// What a spicy number is as an operand of this type: the bits in a lane, and the operand of the scalar domain.
+/// What a spicy number is as an operand of this type: the bits in a lane, and the operand of the scalar
+/// domain.
 fn operand(type_: Type, number: f32) -> (u32, Any<Scalar>) {
     match type_ {
         Type::Real => (number.to_bits(), Any::Real(number)),
@@ -70,13 +49,15 @@ fn same(type_: Type, a: u32, b: u32) -> bool {
     a == b || type_ == Type::Real && f32::from_bits(a).is_nan() && f32::from_bits(b).is_nan()
 }
 
-/// Numbers of the operands in lane `lane` of row `row`: together the lanes go through all pairs, and through many triples.
+/// Numbers of the operands in lane `lane` of row `row`: together the lanes go through all pairs, and through
+/// many triples.
 fn numbers(row: usize, lane: usize) -> [f32; 3] {
     let n = row * WIDTH + lane;
     [n, n / SPICY.len(), n / 7 + 3 * n].map(|n| SPICY[n % SPICY.len()])
 }
 
-/// Runs an op once. `registers[i]` is where operand i stands, or `None` for a splat; equal registers hold the last one's numbers.
+/// Runs an op once. `registers[i]` is where operand i stands, or `None` for a splat; equal registers hold the
+/// last one's numbers.
 fn check(op: Op, registers: [Option<usize>; 3], result: usize) {
     const ROWS: usize = 14;
     const STRIDE: usize = 5;
@@ -130,7 +111,8 @@ fn check(op: Op, registers: [Option<usize>; 3], result: usize) {
     }
 }
 
-/// All ways to take `count` operands from registers 0 to 2 or from splats. Operands in one register have one type.
+/// All ways to take `count` operands from registers 0 to 2 or from splats. Operands in one register have one
+/// type.
 fn shapes(op: Op) -> Vec<[Option<usize>; 3]> {
     let types = op.operands();
     let choices = [None, Some(0), Some(1), Some(2)];
