@@ -3,14 +3,20 @@
 mod contour;
 mod engine;
 mod output;
+mod query;
 mod render;
+mod scene;
+mod space;
 mod tools;
 mod work;
 
 pub use contour::{ContourArguments, ModeName, PaintName};
 pub use engine::{EngineArguments, LevelName};
-pub use output::{Destination, OutputArguments};
+pub use output::OutputArguments;
+pub use query::QueryName;
 pub use render::{GroundName, RenderArguments};
+pub use scene::SceneArguments;
+pub use space::{LatticeArguments, Region};
 pub use tools::{
     CheckArguments, CompletionsArguments, CountArguments, ManArguments, ShowArguments, StatsArguments,
 };
@@ -22,9 +28,8 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, Parser, Subcommand};
 use jbt::export::{ColorEncoding, Format, Up};
-use jbt::{Engine, Query, text};
 
 use crate::formats::{ArrayKind, TableKind};
 
@@ -83,17 +88,6 @@ pub enum Command {
     Completions(CompletionsArguments),
     /// Write manual pages into a folder
     Man(ManArguments),
-}
-
-/// The scene, and what its text leaves open.
-#[derive(Args, Debug)]
-pub struct SceneArguments {
-    /// The scene: a .jbt text, a ParsIP .blob or .scene, or a .vm program; `-` is the standard input
-    #[arg(value_name = "SCENE")]
-    pub path: PathBuf,
-    /// Set a parameter of a .jbt text; the value is a number or an expression of numbers, as 2*pi
-    #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = definition)]
-    pub definitions: Vec<(String, f64)>,
 }
 
 /// What `jbt mesh` takes.
@@ -178,27 +172,6 @@ fn by_format(usual: impl Fn(Format) -> Option<&'static str>) -> String {
     words.into_iter().map(entry).collect::<Vec<_>>().join(", ")
 }
 
-/// The lattice of points that a mesh asks the field at.
-#[derive(Args, Debug)]
-pub struct LatticeArguments {
-    /// Edge of a cell of the lattice, in units of the scene
-    #[arg(long, value_name = "H", conflicts_with = "resolution", allow_negative_numbers = true)]
-    pub cell: Option<f64>,
-    /// Cells along the longest side of the region [default: 128]
-    #[arg(long, value_name = "N", value_parser = cells, allow_negative_numbers = true)]
-    pub resolution: Option<usize>,
-    /// The box that the lattice fills: its smallest and its largest corner [default: the support of the model]
-    #[arg(long, value_name = "X0,Y0,Z0,X1,Y1,Z1", value_parser = region, allow_hyphen_values = true)]
-    pub region: Option<Region>,
-}
-
-impl LatticeArguments {
-    /// Whether any of it was asked for.
-    pub fn given(&self) -> bool {
-        self.cell.is_some() || self.resolution.is_some() || self.region.is_some()
-    }
-}
-
 /// What `jbt sample` takes.
 #[derive(Args, Debug)]
 #[command(after_help = "\
@@ -257,62 +230,6 @@ pub struct EvalArguments {
     pub output: OutputArguments<TableKind>,
 }
 
-/// The words for engines.
-#[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
-pub enum EngineName {
-    /// The reference: one point after the other
-    Scalar,
-    /// The SIMD interpreter
-    Lanes,
-    /// Machine code; the SIMD interpreter, with a warning, where that cannot be had
-    Jit,
-}
-
-impl EngineName {
-    /// The engine to insist on; machine code is not insisted on.
-    pub fn required(self) -> Option<Engine> {
-        match self {
-            Self::Scalar => Some(Engine::Scalar),
-            Self::Lanes => Some(Engine::Lanes),
-            Self::Jit => None,
-        }
-    }
-}
-
-/// The words for queries.
-#[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
-pub enum QueryName {
-    /// The field
-    Field,
-    /// Field and gradient
-    Gradient,
-    /// Field and attributes
-    Attributes,
-    /// Field, gradient and attributes
-    All,
-}
-
-impl QueryName {
-    /// The query.
-    pub fn query(self) -> Query {
-        match self {
-            Self::Field => Query::FIELD,
-            Self::Gradient => Query::GRADIENT,
-            Self::Attributes => Query::ATTRIBUTES,
-            Self::All => Query::ALL,
-        }
-    }
-}
-
-/// A box: its smallest and its largest corner.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Region {
-    /// The smallest corner.
-    pub low: [f64; 3],
-    /// The largest corner.
-    pub high: [f64; 3],
-}
-
 /// One of the members of a list, by its word; `tell` gives the word and a line of help.
 fn words<T>(
     all: impl IntoIterator<Item = T>,
@@ -325,61 +242,10 @@ where
     PossibleValuesParser::new(words).try_map(|word| word.parse())
 }
 
-fn definition(text: &str) -> Result<(String, f64), String> {
-    let (name, value) = text.split_once('=').ok_or("expected NAME=VALUE")?;
-    let name = name.trim();
-    if name.is_empty() {
-        return Err("expected a name before `=`".to_owned());
-    }
-    let value = text::number(value).map_err(|errors| {
-        let reason = errors.first().map_or(String::new(), |error| format!(": {}", error.message));
-        format!("expected a number after `{name}=`, as 2 or 2*pi{reason}")
-    })?;
-    Ok((name.to_owned(), value))
-}
-
-/// A number of cells. How many there may be, others say.
-fn cells(text: &str) -> Result<usize, String> {
-    text.trim().parse().map_err(|_| "expected a whole number of cells, as 128".to_owned())
-}
-
-/// The corners of a region whose numbers have these names: finite, and the first below the last along each axis.
-fn corners<const N: usize>(text: &str, names: [[&str; N]; 2]) -> Result<[[f64; N]; 2], String> {
-    let words: Vec<&str> = text.split(',').map(str::trim).collect();
-    let all = names.concat();
-    if words.len() != all.len() {
-        let count = if N == 3 { "six" } else { "four" };
-        return Err(format!("expected {count} numbers, as {}", all.join(",")));
-    }
-    let mut numbers = [[0.0_f64; N]; 2];
-    for ((number, word), name) in numbers.as_flattened_mut().iter_mut().zip(words).zip(all) {
-        *number = word.parse().map_err(|_| format!("{name} is `{word}`, and that is no number"))?;
-        if !number.is_finite() {
-            return Err(format!("{name} is `{word}`, and a region has finite corners"));
-        }
-    }
-    for axis in 0..N {
-        let ([low, high], [from, to]) =
-            (names.map(|corner| corner[axis]), numbers.map(|corner| corner[axis]));
-        if from >= to {
-            return Err(format!(
-                "{high} must be greater than {low}, and the region goes from {from} to {to}"
-            ));
-        }
-        if !(to - from).is_finite() {
-            return Err(format!("{low} and {high} are too far apart"));
-        }
-    }
-    Ok(numbers)
-}
-
-fn region(text: &str) -> Result<Region, String> {
-    let [low, high] = corners(text, [["X0", "Y0", "Z0"], ["X1", "Y1", "Z1"]])?;
-    Ok(Region { low, high })
-}
-
 #[cfg(test)]
 mod tests {
+    use super::scene::definition;
+    use super::space::region;
     use super::*;
 
     #[test]

@@ -16,7 +16,8 @@ use crate::failure::Failure;
 use crate::lattice;
 use crate::message::Message;
 use crate::output::{grouped, print, report};
-use crate::scene::{Scene, is_standard};
+use crate::scene::Scene;
+use crate::standard::is_standard;
 
 /// Runs the command.
 pub fn run(arguments: &CheckArguments, quiet: bool) -> Result<(), Failure> {
@@ -78,7 +79,7 @@ impl Told {
         match checked {
             Ok(checked) => self.diagnostics.extend(checked.scene.notices.iter().map(Message::json)),
             Err(Failure::Input { messages }) => self.diagnostics.extend(messages.iter().map(Message::json)),
-            Err(failure) => self.diagnostics.push(Message::of_file(&name, failure).json()),
+            Err(failure) => self.diagnostics.push(failure.about_file(&name).json()),
         }
         let model = checked.as_ref().ok().map(Checked::json);
         self.files.push(json!({ "file": name, "ok": checked.is_ok(), "model": model }));

@@ -6,13 +6,14 @@ use std::io::{self, BufRead, BufReader, Write as _};
 use jbt::{Evaluator, Samples};
 use rayon::prelude::*;
 
-use crate::arguments::{Destination, EvalArguments};
+use crate::arguments::EvalArguments;
 use crate::failure::Failure;
 use crate::formats::TableKind;
-use crate::output::Output;
+use crate::output::{Destination, Output};
 use crate::points::PointReader;
 use crate::progress::Progress;
-use crate::scene::{Scene, is_standard};
+use crate::scene::Scene;
+use crate::standard::is_standard;
 use crate::threads::Threads;
 
 /// Points that a thread answers at once.

@@ -94,6 +94,12 @@ impl Failure {
         }
     }
 
+    /// What is wrong with a file as a whole, as a message about it.
+    pub fn about_file(&self, file: &str) -> Message {
+        let severity = if self.code() == 3 { Severity::Limit } else { Severity::Error };
+        Message::rendered(severity, file, self.to_string())
+    }
+
     /// The exit code.
     pub fn code(&self) -> u8 {
         match self {

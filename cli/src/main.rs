@@ -29,6 +29,7 @@ mod sample;
 mod scene;
 mod show;
 mod stages;
+mod standard;
 mod stats;
 mod threads;
 

@@ -6,9 +6,9 @@ use clap::CommandFactory as _;
 use clap_complete::generate;
 use clap_mangen::Man;
 
-use crate::arguments::{Arguments, CompletionsArguments, Destination, ManArguments};
+use crate::arguments::{Arguments, CompletionsArguments, ManArguments};
 use crate::failure::Failure;
-use crate::output::{Output, check_place, plural, print, print_bytes};
+use crate::output::{Destination, Output, check_place, plural, print, print_bytes};
 
 /// Prints a script for a shell.
 pub fn completions(arguments: &CompletionsArguments) -> Result<(), Failure> {

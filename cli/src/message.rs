@@ -3,8 +3,6 @@
 use jbt_frontend::diagnostic::{Diagnostic, Severity, Source};
 use serde_json::{Value, json};
 
-use crate::failure::Failure;
-
 /// A message about a file.
 #[derive(Clone, Debug)]
 pub struct Message {
@@ -37,12 +35,6 @@ impl Message {
     /// A message whose text says its place.
     pub fn rendered(severity: Severity, file: &str, rendered: String) -> Self {
         Self { severity, file: file.to_owned(), place: None, message: rendered.clone(), hint: None, rendered }
-    }
-
-    /// What is wrong with a file as a whole.
-    pub fn of_file(file: &str, failure: &Failure) -> Self {
-        let severity = if failure.code() == 3 { Severity::Limit } else { Severity::Error };
-        Self::rendered(severity, file, failure.to_string())
     }
 
     /// For machines.

@@ -8,9 +8,19 @@ use clap::builder::styling::{AnsiColor, Style};
 use jbt_frontend::diagnostic::{Severity, escape};
 use tempfile::{NamedTempFile, TempPath};
 
-use crate::arguments::Destination;
 use crate::failure::Failure;
-use crate::scene::is_standard;
+use crate::standard::is_standard;
+
+/// Where a result goes, once that is decided.
+#[derive(Debug)]
+pub struct Destination<K> {
+    /// The path; `-` is the standard output.
+    pub path: PathBuf,
+    /// What is written there.
+    pub kind: K,
+    /// Whether it may take the place of a file.
+    pub replace: bool,
+}
 
 /// A place for results. A file keeps its old contents until [`Output::finish`].
 pub struct Output {

@@ -1,7 +1,6 @@
 //! Loading scenes: a path or the standard input becomes a model, whatever its format.
 
 use std::io;
-use std::path::Path;
 
 use jbt::text::Options;
 use jbt::{Compiler, Evaluator, Model, Query};
@@ -12,6 +11,7 @@ use crate::arguments::SceneArguments;
 use crate::failure::Failure;
 use crate::message::Message;
 use crate::output::{highlight, tell};
+use crate::standard::is_standard;
 
 /// A scene: its text for messages, and its model.
 pub struct Scene {
@@ -74,9 +74,4 @@ impl Scene {
     ) -> Result<Evaluator, Failure> {
         compiler.evaluator(tree, query).map_err(|error| Failure::compile(&self.source(), &error))
     }
-}
-
-/// Whether a path of the command line means the standard input or output.
-pub fn is_standard(path: &Path) -> bool {
-    path.as_os_str() == "-"
 }

@@ -51,6 +51,7 @@
 //! Trees are shared, not copied: `&a + &a` has one leaf under two edges. Anything can be built; [`Model::check`](crate::model::Model::check)
 //! says whether it makes sense.
 
+mod argument;
 mod attribute;
 mod falloff;
 mod operator;
@@ -61,6 +62,7 @@ mod primitive;
 use crate::recipe::{FalloffRecipe, FieldNumber, Recipe};
 use crate::tree::{NodeKind, Primitive, Tree};
 
+use self::argument::{real, vector};
 pub use self::falloff::{arctan, blanc, blinn, degree, inverse_power};
 pub use self::place::Axis;
 pub use self::primitive::{
@@ -73,14 +75,6 @@ pub use crate::number::{Number, Rows, Vector, param};
 pub use crate::scopes::{ScopeError, Scopes};
 pub use crate::term::{Term, x, y, z};
 pub use pattern::{Pattern, checker, gradient, marble, noise, rings, stripes};
-
-fn vector(value: impl Into<Vector>) -> FieldNumber {
-    FieldNumber::Vector(value.into().0)
-}
-
-fn real(value: impl Into<Number>) -> FieldNumber {
-    FieldNumber::Real(value.into())
-}
 
 /// Changes of all primitives below.
 impl Tree {

@@ -52,19 +52,129 @@ pub struct Field {
     pub default: Option<FieldValue>,
 }
 
-/// The value of a parameter.
+/// The value of a parameter, in numbers of some kind.
 #[derive(Clone, PartialEq, Debug)]
-pub enum FieldValue {
+pub enum FieldOf<T> {
     /// One number.
-    Real(f64),
+    Real(T),
     /// Three numbers.
-    Vector([f64; 3]),
+    Vector([T; 3]),
     /// Any number of numbers.
-    Reals(Vec<f64>),
+    Reals(Vec<T>),
     /// Any number of vectors.
-    Vectors(Vec<[f64; 3]>),
+    Vectors(Vec<[T; 3]>),
 }
 
+/// The value of a parameter.
+pub type FieldValue = FieldOf<f64>;
+
+impl<T> FieldOf<T> {
+    /// All its numbers.
+    pub(crate) fn numbers(&self) -> &[T] {
+        match self {
+            Self::Real(number) => std::slice::from_ref(number),
+            Self::Vector(numbers) => numbers,
+            Self::Reals(numbers) => numbers,
+            Self::Vectors(vectors) => vectors.as_flattened(),
+        }
+    }
+
+    /// The same with other numbers.
+    pub(crate) fn map<U>(&self, mut to: impl FnMut(&T) -> U) -> FieldOf<U> {
+        match self {
+            Self::Real(number) => FieldOf::Real(to(number)),
+            Self::Vector(vector) => FieldOf::Vector(vector.each_ref().map(to)),
+            Self::Reals(numbers) => FieldOf::Reals(numbers.iter().map(to).collect()),
+            Self::Vectors(vectors) => {
+                FieldOf::Vectors(vectors.iter().map(|vector| vector.each_ref().map(&mut to)).collect())
+            }
+        }
+    }
+}
+
+/// A number as it is written.
+pub(crate) trait Written {
+    /// Its present value.
+    fn present(&self) -> f64;
+
+    /// Whether it follows no parameter.
+    fn is_fixed(&self) -> bool;
+
+    /// Its text: reads back as the same number.
+    fn text(&self) -> String;
+}
+
+impl Written for f64 {
+    fn present(&self) -> f64 {
+        *self
+    }
+
+    fn is_fixed(&self) -> bool {
+        true
+    }
+
+    fn text(&self) -> String {
+        plain(*self)
+    }
+}
+
+/// The shortest text of a finite number that reads back as the same bits.
+pub(crate) fn plain(value: f64) -> String {
+    let mut text = format!("{value:?}");
+    if text.ends_with(".0") {
+        text.truncate(text.len() - 2);
+    }
+    text
+}
+
+/// Numbers in parentheses.
+pub(crate) fn tuple<T: Written>(numbers: &[T]) -> String {
+    let numbers: Vec<String> = numbers.iter().map(Written::text).collect();
+    format!("({})", numbers.join(" "))
+}
+
+impl Field {
+    /// Adds the parameter as it is written, a blank in front: nothing, if it has its default. `word`: what it is called there.
+    pub(crate) fn write<T: Written>(&self, out: &mut String, word: &str, value: &FieldOf<T>) {
+        if self.default.as_ref().is_some_and(|default| same(default, value)) {
+            return;
+        }
+        let shown = match (self.kind, value) {
+            (FieldKind::Axis, FieldOf::Vector(axis)) => {
+                let index = axis.iter().position(|x| x.present() != 0.0).unwrap_or(2);
+                ["x", "y", "z"][index].to_owned()
+            }
+            (FieldKind::Choice(words), FieldOf::Real(value)) => {
+                (*words.get(value.present() as usize).unwrap_or(&words[0])).to_owned()
+            }
+            (FieldKind::Flag, FieldOf::Real(value)) => {
+                (if value.present() == 0.0 { "no" } else { "yes" }).to_owned()
+            }
+            (_, FieldOf::Real(value)) => value.text(),
+            (_, FieldOf::Vector(values)) => tuple(values),
+            (_, FieldOf::Reals(values)) => tuple(values),
+            (_, FieldOf::Vectors(values)) => {
+                let vectors: Vec<String> = values.iter().map(|vector| tuple(vector)).collect();
+                format!("({})", vectors.join(" "))
+            }
+        };
+        out.push(' ');
+        out.push_str(word);
+        out.push(' ');
+        out.push_str(&shown);
+    }
+}
+
+/// Whether the numbers are these, to the bit, and follow no parameter.
+fn same<T: Written>(default: &FieldValue, value: &FieldOf<T>) -> bool {
+    let shape = std::mem::discriminant(&default.map(|_| ())) == std::mem::discriminant(&value.map(|_| ()));
+    let bits = |number: f64| number.to_bits();
+    let present = value.numbers().iter().map(|number| bits(number.present()));
+    let fixed = value.numbers().iter().all(Written::is_fixed);
+    shape && fixed && default.numbers().iter().copied().map(bits).eq(present)
+}
+
+/// Readers of values of which the kind of the field says what they are.
 impl FieldValue {
     /// The number. Panics on anything else: the kind of the field has excluded it.
     #[must_use]

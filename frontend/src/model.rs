@@ -1,14 +1,10 @@
 //! A model: a tree, and what its field means.
 
-use std::fmt;
-use std::str::FromStr;
-
 use crate::attribute::AttributeGroup;
-use crate::diagnostic::{Diagnostics, SourceText};
+use crate::diagnostic::SourceText;
 use crate::number::Number;
 use crate::parameter::{Parameter, collect};
-use crate::text;
-use crate::tree::Tree;
+use crate::tree::{DEFAULT_ISO, Tree};
 
 /// A tree with the iso-value of its surface and its attribute groups. Inside means `field >= iso`.
 #[derive(Clone, Debug)]
@@ -31,7 +27,7 @@ pub struct Model {
 
 impl Model {
     /// The iso-value when nothing else is said.
-    pub const DEFAULT_ISO: f64 = 0.5;
+    pub const DEFAULT_ISO: f64 = DEFAULT_ISO;
 
     /// A model with iso-value 1/2, the colour group alone, and the parameters that the tree mentions.
     #[must_use]
@@ -47,6 +43,12 @@ impl Model {
     pub fn with_origin(self, point: [f64; 3]) -> Self {
         Self { origin: Some(point), ..self }
     }
+
+    /// The parameters of the model: those that are declared, then those that its tree mentions besides.
+    #[must_use]
+    pub fn all_parameters(&self) -> Vec<Parameter> {
+        collect(&self.parameters, &self.iso, &self.root).0
+    }
 }
 
 impl PartialEq for Model {
@@ -58,31 +60,5 @@ impl PartialEq for Model {
             && *root == other.root
             && *parameters == other.parameters
             && *origin == other.origin
-    }
-}
-
-impl fmt::Display for Model {
-    /// In the [text format](text), from which it can be parsed again.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&text::print(self))
-    }
-}
-
-impl FromStr for Model {
-    type Err = Diagnostics;
-
-    /// The model of a text.
-    ///
-    /// ```
-    /// use jbt_frontend::model::Model;
-    /// let model: Model = "jbt 1 point { surface_radius 1 }".parse()?;
-    /// assert_eq!(model.to_string().parse::<Model>()?, model);
-    /// # Ok::<(), jbt_frontend::diagnostic::Diagnostics>(())
-    /// ```
-    ///
-    /// # Errors
-    /// Those of [`text::parse`].
-    fn from_str(text: &str) -> Result<Self, Diagnostics> {
-        text::parse(text.as_bytes(), &text::Options::default())
     }
 }

@@ -14,19 +14,18 @@
 
 mod formula;
 mod function;
+mod value;
 
-use std::collections::HashMap;
 use std::fmt;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 use std::sync::Arc;
 
 use crate::diagnostic::Diagnostic;
+use crate::field::{Written, plain};
 
 pub(crate) use formula::{Formula, Step, Variable, show};
 pub(crate) use function::{Binary, Function};
-
-/// The values of parameters, by name.
-pub(crate) type Values = HashMap<Arc<str>, f64>;
+pub(crate) use value::Values;
 
 /// A number of a model: a plain one, or one that follows parameters.
 ///
@@ -66,11 +65,6 @@ impl Number {
     /// A number with a formula, whose value is known.
     pub(crate) fn with_formula(value: f64, formula: Formula) -> Self {
         Self { value, formula: Some(Arc::new(formula)) }
-    }
-
-    /// What it is displayed as; plain numbers, which most are, in one piece.
-    pub(crate) fn text(&self) -> String {
-        if self.follows() { self.to_string() } else { plain(self.value) }
     }
 
     pub(crate) fn formula(&self) -> Option<&Formula> {
@@ -241,6 +235,21 @@ impl fmt::Debug for Number {
     }
 }
 
+impl Written for Number {
+    fn present(&self) -> f64 {
+        self.value
+    }
+
+    fn is_fixed(&self) -> bool {
+        !self.follows()
+    }
+
+    /// Plain numbers, which most are, in one piece.
+    fn text(&self) -> String {
+        if self.follows() { self.to_string() } else { plain(self.value) }
+    }
+}
+
 impl fmt::Display for Number {
     /// As the text format has it: reads back as the same number.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -249,15 +258,6 @@ impl fmt::Display for Number {
             Some(formula) => formula.fmt(f),
         }
     }
-}
-
-/// The shortest text of a finite number that reads back as the same bits.
-pub(crate) fn plain(value: f64) -> String {
-    let mut text = format!("{value:?}");
-    if text.ends_with(".0") {
-        text.truncate(text.len() - 2);
-    }
-    text
 }
 
 impl Neg for Number {

@@ -4,10 +4,10 @@ use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use crate::diagnostic::{Diagnostic, Span};
-use crate::model::Model;
 use crate::number::{Formula, Function, Number, Step, Values};
-use crate::report::clip;
+use crate::report::{clip, nearest};
 use crate::tree::Tree;
+use crate::word::{is_identifier, is_statement};
 
 /// A named parameter of a model.
 #[derive(Clone, Debug)]
@@ -84,10 +84,9 @@ pub(crate) fn refresh(parameters: &mut [Parameter]) -> Result<Values, Vec<Diagno
 
 /// Whether a name may be that of a parameter: a formula with it reads back as it was.
 pub(crate) fn is_name(name: &str) -> bool {
-    let builtin = Function::named(name).is_some_and(Function::is_reserved)
-        || name == "pi"
-        || crate::text::is_statement(name);
-    !builtin && crate::check::is_identifier(name)
+    let builtin =
+        Function::named(name).is_some_and(Function::is_reserved) || name == "pi" || is_statement(name);
+    !builtin && is_identifier(name)
 }
 
 /// Adds the parameters that stand in a tree and not in the list, each with the default that its first use gives it. Two uses with
@@ -150,10 +149,20 @@ pub(crate) fn reference(name: &Arc<str>, value: f64) -> Step {
     Step::Parameter { name: Arc::clone(name), default: value }
 }
 
-impl Model {
-    /// The parameters of the model: those that are declared, then those that its tree mentions besides.
-    #[must_use]
-    pub fn all_parameters(&self) -> Vec<Parameter> {
-        collect(&self.parameters, &self.iso, &self.root).0
-    }
+/// The message about a parameter that is not there.
+pub(crate) fn unknown(name: &str, parameters: &[Parameter]) -> Diagnostic {
+    const SHOWN: usize = 20;
+    let error = Diagnostic::error(None, format!("the model has no parameter `{}` to set", clip(name)));
+    let names = || parameters.iter().map(Parameter::name);
+    let known: Vec<&str> = names().take(SHOWN).collect();
+    error.expected(match (nearest(name, names()), known.len()) {
+        (_, 0) => "it has none".to_owned(),
+        (Some(near), _) => format!("perhaps `{near}`; it has {}", known.join(", ")),
+        (None, _) => format!("it has {}", known.join(", ")),
+    })
+}
+
+/// The message about a value that is no number.
+pub(crate) fn not_finite(name: &str) -> Diagnostic {
+    Diagnostic::error(None, format!("the value of `{}` is not finite", clip(name)))
 }

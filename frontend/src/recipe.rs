@@ -9,6 +9,7 @@
 //! ```
 
 mod falloff;
+mod field;
 
 use std::sync::Arc;
 
@@ -19,30 +20,18 @@ use crate::combine::Combinator;
 use crate::diagnostic::{Diagnostic, Span};
 use crate::expression::Formula;
 use crate::falloff::Falloff;
-use crate::field::{FieldKind, FieldValue};
-use crate::number::{Number, Values, plain, values};
+use crate::field::{FieldKind, FieldValue, plain};
+use crate::number::{Number, Values, values};
 use crate::skeleton::SkeletonKind;
 use crate::tree::{NodeKind, Primitive};
 use crate::warp::{FormulaWarp, WarpKind};
 
 pub use falloff::FalloffRecipe;
+pub use field::FieldNumber;
 
 mod attribute;
 
 pub use attribute::{AttributeRecipe, TexturedRecipe, UvRecipe};
-
-/// The value of a member's parameter, before its formulas are evaluated.
-#[derive(Clone, PartialEq, Debug)]
-pub enum FieldNumber {
-    /// One number.
-    Real(Number),
-    /// Three numbers.
-    Vector([Number; 3]),
-    /// Any number of numbers.
-    Reals(Vec<Number>),
-    /// Any number of vectors.
-    Vectors(Vec<[Number; 3]>),
-}
 
 /// The radius of a primitive.
 #[derive(Clone, PartialEq, Debug)]
@@ -174,51 +163,6 @@ pub(crate) enum Freedom {
     Turn,
     /// In any way.
     Full,
-}
-
-impl FieldNumber {
-    /// The present value.
-    #[must_use]
-    pub fn value(&self) -> FieldValue {
-        match self {
-            Self::Real(number) => FieldValue::Real(number.value()),
-            Self::Vector(numbers) => FieldValue::Vector(values(numbers)),
-            Self::Reals(numbers) => FieldValue::Reals(numbers.iter().map(Number::value).collect()),
-            Self::Vectors(vectors) => FieldValue::Vectors(vectors.iter().map(values).collect()),
-        }
-    }
-
-    /// All its numbers.
-    pub(crate) fn numbers(&self) -> &[Number] {
-        match self {
-            Self::Real(number) => std::slice::from_ref(number),
-            Self::Vector(numbers) => numbers,
-            Self::Reals(numbers) => numbers,
-            Self::Vectors(vectors) => vectors.as_flattened(),
-        }
-    }
-
-    fn numbers_mut(&mut self) -> &mut [Number] {
-        match self {
-            Self::Real(number) => std::slice::from_mut(number),
-            Self::Vector(numbers) => numbers,
-            Self::Reals(numbers) => numbers,
-            Self::Vectors(vectors) => vectors.as_flattened_mut(),
-        }
-    }
-}
-
-impl From<FieldValue> for FieldNumber {
-    fn from(value: FieldValue) -> Self {
-        match value {
-            FieldValue::Real(value) => Self::Real(value.into()),
-            FieldValue::Vector(values) => Self::Vector(values.map(Number::from)),
-            FieldValue::Reals(values) => Self::Reals(values.into_iter().map(Number::from).collect()),
-            FieldValue::Vectors(values) => {
-                Self::Vectors(values.into_iter().map(|vector| vector.map(Number::from)).collect())
-            }
-        }
-    }
 }
 
 impl Radius {

@@ -341,7 +341,7 @@ impl Tree {
     /// A falloff of its field as a distance, which ends at `radius`; negative distances count as 0.
     #[must_use]
     pub fn fading(&self, falloff: impl Into<Falloff>, radius: impl Into<Number>) -> Self {
-        let formula = crate::text::fading(falloff.into(), radius.into());
+        let formula = Formula::fading(falloff.into(), radius.into());
         Self::of(Recipe::Expression(formula), vec![self.clone()])
     }
 }

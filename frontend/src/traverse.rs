@@ -11,12 +11,7 @@
 //! In infix order a node comes between each two neighbours among its children, `x a y a z`: one time less than it has children. An only child comes
 //! behind its node, as an operand behind a sign, and a leaf comes once.
 
-use std::collections::{HashMap, HashSet};
-use std::marker::PhantomData;
-
-use crate::check::{CheckedTree, NodeId};
-use crate::recipe::Recipe;
-use crate::tree::Tree;
+use std::collections::HashSet;
 
 /// How often a shared node is visited.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
@@ -29,14 +24,14 @@ pub enum Visit {
 
 /// Where a node comes among its children.
 #[derive(Clone, Copy, Debug)]
-enum Order {
+pub(crate) enum Order {
     Before,
     Between,
     Behind,
 }
 
 /// Nodes with children.
-trait Nodes: Copy {
+pub(crate) trait Nodes: Copy {
     type Node: Copy;
 
     fn children(self, node: Self::Node) -> impl DoubleEndedIterator<Item = Self::Node> + ExactSizeIterator;
@@ -45,37 +40,8 @@ trait Nodes: Copy {
     fn identity(self, node: Self::Node) -> usize;
 }
 
-/// Any tree.
-#[derive(Clone, Copy)]
-struct Plain<'a>(PhantomData<&'a Tree>);
-
-impl<'a> Nodes for Plain<'a> {
-    type Node = &'a Tree;
-
-    fn children(self, node: &'a Tree) -> impl DoubleEndedIterator<Item = &'a Tree> + ExactSizeIterator {
-        node.node().children().iter()
-    }
-
-    fn identity(self, node: &'a Tree) -> usize {
-        node.identity()
-    }
-}
-
-/// What has passed the check.
-impl Nodes for &CheckedTree {
-    type Node = NodeId;
-
-    fn children(self, node: NodeId) -> impl DoubleEndedIterator<Item = NodeId> + ExactSizeIterator {
-        self.node(node).children.iter().copied()
-    }
-
-    fn identity(self, node: NodeId) -> usize {
-        node.0 as usize
-    }
-}
-
 /// A walk that is under way.
-struct Walk<N: Nodes> {
+pub(crate) struct Walk<N: Nodes> {
     nodes: N,
     order: Order,
     stack: Vec<Todo<N::Node>>,
@@ -91,7 +57,7 @@ enum Todo<N> {
 }
 
 impl<N: Nodes> Walk<N> {
-    fn new(nodes: N, root: N::Node, order: Order, visit: Visit) -> Self {
+    pub(crate) fn new(nodes: N, root: N::Node, order: Order, visit: Visit) -> Self {
         let seen = match visit {
             Visit::Nodes => Some(HashSet::new()),
             Visit::Paths => None,
@@ -147,85 +113,15 @@ impl<N: Nodes> Iterator for Walk<N> {
     }
 }
 
-/// A checked tree is an arena in postfix order, [`CheckedTree::nodes`]; these are for paths, and for other orders.
-impl CheckedTree {
-    /// Parents before children, children in order.
-    pub fn prefix(&self, visit: Visit) -> impl Iterator<Item = NodeId> {
-        Walk::new(self, self.root(), Order::Before, visit)
-    }
-
-    /// Parents between their children, children in order: see [`traverse`](crate::traverse).
-    pub fn infix(&self, visit: Visit) -> impl Iterator<Item = NodeId> {
-        Walk::new(self, self.root(), Order::Between, visit)
-    }
-
-    /// Children before parents, in order.
-    pub fn postfix(&self, visit: Visit) -> impl Iterator<Item = NodeId> {
-        Walk::new(self, self.root(), Order::Behind, visit)
-    }
-}
-
-impl Tree {
-    /// Parents before children, children in order.
-    pub fn prefix(&self, visit: Visit) -> impl Iterator<Item = &Self> {
-        Walk::new(Plain(PhantomData), self, Order::Before, visit)
-    }
-
-    /// Parents between their children, children in order: see [`traverse`](crate::traverse).
-    pub fn infix(&self, visit: Visit) -> impl Iterator<Item = &Self> {
-        Walk::new(Plain(PhantomData), self, Order::Between, visit)
-    }
-
-    /// Children before parents, in order.
-    pub fn postfix(&self, visit: Visit) -> impl Iterator<Item = &Self> {
-        Walk::new(Plain(PhantomData), self, Order::Behind, visit)
-    }
-
-    /// The tree with every node replaced for which `replace` returns another one.
-    ///
-    /// Bottom-up: `replace` sees each node once, with its children already replaced. What it does not replace stays as it is: shared
-    /// nodes stay shared, untouched subtrees are those of the original.
-    #[must_use]
-    pub fn rewrite(&self, mut replace: impl FnMut(&Self) -> Option<Self>) -> Self {
-        let mut done: HashMap<usize, Self> = HashMap::new();
-        for tree in self.postfix(Visit::Nodes) {
-            let old = tree.node().children();
-            let new: Vec<Self> = old.iter().map(|child| done[&child.identity()].clone()).collect();
-            let same = old.iter().zip(&new).all(|(a, b)| a.identity() == b.identity());
-            let rebuilt = if same { tree.clone() } else { tree.with_children(new) };
-            let result = replace(&rebuilt).unwrap_or(rebuilt);
-            done.insert(tree.identity(), result);
-        }
-        done.remove(&self.identity()).unwrap_or_else(|| self.clone())
-    }
-
-    /// A node of another recipe in the same place of the text, over the same children.
-    pub(crate) fn with_recipe(&self, recipe: Recipe) -> Self {
-        let other = Self::of(recipe, self.node().children().to_vec());
-        let node = other.node();
-        Self::assemble(
-            node.kind().clone(),
-            node.recipe().cloned(),
-            node.children().to_vec(),
-            self.node().span(),
-        )
-    }
-
-    /// The same node over other children.
-    pub(crate) fn with_children(&self, children: Vec<Self>) -> Self {
-        let node = self.node();
-        Self::assemble(node.kind().clone(), node.recipe().cloned(), children, node.span())
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::builder::{point, ring};
+    use crate::check::NodeId;
     use crate::combine::Combinator;
     use crate::model::Model;
     use crate::skeleton::{Ring, Skeleton};
-    use crate::tree::NodeKind;
+    use crate::tree::{NodeKind, Tree};
 
     /// The picture of the module: a is a union, b and c are colours, d is a point.
     fn diamond() -> Tree {

@@ -6,7 +6,6 @@
 use glam::Vec3;
 
 use super::compact::Operator;
-use super::walk::root;
 
 /// What is known at a node, but for its attributes.
 #[derive(Clone, Copy, Debug)]
@@ -259,4 +258,9 @@ impl Frame {
         let gradient = if self.total > 0.0 { self.gradient * (root / self.total) } else { Vec3::ZERO };
         (self.field * root, gradient, self.total)
     }
+}
+
+/// The n-th root.
+pub(super) fn root(x: f32, n: i32) -> f32 {
+    if n == 2 { x.sqrt() } else { x.powf(1.0 / n as f32) }
 }

@@ -17,7 +17,7 @@ use jbt_frontend::check::CheckedTree;
 use jbt_frontend::falloff::Falloff;
 
 use super::compact::{self, Compact, Leaf, Map, Operator, Step, Twist, Warped};
-use super::mixing::{Answer, Frame, Values};
+use super::mixing::{Answer, Frame, Values, root};
 
 /// A tree, ready to be walked.
 #[derive(Clone, Debug)]
@@ -345,11 +345,6 @@ impl FieldFrame {
             | Operator::Warp(_) => self.field,
         }
     }
-}
-
-/// The n-th root.
-pub(super) fn root(x: f32, n: i32) -> f32 {
-    if n == 2 { x.sqrt() } else { x.powf(1.0 / n as f32) }
 }
 
 /// The field at `u = 1 - d^2 / R^2`, for u in (0, 1].

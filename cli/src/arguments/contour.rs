@@ -3,7 +3,8 @@
 use clap::{Args, ValueEnum};
 use jbt::contour::{Plane, PlaneError, Rectangle};
 
-use super::{OutputArguments, SceneArguments, WorkArguments, cells, corners};
+use super::space::{cells, corners};
+use super::{OutputArguments, SceneArguments, WorkArguments};
 use crate::formats::SliceKind;
 
 /// What `jbt contour` takes.

@@ -1,10 +1,31 @@
 //! What all commands take that evaluate: the engine, and the instruction set.
 
 use clap::{Args, ValueEnum};
-use jbt::{Compiler, Level};
+use jbt::{Compiler, Engine, Level};
 
-use super::EngineName;
 use crate::failure::Failure;
+
+/// The words for engines.
+#[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
+pub enum EngineName {
+    /// The reference: one point after the other
+    Scalar,
+    /// The SIMD interpreter
+    Lanes,
+    /// Machine code; the SIMD interpreter, with a warning, where that cannot be had
+    Jit,
+}
+
+impl EngineName {
+    /// The engine to insist on; machine code is not insisted on.
+    pub fn required(self) -> Option<Engine> {
+        match self {
+            Self::Scalar => Some(Engine::Scalar),
+            Self::Lanes => Some(Engine::Lanes),
+            Self::Jit => None,
+        }
+    }
+}
 
 /// The words for levels of the instruction set.
 #[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]

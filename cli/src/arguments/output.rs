@@ -8,8 +8,8 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use crate::failure::Failure;
 use crate::formats::{FileKind, Row, first, listed, named, of_path};
-use crate::output::check_place;
-use crate::scene::is_standard;
+use crate::output::{Destination, check_place};
+use crate::standard::is_standard;
 
 /// Where the result goes, and as what.
 #[derive(Args, Debug)]
@@ -22,17 +22,6 @@ pub struct OutputArguments<K: FileKind> {
     /// Replace a file that is there already, also without -o
     #[arg(long)]
     pub force: bool,
-}
-
-/// Where a result goes, once that is decided.
-#[derive(Debug)]
-pub struct Destination<K> {
-    /// The path; `-` is the standard output.
-    pub path: PathBuf,
-    /// What is written there.
-    pub kind: K,
-    /// Whether it may take the place of a file.
-    pub replace: bool,
 }
 
 impl<K: FileKind> OutputArguments<K> {

@@ -3,7 +3,8 @@
 use clap::{Args, ValueEnum};
 use jbt::render::{Background, Quality, Stance, VIEWS};
 
-use super::{OutputArguments, Region, SceneArguments, WorkArguments, region};
+use super::space::region;
+use super::{OutputArguments, Region, SceneArguments, WorkArguments};
 use crate::formats::PictureKind;
 
 /// What `jbt render` takes.

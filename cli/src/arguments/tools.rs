@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use clap::Args;
 use clap_complete::Shell;
 
-use super::{LatticeArguments, LevelName, QueryName, SceneArguments, definition};
+use super::scene::definition;
+use super::{LatticeArguments, LevelName, QueryName, SceneArguments};
 
 /// What `jbt show` takes.
 #[derive(Args, Debug)]

@@ -8,7 +8,7 @@ use jbt::Compiler;
 use super::EngineArguments;
 use crate::failure::Failure;
 use crate::output::Told;
-use crate::scene::is_standard;
+use crate::standard::is_standard;
 use crate::threads::Threads;
 
 /// How a command that writes a file does its work, and what it tells.

@@ -4,11 +4,12 @@ use std::collections::{BTreeMap, HashSet};
 
 use jbt_ir::limits;
 
+use super::fields::{check_expressed, check_fields};
 use super::numbers::check_numbers;
-use super::{check_expressed, check_fields};
 use crate::attribute::{AttributeGroup, AttributeValue, Textured};
 use crate::diagnostic::{Diagnostic, Span};
 use crate::report::{Report, clip, nearest};
+use crate::word::is_identifier;
 
 /// The groups of a model: `color` first, names that are identifiers and unique, widths and defaults.
 pub(super) fn check_groups(report: &mut Report, groups: &[AttributeGroup]) {
@@ -53,12 +54,6 @@ pub(super) fn check_groups(report: &mut Report, groups: &[AttributeGroup]) {
 
 /// What tables of samples call the other answers.
 const RESERVED: [&str; 7] = ["x", "y", "z", "field", "gx", "gy", "gz"];
-
-/// Letters, digits and underscores, beginning with a letter.
-pub(crate) fn is_identifier(name: &str) -> bool {
-    name.starts_with(|c: char| c.is_ascii_alphabetic())
-        && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
-}
 
 /// The widths of attribute groups, by name.
 pub(super) fn widths(groups: &[AttributeGroup]) -> BTreeMap<&str, usize> {

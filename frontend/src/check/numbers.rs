@@ -10,7 +10,7 @@ use crate::diagnostic::{Diagnostic, Span};
 use crate::expression::{Expression, Form, Formula};
 use crate::number::{Formula as NumberFormula, Number};
 use crate::report::Report;
-use crate::text::{COORDINATES, FIELD_OF};
+use crate::word::{COORDINATES, FIELD};
 
 /// Whether `value` is finite, at least `least` and not too large; an error otherwise.
 pub(super) fn check_number(
@@ -275,7 +275,7 @@ pub(super) fn check_formula(
 pub(super) fn check_words(report: &mut Report, formula: &Formula, span: Option<Span>) {
     let numbers = formula.numbers.iter().filter_map(Number::formula);
     let mut names = numbers.flat_map(NumberFormula::parameters).map(|(name, _)| name);
-    if let Some(name) = names.find(|name| COORDINATES.contains(&&***name) || &***name == FIELD_OF) {
+    if let Some(name) = names.find(|name| COORDINATES.contains(&&***name) || &***name == FIELD) {
         report.add(|| {
             Diagnostic::error(span, format!("an expression mentions the parameter `{name}`"))
                 .expected("expected another name: this word means something else there")

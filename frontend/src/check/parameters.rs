@@ -1,92 +1,20 @@
 //! Parameters of a checked tree: what follows them, and setting them again without the text.
 
-use std::collections::HashMap;
 use std::sync::Arc;
 
 use jbt_ir::limits;
 
+use super::arena::{CheckedNode, NodeId, check_occurrences};
+use super::groups::widths;
+use super::node::check_node;
 use super::numbers::check_number;
-use super::{CheckedNode, CheckedTree, NodeId, check_node, check_occurrences, widths};
+use super::tree::CheckedTree;
 use crate::diagnostic::{Diagnostic, Diagnostics, Span};
 use crate::number::{Formula, Number, Values};
-use crate::parameter::{Parameter, is_name, refresh};
+use crate::parameter::{Parameter, is_name, not_finite, refresh, unknown};
 use crate::recipe::Recipe;
-use crate::report::{Report, clip, nearest};
+use crate::report::{Report, clip};
 use crate::tree::NodeKind;
-
-/// What follows the parameters of a tree, whatever their values.
-#[derive(Clone, PartialEq, Debug, Default)]
-pub(super) struct Dependence {
-    /// The iso-value, if it does.
-    iso: Option<Number>,
-    /// The nodes with a number that does, ascending.
-    nodes: Vec<(NodeId, Arc<Recipe>)>,
-    /// The place of each parameter in the list.
-    names: HashMap<Arc<str>, usize>,
-    /// For each parameter, the nodes whose own numbers mention it, ascending.
-    mentions: Vec<Vec<NodeId>>,
-    /// The nodes that depend on the iso-value, ascending, if that follows a parameter.
-    surfaces: Vec<NodeId>,
-}
-
-impl Dependence {
-    /// Nothing yet but the iso-value.
-    pub(super) fn new(parameters: &[Parameter], iso: &Number) -> Self {
-        let names = parameters.iter().enumerate().map(|(index, p)| (Arc::clone(&p.name), index)).collect();
-        Self {
-            iso: iso.follows().then(|| iso.clone()),
-            names,
-            mentions: vec![Vec::new(); parameters.len()],
-            ..Self::default()
-        }
-    }
-
-    /// Adds a node, which comes after those so far.
-    pub(super) fn add(&mut self, id: NodeId, recipe: &Arc<Recipe>) {
-        for formula in recipe.following().filter_map(Number::formula) {
-            for (name, _) in formula.parameters() {
-                let mentions = self.names.get(name).map(|&index| &mut self.mentions[index]);
-                if let Some(mentions) = mentions
-                    && mentions.last() != Some(&id)
-                {
-                    mentions.push(id);
-                }
-            }
-        }
-        if self.iso.is_some() && (recipe.asks_iso() || recipe.is_limited_by_iso()) {
-            self.surfaces.push(id);
-        }
-        self.nodes.push((id, Arc::clone(recipe)));
-    }
-
-    fn recipe(&self, id: NodeId) -> Option<&Arc<Recipe>> {
-        // Nothing to search is by far the commonest case.
-        let found = self.nodes.binary_search_by_key(&id, |&(node, _)| node).ok()?;
-        Some(&self.nodes[found].1)
-    }
-
-    /// Which nodes can change with these parameters, ascending.
-    fn affected(&self, parameters: &[Parameter], moved: &mut [bool]) -> Vec<NodeId> {
-        let mentions = |number: &Number, moved: &[bool]| {
-            let mut names = number.formula().into_iter().flat_map(Formula::parameters);
-            names.any(|(name, _)| self.names.get(name).is_some_and(|&index| moved[index]))
-        };
-        // A default mentions earlier parameters only.
-        for (index, parameter) in parameters.iter().enumerate() {
-            moved[index] |= mentions(&parameter.default, moved);
-        }
-        let mut nodes: Vec<NodeId> = Vec::new();
-        for (mentions, _) in self.mentions.iter().zip(&*moved).filter(|(_, moved)| **moved) {
-            nodes.extend(mentions);
-        }
-        if self.iso.as_ref().is_some_and(|iso| mentions(iso, moved)) {
-            nodes.extend(&self.surfaces);
-        }
-        nodes.sort_unstable();
-        nodes.dedup();
-        nodes
-    }
-}
 
 /// The node of a recipe for these values of parameters.
 pub(super) fn cook(
@@ -280,24 +208,6 @@ fn is_in_pieces(kind: &NodeKind) -> bool {
         | NodeKind::Warp(_)
         | NodeKind::Attribute { .. } => false,
     }
-}
-
-/// The message about a parameter that is not there.
-pub(crate) fn unknown(name: &str, parameters: &[Parameter]) -> Diagnostic {
-    const SHOWN: usize = 20;
-    let error = Diagnostic::error(None, format!("the model has no parameter `{}` to set", clip(name)));
-    let names = || parameters.iter().map(Parameter::name);
-    let known: Vec<&str> = names().take(SHOWN).collect();
-    error.expected(match (nearest(name, names()), known.len()) {
-        (_, 0) => "it has none".to_owned(),
-        (Some(near), _) => format!("perhaps `{near}`; it has {}", known.join(", ")),
-        (None, _) => format!("it has {}", known.join(", ")),
-    })
-}
-
-/// The message about a value that is no number.
-pub(crate) fn not_finite(name: &str) -> Diagnostic {
-    Diagnostic::error(None, format!("the value of `{}` is not finite", clip(name)))
 }
 
 fn declares(name: &str, place: Span) -> Diagnostic {

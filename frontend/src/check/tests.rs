@@ -6,11 +6,15 @@ use glam::{DAffine3, DMat3, DVec3};
 use jbt_ir::limits;
 
 use super::*;
+use crate::attribute::AttributeGroup;
 use crate::attribute::Mixing;
+use crate::bounds::Bounds;
 use crate::combine::{Combinator, Family, SetOperation};
 use crate::diagnostic::Severity;
+use crate::diagnostic::Span;
 use crate::falloff::Falloff;
 use crate::skeleton::{Box, Disc, Point, Skeleton};
+use crate::tree::Primitive;
 use crate::tree::Tree;
 use crate::warp::Twist;
 
@@ -268,8 +272,10 @@ fn the_box_of_each_kind_of_node() {
 #[test]
 fn an_unbounded_box_stays_a_box() {
     let slab = between([f64::NEG_INFINITY, -1.0, 0.0], [f64::INFINITY, 1.0, f64::INFINITY]);
-    let turned =
-        affine::map_bounds(&DAffine3::from_mat3(DMat3::from_cols(DVec3::Y, DVec3::X, DVec3::NEG_Z)), slab);
+    let turned = crate::affine::map_bounds(
+        &DAffine3::from_mat3(DMat3::from_cols(DVec3::Y, DVec3::X, DVec3::NEG_Z)),
+        slab,
+    );
     assert_eq!(turned, between([-1.0, f64::NEG_INFINITY, f64::NEG_INFINITY], [1.0, f64::INFINITY, 0.0]));
 }
 

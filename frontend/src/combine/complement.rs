@@ -5,7 +5,7 @@
 
 use jbt_ir::Domain;
 
-use super::unary::Unary;
+use super::member::Unary;
 
 /// See the module.
 #[derive(Clone, Copy)]

@@ -38,7 +38,7 @@ pub(super) fn decision(fields: &[f64], iso: f64) -> f64 {
     }
     // Where a subtracted child decides: which one, whether its complement is clamped, and whether it is there.
     let appears = if largest == 0.0 { f64::INFINITY } else { largest.abs() };
-    let among = super::lead(fields[1..].iter().copied()).min(cut.abs()).min(appears);
+    let among = super::member::lead(fields[1..].iter().copied()).min(cut.abs()).min(appears);
     between.min(among)
 }
 

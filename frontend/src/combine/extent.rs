@@ -3,8 +3,9 @@
 //! Both are needed: the smaller of a negative field and zero is the negative field, so an intersection reaches out of a child as far as the
 //! others can be negative.
 
-use super::step::Reach;
-use super::{Combinator, Form, unary};
+use super::member::Reach;
+use super::unary::UnaryKind;
+use super::{Combinator, Form};
 use crate::bounds::Bounds;
 
 /// Boxes outside of which a field is zero, and not negative.
@@ -61,13 +62,13 @@ impl Extent {
     }
 
     fn of_map(combinator: Combinator, child: Self, iso: f64) -> Self {
-        let at_zero = unary::field(combinator, 0.0, iso);
+        let at_zero = combinator.field(&[0.0], iso);
         let support = if at_zero == 0.0 { child.support } else { Bounds::EVERYWHERE };
         let negative = match combinator.form() {
             _ if at_zero < 0.0 => Bounds::EVERYWHERE,
             // Only what exceeds twice the iso-value.
-            Form::Map(unary::UnaryKind::Complement) => child.support,
-            Form::Map(kind) if kind.is_non_negative(false, combinator, true) => Bounds::EMPTY,
+            Form::Map(UnaryKind::Complement) => child.support,
+            Form::Map(kind) if kind.is_non_negative(false, &combinator.numbers(), true) => Bounds::EMPTY,
             Form::Map(_) | Form::Fold | Form::Difference | Form::Step(_) => child.negative,
         };
         Self { support, negative }

@@ -33,10 +33,12 @@ pub(crate) mod complement;
 pub(crate) mod difference;
 pub(crate) mod extent;
 pub(crate) mod intersection;
+mod member;
 pub(crate) mod offset;
 pub(crate) mod product;
 pub(crate) mod rfunction;
 pub(crate) mod ricci;
+mod set;
 pub(crate) mod shell;
 pub(crate) mod smooth;
 pub(crate) mod step;
@@ -45,36 +47,12 @@ pub(crate) mod symmetric_difference;
 pub(crate) mod unary;
 pub(crate) mod union;
 
+pub use member::Rule;
 pub use rfunction::Family;
+pub use set::SetOperation;
 
 use step::StepKind;
 use unary::UnaryKind;
-
-/// What is made of sets.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-pub enum SetOperation {
-    /// What is in any.
-    Union,
-    /// What is in all.
-    Intersection,
-    /// What is in the first and in none of the others.
-    Difference,
-}
-
-impl SetOperation {
-    /// All of them.
-    pub const ALL: [Self; 3] = [Self::Union, Self::Intersection, Self::Difference];
-
-    /// The word of the text format.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Union => "union",
-            Self::Intersection => "intersection",
-            Self::Difference => "difference",
-        }
-    }
-}
 
 /// A combinator of one or more children.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -228,10 +206,10 @@ impl Combinator {
             Self::Intersection => intersection::field(fields),
             Self::Difference => difference::field(fields, iso),
             Self::SymmetricDifference | Self::Smooth(..) | Self::RFunction(..) => {
-                step::fold(self, fields, iso).0
+                self.as_step(|kind, number| kind.fold(number, fields, iso).0)
             }
             Self::Complement | Self::Clamp { .. } | Self::Shell(_) | Self::Offset(_) => {
-                unary::field(self, fields[0], iso)
+                self.as_map(|kind, numbers| kind.field(fields[0], numbers, iso))
             }
         }
     }
@@ -251,7 +229,7 @@ impl Combinator {
                 (0..fields.len()).map(|child| if Some(child) == winner { weight } else { 0.0 }).collect()
             }
             Self::SymmetricDifference | Self::Smooth(..) | Self::RFunction(..) => {
-                step::fold(self, fields, iso).1
+                self.as_step(|kind, number| kind.fold(number, fields, iso).1)
             }
             Self::Complement | Self::Clamp { .. } | Self::Shell(_) | Self::Offset(_) => {
                 let seen = fields[0] > 0.0 && self.field(fields, iso) > 0.0;
@@ -283,24 +261,33 @@ impl Combinator {
             Self::Intersection => intersection::decision(fields),
             Self::Difference => difference::decision(fields, iso),
             Self::SymmetricDifference | Self::Smooth(..) | Self::RFunction(..) => {
-                step::decision(self, fields, iso)
+                self.as_step(|kind, number| kind.decision(number, fields, iso))
             }
             Self::Complement | Self::Clamp { .. } | Self::Shell(_) | Self::Offset(_) => {
-                unary::decision(self, fields[0], iso)
+                self.as_map(|kind, numbers| kind.decision(fields[0], numbers, iso))
             }
         }
     }
-}
 
-/// The difference between the largest and the second largest; infinity if there is no second.
-fn lead(values: impl IntoIterator<Item = f64>) -> f64 {
-    let (mut first, mut second) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
-    for value in values {
-        if value > first {
-            (first, second) = (value, first);
-        } else if value > second {
-            second = value;
+    /// The kind of a step, and its number.
+    pub(crate) fn step(self) -> Option<(StepKind, f64)> {
+        match self.form() {
+            Form::Step(kind) => Some((kind, self.numbers().first().copied().unwrap_or(0.0))),
+            Form::Fold | Form::Difference | Form::Map(_) => None,
         }
     }
-    if second == f64::NEG_INFINITY { f64::INFINITY } else { first - second }
+
+    /// What a step answers.
+    fn as_step<T>(self, ask: impl FnOnce(StepKind, f64) -> T) -> T {
+        let (kind, number) = self.step().expect("only steps are asked as steps");
+        ask(kind, number)
+    }
+
+    /// What a map answers.
+    fn as_map<T>(self, ask: impl FnOnce(UnaryKind, &[f64]) -> T) -> T {
+        match self.form() {
+            Form::Map(kind) => ask(kind, &self.numbers()),
+            Form::Fold | Form::Difference | Form::Step(_) => unreachable!("only maps are asked as maps"),
+        }
+    }
 }

@@ -34,10 +34,9 @@
 
 use jbt_ir::Domain;
 
-use super::SetOperation;
+use super::member::{Pair, Reach, Rule, Step};
 use super::ricci::FLOOR;
-use super::step::{Pair, Reach, Step};
-use crate::lower::guide::Rule;
+use super::set::SetOperation;
 use crate::skeleton::positive_part;
 
 /// The least alpha: below it the background is too near to 0.

@@ -19,6 +19,8 @@
 
 use jbt_ir::Domain;
 
+use crate::power::{Exponent, power};
+
 pub(super) fn field(fields: &[f64], n: f64) -> f64 {
     if n == 1.0 {
         return super::sum::field(fields);
@@ -64,15 +66,6 @@ pub(crate) const CEILING: f32 = (1u128 << 100) as f32;
 
 /// Roots of a power of two up to this exponent are taken by square roots: more of them take longer than a power.
 const MOST_SQUARE_ROOTS: u32 = 16;
-
-/// An exponent, as the compiler has it.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Exponent<R> {
-    /// A whole number: products.
-    Integer(u32),
-    /// Any number of at least 1, and its reciprocal.
-    General(R, R),
-}
 
 /// What [`Step`] has to know of a blend.
 #[derive(Clone, Copy, Debug)]
@@ -183,22 +176,4 @@ fn unit<D: Domain>(
         Exponent::General(n, _) => n,
     };
     d.fma(n, still, one)
-}
-
-/// `x^n` for x in [0, 1].
-pub(crate) fn power<D: Domain>(d: &mut D, x: D::Real, exponent: Exponent<D::Real>) -> D::Real {
-    match exponent {
-        Exponent::General(n, _) => d.pow(x, n),
-        Exponent::Integer(n) => {
-            // Square and multiply, from the highest bit.
-            let mut result = x;
-            for bit in (0..n.ilog2()).rev() {
-                result = d.mul(result, result);
-                if n >> bit & 1 == 1 {
-                    result = d.mul(result, x);
-                }
-            }
-            result
-        }
-    }
 }

@@ -6,7 +6,7 @@
 
 use jbt_ir::Domain;
 
-use super::unary::Unary;
+use super::member::Unary;
 use crate::skeleton::positive_part;
 
 /// See the module.

@@ -16,9 +16,8 @@
 
 use jbt_ir::Domain;
 
-use super::SetOperation;
-use super::step::{Pair, Reach, Step};
-use crate::lower::guide::Rule;
+use super::member::{Pair, Reach, Rule, Step};
+use super::set::SetOperation;
 use crate::skeleton::positive_part;
 
 /// Widths below this count as this where they divide: the squares of quotients, which derivatives are made of, have to be finite.

@@ -8,8 +8,7 @@
 
 use jbt_ir::Domain;
 
-use super::step::{Pair, Reach, Step};
-use crate::lower::guide::Rule;
+use super::member::{Pair, Reach, Rule, Step};
 use crate::skeleton::positive_part;
 
 /// See the module.

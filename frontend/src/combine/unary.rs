@@ -7,30 +7,9 @@ use jbt_ir::Domain;
 
 use super::clamp::Clamp;
 use super::complement::Complement;
+use super::member::Unary;
 use super::offset::Offset;
 use super::shell::Shell;
-use super::{Combinator, Form};
-
-/// What a map has.
-pub(super) trait Unary: Copy {
-    /// Names of the numbers that a row keeps for it.
-    const COLUMNS: &'static [&'static str];
-
-    /// Pushes these numbers, from those of the combinator.
-    fn columns(self, numbers: &[f64], iso: f64, row: &mut Vec<f64>);
-
-    /// The field, plainly.
-    fn field(self, f: f64, numbers: &[f64], iso: f64) -> f64;
-
-    /// How far a field is from where another formula holds.
-    fn decision(self, f: f64, numbers: &[f64], iso: f64) -> f64;
-
-    /// Whether the field can never be negative, if that of the child can (`false`) or cannot (`true`).
-    fn is_non_negative(self, child: bool, numbers: &[f64]) -> bool;
-
-    /// The field over the ops. `iso2` is twice the iso-value.
-    fn emit<D: Domain>(self, d: &mut D, f: D::Real, row: &[D::Real], iso2: D::Real) -> D::Real;
-}
 
 /// The kind of a map: what selects code.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
@@ -76,37 +55,30 @@ impl UnaryKind {
     }
 
     /// The numbers of a row.
-    pub(crate) fn push_columns(self, combinator: Combinator, iso: f64, row: &mut Vec<f64>) {
-        on_member!(self, member => member.columns(&combinator.numbers(), iso, row));
+    pub(crate) fn push_columns(self, numbers: &[f64], iso: f64, row: &mut Vec<f64>) {
+        on_member!(self, member => member.columns(numbers, iso, row));
     }
 
     /// Whether the field can never be negative. `fixed`: the numbers follow no parameter.
-    pub(crate) fn is_non_negative(self, child: bool, combinator: Combinator, fixed: bool) -> bool {
-        let numbers = combinator.numbers();
+    pub(crate) fn is_non_negative(self, child: bool, numbers: &[f64], fixed: bool) -> bool {
         // Whatever a parameter may become counts as the worst that a number can be.
-        let numbers = if fixed { numbers } else { vec![f64::NEG_INFINITY; numbers.len()] };
-        on_member!(self, member => member.is_non_negative(child, &numbers))
+        let worst = vec![f64::NEG_INFINITY; numbers.len()];
+        let numbers = if fixed { numbers } else { &worst };
+        on_member!(self, member => member.is_non_negative(child, numbers))
+    }
+
+    /// The field of a map, plainly.
+    pub(crate) fn field(self, f: f64, numbers: &[f64], iso: f64) -> f64 {
+        on_member!(self, member => member.field(f, numbers, iso))
+    }
+
+    /// How far a field is from any decision of the map.
+    pub(super) fn decision(self, f: f64, numbers: &[f64], iso: f64) -> f64 {
+        on_member!(self, member => member.decision(f, numbers, iso))
     }
 
     /// The field over the ops.
     pub(crate) fn emit<D: Domain>(self, d: &mut D, f: D::Real, row: &[D::Real], iso2: D::Real) -> D::Real {
         on_member!(self, member => member.emit(d, f, row, iso2))
     }
-}
-
-fn kind(combinator: Combinator) -> UnaryKind {
-    match combinator.form() {
-        Form::Map(kind) => kind,
-        Form::Fold | Form::Difference | Form::Step(_) => unreachable!("only maps are asked for theirs"),
-    }
-}
-
-/// The field of a map, plainly.
-pub(crate) fn field(combinator: Combinator, f: f64, iso: f64) -> f64 {
-    on_member!(kind(combinator), member => member.field(f, &combinator.numbers(), iso))
-}
-
-/// How far a field is from any decision of the map.
-pub(super) fn decision(combinator: Combinator, f: f64, iso: f64) -> f64 {
-    on_member!(kind(combinator), member => member.decision(f, &combinator.numbers(), iso))
 }

@@ -11,7 +11,7 @@ pub(super) fn winner(fields: &[f64]) -> usize {
 }
 
 pub(super) fn decision(fields: &[f64]) -> f64 {
-    super::lead(fields.iter().copied())
+    super::member::lead(fields.iter().copied())
 }
 
 /// The larger of two fields, over the ops; the accumulated one if they are equal.

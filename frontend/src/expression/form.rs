@@ -14,22 +14,10 @@
 use glam::DVec3;
 use jbt_ir::Domain;
 
+use super::operand::Operand;
 use super::operation::{self, Operation};
 use crate::falloff::Falloff;
 use crate::number::{Formula as NumberFormula, Number, Step, Variable};
-
-/// What an operation works on.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-pub(crate) enum Operand {
-    /// x, y or z: 0, 1 or 2.
-    Coordinate(u8),
-    /// The field of a child.
-    Child(u32),
-    /// A number of the row.
-    Number(u32),
-    /// The value of a step before.
-    Step(u32),
-}
 
 /// A formula without its numbers: what selects code.
 #[derive(Clone, PartialEq, Eq, Hash, Debug)]

@@ -3,7 +3,8 @@
 //! A bound of derivatives counts every factor of the chain rule as at least 1, so that no product of some of them is larger, in whatever order the
 //! program multiplies. Operations that have poles, or slopes without bounds, are bounded by nothing.
 
-use super::form::{Form, Operand};
+use super::form::Form;
+use super::operand::Operand;
 use super::operation::Operation;
 use crate::number::Function;
 

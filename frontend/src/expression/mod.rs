@@ -48,6 +48,7 @@
 
 mod form;
 mod growth;
+mod operand;
 mod operation;
 mod write;
 
@@ -56,11 +57,13 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use crate::bounds::Bounds;
-use crate::number::Number;
+use crate::falloff::Falloff;
+use crate::number::{Binary, Function, Number, Step};
 
 pub use form::Form;
-pub(crate) use form::{Assembled, Assembler, Draft, Operand};
+pub(crate) use form::{Assembled, Assembler, Draft};
 pub(crate) use growth::Growth;
+pub(crate) use operand::Operand;
 pub(crate) use write::write;
 
 /// What the field of an expression, and the value of an attribute, is kept within, in magnitude: 2^100. Sums and products with ordinary fields stay finite.
@@ -189,6 +192,15 @@ impl Formula {
             numbers.extend(corners.into_iter().flatten());
         }
         Self { form: Arc::new(form), numbers }
+    }
+
+    /// The falloff of the only child's field as a distance.
+    pub(crate) fn fading(falloff: Falloff, radius: Number) -> Self {
+        let mut assembler = Assembler::default();
+        let divide = Step::Binary(Binary::Divide);
+        let distance = assembler.apply(&divide, vec![Draft::Child(0), Draft::Constant(radius)]);
+        let field = assembler.apply(&Step::Call(Function::falloff(falloff), 1), vec![distance]);
+        Self::new(assembler.finish(&[field]), None)
     }
 
     /// With the present values of its numbers.

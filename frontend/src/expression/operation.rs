@@ -6,7 +6,7 @@
 
 use jbt_ir::Domain;
 
-use super::form::Operand;
+use super::operand::Operand;
 use crate::angle::atan2;
 use crate::falloff::{Falloff, Nearness};
 use crate::number::{Binary, Function, Number, Step};

@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-use super::form::{Form, Operand};
+use super::form::Form;
+use super::operand::Operand;
 use super::operation::Operation;
 use crate::number::{Binary, Function, Number, Step, Variable, show};
 

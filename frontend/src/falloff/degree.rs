@@ -7,8 +7,8 @@
 use jbt_ir::Domain;
 
 use super::{FalloffMember, Nearness, emit_inside, whole};
-use crate::combine::ricci::{Exponent, power};
 use crate::field::{Field, FieldKind, FieldValue, Member};
+use crate::power::{Exponent, power};
 
 /// The largest whole exponent that is code.
 const MOST_WHOLE: u8 = 64;

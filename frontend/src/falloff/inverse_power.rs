@@ -15,8 +15,8 @@
 use jbt_ir::Domain;
 
 use super::{Edge, FalloffMember, Nearness, Rim, bisect, whole};
-use crate::combine::ricci::{Exponent, power};
 use crate::field::{Field, FieldKind, FieldValue, Member};
+use crate::power::{Exponent, power};
 
 /// The largest exponent.
 const MOST: u8 = 16;

@@ -36,95 +36,15 @@
 
 use jbt_ir::Domain;
 
-use crate::field::{Field, FieldValue, Member};
-use crate::skeleton::positive_part;
+use crate::field::{Field, FieldOf, FieldValue, Member as _, Written};
 
 mod edge;
+mod formulas;
+mod member;
 
 pub use edge::{Edge, Rim};
-
-/// How near a point is to the skeleton, over the ops: what falloffs are functions of.
-#[derive(Clone, Copy, Debug)]
-pub struct Nearness<R> {
-    /// `max(1 - s, 0)`: exactly 0 from the support radius outwards, with all its digits in front of it.
-    pub u: R,
-    /// Two factors of `-s`.
-    square: R,
-    slope: R,
-}
-
-impl<R: Copy> Nearness<R> {
-    /// From two factors of `-s`: the squared distance and `-1 / R^2`. NaN is outside.
-    pub fn emit<D: Domain<Real = R>>(d: &mut D, square: R, slope: R) -> Self {
-        let (zero, one) = (d.constant(0.0), d.constant(1.0));
-        let left = d.fma(square, slope, one);
-        Self { u: d.max(left, zero), square, slope }
-    }
-
-    /// `min(s, 1)`, with all its digits near the skeleton. Where it moves, u is above 0.
-    fn square<D: Domain<Real = R>>(self, d: &mut D) -> R {
-        let (one, back) = (d.constant(1.0), d.mul(self.square, self.slope));
-        let s = d.neg(back);
-        d.min(s, one)
-    }
-
-    /// `r`, the root of that.
-    fn distance<D: Domain<Real = R>>(self, d: &mut D) -> R {
-        let s = self.square(d);
-        d.sqrt(s)
-    }
-}
-
-/// What a falloff without parameters states about itself.
-pub trait PlainFalloff {
-    /// The word of the text format.
-    const NAME: &'static str;
-    /// Other words that are read as this one.
-    const ALIASES: &'static [&'static str];
-    /// See [`FalloffMember::steepness`].
-    const STEEPNESS: f64;
-    /// See [`FalloffMember::is_pointed`].
-    const IS_POINTED: bool = false;
-
-    /// The field at `s = d^2 / R^2 >= 0`, plainly.
-    fn value(s: f64) -> f64;
-
-    /// The `s` at which the field is `level`, for `0 < level < 1`.
-    fn inverse(level: f64) -> f64;
-
-    /// The field over the ops.
-    fn emit<D: Domain>(d: &mut D, near: Nearness<D::Real>) -> D::Real;
-}
-
-/// What a falloff with parameters states about itself.
-pub trait FalloffMember: Member {
-    /// Other words that are read as its name.
-    const ALIASES: &'static [&'static str];
-
-    /// The field at `s = d^2 / R^2 >= 0`, plainly.
-    fn value(&self, s: f64) -> f64;
-
-    /// The `s` at which the field is `level`, for `0 < level < 1`. Where the field jumps over the level: where it jumps.
-    fn inverse(&self, level: f64) -> f64;
-
-    /// A bound of the factors that the derivative by u multiplies where u is 0, and of their products: supports rest on it.
-    fn steepness(&self) -> f64;
-
-    /// Whether the field has a tip at the skeleton: its slope in r is not 0 there, so that the gradient jumps.
-    fn is_pointed(&self) -> bool;
-
-    /// The part of the parameters that selects code. If a parameter follows one of the model, `follows`, code serves all its values.
-    fn variant(&self, follows: bool) -> u8;
-
-    /// The names of the columns of a row, for this variant.
-    fn column_names(variant: u8) -> &'static [&'static str];
-
-    /// The numbers of a row: one for each of [`column_names`](Self::column_names).
-    fn columns(&self, variant: u8, row: &mut Vec<f64>);
-
-    /// The field over the ops; `row` holds the columns of a falloff with this variant.
-    fn emit<D: Domain>(d: &mut D, variant: u8, near: Nearness<D::Real>, row: &[D::Real]) -> D::Real;
-}
+use formulas::{bisect, emit_depth, emit_distance, emit_inside, emit_square, whole};
+pub use member::{FalloffMember, Nearness, PlainFalloff};
 
 macro_rules! falloffs {
     (
@@ -284,7 +204,23 @@ falloffs! {
     }
 }
 
+impl Falloff {
+    /// It as it is written, with the parameters that do not have their defaults in braces.
+    pub(crate) fn text(&self) -> String {
+        self.kind().text(&self.to_fields())
+    }
+}
+
 impl FalloffKind {
+    /// A falloff of this kind as it is written: in braces the parameters that do not have their defaults.
+    pub(crate) fn text<T: Written>(self, fields: &[FieldOf<T>]) -> String {
+        let mut text = String::new();
+        for (described, value) in self.fields().iter().zip(fields) {
+            described.write(&mut text, described.name, value);
+        }
+        if text.is_empty() { self.name().to_owned() } else { format!("{} {{{text} }}", self.name()) }
+    }
+
     /// The kind that this word of the text format names, by its name or by another one.
     #[must_use]
     pub fn named(word: &str) -> Option<Self> {
@@ -294,49 +230,3 @@ impl FalloffKind {
 
 #[cfg(test)]
 mod testing;
-
-/// The `s` in [0, 1] where a falling `value` passes `level`.
-fn bisect(value: impl Fn(f64) -> f64, level: f64) -> f64 {
-    let (mut low, mut high) = (0.0, 1.0);
-    while high - low > f64::EPSILON * high {
-        let middle = 0.5 * (low + high);
-        if middle <= low || middle >= high {
-            break;
-        }
-        if value(middle) >= level { low = middle } else { high = middle }
-    }
-    0.5 * (low + high)
-}
-
-/// The exponent as a whole number, if it is one in [1, `most`]: then it is code.
-fn whole(exponent: f64, most: u8) -> Option<u8> {
-    let n = exponent as u8;
-    (f64::from(n) == exponent && (1..=most).contains(&n)).then_some(n)
-}
-
-/// `s = 1 - u`, from 0 to 1, for falloffs that are flat at the skeleton.
-fn emit_square<D: Domain>(d: &mut D, u: D::Real) -> D::Real {
-    let one = d.constant(1.0);
-    let s = d.sub(one, u);
-    positive_part(d, s)
-}
-
-/// `r = sqrt(1 - u)`, from 0 to 1, for falloffs that are flat at the skeleton.
-fn emit_distance<D: Domain>(d: &mut D, u: D::Real) -> D::Real {
-    let s = emit_square(d, u);
-    d.sqrt(s)
-}
-
-/// `1 - r = u / (1 + r)`: this form is exactly 0 at the rim and rises with u.
-fn emit_depth<D: Domain>(d: &mut D, u: D::Real, r: D::Real) -> D::Real {
-    let one = d.constant(1.0);
-    let sum = d.add(one, r);
-    d.div(u, sum)
-}
-
-/// `value`, or exactly 0 at u = 0.
-fn emit_inside<D: Domain>(d: &mut D, u: D::Real, value: D::Real) -> D::Real {
-    let zero = d.constant(0.0);
-    let inside = d.lt(zero, u);
-    d.select(inside, value, zero)
-}

@@ -22,6 +22,7 @@ use super::shape::{Lift, Shapes};
 use super::support::Supports;
 use crate::bounds::Bounds;
 use crate::check::NodeId;
+pub use crate::combine::Rule;
 use crate::diagnostic::Diagnostic;
 use crate::query::Query;
 
@@ -67,23 +68,6 @@ pub enum SpaceGuide {
     Probed(usize),
     /// The insides of several warps: rows are not left out by their supports.
     Unknown,
-}
-
-/// What may be done with rows that are zero all over a box.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Rule {
-    /// They may all be left out: rows of sums, of Ricci blends, of unions without negative operands and of selectors, guards that start at 0,
-    /// and pieces whose distance counts within the support radius only.
-    Neutral,
-    /// The first of each parent row's zero rows stays, the others may be left out: rows of unions and intersections with negative operands, and
-    /// of steps that a zero limits once and for all.
-    KeepOne,
-    /// If one is zero, all others of the same parent row may be left out, zero or not, and one that is zero stays: rows of intersections
-    /// without negative operands, of products and of Ricci blends with negative exponents.
-    OnlyZero,
-    /// Zero is no reason: the scene, guards that do not start at 0, points inside of warps, R-functions, what may answer for the whole model, and
-    /// pieces that count everywhere.
-    Never,
 }
 
 /// What may be left out where it does not decide. It is told by the ranges of two probes over a box.

@@ -246,7 +246,7 @@ impl<'a> Writer<'a> {
             }
             OccurrenceKind::Map { kind, child } => {
                 let combinator = self.scene.combinator(occurrence.node);
-                kind.push_columns(combinator, self.scene.tree.iso(), &mut self.row);
+                kind.push_columns(&combinator.numbers(), self.scene.tree.iso(), &mut self.row);
                 tasks.push(Task::Operand(*child));
             }
             OccurrenceKind::Expression { children, .. } => {

@@ -3,8 +3,10 @@
 use std::fmt;
 use std::sync::Arc;
 
-use super::{Binary, Function, Values, plain};
+use super::function::{Binary, Function};
+use super::value::Values;
 use crate::diagnostic::{Diagnostic, Span};
+use crate::field::plain;
 use crate::report::clip;
 
 /// What the formula of a field is about, besides numbers.
@@ -205,7 +207,7 @@ pub(crate) fn show<W: fmt::Write>(
             }
             Step::Call(function, _) => {
                 match function {
-                    Function::Falloff(falloff) => write!(f, "{}(", crate::text::falloff_text(&falloff.0))?,
+                    Function::Falloff(falloff) => write!(f, "{}(", falloff.0.text())?,
                     _ => write!(f, "{}(", function.name())?,
                 }
                 pieces.push(Piece::Text(")"));

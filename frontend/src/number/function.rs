@@ -2,9 +2,8 @@
 
 use std::hash::{Hash, Hasher};
 
-use super::plain;
 use crate::falloff::Falloff;
-use crate::field::FieldValue;
+use crate::field::plain;
 
 /// A function of the text format. The list is the one below.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
@@ -54,13 +53,7 @@ pub(crate) struct FixedFalloff(pub(crate) Falloff);
 impl FixedFalloff {
     /// The numbers of its parameters.
     fn bits(&self) -> impl Iterator<Item = u64> + use<> {
-        let numbers = |field: FieldValue| match field {
-            FieldValue::Real(number) => vec![number],
-            FieldValue::Vector(numbers) => numbers.to_vec(),
-            FieldValue::Reals(numbers) => numbers,
-            FieldValue::Vectors(vectors) => vectors.into_flattened(),
-        };
-        self.0.to_fields().into_iter().flat_map(numbers).map(f64::to_bits)
+        self.0.to_fields().into_iter().flat_map(|field| field.numbers().to_vec()).map(f64::to_bits)
     }
 }
 

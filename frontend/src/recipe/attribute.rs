@@ -1,6 +1,6 @@
 //! The recipe of what an attribute node gives to leaves.
 
-use super::FieldNumber;
+use super::field::FieldNumber;
 use crate::attribute::{AttributeValue, Textured, UvMap};
 use crate::expression::Formula;
 use crate::number::{Number, values};

@@ -1,6 +1,6 @@
 //! The recipe of a falloff.
 
-use super::FieldNumber;
+use super::field::FieldNumber;
 use crate::falloff::{Falloff, FalloffKind};
 use crate::field::FieldValue;
 use crate::number::Number;

@@ -64,3 +64,10 @@ pub(crate) fn positive_part<D: Domain>(d: &mut D, x: D::Real) -> D::Real {
     let zero = d.constant(0.0);
     d.max(x, zero)
 }
+
+/// `x` between 0 and 1; 0 for NaN.
+pub(crate) fn emit_unit<D: Domain>(d: &mut D, x: D::Real) -> D::Real {
+    let (zero, one) = (d.constant(0.0), d.constant(1.0));
+    let x = d.max(x, zero);
+    d.min(x, one)
+}

@@ -16,11 +16,11 @@
 use glam::{DAffine3, DMat3, DVec3};
 use jbt_ir::{Domain, limits};
 
+use super::formulas::emit_unit;
 use super::{SkeletonMember, Symmetry};
 use super::segment::segment_distance_squared;
 use crate::bounds::Bounds;
 use crate::field::{Field, FieldKind, FieldValue, Member};
-use crate::texture::emit_unit;
 
 /// A filled triangle. Corners on a line make it a segment, equal ones a point.
 #[derive(Clone, Copy, PartialEq, Debug)]

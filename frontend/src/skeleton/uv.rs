@@ -14,7 +14,7 @@ use std::f64::consts::TAU;
 use glam::{DAffine3, DMat3, DVec3};
 use jbt_ir::{Domain, limits};
 
-use crate::texture::emit_unit;
+use super::formulas::emit_unit;
 
 /// The frame about the unit vector `n` at `origin`: see the module.
 pub(super) fn frame(n: DVec3, origin: DVec3) -> DAffine3 {

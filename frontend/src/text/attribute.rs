@@ -8,32 +8,23 @@
 //! ```
 
 use super::color::color_hint;
-use super::expression::{Place, is_builtin};
-use super::formula::EXPRESSION;
+use super::expression::Place;
 use super::lex::{Token, TokenKind};
-use super::parse::{Parser, is_statement};
 use super::primitive::Slots;
+use super::state::Parser;
+use super::words::{EXPRESSION, is_builtin, texture_named};
 use crate::diagnostic::{Diagnostic, Span};
 use crate::number::Number;
 use crate::recipe::{AttributeRecipe, TexturedRecipe, UvRecipe};
 use crate::report::{clip, nearest};
 use crate::texture::TextureKind;
+use crate::word::is_statement;
 
 /// The words of a map of uv.
 const UV_WORDS: [&str; 3] = ["scale", "rotate", "shift"];
 
 /// The words for the two values of a texture.
 const ENDS: [&str; 2] = ["a", "b"];
-
-/// The texture that a word names.
-pub(super) fn texture_named(word: &str) -> Option<TextureKind> {
-    TextureKind::ALL.iter().copied().find(|kind| kind.name() == word)
-}
-
-/// Whether a word begins what is no list of numbers.
-pub(super) fn is_value_word(word: &str) -> bool {
-    word == EXPRESSION || texture_named(word).is_some()
-}
 
 impl Parser<'_> {
     /// The value of the attribute `name`, whose token is `at`; nothing after an error in what is no list of numbers.

@@ -7,13 +7,14 @@
 //! color srgb(1 0.53 0) { .. }         numbers from 0 to 1, which may follow parameters
 //! ```
 
-use super::expression::is_builtin;
 use super::lex::{Token, TokenKind};
-use super::parse::{Parser, is_statement};
+use super::state::Parser;
 use super::value::Elements;
+use super::words::is_builtin;
 use crate::diagnostic::{Diagnostic, Span};
 use crate::number::{Function, Number, Step};
 use crate::report::clip;
+use crate::word::is_statement;
 
 /// The word before three numbers of a screen.
 const SRGB: &str = "srgb";
@@ -183,7 +184,7 @@ impl Parser<'_> {
             TokenKind::Word => {
                 let word = self.text(token);
                 let number = self.parameter(word).is_some() || (is_builtin(word) && !is_statement(word));
-                !block && (number || super::attribute::is_value_word(word))
+                !block && (number || super::words::is_value_word(word))
             }
             TokenKind::Unknown | TokenKind::End => false,
         };

@@ -10,27 +10,16 @@
 //! What follows parameters is written down as a formula besides. Both stacks meet the operands in the order of the text, so the steps of
 //! the formula come out in postfix order, each operand's after those of the operand before it.
 
-use std::f64::consts::PI;
-
 use jbt_ir::limits::MAX_EXPRESSION_DEPTH;
 
-use super::formula::Scope;
 use super::lex::{Token, TokenKind};
-use super::parse::{Parser, is_statement};
+use super::scope::Scope;
+use super::state::Parser;
+use super::words::{CONSTANTS, constant};
 use crate::diagnostic::{Diagnostic, Span};
 use crate::number::{Binary, Formula, Function, Number, Step, Variable};
 use crate::report::{clip, nearest};
-
-const CONSTANTS: &[(&str, f64)] = &[("pi", PI)];
-
-/// Whether a word means something else already where a number may stand, so that no parameter may have it.
-pub(super) fn is_builtin(word: &str) -> bool {
-    is_statement(word) || Function::named(word).is_some_and(Function::is_reserved) || constant(word).is_some()
-}
-
-fn constant(word: &str) -> Option<f64> {
-    CONSTANTS.iter().find(|(name, _)| *name == word).map(|&(_, value)| value)
-}
+use crate::word::is_statement;
 
 /// What waits on the operator stack.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

@@ -1,12 +1,13 @@
 //! The falloff of a primitive: its name, and a block with its parameters where it has any.
 
 use super::lex::{Token, TokenKind};
-use super::parse::{Parser, is_statement};
 use super::primitive::{Slots, missing_error};
+use super::state::Parser;
 use crate::diagnostic::{Diagnostic, Span};
 use crate::falloff::FalloffKind;
 use crate::recipe::FalloffRecipe;
 use crate::report::{clip, nearest};
+use crate::word::is_statement;
 
 impl Parser<'_> {
     /// What follows the word `falloff`, of a node or of a primitive. Nothing after an error.

@@ -3,60 +3,22 @@
 //!
 //! It is read by the parser of numbers, which hands what is no number through as steps.
 
-use std::collections::HashMap;
-
 use jbt_ir::limits::MAX_EXPRESSION_STEPS;
 
-use super::WEIGHTED;
-use super::expression::{Place, is_builtin};
+use super::block::{Begun, Head};
+use super::expression::Place;
 use super::lex::{Token, TokenKind};
-use super::node::{Begun, Head};
-use super::parse::{Parser, is_statement};
+use super::scope::Scope;
+use super::state::Parser;
+use super::words::{WEIGHTED, is_builtin};
 use crate::diagnostic::{Diagnostic, Span};
 use crate::expression::{Assembled, Assembler, Draft, Formula};
 use crate::falloff::{Falloff, FalloffKind};
-use crate::number::{Binary, Function, Number, Step, Variable};
+use crate::number::{Function, Number, Variable};
 use crate::recipe::{FalloffRecipe, Recipe};
 use crate::report::{clip, nearest};
 use crate::tree::Tree;
-
-/// The coordinates of a point.
-pub(crate) const COORDINATES: [&str; 3] = ["x", "y", "z"];
-/// The word for the field of a subtree.
-pub(crate) const FIELD: &str = "field";
-/// The word for a formula.
-pub(super) const EXPRESSION: &str = "expression";
-
-/// What a formula may be about besides numbers.
-#[derive(Default)]
-pub(super) struct Scope<'a> {
-    /// Whether it may ask for no fields.
-    fieldless: bool,
-    /// The place of each definition.
-    definitions: HashMap<&'a str, u32>,
-    /// The subtrees whose fields it asks for, each once, and the place of each by its identity.
-    children: Vec<Tree>,
-    places: HashMap<usize, u32>,
-    /// It is about a point, which follows from no field.
-    pointwise: bool,
-}
-
-impl Scope<'_> {
-    /// The words that stand for something.
-    pub(super) fn words(&self) -> impl Iterator<Item = &str> {
-        let field = (!self.fieldless).then_some(FIELD);
-        COORDINATES.into_iter().chain(field).chain(self.definitions.keys().copied())
-    }
-
-    fn child(&mut self, tree: Tree) -> Variable {
-        let next = self.children.len() as u32;
-        let place = *self.places.entry(tree.identity()).or_insert(next);
-        if place == next {
-            self.children.push(tree);
-        }
-        Variable::Child(place)
-    }
-}
+use crate::word::{COORDINATES, FIELD, is_statement};
 
 impl<'a> Parser<'a> {
     /// What a word that has just been taken stands for in a formula, if it is no number there; an error that has been told.
@@ -366,20 +328,11 @@ impl<'a> Parser<'a> {
             return self.unary(start, None);
         }
         let radius = self.expression(Place::Alone).number;
-        self.unary(start, Some(Recipe::Expression(fading(falloff, radius))))
+        self.unary(start, Some(Recipe::Expression(Formula::fading(falloff, radius))))
     }
 }
 
 /// A child's field, and 0 outside of a box.
 fn bounding(corners: [[Number; 3]; 2]) -> Recipe {
     Recipe::Expression(Formula::new(Assembler::default().finish(&[Draft::Child(0)]), Some(corners)))
-}
-
-/// The falloff of a child's field as a distance.
-pub(crate) fn fading(falloff: Falloff, radius: Number) -> Formula {
-    let mut assembler = Assembler::default();
-    let divide = Step::Binary(Binary::Divide);
-    let distance = assembler.apply(&divide, vec![Draft::Child(0), Draft::Constant(radius)]);
-    let field = assembler.apply(&Step::Call(Function::falloff(falloff), 1), vec![distance]);
-    Formula::new(assembler.finish(&[field]), None)
 }

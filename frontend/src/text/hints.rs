@@ -1,8 +1,7 @@
 //! What to say to people who know another program's words: loops, modules, shapes with arguments in parentheses.
 
+use super::words::field_word;
 use crate::skeleton::SkeletonKind;
-
-use super::field_word;
 
 /// Words of other programs, and what stands for them here.
 const WORDS: &[(&[&str], &str)] = &[
@@ -111,7 +110,7 @@ mod tests {
     #[test]
     fn words_of_the_format_are_not_foreign() {
         let words: Vec<&str> = WORDS.iter().flat_map(|(words, _)| words.iter().copied()).collect();
-        assert!(words.iter().all(|word| !crate::text::node::is_reserved(word)), "{words:?}");
+        assert!(words.iter().all(|word| !crate::text::words::is_reserved(word)), "{words:?}");
         let mut sorted = words.clone();
         sorted.sort_unstable();
         sorted.dedup();

@@ -1,9 +1,9 @@
 //! Affine maps of a text.
 
-use super::ROTATE;
+use super::block::{Begun, Head};
 use super::lex::Token;
-use super::node::{Begun, Head};
-use super::parse::Parser;
+use super::state::Parser;
+use super::words::ROTATE;
 use crate::diagnostic::{Diagnostic, Span};
 use crate::field::Field;
 use crate::recipe::{Angle, FieldNumber, Map, Recipe};

@@ -105,6 +105,7 @@
 //! present values, and so are the expressions that mention them.
 
 mod attribute;
+mod block;
 mod color;
 mod expression;
 mod falloff;
@@ -117,27 +118,21 @@ mod operator;
 mod parse;
 mod primitive;
 mod print;
+mod scope;
+mod state;
 mod value;
+mod words;
 
-use std::borrow::Cow;
+use std::fmt;
+use std::str::FromStr;
 
 use crate::diagnostic::{Diagnostics, SourceText};
-use crate::field::{Field, FieldKind};
 use crate::model::Model;
 use crate::number::Function;
-use crate::skeleton::SkeletonKind;
 
-pub(crate) use formula::{COORDINATES, FIELD as FIELD_OF, fading};
-pub(crate) use parse::is_statement;
 pub use print::print;
-pub(crate) use print::{falloff_text, print_head};
-
-/// What is set from outside a text.
-#[derive(Clone, PartialEq, Debug, Default)]
-pub struct Options {
-    /// Values of parameters, by name; the last one of a name counts.
-    pub parameters: Vec<(String, f64)>,
-}
+pub(crate) use print::print_head;
+pub use state::Options;
 
 /// The model of a text.
 ///
@@ -159,6 +154,32 @@ pub fn parse(text: &[u8], options: &Options) -> Result<Model, Diagnostics> {
     }
 }
 
+impl fmt::Display for Model {
+    /// In the [text format](self), from which it can be parsed again.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&print(self))
+    }
+}
+
+impl FromStr for Model {
+    type Err = Diagnostics;
+
+    /// The model of a text.
+    ///
+    /// ```
+    /// use jbt_frontend::model::Model;
+    /// let model: Model = "jbt 1 point { surface_radius 1 }".parse()?;
+    /// assert_eq!(model.to_string().parse::<Model>()?, model);
+    /// # Ok::<(), jbt_frontend::diagnostic::Diagnostics>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Those of [`parse`].
+    fn from_str(text: &str) -> Result<Self, Diagnostics> {
+        parse(text.as_bytes(), &Options::default())
+    }
+}
+
 /// The names of the functions of expressions, as `sqrt`; in formulas of fields, falloffs are functions too.
 pub fn functions() -> impl Iterator<Item = &'static str> {
     Function::ALL.into_iter().map(Function::name)
@@ -172,44 +193,4 @@ pub fn functions() -> impl Iterator<Item = &'static str> {
 pub fn number(text: &str) -> Result<f64, Diagnostics> {
     let source = || SourceText::new(SourceText::UNNAMED, text.as_bytes());
     parse::read_number(text).map_err(|list| Diagnostics::new(list, Some(source())))
-}
-
-/// The word before the name of an attribute group that is called like a word of the format.
-const GROUP_NODE: &str = "with";
-
-/// The parameters that every primitive has.
-const OWN_FIELDS: [&str; 4] = ["radius", "surface_radius", "falloff", "strength"];
-
-/// The parameters of `rotate`: the axis, and one of the others.
-const ROTATE: &[Field] = &[
-    Field { name: "axis", kind: FieldKind::Direction, default: None },
-    Field { name: "degrees", kind: FieldKind::Real, default: None },
-    Field { name: "radians", kind: FieldKind::Real, default: None },
-];
-
-/// The word before the block of a warp that a second child weighs.
-const WEIGHTED: &str = "weighted";
-
-/// The parameter of `reflect`.
-const REFLECT: &[Field] = &[Field { name: "axis", kind: FieldKind::Direction, default: None }];
-
-/// The parameters of `stretch`.
-const STRETCH: &[Field] = &[
-    Field { name: "axis", kind: FieldKind::Direction, default: None },
-    Field { name: "by", kind: FieldKind::Real, default: None },
-];
-
-/// The parameters of `shear`.
-const SHEAR: &[Field] = &[
-    Field { name: "axis", kind: FieldKind::Direction, default: None },
-    Field { name: "by", kind: FieldKind::Position, default: None },
-];
-
-/// The word for a parameter of a skeleton: its name, after the skeleton's where every primitive has one of that name.
-fn field_word(kind: SkeletonKind, field: &Field) -> Cow<'static, str> {
-    if OWN_FIELDS.contains(&field.name) {
-        Cow::Owned(format!("{}_{}", kind.name(), field.name))
-    } else {
-        Cow::Borrowed(field.name)
-    }
 }

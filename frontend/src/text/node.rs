@@ -2,105 +2,19 @@
 
 use jbt_ir::limits::MAX_NODES;
 
+use super::block::{Begun, Frame, Head};
 use super::expression::Place;
 use super::hints::foreign_word;
 use super::lex::{Token, TokenKind};
-use super::parse::{Parser, is_statement};
-use super::{GROUP_NODE, REFLECT, SHEAR, STRETCH, WEIGHTED, operator};
-use crate::combine::Combinator;
+use super::state::Parser;
+use super::words::{COMBINATORS, GROUP_NODE, OPERATORS, REFLECT, SHEAR, STRETCH, WEIGHTED, fixed_words};
 use crate::diagnostic::{Diagnostic, Span};
 use crate::recipe::{Map, Recipe};
 use crate::report::{clip, nearest};
 use crate::skeleton::SkeletonKind;
 use crate::tree::{NodeKind, Tree};
 use crate::warp::WarpKind;
-
-/// The combinators without parameters.
-const COMBINATORS: [Combinator; 6] = [
-    Combinator::Sum,
-    Combinator::Product,
-    Combinator::Union,
-    Combinator::Intersection,
-    Combinator::Difference,
-    Combinator::SymmetricDifference,
-];
-
-/// The other words that begin a node.
-const OTHERS: [&str; 16] = [
-    "use",
-    "blend",
-    "ricci",
-    "select",
-    "expression",
-    "within",
-    "falloff",
-    "translate",
-    "rotate",
-    "scale",
-    "reflect",
-    "stretch",
-    "shear",
-    "affine",
-    "warp",
-    GROUP_NODE,
-];
-
-/// Whether a word begins a node, or a statement, in every file: a group of this name needs the word `with` before it.
-pub(super) fn is_reserved(word: &str) -> bool {
-    is_statement(word) || fixed_words().any(|fixed| fixed == word)
-}
-
-/// The words that begin a node in every file.
-fn fixed_words() -> impl Iterator<Item = &'static str> {
-    let members = SkeletonKind::ALL.iter().map(|kind| kind.name());
-    let warps = WarpKind::ALL.iter().map(|kind| kind.name());
-    members.chain(warps).chain(COMBINATORS.iter().map(|c| c.name())).chain(operator::WORDS).chain(OTHERS)
-}
-
-/// What an open block becomes.
-pub(super) enum Head {
-    Combine(Combinator),
-    /// An operator with a number.
-    Operator(Box<Recipe>),
-    /// With one child. Boxed, so that a million open blocks are small.
-    Unary(Box<Recipe>),
-    /// A warp whose second child weighs it.
-    Weighted(Box<Recipe>),
-    /// The head has an error; the block is read for its own errors.
-    Broken,
-}
-
-/// An open block.
-pub(super) struct Frame {
-    head: Head,
-    /// Its first child on the stack of finished subtrees.
-    first: u32,
-    /// The node's words before the block.
-    span: Span,
-    /// The byte of the opening brace.
-    open: u32,
-    /// Something in the block could not be read: its children are not counted.
-    incomplete: bool,
-    /// A node around it, which its words give as well.
-    around: Option<Box<Recipe>>,
-}
-
-impl Frame {
-    /// With a node around it.
-    pub(super) fn inside(self, around: Recipe) -> Self {
-        Self { around: Some(Box::new(around)), ..self }
-    }
-}
-
-/// What begins with a word.
-pub(super) enum Begun {
-    /// A whole subtree.
-    Leaf(Tree),
-    /// A block is open.
-    Block(Frame),
-    /// Nothing: the word was skipped.
-    Nothing,
-}
+use crate::word::is_statement;
 
 impl<'a> Parser<'a> {
     /// Whether a word begins a node of this file.
@@ -296,7 +210,7 @@ impl<'a> Parser<'a> {
                 let rows = self.vector();
                 self.map(start, Map::Affine(Box::new(rows)))
             }
-            _ if operator::WORDS.contains(&word) => self.operator_head(start, word),
+            _ if OPERATORS.contains(&word) => self.operator_head(start, word),
             GROUP_NODE => match self.peek_word() {
                 Some(name) => {
                     let at = self.next();

@@ -1,25 +1,13 @@
 //! Operators of a text that have numbers, or one child: what stands before their blocks.
 
+use super::block::{Begun, Head};
 use super::expression::Place;
 use super::lex::Token;
-use super::node::{Begun, Head};
-use super::parse::Parser;
+use super::state::Parser;
 use crate::combine::{Combinator, Family, SetOperation};
 use crate::diagnostic::{Diagnostic, Span};
 use crate::number::Number;
 use crate::recipe::Recipe;
-
-/// The words that begin them, but for those of Ricci's blend.
-pub(super) const WORDS: [&str; 8] = [
-    "smooth_union",
-    "smooth_intersection",
-    "smooth_difference",
-    "rfunction",
-    "complement",
-    "clamp",
-    "shell",
-    "offset",
-];
 
 impl Parser<'_> {
     /// The operator that begins with one of [`WORDS`].

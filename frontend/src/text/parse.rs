@@ -1,64 +1,20 @@
-//! The parser: what it knows, how it reports, and the statements of a file. Nodes are in `node`, values in `value`.
-//!
-//! Tokens are taken one at a time and nothing recurses, so that memory is bounded by the model and not by the text. After an
-//! error that has lost the place, tokens are skipped in silence until a word, a brace or a statement says where we are again.
+//! The statements of a file. The state of the parser is in `state`, nodes are in `node`, values in `value`.
 
-use std::collections::HashMap;
 use std::sync::Arc;
 
 use jbt_ir::limits::{MAX_ATTRIBUTE_WIDTH, MAX_ATTRIBUTES, MAX_SCENE_BYTES};
 
-use super::Options;
-use super::expression::{Place, is_builtin};
-use super::formula::Scope;
-use super::hints::foreign_mark;
-use super::lex::{Lexer, Token, TokenKind};
+use super::expression::Place;
+use super::lex::{Token, TokenKind};
+use super::state::{Options, Parser};
+use super::words::is_builtin;
 use crate::attribute::{AttributeGroup, Mixing};
-use crate::check::{not_finite, unknown};
-use crate::combine::Combinator;
 use crate::diagnostic::{Diagnostic, Span};
 use crate::model::Model;
 use crate::number::{Formula, Number};
-use crate::parameter::{Parameter, reference};
-use crate::report::{Report, clip};
-use crate::tree::{NodeKind, Tree};
-
-/// The words that begin a statement.
-const STATEMENTS: [&str; 6] = ["jbt", "iso", "origin", "param", "attribute", "let"];
-
-/// Whether a word begins a statement.
-pub(crate) fn is_statement(word: &str) -> bool {
-    STATEMENTS.contains(&word)
-}
-
-/// The state of reading one text.
-pub(super) struct Parser<'a> {
-    lexer: Lexer<'a>,
-    whole: &'a str,
-    report: Report,
-    /// The place is lost: messages are withheld until it is found again.
-    lost: bool,
-    /// Reading has stopped for good.
-    stopped: bool,
-    options: &'a Options,
-    parameters: Vec<Parameter>,
-    /// Each parameter as formulas have it; its value is NaN where its expression has an error.
-    references: HashMap<&'a str, Number>,
-    pub(super) lets: HashMap<&'a str, Tree>,
-    /// Inside of the formula of a field: what it may be about besides numbers.
-    pub(super) scope: Option<Scope<'a>>,
-    pub(super) attributes: Vec<AttributeGroup>,
-    pub(super) iso: Number,
-    iso_at: Option<Span>,
-    origin: Option<[f64; 3]>,
-    /// Nodes so far, shared ones once.
-    pub(super) nodes: usize,
-    root: Option<Tree>,
-    /// A brace that the end of the file leaves open has been reported.
-    pub(super) ended: bool,
-    /// Stands for every node that could not be read.
-    pub(super) broken: Tree,
-}
+use crate::parameter::{Parameter, not_finite, reference, unknown};
+use crate::report::clip;
+use crate::word::is_statement;
 
 /// The model of a text, or everything that is wrong with it.
 pub(super) fn read(text: &[u8], options: &Options) -> Result<Model, Vec<Diagnostic>> {
@@ -92,171 +48,6 @@ pub(super) fn read_number(text: &str) -> Result<f64, Vec<Diagnostic>> {
 }
 
 impl<'a> Parser<'a> {
-    fn new(whole: &'a str, options: &'a Options) -> Self {
-        Self {
-            lexer: Lexer::new(whole),
-            whole,
-            report: Report::default(),
-            lost: false,
-            stopped: false,
-            options,
-            parameters: Vec::new(),
-            references: HashMap::new(),
-            lets: HashMap::new(),
-            scope: None,
-            attributes: vec![AttributeGroup::color()],
-            iso: Model::DEFAULT_ISO.into(),
-            iso_at: None,
-            origin: None,
-            nodes: 0,
-            root: None,
-            ended: false,
-            broken: Tree::new(NodeKind::Combine(Combinator::Sum), Vec::new()),
-        }
-    }
-
-    // The tokens.
-
-    pub(super) fn peek(&self) -> Token {
-        self.lexer.peek()
-    }
-
-    pub(super) fn next(&mut self) -> Token {
-        self.lexer.next()
-    }
-
-    pub(super) fn peek_behind(&self) -> Token {
-        self.lexer.peek_behind()
-    }
-
-    /// Goes back to a byte that has been skipped as a part of a comment.
-    pub(super) fn resume(&mut self, at: usize) {
-        self.lexer.resume(at);
-    }
-
-    pub(super) fn leans_right(&self) -> bool {
-        self.lexer.leans_right()
-    }
-
-    /// Where the last taken token ended.
-    pub(super) fn previous_end(&self) -> usize {
-        self.lexer.previous_end()
-    }
-
-    pub(super) fn text(&self, token: Token) -> &'a str {
-        self.lexer.text(token)
-    }
-
-    pub(super) fn source(&self, span: Span) -> &'a str {
-        &self.whole[span.start as usize..span.end as usize]
-    }
-
-    /// The next token, if it is a word.
-    pub(super) fn peek_word(&self) -> Option<&'a str> {
-        let token = self.peek();
-        (token.kind == TokenKind::Word).then(|| self.text(token))
-    }
-
-    /// Takes the next token if it is this mark.
-    pub(super) fn accept(&mut self, mark: u8) -> Option<Token> {
-        self.peek().is(mark).then(|| self.next())
-    }
-
-    /// Takes the next token if it is this word.
-    pub(super) fn accept_word(&mut self, word: &str) -> bool {
-        let found = self.peek_word() == Some(word);
-        if found {
-            self.next();
-        }
-        found
-    }
-
-    // Messages.
-
-    /// Reports, wherever we are.
-    pub(super) fn report(&mut self, make: impl FnOnce() -> Diagnostic) {
-        if !self.stopped {
-            self.report.add(make);
-        }
-    }
-
-    /// Reports what `make` finds out from the parser's state.
-    pub(super) fn report_with(&mut self, make: impl FnOnce(&Self) -> Diagnostic) {
-        let made = (!self.stopped && !self.report.is_full()).then(|| make(self));
-        self.report(|| made.unwrap_or_else(|| Diagnostic::error(None, "")));
-    }
-
-    /// Reports, unless the place is lost already, and loses it.
-    pub(super) fn lose_place(&mut self, make: impl FnOnce() -> Diagnostic) {
-        if !self.lost {
-            self.report(make);
-        }
-        self.lost = true;
-    }
-
-    /// Loses the place after an error that has been reported.
-    pub(super) fn stay_lost(&mut self) {
-        self.lost = true;
-    }
-
-    /// We know again where we are.
-    pub(super) fn find_place(&mut self) {
-        self.lost = false;
-    }
-
-    pub(super) fn is_lost(&self) -> bool {
-        self.lost
-    }
-
-    /// Loses the place at a token that is not what was expected.
-    pub(super) fn expected_at(&mut self, token: Token, expected: &str) {
-        let found = if self.lost { String::new() } else { self.describe(token) };
-        let hint = if token.kind == TokenKind::End { None } else { foreign_mark(self.text(token)) };
-        self.lose_place(|| {
-            let error = Diagnostic::error(Some(token.span()), format!("unexpected {found}"));
-            match hint {
-                Some(hint) => error.expected(format!("{expected}; {hint}")),
-                None => error.expected(expected),
-            }
-        });
-    }
-
-    /// A token in words.
-    pub(super) fn describe(&self, token: Token) -> String {
-        match token.kind {
-            TokenKind::End => "end of the file".to_owned(),
-            TokenKind::Word
-            | TokenKind::Number
-            | TokenKind::Mark(_)
-            | TokenKind::Quoted
-            | TokenKind::Unknown => {
-                format!("`{}`", clip(self.text(token)))
-            }
-        }
-    }
-
-    /// Reports a limit and stops reading.
-    pub(super) fn give_up(&mut self, limit: Diagnostic) {
-        if !self.stopped {
-            self.report.add_last(limit);
-        }
-        self.stopped = true;
-        self.lost = true;
-        self.lexer.finish();
-    }
-
-    // Parameters.
-
-    pub(super) fn parameter(&self, name: &str) -> Option<&Number> {
-        self.references.get(name)
-    }
-
-    pub(super) fn parameter_names(&self) -> impl Iterator<Item = &str> {
-        self.parameters.iter().map(Parameter::name)
-    }
-
-    // Statements.
-
     fn file(&mut self) {
         self.header();
         loop {

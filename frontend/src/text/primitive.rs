@@ -3,8 +3,8 @@
 use super::expression::Place;
 use super::hints::{in_braces, radii};
 use super::lex::{Token, TokenKind};
-use super::parse::{Parser, is_statement};
-use super::{OWN_FIELDS, WEIGHTED, field_word};
+use super::state::Parser;
+use super::words::{OWN_FIELDS, WEIGHTED, field_word};
 use crate::diagnostic::{Diagnostic, Span};
 use crate::falloff::Falloff;
 use crate::field::Field;
@@ -13,6 +13,7 @@ use crate::recipe::{FalloffRecipe, FieldNumber, Radius, Recipe};
 use crate::report::{clip, nearest};
 use crate::skeleton::SkeletonKind;
 use crate::tree::Tree;
+use crate::word::is_statement;
 
 /// Parameters of a description, with those values that have been read.
 pub(super) struct Slots {

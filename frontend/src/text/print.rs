@@ -10,19 +10,15 @@ use std::fmt::Write as _;
 
 use glam::DAffine3;
 
-use super::attribute::texture_named;
-use super::formula::EXPRESSION;
-use super::{GROUP_NODE, WEIGHTED, field_word};
+use super::words::{EXPRESSION, GROUP_NODE, WEIGHTED, field_word, texture_named};
 use crate::attribute::AttributeGroup;
 use crate::combine::{Combinator, Family};
 use crate::expression::{Formula, write as write_formula};
-use crate::falloff::{Falloff, FalloffKind};
-use crate::field::{Field, FieldKind, FieldValue};
+use crate::falloff::FalloffKind;
+use crate::field::{Written, plain};
 use crate::model::Model;
-use crate::number::{Number, plain};
-use crate::recipe::{
-    Angle, AttributeRecipe, FalloffRecipe, FieldNumber, Map, Radius, Recipe, TexturedRecipe, UvRecipe,
-};
+use crate::number::Number;
+use crate::recipe::{Angle, AttributeRecipe, FalloffRecipe, Map, Radius, Recipe, TexturedRecipe, UvRecipe};
 use crate::tree::{NodeKind, Primitive, Tree};
 use crate::warp::Warp;
 
@@ -213,8 +209,8 @@ fn head(out: &mut String, kind: &NodeKind, definitions: &str) {
         NodeKind::Warp(Warp::Formula(warp)) => formula_warp(out, &warp.into(), "t"),
         NodeKind::Warp(warp) => {
             out.push_str(warp.name());
-            for (described, value) in warp.fields().iter().zip(warp.to_fields()) {
-                field(out, described.name, described, &value.into());
+            for (described, value) in warp.fields().iter().zip(&warp.to_fields()) {
+                described.write(out, described.name, value);
             }
         }
         NodeKind::Attribute { name, value } => {
@@ -245,7 +241,7 @@ fn head_of_recipe(out: &mut String, recipe: &Recipe, definitions: &str) {
         Recipe::Primitive { skeleton: kind, fields, falloff, radius, strength } => {
             let _ = write!(out, "{} {{", kind.name());
             for (described, value) in kind.fields().iter().zip(fields) {
-                field(out, &field_word(*kind, described), described, value);
+                described.write(out, &field_word(*kind, described), value);
             }
             let _ = match radius {
                 Radius::Support(radius) => write!(out, " radius {radius}"),
@@ -254,7 +250,7 @@ fn head_of_recipe(out: &mut String, recipe: &Recipe, definitions: &str) {
             rest_of_primitive(out, falloff, strength);
         }
         Recipe::Combine { combinator, numbers } => {
-            operator(out, *combinator, &numbers.iter().map(Number::text).collect::<Vec<_>>());
+            operator(out, *combinator, &numbers.iter().map(Written::text).collect::<Vec<_>>());
         }
         Recipe::Expression(formula) => expression(out, formula, |place| format!("n{place}"), definitions),
         Recipe::Select(which) => {
@@ -264,7 +260,7 @@ fn head_of_recipe(out: &mut String, recipe: &Recipe, definitions: &str) {
         Recipe::Warp { warp, fields } => {
             out.push_str(warp.name());
             for (described, value) in warp.fields().iter().zip(fields) {
-                field(out, described.name, described, value);
+                described.write(out, described.name, value);
             }
         }
         Recipe::FormulaWarp(formula) => formula_warp(out, formula, "t"),
@@ -321,7 +317,7 @@ fn head_of_map(out: &mut String, map: &Map) {
 }
 
 fn attribute(out: &mut String, name: &str, value: &AttributeRecipe, definitions: &str) {
-    if super::node::is_reserved(name) {
+    if super::words::is_reserved(name) {
         let _ = write!(out, "{GROUP_NODE} ");
     }
     out.push_str(name);
@@ -336,7 +332,7 @@ fn attribute(out: &mut String, name: &str, value: &AttributeRecipe, definitions:
         AttributeRecipe::Textured(TexturedRecipe { texture, fields, a, b }) => {
             let _ = write!(out, " {} {{ a {} b {}", texture.name(), group_values(a), group_values(b));
             for (described, value) in texture.fields().iter().zip(fields) {
-                field(out, described.name, described, value);
+                described.write(out, described.name, value);
             }
             out.push_str(" }");
         }
@@ -371,8 +367,8 @@ fn same_numbers(a: &[Number], b: &[Number]) -> bool {
 fn primitive(out: &mut String, leaf: &Primitive) {
     let kind = leaf.skeleton.kind();
     let _ = write!(out, "{} {{", kind.name());
-    for (described, value) in kind.fields().iter().zip(leaf.skeleton.to_fields()) {
-        field(out, &field_word(kind, described), described, &value.into());
+    for (described, value) in kind.fields().iter().zip(&leaf.skeleton.to_fields()) {
+        described.write(out, &field_word(kind, described), value);
     }
     let _ = write!(out, " radius {}", plain(leaf.radius));
     rest_of_primitive(out, &leaf.falloff.into(), &leaf.strength.into());
@@ -381,74 +377,12 @@ fn primitive(out: &mut String, leaf: &Primitive) {
 /// What follows a primitive's radius.
 fn rest_of_primitive(out: &mut String, falloff: &FalloffRecipe, strength: &Number) {
     if falloff.kind() != FalloffKind::Soft {
-        print_falloff(out, falloff);
+        let _ = write!(out, " falloff {}", falloff.kind().text(falloff.fields()));
     }
     if strength.follows() || strength.value().to_bits() != 1f64.to_bits() {
         let _ = write!(out, " strength {strength}");
     }
     out.push_str(" }");
-}
-
-/// A falloff, as it stands in formulas.
-pub(crate) fn falloff_text(falloff: &Falloff) -> String {
-    let mut text = String::new();
-    print_falloff(&mut text, &(*falloff).into());
-    text.split_off(" falloff ".len())
-}
-
-/// A falloff, in braces its parameters that do not have their defaults.
-fn print_falloff(out: &mut String, falloff: &FalloffRecipe) {
-    let mut fields = String::new();
-    for (described, value) in falloff.kind().fields().iter().zip(falloff.fields()) {
-        field(&mut fields, described.name, described, value);
-    }
-    let name = falloff.kind().name();
-    let _ = if fields.is_empty() {
-        write!(out, " falloff {name}")
-    } else {
-        write!(out, " falloff {name} {{{fields} }}")
-    };
-}
-
-/// A parameter, unless it has its default.
-fn field(out: &mut String, word: &str, described: &Field, value: &FieldNumber) {
-    let plain = !value.numbers().iter().any(Number::follows);
-    if plain && described.default.as_ref().is_some_and(|default| same_bits(default, &value.value())) {
-        return;
-    }
-    let _ = match (described.kind, value) {
-        (FieldKind::Axis, FieldNumber::Vector(axis)) => {
-            let index = axis.iter().position(|x| x.value() != 0.0).unwrap_or(2);
-            write!(out, " {word} {}", ["x", "y", "z"][index])
-        }
-        (FieldKind::Choice(words), FieldNumber::Real(value)) => {
-            write!(out, " {word} {}", words.get(value.value() as usize).unwrap_or(&words[0]))
-        }
-        (FieldKind::Flag, FieldNumber::Real(value)) => {
-            write!(out, " {word} {}", if value.value() == 0.0 { "no" } else { "yes" })
-        }
-        (_, FieldNumber::Real(value)) => write!(out, " {word} {value}"),
-        (_, FieldNumber::Vector(values)) => write!(out, " {word} {}", vector(values)),
-        (_, FieldNumber::Reals(values)) => write!(out, " {word} {}", vector(values)),
-        (_, FieldNumber::Vectors(values)) => {
-            let vectors: Vec<String> = values.iter().map(vector).collect();
-            write!(out, " {word} ({})", vectors.join(" "))
-        }
-    };
-}
-
-fn same_bits(a: &FieldValue, b: &FieldValue) -> bool {
-    let same = |a: &[f64], b: &[f64]| a.iter().map(|x| x.to_bits()).eq(b.iter().map(|x| x.to_bits()));
-    match (a, b) {
-        (FieldValue::Real(a), FieldValue::Real(b)) => a.to_bits() == b.to_bits(),
-        (FieldValue::Vector(a), FieldValue::Vector(b)) => same(a, b),
-        (FieldValue::Reals(a), FieldValue::Reals(b)) => same(a, b),
-        (FieldValue::Vectors(a), FieldValue::Vectors(b)) => same(a.as_flattened(), b.as_flattened()),
-        (
-            FieldValue::Real(_) | FieldValue::Vector(_) | FieldValue::Reals(_) | FieldValue::Vectors(_),
-            FieldValue::Real(_) | FieldValue::Vector(_) | FieldValue::Reals(_) | FieldValue::Vectors(_),
-        ) => false,
-    }
 }
 
 /// An affine map in its simplest form that gives the same bits.

@@ -4,10 +4,10 @@ use jbt_ir::limits::MAX_SKELETON_POINTS;
 
 use jbt_ir::limits::MAX_ATTRIBUTE_WIDTH;
 
-use super::OWN_FIELDS;
 use super::expression::{Operand, Place};
 use super::lex::TokenKind;
-use super::parse::Parser;
+use super::state::Parser;
+use super::words::OWN_FIELDS;
 use crate::diagnostic::{Diagnostic, Span};
 use crate::field::{FieldKind, FieldValue};
 use crate::number::Number;

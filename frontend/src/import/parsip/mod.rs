@@ -26,53 +26,21 @@
 
 mod node;
 mod scan;
+mod state;
 mod value;
 
 use glam::DAffine3;
 use jbt_ir::limits::{MAX_NODES, MAX_SCENE_BYTES};
 
 use self::node::Reading;
-use self::scan::{Key, Section, Sections};
+use self::scan::{Key, Section};
+use self::state::{Importer, Meaning, State};
 use super::Imported;
 use crate::combine::Combinator;
 use crate::diagnostic::{Diagnostic, Diagnostics, Span};
 use crate::model::Model;
 use crate::report::Report;
-use crate::tree::{NodeKind, Primitive, Tree};
-use crate::warp::Twist;
-
-/// What a node is, apart from its children and its map.
-enum Meaning {
-    Combine(Combinator),
-    Warp(Twist),
-    /// Its only child: a cache, a texture, an instance.
-    Same,
-    Leaf {
-        leaf: Primitive,
-        color: Option<[f64; 3]>,
-    },
-}
-
-/// Where the reading of a node is.
-#[derive(Clone)]
-enum State {
-    New,
-    /// Its children are being read: to meet it now is a cycle.
-    Open,
-    Done(Tree),
-}
-
-/// The state of reading one file.
-struct Importer<'a> {
-    bytes: &'a [u8],
-    sections: Sections,
-    errors: Report,
-    warnings: Report,
-    /// Uses of nodes by others, so far.
-    edges: usize,
-    /// Whether a node is the child of an operator already.
-    adopted: Vec<bool>,
-}
+use crate::tree::{NodeKind, Tree};
 
 /// The model of a ParsIP scene (`.blob`, `.scene`).
 ///

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use glam::{DAffine3, DQuat, DVec3};
 
 use super::scan::{Key, Section};
-use super::{Importer, Meaning};
+use super::state::{Importer, Meaning};
 use crate::affine::scale_rotate_translate;
 use crate::combine::Combinator;
 use crate::diagnostic::{Diagnostic, Span};

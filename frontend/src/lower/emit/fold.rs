@@ -6,11 +6,12 @@ use jbt_ir::{Domain as _, Entity, Reduction, Schema, Value};
 
 use super::guard::Guard;
 use super::{Emitter, Reduce, TableCode, Task};
-use crate::combine::ricci::{Blend, Exponent};
+use crate::combine::ricci::Blend;
 use crate::lower::guide::{DecidedRows, Rule};
 use crate::lower::mixing::{Operator, State};
 use crate::lower::occurrence::{OccurrenceId, OccurrenceKind, SpaceId};
 use crate::lower::shape::{ReducerCode, RicciCode, bounded, non_negative};
+use crate::power::Exponent;
 
 impl Emitter<'_> {
     /// An operator: its accumulators, and what is to be done for its operands.

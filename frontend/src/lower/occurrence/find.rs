@@ -351,7 +351,7 @@ impl<'a> Finder<'a> {
             OccurrenceKind::Difference { left, .. } => of(left),
             OccurrenceKind::Map { kind, child } => {
                 let fixed = self.scene.tree.recipe(node).is_none();
-                kind.is_non_negative(of(child), self.scene.combinator(node), fixed)
+                kind.is_non_negative(of(child), &self.scene.combinator(node).numbers(), fixed)
             }
             OccurrenceKind::Expression { children, .. } => {
                 let signs: Vec<bool> = children.iter().map(of).collect();

@@ -1,5 +1,9 @@
 //! The absences that ARCHITECTURE.md states: who depends on whom, and where `unsafe` lives.
 
+mod circles;
+mod imports;
+mod layers;
+
 use std::path::{Path, PathBuf};
 
 fn root() -> PathBuf {

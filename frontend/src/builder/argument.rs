@@ -1,0 +1,12 @@
+//! Arguments of the functions that build nodes, as parameters of members.
+
+use crate::number::{Number, Vector};
+use crate::recipe::FieldNumber;
+
+pub(super) fn vector(value: impl Into<Vector>) -> FieldNumber {
+    FieldNumber::Vector(value.into().0)
+}
+
+pub(super) fn real(value: impl Into<Number>) -> FieldNumber {
+    FieldNumber::Real(value.into())
+}

@@ -1,0 +1,83 @@
+//! Which nodes of a checked tree follow which parameters.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use super::arena::NodeId;
+use crate::number::{Formula, Number};
+use crate::parameter::Parameter;
+use crate::recipe::Recipe;
+
+/// What follows the parameters of a tree, whatever their values.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub(super) struct Dependence {
+    /// The iso-value, if it does.
+    pub(super) iso: Option<Number>,
+    /// The nodes with a number that does, ascending.
+    pub(super) nodes: Vec<(NodeId, Arc<Recipe>)>,
+    /// The place of each parameter in the list.
+    pub(super) names: HashMap<Arc<str>, usize>,
+    /// For each parameter, the nodes whose own numbers mention it, ascending.
+    mentions: Vec<Vec<NodeId>>,
+    /// The nodes that depend on the iso-value, ascending, if that follows a parameter.
+    surfaces: Vec<NodeId>,
+}
+
+impl Dependence {
+    /// Nothing yet but the iso-value.
+    pub(super) fn new(parameters: &[Parameter], iso: &Number) -> Self {
+        let names = parameters.iter().enumerate().map(|(index, p)| (Arc::clone(&p.name), index)).collect();
+        Self {
+            iso: iso.follows().then(|| iso.clone()),
+            names,
+            mentions: vec![Vec::new(); parameters.len()],
+            ..Self::default()
+        }
+    }
+
+    /// Adds a node, which comes after those so far.
+    pub(super) fn add(&mut self, id: NodeId, recipe: &Arc<Recipe>) {
+        for formula in recipe.following().filter_map(Number::formula) {
+            for (name, _) in formula.parameters() {
+                let mentions = self.names.get(name).map(|&index| &mut self.mentions[index]);
+                if let Some(mentions) = mentions
+                    && mentions.last() != Some(&id)
+                {
+                    mentions.push(id);
+                }
+            }
+        }
+        if self.iso.is_some() && (recipe.asks_iso() || recipe.is_limited_by_iso()) {
+            self.surfaces.push(id);
+        }
+        self.nodes.push((id, Arc::clone(recipe)));
+    }
+
+    pub(super) fn recipe(&self, id: NodeId) -> Option<&Arc<Recipe>> {
+        // Nothing to search is by far the commonest case.
+        let found = self.nodes.binary_search_by_key(&id, |&(node, _)| node).ok()?;
+        Some(&self.nodes[found].1)
+    }
+
+    /// Which nodes can change with these parameters, ascending.
+    pub(super) fn affected(&self, parameters: &[Parameter], moved: &mut [bool]) -> Vec<NodeId> {
+        let mentions = |number: &Number, moved: &[bool]| {
+            let mut names = number.formula().into_iter().flat_map(Formula::parameters);
+            names.any(|(name, _)| self.names.get(name).is_some_and(|&index| moved[index]))
+        };
+        // A default mentions earlier parameters only.
+        for (index, parameter) in parameters.iter().enumerate() {
+            moved[index] |= mentions(&parameter.default, moved);
+        }
+        let mut nodes: Vec<NodeId> = Vec::new();
+        for (mentions, _) in self.mentions.iter().zip(&*moved).filter(|(_, moved)| **moved) {
+            nodes.extend(mentions);
+        }
+        if self.iso.as_ref().is_some_and(|iso| mentions(iso, moved)) {
+            nodes.extend(&self.surfaces);
+        }
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
+    }
+}

@@ -1,0 +1,51 @@
+//! Blocks of a text, and what their nodes become.
+
+use crate::combine::Combinator;
+use crate::diagnostic::Span;
+use crate::recipe::Recipe;
+use crate::tree::Tree;
+
+/// What an open block becomes.
+pub(super) enum Head {
+    Combine(Combinator),
+    /// An operator with a number.
+    Operator(Box<Recipe>),
+    /// With one child. Boxed, so that a million open blocks are small.
+    Unary(Box<Recipe>),
+    /// A warp whose second child weighs it.
+    Weighted(Box<Recipe>),
+    /// The head has an error; the block is read for its own errors.
+    Broken,
+}
+
+/// An open block.
+pub(super) struct Frame {
+    pub(super) head: Head,
+    /// Its first child on the stack of finished subtrees.
+    pub(super) first: u32,
+    /// The node's words before the block.
+    pub(super) span: Span,
+    /// The byte of the opening brace.
+    pub(super) open: u32,
+    /// Something in the block could not be read: its children are not counted.
+    pub(super) incomplete: bool,
+    /// A node around it, which its words give as well.
+    pub(super) around: Option<Box<Recipe>>,
+}
+
+impl Frame {
+    /// With a node around it.
+    pub(super) fn inside(self, around: Recipe) -> Self {
+        Self { around: Some(Box::new(around)), ..self }
+    }
+}
+
+/// What begins with a word.
+pub(super) enum Begun {
+    /// A whole subtree.
+    Leaf(Tree),
+    /// A block is open.
+    Block(Frame),
+    /// Nothing: the word was skipped.
+    Nothing,
+}

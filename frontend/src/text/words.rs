@@ -1,0 +1,130 @@
+//! The words of the text format: those that begin nodes, and those of what is no member.
+
+use std::borrow::Cow;
+use std::f64::consts::PI;
+
+use crate::combine::Combinator;
+use crate::field::{Field, FieldKind};
+use crate::number::Function;
+use crate::skeleton::SkeletonKind;
+use crate::texture::TextureKind;
+use crate::warp::WarpKind;
+use crate::word::is_statement;
+
+/// The word before the name of an attribute group that is called like a word of the format.
+pub(super) const GROUP_NODE: &str = "with";
+
+/// The parameters that every primitive has.
+pub(super) const OWN_FIELDS: [&str; 4] = ["radius", "surface_radius", "falloff", "strength"];
+
+/// The parameters of `rotate`: the axis, and one of the others.
+pub(super) const ROTATE: &[Field] = &[
+    Field { name: "axis", kind: FieldKind::Direction, default: None },
+    Field { name: "degrees", kind: FieldKind::Real, default: None },
+    Field { name: "radians", kind: FieldKind::Real, default: None },
+];
+
+/// The word before the block of a warp that a second child weighs.
+pub(super) const WEIGHTED: &str = "weighted";
+
+/// The parameter of `reflect`.
+pub(super) const REFLECT: &[Field] = &[Field { name: "axis", kind: FieldKind::Direction, default: None }];
+
+/// The parameters of `stretch`.
+pub(super) const STRETCH: &[Field] = &[
+    Field { name: "axis", kind: FieldKind::Direction, default: None },
+    Field { name: "by", kind: FieldKind::Real, default: None },
+];
+
+/// The parameters of `shear`.
+pub(super) const SHEAR: &[Field] = &[
+    Field { name: "axis", kind: FieldKind::Direction, default: None },
+    Field { name: "by", kind: FieldKind::Position, default: None },
+];
+
+/// The word for a parameter of a skeleton: its name, after the skeleton's where every primitive has one of that name.
+pub(super) fn field_word(kind: SkeletonKind, field: &Field) -> Cow<'static, str> {
+    if OWN_FIELDS.contains(&field.name) {
+        Cow::Owned(format!("{}_{}", kind.name(), field.name))
+    } else {
+        Cow::Borrowed(field.name)
+    }
+}
+
+/// The word for a formula.
+pub(super) const EXPRESSION: &str = "expression";
+
+/// The combinators without parameters.
+pub(super) const COMBINATORS: [Combinator; 6] = [
+    Combinator::Sum,
+    Combinator::Product,
+    Combinator::Union,
+    Combinator::Intersection,
+    Combinator::Difference,
+    Combinator::SymmetricDifference,
+];
+
+/// The other words that begin a node.
+pub(super) const OTHERS: [&str; 16] = [
+    "use",
+    "blend",
+    "ricci",
+    "select",
+    "expression",
+    "within",
+    "falloff",
+    "translate",
+    "rotate",
+    "scale",
+    "reflect",
+    "stretch",
+    "shear",
+    "affine",
+    "warp",
+    GROUP_NODE,
+];
+
+/// Whether a word begins a node, or a statement, in every file: a group of this name needs the word `with` before it.
+pub(super) fn is_reserved(word: &str) -> bool {
+    is_statement(word) || fixed_words().any(|fixed| fixed == word)
+}
+
+/// The words that begin a node in every file.
+pub(super) fn fixed_words() -> impl Iterator<Item = &'static str> {
+    let members = SkeletonKind::ALL.iter().map(|kind| kind.name());
+    let warps = WarpKind::ALL.iter().map(|kind| kind.name());
+    members.chain(warps).chain(COMBINATORS.iter().map(|c| c.name())).chain(OPERATORS).chain(OTHERS)
+}
+
+/// The words that begin them, but for those of Ricci's blend.
+pub(super) const OPERATORS: [&str; 8] = [
+    "smooth_union",
+    "smooth_intersection",
+    "smooth_difference",
+    "rfunction",
+    "complement",
+    "clamp",
+    "shell",
+    "offset",
+];
+
+pub(super) const CONSTANTS: &[(&str, f64)] = &[("pi", PI)];
+
+/// Whether a word means something else already where a number may stand, so that no parameter may have it.
+pub(super) fn is_builtin(word: &str) -> bool {
+    is_statement(word) || Function::named(word).is_some_and(Function::is_reserved) || constant(word).is_some()
+}
+
+pub(super) fn constant(word: &str) -> Option<f64> {
+    CONSTANTS.iter().find(|(name, _)| *name == word).map(|&(_, value)| value)
+}
+
+/// The texture that a word names.
+pub(super) fn texture_named(word: &str) -> Option<TextureKind> {
+    TextureKind::ALL.iter().copied().find(|kind| kind.name() == word)
+}
+
+/// Whether a word begins what is no list of numbers.
+pub(super) fn is_value_word(word: &str) -> bool {
+    word == EXPRESSION || texture_named(word).is_some()
+}

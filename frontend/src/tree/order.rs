@@ -1,0 +1,77 @@
+//! Walks over trees, and rewriting.
+
+use std::collections::HashMap;
+use std::marker::PhantomData;
+
+use super::Tree;
+use crate::recipe::Recipe;
+use crate::traverse::{Nodes, Order, Visit, Walk};
+
+/// Any tree.
+#[derive(Clone, Copy)]
+struct Plain<'a>(PhantomData<&'a Tree>);
+
+impl<'a> Nodes for Plain<'a> {
+    type Node = &'a Tree;
+
+    fn children(self, node: &'a Tree) -> impl DoubleEndedIterator<Item = &'a Tree> + ExactSizeIterator {
+        node.node().children().iter()
+    }
+
+    fn identity(self, node: &'a Tree) -> usize {
+        node.identity()
+    }
+}
+
+impl Tree {
+    /// Parents before children, children in order.
+    pub fn prefix(&self, visit: Visit) -> impl Iterator<Item = &Self> {
+        Walk::new(Plain(PhantomData), self, Order::Before, visit)
+    }
+
+    /// Parents between their children, children in order: see [`traverse`](crate::traverse).
+    pub fn infix(&self, visit: Visit) -> impl Iterator<Item = &Self> {
+        Walk::new(Plain(PhantomData), self, Order::Between, visit)
+    }
+
+    /// Children before parents, in order.
+    pub fn postfix(&self, visit: Visit) -> impl Iterator<Item = &Self> {
+        Walk::new(Plain(PhantomData), self, Order::Behind, visit)
+    }
+
+    /// The tree with every node replaced for which `replace` returns another one.
+    ///
+    /// Bottom-up: `replace` sees each node once, with its children already replaced. What it does not replace stays as it is: shared
+    /// nodes stay shared, untouched subtrees are those of the original.
+    #[must_use]
+    pub fn rewrite(&self, mut replace: impl FnMut(&Self) -> Option<Self>) -> Self {
+        let mut done: HashMap<usize, Self> = HashMap::new();
+        for tree in self.postfix(Visit::Nodes) {
+            let old = tree.node().children();
+            let new: Vec<Self> = old.iter().map(|child| done[&child.identity()].clone()).collect();
+            let same = old.iter().zip(&new).all(|(a, b)| a.identity() == b.identity());
+            let rebuilt = if same { tree.clone() } else { tree.with_children(new) };
+            let result = replace(&rebuilt).unwrap_or(rebuilt);
+            done.insert(tree.identity(), result);
+        }
+        done.remove(&self.identity()).unwrap_or_else(|| self.clone())
+    }
+
+    /// A node of another recipe in the same place of the text, over the same children.
+    pub(crate) fn with_recipe(&self, recipe: Recipe) -> Self {
+        let other = Self::of(recipe, self.node().children().to_vec());
+        let node = other.node();
+        Self::assemble(
+            node.kind().clone(),
+            node.recipe().cloned(),
+            node.children().to_vec(),
+            self.node().span(),
+        )
+    }
+
+    /// The same node over other children.
+    pub(crate) fn with_children(&self, children: Vec<Self>) -> Self {
+        let node = self.node();
+        Self::assemble(node.kind().clone(), node.recipe().cloned(), children, node.span())
+    }
+}
