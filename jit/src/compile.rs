@@ -9,7 +9,7 @@ use jbt_ir::{Function, Inst, InstKind, Level, Op, Verified};
 
 use crate::memory::Code;
 use crate::strips::Plan;
-use crate::wide::{self, Blob, Wish};
+use crate::wide::{self, Blob, Emitted, Wish};
 use crate::{isa, lower, pressure};
 
 /// Vectors for each value. A vector has as many lanes as the [`Backend`] says.
@@ -145,7 +145,8 @@ pub enum Pieces {
 pub struct Options {
     /// What makes the code.
     pub backend: Option<Backend>,
-    /// Vectors for each value.
+    /// Vectors for each value. Where they are open, wide code has a second function of one vector, for points
+    /// that fill no larger block.
     pub vectors: Option<VectorCount>,
     /// Effort of Cranelift.
     pub opt_level: OptLevel,
@@ -230,7 +231,7 @@ pub enum CompileError {
 const FOUR_VECTORS_UP_TO: usize = 14;
 /// Where loops carry at most this many, a function is a field, and not a gradient or attributes: more points
 /// in a block pay longer.
-const FIELD_CARRIES: usize = 3;
+pub(crate) const FIELD_CARRIES: usize = 3;
 /// Up to this many live values 8 points are faster than 16; beyond, than 4 by so little that compiling twice
 /// as much is a waste.
 const TWO_VECTORS_UP_TO: usize = 27;
@@ -302,25 +303,22 @@ impl Options {
     }
 }
 
-/// Compiles a function. The code, and the points in a block.
-pub(crate) fn compile(function: &Verified, options: &Options) -> Result<(Code, usize), CompileError> {
-    let backend = options.backend.unwrap_or_else(Backend::best);
-    let (code, vectors) = match backend {
-        Backend::Cranelift => by_cranelift(function.function(), options)?,
+/// Compiles a function.
+pub(crate) fn compile(function: &Verified, options: &Options) -> Result<Code, CompileError> {
+    match options.backend.unwrap_or_else(Backend::best) {
+        Backend::Cranelift => by_cranelift(function.function(), options),
         Backend::Wide(level) if !level.max(Level::Avx2).is_available() => {
-            return Err(CompileError::Processor { missing: level.max(Level::Avx2).name() });
+            Err(CompileError::Processor { missing: level.max(Level::Avx2).name() })
         }
         Backend::Wide(level) => {
-            let blob = emit(function, level, options)?;
-            let isa = isa::host(options.opt_level, Allocator::SinglePass)?;
-            (Code::from_blob(&blob, isa)?, blob.vectors)
+            let emitted = emit(function, level, options)?;
+            Code::from_emitted(&emitted, isa::host(options.opt_level, Allocator::SinglePass)?)
         }
-    };
-    Ok((code, vectors.count() * backend.lanes()))
+    }
 }
 
 /// Wide code for a level, which this CPU need not have.
-pub(crate) fn emit(function: &Verified, level: Level, options: &Options) -> Result<Blob, CompileError> {
+pub(crate) fn emit(function: &Verified, level: Level, options: &Options) -> Result<Emitted, CompileError> {
     let function = function.function();
     check(function)?;
     let wish = Wish {
@@ -329,14 +327,40 @@ pub(crate) fn emit(function: &Verified, level: Level, options: &Options) -> Resu
         is_checked: options.check != Check::Off,
         few_registers: options.check == Check::FewRegisters,
     };
-    wide::emit(function, &options.plan(function, WIDE_WHOLE_UP_TO), &wish)
+    let plan = options.plan(function, WIDE_WHOLE_UP_TO);
+    let blocks = wide::emit(function, &plan, &wish)?;
+    let rest = match options.vectors {
+        // Whoever wishes so many vectors gets them at each point.
+        Some(_) => None,
+        None => emit_rest(function, &plan, &wish, blocks.lanes)?,
+    };
+    Ok(Emitted { blocks, rest })
 }
 
-fn by_cranelift(function: &Function, options: &Options) -> Result<(Code, VectorCount), CompileError> {
+/// Code for a few points: rays, boxes and small bricks have no more, and would compute a large block for them.
+/// None if it would be no smaller.
+fn emit_rest(
+    function: &Function,
+    plan: &Plan,
+    wish: &Wish,
+    lanes: usize,
+) -> Result<Option<Blob>, CompileError> {
+    if lanes <= Backend::Wide(wish.level).lanes() {
+        return Ok(None);
+    }
+    let wish = Wish { vectors: Some(VectorCount::One), ..*wish };
+    // A strip of one block has nothing to share: pieces would but store what they hand to each other.
+    match wide::emit(function, &Plan::whole(function), &wish) {
+        Err(CompileError::Frame { .. }) if !plan.is_whole() => wide::emit(function, plan, &wish).map(Some),
+        emitted => emitted.map(Some),
+    }
+}
+
+fn by_cranelift(function: &Function, options: &Options) -> Result<Code, CompileError> {
     let Choice { plan, vectors, allocator } = options.choose(function)?;
     let isa = isa::host(options.opt_level, allocator)?;
-    let code = guard(|| Code::new(lower::lower(function, &plan, vectors), isa))??;
-    Ok((code, vectors))
+    let lanes = vectors.count() * Backend::Cranelift.lanes();
+    guard(|| Code::new(lower::lower(function, &plan, vectors), lanes, isa))?
 }
 
 /// The Cranelift IR that [`crate::Kernel::compile`] makes of a function, as text. Needs no particular
@@ -372,12 +396,12 @@ pub fn asm(function: &Verified, options: &Options) -> Result<String, CompileErro
 }
 
 #[cfg(feature = "listing")]
-fn listing(blob: &Blob) -> Result<String, CompileError> {
-    Ok(wide::listing::listing(blob))
+fn listing(emitted: &Emitted) -> Result<String, CompileError> {
+    Ok(wide::listing::listing(emitted))
 }
 
 #[cfg(not(feature = "listing"))]
-const fn listing(_: &Blob) -> Result<String, CompileError> {
+const fn listing(_: &Emitted) -> Result<String, CompileError> {
     Err(CompileError::Listing)
 }
 

@@ -45,8 +45,8 @@ impl TableView {
 /// Everything that one call of a kernel is given. Made by [`BoundKernel::run_selected`] alone, from what it
 /// has checked.
 pub(crate) struct Arguments<'a> {
-    /// Input planes, then output planes.
-    pub(crate) planes: &'a [*const f32],
+    /// Input planes, then output planes. They may be moved on.
+    pub(crate) planes: &'a mut [*const f32],
     /// Bytes of each plane.
     pub(crate) bytes: usize,
     /// One view for each table.
@@ -56,7 +56,6 @@ pub(crate) struct Arguments<'a> {
 /// What one kernel and its handles share.
 struct Shared {
     code: Code,
-    lanes: usize,
     /// The function without its instructions: planes and tables.
     interface: Function,
 }
@@ -87,18 +86,19 @@ impl Kernel {
     /// # Errors
     /// As for [`compile`](Self::compile).
     pub fn compile_with(function: &Verified, options: &Options) -> Result<Self, CompileError> {
-        let (code, lanes) = compile::compile(function, options)?;
+        let code = compile::compile(function, options)?;
         let mut interface = Function::new(&function.function().name, &[]);
         interface.inputs.clone_from(&function.function().inputs);
         interface.outputs.clone_from(&function.function().outputs);
         interface.tables.clone_from(&function.function().tables);
-        Ok(Self { shared: Arc::new(Shared { code, lanes, interface }) })
+        Ok(Self { shared: Arc::new(Shared { code, interface }) })
     }
 
-    /// Points in one block: the length of planes must be a multiple of it.
+    /// Points in the smallest block: the length of planes must be a multiple of it. Many points run in larger
+    /// blocks, which suit the function better.
     #[must_use]
     pub fn lanes(&self) -> usize {
-        self.shared.lanes
+        self.shared.code.lanes()
     }
 
     /// Bytes of machine code, its constants included.
@@ -274,13 +274,13 @@ impl BoundKernel {
             };
         }
         let bytes = length * size_of::<f32>();
-        self.kernel.shared.code.call(&Arguments { planes, bytes, tables: views });
+        self.kernel.shared.code.call(Arguments { planes, bytes, tables: views });
         Ok(())
     }
 
     /// The common length of the planes.
     fn check(&self, inputs: &[&[f32]], outputs: &[&mut [f32]]) -> Result<usize, RunError> {
-        let Shared { lanes, interface, .. } = &*self.kernel.shared;
+        let Shared { code, interface } = &*self.kernel.shared;
         if inputs.len() != interface.inputs.len() {
             return Err(RunError::Inputs { expected: interface.inputs.len(), given: inputs.len() });
         }
@@ -293,8 +293,9 @@ impl BoundKernel {
         if let Some((plane, given)) = lengths.find(|&(_, given)| given != expected) {
             return Err(RunError::Length { plane, expected, given });
         }
-        if !expected.is_multiple_of(*lanes) {
-            return Err(RunError::Partial { length: expected, lanes: *lanes });
+        let lanes = code.lanes();
+        if !expected.is_multiple_of(lanes) {
+            return Err(RunError::Partial { length: expected, lanes });
         }
         Ok(expected)
     }

@@ -29,6 +29,9 @@
 //!     outputs[0][offset..] = acc
 //! ```
 //!
+//! Wide code has the same function a second time for few points, with one vector for each value:
+//! whole blocks run through the first one, what is left through the second.
+//!
 //! A long function is cut into pieces, and has rows outside and points inside: see `strips`.
 //!
 //! ```

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! Pages   owns a Cranelift module: its memory is freed when it goes, on every path
-//! Code    Pages with finished code, and the address of its one function
+//! Code    Pages with finished code, and the addresses of its functions
 //! ```
 //!
 //! No page is writable and executable at once: the module writes the code, then finalizing takes the right to
@@ -19,7 +19,7 @@ use jbt_ir::limits;
 use crate::compile::CompileError;
 use crate::entry::{Arguments, TableView};
 use crate::lower::Lowered;
-use crate::wide::Blob;
+use crate::wide::{Blob, Emitted};
 
 /// A module whose memory goes with it. The module's own drop would leak it.
 struct Pages(Option<JITModule>);
@@ -35,20 +35,30 @@ impl Drop for Pages {
     }
 }
 
+/// A function of finished code.
+#[derive(Clone, Copy)]
+struct Entry {
+    address: *const u8,
+    /// Points in a block.
+    lanes: usize,
+}
+
 /// Finished machine code.
 ///
-/// Contract: `address` is a function in `pages` which was compiled from a [`Lowered`] or emitted as a
-/// [`Blob`], so it keeps to the ABI of [`crate::entry`]; the pages are executable, are not writable, and stay
-/// until the `Code` is dropped.
+/// Contract: `blocks` and `rest` are functions in `pages` which were compiled from a [`Lowered`] or emitted as
+/// an [`Emitted`], so they keep to the ABI of [`crate::entry`], with blocks of so many points; the pages are
+/// executable, are not writable, and stay until the `Code` is dropped.
 pub(crate) struct Code {
-    address: *const u8,
+    blocks: Entry,
+    /// For what is left behind whole blocks, in smaller blocks of which they are multiples.
+    rest: Option<Entry>,
     bytes: usize,
     frame_bytes: usize,
     /// Never looked at again: kept so that the code stays where it is.
     _pages: Pages,
 }
 
-// SAFETY: the module is `Send`, and the address is that of memory which belongs to it.
+// SAFETY: the module is `Send`, and the addresses are those of memory which belongs to it.
 unsafe impl Send for Code {}
 // SAFETY: through a shared reference one can only read the numbers and call the code, which changes no memory
 // but what its arguments name and the stack of the thread that calls it. The module, which is not `Sync`,
@@ -56,8 +66,8 @@ unsafe impl Send for Code {}
 unsafe impl Sync for Code {}
 
 impl Code {
-    /// Compiles a function and makes it executable.
-    pub(crate) fn new(lowered: Lowered, isa: OwnedTargetIsa) -> Result<Self, CompileError> {
+    /// Compiles a function with blocks of so many points, and makes it executable.
+    pub(crate) fn new(lowered: Lowered, lanes: usize, isa: OwnedTargetIsa) -> Result<Self, CompileError> {
         let builder = JITBuilder::with_isa(isa, default_libcall_names());
         let mut pages = Pages(Some(JITModule::new(builder)));
         let module = pages.0.as_mut().expect("the module stays until the pages are dropped");
@@ -71,21 +81,39 @@ impl Code {
             return Err(CompileError::Frame { bytes: frame_bytes, limit: limits::MAX_JIT_FRAME_BYTES });
         }
         module.finalize_definitions()?;
-        let address = module.get_finalized_function(function);
-        Ok(Self { address, bytes, frame_bytes, _pages: pages })
+        let blocks = Entry { address: module.get_finalized_function(function), lanes };
+        Ok(Self { blocks, rest: None, bytes, frame_bytes, _pages: pages })
     }
 
     /// Makes finished bytes executable. The caller has asked the CPU for what they need.
-    pub(crate) fn from_blob(blob: &Blob, isa: OwnedTargetIsa) -> Result<Self, CompileError> {
+    pub(crate) fn from_emitted(emitted: &Emitted, isa: OwnedTargetIsa) -> Result<Self, CompileError> {
+        let Emitted { blocks, rest } = emitted;
         let mut pages = Pages(Some(JITModule::new(JITBuilder::with_isa(isa, default_libcall_names()))));
         let module = pages.0.as_mut().expect("the module stays until the pages are dropped");
         let signature = module.make_signature();
-        let function = module.declare_function("kernel", Linkage::Export, &signature)?;
-        // Constants are read by whole vectors.
-        module.define_function_bytes(function, 64, &blob.bytes, &[])?;
+        let mut define = |name, blob: &Blob| {
+            let function = module.declare_function(name, Linkage::Export, &signature)?;
+            // Constants are read by whole vectors.
+            module.define_function_bytes(function, 64, &blob.bytes, &[])?;
+            Ok::<_, CompileError>((function, blob.lanes))
+        };
+        let blocks_function = define("kernel", blocks)?;
+        let rest_function = rest.as_ref().map(|rest| define("kernel_of_few", rest)).transpose()?;
         module.finalize_definitions()?;
-        let address = module.get_finalized_function(function);
-        Ok(Self { address, bytes: blob.bytes.len(), frame_bytes: blob.frame_bytes, _pages: pages })
+        let entry = |(function, lanes)| Entry { address: module.get_finalized_function(function), lanes };
+        let both = || std::iter::once(blocks).chain(rest);
+        Ok(Self {
+            blocks: entry(blocks_function),
+            rest: rest_function.map(entry),
+            bytes: both().map(|blob| blob.bytes.len()).sum(),
+            frame_bytes: both().map(|blob| blob.frame_bytes).max().unwrap_or(0),
+            _pages: pages,
+        })
+    }
+
+    /// Points in the smallest block.
+    pub(crate) fn lanes(&self) -> usize {
+        self.rest.unwrap_or(self.blocks).lanes
     }
 
     /// Bytes of code and constants.
@@ -101,20 +129,29 @@ impl Code {
     /// Where the code is.
     #[cfg(test)]
     pub(crate) fn address(&self) -> *const u8 {
-        self.address
+        self.blocks.address
     }
 
-    /// Runs the code. The arguments were made for the function that this is compiled from, see [`Arguments`].
-    pub(crate) fn call(&self, arguments: &Arguments<'_>) {
-        let Arguments { planes, bytes, tables } = arguments;
-        // SAFETY: the contract of `Code` says that this is a function of the ABI that `enter` expects.
-        // `Arguments` come from `BoundKernel::run_selected`: there is a plane of this many bytes for each
-        // input and output, at least one block long and whole blocks; outputs come from exclusive borrows, so
-        // that no other plane overlaps them; the tables have been checked against the function, the selection
-        // fits them, and both are borrowed by the caller. What else the code writes is its frame, which is no
-        // larger than `limits::MAX_JIT_FRAME_BYTES` and is touched page by page: a stack that is too short
-        // for it ends at the guard page.
-        unsafe { enter(self.address, planes.as_ptr(), *bytes, tables.as_ptr()) };
+    /// Runs the code: whole blocks first, then what is left. The arguments were made for the function that this
+    /// is compiled from, see [`Arguments`].
+    pub(crate) fn call(&self, Arguments { planes, bytes, tables }: Arguments<'_>) {
+        let block = self.blocks.lanes * size_of::<f32>();
+        let whole = if self.rest.is_some() { bytes - bytes % block } else { bytes };
+        for (entry, bytes) in [(Some(self.blocks), whole), (self.rest, bytes - whole)] {
+            let Some(entry) = entry.filter(|_| bytes > 0) else { continue };
+            // SAFETY: the contract of `Code` says that this is a function of the ABI that `enter` expects.
+            // `Arguments` come from `BoundKernel::run_selected`: there is a plane of this many bytes for each
+            // input and output, at least one block long and whole blocks; outputs come from exclusive
+            // borrows, so that no other plane overlaps them; the tables have been checked against the
+            // function, the selection fits them, and both are borrowed by the caller. What else the code
+            // writes is its frame, which is no larger than `limits::MAX_JIT_FRAME_BYTES` and is touched page
+            // by page: a stack that is too short for it ends at the guard page. What is left behind whole
+            // blocks ends where the planes end, and is whole smaller blocks, as larger ones are.
+            unsafe { enter(entry.address, planes.as_ptr(), bytes, tables.as_ptr()) };
+            for plane in &mut *planes {
+                *plane = plane.wrapping_byte_add(bytes);
+            }
+        }
     }
 }
 

@@ -134,13 +134,6 @@ pub(crate) struct Loop {
     pub(crate) inputs: u32,
 }
 
-impl Loop {
-    /// Whether it goes over rows for one block of points.
-    pub(crate) fn is_row_loop(&self) -> bool {
-        matches!(self.over, Over::Rows(_))
-    }
-}
-
 /// Input planes whose place in the current block of points has a register.
 pub(crate) const POINTERS: usize = 3;
 

@@ -4,13 +4,19 @@ use std::fmt::Write as _;
 
 use iced_x86::{Decoder, DecoderOptions, Formatter as _, IntelFormatter};
 
-use super::Blob;
+use super::{Blob, Emitted};
 
 /// Bytes of constants in a line.
 const LINE: usize = 16;
 
+/// The functions, each with a line about its blocks of points.
+pub(crate) fn listing(Emitted { blocks, rest }: &Emitted) -> String {
+    let functions = std::iter::once(blocks).chain(rest);
+    functions.map(|blob| format!("{} points at once:\n{}", blob.lanes, function(blob))).collect()
+}
+
 /// Instructions with their places, then the constants.
-pub(crate) fn listing(blob: &Blob) -> String {
+fn function(blob: &Blob) -> String {
     let mut formatter = IntelFormatter::new();
     formatter.options_mut().set_rip_relative_addresses(true);
     let (code, rest) = blob.bytes.split_at(blob.code_bytes);

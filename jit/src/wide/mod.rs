@@ -42,7 +42,8 @@ use self::encode::Shape;
 use self::linear::{Item, Linear};
 use self::lives::Lives;
 use self::state::{Count, State, Task};
-use crate::compile::{CompileError, VectorCount};
+use crate::compile::{CompileError, FIELD_CARRIES, VectorCount};
+use crate::pressure;
 use crate::strips::Plan;
 
 /// Finished code: a function of [`crate::entry`]'s ABI, with its constants, that runs at any address which is
@@ -58,7 +59,17 @@ pub(crate) struct Blob {
     pub(crate) constants: usize,
     /// Bytes of stack.
     pub(crate) frame_bytes: usize,
-    pub(crate) vectors: VectorCount,
+    /// Points in a block.
+    pub(crate) lanes: usize,
+}
+
+/// The functions that a kernel consists of.
+#[derive(Clone, Debug)]
+pub(crate) struct Emitted {
+    /// For whole blocks of points, as large as suits the function.
+    pub(crate) blocks: Blob,
+    /// For the points that are left, in blocks of one vector.
+    pub(crate) rest: Option<Blob>,
 }
 
 /// What is asked of the emitter.
@@ -95,11 +106,12 @@ pub(crate) fn emit(function: &Function, plan: &Plan, wish: &Wish) -> Result<Blob
     if wish.few_registers {
         count = Count([FEW.0[0], if shape.has_masks { FEW.0[1] } else { 0 }]);
     }
-    let mut vectors = wish.vectors.unwrap_or_else(|| unrolling(&linear, &lives, shape, plan));
-    if shape.bytes == 64 && vectors == VectorCount::Four {
-        // A block has at most [`crate::Kernel::MAX_LANES`] points.
-        vectors = VectorCount::Two;
-    }
+    let mut vectors = match wish.vectors {
+        // Whoever wishes so many has blocks of [`crate::Kernel::MAX_LANES`] points, at most.
+        Some(VectorCount::Four) if shape.bytes == 64 => VectorCount::Two,
+        Some(vectors) => vectors,
+        None => unrolling(function, shape, plan),
+    };
     loop {
         let (count_of, is_checked) = (vectors.count(), wish.is_checked);
         let tables = function.tables.values();
@@ -121,7 +133,8 @@ pub(crate) fn emit(function: &Function, plan: &Plan, wish: &Wish) -> Result<Blob
         if frame_bytes <= limits::MAX_JIT_FRAME_BYTES {
             let constants = state.constants.len();
             let (bytes, code_bytes) = assemble::assemble(state, frame_bytes, shape);
-            return Ok(Blob { bytes, code_bytes, constants, frame_bytes, vectors });
+            let lanes = vectors.count() * shape.bytes / size_of::<f32>();
+            return Ok(Blob { bytes, code_bytes, constants, frame_bytes, lanes });
         }
         vectors = match vectors {
             VectorCount::Four if wish.vectors.is_none() => VectorCount::Two,
@@ -169,24 +182,16 @@ fn check(state: &State<'_>, linear: &Linear, vectors: usize, shape: Shape) -> Re
     replay.check().map_err(CompileError::Registers)
 }
 
-/// Vectors of a value. Two hide the latency of most instructions, and share what is loaded for a row. With 16
-/// registers a field takes four, if they leave everything that its loops need in registers.
-fn unrolling(linear: &Linear, lives: &Lives, shape: Shape, plan: &Plan) -> VectorCount {
-    if shape.has_masks || !plan.is_whole() {
-        return VectorCount::Two;
+/// Vectors of a value. Two hide the latency of most instructions, and share what is loaded for a row. Where
+/// loops carry few accumulators, four share more, and what does not fit the registers then is read from
+/// memory, which costs less than the shares save.
+fn unrolling(function: &Function, shape: Shape, plan: &Plan) -> VectorCount {
+    let carried = pressure::carried_values(function);
+    if carried <= FIELD_CARRIES {
+        VectorCount::Four
+    } else if shape.has_masks || !plan.is_whole() || VectorCount::Two.count() * carried <= 16 {
+        VectorCount::Two
+    } else {
+        VectorCount::One
     }
-    let fits = |vectors: VectorCount| {
-        let pressure = lives::pressure(linear, lives, vectors.count(), false);
-        (0..linear.loops.len()).all(|id| {
-            let around = lives.captured[id].iter().map(|captured| {
-                let data = &linear.names[captured.name as usize];
-                if data.is_uniform { 0 } else { vectors.count() }
-            });
-            !linear.loops[id].is_row_loop() || pressure[id][0] + around.sum::<usize>() <= 14
-        })
-    };
-    [VectorCount::Four, VectorCount::Two]
-        .into_iter()
-        .find(|&vectors| fits(vectors))
-        .unwrap_or(VectorCount::One)
 }

@@ -4,8 +4,9 @@ use iced_x86::{Decoder, DecoderOptions, Instruction, MemorySize, Mnemonic, OpKin
 
 use jbt_ir::{Domain, FunctionBuilder, Level, Reduction, Schema, Value, Verified, verify};
 
-use crate::compile::{Check, Options, Pieces, VectorCount, emit};
+use crate::compile::{Backend, Check, Options, Pieces, VectorCount, emit};
 
+use super::Emitted;
 use super::encode::{Encoder, Shape};
 use super::inst::{Base, Binary, Condition, Form, Gpr, Inst, Integer, Label, Memory, Operand, Predicate};
 
@@ -417,6 +418,18 @@ fn below_as_real(b: &mut FunctionBuilder, mask: Value) -> Value {
     b.select(mask, one, two)
 }
 
+/// Asserts that a function is instructions from its first byte to its last, of at most so many bits.
+fn assert_decoded(code: &[u8], may_be_wide: bool) {
+    let mut last = None;
+    for inst in Decoder::with_ip(64, code, 0, DecoderOptions::NONE) {
+        assert!(!inst.is_invalid(), "at {}", inst.ip());
+        let is_wide = (0..inst.op_count()).any(|op| inst.op_register(op).is_zmm());
+        assert!(!is_wide || may_be_wide, "{inst}");
+        last = Some(inst.mnemonic());
+    }
+    assert_eq!(last, Some(Mnemonic::Ret));
+}
+
 /// On any machine: each level is emitted, checked, and decoded from the first byte of the code to the last.
 #[test]
 fn every_level_is_emitted_and_decoded() {
@@ -426,16 +439,15 @@ fn every_level_is_emitted_and_decoded() {
             for pieces in [Pieces::One, Pieces::Of(3)] {
                 for check in [Check::Registers, Check::FewRegisters] {
                     let options = Options { vectors, pieces: Some(pieces), check, ..Options::default() };
-                    let blob = emit(&function, level, &options).expect("it is emitted, and right");
-                    let code = &blob.bytes[..blob.code_bytes];
-                    let mut last = None;
-                    for inst in Decoder::with_ip(64, code, 0, DecoderOptions::NONE) {
-                        assert!(!inst.is_invalid(), "{level}, {options:?}, at {}", inst.ip());
-                        let is_wide = (0..inst.op_count()).any(|op| inst.op_register(op).is_zmm());
-                        assert!(!is_wide || level == Level::Avx512, "{level}: {inst}");
-                        last = Some(inst.mnemonic());
+                    let emitted = emit(&function, level, &options).expect("it is emitted, and right");
+                    let Emitted { blocks, rest } = emitted;
+                    let lanes = Backend::Wide(level).lanes();
+                    assert_eq!(rest.is_some(), vectors.is_none() && blocks.lanes > lanes, "{level}");
+                    assert!(rest.iter().all(|rest| rest.lanes == lanes), "{level}");
+                    assert_decoded(&blocks.bytes[..blocks.code_bytes], level == Level::Avx512);
+                    if let Some(rest) = &rest {
+                        assert_decoded(&rest.bytes[..rest.code_bytes], level == Level::Avx512);
                     }
-                    assert_eq!(last, Some(Mnemonic::Ret));
                 }
             }
         }

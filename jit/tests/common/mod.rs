@@ -173,7 +173,10 @@ pub fn assert_same_bits(expected: &[Vec<f32>], given: &[Vec<f32>], what: &str) {
 
 /// All settings of the compiler, with the function whole, cut at folds, in pieces of a few instructions, and in the smallest there are.
 pub fn all_options() -> Vec<Options> {
+    let of_backend =
+        |backend| Options { backend: Some(backend), check: Check::Registers, ..Options::default() };
     let mut all = vec![Options::default()];
+    all.extend(Backend::available().into_iter().map(of_backend));
     let pieces = [Pieces::One, Pieces::Of(usize::MAX), Pieces::Of(7), Pieces::Of(1)];
     for backend in Backend::available().into_iter().filter(|&backend| backend != Backend::Cranelift) {
         for vectors in VectorCount::ALL {
@@ -207,6 +210,23 @@ pub fn all_options() -> Vec<Options> {
     all
 }
 
+/// Asserts the bits of the first few points: of smaller blocks alone, and of larger blocks with some behind.
+fn check_few(
+    kernel: &Kernel,
+    rows: (&Arc<Tables>, &Selection),
+    (inputs, expected): (&[Vec<f32>], &[Vec<f32>]),
+    what: &str,
+) {
+    for blocks in [1, 2, 3, 5, 9, 17] {
+        let length = blocks * kernel.lanes();
+        let cut = |planes: &[Vec<f32>]| -> Vec<Vec<f32>> {
+            planes.iter().map(|plane| plane[..length].to_vec()).collect()
+        };
+        let given = run_selected(kernel, rows, &cut(inputs), expected.len());
+        assert_same_bits(&cut(expected), &given, &format!("{what}, {length} points"));
+    }
+}
+
 /// More points than two strips of any plan have.
 const POINTS: usize = 2_100;
 
@@ -230,7 +250,11 @@ pub fn check(function: &Verified, tables: &Tables, mut inputs: Vec<Vec<f32>>) {
         let kernel = Kernel::compile_with(function, &options).expect("the test's function compiles");
         for (selection, expected) in selections.iter().zip(&expected) {
             let given = run_selected(&kernel, (&tables, selection), &inputs, expected.len());
-            assert_same_bits(expected, &given, &format!("{options:?}, {} rows", selection.len()));
+            let what = format!("{options:?}, {} rows", selection.len());
+            assert_same_bits(expected, &given, &what);
+            if options.vectors.is_none() {
+                check_few(&kernel, (&tables, selection), (&inputs, expected), &what);
+            }
         }
     }
 }
