@@ -30,6 +30,8 @@ pub(crate) mod listing;
 mod lives;
 mod loops;
 mod ops;
+#[cfg(test)]
+mod simulator;
 mod state;
 #[cfg(test)]
 mod tests;

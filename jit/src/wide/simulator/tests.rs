@@ -1,0 +1,190 @@
+//! Wide code of every level against the scalar reference and, where the CPU has the level, against itself.
+
+use std::sync::Arc;
+
+use jbt_ir::domain::scalar::Scalar;
+use jbt_ir::pass::{PIPELINE, run_pipeline};
+use jbt_ir::{Entity, Level, Selection, Table, Tables, Verified, interpret, verify};
+
+use super::machine::Fault;
+use super::memory::Call;
+use super::run;
+use crate::compile::{Backend, Check, Options, Pieces, VectorCount, emit};
+use crate::entry::Kernel;
+use crate::wide::encode::{Encoder, Shape};
+use crate::wide::inst::{Base, Condition, Gpr, Inst, Integer, Label, Memory};
+use crate::wide::{Blob, Emitted};
+
+#[path = "../../../../ir/tests/common/random.rs"]
+#[allow(dead_code, reason = "tests of other crates use more of it")]
+mod random;
+#[path = "../../../../ir/tests/common/spicy.rs"]
+mod spicy;
+
+/// Functions that are run.
+const FUNCTIONS: u64 = 40;
+/// Points of a function: one block of the largest kind, and a smaller one behind it.
+const POINTS: usize = 80;
+
+/// A function with rows, points, and what the reference gives.
+struct Case {
+    function: Verified,
+    tables: Tables,
+    selection: Selection,
+    inputs: Vec<Vec<f32>>,
+    expected: Vec<Vec<f32>>,
+}
+
+impl Case {
+    fn new(seed: u64) -> Self {
+        let function = random::function(seed, 20 + seed as usize * 3);
+        let tables = random::tables(&function, seed);
+        let function = verify(run_pipeline(function, PIPELINE, &mut |_, _| {})).expect("it obeys the rules");
+        let selection = Selection::new(function.function(), &tables);
+        let mut random = fastrand::Rng::with_seed(!seed);
+        let inputs: Vec<Vec<f32>> = random::INPUTS
+            .iter()
+            .map(|_| (0..POINTS).map(|_| random::number(&mut random)).collect())
+            .collect();
+        let mut expected = vec![Vec::new(); function.function().outputs.len()];
+        for point in 0..POINTS {
+            let at: Vec<f32> = inputs.iter().map(|plane| plane[point]).collect();
+            let answers = interpret::run_selected(&function, &tables, &selection, &mut Scalar, &at);
+            expected
+                .iter_mut()
+                .zip(answers)
+                .for_each(|(plane, answer): (&mut Vec<f32>, f32)| plane.push(answer));
+        }
+        Self { function, tables, selection, inputs, expected }
+    }
+
+    /// What the simulator makes of code for these points.
+    fn simulate(&self, blob: &Blob, points: std::ops::Range<usize>) -> Result<Vec<Vec<f32>>, Fault> {
+        let tables: Vec<_> = (0..self.tables.tables.len())
+            .map(|index| {
+                let table = Table::new(index);
+                let (active, starts) = (self.selection.active(table), self.selection.starts(table));
+                (&self.tables.tables[table].numbers[..], active, starts)
+            })
+            .collect();
+        let inputs = cut(&self.inputs, points);
+        run(blob, &Call { inputs: &inputs, outputs: self.expected.len(), tables: &tables })
+    }
+
+    /// What this CPU makes of the same code.
+    fn execute(&self, options: &Options, points: usize) -> Vec<Vec<f32>> {
+        let kernel = Kernel::compile_with(&self.function, options).expect("the CPU has the level");
+        let bound = kernel.bind(Arc::new(self.tables.clone())).expect("the rows fit");
+        let inputs = cut(&self.inputs, 0..points);
+        let inputs: Vec<&[f32]> = inputs.iter().map(Vec::as_slice).collect();
+        let mut planes = vec![vec![0.0; points]; self.expected.len()];
+        let mut outputs: Vec<&mut [f32]> = planes.iter_mut().map(Vec::as_mut_slice).collect();
+        bound.run(&inputs, &mut outputs).expect("the planes fit");
+        planes
+    }
+}
+
+fn cut(planes: &[Vec<f32>], points: std::ops::Range<usize>) -> Vec<Vec<f32>> {
+    planes.iter().map(|plane| plane[points.clone()].to_vec()).collect()
+}
+
+/// Asserts equal bits, where a NaN equals any NaN.
+#[track_caller]
+fn assert_same(expected: &[Vec<f32>], given: &[Vec<f32>], what: &str) {
+    assert_eq!(expected.len(), given.len(), "{what}");
+    for (plane, (expected, given)) in expected.iter().zip(given).enumerate() {
+        assert_eq!(expected.len(), given.len(), "{what}");
+        for (point, (&expected, &given)) in expected.iter().zip(given).enumerate() {
+            let same = expected.to_bits() == given.to_bits() || expected.is_nan() && given.is_nan();
+            assert!(same, "{what}: output {plane} of point {point} is {given:e}, and not {expected:e}");
+        }
+    }
+}
+
+/// The settings that a function is emitted with: different ones for each function, all for all together.
+fn settings(seed: u64) -> impl Iterator<Item = Options> {
+    let vectors = [None, Some(VectorCount::One), Some(VectorCount::Two), Some(VectorCount::Four)];
+    let pieces = [None, Some(Pieces::One), Some(Pieces::Of(7))][seed as usize % 3];
+    let check = [Check::Registers, Check::FewRegisters][seed as usize / 3 % 2];
+    [Level::Avx2, Level::Avx512Vl, Level::Avx512].into_iter().flat_map(move |level| {
+        let backend = Some(Backend::Wide(level));
+        vectors.map(|vectors| Options { backend, vectors, pieces, check, ..Options::default() })
+    })
+}
+
+#[test]
+#[expect(clippy::print_stdout, reason = "it says which levels ran on this CPU")]
+fn simulated_code_has_the_bits_of_the_reference_and_of_the_cpu() {
+    let mut ran = [0; Level::ALL.len()];
+    for seed in 0..FUNCTIONS {
+        let case = Case::new(seed);
+        for options in settings(seed) {
+            let Some(Backend::Wide(level)) = options.backend else { unreachable!("all settings are wide") };
+            let Emitted { blocks, rest } = emit(&case.function, level, &options).expect("it is short");
+            let whole = POINTS / blocks.lanes * blocks.lanes;
+            let mut simulated = case.simulate(&blocks, 0..whole).unwrap_or_else(|fault| panic!("{fault}"));
+            if let Some(rest) = rest {
+                let left = case.simulate(&rest, whole..POINTS).unwrap_or_else(|fault| panic!("{fault}"));
+                simulated.iter_mut().zip(left).for_each(|(plane, left)| plane.extend(left));
+            }
+            let points = simulated[0].len();
+            let what = format!("function {seed}, {options:?}");
+            assert_same(&cut(&case.expected, 0..points), &simulated, &what);
+            if level.is_available() {
+                assert_same(&simulated, &case.execute(&options, points), &what);
+                ran[level as usize] += 1;
+            }
+        }
+    }
+    println!("runs of the CPU itself, by level: {ran:?}");
+    for level in Level::ALL.into_iter().filter(|&level| level > Level::Baseline) {
+        assert_eq!(ran[level as usize] > 0, level.is_available(), "{level}");
+    }
+}
+
+/// What the simulator says of a few instructions, as a function of one input and one output plane.
+fn fault_of(insts: &[Inst]) -> String {
+    let mut encoder = Encoder::new(Shape { bytes: 32, has_masks: false }, 1);
+    insts.iter().for_each(|inst| encoder.inst(inst));
+    encoder.bytes.push(0xC3);
+    let code_bytes = encoder.bytes.len();
+    let bytes = encoder.finish(&[0; 32]);
+    let blob = Blob { bytes, code_bytes, constants: 32, frame_bytes: 64, lanes: 8 };
+    let call = Call { inputs: &[vec![1.0; 8]], outputs: 1, tables: &[] };
+    run(&blob, &call).err().map_or(String::new(), |fault| fault.to_string())
+}
+
+#[test]
+fn what_code_may_not_do_is_a_fault() {
+    let plane = |plane: i32| Integer::LoadPointer { to: Gpr::Rax, from: Memory::at(Gpr::Rdi, 8 * plane) };
+    let at = |base, displacement| Memory::at(base, displacement);
+    let load = |from| Inst::Load { to: 0, from };
+    let store = |to| Inst::Store { to, from: 0 };
+    let constant = |displacement| Memory { base: Base::Constants, displacement, is_one: false };
+    let clear = |to| Inst::from(Integer::ClearRegister { to });
+    let cases: [(&[Inst], &str); 11] = [
+        (&[plane(0).into(), load(at(Gpr::Rax, 0))], "not cleared"),
+        (&[plane(0).into(), load(at(Gpr::Rax, 4))], "there are no 32 bytes"),
+        (&[plane(0).into(), load(at(Gpr::Rax, -4))], "there are no 32 bytes"),
+        (&[plane(0).into(), store(at(Gpr::Rax, 0))], "nobody may write"),
+        (&[plane(1).into(), store(at(Gpr::Rax, 4))], "there are no 32 bytes"),
+        (&[plane(2).into()], "there are no 8 bytes"),
+        (&[load(constant(4))], "there are no 32 bytes"),
+        (&[load(at(Gpr::Rsp, 0))], "there are no 32 bytes"),
+        (&[clear(Gpr::Rbx)], "registers are not as they were"),
+        (&[Integer::AddConstant { to: Gpr::Rsp, number: -8 }.into()], "where no instruction begins"),
+        (
+            &[
+                Inst::Here(Label(0)),
+                Integer::Compare64 { a: Gpr::Rax, b: Gpr::Rax }.into(),
+                Inst::Jump { condition: Condition::Equal, to: Label(0) },
+            ],
+            "does not end",
+        ),
+    ];
+    for (insts, expected) in cases {
+        let fault = fault_of(insts);
+        assert!(fault.contains(expected), "{insts:?}: {fault}");
+    }
+    assert_eq!(fault_of(&[plane(0).into(), clear(Gpr::Rax)]), "");
+}
