@@ -279,6 +279,9 @@ impl Shapes {
     }
 }
 
+/// What a leaf is as code that computes no attribute: its map, skeleton, falloff, and whether it has a strength.
+type PlainLeaf = (MapKind, SkeletonKind, FalloffKind, bool);
+
 struct Classifier<'a> {
     scene: &'a Scene<'a>,
     names: HashMap<ShapeKey, ShapeId>,
@@ -286,6 +289,8 @@ struct Classifier<'a> {
     contents: Vec<Content>,
     /// The shape of each occurrence, as its user sees it.
     shapes: Vec<ShapeId>,
+    /// The last leaf that computes no attribute, and its shape: the next one is like it as a rule.
+    last_leaf: Option<(PlainLeaf, ShapeId)>,
     /// Whether an operator dissolves into its only user.
     flattened: Vec<bool>,
     /// Weighted warps whose points are lifted already.
@@ -301,7 +306,8 @@ impl<'a> Classifier<'a> {
             scene,
             names: HashMap::default(),
             contents: Vec::new(),
-            shapes: Vec::new(),
+            shapes: Vec::with_capacity(scene.occurrences.len()),
+            last_leaf: None,
             flattened,
             entered: rustc_hash::FxHashSet::default(),
             result,
@@ -380,16 +386,25 @@ impl<'a> Classifier<'a> {
             }
             OccurrenceKind::Leaf { field, computed, .. } => {
                 let (primitive, leaf) = (self.scene.primitive(*field), self.scene.field(*field));
-                let key = ShapeKey::Leaf {
-                    map: leaf.kind,
-                    skeleton: primitive.skeleton.kind(),
-                    falloff: leaf.falloff,
-                    strong: leaf.strong,
-                    computed: self.computed(computed, occurrence.space),
-                };
-                let tables = primitive.skeleton.kind().pieces().is_some();
+                let skeleton = primitive.skeleton.kind();
+                let code = (leaf.kind, skeleton, leaf.falloff, leaf.strong);
+                let is_plain = computed.is_empty();
+                if let Some((last, shape)) = self.last_leaf
+                    && is_plain
+                    && last == code
+                {
+                    return shape;
+                }
+                let (map, skeleton, falloff, strong) = code;
+                let computed_shape = self.computed(computed, occurrence.space);
+                let key = ShapeKey::Leaf { map, skeleton, falloff, strong, computed: computed_shape };
+                let tables = skeleton.pieces().is_some();
                 let leaves = 1 + steps_of(self.scene, computed) / STEPS_OF_A_LEAF;
-                self.name(key, Content { tables, leaves, ..Content::LEAF })
+                let shape = self.name(key, Content { tables, leaves, ..Content::LEAF });
+                if is_plain {
+                    self.last_leaf = Some((code, shape));
+                }
+                shape
             }
             OccurrenceKind::Warp { position, inside, child, weight } => {
                 let (child, mut content) = self.of(*child);
