@@ -39,9 +39,12 @@ pub const MAX_TABLES: usize = 100_000;
 pub const MAX_FOLD_DEPTH: usize = 64;
 /// Values of one function, of any engine and after any pass.
 pub const MAX_VALUES: usize = 1_000_000;
-/// Values of a function that is compiled to machine code; a larger one is interpreted.
+/// Values of a function that is compiled to machine code; a larger one is interpreted. It bounds the time that
+/// Cranelift takes, and the code of either backend to some megabytes.
 pub const MAX_JIT_VALUES: usize = 60_000;
-/// Values that may be alive at once in machine code (a frame costs 16 bytes each per vector); beyond it the function is interpreted.
+/// Values that may be alive at once in Cranelift's code (a frame costs 16 bytes each per vector); beyond it the
+/// function is interpreted. Wide code has no such limit: its time to compile does not depend on it, and its
+/// frame is limited.
 pub const MAX_JIT_LIVE_VALUES: usize = 4_000;
 /// Bytes of stack that one call of machine code may take: a fraction of the smallest stacks that threads are given. A function that
 /// needs more is interpreted.
