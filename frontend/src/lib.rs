@@ -17,6 +17,7 @@ pub mod diagnostic;
 pub mod expression;
 pub mod falloff;
 pub mod field;
+mod function;
 pub mod import;
 #[cfg(any(feature = "glam", feature = "mint"))]
 mod interop;

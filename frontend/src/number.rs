@@ -12,8 +12,8 @@
 //! A formula is a list of steps in postfix order, `2 bulge * 1 +`, evaluated in f64 on a list of its own. A plain number has none, and
 //! arithmetic of plain numbers gives plain numbers.
 
+mod binary;
 mod formula;
-mod function;
 mod value;
 
 use std::fmt;
@@ -22,9 +22,11 @@ use std::sync::Arc;
 
 use crate::diagnostic::Diagnostic;
 use crate::field::{Written, plain};
+use crate::function::Function;
 
+pub(crate) use binary::Binary;
 pub(crate) use formula::{Formula, Step, Variable, show};
-pub(crate) use function::{Binary, Function};
+
 pub(crate) use value::Values;
 
 /// A number of a model: a plain one, or one that follows parameters.

@@ -4,7 +4,8 @@ use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use crate::diagnostic::{Diagnostic, Span};
-use crate::number::{Formula, Function, Number, Step, Values};
+use crate::function::Function;
+use crate::number::{Formula, Number, Step, Values};
 use crate::report::{clip, nearest};
 use crate::tree::Tree;
 use crate::word::{is_identifier, is_statement};

@@ -11,6 +11,7 @@
 mod falloff;
 mod field;
 
+use std::mem::{self, Discriminant};
 use std::sync::Arc;
 
 use glam::{DAffine3, DMat3, DVec3};
@@ -21,7 +22,7 @@ use crate::diagnostic::{Diagnostic, Span};
 use crate::expression::Formula;
 use crate::falloff::Falloff;
 use crate::field::{FieldKind, FieldValue, plain};
-use crate::number::{Number, Values, values};
+use crate::number::{Number, Step, Values, values};
 use crate::skeleton::SkeletonKind;
 use crate::tree::{NodeKind, Primitive};
 use crate::warp::{FormulaWarp, WarpKind};
@@ -86,6 +87,9 @@ pub enum Map {
     /// The rows of a 3x4 matrix, child to parent.
     Affine(Box<[Number; 12]>),
 }
+
+/// What tells affine maps apart: the kind, the unit of an angle, and the steps of all numbers.
+pub(crate) type MapKey = (Discriminant<Map>, Option<Discriminant<Angle>>, Vec<Step>);
 
 /// A node before its formulas are evaluated.
 #[derive(Clone, PartialEq, Debug)]
@@ -399,6 +403,23 @@ impl Recipe {
                 NodeKind::Attribute { name: Arc::clone(name), value: value.value() }
             }
         })
+    }
+
+    /// What tells affine maps apart that follow parameters: equal for those that are equal whatever the values. Panics on
+    /// other nodes.
+    pub(crate) fn map_key(&self) -> MapKey {
+        let Self::Map(map) = self else { unreachable!("only maps have keys of maps") };
+        let unit = match map {
+            Map::Rotate { angle, .. } => Some(mem::discriminant(angle)),
+            Map::Translate(_)
+            | Map::Scale(_)
+            | Map::ScaleAxes(_)
+            | Map::Reflect(_)
+            | Map::Stretch { .. }
+            | Map::Shear { .. }
+            | Map::Affine(_) => None,
+        };
+        (mem::discriminant(map), unit, map.numbers().flat_map(Number::steps).collect())
     }
 
     /// How much the linear part of a map can change.

@@ -23,7 +23,8 @@ use std::sync::Arc;
 
 use crate::expression::{Assembled, Assembler, Draft, Formula};
 use crate::falloff::Falloff;
-use crate::number::{Binary, Function, Number, Step, Vector};
+use crate::function::Function;
+use crate::number::{Binary, Number, Step, Vector};
 use crate::recipe::{AttributeRecipe, Recipe};
 use crate::tree::{NodeKind, Tree};
 

@@ -17,6 +17,7 @@ use jbt_ir::Domain;
 use super::operand::Operand;
 use super::operation::{self, Operation};
 use crate::falloff::Falloff;
+use crate::function::ANY;
 use crate::number::{Formula as NumberFormula, Number, Step, Variable};
 
 /// A formula without its numbers: what selects code.
@@ -176,8 +177,8 @@ impl Form {
     pub(crate) fn vanishes(&self, known: impl Fn(usize) -> Option<f64>) -> bool {
         let range = |operand| match operand {
             Operand::Child(_) => [0.0; 2],
-            Operand::Number(number) => known(number as usize).map_or(operation::ANY, |value| [value; 2]),
-            Operand::Coordinate(_) | Operand::Step(_) => operation::ANY,
+            Operand::Number(number) => known(number as usize).map_or(ANY, |value| [value; 2]),
+            Operand::Coordinate(_) | Operand::Step(_) => ANY,
         };
         self.children > 0 && self.fold(range, |operation, _, ranges| operation.range(ranges)) == [0.0; 2]
     }

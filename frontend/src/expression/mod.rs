@@ -58,11 +58,11 @@ use glam::DVec3;
 
 use crate::bounds::Bounds;
 use crate::falloff::Falloff;
-use crate::number::{Binary, Function, Number, Step};
+use crate::function::Function;
+use crate::number::{Binary, Number, Step};
 
 pub use form::Form;
 pub(crate) use form::{Assembled, Assembler, Draft};
-pub(crate) use growth::Growth;
 pub(crate) use operand::Operand;
 pub(crate) use write::write;
 

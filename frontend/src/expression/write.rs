@@ -5,7 +5,8 @@ use std::fmt;
 use super::form::Form;
 use super::operand::Operand;
 use super::operation::Operation;
-use crate::number::{Binary, Function, Number, Step, Variable, show};
+use crate::function::Function;
+use crate::number::{Binary, Number, Step, Variable, show};
 
 /// Writes a formula; `child` and `definition` name children and definitions.
 pub(crate) fn write<W: fmt::Write>(

@@ -22,7 +22,7 @@ use super::occurrence::SpaceId;
 use crate::affine::Similarity;
 use crate::check::NodeId;
 use crate::origin::ModelOrigin;
-use crate::recipe::{Freedom, Recipe};
+use crate::recipe::{Freedom, MapKey, Recipe};
 use crate::skeleton::{Skeleton, Symmetry};
 
 /// The map from an occurrence's own space to `space`.
@@ -81,8 +81,8 @@ pub(super) fn position_key(space: SpaceId, trail: u32, since: &DAffine3) -> Posi
 /// The names of trails: those that end with the same map after the same way have the same name.
 #[derive(Default)]
 pub(super) struct Trails {
-    /// By the text of the map, so that a map that is written twice is one.
-    maps: HashMap<String, u32>,
+    /// A map that is written twice is one.
+    maps: HashMap<MapKey, u32>,
     map_of_node: HashMap<NodeId, u32>,
     names: HashMap<(PositionKey, u32), u32>,
 }
@@ -93,7 +93,7 @@ impl Trails {
         let maps = &mut self.maps;
         let map = *self.map_of_node.entry(node).or_insert_with(|| {
             let next = maps.len() as u32;
-            *maps.entry(crate::text::print_head(recipe)).or_insert(next)
+            *maps.entry(recipe.map_key()).or_insert(next)
         });
         let next = self.names.len() as u32 + 1;
         *self.names.entry((before, map)).or_insert(next)

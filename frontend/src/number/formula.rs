@@ -1,16 +1,19 @@
 //! Formulas: postfix lists of steps, evaluated and printed without recursion.
 
 use std::fmt;
+use std::hash::{Hash, Hasher};
+use std::mem;
 use std::sync::Arc;
 
-use super::function::{Binary, Function};
+use super::binary::Binary;
 use super::value::Values;
 use crate::diagnostic::{Diagnostic, Span};
 use crate::field::plain;
+use crate::function::Function;
 use crate::report::clip;
 
 /// What the formula of a field is about, besides numbers.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub(crate) enum Variable {
     /// 0, 1, 2: x, y, z.
     Coordinate(u8),
@@ -56,6 +59,23 @@ impl PartialEq for Step {
                 | Self::Call(..),
                 _,
             ) => false,
+        }
+    }
+}
+
+/// Equality is that of bits and names, so it is reflexive.
+impl Eq for Step {}
+
+impl Hash for Step {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        mem::discriminant(self).hash(state);
+        match self {
+            Self::Literal(value) => value.to_bits().hash(state),
+            Self::Parameter { name, .. } => name.hash(state),
+            Self::Variable(variable) => variable.hash(state),
+            Self::Negate => {}
+            Self::Binary(binary) => binary.hash(state),
+            Self::Call(function, count) => (function, count).hash(state),
         }
     }
 }

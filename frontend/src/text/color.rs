@@ -12,7 +12,8 @@ use super::state::Parser;
 use super::value::Elements;
 use super::words::is_builtin;
 use crate::diagnostic::{Diagnostic, Span};
-use crate::number::{Function, Number, Step};
+use crate::function::Function;
+use crate::number::{Number, Step};
 use crate::report::clip;
 use crate::word::is_statement;
 

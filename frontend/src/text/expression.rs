@@ -17,7 +17,8 @@ use super::scope::Scope;
 use super::state::Parser;
 use super::words::{CONSTANTS, constant};
 use crate::diagnostic::{Diagnostic, Span};
-use crate::number::{Binary, Formula, Function, Number, Step, Variable};
+use crate::function::Function;
+use crate::number::{Binary, Formula, Number, Step, Variable};
 use crate::report::{clip, nearest};
 use crate::word::is_statement;
 

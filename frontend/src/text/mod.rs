@@ -66,9 +66,7 @@
 //!            | expression ( "+" | "-" | "*" | "/" | "^" ) expression
 //!            | FUNCTION "(" expression { "," expression } ")" ;
 //!            | "x" | "y" | "z" | "field" "(" NAME ")" | NAME    in formulas: coordinates, fields of `let`s, definitions
-//! FUNCTION   = "sqrt" | "sin" | "cos" | "tan" | "asin" | "acos" | "atan" | "atan2" | "abs" | "sign" | "floor" | "ceil" | "round"
-//!            | "mod" | "exp" | "ln" | "square" | "min" | "max" | "clamp" | "mix" | "step" | "length" | "pow" ;
-//!            in formulas also FALLOFF, of a distance of which 1 is the end
+//! FUNCTION   = a word of [`functions`] ;                  in formulas also FALLOFF, of a distance of which 1 is the end
 //! HEX        = a double quote, "#", 3, 4, 6 or 8 digits in hex, a double quote ;
 //! NAME       = letter { letter | digit | "_" } ;
 //! ```
@@ -127,11 +125,10 @@ use std::fmt;
 use std::str::FromStr;
 
 use crate::diagnostic::{Diagnostics, SourceText};
+use crate::function::Function;
 use crate::model::Model;
-use crate::number::Function;
 
 pub use print::print;
-pub(crate) use print::print_head;
 pub use state::Options;
 
 /// The model of a text.

@@ -291,13 +291,6 @@ fn expression(out: &mut String, formula: &Formula, child: impl Fn(usize) -> Stri
     out.push_str(" }");
 }
 
-/// The head of a node with numbers that follow parameters, as text: equal for nodes that are equal for all their values.
-pub(crate) fn print_head(recipe: &Recipe) -> String {
-    let mut out = String::new();
-    head_of_recipe(&mut out, recipe, "t");
-    out
-}
-
 fn head_of_map(out: &mut String, map: &Map) {
     let _ = match map {
         Map::Translate(by) => write!(out, "translate {}", vector(by)),

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 use crate::combine::Combinator;
 use crate::field::{Field, FieldKind};
-use crate::number::Function;
+use crate::function::Function;
 use crate::skeleton::SkeletonKind;
 use crate::texture::TextureKind;
 use crate::warp::WarpKind;

@@ -76,7 +76,7 @@ impl FormulaWarp {
 
     pub(super) fn growth(&self, largest: f64) -> Growth {
         let values = self.form.growth(&self.numbers, largest);
-        let most = |of: fn(&crate::expression::Growth) -> f64| values.iter().map(of).fold(0.0, f64::max);
+        let most = |of: fn(&crate::function::Growth) -> f64| values.iter().map(of).fold(0.0, f64::max);
         Growth {
             coordinates: most(|growth| growth.value).min(LARGEST_WARPED.into()),
             derivatives: most(|growth| growth.slope),

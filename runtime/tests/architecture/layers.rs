@@ -140,6 +140,7 @@ const FRONTEND: &[&[&str]] = &[
     // Members.
     &["skeleton"],
     &["combine", "falloff", "texture"],
+    &["function"],
     &["number"],
     &["expression", "interop"],
     &["attribute", "warp"],
