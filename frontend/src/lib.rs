@@ -22,6 +22,7 @@ pub mod import;
 #[cfg(any(feature = "glam", feature = "mint"))]
 mod interop;
 pub mod lower;
+pub mod map;
 pub mod model;
 pub mod number;
 pub mod origin;

@@ -11,22 +11,23 @@
 mod falloff;
 mod field;
 
-use std::mem::{self, Discriminant};
 use std::sync::Arc;
 
-use glam::{DAffine3, DMat3, DVec3};
+use glam::DAffine3;
 
-use crate::affine::{rotation, sin_cos_degrees};
 use crate::combine::Combinator;
-use crate::diagnostic::{Diagnostic, Span};
+use crate::diagnostic::Diagnostic;
 use crate::expression::Formula;
 use crate::falloff::Falloff;
 use crate::field::{FieldKind, FieldValue, plain};
-use crate::number::{Number, Step, Values, values};
+use crate::map::MapKind;
+use crate::number::{Number, Step, Values};
+use crate::report::Fault;
 use crate::skeleton::SkeletonKind;
 use crate::tree::{NodeKind, Primitive};
 use crate::warp::{FormulaWarp, WarpKind};
 
+pub(crate) use crate::map::Freedom;
 pub use falloff::FalloffRecipe;
 pub use field::FieldNumber;
 
@@ -43,53 +44,8 @@ pub enum Radius {
     Surface(Number),
 }
 
-/// The angle of a rotation.
-#[derive(Clone, PartialEq, Debug)]
-pub enum Angle {
-    /// In degrees; quarter turns are exact.
-    Degrees(Number),
-    /// In radians.
-    Radians(Number),
-}
-
-/// An affine map as it was written.
-#[derive(Clone, PartialEq, Debug)]
-pub enum Map {
-    /// A shift.
-    Translate([Number; 3]),
-    /// A rotation about an axis through the origin, right-handed.
-    Rotate {
-        /// The axis, of any length.
-        axis: [Number; 3],
-        /// How far.
-        angle: Angle,
-    },
-    /// A uniform scale about the origin.
-    Scale(Number),
-    /// A scale about the origin, by another factor along each axis.
-    ScaleAxes([Number; 3]),
-    /// A mirror image in the plane through the origin that is normal to this direction, of any length.
-    Reflect([Number; 3]),
-    /// A scale about the origin by a factor along a direction of any length, and by 1 across it.
-    Stretch {
-        /// The direction.
-        axis: [Number; 3],
-        /// The factor; a negative one mirrors.
-        by: Number,
-    },
-    /// A shear: what is at height h along a direction moves by h times a vector.
-    Shear {
-        /// The direction, of any length.
-        axis: [Number; 3],
-        /// How far at height 1: as a rule across the direction.
-        by: [Number; 3],
-    },
-    /// The rows of a 3x4 matrix, child to parent.
-    Affine(Box<[Number; 12]>),
-}
-
-/// What tells affine maps apart: the kind, the unit of an angle, and the steps of all numbers.
-pub(crate) type MapKey = (Discriminant<Map>, Option<Discriminant<Angle>>, Vec<Step>);
+/// What tells affine maps apart: the kind, and the steps of all numbers.
+pub(crate) type MapKey = (MapKind, Vec<Step>);
 
 /// A node before its formulas are evaluated.
 #[derive(Clone, PartialEq, Debug)]
@@ -119,7 +75,12 @@ pub enum Recipe {
     /// A selector, which chooses the child whose place is nearest to this number.
     Select(Number),
     /// An affine map.
-    Map(Map),
+    Map {
+        /// The kind.
+        map: MapKind,
+        /// Its values, as [`MapKind::shape`] says: a matrix is one list.
+        fields: Vec<FieldNumber>,
+    },
     /// A warp.
     Warp {
         /// The kind; its variant is not looked at.
@@ -138,37 +99,6 @@ pub enum Recipe {
     },
 }
 
-/// Why a recipe gives no node.
-#[derive(Clone, PartialEq, Eq, Debug)]
-pub(crate) struct Fault {
-    pub(crate) message: String,
-    pub(crate) help: Option<&'static str>,
-}
-
-impl Fault {
-    /// The message about it, at a place.
-    pub(crate) fn at(self, span: Option<Span>) -> Diagnostic {
-        let error = Diagnostic::error(span, self.message);
-        match self.help {
-            Some(help) => error.expected(help),
-            None => error,
-        }
-    }
-}
-
-/// How much the linear part of an affine map can change, from least to most: what its code has to be ready for.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
-pub(crate) enum Freedom {
-    /// Not at all.
-    Fixed,
-    /// By a uniform scale.
-    Scale,
-    /// By a rotation and a uniform scale.
-    Turn,
-    /// In any way.
-    Full,
-}
-
 impl Radius {
     fn number(&self) -> &Number {
         match self {
@@ -183,106 +113,6 @@ impl Radius {
     }
 }
 
-impl Angle {
-    fn number(&self) -> &Number {
-        match self {
-            Self::Degrees(number) | Self::Radians(number) => number,
-        }
-    }
-
-    fn sin_cos(&self) -> (f64, f64) {
-        match self {
-            Self::Degrees(degrees) => sin_cos_degrees(degrees.value()),
-            Self::Radians(radians) => radians.value().sin_cos(),
-        }
-    }
-}
-
-/// The unit vector of a direction; without one, a fault.
-fn unit(axis: &[Number; 3]) -> Result<DVec3, Fault> {
-    let axis = DVec3::from(values(axis));
-    let unit = axis.normalize_or_zero();
-    if unit == DVec3::ZERO && !axis.is_nan() {
-        return Err(Fault { message: "the axis has no direction".to_owned(), help: None });
-    }
-    Ok(unit)
-}
-
-/// The matrix that takes q to `(axis . q) by`.
-fn outer(by: DVec3, axis: DVec3) -> DMat3 {
-    DMat3::from_cols(by * axis.x, by * axis.y, by * axis.z)
-}
-
-/// The scale by a factor along a direction; exact along simple ones.
-fn along(axis: &[Number; 3], factor: f64) -> Result<DMat3, Fault> {
-    unit(axis)?;
-    let axis = DVec3::from(values(axis));
-    let axis = axis / axis.abs().max_element();
-    Ok(DMat3::IDENTITY + outer((factor - 1.0) / axis.length_squared() * axis, axis))
-}
-
-impl Map {
-    /// The map, with the present values of its numbers.
-    ///
-    /// An axis without a direction is a fault.
-    pub(crate) fn affine(&self) -> Result<DAffine3, Fault> {
-        Ok(match self {
-            Self::Translate(by) => DAffine3::from_translation(values(by).into()),
-            Self::Rotate { axis, angle } => DAffine3::from_mat3(rotation(unit(axis)?, angle.sin_cos())),
-            Self::Reflect(axis) => DAffine3::from_mat3(along(axis, -1.0)?),
-            Self::Stretch { axis, by } => DAffine3::from_mat3(along(axis, by.value())?),
-            Self::Shear { axis, by } => {
-                DAffine3::from_mat3(DMat3::IDENTITY + outer(values(by).into(), unit(axis)?))
-            }
-            Self::Scale(by) => DAffine3::from_scale(DVec3::splat(by.value())),
-            Self::ScaleAxes(by) => DAffine3::from_scale(values(by).into()),
-            Self::Affine(rows) => {
-                let [xx, xy, xz, x, yx, yy, yz, y, zx, zy, zz, z] = values(rows);
-                let columns = [[xx, yx, zx], [xy, yy, zy], [xz, yz, zz]];
-                DAffine3 { matrix3: DMat3::from_cols_array_2d(&columns), translation: DVec3::new(x, y, z) }
-            }
-        })
-    }
-
-    fn numbers(&self) -> impl Iterator<Item = &Number> {
-        let (numbers, last): (&[Number], &[Number]) = match self {
-            Self::Translate(by) | Self::ScaleAxes(by) | Self::Reflect(by) => (by, &[]),
-            Self::Rotate { axis, angle } => (axis, std::slice::from_ref(angle.number())),
-            Self::Stretch { axis, by } => (axis, std::slice::from_ref(by)),
-            Self::Shear { axis, by } => (axis, by),
-            Self::Scale(by) => (&[], std::slice::from_ref(by)),
-            Self::Affine(rows) => (&rows[..], &[]),
-        };
-        numbers.iter().chain(last)
-    }
-
-    fn numbers_mut(&mut self) -> Vec<&mut Number> {
-        match self {
-            Self::Translate(by) | Self::ScaleAxes(by) | Self::Reflect(by) => by.iter_mut().collect(),
-            Self::Stretch { axis, by } => axis.iter_mut().chain([by]).collect(),
-            Self::Shear { axis, by } => axis.iter_mut().chain(by).collect(),
-            Self::Rotate { axis, angle: Angle::Degrees(angle) | Angle::Radians(angle) } => {
-                axis.iter_mut().chain([angle]).collect()
-            }
-            Self::Scale(by) => vec![by],
-            Self::Affine(rows) => rows.iter_mut().collect(),
-        }
-    }
-
-    fn freedom(&self) -> Freedom {
-        match self {
-            Self::Translate(_) => Freedom::Fixed,
-            Self::Scale(_) => Freedom::Scale,
-            Self::Rotate { .. } => Freedom::Turn,
-            Self::ScaleAxes(_)
-            | Self::Reflect(_)
-            | Self::Stretch { .. }
-            | Self::Shear { .. }
-            | Self::Affine(_) => Freedom::Full,
-        }
-    }
-}
-
 impl Recipe {
     /// The formula of coordinates that it has.
     pub(crate) const fn formula(&self) -> Option<&Formula> {
@@ -293,7 +123,7 @@ impl Recipe {
             Self::Primitive { .. }
             | Self::Combine { .. }
             | Self::Select(_)
-            | Self::Map(_)
+            | Self::Map { .. }
             | Self::Warp { .. }
             | Self::Attribute { .. } => None,
         }
@@ -309,14 +139,13 @@ impl Recipe {
             Self::Combine { numbers, .. } => (&[], numbers, [None; 2]),
             Self::Select(number) => (&[], &[], [Some(number), None]),
             Self::Expression(formula) | Self::FormulaWarp(formula) => (&[], &formula.numbers, [None; 2]),
-            Self::Map(_) | Self::Attribute { .. } => (&[], &[], [None; 2]),
-            Self::Warp { fields, .. } => (fields, &[], [None; 2]),
+            Self::Attribute { .. } => (&[], &[], [None; 2]),
+            Self::Map { fields, .. } | Self::Warp { fields, .. } => (fields, &[], [None; 2]),
         };
-        let map = if let Self::Map(map) = self { Some(map) } else { None };
         let value = if let Self::Attribute { value, .. } = self { Some(value) } else { None };
         let numbers = numbers.iter().chain(value.into_iter().flat_map(AttributeRecipe::numbers));
         let fields = fields.iter().chain(falloff).flat_map(FieldNumber::numbers);
-        fields.chain(numbers).chain(map.into_iter().flat_map(Map::numbers)).chain(own.into_iter().flatten())
+        fields.chain(numbers).chain(own.into_iter().flatten())
     }
 
     fn numbers_mut(&mut self) -> Vec<&mut Number> {
@@ -329,8 +158,9 @@ impl Recipe {
             Self::Combine { numbers, .. } => numbers.iter_mut().collect(),
             Self::Select(number) => vec![number],
             Self::Expression(formula) | Self::FormulaWarp(formula) => formula.numbers.iter_mut().collect(),
-            Self::Map(map) => map.numbers_mut(),
-            Self::Warp { fields, .. } => fields.iter_mut().flat_map(FieldNumber::numbers_mut).collect(),
+            Self::Map { fields, .. } | Self::Warp { fields, .. } => {
+                fields.iter_mut().flat_map(FieldNumber::numbers_mut).collect()
+            }
             Self::Attribute { value, .. } => value.numbers_mut(),
         }
     }
@@ -352,7 +182,7 @@ impl Recipe {
             Self::Combine { .. }
             | Self::Expression(_)
             | Self::Select(_)
-            | Self::Map(_)
+            | Self::Map { .. }
             | Self::Warp { .. }
             | Self::FormulaWarp(_)
             | Self::Attribute { .. } => false,
@@ -396,7 +226,7 @@ impl Recipe {
             }
             Self::Expression(formula) => NodeKind::Expression(formula.expression()),
             Self::Select(which) => NodeKind::Select(which.value()),
-            Self::Map(map) => NodeKind::Affine(map.affine()?),
+            Self::Map { .. } => NodeKind::Affine(self.map()?),
             Self::Warp { warp, fields } => NodeKind::Warp(warp.from_fields(&values(fields))),
             Self::FormulaWarp(formula) => NodeKind::Warp(FormulaWarp::from(formula).into()),
             Self::Attribute { name, value } => {
@@ -408,25 +238,21 @@ impl Recipe {
     /// What tells affine maps apart that follow parameters: equal for those that are equal whatever the values. Panics on
     /// other nodes.
     pub(crate) fn map_key(&self) -> MapKey {
-        let Self::Map(map) = self else { unreachable!("only maps have keys of maps") };
-        let unit = match map {
-            Map::Rotate { angle, .. } => Some(mem::discriminant(angle)),
-            Map::Translate(_)
-            | Map::Scale(_)
-            | Map::ScaleAxes(_)
-            | Map::Reflect(_)
-            | Map::Stretch { .. }
-            | Map::Shear { .. }
-            | Map::Affine(_) => None,
-        };
-        (mem::discriminant(map), unit, map.numbers().flat_map(Number::steps).collect())
+        let Self::Map { map, fields } = self else { unreachable!("only maps have keys of maps") };
+        (*map, fields.iter().flat_map(FieldNumber::numbers).flat_map(Number::steps).collect())
+    }
+
+    /// The map of an affine node, with the present values of its numbers; of any other node the identity.
+    pub(crate) fn map(&self) -> Result<DAffine3, Fault> {
+        let Self::Map { map, fields } = self else { return Ok(DAffine3::IDENTITY) };
+        map.affine(&fields.iter().map(FieldNumber::value).collect::<Vec<_>>())
     }
 
     /// How much the linear part of a map can change.
     pub(crate) fn freedom(&self) -> Freedom {
         match self {
-            Self::Map(map) if map.numbers().any(Number::follows) => map.freedom(),
-            Self::Map(_)
+            Self::Map { map, .. } if self.following().next().is_some() => map.freedom(),
+            Self::Map { .. }
             | Self::Primitive { .. }
             | Self::Combine { .. }
             | Self::Expression(_)
@@ -469,7 +295,7 @@ impl Recipe {
             Self::Combine { .. }
             | Self::Expression(_)
             | Self::Select(_)
-            | Self::Map(_)
+            | Self::Map { .. }
             | Self::Warp { .. }
             | Self::FormulaWarp(_)
             | Self::Attribute { .. } => false,

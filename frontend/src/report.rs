@@ -2,7 +2,7 @@
 
 use jbt_ir::limits::MAX_ERRORS;
 
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Span};
 
 /// Diagnostics of one reader.
 #[derive(Debug, Default)]
@@ -105,6 +105,24 @@ fn edit_distance(a: &[u8], b: &[u8]) -> usize {
         before = std::mem::replace(&mut row, next);
     }
     row[b.len()]
+}
+
+/// Why numbers give no node: a message that has no place yet.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub(crate) struct Fault {
+    pub(crate) message: String,
+    pub(crate) help: Option<&'static str>,
+}
+
+impl Fault {
+    /// The message about it, at a place.
+    pub(crate) fn at(self, span: Option<Span>) -> Diagnostic {
+        let error = Diagnostic::error(span, self.message);
+        match self.help {
+            Some(help) => error.expected(help),
+            None => error,
+        }
+    }
 }
 
 #[cfg(test)]

@@ -18,8 +18,9 @@
 //! ```
 
 use crate::combine::Combinator;
+use crate::map::MapKind;
 use crate::number::{Number, Vector};
-use crate::recipe::{AttributeRecipe, Map, Recipe};
+use crate::recipe::{AttributeRecipe, FieldNumber, Recipe};
 use crate::tree::{NodeKind, Tree};
 
 /// A tree under construction: a stack of open scopes.
@@ -114,7 +115,7 @@ impl Scopes {
 
     /// A shift of what follows.
     pub fn translate(&mut self, by: impl Into<Vector>) -> &mut Self {
-        let recipe = Recipe::Map(Map::Translate(by.into().0));
+        let recipe = Recipe::Map { map: MapKind::Translate, fields: vec![FieldNumber::Vector(by.into().0)] };
         self.scope().around.push(Around::Recipe(recipe));
         self
     }

@@ -21,7 +21,8 @@ use glam::{DAffine3, DVec3};
 
 use crate::diagnostic::Span;
 use crate::number::Number;
-use crate::recipe::{Fault, Recipe};
+use crate::recipe::Recipe;
+use crate::report::Fault;
 use crate::traverse::Visit;
 
 mod kind;

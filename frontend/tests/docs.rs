@@ -8,6 +8,7 @@ use jbt_frontend::combine::{Combinator, Family, SetOperation};
 use jbt_frontend::diagnostic::{Diagnostics, Source};
 use jbt_frontend::falloff::FalloffKind;
 use jbt_frontend::field::{Field, FieldKind, FieldValue};
+use jbt_frontend::map::MapKind;
 use jbt_frontend::skeleton::SkeletonKind;
 use jbt_frontend::text::{Options, functions, parse};
 use jbt_frontend::texture::TextureKind;
@@ -23,17 +24,6 @@ const HEAD: &str = "jbt 1
 
 /// The parameters of every primitive.
 const OWN_FIELDS: [&str; 4] = ["radius", "surface_radius", "falloff", "strength"];
-
-/// The maps that are no warps, with the words of their parameters.
-const MAPS: [(&str, &[&str]); 7] = [
-    ("translate", &[]),
-    ("rotate", &["axis", "degrees", "radians"]),
-    ("scale", &[]),
-    ("reflect", &["axis"]),
-    ("stretch", &["axis", "by"]),
-    ("shear", &["axis", "by"]),
-    ("affine", &[]),
-];
 
 /// What the pages tell about that is in no list, by page.
 const UNLISTED: [(&str, &str); 9] = [
@@ -169,12 +159,13 @@ fn all_warps_and_maps() {
         has_member("warps", kind.name(), kind.fields(), own_word);
     }
     let page = page("warps.md");
-    for (name, words) in MAPS {
+    for kind in MapKind::ALL {
+        let name = kind.name();
         has_scene("warps", name);
         let text = section(&page, name).join("\n");
         assert!(text.contains("```jbt"), "`{name}`: an example");
-        for word in words {
-            assert!(text.contains(&format!("`{word}`")), "`{name}`: {word}");
+        for field in kind.fields() {
+            assert!(text.contains(&format!("`{}`", field.name)), "`{name}`: {}", field.name);
         }
     }
 }

@@ -4,7 +4,8 @@ use glam::DVec3;
 
 use super::{Number, Rows, Vector, real, vector};
 use crate::field::FieldValue;
-use crate::recipe::{Angle, FieldNumber, Map, Recipe};
+use crate::map::MapKind;
+use crate::recipe::{FieldNumber, Recipe};
 use crate::tree::Tree;
 use crate::warp::WarpKind;
 
@@ -12,54 +13,54 @@ impl Tree {
     /// Shifted.
     #[must_use]
     pub fn translate(&self, by: impl Into<Vector>) -> Self {
-        self.mapped(Map::Translate(by.into().0))
+        self.mapped(MapKind::Translate, vec![vector(by)])
     }
 
     /// Turned about an axis through the origin, right-handed. Quarter turns are exact.
     #[must_use]
     pub fn rotate(&self, axis: impl Into<Vector>, degrees: impl Into<Number>) -> Self {
-        self.mapped(Map::Rotate { axis: axis.into().0, angle: Angle::Degrees(degrees.into()) })
+        self.mapped(MapKind::RotateDegrees, vec![vector(axis), real(degrees)])
     }
 
     /// Scaled about the origin.
     #[must_use]
     pub fn scale(&self, by: impl Into<Number>) -> Self {
-        self.mapped(Map::Scale(by.into()))
+        self.mapped(MapKind::Scale, vec![real(by)])
     }
 
     /// Scaled about the origin, by another factor along each axis; a negative one mirrors.
     #[must_use]
     pub fn scale_axes(&self, by: impl Into<Vector>) -> Self {
-        self.mapped(Map::ScaleAxes(by.into().0))
+        self.mapped(MapKind::ScaleAxes, vec![vector(by)])
     }
 
     /// A mirror image in the plane through the origin that is normal to `axis`, of any length.
     #[must_use]
     pub fn reflect(&self, axis: impl Into<Vector>) -> Self {
-        self.mapped(Map::Reflect(axis.into().0))
+        self.mapped(MapKind::Reflect, vec![vector(axis)])
     }
 
     /// Scaled about the origin along a direction of any length; a negative factor mirrors.
     #[must_use]
     pub fn stretch(&self, axis: impl Into<Vector>, by: impl Into<Number>) -> Self {
-        self.mapped(Map::Stretch { axis: axis.into().0, by: by.into() })
+        self.mapped(MapKind::Stretch, vec![vector(axis), real(by)])
     }
 
     /// Sheared: what is at height h along a direction of any length moves by h times `by`.
     #[must_use]
     pub fn shear(&self, axis: impl Into<Vector>, by: impl Into<Vector>) -> Self {
-        self.mapped(Map::Shear { axis: axis.into().0, by: by.into().0 })
+        self.mapped(MapKind::Shear, vec![vector(axis), vector(by)])
     }
 
     /// Mapped by a 3x4 matrix, given by rows, that takes this tree's space to its parent's: the last column is the shift.
     #[must_use]
     pub fn affine(&self, rows: impl Into<Rows>) -> Self {
-        let Rows([[xx, xy, xz, x], [yx, yy, yz, y], [zx, zy, zz, z]]) = rows.into();
-        self.mapped(Map::Affine(Box::new([xx, xy, xz, x, yx, yy, yz, y, zx, zy, zz, z])))
+        let rows = rows.into().0.into_iter().flatten().collect();
+        self.mapped(MapKind::Affine, vec![FieldNumber::Reals(rows)])
     }
 
-    fn mapped(&self, map: Map) -> Self {
-        Self::of(Recipe::Map(map), vec![self.clone()])
+    fn mapped(&self, map: MapKind, fields: Vec<FieldNumber>) -> Self {
+        Self::of(Recipe::Map { map, fields }, vec![self.clone()])
     }
 
     /// Twisted about a coordinate axis through the origin, by `rate` radians for each unit of length, right-handed.

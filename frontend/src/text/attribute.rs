@@ -181,7 +181,7 @@ impl Parser<'_> {
         &mut self,
         kind: TextureKind,
         token: Token,
-        (slots, ends): (&mut Slots, &mut [Option<Vec<Number>>; 2]),
+        (slots, ends): (&mut Slots<'_>, &mut [Option<Vec<Number>>; 2]),
         width: usize,
     ) {
         let word = self.text(token);

@@ -52,7 +52,7 @@ impl Parser<'_> {
     }
 
     /// A block of parameters: in any order, each once. False if it does not end.
-    fn falloff_block(&mut self, kind: FalloffKind, slots: &mut Slots) -> bool {
+    fn falloff_block(&mut self, kind: FalloffKind, slots: &mut Slots<'_>) -> bool {
         let open = self.next();
         loop {
             let token = self.peek();

@@ -1,76 +1,97 @@
-//! Affine maps of a text.
+//! Affine maps of a text: what stands behind their words.
 
 use super::block::{Begun, Head};
 use super::lex::Token;
 use super::state::Parser;
-use super::words::ROTATE;
 use crate::diagnostic::{Diagnostic, Span};
 use crate::field::Field;
-use crate::recipe::{Angle, FieldNumber, Map, Recipe};
+use crate::map::{MapKind, MapShape};
+use crate::recipe::{FieldNumber, Recipe};
 
 impl Parser<'_> {
-    /// The block of a map, which has to be one.
-    pub(super) fn map(&mut self, start: Token, map: Map) -> Begun {
-        if let Err(fault) = map.affine() {
+    /// The map that begins with this word, which has been taken.
+    pub(super) fn map(&mut self, start: Token, word: &str) -> Begun {
+        let kinds: Vec<MapKind> = MapKind::named(word).collect();
+        let read = match kinds[..] {
+            [kind] => self.only_map(start, kind),
+            _ if kinds.iter().all(|kind| !kind.fields().is_empty()) => self.map_in_units(start, word, &kinds),
+            _ => Some(self.number_or_vector(&kinds)),
+        };
+        let Some((map, fields)) = read else { return self.block(start, Head::Broken) };
+        let recipe = Recipe::Map { map, fields };
+        // A fault that does not depend on the iso-value, of which there is none yet.
+        if let Err(fault) = recipe.map() {
             let span = Span::new(start.start, self.previous_end());
             self.report(|| fault.at(Some(span)));
         }
-        self.unary(start, Some(Recipe::Map(map)))
+        self.unary(start, Some(recipe))
     }
 
-    pub(super) fn rotate(&mut self, start: Token) -> Begun {
-        if self.peek().is(b'(') {
-            self.expected_at(self.peek(), "expected an axis and an angle: rotate axis z degrees 90 { .. }");
-            self.skip_arguments();
-            return self.block(start, Head::Broken);
-        }
-        let mut slots = self.slots(ROTATE, "`rotate`");
-        let [axis, degrees, radians] = [0, 1, 2].map(|index| slots.take(index));
-        let span = Span::new(start.start, self.previous_end());
-        let angle = match (degrees, radians) {
-            (Some(FieldNumber::Real(degrees)), None) => Angle::Degrees(degrees),
-            (None, Some(FieldNumber::Real(radians))) => Angle::Radians(radians),
-            _ => {
-                self.lose_place(|| {
-                    Diagnostic::error(Some(span), "`rotate` has no angle, or two")
-                        .expected("expected one of `degrees` and `radians`")
-                });
-                return self.block(start, Head::Broken);
+    /// What stands behind a word that begins one map; nothing, after a message, if it cannot be read.
+    fn only_map(&mut self, start: Token, kind: MapKind) -> Option<(MapKind, Vec<FieldNumber>)> {
+        let fields = match kind.shape() {
+            MapShape::Number => {
+                let [number] = self.vector();
+                vec![FieldNumber::Real(number)]
+            }
+            MapShape::Vector => vec![FieldNumber::Vector(self.vector())],
+            MapShape::Rows => vec![FieldNumber::Reals(self.vector::<12>().into())],
+            MapShape::Named(fields) => {
+                let name = kind.name();
+                self.slots(fields, &format!("`{name}`")).complete(self, start, name)?
             }
         };
-        let Some(FieldNumber::Vector(axis)) = axis else {
+        Some((kind, fields))
+    }
+
+    /// A map by one number, or by three.
+    fn number_or_vector(&mut self, kinds: &[MapKind]) -> (MapKind, Vec<FieldNumber>) {
+        let of = |shape: MapShape| *kinds.iter().find(|kind| kind.shape() == shape).expect("a map for each");
+        match self.number_or_elements() {
+            None => (of(MapShape::Number), vec![FieldNumber::Real(f64::NAN.into())]),
+            Some(all) if all.count == 1 => {
+                (of(MapShape::Number), vec![FieldNumber::Real(all.numbers[0].clone())])
+            }
+            Some(all) => (of(MapShape::Vector), vec![FieldNumber::Vector(self.sized::<3>(all))]),
+        }
+    }
+
+    /// A map with an axis, and with an angle in one of several units, which tells the kind.
+    fn map_in_units(
+        &mut self,
+        start: Token,
+        word: &str,
+        kinds: &[MapKind],
+    ) -> Option<(MapKind, Vec<FieldNumber>)> {
+        if self.peek().is(b'(') {
+            let expected = format!("expected an axis and an angle: {word} axis z degrees 90 {{ .. }}");
+            self.expected_at(self.peek(), &expected);
+            self.skip_arguments();
+            return None;
+        }
+        let units = kinds.iter().map(|kind| &kind.fields()[1]);
+        let fields: Vec<Field> = kinds[0].fields()[..1].iter().chain(units.clone()).cloned().collect();
+        let mut slots = self.slots(&fields, &format!("`{word}`"));
+        let axis = slots.take(0);
+        let mut angles =
+            kinds.iter().enumerate().filter_map(|(index, kind)| Some((*kind, slots.take(index + 1)?)));
+        let (angle, other) = (angles.next(), angles.next());
+        let span = Span::new(start.start, self.previous_end());
+        let (Some((kind, angle)), None) = (angle, other) else {
+            let names: Vec<String> = units.map(|unit| format!("`{}`", unit.name)).collect();
             self.lose_place(|| {
-                Diagnostic::error(Some(span), "`rotate` has no axis")
+                Diagnostic::error(Some(span), format!("`{word}` has no angle, or two"))
+                    .expected(format!("expected one of {}", names.join(" and ")))
+            });
+            return None;
+        };
+        let Some(axis) = axis else {
+            self.lose_place(|| {
+                Diagnostic::error(Some(span), format!("`{word}` has no axis"))
                     .expected("expected `axis x`, `axis y`, `axis z` or `axis (a b c)`")
             });
-            return self.block(start, Head::Broken);
+            return None;
         };
-        self.map(start, Map::Rotate { axis, angle })
-    }
-
-    /// A map with an axis, and with a number or a vector that says how far.
-    pub(super) fn map_along(&mut self, start: Token, fields: &'static [Field], name: &str) -> Begun {
-        let values = self.slots(fields, &format!("`{name}`")).complete(self, start, name);
-        let mut values = values.into_iter().flatten();
-        let map = match (values.next(), values.next()) {
-            (Some(FieldNumber::Vector(axis)), None) => Map::Reflect(axis),
-            (Some(FieldNumber::Vector(axis)), Some(FieldNumber::Real(by))) => Map::Stretch { axis, by },
-            (Some(FieldNumber::Vector(axis)), Some(FieldNumber::Vector(by))) => Map::Shear { axis, by },
-            // What was not read, and what the description of these maps does not ask for.
-            (Some(FieldNumber::Real(_) | FieldNumber::Reals(_) | FieldNumber::Vectors(_)) | None, _)
-            | (Some(FieldNumber::Vector(_)), Some(FieldNumber::Reals(_) | FieldNumber::Vectors(_))) => {
-                return self.block(start, Head::Broken);
-            }
-        };
-        self.map(start, map)
-    }
-
-    pub(super) fn scale(&mut self, start: Token) -> Begun {
-        let map = match self.number_or_elements() {
-            None => Map::Scale(f64::NAN.into()),
-            Some(all) if all.count == 1 => Map::Scale(all.numbers[0].clone()),
-            Some(all) => Map::ScaleAxes(self.sized::<3>(all)),
-        };
-        self.map(start, map)
+        Some((kind, vec![axis, angle]))
     }
 }

@@ -7,9 +7,10 @@ use super::expression::Place;
 use super::hints::foreign_word;
 use super::lex::{Token, TokenKind};
 use super::state::Parser;
-use super::words::{COMBINATORS, GROUP_NODE, OPERATORS, REFLECT, SHEAR, STRETCH, WEIGHTED, fixed_words};
+use super::words::{COMBINATORS, GROUP_NODE, OPERATORS, WEIGHTED, fixed_words};
 use crate::diagnostic::{Diagnostic, Span};
-use crate::recipe::{Map, Recipe};
+use crate::map::MapKind;
+use crate::recipe::Recipe;
 use crate::report::{clip, nearest};
 use crate::skeleton::SkeletonKind;
 use crate::tree::{NodeKind, Tree};
@@ -197,19 +198,7 @@ impl<'a> Parser<'a> {
                 }
                 self.ricci(start)
             }
-            "translate" => {
-                let by = self.vector();
-                self.map(start, Map::Translate(by))
-            }
-            "rotate" => self.rotate(start),
-            "scale" => self.scale(start),
-            "reflect" => self.map_along(start, REFLECT, "reflect"),
-            "stretch" => self.map_along(start, STRETCH, "stretch"),
-            "shear" => self.map_along(start, SHEAR, "shear"),
-            "affine" => {
-                let rows = self.vector();
-                self.map(start, Map::Affine(Box::new(rows)))
-            }
+            _ if MapKind::named(word).next().is_some() => self.map(start, word),
             _ if OPERATORS.contains(&word) => self.operator_head(start, word),
             GROUP_NODE => match self.peek_word() {
                 Some(name) => {

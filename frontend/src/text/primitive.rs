@@ -16,13 +16,13 @@ use crate::tree::Tree;
 use crate::word::is_statement;
 
 /// Parameters of a description, with those values that have been read.
-pub(super) struct Slots {
-    fields: &'static [Field],
+pub(super) struct Slots<'a> {
+    fields: &'a [Field],
     values: Vec<Option<FieldNumber>>,
 }
 
-impl Slots {
-    pub(super) fn new(fields: &'static [Field]) -> Self {
+impl<'a> Slots<'a> {
+    pub(super) fn new(fields: &'a [Field]) -> Self {
         Self { fields, values: vec![None; fields.len()] }
     }
 
@@ -81,7 +81,7 @@ struct Own {
 
 impl Parser<'_> {
     /// Named parameters before a block: in any order, each once.
-    pub(super) fn slots(&mut self, fields: &'static [Field], owner: &str) -> Slots {
+    pub(super) fn slots<'f>(&mut self, fields: &'f [Field], owner: &str) -> Slots<'f> {
         let mut slots = Slots::new(fields);
         while let Some(word) = self.peek_word().filter(|word| *word != WEIGHTED) {
             let Some(index) = fields.iter().position(|field| field.name == word) else {
@@ -100,7 +100,7 @@ impl Parser<'_> {
     }
 
     /// The value of a parameter whose word, `token`, has just been taken.
-    pub(super) fn slot(&mut self, slots: &mut Slots, index: usize, token: Token) {
+    pub(super) fn slot(&mut self, slots: &mut Slots<'_>, index: usize, token: Token) {
         let value = self.field_value(slots.fields[index].kind);
         self.once(&mut slots.values[index], value, token);
     }
@@ -155,7 +155,7 @@ impl Parser<'_> {
     }
 
     /// A parameter of a primitive whose word, `token`, has just been taken.
-    fn primitive_field(&mut self, kind: SkeletonKind, token: Token, slots: &mut Slots, own: &mut Own) {
+    fn primitive_field(&mut self, kind: SkeletonKind, token: Token, slots: &mut Slots<'_>, own: &mut Own) {
         let word = self.text(token);
         let own_field = OWN_FIELDS.contains(&word);
         let index = kind.fields().iter().position(|field| field_word(kind, field) == word);
@@ -203,7 +203,7 @@ impl Parser<'_> {
         });
     }
 
-    fn finished_primitive(&mut self, kind: SkeletonKind, span: Span, slots: Slots, own: Own) -> Tree {
+    fn finished_primitive(&mut self, kind: SkeletonKind, span: Span, slots: Slots<'_>, own: Own) -> Tree {
         let mut missing: Vec<String> =
             slots.missing().iter().map(|field| format!("`{}`", field_word(kind, field))).collect();
         if own.radius.is_none() && own.surface_radius.is_none() {

@@ -16,9 +16,10 @@ use crate::combine::{Combinator, Family};
 use crate::expression::{Formula, write as write_formula};
 use crate::falloff::FalloffKind;
 use crate::field::{Written, plain};
+use crate::map::MapShape;
 use crate::model::Model;
 use crate::number::Number;
-use crate::recipe::{Angle, AttributeRecipe, FalloffRecipe, Map, Radius, Recipe, TexturedRecipe, UvRecipe};
+use crate::recipe::{AttributeRecipe, FalloffRecipe, FieldNumber, Radius, Recipe, TexturedRecipe, UvRecipe};
 use crate::tree::{NodeKind, Primitive, Tree};
 use crate::warp::Warp;
 
@@ -256,7 +257,15 @@ fn head_of_recipe(out: &mut String, recipe: &Recipe, definitions: &str) {
         Recipe::Select(which) => {
             let _ = write!(out, "select {which}");
         }
-        Recipe::Map(map) => head_of_map(out, map),
+        Recipe::Map { map, fields } => {
+            out.push_str(map.name());
+            if let MapShape::Named(described) = map.shape() {
+                described.iter().zip(fields).for_each(|(field, value)| field.write(out, field.name, value));
+            } else {
+                let all: Vec<&Number> = fields.iter().flat_map(FieldNumber::numbers).collect();
+                let _ = write!(out, " {}", group_values(all));
+            }
+        }
         Recipe::Warp { warp, fields } => {
             out.push_str(warp.name());
             for (described, value) in warp.fields().iter().zip(fields) {
@@ -289,24 +298,6 @@ fn expression(out: &mut String, formula: &Formula, child: impl Fn(usize) -> Stri
     let tuple = formula.form.results.len() > 1;
     let _ = write_formula(out, &formula.form, &formula.numbers, child, definition, tuple);
     out.push_str(" }");
-}
-
-fn head_of_map(out: &mut String, map: &Map) {
-    let _ = match map {
-        Map::Translate(by) => write!(out, "translate {}", vector(by)),
-        Map::Rotate { axis, angle: Angle::Degrees(angle) } => {
-            write!(out, "rotate axis {} degrees {angle}", vector(axis))
-        }
-        Map::Rotate { axis, angle: Angle::Radians(angle) } => {
-            write!(out, "rotate axis {} radians {angle}", vector(axis))
-        }
-        Map::Scale(by) => write!(out, "scale {by}"),
-        Map::ScaleAxes(by) => write!(out, "scale {}", vector(by)),
-        Map::Reflect(axis) => write!(out, "reflect axis {}", vector(axis)),
-        Map::Stretch { axis, by } => write!(out, "stretch axis {} by {by}", vector(axis)),
-        Map::Shear { axis, by } => write!(out, "shear axis {} by {}", vector(axis), vector(by)),
-        Map::Affine(rows) => write!(out, "affine {}", vector(&**rows)),
-    };
 }
 
 fn attribute(out: &mut String, name: &str, value: &AttributeRecipe, definitions: &str) {

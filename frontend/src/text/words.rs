@@ -4,8 +4,9 @@ use std::borrow::Cow;
 use std::f64::consts::PI;
 
 use crate::combine::Combinator;
-use crate::field::{Field, FieldKind};
+use crate::field::Field;
 use crate::function::Function;
+use crate::map::MapKind;
 use crate::skeleton::SkeletonKind;
 use crate::texture::TextureKind;
 use crate::warp::WarpKind;
@@ -17,30 +18,8 @@ pub(super) const GROUP_NODE: &str = "with";
 /// The parameters that every primitive has.
 pub(super) const OWN_FIELDS: [&str; 4] = ["radius", "surface_radius", "falloff", "strength"];
 
-/// The parameters of `rotate`: the axis, and one of the others.
-pub(super) const ROTATE: &[Field] = &[
-    Field { name: "axis", kind: FieldKind::Direction, default: None },
-    Field { name: "degrees", kind: FieldKind::Real, default: None },
-    Field { name: "radians", kind: FieldKind::Real, default: None },
-];
-
 /// The word before the block of a warp that a second child weighs.
 pub(super) const WEIGHTED: &str = "weighted";
-
-/// The parameter of `reflect`.
-pub(super) const REFLECT: &[Field] = &[Field { name: "axis", kind: FieldKind::Direction, default: None }];
-
-/// The parameters of `stretch`.
-pub(super) const STRETCH: &[Field] = &[
-    Field { name: "axis", kind: FieldKind::Direction, default: None },
-    Field { name: "by", kind: FieldKind::Real, default: None },
-];
-
-/// The parameters of `shear`.
-pub(super) const SHEAR: &[Field] = &[
-    Field { name: "axis", kind: FieldKind::Direction, default: None },
-    Field { name: "by", kind: FieldKind::Position, default: None },
-];
 
 /// The word for a parameter of a skeleton: its name, after the skeleton's where every primitive has one of that name.
 pub(super) fn field_word(kind: SkeletonKind, field: &Field) -> Cow<'static, str> {
@@ -65,35 +44,25 @@ pub(super) const COMBINATORS: [Combinator; 6] = [
 ];
 
 /// The other words that begin a node.
-pub(super) const OTHERS: [&str; 16] = [
-    "use",
-    "blend",
-    "ricci",
-    "select",
-    "expression",
-    "within",
-    "falloff",
-    "translate",
-    "rotate",
-    "scale",
-    "reflect",
-    "stretch",
-    "shear",
-    "affine",
-    "warp",
-    GROUP_NODE,
-];
+pub(super) const OTHERS: [&str; 9] =
+    ["use", "blend", "ricci", "select", "expression", "within", "falloff", "warp", GROUP_NODE];
 
 /// Whether a word begins a node, or a statement, in every file: a group of this name needs the word `with` before it.
 pub(super) fn is_reserved(word: &str) -> bool {
     is_statement(word) || fixed_words().any(|fixed| fixed == word)
 }
 
-/// The words that begin a node in every file.
+/// The words that begin a node in every file; one that begins several maps is there as often.
 pub(super) fn fixed_words() -> impl Iterator<Item = &'static str> {
     let members = SkeletonKind::ALL.iter().map(|kind| kind.name());
     let warps = WarpKind::ALL.iter().map(|kind| kind.name());
-    members.chain(warps).chain(COMBINATORS.iter().map(|c| c.name())).chain(OPERATORS).chain(OTHERS)
+    let maps = MapKind::ALL.iter().map(|kind| kind.name());
+    members
+        .chain(warps)
+        .chain(COMBINATORS.iter().map(|c| c.name()))
+        .chain(OPERATORS)
+        .chain(OTHERS)
+        .chain(maps)
 }
 
 /// The words that begin them, but for those of Ricci's blend.

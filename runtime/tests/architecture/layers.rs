@@ -143,7 +143,7 @@ const FRONTEND: &[&[&str]] = &[
     &["function"],
     &["number"],
     &["expression", "interop"],
-    &["attribute", "warp"],
+    &["attribute", "map", "warp"],
     // What was written.
     &["tree", "recipe", "traverse"],
     &["parameter"],

@@ -1,36 +1,39 @@
 //! Affine maps whose numbers follow parameters: their code serves all values of them. (`nodes` has plain ones.)
 
 use jbt::{CheckedTree, Model, Tree};
-use jbt_frontend::recipe::{Map, Recipe};
+use jbt_frontend::map::MapKind;
+use jbt_frontend::recipe::Recipe;
 use jbt_frontend::traverse::Visit;
 
 use crate::check::judge;
 use crate::falloffs::soft;
 use crate::row::{Family, members, row};
 
-members! { Map {
-    Translate(_) => vec![row("of a ball", "param t = 1 translate (t 2 -t) { point { radius 2 } }", &[
+members! { MapKind {
+    Translate => vec![row("of a ball", "param t = 1 translate (t 2 -t) { point { radius 2 } }", &[
         ([1.0, 2.0, -1.0], 1.0),
         ([2.0, 2.0, -1.0], 0.5),
     ])],
-    Rotate { .. } => vec![
+    RotateDegrees => vec![
         row("of a rod", "param t = 90 rotate axis z degrees t { segment { from (0 0 0) to (2 0 0) radius 1 } }", &[
             ([0.0, 2.0, 0.0], 1.0),
             ([0.5, 1.0, 0.0], 0.5),
             ([2.0, 0.0, 0.0], 0.0),
         ]),
+    ],
+    RotateRadians => vec![
         row("about an axis that turns", "param t = 1 rotate axis (t t 1) radians 2 * pi / 3 * t { box { half (1 0 0) radius 1 } }", &[
             ([0.0, 1.0, 0.0], 1.0),
             ([0.0, -1.5, 0.0], 0.5),
             ([0.0, 0.0, 0.5], 0.5),
         ]),
     ],
-    Scale(_) => vec![row("of a ring", "param t = 2 scale t { ring { ring_radius 1 radius 1 } }", &[
+    Scale => vec![row("of a ring", "param t = 2 scale t { ring { ring_radius 1 radius 1 } }", &[
         ([0.0, 2.0, 0.0], 1.0),
         ([0.0, 2.0, 1.0], 0.5),
         ([0.0; 3], 0.0),
     ])],
-    ScaleAxes(_) => vec![row("of a ball", "param t = 0.5 scale (2 1 -t) { point { at (0 0 -1) radius 1 } }", &[
+    ScaleAxes => vec![row("of a ball", "param t = 0.5 scale (2 1 -t) { point { at (0 0 -1) radius 1 } }", &[
         ([0.0, 0.0, 0.5], 1.0),
         ([1.0, 0.0, 0.5], 0.5),
         ([0.0, 0.5, 0.5], 0.5),
@@ -38,7 +41,7 @@ members! { Map {
         ([1.0, 0.5, 0.5], soft(0.5)),
     ])],
     // In the plane across (1, -1, 0), x and y change places.
-    Reflect(_) => vec![
+    Reflect => vec![
         row("of a rod", "param t = 1 reflect axis (t -t 0) { segment { from (1 0 0) to (2 0 0) radius 1 } }", &[
             ([0.0, 1.5, 0.0], 1.0),
             ([0.5, 1.0, 0.0], 0.5),
@@ -51,7 +54,7 @@ members! { Map {
             ([0.0, 0.0, 0.5], 0.0),
         ]),
     ],
-    Stretch { .. } => vec![
+    Stretch => vec![
         row("along an axis", "param t = 2 stretch axis y by t { point { radius 1 } }", &[
             ([0.0, 1.0, 0.0], 0.5),
             ([0.5, 0.0, 0.0], 0.5),
@@ -71,7 +74,7 @@ members! { Map {
             ([2.0, 0.0, 0.0], 0.0),
         ]),
     ],
-    Shear { .. } => vec![
+    Shear => vec![
         row("of a rod", "param t = 0.5 shear axis z by (t 0 0) { segment { from (0 0 -1) to (0 0 1) radius 1 } }", &[
             ([0.5, 0.0, 1.0], 1.0),
             ([-0.5, 0.0, -1.0], 1.0),
@@ -87,7 +90,7 @@ members! { Map {
             ([2.0, 0.6, 0.8], 0.0),
         ]),
     ],
-    Affine(_) => vec![row("that shears", "param t = 1 affine (1 t 0 0  0 1 0 0  0 0 1 t) { point { radius 1 } }", &[
+    Affine => vec![row("that shears", "param t = 1 affine (1 t 0 0  0 1 0 0  0 0 1 t) { point { radius 1 } }", &[
         ([0.0, 0.0, 1.0], 1.0),
         ([1.0, 0.5, 1.0], soft(0.5)),
         ([0.5, 0.5, 1.0], 0.5),
@@ -97,7 +100,7 @@ members! { Map {
 /// A map keeps how it was written where a number in it follows a parameter.
 fn found(model: &Model, _: &CheckedTree) -> Vec<&'static str> {
     let of = |tree: &Tree| {
-        let Recipe::Map(map) = &**tree.node().recipe()? else { return None };
+        let Recipe::Map { map, .. } = &**tree.node().recipe()? else { return None };
         Some(name(map))
     };
     model.root.prefix(Visit::Nodes).filter_map(of).collect()
