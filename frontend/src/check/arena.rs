@@ -4,7 +4,7 @@ use crate::diagnostic::{Diagnostic, Span};
 use crate::report::Report;
 use crate::tree::NodeKind;
 
-/// The name of a node of a checked tree: its place in [`CheckedTree::nodes`].
+/// The name of a node of a checked tree: its place in [`CheckedTree::nodes`](super::CheckedTree::nodes).
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
 pub struct NodeId(pub u32);
 

@@ -69,7 +69,7 @@ pub trait SkeletonMember: Member {
         0
     }
 
-    /// The accumulators before the first piece. `beyond` is a distance of [`BEYOND`] support radii.
+    /// The accumulators before the first piece. `beyond` is a distance of [`BEYOND`](super::BEYOND) support radii.
     fn begin<D: Domain>(_d: &mut D, _beyond: D::Real) -> Vec<D::Real> {
         Vec::new()
     }
@@ -137,5 +137,5 @@ pub trait SkeletonMember: Member {
 /// one that is farther away than the nearest by at most 32.
 ///
 /// Norms have no coordinates and are off by parts of themselves: an ellipsoid, with a product in each square, by less than 6 units, and those with
-/// powers by less than 13 for each norm in the other; see [`LMetric`].
+/// powers by less than 13 for each norm in the other; see [`LMetric`](struct@super::LMetric).
 pub const ROUNDING: f64 = 64.0 / (1 << 24) as f64;
