@@ -1,7 +1,7 @@
 """Whether Blender's importers read the files of a folder as they are meant, with their default options.
 
-    python3.11 -m venv /tmp/blender && /tmp/blender/bin/pip install bpy==5.0.1
-    /tmp/blender/bin/python outside/blender.py FOLDER
+    python3.11 -m venv target/outside/blender && target/outside/blender/bin/pip install bpy==5.0.1
+    target/outside/blender/bin/python outside/blender.py FOLDER
 
 The folder is one of `files.py --keep`, whose expected.json says what the files show. Blender is z-up, and turns y-up files by itself:
 in every format the coordinates are those of the scene.

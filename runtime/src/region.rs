@@ -19,6 +19,18 @@ impl Box3 {
         Self { low, high }
     }
 
+    /// The smallest box that holds some points; `None` if there are none, or if a coordinate is not finite.
+    #[must_use]
+    pub(crate) fn around(points: &[[f32; 3]]) -> Option<Self> {
+        let (&first, rest) = points.split_first()?;
+        let hold = |bounds: Self, point: &[f32; 3]| Self {
+            low: [0, 1, 2].map(|axis| bounds.low[axis].min(point[axis])),
+            high: [0, 1, 2].map(|axis| bounds.high[axis].max(point[axis])),
+        };
+        let is_finite = points.iter().flatten().all(|x| x.is_finite());
+        is_finite.then(|| rest.iter().fold(Self::new(first, first), hold))
+    }
+
     /// Whether its corners are finite, and in order along each axis; a box may be flat.
     #[must_use]
     pub fn is_proper(&self) -> bool {

@@ -49,8 +49,9 @@ impl Mesh {
         self.triangles.iter().map(six).sum::<f64>() / 6.0
     }
 
-    fn corners(&self, triangle: [u32; 3]) -> [[f32; 3]; 3] {
-        triangle.map(|vertex| self.positions[vertex as usize])
+    fn corners(&self, [a, b, c]: [u32; 3]) -> [[f32; 3]; 3] {
+        let corner = |vertex: u32| self.positions[vertex as usize];
+        [corner(a), corner(b), corner(c)]
     }
 }
 

@@ -231,8 +231,9 @@ pub(crate) fn facet_normal(corners: [[f32; 3]; 3]) -> Option<[f32; 3]> {
 
 /// The vector along the normal of a triangle, as long as twice its area.
 pub(super) fn area_vector(corners: [[f32; 3]; 3]) -> [f64; 3] {
-    let [p, q, r] = corners.map(|corner| corner.map(f64::from));
-    let [u, v] = [q, r].map(|end| [end[0] - p[0], end[1] - p[1], end[2] - p[2]]);
+    let [p, q, r] = corners;
+    let from = |end: [f32; 3], axis: usize| f64::from(end[axis]) - f64::from(p[axis]);
+    let [u, v] = [[from(q, 0), from(q, 1), from(q, 2)], [from(r, 0), from(r, 1), from(r, 2)]];
     [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
 }
 

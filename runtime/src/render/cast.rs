@@ -85,7 +85,8 @@ pub fn cast(frame: &Frame<'_>, casts: &[Ray]) -> Result<Meetings, RenderError> {
     met.iter().for_each(|met| is_cut[met.cast] = true);
     let open: Vec<usize> = (0..casts.len()).filter(|&cast| !is_cut[cast]).collect();
     let rays: Vec<Ray> = open.iter().map(|&cast| casts[cast]).collect();
-    let hits = frame.renderer.tracer.first_of_local(&rays, frame.tolerance)?;
+    let stride = frame.render.quality.stride();
+    let hits = frame.renderer.tracer.first_of_local(&rays, frame.tolerance, stride)?;
     for (ray, &cast) in open.iter().enumerate() {
         evaluations[cast] += hits.evaluations[ray];
         let hit = hits.starts[ray] as usize;
@@ -109,18 +110,27 @@ fn cuts(
     paint: &Paint,
     evaluations: &mut [f32],
 ) -> Result<Vec<Met>, RenderError> {
+    let tracer = &frame.renderer.tracer;
+    let starts: Vec<[f32; 3]> = casts.iter().map(start).collect();
+    let Some((region, field)) = tracer.fields(&starts)? else { return Ok(Vec::new()) };
+    evaluations.fill(tracer.evaluations_in(&region) as f32);
+    let inside: Vec<usize> = (0..casts.len()).filter(|&cast| field[cast] >= tracer.iso()).collect();
+    if inside.is_empty() {
+        return Ok(Vec::new());
+    }
     let evaluator = &frame.renderer.evaluator;
-    let mut starts = evaluator.points();
-    casts.iter().for_each(|ray| starts.push(start(ray)));
-    let mut samples = evaluator.samples();
-    evaluator.eval(&starts, &mut samples)?;
-    evaluations.fill(evaluator.evaluations_per_point() as f32);
-    let inside = |&index: &usize| samples.field()[index] >= frame.renderer.tracer.iso();
-    let meet = |index: usize| {
-        let position = starts.get(index).map(f64::from);
-        Met { cast: index, position, normal: frame.side(position), paint: paint.at(&samples, index) }
+    let points = [0, 1, 2].map(|axis| inside.iter().map(|&cast| starts[cast][axis]).collect::<Vec<f32>>());
+    let mut answers = vec![vec![0.0; inside.len()]; evaluator.layout().names().len()];
+    let mut full: Vec<&mut [f32]> = answers.iter_mut().map(Vec::as_mut_slice).collect();
+    evaluator.eval_region(&region, points.each_ref().map(Vec::as_slice), &mut full)?;
+    let each = evaluator.evaluations_in(&region) as f32;
+    inside.iter().for_each(|&cast| evaluations[cast] += each);
+    let samples = Samples::from_planes(evaluator.layout().clone(), answers);
+    let meet = |(index, &cast): (usize, &usize)| {
+        let position = starts[cast].map(f64::from);
+        Met { cast, position, normal: frame.side(position), paint: paint.at(&samples, index) }
     };
-    Ok((0..casts.len()).filter(inside).map(meet).collect())
+    Ok(inside.iter().enumerate().map(meet).collect())
 }
 
 /// Where a ray begins.

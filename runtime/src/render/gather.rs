@@ -210,14 +210,12 @@ fn cut(frame: &Frame<'_>, rays: &[Ray], evaluations: &mut f64) -> Result<Vec<boo
         return Ok(cut);
     }
     let enter: Vec<usize> = (0..rays.len()).filter(|&ray| rays[ray].span[0] > 0.0).collect();
-    let evaluator = &frame.renderer.evaluator;
-    let mut starts = evaluator.points();
-    enter.iter().for_each(|&ray| starts.push(start(&rays[ray])));
-    let mut samples = evaluator.samples();
-    evaluator.eval(&starts, &mut samples)?;
-    *evaluations += (starts.len() as u64 * evaluator.evaluations_per_point()) as f64;
-    for (&ray, &value) in enter.iter().zip(samples.field()) {
-        cut[ray] = value >= frame.renderer.tracer.iso();
+    let starts: Vec<[f32; 3]> = enter.iter().map(|&ray| start(&rays[ray])).collect();
+    let tracer = &frame.renderer.tracer;
+    let Some((region, field)) = tracer.fields(&starts)? else { return Ok(cut) };
+    *evaluations += (starts.len() as u64 * tracer.evaluations_in(&region)) as f64;
+    for (&ray, &value) in enter.iter().zip(&field) {
+        cut[ray] = value >= tracer.iso();
     }
     Ok(cut)
 }

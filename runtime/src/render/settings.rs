@@ -94,9 +94,17 @@ impl Quality {
     /// The tolerance of the camera's rays, in pixels.
     pub(super) fn fineness(self) -> f64 {
         match self {
-            Self::Draft => 0.5,
+            Self::Draft => 1.0,
             Self::Good => 0.25,
             Self::Best => 0.125,
+        }
+    }
+
+    /// Tolerances from one place where rays ask at once to the next one. Only time depends on it.
+    pub(super) fn stride(self) -> i64 {
+        match self {
+            Self::Draft => 8,
+            Self::Good | Self::Best => 16,
         }
     }
 

@@ -54,7 +54,7 @@ use crate::buffer::Layout;
 use crate::debug::brief_debug;
 use crate::error::{CompileError, EvalError};
 use crate::evaluator::{Compiler, Evaluator};
-use crate::prune::Pruner;
+use crate::prune::{Pruner, Region};
 use crate::region::{Box3, Divisible as _};
 
 use found::Found;
@@ -214,12 +214,18 @@ impl Tracer {
     /// # Errors
     /// See [`TraceError`].
     pub fn first_of(&self, rays: &[Ray], tolerance: f64) -> Result<Hits, TraceError> {
-        self.hits(Want::First, &self.localized(rays), tolerance)
+        self.hits(Want::First, STRIDE, &self.localized(rays), tolerance)
     }
 
-    /// As [`first_of`](Self::first_of), of rays that count from the model's origin.
-    pub(crate) fn first_of_local(&self, rays: &[Ray], tolerance: f64) -> Result<Hits, TraceError> {
-        self.hits(Want::First, rays, tolerance)
+    /// As [`first_of`](Self::first_of), of rays that count from the model's origin, with so many tolerances, 1 to
+    /// [`STRIDE`], from one coarse place to the next one.
+    pub(crate) fn first_of_local(
+        &self,
+        rays: &[Ray],
+        tolerance: f64,
+        stride: i64,
+    ) -> Result<Hits, TraceError> {
+        self.hits(Want::First, stride, rays, tolerance)
     }
 
     /// All hits of each ray.
@@ -227,7 +233,7 @@ impl Tracer {
     /// # Errors
     /// See [`TraceError`].
     pub fn all_of(&self, rays: &[Ray], tolerance: f64) -> Result<Hits, TraceError> {
-        self.hits(Want::All, &self.localized(rays), tolerance)
+        self.hits(Want::All, STRIDE, &self.localized(rays), tolerance)
     }
 
     /// Whether each ray has a hit.
@@ -285,6 +291,22 @@ impl Tracer {
         Ok(self.owner(position).map(|owner| owner.node))
     }
 
+    /// The field at points that are near each other and count from the model's origin, and what matters in
+    /// the box around them. `None` if there are none, or if some are no places.
+    pub(crate) fn fields(&self, points: &[[f32; 3]]) -> Result<Option<(Region, Vec<f32>)>, EvalError> {
+        let Some(bounds) = Box3::around(points) else { return Ok(None) };
+        let region = self.pruner.region(bounds)?;
+        let mut field = vec![0.0; points.len()];
+        let planes = [0, 1, 2].map(|axis| points.iter().map(|point| point[axis]).collect::<Vec<f32>>());
+        self.field.eval_region(&region, planes.each_ref().map(Vec::as_slice), &mut [&mut field])?;
+        Ok(Some((region, field)))
+    }
+
+    /// The distances to skeletons that the field takes at a point of a region.
+    pub(crate) fn evaluations_in(&self, region: &Region) -> u64 {
+        self.field.evaluations_in(region)
+    }
+
     /// Rays that count from the model's origin.
     fn localized<'a>(&self, rays: &'a [Ray]) -> Cow<'a, [Ray]> {
         let origin = self.tree.origin();
@@ -299,8 +321,8 @@ impl Tracer {
         Ok(Blocked { blocked: found.blocked, evaluations: found.evaluations })
     }
 
-    fn hits(&self, want: Want, rays: &[Ray], tolerance: f64) -> Result<Hits, TraceError> {
-        let hits = self.follow(want, STRIDE, rays, tolerance)?.into_hits(self);
+    fn hits(&self, want: Want, stride: i64, rays: &[Ray], tolerance: f64) -> Result<Hits, TraceError> {
+        let hits = self.follow(want, stride, rays, tolerance)?.into_hits(self);
         self.hits.fetch_add(hits.len() as u64, Ordering::Relaxed);
         Ok(hits)
     }

@@ -83,6 +83,11 @@ impl Batch {
         self.points.iter_mut().for_each(Vec::clear);
     }
 
+    /// The points by coordinates.
+    pub(super) fn planes(&mut self) -> &mut [Vec<f32>; 3] {
+        &mut self.points
+    }
+
     pub(super) fn push(&mut self, position: [f32; 3]) {
         for (plane, x) in self.points.iter_mut().zip(position) {
             plane.push(x);
@@ -360,6 +365,7 @@ impl<'a> Run<'a> {
             lines: &self.lines,
             stride: self.stride,
             tolerance: self.tolerance,
+            all: self.want == Want::All,
             found: &mut self.found,
             work: &mut self.work,
         };

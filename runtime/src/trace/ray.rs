@@ -47,6 +47,8 @@ const ROUNDING: f64 = 1.0 / (1 << 20) as f64;
 const SHORTEST: f64 = 1e-300;
 /// The longest step: any multiple that is asked for is finite.
 const LONGEST: f64 = 1e300;
+/// Squares of lengths that have all their digits.
+const SQUARES: [f64; 2] = [1e-200, 1e200];
 /// What f64 may be off by in a product and a sum, as a part of the terms; some times that.
 const TINY: f64 = 1.0 / (1_u64 << 48) as f64;
 
@@ -124,7 +126,7 @@ impl Line {
             return Err(TraceError::Span { ray: index, span });
         }
         let Some(span) = reach.and_then(|reach| reach.clip(ray)) else { return Ok(None) };
-        let length = direction[0].hypot(direction[1]).hypot(direction[2]).min(f64::MAX);
+        let length = length(direction);
         let resolution = resolution(index, ray, span)?.max(SHORTEST * length);
         if tolerance < resolution {
             return Err(TraceError::Resolution { ray: index, tolerance, resolution });
@@ -143,21 +145,54 @@ impl Line {
         }
     }
 
-    /// The t of a place of the lattice, counted in single steps: those beyond the span stand for its ends. It rises with the place.
+    /// The t of a place of the lattice, counted in single steps: those beyond the span stand for its ends. It
+    /// rises with the place.
     pub(super) fn time_between(&self, place: i64) -> f64 {
-        (place as f64 * (self.step / self.stride as f64)).clamp(self.span[0], self.span[1])
+        self.within(place as f64 * (self.step / self.stride as f64))
+    }
+
+    /// The positions of two coarse places, as the field is asked there.
+    pub(super) fn ends(&self, places: [i64; 2]) -> [[f32; 3]; 2] {
+        // Those at the ends of the span are not inside of it: this is `time`.
+        places.map(|place| self.position(self.within(place as f64 * self.step)))
+    }
+
+    /// Adds the positions at the places between a coarse place and the next one, by coordinates.
+    pub(super) fn push_between(&self, place: i64, planes: &mut [Vec<f32>; 3]) {
+        let (fine, first) = (self.step / self.stride as f64, (place * self.stride) as f64);
+        let mut times = [0.0; STRIDE as usize];
+        for (step, time) in times.iter_mut().enumerate() {
+            *time = (first + f64::from(step as u32)) * fine;
+        }
+        if place <= self.places[0] || place + 1 >= self.places[1] {
+            times.iter_mut().for_each(|time| *time = self.within(*time));
+        }
+        let times = &times[1..self.stride as usize];
+        for (axis, plane) in planes.iter_mut().enumerate() {
+            let (origin, direction) = (self.origin[axis], self.direction[axis]);
+            plane.extend(times.iter().map(|t| (origin + t * direction) as f32));
+        }
+    }
+
+    /// The nearest t of the span.
+    fn within(&self, t: f64) -> f64 {
+        let t = if t < self.span[0] { self.span[0] } else { t };
+        if t > self.span[1] { self.span[1] } else { t }
     }
 
     /// The position at t, as the field is asked there: each coordinate rises with t, or falls.
     pub(super) fn position(&self, t: f64) -> [f32; 3] {
-        [0, 1, 2].map(|axis| (self.origin[axis] + t * self.direction[axis]) as f32)
+        let at = |axis: usize| (self.origin[axis] + t * self.direction[axis]) as f32;
+        [at(0), at(1), at(2)]
     }
 }
 
 /// The last place of the lattice that is not after t. Places between the first and the last one of a ray are inside of its span.
 fn last_before(t: f64, step: f64) -> i64 {
     // Below 2^50, because the tolerance is above the resolution; times the step it has no rounding, but the quotient has.
-    let near = (t / step).floor();
+    let quotient = t / step;
+    let whole = quotient as i64 as f64;
+    let near = if whole > quotient { whole - 1.0 } else { whole };
     let place = if near * step > t {
         near - 1.0
     } else if (near + 1.0) * step <= t {
@@ -168,6 +203,15 @@ fn last_before(t: f64, step: f64) -> i64 {
     place as i64
 }
 
+/// The length of a vector, finite whatever the vector is.
+fn length(vector: [f64; 3]) -> f64 {
+    let square = vector.iter().map(|x| x * x).sum::<f64>();
+    if (SQUARES[0]..=SQUARES[1]).contains(&square) {
+        return square.sqrt();
+    }
+    vector[0].hypot(vector[1]).hypot(vector[2]).min(f64::MAX)
+}
+
 /// A number's first four binary digits.
 fn four_digits(number: f64) -> f64 {
     f64::from_bits(number.to_bits() & !((1 << 49) - 1))
@@ -175,19 +219,21 @@ fn four_digits(number: f64) -> f64 {
 
 /// The smallest tolerance that positions on a clipped ray allow.
 fn resolution(index: usize, ray: &Ray, span: [f64; 2]) -> Result<f64, TraceError> {
-    let mut resolution: f64 = 0.0;
+    let (mut farthest, mut terms): (f64, f64) = (0.0, 0.0);
+    let larger = |a: f64, b: f64| if b > a { b } else { a };
     for t in span {
-        let position = [0, 1, 2].map(|axis| ray.origin[axis] + t * ray.direction[axis]);
-        let farthest = position.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        let mut position = [0.0; 3];
+        for axis in 0..3 {
+            let way = t * ray.direction[axis];
+            position[axis] = ray.origin[axis] + way;
+            farthest = larger(farthest, position[axis].abs());
+            terms = larger(larger(terms, ray.origin[axis].abs()), way.abs());
+        }
         if farthest >= f64::from(f32::MAX) {
             return Err(TraceError::Far { ray: index, position });
         }
-        let terms = (0..3).fold(0.0, |most: f64, axis| {
-            most.max(ray.origin[axis].abs()).max((t * ray.direction[axis]).abs())
-        });
-        resolution = resolution.max(spacing(farthest)).max(TINY * terms);
     }
-    Ok(resolution)
+    Ok(spacing(farthest).max(TINY * terms))
 }
 
 /// The distance from a coordinate to the next f32.

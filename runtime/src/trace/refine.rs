@@ -37,6 +37,8 @@ pub(super) struct Stretch {
 struct Group {
     stretches: Range<usize>,
     places: [i64; 2],
+    /// Segments in it, once it is tight.
+    segments: usize,
 }
 
 /// From a coarse place of a ray to the next one.
@@ -63,6 +65,8 @@ pub(super) struct Refiner<'a> {
     /// Steps of the lattice from one coarse place to the next one, on all lines.
     pub(super) stride: i64,
     pub(super) tolerance: f64,
+    /// Whether all changes are wanted, and not the first one of a ray alone.
+    pub(super) all: bool,
     pub(super) found: &'a mut Found,
     pub(super) work: &'a mut Work,
 }
@@ -84,10 +88,7 @@ impl Refiner<'_> {
         }
         batch.clear();
         for &Segment { line, place, .. } in &*segments {
-            let line = &self.lines[line];
-            for step in 1..self.stride {
-                batch.push(line.position(line.time_between(place * self.stride + step)));
-            }
+            self.lines[line].push_between(place, batch.planes());
         }
         let inner = self.stride as usize - 1;
         self.work.spend((segments.len() * inner) as u64)?;
@@ -113,6 +114,7 @@ impl Refiner<'_> {
             .map(|start| Group {
                 stretches: start..(start + TOGETHER).min(stretches.len()),
                 places: [i64::MIN, i64::MAX],
+                segments: 0,
             })
             .collect();
         let known = |(stretch, place): (&Stretch, i64)| {
@@ -128,7 +130,7 @@ impl Refiner<'_> {
                 boxes.extend(bounds);
                 bounds.is_some()
             });
-            let asked: usize = groups.iter().map(|group| group.segments(stretches).count()).sum();
+            let asked: usize = groups.iter().map(|group| group.segments).sum();
             if asked <= worth_asking * boxes.len().div_ceil(LANES) {
                 groups.iter().for_each(|group| segments.extend(group.segments(stretches).map(known)));
                 return Ok(());
@@ -164,6 +166,9 @@ impl Refiner<'_> {
             if (before >= iso) != (field >= iso) {
                 let times = [place, place + 1].map(|place| line.time_between(place));
                 brackets.push(Bracket::new(segment.line, line, self.tolerance, iso, times, [before, field]));
+                if !self.all {
+                    return;
+                }
             }
             before = field;
         }
@@ -175,6 +180,7 @@ impl Group {
     fn tighten(&mut self, stretches: &[Stretch], lines: &[Line]) -> Option<Box3> {
         let mut bounds: Option<Box3> = None;
         let (mut members, mut places) = (self.stretches.end..self.stretches.start, [i64::MAX, i64::MIN]);
+        self.segments = 0;
         for index in self.stretches.clone() {
             let Stretch { line, places: mine, .. } = stretches[index];
             let [first, last] = [mine[0].max(self.places[0]), mine[1].min(self.places[1])];
@@ -183,13 +189,13 @@ impl Group {
             }
             members = members.start.min(index)..index + 1;
             places = [places[0].min(first), places[1].max(last)];
-            for place in [first, last] {
-                let position = lines[line].position(lines[line].time(place));
-                let bounds = bounds.get_or_insert(Box3::new(position, position));
-                for (axis, x) in position.into_iter().enumerate() {
-                    bounds.low[axis] = bounds.low[axis].min(x);
-                    bounds.high[axis] = bounds.high[axis].max(x);
-                }
+            self.segments += (last - first) as usize;
+            let [start, end] = lines[line].ends([first, last]);
+            let bounds = bounds.get_or_insert(Box3::new(start, start));
+            for axis in 0..3 {
+                let [low, high] = in_order(start[axis], end[axis]);
+                bounds.low[axis] = in_order(bounds.low[axis], low)[0];
+                bounds.high[axis] = in_order(bounds.high[axis], high)[1];
             }
         }
         (self.stretches, self.places) = (members, places);
@@ -227,7 +233,12 @@ impl Group {
             let cut = start + (end - start) / 2;
             [(start..cut, [first, last]), (cut..end, [first, last])]
         };
-        let halves = halves.into_iter().map(|(stretches, places)| Self { stretches, places });
+        let halves = halves.into_iter().map(|(stretches, places)| Self { stretches, places, segments: 0 });
         halves.filter(|half| half.places[0] < half.places[1] && !half.stretches.is_empty())
     }
+}
+
+/// The smaller and the larger one of two numbers, which are no NaN.
+fn in_order(a: f32, b: f32) -> [f32; 2] {
+    [if b < a { b } else { a }, if b > a { b } else { a }]
 }

@@ -35,23 +35,24 @@ const fn layer(axis: usize, index: u64) -> u64 {
     cells
 }
 
-/// Cells along the edge of a table of a block's cells and those behind it.
-const STRIDE: usize = EDGE + 1;
-/// The distances of neighbours in the table.
-const STEPS: [usize; 3] = [1, STRIDE, STRIDE * STRIDE];
-/// Where each cell of a block is in the table.
-const AT: [usize; 64] = {
-    let (mut at, mut cell) = ([0; 64], 0);
+/// Where each cell of a block, by its place in Morton order, is in rows: x fastest, then y, then z.
+const ROW: [u8; 64] = {
+    let (mut rows, mut cell) = ([0; 64], 0_u8);
     while cell < 64 {
         let mut axis = 0;
         while axis < 3 {
-            at[cell] += ((cell >> axis & 1) + 2 * (cell >> (axis + 3) & 1)) * STEPS[axis];
+            let along = (cell >> axis & 1) | (cell >> (axis + 3) & 1) << 1;
+            rows[cell as usize] |= along << (2 * axis);
             axis += 1;
         }
         cell += 1;
     }
-    at
+    rows
 };
+/// Along each axis the distance of neighbours in rows, and the cells at the low and at the high end, a bit each.
+const STEPS: [u32; 3] = [1, 4, 16];
+const FIRST: [u64; 3] = [0x1111_1111_1111_1111, 0x000f_000f_000f_000f, 0x0000_0000_0000_ffff];
+const LAST: [u64; 3] = [FIRST[0] << 3, FIRST[1] << 12, FIRST[2] << 48];
 
 /// For the corners of a cell that are inside, which edges at its first corner are crossed, a bit for each
 /// axis.
@@ -121,6 +122,9 @@ pub(super) struct Crossed<'a> {
     masks: Vec<u64>,
     /// Where the cells of each begin.
     firsts: Vec<usize>,
+    /// The edges along each axis that are crossed and begin at the first corner of a cell: a bit for each cell, in
+    /// rows.
+    edges: Vec<[u64; 3]>,
 }
 
 /// What the corners of a block's cells tell.
@@ -138,21 +142,29 @@ pub(super) struct Signs {
 
 impl<'a> Crossed<'a> {
     pub(super) fn new(bricks: &Bricks, crossings: &'a Crossings) -> Self {
-        let mut crossed =
-            Self { cells: &crossings.cells, codes: Vec::new(), masks: Vec::new(), firsts: Vec::new() };
+        let mut crossed = Self {
+            cells: &crossings.cells,
+            codes: Vec::new(),
+            masks: Vec::new(),
+            firsts: Vec::new(),
+            edges: Vec::new(),
+        };
         let bits = 3 * bricks.edge.ilog2();
         for (brick, &place) in bricks.places.iter().enumerate() {
             let before = morton(place) << bits;
             for (index, cell) in (crossings.starts[brick]..).zip(crossings.of(brick)) {
                 let code = before | u64::from(cell.number);
-                let bit = 1 << (code & ((1 << BITS) - 1));
-                match crossed.codes.last() {
-                    Some(&last) if last == code >> BITS => *crossed.masks.last_mut().expect("as many") |= bit,
-                    _ => {
-                        crossed.codes.push(code >> BITS);
-                        crossed.masks.push(bit);
-                        crossed.firsts.push(index);
-                    }
+                if crossed.codes.last() != Some(&(code >> BITS)) {
+                    crossed.codes.push(code >> BITS);
+                    crossed.masks.push(0);
+                    crossed.firsts.push(index);
+                    crossed.edges.push([0; 3]);
+                }
+                let (bit, last) = (code & ((1 << BITS) - 1), crossed.codes.len() - 1);
+                crossed.masks[last] |= 1 << bit;
+                let edges = CROSSED[usize::from(cell.signs)];
+                for (axis, mask) in crossed.edges[last].iter_mut().enumerate() {
+                    *mask |= u64::from(edges >> axis & 1) << ROW[bit as usize];
                 }
             }
         }
@@ -167,12 +179,6 @@ impl<'a> Crossed<'a> {
     /// Where a block is, in units of blocks.
     pub(super) fn place(&self, block: usize) -> [u32; 3] {
         unwoven(self.codes[block])
-    }
-
-    /// The crossed cells of the block in a place, a bit each in Morton order. It is looked for near another
-    /// block.
-    pub(super) fn mask(&self, place: [u32; 3], near: usize) -> u64 {
-        self.find(morton(place), near).map_or(0, |block| self.masks[block])
     }
 
     /// The crossed cells of a block, by their numbers among all.
@@ -222,30 +228,23 @@ impl<'a> Crossed<'a> {
 
     /// Looks at the corners of a block's cells.
     pub(super) fn look(&self, block: usize) -> Signs {
-        // The edges of its cells that are crossed, and of those behind its high sides.
-        let mut table = [0_u8; STRIDE * STRIDE * STRIDE];
         let (origin, mask) = (self.place(block), self.masks[block]);
         let cells = &self.cells[self.cells(block)];
-        for (bit, cell) in bits(mask).zip(cells) {
-            table[AT[bit as usize]] = CROSSED[usize::from(cell.signs)];
-        }
-        for axis in (0..3).filter(|&axis| mask & HIGH[axis] != 0) {
-            self.look_behind(block, axis, &mut table);
-        }
-        let (mut found, mut lone) = (Signs::default(), None);
-        for bit in bits(mask) {
-            let at = AT[bit as usize];
-            let edges = table[at];
-            let next = STEPS.map(|step| table[at + step]);
-            let both = edges & (next[0] & 1 | next[1] & 2 | next[2] & 4);
+        let (mut found, mut lone): (Signs, Option<(u32, usize)>) = (Signs::default(), None);
+        for axis in 0..3 {
+            let edges = self.edges[block][axis];
+            let behind = if edges & LAST[axis] == 0 { 0 } else { self.edges_behind(block, axis) };
+            let next = (edges & !FIRST[axis]) >> STEPS[axis] | (behind & FIRST[axis]) << (3 * STEPS[axis]);
+            let both = edges & next;
             found.edges += edges.count_ones();
             if both != 0 {
                 found.lone += 2 * both.count_ones();
-                lone.get_or_insert((bit, both.trailing_zeros() as usize));
+                let first = (both.trailing_zeros(), axis);
+                lone = Some(lone.map_or(first, |lone| lone.min(first)));
             }
         }
         if let Some((bit, axis)) = lone {
-            let mut point = self.cell(origin, bit);
+            let mut point = [0, 1, 2].map(|axis| origin[axis] * EDGE as u32 + (bit >> (2 * axis) & 3));
             point[axis] += 1;
             found.first = Some(point);
             let is_scrap = |&(bit, cell): &(u64, &Cell)| {
@@ -259,44 +258,58 @@ impl<'a> Crossed<'a> {
         found
     }
 
-    /// Puts the crossed edges of the cells behind a high side of a block into its table.
-    fn look_behind(&self, block: usize, axis: usize, table: &mut [u8]) {
+    /// The crossed edges along an axis of the block behind the high side of another.
+    fn edges_behind(&self, block: usize, axis: usize) -> u64 {
         let mut steps = [0; 3];
         steps[axis] = 1;
         let other = step(self.place(block), steps).and_then(|place| self.find(morton(place), block));
-        let Some(other) = other else { return };
-        for bit in bits(self.masks[other] & LOW[axis]) {
-            let signs = self.signs_in(other, bit).expect("its bit says so");
-            table[AT[bit as usize] + EDGE * STEPS[axis]] = CROSSED[usize::from(signs)];
-        }
+        other.map_or(0, |other| self.edges[other][axis])
     }
 
-    /// The cells of a block beside which none is crossed, a bit each.
+    /// The cells beside which none is crossed, a bit each, of a block whose chunk has no crossed cell.
     pub(super) fn free(&self, at: [u32; 3], near: usize) -> u64 {
         // Layers of 6 x 6 cells, a bit each in rows of 8: the block, and one cell more on each side.
         let mut layers = [0_u64; EDGE + 2];
-        for direction in 0..27 {
-            let steps = [direction % 3 - 1, direction / 3 % 3 - 1, direction / 9 - 1];
-            let Some(mut mask) = step(at, steps).map(|other| self.mask(other, near)) else { continue };
-            for axis in 0..3 {
-                mask &= [HIGH[axis], !0, LOW[axis]][(steps[axis] + 1) as usize];
+        for direction in 1..8_u32 {
+            // Of the chunks around, those that the block touches.
+            let outwards =
+                [0, 1, 2].map(|axis| (direction >> axis & 1) as i32 * (2 * (at[axis] & 1) as i32 - 1));
+            let Some(chunk) = step(at.map(|index| index >> 1), outwards) else { continue };
+            let first = self.first_from(morton(chunk) << 3, near);
+            for block in (first..).take_while(|&block| self.is_in_chunk(block, chunk)) {
+                let place = self.place(block);
+                let steps = [0, 1, 2].map(|axis| place[axis].wrapping_sub(at[axis]) as i32);
+                if steps.iter().all(|step| step.abs() <= 1) {
+                    self.mark(block, steps, &mut layers);
+                }
             }
-            for bit in bits(mask) {
-                let place = place(bit as u16);
-                let [x, y, z] = [0, 1, 2].map(|axis| place[axis] as i32 + EDGE as i32 * steps[axis] + 1);
-                layers[z as usize] |= 1 << (x + 8 * y);
-            }
+        }
+        if layers == [0; EDGE + 2] {
+            return !0;
         }
         for layer in &mut layers {
             *layer |= *layer << 1 | *layer >> 1;
             *layer |= *layer << 8 | *layer >> 8;
         }
         let beside: [u64; EDGE] = std::array::from_fn(|z| layers[z] | layers[z + 1] | layers[z + 2]);
-        let is_free = |&bit: &u64| {
-            let [x, y, z] = place(bit as u16);
-            beside[z] >> (x + 1 + 8 * (y + 1)) & 1 == 0
+        let is_free = |&bit: &usize| {
+            let [x, y, z] = [0, 2, 4].map(|shift| ROW[bit] >> shift & 3);
+            beside[usize::from(z)] >> (x + 1 + 8 * (y + 1)) & 1 == 0
         };
         (0..64).filter(is_free).fold(0, |free, bit| free | 1 << bit)
+    }
+
+    /// Marks the crossed cells of a block beside another, so many steps away from it, that touch that.
+    fn mark(&self, block: usize, steps: [i32; 3], layers: &mut [u64; EDGE + 2]) {
+        let mut mask = self.masks[block];
+        for axis in 0..3 {
+            mask &= [HIGH[axis], !0, LOW[axis]][(steps[axis] + 1) as usize];
+        }
+        for bit in bits(mask) {
+            let along =
+                |axis: usize| i32::from(ROW[bit as usize] >> (2 * axis) & 3) + EDGE as i32 * steps[axis] + 1;
+            layers[along(2) as usize] |= 1 << (along(0) + 8 * along(1));
+        }
     }
 
     /// The place of a cell of a block.
@@ -344,7 +357,13 @@ mod tests {
     #[test]
     fn codes_are_found_from_anywhere() {
         let codes: Vec<u64> = (0..100).map(|n| n * n).collect();
-        let crossed = Crossed { cells: &[], masks: vec![0; 100], firsts: vec![0; 100], codes };
+        let crossed = Crossed {
+            cells: &[],
+            masks: vec![0; 100],
+            firsts: vec![0; 100],
+            edges: vec![[0; 3]; 100],
+            codes,
+        };
         for near in [0, 1, 17, 99, 100, 200] {
             for code in 0..10_000 {
                 let expected = crossed.codes.partition_point(|&other| other < code);
@@ -359,6 +378,11 @@ mod tests {
             for axis in 0..3 {
                 let along = place(bit as u16)[axis];
                 assert_eq!((LOW[axis] >> bit & 1 == 1, HIGH[axis] >> bit & 1 == 1), (along == 0, along == 3));
+                let row = ROW[bit as usize];
+                assert_eq!(
+                    (FIRST[axis] >> row & 1 == 1, LAST[axis] >> row & 1 == 1),
+                    (along == 0, along == 3)
+                );
             }
         }
     }
