@@ -222,12 +222,11 @@ fn resolution(index: usize, ray: &Ray, span: [f64; 2]) -> Result<f64, TraceError
     let (mut farthest, mut terms): (f64, f64) = (0.0, 0.0);
     let larger = |a: f64, b: f64| if b > a { b } else { a };
     for t in span {
-        let mut position = [0.0; 3];
+        let way = ray.direction.map(|along| t * along);
+        let position = [0, 1, 2].map(|axis| ray.origin[axis] + way[axis]);
         for axis in 0..3 {
-            let way = t * ray.direction[axis];
-            position[axis] = ray.origin[axis] + way;
             farthest = larger(farthest, position[axis].abs());
-            terms = larger(larger(terms, ray.origin[axis].abs()), way.abs());
+            terms = larger(larger(terms, ray.origin[axis].abs()), way[axis].abs());
         }
         if farthest >= f64::from(f32::MAX) {
             return Err(TraceError::Far { ray: index, position });

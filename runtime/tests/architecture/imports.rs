@@ -95,7 +95,7 @@ fn target<'a>(modules: &'a BTreeMap<Vec<String>, File>, module: &[String], path:
         let Some(again) = file.paths.iter().find(|path| path.known_as.as_ref() == Some(name)) else {
             return Some(&file.path);
         };
-        let Some((next, mut front)) = start(modules, &place, &again.segments) else { return None };
+        let (next, mut front) = start(modules, &place, &again.segments)?;
         front.extend(rest.drain(1..));
         (place, rest) = (next, front);
     }
