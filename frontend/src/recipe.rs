@@ -44,8 +44,9 @@ pub enum Radius {
     Surface(Number),
 }
 
-/// What tells affine maps apart: the kind, and the steps of all numbers.
-pub(crate) type MapKey = (MapKind, Vec<Step>);
+/// What tells maps apart that follow parameters: the kind of an affine map, none for the move to the box of a
+/// formula, and the steps of the numbers that it is made of.
+pub(crate) type MapKey = (Option<MapKind>, Vec<Step>);
 
 /// A node before its formulas are evaluated.
 #[derive(Clone, PartialEq, Debug)]
@@ -235,11 +236,16 @@ impl Recipe {
         })
     }
 
-    /// What tells affine maps apart that follow parameters: equal for those that are equal whatever the values. Panics on
-    /// other nodes.
+    /// What tells the maps of nodes apart that follow parameters: equal for those that are equal whatever the values. An
+    /// affine node has one, and so has a formula in a box; nothing else moves what is in it.
     pub(crate) fn map_key(&self) -> MapKey {
-        let Self::Map { map, fields } = self else { unreachable!("only maps have keys of maps") };
-        (*map, fields.iter().flat_map(FieldNumber::numbers).flat_map(Number::steps).collect())
+        let steps = |numbers: &mut dyn Iterator<Item = &Number>| numbers.flat_map(Number::steps).collect();
+        match self {
+            Self::Map { map, fields } => {
+                (Some(*map), steps(&mut fields.iter().flat_map(FieldNumber::numbers)))
+            }
+            _ => (None, steps(&mut self.formula().into_iter().flat_map(Formula::corners))),
+        }
     }
 
     /// The map of an affine node, with the present values of its numbers; of any other node the identity.

@@ -45,7 +45,7 @@ impl TableView {
 /// Everything that one call of a kernel is given. Made by [`BoundKernel::run_selected`] alone, from what it
 /// has checked.
 pub(crate) struct Arguments<'a> {
-    /// Input planes, then output planes. They may be moved on.
+    /// Input planes, then output planes. They are moved on to their ends.
     pub(crate) planes: &'a mut [*const f32],
     /// Bytes of each plane.
     pub(crate) bytes: usize,
@@ -67,8 +67,7 @@ pub struct Kernel {
 }
 
 impl Kernel {
-    /// A multiple of [`lanes`](Self::lanes) of every kernel: planes padded to a multiple of this suit them
-    /// all.
+    /// A multiple of [`lanes`](Self::lanes) of every kernel: planes of as many numbers suit them all.
     pub const MAX_LANES: usize = 32;
 
     /// Compiles a function, with the settings that measurements favour for one of its size.
@@ -181,8 +180,8 @@ pub enum RunError {
     /// The selection was made from rows of other tables.
     #[error("the selection was made for tables with other numbers of rows")]
     Selection,
-    /// The planes end inside a block.
-    #[error("planes of {length} numbers do not fill blocks of {lanes}")]
+    /// The planes are shorter than a block.
+    #[error("planes of {length} numbers do not fill a block of {lanes}")]
     Partial {
         /// Length of the planes.
         length: usize,
@@ -230,12 +229,13 @@ impl BoundKernel {
 
     /// Answers for all points: `inputs[plane][point]` to `outputs[plane][point]`.
     ///
-    /// Any number is fine as an input, NaN and infinities included. Allocates nothing for up to 48 planes and
-    /// tables.
+    /// Any number is fine as an input, NaN and infinities included. What is left behind whole blocks of
+    /// [`Kernel::lanes`] points is done with the last block that ends where the planes do: some points twice, with
+    /// the same bits. Allocates nothing for up to 48 planes and tables.
     ///
     /// # Errors
-    /// When the planes are not as many as the function's, not of one length, or that length is not a multiple
-    /// of [`Kernel::lanes`]. Nothing is written then.
+    /// When the planes are not as many as the function's, not of one length, or that length is less than
+    /// [`Kernel::lanes`] and not zero. Nothing is written then.
     pub fn run(&self, inputs: &[&[f32]], outputs: &mut [&mut [f32]]) -> Result<(), RunError> {
         self.run_selected(&self.all, inputs, outputs)
     }
@@ -273,8 +273,14 @@ impl BoundKernel {
                 starts: selection.starts(table).as_ptr(),
             };
         }
-        let bytes = length * size_of::<f32>();
-        self.kernel.shared.code.call(Arguments { planes, bytes, tables: views });
+        let code = &self.kernel.shared.code;
+        let (block, bytes) = (code.lanes() * size_of::<f32>(), length * size_of::<f32>());
+        let rest = bytes % block;
+        code.call(Arguments { planes: &mut *planes, bytes: bytes - rest, tables: views });
+        if rest > 0 {
+            planes.iter_mut().for_each(|plane| *plane = plane.wrapping_byte_sub(block - rest));
+            code.call(Arguments { planes, bytes: block, tables: views });
+        }
         Ok(())
     }
 
@@ -294,7 +300,7 @@ impl BoundKernel {
             return Err(RunError::Length { plane, expected, given });
         }
         let lanes = code.lanes();
-        if !expected.is_multiple_of(lanes) {
+        if (1..lanes).contains(&expected) {
             return Err(RunError::Partial { length: expected, lanes });
         }
         Ok(expected)

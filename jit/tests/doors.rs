@@ -54,8 +54,8 @@ fn planes_that_do_not_fit_are_refused_and_nothing_is_written() {
             RunError::Length { plane: 3, expected: 24, given: 8 },
         ),
         (
-            kernel.run(&[&plane[..12], &plane[..12]], &mut [&mut a[..12], &mut b[..12]]),
-            RunError::Partial { length: 12, lanes: 8 },
+            kernel.run(&[&plane[..7], &plane[..7]], &mut [&mut a[..7], &mut b[..7]]),
+            RunError::Partial { length: 7, lanes: 8 },
         ),
     ];
     for (given, expected) in errors {
@@ -72,9 +72,12 @@ fn planes_may_begin_anywhere_and_nothing_beside_them_is_written() {
         let options = Options { vectors: Some(vectors), ..Options::default() };
         let kernel = Kernel::compile_with(&function, &options).expect("it compiles");
         let bound = kernel.bind(Arc::new(three_rows())).expect("the tables fit");
-        let length = 3 * kernel.lanes();
-        let (x, y) = (spicy_plane(1, length + 8), spicy_plane(2, length + 8));
-        for start in 0..4 {
+        let lanes = kernel.lanes();
+        // Whole blocks, and some with a last one that overlaps the one before it.
+        for (start, length) in
+            [(0, 3 * lanes), (1, 3 * lanes), (2, lanes), (3, 3 * lanes + 1), (0, 2 * lanes - 1)]
+        {
+            let (x, y) = (spicy_plane(1, length + 8), spicy_plane(2, length + 8));
             let (mut a, mut b) = (vec![7.0; length + 8], vec![7.0; length + 8]);
             let inputs = [&x[start..start + length], &y[3 - start..3 - start + length]];
             bound

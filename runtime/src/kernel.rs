@@ -314,6 +314,9 @@ const MAX_BLOCK: usize = jbt_jit::Kernel::MAX_LANES;
 /// The most input planes: a range along each axis.
 #[cfg(feature = "jit")]
 const MAX_INPUTS: usize = 6;
+/// Output planes of a small kernel: field, gradient, colour.
+#[cfg(feature = "jit")]
+const FEW_OUTPUTS: usize = 8;
 
 impl Bound {
     /// Runs all points with the rows of a selection from these tables; returns how many lanes were computed.
@@ -375,7 +378,7 @@ impl Bound {
         }
     }
 
-    /// Whole blocks straight from the caller's planes; what is left goes through a block that is filled up with its last point.
+    /// Straight from the caller's planes; fewer points than a block go through one that is filled up with the last.
     #[cfg(feature = "jit")]
     fn run_machine(
         &self,
@@ -386,33 +389,32 @@ impl Bound {
     ) {
         let machine = self.machine.as_ref().expect("machine code was bound");
         let points = inputs[0].len();
-        let whole = points - points % lanes;
-        if whole == points {
+        if points == 0 || points >= lanes {
             machine.run_selected(selection, inputs, outputs).expect("the planes have been checked");
             return;
         }
         assert!(lanes <= MAX_BLOCK && inputs.len() <= MAX_INPUTS, "blocks of machine code are small");
-        if whole > 0 {
-            let mut starts: [&[f32]; MAX_INPUTS] = [&[]; MAX_INPUTS];
-            for (start, plane) in starts.iter_mut().zip(inputs) {
-                *start = &plane[..whole];
-            }
-            let mut outputs: Vec<&mut [f32]> = outputs.iter_mut().map(|plane| &mut plane[..whole]).collect();
-            let ran = machine.run_selected(selection, &starts[..inputs.len()], &mut outputs);
-            ran.expect("the planes have been checked");
-        }
         let mut padded = [[0.0; MAX_BLOCK]; MAX_INPUTS];
         for (block, plane) in padded.iter_mut().zip(inputs) {
-            block[..points - whole].copy_from_slice(&plane[whole..]);
-            block[points - whole..].fill(plane[points - 1]);
+            block[..points].copy_from_slice(plane);
+            block[points..].fill(plane[points - 1]);
         }
         let padded = padded.each_ref().map(|block| &block[..lanes]);
-        let mut answers = vec![0.0; lanes * outputs.len()];
-        let mut blocks: Vec<&mut [f32]> = answers.chunks_mut(lanes).collect();
-        let ran = machine.run_selected(selection, &padded[..inputs.len()], &mut blocks);
-        ran.expect("the blocks are whole");
-        for (plane, block) in outputs.iter_mut().zip(blocks) {
-            plane[whole..].copy_from_slice(&block[..points - whole]);
+        // Many blocks come from the heap, a few of them from the stack.
+        let count = outputs.len();
+        let mut run = |blocks: &mut [&mut [f32]]| {
+            let ran = machine.run_selected(selection, &padded[..inputs.len()], blocks);
+            ran.expect("the block is whole");
+            for (plane, block) in outputs.iter_mut().zip(blocks) {
+                plane.copy_from_slice(&block[..points]);
+            }
+        };
+        if count <= FEW_OUTPUTS {
+            let mut answers = [[0.0; MAX_BLOCK]; FEW_OUTPUTS];
+            run(&mut answers.each_mut().map(|block| &mut block[..lanes])[..count]);
+        } else {
+            let mut answers = vec![0.0; lanes * count];
+            run(&mut answers.chunks_mut(lanes).collect::<Vec<_>>());
         }
     }
 }

@@ -203,6 +203,11 @@ impl Formula {
         Self::new(assembler.finish(&[field]), None)
     }
 
+    /// The corners of its box, if it has one, smallest first.
+    pub(crate) fn corners(&self) -> &[Number] {
+        self.form.box_numbers(&self.numbers).unwrap_or_default()
+    }
+
     /// With the present values of its numbers.
     pub(crate) fn expression(&self) -> Expression {
         Expression { form: Arc::clone(&self.form), numbers: self.numbers.iter().map(Number::value).collect() }

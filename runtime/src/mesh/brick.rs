@@ -55,8 +55,31 @@ pub(crate) struct Bricks {
     pub(crate) places: Vec<[u32; 3]>,
     /// The bricks around each one by [`direction`], or [`NONE`].
     pub(crate) neighbours: Vec<[u32; 27]>,
-    /// For each eight cells in Morton order, where the first one is in a table of a brick's points.
-    octets: Vec<u32>,
+    /// For each cell of a brick, in Morton order, where it is.
+    cells: Vec<At>,
+}
+
+/// Where a cell is in its brick.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct At {
+    /// Its low corner in a table of the brick's points: at most 33^3.
+    table: u16,
+    /// Its index along x, y and z.
+    place: [u8; 3],
+}
+
+impl At {
+    /// The place of its low corner in a table.
+    #[inline(always)]
+    pub(crate) fn in_table(self) -> usize {
+        usize::from(self.table)
+    }
+
+    /// Its index along x, y and z.
+    #[inline(always)]
+    pub(crate) fn place(self) -> [usize; 3] {
+        self.place.map(usize::from)
+    }
 }
 
 impl Bricks {
@@ -68,12 +91,13 @@ impl Bricks {
         neighbours: Vec<[u32; 27]>,
     ) -> Self {
         let stride = edge + 1;
-        let octet = |number: u16| {
-            let [x, y, z] = place(number);
-            (x + stride * (y + stride * z)) as u32
+        let at = |number: usize| {
+            let [x, y, z] = place(number as u16);
+            let table = (x + stride * (y + stride * z)) as u16;
+            At { table, place: [x, y, z].map(|index| index as u8) }
         };
-        let octets = (0..edge.pow(3)).step_by(8).map(|number| octet(number as u16)).collect();
-        Self { edge, axes, places, neighbours, octets }
+        let cells = (0..edge.pow(3)).map(at).collect();
+        Self { edge, axes, places, neighbours, cells }
     }
 
     /// How many there are.
@@ -96,17 +120,15 @@ impl Bricks {
         self.stride().pow(3)
     }
 
-    /// For each eight cells in Morton order, the place of the first in a table.
-    pub(crate) fn octets(&self) -> &[u32] {
-        &self.octets
+    /// For each eight cells in Morton order, where the first is.
+    pub(crate) fn octets(&self) -> impl Iterator<Item = At> {
+        self.cells.iter().step_by(8).copied()
     }
 
-    /// The place of a cell's low corner in a table.
-    #[inline]
-    pub(crate) fn in_table(&self, number: u16) -> usize {
-        let (octet, rest) = (usize::from(number >> 3), usize::from(number & 7));
-        let stride = self.stride();
-        self.octets[octet] as usize + (rest & 1) + stride * ((rest >> 1 & 1) + stride * (rest >> 2))
+    /// Where a cell is.
+    #[inline(always)]
+    pub(crate) fn at(&self, number: u16) -> At {
+        self.cells[usize::from(number)]
     }
 
     /// The first cell of a brick.
@@ -204,8 +226,8 @@ mod tests {
             Box3 { low: [4.0, 0.0, 0.0], high: [7.0, 4.0, 2.0] }
         );
         for cell in 0..64 {
-            let [x, y, z] = place(cell);
-            assert_eq!(bricks.in_table(cell), x + 5 * (y + 5 * z));
+            let ([x, y, z], at) = (place(cell), bricks.at(cell));
+            assert_eq!((at.place(), at.in_table()), ([x, y, z], x + 5 * (y + 5 * z)));
         }
     }
 

@@ -95,6 +95,7 @@ impl Sheets {
     }
 
     /// The sheet of an edge that the surface crosses.
+    #[cfg(test)]
     pub(crate) fn of_edge(&self, edge: usize) -> Option<u32> {
         let sheet = self.of_edge[edge];
         (sheet != NO_SHEET).then_some(u32::from(sheet))
@@ -118,8 +119,13 @@ impl Sheets {
     }
 
     /// The edges of a sheet, a bit each.
-    pub(crate) fn edges(&self, sheet: u32) -> u16 {
-        (0..12).fold(0, |edges, edge| edges | u16::from(self.of_edge(edge) == Some(sheet)) << edge)
+    pub(crate) const fn edges(&self, sheet: u32) -> u16 {
+        let (mut edges, mut edge) = (0, 0);
+        while edge < 12 {
+            edges |= ((self.of_edge[edge] as u32 == sheet) as u16) << edge;
+            edge += 1;
+        }
+        edges
     }
 
     /// The sheets that have quads, where the cell touches these sides of the lattice (a bit for each face): an edge on a side has
@@ -128,8 +134,7 @@ impl Sheets {
         let mut names = [NO_SHEET; 4];
         let mut count = 0;
         for sheet in 0..self.count {
-            let edges = (0..12).filter(|&edge| self.of_edge[edge] == sheet);
-            if edges.into_iter().any(|edge| EDGE_FACES[edge] & sides == 0) {
+            if self.edges(u32::from(sheet)) & inner_edges(sides) != 0 {
                 names[usize::from(sheet)] = count;
                 count += 1;
             }
@@ -297,7 +302,7 @@ pub(crate) struct Edges {
 
 impl Edges {
     /// From the corners inside and the edges, a bit each.
-    pub(crate) const fn new(signs: u8, mask: u16) -> Self {
+    const fn new(signs: u8, mask: u16) -> Self {
         let (mut high, mut rise) = ([0.0; 3], [0.0; 3]);
         let mut edge = 0;
         while edge < 12 {
@@ -314,24 +319,63 @@ impl Edges {
         }
         Self { mask, high, part: 1.0 / mask.count_ones() as f32, rise }
     }
+
+    /// Whether any of them has a quad, where the cell touches these sides of the lattice (a bit for each face): an
+    /// edge on a side has no cells all around it.
+    #[inline(always)]
+    pub(crate) fn have_quad(&self, sides: u8) -> bool {
+        self.mask & inner_edges(sides) != 0
+    }
 }
 
-/// The crossed edges of every case.
-pub(crate) static CROSSED_EDGES: [Edges; 256] = {
-    let mut crossed = [Edges::new(0, 0); 256];
+/// The edges of the sheets of every case without flipped faces.
+static DEFAULT_EDGES: [[Edges; 4]; 256] = {
+    let mut edges = [[Edges::new(0, 0); 4]; 256];
     let mut signs = 0;
     while signs < 256 {
-        let (mut mask, mut edge) = (0, 0);
-        while edge < 12 {
-            let [low, high] = EDGE_CORNERS[edge];
-            mask |= ((inside(signs as u8, low) != inside(signs as u8, high)) as u16) << edge;
-            edge += 1;
+        let mut sheet = 0;
+        while sheet < DEFAULT[signs].count {
+            let mask = DEFAULT[signs].edges(sheet as u32);
+            edges[signs][sheet as usize] = Edges::new(signs as u8, mask);
+            sheet += 1;
         }
-        crossed[signs] = Edges::new(signs as u8, mask);
         signs += 1;
     }
-    crossed
+    edges
 };
+
+/// The edges of each sheet of a cell without flipped faces.
+#[inline(always)]
+pub(crate) fn default_edges(signs: u8) -> &'static [Edges] {
+    &DEFAULT_EDGES[usize::from(signs)][..usize::from(DEFAULT[usize::from(signs)].count)]
+}
+
+/// The edges of each sheet of a cell with flipped faces.
+pub(crate) fn edges(signs: u8, flips: u8) -> Vec<Edges> {
+    let sheets = sheets(signs, flips);
+    (0..sheets.count()).map(|sheet| Edges::new(signs, sheets.edges(sheet))).collect()
+}
+
+/// The edges of a cell that have cells all around them, a bit each, where it touches these sides of the lattice
+/// (a bit for each face).
+#[inline(always)]
+fn inner_edges(sides: u8) -> u16 {
+    /// For each set of sides.
+    static INNER: [u16; 64] = {
+        let mut inner = [0; 64];
+        let mut sides = 0;
+        while sides < 64 {
+            let mut edge = 0;
+            while edge < 12 {
+                inner[sides as usize] |= ((EDGE_FACES[edge] & sides == 0) as u16) << edge;
+                edge += 1;
+            }
+            sides += 1;
+        }
+        inner
+    };
+    INNER[usize::from(sides & 63)]
+}
 
 /// Where the chosen edges are among the four along an axis, a bit each: all ones for those, and zero for the others.
 static CHOSEN: [[u32; 4]; 16] = {
@@ -481,20 +525,20 @@ mod tests {
         // Corner 0 alone is inside: a quarter along each of its edges.
         let mut corners = [0.0; 8];
         corners[0] = 1.0;
-        let [x, y, z] = mean_crossing(0.75, &corners, &CROSSED_EDGES[1]);
+        let [x, y, z] = mean_crossing(0.75, &corners, &default_edges(1)[0]);
         assert!([x, y, z].iter().all(|c| (c - 0.25 / 3.0).abs() < 1e-6));
         // The same at the opposite corner.
         corners.rotate_left(1);
-        let [x, y, z] = mean_crossing(0.75, &corners, &CROSSED_EDGES[128]);
+        let [x, y, z] = mean_crossing(0.75, &corners, &default_edges(128)[0]);
         assert!([x, y, z].iter().all(|c| (c - (1.0 - 0.25 / 3.0)).abs() < 1e-6));
         // A corner without a number: the middle.
         corners = [1.0, 0.0, 0.0, f32::NAN, f32::NEG_INFINITY, 0.0, 0.0, 0.0];
-        let [x, y, z] = mean_crossing(0.75, &corners, &CROSSED_EDGES[1]);
+        let [x, y, z] = mean_crossing(0.75, &corners, &default_edges(1)[0]);
         assert_eq!([x * 3.0, y * 3.0, z * 3.0], [0.25, 0.25, 0.5]);
         for signs in 1..255_u8 {
             let sheets = sheets(signs, 0);
             let all = (0..sheets.count()).fold(0, |all, sheet| all | sheets.edges(sheet));
-            assert_eq!(all, CROSSED_EDGES[usize::from(signs)].mask);
+            assert_eq!(all, default_edges(signs).iter().fold(0, |all, sheet| all | sheet.mask));
         }
     }
 

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::Sides;
 use super::brick::{Bricks, NONE, cell_sides, direction, number, place, split, starts};
-use super::cell::{default_sheets, sheets, sheets_with_quads};
+use super::cell::{default_edges, default_sheets, sheets, sheets_with_quads};
 use super::sample::Samples;
 
 /// A cell that the surface crosses.
@@ -58,7 +58,7 @@ impl Crossings {
 }
 
 /// Finds the crossing cells, flips faces, and numbers the vertices.
-pub(crate) fn find(bricks: &Bricks, samples: &Samples, iso: f32) -> Crossings {
+pub(crate) fn find(bricks: &Bricks, samples: &Samples) -> Crossings {
     let group = bricks.group();
     let groups = bricks.len().div_ceil(group);
     let found = (0..groups).into_par_iter().map_init(
@@ -66,7 +66,7 @@ pub(crate) fn find(bricks: &Bricks, samples: &Samples, iso: f32) -> Crossings {
         |signs, index| {
             let mut found = Found::default();
             for brick in index * group..bricks.len().min((index + 1) * group) {
-                signs.find(bricks, samples, iso, brick, &mut found);
+                signs.find(bricks, samples, brick, &mut found);
             }
             found
         },
@@ -101,8 +101,9 @@ struct Found {
 
 /// Room for the signs of one brick.
 struct Signs {
-    table: Vec<f32>,
-    /// For each point of the table a bit: whether it is inside. Then, step by step, those of the points beside it.
+    /// Points of a brick's closed box.
+    table_len: usize,
+    /// For each of them a bit: whether it is inside. Then, step by step, those of the points beside it.
     points: Vec<u8>,
     pairs: Vec<u8>,
     /// For each point the signs of the cell above it.
@@ -113,15 +114,12 @@ impl Signs {
     fn new(bricks: &Bricks) -> Self {
         let points = bricks.table_len();
         let padded = vec![0; points + bricks.stride().pow(2)];
-        Self { table: vec![0.0; points], points: padded.clone(), pairs: padded.clone(), cells: padded }
+        Self { table_len: points, points: padded.clone(), pairs: padded.clone(), cells: padded }
     }
 
     /// Appends the crossing cells of a brick.
-    fn find(&mut self, bricks: &Bricks, samples: &Samples, iso: f32, brick: usize, found: &mut Found) {
-        samples.gather(bricks, brick, &mut self.table);
-        for (bit, value) in self.points.iter_mut().zip(&self.table) {
-            *bit = u8::from(*value >= iso);
-        }
+    fn find(&mut self, bricks: &Bricks, samples: &Samples, brick: usize, found: &mut Found) {
+        samples.gather_inside(bricks, brick, &mut self.points[..self.table_len]);
         let (extent, sides) = (bricks.extent(brick), bricks.sides(brick));
         if sides != 0 {
             self.find_cut(bricks, extent, sides, &mut found.cut);
@@ -140,14 +138,14 @@ impl Signs {
 
     /// Whether some points are inside and some are not.
     fn is_mixed(&self) -> bool {
-        let points = &self.points[..self.table.len()];
+        let points = &self.points[..self.table_len];
         let (any, all) = points.iter().fold((0, 1), |(any, all), bit| (any | bit, all & bit));
         any != all
     }
 
     /// The signs of all cells, from those of the points: first pairs along x, then squares, then cubes.
     fn join(&mut self, stride: usize) {
-        let count = self.table.len();
+        let count = self.table_len;
         join::<1>(&self.points, 1, &mut self.cells[..count]);
         join::<2>(&self.cells, stride, &mut self.pairs[..count]);
         join::<4>(&self.pairs, stride * stride, &mut self.cells[..count]);
@@ -183,8 +181,8 @@ impl Signs {
     fn push_cells(&self, bricks: &Bricks, brick: usize, found: &mut Found) {
         let stride = bricks.stride();
         let layer = stride * stride;
-        for (octet, &base) in bricks.octets().iter().enumerate() {
-            let cells = &self.cells[base as usize..][..layer + stride + 2];
+        for (octet, at) in bricks.octets().enumerate() {
+            let cells = &self.cells[at.in_table()..][..layer + stride + 2];
             let pairs = [0, stride, layer, layer + stride]
                 .map(|at| u64::from(u16::from_le_bytes([cells[at], cells[at + 1]])));
             let signs = pairs[0] | pairs[1] << 16 | pairs[2] << 32 | pairs[3] << 48;
@@ -296,8 +294,12 @@ fn number_brick(bricks: &Bricks, brick: usize, cells: &mut [Cell]) -> (usize, us
             quads += differs(1) + differs(2) + differs(4);
             continue;
         }
-        let sides = cell_sides(sides, extent, place(cell.number));
-        vertices += sheets_with_quads(cell.signs, cell.flips, sides).count();
+        let sides = cell_sides(sides, extent, bricks.at(cell.number).place());
+        vertices += if cell.flips == 0 {
+            default_edges(cell.signs).iter().filter(|sheet| sheet.have_quad(sides)).count() as u32
+        } else {
+            sheets_with_quads(cell.signs, cell.flips, sides).count()
+        };
         let [x, y, z] = [0, 2, 4].map(|side| usize::from(sides >> side & 1 == 0));
         quads += differs(1) * y * z + differs(2) * z * x + differs(4) * x * y;
     }

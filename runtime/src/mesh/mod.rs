@@ -314,7 +314,7 @@ pub enum MeshError<E: Error + 'static> {
         /// How many there may be.
         limit: usize,
     },
-    /// The memory for the field at the points of the bricks (4 bytes a point) is not to be had.
+    /// The memory for the field at the points of the bricks (5 bytes a point) is not to be had.
     #[error("there is no memory for the field at {points} lattice points")]
     Memory {
         /// How many points there are.
@@ -383,8 +383,8 @@ fn polygonize<F: Field>(
     progress: &Progress<'_>,
 ) -> Result<(Mesh, Report, Crossings), MeshError<F::Error>> {
     let Division { bricks, regions, boxes, chunks: _ } = division;
-    let samples = sample::sample(field, bricks, regions, progress)?;
-    let crossings = crossing::find(bricks, &samples, options.iso);
+    let samples = sample::sample(field, bricks, regions, options.iso, progress)?;
+    let crossings = crossing::find(bricks, &samples);
     let count = crossings.vertex_count();
     if u32::try_from(count).is_err() {
         return Err(MeshError::TooManyVertices { vertices: count as u64 });

@@ -14,6 +14,8 @@
 //! On each axis a point of a brick is low (the first), in the middle, or high (the first of the next brick). That makes 27 *classes* of
 //! points, for each of which the order of preference is known when this crate is compiled.
 
+use std::error::Error;
+
 use rayon::prelude::*;
 
 use super::MeshError;
@@ -120,51 +122,58 @@ fn span(kind: u8, cells: usize) -> (usize, usize) {
 pub(crate) struct Samples {
     /// Brick by brick: its half-open box, x fastest, then y, then z; then the classes of its rim.
     values: Vec<f32>,
+    /// For each value whether it is inside, 1 or 0.
+    inside: Vec<u8>,
     /// Where the values of each brick begin, and where the last ones end.
     starts: Vec<usize>,
     /// For each brick where the classes of its rim begin, counted from its start.
     rims: Vec<[u16; 27]>,
 }
 
-/// Evaluates the field at every point of every brick, once.
+/// Evaluates the field at every point of every brick, once, and sees which are inside.
 pub(crate) fn sample<F: Field>(
     field: &F,
     bricks: &Bricks,
     regions: &[F::Region],
+    iso: f32,
     progress: &Progress<'_>,
 ) -> Result<Samples, MeshError<F::Error>> {
     let (rims, counts): (Vec<[u16; 27]>, Vec<usize>) =
         (0..bricks.len()).into_par_iter().with_min_len(64).map(|brick| rim(bricks, brick)).unzip();
     let starts = starts(counts.into_iter());
     let mut values = allocate(starts[bricks.len()])?;
+    let mut inside = allocate(starts[bricks.len()])?;
     let group = bricks.group();
     let groups = split(&mut values, &starts, group, 1);
+    let insides = split(&mut inside, &starts, group, 1);
     let total = groups.len();
     progress.begin(Phase::Lattice)?;
-    let work = groups.into_par_iter().enumerate();
-    work.try_for_each_init(Points::default, |points, (index, mut values)| {
+    let work = groups.into_par_iter().zip(insides).enumerate();
+    work.try_for_each_init(Points::default, |points, (index, (values, inside))| {
         let first = index * group;
         for brick in first..bricks.len().min(first + group) {
-            let count = starts[brick + 1] - starts[brick];
-            let (mine, rest) = values.split_at_mut(count);
-            values = rest;
+            let mine = starts[brick] - starts[first]..starts[brick + 1] - starts[first];
             points.collect(bricks, brick, &rims[brick]);
             let Points { x, y, z } = &*points;
-            field.field(&regions[brick], x, y, z, mine).map_err(MeshError::Field)?;
+            let values = &mut values[mine.clone()];
+            field.field(&regions[brick], x, y, z, values).map_err(MeshError::Field)?;
+            for (bit, value) in inside[mine].iter_mut().zip(values) {
+                *bit = u8::from(*value >= iso);
+            }
         }
         progress.advance(Phase::Lattice, total)
     })?;
-    Ok(Samples { values, starts, rims })
+    Ok(Samples { values, inside, starts, rims })
 }
 
 /// Zeros, or an error where the allocator would have aborted.
-fn allocate<E: std::error::Error + 'static>(points: usize) -> Result<Vec<f32>, MeshError<E>> {
+fn allocate<T: Copy + Default, E: Error + 'static>(points: usize) -> Result<Vec<T>, MeshError<E>> {
     // Zeroed memory comes from the system page by page when the threads first touch it, which is faster than to fill it
     // here; but only `try_reserve` can fail. So the room is asked for first.
-    let mut room = Vec::<f32>::new();
+    let mut room = Vec::<T>::new();
     room.try_reserve_exact(points).map_err(|_| MeshError::Memory { points })?;
     drop(room);
-    Ok(vec![0.0; points])
+    Ok(vec![T::default(); points])
 }
 
 /// Where the classes that a brick owns on its rim begin among its values, and how many points it owns.
@@ -263,11 +272,20 @@ impl Samples {
     /// The field at all points of a brick's closed box, into a table (x fastest, then y, then z, in rows and layers of
     /// [`Bricks::stride`]). Where the lattice cuts the brick, the rest of the table stays as it is.
     pub(crate) fn gather(&self, bricks: &Bricks, brick: usize, table: &mut [f32]) {
+        self.gather_from(&self.values, bricks, brick, table);
+    }
+
+    /// Which points of a brick's closed box are inside, 1 or 0 each, in the same way.
+    pub(crate) fn gather_inside(&self, bricks: &Bricks, brick: usize, table: &mut [u8]) {
+        self.gather_from(&self.inside, bricks, brick, table);
+    }
+
+    fn gather_from<T: Copy>(&self, source: &[T], bricks: &Bricks, brick: usize, table: &mut [T]) {
         let (extent, stride) = (bricks.extent(brick), bricks.stride());
         let neighbours = &bricks.neighbours[brick];
         let own = self.block(extent, brick, [0; 3]);
         let target = Block { start: 0, row: stride, layer: stride * stride };
-        copy(&self.values, own, table, target, extent);
+        copy(source, own, table, target, extent);
         for (direction, classes) in SIDES {
             let last = &CLASSES[classes[classes.len() - 1]].kinds;
             let is_high = [0, 1, 2].map(|axis| last[axis] == HIGH);
@@ -277,20 +295,14 @@ impl Samples {
                 let counts = [0, 1, 2].map(|axis| if is_high[axis] { 1 } else { extent[axis] });
                 let other = neighbours[direction] as usize;
                 let from = self.block(bricks.extent(other), other, [0; 3]);
-                copy(&self.values, from, table, target.at(first), counts);
+                copy(source, from, table, target.at(first), counts);
                 continue;
             }
             for &class in classes {
                 let kinds = CLASSES[class].kinds;
                 let spans = [0, 1, 2].map(|axis| span(kinds[axis], extent[axis]));
                 let from = self.class(bricks, brick, class);
-                copy(
-                    &self.values,
-                    from,
-                    table,
-                    target.at(spans.map(|(first, _)| first)),
-                    spans.map(|(_, n)| n),
-                );
+                copy(source, from, table, target.at(spans.map(|(first, _)| first)), spans.map(|(_, n)| n));
             }
         }
     }
@@ -327,7 +339,7 @@ impl Block {
 }
 
 /// Copies a box of numbers.
-fn copy(source: &[f32], from: Block, target: &mut [f32], to: Block, [nx, ny, nz]: [usize; 3]) {
+fn copy<T: Copy>(source: &[T], from: Block, target: &mut [T], to: Block, [nx, ny, nz]: [usize; 3]) {
     if nx == 0 || ny == 0 {
         return;
     }
@@ -342,8 +354,8 @@ fn copy(source: &[f32], from: Block, target: &mut [f32], to: Block, [nx, ny, nz]
                     *target = *source;
                 }
             }
-            8 if from.row == 8 => copy_rows::<8>(source, target, to.row),
-            16 if from.row == 16 => copy_rows::<16>(source, target, to.row),
+            8 if from.row == 8 => copy_rows::<8, T>(source, target, to.row),
+            16 if from.row == 16 => copy_rows::<16, T>(source, target, to.row),
             length => {
                 for (target, source) in target.chunks_mut(to.row).zip(source.chunks(from.row)) {
                     target[..length].copy_from_slice(&source[..length]);
@@ -355,7 +367,7 @@ fn copy(source: &[f32], from: Block, target: &mut [f32], to: Block, [nx, ny, nz]
 
 /// Copies rows that stand one after the other to rows at a distance.
 #[inline(always)]
-fn copy_rows<const LENGTH: usize>(source: &[f32], target: &mut [f32], row: usize) {
+fn copy_rows<const LENGTH: usize, T: Copy>(source: &[T], target: &mut [T], row: usize) {
     for (target, source) in target.chunks_mut(row).zip(source.as_chunks::<LENGTH>().0) {
         target[..LENGTH].copy_from_slice(source);
     }

@@ -6,7 +6,7 @@
 use rayon::prelude::*;
 
 use super::Mesh;
-use super::brick::{Bricks, NONE, cell_sides, direction, number, place, split};
+use super::brick::{Bricks, NONE, cell_sides, direction, number, split};
 use super::cell::{EDGE_CORNERS, Sheets, default_sheets, sheets_with_quads};
 use super::crossing::{Cell, Crossings};
 
@@ -27,7 +27,7 @@ pub(crate) fn triangles(bricks: &Bricks, crossings: &Crossings, positions: &[[f3
                 around.fill(bricks, crossings, brick);
                 let sides = bricks.sides(brick);
                 for cell in crossings.of(brick) {
-                    let at = bricks.in_table(cell.number) + around.first;
+                    let at = bricks.at(cell.number).in_table() + around.first;
                     around.quads::<0>(cell, at, sides, positions, &mut pairs);
                     around.quads::<1>(cell, at, sides, positions, &mut pairs);
                     around.quads::<2>(cell, at, sides, positions, &mut pairs);
@@ -51,6 +51,8 @@ struct Around {
     /// x fastest, then y, then z; each from the layer below the brick on.
     table: Vec<Entry>,
     special: Vec<Sheets>,
+    /// Room for the places of some cells of a brick among all of its crossed ones.
+    chosen: Vec<u16>,
     /// The place of the brick's first cell.
     first: usize,
     /// The distances of cells along the axes.
@@ -62,7 +64,7 @@ impl Around {
         let stride = bricks.stride();
         let steps = [1, stride, stride * stride];
         let table = vec![Entry::default(); bricks.table_len()];
-        Self { table, special: Vec::new(), first: steps.iter().sum(), steps }
+        Self { table, special: Vec::new(), chosen: Vec::new(), first: steps.iter().sum(), steps }
     }
 
     fn fill(&mut self, bricks: &Bricks, crossings: &Crossings, brick: usize) {
@@ -85,16 +87,25 @@ impl Around {
     fn push(&mut self, bricks: &Bricks, crossings: &Crossings, brick: usize, bits: u16, first: usize) {
         let vertex = crossings.vertices[brick] as u32;
         let sides = bricks.sides(brick);
-        for cell in crossings.of(brick).iter().filter(|cell| cell.number & bits == bits) {
-            let mut sheets = u32::from(cell.signs);
+        let cells = crossings.of(brick);
+        // First which ones, without a jump that would be guessed wrong at every third of them.
+        let mut count = 0;
+        self.chosen.resize(self.chosen.len().max(cells.len()), 0);
+        for (index, cell) in (0..).zip(cells) {
+            self.chosen[count] = index;
+            count += usize::from(cell.number & bits == bits);
+        }
+        for &index in &self.chosen[..count] {
+            let cell = &cells[usize::from(index)];
+            let (mut sheets, at) = (u32::from(cell.signs), bricks.at(cell.number));
             if sides != 0 || cell.flips != 0 {
-                let sides = cell_sides(sides, bricks.extent(brick), place(cell.number));
+                let sides = cell_sides(sides, bricks.extent(brick), at.place());
                 if sides != 0 || cell.flips != 0 {
                     sheets = 256 + self.special.len() as u32;
                     self.special.push(sheets_with_quads(cell.signs, cell.flips, sides));
                 }
             }
-            let at = first.wrapping_add(bricks.in_table(cell.number));
+            let at = first.wrapping_add(at.in_table());
             self.table[at] = Entry { vertex: vertex + cell.vertex, sheets };
         }
     }

@@ -5,6 +5,7 @@ mod bracket;
 mod normal;
 mod room;
 mod sheet;
+mod start;
 mod suspect;
 mod wall;
 
@@ -13,17 +14,16 @@ use std::ops::Range;
 use jbt_ir::limits::MAX_ATTRIBUTE_WIDTH;
 use rayon::prelude::*;
 
-use super::brick::{Bricks, cell_sides, place, split};
-use super::cell::{CROSSED_EDGES, Edges, default_sheets, mean_crossing, sheets_with_quads};
+use super::brick::{Bricks, split};
 use super::crossing::Crossings;
 use super::progress::{Phase, Progress};
 use super::pull::{LANES, Lanes, pull_lanes};
 use super::sample::Samples;
-use super::{Attribute, Field, MAX_BRICK, Mesh, MeshError, Options};
+use super::{Attribute, Field, Mesh, MeshError, Options};
 
 use bracket::CrossedEdges;
 use normal::normals_of;
-use room::room;
+use start::Group;
 
 pub(super) use room::is_crowded;
 
@@ -165,14 +165,8 @@ struct Batch {
     /// The cell of each, counted in the brick, and its sheet.
     owners: Vec<(u32, u32)>,
     points: Planes,
-    /// The low and the high corners of the boxes in which they stay.
-    low: Planes,
-    high: Planes,
-    /// By how much the field rises along the axes, roughly: from the low corners of their cells to the high ones,
-    /// or along the edges that their sheets cross.
-    rise: Planes,
-    /// By how much the field differs at most among the corners of their cells.
-    spread: Vec<f32>,
+    /// What is known of each [`LANES`] of them from their cells.
+    groups: Vec<Group>,
     values: Vec<f32>,
     gradient: Planes,
     /// One plane after the other, each for `count` vertices.
@@ -186,77 +180,12 @@ struct Batch {
 }
 
 impl Batch {
-    /// Puts the vertices of a brick where they start: at the means of their sheets' crossings.
-    fn start<F: Field>(&mut self, source: &Source<'_, F>, brick: usize, count: usize) {
-        let Source { bricks, options, .. } = source;
-        self.table.resize(bricks.table_len(), 0.0);
-        source.samples.gather(bricks, brick, &mut self.table);
-        self.resize(count);
-        let (origin, extent, sides) = (bricks.origin(brick), bricks.extent(brick), bricks.sides(brick));
-        let axes: [&[f32]; 3] =
-            std::array::from_fn(|axis| &bricks.axes[axis][origin[axis]..][..extent[axis] + 1]);
-        let rooms = [0, 1, 2].map(|axis| rooms(axes[axis]));
-        self.doubles.clear();
-        self.doubtful.clear();
-        let mut next = 0;
-        for (index, cell) in (0..).zip(source.crossings.of(brick)) {
-            let corners = corners(&self.table, bricks.in_table(cell.number), bricks.stride());
-            let place = place(cell.number);
-            let home = Home {
-                spread: spread(&corners),
-                sides: std::array::from_fn(|axis| [axes[axis][place[axis]], axes[axis][place[axis] + 1]]),
-                room: std::array::from_fn(|axis| rooms[axis][place[axis]]),
-            };
-            if sides == 0 && cell.flips == 0 && default_sheets(cell.signs).count() == 1 {
-                let edges = &CROSSED_EDGES[usize::from(cell.signs)];
-                self.put(
-                    next,
-                    (index, 0),
-                    mean_crossing(options.iso, &corners, edges),
-                    rise(&corners),
-                    &home,
-                );
-                next += 1;
-                continue;
-            }
-            let sheets = sheets_with_quads(cell.signs, cell.flips, cell_sides(sides, extent, place));
-            for sheet in 0..sheets.count() {
-                let edges = Edges::new(cell.signs, sheets.edges(sheet));
-                let mean = mean_crossing(options.iso, &corners, &edges);
-                self.put(next, (index, sheet), mean, edges.rise, &home);
-                if sheet > 0 {
-                    self.doubles.push((next, self.points.each_ref().map(|plane| plane[next])));
-                }
-                next += 1;
-            }
-        }
-    }
-
-    /// Puts a vertex at a place that is given in units of its cell.
-    #[inline(always)]
-    fn put(&mut self, index: usize, owner: (u32, u32), place: [f32; 3], rise: [f32; 3], home: &Home) {
-        self.owners[index] = owner;
-        self.spread[index] = home.spread;
-        for axis in 0..3 {
-            let ([first, last], [low, high]) = (home.sides[axis], home.room[axis]);
-            // Nothing overflows on the way, however large the cell.
-            let start = first * (1.0 - place[axis]) + last * place[axis];
-            let start = if start < low { low } else { start };
-            self.points[axis][index] = if start > high { high } else { start };
-            self.low[axis][index] = low;
-            self.rise[axis][index] = rise[axis];
-            self.high[axis][index] = high;
-        }
-    }
-
     fn resize(&mut self, count: usize) {
         self.count = count;
         let padded = count.next_multiple_of(LANES);
-        self.owners.resize(padded, (0, 0));
-        let planes = [&mut self.points, &mut self.low, &mut self.high, &mut self.rise, &mut self.gradient];
+        let planes = [&mut self.points, &mut self.gradient];
         planes.into_iter().flatten().for_each(|plane| plane.resize(padded, 0.0));
         self.values.resize(padded, 0.0);
-        self.spread.resize(padded, 0.0);
     }
 
     /// Pulls the vertices and evaluates everything at them, `width` attributes among it.
@@ -289,20 +218,19 @@ impl Batch {
         Ok(done.and(again))
     }
 
+    /// The low and the high corner of the box in which a vertex stays.
+    fn bounds(&self, vertex: usize) -> [[f32; 3]; 2] {
+        let group = &self.groups[vertex / LANES];
+        [&group.low, &group.high].map(|corner| [0, 1, 2].map(|axis| corner[axis][vertex % LANES]))
+    }
+
     /// A pull of all vertices.
     fn pull(&mut self, iso: f32) {
-        for chunk in 0..self.values.len() / LANES {
+        for (chunk, group) in self.groups.iter().enumerate() {
             let mut points = lanes(&self.points, chunk);
             let values = &lane(&self.values, chunk);
             let gradient = lanes(&self.gradient, chunk);
-            pull_lanes(
-                iso,
-                &mut points,
-                values,
-                &gradient,
-                &lanes(&self.low, chunk),
-                &lanes(&self.high, chunk),
-            );
+            pull_lanes(iso, &mut points, values, &gradient, &group.low, &group.high);
             for (plane, lanes) in self.points.iter_mut().zip(points) {
                 plane[chunk * LANES..][..LANES].copy_from_slice(&lanes);
             }
@@ -340,54 +268,6 @@ impl Batch {
             self.doubtful.dedup();
         }
     }
-}
-
-/// A cell of which vertices are put.
-struct Home {
-    /// By how much the field differs at most among its corners.
-    spread: f32,
-    /// Along each axis its sides.
-    sides: [[f32; 2]; 3],
-    /// Along each axis between what vertices stay.
-    room: [[f32; 2]; 3],
-}
-
-/// Along one axis of a brick, between what the vertices of its cells stay.
-#[inline]
-fn rooms(axis: &[f32]) -> [[f32; 2]; MAX_BRICK] {
-    let mut rooms = [[0.0; 2]; MAX_BRICK];
-    for (bounds, sides) in rooms.iter_mut().zip(axis.array_windows()) {
-        *bounds = room(*sides);
-    }
-    rooms
-}
-
-/// By how much the field differs among the corners of a cell; infinite if one has no number.
-#[inline(always)]
-fn spread(corners: &[f32; 8]) -> f32 {
-    let (mut low, mut high, mut sum) = ([0.0_f32; 4], [0.0_f32; 4], [0.0_f32; 4]);
-    for n in 0..4 {
-        let (a, b) = (corners[n], corners[n + 4]);
-        (low[n], high[n]) = if a < b { (a, b) } else { (b, a) };
-        sum[n] = a + b;
-    }
-    let least = |a: f32, b: f32| if a < b { a } else { b };
-    let most = |a: f32, b: f32| if a > b { a } else { b };
-    let spread = most(most(high[0], high[1]), most(high[2], high[3]))
-        - least(least(low[0], low[1]), least(low[2], low[3]));
-    // An infinite sum is no number if another one of the other sign comes to it.
-    let sum = (sum[0] + sum[1]) + (sum[2] + sum[3]);
-    if sum.is_nan() { f32::INFINITY } else { spread }
-}
-
-/// By how much the field rises along the axes, from the low corners of a cell to the high ones.
-#[inline(always)]
-fn rise([a, b, c, d, e, f, g, h]: &[f32; 8]) -> [f32; 3] {
-    [
-        ((b - a) + (d - c)) + ((f - e) + (h - g)),
-        ((c - a) + (d - b)) + ((g - e) + (h - f)),
-        ((e - a) + (f - b)) + ((g - c) + (h - d)),
-    ]
 }
 
 /// The field at the corners of the cell at a place of a table.

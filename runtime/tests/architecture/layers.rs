@@ -89,6 +89,7 @@ const KNOWN: &[(&str, &[&str])] = &[
             "mesh/vertex.rs",
             "mesh/vertex/normal.rs",
             "mesh/vertex/room.rs",
+            "mesh/vertex/start.rs",
         ],
     ),
     (

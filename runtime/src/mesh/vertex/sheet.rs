@@ -52,7 +52,7 @@ impl Sheet {
         let sides = cell_sides(bricks.sides(brick), bricks.extent(brick), place);
         let mask = sheets_with_quads(cell.signs, cell.flips, sides).edges(sheet);
         let next = following(cell.signs, cell.flips);
-        let first = bricks.in_table(cell.number);
+        let first = bricks.at(cell.number).in_table();
         let values = corners(table, first, bricks.stride());
         let ends = [0, 1, 2].map(|axis| {
             let at = origin[axis] + place[axis];

@@ -16,6 +16,7 @@ use super::super::Field;
 use super::super::pull::{LANES, Lanes, squares};
 use super::super::settle::{Place, Stray, is_far, settle};
 use super::sheet::{Sheet, Start};
+use super::start::Group;
 use super::wall::{Wall, follow};
 use super::{Batch, Done, Planes, Source, lane, lanes};
 
@@ -37,19 +38,13 @@ struct Verdict {
     turned: [u32; LANES],
 }
 
-/// What raises suspicion, in cells with these low and high sides along x, at the corners of which the field
-/// differs by `spread` and rises by `rise`.
+/// What raises suspicion.
 #[inline(always)]
-fn judge(
-    iso: f32,
-    sides: [&Lanes; 2],
-    (spread, rise): (&Lanes, &[Lanes; 3]),
-    values: &Lanes,
-    gradient: &[Lanes; 3],
-) -> Verdict {
+fn judge(iso: f32, group: &Group, values: &Lanes, gradient: &[Lanes; 3]) -> Verdict {
+    let Group { low: [low, ..], high: [high, ..], rise, spread } = group;
     let (square, rises) = (squares(gradient), squares(rise));
-    let far = is_far(iso, sides, values, &square);
-    let ([low, high], [x, y, z], [u, v, w]) = (sides, gradient, rise);
+    let far = is_far(iso, [low, high], values, &square);
+    let ([x, y, z], [u, v, w]) = (gradient, rise);
     let (mut odd, mut turned) = ([0; LANES], [0; LANES]);
     for i in 0..LANES {
         let slope = x[i].abs() + y[i].abs() + z[i].abs();
@@ -121,13 +116,10 @@ impl Batch {
     /// The suspects, and whether each is far from the surface. Notes those whose normal is doubtful.
     fn suspects(&mut self, iso: f32) -> Vec<(usize, bool)> {
         let mut found = Vec::new();
-        for start in (0..self.count).step_by(LANES) {
-            let chunk = start / LANES;
+        for (chunk, group) in self.groups.iter().enumerate() {
+            let start = chunk * LANES;
             let (values, gradient) = (lane(&self.values, chunk), lanes(&self.gradient, chunk));
-            let (low, high) = (lane(&self.low[0], chunk), lane(&self.high[0], chunk));
-            let (spread, rise) = (lane(&self.spread, chunk), lanes(&self.rise, chunk));
-            let Verdict { far, odd, turned } =
-                judge(iso, [&low, &high], (&spread, &rise), &values, &gradient);
+            let Verdict { far, odd, turned } = judge(iso, group, &values, &gradient);
             if [far, odd, turned] == [[0; LANES]; 3] {
                 continue;
             }
@@ -146,8 +138,7 @@ impl Batch {
     fn sheet<F: Field>(&mut self, source: &Source<'_, F>, brick: usize, vertex: usize) -> Sheet {
         let (cell, sheet) = self.owners[vertex];
         let cell = &source.crossings.of(brick)[cell as usize];
-        let at = |planes: &Planes| planes.each_ref().map(|plane| plane[vertex]);
-        let start = Start { vertex, bounds: [at(&self.low), at(&self.high)] };
+        let start = Start { vertex, bounds: self.bounds(vertex) };
         Sheet::new(source.bricks, brick, (cell, sheet), start, &self.table, &mut self.crossed)
     }
 
