@@ -6,8 +6,8 @@
     record.py check                  fails if README.md's table is not that of the record which it names
 
 A record is a CSV file: comments (`# command: ...`, `# cpu: ...`, `# rustc: ...`, `# commit: ...`), a row of names, and a row for
-each line of JSON; `compare --help` says what the keys are. <cpu> names the model and its best instruction set, so that numbers
-of different CPUs are in different folders; <date> is that of the run, in UTC. A second run on a day replaces the first.
+each line of JSON; `compare --help` says what the keys are. <cpu> names the model and its best instruction set, or the one that
+`--level` or JBT_LEVEL asks for, so that numbers of different CPUs and levels are in different folders; <date> is that of the run, in UTC. A second run on a day replaces the first.
 
 The table stands in README.md between `<!-- benches:begin -->` and `<!-- benches:end -->`. It has one row for each case: where a
 case has several, the largest of those that most contestants took part in.
@@ -53,8 +53,9 @@ class Failure(Exception):
 # The CPU
 
 
-def cpu(cpuinfo, machine):
-    """A description of the CPU and the name of its folder, from the text of /proc/cpuinfo (or "") and the machine's architecture."""
+def cpu(cpuinfo, machine, bound=None):
+    """A description of the CPU and the name of its folder, from the text of /proc/cpuinfo (or ""), the machine's architecture, and the
+    instruction set that was asked for, if one was."""
     fields = {}
     for line in cpuinfo.splitlines():
         name, _, value = line.partition(":")
@@ -64,7 +65,7 @@ def cpu(cpuinfo, machine):
     for words in (("cpu family", "family"), ("model", "model"), ("CPU part", "part")):
         if words[0] in fields:
             numbers.append(f"{words[1]} {fields[words[0]]}")
-    level = instruction_set(set(fields.get("flags", "").split()), machine)
+    level = bound or instruction_set(set(fields.get("flags", "").split()), machine)
     return f"{model} ({', '.join([*numbers, level])})", slug(" ".join([model, *numbers, level]))
 
 
@@ -83,10 +84,19 @@ def slug(text):
     return re.sub(r"[^a-z0-9]+", "-", text).strip("-")
 
 
-def this_cpu():
-    """The description and the folder's name of the CPU that this runs on."""
+def this_cpu(bound=None):
+    """The description and the folder's name of the CPU that this runs on, bounded to an instruction set or not."""
     path = Path("/proc/cpuinfo")
-    return cpu(path.read_text() if path.exists() else "", platform.machine())
+    return cpu(path.read_text() if path.exists() else "", platform.machine(), bound)
+
+
+def bound(arguments, environment):
+    """The instruction set that arguments of `compare` or the environment ask for, if they do."""
+    for place, argument in enumerate(arguments):
+        name, _, value = argument.partition("=")
+        if name == "--level":
+            return value or next(iter(arguments[place + 1 :]), None)
+    return environment.get("JBT_LEVEL") or None
 
 
 # Records
@@ -264,7 +274,7 @@ def run(arguments):
         raise Failure(f"`{' '.join(command)}` failed with exit code {process.returncode}")
     if process.returncode not in (0, 1):
         raise Failure(f"`compare` stopped after {len(rows)} rows, with exit code {process.returncode}")
-    description, folder = this_cpu()
+    description, folder = this_cpu(bound(arguments, os.environ))
     comments = [
         ("command", " ".join(command)),
         ("cpu", f"{description}, {os.cpu_count()} threads"),

@@ -45,6 +45,17 @@ class Records(unittest.TestCase):
         arm = "processor : 0\nCPU implementer : 0x41\nCPU part : 0xd0c\n"
         self.assertEqual(record.cpu(arm, "aarch64")[1], "0x41-part-0xd0c-aarch64")
         self.assertEqual(record.cpu("", "arm64"), ("unknown (arm64)", "unknown-arm64"))
+        self.assertEqual(record.cpu(xeon, "x86_64", "avx2")[1], "intel-xeon-2-00ghz-family-6-model-85-avx2")
+
+    def test_the_level_is_that_of_the_arguments_else_of_the_environment(self):
+        environment = {"JBT_LEVEL": "baseline"}
+        for arguments, expected in [
+            (["--level", "avx2"], "avx2"),
+            (["train", "--level=avx512"], "avx512"),
+            (["train"], "baseline"),
+        ]:
+            self.assertEqual(record.bound(arguments, environment), expected)
+        self.assertIsNone(record.bound(["--quick"], {}))
 
 
 class Table(unittest.TestCase):

@@ -1,16 +1,17 @@
 //! `compare`: ours against the physical limit and other people's libraries, in one run.
 //!
 //! ```text
-//! cargo run --release -p jbt-benches --features peers --bin compare -- [CASE ...] [--json] [--quick] [--threads N]
+//! cargo run --release -p jbt-benches --features peers --bin compare -- [CASE ...] [--json] [--quick] [--threads N] [--level L]
 //! ```
 //!
 //! Everybody is built alike, with the workspace's `[profile.release]`: `opt-level = 3`, `codegen-units = 1`, no link-time optimisation, for
 //! any CPU of the architecture. Vector instructions beyond that are chosen when the program runs, by those who can.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "it is a program")]
 
-use std::process::ExitCode;
+use std::process::{Command, ExitCode};
 
 use clap::Parser;
+use jbt::level::{Level, VARIABLE};
 use jbt_benches::compare::{Case, Options, heading, line};
 
 /// Times the compiler, the hand-written limit and the peers on the same work, one after the other, and prints the medians.
@@ -33,6 +34,24 @@ struct Arguments {
     /// Threads of the cases that mesh; all others run on one
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: u16,
+
+    /// The largest instruction set of ours and of the limit: baseline, avx2, avx512vl or avx512 [default: the best that this CPU has, or
+    /// JBT_LEVEL]. Peers take what they like
+    #[arg(long)]
+    level: Option<Level>,
+}
+
+/// Runs this program again, with a level for everything in it.
+fn again(level: Level) -> Result<ExitCode, String> {
+    if !level.is_available() {
+        let available: Vec<&str> = Level::available().into_iter().map(Level::name).collect();
+        return Err(format!("this CPU has no level {level}; it has {}", available.join(", ")));
+    }
+    let failed = |error: std::io::Error| format!("cannot run again with the level {level}: {error}");
+    let program = std::env::current_exe().map_err(failed)?;
+    let status = Command::new(program).args(std::env::args_os().skip(1)).env(VARIABLE, level.name()).status();
+    let code = status.map_err(failed)?.code().and_then(|code| u8::try_from(code).ok());
+    Ok(code.map_or(ExitCode::FAILURE, ExitCode::from))
 }
 
 fn after_help() -> String {
@@ -45,7 +64,7 @@ once if they take more than 0.04 s, and all do if they take more than 5 s.
 Keys of --json: case, what (it measures), primitives, points, unit (what the times are of), and for each contestant NAME_ns and, where it has several
 forms, NAME_form, the fastest. NAME is one of:
   ours        the compiler, on its best engine (key engine); the lanes interpreter for the case interpreter
-  limit       hand-written loops for sums of points (key limit_level: their instruction set)
+  limit       hand-written loops for sums of points (key limit_level: their instruction set, which --level bounds too)
   lanes       the lanes interpreter, beside ours where both take part
   fidget_jit  fidget's machine code          fidget_vm  its interpreter
   splashsurf  another surface of the same particles
@@ -67,6 +86,14 @@ fn list() -> String {
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
+    if let Some(level) = arguments.level
+        && Level::allowed() != Some(level)
+    {
+        return again(level).unwrap_or_else(|message| {
+            eprintln!("error: {message}");
+            ExitCode::from(2)
+        });
+    }
     let mut cases = Vec::new();
     for name in &arguments.cases {
         match Case::named(name) {

@@ -46,7 +46,7 @@ pub(super) trait Job {
     fn run<V: Vector>(self) -> Self::Output;
 }
 
-/// The name of the instruction set that [`dispatch`] takes on this CPU.
+/// The name of the instruction set that [`dispatch`] takes: the best that this CPU has and `JBT_LEVEL` allows.
 pub(super) fn level() -> &'static str {
     #[cfg(target_arch = "x86_64")]
     {
@@ -60,7 +60,7 @@ pub(super) fn level() -> &'static str {
     "plain"
 }
 
-/// Runs a job with the widest registers that this CPU has.
+/// Runs a job with the widest registers that this CPU has and `JBT_LEVEL` allows.
 pub(super) fn dispatch<J: Job>(job: J) -> J::Output {
     #[cfg(target_arch = "x86_64")]
     {
@@ -156,14 +156,18 @@ mod x86 {
 
     use std::arch::x86_64::*;
 
+    use jbt::Level;
+
     use super::{Job, Vector};
 
+    /// Whether this CPU has AVX2 and FMA, and they may be used: `JBT_LEVEL` bounds everybody alike.
     pub(super) fn has_avx2() -> bool {
-        is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma")
+        Level::best() >= Level::Avx2
     }
 
+    /// The same for AVX-512.
     pub(super) fn has_avx512() -> bool {
-        has_avx2() && is_x86_feature_detected!("avx512f")
+        Level::best() >= Level::Avx512
     }
 
     #[target_feature(enable = "avx2,fma")]
