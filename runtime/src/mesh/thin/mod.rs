@@ -82,7 +82,8 @@ pub(super) fn find<F: Field>(
     let looked = Looked { field, iso, bricks, crossings, crossed: &crossed, chunks, mesh };
     let mut alarms = looked.shreds()?;
     let mut report = ThinReport { shredded: alarms.len() as u64, ..ThinReport::default() };
-    let search = Search { field, axes: &bricks.axes, iso, crossed: &crossed };
+    let blocks = (bricks.edge == EDGE).then(|| (&bricks.places[..], &division.regions[..]));
+    let search = Search { field, axes: &bricks.axes, iso, crossed: &crossed, blocks };
     let group = 64;
     let total = places.len().div_ceil(group);
     progress.begin(Phase::Thin)?;

@@ -61,7 +61,12 @@ pub(super) struct Search<'a, F: Field> {
     pub(super) axes: &'a [Vec<f32>; 3],
     pub(super) iso: f32,
     pub(super) crossed: &'a Crossed<'a>,
+    /// The places of the blocks that the surface may be in, in Morton order, and their regions, if the division went
+    /// so far.
+    pub(super) blocks: Option<Blocks<'a, F::Region>>,
 }
+
+type Blocks<'a, R> = (&'a [[u32; 3]], &'a [R]);
 
 /// A box that the other side may be in.
 #[derive(Clone, Copy)]
@@ -101,6 +106,9 @@ impl<F: Field> Search<'_, F> {
             if self.crossed.is_in_chunk(*near, at) {
                 return Ok(());
             }
+            if let Some(blocks) = self.blocks {
+                return self.divided(blocks, (at, region), *near, found);
+            }
         }
         let (mut boxes, mut places) = ([Box3::default(); MAX_PARTS], [[0; 3]; MAX_PARTS]);
         let mut count = 0;
@@ -121,7 +129,7 @@ impl<F: Field> Search<'_, F> {
         let kept: Vec<usize> = (0..count).filter(|&n| may_cross(ranges[n])).collect();
         if half == EDGE {
             for n in kept {
-                self.block(places[n], (boxes[n], region), *near, found)?;
+                self.block(places[n], (boxes[n], region, None), *near, found)?;
             }
             return Ok(());
         }
@@ -132,11 +140,29 @@ impl<F: Field> Search<'_, F> {
         Ok(())
     }
 
-    /// Searches a block.
+    /// Searches the blocks of a chunk that the division has kept: those whose ranges reach iso.
+    fn divided(
+        &self,
+        (places, regions): Blocks<'_, F::Region>,
+        (chunk, around): ([u32; 3], &F::Region),
+        near: usize,
+        found: &mut Found,
+    ) -> Result<(), MeshError<F::Error>> {
+        let first = places.partition_point(|&place| morton(place) >> 3 < morton(chunk));
+        let inside = places[first..].iter().take_while(|place| place.map(|index| index >> 1) == chunk);
+        for (&place, region) in inside.zip(&regions[first..]) {
+            let first = place.map(|index| index as usize * EDGE);
+            let bounds = box_of(self.axes, first, first.map(|index| index + EDGE));
+            self.block(place, (bounds, around, Some(region)), near, found)?;
+        }
+        Ok(())
+    }
+
+    /// Searches a block in a chunk of this region. The block's own region is used if the chunk's is costly.
     fn block(
         &self,
         at: [u32; 3],
-        (bounds, region): (Box3, &F::Region),
+        (bounds, region, own): (Box3, &F::Region, Option<&F::Region>),
         near: usize,
         found: &mut Found,
     ) -> Result<(), MeshError<F::Error>> {
@@ -144,12 +170,15 @@ impl<F: Field> Search<'_, F> {
         if free == 0 {
             return Ok(());
         }
-        let own;
-        let mut region = region;
-        if self.field.work(region).ops > COSTLY {
-            own = self.narrow(region, &[bounds])?.pop().expect("one box has one region");
-            region = &own;
-        }
+        let narrowed;
+        let region = match own {
+            _ if self.field.work(region).ops <= COSTLY => region,
+            Some(own) => own,
+            None => {
+                narrowed = self.narrow(region, &[bounds])?.pop().expect("one box has one region");
+                &narrowed
+            }
+        };
         let corner = bounds.low.map(|coordinate| [coordinate]);
         let mut value = [0.0];
         self.field.field(region, &corner[0], &corner[1], &corner[2], &mut value).map_err(MeshError::Field)?;
