@@ -6,6 +6,7 @@
 mod common;
 
 use common::{SPICE, check, finish, rows, spicy_plane, table, tables, tame_plane};
+use jbt_ir::pass::gates;
 use jbt_ir::{Domain, FunctionBuilder, Reduction, Tables, Value, Verified};
 
 /// Points that tell rows apart, and points that break things.
@@ -338,5 +339,67 @@ fn grow(b: &mut FunctionBuilder, random: &mut fastrand::Rng, known: &mut Vec<Val
             }
         };
         known.push(value);
+    }
+}
+
+/// The union over rows of blends of the rows that hang under them: most rows are out of reach of most points, and end
+/// early in machine code.
+fn blends() -> Verified {
+    let mut b = FunctionBuilder::new("blends", &["x", "y", "z"]);
+    let outer = table(&mut b, None, 1);
+    let inner = table(&mut b, Some(outer), 4);
+    let (x, y, z) = (b.input(0), b.input(1), b.input(2));
+    let (zero, one, least) = (b.constant(0.0), b.constant(1.0), b.constant(1e-30));
+    let union = b.begin_fold(outer, Reduction::Union, &[zero]);
+    let scale = b.column(outer, 0);
+    let acc = b.begin_fold(inner, Reduction::Ricci, &[least, zero]);
+    let c: Vec<Value> = (0..4).map(|column| b.column(inner, column)).collect();
+    let offsets = [b.sub(x, c[0]), b.sub(y, c[1]), b.sub(z, c[2])];
+    let square = offsets.iter().fold(zero, |sum, &offset| b.fma(offset, offset, sum));
+    let reach = b.fma(square, c[3], one);
+    let near = b.max(reach, zero);
+    let near2 = b.mul(near, near);
+    let value = b.mul(near2, near);
+    let (small, large) = (b.min(acc[0], value), b.max(value, acc[0]));
+    let ratio = b.div(small, large);
+    let ratio2 = b.mul(ratio, ratio);
+    let power = b.mul(ratio2, ratio);
+    let (grown, more) = (b.fma(acc[1], power, one), b.add(acc[1], power));
+    let is_largest = b.lt(acc[0], value);
+    let sum = b.select(is_largest, grown, more);
+    let blend = b.end_fold(&[large, sum]);
+    let root = (0..4).fold(blend[1], |value, _| b.sqrt(value));
+    let blended = b.mul(blend[0], root);
+    let is_doubled = b.lt(zero, scale);
+    let double = b.add(blended, blended);
+    let weighted = b.select(is_doubled, double, blended);
+    let next = b.max(weighted, union[0]);
+    let out = b.end_fold(&[next]);
+    finish(b, &out)
+}
+
+#[test]
+fn rows_that_change_nothing_may_end_early() {
+    let function = blends();
+    let found = gates(function.function());
+    assert_eq!(found.values().flatten().count(), 2, "of the rows inside and of those around them");
+    // Four rows of two each, a unit apart, that reach half a unit far.
+    let number = |row: usize, column: usize| [row as f32, 0.1, 0.2, -4.0][column];
+    let around = rows(1, 4, &[0, 1, 2, 3], &[0, 4], |row, _| row as f32 - 1.0);
+    let inside = rows(4, 8, &[0, 1, 2, 3, 4, 5, 6, 7], &[0, 2, 4, 6, 8], number);
+    let tables = tables([around, inside]);
+    let mut random = fastrand::Rng::with_seed(7);
+    for spread in [0.0, 0.3, 3.0] {
+        // Blocks of neighbours: near no row, near one, near several; and among them numbers that break things.
+        let mut planes = vec![Vec::new(); 3];
+        for middle in [-9.0, 0.0, 1.4, 3.0, 20.0, 6.5, 7.0, f32::NAN] {
+            for point in 0..64 {
+                let is_odd = point % 16 == 5 && middle == 3.0;
+                planes[0].push(if is_odd { f32::INFINITY } else { middle + spread * (random.f32() - 0.5) });
+                planes[1].push(spread * random.f32());
+                planes[2].push(0.2);
+            }
+        }
+        check(&function, &tables, planes);
     }
 }

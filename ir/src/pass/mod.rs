@@ -14,6 +14,7 @@
 mod dce;
 mod fold_constants;
 mod gradient;
+mod idle;
 mod interval;
 mod legalize;
 mod liveness;
@@ -23,6 +24,7 @@ mod simplify;
 pub use dce::dce;
 pub use fold_constants::fold_constants;
 pub use gradient::{GRADIENT_OUTPUTS, gradient, guarded_gradient};
+pub use idle::{Gate, gates};
 pub use interval::{BOUND_SUFFIXES, interval};
 pub use legalize::legalize;
 pub use liveness::max_live;

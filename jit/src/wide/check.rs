@@ -16,6 +16,8 @@ use super::state::{MASKS, Part};
 pub(crate) enum Event {
     /// A loop begins.
     Open,
+    /// Its round may end here: what is where it is at the top has to be there now.
+    Skip,
     /// Its last instruction on values is behind.
     Close,
     /// Wherever one part is, it is the other one from now on.
@@ -69,6 +71,8 @@ impl Replay<'_> {
         mut event: usize,
         contents: &mut Contents,
     ) -> Result<(usize, usize), String> {
+        // What is where in rounds that end early.
+        let mut early: Vec<Contents> = Vec::new();
         loop {
             let next = self.events.get(event);
             match next {
@@ -88,6 +92,7 @@ impl Replay<'_> {
                                 return Err(format!("{at}: part {from} is not at {place:?}, to become {to}"));
                             }
                         }
+                        Event::Skip => early.push(contents.clone()),
                         Event::Close => {
                             let next: Vec<Part> = contents
                                 .values()
@@ -96,6 +101,7 @@ impl Replay<'_> {
                                 .collect();
                             contents.retain(|_, part| !next.contains(part));
                             contents.values_mut().for_each(|part| *part &= !NEXT);
+                            contents.retain(|place, part| early.iter().all(|it| it.get(place) == Some(part)));
                             return Ok((at, event));
                         }
                         Event::Open => loop {
@@ -176,6 +182,9 @@ impl Replay<'_> {
             Inst::Shift { to, a, .. } => ([vector(a), None, None], vector(to)),
             Inst::Compare { to, a, b, .. } => ([vector(a), operand(b), None], condition(to)),
             Inst::Blend { to, mask, no, yes } => ([condition(mask), vector(no), operand(yes)], vector(to)),
+            Inst::Test { a } => ([vector(a), None, None], None),
+            Inst::TestToMask { to, a } => ([vector(a), None, None], mask(to)),
+            Inst::TestMask { a } => ([mask(a), None, None], None),
             Inst::Zero { to } => ([None; 3], vector(to)),
             Inst::Move { to, from } => ([vector(from), None, None], vector(to)),
             Inst::Load { to, from } => ([Some(in_memory(from)), None, None], vector(to)),

@@ -124,6 +124,11 @@ impl Encoder {
                 let is_evex = vex.is_evex || self.shape.has_masks;
                 self.vex(&Vex { immediate: Some(predicate as u8), is_evex, ..vex });
             }
+            Inst::Test { a } => self.vector(Code(Map::M0F38, Prefix::P66, 0x17), a, 0, Operand::Register(a)),
+            Inst::TestToMask { to, a } => {
+                let vex = self.plain(Code(Map::M0F38, Prefix::P66, 0x27), to, a, Operand::Register(a));
+                self.vex(&Vex { is_evex: true, ..vex });
+            }
             Inst::Blend { to, mask, no, yes } if self.shape.has_masks => {
                 let vex = self.plain(Code(Map::M0F38, Prefix::P66, 0x65), to, no, yes);
                 self.vex(&Vex { mask, is_evex: true, ..vex });
@@ -138,7 +143,8 @@ impl Encoder {
             | Inst::MaskNot { .. }
             | Inst::MaskMove { .. }
             | Inst::MaskLoad { .. }
-            | Inst::MaskStore { .. } => self.mask(inst),
+            | Inst::MaskStore { .. }
+            | Inst::TestMask { .. } => self.mask(inst),
             Inst::Jump { condition, to } => self.jump(condition, to),
             Inst::Here(label) => self.labels[label.0 as usize] = Some(self.bytes.len()),
             Inst::Integer(ref inst) => self.integer(inst),
@@ -194,6 +200,7 @@ impl Encoder {
             Inst::MaskMove { to, from } => (none(0x90), to, 0, Operand::Register(from), 16),
             Inst::MaskLoad { to, from } => (none(0x90), to, 0, Operand::Memory(from), 16),
             Inst::MaskStore { to, from } => (none(0x91), from, 0, Operand::Memory(to), 16),
+            Inst::TestMask { a } => (none(0x98), a, 0, Operand::Register(a), 16),
             _ => unreachable!("only instructions on mask registers come here"),
         };
         self.vex(&Vex { code, reg, other, rm, mask: 0, bytes, is_evex: false, immediate: None });

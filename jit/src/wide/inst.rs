@@ -143,7 +143,7 @@ impl Predicate {
     }
 }
 
-/// When a jump is taken, after a comparison of unsigned integers.
+/// When a jump is taken, after a comparison of unsigned integers; [`Equal`](Self::Equal) after a test that found zeros alone.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Condition {
     Below,
@@ -188,6 +188,20 @@ pub(crate) enum Inst {
         to: u8,
         a: u8,
         b: Operand,
+    },
+    /// Whether all bits of a vector are 0, for the next jump. Where there are mask registers, this is done by
+    /// way of one of them: the next two.
+    Test {
+        a: u8,
+    },
+    /// Which lanes are not 0.
+    TestToMask {
+        to: u8,
+        a: u8,
+    },
+    /// Whether no lane is true, for the next jump.
+    TestMask {
+        a: u8,
     },
     /// `yes` where the mask is true.
     Blend {

@@ -4,6 +4,7 @@
 //! open points                      once for each block of points
 //!   n3 = mul n0, n1                    a name for each value
 //!   open rows t0: n5 = phi(n4, n9)     a fold; after it n5 is its result
+//!     skip n7                            the next row, if n7 is 0 in all lanes
 //!     n9 = fma n7, n3, n5
 //!   close rows
 //!   output 0, n5
@@ -14,7 +15,10 @@
 //! in memory, and whoever reads them finds them there. Ops that change no bit (`hold`, `to_bits`,
 //! `from_bits`) are not there either: their result has the name of their operand.
 
-use jbt_ir::{Block, Entity, Fold, Function, Inst, InstKind, Op, Reduction, Table, Type, Value};
+use std::collections::HashSet;
+
+use jbt_ir::pass::{Gate, gates};
+use jbt_ir::{Block, Entity, Fold, Function, Inst, InstKind, Op, Reduction, Store, Table, Type, Value};
 
 use crate::strips::{Plan, Slot, Then};
 
@@ -83,6 +87,8 @@ pub(crate) enum Item {
         plane: usize,
         value: Name,
     },
+    /// Goes on with the next round of the innermost loop if the values of its gate have their bits in all lanes.
+    Skip(LoopId),
     Open(LoopId),
     Close(LoopId),
 }
@@ -132,6 +138,8 @@ pub(crate) struct Loop {
     pub(crate) phis: Vec<Phi>,
     /// Of a loop over points: the input planes that it reads, a bit each, for the first [`POINTERS`] planes.
     pub(crate) inputs: u32,
+    /// Values, and the bits that let its round end early if all of them have them; if it may.
+    pub(crate) gate: Vec<(Name, u32)>,
 }
 
 /// Input planes whose place in the current block of points has a register.
@@ -162,6 +170,7 @@ impl Linear {
         let mut builder = Builder {
             function,
             plan,
+            gates: gates(function),
             linear: Self::default(),
             bindings: vec![Binding::Nothing; function.values.len()],
             rows: vec![NONE; function.tables.len()],
@@ -198,6 +207,8 @@ impl Linear {
 struct Builder<'a> {
     function: &'a Function,
     plan: &'a Plan,
+    /// What has to hold for a row to change nothing.
+    gates: Store<Block, Option<Gate>>,
     linear: Linear,
     bindings: Vec<Binding>,
     /// The loop over each table that is open.
@@ -223,7 +234,15 @@ impl<'a> Builder<'a> {
     fn open(&mut self, over: Over, phis: Vec<Phi>) -> LoopId {
         let id = self.linear.loops.len() as LoopId;
         let open = self.linear.items.len() as u32;
-        self.linear.loops.push(Loop { over, parent: self.current, open, close: open, phis, inputs: 0 });
+        self.linear.loops.push(Loop {
+            over,
+            parent: self.current,
+            open,
+            close: open,
+            phis,
+            inputs: 0,
+            gate: Vec::new(),
+        });
         self.push(Item::Open(id));
         self.current = id;
         if let Some(table) = over.table() {
@@ -257,7 +276,11 @@ impl<'a> Builder<'a> {
                 insts.iter().for_each(|&inst| self.inst(inst));
             } else {
                 self.points = self.open(Over::Points, Vec::new());
-                insts.iter().for_each(|&inst| self.inst(inst));
+                match piece.then {
+                    // The accumulators are in their slots.
+                    Then::End => self.insts(block, insts),
+                    Then::Next | Then::Fold(_) => insts.iter().for_each(|&inst| self.inst(inst)),
+                }
                 match piece.then {
                     Then::Next => {}
                     Then::Fold(fold) => {
@@ -346,6 +369,53 @@ impl<'a> Builder<'a> {
         for (plane, &result) in results.iter().enumerate() {
             let value = self.read(result);
             self.push(Item::Output { plane, value });
+        }
+    }
+
+    /// The last instructions of a block, up to its end: the gate comes as early as it can.
+    fn insts(&mut self, block: Block, insts: &[Inst]) {
+        let function = self.function;
+        let is_at_hand = |&(value, _): &(Value, f32)| {
+            let here = |&inst: &Inst| {
+                function.insts[inst].results.contains(&value) || function.operands(inst).contains(&value)
+            };
+            insts.iter().any(here) || function.blocks[block].results.contains(&value)
+        };
+        // What an earlier piece computes, and nobody reads here, is not kept.
+        let gate = self.gates[block].take().filter(|Gate(gate)| gate.iter().all(is_at_hand));
+        let Some(Gate(gate)) = gate else {
+            return insts.iter().for_each(|&inst| self.inst(inst));
+        };
+        let mut wanted: HashSet<Value> = gate.iter().map(|&(value, _)| value).collect();
+        let mut is_first = vec![false; insts.len()];
+        for (at, &inst) in insts.iter().enumerate().rev() {
+            let data = &function.insts[inst];
+            is_first[at] = data.kind.is_leaf() || data.results.iter().any(|value| wanted.contains(value));
+            if is_first[at] {
+                wanted.extend(function.operands(inst));
+                if let InstKind::Fold(fold) = &data.kind {
+                    self.reads(fold.body, &mut wanted);
+                }
+            }
+        }
+        let mut both = insts.iter().zip(&is_first);
+        both.clone().filter(|&(_, &is_first)| is_first).for_each(|(&inst, _)| self.inst(inst));
+        let gate: Vec<_> = gate.iter().map(|&(value, number)| (self.read(value), number.to_bits())).collect();
+        let id = self.current;
+        self.linear.loops[id as usize].gate = gate;
+        self.push(Item::Skip(id));
+        both.by_ref().filter(|&(_, &is_first)| !is_first).for_each(|(&inst, _)| self.inst(inst));
+    }
+
+    /// What a block and those in it read.
+    fn reads(&self, block: Block, read: &mut HashSet<Value>) {
+        let function = self.function;
+        read.extend(&function.blocks[block].results);
+        for &inst in &function.blocks[block].insts {
+            read.extend(function.operands(inst));
+            if let InstKind::Fold(fold) = &function.insts[inst].kind {
+                self.reads(fold.body, read);
+            }
         }
     }
 
@@ -441,7 +511,7 @@ impl<'a> Builder<'a> {
         let is_guard = fold.reduction == Reduction::Only;
         let over = if is_guard { Over::Guard(fold.table) } else { Over::Rows(fold.table) };
         self.open(over, phis);
-        body.insts.iter().for_each(|&inst| self.inst(inst));
+        self.insts(fold.body, &body.insts);
         for (index, &next) in body.results.iter().enumerate() {
             let next = self.read(next);
             self.linear.loops[id as usize].phis[index].next = next;

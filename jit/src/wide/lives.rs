@@ -40,7 +40,7 @@ fn operands(item: &Item) -> ([Name; 3], usize) {
         Item::Op { op, args, .. } => (args, op.operands().len()),
         Item::Read { from, .. } => ([from, NONE, NONE], 1),
         Item::Keep { value, .. } | Item::Output { value, .. } => ([value, NONE, NONE], 1),
-        Item::Open(_) | Item::Close(_) => ([NONE; 3], 0),
+        Item::Skip(_) | Item::Open(_) | Item::Close(_) => ([NONE; 3], 0),
     }
 }
 
@@ -48,7 +48,7 @@ fn operands(item: &Item) -> ([Name; 3], usize) {
 pub(crate) fn computed(item: &Item) -> Option<Name> {
     match *item {
         Item::Op { to, .. } | Item::Read { to, .. } => Some(to),
-        Item::Keep { .. } | Item::Output { .. } | Item::Open(_) | Item::Close(_) => None,
+        Item::Keep { .. } | Item::Output { .. } | Item::Skip(_) | Item::Open(_) | Item::Close(_) => None,
     }
 }
 
@@ -74,6 +74,15 @@ fn for_each_use(linear: &Linear, mut each: impl FnMut(Name, u32, LoopId)) {
                     each(phi.next, position, current);
                 }
                 current = linear.loops[id as usize].parent;
+            }
+            // A round that ends here hands them on as they are.
+            Item::Skip(id) => {
+                let data = &linear.loops[id as usize];
+                let phis = data.phis.iter().map(|phi| phi.value);
+                let phis = phis.filter(|phi| data.gate.iter().all(|(value, _)| value != phi));
+                for name in data.gate.iter().map(|&(value, _)| value).chain(phis) {
+                    each(name, position, current);
+                }
             }
             Item::Op { .. } | Item::Read { .. } | Item::Keep { .. } | Item::Output { .. } => {}
         }
@@ -277,7 +286,7 @@ pub(crate) fn pressure(linear: &Linear, lives: &Lives, vectors: usize, has_masks
             Item::Close(_) => {
                 alive.pop();
             }
-            Item::Keep { .. } | Item::Output { .. } => {}
+            Item::Keep { .. } | Item::Output { .. } | Item::Skip(_) => {}
         }
     }
     most

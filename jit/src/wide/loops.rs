@@ -1,6 +1,7 @@
 //! What is in registers at the top of each round of a loop: decided and put there when the loop opens.
 
 use super::check::Event;
+use super::inst::{Binary, Condition, Inst, Operand};
 use super::linear::{Kind, LoopId, NONE, Name, Over, Phi};
 use super::state::{MASKS, Open, Part, REGISTERS, Register, SPARE_MASK, State, copy, store};
 
@@ -13,6 +14,9 @@ impl State<'_> {
         }
         self.event(Event::Close);
         let open = self.open.pop().expect("a loop opens before it closes");
+        if let Some(label) = open.early {
+            self.integer(Inst::Here(label));
+        }
         for part in self.journal.split_off(open.journal) {
             self.stored[part as usize] = false;
         }
@@ -29,11 +33,93 @@ impl State<'_> {
             Over::Points | Over::Rows(_) | Over::Guard(_) => self.fill(id),
         }
         let (top, exit) = (self.label(), self.label());
+        let has_gate = !self.linear.loops[id as usize].gate.is_empty();
+        let early = has_gate.then(|| self.label());
         let header = self.occupant;
-        self.open.push(Open { id, header, journal: self.journal.len(), top, exit });
+        self.open.push(Open { id, header, journal: self.journal.len(), top, exit, early });
         self.reserve();
         self.event(Event::Open);
         self.begin(id, top);
+    }
+
+    /// Ends the round of the innermost loop here if the values of its gate have their bits in all lanes.
+    pub(super) fn skip(&mut self, id: LoopId) {
+        self.put_header_back();
+        let linear = self.linear;
+        let gate = &linear.loops[id as usize].gate;
+        let wanted = |&(name, bits): &(Name, u32)| self.parts(name).map(move |part| (part, bits));
+        let parts: Vec<(Part, u32)> = gate.iter().flat_map(wanted).collect();
+        let tested = match (&parts[..], self.register_of(parts[0].0)) {
+            ([(_, 0)], Some(register)) => register,
+            (_, _) => self.different_bits(&parts),
+        };
+        if self.shape.has_masks {
+            self.emit(Inst::TestToMask { to: SPARE_MASK, a: tested }, &[], NONE);
+            self.emit(Inst::TestMask { a: SPARE_MASK }, &[], NONE);
+        } else {
+            self.emit(Inst::Test { a: tested }, &[], NONE);
+        }
+        self.event(Event::Skip);
+        let early = self.open.last().and_then(|open| open.early);
+        let to = early.expect("a loop knows whether its rounds end early");
+        self.integer(Inst::Jump { condition: Condition::Equal, to });
+    }
+
+    /// A register with the bits in which any of some parts is not as wanted. Nobody relies on what was in it.
+    fn different_bits(&mut self, parts: &[(Part, u32)]) -> Register {
+        let header = self.open.last().expect("a loop is open").header;
+        let is_empty = |&register: &Register| self.occupant[register as usize] == NONE;
+        let is_free = |&register: &Register| header[register as usize] == NONE;
+        let (mut free, rest): (Vec<_>, Vec<_>) = self.registers(0).filter(is_free).partition(is_empty);
+        free.extend(rest);
+        // They are empty at the top, where not all are given away ([`choose`](Self::choose)).
+        let [all, one] = [free[0], free[1]];
+        self.vacate(all);
+        self.vacate(one);
+        let mut so_far = None;
+        for &(part, bits) in parts {
+            let to = if so_far.is_none() { all } else { one };
+            let mut place = self.register_of(part);
+            if place.is_none() && (bits != 0 || so_far.is_none()) {
+                self.load_into(to, part);
+                place = Some(to);
+            }
+            let mut read = part;
+            if let Some(a) = place.filter(|_| bits != 0) {
+                let b = Operand::Memory(self.number(bits));
+                self.emit(Inst::Binary { op: Binary::Xor, to, a, b }, &[part, NONE], NONE);
+                (place, read) = (Some(to), NONE);
+            }
+            so_far = match (so_far, place) {
+                (None, place) => place,
+                (Some(a), place) => {
+                    let b = place.map_or_else(|| Operand::Memory(self.home(part)), Operand::Register);
+                    self.emit(Inst::Binary { op: Binary::Or, to: all, a, b }, &[NONE, read], NONE);
+                    Some(all)
+                }
+            };
+        }
+        so_far.expect("a gate asks for something")
+    }
+
+    /// Puts what the top of a round relies on where it is there, and leaves what else there is in registers or
+    /// takes it to the frame.
+    fn put_header_back(&mut self) {
+        let header = self.open.last().expect("a loop is open").header;
+        for (register, &part) in (0..).zip(&header) {
+            if part == NONE || self.occupant[register as usize] == part {
+                continue;
+            }
+            self.vacate(register);
+            match self.register_of(part) {
+                Some(source) => {
+                    self.emit(copy(register, source), &[part], part);
+                    self.release(part);
+                }
+                None => self.load_into(register, part),
+            }
+            self.bind(part, register);
+        }
     }
 
     /// Notes which registers accumulators of the innermost loop begin a round in.
@@ -204,7 +290,7 @@ impl State<'_> {
             }
         }
         candidates.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-        let spare = if self.shape.has_masks { 1 } else { 2 };
+        let spare = if self.shape.has_masks && data.gate.is_empty() { 1 } else { 2 };
         let mut left = [0, 1].map(|class| {
             let registers = self.registers(class).len();
             registers.saturating_sub(self.pressure[id as usize][class] + if class == 0 { spare } else { 0 })

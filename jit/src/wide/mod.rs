@@ -159,6 +159,7 @@ fn walk(state: &mut State<'_>) {
             Item::Read { to, from } => state.read(to, from),
             Item::Keep { slot, value } => state.keep(slot.0, value),
             Item::Output { plane, value } => state.output(plane, value),
+            Item::Skip(id) => state.skip(id),
             Item::Open(id) => state.open_loop(id),
             Item::Close(id) => state.close_loop(id),
         }

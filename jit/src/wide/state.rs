@@ -52,6 +52,8 @@ pub(super) struct Open {
     /// Where a round begins, and where the loop is left.
     pub(super) top: Label,
     pub(super) exit: Label,
+    /// Where a round ends that ends early.
+    pub(super) early: Option<Label>,
 }
 
 /// The walk over a list.

@@ -307,6 +307,28 @@ fn masks_are_encoded() {
 }
 
 #[test]
+fn tests_for_zero_are_encoded() {
+    for register in registers(AVX2) {
+        let decoded = decode(AVX2, Inst::Test { a: register });
+        assert_eq!(decoded.mnemonic(), Mnemonic::Vptest);
+        assert_eq!([0, 1].map(|index| decoded.op_register(index)), [vector(AVX2, register); 2]);
+    }
+    for shape in [AVX512VL, AVX512] {
+        for (to, a) in (0..8).flat_map(|to| registers(shape).map(move |a| (to, a))) {
+            let decoded = decode(shape, Inst::TestToMask { to, a });
+            assert_eq!(decoded.mnemonic(), Mnemonic::Vptestmd);
+            let expected = [mask(to), vector(shape, a), vector(shape, a)];
+            assert_eq!([0, 1, 2].map(|index| decoded.op_register(index)), expected);
+        }
+        for a in 0..8 {
+            let decoded = decode(shape, Inst::TestMask { a });
+            assert_eq!(decoded.mnemonic(), Mnemonic::Kortestw);
+            assert_eq!([0, 1].map(|index| decoded.op_register(index)), [mask(a); 2]);
+        }
+    }
+}
+
+#[test]
 fn integers_are_encoded() {
     for (to, memory) in GPRS.iter().flat_map(|&to| memories(false).into_iter().map(move |m| (to, m))) {
         for (inst, mnemonic, register) in [

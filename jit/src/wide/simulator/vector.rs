@@ -42,6 +42,22 @@ impl Machine {
             Mnemonic::Vfmadd213ps => self.fma(inst, |[to, b, c]| (b, to, c)),
             Mnemonic::Vfmadd231ps => self.fma(inst, |[to, b, c]| (b, c, to)),
             Mnemonic::Vcmpps => self.compare(inst),
+            Mnemonic::Vptest => {
+                let (a, b) = (self.lanes(inst, 0)?, self.lanes(inst, 1)?);
+                self.equal = a.iter().zip(b).all(|(a, b)| a & b == 0);
+                Ok(())
+            }
+            Mnemonic::Vptestmd => {
+                let (a, b) = (self.lanes(inst, 1)?, self.lanes(inst, 2)?);
+                let bits = (0..16).map(|lane| u16::from(a[lane] & b[lane] != 0) << lane);
+                self.masks[inst.op_register(0).number()] = bits.sum();
+                Ok(())
+            }
+            Mnemonic::Kortestw => {
+                let [a, b] = [0, 1].map(|op| self.masks[inst.op_register(op).number()]);
+                self.equal = a | b == 0;
+                Ok(())
+            }
             Mnemonic::Vblendvps => {
                 let mask = self.lanes(inst, 3)?;
                 self.blend(inst, |lane| mask[lane] >> 31 == 1)

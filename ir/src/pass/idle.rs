@@ -1,0 +1,469 @@
+//! Rows that change nothing: what has to hold for that.
+//!
+//! ```text
+//! fold t ricci (m, s):                        gate: near is +0
+//!     near = max ..., 0         +0            as if it were +0
+//!     f    = mul near, near     +0
+//!     next = max f, m           m             m > 0 in every row: it begins at a positive number and only grows
+//!     r    = div (min f, m), m  +0
+//!     sum  = add s, r           s             s is never -0
+//!     yield next, sum           m, s          what it was given: the row may end at the gate
+//! ```
+//!
+//! Most rows of a model are out of reach of most points. An engine that finds the gate to hold at all points that it
+//! computes together may leave the rest of the row out: every bit stays. A row around folds has another gate: that
+//! their results are the numbers that they began with, because all rows inside changed nothing. Both are proven here, by
+//! following what becomes of the numbers, and by facts of the accumulators that hold before every row. (All NaNs count
+//! as one.)
+
+use std::collections::{HashMap, HashSet};
+
+use crate::domain::scalar::Scalar;
+use crate::entity::{Block, Entity, Inst, Store, Value};
+use crate::function::{Fold, Function, InstKind, Reduction};
+use crate::op::{Any, Op, apply};
+
+/// Steps that a gate has to spare, at least. To ask takes about four.
+const LEAST_SPARED: usize = 12;
+/// Steps that a division or a root counts as.
+const SLOW: usize = 6;
+/// Values of a body for which a proof is tried, at most.
+const MOST_TRIED: usize = 4;
+/// Rounds in which facts have to settle, else there are none. Each round but the last drops one.
+const MOST_ROUNDS: usize = 8;
+/// An fma with a constant at least as large has a product that is 0 or so near to it that the sum is not tiny: it is
+/// exact where it cancels, and its zero is +0.
+const LARGE: f32 = 1e-12;
+
+/// What has to hold at a point for a row to change no accumulator there: that these values are these numbers, bit for
+/// bit.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Gate(pub Vec<(Value, f32)>);
+
+/// For the body of each fold its gate, if it has one that spares enough to be asked for. Of several the first.
+#[must_use]
+pub fn gates(function: &Function) -> Store<Block, Option<Gate>> {
+    let mut gates = Store::new();
+    for _ in function.blocks.keys() {
+        gates.push(None);
+    }
+    let mut constants = vec![None; function.values.len()];
+    for data in function.insts.values() {
+        if let InstKind::Constant(number) = data.kind {
+            constants[data.results[0].index()] = Some(number);
+        }
+    }
+    let (mut facts, mut now) = (None, vec![None; function.values.len()]);
+    for data in function.insts.values() {
+        let InstKind::Fold(fold) = &data.kind else { continue };
+        for (at, gate) in candidates(function, &function.blocks[fold.body].insts, &constants) {
+            let facts = facts.get_or_insert_with(|| self::facts(function));
+            if is_idle(function, fold, (at, &gate), facts, &mut now) {
+                gates[fold.body] = Some(gate);
+                break;
+            }
+        }
+    }
+    gates
+}
+
+/// Where gates may be, and what they are. A number that is clamped at 0 is 0 at most points, as a rule; and if all
+/// rows of a fold inside change nothing, its results are what it began with.
+fn candidates(function: &Function, insts: &[Inst], constants: &[Option<f32>]) -> Vec<(usize, Gate)> {
+    let is_zero = |value: Value| constants[value.index()].is_some_and(|number| number.to_bits() == 0);
+    // Of each result of a fold in this block, what the first of the folds that hand it on began with.
+    let mut began: HashMap<Value, f32> = HashMap::new();
+    let (mut candidates, mut clamped, mut last_fold) = (Vec::new(), 0, None);
+    for (at, &inst) in insts.iter().enumerate() {
+        let data = &function.insts[inst];
+        match &data.kind {
+            InstKind::Op { op: Op::Max | Op::Add, args } if is_zero(args[1]) && clamped < MOST_TRIED => {
+                clamped += 1;
+                candidates.push((at, Gate(vec![(data.results[0], 0.0)])));
+            }
+            InstKind::Fold(fold) if fold.reduction != Reduction::Pieces => {
+                for (&result, initial) in data.results.iter().zip(&fold.initial) {
+                    let number = constants[initial.index()].or_else(|| began.get(initial).copied());
+                    began.extend(number.map(|number| (result, number)));
+                }
+                let numbers = data.results.iter().map(|result| Some((*result, *began.get(result)?)));
+                last_fold = numbers.collect::<Option<Vec<_>>>().map(|values| (at, Gate(values)));
+            }
+            _ => {}
+        }
+    }
+    candidates.extend(last_fold);
+    candidates.retain(|&(at, _)| spared(function, insts, at) >= LEAST_SPARED);
+    candidates
+}
+
+/// Whether a row changes no accumulator where a gate holds, which is known behind an instruction. `now` has nothing in
+/// it, before and behind.
+fn is_idle(
+    function: &Function,
+    fold: &Fold,
+    (at, gate): (usize, &Gate),
+    facts: &[Facts],
+    now: &mut [Option<Now>],
+) -> bool {
+    let body = &function.blocks[fold.body];
+    for &(value, number) in &gate.0 {
+        now[value.index()] = Some(Now::number(number));
+    }
+    for &inst in &body.insts[at + 1..] {
+        let data = &function.insts[inst];
+        if let InstKind::Op { op, args } = &data.kind {
+            let result = data.results[0];
+            now[result.index()] = Some(step(*op, args, facts, now, result));
+        }
+    }
+    let of = |value: Value| now[value.index()].unwrap_or_else(|| Now::known(value, facts[value.index()]));
+    let mut all = body.params.iter().zip(&body.results).zip(&fold.initial);
+    let is_idle = all.all(|((&param, &next), &initial)| {
+        let begins = Now::known(initial, facts[initial.index()]);
+        // A guard has one row.
+        let is_first = fold.reduction == Reduction::Only && begins.is_exact() && of(next) == begins;
+        is_first || of(next) == Now::Same(param)
+    });
+    for &inst in &body.insts[at..] {
+        for result in &function.insts[inst].results {
+            now[result.index()] = None;
+        }
+    }
+    is_idle
+}
+
+/// What is left out of a body if its row ends where this instruction, and what it is made of, has been computed.
+fn spared(function: &Function, insts: &[Inst], at: usize) -> usize {
+    let mut wanted: HashSet<Value> = function.operands(insts[at]).iter().copied().collect();
+    let cost = |inst: Inst| match &function.insts[inst].kind {
+        InstKind::Op { op: Op::Div | Op::Sqrt, .. } => SLOW,
+        InstKind::Op { .. } => 1,
+        _ => 0,
+    };
+    let mut spared = insts[at + 1..].iter().map(|&inst| cost(inst)).sum();
+    for &inst in insts[..at].iter().rev() {
+        let data = &function.insts[inst];
+        if data.results.iter().any(|result| wanted.contains(result)) {
+            wanted.extend(function.operands(inst));
+        } else {
+            spared += cost(inst);
+        }
+    }
+    spared
+}
+
+/// What holds for a value at every point, before every row.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+struct Facts {
+    /// It is more than 0, and no NaN.
+    is_positive: bool,
+    /// It is not less than 0.
+    is_not_negative: bool,
+    /// It is not -0.
+    is_not_minus_zero: bool,
+    /// The number, where the program has it; never NaN.
+    constant: Option<f32>,
+    /// The bits, where the program has them.
+    bits: Option<u32>,
+}
+
+impl Facts {
+    fn constant(number: f32) -> Self {
+        Self {
+            is_positive: number > 0.0,
+            is_not_negative: number >= 0.0,
+            is_not_minus_zero: number.to_bits() != (-0.0_f32).to_bits(),
+            constant: (!number.is_nan()).then_some(number),
+            bits: None,
+        }
+    }
+
+    fn is_plus_zero(self) -> bool {
+        self.constant.is_some_and(|number| number.to_bits() == 0)
+    }
+
+    /// What holds for both.
+    fn join(self, other: Self) -> Self {
+        Self {
+            is_positive: self.is_positive && other.is_positive,
+            is_not_negative: self.is_not_negative && other.is_not_negative,
+            is_not_minus_zero: self.is_not_minus_zero && other.is_not_minus_zero,
+            constant: None,
+            bits: None,
+        }
+    }
+
+    /// Of the result of an op.
+    fn of(op: Op, args: &[Self], same: bool) -> Self {
+        let minus = |is_not_minus_zero| Self { is_not_minus_zero, ..Self::default() };
+        match op {
+            // The second operand is the result where an operand is NaN, and where it is not exceeded.
+            Op::Max => Self {
+                is_positive: args[1].is_positive,
+                is_not_negative: args[1].is_not_negative,
+                is_not_minus_zero: args[1].is_positive || args[1].is_plus_zero(),
+                ..Self::default()
+            },
+            Op::Select => args[1].join(args[2]),
+            Op::Hold => args[0],
+            // Only -0 and -0 give -0: where a sum cancels it is +0, and sums are never too small to be exact.
+            Op::Add => minus(args[0].is_not_minus_zero || args[1].is_not_minus_zero),
+            Op::Fma => minus(args[2].constant.is_some_and(|number| number.abs() >= LARGE)),
+            Op::Abs => Self { is_not_negative: true, ..minus(true) },
+            Op::Mul => Self { is_not_negative: same, ..minus(same) },
+            _ => Self::default(),
+        }
+    }
+}
+
+/// The facts of every value. Those of an accumulator are those of its initial value that every next value keeps.
+fn facts(function: &Function) -> Vec<Facts> {
+    let mut search = Search {
+        function,
+        facts: vec![Facts::default(); function.values.len()],
+        accumulators: vec![None; function.values.len()],
+        has_changed: false,
+    };
+    for _ in 0..MOST_ROUNDS {
+        search.has_changed = false;
+        search.block(function.body);
+        if !search.has_changed {
+            return search.facts;
+        }
+    }
+    vec![Facts::default(); function.values.len()]
+}
+
+/// A search for a fixed point, from above.
+struct Search<'a> {
+    function: &'a Function,
+    facts: Vec<Facts>,
+    /// Of each accumulator that has been met.
+    accumulators: Vec<Option<Facts>>,
+    has_changed: bool,
+}
+
+impl Search<'_> {
+    /// Lowers the facts of an accumulator to those that a value has, too.
+    fn meet(&mut self, accumulator: Value, value: Value) {
+        let new = self.facts[value.index()];
+        let place = &mut self.accumulators[accumulator.index()];
+        let met = place.map_or(Facts { constant: None, bits: None, ..new }, |old| old.join(new));
+        if *place != Some(met) {
+            *place = Some(met);
+            self.has_changed = true;
+        }
+    }
+
+    fn block(&mut self, block: Block) {
+        let function = self.function;
+        for &inst in &function.blocks[block].insts {
+            let data = &function.insts[inst];
+            let facts = match &data.kind {
+                InstKind::Constant(number) => Facts::constant(*number),
+                InstKind::BitsConstant(bits) => Facts { bits: Some(*bits), ..Facts::default() },
+                InstKind::Op { op, args } => {
+                    let same = args.len() > 1 && args[0] == args[1];
+                    let args: Vec<Facts> = args.iter().map(|arg| self.facts[arg.index()]).collect();
+                    Facts::of(*op, &args, same)
+                }
+                InstKind::Fold(fold) => {
+                    let body = &function.blocks[fold.body];
+                    for (&param, &initial) in body.params.iter().zip(&fold.initial) {
+                        self.meet(param, initial);
+                        self.facts[param.index()] = self.accumulators[param.index()].unwrap_or_default();
+                    }
+                    self.block(fold.body);
+                    for ((&param, &next), &result) in body.params.iter().zip(&body.results).zip(&data.results)
+                    {
+                        self.meet(param, next);
+                        self.facts[result.index()] = self.accumulators[param.index()].unwrap_or_default();
+                    }
+                    continue;
+                }
+                _ => Facts::default(),
+            };
+            self.facts[data.results[0].index()] = facts;
+        }
+    }
+}
+
+/// What a value is where the gate is +0.
+#[derive(Clone, Copy, PartialEq, Debug)]
+enum Now {
+    /// What it is elsewhere: nothing is known.
+    Same(Value),
+    Zero {
+        /// Whether it is +0; otherwise the sign is unknown.
+        is_plus: bool,
+    },
+    /// Another number, but no NaN.
+    Number(f32),
+    Bits(u32),
+    Truth(bool),
+}
+
+impl Now {
+    /// Not of a NaN.
+    fn number(number: f32) -> Self {
+        if number == 0.0 { Self::Zero { is_plus: number.is_sign_positive() } } else { Self::Number(number) }
+    }
+
+    /// What a value is that the gate does not change.
+    fn known(value: Value, facts: Facts) -> Self {
+        let bits = facts.bits.map(Self::Bits);
+        bits.or_else(|| facts.constant.map(Self::number)).unwrap_or(Self::Same(value))
+    }
+
+    /// Whether all its bits are known.
+    const fn is_exact(self) -> bool {
+        match self {
+            Self::Zero { is_plus } => is_plus,
+            Self::Number(_) | Self::Bits(_) | Self::Truth(_) => true,
+            Self::Same(_) => false,
+        }
+    }
+}
+
+/// What an op gives where the gate is +0.
+fn step(op: Op, args: &[Value], facts: &[Facts], now: &[Option<Now>], result: Value) -> Now {
+    use Now::{Number, Same, Truth, Zero};
+    let of = |value: Value| now[value.index()].unwrap_or_else(|| Now::known(value, facts[value.index()]));
+    let args: Vec<Now> = args.iter().map(|&arg| of(arg)).collect();
+    if let Some(number) = computed(op, &args) {
+        return number;
+    }
+    let facts_of = |value: Value| facts[value.index()];
+    let is_positive = |value: Value| facts_of(value).is_positive;
+    match (op, &args[..]) {
+        (Op::Hold, &[value]) => value,
+        (Op::Mul, &[Zero { .. }, Zero { .. }]) => Zero { is_plus: false },
+        (Op::Mul, &[Zero { .. }, Number(number)] | &[Number(number), Zero { .. }]) if number.is_finite() => {
+            Zero { is_plus: false }
+        }
+        (Op::Add, &[Zero { is_plus: a }, Zero { is_plus: b }]) => Zero { is_plus: a || b },
+        (Op::Add, &[Zero { .. }, Same(value)] | &[Same(value), Zero { .. }])
+            if facts_of(value).is_not_minus_zero =>
+        {
+            Same(value)
+        }
+        (Op::Sub, &[Same(value), Zero { is_plus: true }]) => Same(value),
+        (Op::Max | Op::Min, &[Same(a), Same(b)]) if a == b => Same(a),
+        (Op::Div, &[Zero { is_plus }, Same(value)]) if is_positive(value) => Zero { is_plus },
+        // `a > b ? a : b` and `a < b ? a : b`.
+        (Op::Max, &[Zero { .. }, Same(value)]) if facts_of(value).is_not_negative => Same(value),
+        (Op::Max, &[Same(value), Zero { .. }]) if is_positive(value) => Same(value),
+        (Op::Min, &[zero @ Zero { .. }, Same(value)] | &[Same(value), zero @ Zero { .. }])
+            if is_positive(value) =>
+        {
+            zero
+        }
+        (Op::Lt | Op::Le, &[Zero { .. }, Same(value)]) if is_positive(value) => Truth(true),
+        (Op::Lt | Op::Le, &[Same(value), Zero { .. }]) if is_positive(value) => Truth(false),
+        (Op::Select, &[Truth(truth), yes, no]) => {
+            if truth {
+                yes
+            } else {
+                no
+            }
+        }
+        (Op::Select, &[_, yes, no]) if yes == no => yes,
+        _ => Same(result),
+    }
+}
+
+/// What an op gives of operands that are known exactly.
+fn computed(op: Op, args: &[Now]) -> Option<Now> {
+    let exact = |arg: &Now| match *arg {
+        Now::Zero { is_plus: true } => Some(Any::Real(0.0)),
+        Now::Number(number) => Some(Any::Real(number)),
+        Now::Bits(bits) => Some(Any::Bits(bits)),
+        Now::Truth(truth) => Some(Any::Mask(truth)),
+        Now::Zero { is_plus: false } | Now::Same(_) => None,
+    };
+    let args: Option<Vec<Any<Scalar>>> = args.iter().map(exact).collect();
+    match apply(&mut Scalar, op, &args?) {
+        // Which NaN it is, is the engine's business.
+        Any::Real(number) if number.is_nan() => None,
+        Any::Real(number) => Some(Now::number(number)),
+        Any::Mask(truth) => Some(Now::Truth(truth)),
+        Any::Bits(bits) => Some(Now::Bits(bits)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::builder::FunctionBuilder;
+    use crate::function::Schema;
+    use crate::op::Domain;
+
+    /// A fold of ten roots and what `write` makes of the accumulator, which begins at `start`, and of a clamped number.
+    fn fold(start: f32, write: impl FnOnce(&mut FunctionBuilder, Value, Value) -> Value) -> Option<Gate> {
+        let mut b = FunctionBuilder::new("fold", &["x"]);
+        let columns = vec!["c".to_owned()];
+        let table = b.table(Schema { name: "t".to_owned(), columns, parent: None, slots: Vec::new() });
+        let (x, zero, start) = (b.input(0), b.constant(0.0), b.constant(start));
+        let acc = b.begin_fold(table, Reduction::Ricci, &[start])[0];
+        let column = b.column(table, 0);
+        let reach = b.sub(column, x);
+        let near = b.max(reach, zero);
+        let root = (0..10).fold(near, |value, _| b.sqrt(value));
+        let next = write(&mut b, acc, root);
+        let out = b.end_fold(&[next])[0];
+        let function = b.finish(&[("out".to_owned(), out)]);
+        let gates = gates(&function);
+        let mut found = function.blocks.keys().filter_map(|block| gates[block].clone());
+        let found = found.next();
+        let expected = Gate(vec![(near, 0.0)]);
+        assert!(found.iter().all(|gate| *gate == expected), "the clamped number is the gate");
+        found
+    }
+
+    #[test]
+    fn a_sum_is_gated_unless_it_may_be_minus_zero() {
+        assert!(fold(0.0, |b, acc, term| b.add(acc, term)).is_some());
+        assert!(fold(1.0, |b, acc, term| b.add(term, acc)).is_some());
+        assert!(fold(-0.0, |b, acc, term| b.add(acc, term)).is_none(), "-0 and +0 is +0");
+        assert!(fold(0.0, |b, acc, term| b.mul(acc, term)).is_none());
+        assert!(fold(0.0, |_, _, term| term).is_none(), "the last term, and no sum");
+    }
+
+    #[test]
+    fn the_largest_is_gated_while_it_is_positive() {
+        assert!(fold(1e-30, |b, acc, term| b.max(term, acc)).is_some());
+        assert!(fold(-1.0, |b, acc, term| b.max(term, acc)).is_none(), "0 is larger");
+        // Where the term is NaN the result is, and then the next comparison loses the row before.
+        assert!(fold(1e-30, |b, acc, term| b.max(acc, term)).is_none());
+        assert!(fold(1.0, |b, acc, term| b.min(term, acc)).is_none());
+    }
+
+    #[test]
+    fn a_quotient_by_what_is_positive_is_gated() {
+        let ratio = |b: &mut FunctionBuilder, acc, term| {
+            let (small, large) = (b.min(acc, term), b.max(term, acc));
+            let ratio = b.div(small, large);
+            let is_larger = b.lt(acc, term);
+            let (more, less) = (b.mul(ratio, acc), b.add(acc, ratio));
+            let next = b.select(is_larger, more, less);
+            b.max(next, large)
+        };
+        assert!(fold(1e-30, ratio).is_some());
+        assert!(fold(0.0, ratio).is_none(), "0 / 0");
+    }
+
+    #[test]
+    fn what_spares_little_is_no_gate() {
+        let mut b = FunctionBuilder::new("fold", &["x"]);
+        let schema = Schema { name: "t".to_owned(), columns: Vec::new(), parent: None, slots: Vec::new() };
+        let table = b.table(schema);
+        let (x, zero) = (b.input(0), b.constant(0.0));
+        let acc = b.begin_fold(table, Reduction::Sum, &[zero])[0];
+        let near = b.max(x, zero);
+        let next = b.add(acc, near);
+        let out = b.end_fold(&[next])[0];
+        let function = b.finish(&[("out".to_owned(), out)]);
+        assert!(gates(&function).values().all(Option::is_none));
+    }
+}
