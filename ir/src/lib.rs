@@ -9,6 +9,7 @@ pub mod builder;
 pub mod domain;
 pub mod entity;
 pub mod environment;
+mod facts;
 pub mod function;
 pub mod interpret;
 pub mod level;

@@ -5,6 +5,7 @@ use std::panic::{self, AssertUnwindSafe};
 use cranelift_codegen::Context;
 use cranelift_codegen::control::ControlPlane;
 use jbt_ir::limits::{MAX_JIT_LIVE_VALUES, MAX_JIT_VALUES};
+use jbt_ir::pass::{Gates, gates};
 use jbt_ir::{Function, Inst, InstKind, Level, Op, Verified};
 
 use crate::memory::Code;
@@ -328,11 +329,12 @@ pub(crate) fn emit(function: &Verified, level: Level, options: &Options) -> Resu
         few_registers: options.check == Check::FewRegisters,
     };
     let plan = options.plan(function, WIDE_WHOLE_UP_TO);
-    let blocks = wide::emit(function, &plan, &wish)?;
+    let gates = gates(function);
+    let blocks = wide::emit(function, (&plan, &gates), &wish)?;
     let rest = match options.vectors {
         // Whoever wishes so many vectors gets them at each point.
         Some(_) => None,
-        None => emit_rest(function, &plan, &wish, blocks.lanes)?,
+        None => emit_rest(function, (&plan, &gates), &wish, blocks.lanes)?,
     };
     Ok(Emitted { blocks, rest })
 }
@@ -341,7 +343,7 @@ pub(crate) fn emit(function: &Verified, level: Level, options: &Options) -> Resu
 /// None if it would be no smaller.
 fn emit_rest(
     function: &Function,
-    plan: &Plan,
+    (plan, gates): (&Plan, &Gates),
     wish: &Wish,
     lanes: usize,
 ) -> Result<Option<Blob>, CompileError> {
@@ -350,8 +352,10 @@ fn emit_rest(
     }
     let wish = Wish { vectors: Some(VectorCount::One), ..*wish };
     // A strip of one block has nothing to share: pieces would but store what they hand to each other.
-    match wide::emit(function, &Plan::whole(function), &wish) {
-        Err(CompileError::Frame { .. }) if !plan.is_whole() => wide::emit(function, plan, &wish).map(Some),
+    match wide::emit(function, (&Plan::whole(function), gates), &wish) {
+        Err(CompileError::Frame { .. }) if !plan.is_whole() => {
+            wide::emit(function, (plan, gates), &wish).map(Some)
+        }
         emitted => emitted.map(Some),
     }
 }

@@ -20,6 +20,7 @@ use std::collections::{HashMap, HashSet};
 
 use crate::domain::scalar::Scalar;
 use crate::entity::{Block, Entity, Inst, Store, Value};
+use crate::facts::Fact;
 use crate::function::{Fold, Function, InstKind, Reduction};
 use crate::op::{Any, Op, apply};
 
@@ -29,8 +30,6 @@ const LEAST_SPARED: usize = 12;
 const SLOW: usize = 6;
 /// Values of a body for which a proof is tried, at most.
 const MOST_TRIED: usize = 4;
-/// Rounds in which facts have to settle, else there are none. Each round but the last drops one.
-const MOST_ROUNDS: usize = 8;
 /// An fma with a constant at least as large has a product that is 0 or so near to it that the sum is not tiny: it is
 /// exact where it cancels, and its zero is +0.
 const LARGE: f32 = 1e-12;
@@ -40,9 +39,12 @@ const LARGE: f32 = 1e-12;
 #[derive(Clone, PartialEq, Debug)]
 pub struct Gate(pub Vec<(Value, f32)>);
 
+/// The gate of each fold's body, if it has one.
+pub type Gates = Store<Block, Option<Gate>>;
+
 /// For the body of each fold its gate, if it has one that spares enough to be asked for. Of several the first.
 #[must_use]
-pub fn gates(function: &Function) -> Store<Block, Option<Gate>> {
+pub fn gates(function: &Function) -> Gates {
     let mut gates = Store::new();
     for _ in function.blocks.keys() {
         gates.push(None);
@@ -57,7 +59,7 @@ pub fn gates(function: &Function) -> Store<Block, Option<Gate>> {
     for data in function.insts.values() {
         let InstKind::Fold(fold) = &data.kind else { continue };
         for (at, gate) in candidates(function, &function.blocks[fold.body].insts, &constants) {
-            let facts = facts.get_or_insert_with(|| self::facts(function));
+            let facts = facts.get_or_insert_with(|| crate::facts::facts::<Facts>(function));
             if is_idle(function, fold, (at, &gate), facts, &mut now) {
                 gates[fold.body] = Some(gate);
                 break;
@@ -81,13 +83,14 @@ fn candidates(function: &Function, insts: &[Inst], constants: &[Option<f32>]) ->
                 clamped += 1;
                 candidates.push((at, Gate(vec![(data.results[0], 0.0)])));
             }
-            InstKind::Fold(fold) if fold.reduction != Reduction::Pieces => {
+            InstKind::Fold(fold) => {
                 for (&result, initial) in data.results.iter().zip(&fold.initial) {
                     let number = constants[initial.index()].or_else(|| began.get(initial).copied());
                     began.extend(number.map(|number| (result, number)));
                 }
                 let numbers = data.results.iter().map(|result| Some((*result, *began.get(result)?)));
-                last_fold = numbers.collect::<Option<Vec<_>>>().map(|values| (at, Gate(values)));
+                let gate = numbers.collect::<Option<Vec<_>>>().map(|values| (at, Gate(values)));
+                last_fold = gate.or(last_fold);
             }
             _ => {}
         }
@@ -182,8 +185,17 @@ impl Facts {
     fn is_plus_zero(self) -> bool {
         self.constant.is_some_and(|number| number.to_bits() == 0)
     }
+}
 
-    /// What holds for both.
+impl Fact for Facts {
+    fn leaf(kind: &InstKind) -> Self {
+        match kind {
+            InstKind::Constant(number) => Self::constant(*number),
+            InstKind::BitsConstant(bits) => Self { bits: Some(*bits), ..Self::default() },
+            _ => Self::default(),
+        }
+    }
+
     fn join(self, other: Self) -> Self {
         Self {
             is_positive: self.is_positive && other.is_positive,
@@ -194,7 +206,10 @@ impl Facts {
         }
     }
 
-    /// Of the result of an op.
+    fn carried(self) -> Self {
+        Self { constant: None, bits: None, ..self }
+    }
+
     fn of(op: Op, args: &[Self], same: bool) -> Self {
         let minus = |is_not_minus_zero| Self { is_not_minus_zero, ..Self::default() };
         match op {
@@ -213,78 +228,6 @@ impl Facts {
             Op::Abs => Self { is_not_negative: true, ..minus(true) },
             Op::Mul => Self { is_not_negative: same, ..minus(same) },
             _ => Self::default(),
-        }
-    }
-}
-
-/// The facts of every value. Those of an accumulator are those of its initial value that every next value keeps.
-fn facts(function: &Function) -> Vec<Facts> {
-    let mut search = Search {
-        function,
-        facts: vec![Facts::default(); function.values.len()],
-        accumulators: vec![None; function.values.len()],
-        has_changed: false,
-    };
-    for _ in 0..MOST_ROUNDS {
-        search.has_changed = false;
-        search.block(function.body);
-        if !search.has_changed {
-            return search.facts;
-        }
-    }
-    vec![Facts::default(); function.values.len()]
-}
-
-/// A search for a fixed point, from above.
-struct Search<'a> {
-    function: &'a Function,
-    facts: Vec<Facts>,
-    /// Of each accumulator that has been met.
-    accumulators: Vec<Option<Facts>>,
-    has_changed: bool,
-}
-
-impl Search<'_> {
-    /// Lowers the facts of an accumulator to those that a value has, too.
-    fn meet(&mut self, accumulator: Value, value: Value) {
-        let new = self.facts[value.index()];
-        let place = &mut self.accumulators[accumulator.index()];
-        let met = place.map_or(Facts { constant: None, bits: None, ..new }, |old| old.join(new));
-        if *place != Some(met) {
-            *place = Some(met);
-            self.has_changed = true;
-        }
-    }
-
-    fn block(&mut self, block: Block) {
-        let function = self.function;
-        for &inst in &function.blocks[block].insts {
-            let data = &function.insts[inst];
-            let facts = match &data.kind {
-                InstKind::Constant(number) => Facts::constant(*number),
-                InstKind::BitsConstant(bits) => Facts { bits: Some(*bits), ..Facts::default() },
-                InstKind::Op { op, args } => {
-                    let same = args.len() > 1 && args[0] == args[1];
-                    let args: Vec<Facts> = args.iter().map(|arg| self.facts[arg.index()]).collect();
-                    Facts::of(*op, &args, same)
-                }
-                InstKind::Fold(fold) => {
-                    let body = &function.blocks[fold.body];
-                    for (&param, &initial) in body.params.iter().zip(&fold.initial) {
-                        self.meet(param, initial);
-                        self.facts[param.index()] = self.accumulators[param.index()].unwrap_or_default();
-                    }
-                    self.block(fold.body);
-                    for ((&param, &next), &result) in body.params.iter().zip(&body.results).zip(&data.results)
-                    {
-                        self.meet(param, next);
-                        self.facts[result.index()] = self.accumulators[param.index()].unwrap_or_default();
-                    }
-                    continue;
-                }
-                _ => Facts::default(),
-            };
-            self.facts[data.results[0].index()] = facts;
         }
     }
 }

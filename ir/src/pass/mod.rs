@@ -24,7 +24,7 @@ mod simplify;
 pub use dce::dce;
 pub use fold_constants::fold_constants;
 pub use gradient::{GRADIENT_OUTPUTS, gradient, guarded_gradient};
-pub use idle::{Gate, gates};
+pub use idle::{Gate, Gates, gates};
 pub use interval::{BOUND_SUFFIXES, interval};
 pub use legalize::legalize;
 pub use liveness::max_live;

@@ -17,8 +17,8 @@
 
 use std::collections::HashSet;
 
-use jbt_ir::pass::{Gate, gates};
-use jbt_ir::{Block, Entity, Fold, Function, Inst, InstKind, Op, Reduction, Store, Table, Type, Value};
+use jbt_ir::pass::{Gate, Gates};
+use jbt_ir::{Block, Entity, Fold, Function, Inst, InstKind, Op, Reduction, Table, Type, Value};
 
 use crate::strips::{Plan, Slot, Then};
 
@@ -165,12 +165,12 @@ enum Binding {
 }
 
 impl Linear {
-    /// The list of a function in the pieces of a plan that was made for it.
-    pub(crate) fn new(function: &Function, plan: &Plan) -> Self {
+    /// The list of a function in the pieces of a plan, which was made for it as the gates were.
+    pub(crate) fn new(function: &Function, plan: &Plan, gates: &Gates) -> Self {
         let mut builder = Builder {
             function,
             plan,
-            gates: gates(function),
+            gates,
             linear: Self::default(),
             bindings: vec![Binding::Nothing; function.values.len()],
             rows: vec![NONE; function.tables.len()],
@@ -208,7 +208,7 @@ struct Builder<'a> {
     function: &'a Function,
     plan: &'a Plan,
     /// What has to hold for a row to change nothing.
-    gates: Store<Block, Option<Gate>>,
+    gates: &'a Gates,
     linear: Linear,
     bindings: Vec<Binding>,
     /// The loop over each table that is open.
@@ -382,7 +382,7 @@ impl<'a> Builder<'a> {
             insts.iter().any(here) || function.blocks[block].results.contains(&value)
         };
         // What an earlier piece computes, and nobody reads here, is not kept.
-        let gate = self.gates[block].take().filter(|Gate(gate)| gate.iter().all(is_at_hand));
+        let gate = self.gates[block].as_ref().filter(|Gate(gate)| gate.iter().all(is_at_hand));
         let Some(Gate(gate)) = gate else {
             return insts.iter().for_each(|&inst| self.inst(inst));
         };

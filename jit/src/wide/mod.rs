@@ -37,6 +37,7 @@ mod state;
 mod tests;
 mod transfers;
 
+use jbt_ir::pass::Gates;
 use jbt_ir::{Entity, Function, Level, limits};
 
 use self::check::Replay;
@@ -97,12 +98,16 @@ const fn shape(level: Level) -> (Shape, Count) {
     }
 }
 
-/// Emits a function in the pieces of a plan that was made for it.
+/// Emits a function in the pieces of a plan, which was made for it as the gates were.
 ///
 /// # Errors
 /// When the frame is too large; when it is checked and found wrong, which is a defect of the emitter.
-pub(crate) fn emit(function: &Function, plan: &Plan, wish: &Wish) -> Result<Blob, CompileError> {
-    let linear = Linear::new(function, plan);
+pub(crate) fn emit(
+    function: &Function,
+    (plan, gates): (&Plan, &Gates),
+    wish: &Wish,
+) -> Result<Blob, CompileError> {
+    let linear = Linear::new(function, plan, gates);
     let lives = Lives::new(&linear);
     let (shape, mut count) = shape(wish.level);
     if wish.few_registers {

@@ -15,6 +15,7 @@
 //! `fma` takes the same ends and adds the low and the high bound of its third operand in the one rounding.
 
 use super::{Interval, Range, Sign, of_both, of_one, same};
+use crate::facts::Fact as _;
 use crate::op::{Domain, Op};
 
 use super::facts::Facts;

@@ -3,12 +3,10 @@
 //! Facts make programs small: an end of a product of ranges that are not negative takes one op, not four products and their smallest.
 //! They are found in one place, from ops alone, so that an emitted program and the scalar meaning take the same forms
 //! and give the same bounds.
-//!
-//! An accumulator has the facts that its initial value has and that every next value keeps. [`accumulators`] finds them: it begins with
-//! those of the initial values and goes through the function, dropping what the next values do not have, until nothing is dropped.
+//! Those of accumulators are found by [`crate::facts`].
 
-use crate::entity::{Block, Entity, Value};
-use crate::function::{Function, InstKind};
+use crate::facts::Fact;
+use crate::function::InstKind;
 use crate::op::Op;
 
 /// The signs of both bounds.
@@ -76,7 +74,22 @@ impl Facts {
         Self { constant: Some(number), sign, ..Self::POINT }
     }
 
-    /// What holds for both.
+    /// Whether it is a constant other than a zero.
+    fn is_nonzero(self) -> bool {
+        self.constant.is_some_and(|number| number != 0.0)
+    }
+}
+
+impl Fact for Facts {
+    fn leaf(kind: &InstKind) -> Self {
+        match kind {
+            InstKind::Input(_) => Self { paired: true, ..Self::default() },
+            InstKind::Constant(number) => Self::constant(*number),
+            InstKind::BitsConstant(_) | InstKind::Column { .. } => Self::POINT,
+            InstKind::Op { .. } | InstKind::Fold(_) => unreachable!("these are no leaves"),
+        }
+    }
+
     fn join(self, other: Self) -> Self {
         Self {
             point: self.point && other.point,
@@ -86,8 +99,7 @@ impl Facts {
         }
     }
 
-    /// The result of `op`; `same` says that its first two operands are one value.
-    pub(super) fn of(op: Op, args: &[Self], same: bool) -> Self {
+    fn of(op: Op, args: &[Self], same: bool) -> Self {
         let point = args.iter().all(|arg| arg.point);
         let paired = match op {
             Op::Add | Op::Sub => args[0].paired && args[1].paired,
@@ -103,9 +115,8 @@ impl Facts {
         Self { point, constant: None, sign: sign(op, args, same), paired: point || paired }
     }
 
-    /// Whether it is a constant other than a zero.
-    fn is_nonzero(self) -> bool {
-        self.constant.is_some_and(|number| number != 0.0)
+    fn carried(self) -> Self {
+        Self { constant: None, ..self }
     }
 }
 
@@ -146,80 +157,4 @@ fn extreme(args: &[Facts], beyond: Sign) -> Sign {
     }
     let sure = args[0].point || !args[1].point || args[1].constant.is_some();
     if sure { beyond } else { Sign::Unknown }
-}
-
-/// Rounds of [`accumulators`] after which it gives up what is left. Two or three are usual; each drops a fact at least.
-const MAX_ROUNDS: usize = 32;
-
-/// The facts of every accumulator, by its value in the body of its fold; the final value has them, too.
-pub(super) fn accumulators(function: &Function) -> Vec<Facts> {
-    let none = vec![None; function.values.len()];
-    let mut search = Search { function, facts: none.clone(), accumulators: none, changed: false };
-    for _ in 0..MAX_ROUNDS {
-        search.changed = false;
-        search.block(function.body);
-        if !search.changed {
-            return search.accumulators.into_iter().map(Option::unwrap_or_default).collect();
-        }
-    }
-    vec![Facts::default(); function.values.len()]
-}
-
-/// A search for a fixed point, from above.
-struct Search<'a> {
-    function: &'a Function,
-    /// Of each value that has been met.
-    facts: Vec<Option<Facts>>,
-    /// Of each accumulator that has been met.
-    accumulators: Vec<Option<Facts>>,
-    changed: bool,
-}
-
-impl Search<'_> {
-    fn of(&self, value: Value) -> Facts {
-        self.facts[value.index()].expect("a verified function defines values before it uses them")
-    }
-
-    /// Lowers the facts of an accumulator to those that `value` has, too.
-    fn meet(&mut self, accumulator: Value, value: Value) {
-        let new = self.of(value);
-        let place = &mut self.accumulators[accumulator.index()];
-        let met = place.map_or(Facts { constant: None, ..new }, |old| old.join(new));
-        if *place != Some(met) {
-            *place = Some(met);
-            self.changed = true;
-        }
-    }
-
-    fn block(&mut self, block: Block) {
-        let function = self.function;
-        for &inst in &function.blocks[block].insts {
-            let data = &function.insts[inst];
-            let facts = match &data.kind {
-                InstKind::Input(_) => Facts { paired: true, ..Facts::default() },
-                InstKind::Constant(number) => Facts::constant(*number),
-                InstKind::BitsConstant(_) | InstKind::Column { .. } => Facts::POINT,
-                InstKind::Op { op, args } => {
-                    let same = args.len() > 1 && args[0] == args[1];
-                    let args: Vec<Facts> = args.iter().map(|&arg| self.of(arg)).collect();
-                    Facts::of(*op, &args, same)
-                }
-                InstKind::Fold(fold) => {
-                    let body = &function.blocks[fold.body];
-                    for (&param, &initial) in body.params.iter().zip(&fold.initial) {
-                        self.meet(param, initial);
-                        self.facts[param.index()] = self.accumulators[param.index()];
-                    }
-                    self.block(fold.body);
-                    for ((&param, &next), &result) in body.params.iter().zip(&body.results).zip(&data.results)
-                    {
-                        self.meet(param, next);
-                        self.facts[result.index()] = self.accumulators[param.index()];
-                    }
-                    continue;
-                }
-            };
-            self.facts[data.results[0].index()] = Some(facts);
-        }
-    }
 }

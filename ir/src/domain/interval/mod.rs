@@ -49,6 +49,7 @@ pub(crate) use walk::{Ground, Walk};
 
 use facts::{Facts, Sign};
 
+use crate::facts::Fact as _;
 use crate::op::{Domain, Op};
 
 /// A real: two bounds, what is known of them, and which value they belong to.

@@ -4,6 +4,7 @@
 //! b may be NaN, the result may be NaN, and a bound has to say so. `min` is its mirror image.
 
 use super::{Certainty, Interval, Range, Sign, of_both, same};
+use crate::facts::Fact as _;
 use crate::op::{Domain, Op};
 
 use super::facts::Facts;

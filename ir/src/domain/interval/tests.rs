@@ -305,7 +305,7 @@ block0:
 }
 ";
     let function = verify(parse(text).expect("it parses")).expect("it obeys the rules");
-    let facts = facts::accumulators(function.function());
+    let facts = crate::facts::facts::<Facts>(function.function());
     for value in [4, 5] {
         assert_eq!(facts[value].sign, Sign::Unknown, "{}", Value::new(value));
         assert!(!facts[value].point);

@@ -11,10 +11,10 @@
 //! A fold has for each accumulator what is left of it: two bounds of a real, two masks for what is certain of a mask; one value
 //! of a point, and nothing for bits that are not known.
 
-use super::facts::accumulators;
 use super::{Certainty, Facts, Interval, Known};
 use crate::domain::scalar::Scalar;
 use crate::entity::{Block, Entity, Table, Value};
+use crate::facts::facts;
 use crate::function::{Fold, Function, InstKind};
 use crate::op::{Any, Domain, Type, apply};
 use crate::origin::Origin;
@@ -67,7 +67,7 @@ pub(crate) trait Ground: Sized {
 /// A walk through one function.
 pub(crate) struct Walk<'a, G: Ground> {
     function: &'a Function,
-    /// The facts of accumulators.
+    /// The facts of values, of which those of accumulators are asked for.
     facts: Vec<Facts>,
     pub(crate) interval: Interval<G::Bound>,
     pub(crate) ground: G,
@@ -78,7 +78,7 @@ impl<'a, G: Ground> Walk<'a, G> {
     pub(crate) fn new(function: &'a Function, bounds: G::Bound, ground: G) -> Self {
         Self {
             function,
-            facts: accumulators(function),
+            facts: facts(function),
             interval: Interval::new(bounds),
             ground,
             values: vec![None; function.values.len()],
