@@ -44,10 +44,10 @@ mod order;
 mod parameters;
 mod tree;
 
-use arena::check_occurrences;
-pub use arena::{CheckedNode, NodeId};
+pub use arena::{CheckedNode, Children, NodeId};
+use arena::{Paths, check_occurrences};
 use dependence::Dependence;
-use groups::{check_groups, widths};
+use groups::{check_groups, share_name, widths};
 pub use node::MIN_RECIPROCAL_CONDITION;
 use node::check_node;
 use numbers::{check_numbers, check_words};
@@ -94,9 +94,9 @@ impl Model {
             return Err(report.finish());
         }
         let (attributes, dependence) = (self.attributes.clone(), Arc::new(dependence));
-        let (nodes, source) = (nodes.into(), self.source.clone());
+        let (paths, nodes, source) = (Paths::new(&nodes), nodes.into(), self.source.clone());
         let origin = self.origin.map_or(ModelOrigin::WORLD, ModelOrigin::new);
-        let tree = CheckedTree { iso, attributes, nodes, parameters, dependence, origin, source };
+        let tree = CheckedTree { iso, attributes, nodes, paths, parameters, dependence, origin, source };
         let found = || ModelOrigin::of(tree.support());
         Ok(if self.origin.is_some() { tree } else { CheckedTree { origin: found(), ..tree } })
     }
@@ -146,7 +146,7 @@ impl Model {
                 || Ok(node.kind().clone()),
                 |recipe| parameters::cook(recipe, values, iso, node.span()),
             );
-            let kind = match made {
+            let mut kind = match made {
                 Ok(kind) => {
                     check_node(report, &kind, node.children().len(), node.span(), &groups, iso);
                     kind
@@ -156,6 +156,7 @@ impl Model {
                     node.kind().clone()
                 }
             };
+            share_name(&mut kind, &self.attributes);
             let children = node.children().iter().map(|child| ids[&child.identity()]).collect();
             ids.insert(tree.identity(), id);
             nodes.push(CheckedNode { kind, children, span: node.span() });

@@ -22,10 +22,11 @@
 //! ```
 
 use std::fmt;
+use std::sync::Arc;
 
 use rustc_hash::FxHashMap as HashMap;
 
-use crate::entity::{Block, Entity, Inst, Table, Value};
+use crate::entity::{Block, Entity, Inst, Table, Value, Values};
 use crate::function::{BlockData, Fold, Function, InstData, InstKind, Reduction, Schema};
 use crate::op::{Domain, Op, Type};
 use crate::origin::Origin;
@@ -44,7 +45,7 @@ enum Key {
 struct OpenBlock {
     block: Block,
     /// The table of its fold; `None` for the function's body.
-    fold: Option<(Table, Reduction, Vec<Value>)>,
+    fold: Option<(Table, Reduction, Values)>,
     /// What can be found while this block is open.
     known: Vec<Key>,
 }
@@ -92,7 +93,11 @@ impl FunctionBuilder {
     pub fn like(function: &Function) -> Self {
         let inputs: Vec<&str> = function.inputs.iter().map(String::as_str).collect();
         let mut builder = Self::new(&function.name, &inputs);
-        builder.function.tables = function.tables.clone();
+        builder.function.tables = Arc::clone(&function.tables);
+        // A changed version is about as long.
+        builder.function.values.reserve(function.values.len());
+        builder.function.insts.reserve(function.insts.len());
+        builder.known.reserve(function.insts.len());
         builder
     }
 
@@ -103,19 +108,19 @@ impl FunctionBuilder {
 
     /// Declares a table.
     pub fn table(&mut self, schema: Schema) -> Table {
-        self.function.tables.push(schema)
+        Arc::make_mut(&mut self.function.tables).push(schema)
     }
 
     /// Adds a column to a table and returns its index. Lowering learns the columns of a row while it writes the body.
     pub fn add_column(&mut self, table: Table, name: &str) -> usize {
-        let columns = &mut self.function.tables[table].columns;
+        let columns = &mut Arc::make_mut(&mut self.function.tables)[table].columns;
         columns.push(name.to_owned());
         columns.len() - 1
     }
 
     /// Adds a leaf slot to a table.
     pub fn add_slot(&mut self, table: Table, slot: u32) {
-        self.function.tables[table].slots.push(slot);
+        Arc::make_mut(&mut self.function.tables)[table].slots.push(slot);
     }
 
     /// Sets the origin of the instructions that follow, and returns the one before.
@@ -195,7 +200,7 @@ impl FunctionBuilder {
             *place = Some(arg);
         }
         let depth = args.iter().map(|arg| self.depth[arg.index()]).max().unwrap_or(0);
-        self.insert(Key::Op(op, key), depth, InstKind::Op { op, args: args.to_vec() }, op.result())
+        self.insert(Key::Op(op, key), depth, InstKind::Op { op, args: args.into() }, op.result())
     }
 
     /// Opens a fold over `table` and returns its accumulators; what follows is its body, up to [`end_fold`](Self::end_fold).
@@ -203,8 +208,9 @@ impl FunctionBuilder {
         let depth = self.open.len();
         let params: Vec<Value> =
             initial.iter().map(|&value| self.new_value(self.function.values[value], depth)).collect();
-        let block = self.function.blocks.push(BlockData { params: params.clone(), ..BlockData::default() });
-        let fold = Some((table, reduction, initial.to_vec()));
+        let block =
+            self.function.blocks.push(BlockData { params: params.as_slice().into(), ..BlockData::default() });
+        let fold = Some((table, reduction, initial.into()));
         self.open.push(OpenBlock { block, fold, known: Vec::new() });
         params
     }
@@ -230,9 +236,9 @@ impl FunctionBuilder {
         let depth = self.open.len() - 1;
         let results: Vec<Value> =
             initial.iter().map(|&value| self.new_value(self.function.values[value], depth)).collect();
-        self.function.blocks[open.block].results = next.to_vec();
+        self.function.blocks[open.block].results = next.into();
         let fold = Fold { table, reduction, initial, body: open.block };
-        self.append(depth, InstKind::Fold(fold), results.clone());
+        self.append(depth, InstKind::Fold(fold), results.as_slice().into());
         results
     }
 
@@ -253,7 +259,7 @@ impl FunctionBuilder {
         self.function.values.push(type_)
     }
 
-    fn append(&mut self, depth: usize, kind: InstKind, results: Vec<Value>) -> Inst {
+    fn append(&mut self, depth: usize, kind: InstKind, results: Values) -> Inst {
         let definition = self.function.insts.next_key();
         for result in &results {
             self.definition[result.index()] = Some(definition);
@@ -273,7 +279,7 @@ impl FunctionBuilder {
             InstKind::Op { args, .. } => args.iter().all(|&arg| self.is_uniform(arg)),
             InstKind::Input(_) | InstKind::Fold(_) => false,
         };
-        self.append(depth, kind, vec![value]);
+        self.append(depth, kind, Values::from_slice(&[value]));
         self.open[depth].known.push(key.clone());
         self.known.insert(key, value);
         value

@@ -9,6 +9,8 @@ use std::fmt;
 use std::marker::PhantomData;
 use std::ops::{Index, IndexMut};
 
+use smallvec::SmallVec;
+
 /// A typed index: the key of a [`Store`].
 pub trait Entity: Copy + Eq {
     /// The entity with this index.
@@ -63,6 +65,9 @@ entity!(
     Table, "t"
 );
 
+/// A short list of values: operands, results, accumulators. Up to four of them take no allocation.
+pub type Values = SmallVec<[Value; 4]>;
+
 /// A growing array indexed by an entity.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Store<K, V> {
@@ -81,6 +86,11 @@ impl<K: Entity, V> Store<K, V> {
     pub fn push(&mut self, item: V) -> K {
         self.items.push(item);
         K::new(self.items.len() - 1)
+    }
+
+    /// Makes room for so many more items.
+    pub fn reserve(&mut self, more: usize) {
+        self.items.reserve(more);
     }
 
     /// The name that the next `push` will give.

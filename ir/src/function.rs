@@ -24,8 +24,9 @@
 //! current row owns.
 
 use std::fmt;
+use std::sync::Arc;
 
-use crate::entity::{Block, Entity, Inst, Store, Table, Value};
+use crate::entity::{Block, Entity, Inst, Store, Table, Value, Values};
 use crate::op::{Op, Type};
 use crate::origin::Origin;
 
@@ -108,7 +109,7 @@ pub struct Fold {
     /// What dropping a row does.
     pub reduction: Reduction,
     /// Accumulators before the first row.
-    pub initial: Vec<Value>,
+    pub initial: Values,
     /// The body: its parameters are the accumulators, its results their next values.
     pub body: Block,
 }
@@ -134,7 +135,7 @@ pub enum InstKind {
         /// The op.
         op: Op,
         /// Its operands.
-        args: Vec<Value>,
+        args: Values,
     },
     /// The loop over a table.
     Fold(Fold),
@@ -167,7 +168,7 @@ pub struct InstData {
     /// What it does.
     pub kind: InstKind,
     /// What it defines: one value, or the final accumulators of a fold.
-    pub results: Vec<Value>,
+    pub results: Values,
     /// Where it comes from.
     pub origin: Origin,
 }
@@ -176,11 +177,11 @@ pub struct InstData {
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub struct BlockData {
     /// What the block binds: the accumulators of a fold; nothing for the function's body.
-    pub params: Vec<Value>,
+    pub params: Values,
     /// Its instructions, in order of execution.
     pub insts: Vec<Inst>,
     /// What it yields: the next accumulators, or the function's outputs.
-    pub results: Vec<Value>,
+    pub results: Values,
 }
 
 /// A program: points in, answers out.
@@ -192,8 +193,8 @@ pub struct Function {
     pub inputs: Vec<String>,
     /// Names of the output planes, in the order of the body's results.
     pub outputs: Vec<String>,
-    /// The tables that it folds.
-    pub tables: Store<Table, Schema>,
+    /// The tables that it folds. Its rewrites share them.
+    pub tables: Arc<Store<Table, Schema>>,
     /// The type of every value.
     pub values: Store<Value, Type>,
     /// All instructions.
@@ -214,7 +215,7 @@ impl Function {
             name: name.to_owned(),
             inputs: inputs.iter().map(|&input| input.to_owned()).collect(),
             outputs: Vec::new(),
-            tables: Store::new(),
+            tables: Arc::default(),
             values: Store::new(),
             insts: Store::new(),
             blocks,

@@ -28,7 +28,7 @@ pub mod translate;
 pub mod verify;
 
 pub use builder::FunctionBuilder;
-pub use entity::{Block, Entity, Inst, Store, Table, Value};
+pub use entity::{Block, Entity, Inst, Store, Table, Value, Values};
 pub use function::{BlockData, Fold, Function, InstData, InstKind, Reduction, Schema};
 pub use level::Level;
 pub use op::{Any, Domain, Op, Type, apply};

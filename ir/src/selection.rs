@@ -9,7 +9,8 @@
 //!     first active row of the parent runs active[0..2]: rows 0 and 3; the second one runs rows 7 and 8
 //! ```
 //!
-//! Starts are kept by *position* and not by row, so that a selection is as long as what it selects, however many rows there are.
+//! Starts are kept by *position* and not by row, so that a selection is as long as what it selects, however many rows there are. A table
+//! is *present* if it has no parent, or if a row of its parent is active; of the others nothing is kept, and nobody looks at them.
 //!
 //! Engines follow these lists blindly. So a selection is made in few ways only: from tables ([`Selection::new`]), and from
 //! another selection by leaving rows out ([`Selection::narrow`]), by giving them other numbers ([`Selection::shifted`]) or by following tables whose
@@ -55,13 +56,21 @@ struct Span {
     end: u32,
 }
 
+impl Span {
+    /// That of a table which is not present: one start, which is the first word, and no rows.
+    const ABSENT: Self = Self { starts: 0, active: 1, end: 1 };
+}
+
 /// The active rows of every table. See the module.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub struct Selection {
     extent: Arc<Extent>,
-    /// For each table its starts, then its active rows.
+    /// A zero; then for each table that is present its starts, then its active rows.
     words: Vec<u32>,
+    /// By table.
     spans: Vec<Span>,
+    /// The tables that are present, ascending.
+    present: Vec<Table>,
 }
 
 /// Which rows of a table have other numbers now.
@@ -92,28 +101,53 @@ impl Selection {
     /// The tables do not fit the function ([`Tables::check`]).
     pub fn checked(function: &Function, tables: &Tables) -> Result<Self, TableError> {
         tables.check(function)?;
-        let mut result = Self { extent: Arc::new(Extent::new(function, tables)), ..Self::default() };
+        let mut result = Self::default();
+        result.clear(&Arc::new(Extent::new(function, tables)));
         let active = tables.tables.values().map(|rows| rows.active.len());
         result.words.reserve_exact(2 * active.sum::<usize>() + 2 * tables.tables.len());
         for (table, rows) in tables.tables.iter() {
-            let starts = result.words.len();
             let parents = match function.tables[table].parent {
                 None => vec![0],
                 Some(parent) => result.active(parent).to_vec(),
             };
-            result.words.resize(starts + parents.len() + 1, 0);
-            let active = result.words.len();
+            let Some(active) = result.begin(table, parents.len()) else { continue };
+            let starts = active - parents.len();
             for (position, &parent) in parents.iter().enumerate() {
                 result.words.extend_from_slice(rows.range(parent as usize));
-                result.words[starts + position + 1] = word(result.words.len() - active);
+                result.words[starts + position] = word(result.words.len() - active);
             }
-            result.spans.push(Span {
-                starts: word(starts),
-                active: word(active),
-                end: word(result.words.len()),
-            });
+            result.end(table);
         }
         Ok(result)
+    }
+
+    /// Forgets all tables. Memory is kept.
+    fn clear(&mut self, extent: &Arc<Extent>) {
+        self.extent.clone_from(extent);
+        self.words.clear();
+        self.words.push(0);
+        self.spans.clear();
+        self.spans.resize(extent.counts.len(), Span::ABSENT);
+        self.present.clear();
+    }
+
+    /// Begins the lists of a table under so many active rows: its starts are zeros, and its active rows follow, from this word on. A table under
+    /// none is not present.
+    fn begin(&mut self, table: Table, parents: usize) -> Option<usize> {
+        if parents == 0 {
+            return None;
+        }
+        let starts = self.words.len();
+        self.words.resize(starts + parents + 1, 0);
+        let active = self.words.len();
+        self.spans[table.index()] = Span { starts: word(starts), active: word(active), end: word(active) };
+        self.present.push(table);
+        Some(active)
+    }
+
+    /// Ends the lists of the table that was begun last.
+    fn end(&mut self, table: Table) {
+        self.spans[table.index()].end = word(self.words.len());
     }
 
     /// What it selects from.
@@ -133,6 +167,21 @@ impl Selection {
     #[must_use]
     pub fn tables(&self) -> usize {
         self.spans.len()
+    }
+
+    /// The tables that have no parent, and those whose parents have active rows, ascending. All others have no active rows.
+    #[inline]
+    #[must_use]
+    pub fn present(&self) -> &[Table] {
+        &self.present
+    }
+
+    /// The lists of every table: [`starts`](Self::starts), and [`active`](Self::active) rows.
+    pub fn lists(&self) -> impl Iterator<Item = (&[u32], &[u32])> {
+        self.spans.iter().map(|span| {
+            let [starts, active, end] = [span.starts, span.active, span.end].map(|word| word as usize);
+            (&self.words[starts..active], &self.words[active..end])
+        })
     }
 
     /// The active rows of a table, those of all rows of its parent one after the other.
@@ -160,7 +209,7 @@ impl Selection {
     /// Active rows of all tables.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.spans.iter().map(|span| (span.end - span.active) as usize).sum()
+        self.present.iter().map(|&table| self.active(table).len()).sum()
     }
 
     /// Whether no table has an active row.
@@ -179,27 +228,23 @@ impl Selection {
         let counts = counts(masks);
         let starts = self.words.len() - self.len();
         for (part, &count) in parts.iter_mut().zip(&counts) {
-            part.extent.clone_from(&self.extent);
-            part.words.clear();
-            part.spans.clear();
+            part.clear(&self.extent);
             // A start for each row that stays is the most, and all that there are is the most.
-            part.words.reserve_exact(count + starts.min(count + self.spans.len() + 1));
-            part.spans.reserve_exact(self.spans.len());
+            part.words.reserve_exact(count + starts.min(count + self.present.len() + 1));
         }
-        // Where the masks of each table begin.
-        let mut firsts = Vec::with_capacity(self.spans.len());
+        // Where the masks of each table that is present begin.
+        let mut firsts = vec![0; self.spans.len()];
         let mut first = 0;
-        for index in 0..self.spans.len() {
-            let table = Table::new(index);
+        for &table in &self.present {
             let (before, rest) = masks.split_at_mut(first);
             let mine = &mut rest[..self.active(table).len()];
             let all = [u8::MAX >> (MAX_PARTS - parts.len())];
-            let above = match self.extent.parents[index] {
+            let above = match self.parent(table) {
                 None => &all[..],
                 Some(parent) => &before[firsts[parent.index()]..][..self.active(parent).len()],
             };
             self.narrow_table(table, above, mine, parts);
-            firsts.push(first);
+            firsts[table.index()] = first;
             first += mine.len();
         }
     }
@@ -209,8 +254,7 @@ impl Selection {
     #[must_use]
     pub fn shifted(&self, extent: &Arc<Extent>, shifts: &[Shift]) -> Self {
         assert_eq!(extent.parents, self.extent.parents, "rows stay under their rows");
-        let mut result =
-            Self { extent: Arc::clone(extent), words: self.words.clone(), spans: self.spans.clone() };
+        let mut result = Self { extent: Arc::clone(extent), ..self.clone() };
         for ((span, shift), &count) in self.spans.iter().zip(shifts).zip(&extent.counts) {
             for row in &mut result.words[span.active as usize..span.end as usize] {
                 if *row >= shift.from {
@@ -226,13 +270,13 @@ impl Selection {
     /// before comes, each with all rows under it. Panics if the tables have other rows than those that this selects from.
     #[must_use]
     pub fn switched(&self, before: &Tables, now: &Tables) -> Self {
-        let mut result = Self { extent: Arc::clone(&self.extent), ..Self::default() };
+        let mut result = Self::default();
+        result.clear(&self.extent);
         for (table, rows) in now.tables.iter() {
             assert_eq!(rows.len(), self.extent.counts[table.index()] as usize, "the rows are the same");
             let parents = self.places(&result, table);
-            let starts = result.words.len();
-            result.words.resize(starts + parents.len() + 1, 0);
-            let active = result.words.len();
+            let Some(active) = result.begin(table, parents.len()) else { continue };
+            let starts = active - parents.len();
             for (position, (parent, place)) in parents.into_iter().enumerate() {
                 let all = rows.range(parent as usize);
                 match place {
@@ -247,12 +291,11 @@ impl Selection {
                         result.words.extend(all.iter().filter(stays));
                     }
                 }
-                result.words[starts + position + 1] = word(result.words.len() - active);
+                result.words[starts + position] = word(result.words.len() - active);
             }
             let exist = result.words[active..].iter().all(|&row| (row as usize) < rows.len());
             assert!(exist, "active rows are in their table");
-            let [starts, active, end] = [starts, active, result.words.len()].map(word);
-            result.spans.push(Span { starts, active, end });
+            result.end(table);
         }
         result
     }
@@ -268,14 +311,13 @@ impl Selection {
     /// The lists of one table. `above` are the masks of the active rows of its parent.
     fn narrow_table(&self, table: Table, above: &[u8], masks: &mut [u8], parts: &mut [Self]) {
         let (starts, active) = (self.starts(table), self.active(table));
-        // For each part, where its next start goes, and where its active rows begin.
+        // For each part, where its next start goes, and where its active rows begin. The first start is 0.
         let mut places = [(0, 0); MAX_PARTS];
-        for (bit, part) in parts.iter_mut().enumerate() {
-            let parents = above.iter().filter(|&&mask| mask >> bit & 1 == 1).count();
-            let at = part.words.len();
-            part.words.resize(at + parents + 1, 0);
-            places[bit] = (at + 1, part.words.len());
-            part.spans.push(Span { starts: word(at), active: word(part.words.len()), end: 0 });
+        let parents = counts(above);
+        for ((part, place), &parents) in parts.iter_mut().zip(&mut places).zip(&parents) {
+            if let Some(active) = part.begin(table, parents) {
+                *place = (active - parents, active);
+            }
         }
         for (&above, range) in above.iter().zip(starts.windows(2)) {
             let range = range[0] as usize..range[1] as usize;
@@ -292,9 +334,8 @@ impl Selection {
                 *next += 1;
             }
         }
-        for part in parts.iter_mut() {
-            let end = word(part.words.len());
-            part.spans.last_mut().expect("it was pushed above").end = end;
+        for (part, _) in parts.iter_mut().zip(parents).filter(|&(_, parents)| parents > 0) {
+            part.end(table);
         }
     }
 }
@@ -344,8 +385,8 @@ mod tests {
     fn family() -> (Function, Tables) {
         let mut function = Function::new("family", &[]);
         let schema = |parent| Schema { name: "rows".into(), columns: vec![], parent, slots: vec![] };
-        let parent = function.tables.push(schema(None));
-        function.tables.push(schema(Some(parent)));
+        let parent = Arc::make_mut(&mut function.tables).push(schema(None));
+        Arc::make_mut(&mut function.tables).push(schema(Some(parent)));
         let mut tables = Store::new();
         tables.push(Rows { count: 3, active: vec![0, 1, 2], starts: vec![0, 3], ..Rows::default() });
         tables.push(Rows { count: 5, active: vec![0, 1, 2, 4], starts: vec![0, 2, 2, 4], ..Rows::default() });

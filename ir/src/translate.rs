@@ -9,7 +9,7 @@
 //! The recursion is over nested folds, at most [`crate::limits::MAX_FOLD_DEPTH`] deep; a block may be as long as it likes.
 
 use crate::builder::FunctionBuilder;
-use crate::entity::{Block, Entity, Inst, Store, Value};
+use crate::entity::{Block, Entity, Inst, Store, Value, Values};
 use crate::function::{BlockData, Fold, Function, InstData, InstKind};
 use crate::op::{Domain, Op};
 use crate::origin::Part;
@@ -39,7 +39,7 @@ struct Rewrite<'a, F> {
 }
 
 impl<F: FnMut(&mut FunctionBuilder, Op, &[Value]) -> Value> Rewrite<'_, F> {
-    fn map_all(&self, values: &[Value]) -> Vec<Value> {
+    fn map_all(&self, values: &[Value]) -> Values {
         values.iter().map(|value| self.map[value.index()].expect("values are defined before use")).collect()
     }
 
@@ -107,6 +107,8 @@ pub fn renumber(function: &Function) -> Function {
         },
         map: vec![None; function.values.len()],
     };
+    renumber.new.values.reserve(function.values.len());
+    renumber.new.insts.reserve(function.insts.len());
     renumber.new.body = renumber.block(function.body);
     renumber.new
 }
@@ -119,7 +121,7 @@ struct Renumber<'a> {
 }
 
 impl Renumber<'_> {
-    fn define(&mut self, values: &[Value]) -> Vec<Value> {
+    fn define(&mut self, values: &[Value]) -> Values {
         values
             .iter()
             .map(|&value| {
@@ -130,7 +132,7 @@ impl Renumber<'_> {
             .collect()
     }
 
-    fn map_all(&self, values: &[Value]) -> Vec<Value> {
+    fn map_all(&self, values: &[Value]) -> Values {
         values.iter().map(|value| self.map[value.index()].expect("values are defined before use")).collect()
     }
 

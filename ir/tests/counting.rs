@@ -209,7 +209,7 @@ fn the_total_is_what_running_the_function_counts() {
             continue;
         }
         let home = Table::new(function.tables.len() - 1);
-        function.tables[home].slots = vec![0];
+        std::sync::Arc::make_mut(&mut function.tables)[home].slots = vec![0];
         let mut tables_with_nodes = tables.clone();
         tables_with_nodes.tables[home].nodes = (0..tables.tables[home].len() as u32).collect();
         tables_with_nodes.check(&function).unwrap();

@@ -2,6 +2,8 @@
 
 mod common;
 
+use std::sync::Arc;
+
 use common::sample;
 use fastrand::Rng;
 use jbt_ir::domain::scalar::Scalar;
@@ -9,7 +11,7 @@ use jbt_ir::limits::{MAX_FOLD_DEPTH, MAX_TABLES, MAX_VALUES};
 use jbt_ir::text::annotated;
 use jbt_ir::{
     Block, BlockData, Entity, Fold, Function, Inst, InstData, InstKind, Op, Origin, Place, Reduction, Schema,
-    Table, Type, Value, VerifyError, interpret, parse, verify,
+    Table, Type, Value, Values, VerifyError, interpret, parse, verify,
 };
 
 /// `f(x) = x + x`, with one instruction for each.
@@ -68,13 +70,22 @@ fn errors_of_what_does_not_print_follow_the_text() {
 
 /// Declares a table without columns.
 fn add_table(function: &mut Function) -> Table {
-    function.tables.push(Schema { name: String::new(), columns: vec![], parent: None, slots: vec![] })
+    Arc::make_mut(&mut function.tables).push(Schema {
+        name: String::new(),
+        columns: vec![],
+        parent: None,
+        slots: vec![],
+    })
 }
 
 /// Adds a constant to the function's body.
 fn add_constant(function: &mut Function) {
     let value = function.values.push(Type::Real);
-    let data = InstData { kind: InstKind::Constant(1.0), results: vec![value], origin: Origin::SHARED };
+    let data = InstData {
+        kind: InstKind::Constant(1.0),
+        results: Values::from_slice(&[value]),
+        origin: Origin::SHARED,
+    };
     let inst = function.insts.push(data);
     function.blocks[function.body].insts.push(inst);
 }
@@ -108,8 +119,8 @@ fn nested(depth: usize) -> Function {
     for _ in 0..depth {
         let table = add_table(&mut function);
         let body = function.blocks.push(BlockData::default());
-        let fold = Fold { table, reduction: Reduction::Only, initial: vec![], body };
-        let data = InstData { kind: InstKind::Fold(fold), results: vec![], origin: Origin::SHARED };
+        let fold = Fold { table, reduction: Reduction::Only, initial: Values::new(), body };
+        let data = InstData { kind: InstKind::Fold(fold), results: Values::new(), origin: Origin::SHARED };
         let inst = function.insts.push(data);
         function.blocks[block].insts.push(inst);
         block = body;
@@ -136,11 +147,11 @@ fn any<E: Entity>(rng: &mut Rng, count: usize) -> E {
 }
 
 /// Changes an element of a list of values, or its length.
-fn damage_list(rng: &mut Rng, list: &mut Vec<Value>, values: usize) {
+fn damage_list(rng: &mut Rng, list: &mut Values, values: usize) {
     let at = rng.usize(0..=list.len());
     match rng.u32(0..4) {
         0 => list.insert(at, any(rng, values)),
-        1 if at < list.len() => drop(list.remove(at)),
+        1 if at < list.len() => _ = list.remove(at),
         _ if at < list.len() => list[at] = any(rng, values),
         _ => {}
     }
@@ -209,7 +220,7 @@ fn damage_declarations(rng: &mut Rng, function: &mut Function) {
             function.values[value] = rng.choice(Type::ALL).expect("there are types");
         }
         kind => {
-            let schema = &mut function.tables[Table::new(rng.usize(0..tables))];
+            let schema = &mut Arc::make_mut(&mut function.tables)[Table::new(rng.usize(0..tables))];
             match kind {
                 4 => schema.parent = rng.bool().then(|| any(rng, tables)),
                 _ => drop(schema.columns.pop()),

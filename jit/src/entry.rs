@@ -266,11 +266,13 @@ impl BoundKernel {
         }
         let (mut small, mut large) = ([TableView::NOWHERE; SMALL], Vec::new());
         let views = places(&mut small, &mut large, self.tables.tables.len());
-        for (view, (table, rows)) in views.iter_mut().zip(self.tables.tables.iter()) {
+        for ((view, rows), (starts, active)) in
+            views.iter_mut().zip(self.tables.tables.values()).zip(selection.lists())
+        {
             *view = TableView {
                 numbers: rows.numbers.as_ptr(),
-                active: selection.active(table).as_ptr(),
-                starts: selection.starts(table).as_ptr(),
+                active: active.as_ptr(),
+                starts: starts.as_ptr(),
             };
         }
         let code = &self.kernel.shared.code;

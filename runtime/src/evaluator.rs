@@ -206,7 +206,7 @@ impl Evaluator {
             kernel.function.function().outputs,
             "planes are named alike everywhere"
         );
-        let separate = walks(query).saturating_mul(lowering.leaf_uses());
+        let separate = walks(query).saturating_mul(lowering.tree().leaf_uses());
         let bound = kernel.bind(Arc::new(tables));
         let origin = lowering.tree().origin();
         Self { compiler, bound, query, origin, layout, separate, tally: Tally::default() }

@@ -1,5 +1,9 @@
 //! Nodes of a checked tree, and how many paths lead to them.
 
+use std::sync::Arc;
+
+use smallvec::SmallVec;
+
 use crate::diagnostic::{Diagnostic, Span};
 use crate::report::Report;
 use crate::tree::NodeKind;
@@ -8,19 +12,50 @@ use crate::tree::NodeKind;
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
 pub struct NodeId(pub u32);
 
+/// The children of a node. Up to four of them take no allocation.
+pub type Children = SmallVec<[NodeId; 4]>;
+
 /// A node of a checked tree.
 #[derive(Clone, PartialEq, Debug)]
 pub struct CheckedNode {
     /// What it does.
     pub kind: NodeKind,
     /// Its children, in order. They come before it in the arena.
-    pub children: Vec<NodeId>,
+    pub children: Children,
     /// Where it stands in its source text.
     pub span: Option<Span>,
 }
 
+/// How many paths lead from the root to each node: see [`CheckedTree::uses`](super::CheckedTree::uses) and
+/// [`asked`](super::CheckedTree::asked).
+#[derive(Clone, Debug)]
+pub(super) struct Paths {
+    /// Through all children.
+    pub(super) uses: Arc<[u64]>,
+    /// Through those that are asked.
+    pub(super) asked: Arc<[u64]>,
+    /// Those to leaves, through children that are asked.
+    pub(super) leaf_uses: u64,
+}
+
+impl Paths {
+    /// Those of an arena.
+    pub(super) fn new(nodes: &[CheckedNode]) -> Self {
+        let uses: Arc<[u64]> = paths(nodes, |node| &node.children).into();
+        let selects = nodes.iter().any(|node| matches!(node.kind, NodeKind::Select(_)));
+        let asked = match selects {
+            true => paths(nodes, |node| node.kind.asked(&node.children)).into(),
+            false => Arc::clone(&uses),
+        };
+        let leaves =
+            nodes.iter().zip(&*asked).filter(|(node, _)| matches!(node.kind, NodeKind::Primitive(_)));
+        let leaf_uses = leaves.map(|(_, &uses)| uses).fold(0, u64::saturating_add);
+        Self { uses, asked, leaf_uses }
+    }
+}
+
 /// The number of paths from the root to each node, through these children of each. Children come before their parents.
-pub(super) fn paths(nodes: &[CheckedNode], below: impl Fn(&CheckedNode) -> &[NodeId]) -> Vec<u64> {
+fn paths(nodes: &[CheckedNode], below: impl Fn(&CheckedNode) -> &[NodeId]) -> Vec<u64> {
     let mut paths = vec![0_u64; nodes.len()];
     if let Some(root) = paths.last_mut() {
         *root = 1;

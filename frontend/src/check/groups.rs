@@ -1,6 +1,7 @@
 //! The check of attribute groups, and of what attribute nodes give to leaves.
 
 use std::collections::{BTreeMap, HashSet};
+use std::sync::Arc;
 
 use jbt_ir::limits;
 
@@ -9,6 +10,7 @@ use super::numbers::check_numbers;
 use crate::attribute::{AttributeGroup, AttributeValue, Textured};
 use crate::diagnostic::{Diagnostic, Span};
 use crate::report::{Report, clip, nearest};
+use crate::tree::NodeKind;
 use crate::word::is_identifier;
 
 /// The groups of a model: `color` first, names that are identifiers and unique, widths and defaults.
@@ -58,6 +60,15 @@ const RESERVED: [&str; 7] = ["x", "y", "z", "field", "gx", "gy", "gz"];
 /// The widths of attribute groups, by name.
 pub(super) fn widths(groups: &[AttributeGroup]) -> BTreeMap<&str, usize> {
     groups.iter().map(|group| (&*group.name, group.width())).collect()
+}
+
+/// Lets an attribute node have the name of its group: whoever looks for the group compares pointers then.
+pub(super) fn share_name(kind: &mut NodeKind, groups: &[AttributeGroup]) {
+    if let NodeKind::Attribute { name, .. } = kind
+        && let Some(group) = groups.iter().find(|group| group.name == *name)
+    {
+        *name = Arc::clone(&group.name);
+    }
 }
 
 /// An attribute node: a group that is there, and a value that fits it.

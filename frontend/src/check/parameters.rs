@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use jbt_ir::limits;
 
-use super::arena::{CheckedNode, NodeId, check_occurrences};
+use super::arena::{CheckedNode, NodeId, Paths, check_occurrences};
 use super::groups::widths;
 use super::node::check_node;
 use super::numbers::check_number;
@@ -138,7 +138,7 @@ impl CheckedTree {
         }
         let (attributes, dependence) = (self.attributes.clone(), Arc::clone(&self.dependence));
         let (origin, source) = (self.origin, self.source.clone());
-        Ok(Self { iso, attributes, nodes, parameters, dependence, origin, source })
+        Ok(Self { iso, attributes, paths: Paths::new(&nodes), nodes, parameters, dependence, origin, source })
     }
 
     /// The nodes, those that follow parameters that have moved made and checked again.

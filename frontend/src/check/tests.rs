@@ -192,8 +192,8 @@ fn shared_nodes_stand_once_and_the_root_last() {
     let checked = Model::new(combine(Combinator::Difference, vec![moved, shared])).check().unwrap();
     assert_eq!(checked.nodes().len(), 4);
     assert_eq!(checked.root(), NodeId(3));
-    assert_eq!(checked.node(NodeId(3)).children, [NodeId(2), NodeId(1)]);
-    assert_eq!(checked.node(NodeId(1)).children, [NodeId(0)]);
+    assert_eq!(checked.node(NodeId(3)).children.to_vec(), [NodeId(2), NodeId(1)]);
+    assert_eq!(checked.node(NodeId(1)).children.to_vec(), [NodeId(0)]);
 }
 
 #[test]

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::DAffine3;
 
-use super::arena::{CheckedNode, NodeId, paths};
+use super::arena::{CheckedNode, Children, NodeId, Paths};
 use super::dependence::Dependence;
 use crate::affine;
 use crate::attribute::AttributeGroup;
@@ -22,6 +22,8 @@ pub struct CheckedTree {
     pub(super) iso: f64,
     pub(super) attributes: Vec<AttributeGroup>,
     pub(super) nodes: Arc<[CheckedNode]>,
+    /// Of the nodes.
+    pub(super) paths: Paths,
     pub(super) parameters: Vec<Parameter>,
     pub(super) dependence: Arc<Dependence>,
     pub(super) origin: ModelOrigin,
@@ -32,7 +34,7 @@ pub struct CheckedTree {
 impl PartialEq for CheckedTree {
     /// The same nodes, attributes and parameters; the text that they came from does not matter.
     fn eq(&self, other: &Self) -> bool {
-        let Self { iso, attributes, nodes, parameters, dependence, origin, source: _ } = self;
+        let Self { iso, attributes, nodes, parameters, dependence, origin, paths: _, source: _ } = self;
         *iso == other.iso
             && *attributes == other.attributes
             && *nodes == other.nodes
@@ -99,30 +101,21 @@ impl CheckedTree {
     /// How often each node is met from the root, along every path: 1 for the root, more below shared subtrees. In the order of
     /// [`nodes`](Self::nodes).
     #[must_use]
-    pub fn uses(&self) -> Vec<u64> {
-        paths(&self.nodes, |node| &node.children)
+    pub fn uses(&self) -> &[u64] {
+        &self.paths.uses
     }
 
     /// How often each node is asked from the root, along every path: as [`uses`](Self::uses), but through the chosen child of a
     /// selector alone.
     #[must_use]
-    pub fn asked(&self) -> Vec<u64> {
-        paths(&self.nodes, |node| node.kind.asked(&node.children))
+    pub fn asked(&self) -> &[u64] {
+        &self.paths.asked
     }
 
     /// Uses of leaves: paths from the root to a leaf, through the chosen child of a selector alone.
     #[must_use]
     pub fn leaf_uses(&self) -> u64 {
-        let of = |(node, uses): (&CheckedNode, u64)| match node.kind {
-            NodeKind::Primitive(_) => uses,
-            NodeKind::Combine(_)
-            | NodeKind::Expression(_)
-            | NodeKind::Select(_)
-            | NodeKind::Affine(_)
-            | NodeKind::Warp(_)
-            | NodeKind::Attribute { .. } => 0,
-        };
-        self.nodes.iter().zip(self.asked()).map(of).fold(0, u64::saturating_add)
+        self.paths.leaf_uses
     }
 
     /// A leaf under maps, the nearest first, each with the node of this tree that gives its weight, if it has one. They are those of a checked tree,
@@ -133,9 +126,9 @@ impl CheckedTree {
         maps: impl IntoIterator<Item = (NodeKind, Option<NodeId>)>,
     ) -> Self {
         let mut nodes =
-            vec![CheckedNode { kind: NodeKind::Primitive(leaf), children: Vec::new(), span: None }];
+            vec![CheckedNode { kind: NodeKind::Primitive(leaf), children: Children::new(), span: None }];
         for (kind, weight) in maps {
-            let mut children = vec![NodeId(nodes.len() as u32 - 1)];
+            let mut children = Children::from_slice(&[NodeId(nodes.len() as u32 - 1)]);
             children.extend(weight.map(|weight| self.copy_below(weight, &mut nodes)));
             nodes.push(CheckedNode { kind, children, span: None });
         }
@@ -161,7 +154,8 @@ impl CheckedTree {
         let columns: [[f64; 3]; 4] = std::array::from_fn(column);
         let mut nodes = self.nodes.to_vec();
         let map = DAffine3::from_cols_array_2d(&columns);
-        nodes.push(CheckedNode { kind: NodeKind::Affine(map), children: vec![self.root()], span: None });
+        let children = Children::from_slice(&[self.root()]);
+        nodes.push(CheckedNode { kind: NodeKind::Affine(map), children, span: None });
         let mapped = || ModelOrigin::new(map.transform_point3(self.origin.point().into()).to_array());
         let origin = if self.origin.is_world() { self.origin } else { mapped() };
         Self { origin, ..self.of_nodes(nodes) }
@@ -190,6 +184,7 @@ impl CheckedTree {
         Self {
             iso: self.iso,
             attributes: self.attributes.clone(),
+            paths: Paths::new(&nodes),
             nodes: nodes.into(),
             parameters: Vec::new(),
             dependence: Arc::default(),

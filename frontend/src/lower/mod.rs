@@ -36,7 +36,6 @@ mod slopes;
 mod support;
 
 use std::fmt;
-use std::sync::OnceLock;
 
 use jbt_ir::{Function, Tables};
 
@@ -60,8 +59,6 @@ pub struct Lowered {
 pub struct Lowering<'a> {
     scene: occurrence::Scene<'a>,
     shapes: shape::Shapes,
-    /// See [`leaf_uses`](Self::leaf_uses).
-    leaf_uses: OnceLock<u64>,
 }
 
 impl fmt::Debug for Lowering<'_> {
@@ -77,19 +74,13 @@ impl<'a> Lowering<'a> {
     pub fn new(tree: &'a CheckedTree) -> Self {
         let scene = occurrence::Scene::new(tree);
         let shapes = shape::Shapes::new(&scene);
-        Self { scene, shapes, leaf_uses: OnceLock::new() }
+        Self { scene, shapes }
     }
 
     /// The model.
     #[must_use]
     pub fn tree(&self) -> &'a CheckedTree {
         self.scene.tree
-    }
-
-    /// [`CheckedTree::leaf_uses`], counted once.
-    #[must_use]
-    pub fn leaf_uses(&self) -> u64 {
-        *self.leaf_uses.get_or_init(|| self.tree().leaf_uses())
     }
 
     /// The program for a query.

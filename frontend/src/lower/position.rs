@@ -145,9 +145,13 @@ impl Position {
             let least = if freedom == Freedom::Full { MapKind::Full } else { MapKind::Translation };
             return (map, 1.0, MapKind::of(&map).max(least));
         };
-        let turn = *similarity.turn() * pose.matrix3;
-        let at = self.map.transform_point3(pose.translation);
-        let map = DAffine3::from_mat3_translation(symmetry.simplest(turn), at);
+        let turn = match symmetry {
+            Symmetry::Ball => DMat3::IDENTITY,
+            Symmetry::Axis | Symmetry::Arrow | Symmetry::None => {
+                symmetry.simplest(*similarity.turn() * pose.matrix3)
+            }
+        };
+        let map = DAffine3::from_mat3_translation(turn, self.map.transform_point3(pose.translation));
         let least = match (symmetry, freedom) {
             (Symmetry::Ball, _) => MapKind::Translation,
             (Symmetry::Axis | Symmetry::Arrow | Symmetry::None, Freedom::Turn | Freedom::Full) => {

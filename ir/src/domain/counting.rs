@@ -141,10 +141,11 @@ pub fn ops_per_row(function: &Function) -> Vec<u64> {
 /// gives.
 #[must_use]
 pub fn of_selection(per_row: &[u64], selection: &Selection) -> u64 {
-    let of = |(table, &each): (usize, &u64)| {
-        if each == 0 { 0 } else { each.saturating_mul(selection.active(Table::new(table)).len() as u64) }
+    let of = |&table: &Table| {
+        let each = per_row[table.index()];
+        if each == 0 { 0 } else { each.saturating_mul(selection.active(table).len() as u64) }
     };
-    per_row.iter().enumerate().map(of).fold(0, u64::saturating_add)
+    selection.present().iter().map(of).fold(0, u64::saturating_add)
 }
 
 /// The table of each leaf slot, and the slot's position in a row.

@@ -10,7 +10,7 @@
 //! So an accumulator that only feeds itself goes, and so does a fold without a needed accumulator. Tables and columns stay, used or
 //! not: the rows of numbers keep their layout.
 
-use crate::entity::{Entity, Inst, Store, Value};
+use crate::entity::{Entity, Inst, Store, Value, Values};
 use crate::function::{Function, InstKind};
 use crate::translate::renumber;
 
@@ -34,7 +34,7 @@ pub fn dce(function: &Function) -> Function {
     for (inst, data) in function.insts.iter() {
         removed[inst.index()] = !data.results.iter().any(|&value| keep(value));
         let InstKind::Fold(fold) = &data.kind else { continue };
-        let filter = |values: &[Value]| -> Vec<Value> {
+        let filter = |values: &[Value]| -> Values {
             values
                 .iter()
                 .zip(&data.results)
@@ -60,7 +60,7 @@ pub fn dce(function: &Function) -> Function {
 fn needed(function: &Function) -> Vec<bool> {
     let sources = sources(function);
     let mut needed = vec![false; function.values.len()];
-    let mut work: Vec<Value> = function.blocks[function.body].results.clone();
+    let mut work: Vec<Value> = function.blocks[function.body].results.to_vec();
     while let Some(value) = work.pop() {
         if std::mem::replace(&mut needed[value.index()], true) {
             continue;

@@ -69,7 +69,7 @@ fn wanted(function: &Function) -> Vec<bool> {
             | InstKind::Constant(_)
             | InstKind::BitsConstant(_)
             | InstKind::Column { .. } => {}
-            InstKind::Op { args, .. } => sources[inst.results[0].index()].clone_from(args),
+            InstKind::Op { args, .. } => sources[inst.results[0].index()] = args.to_vec(),
             InstKind::Fold(fold) => {
                 let body = &function.blocks[fold.body];
                 for (place, result) in inst.results.iter().enumerate() {

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::fmt;
 
-use crate::entity::{Entity, Table, Value};
+use crate::entity::{Entity, Table, Value, Values};
 use crate::limits::{MAX_TABLES, MAX_VALUES};
 use crate::op::Type;
 use crate::origin::{Origin, Part};
@@ -175,8 +175,8 @@ impl<'a> Line<'a> {
     }
 
     /// Values with commas between them.
-    pub fn values(&mut self) -> Parsed<Vec<Value>> {
-        self.list(|line| line.entity("v", MAX_VALUES))
+    pub fn values(&mut self) -> Parsed<Values> {
+        Ok(self.list(|line| line.entity("v", MAX_VALUES))?.into())
     }
 
     /// Names in parentheses.

@@ -4,6 +4,7 @@
 //! function and nothing more: whether values are defined before they are used is for [`mod@crate::verify`] to say.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use crate::entity::{Block, Entity, Store, Value};
 use crate::function::{BlockData, Fold, Function, InstData, InstKind, Reduction, Schema};
@@ -79,7 +80,7 @@ impl Parser {
                 name: String::new(),
                 inputs: Vec::new(),
                 outputs: Vec::new(),
-                tables: Store::new(),
+                tables: Arc::default(),
                 values: Store::new(),
                 insts: Store::new(),
                 blocks: Store::new(),
@@ -179,7 +180,7 @@ impl Parser {
         }
         line.end()?;
         self.columns.push(by_name(&columns));
-        self.function.tables.push(Schema { name, columns, parent, slots });
+        Arc::make_mut(&mut self.function.tables).push(Schema { name, columns, parent, slots });
         Ok(())
     }
 

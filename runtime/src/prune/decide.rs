@@ -3,24 +3,23 @@
 use jbt_frontend::lower::guide::{DecidedRows, Decision, Guide};
 use jbt_ir::{Entity, Selection, Table};
 
-use crate::region::{MAX_PARTS, Range};
+use super::ranges::Probes;
+use crate::region::MAX_PARTS;
 
-/// Where the rows of each table begin among all active rows of a selection.
+/// Where the rows of each table that is present begin among all active rows of a selection.
 pub(super) fn firsts(selection: &Selection) -> Vec<usize> {
-    let lengths = (0..selection.tables()).map(|table| selection.active(Table::new(table)).len());
-    let end_of = |end: &mut usize, length| Some(std::mem::replace(end, *end + length));
-    lengths.scan(0, end_of).collect()
+    let mut firsts = vec![0; selection.tables()];
+    let mut end = 0;
+    for &table in selection.present() {
+        firsts[table.index()] = end;
+        end += selection.active(table).len();
+    }
+    firsts
 }
 
 /// Takes the rows of operands that do not decide out of the masks, for each box where that is so. `probes` are what the interval kernel
-/// gave for `count` boxes with the rows of the selection.
-pub(super) fn leave_out(
-    guide: &Guide,
-    probes: &[[f32; MAX_PARTS]],
-    count: usize,
-    selection: &Selection,
-    masks: &mut [u8],
-) {
+/// gave for the boxes with the rows of the selection.
+pub(super) fn leave_out(guide: &Guide, probes: Probes<'_>, selection: &Selection, masks: &mut [u8]) {
     let decisions = || guide.decisions.iter().filter(|decision| decision.rows == DecidedRows::All);
     if decisions().next().is_none() {
         return;
@@ -28,21 +27,19 @@ pub(super) fn leave_out(
     let firsts = firsts(selection);
     for decision in decisions() {
         let rows = selection.active(decision.table).len();
-        for box_index in 0..count {
+        if rows == 0 {
+            continue;
+        }
+        for box_index in 0..probes.count() {
+            // Comparisons with what is no number are false, so whatever is not known decides.
             let [operand, node] =
-                [decision.operand, decision.node].map(|probe| range(probes, probe, box_index));
+                [decision.operand, decision.node].map(|probe| probes.range(probe, box_index));
             if decision.kind.spares(operand, node, guide.iso2) {
                 let first = firsts[decision.table.index()];
                 masks[first..first + rows].iter_mut().for_each(|mask| *mask &= !(1 << box_index));
             }
         }
     }
-}
-
-/// The range of a probe in a box. Comparisons with what is no number are false, so whatever is not known decides.
-pub(super) fn range(probes: &[[f32; MAX_PARTS]], probe: usize, box_index: usize) -> Range {
-    // The field's own range comes before those of the probes.
-    [0, 1].map(|end| probes[2 * (1 + probe) + end][box_index])
 }
 
 /// Fewer operands than this run together faster than one by one.
@@ -129,26 +126,25 @@ impl<'a> Alone<'a> {
         count
     }
 
-    /// Takes the rows at this number out of the masks, for each of `count` boxes in which they do not decide. `probes` are what the interval kernel gave
-    /// for the whole selection, and `alone` for these rows alone.
-    pub(super) fn leave_out(
+    /// Notes the boxes in which the rows at this number do not decide, a bit each. `probes` are what the interval kernel gave for the whole
+    /// selection, and `alone` for these rows alone.
+    pub(super) fn spare(
         &self,
         (selection, iso2): (&Selection, f32),
         row: usize,
-        probes: &[[f32; MAX_PARTS]],
-        alone: &[[f32; MAX_PARTS]],
-        (count, masks): (usize, &mut [u8]),
+        (probes, alone): (Probes<'_>, Probes<'_>),
+        spared: &mut [u32],
     ) {
         for decision in &self.decisions {
             if row >= selection.active(decision.table).len() {
                 continue;
             }
-            let mask = &mut masks[self.firsts[decision.table.index()] + row];
-            for box_index in 0..count {
-                let operand = range(alone, decision.operand, box_index);
-                let node = range(probes, decision.node, box_index);
+            let spared = &mut spared[self.firsts[decision.table.index()] + row];
+            for box_index in 0..probes.count() {
+                let operand = alone.range(decision.operand, box_index);
+                let node = probes.range(decision.node, box_index);
                 if decision.kind.spares(operand, node, iso2) {
-                    *mask &= !(1 << box_index);
+                    *spared |= 1 << box_index;
                 }
             }
         }

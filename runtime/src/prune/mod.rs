@@ -20,6 +20,7 @@
 mod cull;
 mod decide;
 mod edit;
+mod ranges;
 mod rule;
 mod survey;
 
@@ -32,7 +33,7 @@ use jbt_frontend::lower::guide::{Guide, Guided, Rule, SpaceGuide, TableGuide};
 use jbt_frontend::origin::ModelOrigin;
 use jbt_ir::domain::counting::of_selection;
 use jbt_ir::selection::Extent;
-use jbt_ir::{Selection, Tables};
+use jbt_ir::{Entity as _, Selection, Tables};
 
 use crate::debug::brief_debug;
 use crate::error::{CompileError, EvalError};
@@ -42,6 +43,7 @@ use crate::region::{ANYTHING, Box3, Divisible, MAX_PARTS, Range};
 
 use cull::{Boxes, Supports};
 use decide::Alone;
+use ranges::{Probes, Ranges};
 
 /// What matters of a model in a box: for each table, the rows that run. Every evaluator of the model takes it
 /// ([`Evaluator::eval_region`](crate::Evaluator::eval_region)).
@@ -182,37 +184,16 @@ impl Pruner {
         &self.kernel.tables
     }
 
-    /// Ranges of the field and of all probes in boxes: plane by plane, the low and the high ends, [`MAX_PARTS`] each.
-    fn evaluate(&self, rows: &Selection, boxes: &[Box3]) -> Result<Vec<[f32; MAX_PARTS]>, EvalError> {
-        let mut inputs = [[0.0; MAX_PARTS]; 6];
-        for (lane, bounds) in boxes.iter().enumerate() {
-            for axis in 0..3 {
-                inputs[2 * axis][lane] = bounds.low[axis];
-                inputs[2 * axis + 1][lane] = bounds.high[axis];
-            }
-        }
-        let count = boxes.len();
-        let inputs = inputs.each_ref().map(|plane| &plane[..count]);
-        let mut outputs = vec![[0.0; MAX_PARTS]; self.planes()];
-        let mut planes: Vec<&mut [f32]> = outputs.iter_mut().map(|plane| &mut plane[..count]).collect();
-        self.run(rows, &inputs, &mut planes)?;
-        Ok(outputs)
+    /// Ranges of the field and of all probes in boxes, by one run of the interval kernel, which is counted.
+    fn evaluate(&self, rows: &Selection, boxes: &[Box3]) -> Result<Ranges, EvalError> {
+        let mut ranges = Ranges::new(&self.kernel, boxes);
+        self.find(&mut ranges, rows, boxes.len())?;
+        Ok(ranges)
     }
 
-    /// The planes of answers: the low and the high end of the field, and of each probe.
-    fn planes(&self) -> usize {
-        2 * (1 + self.guide.probes)
-    }
-
-    /// Runs the interval kernel, and counts it.
-    fn run(
-        &self,
-        rows: &Selection,
-        inputs: &[&[f32]; 6],
-        outputs: &mut [&mut [f32]],
-    ) -> Result<(), EvalError> {
-        self.kernel.run(rows, inputs, outputs)?;
-        let count = inputs[0].len();
+    /// Finds ranges in so many boxes by one run of the interval kernel, which is counted.
+    fn find(&self, ranges: &mut Ranges, rows: &Selection, count: usize) -> Result<(), EvalError> {
+        ranges.find(&self.kernel, rows)?;
         self.counts.boxes.fetch_add(count as u64, Ordering::Relaxed);
         self.counts.primitives.fetch_add(self.evaluations(rows, count), Ordering::Relaxed);
         Ok(())
@@ -224,18 +205,14 @@ impl Pruner {
     }
 
     /// For each active row of the region, the boxes in which it matters: a bit each. It is told by the ranges of the field and of all probes in
-    /// these boxes, if they are known.
-    fn masks(
-        &self,
-        region: &Region,
-        boxes: &[Box3],
-        probes: Option<&[[f32; MAX_PARTS]]>,
-    ) -> Result<Vec<u8>, EvalError> {
+    /// these boxes, if they are known. Operands that are rows are for [`spared`](Self::spared).
+    fn masks(&self, region: &Region, boxes: &[Box3], probes: Option<Probes<'_>>) -> Vec<u8> {
         let world = Boxes::new(boxes);
         let selection = &*region.selection;
         let mut masks = vec![world.all(); selection.len()];
         let mut first = 0;
-        for ((table, guide), supports) in self.guide.tables.iter().zip(&self.supports) {
+        for &table in selection.present() {
+            let (guide, supports) = (&self.guide.tables[table], &self.supports[table.index()]);
             let active = selection.active(table);
             let mine = &mut masks[first..][..active.len()];
             first += active.len();
@@ -243,7 +220,7 @@ impl Pruner {
             let boxes = match (guide.space, probes) {
                 (SpaceGuide::World, _) => &world,
                 (SpaceGuide::Probed(probe), Some(probes)) => {
-                    inside = inner_boxes(probes, probe, boxes.len());
+                    inside = inner_boxes(probes, probe);
                     &inside
                 }
                 (SpaceGuide::Probed(_), None) | (SpaceGuide::Unknown, _) => continue,
@@ -255,34 +232,65 @@ impl Pruner {
             rule::apply(guide.rule, selection.starts(table), mine, boxes.all());
         }
         if let Some(probes) = probes {
-            decide::leave_out(&self.guide, probes, boxes.len(), selection, &mut masks);
-            self.leave_out_rows(region, boxes, probes, &mut masks)?;
+            decide::leave_out(&self.guide, probes, selection, &mut masks);
         }
-        Ok(masks)
+        masks
     }
 
-    /// Takes operands that are rows, and do not decide, out of the masks.
-    fn leave_out_rows(
+    /// For each active row of the region, the boxes in which it need not be known because it is an operand that does not decide there: a bit
+    /// each, of at most [`MAX_SPARED`] boxes. Nothing where to find out costs more than it saves.
+    fn spared(
         &self,
         region: &Region,
         boxes: &[Box3],
-        probes: &[[f32; MAX_PARTS]],
-        masks: &mut [u8],
-    ) -> Result<(), EvalError> {
+        probes: Probes<'_>,
+    ) -> Result<Option<Vec<u32>>, EvalError> {
         let selection = &*region.selection;
-        let Some(alone) = Alone::new(&self.guide, selection) else { return Ok(()) };
+        let Some(alone) = Alone::new(&self.guide, selection) else { return Ok(None) };
+        let mut spared = vec![0; selection.len()];
+        let lanes: [usize; MAX_SPARED] = std::array::from_fn(|lane| lane);
         let mut parts: [Selection; MAX_PARTS] = Default::default();
+        let mut ranges = Ranges::new(&self.kernel, boxes);
         for run in alone.runs() {
             let count = alone.selections(selection, run, &mut parts);
             for (part, rows) in parts[..count].iter().enumerate() {
-                let ranges = self.evaluate(rows, boxes)?;
-                let masks = (boxes.len(), &mut *masks);
-                alone.leave_out((selection, self.guide.iso2), run + part, probes, &ranges, masks);
+                self.find(&mut ranges, rows, boxes.len())?;
+                let both = (probes, ranges.probes(&lanes[..boxes.len()]));
+                alone.spare((selection, self.guide.iso2), run + part, both, &mut spared);
+            }
+        }
+        Ok(Some(spared))
+    }
+
+    /// Appends the regions of some parts of a region, in which the probes have these ranges.
+    fn regions(
+        &self,
+        region: &Region,
+        boxes: &[Box3],
+        probes: Option<Probes<'_>>,
+        regions: &mut Vec<Region>,
+    ) -> Result<(), EvalError> {
+        for (index, boxes) in boxes.chunks(MAX_SPARED).enumerate() {
+            let probes = probes.map(|probes| probes.chunk(index, MAX_SPARED));
+            let spared = match probes {
+                Some(probes) => self.spared(region, boxes, probes)?,
+                None => None,
+            };
+            for (index, boxes) in boxes.chunks(MAX_PARTS).enumerate() {
+                let mut masks =
+                    self.masks(region, boxes, probes.map(|probes| probes.chunk(index, MAX_PARTS)));
+                for (mask, spared) in masks.iter_mut().zip(spared.iter().flatten()) {
+                    *mask &= !((spared >> (index * MAX_PARTS)) as u8);
+                }
+                region.narrow_by(boxes, masks, regions);
             }
         }
         Ok(())
     }
 }
+
+/// The most boxes of which is found out together which operands do not decide: a bit of a word each, and a multiple of [`MAX_PARTS`].
+const MAX_SPARED: usize = 32;
 
 /// The supports of a table, if rows are left out by them.
 fn supports(guide: &TableGuide) -> Option<Supports> {
@@ -293,17 +301,15 @@ fn supports(guide: &TableGuide) -> Option<Supports> {
 }
 
 /// The boxes of a point inside of a warp, whose ranges are probes.
-fn inner_boxes(probes: &[[f32; MAX_PARTS]], probe: usize, count: usize) -> Boxes {
+fn inner_boxes(probes: Probes<'_>, probe: usize) -> Boxes {
     let mut boxes = [Box3::default(); MAX_PARTS];
-    for (lane, bounds) in boxes[..count].iter_mut().enumerate() {
+    let boxes = &mut boxes[..probes.count()];
+    for (lane, bounds) in boxes.iter_mut().enumerate() {
         for axis in 0..3 {
-            // The field's own range comes before those of the probes.
-            let at = 2 * (1 + probe + axis);
-            bounds.low[axis] = probes[at][lane];
-            bounds.high[axis] = probes[at + 1][lane];
+            [bounds.low[axis], bounds.high[axis]] = probes.range(probe + axis, lane);
         }
     }
-    Boxes::new(&boxes[..count])
+    Boxes::new(boxes)
 }
 
 impl Divisible for Pruner {
@@ -321,18 +327,17 @@ impl Divisible for Pruner {
             ranges.fill(ANYTHING);
             return Ok(());
         }
-        let outputs = self.evaluate(&region.selection, boxes)?;
+        let found = self.evaluate(&region.selection, boxes)?;
         for (lane, range) in ranges.iter_mut().enumerate() {
-            *range = [outputs[0][lane], outputs[1][lane]];
+            *range = found.field(lane);
         }
         Ok(())
     }
 
     fn narrow(&self, region: &Region, boxes: &[Box3], parts: &mut Vec<Region>) -> Result<(), EvalError> {
         let probed = self.guide.probes > 0 && region.rows() <= MAX_RANGED_ROWS;
-        let probes = if probed { Some(self.evaluate(&region.selection, boxes)?) } else { None };
-        let masks = self.masks(region, boxes, probes.as_deref())?;
-        region.narrow_by(boxes, masks, parts);
-        Ok(())
+        let ranges = if probed { Some(self.evaluate(&region.selection, boxes)?) } else { None };
+        let lanes: [usize; MAX_PARTS] = std::array::from_fn(|lane| lane);
+        self.regions(region, boxes, ranges.as_ref().map(|ranges| ranges.probes(&lanes[..boxes.len()])), parts)
     }
 }

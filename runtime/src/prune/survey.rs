@@ -8,7 +8,9 @@
 
 use super::{MAX_RANGED_ROWS, Pruner, Region};
 use crate::error::EvalError;
-use crate::region::{ANYTHING, Box3, MAX_PARTS, Range};
+#[cfg(doc)]
+use crate::region::MAX_PARTS;
+use crate::region::{ANYTHING, Box3, Range};
 
 impl Pruner {
     /// The ranges of the field in any number of proper boxes inside a region, and the regions of those whose range is wanted.
@@ -25,22 +27,15 @@ impl Pruner {
         wanted: &dyn Fn(Range) -> bool,
     ) -> Result<Vec<(Range, Option<Region>)>, EvalError> {
         let ranged = region.rows() <= MAX_RANGED_ROWS;
-        let planes = if ranged { self.evaluate_many(region, boxes)? } else { Vec::new() };
-        let range = |index: usize| if ranged { [planes[0][index], planes[1][index]] } else { ANYTHING };
+        let ranges = if ranged { Some(self.evaluate(&region.selection, boxes)?) } else { None };
+        let range = |index: usize| ranges.as_ref().map_or(ANYTHING, |ranges| ranges.field(index));
         let mut found: Vec<(Range, Option<Region>)> =
             (0..boxes.len()).map(|index| (range(index), None)).collect();
         let chosen: Vec<usize> = (0..boxes.len()).filter(|&index| wanted(found[index].0)).collect();
-        let probed = ranged && self.guide.probes > 0;
+        let probed = ranges.as_ref().filter(|_| self.guide.probes > 0);
+        let parts: Vec<Box3> = chosen.iter().map(|&index| boxes[index]).collect();
         let mut regions = Vec::with_capacity(chosen.len());
-        for some in chosen.chunks(MAX_PARTS) {
-            let mut parts = [Box3::default(); MAX_PARTS];
-            some.iter().zip(&mut parts).for_each(|(&index, part)| *part = boxes[index]);
-            let parts = &parts[..some.len()];
-            let probes: Option<Vec<[f32; MAX_PARTS]>> =
-                probed.then(|| planes.iter().map(|plane| gather(plane, some)).collect());
-            let masks = self.masks(region, parts, probes.as_deref())?;
-            region.narrow_by(parts, masks, &mut regions);
-        }
+        self.regions(region, &parts, probed.map(|ranges| ranges.probes(&chosen)), &mut regions)?;
         for (index, region) in chosen.into_iter().zip(regions) {
             found[index].1 = Some(region);
         }
@@ -56,22 +51,17 @@ impl Pruner {
         wanted: &dyn Fn(Range) -> bool,
     ) -> Result<(Vec<(usize, Region)>, u64), EvalError> {
         let ranged = region.rows() <= MAX_RANGED_ROWS;
-        let mut probes = if ranged { self.evaluate(&region.selection, boxes)? } else { Vec::new() };
-        let is_wanted = |&lane: &usize| !ranged || wanted([probes[0][lane], probes[1][lane]]);
+        let ranges = if ranged { Some(self.evaluate(&region.selection, boxes)?) } else { None };
+        let is_wanted = |&lane: &usize| ranges.as_ref().is_none_or(|ranges| wanted(ranges.field(lane)));
         let kept: Vec<usize> = (0..boxes.len()).filter(is_wanted).collect();
         let evaluations = if ranged { self.evaluations(&region.selection, boxes.len()) } else { 0 };
         if kept.is_empty() {
             return Ok((Vec::new(), evaluations));
         }
-        let mut some = [Box3::default(); MAX_PARTS];
-        for (lane, &from) in kept.iter().enumerate() {
-            some[lane] = boxes[from];
-            probes.iter_mut().for_each(|plane| plane[lane] = plane[from]);
-        }
+        let some: Vec<Box3> = kept.iter().map(|&lane| boxes[lane]).collect();
         let mut regions = Vec::with_capacity(kept.len());
-        let (some, probed) = (&some[..kept.len()], ranged && self.guide.probes > 0);
-        let masks = self.masks(region, some, probed.then_some(&probes[..]))?;
-        region.narrow_by(some, masks, &mut regions);
+        let probes = ranges.as_ref().filter(|_| self.guide.probes > 0).map(|ranges| ranges.probes(&kept));
+        self.regions(region, &some, probes, &mut regions)?;
         Ok((kept.into_iter().zip(regions).collect(), evaluations))
     }
 
@@ -85,40 +75,8 @@ impl Pruner {
         if region.rows() > MAX_RANGED_ROWS || boxes.is_empty() {
             return Ok((vec![ANYTHING; boxes.len()], 0));
         }
-        let count = boxes.len();
-        let mut inputs = vec![0.0; 6 * count];
-        for (index, bounds) in boxes.iter().enumerate() {
-            for axis in 0..3 {
-                inputs[2 * axis * count + index] = bounds.low[axis];
-                inputs[(2 * axis + 1) * count + index] = bounds.high[axis];
-            }
-        }
-        let mut outputs = vec![0.0; self.planes() * count];
-        let mut planes: Vec<&mut [f32]> = outputs.chunks_exact_mut(count).collect();
-        let inputs: [&[f32]; 6] = std::array::from_fn(|plane| &inputs[plane * count..][..count]);
-        self.run(&region.selection, &inputs, &mut planes)?;
-        let ranges = planes[0].iter().zip(&*planes[1]).map(|(&low, &high)| [low, high]).collect();
-        Ok((ranges, self.evaluations(&region.selection, 1)))
+        let ranges = self.evaluate(&region.selection, boxes)?;
+        let fields = (0..boxes.len()).map(|lane| ranges.field(lane)).collect();
+        Ok((fields, self.evaluations(&region.selection, 1)))
     }
-
-    /// Ranges of the field and of all probes: plane by plane, the low and the high ends, one for each box.
-    fn evaluate_many(&self, region: &Region, boxes: &[Box3]) -> Result<Vec<Vec<f32>>, EvalError> {
-        let side = |plane: usize| {
-            let axis = plane / 2;
-            let of =
-                |bounds: &Box3| if plane.is_multiple_of(2) { bounds.low[axis] } else { bounds.high[axis] };
-            boxes.iter().map(of).collect::<Vec<f32>>()
-        };
-        let inputs: [Vec<f32>; 6] = std::array::from_fn(side);
-        let mut outputs = vec![vec![0.0; boxes.len()]; self.planes()];
-        let mut planes: Vec<&mut [f32]> = outputs.iter_mut().map(Vec::as_mut_slice).collect();
-        self.run(&region.selection, &inputs.each_ref().map(Vec::as_slice), &mut planes)?;
-        Ok(outputs)
-    }
-}
-
-fn gather(plane: &[f32], some: &[usize]) -> [f32; MAX_PARTS] {
-    let mut lanes = [0.0; MAX_PARTS];
-    some.iter().zip(&mut lanes).for_each(|(&index, lane)| *lane = plane[index]);
-    lanes
 }

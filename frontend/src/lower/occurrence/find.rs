@@ -56,7 +56,7 @@ pub(super) struct Finder<'a> {
 
 impl<'a> Finder<'a> {
     pub(super) fn new(tree: &'a CheckedTree) -> Self {
-        let once: Vec<bool> = tree.uses().into_iter().map(|uses| uses == 1).collect();
+        let once: Vec<bool> = tree.uses().iter().map(|&uses| uses == 1).collect();
         let scene = Scene {
             tree,
             // Large ones are moved as they grow: there is room for a tree without sharing.
@@ -130,14 +130,16 @@ impl<'a> Finder<'a> {
 
     /// Walks through affine, attribute and pass-through nodes to the node that does something.
     fn resolve(&mut self, (mut node, position, bindings): Key) -> Key {
-        let Position { space, mut map, mut trail } = *self.scene.position(position);
-        let (mut rebound, mut moved) = (false, false);
+        // Where the path has come to, once a map has moved it.
+        let mut moved: Option<Position> = None;
+        let mut rebound = false;
         loop {
             let data = self.scene.tree.node(node);
             match &data.kind {
                 NodeKind::Affine(inner) => {
-                    map *= *inner;
-                    trail = match self.scene.tree.recipe(node) {
+                    let Position { space, map, trail } =
+                        moved.unwrap_or_else(|| *self.scene.position(position));
+                    let trail = match self.scene.tree.recipe(node) {
                         None => trail.fixed(inner, self.scene.tree.follows()),
                         Some(recipe) => {
                             let name =
@@ -145,13 +147,14 @@ impl<'a> Finder<'a> {
                             trail.free(name, recipe.freedom())
                         }
                     };
-                    moved = true;
+                    moved = Some(Position { space, map: map * *inner, trail });
                 }
                 NodeKind::Attribute { name, value } => {
                     let groups = self.scene.tree.attributes();
                     if let Some(group) = groups.iter().position(|group| group.name == *name) {
                         let placed = value.is_placed();
-                        let at = placed.then(|| self.name_position(Position { space, map, trail }));
+                        let place = || moved.unwrap_or_else(|| *self.scene.position(position));
+                        let at = placed.then(place).map(|place| self.name_position(place));
                         if !std::mem::replace(&mut rebound, true) {
                             self.bound.clear();
                             self.bound.extend_from_slice(self.scene.bindings(bindings));
@@ -168,11 +171,10 @@ impl<'a> Finder<'a> {
                 | NodeKind::Warp(_) => {
                     // Nobody asks again for what is met once and has nothing below it that others meet: it needs no name.
                     let alone = self.once[node.0 as usize] && data.children.is_empty();
-                    let place = Position { space, map, trail };
                     let position = match (moved, alone) {
-                        (false, _) => position,
-                        (true, false) => self.name_position(place),
-                        (true, true) => self.push_position(place),
+                        (None, _) => position,
+                        (Some(place), false) => self.name_position(place),
+                        (Some(place), true) => self.push_position(place),
                     };
                     let bindings = match (rebound, alone) {
                         (false, _) => bindings,
