@@ -101,10 +101,14 @@ impl Sheets {
         (sheet != NO_SHEET).then_some(u32::from(sheet))
     }
 
-    /// The sheet of an edge that the surface crosses and that has a quad.
-    #[inline(always)]
-    pub(crate) fn of_crossed_edge(&self, edge: usize) -> u32 {
-        u32::from(self.of_edge[edge])
+    /// The sheets of all edges in one number.
+    pub(crate) const fn numbers(&self) -> SheetNumbers {
+        let (mut numbers, mut edge) = (0, 0);
+        while edge < 12 {
+            numbers |= (self.of_edge[edge] as u32 & 3) << (2 * edge);
+            edge += 1;
+        }
+        SheetNumbers(numbers)
     }
 
     /// Whether a face is ambiguous and both of its segments lie on one sheet. If that is so on both of its sides, the two
@@ -267,6 +271,35 @@ static DEFAULT: [Sheets; 256] = {
     }
     sheets
 };
+
+/// For each edge of a cell that the surface crosses, and that has a quad, which sheet it belongs to: two bits each.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct SheetNumbers(u32);
+
+impl SheetNumbers {
+    /// The sheet of an edge; the place of its bits is twice its number.
+    #[inline(always)]
+    pub(crate) fn at(self, place: u32) -> u32 {
+        self.0 >> place & 3
+    }
+}
+
+/// Those of every case without flipped faces.
+static DEFAULT_NUMBERS: [SheetNumbers; 256] = {
+    let mut numbers = [SheetNumbers(0); 256];
+    let mut signs = 0;
+    while signs < 256 {
+        numbers[signs] = DEFAULT[signs].numbers();
+        signs += 1;
+    }
+    numbers
+};
+
+/// The sheets of the edges of a cell without flipped faces, inside the lattice.
+#[inline(always)]
+pub(crate) fn default_numbers(signs: u8) -> SheetNumbers {
+    DEFAULT_NUMBERS[usize::from(signs)]
+}
 
 /// The sheets of a cell, from its corners inside and its flipped faces, a bit each.
 #[inline]

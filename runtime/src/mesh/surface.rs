@@ -3,12 +3,13 @@
 //! A quad belongs to the last of the four cells around its edge, the one that has the edge at its low corner. The other three may be in bricks below; so
 //! each brick sees its cells in a table with one more layer on each low side, filled from those bricks.
 
+use multiversion::multiversion;
 use rayon::prelude::*;
 
 use super::Mesh;
 use super::brick::{Bricks, NONE, cell_sides, direction, number, split};
-use super::cell::{EDGE_CORNERS, Sheets, default_sheets, sheets_with_quads};
-use super::crossing::{Cell, Crossings};
+use super::cell::{EDGE_CORNERS, SheetNumbers, default_numbers, sheets_with_quads};
+use super::crossing::Crossings;
 
 /// The triangles of all quads, in the order of the cells that own them.
 pub(crate) fn triangles(bricks: &Bricks, crossings: &Crossings, positions: &[[f32; 3]]) -> Vec<[u32; 3]> {
@@ -18,41 +19,51 @@ pub(crate) fn triangles(bricks: &Bricks, crossings: &Crossings, positions: &[[f3
     groups.into_par_iter().enumerate().for_each_init(
         || Around::new(bricks),
         |around, (index, triangles)| {
-            let mut pairs = triangles.as_chunks_mut().0.iter_mut();
+            let mut rest = triangles.as_chunks_mut().0;
             let first = index * group;
             for brick in first..bricks.len().min(first + group) {
-                if crossings.quads[brick] == crossings.quads[brick + 1] {
+                let count = crossings.quads[brick + 1] - crossings.quads[brick];
+                if count == 0 {
                     continue;
                 }
-                around.fill(bricks, crossings, brick);
-                let sides = bricks.sides(brick);
-                for cell in crossings.of(brick) {
-                    let at = bricks.at(cell.number).in_table() + around.first;
-                    around.quads::<0>(cell, at, sides, positions, &mut pairs);
-                    around.quads::<1>(cell, at, sides, positions, &mut pairs);
-                    around.quads::<2>(cell, at, sides, positions, &mut pairs);
-                }
+                let (pairs, after) = std::mem::take(&mut rest).split_at_mut(count);
+                rest = after;
+                let lows = around.find_quads(bricks, crossings, brick);
+                around.fill(bricks, crossings, brick, lows);
+                split_quads(around, positions, pairs);
             }
         },
     );
     triangles
 }
 
-/// A crossed cell: its first vertex, and which sheets it has.
+/// A crossed cell: its first vertex, and the sheets of its edges.
 #[derive(Clone, Copy, Default)]
 struct Entry {
     vertex: u32,
-    /// The signs of a cell without flipped faces inside the lattice; 256 and the place in [`Around::special`] of any other.
-    sheets: u32,
+    sheets: SheetNumbers,
+}
+
+/// One of the four cells around an edge, as seen from the last one.
+#[derive(Clone, Copy, Default)]
+struct Corner {
+    /// How far it is before that one in the table.
+    back: u32,
+    /// Where its sheet on the edge is in [`SheetNumbers`].
+    place: u32,
 }
 
 /// The cells of a brick and those just below it. A cell that the surface does not cross has anything.
 struct Around {
     /// x fastest, then y, then z; each from the layer below the brick on.
     table: Vec<Entry>,
-    special: Vec<Sheets>,
     /// Room for the places of some cells of a brick among all of its crossed ones.
     chosen: Vec<u16>,
+    /// The quads of the brick: eight times the place of the last cell around the edge, and the number of its turn.
+    quads: Vec<u32>,
+    /// The four cells around an edge along an axis, counter-clockwise as seen from its end or, where the inside is
+    /// there, from its beginning: for `2 axis` and `2 axis + 1`.
+    turns: [[Corner; 4]; 8],
     /// The place of the brick's first cell.
     first: usize,
     /// The distances of cells along the axes.
@@ -64,13 +75,28 @@ impl Around {
         let stride = bricks.stride();
         let steps = [1, stride, stride * stride];
         let table = vec![Entry::default(); bricks.table_len()];
-        Self { table, special: Vec::new(), chosen: Vec::new(), first: steps.iter().sum(), steps }
+        let mut turns = [[Corner::default(); 4]; 8];
+        for axis in 0..3 {
+            let (b, c) = (steps[(axis + 1) % 3] as u32, steps[(axis + 2) % 3] as u32);
+            // A cell that lies back along an axis has the edge on its high side there.
+            let edges = [(b + c, 3), (c, 2), (0, 0), (b, 1)];
+            let turn = edges.map(|(back, edge)| Corner { back, place: 2 * (4 * axis as u32 + edge) });
+            turns[2 * axis] = turn;
+            turns[2 * axis + 1] = [turn[3], turn[2], turn[1], turn[0]];
+        }
+        let first = steps.iter().sum();
+        Self { table, chosen: Vec::new(), quads: Vec::new(), turns, first, steps }
     }
 
-    fn fill(&mut self, bricks: &Bricks, crossings: &Crossings, brick: usize) {
-        self.special.clear();
+    /// Fills the table as far as it is looked at: `lows` are the sets of axes along which cells of the brick are its
+    /// first ones.
+    fn fill(&mut self, bricks: &Bricks, crossings: &Crossings, brick: usize, lows: u8) {
         self.push(bricks, crossings, brick, 0, self.first);
-        for below in 1..8 {
+        // The cells around an edge are back along two axes at most.
+        for below in 1..7 {
+            if (0..8).all(|low| lows >> low & 1 == 0 || low & below != below) {
+                continue;
+            }
             let is_below = [0, 1, 2].map(|axis| below >> axis & 1 == 1);
             let other = bricks.neighbours[brick][direction(is_below.map(|is| -i8::from(is)))];
             if other != NONE {
@@ -97,12 +123,11 @@ impl Around {
         }
         for &index in &self.chosen[..count] {
             let cell = &cells[usize::from(index)];
-            let (mut sheets, at) = (u32::from(cell.signs), bricks.at(cell.number));
+            let (mut sheets, at) = (default_numbers(cell.signs), bricks.at(cell.number));
             if sides != 0 || cell.flips != 0 {
                 let sides = cell_sides(sides, bricks.extent(brick), at.place());
                 if sides != 0 || cell.flips != 0 {
-                    sheets = 256 + self.special.len() as u32;
-                    self.special.push(sheets_with_quads(cell.signs, cell.flips, sides));
+                    sheets = sheets_with_quads(cell.signs, cell.flips, sides).numbers();
                 }
             }
             let at = first.wrapping_add(at.in_table());
@@ -110,54 +135,50 @@ impl Around {
         }
     }
 
-    /// The vertex of the cell at a place of the table on one of its crossed edges.
-    #[inline(always)]
-    fn vertex(&self, at: usize, edge: usize) -> u32 {
-        let Entry { vertex, sheets } = self.table[at];
-        let sheets = match sheets.checked_sub(256) {
-            None => default_sheets(sheets as u8),
-            Some(special) => &self.special[special as usize],
-        };
-        vertex + sheets.of_crossed_edge(edge)
+    /// Finds the quads of a brick: the crossed edges at the low corners of its cells that have cells all around. Returns
+    /// on which low sides of the brick such cells are, as a set of sets of axes.
+    fn find_quads(&mut self, bricks: &Bricks, crossings: &Crossings, brick: usize) -> u8 {
+        let sides = bricks.sides(brick);
+        let cut = sides & 1 | sides >> 1 & 2 | sides >> 2 & 4;
+        let cells = crossings.of(brick);
+        self.quads.resize(self.quads.len().max(3 * cells.len() + 1), 0);
+        // Without a jump that would be guessed wrong at every third edge: what is not to stay is overwritten.
+        let (mut count, mut lows) = (0, 0);
+        for cell in cells {
+            let code = 8 * (bricks.at(cell.number).in_table() + self.first) as u32;
+            let is_low = |axis: usize| u8::from(cell.number & (LAST >> (2 - axis)) == 0) << axis;
+            let low = is_low(0) | is_low(1) | is_low(2);
+            lows |= 1 << low;
+            for axis in 0..3 {
+                let end = cell.signs >> (1 << axis) & 1;
+                self.quads[count] = code + 2 * axis as u32 + u32::from(end);
+                let is_there = low & cut & !(1 << axis) == 0;
+                count += usize::from((cell.signs ^ end) & 1 == 1 && is_there);
+            }
+        }
+        debug_assert_eq!(count, crossings.quads[brick + 1] - crossings.quads[brick]);
+        lows
     }
 
-    /// The two triangles around the edge along an axis at the low corner of a cell, if the edge is crossed and has cells all around.
+    /// The vertex of the cell at a place of the table on one of its crossed edges.
     #[inline(always)]
-    fn quads<'a, const AXIS: usize>(
-        &self,
-        cell: &Cell,
-        at: usize,
-        sides: u8,
-        positions: &[[f32; 3]],
-        pairs: &mut impl Iterator<Item = &'a mut [[u32; 3]; 2]>,
-    ) {
-        let inside = [0, 1 << AXIS].map(|corner| cell.signs >> corner & 1 == 1);
-        if inside[0] == inside[1] {
-            return;
-        }
-        let (b, c) = const { ((AXIS + 1) % 3, (AXIS + 2) % 3) };
-        let is_low = |axis: usize| sides >> (2 * axis) & 1 == 1 && cell.number & (LAST >> (2 - axis)) == 0;
-        if is_low(b) || is_low(c) {
-            return;
-        }
-        // Around the edge, seen from its end. A cell that lies back along an axis has the edge on its high side there.
-        let (back_b, back_c) = (self.steps[b], self.steps[c]);
-        let quad = [
-            self.vertex(at - back_b - back_c, 4 * AXIS + 3),
-            self.vertex(at - back_c, 4 * AXIS + 2),
-            self.vertex(at, 4 * AXIS),
-            self.vertex(at - back_b, 4 * AXIS + 1),
-        ];
-        // Where the inside is at the end, it is seen from the other side.
-        let [p, q, r, s] = if inside[1] { [quad[3], quad[2], quad[1], quad[0]] } else { quad };
-        if let Some(pair) = pairs.next() {
-            *pair = halves([p, q, r, s], positions);
-        }
+    fn vertex(&self, at: usize, corner: Corner) -> u32 {
+        let Entry { vertex, sheets } = self.table[at - corner.back as usize];
+        vertex + sheets.at(corner.place)
     }
 }
 
 /// The bits of z in the number of a cell; those of y and x are one and two places below.
 const LAST: u16 = 0b100_1001_0010_0100;
+
+/// The two triangles of each quad of a brick.
+#[multiversion(targets("x86_64+avx2"))]
+fn split_quads(around: &Around, positions: &[[f32; 3]], pairs: &mut [[[u32; 3]; 2]]) {
+    for (pair, &quad) in pairs.iter_mut().zip(&around.quads) {
+        let (at, turn) = ((quad / 8) as usize, around.turns[(quad % 8) as usize]);
+        *pair = halves(turn.map(|corner| around.vertex(at, corner)), positions);
+    }
+}
 
 /// Splits a quad along its shorter diagonal, or from its first vertex if they are equal.
 #[inline(always)]
