@@ -190,12 +190,17 @@ pub enum RunError {
     },
 }
 
-/// Planes and tables up to which a call needs no allocation.
-const SMALL: usize = 48;
+/// Planes up to which a call needs no allocation, and tables.
+const FEW_PLANES: usize = 48;
+const FEW_TABLES: usize = 12;
 
 /// `count` places, in `small` if they fit, else in `large`.
-fn places<'a, T: Copy>(small: &'a mut [T; SMALL], large: &'a mut Vec<T>, count: usize) -> &'a mut [T] {
-    if count <= SMALL {
+fn places<'a, T: Copy, const FEW: usize>(
+    small: &'a mut [T; FEW],
+    large: &'a mut Vec<T>,
+    count: usize,
+) -> &'a mut [T] {
+    if count <= FEW {
         return &mut small[..count];
     }
     large.resize(count, small[0]);
@@ -231,7 +236,7 @@ impl BoundKernel {
     ///
     /// Any number is fine as an input, NaN and infinities included. What is left behind whole blocks of
     /// [`Kernel::lanes`] points is done with the last block that ends where the planes do: some points twice, with
-    /// the same bits. Allocates nothing for up to 48 planes and tables.
+    /// the same bits. Allocates nothing for up to 48 planes and 12 tables.
     ///
     /// # Errors
     /// When the planes are not as many as the function's, not of one length, or that length is less than
@@ -257,14 +262,14 @@ impl BoundKernel {
         if length == 0 {
             return Ok(());
         }
-        let (mut small, mut large) = ([std::ptr::null(); SMALL], Vec::new());
+        let (mut small, mut large) = ([std::ptr::null(); FEW_PLANES], Vec::new());
         let planes = places(&mut small, &mut large, inputs.len() + outputs.len());
         let inputs = inputs.iter().map(|plane| plane.as_ptr());
         let outputs = outputs.iter_mut().map(|plane| plane.as_mut_ptr().cast_const());
         for (place, plane) in planes.iter_mut().zip(inputs.chain(outputs)) {
             *place = plane;
         }
-        let (mut small, mut large) = ([TableView::NOWHERE; SMALL], Vec::new());
+        let (mut small, mut large) = ([TableView::NOWHERE; FEW_TABLES], Vec::new());
         let views = places(&mut small, &mut large, self.tables.tables.len());
         for ((view, rows), (starts, active)) in
             views.iter_mut().zip(self.tables.tables.values()).zip(selection.lists())

@@ -359,8 +359,9 @@ impl Bound {
             return Err(EvalError::Planes { expected: function.outputs.len(), given: outputs.len() });
         }
         let expected = inputs[0].len();
-        let mut lengths = inputs.iter().map(|p| p.len()).chain(outputs.iter().map(|p| p.len()));
-        match lengths.find(|&given| given != expected) {
+        let input = inputs.iter().map(|plane| plane.len()).find(|&given| given != expected);
+        let output = || outputs.iter().map(|plane| plane.len()).find(|&given| given != expected);
+        match input.or_else(output) {
             Some(given) => Err(EvalError::Length { expected, given }),
             None => Ok(expected),
         }

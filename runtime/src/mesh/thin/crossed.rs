@@ -152,20 +152,28 @@ impl<'a> Crossed<'a> {
         let bits = 3 * bricks.edge.ilog2();
         for (brick, &place) in bricks.places.iter().enumerate() {
             let before = morton(place) << bits;
-            for (index, cell) in (crossings.starts[brick]..).zip(crossings.of(brick)) {
-                let code = before | u64::from(cell.number);
-                if crossed.codes.last() != Some(&(code >> BITS)) {
-                    crossed.codes.push(code >> BITS);
+            let mut first = crossings.starts[brick];
+            for cells in crossings.of(brick).chunk_by(|a, b| a.number >> BITS == b.number >> BITS) {
+                let code = (before | u64::from(cells[0].number)) >> BITS;
+                // Small bricks share a block.
+                if crossed.codes.last() != Some(&code) {
+                    crossed.codes.push(code);
                     crossed.masks.push(0);
-                    crossed.firsts.push(index);
+                    crossed.firsts.push(first);
                     crossed.edges.push([0; 3]);
                 }
-                let (bit, last) = (code & ((1 << BITS) - 1), crossed.codes.len() - 1);
-                crossed.masks[last] |= 1 << bit;
-                let edges = CROSSED[usize::from(cell.signs)];
-                for (axis, mask) in crossed.edges[last].iter_mut().enumerate() {
-                    *mask |= u64::from(edges >> axis & 1) << ROW[bit as usize];
+                let last = crossed.codes.len() - 1;
+                let (mut mask, mut edges) = (crossed.masks[last], crossed.edges[last]);
+                for cell in cells {
+                    let bit = (before | u64::from(cell.number)) & ((1 << BITS) - 1);
+                    mask |= 1 << bit;
+                    let begin = CROSSED[usize::from(cell.signs)];
+                    for (axis, edges) in edges.iter_mut().enumerate() {
+                        *edges |= u64::from(begin >> axis & 1) << ROW[bit as usize];
+                    }
                 }
+                (crossed.masks[last], crossed.edges[last]) = (mask, edges);
+                first += cells.len();
             }
         }
         crossed
