@@ -90,8 +90,8 @@ pub(crate) struct Sheets {
 
 impl Sheets {
     /// How many sheets.
-    pub(crate) fn count(&self) -> u32 {
-        u32::from(self.count)
+    pub(crate) const fn count(&self) -> u32 {
+        self.count as u32
     }
 
     /// The sheet of an edge that the surface crosses.
@@ -310,8 +310,8 @@ pub(crate) fn sheets(signs: u8, flips: u8) -> Sheets {
 
 /// The sheets of a cell without flipped faces.
 #[inline]
-pub(crate) fn default_sheets(signs: u8) -> &'static Sheets {
-    &DEFAULT[usize::from(signs)]
+pub(crate) const fn default_sheets(signs: u8) -> &'static Sheets {
+    &DEFAULT[signs as usize]
 }
 
 /// The sheets that become vertices of a cell that touches these sides of the lattice.
@@ -320,56 +320,81 @@ pub(crate) fn sheets_with_quads(signs: u8, flips: u8, sides: u8) -> Sheets {
     if sides == 0 { sheets } else { sheets.with_quads(sides) }
 }
 
-/// Some crossed edges of a cell, made ready for [`mean_crossing`].
-#[derive(Clone, Copy)]
-pub(crate) struct Edges {
-    /// A bit for each edge.
-    mask: u16,
-    /// For each axis: how many of the edges along the others lie on the high side of the cell.
-    high: [f32; 3],
-    /// One for each edge.
-    part: f32,
-    /// The sum of the unit vectors along the edges, from outside to inside.
-    pub(crate) rise: [f32; 3],
-}
+/// Some crossed edges of a cell, all of one sheet, in one number: a bit for each edge; then, in three bits for each
+/// axis, how many of the edges along the others lie on the high side of the cell; then how many edges there are.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Edges(u32);
 
 impl Edges {
-    /// From the corners inside and the edges, a bit each.
-    const fn new(signs: u8, mask: u16) -> Self {
-        let (mut high, mut rise) = ([0.0; 3], [0.0; 3]);
-        let mut edge = 0;
+    /// The place of the first bit behind those of the edges.
+    const HIGH: u32 = 12;
+    /// The place of the number of edges.
+    const COUNT: u32 = Self::HIGH + 9;
+
+    /// From the edges, a bit each.
+    const fn new(mask: u16) -> Self {
+        let (mut code, mut edge) = (mask as u32, 0);
         while edge < 12 {
-            if mask >> edge & 1 == 1 {
-                rise[edge / 4] += if inside(signs, EDGE_CORNERS[edge][1]) { 1.0 } else { -1.0 };
-            }
             let mut axis = 0;
             while axis < 3 {
                 let is_high = mask >> edge & 1 == 1 && EDGE_FACES[edge] >> (2 * axis + 1) & 1 == 1;
-                high[axis] += is_high as u8 as f32;
+                code += (is_high as u32) << (Self::HIGH + 3 * axis);
                 axis += 1;
             }
             edge += 1;
         }
-        Self { mask, high, part: 1.0 / mask.count_ones() as f32, rise }
+        Self(code | mask.count_ones() << Self::COUNT)
+    }
+
+    /// A bit for each edge.
+    #[inline(always)]
+    pub(crate) fn mask(self) -> u16 {
+        (self.0 & 0xfff) as u16
+    }
+
+    /// All ones if an edge is among them, and zero otherwise.
+    #[inline(always)]
+    pub(crate) fn chosen(self, edge: usize) -> u32 {
+        (self.0 >> edge & 1).wrapping_neg()
+    }
+
+    /// How many of the edges along other axes lie on the high side of the cell: at most 4.
+    #[inline(always)]
+    pub(crate) fn high(self, axis: usize) -> f32 {
+        (self.0 >> (Self::HIGH + 3 * axis as u32) & 7) as i32 as f32
+    }
+
+    /// How many they are.
+    #[inline(always)]
+    pub(crate) fn count(self) -> f32 {
+        (self.0 >> Self::COUNT) as i32 as f32
+    }
+
+    /// The sum of the unit vectors along the edges, from outside to inside, in a cell with these corners inside.
+    pub(crate) fn rise(self, signs: u8) -> [f32; 3] {
+        let mut rise = [0.0; 3];
+        for edge in (0..12).filter(|&edge| self.chosen(edge) != 0) {
+            rise[edge / 4] += if inside(signs, EDGE_CORNERS[edge][1]) { 1.0 } else { -1.0 };
+        }
+        rise
     }
 
     /// Whether any of them has a quad, where the cell touches these sides of the lattice (a bit for each face): an
     /// edge on a side has no cells all around it.
     #[inline(always)]
-    pub(crate) fn have_quad(&self, sides: u8) -> bool {
-        self.mask & inner_edges(sides) != 0
+    pub(crate) fn have_quad(self, sides: u8) -> bool {
+        self.mask() & inner_edges(sides) != 0
     }
 }
 
 /// The edges of the sheets of every case without flipped faces.
 static DEFAULT_EDGES: [[Edges; 4]; 256] = {
-    let mut edges = [[Edges::new(0, 0); 4]; 256];
+    let mut edges = [[Edges(0); 4]; 256];
     let mut signs = 0;
     while signs < 256 {
         let mut sheet = 0;
         while sheet < DEFAULT[signs].count {
-            let mask = DEFAULT[signs].edges(sheet as u32);
-            edges[signs][sheet as usize] = Edges::new(signs as u8, mask);
+            edges[signs][sheet as usize] = Edges::new(DEFAULT[signs].edges(sheet as u32));
             sheet += 1;
         }
         signs += 1;
@@ -386,7 +411,7 @@ pub(crate) fn default_edges(signs: u8) -> &'static [Edges] {
 /// The edges of each sheet of a cell with flipped faces.
 pub(crate) fn edges(signs: u8, flips: u8) -> Vec<Edges> {
     let sheets = sheets(signs, flips);
-    (0..sheets.count()).map(|sheet| Edges::new(signs, sheets.edges(sheet))).collect()
+    (0..sheets.count()).map(|sheet| Edges::new(sheets.edges(sheet))).collect()
 }
 
 /// The edges of a cell that have cells all around them, a bit each, where it touches these sides of the lattice
@@ -408,65 +433,6 @@ fn inner_edges(sides: u8) -> u16 {
         inner
     };
     INNER[usize::from(sides & 63)]
-}
-
-/// Where the chosen edges are among the four along an axis, a bit each: all ones for those, and zero for the others.
-static CHOSEN: [[u32; 4]; 16] = {
-    let mut chosen = [[0; 4]; 16];
-    let mut choice = 0;
-    while choice < 16 {
-        let mut edge = 0;
-        while edge < 4 {
-            chosen[choice][edge] = if choice >> edge & 1 == 1 { u32::MAX } else { 0 };
-            edge += 1;
-        }
-        choice += 1;
-    }
-    chosen
-};
-
-/// The mean of the crossings on some crossed edges of a cell (at least one), in units of the cell: each coordinate is from 0 to 1, or
-/// a little more by rounding.
-#[inline(always)]
-pub(crate) fn mean_crossing(iso: f32, corners: &[f32; 8], edges: &Edges) -> [f32; 3] {
-    /// Differences of numbers up to this do not overflow.
-    const LARGE: f32 = 1e38;
-    let is_tame = corners.iter().fold(1, |all, corner| all & u32::from(corner.abs() <= LARGE));
-    let [a, b, c, d, e, f, g, h] = *corners;
-    let sums = if is_tame == 1 {
-        [
-            sum_along([a, c, e, g], [b, d, f, h], iso, edges.mask & 15),
-            sum_along([a, e, b, f], [c, g, d, h], iso, edges.mask >> 4 & 15),
-            sum_along([a, b, c, d], [e, f, g, h], iso, edges.mask >> 8),
-        ]
-    } else {
-        std::array::from_fn(|axis| {
-            let chosen = (4 * axis..4 * axis + 4).filter(|edge| edges.mask >> edge & 1 == 1);
-            let ends = chosen.map(|edge| EDGE_CORNERS[edge].map(|corner| corners[corner]));
-            ends.map(|[low, high]| crossing(iso, low, high)).sum()
-        })
-    };
-    std::array::from_fn(|axis| (edges.high[axis] + sums[axis]) * edges.part)
-}
-
-/// The sum of the crossings on the chosen ones of the four edges along an axis. All four are done together: that is quicker than to ask.
-#[inline(always)]
-fn sum_along(low: [f32; 4], high: [f32; 4], iso: f32, choice: u16) -> f32 {
-    let chosen = &CHOSEN[usize::from(choice)];
-    let mut t = [0.0; 4];
-    for n in 0..4 {
-        // On a crossed edge this is from 0 to 1; on another one it is anything, and is left out.
-        let crossing = (iso - low[n]) / (high[n] - low[n]);
-        t[n] = f32::from_bits(crossing.to_bits() & chosen[n]);
-    }
-    (t[0] + t[1]) + (t[2] + t[3])
-}
-
-/// Where along a crossed edge the surface crosses, from 0 to 1, if the field is linear there; the middle if that is no number.
-fn crossing(iso: f32, low: f32, high: f32) -> f32 {
-    let rise = high - low;
-    let t = (iso - low) / rise;
-    if (0.0..=1.0).contains(&t) && rise.is_finite() { t } else { 0.5 }
 }
 
 #[cfg(test)]
@@ -542,37 +508,31 @@ mod tests {
     }
 
     #[test]
-    fn a_crossing_is_on_its_edge() {
-        assert_eq!(crossing(0.5, 0.0, 1.0), 0.5);
-        assert_eq!(crossing(0.5, 1.0, 0.0), 0.5);
-        assert_eq!(crossing(0.25, 0.0, 1.0), 0.25);
-        assert_eq!(crossing(0.5, 0.5, 0.0), 0.0);
-        assert_eq!(crossing(0.5, f32::NAN, 0.9), 0.5);
-        assert_eq!(crossing(0.5, f32::NEG_INFINITY, 0.9), 0.5);
-        assert_eq!(crossing(0.5, 0.0, f32::INFINITY), 0.5);
-        assert_eq!(crossing(0.5, f32::MIN, f32::MAX), 0.5);
-    }
-
-    #[test]
-    fn the_mean_of_crossings_is_where_they_are() {
-        // Corner 0 alone is inside: a quarter along each of its edges.
-        let mut corners = [0.0; 8];
-        corners[0] = 1.0;
-        let [x, y, z] = mean_crossing(0.75, &corners, &default_edges(1)[0]);
-        assert!([x, y, z].iter().all(|c| (c - 0.25 / 3.0).abs() < 1e-6));
-        // The same at the opposite corner.
-        corners.rotate_left(1);
-        let [x, y, z] = mean_crossing(0.75, &corners, &default_edges(128)[0]);
-        assert!([x, y, z].iter().all(|c| (c - (1.0 - 0.25 / 3.0)).abs() < 1e-6));
-        // A corner without a number: the middle.
-        corners = [1.0, 0.0, 0.0, f32::NAN, f32::NEG_INFINITY, 0.0, 0.0, 0.0];
-        let [x, y, z] = mean_crossing(0.75, &corners, &default_edges(1)[0]);
-        assert_eq!([x * 3.0, y * 3.0, z * 3.0], [0.25, 0.25, 0.5]);
+    fn the_edges_of_all_sheets_are_those_that_are_crossed() {
         for signs in 1..255_u8 {
             let sheets = sheets(signs, 0);
             let all = (0..sheets.count()).fold(0, |all, sheet| all | sheets.edges(sheet));
-            assert_eq!(all, default_edges(signs).iter().fold(0, |all, sheet| all | sheet.mask));
+            assert_eq!(all, default_edges(signs).iter().fold(0, |all, sheet| all | sheet.mask()));
         }
+    }
+
+    #[test]
+    fn edges_know_how_many_they_are_and_where() {
+        // Corner 0 is cut off, on the low side of everything; corner 7 is on the high side of two edges each.
+        let [low, high] = [1, 128].map(|signs| default_edges(signs)[0]);
+        assert_eq!(
+            (low.count(), [0, 1, 2].map(|axis| low.high(axis)), low.rise(1)),
+            (3.0, [0.0; 3], [-1.0; 3])
+        );
+        assert_eq!(
+            (high.count(), [0, 1, 2].map(|axis| high.high(axis)), high.rise(128)),
+            (3.0, [2.0; 3], [1.0; 3])
+        );
+        // The upper half is inside: four edges along z, two of them on the high side of x and of y.
+        let half = default_edges(0b1111_0000)[0];
+        assert_eq!((half.mask(), half.count(), half.rise(0b1111_0000)), (0xf00, 4.0, [0.0, 0.0, 4.0]));
+        assert_eq!([0, 1, 2].map(|axis| half.high(axis)), [2.0, 2.0, 0.0]);
+        assert_eq!([7, 8].map(|edge| half.chosen(edge)), [0, u32::MAX]);
     }
 
     #[test]

@@ -5,6 +5,7 @@
 //! A flip never joins two sheets, so a face that is good stays good, and one pass over the faces that are bad by default
 //! ends with all faces good. The pass is sequential and in the order of the cells; such faces are rare.
 
+use multiversion::multiversion;
 use rayon::prelude::*;
 
 use super::Sides;
@@ -13,7 +14,7 @@ use super::cell::{default_edges, default_sheets, sheets, sheets_with_quads};
 use super::sample::Samples;
 
 /// A cell that the surface crosses.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Cell {
     /// The vertex of its first sheet, counted from the first one of its brick; those of the others follow.
     pub(crate) vertex: u32,
@@ -28,6 +29,8 @@ pub(crate) struct Cell {
 /// All crossing cells, in Morton order.
 pub(crate) struct Crossings {
     pub(crate) cells: Vec<Cell>,
+    /// The field at their corners, by groups of bricks.
+    pub(crate) corners: Vec<Vec<[f32; 8]>>,
     /// Where the cells of each brick begin, and where the last ones end.
     pub(crate) starts: Vec<usize>,
     /// The same for vertices.
@@ -46,6 +49,13 @@ impl Crossings {
         &self.cells[self.starts[brick]..self.starts[brick + 1]]
     }
 
+    /// The field at the corners of these cells.
+    pub(crate) fn corners_of(&self, bricks: &Bricks, brick: usize) -> &[[f32; 8]] {
+        let group = brick / bricks.group();
+        let before = self.starts[group * bricks.group()];
+        &self.corners[group][self.starts[brick] - before..self.starts[brick + 1] - before]
+    }
+
     /// How many vertices there are.
     pub(crate) fn vertex_count(&self) -> usize {
         self.vertices[self.vertices.len() - 1]
@@ -58,40 +68,46 @@ impl Crossings {
 }
 
 /// Finds the crossing cells, flips faces, and numbers the vertices.
-pub(crate) fn find(bricks: &Bricks, samples: &Samples) -> Crossings {
+pub(crate) fn find(bricks: &Bricks, samples: &Samples, iso: f32) -> Crossings {
     let group = bricks.group();
     let groups = bricks.len().div_ceil(group);
     let found = (0..groups).into_par_iter().map_init(
         || Signs::new(bricks),
         |signs, index| {
-            let mut found = Found::default();
+            let mut found = Found::with_room(group * bricks.edge.pow(3) / 4);
             for brick in index * group..bricks.len().min((index + 1) * group) {
-                signs.find(bricks, samples, brick, &mut found);
+                samples.gather(bricks, brick, &mut signs.values);
+                signs.find(bricks, iso, brick, &mut found);
             }
+            found.corners.shrink_to_fit();
             found
         },
     );
     let found: Vec<Found> = found.collect();
     let mut cells = Vec::with_capacity(found.iter().map(|found| found.cells.len()).sum());
     let (mut counts, mut suspects, mut cut) = (Vec::new(), Vec::new(), Sides::default());
+    let mut corners = Vec::with_capacity(groups);
     for found in found {
         suspects.extend(
             found.suspects.iter().map(|&(brick, cell)| (brick as usize, cells.len() + cell as usize)),
         );
         cells.extend_from_slice(&found.cells);
         counts.extend_from_slice(&found.counts);
+        corners.push(found.corners);
         cut.add(found.cut);
     }
     let starts = starts(counts.into_iter());
     let flipped_faces = flip(bricks, &starts, &mut cells, &suspects);
     let (vertices, quads) = number_vertices(bricks, &starts, &mut cells);
-    Crossings { cells, starts, vertices, quads, flipped_faces, cut }
+    Crossings { cells, corners, starts, vertices, quads, flipped_faces, cut }
 }
 
 /// The crossing cells of some bricks.
 #[derive(Default)]
 struct Found {
     cells: Vec<Cell>,
+    /// The field at their corners.
+    corners: Vec<[f32; 8]>,
     /// How many each brick has.
     counts: Vec<usize>,
     /// Cells with a low face that is pinched by default: their bricks, and which of the cells found they are.
@@ -99,27 +115,37 @@ struct Found {
     cut: Sides,
 }
 
+impl Found {
+    /// Room for so many cells: more than a smooth surface has.
+    fn with_room(cells: usize) -> Self {
+        Self { cells: Vec::with_capacity(cells), corners: Vec::with_capacity(cells), ..Self::default() }
+    }
+}
+
 /// Room for the signs of one brick.
 struct Signs {
-    /// Points of a brick's closed box.
-    table_len: usize,
+    /// The field at the points of its closed box.
+    values: Vec<f32>,
     /// For each of them a bit: whether it is inside. Then, step by step, those of the points beside it.
     points: Vec<u8>,
     pairs: Vec<u8>,
     /// For each point the signs of the cell above it.
     cells: Vec<u8>,
+    /// Room for the crossed cells of a brick, and one more.
+    crossed: Vec<Cell>,
 }
 
 impl Signs {
     fn new(bricks: &Bricks) -> Self {
-        let points = bricks.table_len();
-        let padded = vec![0; points + bricks.stride().pow(2)];
-        Self { table_len: points, points: padded.clone(), pairs: padded.clone(), cells: padded }
+        let values = vec![0.0; bricks.table_len()];
+        let padded = vec![0; values.len() + bricks.stride().pow(2)];
+        let crossed = vec![Cell::default(); bricks.edge.pow(3) + 1];
+        Self { values, points: padded.clone(), pairs: padded.clone(), cells: padded, crossed }
     }
 
     /// Appends the crossing cells of a brick.
-    fn find(&mut self, bricks: &Bricks, samples: &Samples, brick: usize, found: &mut Found) {
-        samples.gather_inside(bricks, brick, &mut self.points[..self.table_len]);
+    fn find(&mut self, bricks: &Bricks, iso: f32, brick: usize, found: &mut Found) {
+        compare(iso, &self.values, &mut self.points);
         let (extent, sides) = (bricks.extent(brick), bricks.sides(brick));
         if sides != 0 {
             self.find_cut(bricks, extent, sides, &mut found.cut);
@@ -138,14 +164,14 @@ impl Signs {
 
     /// Whether some points are inside and some are not.
     fn is_mixed(&self) -> bool {
-        let points = &self.points[..self.table_len];
+        let points = &self.points[..self.values.len()];
         let (any, all) = points.iter().fold((0, 1), |(any, all), bit| (any | bit, all & bit));
         any != all
     }
 
     /// The signs of all cells, from those of the points: first pairs along x, then squares, then cubes.
     fn join(&mut self, stride: usize) {
-        let count = self.table_len;
+        let count = self.values.len();
         join::<1>(&self.points, 1, &mut self.cells[..count]);
         join::<2>(&self.cells, stride, &mut self.pairs[..count]);
         join::<4>(&self.pairs, stride * stride, &mut self.cells[..count]);
@@ -178,9 +204,10 @@ impl Signs {
         }
     }
 
-    fn push_cells(&self, bricks: &Bricks, brick: usize, found: &mut Found) {
+    fn push_cells(&mut self, bricks: &Bricks, brick: usize, found: &mut Found) {
         let stride = bricks.stride();
         let layer = stride * stride;
+        let (before, mut count) = (found.cells.len(), 0);
         for (octet, at) in bricks.octets().enumerate() {
             let cells = &self.cells[at.in_table()..][..layer + stride + 2];
             let pairs = [0, stride, layer, layer + stride]
@@ -190,18 +217,43 @@ impl Signs {
             if signs == 0 || signs == u64::MAX {
                 continue;
             }
+            // In the others there is no telling: no jump, which would be guessed wrong, but what is not crossed is
+            // overwritten.
+            let first = count;
+            let mut pinched = false;
             for (rest, signs) in (0..).zip(signs.to_le_bytes()) {
-                if signs == 0 || signs == u8::MAX {
-                    continue;
-                }
-                if default_sheets(signs).pinched_low() {
-                    found.suspects.push((brick as u32, found.cells.len() as u32));
-                }
-                let number = (octet as u16) << 3 | rest;
-                found.cells.push(Cell { vertex: 0, number, signs, flips: 0 });
+                self.crossed[count] = Cell { vertex: 0, number: (octet as u16) << 3 | rest, signs, flips: 0 };
+                count += usize::from(signs != 0 && signs != u8::MAX);
+                pinched |= default_sheets(signs).pinched_low();
+            }
+            if pinched {
+                let cells = (before..).zip(&self.crossed[..count]).skip(first);
+                let pinched = cells.filter(|(_, cell)| default_sheets(cell.signs).pinched_low());
+                found.suspects.extend(pinched.map(|(index, _)| (brick as u32, index as u32)));
             }
         }
+        let crossed = &self.crossed[..count];
+        found.cells.extend_from_slice(crossed);
+        let corners = |cell: &Cell| corners(&self.values, bricks.at(cell.number).in_table(), stride);
+        found.corners.extend(crossed.iter().map(corners));
     }
+}
+
+/// Which values are inside, 1 or 0 each.
+#[multiversion(targets("x86_64+avx2"))]
+fn compare(iso: f32, values: &[f32], inside: &mut [u8]) {
+    for (bit, value) in inside.iter_mut().zip(values) {
+        *bit = u8::from(*value >= iso);
+    }
+}
+
+/// The field at the corners of the cell at a place of a table.
+#[inline(always)]
+fn corners(table: &[f32], at: usize, stride: usize) -> [f32; 8] {
+    let layer = stride * stride;
+    let table = &table[at..at + layer + stride + 2];
+    let (front, back) = (&table[..stride + 2], &table[layer..]);
+    [front[0], front[1], front[stride], front[stride + 1], back[0], back[1], back[stride], back[stride + 1]]
 }
 
 /// Joins to the bits at each place, of which there are `WIDTH`, those at the place a step further on.
@@ -282,18 +334,38 @@ fn number_vertices(
     (starts(vertices.into_iter()), starts(quads.into_iter()))
 }
 
+/// What a cell without flipped faces inside the lattice has: sheets, and crossed edges at its low corner.
+#[derive(Clone, Copy)]
+struct Counts {
+    sheets: u8,
+    quads: u8,
+}
+
+static COUNTS: [Counts; 256] = {
+    let mut counts = [Counts { sheets: 0, quads: 0 }; 256];
+    let mut signs = 0;
+    while signs < 256 {
+        let differs =
+            (signs ^ signs >> 1) & 1 | ((signs ^ signs >> 2) & 1) << 1 | ((signs ^ signs >> 4) & 1) << 2;
+        let sheets = default_sheets(signs as u8).count() as u8;
+        counts[signs] = Counts { sheets, quads: differs.count_ones() as u8 };
+        signs += 1;
+    }
+    counts
+};
+
 /// Numbers the vertices of a brick, and counts them and the quads.
 fn number_brick(bricks: &Bricks, brick: usize, cells: &mut [Cell]) -> (usize, usize) {
     let (sides, extent) = (bricks.sides(brick), bricks.extent(brick));
     let (mut vertices, mut quads) = (0, 0);
     for cell in cells {
         cell.vertex = vertices;
-        let differs = |corner: u8| usize::from((cell.signs ^ cell.signs >> corner) & 1);
         if sides == 0 && cell.flips == 0 {
-            vertices += default_sheets(cell.signs).count();
-            quads += differs(1) + differs(2) + differs(4);
+            let Counts { sheets, quads: more } = COUNTS[usize::from(cell.signs)];
+            (vertices, quads) = (vertices + u32::from(sheets), quads + usize::from(more));
             continue;
         }
+        let differs = |corner: u8| usize::from((cell.signs ^ cell.signs >> corner) & 1);
         let sides = cell_sides(sides, extent, bricks.at(cell.number).place());
         vertices += if cell.flips == 0 {
             default_edges(cell.signs).iter().filter(|sheet| sheet.have_quad(sides)).count() as u32

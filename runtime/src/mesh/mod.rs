@@ -314,7 +314,7 @@ pub enum MeshError<E: Error + 'static> {
         /// How many there may be.
         limit: usize,
     },
-    /// The memory for the field at the points of the bricks (5 bytes a point) is not to be had.
+    /// The memory for the field at the points of the bricks (4 bytes a point) is not to be had.
     #[error("there is no memory for the field at {points} lattice points")]
     Memory {
         /// How many points there are.
@@ -383,13 +383,15 @@ fn polygonize<F: Field>(
     progress: &Progress<'_>,
 ) -> Result<(Mesh, Report, Crossings), MeshError<F::Error>> {
     let Division { bricks, regions, boxes, chunks: _ } = division;
-    let samples = sample::sample(field, bricks, regions, options.iso, progress)?;
-    let crossings = crossing::find(bricks, &samples);
+    let samples = sample::sample(field, bricks, regions, progress)?;
+    let mut crossings = crossing::find(bricks, &samples, options.iso);
+    let field_evaluations = samples.len() as u64;
+    drop(samples);
     let count = crossings.vertex_count();
     if u32::try_from(count).is_err() {
         return Err(MeshError::TooManyVertices { vertices: count as u64 });
     }
-    let source = Source { field, options, bricks, regions, samples: &samples, crossings: &crossings };
+    let source = Source { field, options, bricks, regions, crossings: &crossings };
     let (mut mesh, done) = vertex::finish(&source, progress)?;
     let mut report = Report {
         cut_sides: crossings.cut,
@@ -398,7 +400,7 @@ fn polygonize<F: Field>(
         boxes_outside: boxes.outside,
         evaluations_spared: boxes.spared,
         bricks: bricks.len() as u64,
-        field_evaluations: samples.len() as u64,
+        field_evaluations,
         gradient_evaluations: done.gradient_evaluations,
         full_evaluations: done.full_evaluations,
         jump_evaluations: done.jump_evaluations,
@@ -410,7 +412,7 @@ fn polygonize<F: Field>(
         thin: None,
     };
     report.cut_sides.add(boxes.cut);
-    drop(samples);
+    crossings.corners = Vec::new();
     mesh.triangles = surface::triangles(bricks, &crossings, &mesh.positions);
     surface::repair_normals(&mut mesh, bricks, &crossings, &done.doubtful);
     Ok((mesh, report, crossings))

@@ -25,7 +25,7 @@ pub(super) fn all(conditions: &[u32; LANES]) -> bool {
 /// Pulls vertices, each from its position with the field and the gradient there, within the boxes from `low` to `high`.
 ///
 /// A plain step that stays in its box is taken by all lanes at once; those that would leave it go on one by one.
-#[inline]
+#[inline(always)]
 pub(super) fn pull_lanes(
     iso: f32,
     points: &mut [Lanes; 3],

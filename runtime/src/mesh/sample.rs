@@ -122,48 +122,38 @@ fn span(kind: u8, cells: usize) -> (usize, usize) {
 pub(crate) struct Samples {
     /// Brick by brick: its half-open box, x fastest, then y, then z; then the classes of its rim.
     values: Vec<f32>,
-    /// For each value whether it is inside, 1 or 0.
-    inside: Vec<u8>,
     /// Where the values of each brick begin, and where the last ones end.
     starts: Vec<usize>,
     /// For each brick where the classes of its rim begin, counted from its start.
     rims: Vec<[u16; 27]>,
 }
 
-/// Evaluates the field at every point of every brick, once, and sees which are inside.
+/// Evaluates the field at every point of every brick, once.
 pub(crate) fn sample<F: Field>(
     field: &F,
     bricks: &Bricks,
     regions: &[F::Region],
-    iso: f32,
     progress: &Progress<'_>,
 ) -> Result<Samples, MeshError<F::Error>> {
     let (rims, counts): (Vec<[u16; 27]>, Vec<usize>) =
         (0..bricks.len()).into_par_iter().with_min_len(64).map(|brick| rim(bricks, brick)).unzip();
     let starts = starts(counts.into_iter());
     let mut values = allocate(starts[bricks.len()])?;
-    let mut inside = allocate(starts[bricks.len()])?;
     let group = bricks.group();
     let groups = split(&mut values, &starts, group, 1);
-    let insides = split(&mut inside, &starts, group, 1);
     let total = groups.len();
     progress.begin(Phase::Lattice)?;
-    let work = groups.into_par_iter().zip(insides).enumerate();
-    work.try_for_each_init(Points::default, |points, (index, (values, inside))| {
+    groups.into_par_iter().enumerate().try_for_each_init(Points::default, |points, (index, values)| {
         let first = index * group;
         for brick in first..bricks.len().min(first + group) {
             let mine = starts[brick] - starts[first]..starts[brick + 1] - starts[first];
             points.collect(bricks, brick, &rims[brick]);
             let Points { x, y, z } = &*points;
-            let values = &mut values[mine.clone()];
-            field.field(&regions[brick], x, y, z, values).map_err(MeshError::Field)?;
-            for (bit, value) in inside[mine].iter_mut().zip(values) {
-                *bit = u8::from(*value >= iso);
-            }
+            field.field(&regions[brick], x, y, z, &mut values[mine]).map_err(MeshError::Field)?;
         }
         progress.advance(Phase::Lattice, total)
     })?;
-    Ok(Samples { values, inside, starts, rims })
+    Ok(Samples { values, starts, rims })
 }
 
 /// Zeros, or an error where the allocator would have aborted.
@@ -272,15 +262,7 @@ impl Samples {
     /// The field at all points of a brick's closed box, into a table (x fastest, then y, then z, in rows and layers of
     /// [`Bricks::stride`]). Where the lattice cuts the brick, the rest of the table stays as it is.
     pub(crate) fn gather(&self, bricks: &Bricks, brick: usize, table: &mut [f32]) {
-        self.gather_from(&self.values, bricks, brick, table);
-    }
-
-    /// Which points of a brick's closed box are inside, 1 or 0 each, in the same way.
-    pub(crate) fn gather_inside(&self, bricks: &Bricks, brick: usize, table: &mut [u8]) {
-        self.gather_from(&self.inside, bricks, brick, table);
-    }
-
-    fn gather_from<T: Copy>(&self, source: &[T], bricks: &Bricks, brick: usize, table: &mut [T]) {
+        let source = &self.values[..];
         let (extent, stride) = (bricks.extent(brick), bricks.stride());
         let neighbours = &bricks.neighbours[brick];
         let own = self.block(extent, brick, [0; 3]);
@@ -340,37 +322,40 @@ impl Block {
 
 /// Copies a box of numbers.
 fn copy<T: Copy>(source: &[T], from: Block, target: &mut [T], to: Block, [nx, ny, nz]: [usize; 3]) {
-    if nx == 0 || ny == 0 {
-        return;
+    // Rows of whole bricks, and columns: their lengths are known, so that no function is called for each.
+    match nx {
+        1 => copy_rows(source, from, target, to, [ny, nz], |source, target| target[0] = source[0]),
+        4 => copy_rows(source, from, target, to, [ny, nz], copy_row::<4, T>),
+        8 => copy_rows(source, from, target, to, [ny, nz], copy_row::<8, T>),
+        16 => copy_rows(source, from, target, to, [ny, nz], copy_row::<16, T>),
+        length => copy_rows(source, from, target, to, [ny, nz], |source, target| {
+            target[..length].copy_from_slice(&source[..length]);
+        }),
     }
+}
+
+/// Copies rows, each from where it begins to where it goes.
+#[inline(always)]
+fn copy_rows<T: Copy>(
+    source: &[T],
+    from: Block,
+    target: &mut [T],
+    to: Block,
+    [ny, nz]: [usize; 2],
+    row: impl Fn(&[T], &mut [T]),
+) {
     for z in 0..nz {
-        let source = &source[from.start + z * from.layer..][..(ny - 1) * from.row + nx];
-        let target = &mut target[to.start + z * to.layer..][..(ny - 1) * to.row + nx];
-        // Rows of whole bricks, and columns: their lengths are known, so that no function is called for each.
-        match nx {
-            1 => {
-                for (target, source) in target.iter_mut().step_by(to.row).zip(source.iter().step_by(from.row))
-                {
-                    *target = *source;
-                }
-            }
-            8 if from.row == 8 => copy_rows::<8, T>(source, target, to.row),
-            16 if from.row == 16 => copy_rows::<16, T>(source, target, to.row),
-            length => {
-                for (target, source) in target.chunks_mut(to.row).zip(source.chunks(from.row)) {
-                    target[..length].copy_from_slice(&source[..length]);
-                }
-            }
+        let (mut first, mut place) = (from.start + z * from.layer, to.start + z * to.layer);
+        for _ in 0..ny {
+            row(&source[first..], &mut target[place..]);
+            (first, place) = (first + from.row, place + to.row);
         }
     }
 }
 
-/// Copies rows that stand one after the other to rows at a distance.
 #[inline(always)]
-fn copy_rows<const LENGTH: usize, T: Copy>(source: &[T], target: &mut [T], row: usize) {
-    for (target, source) in target.chunks_mut(row).zip(source.as_chunks::<LENGTH>().0) {
-        target[..LENGTH].copy_from_slice(source);
-    }
+fn copy_row<const LENGTH: usize, T: Copy>(source: &[T], target: &mut [T]) {
+    target[..LENGTH].copy_from_slice(&source[..LENGTH]);
 }
 
 #[cfg(test)]

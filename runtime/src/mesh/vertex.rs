@@ -2,8 +2,10 @@
 //! evaluation is of all vertices of a brick, in the brick's region.
 
 mod bracket;
+mod margin;
 mod normal;
 mod room;
+mod seed;
 mod sheet;
 mod start;
 mod suspect;
@@ -12,18 +14,19 @@ mod wall;
 use std::ops::Range;
 
 use jbt_ir::limits::MAX_ATTRIBUTE_WIDTH;
+use multiversion::multiversion;
 use rayon::prelude::*;
 
 use super::brick::{Bricks, split};
 use super::crossing::Crossings;
 use super::progress::{Phase, Progress};
 use super::pull::{LANES, Lanes, pull_lanes};
-use super::sample::Samples;
 use super::{Attribute, Field, Mesh, MeshError, Options};
 
 use bracket::CrossedEdges;
 use normal::normals_of;
-use start::Group;
+use seed::{Group, Seeds};
+use start::Shared;
 
 pub(super) use room::is_crowded;
 
@@ -62,7 +65,6 @@ pub(crate) struct Source<'a, F: Field> {
     pub(crate) options: &'a Options,
     pub(crate) bricks: &'a Bricks,
     pub(crate) regions: &'a [F::Region],
-    pub(crate) samples: &'a Samples,
     pub(crate) crossings: &'a Crossings,
 }
 
@@ -160,19 +162,16 @@ type Planes = [Vec<f32>; 3];
 struct Batch {
     /// How many there are.
     count: usize,
-    /// The field at the points of the brick.
-    table: Vec<f32>,
-    /// The cell of each, counted in the brick, and its sheet.
-    owners: Vec<(u32, u32)>,
     points: Planes,
-    /// What is known of each [`LANES`] of them from their cells.
+    /// The cells of each [`LANES`] of them, and what is known from these.
+    seeds: Vec<Seeds>,
     groups: Vec<Group>,
     values: Vec<f32>,
     gradient: Planes,
     /// One plane after the other, each for `count` vertices.
     attributes: Vec<f32>,
-    /// The vertices of all sheets of a cell but its first, with the means of their crossings.
-    doubles: Vec<(usize, [f32; 3])>,
+    /// Those that share their cell with others.
+    shared: Vec<Shared>,
     /// Those whose normals are doubtful, ascending.
     doubtful: Vec<usize>,
     /// Edges at vertices that were looked at twice.
@@ -186,6 +185,8 @@ impl Batch {
         let planes = [&mut self.points, &mut self.gradient];
         planes.into_iter().flatten().for_each(|plane| plane.resize(padded, 0.0));
         self.values.resize(padded, 0.0);
+        self.seeds.resize(padded / LANES, Seeds::default());
+        self.groups.resize(padded / LANES, Group::default());
     }
 
     /// Pulls the vertices and evaluates everything at them, `width` attributes among it.
@@ -201,7 +202,7 @@ impl Batch {
             let [x, y, z] = self.points.each_ref().map(|plane| &plane[..count]);
             let gradient = self.gradient.each_mut().map(|plane| &mut plane[..count]);
             field.gradient(region, x, y, z, &mut self.values[..count], gradient)?;
-            self.pull(options.iso);
+            pull_all(options.iso, &self.groups, &mut self.points, &self.values, &self.gradient);
         }
         let [x, y, z] = self.points.each_ref().map(|plane| &plane[..count]);
         let gradient = self.gradient.each_mut().map(|plane| &mut plane[..count]);
@@ -224,59 +225,91 @@ impl Batch {
         [&group.low, &group.high].map(|corner| [0, 1, 2].map(|axis| corner[axis][vertex % LANES]))
     }
 
-    /// A pull of all vertices.
-    fn pull(&mut self, iso: f32) {
-        for (chunk, group) in self.groups.iter().enumerate() {
-            let mut points = lanes(&self.points, chunk);
-            let values = &lane(&self.values, chunk);
-            let gradient = lanes(&self.gradient, chunk);
-            pull_lanes(iso, &mut points, values, &gradient, &group.low, &group.high);
-            for (plane, lanes) in self.points.iter_mut().zip(points) {
-                plane[chunk * LANES..][..LANES].copy_from_slice(&lanes);
-            }
-        }
-    }
-
     /// Writes the vertices to their range of the target, and notes those that have no normal.
     fn write(&mut self, target: &mut Target<'_>, range: Range<usize>, widths: &[usize]) {
-        let [x, y, z] = &self.points;
-        for (i, position) in target.positions[range.clone()].iter_mut().enumerate() {
-            *position = [x[i], y[i], z[i]];
-        }
-        let mut lacks_normals = false;
-        for (normals, chunk) in target.normals[range.clone()].chunks_mut(LANES).zip(0..) {
-            let [x, y, z] = normals_of(&lanes(&self.gradient, chunk));
-            for (i, normal) in normals.iter_mut().enumerate() {
-                *normal = [x[i], y[i], z[i]];
-                lacks_normals |= *normal == [0.0; 3];
-            }
-        }
-        let mut planes = self.attributes.chunks_exact(self.count);
-        for (values, &width) in target.attributes.iter_mut().zip(widths) {
-            let values = &mut values[range.start * width..range.end * width];
-            for (component, plane) in planes.by_ref().take(width).enumerate() {
-                for (value, &source) in values[component..].iter_mut().step_by(width).zip(plane) {
-                    *value = source;
-                }
-            }
-        }
-        if lacks_normals {
-            let normals = target.normals[range].iter().enumerate();
+        let normals = &mut target.normals[range.clone()];
+        let positions = &mut target.positions[range.clone()];
+        if write_places((&self.points, positions), (&self.gradient, normals)) {
+            let normals = normals.iter().enumerate();
             self.doubtful
                 .extend(normals.filter(|(_, normal)| **normal == [0.0; 3]).map(|(vertex, _)| vertex));
             self.doubtful.sort_unstable();
             self.doubtful.dedup();
         }
+        let mut rest = &self.attributes[..];
+        for (values, &width) in target.attributes.iter_mut().zip(widths) {
+            let (planes, after) = rest.split_at(width * self.count);
+            rest = after;
+            let values = &mut values[range.start * width..range.end * width];
+            match width {
+                1 => values.copy_from_slice(planes),
+                2 => interleave::<2>(planes, values),
+                3 => interleave::<3>(planes, values),
+                4 => interleave::<4>(planes, values),
+                _ => {
+                    for (component, plane) in planes.chunks_exact(self.count).enumerate() {
+                        let values = values[component..].iter_mut().step_by(width);
+                        values.zip(plane).for_each(|(value, &source)| *value = source);
+                    }
+                }
+            }
+        }
     }
 }
 
-/// The field at the corners of the cell at a place of a table.
+/// Writes positions, and normals against gradients. Returns whether a normal is missing.
+#[multiversion(targets("x86_64+avx2"))]
+fn write_places(
+    (points, positions): (&Planes, &mut [[f32; 3]]),
+    (gradient, normals): (&Planes, &mut [[f32; 3]]),
+) -> bool {
+    let mut is_missing = false;
+    for (chunk, (positions, normals)) in
+        positions.chunks_mut(LANES).zip(normals.chunks_mut(LANES)).enumerate()
+    {
+        let directions = normals_of(&lanes(gradient, chunk));
+        weave(&lanes(points, chunk), positions);
+        weave(&directions, normals);
+        is_missing |= normals.contains(&[0.0; 3]);
+    }
+    is_missing
+}
+
+/// Writes vectors that are given by lanes: all of them, or the first ones.
 #[inline(always)]
-fn corners(table: &[f32], at: usize, stride: usize) -> [f32; 8] {
-    let layer = stride * stride;
-    let table = &table[at..at + layer + stride + 2];
-    let [p, q, r, s] = [0, stride, layer, layer + stride].map(|at| [table[at], table[at + 1]]);
-    [p[0], p[1], q[0], q[1], r[0], r[1], s[0], s[1]]
+fn weave([x, y, z]: &[Lanes; 3], vectors: &mut [[f32; 3]]) {
+    if let Some(vectors) = vectors.as_mut_array::<LANES>() {
+        for i in 0..LANES {
+            vectors[i] = [x[i], y[i], z[i]];
+        }
+    } else {
+        for (vector, ((x, y), z)) in vectors.iter_mut().zip(x.iter().zip(y).zip(z)) {
+            *vector = [*x, *y, *z];
+        }
+    }
+}
+
+/// Writes planes that stand one after the other as vectors.
+#[multiversion(targets("x86_64+avx2"))]
+fn interleave<const WIDTH: usize>(planes: &[f32], vectors: &mut [f32]) {
+    let (vectors, count) = (vectors.as_chunks_mut::<WIDTH>().0, planes.len() / WIDTH);
+    let planes: [&[f32]; WIDTH] = std::array::from_fn(|n| &planes[n * count..][..count]);
+    for (i, vector) in vectors.iter_mut().enumerate().take(count) {
+        *vector = std::array::from_fn(|n| planes[n][i]);
+    }
+}
+
+/// A pull of all vertices.
+#[multiversion(targets("x86_64+avx2"))]
+fn pull_all(iso: f32, groups: &[Group], points: &mut Planes, values: &[f32], gradient: &Planes) {
+    for (chunk, group) in groups.iter().enumerate() {
+        let mut lanes_of = lanes(points, chunk);
+        let (values, gradient) = (&lane(values, chunk), lanes(gradient, chunk));
+        pull_lanes(iso, &mut lanes_of, values, &gradient, &group.low, &group.high);
+        for (plane, lanes) in points.iter_mut().zip(lanes_of) {
+            plane[chunk * LANES..][..LANES].copy_from_slice(&lanes);
+        }
+    }
 }
 
 #[inline(always)]

@@ -8,7 +8,7 @@ use super::super::pull::{LANES, Lanes, all, squares};
 use super::super::surface::unit;
 
 /// The directions away from the inside, or zero where the gradient vanishes or is no number.
-#[inline]
+#[inline(always)]
 pub(super) fn normals_of(gradient: &[Lanes; 3]) -> [Lanes; 3] {
     /// Squares of lengths whose terms neither overflow nor lose digits.
     const TAME: RangeInclusive<f32> = 1e-24..=1e30;

@@ -11,32 +11,8 @@
 //! ```
 
 use super::Batch;
-
-/// What vertices keep from the sides of their cells, in parts of a quarter of the cell's edge.
-const MARGIN: f32 = 1.0 / 1024.0;
-
-/// Four steps of f32 between two coordinates: that many times the distance of neighbouring numbers, where it
-/// is largest.
-fn four_steps(low: f32, high: f32) -> f32 {
-    /// The bits of the exponent; what is left with the others cleared is a power of two, 2^23 steps long.
-    const EXPONENT: u32 = 0x7f80_0000;
-    let largest = low.abs().max(high.abs());
-    f32::from_bits(largest.to_bits() & EXPONENT) * (4.0 * f32::EPSILON)
-}
-
-/// A quarter of the way between two coordinates. Nothing overflows.
-fn quarter(low: f32, high: f32) -> f32 {
-    0.25 * high - 0.25 * low
-}
-
-/// Between which coordinates a vertex stays in a cell from `low` to `high`: off these by 2^-12 of the cell,
-/// and by four steps of f32 where that is more, but never by more than a quarter.
-#[inline(always)]
-pub(super) fn room([low, high]: [f32; 2]) -> [f32; 2] {
-    let quarter = quarter(low, high);
-    let margin = (MARGIN * quarter).max(four_steps(low, high)).min(quarter);
-    [low + margin, high - margin]
-}
+use super::margin::{four_steps, quarter};
+use super::start::Shared;
 
 /// Whether four steps of f32 are more than a quarter of a cell, somewhere between the first and the last
 /// coordinate along an axis: then vertices lie on a coarse grid, and those of different cells may coincide.
@@ -51,11 +27,10 @@ pub(in super::super) fn is_crowded(axes: &[Vec<f32>; 3]) -> bool {
 
 impl Batch {
     /// Moves vertices off others of their cells: step by step towards the mean of their sheet's crossings,
-    /// which is not where others have theirs, and then towards the middle of the cell. `doubles` are the
-    /// vertices of second and further sheets, with these means.
+    /// where they have started and others have not, and then towards the middle of the cell.
     pub(super) fn separate(&mut self) {
-        for &(vertex, mean) in &self.doubles {
-            let earlier = vertex - self.owners[vertex].1 as usize;
+        for &Shared { vertex, earlier, start: mean, .. } in &self.shared {
+            let earlier = vertex - earlier;
             let at = |vertex: usize| [0, 1, 2].map(|axis| self.points[axis][vertex]);
             let is_free = |p: [f32; 3]| (earlier..vertex).all(|other| at(other) != p);
             let start = at(vertex);
@@ -77,21 +52,6 @@ impl Batch {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn vertices_stay_off_the_sides() {
-        assert_eq!(room([0.0, 1.0]), [1.0 / 4096.0, 1.0 - 1.0 / 4096.0]);
-        // Near 1000 a step is 2^-14: four are more than 2^-12 of a cell of 1/8.
-        assert_eq!(room([1000.0, 1000.125]), [1000.0 + 4.0 / 16384.0, 1000.125 - 4.0 / 16384.0]);
-        // Two steps for a cell: in between there is one number.
-        let far = [16_777_212.0, 16_777_214.0];
-        let [low, high] = room(far);
-        assert!(far[0] <= low && low <= high && high <= far[1]);
-        let [low, high] = room([-3e38, 3e38]);
-        assert!(-3e38 < low && low < high && high < 3e38);
-        let [low, high] = room([-1e-45, 1e-45]);
-        assert!(-1e-45 <= low && low <= high && high <= 1e-45);
-    }
 
     #[test]
     fn cells_of_few_steps_are_crowded() {

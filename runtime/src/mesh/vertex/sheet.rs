@@ -5,7 +5,6 @@ use super::super::brick::{Bricks, cell_sides, place};
 use super::super::cell::{EDGE_CORNERS, following, sheets_with_quads};
 use super::super::crossing::Cell;
 use super::bracket::{Bracket, CrossedEdge, CrossedEdges};
-use super::corners;
 use super::normal::sheet_normal;
 
 /// What a crossing may be off after the last halving, in parts of its edge.
@@ -38,14 +37,14 @@ pub(super) struct Sheet {
 }
 
 impl Sheet {
-    /// The sheet with a number in a cell of a brick, its edges put among the others of the brick. `table` has
-    /// the field at the points of the brick.
+    /// The sheet with a number in a cell of a brick, its edges put among the others of the brick. `values` are
+    /// those of the field at the corners.
     pub(super) fn new(
         bricks: &Bricks,
         brick: usize,
         (cell, sheet): (&Cell, u32),
         start: Start,
-        table: &[f32],
+        values: &[f32; 8],
         crossed: &mut CrossedEdges,
     ) -> Self {
         let (origin, place) = (bricks.origin(brick), place(cell.number));
@@ -53,7 +52,6 @@ impl Sheet {
         let mask = sheets_with_quads(cell.signs, cell.flips, sides).edges(sheet);
         let next = following(cell.signs, cell.flips);
         let first = bricks.at(cell.number).in_table();
-        let values = corners(table, first, bricks.stride());
         let ends = [0, 1, 2].map(|axis| {
             let at = origin[axis] + place[axis];
             [bricks.axes[axis][at], bricks.axes[axis][at + 1]]

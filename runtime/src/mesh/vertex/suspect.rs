@@ -12,11 +12,13 @@
 //! they are compared with the triangles later. For a smooth surface all this costs a few multiplications a
 //! vertex.
 
+use multiversion::multiversion;
+
 use super::super::Field;
 use super::super::pull::{LANES, Lanes, squares};
 use super::super::settle::{Place, Stray, is_far, settle};
+use super::seed::Group;
 use super::sheet::{Sheet, Start};
-use super::start::Group;
 use super::wall::{Wall, follow};
 use super::{Batch, Done, Planes, Source, lane, lanes};
 
@@ -55,6 +57,25 @@ fn judge(iso: f32, group: &Group, values: &Lanes, gradient: &[Lanes; 3]) -> Verd
         turned[i] = u32::from(along < ASTRAY * (square[i] * rises[i]).sqrt());
     }
     Verdict { far, odd, turned }
+}
+
+/// The groups about which there is something to say.
+#[multiversion(targets("x86_64+avx2"))]
+fn judge_all(
+    iso: f32,
+    groups: &[Group],
+    values: &[f32],
+    gradient: &Planes,
+    verdicts: &mut Vec<(usize, Verdict)>,
+) {
+    for (chunk, group) in groups.iter().enumerate() {
+        let verdict = judge(iso, group, &lane(values, chunk), &lanes(gradient, chunk));
+        let Verdict { far, odd, turned } = &verdict;
+        let any = far.iter().chain(odd).chain(turned).fold(0, |any, condition| any | condition);
+        if any != 0 {
+            verdicts.push((chunk, verdict));
+        }
+    }
 }
 
 /// What is evaluated again: a vertex, where it is, and where it is asked.
@@ -116,13 +137,10 @@ impl Batch {
     /// The suspects, and whether each is far from the surface. Notes those whose normal is doubtful.
     fn suspects(&mut self, iso: f32) -> Vec<(usize, bool)> {
         let mut found = Vec::new();
-        for (chunk, group) in self.groups.iter().enumerate() {
+        let mut verdicts = Vec::new();
+        judge_all(iso, &self.groups, &self.values, &self.gradient, &mut verdicts);
+        for (chunk, Verdict { far, odd, turned }) in verdicts {
             let start = chunk * LANES;
-            let (values, gradient) = (lane(&self.values, chunk), lanes(&self.gradient, chunk));
-            let Verdict { far, odd, turned } = judge(iso, group, &values, &gradient);
-            if [far, odd, turned] == [[0; LANES]; 3] {
-                continue;
-            }
             for lane in 0..LANES.min(self.count - start) {
                 if far[lane] | odd[lane] == 1 {
                     found.push((start + lane, far[lane] == 1));
@@ -136,10 +154,13 @@ impl Batch {
     }
 
     fn sheet<F: Field>(&mut self, source: &Source<'_, F>, brick: usize, vertex: usize) -> Sheet {
-        let (cell, sheet) = self.owners[vertex];
-        let cell = &source.crossings.of(brick)[cell as usize];
+        let cells = source.crossings.of(brick);
+        // Cells without a vertex have the number of the next one.
+        let index = cells.partition_point(|cell| cell.vertex as usize <= vertex) - 1;
+        let (cell, corners) = (&cells[index], &source.crossings.corners_of(source.bricks, brick)[index]);
+        let sheet = vertex as u32 - cell.vertex;
         let start = Start { vertex, bounds: self.bounds(vertex) };
-        Sheet::new(source.bricks, brick, (cell, sheet), start, &self.table, &mut self.crossed)
+        Sheet::new(source.bricks, brick, (cell, sheet), start, corners, &mut self.crossed)
     }
 
     fn stray(&self, iso: f32, sheet: &Sheet) -> Stray {
