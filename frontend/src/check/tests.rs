@@ -280,15 +280,14 @@ fn an_unbounded_box_stays_a_box() {
 }
 
 #[test]
-fn a_name_is_shared_and_not_copied() {
-    let name: Arc<str> = "color".into();
-    let tree =
-        Tree::new(NodeKind::Attribute { name: name.clone(), value: vec![0.0; 3].into() }, vec![point(0.0)]);
+fn a_node_has_the_name_of_its_group_and_no_copy() {
+    let attribute = NodeKind::Attribute { name: "color".into(), value: vec![0.0; 3].into() };
+    let tree = Tree::new(attribute, vec![point(0.0)]);
     let checked = Model::new(tree).check().unwrap();
     let NodeKind::Attribute { name: kept, .. } = &checked.node(checked.root()).kind else {
         panic!("an attribute")
     };
-    assert!(Arc::ptr_eq(kept, &name));
+    assert!(Arc::ptr_eq(kept, &checked.attributes()[0].name));
 }
 
 #[test]
