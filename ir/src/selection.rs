@@ -428,7 +428,13 @@ mod tests {
         // And again from the shorter one.
         let mut again = vec![Selection::default()];
         parts[0].narrow(&mut [0, 1, 1, 1, 1], &mut again);
+        assert_eq!((all.present(), again[0].present()), (&[parent, child][..], &[parent, child][..]));
         assert_eq!((again[0].active(child), again[0].starts(child)), (&[2][..], &[0, 1][..]));
+        // Under no row there is no table.
+        let mut nothing = vec![Selection::default()];
+        again[0].narrow(&mut [0, 1], &mut nothing);
+        assert_eq!((nothing[0].present(), nothing[0].len()), (&[parent][..], 0));
+        assert_eq!((nothing[0].active(child), nothing[0].starts(child)), (&[][..], &[0][..]));
     }
 
     #[test]

@@ -435,3 +435,26 @@ fn a_survey_is_ranges_and_regions_in_one() {
         }
     }
 }
+
+#[test]
+fn operands_that_do_not_decide_are_the_same_for_any_number_of_boxes() {
+    // 64 formulas, far from each other: in a box near one of them, it alone decides.
+    let at = |index: i32| f64::from(index) / 8.0 - 4.0;
+    let formulas: String =
+        (0..64).map(|index| format!("expression {{ 1 - abs(x - {}) - abs(y) }}\n", at(index))).collect();
+    let tree = text(&format!("jbt 1 union {{ {formulas} }}"));
+    for engine in [Engine::Lanes, Engine::Jit] {
+        let pruner = Pruner::new(&Compiler::for_engine(engine), &tree).expect("it compiles");
+        let region = pruner.region(Box3::new([-5.0; 3], [5.0; 3])).expect("a region");
+        let near = |index: i32| Box3::new([at(index) as f32, 0.0, 0.0], [at(index) as f32 + 0.05, 0.1, 1.0]);
+        let boxes: Vec<Box3> = (0..43).map(near).collect();
+        let surveyed = pruner.survey(&region, &boxes, &|_| true).expect("a survey");
+        for (bounds, (_, found)) in boxes.iter().zip(surveyed) {
+            let mut narrowed = Vec::new();
+            pruner.narrow(&region, &[*bounds], &mut narrowed).expect("a region");
+            let found = found.expect("it is wanted");
+            assert_eq!(found.selection(), narrowed[0].selection(), "{engine:?} {bounds:?}");
+            assert!(found.rows() < region.rows() / 2, "{} of {} rows are left", found.rows(), region.rows());
+        }
+    }
+}

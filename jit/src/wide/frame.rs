@@ -3,9 +3,10 @@
 use jbt_ir::Entity;
 
 use super::counters::SAVED_BYTES;
+use super::event::Part;
 use super::inst::{Base, Gpr, Inst, Memory};
 use super::linear::{Home, Kind, NONE, Name};
-use super::state::{NOWHERE, Part, Register, SAVED, State, load, store};
+use super::state::{NOWHERE, Register, SAVED, State, load, store};
 
 impl State<'_> {
     /// Where the frame has a part, or will.

@@ -1,9 +1,9 @@
 //! What is in registers at the top of each round of a loop: decided and put there when the loop opens.
 
-use super::check::Event;
+use super::event::{Event, Part};
 use super::inst::{Binary, Condition, Inst, Operand};
 use super::linear::{Kind, LoopId, NONE, Name, Over, Phi};
-use super::state::{MASKS, Open, Part, REGISTERS, Register, SPARE_MASK, State, copy, store};
+use super::state::{MASKS, Open, REGISTERS, Register, SPARE_MASK, State, copy, store};
 
 impl State<'_> {
     /// Closes a loop.

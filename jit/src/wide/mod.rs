@@ -22,6 +22,7 @@ mod assemble;
 pub(crate) mod check;
 mod counters;
 mod encode;
+mod event;
 mod frame;
 mod inst;
 mod linear;

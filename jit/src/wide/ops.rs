@@ -5,9 +5,10 @@
 
 use jbt_ir::Op;
 
+use super::event::Part;
 use super::inst::{Base, Binary, Form, Gpr, Inst, Integer, Memory, Operand, Predicate};
 use super::linear::{Home, Kind, NONE, Name};
-use super::state::{MASKS, NOWHERE, Part, Register, SPARE_MASK, State, copy, load, store};
+use super::state::{MASKS, NOWHERE, Register, SPARE_MASK, State, copy, load, store};
 
 /// How far ahead a use may be for which a number is loaded: beyond, it is read from memory again.
 const NEAR: u32 = 64;

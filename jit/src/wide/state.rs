@@ -10,14 +10,11 @@
 
 use std::collections::HashMap;
 
-use super::check::Event;
 use super::encode::Shape;
+use super::event::{Event, Part};
 use super::inst::{Inst, Label, Memory};
 use super::linear::{Kind, Linear, LoopId, NONE, Name};
 use super::lives::Lives;
-
-/// One vector of a value: its name times the vectors of a value, plus which.
-pub(crate) type Part = u32;
 
 /// A register: 0 to 31 are vectors, from 32 on masks, of which the first is none.
 pub(crate) type Register = u8;

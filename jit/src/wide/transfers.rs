@@ -4,10 +4,10 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::check::{Event, NEXT, Place};
+use super::event::{Event, NEXT, Part, Place};
 use super::inst::Memory;
 use super::linear::{Kind, LoopId, NONE};
-use super::state::{MASKS, Part, REGISTERS, Register, SPARE_MASK, State, copy, load, store};
+use super::state::{MASKS, REGISTERS, Register, SPARE_MASK, State, copy, load, store};
 
 /// Where a value is that a transfer reads.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]

@@ -57,7 +57,6 @@ const KNOWN: &[(&str, &[&str])] = &[
     ("ir", &["domain/tangent/mod.rs", "domain/tangent/slope.rs"]),
     ("ir", &["text/line.rs", "text/mod.rs", "text/parse.rs"]),
     ("jit", &["compile.rs", "entry.rs", "isa.rs", "lower.rs", "memory.rs", "wide/mod.rs"]),
-    ("jit", &["wide/check.rs", "wide/state.rs"]),
     ("runtime", &["contour/image.rs", "contour/shade.rs"]),
     ("runtime", &["divide/mod.rs", "divide/run.rs"]),
     ("runtime", &["evaluator.rs", "probe.rs", "prune/mod.rs", "statistics.rs"]),
