@@ -1,9 +1,10 @@
 //! `jbt show`: a scene as one of the stages on its way to machine code.
 
+use jbt::ir::Straight;
 use jbt::kernel::{Purpose, optimise, passes};
 use jbt::{CompileError, Level, Query};
 use jbt_frontend::diagnostic::escape;
-use jbt_frontend::lower::lower;
+use jbt_frontend::lower::{Lowered, lower};
 use jbt_frontend::text;
 
 use crate::arguments::{LevelName, ShowArguments};
@@ -16,6 +17,9 @@ const TREE: &str = "tree";
 const IR: &str = "ir";
 const CLIF: &str = "clif";
 const ASM: &str = "asm";
+
+/// The message where there is nothing to show.
+const NOT_STRAIGHT: &str = "the scene has no straight code: it has no formulas of which a few have much in common; see it without --straight";
 
 /// Runs the command.
 pub fn run(arguments: &ShowArguments, quiet: bool) -> Result<(), Failure> {
@@ -31,13 +35,18 @@ pub fn run(arguments: &ShowArguments, quiet: bool) -> Result<(), Failure> {
         return print(text::print(&scene.model).trim_end());
     }
     let fail = |error: &CompileError| Failure::compile(&scene.source(), error);
-    let lowered =
+    let Lowered { mut function, tables } =
         lower(&tree, query).map_err(|diagnostics| Failure::diagnostics(&scene.source(), &diagnostics))?;
+    if arguments.straight {
+        let straight =
+            Straight::new(&function, &tables).ok_or_else(|| Failure::Usage(NOT_STRAIGHT.to_owned()))?;
+        function = straight.function().clone();
+    }
     if stage == IR {
-        return print(lowered.function.to_string().trim_end());
+        return print(function.to_string().trim_end());
     }
     let mut shown = None;
-    let verified = optimise(lowered.function, Purpose::Answers(query), &mut |pass, function| {
+    let verified = optimise(function, Purpose::Answers(query), &mut |pass, function| {
         if pass == stage {
             shown = Some(function.to_string());
         }

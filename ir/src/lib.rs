@@ -22,6 +22,7 @@ pub mod selection;
 #[cfg(test)]
 #[path = "../tests/common/spicy.rs"]
 mod spicy;
+pub mod straight;
 pub mod table;
 pub mod text;
 pub mod translate;
@@ -34,6 +35,7 @@ pub use level::Level;
 pub use op::{Any, Domain, Op, Type, apply};
 pub use origin::{Origin, Part};
 pub use selection::Selection;
+pub use straight::Straight;
 pub use table::{Rows, TableError, Tables};
 pub use text::{ParseError, parse};
 pub use verify::{Place, Verified, VerifyError, verify};

@@ -74,6 +74,7 @@
 //! compiler's own, and read by plain numbers.
 
 mod buffer;
+mod by_rows;
 pub mod contour;
 mod counter;
 mod debug;

@@ -140,6 +140,7 @@ impl Slicer {
                 (&moved, View { axes: [0, 1], at: moved.origin().rounded([0.0; 3])[2] })
             }
         };
+        let compiler = &compiler.clone().for_edits();
         let full = if query.attributes { Some(compiler.evaluator(tree, Query::ATTRIBUTES)?) } else { None };
         Ok(Self {
             plane: *plane,

@@ -23,6 +23,7 @@ pub(super) struct Kernels {
 impl Kernels {
     /// Compiles them, on the threads of the rayon pool in which this is called.
     pub(super) fn new(compiler: &Compiler, tree: &CheckedTree) -> Result<Self, CompileError> {
+        let compiler = &compiler.clone().for_edits();
         let lowering = Lowering::new(tree);
         let evaluator = |query| compiler.evaluator_of(&lowering, query);
         let (all, (gradient, (pruner, field))) = rayon::join(

@@ -30,7 +30,7 @@ impl Renderer {
         Ok(Self {
             tracer: Tracer::new(compiler, tree, Query::ALL)?,
             solid: Solid::new(compiler, tree)?,
-            evaluator: compiler.evaluator(tree, Query::ALL)?,
+            evaluator: compiler.clone().for_edits().evaluator(tree, Query::ALL)?,
         })
     }
 

@@ -100,7 +100,7 @@ impl Sampler {
     pub fn new(compiler: &Compiler, tree: &CheckedTree, query: Query) -> Result<Self, CompileError> {
         let formulas = tree.nodes().iter().any(|node| matches!(node.kind, NodeKind::Expression(_)));
         Ok(Self {
-            evaluator: compiler.evaluator(tree, query)?,
+            evaluator: compiler.clone().for_edits().evaluator(tree, query)?,
             pruner: Pruner::new(compiler, tree)?,
             formulas,
         })

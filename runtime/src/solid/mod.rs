@@ -90,12 +90,13 @@ impl Solid {
     /// # Errors
     /// The model is beyond a limit, or the engine cannot be had.
     pub fn new(compiler: &Compiler, tree: &CheckedTree) -> Result<Self, CompileError> {
+        let compiler = compiler.clone().for_edits();
         Ok(Self {
             tree: tree.clone(),
             iso: tree.iso() as f32,
-            pruner: Pruner::new(compiler, tree)?,
+            pruner: Pruner::new(&compiler, tree)?,
             field: compiler.evaluator(tree, Query::FIELD)?,
-            compiler: compiler.clone(),
+            compiler,
             normals: OnceLock::new(),
         })
     }

@@ -121,6 +121,7 @@ impl Tracer {
     /// # Errors
     /// The model is beyond a limit, or the engine cannot be had.
     pub fn new(compiler: &Compiler, tree: &CheckedTree, query: Query) -> Result<Self, CompileError> {
+        let compiler = &compiler.clone().for_edits();
         let lowering = Lowering::new(tree);
         let pruner = Pruner::of(compiler, &lowering, None)?;
         let field = compiler.evaluator_of(&lowering, Query::FIELD)?;
