@@ -1,7 +1,8 @@
 //! `jbt show`: a scene as one of the stages on its way to machine code.
 
-use jbt::ir::Straight;
-use jbt::kernel::{Purpose, optimise, passes};
+use jbt::ir::pass::GRADIENT;
+use jbt::ir::{Function, Straight};
+use jbt::kernel::{Purpose, optimise, optimise_straight, passes, straighten};
 use jbt::{CompileError, Level, Query};
 use jbt_frontend::diagnostic::escape;
 use jbt_frontend::lower::{Lowered, lower};
@@ -35,23 +36,36 @@ pub fn run(arguments: &ShowArguments, quiet: bool) -> Result<(), Failure> {
         return print(text::print(&scene.model).trim_end());
     }
     let fail = |error: &CompileError| Failure::compile(&scene.source(), error);
-    let Lowered { mut function, tables } =
+    let purpose = Purpose::Answers(query);
+    let Lowered { function, tables } =
         lower(&tree, query).map_err(|diagnostics| Failure::diagnostics(&scene.source(), &diagnostics))?;
-    if arguments.straight {
-        let straight =
-            Straight::new(&function, &tables).ok_or_else(|| Failure::Usage(NOT_STRAIGHT.to_owned()))?;
-        function = straight.function().clone();
-    }
+    let straight = match arguments.straight {
+        false => None,
+        true => Some(
+            straighten(&function, &tables, purpose, None)
+                .map_err(|error| fail(&error))?
+                .ok_or_else(|| Failure::Usage(NOT_STRAIGHT.to_owned()))?,
+        ),
+    };
     if stage == IR {
+        let function = straight.as_ref().map_or(&function, Straight::function);
         return print(function.to_string().trim_end());
     }
     let mut shown = None;
-    let verified = optimise(function, Purpose::Answers(query), &mut |pass, function| {
+    let mut observer = |pass: &str, function: &Function| {
         if pass == stage {
             shown = Some(function.to_string());
         }
-    })
-    .map_err(|error| fail(&error))?;
+    };
+    let verified = match &straight {
+        None => optimise(function, purpose, &mut observer),
+        Some(straight) => {
+            // It is made of what the purpose's own pass gives.
+            observer(GRADIENT.name, straight.function());
+            optimise_straight(straight, &mut observer)
+        }
+    };
+    let verified = verified.map_err(|error| fail(&error))?;
     match shown {
         Some(text) => print(text.trim_end()),
         None => print(machine(&verified, stage, arguments.level.map(LevelName::level))?.trim_end()),

@@ -18,6 +18,8 @@
 //! There is a price. Straight rows are always there: nothing can leave one out. And the code knows how many rows there are and which of their
 //! numbers are equal, so it fits fewer tables than the function that it was made from: see [`Straight::tables`].
 //!
+//! A pass that makes other steps of a function, as the gradient, comes before: what it makes of straight code has other roundings.
+//!
 //! Rows of primitives stay rows. They seldom have anything in common, people edit them, and a row is what is counted and left out.
 
 use rustc_hash::FxHashMap as HashMap;
@@ -34,7 +36,7 @@ use crate::table::{Rows, Tables};
 /// Rows of one table that may become straight code, under one row of its parent.
 const MAX_ROWS: usize = 64;
 /// Ops of a point beyond which the folds stay: code that long no longer fits into the nearest cache for instructions.
-const MAX_OPS: u64 = 1 << 15;
+const MAX_OPS: u64 = 1 << 16;
 /// Straight code is worth it if it takes at most so much of the ops of the folds.
 const WORTH: f64 = 0.95;
 
@@ -93,7 +95,7 @@ enum Under {
 impl Straight {
     /// Straight code for these tables, if it is worth it: `None` if folds are as good. The tables fit the function ([`Tables::check`]).
     ///
-    /// Time and memory are in proportion to the function and to 2^15 ops.
+    /// Time and memory are in proportion to the function and to 2^16 ops.
     #[must_use]
     pub fn new(function: &Function, tables: &Tables) -> Option<Self> {
         Self::if_worth(function, tables, WORTH)
@@ -267,7 +269,8 @@ impl Chosen {
                 && !leaves[table.index()]
                 && is_whole(rows)
                 && few
-                && !stays;
+                && !stays
+                && reductions[table.index()] != Reduction::Pieces;
         }
         straight.iter().any(|&it| it).then_some(Self { root, straight })
     }

@@ -2,21 +2,20 @@
 
 use std::collections::BTreeSet;
 use std::fmt;
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, OnceLock};
 
 use jbt_frontend::check::{CheckedTree, NodeId};
 use jbt_frontend::lower::{Lowered, Lowering};
 use jbt_frontend::origin::ModelOrigin;
 use jbt_frontend::query::Query;
 use jbt_ir::domain::counting::{Evaluations, evaluations, of_selection};
-use jbt_ir::{Function, Level, Selection, Straight, Tables, Verified, limits};
+use jbt_ir::{Function, Level, Selection, Tables, Verified, limits};
 use rayon::prelude::*;
 
 use crate::buffer::{Layout, Samples};
-use crate::by_rows::ByRows;
 use crate::counter::{Counters, Tally};
 use crate::error::{CompileError, EvalError};
-use crate::kernel::{Bound, Engine, Kernel, Purpose, Wish, optimise};
+use crate::kernel::{Bound, Engine, Kernel, Purpose, Wish, optimise, optimise_straight, straighten};
 use crate::places;
 use crate::points::{AsPoints, Points};
 use crate::probe::Probe;
@@ -75,7 +74,7 @@ impl Compiler {
 
     /// The same compiler for models that are edited, or asked region by region: every row of a model stays a row of a table.
     ///
-    /// Without it, formulas that have much in common become straight code ([`Straight`]), which takes up to a third less time. Straight code
+    /// Without it, formulas that have much in common become straight code ([`jbt_ir::straight`]), which takes up to a third less time. Straight code
     /// knows how many rows there are and which of their numbers are equal, so an edit that changes one of the two
     /// compiles anew; and regions run another kernel, which is made for the first of them. The answers have the same bits.
     ///
@@ -113,48 +112,46 @@ impl Compiler {
         let Lowered { function, tables } =
             lowering.answers(query).map_err(|list| lowering.tree().diagnostics(list))?;
         let purpose = Purpose::Answers(query);
-        let kernel_now = present.map(|present| &present.bound.kernel);
-        if let Some((straight, own)) = self.straight(lowering.tree(), &function, &tables, present) {
-            // Straight code that is too long for the machine is no gain.
-            let kernel = self.kernel(straight.function().clone(), purpose, kernel_now);
-            let fits =
-                |kernel: &Arc<Kernel>| kernel.function.function().values.len() <= limits::MAX_JIT_VALUES;
-            if let Some(kernel) = kernel.ok().filter(fits) {
-                let bound = kernel.bind(Arc::new(own));
-                let by_rows = ByRows::new(straight, function, tables);
-                return Ok(Evaluator::new(self.clone(), bound, Some(by_rows), lowering, query));
-            }
-        }
-        let bound = self.kernel(function, purpose, kernel_now)?.bind(Arc::new(tables));
-        Ok(Evaluator::new(self.clone(), bound, None, lowering, query))
+        let present = present.map(|present| &present.bound.kernel);
+        // No value of a parameter compiles anything.
+        let may = !self.by_rows && lowering.tree().parameters().is_empty();
+        let straight = if may { self.straight(&function, &tables, purpose, present)? } else { None };
+        let kernel = match straight {
+            Some(kernel) => kernel,
+            None => self.kernel(function, purpose, present)?,
+        };
+        Ok(Evaluator::new(self.clone(), kernel.bind(Arc::new(tables)), lowering, query))
     }
 
-    /// Straight code for a lowered function, and its tables; `None` if rows stay rows.
+    /// A kernel of straight code for a lowered function and these tables; `None` if rows are as good.
     fn straight(
         &self,
-        tree: &CheckedTree,
         function: &Function,
         tables: &Tables,
-        present: Option<&Evaluator>,
-    ) -> Option<(Arc<Straight>, Tables)> {
-        // No value of a parameter compiles anything.
-        if self.by_rows || !tree.parameters().is_empty() {
-            return None;
-        }
-        let straight = match present.map(|present| (present, &present.by_rows)) {
-            // An edit of numbers compiles nothing if that can be helped.
-            Some((present, None)) if present.bound.kernel.lowered == *function => return None,
-            Some((_, Some(by_rows))) if by_rows.lowered == *function => {
-                if let Some(own) = by_rows.straight.tables(tables) {
-                    return Some((Arc::clone(&by_rows.straight), own));
-                }
-                by_rows.straight.again(function, tables)
-            }
-            Some(_) | None => Straight::new(function, tables),
+        purpose: Purpose,
+        present: Option<&Arc<Kernel>>,
+    ) -> Result<Option<Arc<Kernel>>, CompileError> {
+        let fits = |kernel: &Kernel| {
+            let straight = kernel.straight.as_ref();
+            kernel.lowered == *function && straight.is_some_and(|straight| straight.tables(tables).is_some())
         };
-        let straight = straight?;
-        let own = straight.tables(tables)?;
-        Some((Arc::new(straight), own))
+        let before = match present.filter(|present| present.lowered == *function) {
+            Some(present) if fits(present) => return Ok(Some(Arc::clone(present))),
+            // An edit of numbers compiles nothing if that can be helped.
+            Some(present) if present.straight.is_none() => return Ok(None),
+            present => present.and_then(|present| present.straight.as_ref()),
+        };
+        if let Some(kernel) = self.find(purpose, fits) {
+            return Ok(Some(kernel));
+        }
+        let Some(straight) = straighten(function, tables, purpose, before)? else { return Ok(None) };
+        let verified = optimise_straight(&straight, &mut |_, _| {})?;
+        if verified.function().values.len() > limits::MAX_JIT_VALUES {
+            return Ok(None);
+        }
+        let kernel = Arc::new(Kernel::new(function.clone(), Some(straight), verified, self.wish)?);
+        self.remember(purpose, &kernel);
+        Ok(Some(kernel))
     }
 
     /// The kernel of a lowered function: the present one, one that is remembered, or a new one.
@@ -164,25 +161,29 @@ impl Compiler {
         purpose: Purpose,
         present: Option<&Arc<Kernel>>,
     ) -> Result<Arc<Kernel>, CompileError> {
-        let present = present.filter(|kernel| kernel.lowered == function).cloned();
-        if let Some(kernel) = present.or_else(|| self.find(purpose, &function)) {
+        let fits = |kernel: &Kernel| kernel.lowered == function && kernel.straight.is_none();
+        let present = present.filter(|kernel| fits(kernel)).cloned();
+        if let Some(kernel) = present.or_else(|| self.find(purpose, fits)) {
             return Ok(kernel);
         }
         let verified = optimise(function.clone(), purpose, &mut |_, _| {})?;
-        let kernel = Arc::new(Kernel::new(function, verified, self.wish)?);
+        let kernel = Arc::new(Kernel::new(function, None, verified, self.wish)?);
+        self.remember(purpose, &kernel);
+        Ok(kernel)
+    }
+
+    fn remember(&self, purpose: Purpose, kernel: &Arc<Kernel>) {
         if let Ok(mut known) = self.known.lock() {
             if known.len() == REMEMBERED {
                 known.remove(0);
             }
-            known.push(Known { purpose, kernel: Arc::clone(&kernel) });
+            known.push(Known { purpose, kernel: Arc::clone(kernel) });
         }
-        Ok(kernel)
     }
 
-    fn find(&self, purpose: Purpose, function: &Function) -> Option<Arc<Kernel>> {
+    fn find(&self, purpose: Purpose, fits: impl Fn(&Kernel) -> bool) -> Option<Arc<Kernel>> {
         let known = self.known.lock().ok()?;
-        let found =
-            known.iter().find(|known| known.purpose == purpose && known.kernel.lowered == *function)?;
+        let found = known.iter().find(|known| known.purpose == purpose && fits(&known.kernel))?;
         Some(Arc::clone(&found.kernel))
     }
 }
@@ -216,8 +217,8 @@ pub struct Evaluator {
     compiler: Compiler,
     /// What runs points anywhere.
     bound: Bound,
-    /// What runs points of regions, if `bound` has no rows that could be left out.
-    by_rows: Option<ByRows>,
+    /// What runs points of regions, if `bound` is straight code: made for the first of them.
+    by_rows: OnceLock<Box<Bound>>,
     query: Query,
     origin: ModelOrigin,
     layout: Layout,
@@ -252,13 +253,7 @@ impl Evaluator {
         Compiler::new().evaluator(tree, query)
     }
 
-    fn new(
-        compiler: Compiler,
-        bound: Bound,
-        by_rows: Option<ByRows>,
-        lowering: &Lowering<'_>,
-        query: Query,
-    ) -> Self {
+    fn new(compiler: Compiler, bound: Bound, lowering: &Lowering<'_>, query: Query) -> Self {
         let attributes = if query.attributes { lowering.tree().attributes() } else { &[] };
         let layout = Layout::new(query.gradient, attributes);
         debug_assert_eq!(
@@ -268,6 +263,7 @@ impl Evaluator {
         );
         let separate = walks(query).saturating_mul(lowering.tree().leaf_uses());
         let origin = lowering.tree().origin();
+        let by_rows = OnceLock::new();
         Self { compiler, bound, by_rows, query, origin, layout, separate, tally: Tally::default() }
     }
 
@@ -295,17 +291,19 @@ impl Evaluator {
 
     /// What runs points of regions.
     fn rows(&self) -> &Bound {
-        match &self.by_rows {
-            None => &self.bound,
-            Some(by_rows) => by_rows.bound(|function| {
-                let purpose = Purpose::Answers(self.query);
-                let kernel = |compiler: &Compiler| compiler.kernel(function.clone(), purpose, None);
-                // Machine code can be had, as a rule: it was for the straight code.
-                let kernel = kernel(&self.compiler)
-                    .or_else(|_| kernel(&self.compiler.clone().on_engine(Engine::Lanes)));
-                kernel.expect("a program that is small as straight code is within all limits")
-            }),
+        if self.bound.kernel.straight.is_none() {
+            return &self.bound;
         }
+        self.by_rows.get_or_init(|| {
+            let lowered = &self.bound.kernel.lowered;
+            let purpose = Purpose::Answers(self.query);
+            let kernel = |compiler: &Compiler| compiler.kernel(lowered.clone(), purpose, None);
+            // Machine code can be had, as a rule: it was for the straight code.
+            let kernel =
+                kernel(&self.compiler).or_else(|_| kernel(&self.compiler.clone().on_engine(Engine::Lanes)));
+            let kernel = kernel.expect("a program that is small as straight code is within all limits");
+            Box::new(kernel.bind(Arc::clone(&self.bound.lowered)))
+        })
     }
 
     /// The query that it answers.

@@ -12,6 +12,8 @@
 //! ([`jbt_ir::domain::tangent`]). Selects drop what they do not choose, sums and products keep a NaN or an infinity: a gradient that is finite has met none. So a point's
 //! answer depends neither on the points beside it nor on rows that are left out. It costs a comparison a component, and nothing a row.
 
+use std::sync::Arc;
+
 use jbt_ir::Selection;
 use jbt_ir::domain::tangent::LARGEST_SLOPE;
 use jbt_ir::pass::GRADIENT_OUTPUTS;
@@ -54,6 +56,8 @@ impl Bound {
         let places = points.map(|plane| wild.iter().map(|&index| plane[index]).collect::<Vec<f32>>());
         let mut found = vec![vec![0.0; wild.len()]; 4];
         let mut planes: Vec<&mut [f32]> = found.iter_mut().map(Vec::as_mut_slice).collect();
+        // It is never straight code, so it has other rows than straight code.
+        let selection = if self.kernel.straight.is_some() { &guarded.all } else { selection };
         let more = guarded.run(selection, &places.each_ref().map(Vec::as_slice), &mut planes)?;
         for (plane, found) in gradient.iter_mut().zip(&found[1..]) {
             for (&index, &component) in wild.iter().zip(found) {
@@ -65,7 +69,7 @@ impl Bound {
 
     /// The guarded kernel with these numbers.
     fn guarded(&self) -> Option<&Self> {
-        let bind = || self.kernel.guarded().map(|kernel| Box::new(kernel.bind(self.tables.clone())));
+        let bind = || self.kernel.guarded().map(|kernel| Box::new(kernel.bind(Arc::clone(&self.lowered))));
         self.guarded.get_or_init(bind).as_deref()
     }
 }

@@ -19,7 +19,7 @@ use jbt_ir::domain::lanes::{Scratch, Tape};
 use jbt_ir::domain::scalar::Scalar;
 use jbt_ir::level::{self, Level};
 use jbt_ir::pass::{GRADIENT, GUARDED_GRADIENT, INTERVAL, PIPELINE, Pass, dce, run_pipeline};
-use jbt_ir::{Function, Selection, Tables, Verified, interpret, limits, verify};
+use jbt_ir::{Function, Selection, Straight, Tables, Verified, interpret, limits, verify};
 
 use crate::error::{CompileError, EvalError};
 use crate::export::{UnknownWord, find};
@@ -99,11 +99,57 @@ pub fn passes(purpose: Purpose) -> impl Iterator<Item = &'static Pass> {
 /// # Errors
 /// A function that a pass makes larger than [`limits::MAX_VALUES`]; broken rules, which are a defect of the compiler.
 pub fn optimise(
-    mut function: Function,
+    function: Function,
     purpose: Purpose,
     observer: &mut dyn FnMut(&str, &Function),
 ) -> Result<Verified, CompileError> {
-    for pass in passes(purpose) {
+    finish(run(function, passes(purpose), observer)?)
+}
+
+/// Straight code for a lowered function and its tables, if it is worth it: made of what the purpose's own pass makes of the function, so that
+/// answers have the bits that they have without it. What was told apart in straight code for other numbers stays apart.
+///
+/// # Errors
+/// Those of [`optimise`].
+pub fn straighten(
+    function: &Function,
+    tables: &Tables,
+    purpose: Purpose,
+    before: Option<&Straight>,
+) -> Result<Option<Straight>, CompileError> {
+    let made;
+    let function = match purpose.first_pass() {
+        None => function,
+        // Most functions are told to be none for straight code without it.
+        Some(_) if before.is_none() && Straight::new(function, tables).is_none() => return Ok(None),
+        Some(first) => {
+            made = run(function.clone(), [first], &mut |_, _| {})?;
+            &made
+        }
+    };
+    Ok(match before {
+        Some(before) => before.again(function, tables),
+        None => Straight::new(function, tables),
+    })
+}
+
+/// Runs the passes that straight code has still to go through, and verifies.
+///
+/// # Errors
+/// Those of [`optimise`].
+pub fn optimise_straight(
+    straight: &Straight,
+    observer: &mut dyn FnMut(&str, &Function),
+) -> Result<Verified, CompileError> {
+    finish(run(straight.function().clone(), PIPELINE, observer)?)
+}
+
+fn run<'a>(
+    mut function: Function,
+    passes: impl IntoIterator<Item = &'a Pass>,
+    observer: &mut dyn FnMut(&str, &Function),
+) -> Result<Function, CompileError> {
+    for pass in passes {
         function = run_pipeline(function, [pass], observer);
         let values = function.values.len();
         if values > limits::MAX_VALUES {
@@ -115,6 +161,10 @@ pub fn optimise(
             return Err(CompileError::Model(vec![Diagnostic::limit(None, message)].into()));
         }
     }
+    Ok(function)
+}
+
+fn finish(function: Function) -> Result<Verified, CompileError> {
     verify(function).map_err(CompileError::Internal)
 }
 
@@ -137,6 +187,8 @@ enum Code {
 pub(crate) struct Kernel {
     /// The function as it was lowered: what tells whether another model has the same shape.
     pub(crate) lowered: Function,
+    /// Where it is straight code: how the tables of the lowered function become its own.
+    pub(crate) straight: Option<Straight>,
     pub(crate) function: Arc<Verified>,
     /// For each table, the distances that an active row takes.
     pub(crate) per_row: Vec<u64>,
@@ -150,7 +202,12 @@ pub(crate) struct Kernel {
 
 impl Kernel {
     /// Prepares a function for an engine. Without an engine in mind, machine code is tried first and the interpreter then.
-    pub(crate) fn new(lowered: Function, function: Verified, wish: Wish) -> Result<Self, CompileError> {
+    pub(crate) fn new(
+        lowered: Function,
+        straight: Option<Straight>,
+        function: Verified,
+        wish: Wish,
+    ) -> Result<Self, CompileError> {
         let level = wish.level.unwrap_or_else(best_level);
         if !level.is_available() {
             let engine = wish.engine.unwrap_or(Engine::Jit).name();
@@ -173,6 +230,7 @@ impl Kernel {
         let ops_per_row = ops_per_row(function.function());
         Ok(Self {
             lowered,
+            straight,
             function: Arc::new(function),
             per_row,
             ops_per_row,
@@ -206,7 +264,7 @@ impl Kernel {
                 Engine::Lanes | Engine::Jit => Engine::Lanes,
             };
             let wish = Wish { engine: Some(engine), level: Some(self.level) };
-            Self::new(field, verified, wish).ok().map(Arc::new)
+            Self::new(field, None, verified, wish).ok().map(Arc::new)
         };
         self.guarded.get_or_init(make).as_ref()
     }
@@ -221,8 +279,12 @@ impl Kernel {
         }
     }
 
-    /// Gives the kernel its numbers.
-    pub(crate) fn bind(self: &Arc<Self>, tables: Arc<Tables>) -> Bound {
+    /// Gives the kernel its numbers: those of the lowered function, which fit its straight code if it has one.
+    pub(crate) fn bind(self: &Arc<Self>, lowered: Arc<Tables>) -> Bound {
+        let tables = match &self.straight {
+            None => Arc::clone(&lowered),
+            Some(straight) => Arc::new(straight.tables(&lowered).expect("whoever binds has seen to that")),
+        };
         // Lowering made both, so they fit. It is checked all the same, because the engines' safety rests on it.
         let interpreted = || Arc::new(Selection::new(self.function.function(), &tables));
         #[cfg(feature = "jit")]
@@ -239,6 +301,7 @@ impl Kernel {
         Bound {
             kernel: Arc::clone(self),
             tables,
+            lowered,
             all,
             #[cfg(feature = "jit")]
             machine,
@@ -298,6 +361,8 @@ fn warn_once(reason: &str) {
 pub(crate) struct Bound {
     pub(crate) kernel: Arc<Kernel>,
     pub(crate) tables: Arc<Tables>,
+    /// Those of the lowered function: others only if the kernel is straight code.
+    pub(crate) lowered: Arc<Tables>,
     /// All rows that are active.
     pub(crate) all: Arc<Selection>,
     #[cfg(feature = "jit")]

@@ -74,7 +74,6 @@
 //! compiler's own, and read by plain numbers.
 
 mod buffer;
-mod by_rows;
 pub mod contour;
 mod counter;
 mod debug;

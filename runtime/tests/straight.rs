@@ -19,6 +19,22 @@ fn wave(height: f64, phase: f64) -> String {
     format!("expression {{ sin(3 * x + {phase}) * cos(5 * y) * exp(-(z - {height})^2) * 0.75 }}")
 }
 
+/// Waves under what a machine might write, so that derivatives of rows come together in many ways.
+fn nested() -> String {
+    let falloff = |c: f64| format!("falloff wyvill radius 2 {{ {} }}", wave(c, 0.5));
+    format!(
+        "jbt 1 blend ricci 3 {{
+            sum {{ {a} {b} {c} }}
+            taper from -1 to 1 start 0.7 end 0.9 {{ union {{ {a} {b} intersection {{ {b} {c} }} }} }}
+            expression {{ 0.3 * sin(2 * x) * y + 0.1 / (x * x + y) }}
+            expression {{ 0.3 * sin(2 * x) * z + 0.1 / (x * x + y) }}
+        }}",
+        a = falloff(0.1),
+        b = falloff(0.3),
+        c = falloff(0.4),
+    )
+}
+
 /// Waves under a union, coloured, beside points, a warp and a difference: what is straight code, and what is not.
 fn scene(heights: &[f64], phase: f64) -> String {
     let waves: Vec<String> = heights
@@ -58,15 +74,25 @@ fn is_straight(compiler: &Compiler, tree: &CheckedTree) -> bool {
 
 #[test]
 fn straight_code_has_the_bits_of_rows() {
-    let (tree, points) = (tree(&scene(&[0.1, 0.2, 0.3, 0.6], 0.5)), points());
-    assert!(is_straight(&Compiler::new(), &tree));
+    for text in [scene(&[0.1, 0.2, 0.3, 0.6], 0.5), nested()] {
+        compare(&tree(&text));
+    }
+}
+
+fn compare(tree: &CheckedTree) {
+    let mut points = points();
+    // Where derivatives overflow.
+    for point in [[0.0f32; 3], [1e30, 1.0, -1e30], [1e-30, 1e-30, 0.0]] {
+        points.push(point);
+    }
+    assert!(is_straight(&Compiler::new(), tree));
     for query in Query::EVERY {
-        let known = Compiler::for_engine(Engine::Scalar).for_edits().evaluator(&tree, query).unwrap();
+        let known = Compiler::for_engine(Engine::Scalar).for_edits().evaluator(tree, query).unwrap();
         let known = bits(&known, &points);
         let levels = Level::available().into_iter().map(|level| Compiler::new().at_level(level));
         let engines = Engine::ALL.map(Compiler::for_engine);
         for compiler in engines.into_iter().chain(levels) {
-            let evaluator = compiler.evaluator(&tree, query).unwrap();
+            let evaluator = compiler.evaluator(tree, query).unwrap();
             assert_eq!(bits(&evaluator, &points), known, "{query:?} {compiler:?}");
         }
     }

@@ -64,7 +64,7 @@ fn samples_compile_and_agree() {
         let evaluator = compiler.evaluator(&tree, Query::FIELD).unwrap();
         let part = Box3::new([0.1 * size; 3], [0.15 * size; 3]);
         let region = pruner.region(part).unwrap();
-        let rows: usize = evaluator.tables().tables.values().map(jbt::ir::Rows::len).sum();
+        let rows = pruner.everywhere().rows();
         println!(
             "{name}: read in {read:?}; field by lanes, jit, scalar, gradient by lanes, scalar, pruner {times:?}; {} of {rows} rows in a small box",
             region.rows()
