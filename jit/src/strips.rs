@@ -22,10 +22,11 @@
 //! body keeps the next ones.
 
 use std::cmp::Reverse;
-use std::collections::{BinaryHeap, HashMap, HashSet};
+use std::collections::BinaryHeap;
 use std::ops::Range;
 
 use jbt_ir::{Block, Entity, Function, Inst, InstData, InstKind, Table, Value};
+use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 
 /// Bytes of all slots that leave room for other things in the nearest cache.
 const NEAR_BYTES: usize = 32 << 10;
@@ -84,7 +85,7 @@ impl Plan {
         let all = Piece { insts, then: Then::End, columns: Vec::new() };
         let values = function.values.len();
         Self {
-            pieces: HashMap::from([(function.body, vec![all])]),
+            pieces: HashMap::from_iter([(function.body, vec![all])]),
             slots: vec![None; values],
             slot_count: 0,
             homes: vec![0; values],
@@ -159,7 +160,7 @@ impl<'a> Cutter<'a> {
             | InstKind::Fold(_) => None,
         };
         let columns = function.insts.values().filter_map(column).collect();
-        Self { function, longest, columns, pieces: HashMap::new() }
+        Self { function, longest, columns, pieces: HashMap::default() }
     }
 
     /// Cuts a block, and the bodies of its folds.
@@ -191,7 +192,7 @@ impl<'a> Cutter<'a> {
         };
         let read =
             data.insts[insts.clone()].iter().flat_map(|&inst| self.function.operands(inst)).chain(last);
-        let mut seen = HashSet::new();
+        let mut seen = HashSet::default();
         let columns = read.filter_map(|value| self.columns.get(value).copied());
         let columns = columns.filter(|column| seen.insert(column.value)).collect();
         Piece { insts, then, columns }

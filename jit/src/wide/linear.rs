@@ -15,10 +15,9 @@
 //! in memory, and whoever reads them finds them there. Ops that change no bit (`hold`, `to_bits`,
 //! `from_bits`) are not there either: their result has the name of their operand.
 
-use std::collections::HashSet;
-
 use jbt_ir::pass::{Gate, Gates};
 use jbt_ir::{Block, Entity, Fold, Function, Inst, InstKind, Op, Reduction, Table, Type, Value};
+use rustc_hash::FxHashSet as HashSet;
 
 use crate::strips::{Plan, Slot, Then};
 

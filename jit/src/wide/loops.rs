@@ -21,6 +21,7 @@ impl State<'_> {
             self.stored[part as usize] = false;
         }
         self.reserve();
+        self.look_up_again();
         self.end(id, &open);
     }
 
@@ -38,6 +39,7 @@ impl State<'_> {
         let header = self.occupant;
         self.open.push(Open { id, header, journal: self.journal.len(), top, exit, early });
         self.reserve();
+        self.look_up_again();
         self.event(Event::Open);
         self.begin(id, top);
     }

@@ -362,17 +362,17 @@ impl State<'_> {
 
     /// The register of an fma's result: that of an operand that ends, or one that a copy goes to.
     fn fma_target(&mut self, to: Part, args: [Part; 3], in_memory: Part, is_last: bool) -> Register {
-        let ending: Vec<(Part, Register)> = args
-            .iter()
-            .filter(|&&part| part != in_memory && self.ends(part, is_last))
-            .filter_map(|&part| Some((part, self.register_of(part)?)))
-            .collect();
+        let ending = args
+            .into_iter()
+            .filter(|&part| part != in_memory && self.ends(part, is_last))
+            .filter_map(|part| Some((part, self.register_of(part)?)));
         let wish = self.wish(to);
-        let is_wish = |&&(_, register): &&(Part, Register)| Some(register) == wish;
-        let is_free = |&&(_, register): &&(Part, Register)| self.reserved >> register & 1 == 0;
-        let chosen = ending.iter().find(is_wish).or_else(|| ending.iter().find(is_free)).or(ending.first());
+        let is_wish = |&(_, register): &(Part, Register)| Some(register) == wish;
+        let is_free = |&(_, register): &(Part, Register)| self.reserved >> register & 1 == 0;
+        let chosen = ending.clone().find(is_wish);
+        let chosen = chosen.or_else(|| ending.clone().find(is_free)).or_else(|| ending.clone().next());
         match chosen {
-            Some(&(part, register)) => {
+            Some((part, register)) => {
                 self.release(part);
                 self.bind(to, register);
                 register

@@ -8,7 +8,7 @@
 //! What a loop begins with is decided when it opens ([`super::loops`]), and is put back at its end. So a
 //! register holds the same thing at the top of each round.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap as HashMap;
 
 use super::encode::Shape;
 use super::event::{Event, Part};
@@ -38,6 +38,13 @@ pub(crate) const SAVED: i32 = 24;
 /// How many registers may be used: vectors and masks.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) struct Count(pub(crate) [u8; 2]);
+
+impl Count {
+    /// The registers of a class.
+    fn registers(self, class: usize) -> std::ops::Range<Register> {
+        if class == 0 { 0..self.0[0] } else { MASKS + 1..MASKS + 1 + self.0[1] }
+    }
+}
 
 /// An open loop.
 pub(super) struct Open {
@@ -82,6 +89,13 @@ pub(crate) struct State<'a> {
 
     /// What each register holds.
     pub(super) occupant: [Part; REGISTERS],
+    /// Registers that hold something, a bit each.
+    full: u64,
+    /// The registers of each class, a bit each.
+    classes: [u64; 2],
+    /// Until where each register can do without its part, where that has been looked up; and where it has, a bit each.
+    wanted: [u32; REGISTERS],
+    looked_up: u64,
     /// Where each part is.
     pub(super) place: Vec<Register>,
     /// Whether the frame has it.
@@ -126,6 +140,7 @@ impl<'a> State<'a> {
     pub(crate) fn new(task: Task<'a>) -> Self {
         let Task { linear, lives, vectors, shape, count, planes, strip_bytes, tables, is_checked } = task;
         let parts = linear.names.len() * vectors;
+        let bits = |registers: std::ops::Range<Register>| registers.map(|register| 1 << register).sum();
         let mut becomes = vec![NONE; linear.names.len()];
         for phi in linear.loops.iter().flat_map(|data| &data.phis) {
             becomes[phi.next as usize] = phi.value;
@@ -146,9 +161,13 @@ impl<'a> State<'a> {
             events: Vec::new(),
             labels: 0,
             constants: Vec::new(),
-            numbers: HashMap::new(),
+            numbers: HashMap::default(),
             slot_addresses: Vec::new(),
             occupant: [NONE; REGISTERS],
+            full: 0,
+            classes: [0, 1].map(|class| bits(count.registers(class))),
+            wanted: [0; REGISTERS],
+            looked_up: 0,
             place: vec![NOWHERE; parts],
             stored: vec![false; parts],
             frame: vec![NONE; parts],
@@ -261,8 +280,7 @@ impl<'a> State<'a> {
 
     /// The registers of a class.
     pub(super) fn registers(&self, class: usize) -> std::ops::Range<Register> {
-        let Count(count) = self.count;
-        if class == 0 { 0..count[0] } else { MASKS + 1..MASKS + 1 + count[1] }
+        self.count.registers(class)
     }
 
     pub(super) fn lock(&mut self, register: Register) {
@@ -271,16 +289,10 @@ impl<'a> State<'a> {
 
     /// A register that holds nothing: one that no accumulator waits for, if there is one.
     pub(super) fn free_register(&self, class: usize) -> Option<Register> {
-        let mut reserved = None;
-        for register in self.registers(class) {
-            if self.occupant[register as usize] == NONE && self.locked >> register & 1 == 0 {
-                if self.reserved >> register & 1 == 0 {
-                    return Some(register);
-                }
-                reserved.get_or_insert(register);
-            }
-        }
-        reserved
+        let free = self.classes[class] & !self.full & !self.locked;
+        let best = free & !self.reserved;
+        let first = if best == 0 { free } else { best }.trailing_zeros();
+        (free != 0).then_some(first as Register)
     }
 
     /// A register that holds nothing, or nothing any more.
@@ -289,10 +301,10 @@ impl<'a> State<'a> {
             return register;
         }
         let (mut best, mut best_score) = (NOWHERE, 0);
-        for register in self.registers(class) {
-            if self.locked >> register & 1 == 1 {
-                continue;
-            }
+        let mut left = self.classes[class] & !self.locked;
+        while left != 0 {
+            let register = left.trailing_zeros() as Register;
+            left &= left - 1;
             let part = self.occupant[register as usize];
             let score = 1 + self.reluctance(register, part);
             if score > best_score {
@@ -307,14 +319,25 @@ impl<'a> State<'a> {
     /// How long a register may do without its part: more if nothing has to be stored.
     fn reluctance(&mut self, register: Register, part: Part) -> u64 {
         let name = self.name(part);
-        let mut next = self.next_use(name);
-        if let Some(open) = self.open.last()
-            && open.header[register as usize] == part
-        {
-            next = next.min(self.linear.loops[open.id as usize].close);
+        let index = register as usize;
+        // Nothing comes nearer until it is behind.
+        if self.looked_up >> register & 1 == 0 || self.wanted[index] < self.position {
+            let mut next = self.next_use(name);
+            if let Some(open) = self.open.last()
+                && open.header[index] == part
+            {
+                next = next.min(self.linear.loops[open.id as usize].close);
+            }
+            self.wanted[index] = next;
+            self.looked_up |= 1 << register;
         }
-        let distance = u64::from(next.saturating_sub(self.position));
-        if self.is_leaf(name) || self.stored[part as usize] { 3 * distance } else { 2 * distance }
+        let distance = u64::from(self.wanted[index].saturating_sub(self.position));
+        if self.stored[part as usize] || self.is_leaf(name) { 3 * distance } else { 2 * distance }
+    }
+
+    /// Forgets until where registers can do without their parts: another loop is the innermost one now.
+    pub(super) fn look_up_again(&mut self) {
+        self.looked_up = 0;
     }
 
     /// Makes a register empty; the frame has what was in it, if somebody needs that.
@@ -332,6 +355,7 @@ impl<'a> State<'a> {
         let register = std::mem::replace(&mut self.place[part as usize], NOWHERE);
         if register != NOWHERE {
             self.occupant[register as usize] = NONE;
+            self.full &= !(1 << register);
         }
     }
 
@@ -339,6 +363,8 @@ impl<'a> State<'a> {
     pub(super) fn bind(&mut self, part: Part, register: Register) {
         debug_assert_eq!(self.occupant[register as usize], NONE, "a register holds one thing");
         self.occupant[register as usize] = part;
+        self.full |= 1 << register;
+        self.looked_up &= !(1 << register);
         self.place[part as usize] = register;
     }
 }

@@ -2,7 +2,7 @@
 //! accumulators, and what had to leave its register in between. All is read before anything is written, in an
 //! order that needs few places besides.
 
-use std::collections::{HashMap, HashSet};
+use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 
 use super::event::{Event, NEXT, Part, Place};
 use super::inst::Memory;
@@ -75,8 +75,8 @@ impl State<'_> {
         // way.
         transfers.sort_by_key(|transfer| !matches!(transfer.source, Source::Register(_)));
         // Who reads a place, how many of them have not done so yet, and who writes it.
-        let mut readers: HashMap<Source, (Vec<usize>, usize)> = HashMap::new();
-        let mut writer: HashMap<Source, usize> = HashMap::new();
+        let mut readers: HashMap<Source, (Vec<usize>, usize)> = HashMap::default();
+        let mut writer: HashMap<Source, usize> = HashMap::default();
         for (index, transfer) in transfers.iter().enumerate() {
             let (list, left) = readers.entry(transfer.source).or_default();
             list.push(index);
