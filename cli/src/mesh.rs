@@ -71,9 +71,12 @@ fn warnings(made: &Polygonized, format: Format) -> Vec<String> {
     let mut warnings = Vec::new();
     if export::loses_digits(&made.mesh, format) {
         let [x, y, z] = made.mesh.origin;
+        let keep = Format::ALL.into_iter().filter(|&format| !export::loses_digits(&made.mesh, format));
+        let keep: Vec<String> = keep.map(|format| format!(".{format}")).collect();
         warnings.push(format!(
             "the model stands near ({x} {y} {z}), where a .{format} file has not enough digits: its vertices are rounded; \
-             .glb, .ply and .obj keep them"
+             {} keep them",
+            keep.join(", ")
         ));
     }
     if made.mesh.triangles.is_empty() {

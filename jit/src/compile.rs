@@ -1,4 +1,4 @@
-//! From a verified function to code: the limits, the choice of settings, and the errors.
+//! From a verified function to code: the limits, and the choice of settings.
 
 use std::panic::{self, AssertUnwindSafe};
 
@@ -6,233 +6,19 @@ use cranelift_codegen::Context;
 use cranelift_codegen::control::ControlPlane;
 use jbt_ir::limits::{MAX_JIT_LIVE_VALUES, MAX_JIT_VALUES};
 use jbt_ir::pass::{Gates, gates};
-use jbt_ir::{Function, Inst, InstKind, Level, Op, Verified};
+use jbt_ir::{Function, InstKind, Level, Verified};
 
+use crate::error::CompileError;
 use crate::memory::Code;
+use crate::options::{Allocator, Backend, Check, Options, Pieces, VectorCount};
+use crate::pressure::FIELD_CARRIES;
 use crate::strips::Plan;
 use crate::wide::{self, Blob, Emitted, Wish};
 use crate::{isa, lower, pressure};
 
-/// Vectors for each value. A vector has as many lanes as the [`Backend`] says.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-pub enum VectorCount {
-    /// One.
-    One,
-    /// Two.
-    Two,
-    /// Four.
-    Four,
-}
-
-impl VectorCount {
-    /// All counts.
-    pub const ALL: [Self; 3] = [Self::One, Self::Two, Self::Four];
-
-    /// How many.
-    #[must_use]
-    pub const fn count(self) -> usize {
-        match self {
-            Self::One => 1,
-            Self::Two => 2,
-            Self::Four => 4,
-        }
-    }
-}
-
-/// What makes the machine code. All give the same bits.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-pub enum Backend {
-    /// Cranelift: vectors of 128 bits.
-    Cranelift,
-    /// An emitter of our own for x86-64, at a level from [`Level::Avx2`] on. [`Level::Baseline`] is taken for
-    /// that one.
-    Wide(Level),
-}
-
-impl Backend {
-    /// The one that is used where nobody wishes another: wide code, if [`Level::best`] has it.
-    #[must_use]
-    pub fn best() -> Self {
-        Self::at(Level::best())
-    }
-
-    /// The one for a level.
-    #[must_use]
-    pub const fn at(level: Level) -> Self {
-        match level {
-            Level::Baseline => Self::Cranelift,
-            level @ (Level::Avx2 | Level::Avx512Vl | Level::Avx512) => Self::Wide(level),
-        }
-    }
-
-    /// All whose code this CPU can run.
-    #[must_use]
-    pub fn available() -> Vec<Self> {
-        let wide = Level::available().into_iter().filter(|&level| level > Level::Baseline);
-        std::iter::once(Self::Cranelift).chain(wide.map(Self::Wide)).collect()
-    }
-
-    /// Lanes of one vector.
-    #[must_use]
-    pub const fn lanes(self) -> usize {
-        match self {
-            Self::Cranelift => 4,
-            Self::Wide(Level::Baseline | Level::Avx2 | Level::Avx512Vl) => 8,
-            Self::Wide(Level::Avx512) => 16,
-        }
-    }
-}
-
-/// How hard Cranelift tries to improve the code. The passes of the IR have done most of it already.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
-pub enum OptLevel {
-    /// Hardly: the fastest way to good code, since common subexpressions are gone already.
-    #[default]
-    None,
-    /// For speed. Compile time grows faster than the function.
-    Speed,
-    /// For speed and size.
-    SpeedAndSize,
-}
-
-impl OptLevel {
-    /// All levels.
-    pub const ALL: [Self; 3] = [Self::None, Self::Speed, Self::SpeedAndSize];
-
-    /// The value of Cranelift's flag.
-    pub(crate) const fn flag(self) -> &'static str {
-        match self {
-            Self::None => "none",
-            Self::Speed => "speed",
-            Self::SpeedAndSize => "speed_and_size",
-        }
-    }
-}
-
-/// How values are given registers.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-pub enum Allocator {
-    /// Well. Compile time grows with the square of the number of vectors that are alive at once.
-    Backtracking,
-    /// In one pass, in linear time. Code whose values would fit the registers runs at half the speed.
-    SinglePass,
-}
-
-impl Allocator {
-    /// All allocators.
-    pub const ALL: [Self; 2] = [Self::Backtracking, Self::SinglePass];
-
-    /// The value of Cranelift's flag.
-    pub(crate) const fn flag(self) -> &'static str {
-        match self {
-            Self::Backtracking => "backtracking",
-            Self::SinglePass => "single_pass",
-        }
-    }
-}
-
-/// How a function is cut. Each piece runs over a strip of points before the next piece does.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-pub enum Pieces {
-    /// Not at all: a block of points runs through the whole function before the next block does.
-    One,
-    /// Into pieces of at most so many instructions, with a cut before and behind every fold. If the values
-    /// that pieces hand to each other are too many for the nearer caches, not at all.
-    Of(usize),
-}
-
-/// Settings of the compiler. What is `None` is chosen by the CPU and the function.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-pub struct Options {
-    /// What makes the code.
-    pub backend: Option<Backend>,
-    /// Vectors for each value. Where they are open, wide code has a second function of one vector, for points
-    /// that fill no larger block.
-    pub vectors: Option<VectorCount>,
-    /// Effort of Cranelift.
-    pub opt_level: OptLevel,
-    /// Register allocator of Cranelift.
-    pub allocator: Option<Allocator>,
-    /// How a function is cut.
-    pub pieces: Option<Pieces>,
-    /// How wide code is checked while it is made.
-    pub check: Check,
-}
-
-/// How wide code is checked while it is made. For tests: it takes time, and code with few registers is slow.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
-pub enum Check {
-    /// Not at all.
-    #[default]
-    Off,
-    /// The finished code is replayed: each instruction has to find the values that it is meant to read.
-    Registers,
-    /// The same for code in 3 vector registers and 1 mask register, in which nearly everything is in the
-    /// frame.
-    FewRegisters,
-}
-
-/// Why there is no machine code for a function. An interpreter can run it all the same.
-#[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
-pub enum CompileError {
-    /// The processor is not one that we make code for.
-    #[error("machine code needs a processor with {missing}")]
-    Processor {
-        /// What it lacks.
-        missing: &'static str,
-    },
-    /// The function has too many values.
-    #[error("the function has {values} values, machine code is made for at most {limit}")]
-    Values {
-        /// Values of the function.
-        values: usize,
-        /// Values that are allowed.
-        limit: usize,
-    },
-    /// Too many values are alive at once.
-    #[error("{live} values are alive at once, machine code is made for at most {limit}")]
-    LiveValues {
-        /// Values alive at once.
-        live: usize,
-        /// Values that are allowed.
-        limit: usize,
-    },
-    /// The code would take too much of the stack.
-    #[error("the code needs {bytes} bytes of stack, at most {limit} are allowed")]
-    Frame {
-        /// Bytes that it needs.
-        bytes: usize,
-        /// Bytes that are allowed.
-        limit: usize,
-    },
-    /// The function has an op that the legalize pass has to expand first.
-    #[error("{inst}: {} has no machine instruction and is expanded before", op.name())]
-    Op {
-        /// The op.
-        op: Op,
-        /// The first instruction that has it.
-        inst: Inst,
-    },
-    /// Code was checked, and reads what it should not: a defect of the emitter.
-    #[error("wide code is wrong: {0}")]
-    Registers(String),
-    /// The build has no decoder to list wide code with.
-    #[error("this build lists no wide code (cargo feature `listing`)")]
-    Listing,
-    /// The system refuses executable memory.
-    #[error("the system refuses memory for machine code: {0}")]
-    Memory(String),
-    /// Cranelift fails.
-    #[error("the code generator fails: {0}")]
-    Cranelift(String),
-}
-
 /// Up to this many live values the code is faster for having 16 points in a block: what is spilled costs less
 /// than reading every number of a row four times.
 const FOUR_VECTORS_UP_TO: usize = 14;
-/// Where loops carry at most this many, a function is a field, and not a gradient or attributes: more points
-/// in a block pay longer.
-pub(crate) const FIELD_CARRIES: usize = 3;
 /// Up to this many live values 8 points are faster than 16; beyond, than 4 by so little that compiling twice
 /// as much is a waste.
 const TWO_VECTORS_UP_TO: usize = 27;

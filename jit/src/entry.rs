@@ -12,46 +12,16 @@
 //! many; and the planes are checked at each [`run`](BoundKernel::run), which costs nothing beside the run.
 
 use std::fmt;
-use std::mem::offset_of;
 use std::sync::Arc;
 
 use jbt_ir::selection::Extent;
 use jbt_ir::{Function, Selection, TableError, Tables, Verified};
 
-use crate::compile::{self, CompileError, Options};
+use crate::abi::{Arguments, TableView};
+use crate::compile;
+use crate::error::CompileError;
 use crate::memory::Code;
-
-/// Where the rows of one table are.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub(crate) struct TableView {
-    numbers: *const f32,
-    active: *const u32,
-    starts: *const u32,
-}
-
-impl TableView {
-    /// What is there before a view is written.
-    const NOWHERE: Self =
-        Self { numbers: std::ptr::null(), active: std::ptr::null(), starts: std::ptr::null() };
-    /// The offset of the pointer to the numbers.
-    pub(crate) const NUMBERS: usize = offset_of!(Self, numbers);
-    /// The offset of the pointer to the active rows.
-    pub(crate) const ACTIVE: usize = offset_of!(Self, active);
-    /// The offset of the pointer to the starts.
-    pub(crate) const STARTS: usize = offset_of!(Self, starts);
-}
-
-/// Everything that one call of a kernel is given. Made by [`BoundKernel::run_selected`] alone, from what it
-/// has checked.
-pub(crate) struct Arguments<'a> {
-    /// Input planes, then output planes. They are moved on to their ends.
-    pub(crate) planes: &'a mut [*const f32],
-    /// Bytes of each plane.
-    pub(crate) bytes: usize,
-    /// One view for each table.
-    pub(crate) tables: &'a [TableView],
-}
+use crate::options::Options;
 
 /// What one kernel and its handles share.
 struct Shared {

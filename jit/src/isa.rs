@@ -4,7 +4,8 @@
 use cranelift_codegen::isa::OwnedTargetIsa;
 use cranelift_codegen::settings::{self, Configurable};
 
-use crate::compile::{Allocator, CompileError, OptLevel};
+use crate::error::CompileError;
+use crate::options::{Allocator, OptLevel};
 
 /// The host, or what it lacks.
 ///

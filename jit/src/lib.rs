@@ -57,17 +57,20 @@
 
 #![deny(unsafe_code)]
 
+mod abi;
 mod compile;
 mod entry;
+mod error;
 mod isa;
 mod lower;
 mod memory;
+mod options;
 mod pressure;
 mod strips;
 mod vectors;
 mod wide;
 
-pub use compile::{
-    Allocator, Backend, Check, CompileError, OptLevel, Options, Pieces, VectorCount, asm, clif,
-};
+pub use compile::{asm, clif};
 pub use entry::{BoundKernel, Kernel, RunError};
+pub use error::CompileError;
+pub use options::{Allocator, Backend, Check, OptLevel, Options, Pieces, VectorCount};

@@ -59,8 +59,8 @@ use cranelift_codegen::isa::CallConv;
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
 use jbt_ir::{Any, Block, Domain, Entity, Fold, Function, Inst, InstKind, Table, Type, Value, apply};
 
-use crate::compile::VectorCount;
-use crate::entry::TableView;
+use crate::abi::TableView;
+use crate::options::VectorCount;
 use crate::strips::{Column, Piece, Plan, Slot, Then};
 use crate::vectors::{VECTOR_BYTES, Vectors};
 

@@ -16,8 +16,8 @@ use cranelift_module::{Linkage, Module, ModuleError, default_libcall_names};
 
 use jbt_ir::limits;
 
-use crate::compile::CompileError;
-use crate::entry::{Arguments, TableView};
+use crate::abi::{Arguments, TableView};
+use crate::error::CompileError;
 use crate::lower::Lowered;
 use crate::wide::{Blob, Emitted};
 

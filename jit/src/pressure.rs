@@ -18,6 +18,9 @@ use jbt_ir::{Block, Entity, Function, Inst, InstData, InstKind, Value};
 
 use crate::strips::{Plan, Then};
 
+/// Where loops carry at most this many, a function is a field, and not a gradient or attributes: more points
+/// in a block pay longer.
+pub(crate) const FIELD_CARRIES: usize = 3;
 /// The walk over all instructions in order of execution.
 struct Walk<'a> {
     function: &'a Function,

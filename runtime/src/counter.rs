@@ -2,6 +2,15 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use jbt_frontend::query::Query;
+
+/// Walks of the tree that separate evaluations take: 1 for the field; 4 more for the gradient by forward differences, at the point and a
+/// step along each axis; 1 more for the attributes.
+#[must_use]
+pub fn walks(query: Query) -> u64 {
+    1 + 4 * u64::from(query.gradient) + u64::from(query.attributes)
+}
+
 /// What an evaluator has done so far. A snapshot: see [`crate::Evaluator::counters`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

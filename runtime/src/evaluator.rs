@@ -2,89 +2,27 @@
 
 use std::collections::BTreeSet;
 use std::fmt;
-use std::sync::{Arc, Mutex, OnceLock};
+use std::sync::{Arc, OnceLock};
 
 use jbt_frontend::check::{CheckedTree, NodeId};
-use jbt_frontend::lower::{Lowered, Lowering};
+use jbt_frontend::lower::Lowering;
 use jbt_frontend::origin::ModelOrigin;
 use jbt_frontend::query::Query;
 use jbt_ir::domain::counting::{Evaluations, evaluations, of_selection};
-use jbt_ir::{Function, Level, Selection, Tables, Verified, limits};
+use jbt_ir::{Selection, Tables, Verified};
 use rayon::prelude::*;
 
 use crate::buffer::{Layout, Samples};
-use crate::counter::{Counters, Tally};
+use crate::compiler::Compiler;
+use crate::counter::{Counters, Tally, walks};
 use crate::error::{CompileError, EvalError};
-use crate::kernel::{Bound, Engine, Kernel, Purpose, Wish, optimise, optimise_straight, straighten};
+use crate::kernel::{Bound, Engine, Purpose};
 use crate::places;
 use crate::points::{AsPoints, Points};
-use crate::probe::Probe;
 use crate::prune::Region;
 use crate::region::Box3;
-use crate::statistics::walks;
-
-/// Makes evaluators, and remembers the code of every shape that it has met: models of one shape share it.
-///
-/// Cloning gives another handle to the same memory.
-#[derive(Clone, Default)]
-pub struct Compiler {
-    wish: Wish,
-    /// Whether rows stay rows: see [`for_edits`](Self::for_edits).
-    by_rows: bool,
-    known: Arc<Mutex<Vec<Known>>>,
-}
-
-/// The code of a shape, for a purpose.
-struct Known {
-    purpose: Purpose,
-    kernel: Arc<Kernel>,
-}
-
-/// Shapes that a compiler remembers; the oldest one goes first.
-const REMEMBERED: usize = 64;
 
 impl Compiler {
-    /// A compiler for the best engine that this machine has: machine code, or the SIMD interpreter with one warning in the log.
-    #[must_use]
-    pub fn new() -> Self {
-        Self::default()
-    }
-
-    /// A compiler for one engine.
-    #[must_use]
-    pub fn for_engine(engine: Engine) -> Self {
-        Self::default().on_engine(engine)
-    }
-
-    /// The same compiler for one engine.
-    #[must_use]
-    pub fn on_engine(mut self, engine: Engine) -> Self {
-        self.wish.engine = Some(engine);
-        self.known = Arc::default();
-        self
-    }
-
-    /// The same compiler for a level of the instruction set, of the interpreter and of machine code. Without it, it is [`Level::best`].
-    #[must_use]
-    pub fn at_level(mut self, level: Level) -> Self {
-        self.wish.level = Some(level);
-        self.known = Arc::default();
-        self
-    }
-
-    /// The same compiler for models that are edited, or asked region by region: every row of a model stays a row of a table.
-    ///
-    /// Without it, formulas that have much in common become straight code ([`jbt_ir::straight`]), which takes up to a third less time. Straight code
-    /// knows how many rows there are and which of their numbers are equal, so an edit that changes one of the two
-    /// compiles anew; and regions run another kernel, which is made for the first of them. The answers have the same bits.
-    ///
-    /// Rows of primitives, and models with parameters, stay as they are in any case.
-    #[must_use]
-    pub fn for_edits(mut self) -> Self {
-        self.by_rows = true;
-        self
-    }
-
     /// An evaluator for a model and a query.
     ///
     /// # Errors
@@ -99,92 +37,8 @@ impl Compiler {
         lowering: &Lowering<'_>,
         query: Query,
     ) -> Result<Evaluator, CompileError> {
-        self.compile(lowering, query, None)
-    }
-
-    /// An evaluator for a model. What is `present`, for the same query, is kept where it fits.
-    fn compile(
-        &self,
-        lowering: &Lowering<'_>,
-        query: Query,
-        present: Option<&Evaluator>,
-    ) -> Result<Evaluator, CompileError> {
-        let Lowered { function, tables } =
-            lowering.answers(query).map_err(|list| lowering.tree().diagnostics(list))?;
-        let purpose = Purpose::Answers(query);
-        let present = present.map(|present| &present.bound.kernel);
-        // No value of a parameter compiles anything.
-        let may = !self.by_rows && lowering.tree().parameters().is_empty();
-        let straight = if may { self.straight(&function, &tables, purpose, present)? } else { None };
-        let kernel = match straight {
-            Some(kernel) => kernel,
-            None => self.kernel(function, purpose, present)?,
-        };
+        let (kernel, tables) = self.answers(lowering, query, None)?;
         Ok(Evaluator::new(self.clone(), kernel.bind(Arc::new(tables)), lowering, query))
-    }
-
-    /// A kernel of straight code for a lowered function and these tables; `None` if rows are as good.
-    fn straight(
-        &self,
-        function: &Function,
-        tables: &Tables,
-        purpose: Purpose,
-        present: Option<&Arc<Kernel>>,
-    ) -> Result<Option<Arc<Kernel>>, CompileError> {
-        let fits = |kernel: &Kernel| {
-            let straight = kernel.straight.as_ref();
-            kernel.lowered == *function && straight.is_some_and(|straight| straight.tables(tables).is_some())
-        };
-        let before = match present.filter(|present| present.lowered == *function) {
-            Some(present) if fits(present) => return Ok(Some(Arc::clone(present))),
-            // An edit of numbers compiles nothing if that can be helped.
-            Some(present) if present.straight.is_none() => return Ok(None),
-            present => present.and_then(|present| present.straight.as_ref()),
-        };
-        if let Some(kernel) = self.find(purpose, fits) {
-            return Ok(Some(kernel));
-        }
-        let Some(straight) = straighten(function, tables, purpose, before)? else { return Ok(None) };
-        let verified = optimise_straight(&straight, &mut |_, _| {})?;
-        if verified.function().values.len() > limits::MAX_JIT_VALUES {
-            return Ok(None);
-        }
-        let kernel = Arc::new(Kernel::new(function.clone(), Some(straight), verified, self.wish)?);
-        self.remember(purpose, &kernel);
-        Ok(Some(kernel))
-    }
-
-    /// The kernel of a lowered function: the present one, one that is remembered, or a new one.
-    pub(crate) fn kernel(
-        &self,
-        function: Function,
-        purpose: Purpose,
-        present: Option<&Arc<Kernel>>,
-    ) -> Result<Arc<Kernel>, CompileError> {
-        let fits = |kernel: &Kernel| kernel.lowered == function && kernel.straight.is_none();
-        let present = present.filter(|kernel| fits(kernel)).cloned();
-        if let Some(kernel) = present.or_else(|| self.find(purpose, fits)) {
-            return Ok(kernel);
-        }
-        let verified = optimise(function.clone(), purpose, &mut |_, _| {})?;
-        let kernel = Arc::new(Kernel::new(function, None, verified, self.wish)?);
-        self.remember(purpose, &kernel);
-        Ok(kernel)
-    }
-
-    fn remember(&self, purpose: Purpose, kernel: &Arc<Kernel>) {
-        if let Ok(mut known) = self.known.lock() {
-            if known.len() == REMEMBERED {
-                known.remove(0);
-            }
-            known.push(Known { purpose, kernel: Arc::clone(kernel) });
-        }
-    }
-
-    fn find(&self, purpose: Purpose, fits: impl Fn(&Kernel) -> bool) -> Option<Arc<Kernel>> {
-        let known = self.known.lock().ok()?;
-        let found = known.iter().find(|known| known.purpose == purpose && fits(&known.kernel))?;
-        Some(Arc::clone(&found.kernel))
     }
 }
 
@@ -225,12 +79,6 @@ pub struct Evaluator {
     /// What separate walks would compute at a point.
     separate: u64,
     tally: Tally,
-}
-
-impl fmt::Debug for Compiler {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Compiler").field("wish", &self.wish).finish_non_exhaustive()
-    }
 }
 
 impl fmt::Debug for Evaluator {
@@ -286,7 +134,8 @@ impl Evaluator {
     pub fn updated(&self, tree: &CheckedTree) -> Result<Self, CompileError> {
         let tree = tree.with_origin(self.origin);
         let lowering = Lowering::new(&tree);
-        self.compiler.compile(&lowering, self.query, Some(self))
+        let (kernel, tables) = self.compiler.answers(&lowering, self.query, Some(&self.bound.kernel))?;
+        Ok(Self::new(self.compiler.clone(), kernel.bind(Arc::new(tables)), &lowering, self.query))
     }
 
     /// What runs points of regions.
@@ -495,12 +344,6 @@ impl Evaluator {
         let lanes = bound.run_finite(selection, &placed.each_ref().map(Vec::as_slice), answers)?;
         places::blank(&self.layout, &points, answers);
         Ok(lanes)
-    }
-
-    /// Begins to ask about one point, whose coordinates count from the [origin](Self::origin): see [`Probe`].
-    #[must_use]
-    pub fn probe(&self, point: [f32; 3]) -> Probe<'_> {
-        Probe::new(self, point)
     }
 
     /// What it has done so far.

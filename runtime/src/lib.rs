@@ -74,6 +74,7 @@
 //! compiler's own, and read by plain numbers.
 
 mod buffer;
+mod compiler;
 pub mod contour;
 mod counter;
 mod debug;
@@ -129,9 +130,10 @@ pub use jbt_ir::level::{self, Level};
 pub use jbt_ir::limits;
 
 pub use buffer::{Layout, Samples};
+pub use compiler::Compiler;
 pub use counter::Counters;
 pub use error::{CompileError, EvalError};
-pub use evaluator::{Compiler, Evaluator, Update};
+pub use evaluator::{Evaluator, Update};
 pub use job::{CancelToken, Job};
 pub use kernel::Engine;
 pub use picture::Picture;

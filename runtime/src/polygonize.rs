@@ -12,9 +12,9 @@ use std::time::{Duration, Instant};
 
 use jbt_frontend::check::CheckedTree;
 
+use crate::compiler::Compiler;
 use crate::counter::Counters;
 use crate::error::{CompileError, EvalError};
-use crate::evaluator::Compiler;
 use crate::job::{Hook, Job};
 use crate::kernel::Engine;
 use crate::mesh::{self, Lattice, LatticeError, Mesh, MeshError, Report};

@@ -25,8 +25,16 @@ pub struct Probe<'a> {
 
 brief_debug!(Probe<'_>, "Probe", this: point = this.point, answers = this.answers.get());
 
+impl Evaluator {
+    /// Begins to ask about one point, whose coordinates count from the [origin](Self::origin).
+    #[must_use]
+    pub fn probe(&self, point: [f32; 3]) -> Probe<'_> {
+        Probe::new(self, point)
+    }
+}
+
 impl<'a> Probe<'a> {
-    pub(crate) fn new(evaluator: &'a Evaluator, point: [f32; 3]) -> Self {
+    fn new(evaluator: &'a Evaluator, point: [f32; 3]) -> Self {
         Self { evaluator, point, answers: OnceCell::new() }
     }
 

@@ -17,18 +17,13 @@ use jbt_frontend::lower::LeafOccurrences;
 use jbt_frontend::query::Query;
 use rayon::prelude::*;
 
+use crate::compiler::Compiler;
+pub use crate::counter::walks;
 use crate::debug::brief_debug;
 use crate::error::CompileError;
-use crate::evaluator::{Compiler, Evaluator};
+use crate::evaluator::Evaluator;
 use crate::job::{Hook, Job};
 use crate::mesh::{Lattice, LatticeError};
-
-/// Walks of the tree that separate evaluations take: 1 for the field; 4 more for the gradient by forward differences, at the point and a
-/// step along each axis; 1 more for the attributes.
-#[must_use]
-pub fn walks(query: Query) -> u64 {
-    1 + 4 * u64::from(query.gradient) + u64::from(query.attributes)
-}
 
 /// Different places that those walks ask about: the point, and the ends of the three steps of a gradient by differences.
 #[must_use]

@@ -112,10 +112,11 @@ fn main() -> ExitCode {
         println!("{}", heading());
     }
     let mut fine = true;
-    for row in cases.into_iter().flat_map(|case| case.run(options)) {
+    let rows = |case: &'static Case| case.run(options).into_iter().map(move |row| (case, row));
+    for (case, row) in cases.into_iter().flat_map(rows) {
         fine &= row.checksum() == "ok";
         if arguments.json {
-            println!("{}", row.json());
+            println!("{}", row.json(case.what));
         } else {
             println!("{}", line(&row));
         }

@@ -6,8 +6,8 @@ use jbt::{Compiler, Engine, Points, Query};
 use jbt_frontend::check::CheckedTree;
 use serde_json::json;
 
-use super::Options;
 use super::contest::{Contest, Contestant};
+use super::options::Options;
 use super::oracle::{Oracle, Tolerance};
 use super::report::Row;
 use crate::limit;

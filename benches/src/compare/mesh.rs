@@ -6,8 +6,8 @@ use jbt_frontend::check::CheckedTree;
 use jbt_frontend::walk::walk;
 use serde_json::json;
 
-use super::Options;
 use super::contest::{Contest, Contestant};
+use super::options::Options;
 use super::oracle::{Oracle, Tolerance};
 use super::report::Row;
 use crate::limit;

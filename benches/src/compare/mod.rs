@@ -9,6 +9,7 @@
 mod contest;
 mod dense;
 mod mesh;
+mod options;
 mod oracle;
 mod picture;
 mod programs;
@@ -16,40 +17,9 @@ mod report;
 mod rows;
 mod train;
 
-use std::path::{Path, PathBuf};
-use std::time::Duration;
-
 pub use contest::{Contestant, Effort, Standing, Standings};
+pub use options::Options;
 pub use report::{Row, heading, line};
-
-/// What applies to every case.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Options {
-    /// Less of everything: a minute for all cases.
-    pub quick: bool,
-    /// Threads of meshing cases; the others run on one.
-    pub threads: usize,
-}
-
-impl Options {
-    /// How long to measure.
-    fn effort(self) -> Effort {
-        let (budget, patience, endurance) = if self.quick {
-            (Duration::from_millis(200), Duration::from_millis(40), Duration::from_secs(5))
-        } else {
-            (Duration::from_secs(2), Duration::from_secs(2), Duration::MAX)
-        };
-        Effort { budget, patience, endurance }
-    }
-}
-
-/// A file of the samples, if it is here: in the folder that `JBT_SAMPLES` names, or beside the repository.
-fn sample(name: &str) -> Result<Vec<u8>, String> {
-    let root = std::env::var_os("JBT_SAMPLES")
-        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/samples"), PathBuf::from);
-    std::fs::read(root.join(name))
-        .map_err(|error| format!("no {name} in the folder that JBT_SAMPLES names: {error}"))
-}
 
 /// A case.
 #[derive(Clone, Copy)]

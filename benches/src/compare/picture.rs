@@ -13,8 +13,8 @@ use serde_json::json;
 
 use super::contest::{Contest, Contestant, Standings};
 use super::mesh::peer_threads;
+use super::options::{Options, sample};
 use super::report::Row;
-use super::{Options, sample};
 use crate::model;
 use crate::peers::fidget::{FidgetModel, FidgetProgram, Gate, JitFunction, VmFunction};
 

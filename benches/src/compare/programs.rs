@@ -9,8 +9,8 @@ use jbt_frontend::walk::walk;
 use serde_json::json;
 
 use super::contest::{Contest, Contestant, Standings};
+use super::options::{Options, sample};
 use super::report::Row;
-use super::{Options, sample};
 use crate::model;
 use crate::peers::fidget::{FidgetProgram, JitFunction, VmFunction};
 

@@ -4,8 +4,8 @@ use jbt::{Compiler, Points, Query, Update};
 use jbt_frontend::check::CheckedTree;
 use serde_json::json;
 
-use super::Options;
 use super::contest::{Contest, Contestant};
+use super::options::Options;
 use super::oracle::{Oracle, Tolerance};
 use super::report::Row;
 use crate::limit;

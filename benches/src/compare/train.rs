@@ -8,9 +8,9 @@ use jbt_frontend::import;
 use serde_json::json;
 
 use super::contest::{Contest, Contestant, Standings};
+use super::options::{Options, sample};
 use super::oracle::{Oracle, Tolerance};
 use super::report::Row;
-use super::{Options, sample};
 use crate::naive::Walker;
 
 /// The edge of a cell.

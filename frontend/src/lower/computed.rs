@@ -23,10 +23,10 @@ use std::sync::Arc;
 use glam::DAffine3;
 use jbt_ir::{Domain, FunctionBuilder, Value};
 
-use super::occurrence::{Scene, SpaceId};
+use super::names::{ComputedId, SpaceId};
 use super::position::MapKind;
 use crate::attribute::{AttributeValue, Textured, UvMap};
-use crate::check::NodeId;
+use crate::check::{CheckedTree, NodeId};
 use crate::expression::{Form, LARGEST_FIELD, Operand};
 use crate::skeleton::SkeletonKind;
 use crate::texture::TextureKind;
@@ -34,10 +34,6 @@ use crate::tree::NodeKind;
 
 /// How many textures and formulas may be lifted, because several leaves share them.
 pub(super) const MAX_SHARED: usize = 32;
-
-/// The name of a computed value: a function in coordinates.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, PartialOrd, Ord)]
-pub(super) struct ComputedId(pub(super) u32);
 
 /// The function: what selects code.
 #[derive(Clone, PartialEq, Eq, Hash, Debug)]
@@ -155,15 +151,15 @@ fn kept(d: &mut FunctionBuilder, value: Value) -> Value {
 }
 
 /// The numbers of a computed value in a row, in the order in which [`emit`] asks for them behind those of the map.
-pub(super) fn push_columns(scene: &Scene<'_>, computed: &Computed, row: &mut Vec<f64>) {
+pub(super) fn push_columns(tree: &CheckedTree, computed: &Computed, row: &mut Vec<f64>) {
     computed.map_kind.push_columns(&computed.map, row);
-    match (attribute(scene, computed.node), &computed.kind) {
+    match (attribute(tree, computed.node), &computed.kind) {
         (AttributeValue::Textured(Textured { texture, a, b }), ComputedKind::Texture(kind)) => {
             kind.push_columns(texture, row);
             row.extend(a);
             row.extend(b);
         }
-        (AttributeValue::Uv(map), ComputedKind::Uv(_)) => push_uv(scene, computed, map, row),
+        (AttributeValue::Uv(map), ComputedKind::Uv(_)) => push_uv(tree, computed, map, row),
         (AttributeValue::Expressed(expression), ComputedKind::Formula(_)) => row.extend(expression.numbers()),
         (
             AttributeValue::Numbers(_)
@@ -175,15 +171,15 @@ pub(super) fn push_columns(scene: &Scene<'_>, computed: &Computed, row: &mut Vec
     }
 }
 
-fn push_uv(scene: &Scene<'_>, computed: &Computed, map: &UvMap, row: &mut Vec<f64>) {
+fn push_uv(tree: &CheckedTree, computed: &Computed, map: &UvMap, row: &mut Vec<f64>) {
     let leaf = computed.leaf.expect("a uv has its leaf");
-    scene.tree.node(leaf).kind.uv_skeleton().uv_columns(row);
+    tree.node(leaf).kind.uv_skeleton().uv_columns(row);
     row.extend(map.matrix().as_flattened());
 }
 
 /// What an attribute node gives.
-pub(super) fn attribute<'a>(scene: &Scene<'a>, node: NodeId) -> &'a AttributeValue {
-    match &scene.tree.node(node).kind {
+pub(super) fn attribute<'a>(tree: &'a CheckedTree, node: NodeId) -> &'a AttributeValue {
+    match &tree.node(node).kind {
         NodeKind::Attribute { value, .. } => value,
         NodeKind::Primitive(_)
         | NodeKind::Combine(_)

@@ -11,20 +11,19 @@
 //! b   asked for by the selector's children    computed in front, in a fold over one row; not now, so its row is not active
 //! ```
 
-use super::occurrence::{FieldId, OccurrenceId, OccurrenceKind, Scene, SpaceId, children};
-use super::shape::Lift;
+use super::names::{FieldId, Lift, OccurrenceId, SpaceId};
 
 /// Who asks for something.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-struct Asked {
+pub(super) struct Asked {
     /// Whenever its space is entered.
-    always: bool,
+    pub(super) always: bool,
     /// For the present choices.
-    now: bool,
+    pub(super) now: bool,
 }
 
 impl Asked {
-    fn also(&mut self, other: Self) {
+    pub(super) fn also(&mut self, other: Self) {
         self.always |= other.always;
         self.now |= other.now;
     }
@@ -32,12 +31,12 @@ impl Asked {
 
 /// What is asked for. Without selectors it is everything, and nothing is kept.
 pub(super) struct Demand {
-    occurrences: Vec<Asked>,
-    fields: Vec<Asked>,
-    spaces: Vec<Asked>,
+    pub(super) occurrences: Vec<Asked>,
+    pub(super) fields: Vec<Asked>,
+    pub(super) spaces: Vec<Asked>,
     /// Of each occurrence, whether its answer can be the model's as it is.
-    bare: Vec<bool>,
-    selects: bool,
+    pub(super) bare: Vec<bool>,
+    pub(super) selects: bool,
 }
 
 impl Demand {
@@ -49,52 +48,6 @@ impl Demand {
         bare: Vec::new(),
         selects: false,
     };
-
-    /// What is asked for in a scene with selectors.
-    pub(super) fn new(scene: &Scene<'_>) -> Self {
-        let mut demand = Self {
-            occurrences: vec![Asked::default(); scene.occurrences.len()],
-            fields: vec![Asked::default(); scene.fields.len()],
-            spaces: vec![Asked::default(); scene.insides.len() + 1],
-            bare: vec![false; scene.occurrences.len()],
-            selects: true,
-        };
-        demand.bare[scene.root.0 as usize] = true;
-        demand.occurrences[scene.root.0 as usize] = Asked { always: true, now: true };
-        // Parents come after their children.
-        for index in (0..scene.occurrences.len()).rev() {
-            let asked = demand.occurrences[index];
-            let bare = demand.bare[index];
-            let kind = &scene.occurrences[index].kind;
-            match kind {
-                OccurrenceKind::Leaf { field, .. } => demand.fields[field.0 as usize].also(asked),
-                OccurrenceKind::Warp { inside, child, weight, .. } => {
-                    if let Some(weight) = weight {
-                        demand.occurrences[weight.0 as usize].also(asked);
-                    }
-                    demand.spaces[inside.0 as usize].also(asked);
-                    demand.bare[child.0 as usize] |= bare;
-                    let always = asked.always || !scene.is_shared(*inside);
-                    demand.occurrences[child.0 as usize].also(Asked { always, ..asked });
-                }
-                OccurrenceKind::Select { children, chosen } => {
-                    for child in children {
-                        demand.bare[child.0 as usize] |= bare;
-                    }
-                    demand.occurrences[children[*chosen].0 as usize].also(Asked { always: false, ..asked });
-                }
-                OccurrenceKind::Reduce { .. }
-                | OccurrenceKind::Difference { .. }
-                | OccurrenceKind::Expression { .. }
-                | OccurrenceKind::Map { .. } => {
-                    for child in children(kind) {
-                        demand.occurrences[child.0 as usize].also(asked);
-                    }
-                }
-            }
-        }
-        demand
-    }
 
     fn asked(&self, lift: Lift) -> Asked {
         if !self.selects {

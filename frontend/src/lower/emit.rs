@@ -21,6 +21,7 @@ mod computed;
 mod express;
 mod fold;
 mod guard;
+mod parts;
 mod probe;
 mod row;
 mod select;
@@ -30,12 +31,10 @@ use std::rc::Rc;
 
 use jbt_ir::{Domain, Function, FunctionBuilder, Table, Value, limits};
 
-use self::guard::{Guard, GuardStart};
-use self::probe::{Extreme, Probes};
-use self::select::Select;
-use super::computed::ComputedId;
+use self::parts::{Extreme, Guard, GuardStart, Probes, Select};
 use super::guide::{Decision, DecisionKind, Rule};
 use super::mixing::{Answer, Operator, State, difference, mapped};
+use super::names::ComputedId;
 use super::occurrence::{FieldId, OccurrenceId, OccurrenceKind, Scene, SpaceId};
 use super::shape::{Lift, Shapes};
 use crate::attribute::Mixing;

@@ -15,16 +15,9 @@
 
 use jbt_ir::{Function, Store, Table, Tables};
 
-use super::emit::{self, TableCode};
-use super::occurrence::{Scene, SpaceId};
-use super::rows::{self, Member};
-use super::shape::{Lift, Shapes};
-use super::support::Supports;
 use crate::bounds::Bounds;
 use crate::check::NodeId;
 pub use crate::combine::Rule;
-use crate::diagnostic::Diagnostic;
-use crate::query::Query;
 
 /// Supports say nothing about points with a coordinate beyond this, in magnitude: 2^20.
 pub const LARGEST_COORDINATE: f32 = 1_048_576.0;
@@ -184,47 +177,4 @@ pub struct Guided {
     pub tables: Tables,
     /// What there is to know about the tables.
     pub guide: Guide,
-}
-
-/// The guide function of a scene, and what there is to know about its tables.
-pub(super) fn guided(scene: &Scene<'_>, shapes: &Shapes) -> Result<Guided, Vec<Diagnostic>> {
-    let code = emit::emit_guide(scene, shapes)?;
-    let rows = rows::rows(scene, shapes, Query::FIELD, &code)?;
-    let supports = Supports::new(scene);
-    let mut tables = Store::new();
-    for (code, members) in code.tables.iter().zip(&rows.members) {
-        tables.push(table_guide(scene, &supports, code, members));
-    }
-    let iso2 = (2.0 * scene.tree.iso()) as f32;
-    let guide = Guide { tables, probes: code.function.outputs.len() - 1, decisions: code.decisions, iso2 };
-    Ok(Guided { function: code.function, tables: rows.tables, guide })
-}
-
-fn table_guide(
-    scene: &Scene<'_>,
-    supports: &Supports<'_>,
-    code: &TableCode,
-    members: &[Member],
-) -> TableGuide {
-    let space = match (code.space, code.probe) {
-        (SpaceId(0), _) => SpaceGuide::World,
-        (_, Some(probe)) => SpaceGuide::Probed(probe),
-        (_, None) => SpaceGuide::Unknown,
-    };
-    TableGuide {
-        space,
-        supports: members.iter().map(|member| support(supports, member)).collect(),
-        rule: code.rule,
-        nodes: members.iter().map(|member| member.node(scene)).collect(),
-        is_lifted: members.iter().any(|member| matches!(member, Member::Lifted(_))),
-    }
-}
-
-fn support(supports: &Supports<'_>, member: &Member) -> Support {
-    match member {
-        Member::Operand(id, _) | Member::Lifted(Lift::Occurrence(id)) => supports.of(*id),
-        Member::Lifted(Lift::Field(field)) => supports.of_field(*field),
-        Member::Piece(field, piece) => supports.of_piece(*field, *piece),
-        Member::Lifted(Lift::Space(_) | Lift::Computed(_)) => Support::EVERYWHERE,
-    }
 }

@@ -14,7 +14,7 @@ use std::rc::Rc;
 
 use jbt_ir::{Domain, FunctionBuilder, Value};
 
-use super::shape::{ReducerCode, RicciCode};
+use super::reducer::{ReducerCode, RicciCode};
 use crate::attribute::Mixing;
 use crate::combine::{intersection, product, ricci, sum, union};
 use crate::expression::LARGEST_FIELD;

@@ -16,7 +16,8 @@
 //! * `demand`: what selectors leave out has code, in folds whose rows are not active.
 //! * `rows`: walks the occurrences in the order of `emit` and writes down their numbers.
 //! * `support`: finds for each occurrence where it can be anything but zero, in the program's own arithmetic.
-//! * [`guide`]: what somebody has to know who leaves rows out: supports, rules, and a function of probes.
+//! * [`guide`]: what somebody has to know who leaves rows out: supports, rules, and a function of probes; `guided` makes it.
+//! * `names`: the names that all of them use.
 //!
 //! The tables, their rows and the order of these are the same for every query; only columns differ.
 //!
@@ -26,10 +27,13 @@ mod computed;
 mod demand;
 mod emit;
 pub mod guide;
+mod guided;
 mod leaves;
 mod mixing;
+mod names;
 mod occurrence;
 mod position;
+mod reducer;
 mod rows;
 mod shape;
 mod slopes;
@@ -101,7 +105,7 @@ impl<'a> Lowering<'a> {
     /// # Errors
     /// Those of [`answers`](Self::answers).
     pub fn guided(&self) -> Result<Guided, Vec<Diagnostic>> {
-        guide::guided(&self.scene, &self.shapes)
+        guided::guided(&self.scene, &self.shapes)
     }
 }
 

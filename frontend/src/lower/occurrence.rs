@@ -5,8 +5,10 @@
 
 use glam::{DAffine3, DVec3};
 
-use super::computed::{Computed, ComputedId};
+use super::computed::Computed;
 use super::demand::Demand;
+use super::names::ComputedId;
+pub(super) use super::names::{BindingsId, FieldId, OccurrenceId, PositionId, SpaceId};
 use super::position::{MapKind, Position};
 use crate::check::{CheckedTree, NodeId};
 use crate::combine::Combinator;
@@ -18,26 +20,9 @@ use crate::recipe::Recipe;
 use crate::tree::{NodeKind, Primitive};
 use crate::warp::Warp;
 
+mod asked;
 mod binding;
 mod find;
-
-use self::find::Finder;
-
-/// The name of an occurrence.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, PartialOrd, Ord)]
-pub(super) struct OccurrenceId(pub(super) u32);
-
-/// The name of a field of a leaf: a leaf at a position, whatever its attributes.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, PartialOrd, Ord)]
-pub(super) struct FieldId(pub(super) u32);
-
-/// The name of a position: an affine map in a space.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-pub(super) struct PositionId(u32);
-
-/// The name of a set of attribute bindings.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-pub(super) struct BindingsId(u32);
 
 /// What a leaf is bound to, of one attribute group.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
@@ -47,10 +32,6 @@ pub(super) struct Bound {
     /// Where it stands, if what it gives depends on that.
     at: Option<PositionId>,
 }
-
-/// A space in which points are asked: the world, or the inside of a warp.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, PartialOrd, Ord)]
-pub(super) struct SpaceId(pub(super) u32);
 
 /// The inside of a warp.
 #[derive(Clone, Copy, Debug)]
@@ -173,12 +154,6 @@ pub(super) struct Scene<'a> {
 }
 
 impl<'a> Scene<'a> {
-    /// Finds every occurrence, without recursion. All attribute groups count, whatever is asked: so the tables of a tree, which are made of
-    /// its occurrences, have the same rows for every query.
-    pub(super) fn new(tree: &'a CheckedTree) -> Self {
-        Finder::new(tree).run()
-    }
-
     pub(super) fn occurrence(&self, id: OccurrenceId) -> &Occurrence {
         &self.occurrences[id.0 as usize]
     }

@@ -18,7 +18,7 @@ use std::collections::HashMap;
 use glam::{DAffine3, DMat3, DVec3};
 use jbt_ir::Domain;
 
-use super::occurrence::SpaceId;
+use super::names::SpaceId;
 use crate::affine::Similarity;
 use crate::check::NodeId;
 use crate::origin::ModelOrigin;

@@ -5,11 +5,13 @@
 
 use jbt_ir::{Entity, Rows, Store, Table, Tables};
 
-use super::computed::{self, ComputedId};
+use super::computed;
 use super::emit::{Code, groups};
 use super::mixing::wants_order;
+use super::names::ComputedId;
 use super::occurrence::{BindingsId, FieldId, LeafField, OccurrenceId, OccurrenceKind, Scene, SpaceId};
-use super::shape::{Lift, ReducerCode, Shapes};
+use super::reducer::ReducerCode;
+use super::shape::{Lift, Shapes};
 use crate::attribute::{AttributeValue, Mixing};
 use crate::check::NodeId;
 use crate::diagnostic::Diagnostic;
@@ -364,7 +366,7 @@ impl<'a> Writer<'a> {
             match (computed.get(index).copied().flatten(), bound) {
                 (Some(id), _) if self.scene.computed(id).shared => {}
                 (Some(id), _) => self.computed(id),
-                (None, Some(bound)) => match computed::attribute(self.scene, bound.node) {
+                (None, Some(bound)) => match computed::attribute(self.scene.tree, bound.node) {
                     AttributeValue::Numbers(numbers) => self.row.extend(numbers),
                     AttributeValue::Textured(_) | AttributeValue::Uv(_) | AttributeValue::Expressed(_) => {
                         unreachable!("it is computed")
@@ -376,7 +378,7 @@ impl<'a> Writer<'a> {
     }
 
     fn computed(&mut self, id: ComputedId) {
-        computed::push_columns(self.scene, self.scene.computed(id), &mut self.row);
+        computed::push_columns(self.scene.tree, self.scene.computed(id), &mut self.row);
     }
 
     /// Rounds the row and appends it to its table.

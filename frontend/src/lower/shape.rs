@@ -10,10 +10,12 @@ use std::sync::Arc;
 
 use rustc_hash::FxHashMap as HashMap;
 
-use super::computed::{ComputedId, ComputedShape};
+use super::computed::ComputedShape;
+use super::names::ComputedId;
+pub(super) use super::names::Lift;
 use super::occurrence::{FieldId, OccurrenceId, OccurrenceKind, Reducer, Scene, SpaceId};
 use super::position::MapKind;
-use crate::combine::step::StepKind;
+use super::reducer::ReducerCode;
 use crate::combine::unary::UnaryKind;
 use crate::expression::Form;
 use crate::falloff::FalloffKind;
@@ -23,94 +25,6 @@ use crate::warp::WarpCode;
 /// The name of a shape.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, PartialOrd, Ord)]
 pub(super) struct ShapeId(u32);
-
-/// What an operator is as code.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-pub(super) enum ReducerCode {
-    Sum,
-    Ricci(RicciCode),
-    Product,
-    Union,
-    Intersection,
-    Step(StepKind),
-}
-
-/// What an exponent is as code.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-pub(super) struct RicciCode {
-    /// An integer exponent is code: a chain of products. Any other is a number of the row.
-    pub(super) integer: Option<u32>,
-    /// Whether the exponent is negative; otherwise these are magnitudes.
-    pub(super) negative: bool,
-}
-
-impl ReducerCode {
-    /// The code of an operator.
-    pub(super) const fn of(reducer: Reducer) -> Self {
-        match reducer {
-            Reducer::Sum => Self::Sum,
-            Reducer::Ricci(n) if n.abs() == (n.abs() as u32) as f64 => {
-                Self::Ricci(RicciCode { integer: Some(n.abs() as u32), negative: n < 0.0 })
-            }
-            Reducer::Ricci(n) | Reducer::RicciFollowing(n) => {
-                Self::Ricci(RicciCode { integer: None, negative: n < 0.0 })
-            }
-            Reducer::Product => Self::Product,
-            Reducer::Union => Self::Union,
-            Reducer::Intersection => Self::Intersection,
-            Reducer::Step(kind, _) => Self::Step(kind),
-        }
-    }
-
-    /// Whether operands are met in the order of the file, the first of them alone.
-    const fn is_ordered(self) -> bool {
-        match self {
-            Self::Step(_) => true,
-            Self::Sum | Self::Ricci(_) | Self::Product | Self::Union | Self::Intersection => false,
-        }
-    }
-
-    /// Names of the numbers that a row keeps for the operator.
-    pub(super) fn columns(self) -> &'static [&'static str] {
-        match self {
-            Self::Ricci(RicciCode { integer: None, .. }) => &["exponent", "inverse_exponent"],
-            Self::Step(kind) => kind.columns(),
-            Self::Ricci(_) | Self::Sum | Self::Product | Self::Union | Self::Intersection => &[],
-        }
-    }
-
-    /// These numbers.
-    pub(super) fn push_columns(self, reducer: Reducer, row: &mut Vec<f64>) {
-        match (reducer, self) {
-            (
-                Reducer::Ricci(n) | Reducer::RicciFollowing(n),
-                Self::Ricci(RicciCode { integer: None, .. }),
-            ) => row.extend([n.abs(), 1.0 / n.abs()]),
-            (Reducer::Step(kind, number), _) => kind.push_columns(number, row),
-            (
-                Reducer::Sum
-                | Reducer::Ricci(_)
-                | Reducer::RicciFollowing(_)
-                | Reducer::Product
-                | Reducer::Union
-                | Reducer::Intersection,
-                _,
-            ) => {}
-        }
-    }
-
-    /// The word for it.
-    pub(super) const fn name(self) -> &'static str {
-        match self {
-            Self::Sum => "sum",
-            Self::Ricci(_) => "ricci",
-            Self::Product => "product",
-            Self::Union => "union",
-            Self::Intersection => "intersection",
-            Self::Step(kind) => kind.name(),
-        }
-    }
-}
 
 #[derive(Clone, PartialEq, Eq, Hash, Debug)]
 enum ShapeKey {
@@ -167,17 +81,6 @@ pub(super) struct Group {
     pub(super) folded: bool,
     /// Children, each with its place in the order of the file.
     pub(super) members: Vec<(OccurrenceId, u32)>,
-}
-
-/// What has to be computed at the start of a space, in this order.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Lift {
-    Field(FieldId),
-    /// An attribute value that several leaves share.
-    Computed(ComputedId),
-    /// The point in a space that several lead into, and what is lifted to its start.
-    Space(SpaceId),
-    Occurrence(OccurrenceId),
 }
 
 /// How many folds there may be around a guard. Behind so many, what is left of a deep model is mostly left out with what is around it.

@@ -137,6 +137,20 @@ pub fn unescape(raw: &str) -> Option<String> {
     Some(text)
 }
 
+/// Whether a name is written without quotes: words joined by dots, such as `color.r`.
+pub(super) fn is_bare(name: &str) -> bool {
+    name.split('.').all(|word| {
+        let mut letters = word.bytes();
+        letters.next().is_some_and(|first| first.is_ascii_alphabetic() || first == b'_')
+            && letters.all(|letter| letter.is_ascii_alphanumeric() || letter == b'_')
+    })
+}
+
+/// Whether a character can be shown to a terminal as it is: no control characters, no invisible or reordering ones.
+pub(super) fn is_printable(letter: char) -> bool {
+    letter == ' ' || letter.is_ascii_graphic() || (!letter.is_ascii() && letter.is_alphanumeric())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

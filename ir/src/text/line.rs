@@ -8,8 +8,7 @@ use crate::limits::{MAX_TABLES, MAX_VALUES};
 use crate::op::Type;
 use crate::origin::{Origin, Part};
 
-use super::is_printable;
-use super::lex::{Kind, Lexer, Token, unescape};
+use super::lex::{Kind, Lexer, Token, is_printable, unescape};
 
 /// Why a line is not part of a function.
 #[derive(Clone, PartialEq, Eq, Debug)]

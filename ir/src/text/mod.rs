@@ -34,17 +34,3 @@ mod print;
 pub use line::ParseError;
 pub use parse::parse;
 pub use print::annotated;
-
-/// Whether a name is written without quotes: words joined by dots, such as `color.r`.
-fn is_bare(name: &str) -> bool {
-    name.split('.').all(|word| {
-        let mut letters = word.bytes();
-        letters.next().is_some_and(|first| first.is_ascii_alphabetic() || first == b'_')
-            && letters.all(|letter| letter.is_ascii_alphanumeric() || letter == b'_')
-    })
-}
-
-/// Whether a character can be shown to a terminal as it is: no control characters, no invisible or reordering ones.
-fn is_printable(letter: char) -> bool {
-    letter == ' ' || letter.is_ascii_graphic() || (!letter.is_ascii() && letter.is_alphanumeric())
-}

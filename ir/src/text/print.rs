@@ -12,7 +12,7 @@ use crate::op::Type;
 use crate::origin::Origin;
 use crate::verify::{Place, VerifyError};
 
-use super::{is_bare, is_printable};
+use super::lex::{is_bare, is_printable};
 
 impl fmt::Display for Function {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -13,7 +13,7 @@ use jbt_ir::Entity;
 use super::inst::{Base, Condition, Gpr, Inst, Integer, Label, Memory};
 use super::linear::{LoopId, NONE, Over, POINTERS};
 use super::state::{ALL_BYTES, Open, SAVED, STRIP_START, State};
-use crate::entry::TableView;
+use crate::abi::TableView;
 
 /// Bytes of the frame for the registers of one fold.
 pub(super) const SAVED_BYTES: usize = 24;

@@ -46,8 +46,9 @@ use self::encode::Shape;
 use self::linear::{Item, Linear};
 use self::lives::Lives;
 use self::state::{Count, State, Task};
-use crate::compile::{CompileError, FIELD_CARRIES, VectorCount};
-use crate::pressure;
+use crate::error::CompileError;
+use crate::options::VectorCount;
+use crate::pressure::{self, FIELD_CARRIES};
 use crate::strips::Plan;
 
 /// Finished code: a function of [`crate::entry`]'s ABI, with its constants, that runs at any address which is

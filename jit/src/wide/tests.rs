@@ -4,7 +4,8 @@ use iced_x86::{Decoder, DecoderOptions, Instruction, MemorySize, Mnemonic, OpKin
 
 use jbt_ir::{Domain, FunctionBuilder, Level, Reduction, Schema, Value, Verified, verify};
 
-use crate::compile::{Backend, Check, Options, Pieces, VectorCount, emit};
+use crate::compile::emit;
+use crate::options::{Backend, Check, Options, Pieces, VectorCount};
 
 use super::Emitted;
 use super::encode::{Encoder, Shape};

@@ -13,6 +13,7 @@ use jbt_ir::limits::MAX_PIXELS;
 
 use super::divide::{Divided, Plan, Square, Verdict, Work, divide};
 use super::grid::{Grid, Rectangle};
+use super::raster::{Raster, Tile};
 use super::shade;
 use super::slicer::{SliceError, Slicer};
 use crate::error::EvalError;
@@ -76,44 +77,6 @@ pub enum Mode {
     /// An attribute inside, nothing (transparent) outside. One channel is grey, two are red and green, of more the first three are red, green and blue: 0 to
     /// 1, as they are.
     Attribute(String),
-}
-
-/// Numbers for the pixels of a rectangle: row by row, from above.
-#[derive(Clone, PartialEq, Debug)]
-pub struct Raster<T> {
-    /// Pixels along u.
-    pub width: usize,
-    /// Pixels along v.
-    pub height: usize,
-    /// One for each pixel.
-    pub values: Vec<T>,
-}
-
-impl<T: Copy> Raster<T> {
-    fn new(width: usize, height: usize, value: T) -> Self {
-        Self { width, height, values: vec![value; width * height] }
-    }
-
-    /// Writes the pixels of a tile, whose rows go upwards.
-    fn put(&mut self, tile: &Tile<T>) {
-        let [first, end] =
-            [tile.square.first, tile.square.end].map(|pixel| pixel.map(|index| index as usize));
-        let width = end[0] - first[0];
-        for row in first[1]..end[1] {
-            let start = (self.height - 1 - row) * self.width + first[0];
-            let pixels = &mut self.values[start..start + width];
-            match &tile.values[..] {
-                [one] => pixels.fill(*one),
-                values => pixels.copy_from_slice(&values[(row - first[1]) * width..][..width]),
-            }
-        }
-    }
-}
-
-/// A square of pixels: one number for each, or one for all.
-struct Tile<T> {
-    square: Square,
-    values: Vec<T>,
 }
 
 /// A grid of points, `samples` x `samples` in each pixel.

@@ -1,6 +1,6 @@
 //! Numbers become colours of pixels.
 
-use super::image::Raster;
+use super::raster::Raster;
 use crate::picture::Picture;
 
 /// The colours of [`diverging`]: as far outside and inside as the field goes, and at the iso-value.

@@ -6,10 +6,11 @@ use thiserror::Error;
 
 use super::grid::{Rectangle, RectangleError};
 use super::plane::{Kind, Plane, others};
+use crate::compiler::Compiler;
 use crate::counter::Counters;
 use crate::debug::brief_debug;
 use crate::error::{CompileError, EvalError};
-use crate::evaluator::{Compiler, Evaluator};
+use crate::evaluator::Evaluator;
 use crate::kernel::Engine;
 use crate::mesh::LatticeError;
 use crate::prune::{PruneCounters, Pruner, Region};

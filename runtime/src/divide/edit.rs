@@ -2,7 +2,7 @@
 
 use std::sync::atomic::AtomicU64;
 
-use super::Decide;
+use super::decide::Decide;
 use super::node::{Division, Outcome};
 use super::run::{DivideError, Limits, Previous, Run, Subtree};
 use crate::region::{Box3, Divisible, MAX_PARTS};

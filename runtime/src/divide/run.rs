@@ -7,8 +7,8 @@ use rayon::prelude::*;
 use thiserror::Error;
 
 use super::cell::{Cell, Group};
+use super::decide::{Decide, Decision};
 use super::node::{Division, Node, Outcome};
-use super::{Decide, Decision};
 use crate::limits;
 use crate::region::{Box3, Divisible, MAX_PARTS};
 

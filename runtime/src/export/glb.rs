@@ -20,7 +20,8 @@ use std::io::Write;
 
 use serde_json::{Map, Value, json};
 
-use super::{Choices, ExportError, Format, Named, Up, colors, finite, others, uvs, write_reals};
+use super::conventions::{Choices, ColorEncoding, Colors, Conventions, FarMeshes, Up};
+use super::parts::{Named, WriteError, colors, finite, others, uvs, write_reals};
 use crate::mesh::Mesh;
 
 const HEADER_BYTES: u64 = 12;
@@ -35,7 +36,19 @@ const UNSIGNED_INT: u32 = 5125;
 /// The most reals of an accessor's element.
 const WIDEST: usize = 4;
 
-pub(super) fn write(mesh: &Mesh, choices: Choices, out: &mut impl Write) -> Result<(), ExportError> {
+/// What is usual in these files.
+pub(super) const CONVENTIONS: Conventions = Conventions {
+    extension: "glb",
+    title: "glTF 2.0, binary",
+    up: Up::Y,
+    normals: "`NORMAL`",
+    colors: Some(Colors { place: "`COLOR_0`, 32-bit floats", encoding: ColorEncoding::Linear }),
+    uv: Some("`TEXCOORD_0`, v downwards"),
+    attributes: Some("`_NAME`, 32-bit floats"),
+    far: FarMeshes::Node,
+};
+
+pub(super) fn write(mesh: &Mesh, choices: Choices, out: &mut impl Write) -> Result<(), WriteError> {
     let attributes = others(mesh, &[], spell);
     let (json, binary) = describe(mesh, choices.up, &attributes);
     // Printing a JSON value cannot fail.
@@ -44,7 +57,7 @@ pub(super) fn write(mesh: &Mesh, choices: Choices, out: &mut impl Write) -> Resu
     let chunk = |bytes: u64| if bytes == 0 { 0 } else { CHUNK_HEADER_BYTES + bytes };
     let size = HEADER_BYTES + chunk(text.len() as u64) + chunk(binary);
     let Ok(length) = u32::try_from(size) else {
-        return Err(ExportError::TooLarge { format: Format::Glb, size });
+        return Err(WriteError::TooLarge(size));
     };
 
     // Every length below is smaller than that of the file, which fits.
@@ -76,7 +89,7 @@ fn write_binary(
     choices: Choices,
     attributes: &[Named<'_>],
     out: &mut impl Write,
-) -> Result<(), ExportError> {
+) -> Result<(), WriteError> {
     write_reals(out, mesh.positions.iter().flatten().copied())?;
     write_reals(out, mesh.normals.iter().flatten().copied())?;
     if let Some(colors) = colors(mesh) {

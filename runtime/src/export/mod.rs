@@ -12,18 +12,20 @@
 //! the mesh; in PLY and OBJ vertices are in the world, with all digits; in STL too, but rounded to f32, which
 //! [loses digits](loses_digits).
 
+mod conventions;
 mod format;
 mod glb;
 mod obj;
+mod parts;
 mod ply;
 mod png;
 mod stl;
 pub mod svg;
 
-pub use format::{ColorEncoding, Colors, Conventions, ExportOptions, FarMeshes, Format, UnknownWord, Up};
+pub use conventions::{ColorEncoding, Colors, Conventions, FarMeshes, UnknownWord, Up};
+pub use format::{ExportOptions, Format};
 pub use png::write_png;
 
-use std::collections::HashSet;
 use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -33,8 +35,9 @@ use tempfile::NamedTempFile;
 use thiserror::Error;
 
 use crate::mesh::{Attribute, Mesh};
-use format::Choices;
-pub(crate) use format::find;
+use conventions::Choices;
+pub(crate) use conventions::find;
+use parts::WriteError;
 
 /// Bytes that are collected before they go to a file.
 const BUFFER: usize = 1 << 18;
@@ -79,11 +82,6 @@ pub fn loses_digits(mesh: &Mesh, format: Format) -> bool {
     !mesh.is_about_world() && format.conventions().far == FarMeshes::Rounded
 }
 
-/// The writers' view of where a vertex is in the world.
-fn world(mesh: &Mesh) -> impl Iterator<Item = [f64; 3]> + '_ {
-    (0..mesh.positions.len()).map(|vertex| mesh.world(vertex))
-}
-
 /// Writes a mesh as the readers of a format expect it.
 ///
 /// # Errors
@@ -105,12 +103,10 @@ pub fn write_with(
     check(mesh)?;
     let choices = Choices::new(format, options);
     let mut out = BufWriter::with_capacity(BUFFER, out);
-    match format {
-        Format::Glb => glb::write(mesh, choices, &mut out)?,
-        Format::Ply => ply::write(mesh, choices, &mut out)?,
-        Format::Obj => obj::write(mesh, choices, &mut out)?,
-        Format::Stl => stl::write(mesh, choices, &mut out)?,
-    }
+    format.write(mesh, choices, &mut out).map_err(|error| match error {
+        WriteError::Write(error) => ExportError::Write(error),
+        WriteError::TooLarge(size) => ExportError::TooLarge { format, size },
+    })?;
     out.flush()?;
     Ok(())
 }
@@ -124,7 +120,8 @@ pub fn write_with(
 /// # Errors
 /// As [`write()`], with [`ExportError::File`] for whatever the system refuses, and [`ExportError::Extension`].
 pub fn save(path: &Path, mesh: &Mesh) -> Result<(), ExportError> {
-    save_as(path, mesh, Format::of(path)?)
+    let format = Format::of(path).ok_or_else(|| ExportError::Extension { path: path.to_owned() })?;
+    save_as(path, mesh, format)
 }
 
 /// As [`save`], in a given format.
@@ -220,69 +217,6 @@ fn check(mesh: &Mesh) -> Result<(), ExportError> {
         return malformed(format!("the normal of vertex {} is not finite", index / 3));
     }
     Ok(())
-}
-
-/// The linear colours of a mesh, if it has the attribute `color` of width 3: one for each vertex.
-fn colors(mesh: &Mesh) -> Option<&[[f32; 3]]> {
-    let color = mesh.attributes.iter().find(|attribute| is_color(attribute));
-    // Without a rest: the check has counted them.
-    color.map(|attribute| attribute.values.as_chunks().0)
-}
-
-fn is_color(attribute: &Attribute) -> bool {
-    attribute.name == "color" && attribute.width == 3
-}
-
-/// The uv of a mesh, if it has the attribute `uv` of width 2: as many chunks of two as vertices.
-fn uvs(mesh: &Mesh) -> Option<&[f32]> {
-    mesh.attributes.iter().find(|attribute| is_uv(attribute)).map(|attribute| attribute.values.as_slice())
-}
-
-fn is_uv(attribute: &Attribute) -> bool {
-    attribute.name == "uv" && attribute.width == 2
-}
-
-/// A real as formats without infinities and NaN have it: those are 0.
-fn finite(value: f32) -> f32 {
-    if value.is_finite() { value } else { 0.0 }
-}
-
-/// An attribute and the names that a file has for it.
-struct Named<'a> {
-    names: Vec<String>,
-    attribute: &'a Attribute,
-}
-
-/// The attributes besides the colour and the uv. `spell` turns a stem of ASCII letters, digits and underscores, and a width, into the
-/// names that the file needs; a number after the stem keeps them apart from the names of the others and from reserved ones.
-fn others<'a>(mesh: &'a Mesh, reserved: &[&str], spell: fn(&str, usize) -> Vec<String>) -> Vec<Named<'a>> {
-    let known = [mesh.attributes.iter().position(is_color), mesh.attributes.iter().position(is_uv)];
-    let mut taken: HashSet<String> = reserved.iter().map(|&name| name.to_owned()).collect();
-    let mut named = Vec::new();
-    for (index, attribute) in mesh.attributes.iter().enumerate() {
-        if known.contains(&Some(index)) {
-            continue;
-        }
-        let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
-        let stem = match attribute.name.as_str() {
-            "" => "attribute".to_owned(),
-            name => name.chars().map(plain).collect(),
-        };
-        let mut names = spell(&stem, attribute.width);
-        let mut number = 2;
-        while names.iter().any(|name| taken.contains(name)) {
-            names = spell(&format!("{stem}_{number}"), attribute.width);
-            number += 1;
-        }
-        taken.extend(names.iter().cloned());
-        named.push(Named { names, attribute });
-    }
-    named
-}
-
-/// Writes reals as little-endian bytes.
-fn write_reals(out: &mut impl Write, values: impl IntoIterator<Item = f32>) -> io::Result<()> {
-    values.into_iter().try_for_each(|value| out.write_all(&value.to_le_bytes()))
 }
 
 #[cfg(test)]

@@ -6,10 +6,23 @@ use std::fmt::Display;
 use std::io::Write;
 use std::ops::Sub;
 
-use super::{Choices, ExportError, colors, finite, uvs, world};
+use super::conventions::{Choices, ColorEncoding, Colors, Conventions, FarMeshes, Up};
+use super::parts::{WriteError, colors, finite, uvs, world};
 use crate::mesh::Mesh;
 
-pub(super) fn write(mesh: &Mesh, choices: Choices, out: &mut impl Write) -> Result<(), ExportError> {
+/// What is usual in these files.
+pub(super) const CONVENTIONS: Conventions = Conventions {
+    extension: "obj",
+    title: "Wavefront, text",
+    up: Up::Y,
+    normals: "`vn`",
+    colors: Some(Colors { place: "behind the position, decimals", encoding: ColorEncoding::Srgb }),
+    uv: Some("`vt`"),
+    attributes: None,
+    far: FarMeshes::Digits,
+};
+
+pub(super) fn write(mesh: &Mesh, choices: Choices, out: &mut impl Write) -> Result<(), WriteError> {
     let Choices { up, colors: encoding } = choices;
     writeln!(out, "# jbt, {up} up")?;
     if colors(mesh).is_some() {
@@ -44,7 +57,7 @@ fn write_vertices<T: Default + Display + Sub<Output = T>>(
     Choices { up, colors: encoding }: Choices,
     positions: impl Iterator<Item = [T; 3]>,
     out: &mut impl Write,
-) -> Result<(), ExportError> {
+) -> Result<(), WriteError> {
     let colors = colors(mesh);
     for (vertex, position) in positions.enumerate() {
         let [x, y, z] = up.place(position);

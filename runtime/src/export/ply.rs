@@ -6,14 +6,27 @@
 
 use std::io::Write;
 
-use super::{Choices, ExportError, Named, colors, others, uvs, write_reals};
+use super::conventions::{Choices, ColorEncoding, Colors, Conventions, FarMeshes, Up};
+use super::parts::{Named, WriteError, colors, others, uvs, write_reals};
 use crate::mesh::Mesh;
 use crate::srgb;
 
 /// The names of the properties that are always what they are.
 const RESERVED: [&str; 11] = ["x", "y", "z", "nx", "ny", "nz", "red", "green", "blue", "s", "t"];
 
-pub(super) fn write(mesh: &Mesh, choices: Choices, out: &mut impl Write) -> Result<(), ExportError> {
+/// What is usual in these files.
+pub(super) const CONVENTIONS: Conventions = Conventions {
+    extension: "ply",
+    title: "Stanford polygons, binary",
+    up: Up::Z,
+    normals: "`nx ny nz`",
+    colors: Some(Colors { place: "`red green blue`, 8 bits", encoding: ColorEncoding::Srgb }),
+    uv: Some("`s t`"),
+    attributes: Some("properties, 32-bit floats"),
+    far: FarMeshes::Digits,
+};
+
+pub(super) fn write(mesh: &Mesh, choices: Choices, out: &mut impl Write) -> Result<(), WriteError> {
     let Choices { up, colors: encoding } = choices;
     let attributes = others(mesh, &RESERVED, spell);
     let (colors, uvs) = (colors(mesh), uvs(mesh));

@@ -2,7 +2,8 @@
 
 use std::io::Write;
 
-use super::{Choices, ExportError, Format, write_reals};
+use super::conventions::{Choices, Conventions, FarMeshes, Up};
+use super::parts::{WriteError, write_reals};
 use crate::mesh::{Mesh, facet_normal};
 
 /// Readers take a file for text if it begins with "solid"; this does not.
@@ -17,10 +18,22 @@ const HEADER: [u8; 80] = {
     header
 };
 
-pub(super) fn write(mesh: &Mesh, choices: Choices, out: &mut impl Write) -> Result<(), ExportError> {
+/// What is usual in these files.
+pub(super) const CONVENTIONS: Conventions = Conventions {
+    extension: "stl",
+    title: "stereolithography, binary",
+    up: Up::Z,
+    normals: "of the triangles",
+    colors: None,
+    uv: None,
+    attributes: None,
+    far: FarMeshes::Rounded,
+};
+
+pub(super) fn write(mesh: &Mesh, choices: Choices, out: &mut impl Write) -> Result<(), WriteError> {
     let size = mesh.triangles.len() as u64;
     let Ok(count) = u32::try_from(size) else {
-        return Err(ExportError::TooLarge { format: Format::Stl, size });
+        return Err(WriteError::TooLarge(size));
     };
     out.write_all(&HEADER)?;
     out.write_all(&count.to_le_bytes())?;

@@ -8,9 +8,9 @@
 use multiversion::multiversion;
 use rayon::prelude::*;
 
-use super::Sides;
 use super::brick::{Bricks, NONE, cell_sides, direction, number, place, split, starts};
 use super::cell::{default_edges, default_sheets, sheets, sheets_with_quads};
+use super::report::Sides;
 use super::sample::Samples;
 
 /// A cell that the surface crosses.

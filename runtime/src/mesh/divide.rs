@@ -17,9 +17,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 
 use super::brick::{Bricks, NONE, SELF, box_of};
+use super::error::{MAX_BRICK, MeshError};
 use super::field::Field;
+use super::options::Options;
 use super::progress::{Phase, Progress};
-use super::{MAX_BRICK, MeshError, Options, Sides};
+use super::report::Sides;
 use crate::region::{ANYTHING, Box3, MAX_PARTS};
 
 /// What division found.

@@ -2,7 +2,7 @@
 
 use crate::region::Box3;
 
-use super::Mesh;
+use super::indexed::Mesh;
 use super::surface::area_vector;
 
 impl Mesh {

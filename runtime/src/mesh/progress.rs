@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::sync::{Mutex, PoisonError};
 
-use super::MeshError;
+use super::error::MeshError;
 
 /// The parts of the work that take long and are divided among threads.
 #[derive(Clone, Copy, Debug)]

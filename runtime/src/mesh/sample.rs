@@ -18,8 +18,8 @@ use std::error::Error;
 
 use rayon::prelude::*;
 
-use super::MeshError;
 use super::brick::{Bricks, NONE, SELF, direction, split, starts};
+use super::error::MeshError;
 use super::field::Field;
 use super::progress::{Phase, Progress};
 

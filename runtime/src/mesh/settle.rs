@@ -8,7 +8,7 @@
 //! the best position wins; it is within the cell, as everything on the way was
 //! ```
 
-use super::Field;
+use super::field::Field;
 use super::pull::{LANES, Lanes, pull};
 
 /// Pulls that a stray gets on top.

@@ -6,10 +6,10 @@
 use multiversion::multiversion;
 use rayon::prelude::*;
 
-use super::Mesh;
 use super::brick::{Bricks, NONE, cell_sides, direction, number, split};
 use super::cell::{EDGE_CORNERS, SheetNumbers, default_numbers, sheets_with_quads};
 use super::crossing::Crossings;
+use super::indexed::Mesh;
 
 /// The triangles of all quads, in the order of the cells that own them.
 pub(crate) fn triangles(bricks: &Bricks, crossings: &Crossings, positions: &[[f32; 3]]) -> Vec<[u32; 3]> {

@@ -1,6 +1,7 @@
 //! Vertices: where they start, how they are pulled onto the surface, and what they carry. Brick by brick: everything stays at hand, and each
 //! evaluation is of all vertices of a brick, in the brick's region.
 
+pub(super) mod batch;
 mod bracket;
 mod margin;
 mod normal;
@@ -17,56 +18,18 @@ use jbt_ir::limits::MAX_ATTRIBUTE_WIDTH;
 use multiversion::multiversion;
 use rayon::prelude::*;
 
-use super::brick::{Bricks, split};
-use super::crossing::Crossings;
+use super::brick::split;
+use super::error::MeshError;
+use super::field::Field;
+use super::indexed::{Attribute, Mesh};
 use super::progress::{Phase, Progress};
 use super::pull::{LANES, Lanes, pull_lanes};
-use super::{Attribute, Field, Mesh, MeshError, Options};
 
-use bracket::CrossedEdges;
+use batch::{Batch, Done, Planes, Source, lane, lanes};
 use normal::normals_of;
-use seed::{Group, Seeds};
-use start::Shared;
+use seed::Group;
 
 pub(super) use room::is_crowded;
-
-/// What was done at vertices.
-#[derive(Default)]
-pub(crate) struct Done {
-    /// Points at which the gradient was evaluated.
-    pub(crate) gradient_evaluations: u64,
-    /// Points at which everything was evaluated.
-    pub(crate) full_evaluations: u64,
-    /// Points at which the field was evaluated to look for jumps and to follow walls.
-    pub(crate) jump_evaluations: u64,
-    /// Vertices at jumps.
-    pub(crate) jump_vertices: u64,
-    /// Vertices the normals of which are to be compared with their triangles, ascending. A normal that is not
-    /// known is zero.
-    pub(crate) doubtful: Vec<u32>,
-}
-
-impl Done {
-    fn and(mut self, other: Self) -> Self {
-        self.doubtful.extend(other.doubtful);
-        Self {
-            gradient_evaluations: self.gradient_evaluations + other.gradient_evaluations,
-            full_evaluations: self.full_evaluations + other.full_evaluations,
-            jump_evaluations: self.jump_evaluations + other.jump_evaluations,
-            jump_vertices: self.jump_vertices + other.jump_vertices,
-            doubtful: self.doubtful,
-        }
-    }
-}
-
-/// What the vertices of all bricks are made from.
-pub(crate) struct Source<'a, F: Field> {
-    pub(crate) field: &'a F,
-    pub(crate) options: &'a Options,
-    pub(crate) bricks: &'a Bricks,
-    pub(crate) regions: &'a [F::Region],
-    pub(crate) crossings: &'a Crossings,
-}
 
 /// Where the answers for some bricks go.
 struct Target<'a> {
@@ -154,41 +117,7 @@ fn finish_group<F: Field>(
     Ok(done)
 }
 
-/// Three planes of numbers.
-type Planes = [Vec<f32>; 3];
-
-/// The vertices of one brick, in planes that are filled up to whole [`LANES`].
-#[derive(Default)]
-struct Batch {
-    /// How many there are.
-    count: usize,
-    points: Planes,
-    /// The cells of each [`LANES`] of them, and what is known from these.
-    seeds: Vec<Seeds>,
-    groups: Vec<Group>,
-    values: Vec<f32>,
-    gradient: Planes,
-    /// One plane after the other, each for `count` vertices.
-    attributes: Vec<f32>,
-    /// Those that share their cell with others.
-    shared: Vec<Shared>,
-    /// Those whose normals are doubtful, ascending.
-    doubtful: Vec<usize>,
-    /// Edges at vertices that were looked at twice.
-    crossed: CrossedEdges,
-}
-
 impl Batch {
-    fn resize(&mut self, count: usize) {
-        self.count = count;
-        let padded = count.next_multiple_of(LANES);
-        let planes = [&mut self.points, &mut self.gradient];
-        planes.into_iter().flatten().for_each(|plane| plane.resize(padded, 0.0));
-        self.values.resize(padded, 0.0);
-        self.seeds.resize(padded / LANES, Seeds::default());
-        self.groups.resize(padded / LANES, Group::default());
-    }
-
     /// Pulls the vertices and evaluates everything at them, `width` attributes among it.
     fn evaluate<F: Field>(
         &mut self,
@@ -217,12 +146,6 @@ impl Batch {
         let again = if options.pulls == 0 { Done::default() } else { self.look_again(source, brick)? };
         self.separate();
         Ok(done.and(again))
-    }
-
-    /// The low and the high corner of the box in which a vertex stays.
-    fn bounds(&self, vertex: usize) -> [[f32; 3]; 2] {
-        let group = &self.groups[vertex / LANES];
-        [&group.low, &group.high].map(|corner| [0, 1, 2].map(|axis| corner[axis][vertex % LANES]))
     }
 
     /// Writes the vertices to their range of the target, and notes those that have no normal.
@@ -310,14 +233,4 @@ fn pull_all(iso: f32, groups: &[Group], points: &mut Planes, values: &[f32], gra
             plane[chunk * LANES..][..LANES].copy_from_slice(&lanes);
         }
     }
-}
-
-#[inline(always)]
-fn lane(plane: &[f32], chunk: usize) -> Lanes {
-    *plane[chunk * LANES..].first_chunk().expect("planes are filled up")
-}
-
-#[inline(always)]
-fn lanes(planes: &Planes, chunk: usize) -> [Lanes; 3] {
-    planes.each_ref().map(|plane| lane(plane, chunk))
 }

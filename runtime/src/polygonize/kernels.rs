@@ -4,9 +4,10 @@ use jbt_frontend::check::CheckedTree;
 use jbt_frontend::lower::Lowering;
 use jbt_frontend::query::Query;
 
+use crate::compiler::Compiler;
 use crate::counter::Counters;
 use crate::error::{CompileError, EvalError};
-use crate::evaluator::{Compiler, Evaluator};
+use crate::evaluator::Evaluator;
 use crate::kernel::Engine;
 use crate::mesh::{Field, Work};
 use crate::prune::{PruneCounters, Pruner, Region};

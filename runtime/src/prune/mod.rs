@@ -35,9 +35,9 @@ use jbt_ir::domain::counting::of_selection;
 use jbt_ir::selection::Extent;
 use jbt_ir::{Entity as _, Selection, Tables};
 
+use crate::compiler::Compiler;
 use crate::debug::brief_debug;
 use crate::error::{CompileError, EvalError};
-use crate::evaluator::Compiler;
 use crate::kernel::{Bound, Kernel, Purpose};
 use crate::region::{ANYTHING, Box3, Divisible, MAX_PARTS, Range};
 

@@ -1,9 +1,10 @@
 //! Rays of the camera: what each of them meets.
 
 use super::color::Rgb;
+use super::error::RenderError;
 use super::frame::Frame;
+use super::settings::Mode;
 use super::vector::{Vector, along, scale, unit};
-use super::{Mode, RenderError};
 use crate::buffer::Samples;
 use crate::trace::Ray;
 use jbt_frontend::check::CheckedTree;

@@ -1,23 +1,8 @@
 //! How what was gathered for each pixel becomes colours.
 
-use super::Background;
 use super::color::{Rgb, byte, decode, encode, inferno, viridis};
+use super::settings::{Background, Meaning};
 use crate::picture::Picture;
-
-/// What the numbers of a film mean.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Meaning {
-    /// Linear light.
-    Light,
-    /// Numbers for the screen.
-    Screen,
-    /// One number, on the map viridis.
-    Number,
-    /// One number: the smallest one is white, the largest one dark.
-    Distance,
-    /// One number, its logarithm on the map inferno; 0 is black.
-    Cost,
-}
 
 /// What was gathered for a pixel, as means over its rays: three numbers, multiplied by the share of the rays that have any, and this share.
 pub type Gathered = [f32; 4];

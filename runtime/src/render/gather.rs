@@ -9,11 +9,12 @@
 
 use super::cast::start;
 use super::color::Rgb;
+use super::error::RenderError;
 use super::frame::Frame;
+use super::lights::{KEY_SPREAD, sky, sky_above};
 use super::noise::{Sequence, above, around};
-use super::shade::{KEY_SPREAD, sky, sky_above};
+use super::report::Rays;
 use super::vector::{Vector, along, dot};
-use super::{Rays, RenderError};
 use crate::trace::Ray;
 
 /// A place that light may reach.

@@ -3,9 +3,10 @@
 use jbt_frontend::check::CheckedTree;
 use jbt_frontend::query::Query;
 
+use crate::compiler::Compiler;
 use crate::debug::brief_debug;
 use crate::error::CompileError;
-use crate::evaluator::{Compiler, Evaluator};
+use crate::evaluator::Evaluator;
 use crate::solid::Solid;
 use crate::trace::Tracer;
 

@@ -4,10 +4,9 @@ use jbt_frontend::attribute::AttributeGroup;
 use jbt_frontend::check::CheckedTree;
 use jbt_ir::limits::{MAX_ANTIALIAS, MAX_PICTURE_PIXELS, MAX_PICTURE_SIDE};
 
-use super::RenderError;
 use super::camera::View;
 use super::color::Rgb;
-use super::develop::Meaning;
+use super::error::RenderError;
 use crate::region::Box3;
 
 /// A picture to be made.
@@ -153,6 +152,21 @@ impl Background {
             Self::Transparent => None,
         }
     }
+}
+
+/// What the numbers of a film mean.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Meaning {
+    /// Linear light.
+    Light,
+    /// Numbers for the screen.
+    Screen,
+    /// One number, on the map viridis.
+    Number,
+    /// One number: the smallest one is white, the largest one dark.
+    Distance,
+    /// One number, its logarithm on the map inferno; 0 is black.
+    Cost,
 }
 
 impl Render {

@@ -3,24 +3,18 @@
 //! All of it is linear. The key light is warm and comes over the left shoulder of whoever looks, a weak one from the right fills its shadows, and the sky is
 //! brighter and bluer the higher it is.
 
-use super::RenderError;
-use super::camera::Camera;
 use super::cast::Met;
 use super::color::{Rgb, shoulder};
+use super::error::RenderError;
 use super::frame::Frame;
 use super::gather::{Cost, Light, Spot, gather, spot, unshadowed};
+use super::lights::{sky, sky_above};
 use super::vector::{Vector, add, along, dot, length, scale, sub, unit};
-
-/// The tangent of the angle that the key light's disc has to half: about 7 degrees.
-pub const KEY_SPREAD: f64 = 0.12;
 
 /// Light of the key light on a surface that faces it.
 const KEY: Rgb = [0.92, 0.87, 0.79];
 /// Light of the filling one.
 const FILL: Rgb = [0.06, 0.072, 0.095];
-/// The sky at the horizon, and what a unit of height adds.
-const HORIZON: Rgb = [0.215, 0.226, 0.245];
-const HEIGHT: Rgb = [0.10, 0.118, 0.145];
 /// How much of the light that is kept from a place comes to it by way of what keeps it.
 const AGAIN: f32 = 0.35;
 /// The shine of the key light: how sharp, and how bright.
@@ -32,37 +26,6 @@ const SHADE: Rgb = [0.035, 0.04, 0.055];
 const DEEPEST: f32 = 0.88;
 /// Between these distances from the model's middle shadows on the ground fade, in radii.
 const FADE: [f64; 2] = [1.3, 3.4];
-
-/// Where light comes from: unit vectors towards it.
-#[derive(Clone, Copy)]
-pub struct Lights {
-    pub key: Vector,
-    pub fill: Vector,
-}
-
-impl Lights {
-    /// The lights of a camera, for what is up in space.
-    pub fn new(camera: &Camera, up: Vector) -> Self {
-        // From below the lights are those of somebody who looks at a thing in the hand.
-        let up = if dot(camera.back, up) < -0.3 { camera.up } else { up };
-        let towards = |right: f64, high: f64, near: f64| {
-            let sum = add(scale(camera.right, right), add(scale(up, high), scale(camera.back, near)));
-            unit(sum).unwrap_or(camera.back)
-        };
-        Self { key: towards(-0.62, 0.92, 0.45), fill: towards(0.9, 0.15, 0.5) }
-    }
-}
-
-/// The sky in a direction whose unit vector goes up so far, from -1 to 1.
-pub fn sky(height: f64) -> Rgb {
-    [0, 1, 2].map(|channel| HORIZON[channel] + HEIGHT[channel] * height as f32)
-}
-
-/// The mean of the sky over the hemisphere above a surface whose unit normal goes up so far, weighted with the cosine: that of a linear function is its value
-/// at 2/3 of the normal.
-pub fn sky_above(height: f64) -> Rgb {
-    sky(height * 2.0 / 3.0)
-}
 
 /// What a screen shows of the hits of a tile: opaque colours. `pixel` and `sample` tell who sees a hit.
 pub fn surfaces(

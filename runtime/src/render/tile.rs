@@ -4,9 +4,11 @@ use std::time::{Duration, Instant};
 
 use super::cast::{Meetings, cast};
 use super::develop::Gathered;
+use super::error::RenderError;
 use super::frame::Frame;
+use super::report::Rays;
+use super::settings::{Mode, Quality};
 use super::shade::{Ground, fade, shadows, surfaces};
-use super::{Mode, Quality, Rays, RenderError};
 use crate::trace::Ray;
 
 /// Rays of a full tile, about.

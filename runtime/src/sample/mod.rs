@@ -23,10 +23,11 @@ use jbt_frontend::tree::NodeKind;
 use jbt_ir::limits::MAX_LATTICE_POINTS;
 
 use crate::buffer::Layout;
+use crate::compiler::Compiler;
 use crate::debug::brief_debug;
 use crate::divide::{Cell, Decision, DivideError, Limits, divide};
 use crate::error::{CompileError, EvalError};
-use crate::evaluator::{Compiler, Evaluator};
+use crate::evaluator::Evaluator;
 use crate::job::{Hook, Job};
 use crate::mesh::Lattice;
 use crate::prune::{Pruner, Region};

@@ -30,10 +30,11 @@ use jbt_frontend::check::CheckedTree;
 use jbt_frontend::owner;
 use jbt_frontend::query::Query;
 
+use crate::compiler::Compiler;
 use crate::counter::Counters;
 use crate::debug::brief_debug;
 use crate::error::{CompileError, EvalError};
-use crate::evaluator::{Compiler, Evaluator};
+use crate::evaluator::Evaluator;
 use crate::prune::{Pruner, Region};
 use crate::region::{Box3, Divisible as _, Range};
 

@@ -1,6 +1,6 @@
 //! What has been found of a packet so far.
 
-use super::Tracer;
+use super::compiled::Compiled;
 use super::hits::Hits;
 use super::polish::Bracket;
 use super::ray::Line;
@@ -59,7 +59,7 @@ impl Found {
     /// Adds hits, and asks for everything at each of them: all are in the region.
     pub(super) fn add(
         &mut self,
-        tracer: &Tracer,
+        tracer: &Compiled,
         region: &Region,
         lines: &[Line],
         brackets: &[Bracket],
@@ -84,7 +84,7 @@ impl Found {
     }
 
     /// The hits, ordered by ray.
-    pub(super) fn into_hits(self, tracer: &Tracer) -> Hits {
+    pub(super) fn into_hits(self, tracer: &Compiled) -> Hits {
         // Numbers of hits are below 2^32: that much work is not done for one packet.
         let mut starts = vec![0_u32; self.rays() + 1];
         for record in &self.records {
@@ -101,9 +101,9 @@ impl Found {
             starts,
             t: order.iter().map(|&index| self.records[index].t).collect(),
             entering: order.iter().map(|&index| self.records[index].entering).collect(),
-            positions: Points::from_planes_about(tracer.tree.origin(), [x, y, z]),
+            positions: Points::from_planes_about(tracer.origin, [x, y, z]),
             samples: Samples::from_planes(
-                tracer.layout().clone(),
+                (*tracer.layout).clone(),
                 self.answers.iter().map(ordered).collect(),
             ),
             evaluations: self.evaluations,

@@ -26,7 +26,9 @@
 //! * Rays are in the world, in f64; the f32 positions of hits count from the model's origin
 //!   ([`jbt_frontend::origin`]), which is 0 for most models.
 
+mod batch;
 mod beam;
+mod compiled;
 mod error;
 mod found;
 mod hits;
@@ -51,12 +53,14 @@ use jbt_frontend::query::Query;
 use jbt_ir::limits::MAX_PACKET_RAYS;
 
 use crate::buffer::Layout;
+use crate::compiler::Compiler;
 use crate::debug::brief_debug;
 use crate::error::{CompileError, EvalError};
-use crate::evaluator::{Compiler, Evaluator};
+use crate::evaluator::Evaluator;
 use crate::prune::{Pruner, Region};
 use crate::region::{Box3, Divisible as _};
 
+use compiled::Compiled;
 use found::Found;
 use packet::{Run, Want};
 use ray::{Line, Reach, STRIDE};
@@ -82,20 +86,12 @@ use ray::{Line, Reach, STRIDE};
 pub struct Tracer {
     compiler: Compiler,
     tree: CheckedTree,
-    /// The iso-value as kernels compare with it.
-    iso: f32,
-    /// Where the field may differ from 0.
-    reach: Option<Reach>,
-    pruner: Pruner,
-    field: Evaluator,
-    /// What is told about hits; `None` if it is the field alone.
-    full: Option<Evaluator>,
-    layout: Arc<Layout>,
+    compiled: Compiled,
     rays: AtomicU64,
     hits: AtomicU64,
 }
 
-brief_debug!(Tracer, "Tracer", this: engine = this.field.engine(), counters = this.counters());
+brief_debug!(Tracer, "Tracer", this: engine = this.compiled.field.engine(), counters = this.counters());
 
 /// What a tracer has done so far. A snapshot: see [`Tracer::counters`].
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -135,9 +131,9 @@ impl Tracer {
     /// # Errors
     /// Those of [`new`](Self::new).
     pub fn updated(&self, tree: &CheckedTree) -> Result<Self, CompileError> {
-        let pruner = self.pruner.updated(tree)?;
-        let field = self.field.updated(tree)?;
-        let full = self.full.as_ref().map(|full| full.updated(tree)).transpose()?;
+        let pruner = self.compiled.pruner.updated(tree)?;
+        let field = self.compiled.field.updated(tree)?;
+        let full = self.compiled.full.as_ref().map(|full| full.updated(tree)).transpose()?;
         let tree = tree.with_origin(self.tree.origin());
         Ok(Self::of(self.compiler.clone(), tree, pruner, field, full))
     }
@@ -150,18 +146,16 @@ impl Tracer {
         full: Option<Evaluator>,
     ) -> Self {
         let layout = Arc::new(full.as_ref().unwrap_or(&field).layout().clone());
-        Self {
-            compiler,
+        let compiled = Compiled {
             iso: tree.iso() as f32,
+            origin: tree.origin(),
             reach: Reach::new(tree.local_support()),
-            tree,
             pruner,
             field,
             full,
             layout,
-            rays: AtomicU64::new(0),
-            hits: AtomicU64::new(0),
-        }
+        };
+        Self { compiler, tree, compiled, rays: AtomicU64::new(0), hits: AtomicU64::new(0) }
     }
 
     /// The model.
@@ -173,13 +167,13 @@ impl Tracer {
     /// Which plane of the samples of hits holds what.
     #[must_use]
     pub fn layout(&self) -> &Layout {
-        &self.layout
+        &self.compiled.layout
     }
 
     /// The iso-value, as kernels compare with it.
     #[must_use]
     pub fn iso(&self) -> f32 {
-        self.iso
+        self.compiled.iso
     }
 
     /// The first hit of a ray. A ray that begins inside hits the surface where it leaves.
@@ -190,7 +184,7 @@ impl Tracer {
     /// See [`TraceError`].
     pub fn first(&self, ray: &Ray, tolerance: f64) -> Result<Option<Hit>, TraceError> {
         let hits = self.first_of(std::slice::from_ref(ray), tolerance)?;
-        Ok((!hits.is_empty()).then(|| hits.get(0, &self.layout)))
+        Ok((!hits.is_empty()).then(|| hits.get(0, &self.compiled.layout)))
     }
 
     /// All hits of a ray, by t.
@@ -199,7 +193,7 @@ impl Tracer {
     /// See [`TraceError`].
     pub fn all(&self, ray: &Ray, tolerance: f64) -> Result<Vec<Hit>, TraceError> {
         let hits = self.all_of(std::slice::from_ref(ray), tolerance)?;
-        Ok((0..hits.len()).map(|index| hits.get(index, &self.layout)).collect())
+        Ok((0..hits.len()).map(|index| hits.get(index, &self.compiled.layout)).collect())
     }
 
     /// Whether a ray has a hit: which one is not found out, and nothing is asked there.
@@ -253,9 +247,9 @@ impl Tracer {
     /// What it has done so far.
     #[must_use]
     pub fn counters(&self) -> TraceCounters {
-        let boxes = self.pruner.counters();
-        let points = self.field.counters();
-        let hits = self.full.as_ref().map(Evaluator::counters).unwrap_or_default();
+        let boxes = self.compiled.pruner.counters();
+        let points = self.compiled.field.counters();
+        let hits = self.compiled.full.as_ref().map(Evaluator::counters).unwrap_or_default();
         TraceCounters {
             rays: self.rays.load(Ordering::Relaxed),
             hits: self.hits.load(Ordering::Relaxed),
@@ -284,7 +278,7 @@ impl Tracer {
     pub fn leaf(&self, position: [f32; 3]) -> Result<Option<NodeId>, EvalError> {
         let here = Box3::new(position, position);
         if here.is_proper() {
-            let leaves = self.field.leaves_in(&self.pruner.region(here)?);
+            let leaves = self.compiled.field.leaves_in(&self.compiled.pruner.region(here)?);
             if let [leaf] = leaves.as_slice() {
                 return Ok(Some(*leaf));
             }
@@ -296,16 +290,16 @@ impl Tracer {
     /// the box around them. `None` if there are none, or if some are no places.
     pub(crate) fn fields(&self, points: &[[f32; 3]]) -> Result<Option<(Region, Vec<f32>)>, EvalError> {
         let Some(bounds) = Box3::around(points) else { return Ok(None) };
-        let region = self.pruner.region(bounds)?;
+        let region = self.compiled.pruner.region(bounds)?;
         let mut field = vec![0.0; points.len()];
         let planes = [0, 1, 2].map(|axis| points.iter().map(|point| point[axis]).collect::<Vec<f32>>());
-        self.field.eval_region(&region, planes.each_ref().map(Vec::as_slice), &mut [&mut field])?;
+        self.compiled.field.eval_region(&region, planes.each_ref().map(Vec::as_slice), &mut [&mut field])?;
         Ok(Some((region, field)))
     }
 
     /// The distances to skeletons that the field takes at a point of a region.
     pub(crate) fn evaluations_in(&self, region: &Region) -> u64 {
-        self.field.evaluations_in(region)
+        self.compiled.field.evaluations_in(region)
     }
 
     /// Rays that count from the model's origin.
@@ -323,7 +317,7 @@ impl Tracer {
     }
 
     fn hits(&self, want: Want, stride: i64, rays: &[Ray], tolerance: f64) -> Result<Hits, TraceError> {
-        let hits = self.follow(want, stride, rays, tolerance)?.into_hits(self);
+        let hits = self.follow(want, stride, rays, tolerance)?.into_hits(&self.compiled);
         self.hits.fetch_add(hits.len() as u64, Ordering::Relaxed);
         Ok(hits)
     }
@@ -338,13 +332,8 @@ impl Tracer {
         self.rays.fetch_add(rays.len() as u64, Ordering::Relaxed);
         let mut lines = Vec::with_capacity(rays.len());
         for (index, ray) in rays.iter().enumerate() {
-            lines.extend(Line::new(index, ray, tolerance, stride, self.reach.as_ref())?);
+            lines.extend(Line::new(index, ray, tolerance, stride, self.compiled.reach.as_ref())?);
         }
-        Run::new(self, (want, stride), tolerance, rays.len(), lines).finish()
-    }
-
-    /// What answers at hits.
-    fn full(&self) -> &Evaluator {
-        self.full.as_ref().unwrap_or(&self.field)
+        Run::new(&self.compiled, (want, stride), tolerance, rays.len(), lines).finish()
     }
 }

@@ -14,8 +14,9 @@
 
 use std::ops::Range;
 
-use super::Tracer;
+use super::batch::{Batch, Work};
 use super::beam::Beam;
+use super::compiled::Compiled;
 use super::error::TraceError;
 use super::found::Found;
 use super::polish::{Bracket, polish};
@@ -38,19 +39,6 @@ pub(super) enum Want {
     Any,
 }
 
-/// Points and boxes that may still be asked, for so many rays.
-pub(super) struct Work {
-    left: u64,
-    rays: usize,
-}
-
-impl Work {
-    pub(super) fn spend(&mut self, work: u64) -> Result<(), TraceError> {
-        self.left = self.left.checked_sub(work).ok_or(TraceError::Work { rays: self.rays })?;
-        Ok(())
-    }
-}
-
 /// A part of a packet that is still to be looked at.
 struct Cell {
     /// The lines, of which some may be done.
@@ -71,39 +59,9 @@ struct Part {
     places: [i64; 2],
 }
 
-/// Points by coordinates and their fields.
-#[derive(Default)]
-pub(super) struct Batch {
-    points: [Vec<f32>; 3],
-    pub(super) field: Vec<f32>,
-}
-
-impl Batch {
-    pub(super) fn clear(&mut self) {
-        self.points.iter_mut().for_each(Vec::clear);
-    }
-
-    /// The points by coordinates.
-    pub(super) fn planes(&mut self) -> &mut [Vec<f32>; 3] {
-        &mut self.points
-    }
-
-    pub(super) fn push(&mut self, position: [f32; 3]) {
-        for (plane, x) in self.points.iter_mut().zip(position) {
-            plane.push(x);
-        }
-    }
-
-    /// Asks the field at all points, which are in the region.
-    pub(super) fn ask(&mut self, tracer: &Tracer, region: &Region) -> Result<(), EvalError> {
-        self.field.resize(self.points[0].len(), 0.0);
-        tracer.field.eval_region(region, self.points.each_ref().map(Vec::as_slice), &mut [&mut self.field])
-    }
-}
-
 /// A packet that is being followed.
 pub(super) struct Run<'a> {
-    tracer: &'a Tracer,
+    tracer: &'a Compiled,
     want: Want,
     /// Steps of the lattice from one coarse place to the next one.
     stride: i64,
@@ -142,7 +100,7 @@ fn worth_asking(each: u64) -> u64 {
 
 impl<'a> Run<'a> {
     pub(super) fn new(
-        tracer: &'a Tracer,
+        tracer: &'a Compiled,
         (want, stride): (Want, i64),
         tolerance: f64,
         rays: usize,
@@ -164,7 +122,7 @@ impl<'a> Run<'a> {
             brackets: Vec::new(),
             stretches: Vec::new(),
             segments: Vec::new(),
-            found: Found::new(rays, tracer.layout().names().len()),
+            found: Found::new(rays, tracer.layout.names().len()),
             // Hits are counted by 32 bits, and each takes a point.
             work: Work { left: MAX_RAY_WORK.saturating_mul(rays as u64).min(u32::MAX.into()), rays },
         }

@@ -10,8 +10,8 @@
 //!
 //! What a bracket becomes depends on the field along its ray, and on nothing else.
 
-use super::Tracer;
-use super::packet::Batch;
+use super::batch::Batch;
+use super::compiled::Compiled;
 use super::ray::{Line, spacing};
 use crate::error::EvalError;
 use crate::prune::Region;
@@ -138,7 +138,7 @@ fn meet(times: [f64; 2], heights: [f64; 2]) -> f64 {
 
 /// Makes brackets short. All are in the region.
 pub(super) fn polish(
-    tracer: &Tracer,
+    tracer: &Compiled,
     region: &Region,
     lines: &[Line],
     brackets: &mut [Bracket],

@@ -14,10 +14,10 @@
 
 use std::ops::Range;
 
-use super::Tracer;
+use super::batch::{Batch, Work};
+use super::compiled::Compiled;
 use super::error::TraceError;
 use super::found::Found;
-use super::packet::{Batch, Work};
 use super::polish::Bracket;
 use super::ray::Line;
 use crate::prune::Region;
@@ -58,7 +58,7 @@ const WORTH_ASKING: usize = 140;
 
 /// What a cell is refined with.
 pub(super) struct Refiner<'a> {
-    pub(super) tracer: &'a Tracer,
+    pub(super) tracer: &'a Compiled,
     /// All stretches are in it.
     pub(super) region: &'a Region,
     pub(super) lines: &'a [Line],

@@ -1,6 +1,6 @@
 //! Layers within crates: which file may import which, and that no file imports itself through others.
 //!
-//! A crate has no circle of files, but for those in `KNOWN`. The folders of the frontend have an order besides.
+//! No crate has a circle of files. The folders of the frontend have an order besides.
 
 use std::collections::BTreeSet;
 
@@ -10,127 +10,6 @@ use crate::sources;
 
 /// All crates.
 const CRATES: [&str; 6] = ["frontend", "ir", "jit", "runtime", "cli", "benches"];
-
-/// Files that import each other in a loop still, each as it is below the folder of its crate. Nothing is added here.
-const KNOWN: &[(&str, &[&str])] = &[
-    (
-        "frontend",
-        &[
-            "lower/computed.rs",
-            "lower/demand.rs",
-            "lower/occurrence.rs",
-            "lower/occurrence/find.rs",
-            "lower/position.rs",
-            "lower/shape.rs",
-        ],
-    ),
-    (
-        "frontend",
-        &[
-            "lower/emit.rs",
-            "lower/emit/guard.rs",
-            "lower/emit/probe.rs",
-            "lower/emit/select.rs",
-            "lower/guide.rs",
-            "lower/rows.rs",
-            "lower/support.rs",
-        ],
-    ),
-    (
-        "ir",
-        &[
-            "domain/interval/arithmetic.rs",
-            "domain/interval/mod.rs",
-            "domain/interval/order.rs",
-            "domain/interval/transcendental.rs",
-        ],
-    ),
-    (
-        "ir",
-        &[
-            "domain/lanes/compile.rs",
-            "domain/lanes/execute.rs",
-            "domain/lanes/level.rs",
-            "domain/lanes/tape.rs",
-        ],
-    ),
-    ("ir", &["domain/tangent/mod.rs", "domain/tangent/slope.rs"]),
-    ("ir", &["text/line.rs", "text/mod.rs", "text/parse.rs"]),
-    ("jit", &["compile.rs", "entry.rs", "isa.rs", "lower.rs", "memory.rs", "wide/mod.rs"]),
-    ("runtime", &["contour/image.rs", "contour/shade.rs"]),
-    ("runtime", &["divide/mod.rs", "divide/run.rs"]),
-    ("runtime", &["evaluator.rs", "probe.rs", "prune/mod.rs", "statistics.rs"]),
-    (
-        "runtime",
-        &[
-            "export/format.rs",
-            "export/glb.rs",
-            "export/mod.rs",
-            "export/obj.rs",
-            "export/ply.rs",
-            "export/stl.rs",
-        ],
-    ),
-    (
-        "runtime",
-        &[
-            "mesh/crossing.rs",
-            "mesh/divide.rs",
-            "mesh/mod.rs",
-            "mesh/progress.rs",
-            "mesh/sample.rs",
-            "mesh/surface.rs",
-            "mesh/thin/crossed.rs",
-            "mesh/thin/measure.rs",
-            "mesh/thin/mod.rs",
-            "mesh/thin/search.rs",
-            "mesh/thin/shreds.rs",
-            "mesh/vertex.rs",
-            "mesh/vertex/normal.rs",
-            "mesh/vertex/room.rs",
-            "mesh/vertex/start.rs",
-        ],
-    ),
-    (
-        "runtime",
-        &[
-            "render/cast.rs",
-            "render/develop.rs",
-            "render/frame.rs",
-            "render/gather.rs",
-            "render/mod.rs",
-            "render/settings.rs",
-            "render/shade.rs",
-            "render/tile.rs",
-        ],
-    ),
-    ("runtime", &["trace/found.rs", "trace/mod.rs", "trace/packet.rs", "trace/polish.rs", "trace/refine.rs"]),
-    (
-        "benches",
-        &[
-            "compare/dense.rs",
-            "compare/mesh.rs",
-            "compare/mod.rs",
-            "compare/picture.rs",
-            "compare/programs.rs",
-            "compare/report.rs",
-            "compare/rows.rs",
-            "compare/train.rs",
-        ],
-    ),
-    (
-        "benches",
-        &[
-            "limit/mesh/brick.rs",
-            "limit/mesh/finish.rs",
-            "limit/mesh/flip.rs",
-            "limit/mesh/join.rs",
-            "limit/mesh/mod.rs",
-            "limit/mesh/sample.rs",
-            "limit/mesh/unit.rs",
-        ],
-    ),
-];
 
 /// The files and folders of `frontend/src`, from the ground up: those of a row import none of the rows behind it.
 const FRONTEND: &[&[&str]] = &[
@@ -168,11 +47,9 @@ fn of_crate(name: &str) -> Vec<Import> {
     imports(&read.collect::<Vec<_>>())
 }
 
-/// The circles that are not known, and what closes them.
-fn new_circles(imports: &[Import], known: &BTreeSet<&str>) -> Vec<String> {
-    let circles = circles(imports).into_iter();
-    let news = circles.filter(|circle| circle.iter().any(|file| !known.contains(&**file)));
-    let told = news.flat_map(|circle| {
+/// The imports of all circles, as a message names them.
+fn told_circles(imports: &[Import]) -> Vec<String> {
+    let told = circles(imports).into_iter().flat_map(|circle| {
         let inside = |import: &&Import| circle.contains(&import.from) && circle.contains(&import.to);
         imports.iter().filter(inside).map(told).collect::<Vec<_>>()
     });
@@ -199,15 +76,8 @@ fn upwards(imports: &[Import], order: &[&[&str]]) -> Vec<String> {
 #[test]
 fn no_file_imports_itself_through_others() {
     for name in CRATES {
-        let known: BTreeSet<&str> =
-            KNOWN.iter().filter(|row| row.0 == name).flat_map(|row| row.1).copied().collect();
-        let found = of_crate(name);
-        let news = new_circles(&found, &known);
-        assert!(news.is_empty(), "{name} has a circle of files:\n{}", news.join("\n"));
-        // A file that is in no circle any more leaves the list.
-        let round: BTreeSet<String> = circles(&found).into_iter().flatten().collect();
-        let gone: Vec<&&str> = known.iter().filter(|file| !round.contains(**file)).collect();
-        assert!(gone.is_empty(), "{name}: {gone:?} are in no circle: strike them from KNOWN");
+        let found = told_circles(&of_crate(name));
+        assert!(found.is_empty(), "{name} has a circle of files:\n{}", found.join("\n"));
     }
 }
 
@@ -242,9 +112,8 @@ fn a_circle_is_found_and_named() {
     let uses_child = ("b/mod.rs", "mod c;\npub use c::C;\npub struct B(C);");
     let found = invented(&[a, uses_child, ("b/c.rs", "use crate::a::A;\npub struct C(A);")]);
     assert_eq!(circles(&found), [["a.rs", "b/c.rs", "b/mod.rs"]]);
-    let news = new_circles(&found, &BTreeSet::new());
-    assert!(news.contains(&"b/c.rs:1 imports crate::a::A of a.rs".to_owned()), "{news:?}");
-    assert!(new_circles(&found, &BTreeSet::from(["a.rs", "b/c.rs", "b/mod.rs"])).is_empty());
+    let told = told_circles(&found);
+    assert!(told.contains(&"b/c.rs:1 imports crate::a::A of a.rs".to_owned()), "{told:?}");
 
     let list = ("list.rs", "pub trait Member {}\nmembers! {\n    one::One,\n}");
     let member = ("list/one.rs", "use super::Member;\npub struct One;\nimpl Member for One {}");

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use super::cell::{CROSSED, SHEETS, Sheets, first_corner, sheets};
 use super::finish::Starts;
 use super::sample::{CORNERS, Samples};
-use super::{BRICK, Scene};
+use super::scene::{BRICK, Scene};
 
 /// The flipped faces of cells that have any, a bit each.
 pub(super) type Flips = HashMap<[usize; 3], u8>;

@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::limit::dense::{Row, full_at, gradient_at};
 use crate::limit::vector::{Job, Vector};
 
-use super::BRICK;
+use super::scene::BRICK;
 
 /// The most vertices in a brick, four for each cell, and room to fill a register up.
 const CAPACITY: usize = 4 * BRICK * BRICK * BRICK + 16;

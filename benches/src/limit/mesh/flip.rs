@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 
 use super::brick::{Brick, Flips};
 use super::cell::sheets;
+use super::scene::{BRICK, Scene};
 use super::unit::{self, Unit};
-use super::{BRICK, Scene};
 
 /// Flips faces in the order of the lattice and makes their bricks again. Answers how many there were: few, if any.
 pub(super) fn flip(scene: &Scene, units: &mut [Unit]) -> u64 {

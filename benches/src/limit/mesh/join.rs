@@ -6,8 +6,8 @@ use rayon::prelude::*;
 
 use super::brick::{Brick, Cell};
 use super::cell::sheet_of_edge;
+use super::scene::{BRICK, Mesh, Scene};
 use super::unit::Unit;
-use super::{BRICK, Mesh, Scene};
 
 /// Bricks by their place.
 struct Grid<'a> {

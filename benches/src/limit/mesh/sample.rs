@@ -10,7 +10,7 @@
 use crate::limit::dense::{Constants, Row};
 use crate::limit::vector::{Job, Vector};
 
-use super::BRICK;
+use super::scene::BRICK;
 
 /// Corners along the edge of a brick.
 pub(super) const CORNERS: usize = BRICK + 1;

@@ -7,7 +7,7 @@ use super::brick::{Brick, Flips, find};
 use super::cull::{Bounds, Candidates, Cull};
 use super::finish::{Finish, Starts, Vertices};
 use super::sample::{CORNERS, Sample, Samples};
-use super::{BRICK, Scene, UNIT};
+use super::scene::{BRICK, Scene, UNIT};
 
 /// What became of a unit.
 pub(super) struct Unit {

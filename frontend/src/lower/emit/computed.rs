@@ -3,8 +3,9 @@
 use jbt_ir::Value;
 
 use super::Emitter;
-use crate::lower::computed::{self, ComputedId};
+use crate::lower::computed;
 use crate::lower::mixing::GroupAnswer;
+use crate::lower::names::ComputedId;
 use crate::lower::occurrence::{OccurrenceId, OccurrenceKind};
 
 impl Emitter<'_> {

@@ -18,7 +18,7 @@ use super::{Emitter, Reduce, Task};
 use crate::expression::{Form, LARGEST_FIELD, Operand};
 use crate::lower::mixing::{Answer, GroupAnswer, weighted};
 use crate::lower::occurrence::{OccurrenceId, OccurrenceKind};
-use crate::lower::shape::ReducerCode;
+use crate::lower::reducer::ReducerCode;
 use crate::lower::slopes::{Tape, slopes};
 
 /// What a formula is about.

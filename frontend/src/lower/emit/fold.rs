@@ -4,13 +4,14 @@ use std::rc::Rc;
 
 use jbt_ir::{Domain as _, Entity, Reduction, Schema, Value};
 
-use super::guard::Guard;
+use super::parts::Guard;
 use super::{Emitter, Reduce, TableCode, Task};
 use crate::combine::ricci::Blend;
 use crate::lower::guide::{DecidedRows, Rule};
 use crate::lower::mixing::{Operator, State};
 use crate::lower::occurrence::{OccurrenceId, OccurrenceKind, SpaceId};
-use crate::lower::shape::{ReducerCode, RicciCode, bounded, non_negative};
+use crate::lower::reducer::{ReducerCode, RicciCode};
+use crate::lower::shape::{bounded, non_negative};
 use crate::power::Exponent;
 
 impl Emitter<'_> {

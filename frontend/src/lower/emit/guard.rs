@@ -11,75 +11,11 @@
 use jbt_ir::{Domain, Reduction, Value};
 
 use super::Emitter;
+use super::parts::GuardStart;
 use crate::lower::guide::{DecidedRows, DecisionKind, Rule};
 use crate::lower::mixing::{Answer, GroupAnswer};
 use crate::lower::occurrence::{OccurrenceId, SpaceId};
-use crate::lower::shape::{Lift, ReducerCode};
-
-/// The field of a guard whose row is left out.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum GuardStart {
-    Zero,
-    /// Below every field.
-    Lowest,
-    /// Above every field.
-    Highest,
-}
-
-impl GuardStart {
-    const fn number(self) -> f32 {
-        match self {
-            Self::Zero => 0.0,
-            Self::Lowest => f32::MIN,
-            Self::Highest => f32::MAX,
-        }
-    }
-
-    const fn rule(self) -> Rule {
-        match self {
-            Self::Zero => Rule::Neutral,
-            Self::Lowest | Self::Highest => Rule::Never,
-        }
-    }
-}
-
-/// What the guard of an operand is like.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Guard {
-    pub(super) start: GuardStart,
-    /// How it is left out while it is not zero.
-    pub(super) decision: Option<DecisionKind>,
-}
-
-impl Guard {
-    /// Of whatever is left out where it is zero, and then counts as that.
-    pub(super) const ZERO: Self = Self { start: GuardStart::Zero, decision: None };
-    /// Of the left side of a difference.
-    pub(super) const LEFT: Self =
-        Self { start: GuardStart::Highest, decision: Some(DecisionKind::DifferenceLeft) };
-    /// Of what is subtracted: where it is zero, it limits the left side to twice the iso-value all the same.
-    pub(super) const RIGHT: Self =
-        Self { start: GuardStart::Zero, decision: Some(DecisionKind::DifferenceRight) };
-
-    /// Of a child of a formula.
-    pub(super) const ALONE: Self = Self { start: GuardStart::Zero, decision: None };
-
-    /// Of an operand.
-    pub(super) const fn of(code: ReducerCode, non_negative: bool) -> Self {
-        match code {
-            ReducerCode::Sum | ReducerCode::Ricci(_) | ReducerCode::Product | ReducerCode::Step(_) => {
-                Self::ZERO
-            }
-            ReducerCode::Union => {
-                let start = if non_negative { GuardStart::Zero } else { GuardStart::Lowest };
-                Self { start, decision: Some(DecisionKind::UnionOperand) }
-            }
-            ReducerCode::Intersection => {
-                Self { start: GuardStart::Highest, decision: Some(DecisionKind::IntersectionOperand) }
-            }
-        }
-    }
-}
+use crate::lower::shape::Lift;
 
 impl Emitter<'_> {
     /// Whether what is lifted here is computed under a guard.

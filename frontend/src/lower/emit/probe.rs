@@ -3,78 +3,13 @@
 //! A probe is one number for a point, so it can only be taken where no fold over several rows is open: in the row of the scene and in the rows of
 //! guards in it. It comes out of each of these folds as one more accumulator, which begins at 0.
 
-use jbt_ir::{Domain as _, FunctionBuilder, Table, Value};
-use rustc_hash::FxHashMap as HashMap;
+use jbt_ir::{Table, Value};
 
+use super::parts::{Extreme, Operand, Probe, Probes};
 use super::{Emitter, TableCode};
 use crate::lower::guide::{DecidedRows, Decision, DecisionKind};
 use crate::lower::occurrence::{OccurrenceId, SpaceId};
-use crate::lower::shape::ReducerCode;
-
-/// A probe that may be asked for in the end, as it is seen in the innermost open row.
-#[derive(Clone, Copy)]
-pub(super) struct Probe {
-    name: usize,
-    pub(super) value: Value,
-}
-
-/// A guard of an operator in progress, or rows that are its operands.
-struct Operand {
-    table: Table,
-    rows: DecidedRows,
-    kind: DecisionKind,
-    name: usize,
-}
-
-/// Which of the fields of rows decides.
-#[derive(Clone, Copy)]
-pub(super) enum Extreme {
-    /// Of a union.
-    Largest,
-    /// Of an intersection.
-    Smallest,
-}
-
-impl Extreme {
-    /// What no field goes beyond.
-    pub(super) const fn start(self) -> f32 {
-        match self {
-            Self::Largest => f32::MIN,
-            Self::Smallest => f32::MAX,
-        }
-    }
-
-    pub(super) fn of(self, builder: &mut FunctionBuilder, a: Value, b: Value) -> Value {
-        match self {
-            Self::Largest => builder.max(a, b),
-            Self::Smallest => builder.min(a, b),
-        }
-    }
-
-    pub(super) const fn decision(self) -> DecisionKind {
-        match self {
-            Self::Largest => DecisionKind::UnionOperand,
-            Self::Smallest => DecisionKind::IntersectionOperand,
-        }
-    }
-}
-
-/// The probes of a guide function.
-#[derive(Default)]
-pub(super) struct Probes {
-    /// How many there are.
-    count: usize,
-    /// The probes in each open row of the scene and of guards; no others are open outside of these.
-    open: Vec<Vec<Probe>>,
-    /// The point in the world, and in spaces where it is one number for a point of the world: the first of three probes.
-    points: HashMap<SpaceId, usize>,
-    /// Guards whose operators are in progress, and for each operator in progress, how many are not its own.
-    operands: Vec<Operand>,
-    outer: Vec<usize>,
-    decisions: Vec<Decision>,
-    /// In the end: the values behind the scene's row.
-    results: Vec<Probe>,
-}
+use crate::lower::reducer::ReducerCode;
 
 impl Probes {
     /// The first of the three probes of the point in a space.

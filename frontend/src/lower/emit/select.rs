@@ -13,16 +13,12 @@
 use jbt_ir::{Domain, Value};
 
 use super::super::mixing::{Answer, GroupAnswer};
+use super::parts::Select;
 use super::{Emitter, Task};
 use crate::attribute::Mixing;
 use crate::lower::guide::Rule;
 use crate::lower::occurrence::{FieldId, OccurrenceId, SpaceId};
 use crate::lower::shape::Lift;
-
-/// A selector in progress: the answer so far, as accumulators.
-pub(super) struct Select {
-    state: Vec<Value>,
-}
 
 impl Emitter<'_> {
     /// Leaves the parts of a selector on the tasks.

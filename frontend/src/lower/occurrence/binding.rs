@@ -6,7 +6,8 @@ use super::find::Finder;
 use super::{BindingsId, Bound, PositionId};
 use crate::attribute::AttributeValue;
 use crate::check::NodeId;
-use crate::lower::computed::{Computed, ComputedId, ComputedKind, attribute};
+use crate::lower::computed::{Computed, ComputedKind, attribute};
+use crate::lower::names::ComputedId;
 
 impl Finder<'_> {
     /// What is computed for a leaf, of each attribute group.
@@ -18,7 +19,8 @@ impl Finder<'_> {
     ) -> Box<[Option<ComputedId>]> {
         let scene = &self.scene;
         let is_computed = |bound: &Option<Bound>| {
-            bound.is_some_and(|bound| !matches!(attribute(scene, bound.node), AttributeValue::Numbers(_)))
+            bound
+                .is_some_and(|bound| !matches!(attribute(scene.tree, bound.node), AttributeValue::Numbers(_)))
         };
         if !scene.bindings(bindings).iter().any(is_computed) {
             return Box::default();
@@ -34,7 +36,7 @@ impl Finder<'_> {
     fn name_computed(&mut self, bound: Bound, leaf: NodeId, position: PositionId) -> Option<ComputedId> {
         let tree = self.scene.tree;
         let node = bound.node;
-        let (key, kind, position, map, map_kind) = match attribute(&self.scene, node) {
+        let (key, kind, position, map, map_kind) = match attribute(self.scene.tree, node) {
             AttributeValue::Numbers(_) => return None,
             AttributeValue::Textured(textured) => {
                 let at = bound.at.expect("textures are bound with their places");

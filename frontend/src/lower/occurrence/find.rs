@@ -3,6 +3,7 @@
 use glam::{DAffine3, DVec3};
 use rustc_hash::FxHashMap as HashMap;
 
+use super::asked;
 use super::{
     BindingsId, Bound, FieldId, Inside, LeafField, Occurrence, OccurrenceId, OccurrenceKind, PositionId,
     Reducer, Scene, SpaceId, children,
@@ -10,12 +11,21 @@ use super::{
 use crate::check::{CheckedTree, NodeId};
 use crate::combine::{Combinator, Form};
 use crate::expression::Expression;
-use crate::lower::computed::{ComputedId, share};
+use crate::lower::computed::share;
 use crate::lower::demand::Demand;
+use crate::lower::names::ComputedId;
 use crate::lower::position::{Position, PositionKey, Trails, position_key};
 use crate::origin::ModelOrigin;
 use crate::recipe::{Freedom, Recipe};
 use crate::tree::{NodeKind, Primitive, chosen};
+
+impl<'a> Scene<'a> {
+    /// Finds every occurrence, without recursion. All attribute groups count, whatever is asked: so the tables of a tree, which are made of
+    /// its occurrences, have the same rows for every query.
+    pub(in super::super) fn new(tree: &'a CheckedTree) -> Self {
+        Finder::new(tree).run()
+    }
+}
 
 /// A node and what its ancestors say about it.
 type Key = (NodeId, PositionId, BindingsId);
@@ -123,7 +133,7 @@ impl<'a> Finder<'a> {
         self.scene.occurrences[self.scene.root.0 as usize].uses += 1;
         share(&mut self.scene.computed);
         if self.selects {
-            self.scene.demand = Demand::new(&self.scene);
+            self.scene.demand = asked::demand(&self.scene);
         }
         self.scene
     }

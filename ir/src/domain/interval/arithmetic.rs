@@ -14,11 +14,11 @@
 //!
 //! `fma` takes the same ends and adds the low and the high bound of its third operand in the one rounding.
 
-use super::{Interval, Range, Sign, of_both, of_one, same};
 use crate::facts::Fact as _;
 use crate::op::{Domain, Op};
 
-use super::facts::Facts;
+use super::facts::{Facts, Sign};
+use super::value::{Interval, Range, of_both, of_one, same};
 
 /// Two factors.
 type Pair<D> = (<D as Domain>::Real, <D as Domain>::Real);

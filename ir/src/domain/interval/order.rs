@@ -3,11 +3,11 @@
 //! `max(a, b)` is b where either is NaN. So where a may be NaN, the result may be b alone, and the low bound is that of b; and where
 //! b may be NaN, the result may be NaN, and a bound has to say so. `min` is its mirror image.
 
-use super::{Certainty, Interval, Range, Sign, of_both, same};
 use crate::facts::Fact as _;
 use crate::op::{Domain, Op};
 
-use super::facts::Facts;
+use super::facts::{Facts, Sign};
+use super::value::{Certainty, Interval, Range, of_both, same};
 
 /// Of two numbers.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

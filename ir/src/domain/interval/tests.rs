@@ -1,5 +1,6 @@
 //! Ranges that are known by hand, and what keeps them sharp.
 
+use super::facts::Sign;
 use super::*;
 use crate::domain::counting::evaluations;
 use crate::domain::scalar::Scalar;

@@ -18,8 +18,8 @@
 //! corners: where the sign of the exponent is known at one corner each, otherwise at one of four.
 
 use super::arithmetic::{greatest, least};
-use super::facts::Facts;
-use super::{Interval, Range, Sign, of_both, of_one};
+use super::facts::{Facts, Sign};
+use super::value::{Interval, Range, of_both, of_one};
 use crate::math::LARGEST_ANGLE;
 use crate::op::{Domain, Op};
 

@@ -11,7 +11,8 @@
 //! A fold has for each accumulator what is left of it: two bounds of a real, two masks for what is certain of a mask; one value
 //! of a point, and nothing for bits that are not known.
 
-use super::{Certainty, Facts, Interval, Known};
+use super::facts::Facts;
+use super::value::{Certainty, Interval, Known};
 use crate::domain::scalar::Scalar;
 use crate::entity::{Block, Entity, Table, Value};
 use crate::facts::facts;

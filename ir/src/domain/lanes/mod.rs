@@ -33,6 +33,7 @@ mod level;
 mod ops;
 mod pairs;
 mod place;
+mod run;
 mod schedule;
 mod tape;
 #[cfg(test)]
@@ -40,4 +41,5 @@ mod tests;
 
 pub use crate::level::Level;
 pub use ops::WIDTH;
-pub use tape::{NotLegalized, RunError, Scratch, Tape};
+pub use run::{NotLegalized, RunError};
+pub use tape::{Scratch, Tape};

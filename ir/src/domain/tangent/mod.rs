@@ -20,6 +20,7 @@ use crate::builder::FunctionBuilder;
 use crate::entity::Value;
 use crate::op::{Domain, Op};
 
+mod algebra;
 mod guard;
 mod slope;
 

@@ -1,7 +1,7 @@
 //! What a kernel may touch: planes, tables, its own stack and code. Between two regions there is nothing, and
 //! whoever reads or writes there faults.
 
-use crate::entry::TableView;
+use crate::abi::TableView;
 use crate::wide::Blob;
 
 /// What an instruction may say instead of a result.

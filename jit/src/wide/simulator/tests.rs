@@ -9,8 +9,9 @@ use jbt_ir::{Entity, Level, Selection, Table, Tables, Verified, interpret, verif
 use super::machine::Fault;
 use super::memory::Call;
 use super::run;
-use crate::compile::{Backend, Check, Options, Pieces, VectorCount, emit};
+use crate::compile::emit;
 use crate::entry::Kernel;
+use crate::options::{Backend, Check, Options, Pieces, VectorCount};
 use crate::wide::encode::{Encoder, Shape};
 use crate::wide::inst::{Base, Condition, Gpr, Inst, Integer, Label, Memory};
 use crate::wide::{Blob, Emitted};

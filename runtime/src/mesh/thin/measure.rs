@@ -1,6 +1,6 @@
 //! How thick the parts are at some points, and so how fine cells have to be to show them.
 
-use crate::mesh::MeshError;
+use crate::mesh::error::MeshError;
 use crate::mesh::field::Field;
 use crate::region::Box3;
 

@@ -9,6 +9,7 @@
 //!
 //! What is found is a function of the field and the lattice: neither bricks nor threads change it.
 
+mod alarm;
 mod crossed;
 mod measure;
 mod search;
@@ -18,51 +19,16 @@ use rayon::prelude::*;
 
 use super::crossing::Crossings;
 use super::divide::Division;
+use super::error::MeshError;
 use super::field::Field;
+use super::indexed::Mesh;
 use super::progress::{Phase, Progress};
-use super::{Mesh, MeshError};
+use super::report::{MAX_NEAR, ThinReport};
 
+use alarm::{ALARM, Alarm};
 use crossed::{Crossed, EDGE, morton, step};
 use search::{Found, Search};
 use shreds::{Chunks, Looked};
-
-/// The most points of [`ThinReport::near`].
-pub const MAX_NEAR: usize = 8;
-
-/// Parts that are thinner than a cell: what was found of them.
-#[derive(Clone, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct ThinReport {
-    /// Blocks of 4^3 cells that the surface seems to stay out of, in which a point on the other side of it
-    /// was found.
-    pub missed: u64,
-    /// Blocks in which the surface is in shreds: its sides pass between neighbouring points of the lattice.
-    pub shredded: u64,
-    /// Blocks that the search left before it knew: neither was a point found, nor could ranges exclude one. A
-    /// field with wide ranges has many, and a thin part may be in any of them.
-    pub unproven: u64,
-    /// Blocks that were missed or are in shreds, those that touch counted as one place.
-    pub places: u64,
-    /// A point of each place, [`MAX_NEAR`] at most. Those of a [`Polygonized`](crate::Polygonized) are in the
-    /// world.
-    pub near: Vec<[f64; 3]>,
-    /// The edge of cells that would show the thinnest of the parts at these points: half of its thickness.
-    pub cell: Option<f64>,
-    /// Boxes whose range was asked within blocks.
-    pub boxes: u64,
-}
-
-/// Something thin in a block.
-struct Alarm {
-    place: [u32; 3],
-    point: [f32; 3],
-    /// Votes, or enough for an alarm of its own.
-    weight: u32,
-}
-
-/// The weight that makes an alarm, in a group of blocks that touch: votes of vertices, of which a groove or a
-/// tip has a few.
-const ALARM: u32 = 24;
 
 /// Searches the bricks of a division.
 pub(super) fn find<F: Field>(

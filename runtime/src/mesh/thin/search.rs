@@ -15,8 +15,8 @@
 //! cost more than the mesh.
 
 use super::crossed::{Crossed, EDGE, bits, morton};
-use crate::mesh::MeshError;
 use crate::mesh::brick::{box_of, place};
+use crate::mesh::error::MeshError;
 use crate::mesh::field::Field;
 use crate::region::{ANYTHING, Box3, MAX_PARTS, Range};
 

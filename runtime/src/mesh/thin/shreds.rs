@@ -16,12 +16,13 @@
 
 use rayon::prelude::*;
 
+use super::alarm::{ALARM, Alarm};
 use super::crossed::{Crossed, morton};
-use super::{ALARM, Alarm};
 use crate::mesh::brick::Bricks;
 use crate::mesh::crossing::Crossings;
+use crate::mesh::error::MeshError;
 use crate::mesh::field::Field;
-use crate::mesh::{Mesh, MeshError};
+use crate::mesh::indexed::Mesh;
 use crate::region::Box3;
 
 /// Of so many crossed edges in a block one is lone, where vertices are asked. A sheet of nine tenths of a

@@ -12,7 +12,7 @@
 //! of edges are points of the lattice, and a middle is made of two ends and of nothing else, so all cells
 //! around an edge, in whatever bricks, find the same.
 
-use super::super::Field;
+use super::super::field::Field;
 
 /// Two points, and the field at them: the first is outside, the second inside.
 #[derive(Clone, Copy, Debug)]

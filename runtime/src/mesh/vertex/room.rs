@@ -10,9 +10,8 @@
 //!     +-----------+-----------+
 //! ```
 
-use super::Batch;
+use super::batch::{Batch, Shared};
 use super::margin::{four_steps, quarter};
-use super::start::Shared;
 
 /// Whether four steps of f32 are more than a quarter of a cell, somewhere between the first and the last
 /// coordinate along an axis: then vertices lie on a coarse grid, and those of different cells may coincide.

@@ -2,21 +2,11 @@
 
 use super::super::brick::cell_sides;
 use super::super::cell::{default_edges, edges};
+use super::super::error::MAX_BRICK;
+use super::super::field::Field;
 use super::super::pull::LANES;
-use super::super::{Field, MAX_BRICK};
+use super::batch::{Batch, Shared, Source};
 use super::seed::grow;
-use super::{Batch, Source};
-
-/// A vertex of a cell with more than one sheet.
-pub(super) struct Shared {
-    pub(super) vertex: usize,
-    /// How many of the cell's vertices are before it.
-    pub(super) earlier: usize,
-    /// Where it starts.
-    pub(super) start: [f32; 3],
-    /// How the field rises along the edges of its sheet.
-    rise: [f32; 3],
-}
 
 impl Batch {
     /// Puts the vertices of a brick where they start.

@@ -14,13 +14,13 @@
 
 use multiversion::multiversion;
 
-use super::super::Field;
+use super::super::field::Field;
 use super::super::pull::{LANES, Lanes, squares};
 use super::super::settle::{Place, Stray, is_far, settle};
+use super::batch::{Batch, Done, Planes, Source, lane, lanes};
 use super::seed::Group;
 use super::sheet::{Sheet, Start};
 use super::wall::{Wall, follow};
-use super::{Batch, Done, Planes, Source, lane, lanes};
 
 /// How many times as much as its gradient says the field may differ within a cell without raising suspicion.
 /// A linear field differs by just what its gradient says.

@@ -12,7 +12,7 @@
 //! iso-value: a point inside and one outside decide. A sheet that is crossed at a jump here and smoothly
 //! there bends around an edge of the solid; its vertex is found in the same way.
 
-use super::super::Field;
+use super::super::field::Field;
 use super::bracket::{Bracket, CrossedEdge, CrossedEdges, Points};
 use super::sheet::{Sheet, Start};
 

@@ -1,0 +1,170 @@
+//! The compiler: shapes become kernels, and are remembered.
+
+use std::fmt;
+use std::sync::{Arc, Mutex};
+
+use jbt_frontend::lower::{Lowered, Lowering};
+use jbt_frontend::query::Query;
+use jbt_ir::{Function, Level, Tables, limits};
+
+use crate::error::CompileError;
+use crate::kernel::{Engine, Kernel, Purpose, Wish, optimise, optimise_straight, straighten};
+
+/// Makes evaluators, and remembers the code of every shape that it has met: models of one shape share it.
+///
+/// Cloning gives another handle to the same memory.
+#[derive(Clone, Default)]
+pub struct Compiler {
+    wish: Wish,
+    /// Whether rows stay rows: see [`for_edits`](Self::for_edits).
+    by_rows: bool,
+    known: Arc<Mutex<Vec<Known>>>,
+}
+
+/// The code of a shape, for a purpose.
+struct Known {
+    purpose: Purpose,
+    kernel: Arc<Kernel>,
+}
+
+/// Shapes that a compiler remembers; the oldest one goes first.
+const REMEMBERED: usize = 64;
+
+impl Compiler {
+    /// A compiler for the best engine that this machine has: machine code, or the SIMD interpreter with one warning in the log.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// A compiler for one engine.
+    #[must_use]
+    pub fn for_engine(engine: Engine) -> Self {
+        Self::default().on_engine(engine)
+    }
+
+    /// The same compiler for one engine.
+    #[must_use]
+    pub fn on_engine(mut self, engine: Engine) -> Self {
+        self.wish.engine = Some(engine);
+        self.known = Arc::default();
+        self
+    }
+
+    /// The same compiler for a level of the instruction set, of the interpreter and of machine code. Without it, it is [`Level::best`].
+    #[must_use]
+    pub fn at_level(mut self, level: Level) -> Self {
+        self.wish.level = Some(level);
+        self.known = Arc::default();
+        self
+    }
+
+    /// The same compiler for models that are edited, or asked region by region: every row of a model stays a row of a table.
+    ///
+    /// Without it, formulas that have much in common become straight code ([`jbt_ir::straight`]), which takes up to a third less time. Straight code
+    /// knows how many rows there are and which of their numbers are equal, so an edit that changes one of the two
+    /// compiles anew; and regions run another kernel, which is made for the first of them. The answers have the same bits.
+    ///
+    /// Rows of primitives, and models with parameters, stay as they are in any case.
+    #[must_use]
+    pub fn for_edits(mut self) -> Self {
+        self.by_rows = true;
+        self
+    }
+
+    /// The kernel that answers a query for a model, and the numbers to bind to it. `present` is a kernel for the same query, which is
+    /// kept where it fits.
+    pub(crate) fn answers(
+        &self,
+        lowering: &Lowering<'_>,
+        query: Query,
+        present: Option<&Arc<Kernel>>,
+    ) -> Result<(Arc<Kernel>, Tables), CompileError> {
+        let Lowered { function, tables } =
+            lowering.answers(query).map_err(|list| lowering.tree().diagnostics(list))?;
+        let purpose = Purpose::Answers(query);
+        // No value of a parameter compiles anything.
+        let may_be_straight = !self.by_rows && lowering.tree().parameters().is_empty();
+        let straight =
+            if may_be_straight { self.straight(&function, &tables, purpose, present) } else { None };
+        let kernel = match straight {
+            Some(kernel) => kernel,
+            None => self.kernel(function, purpose, present)?,
+        };
+        Ok((kernel, tables))
+    }
+
+    /// A kernel of straight code for a lowered function and these tables; `None` if rows are as good, or if it is beyond a limit.
+    fn straight(
+        &self,
+        function: &Function,
+        tables: &Tables,
+        purpose: Purpose,
+        present: Option<&Arc<Kernel>>,
+    ) -> Option<Arc<Kernel>> {
+        let fits = |kernel: &Kernel| {
+            let straight = kernel.straight.as_ref();
+            kernel.lowered == *function && straight.is_some_and(|straight| straight.tables(tables).is_some())
+        };
+        let present = present.filter(|present| present.lowered == *function);
+        if let Some(present) = present.filter(|present| fits(present)) {
+            return Some(Arc::clone(present));
+        }
+        let before = match present {
+            None => None,
+            // An edit of numbers compiles nothing if that can be helped.
+            Some(present) => Some(present.straight.as_ref()?),
+        };
+        if let Some(kernel) = self.find(purpose, fits) {
+            return Some(kernel);
+        }
+        let straight = straighten(function, tables, purpose, before).ok()??;
+        let verified = optimise_straight(&straight, &mut |_, _| {}).ok()?;
+        if verified.function().values.len() > limits::MAX_JIT_VALUES {
+            return None;
+        }
+        let kernel = Kernel::new(function.clone(), Some(straight), verified, self.wish).ok()?;
+        let kernel = Arc::new(kernel);
+        self.remember(purpose, &kernel);
+        Some(kernel)
+    }
+
+    /// The kernel of a lowered function: the present one, one that is remembered, or a new one.
+    pub(crate) fn kernel(
+        &self,
+        function: Function,
+        purpose: Purpose,
+        present: Option<&Arc<Kernel>>,
+    ) -> Result<Arc<Kernel>, CompileError> {
+        let fits = |kernel: &Kernel| kernel.lowered == function && kernel.straight.is_none();
+        let present = present.filter(|kernel| fits(kernel)).cloned();
+        if let Some(kernel) = present.or_else(|| self.find(purpose, fits)) {
+            return Ok(kernel);
+        }
+        let verified = optimise(function.clone(), purpose, &mut |_, _| {})?;
+        let kernel = Arc::new(Kernel::new(function, None, verified, self.wish)?);
+        self.remember(purpose, &kernel);
+        Ok(kernel)
+    }
+
+    fn remember(&self, purpose: Purpose, kernel: &Arc<Kernel>) {
+        if let Ok(mut known) = self.known.lock() {
+            if known.len() == REMEMBERED {
+                known.remove(0);
+            }
+            known.push(Known { purpose, kernel: Arc::clone(kernel) });
+        }
+    }
+
+    fn find(&self, purpose: Purpose, fits: impl Fn(&Kernel) -> bool) -> Option<Arc<Kernel>> {
+        let known = self.known.lock().ok()?;
+        let found = known.iter().find(|known| known.purpose == purpose && fits(&known.kernel))?;
+        Some(Arc::clone(&found.kernel))
+    }
+}
+
+impl fmt::Debug for Compiler {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Compiler").field("wish", &self.wish).finish_non_exhaustive()
+    }
+}

@@ -1,0 +1,182 @@
+//! What formats of mesh files differ in: how files end, which axis points up, how colours are written, what there is room for.
+
+use std::fmt;
+use std::ops::Sub;
+use std::str::FromStr;
+
+use thiserror::Error;
+
+use crate::srgb;
+
+/// What a format is like: what its file in this folder states.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Conventions {
+    /// The extension of its files, without a dot, in small letters.
+    pub extension: &'static str,
+    /// What it is.
+    pub title: &'static str,
+    /// The axis that points up, unless [`ExportOptions::up`](super::ExportOptions::up) says otherwise: the one that its readers assume.
+    pub up: Up,
+    /// How it has normals.
+    pub normals: &'static str,
+    /// How it has colours, if it has any.
+    pub colors: Option<Colors>,
+    /// How it has the uv, if it has.
+    pub uv: Option<&'static str>,
+    /// How it has other attributes, if it has any.
+    pub attributes: Option<&'static str>,
+    /// How it has the place of a mesh that is far from the origin of the world.
+    pub far: FarMeshes,
+}
+
+/// How a format has the place of a mesh with an [origin](crate::mesh::Mesh::origin) of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FarMeshes {
+    /// Vertices are as in the mesh, and a node moves them.
+    Node,
+    /// Vertices are in the world, in numbers that have the digits for it.
+    Digits,
+    /// Vertices are in the world, rounded to f32.
+    Rounded,
+}
+
+impl FarMeshes {
+    /// In words.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            FarMeshes::Node => "a node's translation",
+            FarMeshes::Digits => "64-bit floats or decimals",
+            FarMeshes::Rounded => "rounded to 32 bits",
+        }
+    }
+}
+
+/// How a format has colours.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Colors {
+    /// The name and the type.
+    pub place: &'static str,
+    /// What the numbers mean, unless [`ExportOptions::colors`](super::ExportOptions::colors) says otherwise: what its readers assume.
+    pub encoding: ColorEncoding,
+}
+
+/// Which axis of a file points up. Models are z-up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Up {
+    /// The model is turned by -90 degrees about x: its (x, y, z) is (x, z, -y) in the file. The model's -y is the file's +z.
+    Y,
+    /// As in the model.
+    Z,
+}
+
+impl Up {
+    /// Both.
+    pub const ALL: [Up; 2] = [Up::Y, Up::Z];
+
+    /// The axis as a word: `y` or `z`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Up::Y => "y",
+            Up::Z => "z",
+        }
+    }
+
+    /// Where a point of the model, or a direction, is in a file.
+    #[must_use]
+    pub fn place<T: Default + Sub<Output = T>>(self, [x, y, z]: [T; 3]) -> [T; 3] {
+        match self {
+            // As a difference, so that no zero becomes a negative one.
+            Up::Y => [x, z, T::default() - y],
+            Up::Z => [x, y, z],
+        }
+    }
+}
+
+/// What the numbers of a colour mean. Those of a model are linear: twice the number is twice the light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum ColorEncoding {
+    /// As screens take them, in even steps for the eye (sRGB, IEC 61966-2-1): half the light is 0.735, or 188 of 255.
+    Srgb,
+    /// As in the model.
+    Linear,
+}
+
+impl ColorEncoding {
+    /// Both.
+    pub const ALL: [ColorEncoding; 2] = [ColorEncoding::Srgb, ColorEncoding::Linear];
+
+    /// The encoding as a word: `srgb` or `linear`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            ColorEncoding::Srgb => "srgb",
+            ColorEncoding::Linear => "linear",
+        }
+    }
+
+    /// The number of a file, 0 .. 1, for one channel of a model. What is no number is 0, and others are clamped.
+    #[must_use]
+    pub fn encode(self, linear: f32) -> f32 {
+        match self {
+            ColorEncoding::Srgb => srgb::encode_precisely(linear),
+            ColorEncoding::Linear => srgb::unit(linear),
+        }
+    }
+}
+
+/// What a file is like: what options say, else the conventions of its format.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Choices {
+    pub up: Up,
+    /// Any, where there are no colours.
+    pub colors: ColorEncoding,
+}
+
+/// A word that stands for no member of a list.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{word:?} is none of: {known}")]
+pub struct UnknownWord {
+    /// The word.
+    pub word: String,
+    /// All members, with commas between them.
+    pub known: String,
+}
+
+/// The member of a list that prints as a word.
+pub(crate) fn find<T: Copy + fmt::Display>(all: &[T], word: &str) -> Result<T, UnknownWord> {
+    let words: Vec<String> = all.iter().map(T::to_string).collect();
+    let found = words.iter().position(|known| known == word).map(|index| all[index]);
+    found.ok_or_else(|| UnknownWord { word: word.to_owned(), known: words.join(", ") })
+}
+
+impl fmt::Display for Up {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+impl fmt::Display for ColorEncoding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+impl FromStr for Up {
+    type Err = UnknownWord;
+
+    fn from_str(word: &str) -> Result<Self, UnknownWord> {
+        find(&Up::ALL, word)
+    }
+}
+
+impl FromStr for ColorEncoding {
+    type Err = UnknownWord;
+
+    fn from_str(word: &str) -> Result<Self, UnknownWord> {
+        find(&ColorEncoding::ALL, word)
+    }
+}

@@ -1,0 +1,91 @@
+//! What the writers of mesh files have in common: how they see a mesh, and how they fail.
+
+use std::collections::HashSet;
+use std::io::{self, Write};
+
+use thiserror::Error;
+
+use crate::mesh::{Attribute, Mesh};
+
+/// Why a writer stopped.
+#[derive(Debug, Error)]
+pub(super) enum WriteError {
+    /// The file could not be written.
+    #[error(transparent)]
+    Write(#[from] io::Error),
+    /// The format counts in 32 bits, and this is more: bytes or triangles.
+    #[error("{0} are too many")]
+    TooLarge(u64),
+}
+
+/// The writers' view of where a vertex is in the world.
+pub(super) fn world(mesh: &Mesh) -> impl Iterator<Item = [f64; 3]> + '_ {
+    (0..mesh.positions.len()).map(|vertex| mesh.world(vertex))
+}
+
+/// The linear colours of a mesh, if it has the attribute `color` of width 3: one for each vertex.
+pub(super) fn colors(mesh: &Mesh) -> Option<&[[f32; 3]]> {
+    let color = mesh.attributes.iter().find(|attribute| is_color(attribute));
+    // Without a rest: the check has counted them.
+    color.map(|attribute| attribute.values.as_chunks().0)
+}
+
+fn is_color(attribute: &Attribute) -> bool {
+    attribute.name == "color" && attribute.width == 3
+}
+
+/// The uv of a mesh, if it has the attribute `uv` of width 2: as many chunks of two as vertices.
+pub(super) fn uvs(mesh: &Mesh) -> Option<&[f32]> {
+    mesh.attributes.iter().find(|attribute| is_uv(attribute)).map(|attribute| attribute.values.as_slice())
+}
+
+fn is_uv(attribute: &Attribute) -> bool {
+    attribute.name == "uv" && attribute.width == 2
+}
+
+/// A real as formats without infinities and NaN have it: those are 0.
+pub(super) fn finite(value: f32) -> f32 {
+    if value.is_finite() { value } else { 0.0 }
+}
+
+/// An attribute and the names that a file has for it.
+pub(super) struct Named<'a> {
+    pub(super) names: Vec<String>,
+    pub(super) attribute: &'a Attribute,
+}
+
+/// The attributes besides the colour and the uv. `spell` turns a stem of ASCII letters, digits and underscores, and a width, into the
+/// names that the file needs; a number after the stem keeps them apart from the names of the others and from reserved ones.
+pub(super) fn others<'a>(
+    mesh: &'a Mesh,
+    reserved: &[&str],
+    spell: fn(&str, usize) -> Vec<String>,
+) -> Vec<Named<'a>> {
+    let known = [mesh.attributes.iter().position(is_color), mesh.attributes.iter().position(is_uv)];
+    let mut taken: HashSet<String> = reserved.iter().map(|&name| name.to_owned()).collect();
+    let mut named = Vec::new();
+    for (index, attribute) in mesh.attributes.iter().enumerate() {
+        if known.contains(&Some(index)) {
+            continue;
+        }
+        let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
+        let stem = match attribute.name.as_str() {
+            "" => "attribute".to_owned(),
+            name => name.chars().map(plain).collect(),
+        };
+        let mut names = spell(&stem, attribute.width);
+        let mut number = 2;
+        while names.iter().any(|name| taken.contains(name)) {
+            names = spell(&format!("{stem}_{number}"), attribute.width);
+            number += 1;
+        }
+        taken.extend(names.iter().cloned());
+        named.push(Named { names, attribute });
+    }
+    named
+}
+
+/// Writes reals as little-endian bytes.
+pub(super) fn write_reals(out: &mut impl Write, values: impl IntoIterator<Item = f32>) -> io::Result<()> {
+    values.into_iter().try_for_each(|value| out.write_all(&value.to_le_bytes()))
+}

@@ -1,0 +1,86 @@
+//! An indexed triangle mesh: what meshing makes.
+
+use jbt_frontend::origin::ModelOrigin;
+
+use crate::points::Points;
+
+/// Named reals at each vertex of a mesh.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Attribute {
+    /// The name, as in the model.
+    pub name: String,
+    /// Reals per vertex, 1 to [`MAX_ATTRIBUTE_WIDTH`](jbt_ir::limits::MAX_ATTRIBUTE_WIDTH).
+    pub width: usize,
+    /// `width` reals for each vertex, one vertex after the other.
+    pub values: Vec<f32>,
+}
+
+/// An indexed triangle mesh with normals and attributes.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Mesh {
+    /// Where positions count from, in the world: the origin of the model, 0 for most. A mesh of a field that
+    /// is not a model's counts from 0.
+    pub origin: [f64; 3],
+    /// One for each vertex, from the origin.
+    pub positions: Vec<[f32; 3]>,
+    /// One for each vertex, of length 1, away from the inside.
+    pub normals: Vec<[f32; 3]>,
+    /// Each has values for every vertex.
+    pub attributes: Vec<Attribute>,
+    /// Three indices of vertices each, counter-clockwise when seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+impl Attribute {
+    /// The reals of a vertex. Panics if there is no such vertex.
+    #[must_use]
+    pub fn at(&self, vertex: usize) -> &[f32] {
+        &self.values[vertex * self.width..][..self.width]
+    }
+}
+
+impl Mesh {
+    /// The attribute of this name.
+    #[must_use]
+    pub fn attribute(&self, name: &str) -> Option<&Attribute> {
+        self.attributes.iter().find(|attribute| attribute.name == name)
+    }
+
+    /// Linear red, green and blue for each vertex; `None` if the mesh has no attribute `color` of three
+    /// reals.
+    ///
+    /// ```
+    /// use jbt::{Compiler, Model, Polygonize, build::point};
+    /// let tree = Model::new(point([0, 0, 0], 1).color([1.0, 0.5, 0.0])).check()?;
+    /// let mesh = Polygonize::default().mesh(&Compiler::new(), &tree).run()?.mesh;
+    /// assert!(mesh.colors().ok_or("no colours")?.iter().all(|&color| color == [1.0, 0.5, 0.0]));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn colors(&self) -> Option<&[[f32; 3]]> {
+        let color = self.attribute("color").filter(|color| color.width == 3)?;
+        Some(color.values.as_chunks().0)
+    }
+
+    /// The positions as points to evaluate.
+    #[must_use]
+    pub fn points(&self) -> Points {
+        let mut points = Points::about(ModelOrigin::new(self.origin));
+        self.positions.iter().for_each(|&position| points.push(position));
+        points
+    }
+
+    /// Whether positions are those of the world.
+    #[must_use]
+    pub fn is_about_world(&self) -> bool {
+        ModelOrigin::new(self.origin).is_world()
+    }
+
+    /// Where a vertex is in the world. Panics if there are not as many.
+    #[must_use]
+    pub fn world(&self, vertex: usize) -> [f64; 3] {
+        ModelOrigin::new(self.origin).world(self.positions[vertex].map(f64::from))
+    }
+}

@@ -1,0 +1,51 @@
+//! How to mesh.
+
+use std::error::Error;
+
+use super::error::{MAX_BRICK, MAX_PULLS, MIN_BRICK, MeshError};
+
+/// How to mesh.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Options {
+    /// The surface is where the field has this value. Any finite number.
+    pub iso: f32,
+    /// Newton steps that pull each vertex onto the surface, 0 to [`MAX_PULLS`]. Each costs a gradient per vertex and about
+    /// squares the distance that is left, in units of the radius of curvature; two suffice for a smooth field.
+    pub pulls: usize,
+    /// Cells along the edge of the bricks at which division ends: a power of two from [`MIN_BRICK`] to [`MAX_BRICK`]. Small ones waste fewer points
+    /// far from the surface, large ones fewer calls. It changes what is evaluated, but no bit of the mesh. `None`: 8, or 4 where a point takes
+    /// long.
+    pub brick: Option<usize>,
+    /// Whether to look at every edge of the mesh to say that it is closed. Where no side of the lattice cuts the body it is, by construction.
+    pub verify: bool,
+    /// Whether to search for parts that are thinner than a cell: see [`Report::thin`](super::Report::thin). It takes a field that
+    /// knows ranges of boxes, and changes nothing of the mesh.
+    pub thin_parts: bool,
+}
+
+impl Default for Options {
+    /// Iso 0.5, two pulls, bricks as they are best, verified, no search for thin parts.
+    fn default() -> Self {
+        Options { iso: 0.5, pulls: 2, brick: None, verify: true, thin_parts: false }
+    }
+}
+
+impl Options {
+    /// Whether they are what they may be.
+    pub(super) fn check<E: Error + 'static>(&self) -> Result<(), MeshError<E>> {
+        let &Options { iso, pulls, brick, verify: _, thin_parts: _ } = self;
+        if !iso.is_finite() {
+            return Err(MeshError::Iso { iso });
+        }
+        if let Some(brick) = brick
+            && (!brick.is_power_of_two() || !(MIN_BRICK..=MAX_BRICK).contains(&brick))
+        {
+            return Err(MeshError::Brick { brick });
+        }
+        if pulls > MAX_PULLS {
+            return Err(MeshError::Pulls { pulls });
+        }
+        Ok(())
+    }
+}

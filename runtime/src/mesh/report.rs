@@ -1,0 +1,113 @@
+//! What was done to make a mesh, and what it is like.
+
+use std::fmt;
+
+/// Some of the six sides of a lattice. Prints as `-x +z`, or `none`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Sides {
+    /// The low sides, at the first corners along x, y and z.
+    pub low: [bool; 3],
+    /// The high sides.
+    pub high: [bool; 3],
+}
+
+impl Sides {
+    pub(super) fn add(&mut self, other: Self) {
+        for axis in 0..3 {
+            self.low[axis] |= other.low[axis];
+            self.high[axis] |= other.high[axis];
+        }
+    }
+
+    /// Whether any side is among them.
+    pub fn any(self) -> bool {
+        self.low.iter().chain(&self.high).any(|&side| side)
+    }
+}
+
+impl fmt::Display for Sides {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if !self.any() {
+            return f.write_str("none");
+        }
+        let mut separator = "";
+        for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+            for (sign, side) in [("-", self.low[axis]), ("+", self.high[axis])] {
+                if side {
+                    write!(f, "{separator}{sign}{name}")?;
+                    separator = " ";
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What was done to make a mesh, and what it is like.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Report {
+    /// Whether every edge has exactly two triangles, in opposite directions. A mesh without triangles is closed. It has been looked at if
+    /// [`Options::verify`](super::Options::verify) said so, and follows from `cut_sides` otherwise.
+    pub closed: bool,
+    /// The sides of the lattice that cut the body: some lattice point on that side is inside. Without any, the mesh is closed.
+    pub cut_sides: Sides,
+    /// Boxes whose range was asked, to find the bricks.
+    pub boxes: u64,
+    /// Those that were dropped because they are inside as a whole.
+    pub boxes_inside: u64,
+    /// Those that were dropped because they are outside as a whole.
+    pub boxes_outside: u64,
+    /// Evaluations of primitives that the points of these boxes would have taken, with the rows that matter in the box around each.
+    pub evaluations_spared: u64,
+    /// Bricks that were left and sampled.
+    pub bricks: u64,
+    /// Points at which the field alone was evaluated: the lattice points of the bricks, once each.
+    pub field_evaluations: u64,
+    /// Points at which field and gradient were evaluated: at each vertex once for each pull, and some more for those that a crease keeps off the surface.
+    pub gradient_evaluations: u64,
+    /// Points at which everything was evaluated: once for each vertex, and once more for those that a crease has kept off
+    /// the surface, or that are at a jump.
+    pub full_evaluations: u64,
+    /// Points at which the field alone was evaluated to find out where it jumps: on crossed edges of cells that
+    /// raise suspicion, and at walls.
+    pub jump_evaluations: u64,
+    /// Vertices at which the field jumps, as at the walls of `within`.
+    pub jump_vertices: u64,
+    /// Whether cells are shorter than 16 steps of f32 somewhere in the lattice: then vertices of different cells
+    /// may coincide.
+    pub crowded: bool,
+    /// Cells that the surface crosses.
+    pub crossing_cells: u64,
+    /// Ambiguous faces that were resolved the other way, to keep the mesh manifold.
+    pub flipped_faces: u64,
+    /// Parts that are thinner than a cell, if [`Options::thin_parts`](super::Options::thin_parts) said to search for them.
+    pub thin: Option<ThinReport>,
+}
+
+/// The most points of [`ThinReport::near`].
+pub const MAX_NEAR: usize = 8;
+
+/// Parts that are thinner than a cell: what was found of them.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct ThinReport {
+    /// Blocks of 4^3 cells that the surface seems to stay out of, in which a point on the other side of it
+    /// was found.
+    pub missed: u64,
+    /// Blocks in which the surface is in shreds: its sides pass between neighbouring points of the lattice.
+    pub shredded: u64,
+    /// Blocks that the search left before it knew: neither was a point found, nor could ranges exclude one. A
+    /// field with wide ranges has many, and a thin part may be in any of them.
+    pub unproven: u64,
+    /// Blocks that were missed or are in shreds, those that touch counted as one place.
+    pub places: u64,
+    /// A point of each place, [`MAX_NEAR`] at most. Those of a [`Polygonized`](crate::Polygonized) are in the
+    /// world.
+    pub near: Vec<[f64; 3]>,
+    /// The edge of cells that would show the thinnest of the parts at these points: half of its thickness.
+    pub cell: Option<f64>,
+    /// Boxes whose range was asked within blocks.
+    pub boxes: u64,
+}

@@ -1,0 +1,49 @@
+//! Points that are asked together, and what may still be asked.
+
+use super::compiled::Compiled;
+use super::error::TraceError;
+use crate::error::EvalError;
+use crate::prune::Region;
+
+/// Points and boxes that may still be asked, for so many rays.
+pub(super) struct Work {
+    pub(super) left: u64,
+    pub(super) rays: usize,
+}
+
+impl Work {
+    pub(super) fn spend(&mut self, work: u64) -> Result<(), TraceError> {
+        self.left = self.left.checked_sub(work).ok_or(TraceError::Work { rays: self.rays })?;
+        Ok(())
+    }
+}
+
+/// Points by coordinates and their fields.
+#[derive(Default)]
+pub(super) struct Batch {
+    pub(super) points: [Vec<f32>; 3],
+    pub(super) field: Vec<f32>,
+}
+
+impl Batch {
+    pub(super) fn clear(&mut self) {
+        self.points.iter_mut().for_each(Vec::clear);
+    }
+
+    /// The points by coordinates.
+    pub(super) fn planes(&mut self) -> &mut [Vec<f32>; 3] {
+        &mut self.points
+    }
+
+    pub(super) fn push(&mut self, position: [f32; 3]) {
+        for (plane, x) in self.points.iter_mut().zip(position) {
+            plane.push(x);
+        }
+    }
+
+    /// Asks the field at all points, which are in the region.
+    pub(super) fn ask(&mut self, tracer: &Compiled, region: &Region) -> Result<(), EvalError> {
+        self.field.resize(self.points[0].len(), 0.0);
+        tracer.field.eval_region(region, self.points.each_ref().map(Vec::as_slice), &mut [&mut self.field])
+    }
+}
