@@ -1,7 +1,7 @@
 //! ParsIP scenes: every published sample against independently computed values, every kind of node by a scene of our own, and
 //! what strangers send.
 //!
-//! The samples are looked for in `shared/samples/parsip` beside the folders above this crate, or where `JBT_SAMPLES` says;
+//! The samples are looked for in `shared/samples/parsip` beside the folders above this crate, or in the folder `parsip` of `JBT_SAMPLES`;
 //! where they are missing, their test says so.
 
 use std::fmt::Write as _;
@@ -31,7 +31,7 @@ fn close(found: &[f64], expected: &[f64], tolerance: f64) -> bool {
 
 fn samples() -> Option<PathBuf> {
     if let Some(folder) = std::env::var_os("JBT_SAMPLES") {
-        return Some(folder.into());
+        return Some(PathBuf::from(folder).join("parsip"));
     }
     let here = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
     let mut folders = here.ancestors().map(|above| above.join("shared/samples/parsip"));

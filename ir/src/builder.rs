@@ -7,14 +7,14 @@
 //!   the row or the accumulators of a fold is computed outside of it.
 //!
 //! ```
-//! use jbt_ir::{Domain, FunctionBuilder, Reduction, Schema, verify};
+//! use jbt_ir::{Domain, FoldKind, FunctionBuilder, Rule, Schema, verify};
 //!
 //! // The sum of the x column of a table, added to the input.
 //! let mut b = FunctionBuilder::new("f", &["x"]);
 //! let schema = Schema { name: "numbers".into(), columns: vec!["x".into()], parent: None, slots: vec![] };
 //! let t = b.table(schema);
 //! let x = b.input(0);
-//! let acc = b.begin_fold(t, Reduction::Sum, &[x])[0];
+//! let acc = b.begin_fold(t, (FoldKind::Rows, Rule::Neutral), &[x])[0];
 //! let column = b.column(t, 0);
 //! let next = b.add(acc, column);
 //! let sum = b.end_fold(&[next])[0];
@@ -27,7 +27,7 @@ use std::sync::Arc;
 use rustc_hash::FxHashMap as HashMap;
 
 use crate::entity::{Block, Entity, Inst, Table, Value, Values};
-use crate::function::{BlockData, Fold, Function, InstData, InstKind, Reduction, Schema};
+use crate::function::{BlockData, Fold, FoldKind, Function, InstData, InstKind, Rule, Schema};
 use crate::op::{Domain, Op, Type};
 use crate::origin::Origin;
 
@@ -45,7 +45,7 @@ enum Key {
 struct OpenBlock {
     block: Block,
     /// The table of its fold; `None` for the function's body.
-    fold: Option<(Table, Reduction, Values)>,
+    fold: Option<(Table, (FoldKind, Rule), Values)>,
     /// What can be found while this block is open.
     known: Vec<Key>,
 }
@@ -204,13 +204,13 @@ impl FunctionBuilder {
     }
 
     /// Opens a fold over `table` and returns its accumulators; what follows is its body, up to [`end_fold`](Self::end_fold).
-    pub fn begin_fold(&mut self, table: Table, reduction: Reduction, initial: &[Value]) -> Vec<Value> {
+    pub fn begin_fold(&mut self, table: Table, kind: (FoldKind, Rule), initial: &[Value]) -> Vec<Value> {
         let depth = self.open.len();
         let params: Vec<Value> =
             initial.iter().map(|&value| self.new_value(self.function.values[value], depth)).collect();
         let block =
             self.function.blocks.push(BlockData { params: params.as_slice().into(), ..BlockData::default() });
-        let fold = Some((table, reduction, initial.into()));
+        let fold = Some((table, kind, initial.into()));
         self.open.push(OpenBlock { block, fold, known: Vec::new() });
         params
     }
@@ -232,12 +232,12 @@ impl FunctionBuilder {
         for key in open.known {
             self.known.remove(&key);
         }
-        let (table, reduction, initial) = open.fold.expect("begin_fold came first");
+        let (table, (kind, rule), initial) = open.fold.expect("begin_fold came first");
         let depth = self.open.len() - 1;
         let results: Vec<Value> =
             initial.iter().map(|&value| self.new_value(self.function.values[value], depth)).collect();
         self.function.blocks[open.block].results = next.into();
-        let fold = Fold { table, reduction, initial, body: open.block };
+        let fold = Fold { table, kind, rule, initial, body: open.block };
         self.append(depth, InstKind::Fold(fold), results.as_slice().into());
         results
     }

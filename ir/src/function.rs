@@ -7,7 +7,7 @@
 //!     v0 = input x
 //!     ...
 //!     v3 = const 0.0
-//!     v4 = fold t0 sum (v3) block1(v5):
+//!     v4 = fold t0 rows neutral (v3) block1(v5):
 //!         v6 = column t0.x @0.position
 //!         v7 = sub v0, v6 @0.position
 //!         ...
@@ -23,68 +23,69 @@
 //! accumulators. If the table has a parent, the fold stands in the parent's body and runs over the rows that the parent's
 //! current row owns.
 
-use std::fmt;
 use std::sync::Arc;
 
 use crate::entity::{Block, Entity, Inst, Store, Table, Value, Values};
 use crate::op::{Op, Type};
 use crate::origin::Origin;
 
-/// What a fold does with its rows, for whoever wants to drop some of them.
-///
-/// The body says how rows are combined; the reduction says what dropping a row does to the result.
+/// What the rows of a fold are.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-pub enum Reduction {
-    /// Sum of fields: a row with a zero field is neutral.
-    Sum,
-    /// Ricci blend with a running scale: a row with a zero field is neutral.
-    Ricci,
-    /// Product of fields: a row with a zero field makes it zero.
-    Product,
-    /// Largest field: a row that is not the largest is not missed, nor is a zero field if the fold starts at zero.
-    Union,
-    /// Smallest field: a row that is not the smallest is not missed; a zero field is.
-    Intersection,
-    /// Two fields at a time, in order, by an operator that is not said: what dropping a row does is known elsewhere.
-    Step,
-    /// One row, whose answer passes through: a guard around one child. If it is dropped, its initial values stand.
-    Only,
-    /// The pieces of one leaf: what dropping one does is the leaf's to say.
+pub enum FoldKind {
+    /// Operands of one operator: any number of them.
+    Rows,
+    /// One row, or none: what stands under a guard, or is chosen. The answer of the row passes through, and without it the initial values do.
+    Guard,
+    /// The pieces of one leaf.
     Pieces,
 }
 
-impl Reduction {
-    /// All reductions.
-    pub const ALL: [Self; 8] = [
-        Self::Sum,
-        Self::Ricci,
-        Self::Product,
-        Self::Union,
-        Self::Intersection,
-        Self::Step,
-        Self::Only,
-        Self::Pieces,
-    ];
+impl FoldKind {
+    /// All kinds.
+    pub const ALL: [Self; 3] = [Self::Rows, Self::Guard, Self::Pieces];
 
     /// The name in the text form.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
-            Self::Sum => "sum",
-            Self::Ricci => "ricci",
-            Self::Product => "product",
-            Self::Union => "union",
-            Self::Intersection => "intersection",
-            Self::Step => "step",
-            Self::Only => "only",
+            Self::Rows => "rows",
+            Self::Guard => "guard",
             Self::Pieces => "pieces",
         }
     }
 }
 
-impl fmt::Display for Reduction {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
+/// What may be done with rows of a fold whose fields are zero all over a part of space: which of them may be left out there, so that no bit of an
+/// answer changes. The first accumulator is the field.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum Rule {
+    /// They may all be left out: rows of sums, of Ricci blends, of unions without negative operands and of selectors, guards that start at 0,
+    /// and pieces whose distance counts within the support radius only.
+    Neutral,
+    /// The first of each parent row's zero rows stays, the others may be left out: rows of unions and intersections with negative operands, and
+    /// of steps that a zero limits once and for all.
+    KeepOne,
+    /// If one is zero, all others of the same parent row may be left out, zero or not, and one that is zero stays: rows of intersections
+    /// without negative operands, of products and of Ricci blends with negative exponents.
+    OnlyZero,
+    /// Zero is no reason: the scene, guards that do not start at 0, points inside of warps, R-functions, what may answer for the whole model, and
+    /// pieces that count everywhere.
+    Never,
+}
+
+impl Rule {
+    /// All rules.
+    pub const ALL: [Self; 4] = [Self::Neutral, Self::KeepOne, Self::OnlyZero, Self::Never];
+
+    /// The name in the text form.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Neutral => "neutral",
+            Self::KeepOne => "keep_one",
+            Self::OnlyZero => "only_zero",
+            Self::Never => "never",
+        }
     }
 }
 
@@ -106,8 +107,10 @@ pub struct Schema {
 pub struct Fold {
     /// The table.
     pub table: Table,
-    /// What dropping a row does.
-    pub reduction: Reduction,
+    /// What its rows are.
+    pub kind: FoldKind,
+    /// What may be done with rows that are zero.
+    pub rule: Rule,
     /// Accumulators before the first row.
     pub initial: Values,
     /// The body: its parameters are the accumulators, its results their next values.

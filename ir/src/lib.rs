@@ -30,7 +30,7 @@ pub mod verify;
 
 pub use builder::FunctionBuilder;
 pub use entity::{Block, Entity, Inst, Store, Table, Value, Values};
-pub use function::{BlockData, Fold, Function, InstData, InstKind, Reduction, Schema};
+pub use function::{BlockData, Fold, FoldKind, Function, InstData, InstKind, Rule, Schema};
 pub use level::Level;
 pub use op::{Any, Domain, Op, Type, apply};
 pub use origin::{Origin, Part};

@@ -76,7 +76,7 @@ impl<F: FnMut(&mut FunctionBuilder, Op, &[Value]) -> Value> Rewrite<'_, F> {
             }
             InstKind::Fold(fold) => {
                 let initial = self.map_all(&fold.initial);
-                let params = self.builder.begin_fold(fold.table, fold.reduction, &initial);
+                let params = self.builder.begin_fold(fold.table, (fold.kind, fold.rule), &initial);
                 self.bind(&function.blocks[fold.body].params, &params);
                 self.insts(fold.body);
                 let next = self.map_all(&function.blocks[fold.body].results);
@@ -158,7 +158,8 @@ impl Renumber<'_> {
             InstKind::Op { op, args } => InstKind::Op { op: *op, args: self.map_all(args) },
             InstKind::Fold(fold) => InstKind::Fold(Fold {
                 table: fold.table,
-                reduction: fold.reduction,
+                kind: fold.kind,
+                rule: fold.rule,
                 initial: self.map_all(&fold.initial),
                 body: self.block(fold.body),
             }),

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use common::random;
 use jbt_ir::domain::counting::{Counting, evaluations};
 use jbt_ir::{
-    Domain, Entity, FunctionBuilder, InstKind, Op, Origin, Part, Reduction, Rows, Schema, Table, Tables,
+    Domain, Entity, FoldKind, FunctionBuilder, InstKind, Op, Origin, Part, Rows, Rule, Schema, Table, Tables,
     Value, Verified, interpret, verify,
 };
 
@@ -34,7 +34,7 @@ fn finish(b: FunctionBuilder, value: Value) -> Verified {
 /// A sum over `t`, in which each slot has a distance of one instruction, made of x and a column, and a falloff of another one.
 fn sum(b: &mut FunctionBuilder, t: Table, slots: &[u32], initial: Value) -> Value {
     let x = b.input(0);
-    let mut acc = b.begin_fold(t, Reduction::Sum, &[initial])[0];
+    let mut acc = b.begin_fold(t, (FoldKind::Rows, Rule::Neutral), &[initial])[0];
     for (column, &slot) in slots.iter().enumerate() {
         let c = b.column(t, column);
         b.set_origin(Origin::leaf(slot, Part::Distance));
@@ -78,7 +78,7 @@ fn rows_of_a_child_count_for_each_parent_row_that_owns_them() {
     let outer = table(&mut b, 1, None, &[]);
     let inner = table(&mut b, 1, Some(outer), &[0]);
     let zero = b.constant(0.0);
-    let acc = b.begin_fold(outer, Reduction::Sum, &[zero])[0];
+    let acc = b.begin_fold(outer, (FoldKind::Rows, Rule::Neutral), &[zero])[0];
     let part = sum(&mut b, inner, &[0], acc);
     let field = b.end_fold(&[part])[0];
     let function = finish(b, field);
@@ -98,8 +98,8 @@ fn a_fold_inside_another_one_that_is_not_its_parent_runs_all_its_rows_each_time(
     let other = table(&mut b, 1, None, &[]);
     let inner = table(&mut b, 1, Some(outer), &[0]);
     let zero = b.constant(0.0);
-    let acc = b.begin_fold(outer, Reduction::Sum, &[zero])[0];
-    let acc = b.begin_fold(other, Reduction::Sum, &[acc])[0];
+    let acc = b.begin_fold(outer, (FoldKind::Rows, Rule::Neutral), &[zero])[0];
+    let acc = b.begin_fold(other, (FoldKind::Rows, Rule::Neutral), &[acc])[0];
     let part = sum(&mut b, inner, &[0], acc);
     let part = b.end_fold(&[part])[0];
     let field = b.end_fold(&[part])[0];
@@ -119,9 +119,9 @@ fn hoisted(depends_on_outer_row: bool) -> Verified {
     let outer = table(&mut b, 1, None, &[]);
     let inner = table(&mut b, 1, Some(outer), &[0]);
     let (x, zero) = (b.input(0), b.constant(0.0));
-    let acc = b.begin_fold(outer, Reduction::Sum, &[zero])[0];
+    let acc = b.begin_fold(outer, (FoldKind::Rows, Rule::Neutral), &[zero])[0];
     let scale = if depends_on_outer_row { b.column(outer, 0) } else { x };
-    let part = b.begin_fold(inner, Reduction::Sum, &[acc])[0];
+    let part = b.begin_fold(inner, (FoldKind::Rows, Rule::Neutral), &[acc])[0];
     b.set_origin(Origin::leaf(0, Part::Distance));
     let distance = b.mul(x, scale);
     b.set_origin(Origin::SHARED);
@@ -161,7 +161,7 @@ fn a_duplicated_distance_counts_twice() {
     let mut b = FunctionBuilder::new("twice", &["x"]);
     let t = table(&mut b, 1, None, &[0]);
     let (x, zero) = (b.input(0), b.constant(0.0));
-    let acc = b.begin_fold(t, Reduction::Sum, &[zero])[0];
+    let acc = b.begin_fold(t, (FoldKind::Rows, Rule::Neutral), &[zero])[0];
     let c = b.column(t, 0);
     b.set_origin(Origin::leaf(0, Part::Distance));
     let (first, second) = (b.sub(x, c), b.sub(c, x));

@@ -13,8 +13,8 @@ use jbt_ir::domain::scalar::Scalar;
 use jbt_ir::interpret::run;
 use jbt_ir::pass::{GRADIENT, INTERVAL, PIPELINE, run_pipeline};
 use jbt_ir::{
-    Domain, Function, FunctionBuilder, Op, Reduction, Rows, Schema, Selection, Tables, Type, Value, Verified,
-    verify,
+    Domain, FoldKind, Function, FunctionBuilder, Op, Rows, Rule, Schema, Selection, Tables, Type, Value,
+    Verified, verify,
 };
 
 /// A range for each input plane.
@@ -295,7 +295,7 @@ fn tame(seed: u64) -> (Function, Tables) {
     let table = tame.builder.table(Schema { name: "row".into(), columns, parent: None, slots: vec![] });
     let zero = tame.builder.constant(0.0);
     let initial = [zero, tame.any(), zero];
-    let accumulators = tame.builder.begin_fold(table, Reduction::Sum, &initial);
+    let accumulators = tame.builder.begin_fold(table, (FoldKind::Rows, Rule::Neutral), &initial);
     let outside = tame.values.len();
     for column in 0..2 {
         let column = tame.builder.column(table, column);
@@ -389,7 +389,7 @@ fn single(op: Op, seed: u64) -> (Function, Tables) {
     let columns = vec!["a".into(), "b".into(), "c".into()];
     let table = b.table(Schema { name: "row".into(), columns, parent: None, slots: vec![] });
     let zero = b.constant(0.0);
-    b.begin_fold(table, Reduction::Only, &[zero; 4]);
+    b.begin_fold(table, (FoldKind::Guard, Rule::Neutral), &[zero; 4]);
     let mut reals: Vec<Value> = (0..3).map(|index| operand(&mut b, &mut random, index, table)).collect();
     if random.u8(0..6) == 0 {
         reals[1] = reals[0];

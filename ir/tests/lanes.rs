@@ -8,7 +8,7 @@ use jbt_ir::domain::scalar::Scalar;
 use jbt_ir::interpret;
 use jbt_ir::pass::{PIPELINE, legalize, run_pipeline};
 use jbt_ir::{
-    Domain, Function, FunctionBuilder, Op, Reduction, Rows, Schema, Selection, Table, Tables, Value,
+    Domain, FoldKind, Function, FunctionBuilder, Op, Rows, Rule, Schema, Selection, Table, Tables, Value,
     Verified, verify,
 };
 
@@ -155,7 +155,7 @@ fn sum_of_squares() -> Verified {
     let mut b = FunctionBuilder::new("sum", &["x"]);
     let t = table(&mut b, &["c"], None);
     let (x, zero) = (b.input(0), b.constant(0.0));
-    let acc = b.begin_fold(t, Reduction::Sum, &[zero])[0];
+    let acc = b.begin_fold(t, (FoldKind::Rows, Rule::Neutral), &[zero])[0];
     let c = b.column(t, 0);
     let d = b.sub(x, c);
     let next = b.fma(d, d, acc);
@@ -194,8 +194,8 @@ fn a_sum_of_sums_carries_one_accumulator() {
     let (outer, x) = (table(&mut b, &["a"], None), b.input(0));
     let inner = table(&mut b, &["b"], Some(outer));
     let zero = b.constant(0.0);
-    let acc = b.begin_fold(outer, Reduction::Sum, &[zero])[0];
-    let part = b.begin_fold(inner, Reduction::Sum, &[acc])[0];
+    let acc = b.begin_fold(outer, (FoldKind::Rows, Rule::Neutral), &[zero])[0];
+    let part = b.begin_fold(inner, (FoldKind::Rows, Rule::Neutral), &[acc])[0];
     let column = b.column(inner, 0);
     let next = b.fma(column, x, part);
     let part = b.end_fold(&[next])[0];
@@ -220,9 +220,9 @@ fn columns_of_an_outer_row_are_seen_in_the_inner_body() {
     let (outer, x) = (table(&mut b, &["scale"], None), b.input(0));
     let inner = table(&mut b, &["c"], Some(outer));
     let zero = b.constant(0.0);
-    let acc = b.begin_fold(outer, Reduction::Sum, &[zero])[0];
+    let acc = b.begin_fold(outer, (FoldKind::Rows, Rule::Neutral), &[zero])[0];
     let scale = b.column(outer, 0);
-    let part = b.begin_fold(inner, Reduction::Sum, &[zero])[0];
+    let part = b.begin_fold(inner, (FoldKind::Rows, Rule::Neutral), &[zero])[0];
     let c = b.column(inner, 0);
     // On numbers of rows alone, and one of them is of the outer row: a splat.
     let product = b.mul(scale, c);
@@ -246,7 +246,7 @@ fn accumulators_may_swap_and_rotate() {
     let (x, y, z) = (b.input(0), b.input(1), b.input(2));
     let (one, two) = (b.constant(1.0), b.constant(2.0));
     // Three blocks and two splats rotate, two count as Fibonacci did, one is overwritten by an outer value.
-    let acc = b.begin_fold(t, Reduction::Sum, &[x, y, z, one, two, x, y, x]);
+    let acc = b.begin_fold(t, (FoldKind::Rows, Rule::Neutral), &[x, y, z, one, two, x, y, x]);
     let next = b.add(acc[5], acc[6]);
     let result = b.end_fold(&[acc[1], acc[2], acc[0], acc[4], acc[3], acc[6], next, z]);
     let function = finish(b, &result);
@@ -346,7 +346,7 @@ fn a_long_chain_of_folds_compiles() {
     let mut tables = Tables::default();
     for _ in 0..count {
         let t = table(&mut b, &["c"], None);
-        let acc = b.begin_fold(t, Reduction::Sum, &[sum])[0];
+        let acc = b.begin_fold(t, (FoldKind::Rows, Rule::Neutral), &[sum])[0];
         let c = b.column(t, 0);
         let next = b.fma(c, x, acc);
         sum = b.end_fold(&[next])[0];

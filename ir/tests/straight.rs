@@ -88,8 +88,8 @@ fn with_points(table: &str, code: &str) -> Function {
 block0:
     v0 = input x
     v1 = const 0.0
-    v2 = fold t0 only (v1) block1(v3):
-        v4 = fold t1 union (v3) block2(v5):
+    v2 = fold t0 guard neutral (v1) block1(v3):
+        v4 = fold t1 rows neutral (v3) block2(v5):
             v6 = column t1.a
             v7 = mul v0, v6
             v8 = sqrt v7
@@ -203,7 +203,7 @@ fn a_number_that_moved_stays_in_a_column_of_its_own() {
 
 #[test]
 fn rows_of_primitives_stay_rows_and_keep_their_counts() {
-    let code = "v13 = fold t2 sum (v4) block3(v16):
+    let code = "v13 = fold t2 rows neutral (v4) block3(v16):
             v17 = column t2.c
             v18 = mul v0, v17 @0.distance
             v19 = add v16, v18

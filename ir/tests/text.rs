@@ -115,7 +115,7 @@ fn nested(depth: usize) -> String {
     let mut text = "function \"f\" (x) -> () {\n".to_owned();
     text.extend((0..depth).map(|table| format!("table t{table} \"t\" ()\n")));
     text.push_str("block0:\n");
-    text.extend((0..depth).map(|table| format!("fold t{table} sum () block{}:\n", table + 1)));
+    text.extend((0..depth).map(|table| format!("fold t{table} rows neutral () block{}:\n", table + 1)));
     text + &"yield\n".repeat(depth + 1) + "}"
 }
 

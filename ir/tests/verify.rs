@@ -10,8 +10,8 @@ use jbt_ir::domain::scalar::Scalar;
 use jbt_ir::limits::{MAX_FOLD_DEPTH, MAX_TABLES, MAX_VALUES};
 use jbt_ir::text::annotated;
 use jbt_ir::{
-    Block, BlockData, Entity, Fold, Function, Inst, InstData, InstKind, Op, Origin, Place, Reduction, Schema,
-    Table, Type, Value, Values, VerifyError, interpret, parse, verify,
+    Block, BlockData, Entity, Fold, FoldKind, Function, Inst, InstData, InstKind, Op, Origin, Place, Rule,
+    Schema, Table, Type, Value, Values, VerifyError, interpret, parse, verify,
 };
 
 /// `f(x) = x + x`, with one instruction for each.
@@ -119,7 +119,7 @@ fn nested(depth: usize) -> Function {
     for _ in 0..depth {
         let table = add_table(&mut function);
         let body = function.blocks.push(BlockData::default());
-        let fold = Fold { table, reduction: Reduction::Only, initial: Values::new(), body };
+        let fold = Fold { table, kind: FoldKind::Guard, rule: Rule::Neutral, initial: Values::new(), body };
         let data = InstData { kind: InstKind::Fold(fold), results: Values::new(), origin: Origin::SHARED };
         let inst = function.insts.push(data);
         function.blocks[block].insts.push(inst);

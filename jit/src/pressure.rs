@@ -155,7 +155,7 @@ impl Walk<'_> {
 
 #[cfg(test)]
 mod tests {
-    use jbt_ir::{Domain, Function, FunctionBuilder, Reduction, Schema, Value};
+    use jbt_ir::{Domain, FoldKind, Function, FunctionBuilder, Rule, Schema, Value};
 
     use super::{carried_values, live_values};
     use crate::strips::Plan;
@@ -210,7 +210,7 @@ mod tests {
             b.sqrt(input)
         });
         let zero = b.constant(0.0);
-        let acc = b.begin_fold(t, Reduction::Sum, &[zero]);
+        let acc = b.begin_fold(t, (FoldKind::Rows, Rule::Neutral), &[zero]);
         let c = b.column(t, 0);
         // Each value from outside is read once, and for the last time in its row, but the next row reads it
         // again.

@@ -351,7 +351,7 @@ impl<'a> Lives<'a> {
 
 #[cfg(test)]
 mod tests {
-    use jbt_ir::{Domain, Function, FunctionBuilder, InstKind, Reduction, Schema, Value};
+    use jbt_ir::{Domain, FoldKind, Function, FunctionBuilder, InstKind, Rule, Schema, Value};
 
     use super::{Plan, Then};
 
@@ -407,7 +407,7 @@ mod tests {
         let x = b.input(0);
         let outside = b.sqrt(x);
         let initial = b.abs(outside);
-        let acc = b.begin_fold(t, Reduction::Sum, &[initial]);
+        let acc = b.begin_fold(t, (FoldKind::Rows, Rule::Neutral), &[initial]);
         let c = b.column(t, 0);
         let inside = b.mul(c, outside);
         let inside = roots(&mut b, inside, length);
@@ -442,7 +442,7 @@ mod tests {
         for index in 0..4 {
             let schema = Schema { name: index.to_string(), columns: vec![], parent: None, slots: Vec::new() };
             let t = b.table(schema);
-            let acc = b.begin_fold(t, Reduction::Sum, &[last]);
+            let acc = b.begin_fold(t, (FoldKind::Rows, Rule::Neutral), &[last]);
             let next = b.add(acc[0], first);
             last = b.end_fold(&[next])[0];
         }

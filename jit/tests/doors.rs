@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use common::{assert_same_bits, finish, reference, rows, run, spicy_plane, table, tables};
 use jbt_ir::limits::{MAX_JIT_FRAME_BYTES, MAX_JIT_LIVE_VALUES, MAX_JIT_VALUES};
-use jbt_ir::{Domain, FunctionBuilder, Level, Reduction, Tables, Value, Verified};
+use jbt_ir::{Domain, FoldKind, FunctionBuilder, Level, Rule, Tables, Value, Verified};
 use jbt_jit::{Allocator, Backend, CompileError, Kernel, Options, Pieces, RunError, VectorCount, clif};
 
 /// The sum over rows of `c0 * x`, and `y`.
@@ -17,7 +17,7 @@ fn function() -> Verified {
     let mut b = FunctionBuilder::new("doors", &["x", "y"]);
     let t = table(&mut b, None, 1);
     let (x, y, zero) = (b.input(0), b.input(1), b.constant(0.0));
-    let acc = b.begin_fold(t, Reduction::Sum, &[zero]);
+    let acc = b.begin_fold(t, (FoldKind::Rows, Rule::Neutral), &[zero]);
     let c = b.column(t, 0);
     let next = b.fma(c, x, acc[0]);
     let out = b.end_fold(&[next]);
@@ -223,7 +223,7 @@ fn a_frame_that_is_too_large_is_refused() {
     let mut values = vec![b.input(0); 50];
     for _ in 0..100 {
         let t = table(&mut b, None, 1);
-        let acc = b.begin_fold(t, Reduction::Sum, &values);
+        let acc = b.begin_fold(t, (FoldKind::Rows, Rule::Neutral), &values);
         let c = b.column(t, 0);
         let next: Vec<Value> = acc.iter().map(|&value| b.add(value, c)).collect();
         values = b.end_fold(&next);

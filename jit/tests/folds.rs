@@ -7,7 +7,7 @@ mod common;
 
 use common::{SPICE, check, finish, rows, spicy_plane, table, tables, tame_plane};
 use jbt_ir::pass::gates;
-use jbt_ir::{Domain, FunctionBuilder, Reduction, Tables, Value, Verified};
+use jbt_ir::{Domain, FoldKind, FunctionBuilder, Rule, Tables, Value, Verified};
 
 /// Points that tell rows apart, and points that break things.
 fn points() -> Vec<Vec<f32>> {
@@ -19,7 +19,7 @@ fn sum() -> Verified {
     let mut b = FunctionBuilder::new("sum", &["x", "y", "z"]);
     let t = table(&mut b, None, 2);
     let (x, zero) = (b.input(0), b.constant(0.0));
-    let acc = b.begin_fold(t, Reduction::Sum, &[zero]);
+    let acc = b.begin_fold(t, (FoldKind::Rows, Rule::Neutral), &[zero]);
     let (c0, c1) = (b.column(t, 0), b.column(t, 1));
     let term = b.fma(c0, x, c1);
     let next = b.add(acc[0], term);
@@ -51,7 +51,7 @@ fn accumulators_may_swap_places() {
     let mut b = FunctionBuilder::new("swap", &["x", "y", "z"]);
     let t = table(&mut b, None, 1);
     let initial = [b.input(0), b.input(1), b.input(2)];
-    let acc = b.begin_fold(t, Reduction::Sum, &initial);
+    let acc = b.begin_fold(t, (FoldKind::Rows, Rule::Neutral), &initial);
     let c = b.column(t, 0);
     let changed = b.mul(acc[2], c);
     let out = b.end_fold(&[acc[1], acc[0], changed]);
@@ -70,7 +70,7 @@ fn accumulators_may_be_masks_and_bits() {
     let (x, y, zero) = (b.input(0), b.input(1), b.constant(0.0));
     let never = b.lt(zero, zero);
     let seed = b.bits_constant(0x9E37_79B9);
-    let acc = b.begin_fold(t, Reduction::Union, &[never, seed, zero]);
+    let acc = b.begin_fold(t, (FoldKind::Rows, Rule::Neutral), &[never, seed, zero]);
     let (c0, c1) = (b.column(t, 0), b.column(t, 1));
     let inside = b.lt(x, c0);
     let any = b.either(acc[0], inside);
@@ -95,7 +95,7 @@ fn values_from_outside_are_seen_inside() {
     let outside = b.fma(x, y, z);
     let mask = b.lt(x, y);
     let initial = b.constant(-0.0);
-    let acc = b.begin_fold(t, Reduction::Sum, &[initial, initial]);
+    let acc = b.begin_fold(t, (FoldKind::Rows, Rule::Neutral), &[initial, initial]);
     let (c0, c1) = (b.column(t, 0), b.column(t, 1));
     let both = b.mul(c0, c1); // Of the row alone: the same in all lanes.
     let term = b.select(mask, outside, both);
@@ -114,7 +114,7 @@ fn folds_follow_one_another() {
     let mut carried = b.input(0);
     let constant = b.constant(1.25);
     for (index, &t) in t.iter().enumerate() {
-        let acc = b.begin_fold(t, Reduction::Sum, &[carried, constant]);
+        let acc = b.begin_fold(t, (FoldKind::Rows, Rule::Neutral), &[carried, constant]);
         let c = b.column(t, index % 2);
         let scaled = b.fma(acc[0], constant, c);
         let next = [b.min(scaled, acc[1]), b.add(acc[1], c)];
@@ -137,13 +137,13 @@ fn nested() -> Verified {
     let t1 = table(&mut b, Some(t0), 1);
     let t2 = table(&mut b, Some(t1), 2);
     let (x, y, zero) = (b.input(0), b.input(1), b.constant(0.0));
-    let outer = b.begin_fold(t0, Reduction::Union, &[zero, x]);
+    let outer = b.begin_fold(t0, (FoldKind::Rows, Rule::Neutral), &[zero, x]);
     let a0 = b.column(t0, 0);
     let shifted = b.sub(x, a0);
-    let middle = b.begin_fold(t1, Reduction::Sum, &[zero]);
+    let middle = b.begin_fold(t1, (FoldKind::Rows, Rule::Neutral), &[zero]);
     let b0 = b.column(t1, 0);
     let scale = b.mul(b0, a0);
-    let inner = b.begin_fold(t2, Reduction::Sum, &[middle[0]]);
+    let inner = b.begin_fold(t2, (FoldKind::Rows, Rule::Neutral), &[middle[0]]);
     let (c0, c1) = (b.column(t2, 0), b.column(t2, 1));
     let term = b.fma(shifted, c0, c1);
     let term = b.mul(term, scale);
@@ -184,10 +184,10 @@ fn folds_may_stand_in_folds_that_own_nothing() {
     let never = b.lt(zero, zero);
     let seed = b.bits_constant(0x9E37_79B9);
     let root = b.sqrt(x);
-    let outer = b.begin_fold(t0, Reduction::Sum, &[root, root, never, seed]);
+    let outer = b.begin_fold(t0, (FoldKind::Rows, Rule::Neutral), &[root, root, never, seed]);
     let c = b.column(t0, 0);
     let scaled = b.mul(outer[0], c);
-    let inner = b.begin_fold(t1, Reduction::Sum, &[scaled, scaled, outer[2], outer[3]]);
+    let inner = b.begin_fold(t1, (FoldKind::Rows, Rule::Neutral), &[scaled, scaled, outer[2], outer[3]]);
     let (c0, c1) = (b.column(t1, 0), b.column(t1, 1));
     let inside = b.lt(inner[1], c0);
     let any = b.either(inner[2], inside);
@@ -210,7 +210,7 @@ fn a_table_without_columns_counts() {
     let mut b = FunctionBuilder::new("count", &["x", "y", "z"]);
     let t = table(&mut b, None, 0);
     let (x, zero) = (b.input(0), b.constant(0.0));
-    let acc = b.begin_fold(t, Reduction::Sum, &[zero]);
+    let acc = b.begin_fold(t, (FoldKind::Rows, Rule::Neutral), &[zero]);
     let next = b.add(acc[0], x);
     let out = b.end_fold(&[next]);
     let function = finish(b, &out);
@@ -247,7 +247,7 @@ fn many_accumulators_go_round() {
     let t = table(&mut b, None, count);
     let (x, zero) = (b.input(0), b.constant(0.0));
     let initial = vec![zero; count];
-    let acc = b.begin_fold(t, Reduction::Sum, &initial);
+    let acc = b.begin_fold(t, (FoldKind::Rows, Rule::Neutral), &initial);
     let next: Vec<Value> = (0..count)
         .map(|index| {
             let c = b.column(t, index);
@@ -272,13 +272,13 @@ fn random_programs_have_the_bits_of_the_reference() {
         grow(&mut b, &mut random, &mut known, 12);
         let initial = [pick(&mut random, &known), pick(&mut random, &known), pick(&mut random, &known)];
         let outside = known.len();
-        let acc = b.begin_fold(outer, Reduction::Sum, &initial);
+        let acc = b.begin_fold(outer, (FoldKind::Rows, Rule::Neutral), &initial);
         known.extend(acc);
         known.extend((0..3).map(|column| b.column(outer, column)));
         grow(&mut b, &mut random, &mut known, 8);
         let start = [pick(&mut random, &known), pick(&mut random, &known)];
         let between = known.len();
-        let acc = b.begin_fold(inner, Reduction::Sum, &start);
+        let acc = b.begin_fold(inner, (FoldKind::Rows, Rule::Neutral), &start);
         known.extend(acc);
         known.extend((0..2).map(|column| b.column(inner, column)));
         grow(&mut b, &mut random, &mut known, 10);
@@ -350,9 +350,9 @@ fn blends() -> Verified {
     let inner = table(&mut b, Some(outer), 4);
     let (x, y, z) = (b.input(0), b.input(1), b.input(2));
     let (zero, one, least) = (b.constant(0.0), b.constant(1.0), b.constant(1e-30));
-    let union = b.begin_fold(outer, Reduction::Union, &[zero]);
+    let union = b.begin_fold(outer, (FoldKind::Rows, Rule::Neutral), &[zero]);
     let scale = b.column(outer, 0);
-    let acc = b.begin_fold(inner, Reduction::Ricci, &[least, zero]);
+    let acc = b.begin_fold(inner, (FoldKind::Rows, Rule::Neutral), &[least, zero]);
     let c: Vec<Value> = (0..4).map(|column| b.column(inner, column)).collect();
     let offsets = [b.sub(x, c[0]), b.sub(y, c[1]), b.sub(z, c[2])];
     let square = offsets.iter().fold(zero, |sum, &offset| b.fma(offset, offset, sum));

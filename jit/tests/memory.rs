@@ -8,7 +8,7 @@ mod common;
 use std::sync::Arc;
 
 use common::{finish, rows, run, table, tables};
-use jbt_ir::{Domain, FunctionBuilder, Reduction};
+use jbt_ir::{Domain, FoldKind, FunctionBuilder, Rule};
 use jbt_jit::Kernel;
 
 /// Mappings of this process, and its pages of address space.
@@ -24,7 +24,7 @@ fn compiling_and_dropping_does_not_grow_the_process() {
     let mut b = FunctionBuilder::new("sum", &["x"]);
     let t = table(&mut b, None, 1);
     let (x, zero) = (b.input(0), b.constant(0.0));
-    let acc = b.begin_fold(t, Reduction::Sum, &[zero]);
+    let acc = b.begin_fold(t, (FoldKind::Rows, Rule::Neutral), &[zero]);
     let c = b.column(t, 0);
     let next = b.fma(c, x, acc[0]);
     let out = b.end_fold(&[next]);

@@ -1,7 +1,7 @@
 //! Leaving a row out gives the bits that running it gives, where the row adds nothing: what pruning will rest on.
 
 use jbt::ir::domain::scalar::Scalar;
-use jbt::ir::{Entity, Reduction, Tables, interpret};
+use jbt::ir::{Entity, FoldKind, Rule, Tables, interpret};
 use jbt::{Compiler, Engine, Evaluator, Query};
 use jbt_frontend::text::{Options, parse};
 
@@ -35,7 +35,7 @@ fn answers(evaluator: &Evaluator, tables: &Tables, point: [f32; 3]) -> Vec<u32> 
     answers.into_iter().map(f32::to_bits).collect()
 }
 
-/// The tables without the rows of sums and blends whose leaf is out of reach of the point.
+/// The tables without the rows that are neutral where they are zero, and whose leaf is out of reach of the point.
 fn reduced(evaluator: &Evaluator, point: [f32; 3]) -> (Tables, usize) {
     let function = evaluator.program().function();
     let mut tables = evaluator.tables().clone();
@@ -43,7 +43,7 @@ fn reduced(evaluator: &Evaluator, point: [f32; 3]) -> (Tables, usize) {
     for (table, fold) in function.tables.keys().zip(function.folds()) {
         let Some(fold) = fold else { continue };
         let jbt::ir::InstKind::Fold(fold) = &function.insts[fold].kind else { continue };
-        if !matches!(fold.reduction, Reduction::Sum | Reduction::Ricci) {
+        if (fold.kind, fold.rule) != (FoldKind::Rows, Rule::Neutral) {
             continue;
         }
         let schema = &function.tables[table];

@@ -1,6 +1,6 @@
 //! What steps and maps state about themselves, and what may be done with their operands.
 
-use jbt_ir::Domain;
+use jbt_ir::{Domain, Rule};
 
 /// What a map has.
 pub(super) trait Unary: Copy {
@@ -69,23 +69,6 @@ pub(super) trait Step: Copy {
     /// The step over the ops. `iso2` is twice the iso-value.
     fn emit<D: Domain>(self, d: &mut D, sides: [D::Real; 2], row: &[D::Real], iso2: D::Real)
     -> Pair<D::Real>;
-}
-
-/// What may be done with rows that are zero all over a box.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Rule {
-    /// They may all be left out: rows of sums, of Ricci blends, of unions without negative operands and of selectors, guards that start at 0,
-    /// and pieces whose distance counts within the support radius only.
-    Neutral,
-    /// The first of each parent row's zero rows stays, the others may be left out: rows of unions and intersections with negative operands, and
-    /// of steps that a zero limits once and for all.
-    KeepOne,
-    /// If one is zero, all others of the same parent row may be left out, zero or not, and one that is zero stays: rows of intersections
-    /// without negative operands, of products and of Ricci blends with negative exponents.
-    OnlyZero,
-    /// Zero is no reason: the scene, guards that do not start at 0, points inside of warps, R-functions, what may answer for the whole model, and
-    /// pieces that count everywhere.
-    Never,
 }
 
 /// The difference between the largest and the second largest; infinity if there is no second.

@@ -47,7 +47,6 @@ pub(crate) mod symmetric_difference;
 pub(crate) mod unary;
 pub(crate) mod union;
 
-pub use member::Rule;
 pub use rfunction::Family;
 pub use set::SetOperation;
 

@@ -32,9 +32,9 @@
 //! the tie of alpha = 1); there the root has the tangent 0. R_0^m is not monotone. Weights are `f dF/df`, those of what is subtracted by its complement,
 //! where it is there.
 
-use jbt_ir::Domain;
+use jbt_ir::{Domain, Rule};
 
-use super::member::{Pair, Reach, Rule, Step};
+use super::member::{Pair, Reach, Step};
 use super::ricci::FLOOR;
 use super::set::SetOperation;
 use crate::skeleton::positive_part;

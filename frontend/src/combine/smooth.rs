@@ -14,9 +14,9 @@
 //! Both operations grow with either field. Where the fields are small against k they are homogeneous: `max + min^2 / (a + b)`, `a b / (a + b)`.
 //! Fields that are negative are not rounded. Weights are `f dF/df`; what is subtracted counts by its complement, where it is there.
 
-use jbt_ir::Domain;
+use jbt_ir::{Domain, Rule};
 
-use super::member::{Pair, Reach, Rule, Step};
+use super::member::{Pair, Reach, Step};
 use super::set::SetOperation;
 use crate::skeleton::positive_part;
 

@@ -7,10 +7,10 @@
 //!
 //! A step weighs its two sides by `max(0, f dF/df)`; a side without weight is not there, nor is one whose own sides had none.
 
-use jbt_ir::Domain;
+use jbt_ir::{Domain, Rule};
 
 use super::SetOperation;
-use super::member::{Pair, Reach, Rule, Step};
+use super::member::{Pair, Reach, Step};
 use super::rfunction::{FamilyKind, RFunction};
 use super::smooth::Smooth;
 use super::symmetric_difference::SymmetricDifference;

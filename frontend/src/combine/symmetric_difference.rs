@@ -6,9 +6,9 @@
 //!
 //! Far from the other side, a side is limited to 2 iso, and once it is, a zero changes nothing: of zero rows one has to stay.
 
-use jbt_ir::Domain;
+use jbt_ir::{Domain, Rule};
 
-use super::member::{Pair, Reach, Rule, Step};
+use super::member::{Pair, Reach, Step};
 use crate::skeleton::positive_part;
 
 /// See the module.

@@ -29,10 +29,10 @@ mod select;
 use rustc_hash::FxHashMap as HashMap;
 use std::rc::Rc;
 
-use jbt_ir::{Domain, Function, FunctionBuilder, Table, Value, limits};
+use jbt_ir::{Domain, Function, FunctionBuilder, Rule, Table, Value, limits};
 
 use self::parts::{Extreme, Guard, GuardStart, Probes, Select};
-use super::guide::{Decision, DecisionKind, Rule};
+use super::guide::{Decision, DecisionKind};
 use super::mixing::{Answer, Operator, State, difference, mapped};
 use super::names::ComputedId;
 use super::occurrence::{FieldId, OccurrenceId, OccurrenceKind, Scene, SpaceId};
@@ -62,8 +62,6 @@ pub(super) struct TableCode {
     pub(super) space: SpaceId,
     /// The first of the three probes of the point in that space, in a guide function, if all rows see the same point.
     pub(super) probe: Option<usize>,
-    /// What may be done with rows that are zero.
-    pub(super) rule: Rule,
 }
 
 /// How many attribute groups a query asks for.

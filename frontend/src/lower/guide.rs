@@ -13,11 +13,11 @@
 //! A *guard* is a fold over one row around an operand that has tables of its own. Where the row is left out, the operand's field is what
 //! the fold starts with: 0, or the lowest or highest number where that never decides.
 
+pub use jbt_ir::Rule;
 use jbt_ir::{Function, Store, Table, Tables};
 
 use crate::bounds::Bounds;
 use crate::check::NodeId;
-pub use crate::combine::Rule;
 
 /// Supports say nothing about points with a coordinate beyond this, in magnitude: 2^20.
 pub const LARGEST_COORDINATE: f32 = 1_048_576.0;

@@ -1,6 +1,6 @@
 //! Makes the guide of a scene: the guide function, and what there is to know about its tables.
 
-use jbt_ir::Store;
+use jbt_ir::{Entity as _, Function, InstKind, Rule, Store};
 
 use super::emit::{self, TableCode};
 use super::guide::{Guide, Guided, SpaceGuide, Support, TableGuide};
@@ -17,18 +17,30 @@ pub(super) fn guided(scene: &Scene<'_>, shapes: &Shapes) -> Result<Guided, Vec<D
     let rows = rows::rows(scene, shapes, Query::FIELD, &code)?;
     let supports = Supports::new(scene);
     let mut tables = Store::new();
-    for (code, members) in code.tables.iter().zip(&rows.members) {
-        tables.push(table_guide(scene, &supports, code, members));
+    let rules = rules(&code.function);
+    for ((code, members), rule) in code.tables.iter().zip(&rows.members).zip(rules) {
+        tables.push(table_guide(scene, &supports, (code, rule), members));
     }
     let iso2 = (2.0 * scene.tree.iso()) as f32;
     let guide = Guide { tables, probes: code.function.outputs.len() - 1, decisions: code.decisions, iso2 };
     Ok(Guided { function: code.function, tables: rows.tables, guide })
 }
 
+/// By table, what may be done with rows that are zero: nothing where no fold runs them.
+fn rules(function: &Function) -> Vec<Rule> {
+    let mut rules = vec![Rule::Never; function.tables.len()];
+    for data in function.insts.values() {
+        if let InstKind::Fold(fold) = &data.kind {
+            rules[fold.table.index()] = fold.rule;
+        }
+    }
+    rules
+}
+
 fn table_guide(
     scene: &Scene<'_>,
     supports: &Supports<'_>,
-    code: &TableCode,
+    (code, rule): (&TableCode, Rule),
     members: &[Member],
 ) -> TableGuide {
     let space = match (code.space, code.probe) {
@@ -39,7 +51,7 @@ fn table_guide(
     TableGuide {
         space,
         supports: members.iter().map(|member| support(supports, member)).collect(),
-        rule: code.rule,
+        rule,
         nodes: members.iter().map(|member| member.node(scene)).collect(),
         is_lifted: members.iter().any(|member| matches!(member, Member::Lifted(_))),
     }

@@ -104,7 +104,7 @@ fn sources(function: &Function) -> Store<Value, Option<Source>> {
 mod tests {
     use super::*;
     use crate::builder::FunctionBuilder;
-    use crate::function::{Reduction, Schema};
+    use crate::function::{FoldKind, Rule, Schema};
     use crate::op::{Domain, Op};
 
     fn schema(columns: &[&str]) -> Schema {
@@ -136,7 +136,7 @@ mod tests {
         let zero = b.constant(0.0);
         let table = b.table(schema(&["a", "b"]));
         // 0 is wanted and reads 2; 1 and 3 feed each other only.
-        let acc = b.begin_fold(table, Reduction::Sum, &[zero, zero, x, x]);
+        let acc = b.begin_fold(table, (FoldKind::Rows, Rule::Neutral), &[zero, zero, x, x]);
         let (first, second) = (b.column(table, 0), b.column(table, 1));
         let next =
             [b.add(acc[0], acc[2]), b.mul(acc[3], second), b.mul(acc[2], first), b.add(acc[1], second)];
@@ -162,7 +162,7 @@ mod tests {
         let mut b = FunctionBuilder::new("f", &["x"]);
         let x = b.input(0);
         let table = b.table(schema(&["a"]));
-        let acc = b.begin_fold(table, Reduction::Sum, &[x]);
+        let acc = b.begin_fold(table, (FoldKind::Rows, Rule::Neutral), &[x]);
         let column = b.column(table, 0);
         let next = b.op(Op::Add, &[acc[0], column]);
         b.end_fold(&[next]);

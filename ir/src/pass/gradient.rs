@@ -6,9 +6,9 @@
 //! found beforehand, because an accumulator can begin to move only in the body.
 //!
 //! ```text
-//! (s) = fold t0 sum (0) (acc): ... yield next
+//! (s) = fold t0 rows neutral (0) (acc): ... yield next
 //!     becomes
-//! (s, sx, sy, sz) = fold t0 sum (0, 0, 0, 0) (acc, ax, ay, az): ... yield next, nx, ny, nz
+//! (s, sx, sy, sz) = fold t0 rows neutral (0, 0, 0, 0) (acc, ax, ay, az): ... yield next, nx, ny, nz
 //! ```
 
 use crate::builder::FunctionBuilder;
@@ -200,7 +200,7 @@ impl Pass<'_> {
         let origin = self.tangent.builder.origin();
         let body = &self.function.blocks[fold.body];
         let initial = self.flatten(&fold.initial, &body.params);
-        let params = self.tangent.builder.begin_fold(fold.table, fold.reduction, &initial);
+        let params = self.tangent.builder.begin_fold(fold.table, (fold.kind, fold.rule), &initial);
         self.unflatten(&body.params, &params);
         self.block(fold.body);
         let next = self.flatten(&body.results, &body.params);

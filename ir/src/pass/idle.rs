@@ -21,7 +21,7 @@ use std::collections::{HashMap, HashSet};
 use crate::domain::scalar::Scalar;
 use crate::entity::{Block, Entity, Inst, Store, Value};
 use crate::facts::Fact;
-use crate::function::{Fold, Function, InstKind, Reduction};
+use crate::function::{Fold, FoldKind, Function, InstKind};
 use crate::op::{Any, Op, apply};
 
 /// Steps that a gate has to spare, at least. To ask takes about four.
@@ -125,7 +125,7 @@ fn is_idle(
     let is_idle = all.all(|((&param, &next), &initial)| {
         let begins = Now::known(initial, facts[initial.index()]);
         // A guard has one row.
-        let is_first = fold.reduction == Reduction::Only && begins.is_exact() && of(next) == begins;
+        let is_first = fold.kind == FoldKind::Guard && begins.is_exact() && of(next) == begins;
         is_first || of(next) == Now::Same(param)
     });
     for &inst in &body.insts[at..] {
@@ -339,7 +339,7 @@ fn computed(op: Op, args: &[Now]) -> Option<Now> {
 mod tests {
     use super::*;
     use crate::builder::FunctionBuilder;
-    use crate::function::Schema;
+    use crate::function::{Rule, Schema};
     use crate::op::Domain;
 
     /// A fold of ten roots and what `write` makes of the accumulator, which begins at `start`, and of a clamped number.
@@ -348,7 +348,7 @@ mod tests {
         let columns = vec!["c".to_owned()];
         let table = b.table(Schema { name: "t".to_owned(), columns, parent: None, slots: Vec::new() });
         let (x, zero, start) = (b.input(0), b.constant(0.0), b.constant(start));
-        let acc = b.begin_fold(table, Reduction::Ricci, &[start])[0];
+        let acc = b.begin_fold(table, (FoldKind::Rows, Rule::Neutral), &[start])[0];
         let column = b.column(table, 0);
         let reach = b.sub(column, x);
         let near = b.max(reach, zero);
@@ -402,7 +402,7 @@ mod tests {
         let schema = Schema { name: "t".to_owned(), columns: Vec::new(), parent: None, slots: Vec::new() };
         let table = b.table(schema);
         let (x, zero) = (b.input(0), b.constant(0.0));
-        let acc = b.begin_fold(table, Reduction::Sum, &[zero])[0];
+        let acc = b.begin_fold(table, (FoldKind::Rows, Rule::Neutral), &[zero])[0];
         let near = b.max(x, zero);
         let next = b.add(acc, near);
         let out = b.end_fold(&[next])[0];

@@ -5,9 +5,9 @@
 //! columns and origins stay, so the rows of the one function are those of the other.
 //!
 //! ```text
-//! (s) = fold t0 sum (0) (acc): ... yield next
+//! (s) = fold t0 rows neutral (0) (acc): ... yield next
 //!     becomes
-//! (s.low, s.high) = fold t0 sum (0, 0) (acc.low, acc.high): ... yield next.low, next.high
+//! (s.low, s.high) = fold t0 rows neutral (0, 0) (acc.low, acc.high): ... yield next.low, next.high
 //! ```
 //!
 //! A mask accumulator becomes two masks: it certainly holds, it certainly does not. An accumulator that no input moves stays one
@@ -77,7 +77,7 @@ impl Ground for Emitting {
         initial: Vec<Any<FunctionBuilder>>,
     ) -> Vec<Any<FunctionBuilder>> {
         let (types, initial): (Vec<_>, Vec<Value>) = initial.into_iter().map(split).unzip();
-        let params = walk.interval.domain.begin_fold(fold.table, fold.reduction, &initial);
+        let params = walk.interval.domain.begin_fold(fold.table, (fold.kind, fold.rule), &initial);
         let params = types.iter().zip(params).map(|(wrap, value)| wrap(value)).collect();
         let next: Vec<Value> = walk.body(fold, params).into_iter().map(|any| split(any).1).collect();
         walk.interval.domain.set_origin(origin);

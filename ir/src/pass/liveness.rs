@@ -167,7 +167,7 @@ impl<'a> Liveness<'a> {
 mod tests {
     use super::*;
     use crate::builder::FunctionBuilder;
-    use crate::function::{Reduction, Schema};
+    use crate::function::{FoldKind, Rule, Schema};
     use crate::op::Domain;
 
     #[test]
@@ -195,7 +195,7 @@ mod tests {
         let zero = b.constant(0.0);
         let schema = Schema { name: "row".into(), columns: vec!["a".into()], parent: None, slots: vec![] };
         let table = b.table(schema);
-        let acc = b.begin_fold(table, Reduction::Sum, &[zero]);
+        let acc = b.begin_fold(table, (FoldKind::Rows, Rule::Neutral), &[zero]);
         let column = b.column(table, 0);
         let product = b.fma(x, column, acc[0]);
         let sum = b.add(product, y);

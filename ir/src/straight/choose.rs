@@ -1,7 +1,7 @@
 //! Which tables become straight code.
 
 use crate::entity::{Entity, Table};
-use crate::function::{Function, InstKind, Reduction};
+use crate::function::{FoldKind, Function, InstKind};
 use crate::table::{Rows, Tables};
 
 /// Rows of one table that may become straight code, under one row of its parent.
@@ -32,10 +32,10 @@ impl Chosen {
         let is_whole = |rows: &Rows| rows.active.len() == rows.len();
         // Rows of selectors come and go.
         let chooses = !tables.tables.values().all(is_whole);
-        let mut reductions = vec![Reduction::Only; count];
+        let mut kinds = vec![FoldKind::Rows; count];
         for data in function.insts.values() {
             if let InstKind::Fold(fold) = &data.kind {
-                reductions[fold.table.index()] = fold.reduction;
+                kinds[fold.table.index()] = fold.kind;
             }
         }
         let mut straight = vec![false; count];
@@ -43,13 +43,13 @@ impl Chosen {
             let Some(parent) = schema.parent else { continue };
             let rows = &tables.tables[table];
             let few = rows.starts.windows(2).all(|pair| (pair[1] - pair[0]) as usize <= MAX_ROWS);
-            let stays = chooses && reductions[table.index()] == Reduction::Only;
+            let stays = chooses && kinds[table.index()] == FoldKind::Guard;
             straight[table.index()] = (parent == root || straight[parent.index()])
                 && !leaves[table.index()]
                 && is_whole(rows)
                 && few
                 && !stays
-                && reductions[table.index()] != Reduction::Pieces;
+                && kinds[table.index()] != FoldKind::Pieces;
         }
         straight.iter().any(|&it| it).then_some(Self { root, straight })
     }

@@ -4,8 +4,8 @@
 //! table t0 "scene" (..)                                    table t0 "scene" (.., a, b)      a: number of rows 0 and 1, which
 //! table t1 "formula" (number, number)    3 rows                                                is the same; b: of row 0; ..
 //!
-//! fold t0 only (..) block1(..):                            fold t0 only (..) block1(..):
-//!     v3 = fold t1 union (v2) block2(v4):        ──►           v4 = mul v0, a
+//! fold t0 guard neutral (..) block1(..):                            fold t0 guard neutral (..) block1(..):
+//!     v3 = fold t1 rows neutral (v2) block2(v4):        ──►           v4 = mul v0, a
 //!         v5 = column t1.number                                v5 = add v4, b
 //!         v6 = mul v0, v5                                      v6 = max v2, v5
 //!         ..                                                   ..            row 1 has no `mul` of its own

@@ -184,7 +184,7 @@ impl<'a> Writer<'a> {
             self.here[fold.table.index()] = Some(Under::Table(table));
             table
         };
-        let params = self.builder.begin_fold(table, fold.reduction, initial);
+        let params = self.builder.begin_fold(table, (fold.kind, fold.rule), initial);
         self.bind(&function.blocks[fold.body].params, &params);
         self.insts(fold.body);
         let next = self.map_all(&function.blocks[fold.body].results);

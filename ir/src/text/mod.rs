@@ -11,7 +11,7 @@
 //! defined  = vN [":" type] ("," vN [":" type])*
 //! kind     = "input" (name | index)  |  "const" number  |  "bits" 0xHEX  |  "column" tN "." (name | index)
 //!          | op vN ("," vN)*
-//!          | "fold" tN reduction "(" values ")" block            its origin stands at the end of the line of the colon
+//!          | "fold" tN kind rule "(" values ")" block            its origin stands at the end of the line of the colon
 //! origin   = "@" [slot "."] part                                 left out where it is `@shared`
 //! comment  = ";" up to the end of the line
 //! ```

@@ -7,7 +7,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use crate::entity::{Block, Entity, Store, Value};
-use crate::function::{BlockData, Fold, Function, InstData, InstKind, Reduction, Schema};
+use crate::function::{BlockData, Fold, FoldKind, Function, InstData, InstKind, Rule, Schema};
 use crate::limits::{MAX_ERRORS, MAX_FOLD_DEPTH, MAX_TABLES};
 use crate::op::{Op, Type};
 
@@ -260,12 +260,13 @@ impl Parser {
             return Err(start.error(format!("at most {MAX_FOLD_DEPTH} folds in each other")));
         }
         let table = line.table()?;
-        let reduction = line.choice("a reduction", &Reduction::ALL, Reduction::name)?;
+        let kind = line.choice("what the rows are", &FoldKind::ALL, FoldKind::name)?;
+        let rule = line.choice("a rule", &Rule::ALL, Rule::name)?;
         line.punctuation("(")?;
         let initial = line.values()?;
         line.punctuation(")")?;
         let named = self.named_block(line)?;
-        Ok((Fold { table, reduction, initial, body: named.0 }, named))
+        Ok((Fold { table, kind, rule, initial, body: named.0 }, named))
     }
 
     /// `block1`, or `block1:`, or `block1(v5: mask):`, which can be written once only.

@@ -174,7 +174,7 @@ impl<'a> Printer<'a> {
                 spaced_list(w, args)?;
             }
             InstKind::Fold(fold) => {
-                write!(w, "fold {} {} (", fold.table, fold.reduction)?;
+                write!(w, "fold {} {} {} (", fold.table, fold.kind.name(), fold.rule.name())?;
                 list(w, &fold.initial)?;
                 w.write_str(") ")?;
                 if self.block(w, fold.body)? {

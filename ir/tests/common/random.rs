@@ -1,6 +1,8 @@
 //! Random functions with fitting rows: every op, nested folds over tables with parents, inactive rows, and spicy numbers.
 
-use jbt_ir::{Domain, Function, FunctionBuilder, Op, Reduction, Rows, Schema, Table, Tables, Type, Value};
+use jbt_ir::{
+    Domain, FoldKind, Function, FunctionBuilder, Op, Rows, Rule, Schema, Table, Tables, Type, Value,
+};
 
 use super::spicy::SPICY;
 
@@ -149,7 +151,9 @@ impl Generator {
             slots: vec![],
         };
         let table = self.builder.table(schema);
-        let reduction = Reduction::ALL[self.random.usize(0..Reduction::ALL.len())];
+        let choice = self.random.usize(0..FoldKind::ALL.len() * Rule::ALL.len());
+        let kind = FoldKind::ALL[choice % FoldKind::ALL.len()];
+        let rule = Rule::ALL[choice / FoldKind::ALL.len()];
         let initial: Vec<(Type, Value)> = (0..self.random.usize(1..5))
             .map(|_| {
                 let type_ = [Type::Real, Type::Real, Type::Mask, Type::Bits][self.random.usize(0..4)];
@@ -157,7 +161,7 @@ impl Generator {
             })
             .collect();
         let values: Vec<Value> = initial.iter().map(|&(_, value)| value).collect();
-        let params = self.builder.begin_fold(table, reduction, &values);
+        let params = self.builder.begin_fold(table, (kind, rule), &values);
         let params: Vec<(Type, Value)> =
             initial.iter().zip(params).map(|(&(type_, _), param)| (type_, param)).collect();
         self.open.push(Open { table, before: self.values.len(), params: params.clone() });

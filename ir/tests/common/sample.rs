@@ -3,7 +3,8 @@
 
 use fastrand::Rng;
 use jbt_ir::{
-    Domain, Entity, Function, FunctionBuilder, Op, Origin, Part, Reduction, Rows, Schema, Tables, Type, Value,
+    Domain, Entity, FoldKind, Function, FunctionBuilder, Op, Origin, Part, Rows, Rule, Schema, Tables, Type,
+    Value,
 };
 
 /// Names that a printer has to be careful with, some of them twice.
@@ -94,9 +95,10 @@ impl Writer<'_> {
         let types: Vec<Type> =
             (0..self.rng.usize(0..4)).map(|_| self.rng.choice(Type::ALL).expect("there are types")).collect();
         let initial: Vec<Value> = types.iter().map(|&type_| self.any(type_)).collect();
-        let reduction = self.rng.choice(Reduction::ALL).expect("there are reductions");
+        let kind = self.rng.choice(FoldKind::ALL).expect("there are kinds");
+        let rule = self.rng.choice(Rule::ALL).expect("there are rules");
         let outside = self.visible.clone();
-        let accumulators = self.builder.begin_fold(table, reduction, &initial);
+        let accumulators = self.builder.begin_fold(table, (kind, rule), &initial);
         for (&type_, accumulator) in types.iter().zip(accumulators) {
             self.visible[type_ as usize].push(accumulator);
         }

@@ -16,7 +16,7 @@
 //! `from_bits`) are not there either: their result has the name of their operand.
 
 use jbt_ir::pass::{Gate, Gates};
-use jbt_ir::{Block, Entity, Fold, Function, Inst, InstKind, Op, Reduction, Table, Type, Value};
+use jbt_ir::{Block, Entity, Fold, FoldKind, Function, Inst, InstKind, Op, Table, Type, Value};
 use rustc_hash::FxHashSet as HashSet;
 
 use crate::strips::{Plan, Slot, Then};
@@ -507,7 +507,7 @@ impl<'a> Builder<'a> {
             phis.push(Phi { value, initial, next: NONE });
             self.bindings[param.index()] = Binding::Name(value);
         }
-        let is_guard = fold.reduction == Reduction::Only;
+        let is_guard = fold.kind == FoldKind::Guard;
         let over = if is_guard { Over::Guard(fold.table) } else { Over::Rows(fold.table) };
         self.open(over, phis);
         self.insts(fold.body, &body.insts);

@@ -2,7 +2,7 @@
 
 use iced_x86::{Decoder, DecoderOptions, Instruction, MemorySize, Mnemonic, OpKind, Register};
 
-use jbt_ir::{Domain, FunctionBuilder, Level, Reduction, Schema, Value, Verified, verify};
+use jbt_ir::{Domain, FoldKind, FunctionBuilder, Level, Rule, Schema, Value, Verified, verify};
 
 use crate::compile::emit;
 use crate::options::{Backend, Check, Options, Pieces, VectorCount};
@@ -417,7 +417,7 @@ fn every_kind() -> Verified {
     let below = b.lt(outside, inputs[3]);
     let zero = b.constant(0.0);
     let start = below_as_real(&mut b, below);
-    let acc = b.begin_fold(t, Reduction::Sum, &[zero, start]);
+    let acc = b.begin_fold(t, (FoldKind::Rows, Rule::Neutral), &[zero, start]);
     let (c, d) = (b.column(t, 0), b.column(t, 1));
     let uniform = b.div(c, d);
     let (less, same) = (b.le(acc[0], c), b.eq(outside, d));

@@ -2,12 +2,12 @@
 
 use std::rc::Rc;
 
-use jbt_ir::{Domain as _, Entity, Reduction, Schema, Value};
+use jbt_ir::{Domain as _, Entity, FoldKind, Rule, Schema, Value};
 
 use super::parts::Guard;
 use super::{Emitter, Reduce, TableCode, Task};
 use crate::combine::ricci::Blend;
-use crate::lower::guide::{DecidedRows, Rule};
+use crate::lower::guide::DecidedRows;
 use crate::lower::mixing::{Operator, State};
 use crate::lower::occurrence::{OccurrenceId, OccurrenceKind, SpaceId};
 use crate::lower::reducer::{ReducerCode, RicciCode};
@@ -74,8 +74,7 @@ impl Emitter<'_> {
         &mut self,
         name: &str,
         space: SpaceId,
-        rule: Rule,
-        reduction: Reduction,
+        kind: (FoldKind, Rule),
         initial: &[Value],
     ) -> Vec<Value> {
         let parent = self.rows.last().copied();
@@ -86,21 +85,13 @@ impl Emitter<'_> {
         }
         self.rows.push(table);
         let probe = self.probes.as_ref().and_then(|probes| probes.point(space));
-        self.tables.push(TableCode { children: Vec::new(), depth: self.rows.len(), space, probe, rule });
-        self.builder.begin_fold(table, reduction, initial)
+        self.tables.push(TableCode { children: Vec::new(), depth: self.rows.len(), space, probe });
+        self.builder.begin_fold(table, kind, initial)
     }
 
     /// Opens the fold over the rows of a group; its first task gives the group its name.
     pub(super) fn open_group(&mut self) {
         let mut reduce = self.reduces.pop().expect("folds belong to operators");
-        let reduction = match reduce.operator.code {
-            ReducerCode::Sum => Reduction::Sum,
-            ReducerCode::Ricci(_) => Reduction::Ricci,
-            ReducerCode::Product => Reduction::Product,
-            ReducerCode::Union => Reduction::Union,
-            ReducerCode::Intersection => Reduction::Intersection,
-            ReducerCode::Step(_) => Reduction::Step,
-        };
         let Some(&Task::Use(member)) = self.tasks.last() else {
             unreachable!("the first member is used next")
         };
@@ -118,7 +109,7 @@ impl Emitter<'_> {
             ReducerCode::Union | ReducerCode::Intersection => Rule::KeepOne,
         };
         let (space, _) = *self.points.last().expect("a space is open");
-        let mut params = self.open_fold(&name, space, rule, reduction, &initial);
+        let mut params = self.open_fold(&name, space, (FoldKind::Rows, rule), &initial);
         reduce.extreme =
             extreme.map(|extreme| (extreme, params.pop().expect("it is the last that was given")));
         reduce.state.replace(&params);

@@ -8,11 +8,11 @@
 //! What a guard starts with never decides: 0 is neutral for sums, blends and unions without negative operands, the lowest or the highest
 //! number for the others. It is finite, because a range with an infinite end says nothing.
 
-use jbt_ir::{Domain, Reduction, Value};
+use jbt_ir::{Domain, FoldKind, Rule, Value};
 
 use super::Emitter;
 use super::parts::GuardStart;
-use crate::lower::guide::{DecidedRows, DecisionKind, Rule};
+use crate::lower::guide::{DecidedRows, DecisionKind};
 use crate::lower::mixing::{Answer, GroupAnswer};
 use crate::lower::occurrence::{OccurrenceId, SpaceId};
 use crate::lower::shape::Lift;
@@ -56,7 +56,7 @@ impl Emitter<'_> {
     /// Opens a fold over one row. It carries out what is given here, and whatever else it is closed with.
     pub(super) fn open_only(&mut self, name: &str, space: SpaceId, rule: Rule, initial: &[Value]) {
         self.probe_row();
-        self.open_fold(name, space, rule, Reduction::Only, initial);
+        self.open_fold(name, space, (FoldKind::Guard, rule), initial);
     }
 
     /// Closes a fold over one row that was opened with so many values. What it carries out behind these begins at 0; probes come out too.

@@ -1,9 +1,9 @@
 //! What is in progress while code is emitted: guards, probes, selectors.
 
-use jbt_ir::{Domain as _, FunctionBuilder, Table, Value};
+use jbt_ir::{Domain as _, FunctionBuilder, Rule, Table, Value};
 use rustc_hash::FxHashMap as HashMap;
 
-use crate::lower::guide::{DecidedRows, Decision, DecisionKind, Rule};
+use crate::lower::guide::{DecidedRows, Decision, DecisionKind};
 use crate::lower::names::SpaceId;
 use crate::lower::reducer::ReducerCode;
 

@@ -1,10 +1,9 @@
 //! What stands in a row: its columns, and its leaf.
 
-use jbt_ir::{Domain, Origin, Part, Reduction, Value};
+use jbt_ir::{Domain, FoldKind, Origin, Part, Rule, Value};
 
 use super::Emitter;
 use crate::falloff::Nearness;
-use crate::lower::guide::Rule;
 use crate::lower::occurrence::{FieldId, LeafField};
 use crate::skeleton::{Pieces, SkeletonKind};
 
@@ -70,7 +69,7 @@ impl Emitter<'_> {
         let (space, _) = *self.points.last().expect("a space is open");
         // A piece that is out of reach is no farther than where distances begin: the field is zero either way.
         let rule = if pieces.local { Rule::Neutral } else { Rule::Never };
-        let so_far = self.open_fold("pieces", space, rule, Reduction::Pieces, &initial);
+        let so_far = self.open_fold("pieces", space, (FoldKind::Pieces, rule), &initial);
         let piece = self.columns(pieces.columns);
         let next = skeleton.step(&mut self.builder, point, &piece, &so_far);
         self.rows.pop();

@@ -10,13 +10,12 @@
 //! The active row may be left out where its field is zero: then what stands is 0, with attributes that are 0 too. No operator looks at the
 //! attributes of a field of 0, but the model's own answer does, so the rows of a selector that answers for the whole model always stay.
 
-use jbt_ir::{Domain, Value};
+use jbt_ir::{Domain, Rule, Value};
 
 use super::super::mixing::{Answer, GroupAnswer};
 use super::parts::Select;
 use super::{Emitter, Task};
 use crate::attribute::Mixing;
-use crate::lower::guide::Rule;
 use crate::lower::occurrence::{FieldId, OccurrenceId, SpaceId};
 use crate::lower::shape::Lift;
 

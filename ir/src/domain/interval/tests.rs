@@ -8,7 +8,7 @@ use crate::function::InstKind;
 use crate::pass::{PIPELINE, interval, run_pipeline};
 use crate::table::{Rows, Tables};
 use crate::text::parse;
-use crate::{Entity, Function, FunctionBuilder, Origin, Part, Reduction, Schema, Value, verify};
+use crate::{Entity, FoldKind, Function, FunctionBuilder, Origin, Part, Rule, Schema, Value, verify};
 
 const ALL: [f32; 2] = [f32::NEG_INFINITY, f32::INFINITY];
 
@@ -216,7 +216,7 @@ fn sum_of_points(rows: usize) -> (Function, Tables) {
     let table = b.table(Schema { name: "point".into(), columns, parent: None, slots: vec![7] });
     let inputs: [Value; 3] = std::array::from_fn(|index| b.input(index));
     let (zero, one, four, five) = (b.constant(0.0), b.constant(1.0), b.constant(4.0), b.constant(5.0));
-    let acc = b.begin_fold(table, Reduction::Sum, &[zero])[0];
+    let acc = b.begin_fold(table, (FoldKind::Rows, Rule::Neutral), &[zero])[0];
     b.set_origin(Origin::leaf(7, Part::Position));
     let [dx, dy, dz] = std::array::from_fn(|index| {
         let column = b.column(table, index);
@@ -296,7 +296,7 @@ fn facts_hold_in_every_iteration() {
 block0:
     v0 = input x
     v1 = const 0.0
-    v2, v3 = fold t0 sum (v1, v1) block1(v4, v5):
+    v2, v3 = fold t0 rows neutral (v1, v1) block1(v4, v5):
         v6 = column t0.c
         v7 = fma v0, v6, v4
         v8 = add v5, v4

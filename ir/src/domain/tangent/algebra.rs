@@ -344,7 +344,7 @@ impl Tangent {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::function::{Function, Reduction, Schema};
+    use crate::function::{FoldKind, Function, Rule, Schema};
 
     /// The ops of a function, in order.
     fn ops(function: &Function) -> Vec<Op> {
@@ -363,7 +363,7 @@ mod tests {
         let table = builder.table(schema);
         let x = builder.input(0);
         let zero = builder.constant(0.0);
-        let sum = builder.begin_fold(table, Reduction::Sum, &[zero])[0];
+        let sum = builder.begin_fold(table, (FoldKind::Rows, Rule::Neutral), &[zero])[0];
         let column = builder.column(table, 0);
         let mut tangent = Tangent::new(builder);
         let one = tangent.builder.constant(1.0);
