@@ -3,6 +3,8 @@
 //! An *occurrence* is a node at a position with attribute bindings. A node that is reached twice with the same of each is one
 //! occurrence with two uses; under other coordinates it is another one.
 
+use std::borrow::Cow;
+
 use glam::{DAffine3, DVec3};
 
 use super::computed::Computed;
@@ -283,14 +285,16 @@ impl<'a> Scene<'a> {
 }
 
 /// The occurrences that one asks for.
-pub(super) fn children(kind: &OccurrenceKind) -> Vec<OccurrenceId> {
+pub(super) fn children(kind: &OccurrenceKind) -> Cow<'_, [OccurrenceId]> {
     match kind {
-        OccurrenceKind::Leaf { .. } => Vec::new(),
-        OccurrenceKind::Warp { child, weight, .. } => [*child].into_iter().chain(*weight).collect(),
-        OccurrenceKind::Map { child, .. } => vec![*child],
+        OccurrenceKind::Leaf { .. } => Cow::Borrowed(&[]),
+        OccurrenceKind::Warp { child, weight: None, .. } | OccurrenceKind::Map { child, .. } => {
+            Cow::Borrowed(std::slice::from_ref(child))
+        }
+        OccurrenceKind::Warp { child, weight: Some(weight), .. } => Cow::Owned(vec![*child, *weight]),
         OccurrenceKind::Reduce { children, .. }
         | OccurrenceKind::Expression { children, .. }
-        | OccurrenceKind::Select { children, .. } => children.clone(),
-        OccurrenceKind::Difference { left, right } => vec![*left, *right],
+        | OccurrenceKind::Select { children, .. } => Cow::Borrowed(children),
+        OccurrenceKind::Difference { left, right } => Cow::Owned(vec![*left, *right]),
     }
 }

@@ -354,7 +354,7 @@ impl<'a> Writer<'a> {
             (0..numbers.len() / columns).map(|piece| Member::Piece(field, piece as u32)).collect();
         let table = self.own(&members, true);
         for (member, piece) in members.into_iter().zip(numbers.chunks_exact(columns)) {
-            self.append(table, member, piece.iter().copied());
+            self.append(table, member, piece);
         }
     }
 
@@ -385,24 +385,29 @@ impl<'a> Writer<'a> {
     fn flush(&mut self, table: Table, member: Member) {
         self.tables[table.index()].nodes.append(&mut self.nodes);
         let mut row = std::mem::take(&mut self.row);
-        self.append(table, member, row.drain(..));
+        self.append(table, member, &row);
+        row.clear();
         self.row = row;
     }
 
     /// Rounds numbers and appends them as a row.
-    fn append(&mut self, table: Table, member: Member, numbers: impl Iterator<Item = f64>) {
-        let node = member.node(self.scene);
+    fn append(&mut self, table: Table, member: Member, row: &[f64]) {
         let rows = &mut self.tables[table.index()];
         rows.count += 1;
-        for number in numbers {
-            let rounded = number as f32;
-            if !rounded.is_finite() && self.errors.len() < jbt_ir::limits::MAX_ERRORS {
-                let node = self.scene.tree.node(node);
-                let message = format!("a number derived from this part leaves the range of f32: {number:e}");
-                let help = "the part is too small, too large or too far away once all transforms are applied";
-                self.errors.push(Diagnostic::error(node.span, message).expected(help));
-            }
-            rows.numbers.push(rounded);
+        rows.numbers.extend(row.iter().map(|&number| number as f32));
+        for &number in row.iter().filter(|number| !(**number as f32).is_finite()) {
+            self.complain(member, number);
+        }
+    }
+
+    /// A number of a row is none in f32.
+    #[cold]
+    fn complain(&mut self, member: Member, number: f64) {
+        if self.errors.len() < jbt_ir::limits::MAX_ERRORS {
+            let node = self.scene.tree.node(member.node(self.scene));
+            let message = format!("a number derived from this part leaves the range of f32: {number:e}");
+            let help = "the part is too small, too large or too far away once all transforms are applied";
+            self.errors.push(Diagnostic::error(node.span, message).expected(help));
         }
     }
 }

@@ -443,7 +443,7 @@ impl<'a> Classifier<'a> {
     /// The operands of a step: the first alone, the others as runs of one shape.
     fn runs(&self, id: OccurrenceId) -> Vec<Group> {
         let children = super::occurrence::children(&self.scene.occurrence(id).kind);
-        let mut members = children.into_iter().zip(0..);
+        let mut members = children.iter().copied().zip(0..);
         let first = members.next().expect("an operator has children");
         let mut groups = vec![Group { folded: false, members: vec![first] }];
         for member in members {

@@ -40,7 +40,7 @@ pub(super) fn demand(scene: &Scene<'_>) -> Demand {
             | OccurrenceKind::Difference { .. }
             | OccurrenceKind::Expression { .. }
             | OccurrenceKind::Map { .. } => {
-                for child in children(kind) {
+                for &child in children(kind).iter() {
                     demand.occurrences[child.0 as usize].also(asked);
                 }
             }

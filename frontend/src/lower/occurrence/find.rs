@@ -120,12 +120,7 @@ impl<'a> Finder<'a> {
                 }
                 None => {
                     let frame = self.stack.pop().expect("the loop looked at it");
-                    let key = frame.key;
-                    let id = self.close(frame);
-                    if !self.once[key.0.0 as usize] {
-                        self.known.insert(key, id);
-                    }
-                    done = Some(id);
+                    done = Some(self.leave(frame));
                 }
             }
         }
@@ -205,10 +200,25 @@ impl<'a> Finder<'a> {
         {
             return Some(known);
         }
-        let is_warp = matches!(self.scene.tree.node(key.0).kind, NodeKind::Warp(_));
+        let node = self.scene.tree.node(key.0);
+        let frame = Frame { key, children: Vec::new(), inside: None };
+        if node.children.is_empty() {
+            return Some(self.leave(frame));
+        }
+        let is_warp = matches!(node.kind, NodeKind::Warp(_));
         let inside = is_warp.then(|| self.name_inside(key.0, key.1));
-        self.stack.push(Frame { key, children: Vec::new(), inside });
+        self.stack.push(Frame { inside, ..frame });
         None
+    }
+
+    /// Makes an occurrence of a node whose children are done, and remembers it if it can be met again.
+    fn leave(&mut self, frame: Frame) -> OccurrenceId {
+        let key = frame.key;
+        let id = self.close(frame);
+        if !self.once[key.0.0 as usize] {
+            self.known.insert(key, id);
+        }
+        id
     }
 
     /// Makes an occurrence of a node whose children are done.
@@ -340,7 +350,7 @@ impl<'a> Finder<'a> {
     fn push(&mut self, node: NodeId, position: PositionId, kind: OccurrenceKind) -> OccurrenceId {
         let space = self.scene.position(position).space;
         let (non_negative, bounded) = (self.non_negative(node, &kind), self.bounded(&kind));
-        for child in children(&kind) {
+        for &child in children(&kind).iter() {
             self.scene.occurrences[child.0 as usize].uses += 1;
         }
         if let OccurrenceKind::Warp { weight: Some(weight), .. } = kind {
