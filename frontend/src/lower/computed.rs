@@ -178,7 +178,7 @@ fn push_uv(tree: &CheckedTree, computed: &Computed, map: &UvMap, row: &mut Vec<f
 }
 
 /// What an attribute node gives.
-pub(super) fn attribute<'a>(tree: &'a CheckedTree, node: NodeId) -> &'a AttributeValue {
+pub(super) fn attribute(tree: &CheckedTree, node: NodeId) -> &AttributeValue {
     match &tree.node(node).kind {
         NodeKind::Attribute { value, .. } => value,
         NodeKind::Primitive(_)

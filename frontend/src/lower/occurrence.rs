@@ -19,6 +19,7 @@ use crate::combine::unary::UnaryKind;
 use crate::expression::Expression;
 use crate::falloff::FalloffKind;
 use crate::recipe::Recipe;
+use crate::skeleton::SkeletonKind;
 use crate::tree::{NodeKind, Primitive};
 use crate::warp::Warp;
 
@@ -58,12 +59,18 @@ pub(super) struct LeafField {
     pub(super) map: DAffine3,
     /// How many times as large as it was written the skeleton is in its pose. A similarity ends up here; other maps leave it at 1.
     pub(super) scale: f64,
-    /// What the inverse of the map is as code.
-    pub(super) kind: MapKind,
+    pub(super) code: LeafCode,
+}
+
+/// What a leaf without computed attributes is as code.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub(super) struct LeafCode {
+    /// The inverse of its map.
+    pub(super) map: MapKind,
+    pub(super) skeleton: SkeletonKind,
+    pub(super) falloff: FalloffKind,
     /// Whether the strength is a number of its row.
     pub(super) strong: bool,
-    /// What the falloff is as code.
-    pub(super) falloff: FalloffKind,
 }
 
 /// An operator whose operands are alike: any number of them, in any order but for ties; the operands of a step in that of the file.

@@ -312,16 +312,16 @@ impl<'a> Writer<'a> {
     fn leaf(&mut self, field: FieldId) {
         self.nodes.push(self.scene.field(field).node.0);
         let primitive = self.scene.primitive(field);
-        let LeafField { map, scale, kind, strong, falloff, .. } = self.scene.field(field);
-        kind.push_columns(map, &mut self.row);
+        let LeafField { map, scale, code, .. } = self.scene.field(field);
+        code.map.push_columns(map, &mut self.row);
         primitive.skeleton.columns(*scale, &mut self.row);
-        if let Some(pieces) = primitive.skeleton.kind().pieces() {
+        if let Some(pieces) = code.skeleton.pieces() {
             self.row.push(BEYOND * scale * primitive.radius);
             self.pieces(field, pieces.columns.len());
         }
         self.row.push(-(scale * primitive.radius).powi(-2));
-        primitive.falloff.columns(*falloff, &mut self.row);
-        if *strong {
+        primitive.falloff.columns(code.falloff, &mut self.row);
+        if code.strong {
             self.row.push(primitive.strength);
         }
     }

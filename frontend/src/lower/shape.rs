@@ -13,13 +13,11 @@ use rustc_hash::FxHashMap as HashMap;
 use super::computed::ComputedShape;
 use super::names::ComputedId;
 pub(super) use super::names::Lift;
-use super::occurrence::{FieldId, OccurrenceId, OccurrenceKind, Reducer, Scene, SpaceId};
+use super::occurrence::{FieldId, LeafCode, OccurrenceId, OccurrenceKind, Reducer, Scene, SpaceId};
 use super::position::MapKind;
 use super::reducer::ReducerCode;
 use crate::combine::unary::UnaryKind;
 use crate::expression::Form;
-use crate::falloff::FalloffKind;
-use crate::skeleton::SkeletonKind;
 use crate::warp::WarpCode;
 
 /// The name of a shape.
@@ -28,13 +26,7 @@ pub(super) struct ShapeId(u32);
 
 #[derive(Clone, PartialEq, Eq, Hash, Debug)]
 enum ShapeKey {
-    Leaf {
-        map: MapKind,
-        skeleton: SkeletonKind,
-        falloff: FalloffKind,
-        strong: bool,
-        computed: Box<[Option<ComputedShape>]>,
-    },
+    Leaf(LeafCode, Box<[Option<ComputedShape>]>),
     /// A lifted field with attributes of its own.
     LeafOf(FieldId, Box<[Option<ComputedShape>]>),
     Warp {
@@ -182,9 +174,6 @@ impl Shapes {
     }
 }
 
-/// What a leaf is as code that computes no attribute: its map, skeleton, falloff, and whether it has a strength.
-type PlainLeaf = (MapKind, SkeletonKind, FalloffKind, bool);
-
 struct Classifier<'a> {
     scene: &'a Scene<'a>,
     names: HashMap<ShapeKey, ShapeId>,
@@ -193,7 +182,7 @@ struct Classifier<'a> {
     /// The shape of each occurrence, as its user sees it.
     shapes: Vec<ShapeId>,
     /// The last leaf that computes no attribute, and its shape: the next one is like it as a rule.
-    last_leaf: Option<(PlainLeaf, ShapeId)>,
+    last_leaf: Option<(LeafCode, ShapeId)>,
     /// Whether an operator dissolves into its only user.
     flattened: Vec<bool>,
     /// Weighted warps whose points are lifted already.
@@ -288,9 +277,7 @@ impl<'a> Classifier<'a> {
                 self.name(ShapeKey::LeafOf(*field, computed), Content::LIFTED)
             }
             OccurrenceKind::Leaf { field, computed, .. } => {
-                let (primitive, leaf) = (self.scene.primitive(*field), self.scene.field(*field));
-                let skeleton = primitive.skeleton.kind();
-                let code = (leaf.kind, skeleton, leaf.falloff, leaf.strong);
+                let code = self.scene.field(*field).code;
                 let is_plain = computed.is_empty();
                 if let Some((last, shape)) = self.last_leaf
                     && is_plain
@@ -298,10 +285,8 @@ impl<'a> Classifier<'a> {
                 {
                     return shape;
                 }
-                let (map, skeleton, falloff, strong) = code;
-                let computed_shape = self.computed(computed, occurrence.space);
-                let key = ShapeKey::Leaf { map, skeleton, falloff, strong, computed: computed_shape };
-                let tables = skeleton.pieces().is_some();
+                let key = ShapeKey::Leaf(code, self.computed(computed, occurrence.space));
+                let tables = code.skeleton.pieces().is_some();
                 let leaves = 1 + steps_of(self.scene, computed) / STEPS_OF_A_LEAF;
                 let shape = self.name(key, Content { tables, leaves, ..Content::LEAF });
                 if is_plain {

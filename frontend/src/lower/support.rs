@@ -87,7 +87,7 @@ impl<'a> Supports<'a> {
         let field = |index| {
             let id = FieldId(index as u32);
             let leaf = Leaf::new(scene, id, &sizes);
-            if scene.primitive(id).skeleton.kind().pieces().is_some_and(|pieces| pieces.local) {
+            if scene.field(id).code.skeleton.pieces().is_some_and(|pieces| pieces.local) {
                 pieces.insert(id, leaf.pieces());
             }
             leaf.whole()
@@ -235,7 +235,7 @@ fn slopes_of(scene: &Scene<'_>) -> Vec<f64> {
         let slope = match &occurrence.kind {
             OccurrenceKind::Leaf { field, .. } => {
                 let (leaf, primitive) = (scene.field(*field), scene.primitive(*field));
-                let rows = absolute(leaf.kind.inverse(&leaf.map).matrix3) * DVec3::ONE;
+                let rows = absolute(leaf.code.map.inverse(&leaf.map).matrix3) * DVec3::ONE;
                 let metric = primitive.skeleton.metric().steepness();
                 let slope = STEEPEST * primitive.strength.abs() * rows.max_element() * metric;
                 slope / (leaf.scale * primitive.radius)
@@ -327,7 +327,7 @@ impl<'a> Leaf<'a> {
         let (map, skeleton) = (&field.map, &primitive.skeleton);
         let radius = field.scale * primitive.radius;
         let slope = radius.powi(-2);
-        let inverse = Inverse::new(field.kind, map);
+        let inverse = Inverse::new(field.code.map, map);
         let to_pose = DAffine3::from_scale(DVec3::splat(field.scale)) * skeleton.pose().inverse();
         let pose = skeleton.bounds_under(&to_pose);
         let size = pose.min.abs().max(pose.max.abs());

@@ -137,9 +137,7 @@ impl Emitter<'_> {
     /// The name of a table whose first row is this.
     pub(super) fn group_name(&self, id: OccurrenceId) -> String {
         match &self.scene.occurrence(id).kind {
-            OccurrenceKind::Leaf { field, .. } => {
-                self.scene.primitive(*field).skeleton.kind().name().to_owned()
-            }
+            OccurrenceKind::Leaf { field, .. } => self.scene.field(*field).code.skeleton.name().to_owned(),
             OccurrenceKind::Warp { .. } => self.scene.warp(self.scene.occurrence(id).node).name().to_owned(),
             OccurrenceKind::Difference { .. } => "difference".to_owned(),
             OccurrenceKind::Map { .. } => {

@@ -4,7 +4,7 @@ use jbt_ir::{Domain, FoldKind, Origin, Part, Rule, Value};
 
 use super::Emitter;
 use crate::falloff::Nearness;
-use crate::lower::occurrence::{FieldId, LeafField};
+use crate::lower::occurrence::{FieldId, LeafCode};
 use crate::skeleton::{Pieces, SkeletonKind};
 
 impl Emitter<'_> {
@@ -29,12 +29,10 @@ impl Emitter<'_> {
 
     /// The field of a leaf.
     pub(super) fn leaf(&mut self, field: FieldId) -> Value {
-        let primitive = self.scene.primitive(field);
         let slot = self.slots;
         self.slots += 1;
         self.builder.add_slot(*self.rows.last().expect("the scene's row is open"), slot);
-        let LeafField { kind: map, strong, falloff, .. } = *self.scene.field(field);
-        let skeleton = primitive.skeleton.kind();
+        let LeafCode { map, skeleton, falloff, strong } = self.scene.field(field).code;
         let (_, outer) = *self.points.last().expect("a space is open");
         self.builder.set_origin(Origin::leaf(slot, Part::Position));
         let row = self.columns(map.columns());

@@ -81,7 +81,7 @@ impl Emitter<'_> {
         if !self.guards_lift(Lift::Field(field)) {
             return self.leaf(field);
         }
-        let name = self.scene.primitive(field).skeleton.kind().name();
+        let name = self.scene.field(field).code.skeleton.name();
         let space = self.scene.position(self.scene.field(field).position).space;
         // A leaf that is zero keeps its attributes, which are not in here.
         let [value] = self.guarded(name, space, Rule::Neutral, |emitter| [emitter.leaf(field)]);

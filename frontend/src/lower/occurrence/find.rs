@@ -5,8 +5,8 @@ use rustc_hash::FxHashMap as HashMap;
 
 use super::asked;
 use super::{
-    BindingsId, Bound, FieldId, Inside, LeafField, Occurrence, OccurrenceId, OccurrenceKind, PositionId,
-    Reducer, Scene, SpaceId, children,
+    BindingsId, Bound, FieldId, Inside, LeafCode, LeafField, Occurrence, OccurrenceId, OccurrenceKind,
+    PositionId, Reducer, Scene, SpaceId, children,
 };
 use crate::check::{CheckedTree, NodeId};
 use crate::combine::{Combinator, Form};
@@ -321,10 +321,11 @@ impl<'a> Finder<'a> {
         if id == next {
             let recipe = self.scene.tree.recipe(node);
             let turns = recipe.is_some_and(Recipe::skeleton_turns);
-            let (map, scale, kind) = self.scene.position(position).of_skeleton(&primitive.skeleton, turns);
+            let (map, scale, inverse) = self.scene.position(position).of_skeleton(&primitive.skeleton, turns);
             let strong = primitive.strength != 1.0 || recipe.is_some_and(Recipe::strength_follows);
             let falloff = primitive.falloff.code(recipe.is_some_and(Recipe::falloff_follows));
-            self.scene.fields.push(LeafField { node, position, uses: 0, map, scale, kind, strong, falloff });
+            let code = LeafCode { map: inverse, skeleton: primitive.skeleton.kind(), falloff, strong };
+            self.scene.fields.push(LeafField { node, position, uses: 0, map, scale, code });
         }
         self.scene.fields[id.0 as usize].uses += 1;
         id
