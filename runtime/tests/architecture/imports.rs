@@ -151,6 +151,10 @@ fn read(path: &str, text: &str) -> File {
                 file.paths[before..].iter_mut().for_each(|path| leave(&mut path.segments, inner.len()));
                 continue;
             }
+            // Who may see an item is no import of theirs.
+            "pub" if tokens.get(at + 1).is_some_and(|next| next.0 == "(") => {
+                at += tokens[at..].iter().position(|token| token.0 == ")").unwrap_or(0);
+            }
             "{" => {
                 if at > 1 && tokens[at - 1].0 == "!" && is_word(&tokens[at - 2].0) {
                     calls.push(depth);

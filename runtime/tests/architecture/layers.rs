@@ -128,6 +128,7 @@ fn tests_comments_and_strings_import_nothing() {
         "/// See [`crate::a::A`].\npub struct B; const S: &str = \"crate::a::A\";",
         "pub struct B;\n#[cfg(test)]\nmod tests {\n    use crate::a::A;\n}",
         "#[cfg(test)]\nuse crate::a::A;\npub struct B;",
+        "pub(in crate::a) struct B;",
         "pub struct B;\nconst Q: char = '\"'; fn f<'a>(x: &'a str) {} // crate::a::A",
     ] {
         assert!(circles(&invented(&[a, ("b.rs", text)])).is_empty(), "{text}");
