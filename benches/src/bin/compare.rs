@@ -69,8 +69,8 @@ forms, NAME_form, the fastest. NAME is one of:
   fidget_jit  fidget's machine code          fidget_vm  its interpreter
   splashsurf  another surface of the same particles
   walk        a tree walker                  separate   a walk for each answer; gradients by differences
-ratio_limit is ours / limit, ratio_fidget is fidget / ours; checksum is ok, or says who disagrees. Cases that mesh have threads and
-triangles, too; the train has evaluations_per_second, and what its authors published. Its scene and the programs are not bundled:
+ratio_limit is ours / limit, ratio_fidget is fidget / ours, medians over rounds in which both ran; checksum is ok, or says
+who disagrees. Cases that mesh have threads and triangles, too; the train has evaluations_per_second, and what its authors published. Its scene and the programs are not bundled:
 the environment variable JBT_SAMPLES names a folder that has them as parsip/train_corrected.scene and vm/*.vm.
 
 All are built alike: opt-level 3, one codegen unit for each crate, no link-time optimisation, for any CPU of the architecture.

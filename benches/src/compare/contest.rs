@@ -1,4 +1,7 @@
 //! A contest: contestants that were checked against each other do the same work in turn, and the median of each counts.
+//!
+//! A machine may change its clock while they run. So a ratio of two contestants is no ratio of their medians: it is the median of the ratios
+//! within each round, in which they ran one behind the other.
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -91,7 +94,16 @@ struct Entry<'a> {
     first: Option<Duration>,
     /// Runs in a measurement.
     batch: u32,
-    samples: Vec<Duration>,
+    samples: Vec<Sample>,
+}
+
+/// A measurement.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Sample {
+    /// The round, from 1; 0 for a first run that counts.
+    pub round: usize,
+    /// Of a whole run.
+    pub time: Duration,
 }
 
 impl Entry<'_> {
@@ -107,7 +119,7 @@ impl Entry<'_> {
     fn begin(&mut self) {
         let first = self.first.unwrap_or_else(|| self.measure());
         if first >= LONG {
-            self.samples.push(first);
+            self.samples.push(Sample { round: 0, time: first });
             return;
         }
         if first < SAMPLE {
@@ -119,7 +131,7 @@ impl Entry<'_> {
 
     /// Whether another round is needed; `over` once the contest has gone on for long enough.
     fn goes_on(&self, effort: Effort, over: bool) -> bool {
-        let Some(&first) = self.samples.first() else { return true };
+        let Some(&Sample { time: first, .. }) = self.samples.first() else { return true };
         if first > effort.endurance {
             return false;
         }
@@ -136,8 +148,8 @@ fn batch(run: Duration) -> u32 {
     u32::try_from(batch).unwrap_or(u32::MAX).clamp(1, 100_000)
 }
 
-/// The median of a contestant, in its fastest form.
-#[derive(Clone, Copy, PartialEq, Debug)]
+/// A contestant, in its fastest form.
+#[derive(Clone, PartialEq, Debug)]
 pub struct Standing {
     /// Who.
     pub contestant: Contestant,
@@ -145,6 +157,8 @@ pub struct Standing {
     pub form: &'static str,
     /// Of a whole run.
     pub median: Duration,
+    /// All measurements, in their order.
+    pub samples: Vec<Sample>,
 }
 
 /// What came out.
@@ -154,6 +168,31 @@ pub struct Standings {
     pub standings: Vec<Standing>,
     /// Who was not timed, and why.
     pub disagreements: Vec<String>,
+}
+
+impl Standings {
+    /// A contestant, if it was timed.
+    #[must_use]
+    pub fn of(&self, contestant: Contestant) -> Option<&Standing> {
+        self.standings.iter().find(|standing| standing.contestant == contestant)
+    }
+}
+
+impl Standing {
+    /// How many times as long as another one this one takes: the median over all rounds in which both ran; of their medians, if there are
+    /// fewer than three of these.
+    #[must_use]
+    pub fn ratio(&self, other: &Self) -> f64 {
+        let behind = |sample: &Sample| other.samples.iter().find(|their| their.round == sample.round);
+        let pairs = self.samples.iter().filter_map(|sample| Some((sample.time, behind(sample)?.time)));
+        let mut ratios: Vec<f64> =
+            pairs.map(|(ours, theirs)| ours.as_secs_f64() / theirs.as_secs_f64()).collect();
+        if ratios.len() < LEAST_ROUNDS {
+            return self.median.as_secs_f64() / other.median.as_secs_f64();
+        }
+        ratios.sort_unstable_by(f64::total_cmp);
+        f64::midpoint(ratios[(ratios.len() - 1) / 2], ratios[ratios.len() / 2])
+    }
 }
 
 /// A contest that is being prepared.
@@ -231,8 +270,8 @@ impl<'a> Contest<'a> {
             let mut ran = false;
             for entry in &mut self.entries {
                 if entry.goes_on(effort, over) {
-                    let sample = entry.measure();
-                    entry.samples.push(sample);
+                    let time = entry.measure();
+                    entry.samples.push(Sample { round: round + 1, time });
                     ran = true;
                 }
             }
@@ -247,13 +286,13 @@ impl<'a> Contest<'a> {
 /// The fastest form of each contestant.
 fn standings(entries: Vec<Entry<'_>>) -> Vec<Standing> {
     let mut standings: Vec<Standing> = Vec::new();
-    for mut entry in entries {
-        let (contestant, form) = (entry.contestant, entry.form);
-        let median = median(&mut entry.samples);
+    for Entry { contestant, form, samples, .. } in entries {
+        let mut times: Vec<Duration> = samples.iter().map(|sample| sample.time).collect();
+        let standing = Standing { contestant, form, median: median(&mut times), samples };
         match standings.iter_mut().find(|standing| standing.contestant == contestant) {
-            Some(known) if known.median <= median => {}
-            Some(known) => *known = Standing { contestant, form, median },
-            None => standings.push(Standing { contestant, form, median }),
+            Some(known) if known.median <= standing.median => {}
+            Some(known) => *known = standing,
+            None => standings.push(standing),
         }
     }
     standings.sort_by_key(|standing| standing.contestant);
@@ -290,6 +329,22 @@ mod tests {
         let ms = Duration::from_millis;
         assert_eq!(median(&mut [ms(5), ms(1), ms(2)]), ms(2));
         assert_eq!(median(&mut [ms(4), ms(1), ms(2), ms(9)]), ms(3));
+    }
+
+    #[test]
+    fn a_clock_that_changes_does_not_change_ratios() {
+        let ms = Duration::from_millis;
+        let standing = |contestant, times: [u64; 5]| {
+            let samples = times.iter().zip(1..).map(|(&time, round)| Sample { round, time: ms(time) });
+            Standing { contestant, form: "", median: median(&mut times.map(ms)), samples: samples.collect() }
+        };
+        // The clock halves in the third round, between the two.
+        let ours = standing(Contestant::Ours, [12, 12, 12, 24, 24]);
+        let limit = standing(Contestant::Limit, [10, 10, 20, 20, 20]);
+        assert!((ours.ratio(&limit) - 1.2).abs() < 1e-12);
+        let mut once = limit.clone();
+        once.samples.truncate(1);
+        assert!((ours.ratio(&once) - 0.6).abs() < 1e-12, "of the medians");
     }
 
     #[test]

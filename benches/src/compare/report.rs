@@ -29,25 +29,23 @@ impl Row {
     /// Nanoseconds per unit of a contestant, if it was timed.
     #[must_use]
     pub fn nanoseconds(&self, contestant: Contestant) -> Option<f64> {
-        let standing = self.standings.standings.iter().find(|standing| standing.contestant == contestant)?;
+        let standing = self.standings.of(contestant)?;
         Some(standing.median.as_secs_f64() * 1e9 / self.units)
     }
 
     /// Ours as a multiple of the limit: above 1 while there is something to gain.
     #[must_use]
     pub fn ratio_limit(&self) -> Option<f64> {
-        Some(self.nanoseconds(Contestant::Ours)? / self.nanoseconds(Contestant::Limit)?)
+        Some(self.standings.of(Contestant::Ours)?.ratio(self.standings.of(Contestant::Limit)?))
     }
 
     /// fidget as a multiple of ours, its faster engine if there are both: above 1 where ours is faster.
     #[must_use]
     pub fn ratio_fidget(&self) -> Option<f64> {
-        let [jit, vm] = [Contestant::FidgetJit, Contestant::FidgetVm].map(|fidget| self.nanoseconds(fidget));
-        let fidget = match (jit, vm) {
-            (Some(jit), Some(vm)) => jit.min(vm),
-            (one, other) => one.or(other)?,
-        };
-        Some(fidget / self.nanoseconds(Contestant::Ours)?)
+        let engines = [Contestant::FidgetJit, Contestant::FidgetVm].into_iter();
+        let fidget =
+            engines.filter_map(|engine| self.standings.of(engine)).min_by_key(|engine| engine.median)?;
+        Some(fidget.ratio(self.standings.of(Contestant::Ours)?))
     }
 
     /// `ok`, or who was not timed and why.
@@ -151,8 +149,10 @@ mod tests {
     use super::*;
 
     fn row() -> Row {
-        let standing =
-            |contestant, form, micros| Standing { contestant, form, median: Duration::from_micros(micros) };
+        let standing = |contestant, form, micros| {
+            let median = Duration::from_micros(micros);
+            Standing { contestant, form, median, samples: Vec::new() }
+        };
         Row {
             case: "dense-field",
             primitives: 200,
