@@ -4,7 +4,7 @@ use jbt::{Model, Points, text};
 use jbt_frontend::check::CheckedTree;
 use jbt_frontend::combine::Combinator;
 use jbt_frontend::falloff::Falloff;
-use jbt_frontend::skeleton::{Box, Cylinder, Disc, Point, Ring, Segment, Skeleton, Triangle};
+use jbt_frontend::skeleton::{Cuboid, Cylinder, Disc, Point, Ring, Segment, Skeleton, Triangle};
 use jbt_frontend::tree::{NodeKind, Primitive, Tree};
 
 /// A soft-object point (Wyvill, McPheeters and Wyvill 1986) with a colour. Its numbers are f32, so that every contestant is given the same.
@@ -143,7 +143,7 @@ fn skeleton(kind: usize, blob: &Blob) -> Skeleton {
         2 => Disc { center, normal, radius: size }.into(),
         3 => Ring { center, normal, radius: size }.into(),
         4 => Cylinder { from: center, to: beside(1), radius: 0.5 * size }.into(),
-        5 => Box { center, half: [size, 0.5 * size, 0.25 * size].into() }.into(),
+        5 => Cuboid { center, half: [size, 0.5 * size, 0.25 * size].into() }.into(),
         _ => Triangle { a: center, b: beside(0), c: beside(2) }.into(),
     }
 }

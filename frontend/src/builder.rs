@@ -53,7 +53,7 @@
 
 mod argument;
 mod attribute;
-mod falloff;
+mod constructor;
 mod operator;
 mod pattern;
 mod place;
@@ -62,19 +62,16 @@ mod primitive;
 use crate::recipe::{FalloffRecipe, FieldNumber, Recipe};
 use crate::tree::{NodeKind, Primitive, Tree};
 
-use self::argument::{real, vector};
-pub use self::falloff::{arctan, blanc, blinn, degree, inverse_power};
-pub use self::place::Axis;
-pub use self::primitive::{
-    arc, bezier, catmull_rom, cone, cuboid, cylinder, disc, ellipsoid, half_space, helix, lmetric, point,
-    polygon, polyline, primitive, rectangle, ring, round_cone, segment, sphere, superquadric, torus,
-    triangle,
-};
+use self::argument::{real, vector, vectors};
+pub use self::constructor::*;
+pub use self::pattern::Pattern;
+use self::primitive::leaf;
+pub use self::primitive::primitive;
+pub use crate::axis::Axis;
 pub use crate::falloff::Edge;
 pub use crate::number::{Number, Rows, Vector, param};
 pub use crate::scopes::{ScopeError, Scopes};
 pub use crate::term::{Term, x, y, z};
-pub use pattern::{Pattern, checker, gradient, marble, noise, rings, stripes};
 
 /// Changes of all primitives below.
 impl Tree {

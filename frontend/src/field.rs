@@ -1,5 +1,5 @@
-//! Named parameters of the members of the open sets (skeletons, falloffs, warps): one description serves the text
-//! parser, the printer, the check and the documentation.
+//! Named parameters of the members of the open sets: one description serves the text parser, the printer, the check and
+//! the documentation. See [`member`](crate::member).
 
 /// What a parameter may be.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -39,6 +39,8 @@ pub enum FieldKind {
     Lengths,
     /// One of the words yes and no; stored as 1 and 0.
     Flag,
+    /// The rows of a 3x4 matrix: 12 finite numbers.
+    Rows,
 }
 
 /// A parameter of a member.
@@ -213,18 +215,4 @@ impl FieldValue {
             Self::Real(_) | Self::Vector(_) | Self::Reals(_) => panic!("the field is a list by its kind"),
         }
     }
-}
-
-/// What every member of an open set has: a name, and parameters that can be written and read back.
-pub trait Member: Sized {
-    /// The word of the text format.
-    const NAME: &'static str;
-    /// The parameters, in the order in which they print.
-    const FIELDS: &'static [Field];
-
-    /// The member with these parameters: one value for each of [`FIELDS`](Self::FIELDS), of its kind.
-    fn from_fields(values: &[FieldValue]) -> Self;
-
-    /// The parameters: what [`from_fields`](Self::from_fields) was given.
-    fn to_fields(&self) -> Vec<FieldValue>;
 }

@@ -9,6 +9,7 @@
 pub mod affine;
 mod angle;
 pub mod attribute;
+pub mod axis;
 pub mod bounds;
 pub mod builder;
 pub mod check;
@@ -23,6 +24,7 @@ pub mod import;
 mod interop;
 pub mod lower;
 pub mod map;
+pub mod member;
 pub mod model;
 pub mod number;
 pub mod origin;

@@ -79,7 +79,7 @@ pub enum Recipe {
     Map {
         /// The kind.
         map: MapKind,
-        /// Its values, as [`MapKind::shape`] says: a matrix is one list.
+        /// Its values, in the order of [`MapKind::fields`].
         fields: Vec<FieldNumber>,
     },
     /// A warp.
@@ -288,6 +288,7 @@ impl Recipe {
                 | FieldKind::Within { .. }
                 | FieldKind::Choice(_)
                 | FieldKind::Count
+                | FieldKind::Rows
                 | FieldKind::Flag => false,
             };
             turns && value.numbers().iter().any(Number::follows)

@@ -134,7 +134,7 @@ fn a_shared_weight_is_computed_once() {
 #[test]
 fn a_weighted_warp_is_still_where_its_weight_is_zero() {
     let bar = segment([-2.0, 0.0, 0.0], [2.0, 0.0, 0.0], 0.5);
-    let tree = checked(bar.bend(Axis::Y, 0.7, [-2.0, 2.0]).weighted(&point([0.0; 3], 1.0)));
+    let tree = checked(bar.bend(Axis::Y, 0.7, -2.0, 2.0, 0).weighted(&point([0.0; 3], 1.0)));
     let (weighted, plain) = (compiled(&tree), compiled(&checked(bar)));
     for p in [[1.5, 0.1, 0.2], [-1.9, -0.3, 0.1], [0.0, 1.1, 0.0]] {
         assert_eq!(gradient(&weighted, p.into()), gradient(&plain, p.into()), "at {p:?}");
@@ -164,8 +164,8 @@ fn gradients_are_finite_where_warps_are_singular() {
     let ball = point([0.0; 3], 1.0) + segment([0.0; 3], [0.0, 0.0, 2.0], 0.8);
     for (tree, places) in [
         (ball.twist(Axis::Z, 2.0), [[0.0; 3], [0.0, 0.0, 1.0]]),
-        (ball.taper(Axis::Z, [0.0, 1.0], [1.0, 0.0]), [[0.0, 0.0, 1.0], [0.0, 0.0, 1.5]]),
-        (ball.bend(Axis::X, 1.0, [-1.0, 1.0]), [[0.0, 0.0, 1.0], [0.0, 0.0, 1.0 + 1e-7]]),
+        (ball.taper(Axis::Z, 0.0, 1.0, 1.0, 0.0), [[0.0, 0.0, 1.0], [0.0, 0.0, 1.5]]),
+        (ball.bend(Axis::X, 1.0, -1.0, 1.0, 0), [[0.0, 0.0, 1.0], [0.0, 0.0, 1.0 + 1e-7]]),
         (ball.mirror(Axis::X), [[0.0; 3], [0.0, 0.1, 0.1]]),
         (ball.repeat(Axis::X, 1.0, 0.0), [[0.5, 0.0, 0.0], [-1.5, 0.1, 0.0]]),
         (ball.repeat_around(Axis::Z, 5.0), [[0.0; 3], [-0.5, 0.0, 0.0]]),
@@ -182,8 +182,8 @@ fn gradients_are_finite_where_warps_are_singular() {
 #[test]
 fn warps_of_a_kind_are_rows_of_a_table() {
     let ball = |x: f64| point([x, 0.0, 0.0], 1.0);
-    let bends = (1..6).map(|i| ball(f64::from(i)).bend(Axis::Y, 0.1 * f64::from(i), [-1.0, 1.0]));
-    let other = ball(3.0).bend(Axis::Z, 0.5, [-1.0, 1.0]);
+    let bends = (1..6).map(|i| ball(f64::from(i)).bend(Axis::Y, 0.1 * f64::from(i), -1.0, 1.0, 0));
+    let other = ball(3.0).bend(Axis::Z, 0.5, -1.0, 1.0, 0);
     let sum = bends.fold(other, |all, bend| all + bend);
     let Lowered { function, tables } = lower(&checked(sum), Query::FIELD).unwrap();
     let rows: Vec<(&str, usize)> = function
@@ -198,7 +198,7 @@ fn warps_of_a_kind_are_rows_of_a_table() {
 /// A warp that several lead into, with different colours, has its point computed once.
 #[test]
 fn a_shared_warp_is_computed_once() {
-    let bent = point([0.0; 3], 1.0).bend(Axis::X, 0.5, [-1.0, 1.0]);
+    let bent = point([0.0; 3], 1.0).bend(Axis::X, 0.5, -1.0, 1.0, 0);
     let both = bent.color([1.0, 0.0, 0.0]) + bent.color([0.0, 1.0, 0.0]);
     let Lowered { function, .. } = lower(&checked(both), Query::ATTRIBUTES).unwrap();
     let roots = function.to_string().matches("sqrt").count();
@@ -229,8 +229,7 @@ fn numbers_of_warps_follow_parameters() {
     assert_ne!(before.tables, after.tables);
     let errors = tree.with_parameters(&[("p", 0.7)]).expect_err("1.4 copies");
     assert!(errors[0].message.contains("the `count` of the repeat is 1.4"), "{}", errors[0].message);
-    let same =
-        Tree::clone(&point([0.0; 3], 1.0)).taper(Axis::X, [param("a", 0.0), param("b", 1.0)], [1.0, 0.0]);
+    let same = Tree::clone(&point([0.0; 3], 1.0)).taper(Axis::X, param("a", 0.0), param("b", 1.0), 1.0, 0.0);
     assert!(checked(same).with_parameters(&[("b", 0.0)]).is_err());
 }
 
@@ -256,7 +255,7 @@ fn errors_stand_where_the_warp_does() {
         assert!(errors[0].message.contains(expected), "{}", errors[0].message);
         assert_eq!(errors[0].span.map(|span| span.start), Some(6));
     }
-    let broken = point([0.0; 3], 1.0).bend(Axis::X, f64::NAN, [0.0, 1.0]);
+    let broken = point([0.0; 3], 1.0).bend(Axis::X, f64::NAN, 0.0, 1.0, 0);
     assert!(Model::new(broken).check().is_err());
 }
 

@@ -136,7 +136,7 @@ impl Compact {
             NodeKind::Affine(here) => tasks.push(Task::Write(node.children[0], map * *here, values)),
             NodeKind::Warp(Warp::Twist(twist)) if node.children.len() == 1 => {
                 let map = self.map(&map);
-                let twist = Twist { axis: twist.axis, rate: twist.rate as f32, map };
+                let twist = Twist { axis: twist.axis as u8, rate: twist.rate as f32, map };
                 tasks.push(Task::Close);
                 tasks.push(Task::Write(node.children[0], DAffine3::IDENTITY, values));
                 tasks.push(Task::Push(Operator::Twist(twist)));

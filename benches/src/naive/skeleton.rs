@@ -70,7 +70,7 @@ impl Skeleton {
                 let round = Round::new(cylinder.from.midpoint(cylinder.to), along, cylinder.radius);
                 Self::Cylinder { round, half }
             }
-            skeleton::Skeleton::Box(cuboid) => {
+            skeleton::Skeleton::Cuboid(cuboid) => {
                 Self::Box { middle: cuboid.center.as_vec3(), half: cuboid.half.as_vec3() }
             }
             skeleton::Skeleton::Triangle(triangle) => Self::Triangle(Box::new(Triangle::new(triangle))),

@@ -63,6 +63,7 @@ pub(super) fn check_fields(
                 let (values, _) = value.reals().as_chunks::<1>();
                 check_list(report, span, &what, values, 0.0);
             }
+            FieldKind::Rows => check_numbers(report, span, &what, value.reals(), f64::NEG_INFINITY),
             FieldKind::Flag => {
                 check_number(report, span, &what, value.real(), 0.0);
             }

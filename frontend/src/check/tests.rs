@@ -8,12 +8,13 @@ use jbt_ir::limits;
 use super::*;
 use crate::attribute::AttributeGroup;
 use crate::attribute::Mixing;
+use crate::axis::Axis;
 use crate::bounds::Bounds;
 use crate::combine::{Combinator, Family, SetOperation};
 use crate::diagnostic::Severity;
 use crate::diagnostic::Span;
 use crate::falloff::Falloff;
-use crate::skeleton::{Box, Disc, Point, Skeleton};
+use crate::skeleton::{Cuboid, Disc, Point, Skeleton};
 use crate::tree::Primitive;
 use crate::tree::Tree;
 use crate::warp::Twist;
@@ -65,9 +66,9 @@ fn refuses_numbers_and_children_that_make_no_sense() {
         (leaf(Point { at: DVec3::ZERO }, 1.0, f64::INFINITY), "the strength is inf"),
         (disc(DVec3::ZERO, 1.0), "the `normal` of the disc is (0 0 0)"),
         (disc(DVec3::X, -1.0), "the `radius` of the disc is -1"),
-        (leaf(Box { center: DVec3::ZERO, half }, 1.0, 1.0), "the `half` of the box is (1 -1 1)"),
+        (leaf(Cuboid { center: DVec3::ZERO, half }, 1.0, 1.0), "the `half` of the box is (1 -1 1)"),
         (
-            Tree::new(NodeKind::Warp(Twist { axis: 2, rate: f64::NAN }.into()), vec![point(0.0)]),
+            Tree::new(NodeKind::Warp(Twist { axis: Axis::Z, rate: f64::NAN }.into()), vec![point(0.0)]),
             "the `rate` of the twist is NaN",
         ),
         (combine(Combinator::Sum, vec![]), "a node `sum` has 0 children"),
@@ -264,7 +265,7 @@ fn the_box_of_each_kind_of_node() {
     // x from 2 to 4 became y from -8 to -4.
     assert!(turned.min.abs_diff_eq(DVec3::new(-1.0, -8.0, 4.0), 1e-12), "{turned:?}");
     assert!(turned.max.abs_diff_eq(DVec3::new(1.0, -4.0, 6.0), 1e-12), "{turned:?}");
-    let twisted = Tree::new(NodeKind::Warp(Twist { axis: 2, rate: 1.0 }.into()), vec![point(2.0)]);
+    let twisted = Tree::new(NodeKind::Warp(Twist { axis: Axis::Z, rate: 1.0 }.into()), vec![point(2.0)]);
     let reach = 10f64.sqrt();
     assert_eq!(support(twisted), between([-reach, -reach, -1.0], [reach, reach, 1.0]));
 }

@@ -28,16 +28,18 @@
 use jbt_ir::Domain;
 
 use super::{Edge, FalloffMember, Nearness, bisect, emit_depth};
-use crate::field::{Field, FieldKind, FieldValue, Member};
+use crate::member::member;
 use crate::skeleton::positive_part;
 
-/// An arc tangent. Text: `arctan { stiffness 50 edge exact }`, which are the defaults; also `atan`.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct ArcTan {
-    /// p, in [0.01, 1000].
-    pub stiffness: f64,
-    /// What happens at the support radius.
-    pub edge: Edge,
+member! {
+    /// An arc tangent. Text: `arctan { stiffness 50 edge exact }`, which are the defaults; also `atan`.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct ArcTan = "arctan" {
+        /// p, in [0.01, 1000].
+        pub stiffness: f64 [Within { least: 0.01, most: 1000.0 }] = Real(50.0),
+        /// What happens at the support radius.
+        pub edge: Edge [Choice(Edge::WORDS)] = Edge::Exact.to_field(),
+    }
 }
 
 /// Nearer to the rim than this, as a part of the radius, the field is proportional to the distance from the rim: so no number gets large.
@@ -47,26 +49,6 @@ impl ArcTan {
     /// `(1 + p^2) / (2p)`
     fn spread(&self) -> f64 {
         0.5 * (self.stiffness + 1.0 / self.stiffness)
-    }
-}
-
-impl Member for ArcTan {
-    const NAME: &'static str = "arctan";
-    const FIELDS: &'static [Field] = &[
-        Field {
-            name: "stiffness",
-            kind: FieldKind::Within { least: 0.01, most: 1000.0 },
-            default: Some(FieldValue::Real(50.0)),
-        },
-        Edge::field(Edge::Exact),
-    ];
-
-    fn from_fields(values: &[FieldValue]) -> Self {
-        Self { stiffness: values[0].real(), edge: Edge::from_field(&values[1]) }
-    }
-
-    fn to_fields(&self) -> Vec<FieldValue> {
-        vec![FieldValue::Real(self.stiffness), self.edge.to_field()]
     }
 }
 

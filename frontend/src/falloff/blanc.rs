@@ -17,34 +17,19 @@
 use jbt_ir::Domain;
 
 use super::{FalloffMember, Nearness, bisect, emit_square};
-use crate::field::{Field, FieldKind, FieldValue, Member};
+use crate::member::member;
 
-/// Blanc and Schlick's. Text: `blanc { hardness 0 }`, which is the default; also `schlick`.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Blanc {
-    /// p, in [0, 100].
-    pub hardness: f64,
+member! {
+    /// Blanc and Schlick's. Text: `blanc { hardness 0 }`, which is the default; also `schlick`.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct Blanc = "blanc" {
+        /// p, in [0, 100].
+        pub hardness: f64 [Within { least: 0.0, most: 100.0 }] = Real(0.0),
+    }
 }
 
 /// What y counts as at least, where it is a divisor: the least difference between 1 and another u.
 const LEAST: f32 = 1.0 / (1 << 24) as f32;
-
-impl Member for Blanc {
-    const NAME: &'static str = "blanc";
-    const FIELDS: &'static [Field] = &[Field {
-        name: "hardness",
-        kind: FieldKind::Within { least: 0.0, most: 100.0 },
-        default: Some(FieldValue::Real(0.0)),
-    }];
-
-    fn from_fields(values: &[FieldValue]) -> Self {
-        Self { hardness: values[0].real() }
-    }
-
-    fn to_fields(&self) -> Vec<FieldValue> {
-        vec![FieldValue::Real(self.hardness)]
-    }
-}
 
 impl FalloffMember for Blanc {
     const ALIASES: &'static [&'static str] = &["schlick"];

@@ -13,44 +13,26 @@
 
 use jbt_ir::Domain;
 
-use super::{Edge, FalloffMember, Nearness, Rim, bisect};
-use crate::field::{Field, FieldKind, FieldValue, Member};
+use super::{Edge, FalloffMember, Nearness, bisect};
+use crate::member::member;
 
-/// A Gaussian. Text: `blinn { hardness 2 cutoff 2 edge smooth }`, which are the defaults; also `gaussian`, `blobby`.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Blinn {
-    /// How fast it falls, in [0.001, 1000].
-    pub hardness: f64,
-    /// The support radius, in units of the radius that the hardness is meant for, and what happens there.
-    pub rim: Rim,
+member! {
+    /// A Gaussian. Text: `blinn { hardness 2 cutoff 2 edge smooth }`, which are the defaults; also `gaussian`, `blobby`.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct Blinn = "blinn" {
+        /// How fast it falls, in [0.001, 1000].
+        pub hardness: f64 [Within { least: 0.001, most: 1000.0 }] = Real(2.0),
+        /// The support radius, in units of the radius that the hardness is meant for, in [0.01, 16].
+        pub cutoff: f64 [Within { least: 0.01, most: 16.0 }] = Real(2.0),
+        /// What happens at the support radius.
+        pub edge: Edge [Choice(Edge::WORDS)] = Edge::Smooth.to_field(),
+    }
 }
 
 impl Blinn {
     /// `h c^2`: the field is `exp(-rate s)`.
     fn rate(&self) -> f64 {
-        self.hardness * self.rim.cutoff * self.rim.cutoff
-    }
-}
-
-impl Member for Blinn {
-    const NAME: &'static str = "blinn";
-    const FIELDS: &'static [Field] = &[
-        Field {
-            name: "hardness",
-            kind: FieldKind::Within { least: 0.001, most: 1000.0 },
-            default: Some(FieldValue::Real(2.0)),
-        },
-        Rim::cutoff_field(2.0),
-        Edge::field(Edge::Smooth),
-    ];
-
-    fn from_fields(values: &[FieldValue]) -> Self {
-        Self { hardness: values[0].real(), rim: Rim::from_fields(&values[1..]) }
-    }
-
-    fn to_fields(&self) -> Vec<FieldValue> {
-        let [cutoff, edge] = self.rim.to_fields();
-        vec![FieldValue::Real(self.hardness), cutoff, edge]
+        self.hardness * self.cutoff * self.cutoff
     }
 }
 
@@ -58,7 +40,7 @@ impl FalloffMember for Blinn {
     const ALIASES: &'static [&'static str] = &["gaussian", "blobby"];
 
     fn value(&self, s: f64) -> f64 {
-        (-self.rate() * s).exp() * self.rim.edge.factor(s)
+        (-self.rate() * s).exp() * self.edge.factor(s)
     }
 
     fn inverse(&self, level: f64) -> f64 {
@@ -74,7 +56,7 @@ impl FalloffMember for Blinn {
     }
 
     fn variant(&self, _follows: bool) -> u8 {
-        self.rim.edge.bit()
+        self.edge.bit()
     }
 
     fn column_names(_variant: u8) -> &'static [&'static str] {
@@ -109,14 +91,14 @@ mod tests {
                 let slope = (2.0 * a / std::f64::consts::E).sqrt();
                 let steepest = Some(((0.5 / a).sqrt(), slope));
                 Published { half: Some((2f64.ln() / a).sqrt()), steepest }
-                    .check(Blinn { hardness, rim: Rim { cutoff, edge } }.into());
+                    .check(Blinn { hardness, cutoff, edge }.into());
             }
         }
     }
 
     #[test]
     fn an_exact_edge_jumps() {
-        let exact = Blinn { hardness: 3.0, rim: Rim { cutoff: 1.0, edge: Edge::Exact } };
+        let exact = Blinn { hardness: 3.0, cutoff: 1.0, edge: Edge::Exact };
         assert!((exact.value(1.0 - 1e-12) - (-3f64).exp()).abs() < 1e-10);
         assert_eq!(exact.value(1.0), 0.0);
         assert!((exact.inverse(0.01) - 1.0).abs() < 1e-15, "it jumps over this level at the rim");

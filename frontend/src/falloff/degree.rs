@@ -7,33 +7,18 @@
 use jbt_ir::Domain;
 
 use super::{FalloffMember, Nearness, emit_inside, whole};
-use crate::field::{Field, FieldKind, FieldValue, Member};
+use crate::member::member;
 use crate::power::{Exponent, power};
 
 /// The largest whole exponent that is code.
 const MOST_WHOLE: u8 = 64;
 
-/// `(1 - s)^n`. Text: `degree { exponent 4 }`, also `stolte`.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Degree {
-    /// n, in [0.001, 1024].
-    pub exponent: f64,
-}
-
-impl Member for Degree {
-    const NAME: &'static str = "degree";
-    const FIELDS: &'static [Field] = &[Field {
-        name: "exponent",
-        kind: FieldKind::Within { least: 0.001, most: 1024.0 },
-        default: None,
-    }];
-
-    fn from_fields(values: &[FieldValue]) -> Self {
-        Self { exponent: values[0].real() }
-    }
-
-    fn to_fields(&self) -> Vec<FieldValue> {
-        vec![FieldValue::Real(self.exponent)]
+member! {
+    /// `(1 - s)^n`. Text: `degree { exponent 4 }`, also `stolte`.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct Degree = "degree" {
+        /// n, in [0.001, 1024].
+        pub exponent: f64 [Within { least: 0.001, most: 1024.0 }],
     }
 }
 

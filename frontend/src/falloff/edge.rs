@@ -2,34 +2,8 @@
 
 use jbt_ir::Domain;
 
-use crate::field::{Field, FieldKind, FieldValue};
-
-/// The end of a function of the distance in a unit of its own, which never reaches zero by itself.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Rim {
-    /// The support radius in that unit, in [0.01, 16].
-    pub cutoff: f64,
-    /// What happens there.
-    pub edge: Edge,
-}
-
-impl Rim {
-    /// The first parameter, and what it is if it is not written; that of the edge follows.
-    pub(super) const fn cutoff_field(default: f64) -> Field {
-        let kind = FieldKind::Within { least: 0.01, most: 16.0 };
-        Field { name: "cutoff", kind, default: Some(FieldValue::Real(default)) }
-    }
-
-    /// The rim with these two parameters.
-    pub(super) fn from_fields(values: &[FieldValue]) -> Self {
-        Self { cutoff: values[0].real(), edge: Edge::from_field(&values[1]) }
-    }
-
-    /// Its two parameters.
-    pub(super) const fn to_fields(self) -> [FieldValue; 2] {
-        [FieldValue::Real(self.cutoff), self.edge.to_field()]
-    }
-}
+use crate::field::FieldValue;
+use crate::member::Parameter;
 
 /// The edge of a falloff.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -50,20 +24,12 @@ impl Edge {
     /// The words of the text format, in the order of the edges.
     pub const WORDS: &'static [&'static str] = &["exact", "smooth"];
 
-    /// The parameter of a falloff whose edge is this one, unless it is written.
-    pub(super) const fn field(default: Self) -> Field {
-        Field { name: "edge", kind: FieldKind::Choice(Self::WORDS), default: Some(default.to_field()) }
-    }
-
+    /// It as the value of a parameter: its place among the [words](Self::WORDS).
     pub(crate) const fn to_field(self) -> FieldValue {
         FieldValue::Real(match self {
             Self::Exact => 0.0,
             Self::Smooth => 1.0,
         })
-    }
-
-    pub(super) fn from_field(value: &FieldValue) -> Self {
-        if value.real() == 0.0 { Self::Exact } else { Self::Smooth }
     }
 
     /// The edge as the lowest bit of a variant.
@@ -108,5 +74,15 @@ impl Edge {
                 d.mul(value, factor)
             }
         }
+    }
+}
+
+impl Parameter for Edge {
+    fn read(value: &FieldValue) -> Self {
+        if value.real() == 0.0 { Self::Exact } else { Self::Smooth }
+    }
+
+    fn write(&self) -> FieldValue {
+        self.to_field()
     }
 }

@@ -14,41 +14,23 @@
 
 use jbt_ir::Domain;
 
-use super::{Edge, FalloffMember, Nearness, Rim, bisect, whole};
-use crate::field::{Field, FieldKind, FieldValue, Member};
+use super::{Edge, FalloffMember, Nearness, bisect, whole};
+use crate::member::member;
 use crate::power::{Exponent, power};
 
 /// The largest exponent.
 const MOST: u8 = 16;
 
-/// An inverse power. Text: `inverse_power { exponent 2 cutoff 4 edge smooth }`, which are the defaults; also `inverse`, `lorentz`.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct InversePower {
-    /// n, in [1, 16].
-    pub exponent: f64,
-    /// The support radius, in units of the distance at which the field is 1/2, and what happens there.
-    pub rim: Rim,
-}
-
-impl Member for InversePower {
-    const NAME: &'static str = "inverse_power";
-    const FIELDS: &'static [Field] = &[
-        Field {
-            name: "exponent",
-            kind: FieldKind::Within { least: 1.0, most: MOST as f64 },
-            default: Some(FieldValue::Real(2.0)),
-        },
-        Rim::cutoff_field(4.0),
-        Edge::field(Edge::Smooth),
-    ];
-
-    fn from_fields(values: &[FieldValue]) -> Self {
-        Self { exponent: values[0].real(), rim: Rim::from_fields(&values[1..]) }
-    }
-
-    fn to_fields(&self) -> Vec<FieldValue> {
-        let [cutoff, edge] = self.rim.to_fields();
-        vec![FieldValue::Real(self.exponent), cutoff, edge]
+member! {
+    /// An inverse power. Text: `inverse_power { exponent 2 cutoff 4 edge smooth }`, which are the defaults; also `inverse`, `lorentz`.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct InversePower = "inverse_power" {
+        /// n, in [1, 16].
+        pub exponent: f64 [Within { least: 1.0, most: MOST as f64 }] = Real(2.0),
+        /// The support radius, in units of the distance at which the field is 1/2, in [0.01, 16].
+        pub cutoff: f64 [Within { least: 0.01, most: 16.0 }] = Real(4.0),
+        /// What happens at the support radius.
+        pub edge: Edge [Choice(Edge::WORDS)] = Edge::Smooth.to_field(),
     }
 }
 
@@ -56,7 +38,7 @@ impl FalloffMember for InversePower {
     const ALIASES: &'static [&'static str] = &["inverse", "lorentz"];
 
     fn value(&self, s: f64) -> f64 {
-        self.rim.edge.factor(s) / (1.0 + (self.rim.cutoff * s.sqrt()).powf(self.exponent))
+        self.edge.factor(s) / (1.0 + (self.cutoff * s.sqrt()).powf(self.exponent))
     }
 
     fn inverse(&self, level: f64) -> f64 {
@@ -64,7 +46,7 @@ impl FalloffMember for InversePower {
     }
 
     fn steepness(&self) -> f64 {
-        8.0 * self.exponent * self.rim.cutoff.powf(self.exponent).max(1.0)
+        8.0 * self.exponent * self.cutoff.powf(self.exponent).max(1.0)
     }
 
     fn is_pointed(&self) -> bool {
@@ -74,7 +56,7 @@ impl FalloffMember for InversePower {
     /// The edge, and above it a whole exponent.
     fn variant(&self, follows: bool) -> u8 {
         let exponent = if follows { 0 } else { whole(self.exponent, MOST).unwrap_or(0) };
-        self.rim.edge.bit() | exponent << 1
+        self.edge.bit() | exponent << 1
     }
 
     fn column_names(variant: u8) -> &'static [&'static str] {
@@ -82,7 +64,7 @@ impl FalloffMember for InversePower {
     }
 
     fn columns(&self, variant: u8, row: &mut Vec<f64>) {
-        row.push(self.rim.cutoff.powf(self.exponent));
+        row.push(self.cutoff.powf(self.exponent));
         if variant >> 1 == 0 {
             row.push(0.5 * self.exponent);
         }
@@ -123,14 +105,14 @@ mod tests {
                 let slope = cutoff * exponent * x.powf(exponent - 1.0) / (1.0 + x.powf(exponent)).powi(2);
                 let steepest = (exponent > 1.0).then_some((x / cutoff, slope));
                 Published { half: Some(1.0 / cutoff), steepest }
-                    .check(InversePower { exponent, rim: Rim { cutoff, edge } }.into());
+                    .check(InversePower { exponent, cutoff, edge }.into());
             }
         }
     }
 
     #[test]
     fn an_exact_edge_jumps() {
-        let exact = InversePower { exponent: 2.0, rim: Rim { cutoff: 4.0, edge: Edge::Exact } };
+        let exact = InversePower { exponent: 2.0, cutoff: 4.0, edge: Edge::Exact };
         assert!((exact.value(1.0 - 1e-12) - 1.0 / 17.0).abs() < 1e-10);
         assert_eq!(exact.value(1.0), 0.0);
     }

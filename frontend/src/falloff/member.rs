@@ -2,7 +2,7 @@
 
 use jbt_ir::Domain;
 
-use crate::field::Member;
+use crate::member::Member;
 
 /// How near a point is to the skeleton, over the ops: what falloffs are functions of.
 #[derive(Clone, Copy, Debug)]

@@ -36,13 +36,14 @@
 
 use jbt_ir::Domain;
 
-use crate::field::{Field, FieldOf, FieldValue, Member as _, Written};
+use crate::field::{Field, FieldOf, FieldValue, Written};
+use crate::member::Member as _;
 
 mod edge;
 mod formulas;
 mod member;
 
-pub use edge::{Edge, Rim};
+pub use edge::Edge;
 use formulas::{bisect, emit_depth, emit_distance, emit_inside, emit_square, whole};
 pub use member::{FalloffMember, Nearness, PlainFalloff};
 
@@ -52,7 +53,7 @@ macro_rules! falloffs {
         with_parameters { $($rich_module:ident :: $rich:ident),+ $(,)? }
     ) => {
         $( mod $module; pub use $module::$name; )+
-        $( mod $rich_module; pub use $rich_module::$rich; )+
+        $( mod $rich_module; pub use $rich_module::$rich; pub(crate) use $rich_module::describe as $rich_module; )+
 
         /// A falloff of any kind.
         #[derive(Clone, Copy, PartialEq, Debug)]
@@ -182,6 +183,8 @@ macro_rules! falloffs {
                 match self { $( Self::$name => {} )+ $( Self::$rich(falloff) => falloff.columns(code.variant(), row), )+ }
             }
         }
+
+        $crate::member::each! { ($) falloff $($rich_module)+ }
     };
 }
 

@@ -1,31 +1,27 @@
-//! Affine maps as they are written. One `impl` a member, one list.
+//! Affine maps as they are written. One file a member, one list.
 //!
-//! A map states its word, what stands behind the word, its matrix, and how much its linear part can change with parameters.
-//! To add one: write its `impl` into a file of this folder, and its line into the list below.
+//! A map states its parameters, its matrix, and how much its linear part can change with parameters. To add one: write
+//! its file, add its line to the list below.
 
 use glam::DAffine3;
 
 use crate::field::{Field, FieldValue};
+use crate::member::Member as _;
 use crate::report::Fault;
 
 mod axis;
 mod member;
-mod rotate;
-mod rows;
-mod scale;
-mod shear;
-mod stretch;
-mod translate;
 
 pub(crate) use member::Freedom;
 use member::MapMember as _;
-pub use member::MapShape;
 
 macro_rules! maps {
-    ($($(#[$doc:meta])* $module:ident :: $name:ident),+ $(,)?) => {
+    ($($module:ident :: $name:ident),+ $(,)?) => {
+        $( mod $module; pub use $module::$name; pub(crate) use $module::describe as $module; )+
+
         /// The kind of an affine map.
         #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-        pub enum MapKind { $( $(#[$doc])* $name, )+ }
+        pub enum MapKind { $( #[doc = concat!("See [`", stringify!($name), "`](struct@", stringify!($name), ").")] $name, )+ }
 
         impl MapKind {
             /// Every kind, in the order of the list.
@@ -33,58 +29,46 @@ macro_rules! maps {
 
             /// The word of the text format. Kinds of one word differ in what stands behind it.
             #[must_use]
-            pub const fn name(self) -> &'static str { match self { $( Self::$name => $module::$name::WORD, )+ } }
+            pub const fn name(self) -> &'static str { match self { $( Self::$name => $name::NAME, )+ } }
 
-            /// What stands behind the word.
+            /// The parameters.
             #[must_use]
-            pub const fn shape(self) -> MapShape { match self { $( Self::$name => $module::$name::SHAPE, )+ } }
+            pub const fn fields(self) -> &'static [Field] { match self { $( Self::$name => $name::FIELDS, )+ } }
+
+            /// Whether the parameters are written by name. Otherwise there is one, whose value stands behind the word.
+            #[must_use]
+            pub const fn is_named(self) -> bool { match self { $( Self::$name => $name::NAMED, )+ } }
 
             /// How much the linear part can change, where its numbers follow parameters.
-            pub(crate) const fn freedom(self) -> Freedom { match self { $( Self::$name => $module::$name::FREEDOM, )+ } }
+            pub(crate) const fn freedom(self) -> Freedom { match self { $( Self::$name => $name::FREEDOM, )+ } }
 
-            /// The map that takes the child's space to the parent's, from values as its [`shape`](Self::shape) says.
+            /// The map that takes the child's space to the parent's, from the values of its parameters.
             ///
             /// An axis without a direction is a fault.
             pub(crate) fn affine(self, values: &[FieldValue]) -> Result<DAffine3, Fault> {
-                match self { $( Self::$name => $module::$name::affine(values), )+ }
+                match self { $( Self::$name => $name::from_fields(values).affine(), )+ }
             }
         }
+
+        $crate::member::each! { ($) map $($module)+ }
     };
 }
 
 maps! {
-    /// A shift.
     translate::Translate,
-    /// A rotation by degrees about an axis through the origin, right-handed.
-    rotate::RotateDegrees,
-    /// The same by radians.
-    rotate::RotateRadians,
-    /// A uniform scale about the origin.
+    rotate::Rotate,
+    rotate_radians::RotateRadians,
     scale::Scale,
-    /// A scale about the origin, by another factor along each axis.
-    scale::ScaleAxes,
-    /// A mirror image in a plane through the origin.
-    stretch::Reflect,
-    /// A scale along a direction.
+    scale_axes::ScaleAxes,
+    reflect::Reflect,
     stretch::Stretch,
-    /// A shear.
     shear::Shear,
-    /// The rows of a 3x4 matrix, child to parent.
-    rows::Affine,
+    affine::Affine,
 }
 
 impl MapKind {
     /// The kinds that a word begins.
     pub fn named(word: &str) -> impl Iterator<Item = Self> {
         Self::ALL.iter().copied().filter(move |kind| kind.name() == word)
-    }
-
-    /// The parameters that are written by name.
-    #[must_use]
-    pub const fn fields(self) -> &'static [Field] {
-        match self.shape() {
-            MapShape::Named(fields) => fields,
-            MapShape::Number | MapShape::Vector | MapShape::Rows => &[],
-        }
     }
 }

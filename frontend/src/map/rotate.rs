@@ -1,39 +1,28 @@
-//! Rotations about an axis through the origin, right-handed.
+//! The rotation by degrees.
 
-use glam::DAffine3;
+use glam::{DAffine3, DVec3};
 
-use super::axis::{AXIS, unit};
-use super::member::{Freedom, MapMember, MapShape};
+use super::axis::unit;
+use super::member::{Freedom, MapMember};
 use crate::affine::{rotation, sin_cos_degrees};
-use crate::field::{Field, FieldKind, FieldValue};
+use crate::member::member;
 use crate::report::Fault;
 
-/// By an angle in degrees; quarter turns are exact.
-pub(super) struct RotateDegrees;
-
-impl MapMember for RotateDegrees {
-    const WORD: &'static str = "rotate";
-    const SHAPE: MapShape =
-        MapShape::Named(&[AXIS, Field { name: "degrees", kind: FieldKind::Real, default: None }]);
-    const FREEDOM: Freedom = Freedom::Turn;
-
-    fn affine(values: &[FieldValue]) -> Result<DAffine3, Fault> {
-        let turn = sin_cos_degrees(values[1].real());
-        Ok(DAffine3::from_mat3(rotation(unit(&values[0])?, turn)))
+member! {
+    /// Turned about an axis through the origin, right-handed. Quarter turns are exact.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct Rotate = "rotate" {
+        /// The axis through the origin, of any length but 0.
+        pub axis: DVec3 [Direction],
+        /// The angle.
+        pub degrees: f64 [Real],
     }
 }
 
-/// By an angle in radians.
-pub(super) struct RotateRadians;
-
-impl MapMember for RotateRadians {
-    const WORD: &'static str = "rotate";
-    const SHAPE: MapShape =
-        MapShape::Named(&[AXIS, Field { name: "radians", kind: FieldKind::Real, default: None }]);
+impl MapMember for Rotate {
     const FREEDOM: Freedom = Freedom::Turn;
 
-    fn affine(values: &[FieldValue]) -> Result<DAffine3, Fault> {
-        let turn = values[1].real().sin_cos();
-        Ok(DAffine3::from_mat3(rotation(unit(&values[0])?, turn)))
+    fn affine(&self) -> Result<DAffine3, Fault> {
+        Ok(DAffine3::from_mat3(rotation(unit(self.axis)?, sin_cos_degrees(self.degrees))))
     }
 }

@@ -1,33 +1,25 @@
-//! Scales about the origin.
+//! The uniform scale.
 
 use glam::{DAffine3, DVec3};
 
-use super::member::{Freedom, MapMember, MapShape};
-use crate::field::FieldValue;
+use super::member::{Freedom, MapMember};
+use crate::member::member;
 use crate::report::Fault;
 
-/// By one factor.
-pub(super) struct Scale;
-
-impl MapMember for Scale {
-    const WORD: &'static str = "scale";
-    const SHAPE: MapShape = MapShape::Number;
-    const FREEDOM: Freedom = Freedom::Scale;
-
-    fn affine(values: &[FieldValue]) -> Result<DAffine3, Fault> {
-        Ok(DAffine3::from_scale(DVec3::splat(values[0].real())))
+member! {
+    /// Scaled about the origin.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct Scale = "scale" {
+        /// The factor, not 0; a negative one mirrors.
+        pub by: f64 [Real],
     }
 }
 
-/// By another factor along each axis.
-pub(super) struct ScaleAxes;
+impl MapMember for Scale {
+    const NAMED: bool = false;
+    const FREEDOM: Freedom = Freedom::Scale;
 
-impl MapMember for ScaleAxes {
-    const WORD: &'static str = "scale";
-    const SHAPE: MapShape = MapShape::Vector;
-    const FREEDOM: Freedom = Freedom::Full;
-
-    fn affine(values: &[FieldValue]) -> Result<DAffine3, Fault> {
-        Ok(DAffine3::from_scale(values[0].vector().into()))
+    fn affine(&self) -> Result<DAffine3, Fault> {
+        Ok(DAffine3::from_scale(DVec3::splat(self.by)))
     }
 }

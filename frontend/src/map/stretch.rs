@@ -1,43 +1,27 @@
-//! Scales along a direction: mirror images, and others.
+//! The scale along a direction.
 
-use glam::{DAffine3, DMat3, DVec3};
+use glam::{DAffine3, DVec3};
 
-use super::axis::{AXIS, outer, unit};
-use super::member::{Freedom, MapMember, MapShape};
-use crate::field::{Field, FieldKind, FieldValue};
+use super::axis::scale_along;
+use super::member::{Freedom, MapMember};
+use crate::member::member;
 use crate::report::Fault;
 
-/// A mirror image in the plane through the origin that is normal to a direction of any length.
-pub(super) struct Reflect;
-
-impl MapMember for Reflect {
-    const WORD: &'static str = "reflect";
-    const SHAPE: MapShape = MapShape::Named(&[AXIS]);
-    const FREEDOM: Freedom = Freedom::Full;
-
-    fn affine(values: &[FieldValue]) -> Result<DAffine3, Fault> {
-        Ok(DAffine3::from_mat3(along(&values[0], -1.0)?))
+member! {
+    /// Scaled about the origin along a direction, and by 1 across it; a negative factor mirrors.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct Stretch = "stretch" {
+        /// A direction of any length but 0.
+        pub axis: DVec3 [Direction],
+        /// The factor, not 0.
+        pub by: f64 [Real],
     }
 }
-
-/// A scale about the origin by a factor along a direction of any length, and by 1 across it; a negative factor mirrors.
-pub(super) struct Stretch;
 
 impl MapMember for Stretch {
-    const WORD: &'static str = "stretch";
-    const SHAPE: MapShape =
-        MapShape::Named(&[AXIS, Field { name: "by", kind: FieldKind::Real, default: None }]);
     const FREEDOM: Freedom = Freedom::Full;
 
-    fn affine(values: &[FieldValue]) -> Result<DAffine3, Fault> {
-        Ok(DAffine3::from_mat3(along(&values[0], values[1].real())?))
+    fn affine(&self) -> Result<DAffine3, Fault> {
+        Ok(DAffine3::from_mat3(scale_along(self.axis, self.by)?))
     }
-}
-
-/// The scale by a factor along a direction; exact along simple ones.
-fn along(axis: &FieldValue, factor: f64) -> Result<DMat3, Fault> {
-    unit(axis)?;
-    let axis = DVec3::from(axis.vector());
-    let axis = axis / axis.abs().max_element();
-    Ok(DMat3::IDENTITY + outer((factor - 1.0) / axis.length_squared() * axis, axis))
 }

@@ -1,20 +1,25 @@
 //! The shift.
 
-use glam::DAffine3;
+use glam::{DAffine3, DVec3};
 
-use super::member::{Freedom, MapMember, MapShape};
-use crate::field::FieldValue;
+use super::member::{Freedom, MapMember};
+use crate::member::member;
 use crate::report::Fault;
 
-/// A shift.
-pub(super) struct Translate;
+member! {
+    /// Shifted.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct Translate = "translate" {
+        /// By how much.
+        pub by: DVec3 [Position],
+    }
+}
 
 impl MapMember for Translate {
-    const WORD: &'static str = "translate";
-    const SHAPE: MapShape = MapShape::Vector;
+    const NAMED: bool = false;
     const FREEDOM: Freedom = Freedom::Fixed;
 
-    fn affine(values: &[FieldValue]) -> Result<DAffine3, Fault> {
-        Ok(DAffine3::from_translation(values[0].vector().into()))
+    fn affine(&self) -> Result<DAffine3, Fault> {
+        Ok(DAffine3::from_translation(self.by))
     }
 }

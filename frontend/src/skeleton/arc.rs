@@ -21,21 +21,23 @@ use super::{SkeletonMember, Symmetry};
 use crate::affine::{rotation, sin_cos_degrees};
 use crate::bounds::Bounds;
 use crate::diagnostic::Diagnostic;
-use crate::field::{Field, FieldKind, FieldValue, Member};
+use crate::member::{Member as _, member};
 
-/// A part of a circle, not filled. With radius 0 or angle 0 it is a point, with 360 degrees a ring.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Arc {
-    /// The middle of its circle.
-    pub center: DVec3,
-    /// The direction of the circle's axis, of any length but 0: seen from its tip the arc goes counterclockwise.
-    pub normal: DVec3,
-    /// The direction from the middle of the circle to where the arc begins: only the part across the normal counts.
-    pub start: DVec3,
-    /// How far it goes, in degrees: from 0 to 360.
-    pub degrees: f64,
-    /// The radius of the circle.
-    pub radius: f64,
+member! {
+    /// A part of a circle, not filled. With radius 0 or angle 0 it is a point, with 360 degrees a ring.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct Arc = "arc" {
+        /// The middle of its circle.
+        pub center: DVec3 [Position] = Vector([0.0; 3]),
+        /// The direction of the circle's axis, of any length but 0: seen from its tip the arc goes counterclockwise.
+        pub normal: DVec3 [Direction] = Vector([0.0, 0.0, 1.0]),
+        /// The direction from the middle of the circle to where the arc begins: only the part across the normal counts.
+        pub start: DVec3 [Direction] = Vector([1.0, 0.0, 0.0]),
+        /// How far it goes, in degrees: from 0 to 360.
+        pub degrees: f64 [Degrees],
+        /// The radius of the circle.
+        pub radius: f64 [NonNegative],
+    }
 }
 
 /// What the sine in the condition is at least. It is far above what underflow takes from products with lengths.
@@ -60,37 +62,6 @@ impl Arc {
     /// Whether there is only one point of it.
     fn is_point(&self) -> bool {
         self.radius == 0.0 || self.degrees == 0.0
-    }
-}
-
-impl Member for Arc {
-    const NAME: &'static str = "arc";
-    const FIELDS: &'static [Field] = &[
-        Field { name: "center", kind: FieldKind::Position, default: Some(FieldValue::Vector([0.0; 3])) },
-        Field { name: "normal", kind: FieldKind::Direction, default: Some(FieldValue::Vector([0.0, 0.0, 1.0])) },
-        Field { name: "start", kind: FieldKind::Direction, default: Some(FieldValue::Vector([1.0, 0.0, 0.0])) },
-        Field { name: "degrees", kind: FieldKind::Degrees, default: None },
-        Field { name: "radius", kind: FieldKind::NonNegative, default: None },
-    ];
-
-    fn from_fields(values: &[FieldValue]) -> Self {
-        Self {
-            center: values[0].vector().into(),
-            normal: values[1].vector().into(),
-            start: values[2].vector().into(),
-            degrees: values[3].real(),
-            radius: values[4].real(),
-        }
-    }
-
-    fn to_fields(&self) -> Vec<FieldValue> {
-        vec![
-            FieldValue::Vector(self.center.into()),
-            FieldValue::Vector(self.normal.into()),
-            FieldValue::Vector(self.start.into()),
-            FieldValue::Real(self.degrees),
-            FieldValue::Real(self.radius),
-        ]
     }
 }
 

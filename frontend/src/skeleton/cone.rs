@@ -15,46 +15,41 @@
 use glam::{DAffine3, DVec2, DVec3};
 use jbt_ir::Domain;
 
-use super::ends::Ends;
+use super::ends;
 use super::{SkeletonMember, Symmetry};
 use crate::bounds::Bounds;
-use crate::field::{Field, FieldValue, Member};
+use crate::member::member;
 
-/// A solid cone or, with two radii, a frustum.
-///
-/// Equal radii make it a cylinder, radii of 0 a segment. Equal ends make it a disc of the larger radius, whose axis is z since they say nothing else.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Cone {
-    /// The axis, and how far it reaches from it at its ends.
-    pub ends: Ends,
+member! {
+    /// A solid cone or, with two radii, a frustum.
+    ///
+    /// Equal radii make it a cylinder, radii of 0 a segment. Equal ends make it a disc of the larger radius, whose axis is z since they say nothing else.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct Cone = "cone" {
+        /// One end of the axis.
+        pub from: DVec3 [Position],
+        /// The other end of the axis.
+        pub to: DVec3 [Position],
+        /// How far it reaches from the axis at `from`.
+        pub from_radius: f64 [NonNegative],
+        /// How far it reaches from the axis at `to`; 0 is a tip.
+        pub to_radius: f64 [NonNegative] = Real(0.0),
+    }
 }
 
 impl Cone {
     /// The direction of the axis.
     fn direction(&self) -> DVec3 {
-        super::direction(self.ends.to - self.ends.from)
+        super::direction(self.to - self.from)
     }
 
     fn half(&self) -> f64 {
-        0.5 * self.ends.length()
+        0.5 * self.from.distance(self.to)
     }
 
     /// The way from the end of the profile's side at `from` to that at `to`.
     fn side(&self) -> DVec2 {
-        DVec2::new(self.ends.to_radius - self.ends.from_radius, 2.0 * self.half())
-    }
-}
-
-impl Member for Cone {
-    const NAME: &'static str = "cone";
-    const FIELDS: &'static [Field] = &Ends::fields(Some(FieldValue::Real(0.0)));
-
-    fn from_fields(values: &[FieldValue]) -> Self {
-        Self { ends: Ends::from_fields(values) }
-    }
-
-    fn to_fields(&self) -> Vec<FieldValue> {
-        self.ends.to_fields()
+        DVec2::new(self.to_radius - self.from_radius, 2.0 * self.half())
     }
 }
 
@@ -65,11 +60,12 @@ impl SkeletonMember for Cone {
     const SYMMETRY: Symmetry = Symmetry::Arrow;
 
     fn bounds_under(&self, map: &DAffine3) -> Bounds {
-        self.ends.bounds_under(map, |radius| super::circle_reach(map, self.direction(), radius))
+        let ends = [(self.from, self.from_radius), (self.to, self.to_radius)];
+        ends::bounds_under(map, ends, |radius| super::circle_reach(map, self.direction(), radius))
     }
 
     fn distance_squared(&self, p: DVec3) -> f64 {
-        let Ends { from, from_radius, to_radius, .. } = self.ends;
+        let Self { from, from_radius, to_radius, .. } = *self;
         let (h, rho) = super::cylindrical(p - from, self.direction());
         let (q, side) = (DVec2::new(rho, h), self.side());
         let corners = [DVec2::new(from_radius, 0.0), DVec2::new(to_radius, side.y)];
@@ -94,7 +90,7 @@ impl SkeletonMember for Cone {
 
     // Measured from the middle, the ends are alike.
     fn pose(&self) -> DAffine3 {
-        DAffine3::from_mat3_translation(super::towards(self.direction()), self.ends.from.midpoint(self.ends.to))
+        DAffine3::from_mat3_translation(super::towards(self.direction()), self.from.midpoint(self.to))
     }
 
     fn columns(&self, scale: f64, row: &mut Vec<f64>) {
@@ -102,7 +98,7 @@ impl SkeletonMember for Cone {
         let length = side.length();
         // A side without length has no direction; any will do, since only its ends count.
         let normal = if length > 0.0 { DVec2::new(side.y, -side.x) / length } else { DVec2::X };
-        let [from, to] = [scale * self.ends.from_radius, scale * self.ends.to_radius];
+        let [from, to] = [scale * self.from_radius, scale * self.to_radius];
         row.extend([scale * self.half(), from, to, from.max(to), 0.5 * (from + to)]);
         row.extend([normal.x, normal.y, 0.5 * scale * length]);
     }
@@ -148,7 +144,7 @@ mod tests {
     #[test]
     fn known_distances() {
         // The side of the profile goes from (3, 0) to (0, 4): 4 rho + 3 h = 12.
-        let cone = Cone { ends: Ends { from: DVec3::ZERO, to: DVec3::new(0.0, 4.0, 0.0), from_radius: 3.0, to_radius: 0.0 } };
+        let cone = Cone { from: DVec3::ZERO, to: DVec3::new(0.0, 4.0, 0.0), from_radius: 3.0, to_radius: 0.0 };
         for (p, expected) in [
             ([1.0, 2.0, 0.0], 0.0),
             ([0.0, 3.9, 0.0], 0.0),
@@ -160,7 +156,7 @@ mod tests {
         ] {
             testing::same_everywhere(&cone, p.into(), expected);
         }
-        let turned = Cone { ends: Ends { from: cone.ends.to, to: cone.ends.from, from_radius: 0.0, to_radius: 3.0 } };
+        let turned = Cone { from: cone.to, to: cone.from, from_radius: 0.0, to_radius: 3.0 };
         testing::same_everywhere(&turned, DVec3::new(5.5, 5.0, 0.0), 25.0);
     }
 
@@ -168,15 +164,15 @@ mod tests {
     fn the_degenerate_ones() {
         let [a, b] = [DVec3::new(0.0, 0.0, 1.0), DVec3::new(0.0, 0.0, 3.0)];
         for (from_radius, to_radius) in [(2.0, 0.5), (0.5, 2.0), (2.0, 2.0)] {
-            let disc = Cone { ends: Ends { from: a, to: a, from_radius, to_radius } };
+            let disc = Cone { from: a, to: a, from_radius, to_radius };
             testing::same_everywhere(&disc, DVec3::new(0.0, 5.0, 5.0), 25.0);
             testing::same_everywhere(&disc, DVec3::new(0.0, 1.0, -2.0), 9.0);
             testing::same_everywhere(&disc, DVec3::new(1.0, 1.0, 1.0), 0.0);
         }
-        let segment = Cone { ends: Ends { from: a, to: b, from_radius: 0.0, to_radius: 0.0 } };
+        let segment = Cone { from: a, to: b, from_radius: 0.0, to_radius: 0.0 };
         testing::same_everywhere(&segment, DVec3::new(3.0, 0.0, 7.0), 25.0);
         testing::same_everywhere(&segment, DVec3::new(0.0, 2.0, 2.0), 4.0);
-        let point = Cone { ends: Ends { from: a, to: a, from_radius: 0.0, to_radius: 0.0 } };
+        let point = Cone { from: a, to: a, from_radius: 0.0, to_radius: 0.0 };
         testing::same_everywhere(&point, DVec3::new(2.0, 3.0, 7.0), 49.0);
     }
 
@@ -185,7 +181,7 @@ mod tests {
         let mut rng = fastrand::Rng::with_seed(3);
         for _ in 0..200 {
             let (from, to, radius) = (testing::position(&mut rng), testing::position(&mut rng), 2.0 * rng.f64());
-            let cone = Cone { ends: Ends { from, to, from_radius: radius, to_radius: radius } };
+            let cone = Cone { from, to, from_radius: radius, to_radius: radius };
             let p = testing::position(&mut rng);
             testing::same_everywhere(&cone, p.as_vec3().into(), Cylinder { from, to, radius }.distance_squared(p.as_vec3().into()));
         }
@@ -220,6 +216,6 @@ mod tests {
                 })
             })
             .collect();
-        (Cone { ends: Ends { from, to, from_radius, to_radius } }, samples)
+        (Cone { from, to, from_radius, to_radius }, samples)
     }
 }

@@ -5,19 +5,21 @@ use jbt_ir::Domain;
 
 use super::{SkeletonMember, Symmetry, uv};
 use crate::bounds::Bounds;
-use crate::field::{Field, FieldKind, FieldValue, Member};
+use crate::member::member;
 
-/// A solid cylinder: the points within `radius` of its axis and between the planes of its ends.
-///
-/// With radius 0 it is a segment. Equal ends make it a disc, whose axis is z since they say nothing else.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Cylinder {
-    /// One end of the axis.
-    pub from: DVec3,
-    /// The other end of the axis.
-    pub to: DVec3,
-    /// How far it reaches from the axis.
-    pub radius: f64,
+member! {
+    /// A solid cylinder: the points within `radius` of its axis and between the planes of its ends.
+    ///
+    /// With radius 0 it is a segment. Equal ends make it a disc, whose axis is z since they say nothing else.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct Cylinder = "cylinder" {
+        /// One end of the axis.
+        pub from: DVec3 [Position],
+        /// The other end of the axis.
+        pub to: DVec3 [Position],
+        /// How far it reaches from the axis.
+        pub radius: f64 [NonNegative],
+    }
 }
 
 impl Cylinder {
@@ -25,23 +27,6 @@ impl Cylinder {
     fn direction(&self) -> DVec3 {
         let direction = super::unit(self.to - self.from);
         if direction == DVec3::ZERO { DVec3::Z } else { direction }
-    }
-}
-
-impl Member for Cylinder {
-    const NAME: &'static str = "cylinder";
-    const FIELDS: &'static [Field] = &[
-        Field { name: "from", kind: FieldKind::Position, default: None },
-        Field { name: "to", kind: FieldKind::Position, default: None },
-        Field { name: "radius", kind: FieldKind::NonNegative, default: None },
-    ];
-
-    fn from_fields(values: &[FieldValue]) -> Self {
-        Self { from: values[0].vector().into(), to: values[1].vector().into(), radius: values[2].real() }
-    }
-
-    fn to_fields(&self) -> Vec<FieldValue> {
-        vec![FieldValue::Vector(self.from.into()), FieldValue::Vector(self.to.into()), FieldValue::Real(self.radius)]
     }
 }
 

@@ -11,32 +11,18 @@ use jbt_ir::Domain;
 
 use super::{Metric, SkeletonMember, Symmetry};
 use crate::bounds::Bounds;
-use crate::field::{Field, FieldKind, FieldValue, Member};
+use crate::member::member;
 
-/// A point with a Euclidean distance that has weights along the axes.
-///
-/// A radius, of the support or of the surface, is multiplied by `stretch` along each axis.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Ellipsoid {
-    /// Its middle.
-    pub center: DVec3,
-    /// How many times it reaches as far as the radius, along each axis.
-    pub stretch: DVec3,
-}
-
-impl Member for Ellipsoid {
-    const NAME: &'static str = "ellipsoid";
-    const FIELDS: &'static [Field] = &[
-        Field { name: "center", kind: FieldKind::Position, default: Some(FieldValue::Vector([0.0; 3])) },
-        Field { name: "stretch", kind: FieldKind::Stretches, default: None },
-    ];
-
-    fn from_fields(values: &[FieldValue]) -> Self {
-        Self { center: values[0].vector().into(), stretch: values[1].vector().into() }
-    }
-
-    fn to_fields(&self) -> Vec<FieldValue> {
-        vec![FieldValue::Vector(self.center.into()), FieldValue::Vector(self.stretch.into())]
+member! {
+    /// A point with a Euclidean distance that has weights along the axes.
+    ///
+    /// A radius, of the support or of the surface, is multiplied by `stretch` along each axis.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct Ellipsoid = "ellipsoid" {
+        /// Its middle.
+        pub center: DVec3 [Position] = Vector([0.0; 3]),
+        /// How many times it reaches as far as the radius, along each axis.
+        pub stretch: DVec3 [Stretches],
     }
 }
 

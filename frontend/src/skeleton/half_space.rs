@@ -8,30 +8,16 @@ use jbt_ir::Domain;
 
 use super::{SkeletonMember, Symmetry};
 use crate::bounds::Bounds;
-use crate::field::{Field, FieldKind, FieldValue, Member};
+use crate::member::member;
 
-/// The points behind a plane.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct HalfSpace {
-    /// A point of the plane.
-    pub at: DVec3,
-    /// The direction out of the half space, of any length but 0.
-    pub normal: DVec3,
-}
-
-impl Member for HalfSpace {
-    const NAME: &'static str = "half_space";
-    const FIELDS: &'static [Field] = &[
-        Field { name: "at", kind: FieldKind::Position, default: Some(FieldValue::Vector([0.0; 3])) },
-        Field { name: "normal", kind: FieldKind::Direction, default: Some(FieldValue::Vector([0.0, 0.0, 1.0])) },
-    ];
-
-    fn from_fields(values: &[FieldValue]) -> Self {
-        Self { at: values[0].vector().into(), normal: values[1].vector().into() }
-    }
-
-    fn to_fields(&self) -> Vec<FieldValue> {
-        vec![FieldValue::Vector(self.at.into()), FieldValue::Vector(self.normal.into())]
+member! {
+    /// The points behind a plane.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct HalfSpace = "half_space" {
+        /// A point of the plane.
+        pub at: DVec3 [Position] = Vector([0.0; 3]),
+        /// The direction out of the half space, of any length but 0.
+        pub normal: DVec3 [Direction] = Vector([0.0, 0.0, 1.0]),
     }
 }
 
@@ -77,6 +63,7 @@ impl SkeletonMember for HalfSpace {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::member::Member as _;
     use crate::skeleton::testing;
 
     #[test]

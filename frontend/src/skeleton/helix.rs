@@ -48,7 +48,7 @@ use crate::affine::sin_cos_degrees;
 use crate::angle::atan2;
 use crate::bounds::Bounds;
 use crate::diagnostic::Diagnostic;
-use crate::field::{Field, FieldKind, FieldValue, Member};
+use crate::member::{Member as _, member};
 
 /// Newton's steps of the program.
 const STEPS: usize = 5;
@@ -63,21 +63,23 @@ const LEAST_SLOPE: f32 = 1e-6;
 /// 1.5 * 2^23: adding and subtracting it rounds a number below 2^22 to a whole one.
 const ROUND: f32 = 12_582_912.0;
 
-/// A screw line about an axis. With 0 turns it is a point.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Helix {
-    /// The middle of its axis.
-    pub center: DVec3,
-    /// The direction of its axis, of any length but 0: the helix rises along it, counterclockwise as seen from its tip.
-    pub normal: DVec3,
-    /// The direction from the axis to where the helix begins: only the part across the normal counts.
-    pub start: DVec3,
-    /// How far it is from its axis.
-    pub radius: f64,
-    /// How far it rises in a turn, not 0: below 0 it falls, and is left-handed.
-    pub pitch: f64,
-    /// How many turns it has, from 0 to 4096: any number, whole or not.
-    pub turns: f64,
+member! {
+    /// A screw line about an axis. With 0 turns it is a point.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct Helix = "helix" {
+        /// The middle of its axis.
+        pub center: DVec3 [Position] = Vector([0.0; 3]),
+        /// The direction of its axis, of any length but 0: the helix rises along it, counterclockwise as seen from its tip.
+        pub normal: DVec3 [Direction] = Vector([0.0, 0.0, 1.0]),
+        /// The direction from the axis to where the helix begins: only the part across the normal counts.
+        pub start: DVec3 [Direction] = Vector([1.0, 0.0, 0.0]),
+        /// How far it is from its axis.
+        pub radius: f64 [NonNegative],
+        /// How far it rises in a turn, not 0: below 0 it falls, and is left-handed.
+        pub pitch: f64 [Real],
+        /// How many turns it has, from 0 to 4096: any number, whole or not.
+        pub turns: f64 [Within { least: 0.0, most: MAX_TURNS }],
+    }
 }
 
 impl Helix {
@@ -159,40 +161,6 @@ fn root(a: f64, sigma: f64) -> Option<f64> {
         if value(middle) < 0.0 { low = middle } else { high = middle }
     }
     Some(0.5 * (low + high))
-}
-
-impl Member for Helix {
-    const NAME: &'static str = "helix";
-    const FIELDS: &'static [Field] = &[
-        Field { name: "center", kind: FieldKind::Position, default: Some(FieldValue::Vector([0.0; 3])) },
-        Field { name: "normal", kind: FieldKind::Direction, default: Some(FieldValue::Vector([0.0, 0.0, 1.0])) },
-        Field { name: "start", kind: FieldKind::Direction, default: Some(FieldValue::Vector([1.0, 0.0, 0.0])) },
-        Field { name: "radius", kind: FieldKind::NonNegative, default: None },
-        Field { name: "pitch", kind: FieldKind::Real, default: None },
-        Field { name: "turns", kind: FieldKind::Within { least: 0.0, most: MAX_TURNS }, default: None },
-    ];
-
-    fn from_fields(values: &[FieldValue]) -> Self {
-        Self {
-            center: values[0].vector().into(),
-            normal: values[1].vector().into(),
-            start: values[2].vector().into(),
-            radius: values[3].real(),
-            pitch: values[4].real(),
-            turns: values[5].real(),
-        }
-    }
-
-    fn to_fields(&self) -> Vec<FieldValue> {
-        vec![
-            FieldValue::Vector(self.center.into()),
-            FieldValue::Vector(self.normal.into()),
-            FieldValue::Vector(self.start.into()),
-            FieldValue::Real(self.radius),
-            FieldValue::Real(self.pitch),
-            FieldValue::Real(self.turns),
-        ]
-    }
 }
 
 impl SkeletonMember for Helix {

@@ -20,43 +20,20 @@ use jbt_ir::limits::MAX_METRIC_EXPONENT;
 
 use super::{Metric, SkeletonMember, Symmetry};
 use crate::bounds::Bounds;
-use crate::field::{Field, FieldKind, FieldValue, Member};
+use crate::member::member;
 
-/// A point with the norm of exponent `exponent`, with weights along the axes.
-///
-/// A radius, of the support or of the surface, is multiplied by `stretch` along each axis.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct LMetric {
-    /// Its middle.
-    pub center: DVec3,
-    /// The exponent, from 1 to [`MAX_METRIC_EXPONENT`].
-    pub exponent: f64,
-    /// How many times it reaches as far as the radius, along each axis.
-    pub stretch: DVec3,
-}
-
-impl Member for LMetric {
-    const NAME: &'static str = "lmetric";
-    const FIELDS: &'static [Field] = &[
-        Field { name: "center", kind: FieldKind::Position, default: Some(FieldValue::Vector([0.0; 3])) },
-        Field {
-            name: "exponent",
-            kind: FieldKind::Within { least: 1.0, most: MAX_METRIC_EXPONENT },
-            default: None,
-        },
-        Field { name: "stretch", kind: FieldKind::Stretches, default: Some(FieldValue::Vector([1.0; 3])) },
-    ];
-
-    fn from_fields(values: &[FieldValue]) -> Self {
-        Self { center: values[0].vector().into(), exponent: values[1].real(), stretch: values[2].vector().into() }
-    }
-
-    fn to_fields(&self) -> Vec<FieldValue> {
-        vec![
-            FieldValue::Vector(self.center.into()),
-            FieldValue::Real(self.exponent),
-            FieldValue::Vector(self.stretch.into()),
-        ]
+member! {
+    /// A point with the norm of exponent `exponent`, with weights along the axes.
+    ///
+    /// A radius, of the support or of the surface, is multiplied by `stretch` along each axis.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct LMetric = "lmetric" {
+        /// Its middle.
+        pub center: DVec3 [Position] = Vector([0.0; 3]),
+        /// The exponent, from 1 to [`MAX_METRIC_EXPONENT`].
+        pub exponent: f64 [Within { least: 1.0, most: MAX_METRIC_EXPONENT }],
+        /// How many times it reaches as far as the radius, along each axis.
+        pub stretch: DVec3 [Stretches] = Vector([1.0; 3]),
     }
 }
 

@@ -7,7 +7,7 @@ use super::uv;
 use super::{Metric, Pieces, Symmetry};
 use crate::bounds::Bounds;
 use crate::diagnostic::Diagnostic;
-use crate::field::Member;
+use crate::member::Member;
 
 /// What a skeleton states about itself.
 ///

@@ -13,11 +13,12 @@ use jbt_ir::Domain;
 
 use crate::bounds::Bounds;
 use crate::diagnostic::Diagnostic;
-use crate::field::{Field, FieldValue, Member as _};
+use crate::field::{Field, FieldValue};
+use crate::member::Member as _;
 
 macro_rules! skeletons {
     ($($module:ident :: $name:ident),+ $(,)?) => {
-        $( mod $module; pub use $module::$name; )+
+        $( mod $module; pub use $module::$name; pub(crate) use $module::describe as $module; )+
 
         /// A skeleton of any kind.
         #[derive(Clone, PartialEq, Debug)]
@@ -168,6 +169,8 @@ macro_rules! skeletons {
             /// See [`SkeletonMember::uv_columns`].
             pub fn uv_columns(&self, row: &mut Vec<f64>) { match self { $( Self::$name(s) => s.uv_columns(row), )+ } }
         }
+
+        $crate::member::each! { ($) skeleton $($module)+ }
     };
 }
 
@@ -177,7 +180,7 @@ skeletons! {
     disc::Disc,
     ring::Ring,
     cylinder::Cylinder,
-    r#box::Box,
+    cuboid::Cuboid,
     triangle::Triangle,
     polyline::Polyline,
     polygon::Polygon,
@@ -207,14 +210,12 @@ mod symmetry;
 mod tapered;
 mod tube;
 
-pub use ends::Ends;
 use formulas::{beyond, dot, emit_off_axis, length, minus_multiple, outside_squared, sum_of_squares};
 pub(crate) use formulas::{emit_unit, length_squared, positive_part};
 pub(crate) use geometry::unit;
 use geometry::{along, along_normal, ball_reach, circle_reach, cylindrical, direction, frame, towards};
 pub use member::{ROUNDING, SkeletonMember};
 pub use piece::{BEYOND, Pieces};
-pub use points::Path;
 pub use symmetry::Symmetry;
 
 impl Skeleton {

@@ -5,26 +5,14 @@ use jbt_ir::Domain;
 
 use super::{SkeletonMember, Symmetry};
 use crate::bounds::Bounds;
-use crate::field::{Field, FieldKind, FieldValue, Member};
+use crate::member::member;
 
-/// A point. Its uv is longitude about the z axis, from x, and latitude, from -z to z.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Point {
-    /// Where it is.
-    pub at: DVec3,
-}
-
-impl Member for Point {
-    const NAME: &'static str = "point";
-    const FIELDS: &'static [Field] =
-        &[Field { name: "at", kind: FieldKind::Position, default: Some(FieldValue::Vector([0.0; 3])) }];
-
-    fn from_fields(values: &[FieldValue]) -> Self {
-        Self { at: values[0].vector().into() }
-    }
-
-    fn to_fields(&self) -> Vec<FieldValue> {
-        vec![FieldValue::Vector(self.at.into())]
+member! {
+    /// A point. Its uv is longitude about the z axis, from x, and latitude, from -z to z.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct Point = "point" {
+        /// Where it is.
+        pub at: DVec3 [Position] = Vector([0.0; 3]),
     }
 }
 

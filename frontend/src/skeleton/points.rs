@@ -1,43 +1,22 @@
 //! What skeletons of any number of points have in common: their lists, and what can be wrong with these.
 
-use std::sync::Arc;
-
 use glam::{DAffine3, DVec3};
 
 use crate::bounds::Bounds;
 use crate::diagnostic::Diagnostic;
-use crate::field::{Field, FieldKind, FieldValue};
 
 /// Points in order, and what leads along them: thin, or a tube of all balls with middles there.
-#[derive(Clone, PartialEq, Debug)]
-pub struct Path {
+#[derive(Clone, Copy)]
+pub(super) struct Path<'a> {
     /// The points, at least two.
-    pub points: Arc<[DVec3]>,
+    pub(super) points: &'a [DVec3],
     /// Radii of at least 0: none if it is thin, one for all points, or one for each.
-    pub radii: Arc<[f64]>,
+    pub(super) radii: &'a [f64],
     /// Whether it leads on from the last point to the first.
-    pub closed: bool,
+    pub(super) closed: bool,
 }
 
-impl Path {
-    /// The parameters, in the order of [`from_fields`](Self::from_fields). Who never closes leaves out the last.
-    pub(super) const FIELDS: &'static [Field] = &[POINTS, RADII, CLOSED];
-
-    /// The path with these parameters; without the last one it is open.
-    pub(super) fn from_fields(values: &[FieldValue]) -> Self {
-        Self {
-            points: points_of(&values[0]),
-            radii: values[1].reals().into(),
-            closed: values.get(2).is_some_and(|closed| closed.real() != 0.0),
-        }
-    }
-
-    /// All parameters.
-    pub(super) fn to_fields(&self) -> Vec<FieldValue> {
-        let radii = FieldValue::Reals(self.radii.to_vec());
-        vec![value_of(&self.points), radii, FieldValue::Real(f64::from(u8::from(self.closed)))]
-    }
-
+impl Path<'_> {
     /// The radius at a point.
     pub(super) fn radius_at(&self, index: usize) -> f64 {
         match *self.radii {
@@ -56,24 +35,8 @@ impl Path {
 
     /// What is wrong with it, if there have to be at least so many points.
     pub(super) fn fault(&self, owner: &str, least: usize) -> Option<Diagnostic> {
-        fault(owner, &self.points, &self.radii, least)
+        fault(owner, self.points, self.radii, least)
     }
-}
-
-/// The points of a skeleton.
-pub(super) const POINTS: Field = Field { name: "points", kind: FieldKind::Positions, default: None };
-/// The radii of a tube: none, one for all points, or one for each.
-const RADII: Field =
-    Field { name: "radii", kind: FieldKind::Lengths, default: Some(FieldValue::Reals(Vec::new())) };
-/// Whether the last point is joined to the first.
-const CLOSED: Field = Field { name: "closed", kind: FieldKind::Flag, default: Some(FieldValue::Real(0.0)) };
-
-pub(super) fn points_of(value: &FieldValue) -> Arc<[DVec3]> {
-    value.vectors().iter().map(|&point| point.into()).collect()
-}
-
-pub(super) fn value_of(points: &[DVec3]) -> FieldValue {
-    FieldValue::Vectors(points.iter().map(DVec3::to_array).collect())
 }
 
 /// The middle of the points: where their pose has its origin.

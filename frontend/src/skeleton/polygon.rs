@@ -13,31 +13,31 @@
 //! this is decided without error; where along the ray the crossing is, is off by no more than rounding, and decides only points that
 //! are as near to the edge. Crossings are counted of all edges, so none may be left out.
 
-use std::sync::Arc;
-
 use glam::{DAffine3, DMat3, DVec2, DVec3};
 use jbt_ir::Domain;
 
-use super::points::{self, POINTS, Place};
+use super::points::{self, Place};
 use super::segment::segment_distance_squared;
 use super::{Pieces, SkeletonMember, Symmetry};
 use crate::bounds::Bounds;
 use crate::diagnostic::Diagnostic;
-use crate::field::{Field, FieldValue, Member};
+use crate::member::{Member as _, Positions, member};
 
 /// Corners may lie off the plane by this part of the polygon's size; they count where they are in the plane.
 const FLATNESS: f64 = 1e-5;
 /// A polygon has at least this part of the square of its size as area.
 const LEAST_AREA: f64 = 1e-9;
 
-/// A filled polygon with corners in one plane, in either sense of rotation.
-///
-/// Where edges cross each other, a point is inside if a ray from it crosses an odd number of edges: the middle of a pentagram is a hole. Edges
-/// always belong to it.
-#[derive(Clone, PartialEq, Debug)]
-pub struct Polygon {
-    /// The corners, at least three.
-    pub points: Arc<[DVec3]>,
+member! {
+    /// A filled polygon with corners in one plane, in either sense of rotation.
+    ///
+    /// Where edges cross each other, a point is inside if a ray from it crosses an odd number of edges: the middle of a pentagram is a hole. Edges
+    /// always belong to it.
+    #[derive(Clone, PartialEq, Debug)]
+    pub struct Polygon = "polygon" {
+        /// The corners, at least three.
+        pub points: Positions [Positions],
+    }
 }
 
 impl Polygon {
@@ -78,19 +78,6 @@ impl Polygon {
             Place { distance: square.sqrt(), foot: (*a + t * along).extend(0.0), firmness: 1.0 }
         };
         edges.iter().map(place).collect()
-    }
-}
-
-impl Member for Polygon {
-    const NAME: &'static str = "polygon";
-    const FIELDS: &'static [Field] = &[POINTS];
-
-    fn from_fields(values: &[FieldValue]) -> Self {
-        Self { points: points::points_of(&values[0]) }
-    }
-
-    fn to_fields(&self) -> Vec<FieldValue> {
-        vec![points::value_of(&self.points)]
     }
 }
 

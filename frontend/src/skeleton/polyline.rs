@@ -4,38 +4,38 @@ use super::points::Path;
 use super::tapered::Cone;
 use super::tube::Tube;
 use crate::diagnostic::Diagnostic;
-use crate::field::Field;
+use crate::member::{Lengths, Member as _, Positions, member};
 
-/// Lines through points in order, at least two. With radii it is the solid tube of all balls with centres on these lines: its distance is 0
-/// inside.
-#[derive(Clone, PartialEq, Debug)]
-pub struct Polyline {
-    /// The points and radii, and whether a line leads from the last point to the first.
-    pub path: Path,
+member! {
+    /// Lines through points in order, at least two. With radii it is the solid tube of all balls with centres on these lines: its distance is 0
+    /// inside.
+    #[derive(Clone, PartialEq, Debug)]
+    pub struct Polyline = "polyline" {
+        /// The points, at least two.
+        pub points: Positions [Positions],
+        /// Radii of at least 0: none if it is thin, one for all points, or one for each.
+        pub radii: Lengths [Lengths] = Reals(Vec::new()),
+        /// Whether it leads on from the last point to the first.
+        pub closed: bool [Flag] = Real(0.0),
+    }
 }
 
 impl Tube for Polyline {
     type Part = Cone;
-    const WORD: &'static str = "polyline";
-    const PARAMETERS: &'static [Field] = Path::FIELDS;
 
-    fn along(path: Path) -> Self {
-        Self { path }
-    }
-
-    fn path(&self) -> &Path {
-        &self.path
+    fn path(&self) -> Path<'_> {
+        Path { points: &self.points, radii: &self.radii, closed: self.closed }
     }
 
     fn parts(&self) -> impl Iterator<Item = Cone> {
-        self.path.steps().map(|ends| Cone {
-            centers: ends.map(|end| self.path.points[end]),
-            radii: ends.map(|end| self.path.radius_at(end)),
+        self.path().steps().map(|ends| Cone {
+            centers: ends.map(|end| self.points[end]),
+            radii: ends.map(|end| self.path().radius_at(end)),
         })
     }
 
     fn flaw(&self) -> Option<Diagnostic> {
-        self.path.fault(Self::WORD, 2)
+        self.path().fault(Self::NAME, 2)
     }
 }
 
@@ -48,7 +48,7 @@ mod tests {
 
     fn polyline(points: &[[f64; 3]], radii: &[f64], closed: bool) -> Polyline {
         let points = points.iter().map(|&point| point.into()).collect();
-        Polyline { path: Path { points, radii: radii.into(), closed } }
+        Polyline { points, radii: radii.into(), closed }
     }
 
     #[test]
@@ -92,8 +92,7 @@ mod tests {
                 1 => vec![rng.f64()],
                 _ => (0..count).map(|_| 2.0 * rng.f64()).collect(),
             };
-            let path = Path { points: points.into(), radii: radii.into(), closed: rng.bool() };
-            let line = Polyline { path };
+            let line = Polyline { points: points.into(), radii: radii.into(), closed: rng.bool() };
             let ball = |cone: Cone, i: u32| cone.at(f64::from(i) / 1000.0);
             let balls = line.parts().flat_map(|cone| (0..=1000).map(move |i| ball(cone, i))).collect();
             (line, balls)

@@ -8,51 +8,22 @@ use jbt_ir::Domain;
 use super::{SkeletonMember, Symmetry};
 use crate::bounds::Bounds;
 use crate::diagnostic::Diagnostic;
-use crate::field::{Field, FieldKind, FieldValue, Member};
+use crate::member::{Member as _, member};
 
-/// A filled rectangle. With a half size of 0 it is a segment, with two a point.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Rectangle {
-    /// Its middle.
-    pub center: DVec3,
-    /// The direction that it faces, of any length but 0; either of the two.
-    pub normal: DVec3,
-    /// The direction of its length: only the part across the normal counts.
-    pub along: DVec3,
-    /// How far it reaches from the middle along `along`.
-    pub half_length: f64,
-    /// How far it reaches from the middle across `along`.
-    pub half_width: f64,
-}
-
-impl Member for Rectangle {
-    const NAME: &'static str = "rectangle";
-    const FIELDS: &'static [Field] = &[
-        Field { name: "center", kind: FieldKind::Position, default: Some(FieldValue::Vector([0.0; 3])) },
-        Field { name: "normal", kind: FieldKind::Direction, default: Some(FieldValue::Vector([0.0, 0.0, 1.0])) },
-        Field { name: "along", kind: FieldKind::Direction, default: Some(FieldValue::Vector([1.0, 0.0, 0.0])) },
-        Field { name: "half_length", kind: FieldKind::NonNegative, default: None },
-        Field { name: "half_width", kind: FieldKind::NonNegative, default: None },
-    ];
-
-    fn from_fields(values: &[FieldValue]) -> Self {
-        Self {
-            center: values[0].vector().into(),
-            normal: values[1].vector().into(),
-            along: values[2].vector().into(),
-            half_length: values[3].real(),
-            half_width: values[4].real(),
-        }
-    }
-
-    fn to_fields(&self) -> Vec<FieldValue> {
-        vec![
-            FieldValue::Vector(self.center.into()),
-            FieldValue::Vector(self.normal.into()),
-            FieldValue::Vector(self.along.into()),
-            FieldValue::Real(self.half_length),
-            FieldValue::Real(self.half_width),
-        ]
+member! {
+    /// A filled rectangle. With a half size of 0 it is a segment, with two a point.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct Rectangle = "rectangle" {
+        /// Its middle.
+        pub center: DVec3 [Position] = Vector([0.0; 3]),
+        /// The direction that it faces, of any length but 0; either of the two.
+        pub normal: DVec3 [Direction] = Vector([0.0, 0.0, 1.0]),
+        /// The direction of its length: only the part across the normal counts.
+        pub along: DVec3 [Direction] = Vector([1.0, 0.0, 0.0]),
+        /// How far it reaches from the middle along `along`.
+        pub half_length: f64 [NonNegative],
+        /// How far it reaches from the middle across `along`.
+        pub half_width: f64 [NonNegative],
     }
 }
 
@@ -123,7 +94,7 @@ mod tests {
         let mut rng = fastrand::Rng::with_seed(8);
         for _ in 0..200 {
             let (center, half) = (testing::position(&mut rng), DVec3::new(rng.f64(), 2.0 * rng.f64(), 0.0));
-            let flat = crate::skeleton::Box { center, half };
+            let flat = crate::skeleton::Cuboid { center, half };
             let rectangle =
                 Rectangle { center, normal: DVec3::Z, along: DVec3::X, half_length: half.x, half_width: half.y };
             let p = testing::position(&mut rng).as_vec3().as_dvec3();

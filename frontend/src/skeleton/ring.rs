@@ -5,37 +5,18 @@ use jbt_ir::Domain;
 
 use super::{SkeletonMember, Symmetry, uv};
 use crate::bounds::Bounds;
-use crate::field::{Field, FieldKind, FieldValue, Member};
+use crate::member::member;
 
-/// A circle, not filled. With radius 0 it is a point.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Ring {
-    /// Its middle.
-    pub center: DVec3,
-    /// The direction of its axis, of any length but 0; either of the two.
-    pub normal: DVec3,
-    /// Its distance from the middle.
-    pub radius: f64,
-}
-
-impl Member for Ring {
-    const NAME: &'static str = "ring";
-    const FIELDS: &'static [Field] = &[
-        Field { name: "center", kind: FieldKind::Position, default: Some(FieldValue::Vector([0.0; 3])) },
-        Field { name: "normal", kind: FieldKind::Direction, default: Some(FieldValue::Vector([0.0, 0.0, 1.0])) },
-        Field { name: "radius", kind: FieldKind::NonNegative, default: None },
-    ];
-
-    fn from_fields(values: &[FieldValue]) -> Self {
-        Self { center: values[0].vector().into(), normal: values[1].vector().into(), radius: values[2].real() }
-    }
-
-    fn to_fields(&self) -> Vec<FieldValue> {
-        vec![
-            FieldValue::Vector(self.center.into()),
-            FieldValue::Vector(self.normal.into()),
-            FieldValue::Real(self.radius),
-        ]
+member! {
+    /// A circle, not filled. With radius 0 it is a point.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct Ring = "ring" {
+        /// Its middle.
+        pub center: DVec3 [Position] = Vector([0.0; 3]),
+        /// The direction of its axis, of any length but 0; either of the two.
+        pub normal: DVec3 [Direction] = Vector([0.0, 0.0, 1.0]),
+        /// Its distance from the middle.
+        pub radius: f64 [NonNegative],
     }
 }
 

@@ -14,16 +14,24 @@
 use glam::{DAffine3, DVec3};
 use jbt_ir::Domain;
 
-use super::ends::Ends;
+use super::ends;
 use super::{SkeletonMember, Symmetry};
 use crate::bounds::Bounds;
-use crate::field::{Field, FieldValue, Member};
+use crate::member::member;
 
-/// The hull of two balls. Equal radii make it a solid capsule, equal middles the larger ball.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct RoundCone {
-    /// The middles of the balls, and their radii.
-    pub ends: Ends,
+member! {
+    /// The hull of two balls. Equal radii make it a solid capsule, equal middles the larger ball.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct RoundCone = "round_cone" {
+        /// The middle of one ball.
+        pub from: DVec3 [Position],
+        /// The middle of the other.
+        pub to: DVec3 [Position],
+        /// The radius of the one at `from`.
+        pub from_radius: f64 [NonNegative],
+        /// The radius of the one at `to`.
+        pub to_radius: f64 [NonNegative],
+    }
 }
 
 /// A round cone as the formula sees it.
@@ -40,8 +48,8 @@ struct Profile {
 
 impl RoundCone {
     fn profile(&self) -> Profile {
-        let Ends { from, to, from_radius, to_radius } = self.ends;
-        let (length, growth) = (self.ends.length(), to_radius - from_radius);
+        let Self { from, to, from_radius, to_radius } = *self;
+        let (length, growth) = (self.from.distance(self.to), to_radius - from_radius);
         if growth.abs() < length {
             let (middle, radius) = (from.midpoint(to), 0.5 * (from_radius + to_radius));
             return Profile { middle, half: 0.5 * length, slope: growth / length, radius };
@@ -52,30 +60,18 @@ impl RoundCone {
     }
 }
 
-impl Member for RoundCone {
-    const NAME: &'static str = "round_cone";
-    const FIELDS: &'static [Field] = &Ends::fields(None);
-
-    fn from_fields(values: &[FieldValue]) -> Self {
-        Self { ends: Ends::from_fields(values) }
-    }
-
-    fn to_fields(&self) -> Vec<FieldValue> {
-        self.ends.to_fields()
-    }
-}
-
 impl SkeletonMember for RoundCone {
     const COLUMNS: &'static [&'static str] = &["half", "lean", "slope", "radius"];
     const SYMMETRY: Symmetry = Symmetry::Arrow;
 
     fn bounds_under(&self, map: &DAffine3) -> Bounds {
-        self.ends.bounds_under(map, |radius| super::ball_reach(map, radius))
+        let ends = [(self.from, self.from_radius), (self.to, self.to_radius)];
+        ends::bounds_under(map, ends, |radius| super::ball_reach(map, radius))
     }
 
     fn distance_squared(&self, p: DVec3) -> f64 {
-        let Ends { from, to, from_radius, to_radius } = self.ends;
-        let length = self.ends.length();
+        let Self { from, to, from_radius, to_radius } = *self;
+        let length = self.from.distance(self.to);
         let balls = [(from, from_radius), (to, to_radius)].map(|(at, radius)| p.distance(at) - radius);
         let mut nearest = balls[0].min(balls[1]);
         let k = (to_radius - from_radius) / length;
@@ -93,7 +89,7 @@ impl SkeletonMember for RoundCone {
     }
 
     fn pose(&self) -> DAffine3 {
-        DAffine3::from_mat3_translation(super::towards(self.ends.to - self.ends.from), self.profile().middle)
+        DAffine3::from_mat3_translation(super::towards(self.to - self.from), self.profile().middle)
     }
 
     fn columns(&self, scale: f64, row: &mut Vec<f64>) {
@@ -124,7 +120,7 @@ mod tests {
     use crate::skeleton::{Sphere, testing};
 
     fn cone(length: f64, from_radius: f64, to_radius: f64) -> RoundCone {
-        RoundCone { ends: Ends { from: DVec3::ZERO, to: DVec3::new(length, 0.0, 0.0), from_radius, to_radius } }
+        RoundCone { from: DVec3::ZERO, to: DVec3::new(length, 0.0, 0.0), from_radius, to_radius }
     }
 
     #[test]
@@ -178,7 +174,7 @@ mod tests {
             [(1.0, 3.0, 1.0), (1.0, 1.0, 3.0), (2.0, 3.0, 1.0), (0.0, 1.0, 2.0), (0.0, 2.0, 2.0), (1.0, 0.5, 1.5)]
         {
             let round = cone(length, from_radius, to_radius);
-            let larger = if from_radius > to_radius { (round.ends.from, from_radius) } else { (round.ends.to, to_radius) };
+            let larger = if from_radius > to_radius { (round.from, from_radius) } else { (round.to, to_radius) };
             let ball = Sphere { center: larger.0, radius: larger.1 };
             for _ in 0..50 {
                 let p = testing::position(&mut rng).as_vec3().as_dvec3();
@@ -211,7 +207,7 @@ mod tests {
                 let (at, radius) = (from.lerp(to, t), from_radius + t * (to_radius - from_radius));
                 testing::ball(5).map(move |v| at + radius * v)
             });
-            (RoundCone { ends: Ends { from, to, from_radius, to_radius } }, balls.collect())
+            (RoundCone { from, to, from_radius, to_radius }, balls.collect())
         });
     }
 }

@@ -5,30 +5,16 @@ use jbt_ir::Domain;
 
 use super::{SkeletonMember, Symmetry, uv};
 use crate::bounds::Bounds;
-use crate::field::{Field, FieldKind, FieldValue, Member};
+use crate::member::member;
 
-/// The straight line between two points. Equal ends are a point.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Segment {
-    /// One end.
-    pub from: DVec3,
-    /// The other end.
-    pub to: DVec3,
-}
-
-impl Member for Segment {
-    const NAME: &'static str = "segment";
-    const FIELDS: &'static [Field] = &[
-        Field { name: "from", kind: FieldKind::Position, default: None },
-        Field { name: "to", kind: FieldKind::Position, default: None },
-    ];
-
-    fn from_fields(values: &[FieldValue]) -> Self {
-        Self { from: values[0].vector().into(), to: values[1].vector().into() }
-    }
-
-    fn to_fields(&self) -> Vec<FieldValue> {
-        vec![FieldValue::Vector(self.from.into()), FieldValue::Vector(self.to.into())]
+member! {
+    /// The straight line between two points. Equal ends are a point.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct Segment = "segment" {
+        /// One end.
+        pub from: DVec3 [Position],
+        /// The other end.
+        pub to: DVec3 [Position],
     }
 }
 

@@ -5,30 +5,16 @@ use jbt_ir::Domain;
 
 use super::{SkeletonMember, Symmetry};
 use crate::bounds::Bounds;
-use crate::field::{Field, FieldKind, FieldValue, Member};
+use crate::member::member;
 
-/// A solid ball. With radius 0 it is a point.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Sphere {
-    /// Its middle.
-    pub center: DVec3,
-    /// How far it reaches from the middle.
-    pub radius: f64,
-}
-
-impl Member for Sphere {
-    const NAME: &'static str = "sphere";
-    const FIELDS: &'static [Field] = &[
-        Field { name: "center", kind: FieldKind::Position, default: Some(FieldValue::Vector([0.0; 3])) },
-        Field { name: "radius", kind: FieldKind::NonNegative, default: None },
-    ];
-
-    fn from_fields(values: &[FieldValue]) -> Self {
-        Self { center: values[0].vector().into(), radius: values[1].real() }
-    }
-
-    fn to_fields(&self) -> Vec<FieldValue> {
-        vec![FieldValue::Vector(self.center.into()), FieldValue::Real(self.radius)]
+member! {
+    /// A solid ball. With radius 0 it is a point.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct Sphere = "sphere" {
+        /// Its middle.
+        pub center: DVec3 [Position] = Vector([0.0; 3]),
+        /// How far it reaches from the middle.
+        pub radius: f64 [NonNegative],
     }
 }
 

@@ -15,51 +15,26 @@ use jbt_ir::limits::MAX_METRIC_EXPONENT;
 use super::lmetric::{emit_norm, emit_term, norm};
 use super::{Metric, SkeletonMember, Symmetry};
 use crate::bounds::Bounds;
-use crate::field::{Field, FieldKind, FieldValue, Member};
+use crate::field::FieldKind;
+use crate::member::member;
 
 /// Exponents of Barr's: two by an exponent of a norm.
 const BARR: FieldKind = FieldKind::Within { least: 2.0 / MAX_METRIC_EXPONENT, most: 2.0 };
 
-/// A point with the distance of a superellipsoid.
-///
-/// A radius, of the support or of the surface, is multiplied by `stretch` along each axis.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Superquadric {
-    /// Its middle.
-    pub center: DVec3,
-    /// Barr's exponent along z, from 1/512 to 2.
-    pub e1: f64,
-    /// Barr's exponent across z, from 1/512 to 2.
-    pub e2: f64,
-    /// How many times it reaches as far as the radius, along each axis.
-    pub stretch: DVec3,
-}
-
-impl Member for Superquadric {
-    const NAME: &'static str = "superquadric";
-    const FIELDS: &'static [Field] = &[
-        Field { name: "center", kind: FieldKind::Position, default: Some(FieldValue::Vector([0.0; 3])) },
-        Field { name: "e1", kind: BARR, default: None },
-        Field { name: "e2", kind: BARR, default: None },
-        Field { name: "stretch", kind: FieldKind::Stretches, default: Some(FieldValue::Vector([1.0; 3])) },
-    ];
-
-    fn from_fields(values: &[FieldValue]) -> Self {
-        Self {
-            center: values[0].vector().into(),
-            e1: values[1].real(),
-            e2: values[2].real(),
-            stretch: values[3].vector().into(),
-        }
-    }
-
-    fn to_fields(&self) -> Vec<FieldValue> {
-        vec![
-            FieldValue::Vector(self.center.into()),
-            FieldValue::Real(self.e1),
-            FieldValue::Real(self.e2),
-            FieldValue::Vector(self.stretch.into()),
-        ]
+member! {
+    /// A point with the distance of a superellipsoid.
+    ///
+    /// A radius, of the support or of the surface, is multiplied by `stretch` along each axis.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct Superquadric = "superquadric" {
+        /// Its middle.
+        pub center: DVec3 [Position] = Vector([0.0; 3]),
+        /// Barr's exponent along z, from 1/512 to 2.
+        pub e1: f64 [BARR],
+        /// Barr's exponent across z, from 1/512 to 2.
+        pub e2: f64 [BARR],
+        /// How many times it reaches as far as the radius, along each axis.
+        pub stretch: DVec3 [Stretches] = Vector([1.0; 3]),
     }
 }
 

@@ -5,46 +5,20 @@ use jbt_ir::Domain;
 
 use super::{SkeletonMember, Symmetry};
 use crate::bounds::Bounds;
-use crate::field::{Field, FieldKind, FieldValue, Member};
+use crate::member::member;
 
-/// All points within `tube_radius` of a circle. A tube of radius 0 is the ring itself; a circle of radius 0 makes a ball.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Torus {
-    /// Its middle.
-    pub center: DVec3,
-    /// The direction of its axis, of any length but 0; either of the two.
-    pub normal: DVec3,
-    /// The radius of the circle in the middle of the tube.
-    pub ring_radius: f64,
-    /// The radius of the tube.
-    pub tube_radius: f64,
-}
-
-impl Member for Torus {
-    const NAME: &'static str = "torus";
-    const FIELDS: &'static [Field] = &[
-        Field { name: "center", kind: FieldKind::Position, default: Some(FieldValue::Vector([0.0; 3])) },
-        Field { name: "normal", kind: FieldKind::Direction, default: Some(FieldValue::Vector([0.0, 0.0, 1.0])) },
-        Field { name: "ring_radius", kind: FieldKind::NonNegative, default: None },
-        Field { name: "tube_radius", kind: FieldKind::NonNegative, default: None },
-    ];
-
-    fn from_fields(values: &[FieldValue]) -> Self {
-        Self {
-            center: values[0].vector().into(),
-            normal: values[1].vector().into(),
-            ring_radius: values[2].real(),
-            tube_radius: values[3].real(),
-        }
-    }
-
-    fn to_fields(&self) -> Vec<FieldValue> {
-        vec![
-            FieldValue::Vector(self.center.into()),
-            FieldValue::Vector(self.normal.into()),
-            FieldValue::Real(self.ring_radius),
-            FieldValue::Real(self.tube_radius),
-        ]
+member! {
+    /// All points within `tube_radius` of a circle. A tube of radius 0 is the ring itself; a circle of radius 0 makes a ball.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct Torus = "torus" {
+        /// Its middle.
+        pub center: DVec3 [Position] = Vector([0.0; 3]),
+        /// The direction of its axis, of any length but 0; either of the two.
+        pub normal: DVec3 [Direction] = Vector([0.0, 0.0, 1.0]),
+        /// The radius of the circle in the middle of the tube.
+        pub ring_radius: f64 [NonNegative],
+        /// The radius of the tube.
+        pub tube_radius: f64 [NonNegative],
     }
 }
 

@@ -20,17 +20,19 @@ use super::formulas::emit_unit;
 use super::{SkeletonMember, Symmetry};
 use super::segment::segment_distance_squared;
 use crate::bounds::Bounds;
-use crate::field::{Field, FieldKind, FieldValue, Member};
+use crate::member::member;
 
-/// A filled triangle. Corners on a line make it a segment, equal ones a point.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Triangle {
-    /// A corner.
-    pub a: DVec3,
-    /// A corner.
-    pub b: DVec3,
-    /// A corner.
-    pub c: DVec3,
+member! {
+    /// A filled triangle. Corners on a line make it a segment, equal ones a point.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct Triangle = "triangle" {
+        /// A corner.
+        pub a: DVec3 [Position],
+        /// A corner.
+        pub b: DVec3 [Position],
+        /// A corner.
+        pub c: DVec3 [Position],
+    }
 }
 
 /// The height of a triangle, as a part of its longest side, below which it counts as flat for its uv.
@@ -59,23 +61,6 @@ impl Triangle {
         // Divided one after the other: the square of an area may be out of reach of f64.
         let (unit, area) = (n.normalize(), n.length());
         [to_c.cross(unit) / area, unit.cross(to_b) / area]
-    }
-}
-
-impl Member for Triangle {
-    const NAME: &'static str = "triangle";
-    const FIELDS: &'static [Field] = &[
-        Field { name: "a", kind: FieldKind::Position, default: None },
-        Field { name: "b", kind: FieldKind::Position, default: None },
-        Field { name: "c", kind: FieldKind::Position, default: None },
-    ];
-
-    fn from_fields(values: &[FieldValue]) -> Self {
-        Self { a: values[0].vector().into(), b: values[1].vector().into(), c: values[2].vector().into() }
-    }
-
-    fn to_fields(&self) -> Vec<FieldValue> {
-        [self.a, self.b, self.c].map(|corner| FieldValue::Vector(corner.into())).to_vec()
     }
 }
 

@@ -10,7 +10,7 @@ use super::points::{self, Path, Place};
 use super::{Pieces, SkeletonMember, Symmetry};
 use crate::bounds::Bounds;
 use crate::diagnostic::Diagnostic;
-use crate::field::{Field, FieldValue, Member};
+use crate::member::Member;
 
 /// The balls along a line or a curve.
 pub(super) trait Part: Sized {
@@ -34,38 +34,18 @@ pub(super) trait Part: Sized {
 }
 
 /// A skeleton along a path.
-pub(super) trait Tube: Sized {
+pub(super) trait Tube: Member {
     /// What it consists of.
     type Part: Part;
-    /// The word of the text format.
-    const WORD: &'static str;
-    /// The parameters: those of [`Path`], but for the last one if it never closes.
-    const PARAMETERS: &'static [Field];
 
-    fn along(path: Path) -> Self;
-
-    fn path(&self) -> &Path;
+    /// Its points and radii.
+    fn path(&self) -> Path<'_>;
 
     /// Its parts, in order.
     fn parts(&self) -> impl Iterator<Item = Self::Part>;
 
     /// What is wrong with its path.
     fn flaw(&self) -> Option<Diagnostic>;
-}
-
-impl<T: Tube> Member for T {
-    const NAME: &'static str = T::WORD;
-    const FIELDS: &'static [Field] = T::PARAMETERS;
-
-    fn from_fields(values: &[FieldValue]) -> Self {
-        Self::along(Path::from_fields(values))
-    }
-
-    fn to_fields(&self) -> Vec<FieldValue> {
-        let mut values = self.path().to_fields();
-        values.truncate(T::PARAMETERS.len());
-        values
-    }
 }
 
 impl<T: Tube> SkeletonMember for T {
@@ -86,7 +66,7 @@ impl<T: Tube> SkeletonMember for T {
     }
 
     fn pose(&self) -> DAffine3 {
-        points::middle(&self.path().points)
+        points::middle(self.path().points)
     }
 
     fn columns(&self, _scale: f64, _row: &mut Vec<f64>) {}

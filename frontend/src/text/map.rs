@@ -4,8 +4,8 @@ use super::block::{Begun, Head};
 use super::lex::Token;
 use super::state::Parser;
 use crate::diagnostic::{Diagnostic, Span};
-use crate::field::Field;
-use crate::map::{MapKind, MapShape};
+use crate::field::{Field, FieldKind};
+use crate::map::MapKind;
 use crate::recipe::{FieldNumber, Recipe};
 
 impl Parser<'_> {
@@ -14,7 +14,7 @@ impl Parser<'_> {
         let kinds: Vec<MapKind> = MapKind::named(word).collect();
         let read = match kinds[..] {
             [kind] => self.only_map(start, kind),
-            _ if kinds.iter().all(|kind| !kind.fields().is_empty()) => self.map_in_units(start, word, &kinds),
+            _ if kinds.iter().all(|kind| kind.is_named()) => self.map_in_units(start, word, &kinds),
             _ => Some(self.number_or_vector(&kinds)),
         };
         let Some((map, fields)) = read else { return self.block(start, Head::Broken) };
@@ -29,30 +29,26 @@ impl Parser<'_> {
 
     /// What stands behind a word that begins one map; nothing, after a message, if it cannot be read.
     fn only_map(&mut self, start: Token, kind: MapKind) -> Option<(MapKind, Vec<FieldNumber>)> {
-        let fields = match kind.shape() {
-            MapShape::Number => {
-                let [number] = self.vector();
-                vec![FieldNumber::Real(number)]
-            }
-            MapShape::Vector => vec![FieldNumber::Vector(self.vector())],
-            MapShape::Rows => vec![FieldNumber::Reals(self.vector::<12>().into())],
-            MapShape::Named(fields) => {
-                let name = kind.name();
+        let name = kind.name();
+        let fields = match kind.fields() {
+            fields if kind.is_named() => {
                 self.slots(fields, &format!("`{name}`")).complete(self, start, name)?
             }
+            fields => fields.iter().map(|field| self.field_value(field.kind)).collect(),
         };
         Some((kind, fields))
     }
 
     /// A map by one number, or by three.
     fn number_or_vector(&mut self, kinds: &[MapKind]) -> (MapKind, Vec<FieldNumber>) {
-        let of = |shape: MapShape| *kinds.iter().find(|kind| kind.shape() == shape).expect("a map for each");
+        let of = |one: bool| {
+            let is_one = |kind: &&MapKind| kind.fields()[0].kind == FieldKind::Real;
+            *kinds.iter().find(|kind| is_one(kind) == one).expect("a map for each")
+        };
         match self.number_or_elements() {
-            None => (of(MapShape::Number), vec![FieldNumber::Real(f64::NAN.into())]),
-            Some(all) if all.count == 1 => {
-                (of(MapShape::Number), vec![FieldNumber::Real(all.numbers[0].clone())])
-            }
-            Some(all) => (of(MapShape::Vector), vec![FieldNumber::Vector(self.sized::<3>(all))]),
+            None => (of(true), vec![FieldNumber::Real(f64::NAN.into())]),
+            Some(all) if all.count == 1 => (of(true), vec![FieldNumber::Real(all.numbers[0].clone())]),
+            Some(all) => (of(false), vec![FieldNumber::Vector(self.sized::<3>(all))]),
         }
     }
 

@@ -16,7 +16,6 @@ use crate::combine::{Combinator, Family};
 use crate::expression::{Formula, write as write_formula};
 use crate::falloff::FalloffKind;
 use crate::field::{Written, plain};
-use crate::map::MapShape;
 use crate::model::Model;
 use crate::number::Number;
 use crate::recipe::{AttributeRecipe, FalloffRecipe, FieldNumber, Radius, Recipe, TexturedRecipe, UvRecipe};
@@ -259,8 +258,11 @@ fn head_of_recipe(out: &mut String, recipe: &Recipe, definitions: &str) {
         }
         Recipe::Map { map, fields } => {
             out.push_str(map.name());
-            if let MapShape::Named(described) = map.shape() {
-                described.iter().zip(fields).for_each(|(field, value)| field.write(out, field.name, value));
+            if map.is_named() {
+                map.fields()
+                    .iter()
+                    .zip(fields)
+                    .for_each(|(field, value)| field.write(out, field.name, value));
             } else {
                 let all: Vec<&Number> = fields.iter().flat_map(FieldNumber::numbers).collect();
                 let _ = write!(out, " {}", group_values(all));

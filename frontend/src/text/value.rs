@@ -178,6 +178,7 @@ impl Parser<'_> {
                 FieldNumber::Reals(self.list(|parser| parser.expression(Place::Element).number))
             }
             FieldKind::Flag => FieldValue::Real(self.flag()).into(),
+            FieldKind::Rows => FieldNumber::Reals(self.vector::<12>().into()),
             FieldKind::Axis => {
                 let axis = self.axis_word().unwrap_or_else(|| {
                     self.expected_at(self.peek(), "expected one of x, y, z");

@@ -7,26 +7,14 @@ use glam::DVec3;
 use jbt_ir::Domain;
 
 use super::{TextureMember, cell, cell_decision, emit_cell, emit_odd};
-use crate::field::{Field, FieldKind, FieldValue, Member};
+use crate::member::member;
 
-/// Cubes along the axes; the one whose lowest corner is the origin has t = 0.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Checker {
-    /// The side of a cube.
-    pub size: f64,
-}
-
-impl Member for Checker {
-    const NAME: &'static str = "checker";
-    const FIELDS: &'static [Field] =
-        &[Field { name: "size", kind: FieldKind::Positive, default: Some(FieldValue::Real(1.0)) }];
-
-    fn from_fields(values: &[FieldValue]) -> Self {
-        Self { size: values[0].real() }
-    }
-
-    fn to_fields(&self) -> Vec<FieldValue> {
-        vec![FieldValue::Real(self.size)]
+member! {
+    /// Cubes along the axes; the one whose lowest corner is the origin has t = 0.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct Checker = "checker" {
+        /// The side of a cube.
+        pub size: f64 [Positive] = Real(1.0),
     }
 }
 

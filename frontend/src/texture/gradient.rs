@@ -6,15 +6,17 @@ use glam::DVec3;
 use jbt_ir::{Domain, limits};
 
 use super::{TextureMember, emit_unit, first_three};
-use crate::field::{Field, FieldKind, FieldValue, Member};
+use crate::member::member;
 
-/// A ramp between the planes through two places, across the line between them. Equal places give 0 everywhere.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Gradient {
-    /// Where t begins to rise.
-    pub from: DVec3,
-    /// Where t has become 1.
-    pub to: DVec3,
+member! {
+    /// A ramp between the planes through two places, across the line between them. Equal places give 0 everywhere.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct Gradient = "gradient" {
+        /// Where t begins to rise.
+        pub from: DVec3 [Position],
+        /// Where t has become 1.
+        pub to: DVec3 [Position],
+    }
 }
 
 impl Gradient {
@@ -22,22 +24,6 @@ impl Gradient {
     fn slope(&self) -> DVec3 {
         let way = self.to - self.from;
         if way.length() < limits::MIN_LENGTH { DVec3::ZERO } else { way / way.length_squared() }
-    }
-}
-
-impl Member for Gradient {
-    const NAME: &'static str = "gradient";
-    const FIELDS: &'static [Field] = &[
-        Field { name: "from", kind: FieldKind::Position, default: None },
-        Field { name: "to", kind: FieldKind::Position, default: None },
-    ];
-
-    fn from_fields(values: &[FieldValue]) -> Self {
-        Self { from: values[0].vector().into(), to: values[1].vector().into() }
-    }
-
-    fn to_fields(&self) -> Vec<FieldValue> {
-        vec![FieldValue::Vector(self.from.into()), FieldValue::Vector(self.to.into())]
     }
 }
 

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use jbt_ir::Domain;
 
-use crate::field::Member;
+use crate::member::Member;
 
 /// What a texture states about itself.
 pub trait TextureMember: Member {

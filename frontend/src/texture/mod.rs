@@ -12,7 +12,8 @@
 use glam::DVec3;
 use jbt_ir::Domain;
 
-use crate::field::{Field, FieldValue, Member as _};
+use crate::field::{Field, FieldValue};
+use crate::member::Member as _;
 use crate::skeleton::emit_unit;
 
 mod cells;
@@ -27,7 +28,7 @@ pub use member::TextureMember;
 
 macro_rules! textures {
     ($($module:ident :: $name:ident),+ $(,)?) => {
-        $( mod $module; pub use $module::$name; )+
+        $( mod $module; pub use $module::$name; pub(crate) use $module::describe as $module; )+
 
         /// A texture of any kind.
         #[derive(Clone, PartialEq, Debug)]
@@ -98,6 +99,8 @@ macro_rules! textures {
             #[must_use]
             pub fn decision(&self, p: DVec3) -> f64 { match self { $( Self::$name(t) => t.decision(p), )+ } }
         }
+
+        $crate::member::each! { ($) texture $($module)+ }
     };
 }
 
@@ -113,4 +116,3 @@ textures! {
 #[cfg(test)]
 mod testing;
 mod veins;
-pub use veins::Veins;

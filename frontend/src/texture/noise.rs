@@ -14,22 +14,24 @@ use glam::DVec3;
 use jbt_ir::Domain;
 
 use super::{LARGEST_CELL, ROUND, TextureMember, cell, emit_cell, emit_smooth, emit_unit, smooth};
-use crate::field::{Field, FieldKind, FieldValue, Member};
+use crate::member::member;
 
 /// The most octaves.
 pub const MAX_OCTAVES: u8 = 8;
 /// Added to the seed from octave to octave: 2^32 divided by the golden ratio.
 pub(super) const NEXT_OCTAVE: u32 = 0x9E37_79B9;
 
-/// Smooth noise.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Noise {
-    /// The side of a cube of the first octave.
-    pub size: f64,
-    /// How many octaves, at most 8; less than one is one. The whole number above it selects code, unless it follows a parameter: then all eight are computed.
-    pub octaves: f64,
-    /// The nearest whole number, up to 2^21 in magnitude, tells one noise from another.
-    pub seed: f64,
+member! {
+    /// Smooth noise.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct Noise = "noise" {
+        /// The side of a cube of the first octave.
+        pub size: f64 [Positive] = Real(1.0),
+        /// How many octaves, at most 8; less than one is one. The whole number above it selects code, unless it follows a parameter: then all eight are computed.
+        pub octaves: f64 [Positive] = Real(1.0),
+        /// The nearest whole number, up to 2^21 in magnitude, tells one noise from another.
+        pub seed: f64 [Real] = Real(0.0),
+    }
 }
 
 impl Noise {
@@ -41,23 +43,6 @@ impl Noise {
         });
         let sum: f64 = raw.iter().sum();
         raw.map(|weight| weight / sum)
-    }
-}
-
-impl Member for Noise {
-    const NAME: &'static str = "noise";
-    const FIELDS: &'static [Field] = &[
-        Field { name: "size", kind: FieldKind::Positive, default: Some(FieldValue::Real(1.0)) },
-        Field { name: "octaves", kind: FieldKind::Positive, default: Some(FieldValue::Real(1.0)) },
-        Field { name: "seed", kind: FieldKind::Real, default: Some(FieldValue::Real(0.0)) },
-    ];
-
-    fn from_fields(values: &[FieldValue]) -> Self {
-        Self { size: values[0].real(), octaves: values[1].real(), seed: values[2].real() }
-    }
-
-    fn to_fields(&self) -> Vec<FieldValue> {
-        [self.size, self.octaves, self.seed].map(FieldValue::Real).to_vec()
     }
 }
 

@@ -7,32 +7,36 @@ use jbt_ir::Domain;
 
 use super::veins::{self, Veins};
 use super::{TextureMember, emit_dot};
-use crate::field::{Field, FieldValue, Member};
+use crate::member::member;
 
-/// Shells around an axis through the origin.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Rings {
-    /// The direction of the axis, the distance from one ring to the next, and what shakes them.
-    pub veins: Veins,
+member! {
+    /// Shells around an axis through the origin.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct Rings = "rings" {
+        /// The direction of the axis, of any length but 0.
+        pub along: DVec3 [Direction] = Vector([0.0, 0.0, 1.0]),
+        /// The distance from one ring to the next.
+        pub width: f64 [Positive] = Real(1.0),
+        /// By how many widths noise moves them.
+        pub turbulence: f64 [Real] = Real(0.5),
+        /// The size of the noise's first octave.
+        pub size: f64 [Positive] = Real(1.0),
+        /// The nearest whole number, up to 2^21 in magnitude, tells one noise from another.
+        pub seed: f64 [Real] = Real(0.0),
+    }
 }
 
-impl Member for Rings {
-    const NAME: &'static str = "rings";
-    const FIELDS: &'static [Field] = &Veins::fields([0.0, 0.0, 1.0], 0.5);
-
-    fn from_fields(values: &[FieldValue]) -> Self {
-        Self { veins: Veins::from_fields(values) }
-    }
-
-    fn to_fields(&self) -> Vec<FieldValue> {
-        self.veins.to_fields()
+impl Rings {
+    const fn veins(&self) -> Veins {
+        let Self { along, width, turbulence, size, seed } = *self;
+        Veins { along, width, turbulence, size, seed }
     }
 }
 
 impl TextureMember for Rings {
     fn value(&self, p: DVec3) -> f64 {
-        let n = self.veins.direction();
-        self.veins.value(p, (p - p.dot(n) * n).length())
+        let n = self.veins().direction();
+        self.veins().value(p, (p - p.dot(n) * n).length())
     }
 
     fn decision(&self, _p: DVec3) -> f64 {
@@ -44,7 +48,7 @@ impl TextureMember for Rings {
     }
 
     fn push_columns(&self, _variant: u8, row: &mut Vec<f64>) {
-        self.veins.push_columns(row);
+        self.veins().push_columns(row);
     }
 
     fn emit<D: Domain>(d: &mut D, _variant: u8, p: [D::Real; 3], row: &[D::Real]) -> D::Real {
@@ -65,7 +69,7 @@ mod tests {
 
     fn rings(turbulence: f64) -> Rings {
         let along = DVec3::new(0.0, 2.0, 0.0);
-        Rings { veins: Veins { along, width: 0.5, turbulence, size: 1.0, seed: 3.0 } }
+        Rings { along, width: 0.5, turbulence, size: 1.0, seed: 3.0 }
     }
 
     #[test]

@@ -6,37 +6,23 @@ use glam::DVec3;
 use jbt_ir::Domain;
 
 use super::{TextureMember, cell, cell_decision, emit_cell, emit_dot, emit_odd, first_three};
-use crate::field::{Field, FieldKind, FieldValue, Member};
+use crate::member::member;
 
-/// Layers across a direction; the first one on its side of the origin has t = 0.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Stripes {
-    /// The direction in which they follow each other, of any length but 0.
-    pub along: DVec3,
-    /// How thick each is.
-    pub width: f64,
+member! {
+    /// Layers across a direction; the first one on its side of the origin has t = 0.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct Stripes = "stripes" {
+        /// The direction in which they follow each other, of any length but 0.
+        pub along: DVec3 [Direction] = Vector([1.0, 0.0, 0.0]),
+        /// How thick each is.
+        pub width: f64 [Positive] = Real(1.0),
+    }
 }
 
 impl Stripes {
     /// How many layers a point is away from the origin.
     fn layers(&self, p: DVec3) -> f64 {
         p.dot(crate::skeleton::unit(self.along)) / self.width
-    }
-}
-
-impl Member for Stripes {
-    const NAME: &'static str = "stripes";
-    const FIELDS: &'static [Field] = &[
-        Field { name: "along", kind: FieldKind::Direction, default: Some(FieldValue::Vector([1.0, 0.0, 0.0])) },
-        Field { name: "width", kind: FieldKind::Positive, default: Some(FieldValue::Real(1.0)) },
-    ];
-
-    fn from_fields(values: &[FieldValue]) -> Self {
-        Self { along: values[0].vector().into(), width: values[1].real() }
-    }
-
-    fn to_fields(&self) -> Vec<FieldValue> {
-        vec![FieldValue::Vector(self.along.into()), FieldValue::Real(self.width)]
     }
 }
 

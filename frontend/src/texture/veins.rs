@@ -8,54 +8,28 @@ use jbt_ir::Domain;
 
 use super::noise::{NEXT_OCTAVE, emit_octaves, emit_seed, lattice_noise, seed_bits, whole_seed};
 use super::{emit_wave, first_three, wave};
-use crate::field::{Field, FieldKind, FieldValue};
 
 /// The weights of the octaves that shake veins.
 const OCTAVES: [f32; 3] = [4.0 / 7.0, 2.0 / 7.0, 1.0 / 7.0];
 
 /// Waves that noise shakes.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Veins {
+pub(super) struct Veins {
     /// A direction, of any length but 0.
-    pub along: DVec3,
+    pub(super) along: DVec3,
     /// The length of a wave.
-    pub width: f64,
+    pub(super) width: f64,
     /// How many wave lengths the noise moves them.
-    pub turbulence: f64,
+    pub(super) turbulence: f64,
     /// The size of the noise's first octave.
-    pub size: f64,
+    pub(super) size: f64,
     /// The nearest whole number, up to 2^21 in magnitude, tells one noise from another.
-    pub seed: f64,
+    pub(super) seed: f64,
 }
 
 impl Veins {
     /// Names of the columns that [`push_columns`](Self::push_columns) fills, in order.
     pub(super) const COLUMNS: &'static [&'static str] =
         &["along_x", "along_y", "along_z", "inv_width", "turbulence", "inv_size", "seed"];
-
-    /// The parameters, with what direction and turbulence are if they are not written.
-    pub(super) const fn fields(along: [f64; 3], turbulence: f64) -> [Field; 5] {
-        const fn one(name: &'static str, kind: FieldKind, default: f64) -> Field {
-            Field { name, kind, default: Some(FieldValue::Real(default)) }
-        }
-        [
-            Field { name: "along", kind: FieldKind::Direction, default: Some(FieldValue::Vector(along)) },
-            one("width", FieldKind::Positive, 1.0),
-            one("turbulence", FieldKind::Real, turbulence),
-            one("size", FieldKind::Positive, 1.0),
-            one("seed", FieldKind::Real, 0.0),
-        ]
-    }
-
-    pub(super) fn from_fields(values: &[FieldValue]) -> Self {
-        let [width, turbulence, size, seed] = [1, 2, 3, 4].map(|index: usize| values[index].real());
-        Self { along: values[0].vector().into(), width, turbulence, size, seed }
-    }
-
-    pub(super) fn to_fields(self) -> Vec<FieldValue> {
-        let numbers = [self.width, self.turbulence, self.size, self.seed].map(FieldValue::Real);
-        [FieldValue::Vector(self.along.into())].into_iter().chain(numbers).collect()
-    }
 
     /// The direction with length 1.
     pub(super) fn direction(&self) -> DVec3 {

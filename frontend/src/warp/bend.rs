@@ -30,11 +30,12 @@ use std::f64::consts::PI;
 use glam::{DAffine3, DMat3, DVec3};
 use jbt_ir::Domain;
 
-use super::{AXIS, Growth, ROUNDINGS, UNDERFLOW, WarpFault, WarpMember, axis_of, axis_value, farthest, order};
+use super::{Growth, ROUNDINGS, UNDERFLOW, WarpFault, WarpMember, farthest};
 use crate::affine::map_bounds;
 use crate::angle;
+use crate::axis::Axis;
 use crate::bounds::Bounds;
-use crate::field::{Field, FieldKind, FieldValue, Member};
+use crate::member::member;
 
 /// Where the spine fades at the centre of curvature, in radii: 2^-16.
 pub const SMALLEST_DISTANCE: f64 = 1.0 / 65_536.0;
@@ -45,19 +46,21 @@ const LARGEST_PRODUCT: f64 = (1_u64 << 60) as f64;
 /// Two squares of coordinates up to this, and of products of them with a rate up to 1, have a finite sum in f32: 2^63.
 const FARTHEST: f32 = (1_u64 << 63) as f32;
 
-/// A bend of a spine through the origin.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Bend {
-    /// The axis about which it turns: 0 is x, 1 is y, 2 is z.
-    pub axis: u8,
-    /// Radians for each unit of length along the spine: the curvature.
-    pub rate: f64,
-    /// One end of what is bent.
-    pub from: f64,
-    /// The other end.
-    pub to: f64,
-    /// The place on the spine that stays.
-    pub center: f64,
+member! {
+    /// A bend of a spine through the origin.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct Bend = "bend" {
+        /// The axis about which it turns.
+        pub axis: Axis [Axis] = Vector([0.0, 0.0, 1.0]),
+        /// Radians for each unit of length along the spine: the curvature.
+        pub rate: f64 [Real],
+        /// One end of what is bent.
+        pub from: f64 [Real],
+        /// The other end.
+        pub to: f64 [Real],
+        /// The place on the spine that stays.
+        pub center: f64 [Real] = Real(0.0),
+    }
 }
 
 /// An end of the bend, and the rigid map from the warped space to the child's beyond it, in coordinates (Y, Z) and (y, z).
@@ -98,7 +101,7 @@ impl Bend {
 
     /// The place on the spine, from the centre, and the distance from the centre of curvature in radii.
     fn spine(&self, p: DVec3) -> angle::Polar<f64> {
-        let [_, u, v] = order(self.axis);
+        let [_, u, v] = self.axis.order();
         let y = p[u] - self.center;
         let point = [1.0 - self.rate * p[v], self.rate * y];
         angle::plain(point, y, self.half_turn(), SMALLEST_DISTANCE)
@@ -113,7 +116,7 @@ impl Bend {
 
     /// A box around what the bend makes of a child, where it is bent and where it is not, both `slack` farther than they should be.
     fn bent(&self, child: Bounds, slack: f64) -> Bounds {
-        let [a, u, v] = order(self.axis);
+        let [a, u, v] = self.axis.order();
         let [lower, upper] = self.ends();
         let mut all = Bounds::EMPTY;
         for (end, side) in [(&lower, -1.0), (&upper, 1.0)] {
@@ -151,7 +154,7 @@ impl Bend {
         if beyond.is_empty() {
             return Bounds::EMPTY;
         }
-        let [a, u, v] = order(self.axis);
+        let [a, u, v] = self.axis.order();
         let axis = |index: usize| DVec3::AXES[index];
         let mut columns = [DVec3::ZERO; 3];
         columns[a] = axis(a);
@@ -165,27 +168,6 @@ impl Bend {
     }
 }
 
-impl Member for Bend {
-    const NAME: &'static str = "bend";
-    const FIELDS: &'static [Field] = &[
-        AXIS,
-        Field { name: "rate", kind: FieldKind::Real, default: None },
-        Field { name: "from", kind: FieldKind::Real, default: None },
-        Field { name: "to", kind: FieldKind::Real, default: None },
-        Field { name: "center", kind: FieldKind::Real, default: Some(FieldValue::Real(0.0)) },
-    ];
-
-    fn from_fields(values: &[FieldValue]) -> Self {
-        let [rate, from, to, center] = [1, 2, 3, 4].map(|index| values[index].real());
-        Self { axis: axis_of(&values[0]), rate, from, to, center }
-    }
-
-    fn to_fields(&self) -> Vec<FieldValue> {
-        let numbers = [self.rate, self.from, self.to, self.center].map(FieldValue::Real);
-        [axis_value(self.axis)].into_iter().chain(numbers).collect()
-    }
-}
-
 impl WarpMember for Bend {
     const COLUMNS: &'static [&'static str] = &[
         "rate", "center", "half_turn", "low", "low_cos", "low_sin", "low_y", "low_z", "high", "high_cos",
@@ -193,7 +175,7 @@ impl WarpMember for Bend {
     ];
 
     fn inverse(&self, p: DVec3) -> DVec3 {
-        let [_, u, v] = order(self.axis);
+        let [_, u, v] = self.axis.order();
         let (y, z) = (p[u] - self.center, p[v]);
         let spine = self.spine(p);
         let [lower, upper] = self.ends();
@@ -217,7 +199,7 @@ impl WarpMember for Bend {
         if self.rate == 0.0 {
             return f64::INFINITY;
         }
-        let [_, u, v] = order(self.axis);
+        let [_, u, v] = self.axis.order();
         let spine = self.spine(p);
         let [lower, upper] = self.ends().map(|end| (spine.angle - end.at).abs() * spine.distance.min(1.0));
         // Opposite of the middle, the two sides meet.
@@ -285,11 +267,11 @@ impl WarpMember for Bend {
     }
 
     fn variant(&self) -> u8 {
-        self.axis
+        self.axis as u8
     }
 
     fn emit<D: Domain>(d: &mut D, variant: u8, p: [D::Real; 3], row: &[D::Real]) -> [D::Real; 3] {
-        let [_, u, v] = order(variant);
+        let [_, u, v] = Axis::ALL[usize::from(variant)].order();
         let [rate, center, half_turn] = row[..3] else { unreachable!("a bend has thirteen columns") };
         let (far_y, far_z) = (d.sub(p[u], center), p[v]);
         let one = d.constant(1.0);
@@ -345,8 +327,8 @@ fn rigid<D: Domain>(d: &mut D, y: D::Real, z: D::Real, row: &[D::Real]) -> [D::R
 }
 
 /// Nothing is known across the axis.
-fn all_of_space(axis: u8, child: Bounds) -> Bounds {
-    let [_, u, v] = order(axis);
+fn all_of_space(axis: Axis, child: Bounds) -> Bounds {
+    let [_, u, v] = axis.order();
     let mut all = child;
     for axis in [u, v] {
         (all.min[axis], all.max[axis]) = (f64::NEG_INFINITY, f64::INFINITY);
@@ -361,7 +343,7 @@ mod tests {
     use super::*;
     use crate::warp::{Warp, testing};
 
-    const BEND: Bend = Bend { axis: 0, rate: 0.5, from: -1.0, to: 2.0, center: 0.25 };
+    const BEND: Bend = Bend { axis: Axis::X, rate: 0.5, from: -1.0, to: 2.0, center: 0.25 };
 
     /// Barr's forward map, as it is published, with the place that stays in the middle.
     fn forward(bend: &Bend, q: DVec3) -> DVec3 {
@@ -374,7 +356,7 @@ mod tests {
 
     fn random(rng: &mut fastrand::Rng) -> Bend {
         let [rate, from, to, center] = [(); 4].map(|()| testing::real(rng));
-        Bend { axis: rng.u8(..3), rate, from, to, center }
+        Bend { axis: Axis::ALL[rng.usize(..3)], rate, from, to, center }
     }
 
     #[test]
@@ -382,7 +364,7 @@ mod tests {
         let mut rng = fastrand::Rng::with_seed(1);
         let mut seen = 0;
         for _ in 0..20_000 {
-            let bend = Bend { axis: 0, from: -1.0 - rng.f64(), to: 0.5 + rng.f64(), ..random(&mut rng) };
+            let bend = Bend { axis: Axis::X, from: -1.0 - rng.f64(), to: 0.5 + rng.f64(), ..random(&mut rng) };
             let bend = Bend { center: 0.4 * bend.center, ..bend };
             let q = DVec3::from_array([(); 3].map(|()| testing::real(&mut rng)));
             let turn = (bend.rate * (q.y.clamp(bend.from, bend.to) - bend.center)).abs();
@@ -407,7 +389,7 @@ mod tests {
     #[test]
     fn bend_at_rate_zero_is_the_identity() {
         let mut rng = fastrand::Rng::with_seed(2);
-        for axis in 0..3 {
+        for axis in Axis::ALL {
             let bend = Bend { axis, rate: 0.0, from: -0.5, to: 0.5, center: 0.0 };
             for _ in 0..1000 {
                 let p = DVec3::from_array([(); 3].map(|()| testing::real(&mut rng))).as_vec3();
@@ -445,7 +427,7 @@ mod tests {
     fn digits_stay_however_small_the_rate_is() {
         let mut rng = fastrand::Rng::with_seed(3);
         for rate in [0.3, 0.1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-12] {
-            let bend = Bend { axis: 0, rate, from: -1.0, to: 1.0, center: 0.0 };
+            let bend = Bend { axis: Axis::X, rate, from: -1.0, to: 1.0, center: 0.0 };
             let mut row = Vec::new();
             bend.columns(&mut row);
             let row: Vec<f32> = row.into_iter().map(|number| number as f32).collect();

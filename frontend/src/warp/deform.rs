@@ -14,26 +14,28 @@ use jbt_ir::Domain;
 use super::{Growth, ROUNDINGS, UNDERFLOW, WarpFault, WarpMember, farthest};
 use crate::affine::{map_bounds, rotation, sin_cos_degrees};
 use crate::bounds::Bounds;
-use crate::field::{Field, FieldKind, FieldValue, Member};
+use crate::member::member;
 
 /// Factors up to this, and down to its inverse, are good ones.
 const LARGEST_FACTOR: f64 = 1e6;
 /// Where rounding may take more than this part of a length, nothing is promised.
 const LARGEST_PART: f64 = 0.25;
 
-/// An affine map about a centre.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Deform {
-    /// How far the centre moves.
-    pub by: DVec3,
-    /// The axis of the turn, of any length but 0.
-    pub axis: DVec3,
-    /// The turn, right-handed.
-    pub degrees: f64,
-    /// The factors along the coordinate axes, before the turn: none is 0.
-    pub size: DVec3,
-    /// The point about which it is scaled and turned.
-    pub center: DVec3,
+member! {
+    /// An affine map about a centre.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct Deform = "deform" {
+        /// How far the centre moves.
+        pub by: DVec3 [Position] = Vector([0.0; 3]),
+        /// The axis of the turn, of any length but 0.
+        pub axis: DVec3 [Direction] = Vector([0.0, 0.0, 1.0]),
+        /// The turn, right-handed.
+        pub degrees: f64 [Real] = Real(0.0),
+        /// The factors along the coordinate axes, before the turn: none is 0.
+        pub size: DVec3 [Position] = Vector([1.0; 3]),
+        /// The point about which it is scaled and turned.
+        pub center: DVec3 [Position] = Vector([0.0; 3]),
+    }
 }
 
 impl Deform {
@@ -48,28 +50,6 @@ impl Deform {
 /// The largest sum of the magnitudes in a row of a matrix.
 fn largest_row(matrix: DMat3) -> f64 {
     [0, 1, 2].map(|row| matrix.row(row).abs().element_sum()).into_iter().fold(0.0, f64::max)
-}
-
-impl Member for Deform {
-    const NAME: &'static str = "deform";
-    const FIELDS: &'static [Field] = &[
-        Field { name: "by", kind: FieldKind::Position, default: Some(FieldValue::Vector([0.0; 3])) },
-        Field { name: "axis", kind: FieldKind::Direction, default: Some(FieldValue::Vector([0.0, 0.0, 1.0])) },
-        Field { name: "degrees", kind: FieldKind::Real, default: Some(FieldValue::Real(0.0)) },
-        Field { name: "size", kind: FieldKind::Position, default: Some(FieldValue::Vector([1.0; 3])) },
-        Field { name: "center", kind: FieldKind::Position, default: Some(FieldValue::Vector([0.0; 3])) },
-    ];
-
-    fn from_fields(values: &[FieldValue]) -> Self {
-        let [by, axis, size, center] = [0, 1, 3, 4].map(|index| values[index].vector().into());
-        Self { by, axis, degrees: values[2].real(), size, center }
-    }
-
-    fn to_fields(&self) -> Vec<FieldValue> {
-        let vector = |vector: DVec3| FieldValue::Vector(vector.into());
-        let degrees = FieldValue::Real(self.degrees);
-        vec![vector(self.by), vector(self.axis), degrees, vector(self.size), vector(self.center)]
-    }
 }
 
 impl WarpMember for Deform {

@@ -183,7 +183,7 @@ mod tests {
                 ball.twist(Axis::Z, 0.7),
                 [x() * turn.cos() + y() * turn.sin(), y() * turn.cos() - x() * turn.sin(), z()],
             ),
-            (ball.taper(Axis::Z, [-1.0, 2.0], [1.0, 0.25]), [x() / &scale, y() / &scale, z()]),
+            (ball.taper(Axis::Z, -1.0, 2.0, 1.0, 0.25), [x() / &scale, y() / &scale, z()]),
         ];
         let mut rng = fastrand::Rng::with_seed(4);
         for (member, coordinates) in pairs {

@@ -6,7 +6,7 @@ use jbt_ir::Domain;
 use crate::bounds::Bounds;
 #[cfg(doc)]
 use crate::field::FieldKind;
-use crate::field::Member;
+use crate::member::Member;
 
 /// What a warp states about itself.
 pub trait WarpMember: Member {

@@ -6,27 +6,17 @@
 use glam::DVec3;
 use jbt_ir::Domain;
 
-use super::{AXIS, Growth, WarpFault, WarpMember, axis_of, axis_value};
+use super::{Growth, WarpFault, WarpMember};
+use crate::axis::Axis;
 use crate::bounds::Bounds;
-use crate::field::{Field, FieldValue, Member};
+use crate::member::member;
 
-/// A mirror in the plane through the origin that an axis stands on.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Mirror {
-    /// The axis: 0 is x, 1 is y, 2 is z.
-    pub axis: u8,
-}
-
-impl Member for Mirror {
-    const NAME: &'static str = "mirror";
-    const FIELDS: &'static [Field] = &[AXIS];
-
-    fn from_fields(values: &[FieldValue]) -> Self {
-        Self { axis: axis_of(&values[0]) }
-    }
-
-    fn to_fields(&self) -> Vec<FieldValue> {
-        vec![axis_value(self.axis)]
+member! {
+    /// A mirror in the plane through the origin that an axis stands on.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct Mirror = "mirror" {
+        /// The axis.
+        pub axis: Axis [Axis] = Vector([0.0, 0.0, 1.0]),
     }
 }
 
@@ -34,14 +24,14 @@ impl WarpMember for Mirror {
     const COLUMNS: &'static [&'static str] = &[];
 
     fn inverse(&self, p: DVec3) -> DVec3 {
-        let axis = self.axis as usize;
+        let axis = self.axis.index();
         let mut q = p;
         q[axis] = p[axis].abs();
         q
     }
 
     fn decision(&self, p: DVec3) -> f64 {
-        p[self.axis as usize].abs()
+        p[self.axis.index()].abs()
     }
 
     fn fault(&self) -> Option<WarpFault> {
@@ -49,7 +39,7 @@ impl WarpMember for Mirror {
     }
 
     fn forward_bounds(&self, child: Bounds) -> Bounds {
-        let axis = self.axis as usize;
+        let axis = self.axis.index();
         let mut both = child;
         if child.is_empty() || child.max[axis] < 0.0 {
             return Bounds::EMPTY;
@@ -70,7 +60,7 @@ impl WarpMember for Mirror {
     fn columns(&self, _: &mut Vec<f64>) {}
 
     fn variant(&self) -> u8 {
-        self.axis
+        self.axis as u8
     }
 
     fn emit<D: Domain>(d: &mut D, variant: u8, p: [D::Real; 3], _: &[D::Real]) -> [D::Real; 3] {
@@ -88,7 +78,7 @@ mod tests {
 
     #[test]
     fn both_sides_show_the_positive_half() {
-        let mirror = Mirror { axis: 1 };
+        let mirror = Mirror { axis: Axis::Y };
         for y in [-2.0, 2.0] {
             testing::same(&mirror.into(), DVec3::new(1.0, y, 3.0), DVec3::new(1.0, 2.0, 3.0));
         }
@@ -98,6 +88,6 @@ mod tests {
 
     #[test]
     fn agrees_with_the_laws_of_warps() {
-        testing::judge(|rng| Mirror { axis: rng.u8(..3) });
+        testing::judge(|rng| Mirror { axis: Axis::ALL[rng.usize(..3)] });
     }
 }

@@ -13,7 +13,8 @@ use jbt_ir::Domain;
 
 use crate::bounds::Bounds;
 use crate::expression::Form;
-use crate::field::{Field, FieldValue, Member as _};
+use crate::field::{Field, FieldValue};
+use crate::member::Member as _;
 
 mod axes;
 mod formula;
@@ -21,13 +22,13 @@ mod member;
 #[cfg(test)]
 mod testing;
 
-use axes::{AXIS, ROUNDINGS, UNDERFLOW, axis_of, axis_value, farthest, order, turned};
+use axes::{ROUNDINGS, UNDERFLOW, farthest, turned};
 pub use formula::{FormulaWarp, LARGEST_WARPED};
 pub use member::{Growth, WarpFault, WarpMember};
 
 macro_rules! warps {
     ($($module:ident :: $name:ident),+ $(,)?) => {
-        $( mod $module; pub use $module::$name; )+
+        $( mod $module; pub use $module::$name; pub(crate) use $module::describe as $module; )+
 
         /// A warp of any kind.
         #[derive(Clone, PartialEq, Debug)]
@@ -119,6 +120,8 @@ macro_rules! warps {
             /// See [`WarpMember::columns`].
             pub fn columns(&self, row: &mut Vec<f64>) { match self { $( Self::$name(w) => w.columns(row), )+ Self::Formula(w) => row.extend(&w.numbers) } }
         }
+
+        $crate::member::each! { ($) warp $($module)+ }
     };
 }
 

@@ -13,24 +13,27 @@
 use glam::DVec3;
 use jbt_ir::Domain;
 
-use super::{AXIS, Growth, ROUNDINGS, UNDERFLOW, WarpFault, WarpMember, axis_of, axis_value};
+use super::{Growth, ROUNDINGS, UNDERFLOW, WarpFault, WarpMember};
+use crate::axis::Axis;
 use crate::bounds::Bounds;
-use crate::field::{Field, FieldKind, FieldValue, Member};
+use crate::member::member;
 
 /// 1.5 * 2^23: adding and subtracting it rounds a number below 2^22 to a whole one.
 pub(super) const ROUND: f32 = 12_582_912.0;
 /// Copies without end end here, to both sides: beyond, f32 has three bits left for the place of a point in its cell.
 const ENDLESS: f64 = (1 << 21) as f64;
 
-/// Copies along a coordinate axis.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Repeat {
-    /// The axis: 0 is x, 1 is y, 2 is z.
-    pub axis: u8,
-    /// The distance from a copy to the next.
-    pub spacing: f64,
-    /// How many there are, the child among them: a whole number, 0 for no end.
-    pub count: f64,
+member! {
+    /// Copies along a coordinate axis.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct Repeat = "repeat" {
+        /// The axis.
+        pub axis: Axis [Axis] = Vector([0.0, 0.0, 1.0]),
+        /// The distance from a copy to the next.
+        pub spacing: f64 [Positive],
+        /// How many there are, the child among them: a whole number, 0 for no end.
+        pub count: f64 [Count] = Real(0.0),
+    }
 }
 
 impl Repeat {
@@ -46,29 +49,12 @@ impl Repeat {
     }
 }
 
-impl Member for Repeat {
-    const NAME: &'static str = "repeat";
-    const FIELDS: &'static [Field] = &[
-        AXIS,
-        Field { name: "spacing", kind: FieldKind::Positive, default: None },
-        Field { name: "count", kind: FieldKind::Count, default: Some(FieldValue::Real(0.0)) },
-    ];
-
-    fn from_fields(values: &[FieldValue]) -> Self {
-        Self { axis: axis_of(&values[0]), spacing: values[1].real(), count: values[2].real() }
-    }
-
-    fn to_fields(&self) -> Vec<FieldValue> {
-        vec![axis_value(self.axis), FieldValue::Real(self.spacing), FieldValue::Real(self.count)]
-    }
-}
-
 impl WarpMember for Repeat {
     const COLUMNS: &'static [&'static str] =
         &["spacing", "inverse_spacing", "half_spacing", "first", "last", "lower_wall", "upper_wall"];
 
     fn inverse(&self, p: DVec3) -> DVec3 {
-        let (axis, [first, last]) = (self.axis as usize, self.ends());
+        let (axis, [first, last]) = (self.axis.index(), self.ends());
         let mut q = p;
         q[axis] -= self.spacing * (p[axis] / self.spacing).round().clamp(first, last);
         q
@@ -76,7 +62,7 @@ impl WarpMember for Repeat {
 
     fn decision(&self, p: DVec3) -> f64 {
         let [lower, upper] = self.walls();
-        let x = p[self.axis as usize];
+        let x = p[self.axis.index()];
         let cell = (x - lower) / self.spacing;
         let wall = (cell - cell.round()).abs() * self.spacing;
         let half = 0.5 * self.spacing;
@@ -97,7 +83,7 @@ impl WarpMember for Repeat {
     }
 
     fn forward_bounds(&self, child: Bounds) -> Bounds {
-        let axis = self.axis as usize;
+        let axis = self.axis.index();
         let mut all = child;
         if child.is_empty() {
             return child;
@@ -113,7 +99,7 @@ impl WarpMember for Repeat {
     /// The number of a copy is exact, whichever is nearest; a step of so many spacings, and what is beyond the walls, are off by a few
     /// units of the farthest copy.
     fn reach(&self, child: Bounds) -> Bounds {
-        let axis = self.axis as usize;
+        let axis = self.axis.index();
         let mut reach = self.forward_bounds(child);
         if !reach.is_empty() {
             let size = super::farthest(child) + (self.count + 1.0) * self.spacing;
@@ -133,7 +119,7 @@ impl WarpMember for Repeat {
     }
 
     fn variant(&self) -> u8 {
-        self.axis
+        self.axis as u8
     }
 
     fn emit<D: Domain>(d: &mut D, variant: u8, p: [D::Real; 3], row: &[D::Real]) -> [D::Real; 3] {
@@ -170,7 +156,7 @@ mod tests {
 
     #[test]
     fn copies_stand_at_equal_steps() {
-        let repeat = Repeat { axis: 0, spacing: 2.0, count: 3.0 };
+        let repeat = Repeat { axis: Axis::X, spacing: 2.0, count: 3.0 };
         for (x, expected) in
             [(0.25, 0.25), (2.25, 0.25), (4.25, 0.25), (6.25, 2.25), (-3.0, -3.0), (0.75, 0.75), (1.25, -0.75)]
         {
@@ -185,7 +171,7 @@ mod tests {
     #[test]
     fn agrees_with_the_laws_of_warps() {
         testing::judge(|rng| Repeat {
-            axis: rng.u8(..3),
+            axis: Axis::ALL[rng.usize(..3)],
             spacing: 0.05 + 2.0 * rng.f64(),
             count: f64::from(rng.u8(..6)),
         });
@@ -194,7 +180,7 @@ mod tests {
     #[test]
     fn bounds_end_where_the_last_copy_does() {
         let child = Bounds::new(DVec3::splat(-0.5), DVec3::splat(0.75));
-        let three = Repeat { axis: 2, spacing: 2.0, count: 3.0 };
+        let three = Repeat { axis: Axis::Z, spacing: 2.0, count: 3.0 };
         assert_eq!(three.forward_bounds(child), Bounds::new(child.min, DVec3::new(0.75, 0.75, 4.75)));
         let bounds = Repeat { count: 0.0, ..three }.reach(child);
         assert_eq!((bounds.min.z, bounds.max.z, bounds.max.x), (f64::NEG_INFINITY, f64::INFINITY, 0.75));
@@ -202,7 +188,7 @@ mod tests {
 
     #[test]
     fn decides_at_its_walls() {
-        let repeat = Repeat { axis: 0, spacing: 2.0, count: 2.0 };
+        let repeat = Repeat { axis: Axis::X, spacing: 2.0, count: 2.0 };
         for (x, expected) in [(-4.0, 5.0), (0.5, 0.5), (1.0, 0.0), (1.25, 0.25), (9.0, 8.0)] {
             assert!((repeat.decision(DVec3::new(x, 0.0, 0.0)) - expected).abs() < 1e-12, "at {x}");
         }

@@ -10,38 +10,28 @@ use glam::DVec3;
 use jbt_ir::Domain;
 
 use super::repeat::ROUND;
-use super::{AXIS, Growth, UNDERFLOW, WarpFault, WarpMember, axis_of, axis_value, order, turned};
+use super::{Growth, UNDERFLOW, WarpFault, WarpMember, turned};
 use crate::angle;
+use crate::axis::Axis;
 use crate::bounds::Bounds;
-use crate::field::{Field, FieldKind, FieldValue, Member};
+use crate::member::member;
 
-/// Copies about a coordinate axis through the origin.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct RepeatAround {
-    /// The axis: 0 is x, 1 is y, 2 is z.
-    pub axis: u8,
-    /// How many there are: a whole number of at least 1.
-    pub count: f64,
+member! {
+    /// Copies about a coordinate axis through the origin.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct RepeatAround = "repeat_around" {
+        /// The axis.
+        pub axis: Axis [Axis] = Vector([0.0, 0.0, 1.0]),
+        /// How many there are: a whole number of at least 1.
+        pub count: f64 [Count],
+    }
 }
 
 impl RepeatAround {
     /// The angle of a point in sectors.
     fn sectors(&self, p: DVec3) -> f64 {
-        let [_, u, v] = order(self.axis);
+        let [_, u, v] = self.axis.order();
         p[v].atan2(p[u]) * self.count / TAU
-    }
-}
-
-impl Member for RepeatAround {
-    const NAME: &'static str = "repeat_around";
-    const FIELDS: &'static [Field] = &[AXIS, Field { name: "count", kind: FieldKind::Count, default: None }];
-
-    fn from_fields(values: &[FieldValue]) -> Self {
-        Self { axis: axis_of(&values[0]), count: values[1].real() }
-    }
-
-    fn to_fields(&self) -> Vec<FieldValue> {
-        vec![axis_value(self.axis), FieldValue::Real(self.count)]
     }
 }
 
@@ -49,7 +39,7 @@ impl WarpMember for RepeatAround {
     const COLUMNS: &'static [&'static str] = &["sectors", "sector"];
 
     fn inverse(&self, p: DVec3) -> DVec3 {
-        let [_, u, v] = order(self.axis);
+        let [_, u, v] = self.axis.order();
         let (sin, cos) = (self.sectors(p).round() * TAU / self.count).sin_cos();
         let mut q = p;
         q[u] = cos * p[u] + sin * p[v];
@@ -61,7 +51,7 @@ impl WarpMember for RepeatAround {
         if self.count == 1.0 {
             return f64::INFINITY;
         }
-        let [_, u, v] = order(self.axis);
+        let [_, u, v] = self.axis.order();
         let sectors = self.sectors(p);
         let to_wall = 0.5 - (sectors - sectors.round()).abs();
         p[u].hypot(p[v]) * (to_wall * TAU / self.count).min(0.5 * PI).sin()
@@ -98,11 +88,11 @@ impl WarpMember for RepeatAround {
     }
 
     fn variant(&self) -> u8 {
-        self.axis
+        self.axis as u8
     }
 
     fn emit<D: Domain>(d: &mut D, variant: u8, p: [D::Real; 3], row: &[D::Real]) -> [D::Real; 3] {
-        let [_, u, v] = order(variant);
+        let [_, u, v] = Axis::ALL[usize::from(variant)].order();
         let half_turn = d.constant(PI as f32);
         // The copy does not move with the point, so neither do angle and turn.
         let still = [d.hold(p[u]), d.hold(p[v])];
@@ -130,26 +120,26 @@ mod tests {
 
     #[test]
     fn copies_stand_around() {
-        let four = RepeatAround { axis: 2, count: 4.0 };
+        let four = RepeatAround { axis: Axis::Z, count: 4.0 };
         let spoke = DVec3::new(2.0, 0.5, 7.0);
         for p in [[2.0, 0.5], [-0.5, 2.0], [-2.0, -0.5], [0.5, -2.0]] {
             testing::same(&four.into(), DVec3::new(p[0], p[1], 7.0), spoke);
         }
-        let three = RepeatAround { axis: 0, count: 3.0 };
+        let three = RepeatAround { axis: Axis::X, count: 3.0 };
         testing::same(&three.into(), DVec3::new(1.0, -0.5, 0.75f64.sqrt()), DVec3::new(1.0, 1.0, 0.0));
         testing::finite(&three.into(), DVec3::X);
-        assert!(RepeatAround { axis: 0, count: 0.0 }.fault().is_some());
+        assert!(RepeatAround { axis: Axis::X, count: 0.0 }.fault().is_some());
     }
 
     #[test]
     fn decides_at_its_walls() {
-        let four = RepeatAround { axis: 2, count: 4.0 };
+        let four = RepeatAround { axis: Axis::Z, count: 4.0 };
         assert!(four.decision(DVec3::new(1.0, 1.0, 0.0)).abs() < 1e-15);
         assert!((four.decision(DVec3::new(2.0, 0.0, 0.0)) - 2f64.sqrt()).abs() < 1e-12);
     }
 
     #[test]
     fn agrees_with_the_laws_of_warps() {
-        testing::judge(|rng| RepeatAround { axis: rng.u8(..3), count: f64::from(rng.u8(1..9)) });
+        testing::judge(|rng| RepeatAround { axis: Axis::ALL[rng.usize(..3)], count: f64::from(rng.u8(1..9)) });
     }
 }

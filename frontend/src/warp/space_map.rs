@@ -13,17 +13,19 @@ use jbt_ir::Domain;
 
 use super::{Growth, ROUNDINGS, UNDERFLOW, WarpFault, WarpMember, farthest};
 use crate::bounds::Bounds;
-use crate::field::{Field, FieldKind, FieldValue, Member};
+use crate::member::member;
 
-/// A pull from one point to another.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct SpaceMap {
-    /// Whatever is here ...
-    pub from: DVec3,
-    /// ... appears here.
-    pub to: DVec3,
-    /// How far around `to` anything moves.
-    pub radius: f64,
+member! {
+    /// A pull from one point to another.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct SpaceMap = "space_map" {
+        /// Whatever is here ...
+        pub from: DVec3 [Position],
+        /// ... appears here.
+        pub to: DVec3 [Position],
+        /// How far around `to` anything moves.
+        pub radius: f64 [Positive],
+    }
 }
 
 impl SpaceMap {
@@ -37,27 +39,6 @@ impl SpaceMap {
         let swept = Bounds::new(child.min + shift.min(DVec3::ZERO), child.max + shift.max(DVec3::ZERO));
         let moved = swept.intersection(Bounds::new(self.to, self.to).grown(radius));
         if moved.is_empty() { child } else { child.hull(moved) }
-    }
-}
-
-impl Member for SpaceMap {
-    const NAME: &'static str = "space_map";
-    const FIELDS: &'static [Field] = &[
-        Field { name: "from", kind: FieldKind::Position, default: None },
-        Field { name: "to", kind: FieldKind::Position, default: None },
-        Field { name: "radius", kind: FieldKind::Positive, default: None },
-    ];
-
-    fn from_fields(values: &[FieldValue]) -> Self {
-        Self { from: values[0].vector().into(), to: values[1].vector().into(), radius: values[2].real() }
-    }
-
-    fn to_fields(&self) -> Vec<FieldValue> {
-        vec![
-            FieldValue::Vector(self.from.into()),
-            FieldValue::Vector(self.to.into()),
-            FieldValue::Real(self.radius),
-        ]
     }
 }
 

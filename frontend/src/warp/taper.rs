@@ -13,26 +13,29 @@
 use glam::DVec3;
 use jbt_ir::Domain;
 
-use super::{AXIS, Growth, ROUNDINGS, UNDERFLOW, WarpFault, WarpMember, axis_of, axis_value, order};
+use super::{Growth, ROUNDINGS, UNDERFLOW, WarpFault, WarpMember};
+use crate::axis::Axis;
 use crate::bounds::Bounds;
-use crate::field::{Field, FieldKind, FieldValue, Member};
+use crate::member::member;
 
-/// The smallest scale across the axis: 2^-16.
+/// The smallest scale across the axis: Axis::Z^-16.
 pub const SMALLEST_SCALE: f64 = 1.0 / 65_536.0;
 
-/// A taper along an axis through the origin.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Taper {
-    /// The axis: 0 is x, 1 is y, 2 is z.
-    pub axis: u8,
-    /// The height at which the scale begins to change.
-    pub from: f64,
-    /// The height at which it ends, above or below.
-    pub to: f64,
-    /// The scale across the axis at the first height, at least 0.
-    pub start: f64,
-    /// The scale at the second.
-    pub end: f64,
+member! {
+    /// A taper along an axis through the origin.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct Taper = "taper" {
+        /// The axis.
+        pub axis: Axis [Axis] = Vector([0.0, 0.0, 1.0]),
+        /// The height at which the scale begins to change.
+        pub from: f64 [Real],
+        /// The height at which it ends, above or below.
+        pub to: f64 [Real],
+        /// The scale across the axis at the first height, at least 0.
+        pub start: f64 [NonNegative] = Real(1.0),
+        /// The scale at the second.
+        pub end: f64 [NonNegative],
+    }
 }
 
 impl Taper {
@@ -47,7 +50,7 @@ impl Taper {
 
     /// A box around a child whose scales are between those at heights in [low, high], each off by up to `slack`.
     fn scaled(&self, child: Bounds, low: f64, high: f64, slack: f64) -> Bounds {
-        let [_, u, v] = order(self.axis);
+        let [_, u, v] = self.axis.order();
         let (a, b) = (self.scale(low), self.scale(high));
         let (least, most) = ((a.min(b) - slack).max(0.0), a.max(b) + slack);
         let mut scaled = child;
@@ -60,32 +63,11 @@ impl Taper {
     }
 }
 
-impl Member for Taper {
-    const NAME: &'static str = "taper";
-    const FIELDS: &'static [Field] = &[
-        AXIS,
-        Field { name: "from", kind: FieldKind::Real, default: None },
-        Field { name: "to", kind: FieldKind::Real, default: None },
-        Field { name: "start", kind: FieldKind::NonNegative, default: Some(FieldValue::Real(1.0)) },
-        Field { name: "end", kind: FieldKind::NonNegative, default: None },
-    ];
-
-    fn from_fields(values: &[FieldValue]) -> Self {
-        let [from, to, start, end] = [1, 2, 3, 4].map(|index| values[index].real());
-        Self { axis: axis_of(&values[0]), from, to, start, end }
-    }
-
-    fn to_fields(&self) -> Vec<FieldValue> {
-        let numbers = [self.from, self.to, self.start, self.end].map(FieldValue::Real);
-        [axis_value(self.axis)].into_iter().chain(numbers).collect()
-    }
-}
-
 impl WarpMember for Taper {
     const COLUMNS: &'static [&'static str] = &["from", "inverse_height", "start", "change"];
 
     fn inverse(&self, p: DVec3) -> DVec3 {
-        let [h, u, v] = order(self.axis);
+        let [h, u, v] = self.axis.order();
         let scale = self.scale(p[h]);
         let mut q = p;
         q[u] /= scale;
@@ -97,7 +79,7 @@ impl WarpMember for Taper {
         if self.start == self.end {
             return f64::INFINITY;
         }
-        let height = p[order(self.axis)[0]];
+        let height = p[self.axis.order()[0]];
         let t = (height - self.from) / (self.to - self.from);
         let scale = self.start + (self.end - self.start) * t;
         let ends = (height - self.from).abs().min((height - self.to).abs());
@@ -117,7 +99,7 @@ impl WarpMember for Taper {
         if child.is_empty() {
             return child;
         }
-        let [h, ..] = order(self.axis);
+        let [h, ..] = self.axis.order();
         self.scaled(child, child.min[h], child.max[h], 0.0)
     }
 
@@ -127,11 +109,11 @@ impl WarpMember for Taper {
         if child.is_empty() {
             return child;
         }
-        let [h, ..] = order(self.axis);
+        let [h, ..] = self.axis.order();
         let lost = |height: f64| ROUNDINGS * (height.abs() + self.from.abs() + self.to.abs());
         let (low, high) = (child.min[h], child.max[h]);
         let mut reach = self.scaled(child, low - lost(low), high + lost(high), ROUNDINGS * self.largest());
-        for axis in order(self.axis).into_iter().skip(1) {
+        for axis in self.axis.order().into_iter().skip(1) {
             reach.min[axis] -= UNDERFLOW + ROUNDINGS * reach.min[axis].abs();
             reach.max[axis] += UNDERFLOW + ROUNDINGS * reach.max[axis].abs();
         }
@@ -150,12 +132,12 @@ impl WarpMember for Taper {
     }
 
     fn variant(&self) -> u8 {
-        self.axis
+        self.axis as u8
     }
 
     fn emit<D: Domain>(d: &mut D, variant: u8, p: [D::Real; 3], row: &[D::Real]) -> [D::Real; 3] {
         let [from, inverse_height, start, change] = row[..] else { unreachable!("a taper has four columns") };
-        let [h, u, v] = order(variant);
+        let [h, u, v] = Axis::ALL[usize::from(variant)].order();
         let (zero, one) = (d.constant(0.0), d.constant(1.0));
         let above = d.sub(p[h], from);
         let t = d.mul(above, inverse_height);
@@ -180,7 +162,7 @@ mod tests {
 
     #[test]
     fn a_slice_shrinks_as_its_height_says() {
-        let taper = Taper { axis: 2, from: 0.0, to: 2.0, start: 1.0, end: 0.5 };
+        let taper = Taper { axis: Axis::Z, from: 0.0, to: 2.0, start: 1.0, end: 0.5 };
         for (height, scale) in [(-5.0, 1.0), (0.0, 1.0), (1.0, 0.75), (2.0, 0.5), (7.0, 0.5)] {
             let q = DVec3::new(3.0, -4.0, height);
             testing::same(&taper.into(), DVec3::new(3.0 * scale, -4.0 * scale, height), q);
@@ -194,13 +176,13 @@ mod tests {
         testing::judge(|rng| {
             let [from, to] = [(); 2].map(|()| testing::real(rng));
             let [start, end] = [(); 2].map(|()| if rng.u8(..4) == 0 { 0.0 } else { 2.0 * rng.f64() });
-            Taper { axis: rng.u8(..3), from, to, start, end }
+            Taper { axis: Axis::ALL[rng.usize(..3)], from, to, start, end }
         });
     }
 
     #[test]
     fn taper_at_radius_zero_is_finite() {
-        let taper = Taper { axis: 2, from: 0.0, to: 1.0, start: 1.0, end: 0.0 };
+        let taper = Taper { axis: Axis::Z, from: 0.0, to: 1.0, start: 1.0, end: 0.0 };
         for p in [[0.0, 0.0, 1.0], [0.5, 0.0, 1.0], [0.0, 0.0, 9.0], [1e6, -1e6, 1.0], [0.0, 0.0, 0.999_999]] {
             testing::finite(&taper.into(), p.into());
         }
@@ -211,7 +193,7 @@ mod tests {
 
     #[test]
     fn equal_heights_are_a_fault() {
-        let taper = Taper { axis: 0, from: 1.0, to: 1.0, start: 1.0, end: 0.5 };
+        let taper = Taper { axis: Axis::X, from: 1.0, to: 1.0, start: 1.0, end: 0.5 };
         assert_eq!(taper.fault().unwrap().message, "the taper goes from 1 to 1");
         assert_eq!(Taper { to: 1.5, ..taper }.fault(), None);
     }

@@ -5,32 +5,19 @@
 use glam::DVec3;
 use jbt_ir::Domain;
 
-use super::{AXIS, Growth, WarpFault, WarpMember, axis_of, axis_value, order, turned};
+use super::{Growth, WarpFault, WarpMember, turned};
+use crate::axis::Axis;
 use crate::bounds::Bounds;
-use crate::field::{Field, FieldKind, FieldValue, Member};
+use crate::member::member;
 
-/// A twist about an axis through the origin.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Twist {
-    /// The axis: 0 is x, 1 is y, 2 is z.
-    pub axis: u8,
-    /// Radians for each unit of length along the axis.
-    pub rate: f64,
-}
-
-impl Member for Twist {
-    const NAME: &'static str = "twist";
-    const FIELDS: &'static [Field] = &[
-        AXIS,
-        Field { name: "rate", kind: FieldKind::Real, default: None },
-    ];
-
-    fn from_fields(values: &[FieldValue]) -> Self {
-        Self { axis: axis_of(&values[0]), rate: values[1].real() }
-    }
-
-    fn to_fields(&self) -> Vec<FieldValue> {
-        vec![axis_value(self.axis), FieldValue::Real(self.rate)]
+member! {
+    /// A twist about an axis through the origin.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct Twist = "twist" {
+        /// The axis.
+        pub axis: Axis [Axis] = Vector([0.0, 0.0, 1.0]),
+        /// Radians for each unit of length along the axis.
+        pub rate: f64 [Real],
     }
 }
 
@@ -38,7 +25,7 @@ impl WarpMember for Twist {
     const COLUMNS: &'static [&'static str] = &["rate"];
 
     fn inverse(&self, p: DVec3) -> DVec3 {
-        let [h, u, v] = order(self.axis);
+        let [h, u, v] = self.axis.order();
         let (sin, cos) = (self.rate * p[h]).sin_cos();
         let mut q = p;
         q[u] = cos * p[u] + sin * p[v];
@@ -84,11 +71,11 @@ impl WarpMember for Twist {
     }
 
     fn variant(&self) -> u8 {
-        self.axis
+        self.axis as u8
     }
 
     fn emit<D: Domain>(d: &mut D, variant: u8, p: [D::Real; 3], row: &[D::Real]) -> [D::Real; 3] {
-        let [h, u, v] = order(variant);
+        let [h, u, v] = Axis::ALL[usize::from(variant)].order();
         let angle = d.mul(row[0], p[h]);
         // An infinite angle has no sine; so large a one turns nothing.
         let (largest, smallest) = (d.constant(f32::MAX), d.constant(f32::MIN));
@@ -112,21 +99,21 @@ mod tests {
 
     #[test]
     fn a_quarter_turn_after_one_unit() {
-        let twist = Twist { axis: 2, rate: std::f64::consts::FRAC_PI_2 };
+        let twist = Twist { axis: Axis::Z, rate: std::f64::consts::FRAC_PI_2 };
         // What appears at +y at height 1 is what the child has at +x.
         assert!(twist.inverse(DVec3::new(0.0, 1.0, 1.0)).abs_diff_eq(DVec3::new(1.0, 0.0, 1.0), 1e-15));
     }
 
     #[test]
     fn agrees_with_the_laws_of_warps() {
-        testing::judge(|rng| Twist { axis: rng.u8(..3), rate: testing::real(rng) });
+        testing::judge(|rng| Twist { axis: Axis::ALL[rng.usize(..3)], rate: testing::real(rng) });
     }
 
     /// The gradient of a twisted field, of a formula that was worked by hand: `J^T g` with `J = d inverse / dp`. A published system turns
     /// the child's gradient back and leaves out how the angle moves with the height.
     #[test]
     fn the_gradient_knows_that_the_angle_moves_with_the_height() {
-        let twist = Twist { axis: 2, rate: 0.7 };
+        let twist = Twist { axis: Axis::Z, rate: 0.7 };
         let p = DVec3::new(0.3, -0.4, 0.5);
         let jacobian = testing::jacobian(&twist.into(), p);
         let (q, (sin, cos)) = (twist.inverse(p), (0.7 * p.z).sin_cos());
@@ -143,7 +130,7 @@ mod tests {
     #[test]
     fn the_box_of_the_child_would_clip() {
         let bar = Bounds::new(DVec3::new(-3.0, -0.1, 0.9), DVec3::new(3.0, 0.1, 1.1));
-        let twist = Twist { axis: 2, rate: std::f64::consts::FRAC_PI_2 };
+        let twist = Twist { axis: Axis::Z, rate: std::f64::consts::FRAC_PI_2 };
         let there = DVec3::new(0.0, 2.9, 1.0);
         assert!(testing::holds(bar, twist.inverse(there)) && !testing::holds(bar, there));
         assert!(testing::holds(twist.forward_bounds(bar), there) && testing::holds(twist.reach(bar), there));

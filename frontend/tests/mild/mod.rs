@@ -44,6 +44,7 @@ pub fn fields(rng: &mut Rng, fields: &[Field]) -> Vec<FieldValue> {
         }
         FieldKind::Lengths => FieldValue::Reals((0..10).map(|_| 0.3 * rng.f64()).collect()),
         FieldKind::Flag => FieldValue::Real(f64::from(rng.u8(..2))),
+        FieldKind::Rows => unreachable!("only maps have rows"),
         FieldKind::Axis => FieldValue::Vector(DVec3::AXES[rng.usize(..3)].to_array()),
     };
     fields.iter().map(value).collect()

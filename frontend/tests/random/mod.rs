@@ -57,6 +57,7 @@ fn fields(rng: &mut Rng, fields: &[Field]) -> Vec<FieldValue> {
             FieldValue::Reals((0..rng.usize(..8)).map(|_| number(rng).abs()).collect())
         }
         (FieldKind::Flag, _) => FieldValue::Real(f64::from(rng.u8(..2))),
+        (FieldKind::Rows, _) => unreachable!("only maps have rows"),
         (FieldKind::Axis, _) => FieldValue::Vector(DVec3::AXES[rng.usize(..3)].to_array()),
     };
     fields.iter().map(value).collect()

@@ -182,6 +182,7 @@ impl Random {
                 }
                 FieldKind::Lengths => FieldValue::Reals((0..10).map(|_| self.between(0.0, 0.3)).collect()),
                 FieldKind::Flag => FieldValue::Real(f64::from(self.numbers.u8(0..2))),
+                FieldKind::Rows => unreachable!("only maps have rows"),
                 FieldKind::Axis => {
                     let axis = self.shape.usize(0..3);
                     FieldValue::Vector(std::array::from_fn(|k| if k == axis { 1.0 } else { 0.0 }))
@@ -296,7 +297,7 @@ impl Random {
     /// The tree with a noise that follows parameters: its code serves all their values.
     fn textured_following(&mut self, tree: &Tree, group: &AttributeGroup) -> Tree {
         let (octaves, low) = (self.between(0.5, 3.5), self.between(0.0, 1.0));
-        let pattern = noise(self.between(0.3, 1.0)).octaves(self.parameter("octaves", octaves));
+        let pattern = noise(self.between(0.3, 1.0), self.parameter("octaves", octaves), 0);
         let a = vec![self.parameter("low", low); group.width()];
         let b: Vec<Number> = self.units(group.width()).into_iter().map(Number::from).collect();
         tree.textured(&group.name, pattern, &a, &b)

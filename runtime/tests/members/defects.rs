@@ -333,7 +333,7 @@ fn rfunctions_have_no_background() {
 /// A taper divided by its scale, which is 0 at the tip and beyond it: the axis had no field there.
 #[test]
 fn a_taper_to_radius_zero_is_a_number() {
-    let tree = segment([0.0; 3], [0.0, 0.0, 3.0], 1.0).taper(Axis::Z, [0.0, 1.0], [1.0, 0.0]);
+    let tree = segment([0.0; 3], [0.0, 0.0, 3.0], 1.0).taper(Axis::Z, 0.0, 1.0, 1.0, 0.0);
     let divided = |[x, y, z]: [f64; 3]| {
         let scale = 1.0 - f64::clamp(z, 0.0, 1.0);
         soft((x / scale).powi(2) + (y / scale).powi(2))
@@ -350,7 +350,7 @@ fn a_taper_to_radius_zero_is_a_number() {
 /// HyperFun's taper takes a scale near 0 as 1, so that at the tip, and beyond it, the child is seen in its full width: a jump.
 #[test]
 fn a_taper_has_no_jump_at_its_tip() {
-    let tree = segment([0.5, 0.0, 0.0], [0.5, 0.0, 3.0], 1.0).taper(Axis::Z, [0.0, 1.0], [1.0, 0.0]);
+    let tree = segment([0.5, 0.0, 0.0], [0.5, 0.0, 3.0], 1.0).taper(Axis::Z, 0.0, 1.0, 1.0, 0.0);
     let jumps = |[x, y, z]: [f64; 3]| {
         let scale = 1.0 - f64::clamp(z, 0.0, 1.0);
         let scale = if scale.abs() < 1e-6 { 1.0 } else { scale };
@@ -384,7 +384,7 @@ fn a_bend_of_rate_zero_is_the_identity() {
             soft(y * y + z * z)
         };
         assert_eq!(printed_bend(at.map(|x| x as f32), rate as f32, -1.0)[1].is_nan(), rate == 0.0);
-        judge_fields(&ball.bend(Axis::X, rate, [-1.0, 1.0]), &[(at, right)], divided);
+        judge_fields(&ball.bend(Axis::X, rate, -1.0, 1.0, 0), &[(at, right)], divided);
     }
 }
 
@@ -392,7 +392,7 @@ fn a_bend_of_rate_zero_is_the_identity() {
 #[test]
 fn a_bend_takes_the_right_root() {
     for rate in [0.5f64, -0.5] {
-        let tree = segment([0.0, -2.0, 0.0], [0.0, 2.0, 0.0], 1.0).bend(Axis::X, rate, [-2.0, 2.0]);
+        let tree = segment([0.0, -2.0, 0.0], [0.0, 2.0, 0.0], 1.0).bend(Axis::X, rate, -2.0, 2.0, 0);
         let field = |sign: f32| {
             move |at: [f64; 3]| {
                 let [y, z] = printed_bend(at.map(|x| x as f32), rate as f32, sign);

@@ -14,7 +14,7 @@ members! { MapKind {
         ([1.0, 2.0, -1.0], 1.0),
         ([2.0, 2.0, -1.0], 0.5),
     ])],
-    RotateDegrees => vec![
+    Rotate => vec![
         row("of a rod", "param t = 90 rotate axis z degrees t { segment { from (0 0 0) to (2 0 0) radius 1 } }", &[
             ([0.0, 2.0, 0.0], 1.0),
             ([0.5, 1.0, 0.0], 0.5),

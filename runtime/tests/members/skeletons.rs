@@ -20,7 +20,7 @@ members! { SkeletonKind {
     Disc => discs(),
     Ring => rings(),
     Cylinder => cylinders(),
-    Box => boxes(),
+    Cuboid => boxes(),
     Triangle => triangles(),
     Polyline => curves::polylines(),
     Polygon => flat::polygons(),

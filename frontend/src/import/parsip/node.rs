@@ -7,6 +7,7 @@ use glam::{DAffine3, DQuat, DVec3};
 use super::scan::{Key, Section};
 use super::state::{Importer, Meaning};
 use crate::affine::scale_rotate_translate;
+use crate::axis::Axis;
 use crate::combine::Combinator;
 use crate::diagnostic::{Diagnostic, Span};
 use crate::falloff::Falloff;
@@ -204,9 +205,9 @@ impl Importer<'_> {
             if section.get(Key::Factor).is_some() { self.number(section, Key::Factor)? } else { 1.0 };
         let axis = if section.get(Key::Axis).is_some() { self.integer(section, Key::Axis)? } else { 2 };
         match axis {
-            0 => Some(Twist { axis: 0, rate: -factor }),
-            1 => Some(Twist { axis: 1, rate: factor }),
-            2 => Some(Twist { axis: 2, rate: -factor }),
+            0 => Some(Twist { axis: Axis::X, rate: -factor }),
+            1 => Some(Twist { axis: Axis::Y, rate: factor }),
+            2 => Some(Twist { axis: Axis::Z, rate: -factor }),
             _ => {
                 let span = section.get(Key::Axis).unwrap_or(section.span);
                 self.bad(span, Key::Axis, &axis.to_string(), "0, 1 or 2");
@@ -284,7 +285,7 @@ impl Importer<'_> {
             }
             Leaf::Cube => {
                 let half = self.length(section, Key::Side)?;
-                skeleton::Box { center: position, half: DVec3::splat(half) }.into()
+                skeleton::Cuboid { center: position, half: DVec3::splat(half) }.into()
             }
             Leaf::Triangle => {
                 let corners = [Key::Corner0, Key::Corner1, Key::Corner2]

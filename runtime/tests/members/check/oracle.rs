@@ -153,7 +153,7 @@ fn shown(slope: &Slope) -> String {
 mod tests {
     use jbt::build::point;
     use jbt::{Falloff, Model};
-    use jbt_frontend::falloff::{Blinn, Edge, Rim};
+    use jbt_frontend::falloff::{Blinn, Edge};
 
     use super::*;
 
@@ -175,7 +175,7 @@ mod tests {
 
     #[test]
     fn at_a_jump_either_side_is_right() {
-        let edge = Falloff::Blinn(Blinn { hardness: 0.001, rim: Rim { cutoff: 0.01, edge: Edge::Exact } });
+        let edge = Falloff::Blinn(Blinn { hardness: 0.001, cutoff: 0.01, edge: Edge::Exact });
         let tree = Model::new(point([0.0; 3], 1.0).falloff(edge)).check().expect("a good model");
         for (field, right) in [(0.0, true), (1.0, true), (0.5, false)] {
             assert_eq!(is_beside(&tree, [1.0, 0.0, 0.0], field), right, "{field}");

@@ -6,34 +6,20 @@ use jbt_ir::Domain;
 use super::{SkeletonMember, Symmetry, uv};
 use crate::affine::map_bounds;
 use crate::bounds::Bounds;
-use crate::field::{Field, FieldKind, FieldValue, Member};
+use crate::member::member;
 
-/// A solid box along the axes. Half sizes of 0 make it a rectangle, a segment or a point.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Box {
-    /// Its middle.
-    pub center: DVec3,
-    /// How far it reaches from the middle along each axis: half its sides.
-    pub half: DVec3,
-}
-
-impl Member for Box {
-    const NAME: &'static str = "box";
-    const FIELDS: &'static [Field] = &[
-        Field { name: "center", kind: FieldKind::Position, default: Some(FieldValue::Vector([0.0; 3])) },
-        Field { name: "half", kind: FieldKind::Extents, default: None },
-    ];
-
-    fn from_fields(values: &[FieldValue]) -> Self {
-        Self { center: values[0].vector().into(), half: values[1].vector().into() }
-    }
-
-    fn to_fields(&self) -> Vec<FieldValue> {
-        vec![FieldValue::Vector(self.center.into()), FieldValue::Vector(self.half.into())]
+member! {
+    /// A solid box along the axes. Half sizes of 0 make it a rectangle, a segment or a point.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct Cuboid = "box" {
+        /// Its middle.
+        pub center: DVec3 [Position] = Vector([0.0; 3]),
+        /// How far it reaches from the middle along each axis: half its sides.
+        pub half: DVec3 [Extents],
     }
 }
 
-impl SkeletonMember for Box {
+impl SkeletonMember for Cuboid {
     const COLUMNS: &'static [&'static str] = &["half_x", "half_y", "half_z"];
     const SYMMETRY: Symmetry = Symmetry::None;
 
@@ -131,7 +117,7 @@ mod tests {
 
     #[test]
     fn known_distances() {
-        let cuboid = Box { center: DVec3::new(1.0, 0.0, 0.0), half: DVec3::new(1.0, 2.0, 3.0) };
+        let cuboid = Cuboid { center: DVec3::new(1.0, 0.0, 0.0), half: DVec3::new(1.0, 2.0, 3.0) };
         for (p, expected) in
             [([0.5, -1.5, 2.5], 0.0), ([5.0, 0.0, 0.0], 9.0), ([-2.0, 4.0, -9.0], 44.0), ([1.0, 2.0, 3.0], 0.0)]
         {
@@ -143,7 +129,7 @@ mod tests {
     fn agrees_with_samples_of_the_set() {
         testing::judge(0.5, |rng| {
             let half = DVec3::new(rng.f64(), 2.0 * rng.f64(), 3.0 * rng.f64());
-            let cuboid = Box { center: testing::position(rng), half };
+            let cuboid = Cuboid { center: testing::position(rng), half };
             let tick = |i: i32| f64::from(i % 21) / 10.0 - 1.0;
             let samples = (0..21 * 21 * 21)
                 .map(|i| cuboid.center + half * DVec3::new(tick(i), tick(i / 21), tick(i / 441)))
@@ -154,7 +140,7 @@ mod tests {
 
     #[test]
     fn uv_shows_all_of_a_picture_on_each_face() {
-        let solid = Box { center: DVec3::ZERO, half: DVec3::new(1.0, 2.0, 4.0) };
+        let solid = Cuboid { center: DVec3::ZERO, half: DVec3::new(1.0, 2.0, 4.0) };
         for (p, expected) in [
             ([2.0, 1.0, 2.0], [0.75, 0.75]),   // +x: y to the right, z up
             ([-2.0, 1.0, 2.0], [0.25, 0.75]),  // -x
@@ -165,7 +151,7 @@ mod tests {
         ] {
             testing::same_uv(&solid, p.into(), expected);
         }
-        testing::judge_uv(|rng| Box { center: testing::position(rng), half: testing::position(rng).abs() });
-        testing::same_uv(&Box { half: DVec3::ZERO, ..solid }, DVec3::new(2.0, 1.0, 0.0), [0.5, 0.5]);
+        testing::judge_uv(|rng| Cuboid { center: testing::position(rng), half: testing::position(rng).abs() });
+        testing::same_uv(&Cuboid { half: DVec3::ZERO, ..solid }, DVec3::new(2.0, 1.0, 0.0), [0.5, 0.5]);
     }
 }

@@ -1,0 +1,145 @@
+//! Constructors of members, made of their descriptions: one for each skeleton, falloff and texture, and a method of
+//! [`Tree`] for each warp and affine map.
+//!
+//! A constructor is called like the file of its member, and takes the parameters in their order. Lists of lengths and
+//! flags are left out, since they have defaults: [`Tree::radii`] and [`Tree::closed`] set them.
+
+use super::{Axis, Edge, Number, Pattern, Rows, Vector, leaf, real, vector, vectors};
+use crate::falloff::FalloffKind;
+use crate::map::MapKind;
+use crate::recipe::{FalloffRecipe, FieldNumber};
+use crate::skeleton::SkeletonKind;
+use crate::texture::TextureKind;
+use crate::tree::Tree;
+use crate::warp::WarpKind;
+
+/// Goes through the fields of a member, and hands what they are as arguments, and their values as parameters, on:
+/// `arguments! { then (words) () () fields }` is `then! { (words) (arguments) (values) }`.
+macro_rules! arguments {
+    ($then:ident $words:tt ($($taken:tt)*) ($($value:tt)*)) => {
+        $then! { $words ($($taken)*) ($($value)*) }
+    };
+    ($then:ident $words:tt ($($taken:tt)*) ($($value:tt)*) $field:ident: f64 $default:tt $($rest:tt)*) => {
+        arguments! { $then $words
+            ($($taken)* $field: impl Into<Number>,) ($($value)* real($field),) $($rest)* }
+    };
+    ($then:ident $words:tt ($($taken:tt)*) ($($value:tt)*) $field:ident: DVec3 $default:tt $($rest:tt)*) => {
+        arguments! { $then $words
+            ($($taken)* $field: impl Into<Vector>,) ($($value)* vector($field),) $($rest)* }
+    };
+    ($then:ident $words:tt ($($taken:tt)*) ($($value:tt)*) $field:ident: Axis $default:tt $($rest:tt)*) => {
+        arguments! { $then $words
+            ($($taken)* $field: Axis,) ($($value)* vector($field.unit().to_array()),) $($rest)* }
+    };
+    ($then:ident $words:tt ($($taken:tt)*) ($($value:tt)*) $field:ident: Edge $default:tt $($rest:tt)*) => {
+        arguments! { $then $words
+            ($($taken)* $field: Edge,) ($($value)* $field.to_field().into(),) $($rest)* }
+    };
+    ($then:ident $words:tt ($($taken:tt)*) ($($value:tt)*) $field:ident: Matrix $default:tt $($rest:tt)*) => {
+        arguments! { $then $words
+            ($($taken)* $field: impl Into<Rows>,) ($($value)* rows($field),) $($rest)* }
+    };
+    ($then:ident $words:tt ($($taken:tt)*) ($($value:tt)*) $field:ident: Positions $default:tt $($rest:tt)*) => {
+        arguments! { $then $words
+            ($($taken)* $field: impl IntoIterator<Item = impl Into<Vector>>,) ($($value)* vectors($field),) $($rest)* }
+    };
+    ($then:ident $words:tt ($($taken:tt)*) ($($value:tt)*) $field:ident: Lengths ($default:expr) $($rest:tt)*) => {
+        arguments! { $then $words ($($taken)*) ($($value)* FieldNumber::Reals(Vec::new()),) $($rest)* }
+    };
+    ($then:ident $words:tt ($($taken:tt)*) ($($value:tt)*) $field:ident: bool ($default:expr) $($rest:tt)*) => {
+        arguments! { $then $words ($($taken)*) ($($value)* real(0.0),) $($rest)* }
+    };
+}
+
+fn rows(rows: impl Into<Rows>) -> FieldNumber {
+    FieldNumber::Reals(rows.into().0.into_iter().flatten().collect())
+}
+
+/// Takes the derives away that stand between the documentation and the name of a member.
+macro_rules! constructor {
+    ($then:ident $function:ident; $(#[doc = $doc:literal])* #[derive $derived:tt] $name:ident { $($fields:tt)* }) => {
+        arguments! { $then ($function $name $($doc)*) () () $($fields)* }
+    };
+}
+
+macro_rules! skeleton {
+    (($function:ident $name:ident $($doc:literal)*) ($($taken:tt)*) ($($value:tt)*)) => {
+        $(#[doc = $doc])*
+        ///
+        #[doc = concat!("See [`", stringify!($name), "`](struct@crate::skeleton::", stringify!($name), ").")]
+        /// At the distance `support_radius` from it, the field reaches zero.
+        #[must_use]
+        pub fn $function($($taken)* support_radius: impl Into<Number>) -> Tree {
+            leaf(SkeletonKind::$name, vec![$($value)*], support_radius)
+        }
+    };
+    ($($description:tt)*) => { constructor! { skeleton $($description)* } };
+}
+
+crate::skeleton::each! { skeleton }
+
+macro_rules! falloff {
+    (($function:ident $name:ident $($doc:literal)*) ($($taken:tt)*) ($($value:tt)*)) => {
+        $(#[doc = $doc])*
+        ///
+        #[doc = concat!("See [`", stringify!($name), "`](struct@crate::falloff::", stringify!($name), ").")]
+        #[must_use]
+        pub fn $function($($taken)*) -> FalloffRecipe {
+            FalloffRecipe::new(FalloffKind::$name(0), vec![$($value)*])
+        }
+    };
+    ($($description:tt)*) => { constructor! { falloff $($description)* } };
+}
+
+crate::falloff::each! { falloff }
+
+macro_rules! texture {
+    (($function:ident $name:ident $($doc:literal)*) ($($taken:tt)*) ($($value:tt)*)) => {
+        $(#[doc = $doc])*
+        ///
+        #[doc = concat!("See [`", stringify!($name), "`](struct@crate::texture::", stringify!($name), ").")]
+        #[must_use]
+        pub fn $function($($taken)*) -> Pattern {
+            Pattern { texture: TextureKind::$name(0), fields: vec![$($value)*] }
+        }
+    };
+    ($($description:tt)*) => { constructor! { texture $($description)* } };
+}
+
+crate::texture::each! { texture }
+
+macro_rules! warp {
+    (($function:ident $name:ident $($doc:literal)*) ($($taken:tt)*) ($($value:tt)*)) => {
+        $(#[doc = $doc])*
+        ///
+        #[doc = concat!("See [`", stringify!($name), "`](struct@crate::warp::", stringify!($name), ").")]
+        #[must_use]
+        pub fn $function(&self, $($taken)*) -> Self {
+            self.warped(WarpKind::$name(0), vec![$($value)*])
+        }
+    };
+    ($($description:tt)*) => { constructor! { warp $($description)* } };
+}
+
+/// Deformed trees.
+impl Tree {
+    crate::warp::each! { warp }
+}
+
+macro_rules! map {
+    (($function:ident $name:ident $($doc:literal)*) ($($taken:tt)*) ($($value:tt)*)) => {
+        $(#[doc = $doc])*
+        ///
+        #[doc = concat!("See [`", stringify!($name), "`](struct@crate::map::", stringify!($name), ").")]
+        #[must_use]
+        pub fn $function(&self, $($taken)*) -> Self {
+            self.mapped(MapKind::$name, vec![$($value)*])
+        }
+    };
+    ($($description:tt)*) => { constructor! { map $($description)* } };
+}
+
+/// The same trees elsewhere: affine maps.
+impl Tree {
+    crate::map::each! { map }
+}
