@@ -13,6 +13,8 @@ pub enum Contestant {
     Ours,
     /// The hand-written program for sums of points, see [`crate::limit`].
     Limit,
+    /// The compiler, with the search for parts that its mesh misses.
+    Searched,
     /// The compiler's interpreter, beside its machine code.
     Lanes,
     /// fidget's machine code.
@@ -29,9 +31,10 @@ pub enum Contestant {
 
 impl Contestant {
     /// All of them.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Ours,
         Self::Limit,
+        Self::Searched,
         Self::Lanes,
         Self::FidgetJit,
         Self::FidgetVm,
@@ -46,6 +49,7 @@ impl Contestant {
         match self {
             Self::Ours => "ours",
             Self::Limit => "limit",
+            Self::Searched => "searched",
             Self::Lanes => "lanes",
             Self::FidgetJit => "fidget_jit",
             Self::FidgetVm => "fidget_vm",
@@ -58,7 +62,7 @@ impl Contestant {
     /// Whether it is what we measure, and not what we measure against.
     const fn is_measured_well(self) -> bool {
         match self {
-            Self::Ours | Self::Limit | Self::Lanes => true,
+            Self::Ours | Self::Limit | Self::Searched | Self::Lanes => true,
             Self::FidgetJit | Self::FidgetVm | Self::Splashsurf | Self::Walk | Self::Separate => false,
         }
     }

@@ -1,5 +1,6 @@
-//! From blobs to a mesh: everything from the model on counts, code included. Ours and the limit make normals and colours as well; the
-//! peers make positions alone.
+//! From blobs to a mesh: everything from the model on counts, code included. Ours and the limit make normals and colours as
+//! well; the peers make positions alone. Nobody checks what was made; ours once more, with its search for parts that are
+//! thinner than a cell.
 
 use jbt::{Compiler, Polygonize, Polygonized};
 use jbt_frontend::check::CheckedTree;
@@ -45,12 +46,13 @@ impl Task {
         Self { blobs, tree, cells, pool: pool.expect("threads can be made") }
     }
 
-    fn ours(&self) -> Polygonized {
+    fn ours(&self, thin_parts: bool) -> Polygonized {
         let region = Some(([-1.0; 3], [1.0; 3]));
         let polygonize = Polygonize {
             region,
             fineness: jbt::Fineness::Resolution(self.cells),
             verify: false,
+            thin_parts,
             ..Polygonize::default()
         };
         let run = || polygonize.mesh(&Compiler::new(), &self.tree).run();
@@ -87,7 +89,13 @@ impl Task {
             (triangles, engine) = (ours.mesh.triangles.len(), ours.engine.name());
             self.check(&ours.mesh.positions)
         };
-        contest.enter_checked(Contestant::Ours, "", || self.ours(), see);
+        contest.enter_checked(Contestant::Ours, "", || self.ours(false), see);
+        contest.enter_checked(
+            Contestant::Searched,
+            "",
+            || self.ours(true),
+            |searched| self.check(&searched.mesh.positions),
+        );
         let see = |limit: &limit::mesh::Mesh| {
             let others = limit.triangles.len();
             if (others as f64 - triangles as f64).abs() > TRIANGLES_OFF * triangles as f64 {
