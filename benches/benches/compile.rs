@@ -2,6 +2,7 @@
 //! rows alone; shapes cost code.)
 
 use std::hint::black_box;
+use std::path::Path;
 use std::time::Duration;
 
 use criterion::measurement::WallTime;
@@ -10,7 +11,7 @@ use jbt::ir::domain::lanes::Tape;
 use jbt::ir::pass::run_pipeline;
 use jbt::ir::verify;
 use jbt::kernel::Purpose;
-use jbt::{CheckedTree, Compiler, Query, Update};
+use jbt::{CheckedTree, Compiler, Query, Scene, Update};
 use jbt_benches::check;
 use jbt_benches::model::{cube, varied};
 use jbt_frontend::lower::lower;
@@ -28,7 +29,16 @@ fn compile(c: &mut Criterion) {
         }
         edit(&mut group, count);
     }
+    if let Some(prospero) = program("prospero") {
+        stages(&mut group, "prospero", &prospero);
+    }
     group.finish();
+}
+
+/// A long program of the samples, if the environment variable JBT_SAMPLES names a folder that has them.
+fn program(name: &str) -> Option<CheckedTree> {
+    let path = Path::new(&std::env::var_os("JBT_SAMPLES")?).join("vm").join(name).with_extension("vm");
+    Some(Scene::load(path).ok()?.check().expect("the program is a model"))
 }
 
 /// The stages on the way to an evaluator of everything, each on what the one before it made.

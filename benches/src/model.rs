@@ -4,8 +4,9 @@ use jbt::{Model, Points, text};
 use jbt_frontend::check::CheckedTree;
 use jbt_frontend::combine::Combinator;
 use jbt_frontend::falloff::Falloff;
+use jbt_frontend::kind::{NodeKind, Primitive};
 use jbt_frontend::skeleton::{Cuboid, Cylinder, Disc, Point, Ring, Segment, Skeleton, Triangle};
-use jbt_frontend::tree::{NodeKind, Primitive, Tree};
+use jbt_frontend::tree::Tree;
 
 /// A soft-object point (Wyvill, McPheeters and Wyvill 1986) with a colour. Its numbers are f32, so that every contestant is given the same.
 #[derive(Clone, Copy, PartialEq, Debug)]

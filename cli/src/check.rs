@@ -8,7 +8,7 @@ use jbt_frontend::attribute::AttributeGroup;
 use jbt_frontend::bounds::Bounds;
 use jbt_frontend::check::CheckedTree;
 use jbt_frontend::diagnostic::escape;
-use jbt_frontend::tree::NodeKind;
+use jbt_frontend::kind::NodeKind;
 use serde_json::{Map, Value, json};
 
 use crate::arguments::{CheckArguments, SceneArguments};

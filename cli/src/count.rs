@@ -22,7 +22,7 @@ use jbt::statistics::{PerPoint, Statistics, Supports, SupportsError, walks};
 use jbt::{Compiler, Engine, MeshCounters, ModelOrigin, Polygonize, PolygonizeError, Query};
 use jbt_frontend::check::CheckedTree;
 use jbt_frontend::diagnostic::Source;
-use jbt_frontend::tree::NodeKind;
+use jbt_frontend::kind::NodeKind;
 use serde_json::{Value, json};
 
 use crate::arguments::CountArguments;

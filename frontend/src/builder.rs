@@ -59,8 +59,9 @@ mod pattern;
 mod place;
 mod primitive;
 
-use crate::recipe::{FalloffRecipe, FieldNumber, Recipe};
-use crate::tree::{NodeKind, Primitive, Tree};
+use crate::kind::{NodeKind, Primitive};
+use crate::tree::{DEFAULT_ISO, Tree};
+use crate::written::{FieldNumber, Written, WrittenFalloff};
 
 use self::argument::{real, vector, vectors};
 pub use self::constructor::*;
@@ -85,42 +86,23 @@ impl Tree {
     /// let gaussian = point([0.0; 3], 1.0).falloff(blinn(param("hardness", 3.0), 1.0, Edge::Smooth));
     /// ```
     #[must_use]
-    pub fn falloff(&self, falloff: impl Into<FalloffRecipe>) -> Self {
+    pub fn falloff(&self, falloff: impl Into<WrittenFalloff>) -> Self {
         let falloff = falloff.into();
-        if !falloff.follows() {
-            let falloff = falloff.falloff();
-            return self.map_primitives(|leaf| leaf.falloff = falloff);
-        }
-        self.map_recipes(|recipe| recipe.with_falloff(falloff.clone()))
+        self.map_written(|written| written.with_falloff(falloff.clone()))
     }
 
     /// The same with this strength in every primitive; negative ones push surfaces away.
     #[must_use]
     pub fn strength(&self, strength: impl Into<Number>) -> Self {
         let strength = strength.into();
-        if !strength.follows() {
-            return self.map_primitives(|leaf| leaf.strength = strength.value());
-        }
-        self.map_recipes(|recipe| recipe.with_strength(strength.clone()))
+        self.map_written(|written| written.with_strength(strength.clone()))
     }
 
-    /// The same with the recipe of every primitive changed.
-    fn map_recipes(&self, mut change: impl FnMut(Recipe) -> Recipe) -> Self {
+    /// The same with every primitive written in another way.
+    fn map_written(&self, mut change: impl FnMut(Written) -> Written) -> Self {
         self.rewrite(|tree| {
-            let recipe = match (tree.node().recipe(), tree.node().kind()) {
-                (Some(recipe), NodeKind::Primitive(_)) => Recipe::clone(recipe),
-                (None, NodeKind::Primitive(leaf)) => Recipe::of_primitive(leaf),
-                (
-                    _,
-                    NodeKind::Combine(_)
-                    | NodeKind::Expression(_)
-                    | NodeKind::Select(_)
-                    | NodeKind::Affine(_)
-                    | NodeKind::Warp(_)
-                    | NodeKind::Attribute { .. },
-                ) => return None,
-            };
-            Some(tree.with_recipe(change(recipe)))
+            let written = tree.node().written();
+            written.is_primitive().then(|| tree.with_written(change(written.clone())))
         })
     }
 
@@ -152,37 +134,28 @@ impl Tree {
     /// The same with another value of a parameter of skeletons, wherever there is one of this name.
     fn with_field(&self, name: &str, value: &FieldNumber) -> Self {
         self.rewrite(|tree| {
-            let NodeKind::Primitive(leaf) = tree.node().kind() else { return None };
-            let index = leaf.skeleton.kind().fields().iter().position(|field| field.name == name)?;
-            let mut recipe = tree
-                .node()
-                .recipe()
-                .map_or_else(|| Recipe::of_primitive(leaf), |recipe| Recipe::clone(recipe));
-            if let Recipe::Primitive { fields, .. } = &mut recipe {
-                fields[index] = value.clone();
-            }
-            Some(tree.with_recipe(recipe))
+            let mut written = tree.node().written().clone();
+            let Written::Primitive { skeleton, fields, .. } = &mut written else { return None };
+            let index = skeleton.fields().iter().position(|field| field.name == name)?;
+            fields[index] = value.clone();
+            Some(tree.with_written(written))
         })
     }
 
-    /// The same with every primitive changed. Numbers that the change leaves alone follow their parameters still.
+    /// The same with every primitive changed. Numbers that the change leaves alone follow their parameters still. The
+    /// change sees the present values, and the support radius that a surface radius gives at the usual iso-value; a
+    /// primitive that has no surface there stays as it is.
     #[must_use]
     pub fn map_primitives(&self, mut change: impl FnMut(&mut Primitive)) -> Self {
-        self.rewrite(|tree| match tree.node().kind() {
-            NodeKind::Primitive(old) => {
-                let mut leaf = old.clone();
-                change(&mut leaf);
-                Some(match tree.node().recipe() {
-                    Some(recipe) => tree.with_recipe(recipe.changed(old, &leaf)),
-                    None => Self::assemble(NodeKind::Primitive(leaf), None, Vec::new(), tree.node().span()),
-                })
+        self.rewrite(|tree| {
+            let written = tree.node().written();
+            if !written.is_primitive() {
+                return None;
             }
-            NodeKind::Combine(_)
-            | NodeKind::Expression(_)
-            | NodeKind::Select(_)
-            | NodeKind::Affine(_)
-            | NodeKind::Warp(_)
-            | NodeKind::Attribute { .. } => None,
+            let Ok(NodeKind::Primitive(old)) = written.evaluated(DEFAULT_ISO) else { return None };
+            let mut leaf = old.clone();
+            change(&mut leaf);
+            Some(tree.with_written(written.changed(&old, &leaf)))
         })
     }
 }

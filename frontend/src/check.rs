@@ -21,18 +21,18 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
+use glam::DAffine3;
 use jbt_ir::limits;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 #[cfg(doc)]
 use crate::field::FieldKind;
+use crate::kind::NodeKind;
 use crate::model::Model;
 use crate::number::Values;
 use crate::origin::ModelOrigin;
 use crate::parameter::{collect, refresh};
-use crate::recipe::Recipe;
 use crate::report::Report;
-use crate::tree::NodeKind;
 
 mod arena;
 mod dependence;
@@ -130,30 +130,22 @@ impl Model {
                 break;
             }
             let id = NodeId(nodes.len() as u32);
-            if let Some(recipe) = node.recipe() {
-                dependence.add(id, recipe);
-            } else if let NodeKind::Combine(combinator) = node.kind()
-                && combinator.asks_iso()
-                && self.iso.follows()
-            {
-                // It has to be checked again when the iso-value moves.
-                dependence.add(id, &Arc::new(Recipe::of_combinator(*combinator)));
+            let written = node.written();
+            if written.follows(&self.iso) || (self.iso.follows() && written.is_limited_by_iso()) {
+                dependence.add(id, &Arc::new(written.clone()));
             }
-            if let Some(formula) = node.recipe().and_then(|recipe| recipe.formula()) {
+            if let Some(formula) = written.formula() {
                 check_words(report, formula, node.span());
             }
-            let made = node.recipe().map_or_else(
-                || Ok(node.kind().clone()),
-                |recipe| parameters::cook(recipe, values, iso, node.span()),
-            );
-            let mut kind = match made {
+            let mut kind = match parameters::evaluate(written, values, iso, node.span()) {
                 Ok(kind) => {
                     check_node(report, &kind, node.children().len(), node.span(), &groups, iso);
                     kind
                 }
                 Err(error) => {
                     report.add(|| error);
-                    node.kind().clone()
+                    // Nobody looks at it: the check has failed.
+                    NodeKind::Affine(DAffine3::IDENTITY)
                 }
             };
             share_name(&mut kind, &self.attributes);

@@ -95,7 +95,7 @@ impl<T> FieldOf<T> {
 }
 
 /// A number as it is written.
-pub(crate) trait Written {
+pub(crate) trait NumberText {
     /// Its present value.
     fn present(&self) -> f64;
 
@@ -106,7 +106,7 @@ pub(crate) trait Written {
     fn text(&self) -> String;
 }
 
-impl Written for f64 {
+impl NumberText for f64 {
     fn present(&self) -> f64 {
         *self
     }
@@ -130,14 +130,14 @@ pub(crate) fn plain(value: f64) -> String {
 }
 
 /// Numbers in parentheses.
-pub(crate) fn tuple<T: Written>(numbers: &[T]) -> String {
-    let numbers: Vec<String> = numbers.iter().map(Written::text).collect();
+pub(crate) fn tuple<T: NumberText>(numbers: &[T]) -> String {
+    let numbers: Vec<String> = numbers.iter().map(NumberText::text).collect();
     format!("({})", numbers.join(" "))
 }
 
 impl Field {
     /// Adds the parameter as it is written, a blank in front: nothing, if it has its default. `word`: what it is called there.
-    pub(crate) fn write<T: Written>(&self, out: &mut String, word: &str, value: &FieldOf<T>) {
+    pub(crate) fn write<T: NumberText>(&self, out: &mut String, word: &str, value: &FieldOf<T>) {
         if self.default.as_ref().is_some_and(|default| same(default, value)) {
             return;
         }
@@ -168,11 +168,11 @@ impl Field {
 }
 
 /// Whether the numbers are these, to the bit, and follow no parameter.
-fn same<T: Written>(default: &FieldValue, value: &FieldOf<T>) -> bool {
+fn same<T: NumberText>(default: &FieldValue, value: &FieldOf<T>) -> bool {
     let shape = std::mem::discriminant(&default.map(|_| ())) == std::mem::discriminant(&value.map(|_| ()));
     let bits = |number: f64| number.to_bits();
     let present = value.numbers().iter().map(|number| bits(number.present()));
-    let fixed = value.numbers().iter().all(Written::is_fixed);
+    let fixed = value.numbers().iter().all(NumberText::is_fixed);
     shape && fixed && default.numbers().iter().copied().map(bits).eq(present)
 }
 

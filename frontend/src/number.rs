@@ -21,7 +21,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 use std::sync::Arc;
 
 use crate::diagnostic::Diagnostic;
-use crate::field::{Written, plain};
+use crate::field::{NumberText, plain};
 use crate::function::Function;
 
 pub(crate) use binary::Binary;
@@ -237,7 +237,7 @@ impl fmt::Debug for Number {
     }
 }
 
-impl Written for Number {
+impl NumberText for Number {
     fn present(&self) -> f64 {
         self.value
     }

@@ -18,7 +18,7 @@ use crate::check::{CheckedTree, NodeId};
 use crate::combine::Combinator;
 use crate::diagnostic::Span;
 use crate::expression::Expression;
-use crate::tree::{NodeKind, chosen};
+use crate::kind::{NodeKind, chosen};
 
 /// A leaf that decides, as one of its occurrences.
 #[derive(Clone, PartialEq, Debug)]

@@ -111,7 +111,7 @@ pub(crate) fn collect(
         if !tree.node().follows() || !seen.insert(tree.identity()) {
             continue;
         }
-        for number in tree.node().recipe().into_iter().flat_map(|recipe| recipe.following()) {
+        for number in tree.node().written().following() {
             all.take(number.formula(), tree.node().span());
         }
         stack.extend(tree.node().children().iter().rev());

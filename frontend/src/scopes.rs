@@ -20,8 +20,8 @@
 use crate::combine::Combinator;
 use crate::map::MapKind;
 use crate::number::{Number, Vector};
-use crate::recipe::{AttributeRecipe, FieldNumber, Recipe};
-use crate::tree::{NodeKind, Tree};
+use crate::tree::Tree;
+use crate::written::{FieldNumber, Written, WrittenAttribute};
 
 /// A tree under construction: a stack of open scopes.
 ///
@@ -38,14 +38,7 @@ pub struct Scopes {
 struct Scope {
     combinator: Combinator,
     children: Vec<Tree>,
-    around: Vec<Around>,
-}
-
-/// A node around what follows it.
-#[derive(Debug)]
-enum Around {
-    Kind(NodeKind),
-    Recipe(Recipe),
+    around: Vec<Written>,
 }
 
 /// `begin` and `end` do not match.
@@ -65,10 +58,7 @@ impl Scope {
     }
 
     fn add(&mut self, tree: Tree) {
-        let wrap = |tree, around: &Around| match around {
-            Around::Kind(kind) => Tree::new(kind.clone(), vec![tree]),
-            Around::Recipe(recipe) => Tree::of(recipe.clone(), vec![tree]),
-        };
+        let wrap = |tree, around: &Written| Tree::new(around.clone(), vec![tree]);
         self.children.push(self.around.iter().rev().fold(tree, wrap));
     }
 
@@ -107,22 +97,23 @@ impl Scopes {
 
     /// An attribute for what follows.
     pub fn attribute<T: Into<Number> + Clone>(&mut self, name: &str, values: &[T]) -> &mut Self {
-        let value = AttributeRecipe::Numbers(values.iter().cloned().map(Into::into).collect());
-        let recipe = Recipe::Attribute { name: name.into(), value };
-        self.scope().around.push(Around::Recipe(recipe));
+        let value = WrittenAttribute::Numbers(values.iter().cloned().map(Into::into).collect());
+        let written = Written::Attribute { name: name.into(), value };
+        self.scope().around.push(written);
         self
     }
 
     /// A shift of what follows.
     pub fn translate(&mut self, by: impl Into<Vector>) -> &mut Self {
-        let recipe = Recipe::Map { map: MapKind::Translate, fields: vec![FieldNumber::Vector(by.into().0)] };
-        self.scope().around.push(Around::Recipe(recipe));
+        let written =
+            Written::Map { map: MapKind::Translate, fields: vec![FieldNumber::Vector(by.into().0)] };
+        self.scope().around.push(written);
         self
     }
 
     /// Any map for what follows: an affine one or a warp.
-    pub fn map(&mut self, kind: NodeKind) -> &mut Self {
-        self.scope().around.push(Around::Kind(kind));
+    pub fn map(&mut self, map: impl Into<Written>) -> &mut Self {
+        self.scope().around.push(map.into());
         self
     }
 

@@ -25,8 +25,8 @@ use crate::expression::{Assembled, Assembler, Draft, Formula};
 use crate::falloff::Falloff;
 use crate::function::Function;
 use crate::number::{Binary, Number, Step, Vector};
-use crate::recipe::{AttributeRecipe, Recipe};
-use crate::tree::{NodeKind, Tree};
+use crate::tree::Tree;
+use crate::written::{Written, WrittenAttribute};
 
 /// A part of the formula of a field. Cloning one is cheap, and what is used several times is computed once.
 #[derive(Clone)]
@@ -188,7 +188,7 @@ impl Term {
     fn tree(&self, bounds: Option<[Vector; 2]>) -> Tree {
         let (assembled, children) = Self::assemble(&[self]);
         let formula = Formula::new(assembled, bounds.map(|corners| corners.map(|corner| corner.0)));
-        Tree::of(Recipe::Expression(formula), children)
+        Tree::new(Written::Expression(formula), children)
     }
 
     /// The formula with these values, and the trees for whose fields it asks.
@@ -270,7 +270,7 @@ impl Tree {
     pub fn warp<T: Into<Term>>(&self, coordinates: [T; 3]) -> Self {
         let coordinates = coordinates.map(Into::into);
         let (assembled, _) = Term::assemble(&coordinates.each_ref());
-        Self::of(Recipe::FormulaWarp(Formula::new(assembled, None)), vec![self.clone()])
+        Self::new(Written::FormulaWarp(Formula::new(assembled, None)), vec![self.clone()])
     }
 
     /// With a formula for every leaf below: one value for each channel of the group, of the coordinates in the space of this tree. It may ask for no
@@ -289,7 +289,7 @@ impl Tree {
     pub fn expressed(&self, name: &str, values: impl IntoIterator<Item = impl Into<Term>>) -> Self {
         let values: Vec<Term> = values.into_iter().map(Into::into).collect();
         let (assembled, _) = Term::assemble(&values.iter().collect::<Vec<_>>());
-        self.given(name, AttributeRecipe::Expressed(Formula::new(assembled, None)))
+        self.given(name, WrittenAttribute::Expressed(Formula::new(assembled, None)))
     }
 
     /// The same with the falloff of every primitive given by a formula of r, the distance over the radius of support, from 0 at the skeleton to 1.
@@ -313,17 +313,11 @@ impl Tree {
     #[must_use]
     pub fn falloff_by(&self, formula: impl Fn(Term) -> Term) -> Self {
         self.rewrite(|tree| {
-            let NodeKind::Primitive(leaf) = tree.node().kind() else { return None };
-            let recipe = tree.node().recipe().map(|recipe| &**recipe);
-            let strength = if let Some(Recipe::Primitive { strength, .. }) = recipe {
-                strength.clone()
-            } else {
-                leaf.strength.into()
-            };
+            let Written::Primitive { strength, .. } = tree.node().written() else { return None };
             let cone = tree.falloff(Falloff::Linear).strength(1.0);
             let field = formula(1.0 - cone.field());
             let is_plain = !strength.follows() && strength.value() == 1.0;
-            Some(Self::expression(if is_plain { field } else { field * strength }))
+            Some(Self::expression(if is_plain { field } else { field * strength.clone() }))
         })
     }
 
@@ -343,7 +337,7 @@ impl Tree {
     #[must_use]
     pub fn fading(&self, falloff: impl Into<Falloff>, radius: impl Into<Number>) -> Self {
         let formula = Formula::fading(falloff.into(), radius.into());
-        Self::of(Recipe::Expression(formula), vec![self.clone()])
+        Self::new(Written::Expression(formula), vec![self.clone()])
     }
 }
 

@@ -119,9 +119,11 @@ mod tests {
     use crate::builder::{point, ring};
     use crate::check::NodeId;
     use crate::combine::Combinator;
+    use crate::kind::NodeKind;
     use crate::model::Model;
-    use crate::skeleton::{Ring, Skeleton};
-    use crate::tree::{NodeKind, Tree};
+    use crate::skeleton::SkeletonKind;
+    use crate::tree::Tree;
+    use crate::written::Written;
 
     /// The picture of the module: a is a union, b and c are colours, d is a point.
     fn diamond() -> Tree {
@@ -130,11 +132,11 @@ mod tests {
     }
 
     fn letters<'a>(trees: impl Iterator<Item = &'a Tree>) -> String {
-        let letter = |tree: &Tree| match tree.node().kind() {
-            NodeKind::Combine(_) | NodeKind::Expression(_) => 'a',
-            NodeKind::Attribute { .. } => 'b',
-            NodeKind::Affine(_) | NodeKind::Warp(_) | NodeKind::Select(_) => 'c',
-            NodeKind::Primitive(_) => 'd',
+        let letter = |tree: &Tree| match tree.node().written() {
+            Written::Combine { .. } | Written::Expression(_) => 'a',
+            Written::Attribute { .. } => 'b',
+            Written::Map { .. } | Written::Warp { .. } | Written::FormulaWarp(_) | Written::Select(_) => 'c',
+            Written::Primitive { .. } => 'd',
         };
         trees.map(letter).collect()
     }
@@ -154,7 +156,7 @@ mod tests {
     fn infix_is_between_all_children() {
         let d = point([0.0; 3], 1.0);
         let [b, c] = [d.color([1.0, 0.0, 0.0]), d.translate([1.0, 0.0, 0.0])];
-        let three = Tree::new(NodeKind::Combine(Combinator::Union), vec![b, c.clone(), c]);
+        let three = Tree::new(Combinator::Union, vec![b, c.clone(), c]);
         assert_eq!(letters(three.infix(Visit::Paths)), "bdacdacd");
         // What was there already is left out, not the node in front of it.
         assert_eq!(letters(three.infix(Visit::Nodes)), "bdaca");
@@ -170,7 +172,7 @@ mod tests {
                 ids.map(|id| checked.node(id).kind.clone()).collect()
             };
             let plain = |trees: &mut dyn Iterator<Item = &Tree>| -> Vec<NodeKind> {
-                trees.map(|tree| tree.node().kind().clone()).collect()
+                trees.map(|tree| tree.node().written().evaluated(0.5).expect("it means something")).collect()
             };
             assert_eq!(kinds(&mut checked.prefix(visit)), plain(&mut tree.prefix(visit)));
             assert_eq!(kinds(&mut checked.infix(visit)), plain(&mut tree.infix(visit)));
@@ -184,14 +186,16 @@ mod tests {
     fn debugging_lists_each_node_once() {
         let ball = point([0.0; 3], 1.0);
         let text = format!("{:?}", &ball | &ball);
-        assert!(text.starts_with("{0: (Primitive("), "{text}");
-        assert!(text.ends_with(", 1: (Combine(Union), [0, 0])}"), "{text}");
+        assert!(text.starts_with("{0: (Primitive {"), "{text}");
+        assert!(text.ends_with(", 1: (Combine { combinator: Union, numbers: [] }, [0, 0])}"), "{text}");
     }
 
     #[test]
     fn a_replaced_leaf_stays_shared() {
         let torus = ring([0.0; 3], [0.0, 0.0, 1.0], 1.0, 0.5);
-        let is_point = |tree: &Tree| matches!(tree.node().kind(), NodeKind::Primitive(leaf) if matches!(leaf.skeleton, Skeleton::Point(_)));
+        let is_point = |tree: &Tree| {
+            matches!(tree.node().written(), Written::Primitive { skeleton: SkeletonKind::Point, .. })
+        };
         let tree = diamond().rewrite(|tree| is_point(tree).then(|| torus.clone()));
         assert_eq!(tree.prefix(Visit::Nodes).count(), 4);
         assert!(
@@ -199,9 +203,7 @@ mod tests {
                 .filter(|t| t.node().children().is_empty())
                 .all(|t| t.identity() == torus.identity())
         );
-        let expected =
-            Skeleton::from(Ring { center: glam::DVec3::ZERO, normal: glam::DVec3::Z, radius: 1.0 });
-        assert!(matches!(torus.node().kind(), NodeKind::Primitive(leaf) if leaf.skeleton == expected));
+        assert!(matches!(torus.node().written(), Written::Primitive { skeleton: SkeletonKind::Ring, .. }));
     }
 
     #[test]
@@ -209,14 +211,9 @@ mod tests {
         let tree = diamond();
         assert_eq!(tree.rewrite(|_| None).identity(), tree.identity());
         // Without the colour, the other side is untouched.
-        let plain = tree.rewrite(|t| match t.node().kind() {
-            NodeKind::Attribute { .. } => Some(t.node().children()[0].clone()),
-            NodeKind::Primitive(_)
-            | NodeKind::Combine(_)
-            | NodeKind::Expression(_)
-            | NodeKind::Select(_)
-            | NodeKind::Affine(_)
-            | NodeKind::Warp(_) => None,
+        let plain = tree.rewrite(|t| {
+            let is_attribute = matches!(t.node().written(), Written::Attribute { .. });
+            is_attribute.then(|| t.node().children()[0].clone())
         });
         assert_eq!(letters(plain.prefix(Visit::Paths)), "adcd");
         assert_eq!(plain.node().children()[1].identity(), tree.node().children()[1].identity());

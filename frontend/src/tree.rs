@@ -17,45 +17,29 @@ use std::collections::HashMap;
 use std::fmt;
 use std::sync::Arc;
 
-use glam::{DAffine3, DVec3};
-
 use crate::diagnostic::Span;
-use crate::number::Number;
-use crate::recipe::Recipe;
-use crate::report::Fault;
 use crate::traverse::Visit;
+use crate::written::Written;
 
-mod kind;
 mod order;
-
-pub(crate) use kind::chosen;
-pub use kind::{NodeKind, Primitive};
 
 /// The iso-value of a model when nothing else is said.
 pub(crate) const DEFAULT_ISO: f64 = 0.5;
 
 /// A node and its children.
 pub struct Node {
-    kind: NodeKind,
-    /// What the kind was made of, if a number in it follows a parameter.
-    recipe: Option<Arc<Recipe>>,
+    written: Written,
     children: Vec<Tree>,
     span: Option<Span>,
-    /// Whether this node or one below has a recipe.
+    /// Whether a number of this node, or of one below, follows a parameter.
     follows: bool,
 }
 
 impl Node {
-    /// What it does.
+    /// What it was written as.
     #[must_use]
-    pub fn kind(&self) -> &NodeKind {
-        &self.kind
-    }
-
-    /// The node before its formulas were evaluated, if one of its numbers follows a parameter.
-    #[must_use]
-    pub fn recipe(&self) -> Option<&Arc<Recipe>> {
-        self.recipe.as_ref()
+    pub fn written(&self) -> &Written {
+        &self.written
     }
 
     /// Whether a number of this node, or of one below, follows a parameter.
@@ -84,49 +68,20 @@ pub struct Tree(Arc<Node>);
 impl Tree {
     /// A node over children. Anything can be built; [`Model::check`](crate::check) says whether it makes sense.
     #[must_use]
-    pub fn new(kind: NodeKind, children: Vec<Self>) -> Self {
-        Self::assemble(kind, None, children, None)
-    }
-
-    /// A node whose numbers may follow parameters. Until the check, which knows better, a surface radius is that of the usual
-    /// iso-value.
-    #[must_use]
-    pub fn of(recipe: Recipe, children: Vec<Self>) -> Self {
-        let iso = Number::from(DEFAULT_ISO);
-        let (kind, asks_iso) = (recipe.kind(iso.value()), recipe.asks_iso());
-        // What it cannot be now, it may be for other values; the check says what is wrong.
-        let broken = || NodeKind::Affine(DAffine3::from_translation(DVec3::NAN));
-        let kept = (kind.is_err() || asks_iso || recipe.follows(&iso)).then(|| Arc::new(recipe));
-        Self::assemble(kind.unwrap_or_else(|_| broken()), kept, children, None)
-    }
-
-    /// The node of a recipe, which is kept if a number in it follows a parameter.
-    pub(crate) fn cook(
-        recipe: Recipe,
-        iso: &Number,
-        children: Vec<Self>,
-        span: Option<Span>,
-    ) -> Result<Self, Fault> {
-        let kind = recipe.kind(iso.value())?;
-        let kept = recipe.follows(iso).then(|| Arc::new(recipe));
-        Ok(Self::assemble(kind, kept, children, span))
-    }
-
-    /// A node of all its parts.
-    pub(crate) fn assemble(
-        kind: NodeKind,
-        recipe: Option<Arc<Recipe>>,
-        children: Vec<Self>,
-        span: Option<Span>,
-    ) -> Self {
-        let follows = recipe.is_some() || children.iter().any(|child| child.0.follows);
-        Self(Arc::new(Node { kind, recipe, children, span, follows }))
+    pub fn new(written: impl Into<Written>, children: Vec<Self>) -> Self {
+        Self::assemble(written.into(), children, None)
     }
 
     /// A node that stands at a place in a text.
     #[must_use]
-    pub fn at(span: Span, kind: NodeKind, children: Vec<Self>) -> Self {
-        Self::assemble(kind, None, children, Some(span))
+    pub fn at(span: Span, written: impl Into<Written>, children: Vec<Self>) -> Self {
+        Self::assemble(written.into(), children, Some(span))
+    }
+
+    /// A node of all its parts.
+    pub(crate) fn assemble(written: Written, children: Vec<Self>, span: Option<Span>) -> Self {
+        let follows = written.following().next().is_some() || children.iter().any(|child| child.0.follows);
+        Self(Arc::new(Node { written, children, span, follows }))
     }
 
     /// Adds a last child to the root. Trees that share the root keep it as it was.
@@ -136,9 +91,9 @@ impl Tree {
             node.children.push(child);
             return;
         }
-        let Node { kind, recipe, children, span, .. } = &*self.0;
+        let Node { written, children, span, .. } = &*self.0;
         let children = children.iter().cloned().chain([child]).collect();
-        *self = Self::assemble(kind.clone(), recipe.clone(), children, *span);
+        *self = Self::assemble(written.clone(), children, *span);
     }
 
     /// The root node.
@@ -169,7 +124,7 @@ impl Drop for Node {
 impl fmt::Debug for Node {
     /// The node alone: its children by number.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{:?} of {} children", self.kind, self.children.len())
+        write!(f, "{:?} of {} children", self.written, self.children.len())
     }
 }
 
@@ -182,7 +137,7 @@ impl fmt::Debug for Tree {
             let children: Vec<usize> =
                 tree.0.children.iter().map(|child| numbers[&child.identity()]).collect();
             numbers.insert(tree.identity(), number);
-            map.entry(&number, &(&tree.0.kind, children));
+            map.entry(&number, &(&tree.0.written, children));
         }
         map.finish()
     }
@@ -198,13 +153,7 @@ impl PartialEq for Tree {
                 continue;
             }
             let (a, b) = (a.node(), b.node());
-            let same = match (&a.recipe, &b.recipe) {
-                // Values are those of parameters that somebody else compares.
-                (Some(a), Some(b)) => a == b,
-                (None, None) => a.kind == b.kind,
-                (Some(_), None) | (None, Some(_)) => false,
-            };
-            if !same || a.children.len() != b.children.len() {
+            if a.written != b.written || a.children.len() != b.children.len() {
                 return false;
             }
             pairs.extend(a.children.iter().zip(&b.children));

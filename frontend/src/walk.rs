@@ -20,8 +20,8 @@ use crate::attribute::{AttributeGroup, AttributeValue, Mixing, UvMap};
 use crate::check::{CheckedTree, NodeId};
 use crate::combine::Combinator;
 use crate::expression::Expression;
+use crate::kind::{NodeKind, Primitive};
 use crate::skeleton::Skeleton;
-use crate::tree::{NodeKind, Primitive};
 
 /// The answers at a point.
 #[derive(Clone, PartialEq, Debug)]

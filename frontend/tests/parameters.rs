@@ -3,9 +3,9 @@
 use jbt_frontend::builder::{Number, param, point};
 use jbt_frontend::check::{CheckedTree, NodeId};
 use jbt_frontend::diagnostic::Source;
+use jbt_frontend::kind::NodeKind;
 use jbt_frontend::model::Model;
 use jbt_frontend::text::{Options, number, parse, print};
-use jbt_frontend::tree::NodeKind;
 
 fn model(text: &str) -> Model {
     parse(text.as_bytes(), &Options::default()).unwrap_or_else(|errors| panic!("{text}\n{errors:?}"))

@@ -11,11 +11,13 @@ use std::collections::HashSet;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use jbt_frontend::attribute::{AttributeValue, Textured};
+use jbt_frontend::attribute::AttributeValue;
 use jbt_frontend::diagnostic::{Diagnostic, Diagnostics, Severity, Source};
-use jbt_frontend::field::FieldValue;
+use jbt_frontend::kind::NodeKind;
+use jbt_frontend::model::Model;
 use jbt_frontend::text::{Options, parse, print};
-use jbt_frontend::tree::{NodeKind, Tree};
+use jbt_frontend::traverse::Visit;
+use jbt_frontend::tree::Tree;
 use jbt_ir::limits;
 
 fn golden_files() -> Vec<PathBuf> {
@@ -137,63 +139,14 @@ fn distinct(root: &Tree) -> usize {
 
 /// Every number of a tree as bits, in preorder: what equality of floats does not tell apart.
 fn bits(root: &Tree) -> Vec<u64> {
-    fn values(all: &mut Vec<u64>, fields: Vec<FieldValue>) {
-        for field in fields {
-            match field {
-                FieldValue::Real(x) => all.push(x.to_bits()),
-                FieldValue::Vector(v) => all.extend(v.map(f64::to_bits)),
-                FieldValue::Reals(v) => all.extend(v.iter().map(|x| x.to_bits())),
-                FieldValue::Vectors(v) => {
-                    all.extend(v.as_flattened().iter().map(|x| x.to_bits()));
-                }
-            }
-        }
-    }
-    let mut all = Vec::new();
-    let mut seen = HashSet::new();
-    let mut stack = vec![root];
-    while let Some(tree) = stack.pop() {
-        if !seen.insert(tree.identity()) {
-            continue;
-        }
-        match tree.node().kind() {
-            NodeKind::Primitive(leaf) => {
-                values(&mut all, leaf.skeleton.to_fields());
-                all.extend([leaf.radius.to_bits(), leaf.strength.to_bits()]);
-            }
-            NodeKind::Combine(_) | NodeKind::Select(_) => {}
-            NodeKind::Expression(expression) => {
-                all.extend(expression.numbers().iter().map(|x| x.to_bits()));
-            }
-            NodeKind::Affine(map) => all.extend(map.to_cols_array().map(f64::to_bits)),
-            NodeKind::Warp(warp) => values(&mut all, warp.to_fields()),
-            NodeKind::Attribute { value, .. } => all.extend(attribute_bits(value)),
-        }
-        stack.extend(tree.node().children());
-    }
-    all
+    let numbers =
+        |tree: &Tree| tree.node().written().numbers().map(|number| number.value().to_bits()).collect();
+    root.prefix(Visit::Nodes).flat_map::<Vec<u64>, _>(numbers).collect()
 }
 
-/// The bits of what an attribute node gives.
-fn attribute_bits(value: &AttributeValue) -> Vec<u64> {
-    let mut all = Vec::new();
-    match value {
-        AttributeValue::Numbers(numbers) => all.extend(numbers),
-        AttributeValue::Textured(Textured { texture, a, b }) => {
-            all.extend(a.iter().chain(b));
-            for field in texture.to_fields() {
-                match field {
-                    FieldValue::Real(x) => all.push(x),
-                    FieldValue::Vector(v) => all.extend(v),
-                    FieldValue::Reals(v) => all.extend(v),
-                    FieldValue::Vectors(v) => all.extend(v.into_flattened()),
-                }
-            }
-        }
-        AttributeValue::Expressed(expression) => all.extend(expression.numbers()),
-        AttributeValue::Uv(map) => all.extend(map.scale.into_iter().chain(map.shift).chain([map.degrees])),
-    }
-    all.into_iter().map(f64::to_bits).collect()
+/// What the root of a model means.
+fn root(model: &Model) -> NodeKind {
+    model.root.node().written().evaluated(model.iso.value()).expect("it means something")
 }
 
 #[test]
@@ -214,12 +167,9 @@ fn random_models_survive_printing() {
 fn a_graph_prints_as_long_as_it_is() {
     let mut tree = random::point();
     for _ in 0..30 {
-        tree = Tree::new(
-            NodeKind::Combine(jbt_frontend::combine::Combinator::Sum),
-            vec![tree.clone(), random::point(), tree],
-        );
+        tree = Tree::new(jbt_frontend::combine::Combinator::Sum, vec![tree.clone(), random::point(), tree]);
     }
-    let model = jbt_frontend::model::Model::new(tree);
+    let model = Model::new(tree);
     let text = print(&model);
     assert!(text.len() < 5_000, "{}", text.len());
     let again = parse(text.as_bytes(), &Options::default()).unwrap();
@@ -234,7 +184,7 @@ fn parameters_are_listed_and_set() {
     let model = parse(text, &options).unwrap();
     let shown: Vec<_> = model.parameters.iter().map(|p| (p.name(), p.default(), p.value())).collect();
     assert_eq!(shown, [("a", 2.0, 5.0), ("b", 15.0, 15.0)]);
-    let NodeKind::Primitive(leaf) = model.root.node().kind() else { panic!() };
+    let NodeKind::Primitive(leaf) = root(&model) else { panic!() };
     assert_eq!(leaf.radius, 15.0);
 }
 
@@ -246,7 +196,7 @@ fn a_surface_radius_is_where_the_field_is_iso() {
         ("jbt 1 iso 0.9 point { surface_radius 0.7 falloff soft }", 0.9),
     ] {
         let model = parse(text.as_bytes(), &Options::default()).unwrap();
-        let NodeKind::Primitive(leaf) = model.root.node().kind() else { panic!() };
+        let NodeKind::Primitive(leaf) = root(&model) else { panic!() };
         let field = leaf.strength * leaf.falloff.value((0.7 / leaf.radius).powi(2));
         assert!((field - iso).abs() < 1e-14, "{text}: {field}");
     }
@@ -290,18 +240,17 @@ fn lines_end_as_on_any_system() {
 
 #[test]
 fn colours_of_screens_become_linear_as_they_are_read() {
-    let root = |color: &str| {
+    let colored = |color: &str| {
         let text = format!("jbt 1 param r = 1 attribute glass 4 color {color} {{ point {{ radius 1 }} }}");
         let options = Options { parameters: vec![("r".to_owned(), 0.2)] };
         let model =
             parse(text.as_bytes(), &options).unwrap_or_else(|errors| panic!("{}", marked(&text, &errors)));
         let again = parse(print(&model).as_bytes(), &Options::default()).unwrap();
         assert_eq!((&again, bits(&again.root)), (&model, bits(&model.root)), "{color}");
-        let NodeKind::Attribute { value: AttributeValue::Numbers(numbers), .. } = model.root.node().kind()
-        else {
+        let NodeKind::Attribute { value: AttributeValue::Numbers(numbers), .. } = root(&model) else {
             panic!("numbers")
         };
-        numbers.clone()
+        numbers
     };
     // IEC 61966-2-1, in another form: what is dark is a line.
     let linear = |byte: u8| {
@@ -312,17 +261,17 @@ fn colours_of_screens_become_linear_as_they_are_read() {
         let close = |(a, b): (&f64, u8)| (a - linear(b)).abs() < 1e-12;
         assert!(found.iter().zip(expected).all(close) && found.len() == 3, "{found:?} {expected:?}");
     };
-    near(&root("\"#ff8800\""), [255, 136, 0]);
-    near(&root("\"#F80\""), [255, 136, 0]);
-    near(&root("\"#0a0B0c\""), [10, 11, 12]);
-    near(&root("srgb(1 128/255 0)"), [255, 128, 0]);
-    near(&root("srgb (1, 10 / 255, 0)"), [255, 10, 0]);
-    near(&root("srgb(r 1 - r 0)"), [51, 204, 0]);
-    assert_eq!(root("\"#fff\""), [1.0; 3]);
-    assert_eq!(root("\"#000\""), [0.0; 3]);
+    near(&colored("\"#ff8800\""), [255, 136, 0]);
+    near(&colored("\"#F80\""), [255, 136, 0]);
+    near(&colored("\"#0a0B0c\""), [10, 11, 12]);
+    near(&colored("srgb(1 128/255 0)"), [255, 128, 0]);
+    near(&colored("srgb (1, 10 / 255, 0)"), [255, 10, 0]);
+    near(&colored("srgb(r 1 - r 0)"), [51, 204, 0]);
+    assert_eq!(colored("\"#fff\""), [1.0; 3]);
+    assert_eq!(colored("\"#000\""), [0.0; 3]);
     assert_eq!(
-        root("srgb(r r r)"),
-        root("srgb(0.2 0.2 0.2)"),
+        colored("srgb(r r r)"),
+        colored("srgb(0.2 0.2 0.2)"),
         "a parameter and its value give the same bits"
     );
 }

@@ -5,10 +5,10 @@ use jbt::build::{Edge, Term, arctan, blanc, blinn, degree, inverse_power, param,
 use jbt::region::Divisible;
 use jbt::walk::{walk, walk_gradient};
 use jbt::{Box3, Compiler, Engine, Falloff, Model, Points, Pruner, Query, Samples, Tree, Update};
-use jbt_frontend::recipe::FalloffRecipe;
+use jbt_frontend::written::WrittenFalloff;
 
 /// Every falloff, those with parameters with several.
-fn falloffs() -> Vec<FalloffRecipe> {
+fn falloffs() -> Vec<WrittenFalloff> {
     let plain = [
         Falloff::Soft,
         Falloff::Wyvill,
@@ -18,7 +18,7 @@ fn falloffs() -> Vec<FalloffRecipe> {
         Falloff::Quintic,
         Falloff::Linear,
     ];
-    let mut all: Vec<FalloffRecipe> = plain.into_iter().map(FalloffRecipe::from).collect();
+    let mut all: Vec<WrittenFalloff> = plain.into_iter().map(WrittenFalloff::from).collect();
     all.extend([0.5, 1.0, 2.5, 8.0, 65.0].map(degree));
     all.extend([0.0, 0.7, 1.125, 10.0].map(blanc));
     for edge in [Edge::Exact, Edge::Smooth] {

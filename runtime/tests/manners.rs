@@ -12,7 +12,7 @@ use jbt::sample::{SampleError, Sampler, Wanted};
 use jbt::solid::{Measure, MeasureError};
 use jbt::statistics::{Statistics, SupportsError};
 use jbt::text::{Options, parse};
-use jbt::tree::{NodeKind, SetOperation};
+use jbt::tree::SetOperation;
 use jbt::{
     CancelToken, CheckedTree, Combinator, CompileError, Compiler, Diagnostics, Engine, Evaluator, Fineness,
     Model, Points, Polygonize, PolygonizeError, Query, Render, Samples, Scene, SceneFormat, Solid, Tree,
@@ -114,7 +114,7 @@ fn trees_add_up() {
         }),
     ];
     for (combinator, all, grow) in cases {
-        assert_eq!(*all.node().kind(), NodeKind::Combine(combinator));
+        assert_eq!(*all.node().written(), combinator.into());
         assert_eq!(all.node().children(), balls);
         let mut grown = balls[0].clone();
         let mut kept = Vec::new();

@@ -86,7 +86,7 @@ fn coloured_parts_have_the_values_of_the_oracle() {
 
 /// Distances by an independent count: every path from the root to a leaf with the map that it goes through, each pair once.
 fn occurrences(tree: &CheckedTree) -> u64 {
-    use jbt_frontend::tree::NodeKind;
+    use jbt_frontend::kind::NodeKind;
     let mut found = std::collections::HashSet::new();
     let mut stack = vec![(tree.root(), String::new(), glam::DAffine3::IDENTITY)];
     while let Some((id, mut warps, mut map)) = stack.pop() {

@@ -18,8 +18,9 @@ use jbt::prune::Region;
 use jbt::region::{ANYTHING, Divisible};
 use jbt::{Box3, CheckedTree, Compiler, Engine, Evaluator, Model, Points, Pruner, Query, Update};
 use jbt_frontend::combine::Combinator;
+use jbt_frontend::kind::NodeKind;
 use jbt_frontend::text::{Options, parse, print};
-use jbt_frontend::tree::{NodeKind, Tree};
+use jbt_frontend::tree::Tree;
 use rayon::prelude::*;
 
 const SHAPES: u64 = 250;

@@ -5,7 +5,8 @@ use jbt::prune::Region;
 use jbt::region::Divisible;
 use jbt::{Box3, Compiler, Engine, EvalError, Model, Pruner};
 use jbt_frontend::combine::Combinator;
-use jbt_frontend::tree::{NodeKind, Tree};
+use jbt_frontend::kind::NodeKind;
+use jbt_frontend::tree::Tree;
 
 /// Centres and radii of many small blobs in [-1, 1]^3.
 fn blobs(count: usize) -> Vec<([f64; 3], f64)> {

@@ -7,7 +7,7 @@ use jbt::text::{Options, parse};
 use jbt::walk::walk;
 use jbt::{Box3, CancelToken, CheckedTree, Compiler, Engine, Fineness, Points, Polygonize};
 use jbt_frontend::check::NodeId;
-use jbt_frontend::tree::NodeKind;
+use jbt_frontend::kind::NodeKind;
 
 const BALL: &str = "jbt 1 point { surface_radius 1 }";
 const TORUS: &str = "jbt 1 translate (1 2 3) { ring { ring_radius 1 surface_radius 0.25 } }";

@@ -5,8 +5,8 @@ use jbt::mesh::Lattice;
 use jbt::statistics::{PerPoint, Statistics, Supports, SupportsError};
 use jbt::{CancelToken, Compiler, Fineness, Polygonize, Query};
 use jbt_frontend::check::{CheckedTree, NodeId};
+use jbt_frontend::kind::NodeKind;
 use jbt_frontend::text;
-use jbt_frontend::tree::NodeKind;
 use jbt_frontend::walk::walk;
 use jbt_frontend::warp::Warp;
 

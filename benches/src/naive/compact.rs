@@ -14,7 +14,7 @@ use jbt_frontend::attribute::AttributeValue;
 use jbt_frontend::check::{CheckedTree, NodeId};
 use jbt_frontend::combine::Combinator;
 use jbt_frontend::falloff::Falloff;
-use jbt_frontend::tree::{NodeKind, Primitive};
+use jbt_frontend::kind::{NodeKind, Primitive};
 use jbt_frontend::warp::Warp;
 
 use super::skeleton::Skeleton;

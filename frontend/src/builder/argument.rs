@@ -1,7 +1,7 @@
 //! Arguments of the functions that build nodes, as parameters of members.
 
 use crate::number::{Number, Vector};
-use crate::recipe::FieldNumber;
+use crate::written::FieldNumber;
 
 pub(super) fn vector(value: impl Into<Vector>) -> FieldNumber {
     FieldNumber::Vector(value.into().0)

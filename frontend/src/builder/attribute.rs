@@ -1,8 +1,8 @@
 //! Attributes of trees: numbers, patterns and the uv of skeletons.
 
 use super::{Number, Pattern, Vector};
-use crate::recipe::{AttributeRecipe, Recipe, TexturedRecipe, UvRecipe};
 use crate::tree::Tree;
+use crate::written::{Written, WrittenAttribute, WrittenTextured, WrittenUv};
 
 fn numbers<T: Into<Number> + Clone>(values: &[T]) -> Vec<Number> {
     values.iter().cloned().map(Into::into).collect()
@@ -18,7 +18,7 @@ impl Tree {
     /// With an attribute for every leaf below that has no nearer one of this name.
     #[must_use]
     pub fn attribute<T: Into<Number> + Clone>(&self, name: &str, values: &[T]) -> Self {
-        self.given(name, AttributeRecipe::Numbers(numbers(values)))
+        self.given(name, WrittenAttribute::Numbers(numbers(values)))
     }
 
     /// With a pattern of two values for every leaf below: `a` where it is 0, `b` where it is 1, mixed in between. It lies in the space of
@@ -38,7 +38,7 @@ impl Tree {
     pub fn textured<T: Into<Number> + Clone>(&self, name: &str, pattern: Pattern, a: &[T], b: &[T]) -> Self {
         let Pattern { texture, fields } = pattern;
         let (a, b) = (numbers(a), numbers(b));
-        self.given(name, AttributeRecipe::Textured(TexturedRecipe { texture, fields, a, b }))
+        self.given(name, WrittenAttribute::Textured(WrittenTextured { texture, fields, a, b }))
     }
 
     /// With the uv of its skeleton for every leaf below, in a group of two reals: see
@@ -58,10 +58,10 @@ impl Tree {
         shift: [T; 2],
     ) -> Self {
         let (scale, shift) = (scale.map(Into::into), shift.map(Into::into));
-        self.given(name, AttributeRecipe::Uv(UvRecipe { scale, degrees: degrees.into(), shift }))
+        self.given(name, WrittenAttribute::Uv(WrittenUv { scale, degrees: degrees.into(), shift }))
     }
 
-    pub(crate) fn given(&self, name: &str, value: AttributeRecipe) -> Self {
-        Self::of(Recipe::Attribute { name: name.into(), value }, vec![self.clone()])
+    pub(crate) fn given(&self, name: &str, value: WrittenAttribute) -> Self {
+        Self::new(Written::Attribute { name: name.into(), value }, vec![self.clone()])
     }
 }

@@ -7,11 +7,11 @@
 use super::{Axis, Edge, Number, Pattern, Rows, Vector, leaf, real, vector, vectors};
 use crate::falloff::FalloffKind;
 use crate::map::MapKind;
-use crate::recipe::{FalloffRecipe, FieldNumber};
 use crate::skeleton::SkeletonKind;
 use crate::texture::TextureKind;
 use crate::tree::Tree;
 use crate::warp::WarpKind;
+use crate::written::{FieldNumber, WrittenFalloff};
 
 /// Goes through the fields of a member, and hands what they are as arguments, and their values as parameters, on:
 /// `arguments! { then (words) () () fields }` is `then! { (words) (arguments) (values) }`.
@@ -84,8 +84,8 @@ macro_rules! falloff {
         ///
         #[doc = concat!("See [`", stringify!($name), "`](struct@crate::falloff::", stringify!($name), ").")]
         #[must_use]
-        pub fn $function($($taken)*) -> FalloffRecipe {
-            FalloffRecipe::new(FalloffKind::$name(0), vec![$($value)*])
+        pub fn $function($($taken)*) -> WrittenFalloff {
+            WrittenFalloff::new(FalloffKind::$name(0), vec![$($value)*])
         }
     };
     ($($description:tt)*) => { constructor! { falloff $($description)* } };

@@ -7,14 +7,14 @@ use std::ops::{
 
 use super::Number;
 use crate::combine::{Combinator, Family, SetOperation};
-use crate::recipe::Recipe;
-use crate::tree::{NodeKind, Tree};
+use crate::tree::Tree;
+use crate::written::Written;
 
 impl Tree {
     /// A combinator over children, in order.
     #[must_use]
     pub fn combine(combinator: Combinator, children: impl IntoIterator<Item = Self>) -> Self {
-        Self::new(NodeKind::Combine(combinator), children.into_iter().collect())
+        Self::new(combinator, children.into_iter().collect())
     }
 
     /// An operator whose numbers may follow parameters.
@@ -24,7 +24,7 @@ impl Tree {
         children: impl IntoIterator<Item = Self>,
     ) -> Self {
         let numbers = numbers.into_iter().collect();
-        Self::of(Recipe::Combine { combinator, numbers }, children.into_iter().collect())
+        Self::new(Written::Combine { combinator, numbers }, children.into_iter().collect())
     }
 
     /// The sum of fields: the plain blend.
@@ -181,7 +181,7 @@ impl Tree {
     /// ```
     #[must_use]
     pub fn select(which: impl Into<Number>, children: impl IntoIterator<Item = Self>) -> Self {
-        Self::of(Recipe::Select(which.into()), children.into_iter().collect())
+        Self::new(Written::Select(which.into()), children.into_iter().collect())
     }
 }
 
@@ -217,7 +217,7 @@ macro_rules! assignments {
             /// A root that is this operator already, without other parameters, gets one more child: a loop
             /// gives one node, and no chain of them.
             fn $method(&mut self, other: Self) {
-                if *self.node().kind() == NodeKind::Combine(Combinator::$combinator) {
+                if *self.node().written() == Written::from(Combinator::$combinator) {
                     self.push(other);
                 } else {
                     *self = Self::combine(Combinator::$combinator, [self.clone(), other]);

@@ -1,7 +1,7 @@
 //! Textures in Rust: what [`Tree::textured`](crate::tree::Tree::textured) takes.
 
-use crate::recipe::FieldNumber;
 use crate::texture::TextureKind;
+use crate::written::FieldNumber;
 
 /// A texture whose numbers may follow parameters.
 #[derive(Clone, PartialEq, Debug)]

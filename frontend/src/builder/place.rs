@@ -1,9 +1,9 @@
 //! The same elsewhere, or deformed: affine maps and warps of trees.
 
 use crate::map::MapKind;
-use crate::recipe::{FieldNumber, Recipe};
 use crate::tree::Tree;
 use crate::warp::WarpKind;
+use crate::written::{FieldNumber, Written};
 
 impl Tree {
     /// This tree, whose root is a warp, with the warp weighted by the field of another tree, between 0 and 1: where that is 0, the warp does
@@ -29,10 +29,10 @@ impl Tree {
     }
 
     pub(super) fn mapped(&self, map: MapKind, fields: Vec<FieldNumber>) -> Self {
-        Self::of(Recipe::Map { map, fields }, vec![self.clone()])
+        Self::new(Written::Map { map, fields }, vec![self.clone()])
     }
 
     pub(super) fn warped(&self, warp: WarpKind, fields: Vec<FieldNumber>) -> Self {
-        Self::of(Recipe::Warp { warp, fields }, vec![self.clone()])
+        Self::new(Written::Warp { warp, fields }, vec![self.clone()])
     }
 }

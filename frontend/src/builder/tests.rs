@@ -55,7 +55,7 @@ fn postfix_methods_move_the_solid() {
         (start.space_map([1.0, 2.0, 3.0], [1.5, 2.0, 3.0], 4.0), [1.5, 2.0, 3.0]),
         (start.translate([1.0, 0.0, 0.0]).scale(3.0), [6.0, 6.0, 9.0]),
     ] {
-        assert!((field(&tree, there) - 1.0).abs() < 1e-15, "{:?}", tree.node().kind());
+        assert!((field(&tree, there) - 1.0).abs() < 1e-15, "{:?}", tree.node().written());
     }
 }
 
@@ -96,6 +96,6 @@ fn every_constructor_makes_its_skeleton() {
         (lmetric(o, 1.0, [1.0, 2.0, 1.0], 2.0), [0.5, 0.5, 0.25]),
         (superquadric(o, 2.0, 1.0, [1.0; 3], 4.0), [0.6, 0.8, 1.0]),
     ] {
-        assert!((field(&tree, p) - 0.5).abs() < 1e-15, "{:?}", tree.node().kind());
+        assert!((field(&tree, p) - 0.5).abs() < 1e-15, "{:?}", tree.node().written());
     }
 }

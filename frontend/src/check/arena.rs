@@ -5,8 +5,8 @@ use std::sync::Arc;
 use smallvec::SmallVec;
 
 use crate::diagnostic::{Diagnostic, Span};
+use crate::kind::NodeKind;
 use crate::report::Report;
-use crate::tree::NodeKind;
 
 /// The name of a node of a checked tree: its place in [`CheckedTree::nodes`](super::CheckedTree::nodes).
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]

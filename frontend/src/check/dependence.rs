@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::arena::NodeId;
 use crate::number::{Formula, Number};
 use crate::parameter::Parameter;
-use crate::recipe::Recipe;
+use crate::written::Written;
 
 /// What follows the parameters of a tree, whatever their values.
 #[derive(Clone, PartialEq, Debug, Default)]
@@ -14,7 +14,7 @@ pub(super) struct Dependence {
     /// The iso-value, if it does.
     pub(super) iso: Option<Number>,
     /// The nodes with a number that does, ascending.
-    pub(super) nodes: Vec<(NodeId, Arc<Recipe>)>,
+    pub(super) nodes: Vec<(NodeId, Arc<Written>)>,
     /// The place of each parameter in the list.
     pub(super) names: HashMap<Arc<str>, usize>,
     /// For each parameter, the nodes whose own numbers mention it, ascending.
@@ -36,8 +36,8 @@ impl Dependence {
     }
 
     /// Adds a node, which comes after those so far.
-    pub(super) fn add(&mut self, id: NodeId, recipe: &Arc<Recipe>) {
-        for formula in recipe.following().filter_map(Number::formula) {
+    pub(super) fn add(&mut self, id: NodeId, written: &Arc<Written>) {
+        for formula in written.following().filter_map(Number::formula) {
             for (name, _) in formula.parameters() {
                 let mentions = self.names.get(name).map(|&index| &mut self.mentions[index]);
                 if let Some(mentions) = mentions
@@ -47,13 +47,13 @@ impl Dependence {
                 }
             }
         }
-        if self.iso.is_some() && (recipe.asks_iso() || recipe.is_limited_by_iso()) {
+        if self.iso.is_some() && (written.asks_iso() || written.is_limited_by_iso()) {
             self.surfaces.push(id);
         }
-        self.nodes.push((id, Arc::clone(recipe)));
+        self.nodes.push((id, Arc::clone(written)));
     }
 
-    pub(super) fn recipe(&self, id: NodeId) -> Option<&Arc<Recipe>> {
+    pub(super) fn written(&self, id: NodeId) -> Option<&Arc<Written>> {
         // Nothing to search is by far the commonest case.
         let found = self.nodes.binary_search_by_key(&id, |&(node, _)| node).ok()?;
         Some(&self.nodes[found].1)

@@ -9,8 +9,8 @@ use super::fields::{check_expressed, check_fields};
 use super::numbers::check_numbers;
 use crate::attribute::{AttributeGroup, AttributeValue, Textured};
 use crate::diagnostic::{Diagnostic, Span};
+use crate::kind::NodeKind;
 use crate::report::{Report, clip, nearest};
-use crate::tree::NodeKind;
 use crate::word::is_identifier;
 
 /// The groups of a model: `color` first, names that are identifiers and unique, widths and defaults.
@@ -103,7 +103,7 @@ pub(super) fn check_attribute(
         AttributeValue::Textured(Textured { texture, a, b }) => {
             fits(a);
             fits(b);
-            let kind = texture.kind(false);
+            let kind = texture.kind();
             check_fields(report, span, kind.name(), kind.fields(), &texture.to_fields());
             if let Some((message, help)) = texture.fault() {
                 report.add(|| Diagnostic::error(span, message).expected(help));

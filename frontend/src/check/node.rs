@@ -10,8 +10,8 @@ use super::groups::check_attribute;
 use super::numbers::{check_choice, check_combinator, check_formula, check_number, check_numbers};
 use crate::combine::Form;
 use crate::diagnostic::{Diagnostic, Span};
+use crate::kind::{NodeKind, Primitive};
 use crate::report::Report;
-use crate::tree::{NodeKind, Primitive};
 use crate::warp::Warp;
 
 /// The smallest reciprocal condition number of an affine map's linear part: below it, the map counts as singular.

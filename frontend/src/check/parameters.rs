@@ -10,20 +10,22 @@ use super::node::check_node;
 use super::numbers::check_number;
 use super::tree::CheckedTree;
 use crate::diagnostic::{Diagnostic, Diagnostics, Span};
+use crate::kind::NodeKind;
 use crate::number::{Formula, Number, Values};
 use crate::parameter::{Parameter, is_name, not_finite, refresh, unknown};
-use crate::recipe::Recipe;
 use crate::report::{Report, clip};
-use crate::tree::NodeKind;
+use crate::written::Written;
 
-/// The node of a recipe for these values of parameters.
-pub(super) fn cook(
-    recipe: &Recipe,
+/// What a node means with these values of parameters.
+pub(super) fn evaluate(
+    written: &Written,
     values: &Values,
     iso: f64,
     span: Option<Span>,
 ) -> Result<NodeKind, Diagnostic> {
-    recipe.refreshed(values)?.kind(iso).map_err(|fault| fault.at(span))
+    let is_plain = written.following().next().is_none();
+    let meant = if is_plain { written.evaluated(iso) } else { written.refreshed(values)?.evaluated(iso) };
+    meant.map_err(|fault| Diagnostic { span, ..fault })
 }
 
 /// The iso-value for these values of parameters, checked.
@@ -131,7 +133,7 @@ impl CheckedTree {
             Some(iso) => check_iso(&mut report, iso, &values),
             None => self.iso,
         };
-        let nodes = self.cooked_again(&mut moved, (iso, &values), &mut report);
+        let nodes = self.evaluated_again(&mut moved, (iso, &values), &mut report);
         if !report.is_empty() {
             report.sort();
             return Err(report.finish());
@@ -142,7 +144,7 @@ impl CheckedTree {
     }
 
     /// The nodes, those that follow parameters that have moved made and checked again.
-    fn cooked_again(
+    fn evaluated_again(
         &self,
         moved: &mut [bool],
         (iso, values): (f64, &Values),
@@ -157,8 +159,8 @@ impl CheckedTree {
         let mut in_pieces = false;
         for id in affected {
             let node = &mut nodes[id.0 as usize];
-            let recipe = self.dependence.recipe(id).expect("affected nodes have recipes");
-            match cook(recipe, values, iso, node.span) {
+            let written = self.dependence.written(id).expect("affected nodes are kept as written");
+            match evaluate(written, values, iso, node.span) {
                 Ok(kind) => {
                     check_node(report, &kind, node.children.len(), node.span, &groups, iso);
                     in_pieces |= is_in_pieces(&kind);
@@ -184,10 +186,10 @@ impl CheckedTree {
         self.dependence.affected(&self.parameters, &mut moved)
     }
 
-    /// A node before its formulas were evaluated, if one of its numbers follows a parameter.
+    /// What a node was written as, if one of its numbers follows a parameter.
     #[must_use]
-    pub fn recipe(&self, id: NodeId) -> Option<&Recipe> {
-        self.dependence.recipe(id).map(|recipe| &**recipe)
+    pub fn written(&self, id: NodeId) -> Option<&Written> {
+        self.dependence.written(id).map(|written| &**written)
     }
 
     /// Whether any number follows a parameter.

@@ -14,8 +14,8 @@ use crate::combine::{Combinator, Family, SetOperation};
 use crate::diagnostic::Severity;
 use crate::diagnostic::Span;
 use crate::falloff::Falloff;
+use crate::kind::Primitive;
 use crate::skeleton::{Cuboid, Disc, Point, Skeleton};
-use crate::tree::Primitive;
 use crate::tree::Tree;
 use crate::warp::Twist;
 
@@ -102,7 +102,7 @@ fn refuses_numbers_and_children_that_make_no_sense() {
         (combine(Combinator::Ricci(1025.0), vec![point(0.0)]), "the exponent of the Ricci blend is 1025"),
         (combine(Combinator::Ricci(f64::NAN), vec![point(0.0)]), "the exponent of the Ricci blend is NaN"),
         (Tree::new(NodeKind::Affine(DAffine3::IDENTITY), vec![]), "an affine map has 0 children"),
-        (Tree::new(point(0.0).node().kind().clone(), vec![point(1.0)]), "a point has 1 children"),
+        (Tree::new(point(0.0).node().written().clone(), vec![point(1.0)]), "a point has 1 children"),
         (scaled(1.0, 0.0, 1.0), "the affine map is singular: its reciprocal condition is 0.0e0"),
         (scaled(0.0, 0.0, 0.0), "the affine map is singular: its reciprocal condition is 0.0e0"),
         (scaled(1e14, 1.0, 1.0), "the affine map is singular: its reciprocal condition is 1.0e-14"),
@@ -135,8 +135,8 @@ fn lets_the_extremes_through() {
 #[test]
 fn reports_everything_in_the_order_of_the_text() {
     let bad = |start, radius| {
-        let kind = leaf(Point { at: DVec3::ZERO }, radius, 1.0).node().kind().clone();
-        Tree::at(Span::new(start, start + 1), kind, vec![])
+        let leaf = leaf(Point { at: DVec3::ZERO }, radius, 1.0);
+        Tree::at(Span::new(start, start + 1), leaf.node().written().clone(), vec![])
     };
     let shared = bad(9, -9.0);
     let sum = vec![shared.clone(), bad(5, -5.0), shared];

@@ -12,9 +12,9 @@ use crate::attribute::AttributeGroup;
 use crate::bounds::Bounds;
 use crate::combine::extent::Extent;
 use crate::diagnostic::{Diagnostic, Diagnostics, SourceText};
+use crate::kind::{NodeKind, Primitive};
 use crate::origin::ModelOrigin;
 use crate::parameter::Parameter;
-use crate::tree::{NodeKind, Primitive};
 
 /// A model that makes sense, as an arena: children before parents, shared nodes once, the root last.
 #[derive(Clone, Debug)]

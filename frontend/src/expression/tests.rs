@@ -4,9 +4,10 @@ use glam::DVec3;
 
 use super::*;
 use crate::builder::{param, point, x, y, z};
+use crate::kind::NodeKind;
 use crate::model::Model;
 use crate::text::{Options, parse, print};
-use crate::tree::{NodeKind, Tree};
+use crate::tree::Tree;
 use crate::walk::walk;
 
 fn read(text: &str) -> Model {
@@ -18,8 +19,8 @@ fn field(text: &str, p: [f64; 3]) -> f64 {
 }
 
 fn expression(tree: &Tree) -> Expression {
-    match tree.node().kind() {
-        NodeKind::Expression(expression) => expression.clone(),
+    match tree.node().written().evaluated(0.5).unwrap() {
+        NodeKind::Expression(expression) => expression,
         other => panic!("{other:?}"),
     }
 }
@@ -78,7 +79,7 @@ fn rust_and_text_make_the_same_form() {
     let text = "jbt 1 param p = 0.5 let ball = point { radius 2 }
         expression within (-1 -1 -1) to (1 1 1) { r = sqrt(x * x + y^2), r - p * sin(8 * r) + field(ball) }";
     let model = read(text);
-    assert_eq!(model.root.node().recipe(), tree.node().recipe());
+    assert_eq!(model.root.node().written(), tree.node().written());
     assert_eq!(
         print(&model).lines().last().unwrap(),
         "expression within (-1 -1 -1) to (1 1 1) { t1 = sqrt(x * x + y^2), t1 - p * sin(8 * t1) + field(n1) }"
@@ -172,11 +173,9 @@ fn numbers_that_make_no_sense_are_errors() {
     let inside_out = Tree::expression_within(x(), [0.0; 3], [1.0, -1.0, 1.0]);
     assert!(message(inside_out).starts_with("the box of the expression goes from"));
     let (one, two) = (point([0.0; 3], 1.0), point([0.0; 3], 1.0));
-    let NodeKind::Expression(kind) = Tree::expression(one.field() + two.field()).node().kind().clone() else {
-        panic!("an expression is one")
-    };
+    let both = expression(&Tree::expression(one.field() + two.field()));
     assert_eq!(
-        message(Tree::new(NodeKind::Expression(kind), vec![one])),
+        message(Tree::new(NodeKind::Expression(both), vec![one])),
         "the expression has 1 children and 0 numbers"
     );
 }

@@ -36,7 +36,7 @@
 
 use jbt_ir::Domain;
 
-use crate::field::{Field, FieldOf, FieldValue, Written};
+use crate::field::{Field, FieldOf, FieldValue, NumberText};
 use crate::member::Member as _;
 
 mod edge;
@@ -216,7 +216,7 @@ impl Falloff {
 
 impl FalloffKind {
     /// A falloff of this kind as it is written: in braces the parameters that do not have their defaults.
-    pub(crate) fn text<T: Written>(self, fields: &[FieldOf<T>]) -> String {
+    pub(crate) fn text<T: NumberText>(self, fields: &[FieldOf<T>]) -> String {
         let mut text = String::new();
         for (described, value) in self.fields().iter().zip(fields) {
             described.write(&mut text, described.name, value);

@@ -28,9 +28,9 @@ use crate::expression::{Assembler, Draft, Formula};
 use crate::function::Function;
 use crate::model::Model;
 use crate::number::{Binary, Number, Step};
-use crate::recipe::Recipe;
 use crate::report::{Report, clip, nearest};
-use crate::tree::{NodeKind, Tree};
+use crate::tree::Tree;
+use crate::written::Written;
 
 /// How much longer a program may become by being split.
 const LONGEST: usize = 4;
@@ -330,7 +330,7 @@ impl Program {
                 Split::Combine(combinator, parts) if opened => {
                     let children = parts.iter().map(|part| done[part].clone()).collect();
                     let span = self.instructions[wanted.line as usize].span;
-                    Tree::at(span, NodeKind::Combine(combinator), children)
+                    Tree::at(span, combinator, children)
                 }
                 Split::Same(other) => {
                     stack.extend([(wanted, true), (other, false)]);
@@ -363,10 +363,9 @@ impl Program {
         let sign = if wanted.negative { Binary::Subtract } else { Binary::Add };
         let field = assembler.apply(&Step::Binary(sign), vec![Draft::Constant(self.iso.clone()), value]);
         let steps = assembler.steps();
-        let recipe = Recipe::Expression(Formula::new(assembler.finish(&[field]), None));
+        let written = Written::Expression(Formula::new(assembler.finish(&[field]), None));
         let span = self.instructions[wanted.line as usize].span;
-        let tree = Tree::cook(recipe, &self.iso, Vec::new(), Some(span));
-        (tree.unwrap_or_else(|_| unreachable!("a formula of plain numbers is a node")), steps)
+        (Tree::at(span, written, Vec::new()), steps)
     }
 
     /// The value of a line.

@@ -28,9 +28,9 @@ use super::position::MapKind;
 use crate::attribute::{AttributeValue, Textured, UvMap};
 use crate::check::{CheckedTree, NodeId};
 use crate::expression::{Form, LARGEST_FIELD, Operand};
+use crate::kind::NodeKind;
 use crate::skeleton::SkeletonKind;
 use crate::texture::TextureKind;
-use crate::tree::NodeKind;
 
 /// How many textures and formulas may be lifted, because several leaves share them.
 pub(super) const MAX_SHARED: usize = 32;

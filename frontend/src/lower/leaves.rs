@@ -5,7 +5,7 @@ use std::fmt;
 use super::occurrence::{FieldId, Scene};
 use super::shape::Lift;
 use crate::check::{CheckedTree, NodeId};
-use crate::tree::{NodeKind, Primitive};
+use crate::kind::{NodeKind, Primitive};
 
 /// The leaves of a tree at their positions: one for each leaf and way of coordinates to it, whatever the attributes. A leaf that
 /// several parents share under the same maps is there once. Of a selector's children, only the chosen one has leaves.

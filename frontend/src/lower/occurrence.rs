@@ -18,10 +18,10 @@ use crate::combine::step::StepKind;
 use crate::combine::unary::UnaryKind;
 use crate::expression::Expression;
 use crate::falloff::FalloffKind;
-use crate::recipe::Recipe;
+use crate::kind::{NodeKind, Primitive};
 use crate::skeleton::SkeletonKind;
-use crate::tree::{NodeKind, Primitive};
 use crate::warp::Warp;
+use crate::written::Written;
 
 mod asked;
 mod binding;
@@ -226,8 +226,8 @@ impl<'a> Scene<'a> {
 
     /// A number of an expression, if it is the same for all values of the parameters.
     pub(super) fn fixed_number(&self, node: NodeId, number: usize) -> Option<f64> {
-        let follows = match self.tree.recipe(node) {
-            Some(Recipe::Expression(formula)) => formula.numbers[number].follows(),
+        let follows = match self.tree.written(node) {
+            Some(Written::Expression(formula)) => formula.numbers[number].follows(),
             Some(_) | None => false,
         };
         (!follows).then(|| self.expression(node).numbers()[number])

@@ -22,8 +22,8 @@ use super::names::SpaceId;
 use crate::affine::Similarity;
 use crate::check::NodeId;
 use crate::origin::ModelOrigin;
-use crate::recipe::{Freedom, MapKey, Recipe};
 use crate::skeleton::{Skeleton, Symmetry};
+use crate::written::{Freedom, MapKey, Written};
 
 /// The map from an occurrence's own space to `space`.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -89,11 +89,11 @@ pub(super) struct Trails {
 
 impl Trails {
     /// The name of the trail that a map which follows parameters ends.
-    pub(super) fn name(&mut self, before: PositionKey, node: NodeId, recipe: &Recipe) -> u32 {
+    pub(super) fn name(&mut self, before: PositionKey, node: NodeId, written: &Written) -> u32 {
         let maps = &mut self.maps;
         let map = *self.map_of_node.entry(node).or_insert_with(|| {
             let next = maps.len() as u32;
-            *maps.entry(recipe.map_key()).or_insert(next)
+            *maps.entry(written.map_key()).or_insert(next)
         });
         let next = self.names.len() as u32 + 1;
         *self.names.entry((before, map)).or_insert(next)

@@ -36,8 +36,8 @@ use crate::bounds::Bounds;
 use crate::check::NodeId;
 use crate::combine::Combinator;
 use crate::combine::extent::Extent;
+use crate::kind::Primitive;
 use crate::skeleton::{Metric, ROUNDING};
-use crate::tree::Primitive;
 
 /// Half a unit in the last place of 1 in f32.
 const HALF_UNIT: f64 = 1.0 / (1 << 24) as f64;

@@ -15,10 +15,10 @@ use super::state::Parser;
 use super::words::{EXPRESSION, is_builtin, texture_named};
 use crate::diagnostic::{Diagnostic, Span};
 use crate::number::Number;
-use crate::recipe::{AttributeRecipe, TexturedRecipe, UvRecipe};
 use crate::report::{clip, nearest};
 use crate::texture::TextureKind;
 use crate::word::is_statement;
+use crate::written::{WrittenAttribute, WrittenTextured, WrittenUv};
 
 /// The words of a map of uv.
 const UV_WORDS: [&str; 3] = ["scale", "rotate", "shift"];
@@ -28,18 +28,23 @@ const ENDS: [&str; 2] = ["a", "b"];
 
 impl Parser<'_> {
     /// The value of the attribute `name`, whose token is `at`; nothing after an error in what is no list of numbers.
-    pub(super) fn attribute_value(&mut self, at: Token, name: &str, width: usize) -> Option<AttributeRecipe> {
+    pub(super) fn attribute_value(
+        &mut self,
+        at: Token,
+        name: &str,
+        width: usize,
+    ) -> Option<WrittenAttribute> {
         if self.begins_color(Some(width)) {
-            return Some(AttributeRecipe::Numbers(self.group_values(Some(width))));
+            return Some(WrittenAttribute::Numbers(self.group_values(Some(width))));
         }
         let word = self.peek_word();
         if let Some(kind) = word.and_then(texture_named) {
             let token = self.next();
-            return self.textured(kind, token, width).map(AttributeRecipe::Textured);
+            return self.textured(kind, token, width).map(WrittenAttribute::Textured);
         }
         if word == Some(EXPRESSION) {
             let token = self.next();
-            return self.attribute_formula(token, width).map(AttributeRecipe::Expressed);
+            return self.attribute_formula(token, width).map(WrittenAttribute::Expressed);
         }
         let is_number = |word: &str| self.parameter(word).is_some() || is_builtin(word);
         let begins_uv = match word {
@@ -47,14 +52,14 @@ impl Parser<'_> {
             None => self.peek().is(b'{'),
         };
         if begins_uv && (width == 2 || name == "uv") {
-            return self.uv(at, name, width).map(AttributeRecipe::Uv);
+            return self.uv(at, name, width).map(WrittenAttribute::Uv);
         }
         match word {
             Some(word) if !is_number(word) => {
                 self.unknown_texture(word, width);
                 None
             }
-            _ => Some(AttributeRecipe::Numbers(self.group_values(Some(width)))),
+            _ => Some(WrittenAttribute::Numbers(self.group_values(Some(width)))),
         }
     }
 
@@ -82,7 +87,7 @@ impl Parser<'_> {
     }
 
     /// The map of a uv, in any order, each part once.
-    fn uv(&mut self, at: Token, name: &str, width: usize) -> Option<UvRecipe> {
+    fn uv(&mut self, at: Token, name: &str, width: usize) -> Option<WrittenUv> {
         let (mut scale, mut degrees, mut shift) = (None, None, None);
         while let Some(word) = self.peek_word() {
             if !UV_WORDS.contains(&word) {
@@ -117,8 +122,8 @@ impl Parser<'_> {
             });
             return None;
         }
-        let identity = UvRecipe::default();
-        Some(UvRecipe {
+        let identity = WrittenUv::default();
+        Some(WrittenUv {
             scale: scale.unwrap_or(identity.scale),
             degrees: degrees.unwrap_or(identity.degrees),
             shift: shift.unwrap_or(identity.shift),
@@ -135,7 +140,7 @@ impl Parser<'_> {
     }
 
     /// The block of a texture, whose word, `start`, has just been taken.
-    fn textured(&mut self, kind: TextureKind, start: Token, width: usize) -> Option<TexturedRecipe> {
+    fn textured(&mut self, kind: TextureKind, start: Token, width: usize) -> Option<WrittenTextured> {
         let mut slots = Slots::new(kind.fields());
         let mut ends: [Option<Vec<Number>>; 2] = [None, None];
         let open = self.open()?;
@@ -173,7 +178,7 @@ impl Parser<'_> {
             });
         }
         let [a, b] = ends;
-        Some(TexturedRecipe { texture: kind, fields: slots.values()?, a: a?, b: b? })
+        Some(WrittenTextured { texture: kind, fields: slots.values()?, a: a?, b: b? })
     }
 
     /// A parameter of a texture whose word, `token`, has just been taken.

@@ -2,18 +2,18 @@
 
 use crate::combine::Combinator;
 use crate::diagnostic::Span;
-use crate::recipe::Recipe;
 use crate::tree::Tree;
+use crate::written::Written;
 
 /// What an open block becomes.
 pub(super) enum Head {
     Combine(Combinator),
     /// An operator with a number.
-    Operator(Box<Recipe>),
+    Operator(Box<Written>),
     /// With one child. Boxed, so that a million open blocks are small.
-    Unary(Box<Recipe>),
+    Unary(Box<Written>),
     /// A warp whose second child weighs it.
-    Weighted(Box<Recipe>),
+    Weighted(Box<Written>),
     /// The head has an error; the block is read for its own errors.
     Broken,
 }
@@ -30,12 +30,12 @@ pub(super) struct Frame {
     /// Something in the block could not be read: its children are not counted.
     pub(super) incomplete: bool,
     /// A node around it, which its words give as well.
-    pub(super) around: Option<Box<Recipe>>,
+    pub(super) around: Option<Box<Written>>,
 }
 
 impl Frame {
     /// With a node around it.
-    pub(super) fn inside(self, around: Recipe) -> Self {
+    pub(super) fn inside(self, around: Written) -> Self {
         Self { around: Some(Box::new(around)), ..self }
     }
 }

@@ -5,13 +5,13 @@ use super::primitive::{Slots, missing_error};
 use super::state::Parser;
 use crate::diagnostic::{Diagnostic, Span};
 use crate::falloff::FalloffKind;
-use crate::recipe::FalloffRecipe;
 use crate::report::{clip, nearest};
 use crate::word::is_statement;
+use crate::written::WrittenFalloff;
 
 impl Parser<'_> {
     /// What follows the word `falloff`, of a node or of a primitive. Nothing after an error.
-    pub(super) fn falloff(&mut self, is_node: bool) -> Option<FalloffRecipe> {
+    pub(super) fn falloff(&mut self, is_node: bool) -> Option<WrittenFalloff> {
         let token = self.peek();
         let names = || FalloffKind::ALL.iter().map(|kind| kind.name());
         let expected = || format!("expected one of {}", names().collect::<Vec<_>>().join(", "));
@@ -33,13 +33,13 @@ impl Parser<'_> {
         };
         // Behind a node's falloff without parameters stands the block of the node.
         if is_node && kind.fields().is_empty() {
-            return Some(FalloffRecipe::new(kind, Vec::new()));
+            return Some(WrittenFalloff::new(kind, Vec::new()));
         }
         self.falloff_of(kind, token)
     }
 
     /// The parameters of a falloff whose word, `token`, has just been taken. Nothing after an error.
-    pub(super) fn falloff_of(&mut self, kind: FalloffKind, token: Token) -> Option<FalloffRecipe> {
+    pub(super) fn falloff_of(&mut self, kind: FalloffKind, token: Token) -> Option<WrittenFalloff> {
         let mut slots = Slots::new(kind.fields());
         if self.peek().is(b'{') && !self.falloff_block(kind, &mut slots) {
             return None;
@@ -48,7 +48,7 @@ impl Parser<'_> {
         if !missing.is_empty() {
             self.report(|| missing_error(token.span(), kind.name(), &missing));
         }
-        slots.values().map(|fields| FalloffRecipe::new(kind, fields))
+        slots.values().map(|fields| WrittenFalloff::new(kind, fields))
     }
 
     /// A block of parameters: in any order, each once. False if it does not end.

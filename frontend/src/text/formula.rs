@@ -16,10 +16,10 @@ use crate::expression::{Assembled, Assembler, Draft, Formula};
 use crate::falloff::{Falloff, FalloffKind};
 use crate::function::Function;
 use crate::number::{Number, Variable};
-use crate::recipe::{FalloffRecipe, Recipe};
 use crate::report::{clip, nearest};
 use crate::tree::Tree;
 use crate::word::{COORDINATES, FIELD, is_statement};
+use crate::written::{Written, WrittenFalloff};
 
 impl<'a> Parser<'a> {
     /// What a word that has just been taken stands for in a formula, if it is no number there; an error that has been told.
@@ -41,19 +41,19 @@ impl<'a> Parser<'a> {
         if self.scope.is_none() || !(next.is(b'(') || next.is(b'{')) {
             return None;
         }
-        let recipe = self.falloff_of(FalloffKind::named(word)?, token)?;
-        Some(Function::falloff(self.fixed_falloff(&recipe, token.span())))
+        let written = self.falloff_of(FalloffKind::named(word)?, token)?;
+        Some(Function::falloff(self.fixed_falloff(&written, token.span())))
     }
 
     /// A falloff of plain numbers.
-    fn fixed_falloff(&mut self, recipe: &FalloffRecipe, span: Span) -> Falloff {
-        if recipe.follows() {
+    fn fixed_falloff(&mut self, written: &WrittenFalloff, span: Span) -> Falloff {
+        if written.follows() {
             self.report(|| {
                 Diagnostic::error(Some(span), "the numbers of this falloff follow a parameter")
                     .expected("expected plain numbers: in a formula they are code")
             });
         }
-        recipe.falloff()
+        written.falloff()
     }
 
     fn no_field(&mut self, token: Token) -> Result<Variable, ()> {
@@ -116,8 +116,8 @@ impl<'a> Parser<'a> {
             return self.broken.clone();
         };
         let span = Span::new(start.start, self.previous_end());
-        let recipe = Recipe::Expression(Formula::new(assembled, bounds));
-        Tree::cook(recipe, &self.iso, children, Some(span)).unwrap_or_else(|_| self.broken.clone())
+        let written = Written::Expression(Formula::new(assembled, bounds));
+        Tree::at(span, written, children)
     }
 
     /// The formula of an attribute, whose word, `start`, has just been taken: one value for each channel.
@@ -225,12 +225,12 @@ impl<'a> Parser<'a> {
 
     /// The node `warp`: its child is asked where three formulas of the point say. Its word has just been taken.
     pub(super) fn formula_warp(&mut self, start: Token) -> Begun {
-        let recipe = self.coordinates();
+        let written = self.coordinates();
         let bounds = self.accept_word("within").then(|| self.corners());
         let weighted = self.accept_word(WEIGHTED);
-        let head = recipe.map_or(Head::Broken, |recipe| {
-            let recipe = Box::new(recipe);
-            if weighted { Head::Weighted(recipe) } else { Head::Unary(recipe) }
+        let head = written.map_or(Head::Broken, |written| {
+            let written = Box::new(written);
+            if weighted { Head::Weighted(written) } else { Head::Unary(written) }
         });
         match (self.block(start, head), bounds) {
             (Begun::Block(frame), Some(corners)) => {
@@ -242,7 +242,7 @@ impl<'a> Parser<'a> {
     }
 
     /// `( definitions x, y, z )`: the formulas of a point.
-    fn coordinates(&mut self) -> Option<Recipe> {
+    fn coordinates(&mut self) -> Option<Written> {
         if self.accept(b'(').is_none() {
             self.expected_at(self.peek(), "expected `(` and three coordinates: warp (x, y, z)");
             return None;
@@ -254,7 +254,7 @@ impl<'a> Parser<'a> {
         if self.accept(b')').is_none() {
             self.expected_at(self.peek(), "expected an operator, or `)`: a point has three coordinates");
         }
-        (!self.is_lost()).then(|| Recipe::FormulaWarp(Formula::new(assembler.finish(&values), None)))
+        (!self.is_lost()).then(|| Written::FormulaWarp(Formula::new(assembler.finish(&values), None)))
     }
 
     fn define(&mut self, name: &'a str, span: Span, place: u32) {
@@ -320,20 +320,20 @@ impl<'a> Parser<'a> {
 
     /// The node `falloff`: its child's field is a distance. Its word has just been taken.
     pub(super) fn falloff_node(&mut self, start: Token) -> Begun {
-        let Some(recipe) = self.falloff(true) else {
+        let Some(written) = self.falloff(true) else {
             return self.unary(start, None);
         };
-        let falloff = self.fixed_falloff(&recipe, Span::new(start.start, self.previous_end()));
+        let falloff = self.fixed_falloff(&written, Span::new(start.start, self.previous_end()));
         if !self.accept_word("radius") {
             self.expected_at(self.peek(), "expected `radius`, the distance at which the field reaches zero");
             return self.unary(start, None);
         }
         let radius = self.expression(Place::Alone).number;
-        self.unary(start, Some(Recipe::Expression(Formula::fading(falloff, radius))))
+        self.unary(start, Some(Written::Expression(Formula::fading(falloff, radius))))
     }
 }
 
 /// A child's field, and 0 outside of a box.
-fn bounding(corners: [[Number; 3]; 2]) -> Recipe {
-    Recipe::Expression(Formula::new(Assembler::default().finish(&[Draft::Child(0)]), Some(corners)))
+fn bounding(corners: [[Number; 3]; 2]) -> Written {
+    Written::Expression(Formula::new(Assembler::default().finish(&[Draft::Child(0)]), Some(corners)))
 }

@@ -6,7 +6,7 @@ use super::state::Parser;
 use crate::diagnostic::{Diagnostic, Span};
 use crate::field::{Field, FieldKind};
 use crate::map::MapKind;
-use crate::recipe::{FieldNumber, Recipe};
+use crate::written::{FieldNumber, Written};
 
 impl Parser<'_> {
     /// The map that begins with this word, which has been taken.
@@ -18,13 +18,7 @@ impl Parser<'_> {
             _ => Some(self.number_or_vector(&kinds)),
         };
         let Some((map, fields)) = read else { return self.block(start, Head::Broken) };
-        let recipe = Recipe::Map { map, fields };
-        // A fault that does not depend on the iso-value, of which there is none yet.
-        if let Err(fault) = recipe.map() {
-            let span = Span::new(start.start, self.previous_end());
-            self.report(|| fault.at(Some(span)));
-        }
-        self.unary(start, Some(recipe))
+        self.unary(start, Some(Written::Map { map, fields }))
     }
 
     /// What stands behind a word that begins one map; nothing, after a message, if it cannot be read.

@@ -10,12 +10,12 @@ use super::state::Parser;
 use super::words::{COMBINATORS, GROUP_NODE, OPERATORS, WEIGHTED, fixed_words};
 use crate::diagnostic::{Diagnostic, Span};
 use crate::map::MapKind;
-use crate::recipe::Recipe;
 use crate::report::{clip, nearest};
 use crate::skeleton::SkeletonKind;
-use crate::tree::{NodeKind, Tree};
+use crate::tree::Tree;
 use crate::warp::WarpKind;
 use crate::word::is_statement;
+use crate::written::Written;
 
 impl<'a> Parser<'a> {
     /// Whether a word begins a node of this file.
@@ -175,10 +175,10 @@ impl<'a> Parser<'a> {
         }
         if let Some(kind) = WarpKind::ALL.iter().copied().find(|kind| kind.name() == word) {
             let fields = self.slots(kind.fields(), "a warp").complete(self, start, kind.name());
-            let recipe = fields.map(|fields| Box::new(Recipe::Warp { warp: kind, fields }));
+            let written = fields.map(|fields| Box::new(Written::Warp { warp: kind, fields }));
             let weighted = self.accept_word(WEIGHTED);
             let head = if weighted { Head::Weighted } else { Head::Unary };
-            return self.block(start, recipe.map_or(Head::Broken, head));
+            return self.block(start, written.map_or(Head::Broken, head));
         }
         match word {
             "use" => Begun::Leaf(self.use_node()),
@@ -251,19 +251,19 @@ impl<'a> Parser<'a> {
         self.accept(b'{')
     }
 
-    pub(super) fn unary(&mut self, start: Token, recipe: Option<Recipe>) -> Begun {
-        self.block(start, recipe.map_or(Head::Broken, |recipe| Head::Unary(Box::new(recipe))))
+    pub(super) fn unary(&mut self, start: Token, written: Option<Written>) -> Begun {
+        self.block(start, written.map_or(Head::Broken, |written| Head::Unary(Box::new(written))))
     }
 
     /// The node of a block that has been closed.
     fn close(&mut self, frame: Frame, children: Vec<Tree>) -> Tree {
-        let recipe = match frame.head {
+        let written = match frame.head {
             Head::Broken => return self.broken.clone(),
             Head::Combine(combinator) => {
-                return Tree::at(frame.span, NodeKind::Combine(combinator), children);
+                return Tree::at(frame.span, combinator, children);
             }
-            Head::Operator(recipe) => *recipe,
-            Head::Weighted(recipe) => {
+            Head::Operator(written) => *written,
+            Head::Weighted(written) => {
                 let count = children.len();
                 if count != 2 && !frame.incomplete {
                     self.report(|| {
@@ -272,9 +272,9 @@ impl<'a> Parser<'a> {
                             .expected("expected two: what it deforms, and what gives the weight")
                     });
                 }
-                *recipe
+                *written
             }
-            Head::Unary(recipe) => {
+            Head::Unary(written) => {
                 let count = children.len();
                 if count != 1 && !frame.incomplete {
                     let word = self.source(frame.span).split_ascii_whitespace().next().unwrap_or_default();
@@ -289,19 +289,17 @@ impl<'a> Parser<'a> {
                         }
                     });
                 }
-                *recipe
+                *written
             }
         };
-        // A fault has been told where the head was read.
-        let made = Tree::cook(recipe, &self.iso, children, Some(frame.span));
-        let made = made.unwrap_or_else(|_| self.broken.clone());
+        let made = Tree::at(frame.span, written, children);
         let Some(around) = frame.around else { return made };
-        Tree::cook(*around, &self.iso, vec![made], Some(frame.span)).unwrap_or_else(|_| self.broken.clone())
+        Tree::at(frame.span, *around, vec![made])
     }
 
     fn select(&mut self, start: Token) -> Begun {
         let which = self.expression(Place::Alone).number;
-        self.block(start, Head::Operator(Box::new(Recipe::Select(which))))
+        self.block(start, Head::Operator(Box::new(Written::Select(which))))
     }
 
     fn use_node(&mut self) -> Tree {
@@ -344,7 +342,7 @@ impl<'a> Parser<'a> {
             return self.block(start, Head::Broken);
         };
         let value = self.attribute_value(at, &name, width);
-        self.unary(start, value.map(|value| Recipe::Attribute { name, value }))
+        self.unary(start, value.map(|value| Written::Attribute { name, value }))
     }
 
     fn known_groups(&self) -> String {

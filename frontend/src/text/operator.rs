@@ -7,7 +7,7 @@ use super::state::Parser;
 use crate::combine::{Combinator, Family, SetOperation};
 use crate::diagnostic::{Diagnostic, Span};
 use crate::number::Number;
-use crate::recipe::Recipe;
+use crate::written::Written;
 
 impl Parser<'_> {
     /// The operator that begins with one of [`WORDS`].
@@ -49,13 +49,13 @@ impl Parser<'_> {
     }
 
     fn many_children(&mut self, start: Token, combinator: Combinator, numbers: Vec<Number>) -> Begun {
-        let recipe = Recipe::Combine { combinator, numbers };
-        self.block(start, Head::Operator(Box::new(recipe)))
+        let written = Written::Combine { combinator, numbers };
+        self.block(start, Head::Operator(Box::new(written)))
     }
 
     fn one_child(&mut self, start: Token, combinator: Combinator, numbers: Vec<Number>) -> Begun {
-        let recipe = Recipe::Combine { combinator, numbers };
-        self.block(start, Head::Unary(Box::new(recipe)))
+        let written = Written::Combine { combinator, numbers };
+        self.block(start, Head::Unary(Box::new(written)))
     }
 
     /// `clamp low A high B`, in either order.

@@ -9,11 +9,11 @@ use crate::diagnostic::{Diagnostic, Span};
 use crate::falloff::Falloff;
 use crate::field::Field;
 use crate::number::Number;
-use crate::recipe::{FalloffRecipe, FieldNumber, Radius, Recipe};
 use crate::report::{clip, nearest};
 use crate::skeleton::SkeletonKind;
 use crate::tree::Tree;
 use crate::word::is_statement;
+use crate::written::{FieldNumber, Radius, Written, WrittenFalloff};
 
 /// Parameters of a description, with those values that have been read.
 pub(super) struct Slots<'a> {
@@ -75,7 +75,7 @@ pub(super) fn missing_error(span: Span, name: &str, missing: &[Field]) -> Diagno
 struct Own {
     radius: Option<Number>,
     surface_radius: Option<(Number, Span)>,
-    falloff: Option<FalloffRecipe>,
+    falloff: Option<WrittenFalloff>,
     strength: Option<Number>,
 }
 
@@ -218,12 +218,10 @@ impl Parser<'_> {
         }
         let falloff = own.falloff.unwrap_or_else(|| Falloff::Soft.into());
         let strength = own.strength.unwrap_or_else(|| 1.0.into());
-        // What is wrong with a surface radius is told there.
-        let at = own.surface_radius.as_ref().map_or(span, |(_, at)| *at);
         let radius = match (own.radius, own.surface_radius) {
             (radius, None) => radius.map(Radius::Support),
             (None, Some((radius, _))) => Some(Radius::Surface(radius)),
-            (Some(_), Some(_)) => {
+            (Some(_), Some((_, at))) => {
                 self.report(|| {
                     Diagnostic::error(Some(at), "`surface_radius` and `radius` in one primitive")
                         .expected("expected one of them")
@@ -234,10 +232,7 @@ impl Parser<'_> {
         let (Some(fields), Some(radius)) = (slots.values(), radius) else {
             return self.broken.clone();
         };
-        let recipe = Recipe::Primitive { skeleton: kind, fields, falloff, radius, strength };
-        Tree::cook(recipe, &self.iso, Vec::new(), Some(span)).unwrap_or_else(|fault| {
-            self.report(|| fault.at(Some(at)));
-            self.broken.clone()
-        })
+        let written = Written::Primitive { skeleton: kind, fields, falloff, radius, strength };
+        Tree::at(span, written, Vec::new())
     }
 }

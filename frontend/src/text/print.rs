@@ -8,19 +8,18 @@
 use std::collections::HashMap;
 use std::fmt::Write as _;
 
-use glam::DAffine3;
-
 use super::words::{EXPRESSION, GROUP_NODE, WEIGHTED, field_word, texture_named};
 use crate::attribute::AttributeGroup;
 use crate::combine::{Combinator, Family};
 use crate::expression::{Formula, write as write_formula};
 use crate::falloff::FalloffKind;
-use crate::field::{Written, plain};
+use crate::field::NumberText;
 use crate::model::Model;
 use crate::number::Number;
-use crate::recipe::{AttributeRecipe, FalloffRecipe, FieldNumber, Radius, Recipe, TexturedRecipe, UvRecipe};
-use crate::tree::{NodeKind, Primitive, Tree};
-use crate::warp::Warp;
+use crate::tree::Tree;
+use crate::written::{
+    FieldNumber, Radius, Written, WrittenAttribute, WrittenFalloff, WrittenTextured, WrittenUv,
+};
 
 /// Operators below this depth are printed on one line.
 const DEEPEST: usize = 12;
@@ -104,7 +103,7 @@ fn shared(root: &Tree) -> (Vec<&Tree>, HashMap<usize, usize>) {
         *count += 1;
         if *count == 1 {
             stack.push((tree, true));
-            if matches!(tree.node().kind(), NodeKind::Expression(_)) {
+            if matches!(tree.node().written(), Written::Expression(_)) {
                 named.extend(tree.node().children().iter().map(Tree::identity));
             }
             stack.extend(tree.node().children().iter().rev().map(|child| (child, false)));
@@ -158,17 +157,13 @@ impl Printer {
             Some(child) => format!("n{}", self.names[&child.identity()]),
             None => format!("missing{place}"),
         };
-        match (tree.node().recipe().map(|recipe| &**recipe), tree.node().kind()) {
-            (Some(Recipe::Expression(formula)), _) => expression(out, formula, child, &self.definitions),
-            (Some(Recipe::FormulaWarp(formula)), _) => formula_warp(out, formula, &self.definitions),
-            (None, NodeKind::Warp(Warp::Formula(warp))) => formula_warp(out, &warp.into(), &self.definitions),
-            (Some(recipe), _) => head_of_recipe(out, recipe, &self.definitions),
-            (None, NodeKind::Expression(plain)) => expression(out, &plain.into(), child, &self.definitions),
-            (None, kind) => head(out, kind, &self.definitions),
+        match tree.node().written() {
+            Written::Expression(formula) => expression(out, formula, child, &self.definitions),
+            written => head(out, written, &self.definitions),
         }
-        match tree.node().kind() {
-            NodeKind::Primitive(_) | NodeKind::Expression(_) => {}
-            NodeKind::Combine(_) | NodeKind::Select(_) => {
+        match tree.node().written() {
+            Written::Primitive { .. } | Written::Expression(_) => {}
+            Written::Combine { .. } | Written::Select(_) => {
                 out.push_str(" {");
                 stack.push(Item::Text("}"));
                 stack.push(Item::Line(depth));
@@ -177,7 +172,10 @@ impl Printer {
                     stack.push(Item::Line(depth + 1));
                 }
             }
-            NodeKind::Affine(_) | NodeKind::Warp(_) | NodeKind::Attribute { .. } => {
+            Written::Map { .. }
+            | Written::Warp { .. }
+            | Written::FormulaWarp(_)
+            | Written::Attribute { .. } => {
                 let weighted = children.len() > 1;
                 let _ = if weighted { write!(out, " {WEIGHTED} {{ ") } else { write!(out, " {{ ") };
                 stack.push(Item::Text(" }"));
@@ -188,33 +186,6 @@ impl Printer {
                     }
                 }
             }
-        }
-    }
-}
-
-/// What stands before a node's block; of a primitive, all of it. Names of definitions begin with `definitions`.
-fn head(out: &mut String, kind: &NodeKind, definitions: &str) {
-    match kind {
-        NodeKind::Primitive(leaf) => primitive(out, leaf),
-        NodeKind::Combine(combinator) => {
-            operator(out, *combinator, &combinator.numbers().into_iter().map(plain).collect::<Vec<_>>());
-        }
-        NodeKind::Expression(plain) => {
-            expression(out, &plain.into(), |place| format!("n{place}"), definitions);
-        }
-        NodeKind::Select(which) => {
-            let _ = write!(out, "select {}", plain(*which));
-        }
-        NodeKind::Affine(map) => affine(out, map),
-        NodeKind::Warp(Warp::Formula(warp)) => formula_warp(out, &warp.into(), "t"),
-        NodeKind::Warp(warp) => {
-            out.push_str(warp.name());
-            for (described, value) in warp.fields().iter().zip(&warp.to_fields()) {
-                described.write(out, described.name, value);
-            }
-        }
-        NodeKind::Attribute { name, value } => {
-            attribute(out, name, &AttributeRecipe::from(value), definitions);
         }
     }
 }
@@ -235,10 +206,10 @@ fn operator(out: &mut String, combinator: Combinator, numbers: &[String]) {
     };
 }
 
-/// The head of a node with numbers that follow parameters: as it was written.
-fn head_of_recipe(out: &mut String, recipe: &Recipe, definitions: &str) {
-    match recipe {
-        Recipe::Primitive { skeleton: kind, fields, falloff, radius, strength } => {
+/// What stands before a node's block; of a primitive, all of it. Names of definitions begin with `definitions`.
+fn head(out: &mut String, written: &Written, definitions: &str) {
+    match written {
+        Written::Primitive { skeleton: kind, fields, falloff, radius, strength } => {
             let _ = write!(out, "{} {{", kind.name());
             for (described, value) in kind.fields().iter().zip(fields) {
                 described.write(out, &field_word(*kind, described), value);
@@ -249,14 +220,14 @@ fn head_of_recipe(out: &mut String, recipe: &Recipe, definitions: &str) {
             };
             rest_of_primitive(out, falloff, strength);
         }
-        Recipe::Combine { combinator, numbers } => {
-            operator(out, *combinator, &numbers.iter().map(Written::text).collect::<Vec<_>>());
+        Written::Combine { combinator, numbers } => {
+            operator(out, *combinator, &numbers.iter().map(NumberText::text).collect::<Vec<_>>());
         }
-        Recipe::Expression(formula) => expression(out, formula, |place| format!("n{place}"), definitions),
-        Recipe::Select(which) => {
+        Written::Expression(formula) => expression(out, formula, |place| format!("n{place}"), definitions),
+        Written::Select(which) => {
             let _ = write!(out, "select {which}");
         }
-        Recipe::Map { map, fields } => {
+        Written::Map { map, fields } => {
             out.push_str(map.name());
             if map.is_named() {
                 map.fields()
@@ -268,14 +239,14 @@ fn head_of_recipe(out: &mut String, recipe: &Recipe, definitions: &str) {
                 let _ = write!(out, " {}", group_values(all));
             }
         }
-        Recipe::Warp { warp, fields } => {
+        Written::Warp { warp, fields } => {
             out.push_str(warp.name());
             for (described, value) in warp.fields().iter().zip(fields) {
                 described.write(out, described.name, value);
             }
         }
-        Recipe::FormulaWarp(formula) => formula_warp(out, formula, "t"),
-        Recipe::Attribute { name, value } => attribute(out, name, value, definitions),
+        Written::FormulaWarp(formula) => formula_warp(out, formula, definitions),
+        Written::Attribute { name, value } => attribute(out, name, value, definitions),
     }
 }
 
@@ -302,28 +273,28 @@ fn expression(out: &mut String, formula: &Formula, child: impl Fn(usize) -> Stri
     out.push_str(" }");
 }
 
-fn attribute(out: &mut String, name: &str, value: &AttributeRecipe, definitions: &str) {
+fn attribute(out: &mut String, name: &str, value: &WrittenAttribute, definitions: &str) {
     if super::words::is_reserved(name) {
         let _ = write!(out, "{GROUP_NODE} ");
     }
     out.push_str(name);
     match value {
-        AttributeRecipe::Numbers(numbers) => {
+        WrittenAttribute::Numbers(numbers) => {
             let text = group_values(numbers);
             let first = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').next();
             // A parameter that is called like what computes.
             let hidden = first.is_some_and(|word| word == EXPRESSION || texture_named(word).is_some());
             let _ = if hidden { write!(out, " ({text})") } else { write!(out, " {text}") };
         }
-        AttributeRecipe::Textured(TexturedRecipe { texture, fields, a, b }) => {
+        WrittenAttribute::Textured(WrittenTextured { texture, fields, a, b }) => {
             let _ = write!(out, " {} {{ a {} b {}", texture.name(), group_values(a), group_values(b));
             for (described, value) in texture.fields().iter().zip(fields) {
                 described.write(out, described.name, value);
             }
             out.push_str(" }");
         }
-        AttributeRecipe::Uv(map) => uv(out, map),
-        AttributeRecipe::Expressed(formula) => {
+        WrittenAttribute::Uv(map) => uv(out, map),
+        WrittenAttribute::Expressed(formula) => {
             out.push(' ');
             expression(out, formula, |place| format!("n{place}"), definitions);
         }
@@ -331,8 +302,8 @@ fn attribute(out: &mut String, name: &str, value: &AttributeRecipe, definitions:
 }
 
 /// A map of uv, without the parts that change nothing.
-fn uv(out: &mut String, map: &UvRecipe) {
-    let identity = UvRecipe::default();
+fn uv(out: &mut String, map: &WrittenUv) {
+    let identity = WrittenUv::default();
     if !same_numbers(&map.scale, &identity.scale) {
         let _ = write!(out, " scale {}", vector(&map.scale));
     }
@@ -350,18 +321,8 @@ fn same_numbers(a: &[Number], b: &[Number]) -> bool {
     a.iter().zip(b).all(|(a, b)| plain(a).is_some() && plain(a) == plain(b))
 }
 
-fn primitive(out: &mut String, leaf: &Primitive) {
-    let kind = leaf.skeleton.kind();
-    let _ = write!(out, "{} {{", kind.name());
-    for (described, value) in kind.fields().iter().zip(&leaf.skeleton.to_fields()) {
-        described.write(out, &field_word(kind, described), value);
-    }
-    let _ = write!(out, " radius {}", plain(leaf.radius));
-    rest_of_primitive(out, &leaf.falloff.into(), &leaf.strength.into());
-}
-
 /// What follows a primitive's radius.
-fn rest_of_primitive(out: &mut String, falloff: &FalloffRecipe, strength: &Number) {
+fn rest_of_primitive(out: &mut String, falloff: &WrittenFalloff, strength: &Number) {
     if falloff.kind() != FalloffKind::Soft {
         let _ = write!(out, " falloff {}", falloff.kind().text(falloff.fields()));
     }
@@ -369,20 +330,4 @@ fn rest_of_primitive(out: &mut String, falloff: &FalloffRecipe, strength: &Numbe
         let _ = write!(out, " strength {strength}");
     }
     out.push_str(" }");
-}
-
-/// An affine map in its simplest form that gives the same bits.
-fn affine(out: &mut String, map: &DAffine3) {
-    let bits = |map: &DAffine3| map.to_cols_array().map(f64::to_bits);
-    let diagonal = glam::DVec3::new(map.matrix3.x_axis.x, map.matrix3.y_axis.y, map.matrix3.z_axis.z);
-    let _ = if bits(map) == bits(&DAffine3::from_translation(map.translation)) {
-        write!(out, "translate {}", vector(map.translation.to_array()))
-    } else if bits(map) != bits(&DAffine3::from_scale(diagonal)) {
-        let [xx, yx, zx, xy, yy, zy, xz, yz, zz, x, y, z] = map.to_cols_array();
-        write!(out, "affine {}", vector([xx, xy, xz, x, yx, yy, yz, y, zx, zy, zz, z]))
-    } else if diagonal.x.to_bits() == diagonal.y.to_bits() && diagonal.x.to_bits() == diagonal.z.to_bits() {
-        write!(out, "scale {}", plain(diagonal.x))
-    } else {
-        write!(out, "scale {}", vector(diagonal.to_array()))
-    };
 }

@@ -15,7 +15,7 @@ use crate::model::Model;
 use crate::number::Number;
 use crate::parameter::Parameter;
 use crate::report::{Report, clip};
-use crate::tree::{NodeKind, Tree};
+use crate::tree::Tree;
 
 /// What is set from outside a text.
 #[derive(Clone, PartialEq, Debug, Default)]
@@ -73,7 +73,7 @@ impl<'a> Parser<'a> {
             nodes: 0,
             root: None,
             ended: false,
-            broken: Tree::new(NodeKind::Combine(Combinator::Sum), Vec::new()),
+            broken: Tree::new(Combinator::Sum, Vec::new()),
         }
     }
 

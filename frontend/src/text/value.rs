@@ -11,8 +11,8 @@ use super::words::OWN_FIELDS;
 use crate::diagnostic::{Diagnostic, Span};
 use crate::field::{FieldKind, FieldValue};
 use crate::number::Number;
-use crate::recipe::FieldNumber;
 use crate::report::nearest;
+use crate::written::FieldNumber;
 
 /// The most elements that a vector may have: those of the widest attribute. A 3x4 matrix has 12.
 const LONGEST: usize = MAX_ATTRIBUTE_WIDTH;

@@ -77,9 +77,13 @@ macro_rules! textures {
         }
 
         impl Texture {
-            /// The kind and variant; see [`TextureMember::variant`].
+            /// The kind, with variant 0.
             #[must_use]
-            pub fn kind(&self, follows: bool) -> TextureKind {
+            pub const fn kind(&self) -> TextureKind { match self { $( Self::$name(_) => TextureKind::$name(0), )+ } }
+
+            /// The kind and the variant of its code; see [`TextureMember::variant`].
+            #[must_use]
+            pub fn code(&self, follows: bool) -> TextureKind {
                 match self { $( Self::$name(t) => TextureKind::$name(t.variant(follows)), )+ }
             }
 

@@ -4,8 +4,8 @@ use std::collections::HashMap;
 use std::marker::PhantomData;
 
 use super::Tree;
-use crate::recipe::Recipe;
 use crate::traverse::{Nodes, Order, Visit, Walk};
+use crate::written::Written;
 
 /// Any tree.
 #[derive(Clone, Copy)]
@@ -57,21 +57,13 @@ impl Tree {
         done.remove(&self.identity()).unwrap_or_else(|| self.clone())
     }
 
-    /// A node of another recipe in the same place of the text, over the same children.
-    pub(crate) fn with_recipe(&self, recipe: Recipe) -> Self {
-        let other = Self::of(recipe, self.node().children().to_vec());
-        let node = other.node();
-        Self::assemble(
-            node.kind().clone(),
-            node.recipe().cloned(),
-            node.children().to_vec(),
-            self.node().span(),
-        )
+    /// The same node, written in another way.
+    pub(crate) fn with_written(&self, written: Written) -> Self {
+        Self::assemble(written, self.node().children().to_vec(), self.node().span())
     }
 
     /// The same node over other children.
     pub(crate) fn with_children(&self, children: Vec<Self>) -> Self {
-        let node = self.node();
-        Self::assemble(node.kind().clone(), node.recipe().cloned(), children, node.span())
+        Self::assemble(self.node().written().clone(), children, self.node().span())
     }
 }

@@ -118,13 +118,18 @@ impl From<&FormulaWarp> for Formula {
 mod tests {
     use super::*;
     use crate::builder::{Axis, point, x, y, z};
+    use crate::kind::NodeKind;
     use crate::term::Term;
-    use crate::tree::{NodeKind, Tree};
+    use crate::tree::Tree;
     use crate::warp::{Warp, testing};
 
     fn warp(coordinates: [Term; 3]) -> Warp {
-        match point([0.0; 3], 1.0).warp(coordinates).node().kind() {
-            NodeKind::Warp(warp) => warp.clone(),
+        of(&point([0.0; 3], 1.0).warp(coordinates))
+    }
+
+    fn of(tree: &Tree) -> Warp {
+        match tree.node().written().evaluated(0.5).unwrap() {
+            NodeKind::Warp(warp) => warp,
             kind => panic!("{kind:?}"),
         }
     }
@@ -187,8 +192,7 @@ mod tests {
         ];
         let mut rng = fastrand::Rng::with_seed(4);
         for (member, coordinates) in pairs {
-            let NodeKind::Warp(member) = member.node().kind() else { panic!("{member:?}") };
-            let formulas = warp(coordinates);
+            let (member, formulas) = (of(&member), warp(coordinates));
             for _ in 0..500 {
                 let p = DVec3::from_array([(); 3].map(|()| 2.0 * testing::real(&mut rng)));
                 assert!(formulas.inverse(p).abs_diff_eq(member.inverse(p), 1e-12), "{p}");

@@ -81,6 +81,10 @@ macro_rules! warps {
                 }
             }
 
+            /// The kind of a member, with variant 0; `None` for formulas.
+            #[must_use]
+            pub const fn kind(&self) -> Option<WarpKind> { match self { $( Self::$name(_) => Some(WarpKind::$name(0)), )+ Self::Formula(_) => None } }
+
             /// The word of the text format.
             #[must_use]
             pub const fn name(&self) -> &'static str { match self { $( Self::$name(_) => $name::NAME, )+ Self::Formula(_) => FormulaWarp::NAME } }

@@ -9,11 +9,12 @@ use jbt_frontend::builder::{Term, x, y, z};
 use jbt_frontend::combine::{Combinator, Family, SetOperation};
 use jbt_frontend::falloff::{Falloff, FalloffKind};
 use jbt_frontend::field::{Field, FieldKind, FieldValue};
+use jbt_frontend::kind::{NodeKind, Primitive};
 use jbt_frontend::model::Model;
 use jbt_frontend::number::param;
 use jbt_frontend::skeleton::{Skeleton, SkeletonKind};
 use jbt_frontend::texture::TextureKind;
-use jbt_frontend::tree::{NodeKind, Primitive, Tree};
+use jbt_frontend::tree::Tree;
 use jbt_frontend::warp::WarpKind;
 
 /// Three numbers within `size` of 0.
@@ -133,7 +134,7 @@ pub fn formula_warp(rng: &mut Rng) -> NodeKind {
         _ => [x().abs() + 0.3 * p, y() + 0.1 * x() * y(), z().max(2.0 * z() + q)],
     };
     let still = Tree::combine(Combinator::Sum, Vec::<Tree>::new()).warp(coordinates);
-    still.node().kind().clone()
+    still.node().written().evaluated(0.5).expect("formulas mean something")
 }
 
 /// A map of the field, for iso-values from 0.2.

@@ -9,10 +9,11 @@ use jbt_frontend::builder::{Term, param, x, y, z};
 use jbt_frontend::combine::{Combinator, Family, SetOperation};
 use jbt_frontend::falloff::{Falloff, FalloffKind};
 use jbt_frontend::field::{Field, FieldKind, FieldValue};
+use jbt_frontend::kind::{NodeKind, Primitive};
 use jbt_frontend::model::Model;
 use jbt_frontend::skeleton::{Point, SkeletonKind};
 use jbt_frontend::texture::TextureKind;
-use jbt_frontend::tree::{NodeKind, Primitive, Tree};
+use jbt_frontend::tree::Tree;
 use jbt_frontend::warp::WarpKind;
 
 /// A point of radius 1.

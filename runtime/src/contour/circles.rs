@@ -2,8 +2,8 @@
 
 use jbt_frontend::affine::{IDENTITY, Similarity};
 use jbt_frontend::check::CheckedTree;
+use jbt_frontend::kind::NodeKind;
 use jbt_frontend::skeleton::Skeleton;
-use jbt_frontend::tree::NodeKind;
 
 use super::plane::Plane;
 

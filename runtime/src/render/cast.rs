@@ -8,7 +8,7 @@ use super::vector::{Vector, along, scale, unit};
 use crate::buffer::Samples;
 use crate::trace::Ray;
 use jbt_frontend::check::CheckedTree;
-use jbt_frontend::tree::NodeKind;
+use jbt_frontend::kind::NodeKind;
 
 /// What a ray meets.
 pub struct Met {

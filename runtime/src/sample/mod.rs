@@ -18,8 +18,8 @@ pub use npy::write_npy;
 use rayon::prelude::*;
 
 use jbt_frontend::check::CheckedTree;
+use jbt_frontend::kind::NodeKind;
 use jbt_frontend::query::Query;
-use jbt_frontend::tree::NodeKind;
 use jbt_ir::limits::MAX_LATTICE_POINTS;
 
 use crate::buffer::Layout;

@@ -17,14 +17,17 @@ const FRONTEND: &[&[&str]] = &[
     &["affine", "angle", "bounds", "diagnostic", "field", "power", "query", "report", "word"],
     &["origin"],
     // Members.
+    &["axis", "member"],
     &["skeleton"],
     &["combine", "falloff", "texture"],
     &["function"],
     &["number"],
     &["expression", "interop"],
     &["attribute", "map", "warp"],
-    // What was written.
-    &["tree", "recipe", "traverse"],
+    // What nodes mean, and what was written.
+    &["kind"],
+    &["written"],
+    &["tree", "traverse"],
     &["parameter"],
     &["model"],
     // What it means.

@@ -12,9 +12,10 @@ use jbt_frontend::attribute::{AttributeGroup, AttributeValue, Mixing, Textured, 
 use jbt_frontend::combine::{Combinator, Family, SetOperation};
 use jbt_frontend::falloff::{Falloff, FalloffKind};
 use jbt_frontend::field::{Field, FieldKind, FieldValue};
+use jbt_frontend::kind::{NodeKind, Primitive};
 use jbt_frontend::skeleton::SkeletonKind;
 use jbt_frontend::texture::TextureKind;
-use jbt_frontend::tree::{NodeKind, Primitive, Tree};
+use jbt_frontend::tree::Tree;
 use jbt_frontend::warp::WarpKind;
 
 /// The seeds of a model: what selects code comes from `shape`, everything else from `numbers`.
@@ -251,7 +252,8 @@ impl Random {
             2 => [x() / (1.0 + r.abs() * z() * z()), y(), z() + 0.2 * q],
             _ => [x().abs() + 0.3 * p, y() + 0.1 * x() * y(), z().max(2.0 * z() + q)],
         };
-        Tree::combine(Combinator::Sum, Vec::<Tree>::new()).warp(coordinates).node().kind().clone()
+        let still = Tree::combine(Combinator::Sum, Vec::<Tree>::new()).warp(coordinates);
+        still.node().written().evaluated(0.5).expect("formulas mean something")
     }
 
     fn family(&mut self) -> Family {

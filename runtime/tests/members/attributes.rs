@@ -2,7 +2,7 @@
 
 use jbt::{CheckedTree, Mixing, Model};
 use jbt_frontend::check::CheckedNode;
-use jbt_frontend::tree::NodeKind;
+use jbt_frontend::kind::NodeKind;
 
 use crate::check::judge;
 use crate::falloffs::soft;
@@ -93,7 +93,7 @@ mod values {
     use jbt::{CheckedTree, Model};
     use jbt_frontend::attribute::AttributeValue;
     use jbt_frontend::check::CheckedNode;
-    use jbt_frontend::tree::NodeKind;
+    use jbt_frontend::kind::NodeKind;
 
     use crate::check::judge;
     use crate::row::{Family, Row, members, row};
@@ -193,8 +193,8 @@ mod textures {
     use jbt::{CheckedTree, Model};
     use jbt_frontend::attribute::AttributeValue;
     use jbt_frontend::check::CheckedNode;
+    use jbt_frontend::kind::NodeKind;
     use jbt_frontend::texture::TextureKind;
-    use jbt_frontend::tree::NodeKind;
 
     use crate::check::judge;
     use crate::row::{Family, Row, members, row};
@@ -257,7 +257,7 @@ mod textures {
             let NodeKind::Attribute { value: AttributeValue::Textured(textured), .. } = &node.kind else {
                 return None;
             };
-            Some(name(&textured.texture.kind(false)))
+            Some(name(&textured.texture.kind()))
         };
         tree.nodes().iter().filter_map(of).collect()
     }

@@ -7,7 +7,7 @@ mod unary;
 
 use jbt::{CheckedTree, Combinator, Model};
 use jbt_frontend::check::CheckedNode;
-use jbt_frontend::tree::NodeKind;
+use jbt_frontend::kind::NodeKind;
 
 use crate::check::judge;
 use crate::falloffs::soft;

@@ -3,7 +3,7 @@
 use jbt::{CheckedTree, Falloff, Model};
 use jbt_frontend::check::CheckedNode;
 use jbt_frontend::falloff::FalloffKind;
-use jbt_frontend::tree::NodeKind;
+use jbt_frontend::kind::NodeKind;
 
 use crate::check::judge;
 use crate::row::{Family, Row, members, row};

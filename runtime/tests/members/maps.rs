@@ -2,8 +2,8 @@
 
 use jbt::{CheckedTree, Model, Tree};
 use jbt_frontend::map::MapKind;
-use jbt_frontend::recipe::Recipe;
 use jbt_frontend::traverse::Visit;
+use jbt_frontend::written::Written;
 
 use crate::check::judge;
 use crate::falloffs::soft;
@@ -97,10 +97,9 @@ members! { MapKind {
     ])],
 } }
 
-/// A map keeps how it was written where a number in it follows a parameter.
 fn found(model: &Model, _: &CheckedTree) -> Vec<&'static str> {
     let of = |tree: &Tree| {
-        let Recipe::Map { map, .. } = &**tree.node().recipe()? else { return None };
+        let Written::Map { map, .. } = tree.node().written() else { return None };
         Some(name(map))
     };
     model.root.prefix(Visit::Nodes).filter_map(of).collect()

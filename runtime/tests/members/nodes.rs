@@ -3,7 +3,7 @@
 mod expressions;
 
 use jbt::{CheckedTree, Model};
-use jbt_frontend::tree::NodeKind;
+use jbt_frontend::kind::NodeKind;
 
 use crate::check::judge;
 use crate::falloffs::soft;

@@ -7,8 +7,8 @@ mod solids;
 
 use jbt::{CheckedTree, Model};
 use jbt_frontend::check::CheckedNode;
+use jbt_frontend::kind::NodeKind;
 use jbt_frontend::skeleton::SkeletonKind;
-use jbt_frontend::tree::NodeKind;
 
 use crate::check::judge;
 use crate::falloffs::soft;

@@ -8,7 +8,7 @@ use std::f64::consts::{FRAC_1_PI, FRAC_1_SQRT_2, FRAC_PI_4};
 
 use jbt::{CheckedTree, Model};
 use jbt_frontend::check::CheckedNode;
-use jbt_frontend::tree::NodeKind;
+use jbt_frontend::kind::NodeKind;
 use jbt_frontend::warp::Warp;
 
 use crate::check::judge;

@@ -38,9 +38,11 @@ use self::state::{Importer, Meaning, State};
 use super::Imported;
 use crate::combine::Combinator;
 use crate::diagnostic::{Diagnostic, Diagnostics, Span};
+use crate::kind::NodeKind;
 use crate::model::Model;
 use crate::report::Report;
-use crate::tree::{NodeKind, Tree};
+use crate::tree::Tree;
+use crate::warp::Warp;
 
 /// The model of a ParsIP scene (`.blob`, `.scene`).
 ///
@@ -163,7 +165,7 @@ impl Importer<'_> {
             Enter(u32, Span),
             Leave(u32, Box<Reading>),
         }
-        let broken = Tree::new(NodeKind::Combine(Combinator::Sum), Vec::new());
+        let broken = Tree::new(Combinator::Sum, Vec::new());
         let mut states = vec![State::New; self.sections.nodes.len()];
         let mut tasks = vec![Task::Enter(root, reference)];
         while let Some(task) = tasks.pop() {
@@ -252,13 +254,11 @@ impl Importer<'_> {
 /// The tree of a node. Nothing if a child is missing, after a message about it.
 fn assemble(span: Span, meaning: Meaning, map: Option<DAffine3>, children: Vec<Tree>) -> Option<Tree> {
     let tree = match meaning {
-        Meaning::Combine(combinator) => Tree::at(span, NodeKind::Combine(combinator), children),
-        Meaning::Warp(twist) => {
-            Tree::at(span, NodeKind::Warp(twist.into()), vec![children.into_iter().next()?])
-        }
+        Meaning::Combine(combinator) => Tree::at(span, combinator, children),
+        Meaning::Warp(twist) => Tree::at(span, Warp::from(twist), vec![children.into_iter().next()?]),
         Meaning::Same => children.into_iter().next()?,
         Meaning::Leaf { leaf, color } => {
-            let tree = Tree::at(span, NodeKind::Primitive(leaf), Vec::new());
+            let tree = Tree::at(span, leaf, Vec::new());
             match color {
                 None => tree,
                 Some(color) => {
@@ -270,6 +270,6 @@ fn assemble(span: Span, meaning: Meaning, map: Option<DAffine3>, children: Vec<T
     };
     Some(match map {
         None => tree,
-        Some(map) => Tree::at(span, NodeKind::Affine(map), vec![tree]),
+        Some(map) => Tree::at(span, map, vec![tree]),
     })
 }

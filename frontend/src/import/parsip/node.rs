@@ -11,9 +11,9 @@ use crate::axis::Axis;
 use crate::combine::Combinator;
 use crate::diagnostic::{Diagnostic, Span};
 use crate::falloff::Falloff;
+use crate::kind::Primitive;
 use crate::report::{clip, nearest};
 use crate::skeleton::{self, Cylinder, Disc, Point, Ring, Segment, Skeleton, Triangle};
-use crate::tree::Primitive;
 use crate::warp::Twist;
 
 /// What an operator's name says.

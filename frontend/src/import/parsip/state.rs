@@ -2,8 +2,9 @@
 
 use super::scan::Sections;
 use crate::combine::Combinator;
+use crate::kind::Primitive;
 use crate::report::Report;
-use crate::tree::{Primitive, Tree};
+use crate::tree::Tree;
 use crate::warp::Twist;
 
 /// What a node is, apart from its children and its map.

@@ -11,13 +11,13 @@ use super::{
 use crate::check::{CheckedTree, NodeId};
 use crate::combine::{Combinator, Form};
 use crate::expression::Expression;
+use crate::kind::{NodeKind, Primitive, chosen};
 use crate::lower::computed::share;
 use crate::lower::demand::Demand;
 use crate::lower::names::ComputedId;
 use crate::lower::position::{Position, PositionKey, Trails, position_key};
 use crate::origin::ModelOrigin;
-use crate::recipe::{Freedom, Recipe};
-use crate::tree::{NodeKind, Primitive, chosen};
+use crate::written::{Freedom, Written};
 
 impl<'a> Scene<'a> {
     /// Finds every occurrence, without recursion. All attribute groups count, whatever is asked: so the tables of a tree, which are made of
@@ -144,12 +144,15 @@ impl<'a> Finder<'a> {
                 NodeKind::Affine(inner) => {
                     let Position { space, map, trail } =
                         moved.unwrap_or_else(|| *self.scene.position(position));
-                    let trail = match self.scene.tree.recipe(node) {
+                    let trail = match self.scene.tree.written(node) {
                         None => trail.fixed(inner, self.scene.tree.follows()),
-                        Some(recipe) => {
-                            let name =
-                                self.trails.name(position_key(space, trail.name, &trail.since), node, recipe);
-                            trail.free(name, recipe.freedom())
+                        Some(written) => {
+                            let name = self.trails.name(
+                                position_key(space, trail.name, &trail.since),
+                                node,
+                                written,
+                            );
+                            trail.free(name, written.freedom())
                         }
                     };
                     moved = Some(Position { space, map: map * *inner, trail });
@@ -269,12 +272,12 @@ impl<'a> Finder<'a> {
         let shift = DVec3::from(ModelOrigin::of(bounds).point());
         let inner = DAffine3::from_translation(shift);
         let Position { space, map, trail } = *self.scene.position(position);
-        let trail = match self.scene.tree.recipe(node) {
+        let trail = match self.scene.tree.written(node) {
             None if shift == DVec3::ZERO => return (position, shift),
             None => trail.fixed(&inner, false),
             // A box that follows parameters may come near and go far.
-            Some(recipe) => {
-                let name = self.trails.name(position_key(space, trail.name, &trail.since), node, recipe);
+            Some(written) => {
+                let name = self.trails.name(position_key(space, trail.name, &trail.since), node, written);
                 trail.free(name, Freedom::Fixed)
             }
         };
@@ -291,7 +294,7 @@ impl<'a> Finder<'a> {
     ) -> OccurrenceKind {
         let reducer = match combinator {
             Combinator::Sum => Reducer::Sum,
-            Combinator::Ricci(n) if self.scene.tree.recipe(node).is_some() => Reducer::RicciFollowing(n),
+            Combinator::Ricci(n) if self.scene.tree.written(node).is_some() => Reducer::RicciFollowing(n),
             Combinator::Ricci(1.0) => Reducer::Sum,
             Combinator::Ricci(n) => Reducer::Ricci(n),
             Combinator::Product => Reducer::Product,
@@ -319,11 +322,11 @@ impl<'a> Finder<'a> {
         let once = self.once[node.0 as usize];
         let id = if once { next } else { *self.field_names.entry((node, position)).or_insert(next) };
         if id == next {
-            let recipe = self.scene.tree.recipe(node);
-            let turns = recipe.is_some_and(Recipe::skeleton_turns);
+            let written = self.scene.tree.written(node);
+            let turns = written.is_some_and(Written::skeleton_turns);
             let (map, scale, inverse) = self.scene.position(position).of_skeleton(&primitive.skeleton, turns);
-            let strong = primitive.strength != 1.0 || recipe.is_some_and(Recipe::strength_follows);
-            let falloff = primitive.falloff.code(recipe.is_some_and(Recipe::falloff_follows));
+            let strong = primitive.strength != 1.0 || written.is_some_and(Written::strength_follows);
+            let falloff = primitive.falloff.code(written.is_some_and(Written::falloff_follows));
             let code = LeafCode { map: inverse, skeleton: primitive.skeleton.kind(), falloff, strong };
             self.scene.fields.push(LeafField { node, position, uses: 0, map, scale, code });
         }
@@ -366,14 +369,14 @@ impl<'a> Finder<'a> {
         let of = |id: &OccurrenceId| self.scene.occurrence(*id).non_negative;
         match kind {
             OccurrenceKind::Leaf { field, .. } => {
-                let recipe = self.scene.tree.recipe(self.scene.field(*field).node);
-                let follows = recipe.is_some_and(Recipe::strength_follows);
+                let written = self.scene.tree.written(self.scene.field(*field).node);
+                let follows = written.is_some_and(Written::strength_follows);
                 self.scene.primitive(*field).strength >= 0.0 && !follows
             }
             OccurrenceKind::Warp { child, .. } => of(child),
             OccurrenceKind::Difference { left, .. } => of(left),
             OccurrenceKind::Map { kind, child } => {
-                let fixed = self.scene.tree.recipe(node).is_none();
+                let fixed = self.scene.tree.written(node).is_none();
                 kind.is_non_negative(of(child), &self.scene.combinator(node).numbers(), fixed)
             }
             OccurrenceKind::Expression { children, .. } => {

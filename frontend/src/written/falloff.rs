@@ -1,4 +1,4 @@
-//! The recipe of a falloff.
+//! The written of a falloff.
 
 use super::field::FieldNumber;
 use crate::falloff::{Falloff, FalloffKind};
@@ -7,14 +7,14 @@ use crate::number::Number;
 
 /// A falloff before its formulas are evaluated.
 #[derive(Clone, PartialEq, Debug)]
-pub struct FalloffRecipe {
+pub struct WrittenFalloff {
     /// The kind, with variant 0.
     kind: FalloffKind,
     /// Its parameters, in the order of [`FalloffKind::fields`].
     fields: Vec<FieldNumber>,
 }
 
-impl FalloffRecipe {
+impl WrittenFalloff {
     /// The falloff of this kind, whatever its variant, with these parameters, in the order of [`FalloffKind::fields`].
     #[must_use]
     pub fn new(kind: FalloffKind, fields: Vec<FieldNumber>) -> Self {
@@ -51,7 +51,7 @@ impl FalloffRecipe {
     }
 }
 
-impl<T: Into<Falloff>> From<T> for FalloffRecipe {
+impl<T: Into<Falloff>> From<T> for WrittenFalloff {
     fn from(falloff: T) -> Self {
         let falloff = falloff.into();
         Self::new(falloff.kind(), falloff.to_fields().into_iter().map(FieldNumber::from).collect())

@@ -1,12 +1,14 @@
-//! Recipes: how a node's numbers follow parameters.
+//! What was written: nodes with their numbers as formulas of parameters.
 //!
-//! A node whose numbers are plain is its [`NodeKind`] and nothing more. A node with a number that mentions a parameter keeps a recipe
-//! beside it: the same node before its formulas were evaluated, as it was written. `kind` evaluates it.
+//! A [`Tree`](crate::tree::Tree) is made of such nodes, and of nothing else. What they mean, a [`NodeKind`] with plain
+//! values, is found out by the [check](crate::check), for the values that the parameters and the iso-value have then.
 //!
 //! ```text
-//! rotate axis z degrees 90 * t { .. }      recipe  Rotate { axis (0 0 1), angle 90 * t degrees }
-//!                                          kind    Affine(a 3x4 matrix), for the present value of t
+//! rotate axis z degrees 90 * t { .. }      written  Map { Rotate, axis (0 0 1), degrees 90 * t }
+//!                                          meant    Affine(a 3x4 matrix), for the present value of t
 //! ```
+
+mod plain;
 
 mod falloff;
 mod field;
@@ -20,20 +22,20 @@ use crate::diagnostic::Diagnostic;
 use crate::expression::Formula;
 use crate::falloff::Falloff;
 use crate::field::{FieldKind, FieldValue, plain};
+use crate::kind::{NodeKind, Primitive};
 use crate::map::MapKind;
 use crate::number::{Number, Step, Values};
 use crate::report::Fault;
 use crate::skeleton::SkeletonKind;
-use crate::tree::{NodeKind, Primitive};
 use crate::warp::{FormulaWarp, WarpKind};
 
 pub(crate) use crate::map::Freedom;
-pub use falloff::FalloffRecipe;
+pub use falloff::WrittenFalloff;
 pub use field::FieldNumber;
 
 mod attribute;
 
-pub use attribute::{AttributeRecipe, TexturedRecipe, UvRecipe};
+pub use attribute::{WrittenAttribute, WrittenTextured, WrittenUv};
 
 /// The radius of a primitive.
 #[derive(Clone, PartialEq, Debug)]
@@ -48,9 +50,9 @@ pub enum Radius {
 /// formula, and the steps of the numbers that it is made of.
 pub(crate) type MapKey = (Option<MapKind>, Vec<Step>);
 
-/// A node before its formulas are evaluated.
+/// What a node was written as.
 #[derive(Clone, PartialEq, Debug)]
-pub enum Recipe {
+pub enum Written {
     /// A leaf.
     Primitive {
         /// The kind of the skeleton.
@@ -58,7 +60,7 @@ pub enum Recipe {
         /// Its parameters, in the order of [`SkeletonKind::fields`].
         fields: Vec<FieldNumber>,
         /// How the field fades.
-        falloff: FalloffRecipe,
+        falloff: WrittenFalloff,
         /// How far the field reaches.
         radius: Radius,
         /// The factor of the field.
@@ -96,7 +98,7 @@ pub enum Recipe {
         /// The attribute group.
         name: Arc<str>,
         /// What they have.
-        value: AttributeRecipe,
+        value: WrittenAttribute,
     },
 }
 
@@ -114,13 +116,13 @@ impl Radius {
     }
 }
 
-impl Recipe {
+impl Written {
     /// The formula of coordinates that it has.
     pub(crate) const fn formula(&self) -> Option<&Formula> {
         match self {
             Self::Expression(formula)
             | Self::FormulaWarp(formula)
-            | Self::Attribute { value: AttributeRecipe::Expressed(formula), .. } => Some(formula),
+            | Self::Attribute { value: WrittenAttribute::Expressed(formula), .. } => Some(formula),
             Self::Primitive { .. }
             | Self::Combine { .. }
             | Self::Select(_)
@@ -131,7 +133,7 @@ impl Recipe {
     }
 
     /// All its numbers.
-    fn numbers(&self) -> impl Iterator<Item = &Number> {
+    pub fn numbers(&self) -> impl Iterator<Item = &Number> {
         let falloff = if let Self::Primitive { falloff, .. } = self { falloff.fields() } else { &[] };
         let (fields, numbers, own): (&[FieldNumber], &[Number], [Option<&Number>; 2]) = match self {
             Self::Primitive { fields, radius, strength, .. } => {
@@ -144,7 +146,7 @@ impl Recipe {
             Self::Map { fields, .. } | Self::Warp { fields, .. } => (fields, &[], [None; 2]),
         };
         let value = if let Self::Attribute { value, .. } = self { Some(value) } else { None };
-        let numbers = numbers.iter().chain(value.into_iter().flat_map(AttributeRecipe::numbers));
+        let numbers = numbers.iter().chain(value.into_iter().flat_map(WrittenAttribute::numbers));
         let fields = fields.iter().chain(falloff).flat_map(FieldNumber::numbers);
         fields.chain(numbers).chain(own.into_iter().flatten())
     }
@@ -204,8 +206,16 @@ impl Recipe {
         Ok(fresh)
     }
 
-    /// The node, with the present values of its numbers.
-    pub(crate) fn kind(&self, iso: f64) -> Result<NodeKind, Fault> {
+    /// What the node means with the present values of its numbers, in a model of this iso-value; unchecked.
+    ///
+    /// # Errors
+    ///
+    /// An axis without a direction, and the surface radius of a primitive that has no surface; without a place.
+    pub fn evaluated(&self, iso: f64) -> Result<NodeKind, Diagnostic> {
+        self.kind(iso).map_err(|fault| fault.at(None))
+    }
+
+    fn kind(&self, iso: f64) -> Result<NodeKind, Fault> {
         let values =
             |fields: &[FieldNumber]| -> Vec<FieldValue> { fields.iter().map(FieldNumber::value).collect() };
         Ok(match self {
@@ -295,6 +305,11 @@ impl Recipe {
         })
     }
 
+    /// Whether it is a leaf with a skeleton.
+    pub(crate) const fn is_primitive(&self) -> bool {
+        matches!(self, Self::Primitive { .. })
+    }
+
     /// Whether the strength of a primitive follows a parameter.
     pub(crate) fn strength_follows(&self) -> bool {
         match self {
@@ -314,24 +329,7 @@ impl Recipe {
         if let Self::Primitive { falloff, .. } = self { falloff.follows() } else { false }
     }
 
-    /// The recipe of an operator with plain numbers.
-    pub(crate) fn of_combinator(combinator: Combinator) -> Self {
-        let numbers = combinator.numbers().into_iter().map(Number::from).collect();
-        Self::Combine { combinator: combinator.with_numbers(&[0.0; 2]), numbers }
-    }
-
-    /// The recipe of a primitive with plain numbers.
-    pub(crate) fn of_primitive(leaf: &Primitive) -> Self {
-        Self::Primitive {
-            skeleton: leaf.skeleton.kind(),
-            fields: leaf.skeleton.to_fields().into_iter().map(FieldNumber::from).collect(),
-            falloff: leaf.falloff.into(),
-            radius: Radius::Support(leaf.radius.into()),
-            strength: leaf.strength.into(),
-        }
-    }
-
-    /// The recipe of a primitive with another strength.
+    /// The same with another strength, if it is a primitive.
     pub(crate) fn with_strength(mut self, new: Number) -> Self {
         if let Self::Primitive { strength, .. } = &mut self {
             *strength = new;
@@ -339,19 +337,19 @@ impl Recipe {
         self
     }
 
-    /// The recipe of a primitive with another falloff.
-    pub(crate) fn with_falloff(mut self, new: FalloffRecipe) -> Self {
+    /// The same with another falloff, if it is a primitive.
+    pub(crate) fn with_falloff(mut self, new: WrittenFalloff) -> Self {
         if let Self::Primitive { falloff, .. } = &mut self {
             *falloff = new;
         }
         self
     }
 
-    /// The recipe of a primitive that was changed from one leaf to another: numbers that the change has left alone follow their
-    /// parameters still.
+    /// What a primitive is written as that was changed from one leaf to another: numbers that the change has left alone
+    /// follow their parameters still.
     pub(crate) fn changed(&self, old: &Primitive, new: &Primitive) -> Self {
         let Self::Primitive { fields, falloff, radius, strength, .. } = self else {
-            unreachable!("leaves have recipes of primitives")
+            unreachable!("leaves are written as primitives")
         };
         let kept = |number: &Number, old: f64, new: f64| {
             if old.to_bits() == new.to_bits() { number.clone() } else { Number::from(new) }

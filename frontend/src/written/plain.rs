@@ -1,0 +1,82 @@
+//! How nodes with plain values are written.
+
+use std::sync::Arc;
+
+use glam::{DAffine3, DVec3};
+
+use super::{FieldNumber, Radius, Written};
+use crate::combine::Combinator;
+use crate::field::FieldValue;
+use crate::kind::{NodeKind, Primitive};
+use crate::map::{Affine, MapKind, Scale, ScaleAxes, Translate};
+use crate::member::Member;
+use crate::warp::Warp;
+
+impl From<NodeKind> for Written {
+    fn from(kind: NodeKind) -> Self {
+        match kind {
+            NodeKind::Primitive(leaf) => leaf.into(),
+            NodeKind::Combine(combinator) => combinator.into(),
+            NodeKind::Expression(expression) => Self::Expression((&expression).into()),
+            NodeKind::Select(which) => Self::Select(which.into()),
+            NodeKind::Affine(map) => map.into(),
+            NodeKind::Warp(warp) => warp.into(),
+            NodeKind::Attribute { name, value } => {
+                Self::Attribute { name: Arc::clone(&name), value: (&value).into() }
+            }
+        }
+    }
+}
+
+impl From<Primitive> for Written {
+    fn from(leaf: Primitive) -> Self {
+        Self::Primitive {
+            skeleton: leaf.skeleton.kind(),
+            fields: numbers(leaf.skeleton.to_fields()),
+            falloff: leaf.falloff.into(),
+            radius: Radius::Support(leaf.radius.into()),
+            strength: leaf.strength.into(),
+        }
+    }
+}
+
+impl From<Combinator> for Written {
+    fn from(combinator: Combinator) -> Self {
+        let numbers = combinator.numbers().into_iter().map(Into::into).collect();
+        Self::Combine { combinator: combinator.with_numbers(&[0.0; 2]), numbers }
+    }
+}
+
+impl From<Warp> for Written {
+    fn from(warp: Warp) -> Self {
+        match (warp.kind(), &warp) {
+            (_, Warp::Formula(warp)) => Self::FormulaWarp(warp.into()),
+            (Some(kind), warp) => Self::Warp { warp: kind, fields: numbers(warp.to_fields()) },
+            (None, _) => unreachable!("all warps but formulas are members"),
+        }
+    }
+}
+
+impl From<DAffine3> for Written {
+    /// The simplest map that has the same bits.
+    fn from(map: DAffine3) -> Self {
+        let bits = |map: &DAffine3| map.to_cols_array().map(f64::to_bits);
+        let diagonal = DVec3::new(map.matrix3.x_axis.x, map.matrix3.y_axis.y, map.matrix3.z_axis.z);
+        let (map, fields) = if bits(&map) == bits(&DAffine3::from_translation(map.translation)) {
+            (MapKind::Translate, Translate { by: map.translation }.to_fields())
+        } else if bits(&map) != bits(&DAffine3::from_scale(diagonal)) {
+            let [x, y, z, shift] = map.to_cols_array_2d();
+            let rows = [0, 1, 2].map(|row| [x[row], y[row], z[row], shift[row]]);
+            (MapKind::Affine, Affine { rows }.to_fields())
+        } else if diagonal.to_array().iter().all(|factor| factor.to_bits() == diagonal.x.to_bits()) {
+            (MapKind::Scale, Scale { by: diagonal.x }.to_fields())
+        } else {
+            (MapKind::ScaleAxes, ScaleAxes { by: diagonal }.to_fields())
+        };
+        Self::Map { map, fields: numbers(fields) }
+    }
+}
+
+fn numbers(values: Vec<FieldValue>) -> Vec<FieldNumber> {
+    values.into_iter().map(Into::into).collect()
+}
