@@ -1,12 +1,11 @@
 //! Where results go: files that are replaced as a whole, the standard output, and what people read on a terminal.
 
-use std::fs::{self, File};
 use std::io::{self, BufWriter, IsTerminal as _, Stdout, Write};
 use std::path::{Path, PathBuf};
 
 use clap::builder::styling::{AnsiColor, Style};
+use jbt::export::AtomicFile;
 use jbt_frontend::diagnostic::{Severity, escape};
-use tempfile::{NamedTempFile, TempPath};
 
 use crate::failure::Failure;
 use crate::standard::is_standard;
@@ -30,30 +29,21 @@ pub struct Output {
 
 enum Target {
     Standard(Stdout),
-    /// A pipe or a device: it is written as it comes.
-    Direct(File),
-    /// The new contents of a file, under a temporary name beside it.
-    Replacement {
-        file: File,
-        temporary: TempPath,
-        path: PathBuf,
-        /// Whether it may take the place of a file.
-        replace: bool,
-    },
+    File(AtomicFile),
 }
 
 impl Write for Target {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match self {
             Self::Standard(stdout) => stdout.write(bytes),
-            Self::Direct(file) | Self::Replacement { file, .. } => file.write(bytes),
+            Self::File(file) => file.write(bytes),
         }
     }
 
     fn flush(&mut self) -> io::Result<()> {
         match self {
             Self::Standard(stdout) => stdout.flush(),
-            Self::Direct(file) | Self::Replacement { file, .. } => file.flush(),
+            Self::File(file) => file.flush(),
         }
     }
 }
@@ -66,7 +56,8 @@ impl Output {
         let target = if is_standard(path) {
             Target::Standard(io::stdout())
         } else {
-            open_file(path, destination.replace).map_err(|error| Failure::io("write", &name, error))?
+            let file = AtomicFile::create(path, destination.replace);
+            Target::File(file.map_err(|error| Failure::io("write", &name, error))?)
         };
         Ok(Self { writer: BufWriter::with_capacity(1 << 16, target), name })
     }
@@ -75,7 +66,7 @@ impl Output {
     pub fn failure(&self, error: io::Error) -> Failure {
         match self.writer.get_ref() {
             Target::Standard(_) => Failure::stdout(error),
-            Target::Direct(_) | Target::Replacement { .. } => Failure::io("write", &self.name, error),
+            Target::File(_) => Failure::io("write", &self.name, error),
         }
     }
 
@@ -86,15 +77,8 @@ impl Output {
         // Everything has been flushed.
         let (target, _) = writer.into_parts();
         match target {
-            Target::Standard(_) | Target::Direct(_) => Ok(()),
-            Target::Replacement { file, temporary, path, replace } => file
-                .sync_all()
-                .and_then(|()| {
-                    let put =
-                        if replace { temporary.persist(path) } else { temporary.persist_noclobber(path) };
-                    put.map_err(|error| error.error)
-                })
-                .map_err(|error| Failure::io("write", name, error)),
+            Target::Standard(_) => Ok(()),
+            Target::File(file) => file.finish().map_err(|error| Failure::io("write", name, error)),
         }
     }
 }
@@ -109,69 +93,12 @@ impl Write for Output {
     }
 }
 
-/// What stands at a path, and so how it is written to.
-enum Place {
-    /// A pipe or a device.
-    Direct(PathBuf),
-    /// A file, or nothing as yet: its path, its folder, and the permissions that it has.
-    File { path: PathBuf, folder: PathBuf, old: Option<fs::Permissions> },
-}
-
-impl Place {
-    fn at(path: &Path) -> io::Result<Self> {
-        // Through a link it is the file behind it that is replaced; the link stays.
-        let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let old = match fs::metadata(&path) {
-            Ok(old) if old.is_dir() => return Err(io::ErrorKind::IsADirectory.into()),
-            Ok(old) if !old.is_file() => return Ok(Self::Direct(path)),
-            Ok(old) if old.permissions().readonly() => {
-                return Err(io::Error::new(io::ErrorKind::PermissionDenied, "the file is read-only"));
-            }
-            Ok(old) => Some(old.permissions()),
-            Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
-            Err(_) if !folder.is_dir() => {
-                let message = format!("there is no folder {}", escape(&folder.display().to_string()));
-                return Err(io::Error::new(io::ErrorKind::NotFound, message));
-            }
-            Err(_) => None,
-        };
-        Ok(Self::File { folder: folder.to_owned(), path, old })
-    }
-}
-
 /// Refuses a path of the command line that cannot be written to. Nothing is left there.
 pub fn check_place(path: &Path) -> Result<(), Failure> {
-    let check = || match Place::at(path)? {
-        // To open a pipe is to wait for its reader.
-        Place::Direct(_) => Ok(()),
-        Place::File { folder, .. } => temporary(&folder).map(drop),
-    };
     if is_standard(path) {
         return Ok(());
     }
-    check().map_err(|error| Failure::io("write", path.display(), error))
-}
-
-fn open_file(path: &Path, replace: bool) -> io::Result<Target> {
-    match Place::at(path)? {
-        Place::Direct(path) => File::options().write(true).open(path).map(Target::Direct),
-        Place::File { path, folder, old } => {
-            let (file, temporary) = temporary(&folder)?.into_parts();
-            if let Some(old) = old {
-                file.set_permissions(old)?;
-            }
-            Ok(Target::Replacement { file, temporary, path, replace })
-        }
-    }
-}
-
-/// A new file with the permissions that the process gives to any new file.
-fn temporary(folder: &Path) -> io::Result<NamedTempFile> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".jbt-");
-    // The system's own words about a file that cannot be made: the temporary name means nothing to anybody.
-    builder.make_in(folder, |path| File::options().read(true).write(true).create_new(true).open(path))
+    AtomicFile::check(path).map_err(|error| Failure::io("write", path.display(), error))
 }
 
 /// Writes to the standard output what is no line of text.
@@ -292,6 +219,8 @@ pub fn plural(count: u64, one: &str, many: &str) -> String {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
 
     #[test]

@@ -10,7 +10,7 @@ use jbt_frontend::falloff::FalloffKind;
 use jbt_frontend::field::{Field, FieldKind, FieldValue};
 use jbt_frontend::map::MapKind;
 use jbt_frontend::skeleton::SkeletonKind;
-use jbt_frontend::text::{Options, functions, parse};
+use jbt_frontend::text::{OWN_FIELDS, Options, functions, parse};
 use jbt_frontend::texture::TextureKind;
 use jbt_frontend::warp::WarpKind;
 
@@ -21,9 +21,6 @@ const HEAD: &str = "jbt 1
     let b = point { at (0.3 0 0) radius 1 }
     let d = sphere { sphere_radius 0.3 radius 0.5 }
 ";
-
-/// The parameters of every primitive.
-const OWN_FIELDS: [&str; 4] = ["radius", "surface_radius", "falloff", "strength"];
 
 /// What the pages tell about that is in no list, by page.
 const UNLISTED: [(&str, &str); 9] = [

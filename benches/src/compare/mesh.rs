@@ -48,13 +48,8 @@ impl Task {
 
     fn ours(&self, thin_parts: bool) -> Polygonized {
         let region = Some(([-1.0; 3], [1.0; 3]));
-        let polygonize = Polygonize {
-            region,
-            fineness: jbt::Fineness::Resolution(self.cells),
-            verify: false,
-            thin_parts,
-            ..Polygonize::default()
-        };
+        let polygonize =
+            Polygonize { region, fineness: jbt::Fineness::Resolution(self.cells), verify: false, thin_parts };
         let run = || polygonize.mesh(&Compiler::new(), &self.tree).run();
         self.pool.install(run).expect("blobs have a mesh")
     }

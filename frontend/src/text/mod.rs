@@ -130,6 +130,7 @@ use crate::model::Model;
 
 pub use print::print;
 pub use state::Options;
+pub use words::OWN_FIELDS;
 
 /// The model of a text.
 ///

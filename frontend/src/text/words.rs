@@ -16,7 +16,7 @@ use crate::word::is_statement;
 pub(super) const GROUP_NODE: &str = "with";
 
 /// The parameters that every primitive has.
-pub(super) const OWN_FIELDS: [&str; 4] = ["radius", "surface_radius", "falloff", "strength"];
+pub const OWN_FIELDS: [&str; 4] = ["radius", "surface_radius", "falloff", "strength"];
 
 /// The word before the block of a warp that a second child weighs.
 pub(super) const WEIGHTED: &str = "weighted";

@@ -12,6 +12,7 @@
 //! the mesh; in PLY and OBJ vertices are in the world, with all digits; in STL too, but rounded to f32, which
 //! [loses digits](loses_digits).
 
+mod atomic;
 mod conventions;
 mod format;
 mod glb;
@@ -22,16 +23,15 @@ mod png;
 mod stl;
 pub mod svg;
 
+pub use atomic::AtomicFile;
 pub use conventions::{ColorEncoding, Colors, Conventions, FarMeshes, UnknownWord, Up};
 pub use format::{ExportOptions, Format};
 pub use png::write_png;
 
-use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use jbt_ir::limits::MAX_ATTRIBUTE_WIDTH;
-use tempfile::NamedTempFile;
 use thiserror::Error;
 
 use crate::mesh::{Attribute, Mesh};
@@ -113,9 +113,7 @@ pub fn write_with(
 
 /// Writes a mesh to a file, in the format that the extension names.
 ///
-/// The file appears whole or not at all: it is written beside its place under a temporary name and then renamed. A file that is
-/// there already is replaced and keeps its permissions; a new one gets those that files usually get. A link is followed. What is not a
-/// file but can be written to (a pipe, a device) is written to.
+/// The file appears whole or not at all: see [`AtomicFile`].
 ///
 /// # Errors
 /// As [`write()`], with [`ExportError::File`] for whatever the system refuses, and [`ExportError::Extension`].
@@ -151,37 +149,9 @@ pub fn save_with(
         | ExportError::Malformed(_)
         | ExportError::TooLarge { .. }) => other,
     };
-    // The file itself is replaced, and not a link to it.
-    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-    let existing = match fs::metadata(&target) {
-        Ok(existing) => Some(existing),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => None,
-        Err(error) => return Err(at_path(error)),
-    };
-    if existing.as_ref().is_some_and(|existing| !existing.is_file()) {
-        let mut out = fs::OpenOptions::new().write(true).open(&target).map_err(at_path)?;
-        return write_with(mesh, format, options, &mut out).map_err(located);
-    }
-    let folder = match target.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        Some(_) | None => Path::new("."),
-    };
-    let mut file = temporary(folder).map_err(at_path)?;
-    write_with(mesh, format, options, file.as_file_mut()).map_err(located)?;
-    if let Some(existing) = existing {
-        file.as_file().set_permissions(existing.permissions()).map_err(at_path)?;
-    }
-    // Dropping the temporary file, also when this fails, removes it.
-    file.persist(&target).map_err(|error| at_path(error.error))?;
-    Ok(())
-}
-
-/// A temporary file with the permissions of an ordinary new one.
-fn temporary(folder: &Path) -> io::Result<NamedTempFile> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".jbt-").suffix(".tmp");
-    // The system's own words about a file that cannot be made: the temporary name means nothing to anybody.
-    builder.make_in(folder, |path| fs::File::options().read(true).write(true).create_new(true).open(path))
+    let mut file = AtomicFile::create(path, true).map_err(at_path)?;
+    write_with(mesh, format, options, &mut file).map_err(located)?;
+    file.finish().map_err(at_path)
 }
 
 /// Checks what every writer relies on.

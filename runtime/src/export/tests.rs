@@ -1,5 +1,7 @@
 //! Files are parsed back by hand, by the words of their specifications.
 
+use std::fs;
+
 use super::*;
 
 /// A tetrahedron with awkward colours and attributes.

@@ -1,0 +1,125 @@
+//! Files that are replaced as a whole.
+
+use std::fs::{self, File, Permissions};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use jbt_frontend::diagnostic::escape;
+use tempfile::{NamedTempFile, TempPath};
+
+/// The new contents of a file, which appear whole or not at all.
+///
+/// They are written beside the file, under a temporary name that begins with `.jbt-`, and [`finish`](Self::finish) renames
+/// them; whoever drops this before, leaves the file as it was. A file that is there already keeps its permissions, a new
+/// one gets those that files usually get. A link is followed. What is not a file but can be written to (a pipe, a device)
+/// is written to as the bytes come.
+#[derive(Debug)]
+pub struct AtomicFile {
+    file: File,
+    /// Where the contents go; `None` if they are there already.
+    target: Option<Target>,
+}
+
+#[derive(Debug)]
+struct Target {
+    temporary: TempPath,
+    path: PathBuf,
+    replace: bool,
+}
+
+/// What stands at a path, and so how it is written to.
+enum Place {
+    /// A pipe or a device.
+    Direct(PathBuf),
+    /// A file, or nothing as yet: its path, its folder, and the permissions that it has.
+    File { path: PathBuf, folder: PathBuf, old: Option<Permissions> },
+}
+
+impl AtomicFile {
+    /// Begins to write what stands at a path. Without `replace`, a file that has appeared there by the end is an error.
+    ///
+    /// # Errors
+    ///
+    /// Whatever the system refuses; a folder, a file that is read-only, and a path whose folder is not there.
+    pub fn create(path: &Path, replace: bool) -> io::Result<Self> {
+        match Place::at(path)? {
+            Place::Direct(path) => {
+                let file = File::options().write(true).open(path)?;
+                Ok(Self { file, target: None })
+            }
+            Place::File { path, folder, old } => {
+                let (file, temporary) = temporary(&folder)?.into_parts();
+                if let Some(old) = old {
+                    file.set_permissions(old)?;
+                }
+                Ok(Self { file, target: Some(Target { temporary, path, replace }) })
+            }
+        }
+    }
+
+    /// Tries whether a path can be written to. Nothing is left there.
+    ///
+    /// # Errors
+    ///
+    /// As [`create`](Self::create).
+    pub fn check(path: &Path) -> io::Result<()> {
+        match Place::at(path)? {
+            // To open a pipe is to wait for its reader.
+            Place::Direct(_) => Ok(()),
+            Place::File { folder, .. } => temporary(&folder).map(drop),
+        }
+    }
+
+    /// Puts the contents in their place, once they are on the disk.
+    ///
+    /// # Errors
+    ///
+    /// Whatever the system refuses; then the file is as it was.
+    pub fn finish(self) -> io::Result<()> {
+        let Some(Target { temporary, path, replace }) = self.target else { return Ok(()) };
+        self.file.sync_all()?;
+        let put = if replace { temporary.persist(path) } else { temporary.persist_noclobber(path) };
+        put.map_err(|error| error.error)
+    }
+}
+
+impl Write for AtomicFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+impl Place {
+    fn at(path: &Path) -> io::Result<Self> {
+        // Through a link it is the file behind it that is replaced; the link stays.
+        let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let old = match fs::metadata(&path) {
+            Ok(old) if old.is_dir() => return Err(io::ErrorKind::IsADirectory.into()),
+            Ok(old) if !old.is_file() => return Ok(Self::Direct(path)),
+            Ok(old) if old.permissions().readonly() => {
+                return Err(io::Error::new(io::ErrorKind::PermissionDenied, "the file is read-only"));
+            }
+            Ok(old) => Some(old.permissions()),
+            Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
+            Err(_) if !folder.is_dir() => {
+                let message = format!("there is no folder {}", escape(&folder.display().to_string()));
+                return Err(io::Error::new(io::ErrorKind::NotFound, message));
+            }
+            Err(_) => None,
+        };
+        Ok(Self::File { folder: folder.to_owned(), path, old })
+    }
+}
+
+/// A new file with the permissions that the process gives to any new file.
+fn temporary(folder: &Path) -> io::Result<NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".jbt-");
+    // The system's own words about a file that cannot be made: the temporary name means nothing to anybody.
+    builder.make_in(folder, |path| File::options().read(true).write(true).create_new(true).open(path))
+}
