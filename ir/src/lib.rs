@@ -18,6 +18,7 @@ pub mod math;
 pub mod op;
 pub mod origin;
 pub mod pass;
+pub mod plan;
 pub mod selection;
 #[cfg(test)]
 #[path = "../tests/common/spicy.rs"]

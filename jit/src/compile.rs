@@ -11,10 +11,10 @@ use jbt_ir::{Function, InstKind, Level, Verified};
 use crate::error::CompileError;
 use crate::memory::Code;
 use crate::options::{Allocator, Backend, Check, Options, Pieces, VectorCount};
-use crate::pressure::FIELD_CARRIES;
-use crate::strips::Plan;
 use crate::wide::{self, Blob, Emitted, Wish};
-use crate::{isa, lower, pressure};
+use crate::{isa, lower};
+use jbt_ir::plan::Plan;
+use jbt_ir::plan::pressure::{self, FIELD_CARRIES};
 
 /// Up to this many live values the code is faster for having 16 points in a block: what is spilled costs less
 /// than reading every number of a row four times.

@@ -65,8 +65,6 @@ mod isa;
 mod lower;
 mod memory;
 mod options;
-mod pressure;
-mod strips;
 mod vectors;
 mod wide;
 

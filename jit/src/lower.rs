@@ -61,8 +61,8 @@ use jbt_ir::{Any, Block, Domain, Entity, Fold, Function, Inst, InstKind, Table, 
 
 use crate::abi::TableView;
 use crate::options::VectorCount;
-use crate::strips::{Column, Piece, Plan, Slot, Then};
 use crate::vectors::{VECTOR_BYTES, Vectors};
+use jbt_ir::plan::{Column, Piece, Plan, Slot, Then};
 
 /// A Cranelift function that keeps to the ABI of [`crate::entry`]: it reads the input planes, the table views
 /// and what these point to as far as checked tables go, writes the output planes, and touches no other memory

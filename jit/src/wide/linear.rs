@@ -19,7 +19,7 @@ use jbt_ir::pass::{Gate, Gates};
 use jbt_ir::{Block, Entity, Fold, FoldKind, Function, Inst, InstKind, Op, Table, Type, Value};
 use rustc_hash::FxHashSet as HashSet;
 
-use crate::strips::{Plan, Slot, Then};
+use jbt_ir::plan::{Plan, Slot, Then};
 
 /// A value of the list.
 pub(crate) type Name = u32;

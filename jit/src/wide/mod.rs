@@ -48,8 +48,8 @@ use self::lives::Lives;
 use self::state::{Count, State, Task};
 use crate::error::CompileError;
 use crate::options::VectorCount;
-use crate::pressure::{self, FIELD_CARRIES};
-use crate::strips::Plan;
+use jbt_ir::plan::Plan;
+use jbt_ir::plan::pressure::{self, FIELD_CARRIES};
 
 /// Finished code: a function of [`crate::entry`]'s ABI, with its constants, that runs at any address which is
 /// a multiple of 64.

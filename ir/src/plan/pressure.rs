@@ -14,13 +14,13 @@
 //!     yield v5          ┘
 //! ```
 
-use jbt_ir::{Block, Entity, Function, Inst, InstData, InstKind, Value};
-
-use crate::strips::{Plan, Then};
+use super::strips::{Plan, Then};
+use crate::entity::{Block, Entity, Inst, Value};
+use crate::function::{Function, InstData, InstKind};
 
 /// Where loops carry at most this many, a function is a field, and not a gradient or attributes: more points
 /// in a block pay longer.
-pub(crate) const FIELD_CARRIES: usize = 3;
+pub const FIELD_CARRIES: usize = 3;
 /// The walk over all instructions in order of execution.
 struct Walk<'a> {
     function: &'a Function,
@@ -38,7 +38,8 @@ struct Walk<'a> {
 }
 
 /// The largest number of values that are alive at the same time.
-pub(crate) fn live_values(function: &Function, plan: &Plan) -> usize {
+#[must_use]
+pub fn live_values(function: &Function, plan: &Plan) -> usize {
     let values = function.values.len();
     let mut walk = Walk {
         function,
@@ -66,7 +67,8 @@ pub(crate) fn live_values(function: &Function, plan: &Plan) -> usize {
 /// The largest number of values that a loop hands from row to row: few for a field, more for a gradient, and
 /// more for attributes. Where the function is one piece they compete for registers with all that the body
 /// computes.
-pub(crate) fn carried_values(function: &Function) -> usize {
+#[must_use]
+pub fn carried_values(function: &Function) -> usize {
     let carried =
         |inst: &InstData| if let InstKind::Fold(fold) = &inst.kind { fold.initial.len() } else { 0 };
     function.insts.values().map(carried).max().unwrap_or(0)
@@ -155,10 +157,10 @@ impl Walk<'_> {
 
 #[cfg(test)]
 mod tests {
-    use jbt_ir::{Domain, FoldKind, Function, FunctionBuilder, Rule, Schema, Value};
+    use crate::{Domain, FoldKind, Function, FunctionBuilder, Rule, Schema, Value};
 
     use super::{carried_values, live_values};
-    use crate::strips::Plan;
+    use crate::plan::Plan;
 
     fn live(function: &Function) -> usize {
         live_values(function, &Plan::whole(function))

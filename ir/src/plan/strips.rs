@@ -25,8 +25,10 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::ops::Range;
 
-use jbt_ir::{Block, Entity, Function, Inst, InstData, InstKind, Table, Value};
 use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
+
+use crate::entity::{Block, Entity, Inst, Table, Value};
+use crate::function::{Function, InstData, InstKind};
 
 /// Bytes of all slots that leave room for other things in the nearest cache.
 const NEAR_BYTES: usize = 32 << 10;
@@ -35,26 +37,30 @@ const NEAR_BYTES: usize = 32 << 10;
 const STRIP_POINTS: [usize; 2] = [64, 1024];
 
 /// A stretch of the instructions of one block.
-pub(crate) struct Piece {
+#[derive(Debug)]
+pub struct Piece {
     /// Positions in the block.
-    pub(crate) insts: Range<usize>,
+    pub insts: Range<usize>,
     /// What comes after it.
-    pub(crate) then: Then,
+    pub then: Then,
     /// The columns that it reads, if folds are cut.
-    pub(crate) columns: Vec<Column>,
+    pub columns: Vec<Column>,
 }
 
 /// A column of the current row of a table.
-#[derive(Clone, Copy)]
-pub(crate) struct Column {
-    pub(crate) value: Value,
-    pub(crate) table: Table,
-    pub(crate) column: usize,
+#[derive(Clone, Copy, Debug)]
+pub struct Column {
+    /// What the column gives.
+    pub value: Value,
+    /// The table.
+    pub table: Table,
+    /// Its place in a row.
+    pub column: usize,
 }
 
 /// What follows a piece.
-#[derive(Clone, Copy)]
-pub(crate) enum Then {
+#[derive(Clone, Copy, Debug)]
+pub enum Then {
     /// The next piece of the block.
     Next,
     /// A fold that is cut. Then the next piece of the block.
@@ -65,10 +71,14 @@ pub(crate) enum Then {
 
 /// A place for one value at all points of a strip.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-pub(crate) struct Slot(pub(crate) usize);
+pub struct Slot(
+    /// Its number, from 0.
+    pub usize,
+);
 
 /// The pieces of a function, and what they hand to each other.
-pub(crate) struct Plan {
+#[derive(Debug)]
+pub struct Plan {
     /// Of the function's body and of the bodies of folds, if these are cut.
     pieces: HashMap<Block, Vec<Piece>>,
     /// Where a value is kept, if a piece reads it that does not define it.
@@ -80,7 +90,8 @@ pub(crate) struct Plan {
 
 impl Plan {
     /// One piece, in which all folds are.
-    pub(crate) fn whole(function: &Function) -> Self {
+    #[must_use]
+    pub fn whole(function: &Function) -> Self {
         let insts = 0..function.blocks[function.body].insts.len();
         let all = Piece { insts, then: Then::End, columns: Vec::new() };
         let values = function.values.len();
@@ -93,7 +104,8 @@ impl Plan {
     }
 
     /// Pieces of at most so many instructions, with a cut before and behind every fold.
-    pub(crate) fn cut(function: &Function, longest: usize) -> Self {
+    #[must_use]
+    pub fn cut(function: &Function, longest: usize) -> Self {
         let mut cutter = Cutter::new(function, longest);
         cutter.cut(function.body);
         let pieces = cutter.pieces;
@@ -103,23 +115,27 @@ impl Plan {
         Self { pieces, slots, slot_count, homes }
     }
 
-    /// The pieces of the function's body or of the body of a fold that is cut.
-    pub(crate) fn pieces(&self, block: Block) -> &[Piece] {
+    /// The pieces of the function's body or of the body of a fold that is cut. Panics on another block.
+    #[must_use]
+    pub fn pieces(&self, block: Block) -> &[Piece] {
         &self.pieces[&block]
     }
 
     /// Whether there is but one piece.
-    pub(crate) fn is_whole(&self) -> bool {
+    #[must_use]
+    pub fn is_whole(&self) -> bool {
         self.pieces.len() == 1 && self.pieces.values().all(|pieces| pieces.len() == 1)
     }
 
     /// Where a value is kept, if it is.
-    pub(crate) fn slot(&self, value: Value) -> Option<Slot> {
+    #[must_use]
+    pub fn slot(&self, value: Value) -> Option<Slot> {
         self.slots[value.index()]
     }
 
     /// Bytes of a strip in a plane, and of a slot: as many points as let all slots be near.
-    pub(crate) fn strip_bytes(&self) -> usize {
+    #[must_use]
+    pub fn strip_bytes(&self) -> usize {
         let number = size_of::<f32>();
         let points = NEAR_BYTES / number / self.slot_count.max(1);
         let [shortest, longest] = STRIP_POINTS;
@@ -127,12 +143,14 @@ impl Plan {
     }
 
     /// Bytes of all slots. Values that are not alive together share one.
-    pub(crate) fn slot_bytes(&self) -> usize {
+    #[must_use]
+    pub fn slot_bytes(&self) -> usize {
         self.slot_count * self.strip_bytes()
     }
 
     /// The piece that defines a value, in order of execution.
-    pub(crate) fn home(&self, value: Value) -> usize {
+    #[must_use]
+    pub fn home(&self, value: Value) -> usize {
         self.homes[value.index()]
     }
 }
@@ -351,7 +369,7 @@ impl<'a> Lives<'a> {
 
 #[cfg(test)]
 mod tests {
-    use jbt_ir::{Domain, FoldKind, Function, FunctionBuilder, InstKind, Rule, Schema, Value};
+    use crate::{Domain, FoldKind, Function, FunctionBuilder, InstKind, Rule, Schema, Value};
 
     use super::{Plan, Then};
 
