@@ -54,7 +54,6 @@ impl NodeKind {
     /// The skeleton whose uv the field of a leaf has: a formula has that of a point at the origin of its space.
     #[must_use]
     pub(crate) fn uv_skeleton(&self) -> &Skeleton {
-        static ORIGIN: Skeleton = Skeleton::Point(Point { at: DVec3::ZERO });
         match self {
             Self::Primitive(primitive) => &primitive.skeleton,
             Self::Combine(_)
@@ -62,8 +61,14 @@ impl NodeKind {
             | Self::Select(_)
             | Self::Affine(_)
             | Self::Warp(_)
-            | Self::Attribute { .. } => &ORIGIN,
+            | Self::Attribute { .. } => Self::origin(),
         }
+    }
+
+    /// A point at the origin, whose uv formulas have.
+    pub(crate) const fn origin() -> &'static Skeleton {
+        static ORIGIN: Skeleton = Skeleton::Point(Point { at: DVec3::ZERO });
+        &ORIGIN
     }
 
     /// The rows of an affine map, the last column of which is the shift; `None` for any other node.

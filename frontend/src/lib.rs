@@ -14,6 +14,7 @@ pub mod bounds;
 pub mod builder;
 pub mod check;
 pub mod combine;
+mod descent;
 pub mod diagnostic;
 pub mod expression;
 pub mod falloff;

@@ -14,11 +14,14 @@ use std::fmt::Write as _;
 
 use glam::DVec3;
 
+use crate::attribute::AttributeValue;
 use crate::check::{CheckedTree, NodeId};
 use crate::combine::Combinator;
+use crate::descent::{Question, ask};
 use crate::diagnostic::Span;
 use crate::expression::Expression;
-use crate::kind::{NodeKind, chosen};
+use crate::kind::{NodeKind, Primitive};
+use crate::warp::Warp;
 
 /// A leaf that decides, as one of its occurrences.
 #[derive(Clone, PartialEq, Debug)]
@@ -74,85 +77,80 @@ struct Answer {
     leaf: Option<(u32, f64)>,
 }
 
-/// The work that is left.
-enum Task {
-    /// Ask the node of a step that is still to be made, at a point of its parent's space.
-    Ask(Step, DVec3),
-    /// Ask the child of a weighted warp, the node of this step, whose weight has answered.
-    Enter(NodeId, Step, DVec3),
-    /// Combine the answers of the children of a node, which is asked at a point of its parent's space.
-    Combine(NodeId, DVec3),
-}
-
 /// The leaf that decides at `p`: `None` where the field is 0, or where it is negative because nothing with a positive field is left.
 ///
 /// Cost: all paths of the tree.
 #[must_use]
 pub fn owner(tree: &CheckedTree, p: [f64; 3]) -> Option<Owner> {
-    let mut steps: Vec<Step> = Vec::new();
-    let mut tasks = vec![Task::Ask(Step { node: tree.root(), above: 0, child: 0 }, p.into())];
-    let mut answers: Vec<Answer> = Vec::new();
-    while let Some(task) = tasks.pop() {
-        match task {
-            Task::Ask(step, p) => {
-                // At most limits::MAX_OCCURRENCES.
-                let here = steps.len() as u32;
-                let node = tree.node(step.node);
-                let below =
-                    |child: usize| Step { node: node.children[child], above: here, child: child as u32 };
-                match &node.kind {
-                    NodeKind::Primitive(leaf) => {
-                        let s = leaf.skeleton.distance_squared(p) / (leaf.radius * leaf.radius);
-                        let field = leaf.strength * leaf.falloff.value(s);
-                        answers.push(Answer { field, leaf: (field != 0.0).then_some((here, 1.0)) });
-                    }
-                    NodeKind::Expression(expression) if node.children.is_empty() => {
-                        let field = expression.field(p, &[]);
-                        answers.push(Answer { field, leaf: (field != 0.0).then_some((here, 1.0)) });
-                    }
-                    NodeKind::Combine(_) | NodeKind::Expression(_) => {
-                        tasks.push(Task::Combine(step.node, p));
-                        tasks.extend((0..node.children.len()).rev().map(|child| Task::Ask(below(child), p)));
-                    }
-                    NodeKind::Affine(map) => {
-                        tasks.push(Task::Ask(below(0), map.inverse().transform_point3(p)));
-                    }
-                    NodeKind::Warp(_) if node.children.len() > 1 => {
-                        tasks.push(Task::Enter(step.node, below(0), p));
-                        tasks.push(Task::Ask(below(1), p));
-                    }
-                    NodeKind::Warp(warp) => tasks.push(Task::Ask(below(0), warp.inverse(p))),
-                    NodeKind::Attribute { .. } => tasks.push(Task::Ask(below(0), p)),
-                    NodeKind::Select(which) => tasks.push(Task::Ask(below(chosen(*which)), p)),
-                }
-                steps.push(step);
-            }
-            Task::Enter(id, step, p) => {
-                let weight = answers.pop().expect("the weight has been asked").field;
-                if let NodeKind::Warp(warp) = &tree.node(id).kind {
-                    tasks.push(Task::Ask(step, warp.weighted(p, weight)));
-                }
-            }
-            Task::Combine(id, p) => {
-                let node = tree.node(id);
-                let children = answers.split_off(answers.len() - node.children.len());
-                match &node.kind {
-                    NodeKind::Combine(combinator) => {
-                        answers.push(combine(*combinator, tree.iso(), &children));
-                    }
-                    NodeKind::Expression(expression) => answers.push(express(expression, p, &children)),
-                    NodeKind::Primitive(_)
-                    | NodeKind::Select(_)
-                    | NodeKind::Affine(_)
-                    | NodeKind::Warp(_)
-                    | NodeKind::Attribute { .. } => unreachable!("these combine nothing"),
-                }
-            }
+    let mut found = Owners { iso: tree.iso(), steps: Vec::new() };
+    let root = ask(tree, &mut found, Place::default(), p.into());
+    let (leaf, share) = root.leaf.filter(|_| root.field != 0.0)?;
+    Some(describe(tree, &found.steps, leaf, share))
+}
+
+/// The question for the leaf that decides.
+struct Owners {
+    iso: f64,
+    steps: Vec<Step>,
+}
+
+/// On the way to a node: the step above, and which of its children this is. At the node: its own step.
+#[derive(Clone, Copy, Default)]
+struct Place {
+    step: u32,
+    child: u32,
+}
+
+impl Question for Owners {
+    type Way = Place;
+    type Answer = Answer;
+    type Mark = ();
+
+    fn enter(&mut self, node: NodeId, way: Place) -> Place {
+        // At most limits::MAX_OCCURRENCES.
+        let step = self.steps.len() as u32;
+        self.steps.push(Step { node, above: way.step, child: way.child });
+        Place { step, child: 0 }
+    }
+
+    fn below(&self, way: &Place, child: usize) -> Place {
+        Place { child: child as u32, ..*way }
+    }
+
+    fn given(&self, way: Place, _name: &str, _value: &AttributeValue, _p: DVec3) -> Place {
+        way
+    }
+
+    fn primitive(&self, leaf: &Primitive, p: DVec3, way: &Place) -> Answer {
+        let s = leaf.skeleton.distance_squared(p) / (leaf.radius * leaf.radius);
+        Answer::of_leaf(leaf.strength * leaf.falloff.value(s), way.step)
+    }
+
+    fn combine(&self, combinator: Combinator, children: &[Answer]) -> Answer {
+        combine(combinator, self.iso, children)
+    }
+
+    fn express(&self, formula: &Expression, p: DVec3, way: &Place, children: &[Answer]) -> Answer {
+        if children.is_empty() {
+            Answer::of_leaf(formula.field(p, &[]), way.step)
+        } else {
+            express(formula, p, children)
         }
     }
-    let root = answers.pop()?;
-    let (leaf, share) = root.leaf.filter(|_| root.field != 0.0)?;
-    Some(describe(tree, &steps, leaf, share))
+
+    fn field(answer: &Answer) -> f64 {
+        answer.field
+    }
+
+    fn mark(&self, _warp: &Warp, _p: DVec3, _weight: Option<&Answer>) {}
+
+    fn marked(&self, _answer: &mut Answer, (): ()) {}
+}
+
+impl Answer {
+    fn of_leaf(field: f64, step: u32) -> Self {
+        Self { field, leaf: (field != 0.0).then_some((step, 1.0)) }
+    }
 }
 
 fn combine(combinator: Combinator, iso: f64, children: &[Answer]) -> Answer {

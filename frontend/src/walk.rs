@@ -19,9 +19,11 @@ use glam::DVec3;
 use crate::attribute::{AttributeGroup, AttributeValue, Mixing, UvMap};
 use crate::check::{CheckedTree, NodeId};
 use crate::combine::Combinator;
+use crate::descent::{Question, ask};
 use crate::expression::Expression;
 use crate::kind::{NodeKind, Primitive};
 use crate::skeleton::Skeleton;
+use crate::warp::Warp;
 
 /// The answers at a point.
 #[derive(Clone, PartialEq, Debug)]
@@ -69,103 +71,74 @@ struct Answer {
     second: f64,
 }
 
-/// The work that is left.
-enum Task {
-    /// Ask a node, at a point of its parent's space, its leaves having this.
-    Ask(NodeId, DVec3, Way),
-    /// Ask the child of a weighted warp, whose weight has answered.
-    Enter(NodeId, DVec3, Way),
-    /// The last answer is no farther from a decision than this.
-    Decide(f64),
-    /// Combine the answers of the children of a node.
-    Combine(NodeId),
-    /// Evaluate the formula of a node at a point, its children having answered. As a leaf it has this.
-    Express(NodeId, DVec3, Way),
-}
-
 /// The answers at `p`. Cost: all paths of the tree.
 #[must_use]
 pub fn walk(tree: &CheckedTree, p: [f64; 3]) -> Sample {
     let defaults: Values = tree.attributes().iter().map(|group| group.default.clone()).collect();
     let unbound: Way = defaults.iter().map(|value| Given::Value(value.clone(), f64::INFINITY)).collect();
-    let mut tasks = vec![Task::Ask(tree.root(), p.into(), unbound)];
-    let mut answers: Vec<Answer> = Vec::new();
-    while let Some(task) = tasks.pop() {
-        match task {
-            Task::Ask(id, p, values) => {
-                let node = tree.node(id);
-                match &node.kind {
-                    NodeKind::Primitive(leaf) => answers.push(primitive(leaf, p, &values)),
-                    NodeKind::Combine(_) => {
-                        tasks.push(Task::Combine(id));
-                        tasks.extend(
-                            node.children.iter().rev().map(|&child| Task::Ask(child, p, values.clone())),
-                        );
-                    }
-                    NodeKind::Expression(_) => {
-                        tasks.push(Task::Express(id, p, values.clone()));
-                        let ask = |&child: &NodeId| Task::Ask(child, p, values.clone());
-                        tasks.extend(node.children.iter().rev().map(ask));
-                    }
-                    NodeKind::Select(_) => {
-                        tasks.push(Task::Ask(node.kind.asked(&node.children)[0], p, values));
-                    }
-                    NodeKind::Affine(map) => {
-                        tasks.push(Task::Ask(node.children[0], map.inverse().transform_point3(p), values));
-                    }
-                    NodeKind::Warp(_) if node.children.len() > 1 => {
-                        tasks.push(Task::Enter(id, p, values.clone()));
-                        tasks.push(Task::Ask(node.children[1], p, values));
-                    }
-                    NodeKind::Warp(warp) => {
-                        tasks.push(Task::Decide(warp.decision(p)));
-                        tasks.push(Task::Ask(node.children[0], warp.inverse(p), values));
-                    }
-                    NodeKind::Attribute { name, value: here } => {
-                        // Nearer to the leaves than whatever was said above: it replaces it.
-                        let mut values = values.to_vec();
-                        for (group, value) in tree.attributes().iter().zip(&mut values) {
-                            if group.name == *name {
-                                *value = given(here, p);
-                            }
-                        }
-                        tasks.push(Task::Ask(node.children[0], p, values.into()));
-                    }
-                }
-            }
-            Task::Enter(id, p, values) => {
-                let weight = answers.pop().expect("the weight has been asked");
-                let node = tree.node(id);
-                if let NodeKind::Warp(warp) = &node.kind {
-                    // Where the weight is clamped, there is a crease.
-                    let clamp = if weight.silent { f64::INFINITY } else { weight.field.abs() };
-                    let clamp = clamp.min((weight.field - 1.0).abs());
-                    tasks.push(Task::Decide(warp.decision(p).min(weight.decision).min(clamp)));
-                    tasks.push(Task::Ask(node.children[0], warp.weighted(p, weight.field), values));
-                }
-            }
-            Task::Decide(decision) => {
-                let answer = answers.last_mut().expect("the child has been asked");
-                answer.decision = answer.decision.min(decision);
-            }
-            Task::Combine(id) => {
-                let node = tree.node(id);
-                let children = answers.split_off(answers.len() - node.children.len());
-                if let NodeKind::Combine(combinator) = node.kind {
-                    answers.push(combine(combinator, tree.iso(), &children, &defaults));
-                }
-            }
-            Task::Express(id, p, values) => {
-                let node = tree.node(id);
-                let children = answers.split_off(answers.len() - node.children.len());
-                if let NodeKind::Expression(expression) = &node.kind {
-                    let values = values_at(&values, node.kind.uv_skeleton(), p);
-                    answers.push(express(expression, p, &children, values, &defaults));
-                }
+    let root = ask(tree, &mut Samples { tree, defaults }, unbound, p.into());
+    finish(tree, &root)
+}
+
+/// The question for the field and the attributes.
+struct Samples<'a> {
+    tree: &'a CheckedTree,
+    defaults: Values,
+}
+
+impl Question for Samples<'_> {
+    type Way = Way;
+    type Answer = Answer;
+    /// How far the point is from a crease.
+    type Mark = f64;
+
+    fn enter(&mut self, _node: NodeId, way: Way) -> Way {
+        way
+    }
+
+    fn below(&self, way: &Way, _child: usize) -> Way {
+        Rc::clone(way)
+    }
+
+    fn given(&self, way: Way, name: &str, value: &AttributeValue, p: DVec3) -> Way {
+        // Nearer to the leaves than whatever was said above: it replaces it.
+        let mut way = way.to_vec();
+        for (group, above) in self.tree.attributes().iter().zip(&mut way) {
+            if *group.name == *name {
+                *above = given(value, p);
             }
         }
+        way.into()
     }
-    finish(tree, &answers.pop().expect("the root has an answer"))
+
+    fn primitive(&self, leaf: &Primitive, p: DVec3, way: &Way) -> Answer {
+        primitive(leaf, p, way)
+    }
+
+    fn combine(&self, combinator: Combinator, children: &[Answer]) -> Answer {
+        combine(combinator, self.tree.iso(), children, &self.defaults)
+    }
+
+    fn express(&self, formula: &Expression, p: DVec3, way: &Way, children: &[Answer]) -> Answer {
+        let values = values_at(way, NodeKind::origin(), p);
+        express(formula, p, children, values, &self.defaults)
+    }
+
+    fn field(answer: &Answer) -> f64 {
+        answer.field
+    }
+
+    fn mark(&self, warp: &Warp, p: DVec3, weight: Option<&Answer>) -> f64 {
+        let Some(weight) = weight else { return warp.decision(p) };
+        // Where the weight is clamped, there is a crease.
+        let clamp = if weight.silent { f64::INFINITY } else { weight.field.abs() };
+        let clamp = clamp.min((weight.field - 1.0).abs());
+        warp.decision(p).min(weight.decision).min(clamp)
+    }
+
+    fn marked(&self, answer: &mut Answer, crease: f64) {
+        answer.decision = answer.decision.min(crease);
+    }
 }
 
 /// The gradient of the field at `p` by central differences: `step` to both sides along each axis.

@@ -32,6 +32,7 @@ const FRONTEND: &[&[&str]] = &[
     &["model"],
     // What it means.
     &["check"],
+    &["descent"],
     &["owner", "walk"],
     // Ways to write it.
     &["scopes", "term"],

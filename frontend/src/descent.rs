@@ -1,0 +1,140 @@
+//! The walk that the [oracle](crate::walk) and [owners](crate::owner) share: points go down, answers come up.
+//!
+//! ```text
+//!          p │   ▲ combine, express, mark       at each node: where its children are asked,
+//!            ▼   │                              and what their answers make
+//!          leaves
+//! ```
+//!
+//! It walks every path of the tree, one point at a time, on a list of its own: a chain of a million nodes is a tree like
+//! any other.
+
+use glam::DVec3;
+
+use crate::attribute::AttributeValue;
+use crate::check::{CheckedTree, NodeId};
+use crate::combine::Combinator;
+use crate::expression::Expression;
+use crate::kind::{NodeKind, Primitive, chosen};
+use crate::warp::Warp;
+
+/// A question that has an answer at each node.
+pub(crate) trait Question {
+    /// What the way down to a node has found.
+    type Way: Clone;
+    /// What is known at a node.
+    type Answer;
+    /// What a warp adds to the answer of its child.
+    type Mark;
+
+    /// At each node, before its children are asked.
+    fn enter(&mut self, node: NodeId, way: Self::Way) -> Self::Way;
+
+    /// The way on to a child.
+    fn below(&self, way: &Self::Way, child: usize) -> Self::Way;
+
+    /// The way below an attribute node, which is asked at `p`.
+    fn given(&self, way: Self::Way, name: &str, value: &AttributeValue, p: DVec3) -> Self::Way;
+
+    /// The answer of a leaf.
+    fn primitive(&self, leaf: &Primitive, p: DVec3, way: &Self::Way) -> Self::Answer;
+
+    /// The answer of an operator.
+    fn combine(&self, combinator: Combinator, children: &[Self::Answer]) -> Self::Answer;
+
+    /// The answer of a formula, which is a leaf if it has no children.
+    fn express(
+        &self,
+        formula: &Expression,
+        p: DVec3,
+        way: &Self::Way,
+        children: &[Self::Answer],
+    ) -> Self::Answer;
+
+    /// The field of an answer.
+    fn field(answer: &Self::Answer) -> f64;
+
+    /// What a warp adds that is asked at `p`, and its weight if it has one.
+    fn mark(&self, warp: &Warp, p: DVec3, weight: Option<&Self::Answer>) -> Self::Mark;
+
+    /// Adds it.
+    fn marked(&self, answer: &mut Self::Answer, mark: Self::Mark);
+}
+
+/// The work that is left. Points are those of a node's parent.
+enum Task<Q: Question> {
+    /// Ask a node.
+    Ask(NodeId, DVec3, Q::Way),
+    /// Ask the child of a weighted warp, whose weight has answered.
+    Enter(NodeId, DVec3, Q::Way),
+    /// Add to the last answer what a warp says.
+    Mark(Q::Mark),
+    /// Answer for a node whose children have answered.
+    Answer(NodeId, DVec3, Q::Way),
+}
+
+/// The answer of the root at `p`. Cost: all paths of the tree.
+pub(crate) fn ask<Q: Question>(tree: &CheckedTree, question: &mut Q, way: Q::Way, p: DVec3) -> Q::Answer {
+    let mut tasks: Vec<Task<Q>> = vec![Task::Ask(tree.root(), p, way)];
+    let mut answers: Vec<Q::Answer> = Vec::new();
+    while let Some(task) = tasks.pop() {
+        match task {
+            Task::Ask(id, p, way) => {
+                let way = question.enter(id, way);
+                let node = tree.node(id);
+                let child = |index: usize, p: DVec3, way: &Q::Way| {
+                    Task::Ask(node.children[index], p, question.below(way, index))
+                };
+                match &node.kind {
+                    NodeKind::Primitive(leaf) => answers.push(question.primitive(leaf, p, &way)),
+                    NodeKind::Combine(_) | NodeKind::Expression(_) => {
+                        tasks.push(Task::Answer(id, p, way.clone()));
+                        tasks.extend((0..node.children.len()).rev().map(|index| child(index, p, &way)));
+                    }
+                    NodeKind::Select(which) => tasks.push(child(chosen(*which), p, &way)),
+                    NodeKind::Affine(map) => tasks.push(child(0, map.inverse().transform_point3(p), &way)),
+                    NodeKind::Warp(_) if node.children.len() > 1 => {
+                        let weight = child(1, p, &way);
+                        tasks.push(Task::Enter(id, p, way));
+                        tasks.push(weight);
+                    }
+                    NodeKind::Warp(warp) => {
+                        tasks.push(Task::Mark(question.mark(warp, p, None)));
+                        tasks.push(child(0, warp.inverse(p), &way));
+                    }
+                    NodeKind::Attribute { name, value } => {
+                        let way = question.given(way, name, value, p);
+                        tasks.push(child(0, p, &way));
+                    }
+                }
+            }
+            Task::Enter(id, p, way) => {
+                let weight = answers.pop().expect("the weight has been asked");
+                let node = tree.node(id);
+                if let NodeKind::Warp(warp) = &node.kind {
+                    tasks.push(Task::Mark(question.mark(warp, p, Some(&weight))));
+                    let at = warp.weighted(p, Q::field(&weight));
+                    tasks.push(Task::Ask(node.children[0], at, question.below(&way, 0)));
+                }
+            }
+            Task::Mark(mark) => {
+                let answer = answers.last_mut().expect("the child has been asked");
+                question.marked(answer, mark);
+            }
+            Task::Answer(id, p, way) => {
+                let node = tree.node(id);
+                let children = answers.split_off(answers.len() - node.children.len());
+                answers.push(match &node.kind {
+                    NodeKind::Combine(combinator) => question.combine(*combinator, &children),
+                    NodeKind::Expression(formula) => question.express(formula, p, &way, &children),
+                    NodeKind::Primitive(_)
+                    | NodeKind::Select(_)
+                    | NodeKind::Affine(_)
+                    | NodeKind::Warp(_)
+                    | NodeKind::Attribute { .. } => unreachable!("these answer at once"),
+                });
+            }
+        }
+    }
+    answers.pop().expect("the root has answered")
+}
