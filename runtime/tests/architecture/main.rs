@@ -80,6 +80,8 @@ fn files_are_opened_at_two_doors() {
             let is_door = doors.iter().any(|door| path.ends_with(door));
             let mut code = text.lines().filter(|line| !line.trim_start().starts_with("//"));
             let opens = code.any(|line| {
+                // That is one of the doors.
+                let line = line.replace("AtomicFile::", "");
                 ["std::fs", "File::", "fs::read", "fs::write"].iter().any(|word| line.contains(word))
             });
             // What the system says of its pages of memory is no file of anybody's.
