@@ -1,5 +1,5 @@
-//! How long does each stage of compiling take, by number of primitives and by number of shapes? (Primitives of one shape should cost their
-//! rows alone; shapes cost code.)
+//! How long does each stage of compiling take, by number of primitives and by number of shapes? (Primitives
+//! of one shape should cost their rows alone; shapes cost code.)
 
 use std::hint::black_box;
 use std::path::Path;

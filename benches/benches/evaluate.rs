@@ -1,4 +1,5 @@
-//! How many points does each engine answer in a second, for each query, on a sum of blobs and on models that people draw?
+//! How many points does each engine answer in a second, for each query, on a sum of blobs and on models that
+//! people draw?
 
 use std::time::Duration;
 

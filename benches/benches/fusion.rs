@@ -1,5 +1,5 @@
-//! How much does one fused query save against the separate ones that one would ask otherwise: the field, the field four times for a
-//! gradient by differences (or the exact gradient), and the attributes?
+//! How much does one fused query save against the separate ones that one would ask otherwise: the field, the
+//! field four times for a gradient by differences (or the exact gradient), and the attributes?
 
 use std::time::Duration;
 

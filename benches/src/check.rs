@@ -15,12 +15,12 @@ pub fn field(tree: &CheckedTree, evaluator: &Evaluator, points: &Points) {
     }
 }
 
-/// How near to a decision (a tie, the rim of a support) a point may be for its gradient and attributes to be compared: nearer ones may
-/// have been decided otherwise, in f32 or at the ends of a difference.
+/// How near to a decision (a tie, the rim of a support) a point may be for its gradient and attributes to be
+/// compared: nearer ones may have been decided otherwise, in f32 or at the ends of a difference.
 const DECISION: f64 = 1e-3;
 
-/// Compares every answer of an evaluator with the f64 oracle at some of the points. Panics where one is off, or if hardly any
-/// gradients and attributes can be compared.
+/// Compares every answer of an evaluator with the f64 oracle at some of the points. Panics where one is off,
+/// or if hardly any gradients and attributes can be compared.
 pub fn answers(tree: &CheckedTree, evaluator: &Evaluator, points: &Points) {
     field(tree, evaluator, points);
     let mut samples = evaluator.samples();
@@ -56,7 +56,8 @@ pub fn answers(tree: &CheckedTree, evaluator: &Evaluator, points: &Points) {
     assert!(2 * compared >= indices().count(), "{compared} points are far from any decision");
 }
 
-/// Asserts that a mesh is closed, and that the f64 oracle finds its vertices on the surface. Panics where one is off.
+/// Asserts that a mesh is closed, and that the f64 oracle finds its vertices on the surface. Panics where one
+/// is off.
 pub fn mesh(tree: &CheckedTree, made: &Polygonized) {
     assert!(made.report.closed && !made.mesh.triangles.is_empty(), "the mesh is closed");
     let positions = &made.mesh.positions;

@@ -1,4 +1,5 @@
-//! How fast, compared with what: models, the checks that answers have to pass before anything is timed, and what we compare with.
+//! How fast, compared with what: models, the checks that answers have to pass before anything is timed, and
+//! what we compare with.
 
 #![allow(missing_debug_implementations, reason = "nobody but the benches here sees these types")]
 

@@ -8,7 +8,8 @@ use jbt_frontend::kind::{NodeKind, Primitive};
 use jbt_frontend::skeleton::{Cuboid, Cylinder, Disc, Point, Ring, Segment, Skeleton, Triangle};
 use jbt_frontend::tree::Tree;
 
-/// A soft-object point (Wyvill, McPheeters and Wyvill 1986) with a colour. Its numbers are f32, so that every contestant is given the same.
+/// A soft-object point (Wyvill, McPheeters and Wyvill 1986) with a colour. Its numbers are f32, so that every
+/// contestant is given the same.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Blob {
     /// Where it is.
@@ -22,8 +23,8 @@ pub struct Blob {
 /// Where the surface of a sum of blobs is.
 pub const ISO: f32 = 0.5;
 
-/// Blobs in a cube: centres uniform in [-0.9, 0.9]^3, radii `1.6 count^(-1/3) (0.5 + uniform)`, so that about as many
-/// overlap at any count.
+/// Blobs in a cube: centres uniform in [-0.9, 0.9]^3, radii `1.6 count^(-1/3) (0.5 + uniform)`, so that about
+/// as many overlap at any count.
 #[must_use]
 pub fn blobs(count: usize, seed: u64) -> Vec<Blob> {
     scaled_blobs(count, 1.0, seed)
@@ -42,12 +43,13 @@ pub fn scaled_blobs(count: usize, scale: f64, seed: u64) -> Vec<Blob> {
     (0..count).map(blob).collect()
 }
 
-/// About `count` particles of one size in a ball about the origin, on a jittered grid: what a fluid simulation hands over. Every
-/// one's field reaches two grid steps, and all fields end within [-1, 1]^3.
+/// About `count` particles of one size in a ball about the origin, on a jittered grid: what a fluid
+/// simulation hands over. Every one's field reaches two grid steps, and all fields end within [-1, 1]^3.
 #[must_use]
 pub fn particles(count: usize, seed: u64) -> Vec<Blob> {
     let mut random = fastrand::Rng::with_seed(seed);
-    // A ball of radius r has 4/3 pi (r / step)^3 places; the outermost fields end two and a half steps further out.
+    // A ball of radius r has 4/3 pi (r / step)^3 places; the outermost fields end two and a half steps
+    // further out.
     let steps = (count as f64 * 0.75 / std::f64::consts::PI).cbrt();
     let step = 1.0 / (steps + 2.5);
     let reach = steps.ceil() as i32;
@@ -107,8 +109,9 @@ pub fn example(scene: &str) -> CheckedTree {
 /// The most shapes of [`varied`].
 pub const MAX_SHAPES: usize = 28;
 
-/// A sum of `count` coloured primitives of `shapes` different shapes, from 1 to [`MAX_SHAPES`]: of seven skeletons with two falloffs, plain and
-/// with a strength. They are about as large, and overlap about as much, as [`blobs`].
+/// A sum of `count` coloured primitives of `shapes` different shapes, from 1 to [`MAX_SHAPES`]: of seven
+/// skeletons with two falloffs, plain and with a strength. They are about as large, and overlap about as
+/// much, as [`blobs`].
 #[must_use]
 pub fn varied(count: usize, shapes: usize, seed: u64) -> CheckedTree {
     assert!((1..=MAX_SHAPES).contains(&shapes), "there are {MAX_SHAPES} shapes");

@@ -1,5 +1,5 @@
-//! `jbt count`: how many distances to skeletons a point takes, for every query and from every leaf; how many a lattice takes, and how
-//! many of these matter.
+//! `jbt count`: how many distances to skeletons a point takes, for every query and from every leaf; how many
+//! a lattice takes, and how many of these matter.
 //!
 //! ```text
 //! query       walks  separate    cached     fused   ratio
@@ -10,9 +10,10 @@
 //!    4:12   segment      2         2         2       12,345
 //! ```
 //!
-//! *Fused* counts the instructions of the program that runs. *Separate* is what an evaluator does that walks the tree once for the
-//! field, four times for a normal by differences (the point and a step along each axis), and once for the attributes; a walk meets a
-//! shared leaf again at each of its uses. *Cached* is such an evaluator with a memory for each point. `jbt::statistics` counts.
+//! *Fused* counts the instructions of the program that runs. *Separate* is what an evaluator does that walks
+//! the tree once for the field, four times for a normal by differences (the point and a step along each
+//! axis), and once for the attributes; a walk meets a shared leaf again at each of its uses. *Cached* is such
+//! an evaluator with a memory for each point. `jbt::statistics` counts.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;

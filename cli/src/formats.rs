@@ -1,5 +1,5 @@
-//! The kinds of files that commands write: a table for each command, in which a kind is a row. Help, defaults and messages derive
-//! from it.
+//! The kinds of files that commands write: a table for each command, in which a kind is a row. Help, defaults
+//! and messages derive from it.
 //!
 //! ```text
 //! mesh      .glb .ply .obj .stl        the first one is written where nothing says which

@@ -73,7 +73,8 @@ pub fn origin_line(origin: ModelOrigin) -> String {
     if origin.is_world() { String::new() } else { format!("\n  origin       ({x} {y} {z})") }
 }
 
-/// A lattice in words: `40 x 40 x 20 cells of 0.100000, from (0.0000 0.0000 0.0000) to (4.0000 4.0000 2.0000)`.
+/// A lattice in words: `40 x 40 x 20 cells of 0.100000, from (0.0000 0.0000 0.0000) to (4.0000 4.0000
+/// 2.0000)`.
 pub fn describe(lattice: &Lattice, origin: ModelOrigin) -> String {
     let ([x0, y0, z0], [x1, y1, z1]) = corners(lattice, origin);
     let ([nx, ny, nz], spacing) = (lattice.cells(), lattice.spacing());

@@ -1,4 +1,5 @@
-//! `jbt completions` and `jbt man`: what shells and `man` know about the command line, made from its own description.
+//! `jbt completions` and `jbt man`: what shells and `man` know about the command line, made from its own
+//! description.
 
 use std::io::Write as _;
 

@@ -1,4 +1,5 @@
-//! Where results go: files that are replaced as a whole, the standard output, and what people read on a terminal.
+//! Where results go: files that are replaced as a whole, the standard output, and what people read on a
+//! terminal.
 
 use std::io::{self, BufWriter, IsTerminal as _, Stdout, Write};
 use std::path::{Path, PathBuf};
@@ -123,7 +124,8 @@ pub enum Told {
 }
 
 impl Told {
-    /// Tells about a result that was written to a path of the command line; people read of it beside the result if that is the standard output.
+    /// Tells about a result that was written to a path of the command line; people read of it beside the
+    /// result if that is the standard output.
     pub fn report(
         self,
         path: &Path,

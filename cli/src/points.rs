@@ -1,9 +1,9 @@
 //! Points from CSV text, a batch at a time, with the place of whatever is wrong with them.
 //!
-//! The first line names the columns; `x`, `y` and `z` are taken wherever they stand. Fields may be quoted, but a quoted field
-//! does not go over the end of its line. Blank lines mean nothing. A coordinate is a number that is finite in
-//! f32: `nan`, `inf` and what overflows there are errors. It is read as an f64, so that points far away keep
-//! their digits up to the origin of the model.
+//! The first line names the columns; `x`, `y` and `z` are taken wherever they stand. Fields may be quoted,
+//! but a quoted field does not go over the end of its line. Blank lines mean nothing. A coordinate is a
+//! number that is finite in f32: `nan`, `inf` and what overflows there are errors. It is read as an f64, so
+//! that points far away keep their digits up to the origin of the model.
 
 use std::io::{self, BufRead};
 
@@ -127,8 +127,9 @@ impl<R: BufRead> PointReader<R> {
         }
     }
 
-    /// Brings what is left of the line into the buffer, without its end: a line feed, a carriage return, or both. Of a line that is too long it is one
-    /// byte more than a line may have. Returns how many bytes have been read.
+    /// Brings what is left of the line into the buffer, without its end: a line feed, a carriage return, or
+    /// both. Of a line that is too long it is one byte more than a line may have. Returns how many bytes have
+    /// been read.
     fn read_line(&mut self) -> io::Result<usize> {
         let mut read = 0;
         loop {

@@ -10,7 +10,8 @@ const PATIENCE: Duration = Duration::from_millis(500);
 /// Steps of the bar.
 const STEPS: f32 = 1000.0;
 
-/// How far the work is. It is shown on the standard error if that is a terminal, and removed when this is dropped.
+/// How far the work is. It is shown on the standard error if that is a terminal, and removed when this is
+/// dropped.
 pub struct Progress {
     start: Instant,
     what: &'static str,

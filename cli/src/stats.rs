@@ -1,4 +1,5 @@
-//! `jbt stats`: what the solid of a scene is like: bounds, volume, area, and the division of space that tells them.
+//! `jbt stats`: what the solid of a scene is like: bounds, volume, area, and the division of space that tells
+//! them.
 //!
 //! ```text
 //! depth        splits       solid         air     surface

@@ -1,7 +1,8 @@
 //! Affine maps and the cheaper kinds among them.
 //!
-//! A node's map takes the child's space to the parent's: `parent = linear * child + translation`, column vectors, right-handed,
-//! `linear` stored by columns (glam's layout). Evaluation goes the other way, by the inverse.
+//! A node's map takes the child's space to the parent's: `parent = linear * child + translation`, column
+//! vectors, right-handed, `linear` stored by columns (glam's layout). Evaluation goes the other way, by the
+//! inverse.
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
@@ -10,8 +11,8 @@ use crate::bounds::Bounds;
 /// The map that changes nothing.
 pub const IDENTITY: DAffine3 = DAffine3::IDENTITY;
 
-/// The linear part of a similarity, which is a rotation (or reflection), uniform scale and translation: it multiplies all distances by
-/// `scale`.
+/// The linear part of a similarity, which is a rotation (or reflection), uniform scale and translation: it
+/// multiplies all distances by `scale`.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Similarity {
     scale: f64,

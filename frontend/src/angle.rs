@@ -1,4 +1,5 @@
-//! Angles about an axis: the arctangent of two coordinates, over the ops. Warps, skeletons and formulas share it.
+//! Angles about an axis: the arctangent of two coordinates, over the ops. Warps, skeletons and formulas share
+//! it.
 //!
 //! With the half angle there is no division by what may be small (h is the distance from the axis):
 //!
@@ -7,20 +8,20 @@
 //! x < 0:    angle = +-pi - 2 atan(u),      u = y / (h + |x|)       the sign is that of y
 //! ```
 //!
-//! `atan(u) / u` is a polynomial in `u^2`, so a quotient `angle / k` of an angle whose y is `k t` costs no division by k either: it is
-//! `2 t / (h + |x|) * (atan(u) / u)`.
+//! `atan(u) / u` is a polynomial in `u^2`, so a quotient `angle / k` of an angle whose y is `k t` costs no
+//! division by k either: it is `2 t / (h + |x|) * (atan(u) / u)`.
 //!
-//! The squares in h are for coordinates from about 1e-19 to 1e19. [`atan2`] takes any: it divides both by the larger
-//! one first, which turns nothing, and so need not be differentiated. Where |y| > |x| it takes the angle from the
-//! y axis, `+-pi/2 - angle(|y|, x)`. There the slope of u along y is the difference of two nearly equal numbers,
-//! and `atan(x)` would lose digits of its slope in proportion to x.
+//! The squares in h are for coordinates from about 1e-19 to 1e19. [`atan2`] takes any: it divides both by the
+//! larger one first, which turns nothing, and so need not be differentiated. Where |y| > |x| it takes the
+//! angle from the y axis, `+-pi/2 - angle(|y|, x)`. There the slope of u along y is the difference of two
+//! nearly equal numbers, and `atan(x)` would lose digits of its slope in proportion to x.
 
 use std::f32::consts::{FRAC_PI_2, PI};
 
 use jbt_ir::Domain;
 
-/// `(2 atan(u) / u - 2) / u^2` in u^2, for |u| <= 1: Chebyshev's interpolation, error 2^-26 of the angle. Its derivative is off by less
-/// than 2^-20. The first one is rounded such that an angle on an axis is exact.
+/// `(2 atan(u) / u - 2) / u^2` in u^2, for |u| <= 1: Chebyshev's interpolation, error 2^-26 of the angle. Its
+/// derivative is off by less than 2^-20. The first one is rounded such that an angle on an axis is exact.
 const COEFFICIENTS: [f32; 10] = [
     -0.666_666_6,
     0.399_999,
@@ -34,7 +35,8 @@ const COEFFICIENTS: [f32; 10] = [
     0.002_977_383_8,
 ];
 
-/// The larger part of a point being 1, `h + |x|` is at least that: this is nowhere in the way, and keeps ranges small.
+/// The larger part of a point being 1, `h + |x|` is at least that: this is nowhere in the way, and keeps
+/// ranges small.
 const LEAST_OF_PARTS: f32 = 0.99;
 
 /// An angle and the distance from the axis.
@@ -45,9 +47,9 @@ pub(crate) struct Polar<R> {
     pub(crate) distance: R,
 }
 
-/// The angle of (x, y) in (-pi, pi], times a factor f: `scaled` is `f y`, and `half_turn` is `f pi`, for f > 0. The error is below
-/// 2^-21 of the angle. Nearer to the axis than `least` (`h + |x|` is below it) the angle fades to 0 (x >= 0), so that it moves by at most
-/// `4 f / least` with its operands.
+/// The angle of (x, y) in (-pi, pi], times a factor f: `scaled` is `f y`, and `half_turn` is `f pi`, for
+/// f > 0. The error is below 2^-21 of the angle. Nearer to the axis than `least` (`h + |x|` is below it) the
+/// angle fades to 0 (x >= 0), so that it moves by at most `4 f / least` with its operands.
 pub(crate) fn emit<D: Domain>(
     d: &mut D,
     [x, y]: [D::Real; 2],
@@ -82,8 +84,8 @@ pub(crate) fn emit<D: Domain>(
 
 /// The angle of the point (x, y), in [-pi, pi], within 4 ULP: that of -x and y = -0 is pi, not -pi.
 ///
-/// Coordinates that are both below [`f32::MIN_POSITIVE`] are the origin: the angle is 0 there, and so is its derivative. Where the one or the other
-/// is infinite, it counts as the largest number.
+/// Coordinates that are both below [`f32::MIN_POSITIVE`] are the origin: the angle is 0 there, and so is its
+/// derivative. Where the one or the other is infinite, it counts as the largest number.
 pub(crate) fn atan2<D: Domain>(d: &mut D, y: D::Real, x: D::Real) -> D::Real {
     let (zero, one, minus) = (d.constant(0.0), d.constant(1.0), d.constant(-1.0));
     let (least, most) = (d.constant(f32::MIN_POSITIVE), d.constant(f32::MAX));
@@ -95,7 +97,8 @@ pub(crate) fn atan2<D: Domain>(d: &mut D, y: D::Real, x: D::Real) -> D::Real {
     let size = d.min(size, most);
     let size = d.hold(size);
     let mut part = |side| {
-        // Ranges do not know that no side is longer than the longer one. In this order a tie gives the side, and its slope.
+        // Ranges do not know that no side is longer than the longer one. In this order a tie gives the side,
+        // and its slope.
         let part = d.div(side, size);
         let part = d.max(minus, part);
         let part = d.min(one, part);

@@ -1,4 +1,5 @@
-//! Attribute groups: named tuples of reals that are carried by leaves and mixed by field; and what attribute nodes give to leaves.
+//! Attribute groups: named tuples of reals that are carried by leaves and mixed by field; and what attribute
+//! nodes give to leaves.
 
 use std::sync::Arc;
 
@@ -36,7 +37,8 @@ impl Mixing {
 pub struct AttributeGroup {
     /// Its name: letters, digits and underscores, beginning with a letter.
     pub name: Arc<str>,
-    /// The value of leaves without the attribute, and of points without field; its length is the width of the group.
+    /// The value of leaves without the attribute, and of points without field; its length is the width of the
+    /// group.
     pub default: Vec<f64>,
     /// How values mix.
     pub mixing: Mixing,
@@ -55,8 +57,8 @@ impl AttributeGroup {
         self.default.len()
     }
 
-    /// The name of a channel: `color.r`, `color.g`, `color.b` for colour, else `name` for one real, `name.x` and so on for up to four, and
-    /// `name.0` and so on for more.
+    /// The name of a channel: `color.r`, `color.g`, `color.b` for colour, else `name` for one real, `name.x`
+    /// and so on for up to four, and `name.0` and so on for more.
     #[must_use]
     pub fn channel(&self, index: usize) -> String {
         let letters = if &*self.name == "color" { ["r", "g", "b", "a"] } else { ["x", "y", "z", "w"] };
@@ -75,9 +77,11 @@ pub enum AttributeValue {
     Numbers(Vec<f64>),
     /// A mixture of two values, by a pattern in the space of the node.
     Textured(Textured),
-    /// The uv of each leaf's skeleton, for groups of two reals: see [`SkeletonMember::uv`](crate::skeleton::SkeletonMember::uv).
+    /// The uv of each leaf's skeleton, for groups of two reals: see
+    /// [`SkeletonMember::uv`](crate::skeleton::SkeletonMember::uv).
     Uv(UvMap),
-    /// A formula of the coordinates in the space of the node, with one value for each channel of the group. It asks for no fields, and has no box.
+    /// A formula of the coordinates in the space of the node, with one value for each channel of the group.
+    /// It asks for no fields, and has no box.
     Expressed(Expression),
 }
 

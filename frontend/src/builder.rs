@@ -1,4 +1,5 @@
-//! Building trees in Rust: constructors for primitives, operators for combinators, postfix methods for everything that has one child.
+//! Building trees in Rust: constructors for primitives, operators for combinators, postfix methods for
+//! everything that has one child.
 //!
 //! The peanut: two balls that grow together, each with its colour.
 //!
@@ -48,8 +49,8 @@
 //! assert_eq!(fat.support().high(), [2.0, 2.0, 3.0]);
 //! ```
 //!
-//! Trees are shared, not copied: `&a + &a` has one leaf under two edges. Anything can be built; [`Model::check`](crate::model::Model::check)
-//! says whether it makes sense.
+//! Trees are shared, not copied: `&a + &a` has one leaf under two edges. Anything can be built;
+//! [`Model::check`](crate::model::Model::check) says whether it makes sense.
 
 mod argument;
 mod attribute;
@@ -76,7 +77,8 @@ pub use crate::term::{Term, x, y, z};
 
 /// Changes of all primitives below.
 impl Tree {
-    /// The same with this falloff in every primitive: one by its name, or one with parameters, which may follow those of the model.
+    /// The same with this falloff in every primitive: one by its name, or one with parameters, which may
+    /// follow those of the model.
     ///
     /// ```
     /// use jbt_frontend::builder::{Edge, blinn, param, point};
@@ -106,8 +108,8 @@ impl Tree {
         })
     }
 
-    /// The same with these radii for every curve and polyline, which become tubes: one for all points, or one for each. The support radius is
-    /// measured from the tube.
+    /// The same with these radii for every curve and polyline, which become tubes: one for all points, or one
+    /// for each. The support radius is measured from the tube.
     ///
     /// ```
     /// use jbt_frontend::builder::polyline;
@@ -142,9 +144,9 @@ impl Tree {
         })
     }
 
-    /// The same with every primitive changed. Numbers that the change leaves alone follow their parameters still. The
-    /// change sees the present values, and the support radius that a surface radius gives at the usual iso-value; a
-    /// primitive that has no surface there stays as it is.
+    /// The same with every primitive changed. Numbers that the change leaves alone follow their parameters
+    /// still. The change sees the present values, and the support radius that a surface radius gives at the
+    /// usual iso-value; a primitive that has no surface there stays as it is.
     #[must_use]
     pub fn map_primitives(&self, mut change: impl FnMut(&mut Primitive)) -> Self {
         self.rewrite(|tree| {

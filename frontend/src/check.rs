@@ -7,16 +7,18 @@
 //!
 //! What holds of a [`CheckedTree`], so that nothing behind it has to ask again:
 //!
-//! * Every number is finite and at most [`limits::MAX_NUMBER`] in magnitude; radii are at least [`limits::MIN_LENGTH`], and each
-//!   parameter is what its [`FieldKind`] says.
-//! * Leaves have no children, maps and attributes have one, warps one or two, combinators and selectors at least one, and these choose one that is
-//!   there. A Ricci exponent is in
-//!   [1, [`limits::MAX_RICCI_EXPONENT`]], or the negative of such a number; other numbers of operators are what their files say.
+//! * Every number is finite and at most [`limits::MAX_NUMBER`] in magnitude; radii are at least
+//!   [`limits::MIN_LENGTH`], and each parameter is what its [`FieldKind`] says.
+//! * Leaves have no children, maps and attributes have one, warps one or two, combinators and selectors at
+//!   least one, and these choose one that is there. A Ricci exponent is in [1,
+//!   [`limits::MAX_RICCI_EXPONENT`]], or the negative of such a number; other numbers of operators are what
+//!   their files say.
 //! * Every affine map can be undone, and the numbers of its inverse are finite in f32.
 //! * The origin has finite coordinates.
-//! * The first attribute group is `color` with three reals; names are unique; attribute nodes name a group and fit its width.
-//! * There are at most [`limits::MAX_NODES`] nodes and [`limits::MAX_OCCURRENCES`] paths from the root to leaves,
-//!   those to each piece of a skeleton counted.
+//! * The first attribute group is `color` with three reals; names are unique; attribute nodes name a group
+//!   and fit its width.
+//! * There are at most [`limits::MAX_NODES`] nodes and [`limits::MAX_OCCURRENCES`] paths from the root to
+//!   leaves, those to each piece of a skeleton counted.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -61,7 +63,8 @@ impl Model {
     ///
     /// # Errors
     ///
-    /// All errors, in the order of their places in the text; after [`limits::MAX_ERRORS`] of them, one more that counts the rest.
+    /// All errors, in the order of their places in the text; after [`limits::MAX_ERRORS`] of them, one more
+    /// that counts the rest.
     pub fn check(&self) -> Result<CheckedTree, Diagnostics> {
         let checked = self.check_within(limits::MAX_NODES, limits::MAX_OCCURRENCES);
         checked.map_err(|list| Diagnostics::new(list, self.source.clone()))

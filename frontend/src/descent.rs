@@ -6,8 +6,8 @@
 //!          leaves
 //! ```
 //!
-//! It walks every path of the tree, one point at a time, on a list of its own: a chain of a million nodes is a tree like
-//! any other.
+//! It walks every path of the tree, one point at a time, on a list of its own: a chain of a million nodes is
+//! a tree like any other.
 
 use glam::DVec3;
 

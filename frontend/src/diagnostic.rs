@@ -59,7 +59,8 @@ pub struct Diagnostic {
     pub severity: Severity,
     /// Where, if the model came from a text.
     pub span: Option<Span>,
-    /// What is wrong, with the numbers in it. Words of the file may stand in it as they are: rendering escapes them.
+    /// What is wrong, with the numbers in it. Words of the file may stand in it as they are: rendering
+    /// escapes them.
     pub message: String,
     /// What was expected instead, or what to do.
     pub help: Option<String>,
@@ -104,7 +105,8 @@ pub struct Source<'a> {
 const EXCERPT: usize = 96;
 
 impl Source<'_> {
-    /// Line and column of a byte, counted from 1. The column counts characters; bytes that are not UTF-8 count one each.
+    /// Line and column of a byte, counted from 1. The column counts characters; bytes that are not UTF-8
+    /// count one each.
     #[must_use]
     pub fn position(&self, byte: usize) -> (usize, usize) {
         let byte = byte.min(self.text.len());
@@ -133,13 +135,15 @@ impl Source<'_> {
         (0..byte).rev().find(|&at| self.ends_line(at)).map_or(0, |end| end + 1)
     }
 
-    /// The diagnostic as people read it: place, message, the line, a caret. Control characters of the file are escaped.
+    /// The diagnostic as people read it: place, message, the line, a caret. Control characters of the file
+    /// are escaped.
     #[must_use]
     pub fn render(&self, diagnostic: &Diagnostic) -> String {
         self.render_from(1, diagnostic)
     }
 
-    /// As [`render`](Self::render), where the text is a part of a longer one and begins with this line of it, counted from 1.
+    /// As [`render`](Self::render), where the text is a part of a longer one and begins with this line of it,
+    /// counted from 1.
     #[must_use]
     pub fn render_from(&self, first_line: u64, diagnostic: &Diagnostic) -> String {
         let mut out = String::new();
@@ -166,7 +170,8 @@ impl Source<'_> {
         out
     }
 
-    /// The part of the span's line to show, the width of what stands before the span, and the width of the span.
+    /// The part of the span's line to show, the width of what stands before the span, and the width of the
+    /// span.
     fn excerpt(&self, span: Span) -> (String, usize, usize) {
         let start = (span.start as usize).min(self.text.len());
         let end = (span.end as usize).clamp(start, self.text.len());
@@ -191,7 +196,8 @@ fn characters(bytes: &[u8]) -> usize {
     String::from_utf8_lossy(bytes).chars().count()
 }
 
-/// The text with every control character (terminal escapes, bidirectional overrides) written as `\u{..}`, and tabs as a space.
+/// The text with every control character (terminal escapes, bidirectional overrides) written as `\u{..}`, and
+/// tabs as a space.
 #[must_use]
 pub fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());

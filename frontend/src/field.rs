@@ -1,5 +1,5 @@
-//! Named parameters of the members of the open sets: one description serves the text parser, the printer, the check and
-//! the documentation. See [`member`](crate::member).
+//! Named parameters of the members of the open sets: one description serves the text parser, the printer, the
+//! check and the documentation. See [`member`](crate::member).
 
 /// What a parameter may be.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -136,7 +136,8 @@ pub(crate) fn tuple<T: NumberText>(numbers: &[T]) -> String {
 }
 
 impl Field {
-    /// Adds the parameter as it is written, a blank in front: nothing, if it has its default. `word`: what it is called there.
+    /// Adds the parameter as it is written, a blank in front: nothing, if it has its default. `word`: what it
+    /// is called there.
     pub(crate) fn write<T: NumberText>(&self, out: &mut String, word: &str, value: &FieldOf<T>) {
         if self.default.as_ref().is_some_and(|default| same(default, value)) {
             return;

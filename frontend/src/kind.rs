@@ -39,7 +39,8 @@ pub enum NodeKind {
     Select(f64),
     /// The child stands elsewhere: the map takes the child's space to the parent's.
     Affine(DAffine3),
-    /// The child is deformed. A second child, if there is one, gives the weight of the deformation: see [`warp`](crate::warp).
+    /// The child is deformed. A second child, if there is one, gives the weight of the deformation: see
+    /// [`warp`](crate::warp).
     Warp(Warp),
     /// The leaves below have this attribute, unless another node of the same name stands nearer to them.
     Attribute {
@@ -51,7 +52,8 @@ pub enum NodeKind {
 }
 
 impl NodeKind {
-    /// The skeleton whose uv the field of a leaf has: a formula has that of a point at the origin of its space.
+    /// The skeleton whose uv the field of a leaf has: a formula has that of a point at the origin of its
+    /// space.
     #[must_use]
     pub(crate) fn uv_skeleton(&self) -> &Skeleton {
         match self {
@@ -88,8 +90,8 @@ impl NodeKind {
         }
     }
 
-    /// The children that answer: of a selector the chosen one, of any other node all. Panics, if a selector's number is near no child:
-    /// the check has excluded it.
+    /// The children that answer: of a selector the chosen one, of any other node all. Panics, if a selector's
+    /// number is near no child: the check has excluded it.
     #[must_use]
     pub fn asked<'a, T>(&self, children: &'a [T]) -> &'a [T] {
         match self {
@@ -104,7 +106,8 @@ impl NodeKind {
     }
 }
 
-/// The place of the child that a selector's number stands for: the nearest whole number. The number has been checked.
+/// The place of the child that a selector's number stands for: the nearest whole number. The number has been
+/// checked.
 pub(crate) fn chosen(which: f64) -> usize {
     which.round() as usize
 }

@@ -20,9 +20,9 @@
 //! | `[Position]` | the [`FieldKind`](crate::field::FieldKind): what the value may be |
 //! | `= Vector([0.0; 3])` | the [`FieldValue`] that counts where the parameter is not written; without one, it has to be |
 //!
-//! `member!` writes the struct and its [`Member`]. It also defines the macro `describe!` of
-//! the file, which hands the description on to another macro: constructors of the [builder](crate::builder) are made
-//! of it. A file describes one member.
+//! `member!` writes the struct and its [`Member`]. It also defines the macro `describe!` of the file, which
+//! hands the description on to another macro: constructors of the [builder](crate::builder) are made of it. A
+//! file describes one member.
 
 use std::sync::Arc;
 
@@ -38,8 +38,8 @@ pub trait Member: Sized {
     /// The parameters, in the order in which they print.
     const FIELDS: &'static [Field];
 
-    /// The member with these parameters: one value for each of [`FIELDS`](Self::FIELDS), of its kind. Panics if
-    /// there are more or fewer.
+    /// The member with these parameters: one value for each of [`FIELDS`](Self::FIELDS), of its kind. Panics
+    /// if there are more or fewer.
     fn from_fields(values: &[FieldValue]) -> Self;
 
     /// The parameters: what [`from_fields`](Self::from_fields) was given.
@@ -57,7 +57,8 @@ pub type Matrix = [[f64; 4]; 3];
 
 /// A type that a field of a member may have.
 pub(crate) trait Parameter {
-    /// The parameter from its value. Panics if that is of another shape: the kind of the field has excluded it.
+    /// The parameter from its value. Panics if that is of another shape: the kind of the field has excluded
+    /// it.
     fn read(value: &FieldValue) -> Self;
 
     /// Its value.
@@ -204,8 +205,8 @@ macro_rules! describe {
     };
 }
 
-/// Defines the macro `each!` of a list: `each! { then }` hands the description of each member, the name of its file in
-/// front, on to `then!`.
+/// Defines the macro `each!` of a list: `each! { then }` hands the description of each member, the name of
+/// its file in front, on to `then!`.
 macro_rules! each {
     (($d:tt) $folder:ident $($member:ident)+) => {
         macro_rules! each {

@@ -15,8 +15,8 @@ pub struct Model {
     pub attributes: Vec<AttributeGroup>,
     /// The tree.
     pub root: Tree,
-    /// The named parameters, in the order of their declarations. Those that the tree mentions and that are not here have the
-    /// defaults of their first uses.
+    /// The named parameters, in the order of their declarations. Those that the tree mentions and that are
+    /// not here have the defaults of their first uses.
     pub parameters: Vec<Parameter>,
     /// The text that places of nodes are in, for messages; `None` if the model came from none.
     pub source: Option<SourceText>,

@@ -9,8 +9,8 @@
 //! assert!(radius.follows() && !Number::from(2.2).follows());
 //! ```
 //!
-//! A formula is a list of steps in postfix order, `2 bulge * 1 +`, evaluated in f64 on a list of its own. A plain number has none, and
-//! arithmetic of plain numbers gives plain numbers.
+//! A formula is a list of steps in postfix order, `2 bulge * 1 +`, evaluated in f64 on a list of its own. A
+//! plain number has none, and arithmetic of plain numbers gives plain numbers.
 
 mod binary;
 mod formula;
@@ -43,8 +43,8 @@ pub struct Number {
 /// A parameter: a number with a name that can be set at run time, see
 /// [`CheckedTree::with_parameters`](crate::check::CheckedTree::with_parameters).
 ///
-/// All uses of a name in one model are one parameter and have to give the same default. A name is a letter, then letters, digits and
-/// underscores, and not a word of the text format's expressions.
+/// All uses of a name in one model are one parameter and have to give the same default. A name is a letter,
+/// then letters, digits and underscores, and not a word of the text format's expressions.
 #[must_use]
 pub fn param(name: &str, default: f64) -> Number {
     let steps = vec![Step::Parameter { name: name.into(), default }];
@@ -73,7 +73,8 @@ impl Number {
         self.formula.as_deref()
     }
 
-    /// The same number once the parameters have these values. An error names the place of the formula, if it has one.
+    /// The same number once the parameters have these values. An error names the place of the formula, if it
+    /// has one.
     pub(crate) fn refreshed(&self, values: &Values) -> Result<Self, Diagnostic> {
         match &self.formula {
             None => Ok(self.clone()),

@@ -6,9 +6,9 @@
 //!                   sum, Ricci     of the operands' owners, the leaf with the largest share of the weight
 //! ```
 //!
-//! Shares are those that mix attributes: the owner is the leaf whose value a `dominant` attribute takes. Of equals the first in the file
-//! owns the point. The walk is in f64 over plain formulas, one point at a time, on a list of its own: a chain of a million nodes is a tree like any
-//! other.
+//! Shares are those that mix attributes: the owner is the leaf whose value a `dominant` attribute takes. Of
+//! equals the first in the file owns the point. The walk is in f64 over plain formulas, one point at a time,
+//! on a list of its own: a chain of a million nodes is a tree like any other.
 
 use std::fmt::Write as _;
 
@@ -73,11 +73,13 @@ struct Step {
 #[derive(Clone, Copy)]
 struct Answer {
     field: f64,
-    /// The step of the leaf that decides, and its share of the weight here. Nobody decides where nothing has weight.
+    /// The step of the leaf that decides, and its share of the weight here. Nobody decides where nothing has
+    /// weight.
     leaf: Option<(u32, f64)>,
 }
 
-/// The leaf that decides at `p`: `None` where the field is 0, or where it is negative because nothing with a positive field is left.
+/// The leaf that decides at `p`: `None` where the field is 0, or where it is negative because nothing with a
+/// positive field is left.
 ///
 /// Cost: all paths of the tree.
 #[must_use]
@@ -181,7 +183,8 @@ fn heaviest(children: &[Answer], weights: &[f64]) -> Option<(u32, f64)> {
     for (child, weight) in children.iter().zip(weights) {
         let Some((leaf, share)) = child.leaf else { continue };
         let share = weight / total * share;
-        // Strictly: of equals the first in the file stays. A total of zero gives no number, which is not more.
+        // Strictly: of equals the first in the file stays. A total of zero gives no number, which is not
+        // more.
         if share > most {
             (best, most) = (Some((leaf, share)), share);
         }

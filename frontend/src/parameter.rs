@@ -62,7 +62,8 @@ impl Parameter {
 }
 
 impl PartialEq for Parameter {
-    /// The same name, and a value that comes from the same number: one that is set to its default is one that has it.
+    /// The same name, and a value that comes from the same number: one that is set to its default is one that
+    /// has it.
     fn eq(&self, other: &Self) -> bool {
         self.name == other.name && self.source() == other.source()
     }
@@ -90,8 +91,8 @@ pub(crate) fn is_name(name: &str) -> bool {
     !builtin && is_identifier(name)
 }
 
-/// Adds the parameters that stand in a tree and not in the list, each with the default that its first use gives it. Two uses with
-/// different defaults are an error.
+/// Adds the parameters that stand in a tree and not in the list, each with the default that its first use
+/// gives it. Two uses with different defaults are an error.
 pub(crate) fn collect(
     declared: &[Parameter],
     iso: &Number,

@@ -12,7 +12,8 @@ pub(crate) struct Report {
 }
 
 impl Report {
-    /// Adds what `make` returns; past the limit `make` is not called, so that a file of mistakes costs no more than its length.
+    /// Adds what `make` returns; past the limit `make` is not called, so that a file of mistakes costs no
+    /// more than its length.
     pub(crate) fn add(&mut self, make: impl FnOnce() -> Diagnostic) {
         if self.is_full() {
             self.counted += 1;
@@ -88,7 +89,8 @@ pub(crate) fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) 
         .map(|(_, other)| other)
 }
 
-/// Insertions, deletions, substitutions and exchanges of neighbours that turn `a` into `b` (optimal string alignment).
+/// Insertions, deletions, substitutions and exchanges of neighbours that turn `a` into `b` (optimal string
+/// alignment).
 fn edit_distance(a: &[u8], b: &[u8]) -> usize {
     let mut before: Vec<usize> = Vec::new();
     let mut row: Vec<usize> = (0..=b.len()).collect();

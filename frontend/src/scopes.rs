@@ -25,8 +25,8 @@ use crate::written::{FieldNumber, Written, WrittenAttribute};
 
 /// A tree under construction: a stack of open scopes.
 ///
-/// Attributes and maps hold for what follows them, up to the end of their scope. A map that comes later acts first, as if written
-/// further inside; of attributes with one name the later one counts.
+/// Attributes and maps hold for what follows them, up to the end of their scope. A map that comes later acts
+/// first, as if written further inside; of attributes with one name the later one counts.
 #[derive(Debug)]
 pub struct Scopes {
     root: Scope,

@@ -250,8 +250,8 @@ impl Tree {
         formula.into().tree(Some([low.into(), high.into()]))
     }
 
-    /// Deformed by three formulas of the point, which say where this tree is asked: it appears where they lead to it. They ask for no fields. See
-    /// [`FormulaWarp`](struct@crate::warp::FormulaWarp).
+    /// Deformed by three formulas of the point, which say where this tree is asked: it appears where they
+    /// lead to it. They ask for no fields. See [`FormulaWarp`](struct@crate::warp::FormulaWarp).
     ///
     /// It reaches everywhere, as far as anybody knows; [`within`](Self::within) a box it ends there.
     ///
@@ -273,8 +273,8 @@ impl Tree {
         Self::new(Written::FormulaWarp(Formula::new(assembled, None)), vec![self.clone()])
     }
 
-    /// With a formula for every leaf below: one value for each channel of the group, of the coordinates in the space of this tree. It may ask for no
-    /// fields. See [`expression`](crate::expression).
+    /// With a formula for every leaf below: one value for each channel of the group, of the coordinates in
+    /// the space of this tree. It may ask for no fields. See [`expression`](crate::expression).
     ///
     /// ```
     /// use jbt_frontend::builder::{point, x, y};
@@ -292,11 +292,14 @@ impl Tree {
         self.given(name, WrittenAttribute::Expressed(Formula::new(assembled, None)))
     }
 
-    /// The same with the falloff of every primitive given by a formula of r, the distance over the radius of support, from 0 at the skeleton to 1.
+    /// The same with the falloff of every primitive given by a formula of r, the distance over the radius of
+    /// support, from 0 at the skeleton to 1.
     ///
-    /// Where r is 1 the formula has to be 0 exactly, as computed in f64: then the field is exactly 0 from there on, and reaches as far as before. One
-    /// that is not reaches everywhere. Between 0 and 1 it may rise and fall. It is the same as an expression over primitives with the falloff
-    /// [`Linear`](Falloff::Linear), of which r is `1 - field`. So a surface radius, which is turned into one of support by a falloff, is by that one.
+    /// Where r is 1 the formula has to be 0 exactly, as computed in f64: then the field is exactly 0 from
+    /// there on, and reaches as far as before. One that is not reaches everywhere. Between 0 and 1 it may
+    /// rise and fall. It is the same as an expression over primitives with the falloff
+    /// [`Linear`](Falloff::Linear), of which r is `1 - field`. So a surface radius, which is turned into one
+    /// of support by a falloff, is by that one.
     ///
     /// ```
     /// use jbt_frontend::builder::point;

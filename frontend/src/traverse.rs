@@ -8,8 +8,9 @@
 //!       d                 Visit::Paths, infix    b d a c d      between children, as operators are written
 //! ```
 //!
-//! In infix order a node comes between each two neighbours among its children, `x a y a z`: one time less than it has children. An only child comes
-//! behind its node, as an operand behind a sign, and a leaf comes once.
+//! In infix order a node comes between each two neighbours among its children, `x a y a z`: one time less
+//! than it has children. An only child comes behind its node, as an operand behind a sign, and a leaf comes
+//! once.
 
 use std::collections::HashSet;
 
@@ -100,8 +101,8 @@ impl<N: Nodes> Iterator for Walk<N> {
         loop {
             match self.stack.pop()? {
                 Todo::Visit(node) => return Some(node),
-                // A node that was opened before is done by now: all that stood above it in the stack was popped since, and it cannot
-                // be open still, since no node is its own descendant.
+                // A node that was opened before is done by now: all that stood above it in the stack was
+                // popped since, and it cannot be open still, since no node is its own descendant.
                 Todo::Open(node) => {
                     let identity = self.nodes.identity(node);
                     if self.seen.as_mut().is_none_or(|seen| seen.insert(identity)) {

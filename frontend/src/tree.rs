@@ -10,8 +10,8 @@
 //!                     (shared)
 //! ```
 //!
-//! Cloning a [`Tree`] is cheap and shares it. Everything that walks a tree is iterative, dropping it included: a chain of a
-//! million nodes is a tree like any other.
+//! Cloning a [`Tree`] is cheap and shares it. Everything that walks a tree is iterative, dropping it
+//! included: a chain of a million nodes is a tree like any other.
 
 use std::collections::HashMap;
 use std::fmt;
@@ -66,7 +66,8 @@ impl Node {
 pub struct Tree(Arc<Node>);
 
 impl Tree {
-    /// A node over children. Anything can be built; [`Model::check`](crate::check) says whether it makes sense.
+    /// A node over children. Anything can be built; [`Model::check`](crate::check) says whether it makes
+    /// sense.
     #[must_use]
     pub fn new(written: impl Into<Written>, children: Vec<Self>) -> Self {
         Self::assemble(written.into(), children, None)
@@ -110,7 +111,8 @@ impl Tree {
 }
 
 impl Drop for Node {
-    /// Takes a tree apart without recursion: whatever only this node holds is moved to a list and emptied there.
+    /// Takes a tree apart without recursion: whatever only this node holds is moved to a list and emptied
+    /// there.
     fn drop(&mut self) {
         let mut list: Vec<Tree> = std::mem::take(&mut self.children);
         while let Some(tree) = list.pop() {
@@ -129,7 +131,8 @@ impl fmt::Debug for Node {
 }
 
 impl fmt::Debug for Tree {
-    /// Every node once, numbered, children first: a list and not a nest, so that depth and sharing do no harm.
+    /// Every node once, numbered, children first: a list and not a nest, so that depth and sharing do no
+    /// harm.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut numbers = HashMap::new();
         let mut map = f.debug_map();
@@ -144,7 +147,8 @@ impl fmt::Debug for Tree {
 }
 
 impl PartialEq for Tree {
-    /// The same nodes with the same numbers in the same order; places in texts do not matter. Shared pairs are compared once.
+    /// The same nodes with the same numbers in the same order; places in texts do not matter. Shared pairs
+    /// are compared once.
     fn eq(&self, other: &Self) -> bool {
         let mut seen = std::collections::HashSet::new();
         let mut pairs = vec![(self, other)];

@@ -9,8 +9,8 @@
 //!                  attribute    walk the child, its leaves having this attribute: numbers, what a texture is at p, or their uv
 //! ```
 //!
-//! It judges the compiler, so it shares no code with it. It is too simple to be fast: every primitive is evaluated once for each
-//! path that leads to it, for each question again.
+//! It judges the compiler, so it shares no code with it. It is too simple to be fast: every primitive is
+//! evaluated once for each path that leads to it, for each question again.
 
 use std::rc::Rc;
 
@@ -32,10 +32,12 @@ pub struct Sample {
     pub field: f64,
     /// The value of each attribute group, in the order of [`CheckedTree::attributes`].
     pub attributes: Vec<Vec<f64>>,
-    /// How far the point is from anything that is decided: a tie of a union, the rim of a support, the axis of a ring, the crease of a warp, a total
-    /// weight of zero, a tie of dominance. In units of the fields, weights and lengths that it compares; infinity if nothing is decided.
+    /// How far the point is from anything that is decided: a tie of a union, the rim of a support, the axis
+    /// of a ring, the crease of a warp, a total weight of zero, a tie of dominance. In units of the fields,
+    /// weights and lengths that it compares; infinity if nothing is decided.
     ///
-    /// Where this is small, gradients and attributes of another engine may differ: it may have decided otherwise.
+    /// Where this is small, gradients and attributes of another engine may differ: it may have decided
+    /// otherwise.
     pub decision: f64,
 }
 
@@ -203,7 +205,8 @@ fn combine(combinator: Combinator, iso: f64, children: &[Answer], defaults: &Val
     mixed(children, &weights, defaults, (field, decision, silent))
 }
 
-/// The field of a formula, and the attributes of the leaf that it is, of its only child, or of several by weight.
+/// The field of a formula, and the attributes of the leaf that it is, of its only child, or of several by
+/// weight.
 fn express(
     expression: &Expression,
     p: DVec3,
@@ -312,7 +315,8 @@ fn decide(
         }
         Combinator::Union | Combinator::Intersection | Combinator::Difference => {
             let winner = &children[winner.unwrap_or(0)];
-            // A tie of children that are zero all around is none: the first of them wins, whatever the engine.
+            // A tie of children that are zero all around is none: the first of them wins, whatever the
+            // engine.
             let first = usize::from(combinator == Combinator::Difference);
             let quiet = children.iter().skip(first).position(|child| child.silent).map(|i| i + first);
             let rivals: Vec<f64> = (0..children.len())

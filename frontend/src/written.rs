@@ -1,7 +1,8 @@
 //! What was written: nodes with their numbers as formulas of parameters.
 //!
-//! A [`Tree`](crate::tree::Tree) is made of such nodes, and of nothing else. What they mean, a [`NodeKind`] with plain
-//! values, is found out by the [check](crate::check), for the values that the parameters and the iso-value have then.
+//! A [`Tree`](crate::tree::Tree) is made of such nodes, and of nothing else. What they mean, a [`NodeKind`]
+//! with plain values, is found out by the [check](crate::check), for the values that the parameters and the
+//! iso-value have then.
 //!
 //! ```text
 //! rotate axis z degrees 90 * t { .. }      written  Map { Rotate, axis (0 0 1), degrees 90 * t }
@@ -210,7 +211,8 @@ impl Written {
     ///
     /// # Errors
     ///
-    /// An axis without a direction, and the surface radius of a primitive that has no surface; without a place.
+    /// An axis without a direction, and the surface radius of a primitive that has no surface; without a
+    /// place.
     pub fn evaluated(&self, iso: f64) -> Result<NodeKind, Diagnostic> {
         self.kind(iso).map_err(|fault| fault.at(None))
     }
@@ -246,8 +248,8 @@ impl Written {
         })
     }
 
-    /// What tells the maps of nodes apart that follow parameters: equal for those that are equal whatever the values. An
-    /// affine node has one, and so has a formula in a box; nothing else moves what is in it.
+    /// What tells the maps of nodes apart that follow parameters: equal for those that are equal whatever the
+    /// values. An affine node has one, and so has a formula in a box; nothing else moves what is in it.
     pub(crate) fn map_key(&self) -> MapKey {
         let steps = |numbers: &mut dyn Iterator<Item = &Number>| numbers.flat_map(Number::steps).collect();
         match self {
@@ -279,7 +281,8 @@ impl Written {
         }
     }
 
-    /// Whether a primitive's skeleton can turn: a direction or an angle follows a parameter, or one of several positions, which give it its own.
+    /// Whether a primitive's skeleton can turn: a direction or an angle follows a parameter, or one of
+    /// several positions, which give it its own.
     pub(crate) fn skeleton_turns(&self) -> bool {
         let Self::Primitive { skeleton, fields, .. } = self else { return false };
         let described = skeleton.fields();
@@ -345,8 +348,8 @@ impl Written {
         self
     }
 
-    /// What a primitive is written as that was changed from one leaf to another: numbers that the change has left alone
-    /// follow their parameters still.
+    /// What a primitive is written as that was changed from one leaf to another: numbers that the change has
+    /// left alone follow their parameters still.
     pub(crate) fn changed(&self, old: &Primitive, new: &Primitive) -> Self {
         let Self::Primitive { fields, falloff, radius, strength, .. } = self else {
             unreachable!("leaves are written as primitives")
@@ -375,14 +378,16 @@ impl Written {
     }
 }
 
-/// An exponent that follows a parameter is never exactly 1: the plain sum is another operator where fields are negative, and passing
-/// by it must not exchange one for the other. The next number above 1 is the same exponent in f32.
+/// An exponent that follows a parameter is never exactly 1: the plain sum is another operator where fields
+/// are negative, and passing by it must not exchange one for the other. The next number above 1 is the same
+/// exponent in f32.
 fn above_one(exponent: &Number) -> f64 {
     let n = exponent.value();
     if exponent.follows() && n == 1.0 { 1.0 + f64::EPSILON } else { n }
 }
 
-/// The support radius of a primitive whose surface alone has this radius: `r / sqrt(s)` with `falloff(s) = iso / strength`.
+/// The support radius of a primitive whose surface alone has this radius: `r / sqrt(s)` with `falloff(s) =
+/// iso / strength`.
 fn support_radius(radius: f64, falloff: Falloff, strength: f64, iso: f64) -> Result<f64, Fault> {
     let level = iso / strength;
     if radius.is_nan() || level.is_nan() {

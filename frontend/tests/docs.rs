@@ -1,5 +1,6 @@
-//! The pages of `docs/` are true: they name every member with all its parameters, their values and defaults; and every scene in them, in
-//! the README and in `docs/members/`, where each member has one that shows it, is a good model. Every member and every example has its picture.
+//! The pages of `docs/` are true: they name every member with all its parameters, their values and defaults;
+//! and every scene in them, in the README and in `docs/members/`, where each member has one that shows it, is
+//! a good model. Every member and every example has its picture.
 
 use std::path::{Path, PathBuf};
 
@@ -14,7 +15,8 @@ use jbt_frontend::text::{OWN_FIELDS, Options, functions, parse};
 use jbt_frontend::texture::TextureKind;
 use jbt_frontend::warp::WarpKind;
 
-/// What stands before a scene that does not begin with its format: the group and the subtrees that examples use.
+/// What stands before a scene that does not begin with its format: the group and the subtrees that examples
+/// use.
 const HEAD: &str = "jbt 1
     attribute uv 2
     let a = point { at (-0.3 0 0) radius 1 }
@@ -234,8 +236,8 @@ fn what_has_no_list_has_a_scene() {
     }
 }
 
-/// A scene of `docs/members/` begins with a comment that says how to look at it, `# render` or `# slice z=0`, is a good model with an end,
-/// and uses its member.
+/// A scene of `docs/members/` begins with a comment that says how to look at it, `# render` or `# slice z=0`,
+/// is a good model with an end, and uses its member.
 fn has_scene(family: &str, name: &str) {
     let path = root().join("docs/members").join(family).join(format!("{name}.jbt"));
     let shown = path.display().to_string();
@@ -265,7 +267,8 @@ fn has_picture(name: &str) {
     assert!(bytes.starts_with(start), "{name} is a picture");
 }
 
-/// Every example has a picture in the gallery that leads to it, and a caption that begins with its name and its text.
+/// Every example has a picture in the gallery that leads to it, and a caption that begins with its name and
+/// its text.
 #[test]
 fn all_examples_are_in_the_gallery() {
     let gallery = page("gallery.md");
@@ -340,7 +343,8 @@ fn entries(folder: &str, extension: &str) -> Vec<PathBuf> {
     paths.filter(|path| path.extension().and_then(|found| found.to_str()) == Some(extension)).collect()
 }
 
-/// The scenes of a page, each with the line that it begins at: blocks marked `jbt`, and indented ones that begin with the format.
+/// The scenes of a page, each with the line that it begins at: blocks marked `jbt`, and indented ones that
+/// begin with the format.
 fn scenes(page: &str) -> Vec<(usize, String)> {
     let mut scenes: Vec<(usize, String)> = Vec::new();
     let mut lines = page.lines().enumerate().peekable();

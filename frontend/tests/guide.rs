@@ -42,7 +42,8 @@ fn support(tree: &CheckedTree) -> Support {
     guide.supports[0]
 }
 
-/// A point outside of a support, hardly or by up to a thousandth; `None` if all directions from the inside stay inside.
+/// A point outside of a support, hardly or by up to a thousandth; `None` if all directions from the inside
+/// stay inside.
 fn outside(support: &Support, rng: &mut Rng) -> Option<[f32; 3]> {
     let out = |p: [f32; 3]| support.misses(p, p);
     let from: [f32; 3] =

@@ -1,6 +1,7 @@
 //! What lowering makes of small scenes: golden files with the scene, the program and the numbers.
 //!
-//! `golden/lower/NAME.jbt` lowers, for all answers, to `golden/lower/NAME.ir`. `BLESS=1` writes what is found.
+//! `golden/lower/NAME.jbt` lowers, for all answers, to `golden/lower/NAME.ir`. `BLESS=1` writes what is
+//! found.
 
 use std::fmt::Write as _;
 use std::path::Path;

@@ -1,4 +1,5 @@
-//! Operators by their closed forms, and what is often wrong with them: the oracle, and the compiled program in f32 beside it.
+//! Operators by their closed forms, and what is often wrong with them: the oracle, and the compiled program
+//! in f32 beside it.
 
 use jbt_frontend::builder::{param, point, segment};
 use jbt_frontend::check::CheckedTree;

@@ -155,7 +155,8 @@ fn changing_primitives_keeps_what_it_leaves_alone() {
 
 #[test]
 fn long_formulas_and_long_chains_of_parameters() {
-    // Sums that group to the left and powers that group to the right; neither may recurse or take quadratic time.
+    // Sums that group to the left and powers that group to the right; neither may recurse or take quadratic
+    // time.
     let long = 200_000;
     let sum = "p + ".repeat(long) + "1";
     let nested = "(1 + ".repeat(long) + "p" + &")".repeat(long);

@@ -1,8 +1,8 @@
-//! ParsIP scenes: every published sample against independently computed values, every kind of node by a scene of our own, and
-//! what strangers send.
+//! ParsIP scenes: every published sample against independently computed values, every kind of node by a scene
+//! of our own, and what strangers send.
 //!
-//! The samples are looked for in `shared/samples/parsip` beside the folders above this crate, or in the folder `parsip` of `JBT_SAMPLES`;
-//! where they are missing, their test says so.
+//! The samples are looked for in `shared/samples/parsip` beside the folders above this crate, or in the
+//! folder `parsip` of `JBT_SAMPLES`; where they are missing, their test says so.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -195,7 +195,8 @@ fn colours_are_mixed_by_field() {
 
 #[test]
 fn twists_turn_as_the_format_says() {
-    // The child's point is (u cos t - v sin t, u sin t + v cos t), t = k p_a, (u, v) the other axes in the order x, y, z.
+    // The child's point is (u cos t - v sin t, u sin t + v cos t), t = k p_a, (u, v) the other axes in the
+    // order x, y, z.
     let p = DVec3::new(0.3, -0.2, 0.7);
     for axis in 0..3 {
         let (u, v) = [(1, 2), (0, 2), (0, 1)][axis];

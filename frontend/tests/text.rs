@@ -1,9 +1,8 @@
 //! The text format: golden files, round trips, and what strangers send.
 //!
-//! `golden/text/NAME.jbt` prints as `NAME.print`. In `golden/text/error_NAME.jbt` every line that earns an error says so behind
-//! `#~`, with the columns; the marks are taken off before the text is read. `BLESS=1` writes what is found.
-//! What reads well is checked.
-//! A line `#! -D NAME=VALUE` sets a parameter from outside.
+//! `golden/text/NAME.jbt` prints as `NAME.print`. In `golden/text/error_NAME.jbt` every line that earns an
+//! error says so behind `#~`, with the columns; the marks are taken off before the text is read. `BLESS=1`
+//! writes what is found. What reads well is checked. A line `#! -D NAME=VALUE` sets a parameter from outside.
 
 mod random;
 
@@ -216,7 +215,8 @@ fn spans_are_bytes() {
     assert_eq!(shown(&children[1]), "translate (1 0 0)");
 }
 
-/// Files of any system: the same model, and the same messages, which have no character that no terminal shows.
+/// Files of any system: the same model, and the same messages, which have no character that no terminal
+/// shows.
 #[test]
 fn lines_end_as_on_any_system() {
     let good = "jbt 1 # a comment\nparam r = 1 // another\npoint {\n    radius r # the last\n}\n";

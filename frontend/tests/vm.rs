@@ -1,7 +1,8 @@
-//! Programs of instructions (`.vm`): published samples against an interpreter of their own, every operation by hand, and what strangers send.
+//! Programs of instructions (`.vm`): published samples against an interpreter of their own, every operation
+//! by hand, and what strangers send.
 //!
-//! The samples are looked for in `shared/samples/vm` beside the folders above this crate, or where `JBT_VM_SAMPLES` says; where they are
-//! missing, their test says so.
+//! The samples are looked for in `shared/samples/vm` beside the folders above this crate, or where
+//! `JBT_VM_SAMPLES` says; where they are missing, their test says so.
 
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -78,7 +79,8 @@ fn samples_have_the_values_of_their_instructions() {
         for _ in 0..40 {
             let p: [f64; 3] = std::array::from_fn(|_| size * (2.0 * rng.f64() - 1.0));
             let (found, truth) = (walk(&tree, p).field, 0.5 - interpret(&text, p));
-            // Far outside of the bear the logarithm of a sum of exponentials leaves the range of f32, and stays at its end.
+            // Far outside of the bear the logarithm of a sum of exponentials leaves the range of f32, and
+            // stays at its end.
             let far = name == "bear" && truth < -2.0 && found < -2.0;
             let close = (found - truth).abs() <= 1e-9 * truth.abs().max(1.0);
             assert!(far || close, "{name}: {found}, not {truth}, at {p:?}");

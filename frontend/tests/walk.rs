@@ -108,7 +108,8 @@ fn the_nearest_attribute_counts_and_defaults_fill_in() {
 
 #[test]
 fn weights_are_normalised_at_each_node() {
-    // The inner blend is red and blue as 1 to 1, the outer one mixes it with green as 2 to 2, not as 1 to 1 to 2.
+    // The inner blend is red and blue as 1 to 1, the outer one mixes it with green as 2 to 2, not as 1 to 1
+    // to 2.
     let inner = Tree::blend(2.0, [level(1.0).color(RED), level(1.0).color(BLUE)]);
     let tree = inner + level(2f64.sqrt()).color(GREEN);
     assert!(near(color(&tree, HERE), [0.25, 0.5, 0.25], 1e-15));

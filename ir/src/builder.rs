@@ -1,10 +1,11 @@
-//! Builds functions. The builder is itself a [`Domain`]: code written over `Domain` and run on it becomes instructions.
+//! Builds functions. The builder is itself a [`Domain`]: code written over `Domain` and run on it becomes
+//! instructions.
 //!
 //! Two things happen on the way, always:
 //!
 //! * **Hash-consing.** An instruction that exists already where it can be seen is not written again.
-//! * **Hoisting.** An instruction goes into the outermost open block that has all its operands, so whatever does not depend on
-//!   the row or the accumulators of a fold is computed outside of it.
+//! * **Hoisting.** An instruction goes into the outermost open block that has all its operands, so whatever
+//!   does not depend on the row or the accumulators of a fold is computed outside of it.
 //!
 //! ```
 //! use jbt_ir::{Domain, FoldKind, FunctionBuilder, Rule, Schema, verify};
@@ -111,7 +112,8 @@ impl FunctionBuilder {
         Arc::make_mut(&mut self.function.tables).push(schema)
     }
 
-    /// Adds a column to a table and returns its index. Lowering learns the columns of a row while it writes the body.
+    /// Adds a column to a table and returns its index. Lowering learns the columns of a row while it writes
+    /// the body.
     pub fn add_column(&mut self, table: Table, name: &str) -> usize {
         let columns = &mut Arc::make_mut(&mut self.function.tables)[table].columns;
         columns.push(name.to_owned());
@@ -172,7 +174,8 @@ impl FunctionBuilder {
         }
     }
 
-    /// Whether the value is the same at all points, for given rows: made of constants and columns alone. Engines compute it once for a row.
+    /// Whether the value is the same at all points, for given rows: made of constants and columns alone.
+    /// Engines compute it once for a row.
     #[must_use]
     pub fn is_uniform(&self, value: Value) -> bool {
         self.uniform[value.index()]
@@ -203,7 +206,8 @@ impl FunctionBuilder {
         self.insert(Key::Op(op, key), depth, InstKind::Op { op, args: args.into() }, op.result())
     }
 
-    /// Opens a fold over `table` and returns its accumulators; what follows is its body, up to [`end_fold`](Self::end_fold).
+    /// Opens a fold over `table` and returns its accumulators; what follows is its body, up to
+    /// [`end_fold`](Self::end_fold).
     pub fn begin_fold(&mut self, table: Table, kind: (FoldKind, Rule), initial: &[Value]) -> Vec<Value> {
         let depth = self.open.len();
         let params: Vec<Value> =
@@ -215,8 +219,8 @@ impl FunctionBuilder {
         params
     }
 
-    /// Gives the innermost fold one more accumulator, behind the others, and returns it: for code that learns in the body what it has to
-    /// carry out.
+    /// Gives the innermost fold one more accumulator, behind the others, and returns it: for code that learns
+    /// in the body what it has to carry out.
     pub fn add_accumulator(&mut self, initial: Value) -> Value {
         let depth = self.open.len() - 1;
         let param = self.new_value(self.function.values[initial], depth);

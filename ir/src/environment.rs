@@ -1,17 +1,19 @@
-//! The floating-point environment that engines run in: the one of IEEE 754's defaults, whatever the host has set.
+//! The floating-point environment that engines run in: the one of IEEE 754's defaults, whatever the host has
+//! set.
 //!
-//! A host may flush subnormals to zero (audio programs do) or round in another direction, and then the same program would give
-//! other bits. So every engine enters [`Standard`] before its first operation.
+//! A host may flush subnormals to zero (audio programs do) or round in another direction, and then the same
+//! program would give other bits. So every engine enters [`Standard`] before its first operation.
 
 use std::marker::PhantomData;
 
-/// The standard environment, from [`Standard::enter`] until it is dropped: round to nearest, subnormals kept, no traps.
+/// The standard environment, from [`Standard::enter`] until it is dropped: round to nearest, subnormals kept,
+/// no traps.
 ///
-/// Dropping it restores what the caller had, also when a panic does it. It belongs to the thread that made it. On CPUs other than
-/// x86-64 it does nothing: there, the environment has to be the standard one already.
+/// Dropping it restores what the caller had, also when a panic does it. It belongs to the thread that made
+/// it. On CPUs other than x86-64 it does nothing: there, the environment has to be the standard one already.
 ///
-/// The compiler does not know that the environment matters to arithmetic: what is to run in it stands in a function that is not
-/// inlined.
+/// The compiler does not know that the environment matters to arithmetic: what is to run in it stands in a
+/// function that is not inlined.
 #[must_use = "the environment lasts until this is dropped"]
 #[derive(Debug)]
 pub struct Standard {
@@ -61,8 +63,9 @@ mod mxcsr {
     }
 
     pub fn set(bits: u32) {
-        // SAFETY: ldmxcsr reads the four bytes that the pointer is to. They are the standard, or what `get` gave: so no reserved bit
-        // is set, and code of ours runs either in the environment that Rust assumes, or in the one that its caller chose.
+        // SAFETY: ldmxcsr reads the four bytes that the pointer is to. They are the standard, or what `get`
+        // gave: so no reserved bit is set, and code of ours runs either in the environment that Rust assumes,
+        // or in the one that its caller chose.
         unsafe { asm!("ldmxcsr [{}]", in(reg) &raw const bits, options(nostack, preserves_flags)) };
     }
 }

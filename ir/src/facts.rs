@@ -1,8 +1,8 @@
 //! What holds for values at every point, before every row: found from ops alone, whatever there is to know.
 //!
-//! An accumulator has the facts that its initial value has and that every next value keeps. The search begins with those
-//! of the initial values and goes through the function, dropping what the next values do not have, until nothing is
-//! dropped.
+//! An accumulator has the facts that its initial value has and that every next value keeps. The search begins
+//! with those of the initial values and goes through the function, dropping what the next values do not have,
+//! until nothing is dropped.
 
 use crate::entity::{Block, Entity, Value};
 use crate::function::{Function, InstKind};

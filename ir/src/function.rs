@@ -18,10 +18,10 @@
 //!
 //! [`crate::text`] defines this form.
 //!
-//! There are no calls, traps or stores. A fold runs its body once for each *active row* of a table, in ascending row
-//! order; the body sees the row's columns (the same in all lanes), every value of the enclosing blocks, and the
-//! accumulators. If the table has a parent, the fold stands in the parent's body and runs over the rows that the parent's
-//! current row owns.
+//! There are no calls, traps or stores. A fold runs its body once for each *active row* of a table, in
+//! ascending row order; the body sees the row's columns (the same in all lanes), every value of the enclosing
+//! blocks, and the accumulators. If the table has a parent, the fold stands in the parent's body and runs
+//! over the rows that the parent's current row owns.
 
 use std::sync::Arc;
 
@@ -34,7 +34,8 @@ use crate::origin::Origin;
 pub enum FoldKind {
     /// Operands of one operator: any number of them.
     Rows,
-    /// One row, or none: what stands under a guard, or is chosen. The answer of the row passes through, and without it the initial values do.
+    /// One row, or none: what stands under a guard, or is chosen. The answer of the row passes through, and
+    /// without it the initial values do.
     Guard,
     /// The pieces of one leaf.
     Pieces,
@@ -55,21 +56,22 @@ impl FoldKind {
     }
 }
 
-/// What may be done with rows of a fold whose fields are zero all over a part of space: which of them may be left out there, so that no bit of an
-/// answer changes. The first accumulator is the field.
+/// What may be done with rows of a fold whose fields are zero all over a part of space: which of them may be
+/// left out there, so that no bit of an answer changes. The first accumulator is the field.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Rule {
-    /// They may all be left out: rows of sums, of Ricci blends, of unions without negative operands and of selectors, guards that start at 0,
-    /// and pieces whose distance counts within the support radius only.
+    /// They may all be left out: rows of sums, of Ricci blends, of unions without negative operands and of
+    /// selectors, guards that start at 0, and pieces whose distance counts within the support radius only.
     Neutral,
-    /// The first of each parent row's zero rows stays, the others may be left out: rows of unions and intersections with negative operands, and
-    /// of steps that a zero limits once and for all.
+    /// The first of each parent row's zero rows stays, the others may be left out: rows of unions and
+    /// intersections with negative operands, and of steps that a zero limits once and for all.
     KeepOne,
-    /// If one is zero, all others of the same parent row may be left out, zero or not, and one that is zero stays: rows of intersections
-    /// without negative operands, of products and of Ricci blends with negative exponents.
+    /// If one is zero, all others of the same parent row may be left out, zero or not, and one that is zero
+    /// stays: rows of intersections without negative operands, of products and of Ricci blends with negative
+    /// exponents.
     OnlyZero,
-    /// Zero is no reason: the scene, guards that do not start at 0, points inside of warps, R-functions, what may answer for the whole model, and
-    /// pieces that count everywhere.
+    /// Zero is no reason: the scene, guards that do not start at 0, points inside of warps, R-functions, what
+    /// may answer for the whole model, and pieces that count everywhere.
     Never,
 }
 
@@ -154,7 +156,8 @@ impl InstKind {
         }
     }
 
-    /// The type of what this defines. For a fold it is only the usual one: its accumulators have the types of its initial values.
+    /// The type of what this defines. For a fold it is only the usual one: its accumulators have the types of
+    /// its initial values.
     #[must_use]
     pub const fn result_type(&self) -> Type {
         match self {

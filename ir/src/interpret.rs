@@ -1,7 +1,8 @@
 //! Runs a function in any domain, instruction by instruction, on one block of lanes.
 //!
-//! This is the reference: no registers are reused, nothing is reordered. With [`crate::domain::scalar::Scalar`] it defines what
-//! every engine must give; with the counting domain it says what a point costs.
+//! This is the reference: no registers are reused, nothing is reordered. With
+//! [`crate::domain::scalar::Scalar`] it defines what every engine must give; with the counting domain it says
+//! what a point costs.
 //!
 //! ```text
 //! run block: for each instruction: look its operands up, call the op's method, remember the result
@@ -30,7 +31,8 @@ struct Run<'a, D: Domain> {
     rows: Vec<(usize, usize)>,
 }
 
-/// The outputs of `function` for these inputs. `tables` fit the function ([`Tables::check`]); `inputs` has one entry per plane.
+/// The outputs of `function` for these inputs. `tables` fit the function ([`Tables::check`]); `inputs` has
+/// one entry per plane.
 pub fn run<D: Domain>(
     function: &Verified,
     tables: &Tables,

@@ -1,7 +1,8 @@
 //! What a program means: the intermediate representation of jbt.
 //!
-//! A [`Function`] takes planes of numbers (x, y, z) to planes of answers (field, gradient, attributes). It is SSA over three
-//! lane types, and its only control flow is the fold over the rows of a table. This crate knows no trees and no machine.
+//! A [`Function`] takes planes of numbers (x, y, z) to planes of answers (field, gradient, attributes). It is
+//! SSA over three lane types, and its only control flow is the fold over the rows of a table. This crate
+//! knows no trees and no machine.
 
 #![deny(unsafe_code)]
 

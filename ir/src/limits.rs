@@ -1,7 +1,8 @@
-//! Every limit of the project, in one place. Each is documented with what it protects, and tested at its value and one past it.
+//! Every limit of the project, in one place. Each is documented with what it protects, and tested at its
+//! value and one past it.
 //!
-//! A limit is reached by hostile input long before it is reached by a model that somebody drew; reaching one is an error with
-//! a place, never a panic and never a long silence.
+//! A limit is reached by hostile input long before it is reached by a model that somebody drew; reaching one
+//! is an error with a place, never a panic and never a long silence.
 
 /// Bytes of one scene file. A larger one is refused before it is read.
 pub const MAX_SCENE_BYTES: usize = 64 << 20;
@@ -21,11 +22,13 @@ pub const MAX_ATTRIBUTE_WIDTH: usize = 64;
 pub const MAX_ATTRIBUTES: usize = 32;
 /// Points of one skeleton, and numbers of one list.
 pub const MAX_SKELETON_POINTS: usize = 1 << 16;
-/// How often a cubic curve may be halved into pieces: 4096 of them deviate from their chords by 2^-24 of what it does.
+/// How often a cubic curve may be halved into pieces: 4096 of them deviate from their chords by 2^-24 of what
+/// it does.
 pub const MAX_CURVE_HALVINGS: u32 = 12;
 /// The largest exponent of a Ricci blend, in magnitude; the smallest is 1.
 pub const MAX_RICCI_EXPONENT: f64 = 1024.0;
-/// The most copies that a repetition makes of its child. They cost nothing, but beyond this f32 could not tell their places.
+/// The most copies that a repetition makes of its child. They cost nothing, but beyond this f32 could not
+/// tell their places.
 pub const MAX_COPIES: f64 = (1 << 20) as f64;
 /// The largest exponent of a norm that is a distance; the smallest is 1.
 pub const MAX_METRIC_EXPONENT: f64 = 1024.0;
@@ -39,15 +42,15 @@ pub const MAX_TABLES: usize = 100_000;
 pub const MAX_FOLD_DEPTH: usize = 64;
 /// Values of one function, of any engine and after any pass.
 pub const MAX_VALUES: usize = 1_000_000;
-/// Values of a function that is compiled to machine code; a larger one is interpreted. It bounds the time that
-/// Cranelift takes, and the code of either backend to some megabytes.
+/// Values of a function that is compiled to machine code; a larger one is interpreted. It bounds the time
+/// that Cranelift takes, and the code of either backend to some megabytes.
 pub const MAX_JIT_VALUES: usize = 60_000;
-/// Values that may be alive at once in Cranelift's code (a frame costs 16 bytes each per vector); beyond it the
-/// function is interpreted. Wide code has no such limit: its time to compile does not depend on it, and its
-/// frame is limited.
+/// Values that may be alive at once in Cranelift's code (a frame costs 16 bytes each per vector); beyond it
+/// the function is interpreted. Wide code has no such limit: its time to compile does not depend on it, and
+/// its frame is limited.
 pub const MAX_JIT_LIVE_VALUES: usize = 4_000;
-/// Bytes of stack that one call of machine code may take: a fraction of the smallest stacks that threads are given. A function that
-/// needs more is interpreted.
+/// Bytes of stack that one call of machine code may take: a fraction of the smallest stacks that threads are
+/// given. A function that needs more is interpreted.
 pub const MAX_JIT_FRAME_BYTES: usize = 512 << 10;
 /// Lattice points that are all visited, as when supports are counted. A mesh has no such limit.
 pub const MAX_LATTICE_POINTS: usize = 1 << 30;
@@ -57,22 +60,26 @@ pub const MAX_BRICKS: usize = 1 << 22;
 pub const MAX_RESOLUTION: usize = 1 << 20;
 /// Squares of a contour in which points are evaluated.
 pub const MAX_SQUARES: u64 = 1 << 22;
-/// Vertices of a contour before straight lines along the border are joined: about 100 bytes each while loops are closed.
+/// Vertices of a contour before straight lines along the border are joined: about 100 bytes each while loops
+/// are closed.
 pub const MAX_CONTOUR_VERTICES: u64 = 1 << 24;
 /// Pixels of an image, times the points that are evaluated in each.
 pub const MAX_PIXELS: usize = 1 << 26;
-/// Ranges of boxes that it may take to prove on which side of the surface all of a cube is; beyond it the surface may be there.
+/// Ranges of boxes that it may take to prove on which side of the surface all of a cube is; beyond it the
+/// surface may be there.
 pub const MAX_MEMBERSHIP_BOXES: usize = 1 << 10;
-/// Boxes that the search for one side of a solid's tight bounds may ask about; beyond it the bounds are as tight as they are.
+/// Boxes that the search for one side of a solid's tight bounds may ask about; beyond it the bounds are as
+/// tight as they are.
 pub const MAX_SEARCH_BOXES: usize = 1 << 19;
 /// Boxes of the division that measures a solid: those with surface keep about half a kilobyte each.
 pub const MAX_MEASURE_BOXES: u64 = 1 << 22;
 /// Rays of one packet: a picture of many is made of tiles.
 pub const MAX_PACKET_RAYS: usize = 1 << 20;
-/// Points and boxes that may be asked for each ray of a packet. A good field takes some dozens; one that says nothing of boxes takes a point for each
-/// tolerance of the ray's length.
+/// Points and boxes that may be asked for each ray of a packet. A good field takes some dozens; one that says
+/// nothing of boxes takes a point for each tolerance of the ray's length.
 pub const MAX_RAY_WORK: u64 = 1 << 22;
-/// How often a box may be split on the way to a part of it. Halving f32 coordinates along three axes ends before.
+/// How often a box may be split on the way to a part of it. Halving f32 coordinates along three axes ends
+/// before.
 pub const MAX_DIVISION_DEPTH: usize = 96;
 /// Boxes of one division: each keeps about 64 bytes.
 pub const MAX_DIVISION_BOXES: u64 = 1 << 24;

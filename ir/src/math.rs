@@ -7,17 +7,19 @@
 //! | [`ln`] | 1 | everywhere, subnormal operands included |
 //! | [`pow`] | 1.25 | everywhere |
 //!
-//! The tests measure these errors against `f64`. All five have the same plan: *reduce* the operand to a small interval without
-//! losing bits (`fma` gives the exact remainder), evaluate a *polynomial* there, and put the exponent or quadrant back with
-//! integer ops. There is no conversion between reals and integers among the ops: adding 1.5 * 2^23 leaves
-//! the nearest integer in the low bits of the sum.
+//! The tests measure these errors against `f64`. All five have the same plan: *reduce* the operand to a small
+//! interval without losing bits (`fma` gives the exact remainder), evaluate a *polynomial* there, and put the
+//! exponent or quadrant back with integer ops. There is no conversion between reals and integers among the
+//! ops: adding 1.5 * 2^23 leaves the nearest integer in the low bits of the sum.
 //!
-//! The coefficients are minimax fits of the relative error, made with the Remez exchange algorithm in 120-bit arithmetic and then
-//! rounded to `f32`; each list says the interval and the error that the exact coefficients have.
+//! The coefficients are minimax fits of the relative error, made with the Remez exchange algorithm in 120-bit
+//! arithmetic and then rounded to `f32`; each list says the interval and the error that the exact
+//! coefficients have.
 
 use crate::op::Domain;
 
-/// 1.5 * 2^23. For |x| < 2^22 the sum `x + ROUND` is `ROUND` plus the integer nearest to x, and its bits are those of `ROUND` plus it.
+/// 1.5 * 2^23. For |x| < 2^22 the sum `x + ROUND` is `ROUND` plus the integer nearest to x, and its bits are
+/// those of `ROUND` plus it.
 const ROUND: f32 = 12_582_912.0;
 /// The bits of an infinity are those of 2^128; shifted right by this, bits become a biased exponent.
 const EXPONENT_SHIFT: u32 = 23;
@@ -36,7 +38,8 @@ fn polynomial<D: Domain>(d: &mut D, x: D::Real, coefficients: &[f32]) -> D::Real
     sum
 }
 
-// ── sine and cosine ─────────────────────────────────────────────────────────────────────────────────────────────
+// ── sine and cosine
+// ─────────────────────────────────────────────────────────────────────────────────────────────
 
 /// pi / 2 in three parts, each the nearest `f32` to what the ones before it leave.
 const HALF_PI: [f32; 3] = [1.570_796_4, -4.371_139e-8, -1.715_124_5e-15];
@@ -71,8 +74,9 @@ fn reduce_angle<D: Domain>(d: &mut D, a: D::Real) -> Reduced<D> {
     let n = d.sub(shifted, round);
     let quarters = d.to_bits(shifted);
 
-    // The first step is exact: x and n * HALF_PI[0] are multiples of 2^-24 that differ by less than 1. Near a multiple of a quarter
-    // turn the second one cancels almost everything, so it keeps both what its product and what its difference (Knuth, 1969) lose.
+    // The first step is exact: x and n * HALF_PI[0] are multiples of 2^-24 that differ by less than 1. Near a
+    // multiple of a quarter turn the second one cancels almost everything, so it keeps both what its product
+    // and what its difference (Knuth, 1969) lose.
     let [first_part, second_part, third_part] = HALF_PI.map(|part| d.constant(-part));
     let first = d.fma(n, first_part, x);
     let second = d.mul(n, second_part);
@@ -131,8 +135,8 @@ fn flip_sign<D: Domain>(d: &mut D, a: D::Real, sign: D::Bits) -> D::Real {
     d.from_bits(flipped)
 }
 
-/// The sine of radians, within 1.25 ULP for magnitudes up to [`LARGEST_ANGLE`]. Larger finite angles count as zeros of their sign,
-/// so the result always lies in [-1, 1]. `sin(-0) = -0`; infinities and NaN give NaN.
+/// The sine of radians, within 1.25 ULP for magnitudes up to [`LARGEST_ANGLE`]. Larger finite angles count as
+/// zeros of their sign, so the result always lies in [-1, 1]. `sin(-0) = -0`; infinities and NaN give NaN.
 #[inline(always)]
 pub fn sin<D: Domain>(d: &mut D, a: D::Real) -> D::Real {
     let reduced = reduce_angle(d, a);
@@ -146,8 +150,8 @@ pub fn sin<D: Domain>(d: &mut D, a: D::Real) -> D::Real {
     flip_sign(d, value, sign)
 }
 
-/// The cosine of radians, within 1.25 ULP for magnitudes up to [`LARGEST_ANGLE`]. Larger finite angles count as zero,
-/// so the result always lies in [-1, 1]. Infinities and NaN give NaN.
+/// The cosine of radians, within 1.25 ULP for magnitudes up to [`LARGEST_ANGLE`]. Larger finite angles count
+/// as zero, so the result always lies in [-1, 1]. Infinities and NaN give NaN.
 #[inline(always)]
 pub fn cos<D: Domain>(d: &mut D, a: D::Real) -> D::Real {
     let reduced = reduce_angle(d, a);
@@ -160,7 +164,8 @@ pub fn cos<D: Domain>(d: &mut D, a: D::Real) -> D::Real {
     flip_sign(d, value, sign)
 }
 
-// ── exponential ─────────────────────────────────────────────────────────────────────────────────────────────────
+// ── exponential
+// ─────────────────────────────────────────────────────────────────────────────────────────────────
 
 /// ln 2 in two parts.
 const LN_2: [f32; 2] = [std::f32::consts::LN_2, -1.904_654_2e-9];
@@ -169,8 +174,8 @@ const EXP: [f32; 5] = [0.499_999_94, 0.166_665_2, 0.041_668_408, 0.008_368_921_5
 
 /// `a * 2^n`, rounded once, where `shifted` has the bits of `ROUND + n` and -200 <= n <= 200.
 ///
-/// 2^n itself may be no `f32`, so it is applied in two halves; the first product is exact for |a| near 1, and the second one
-/// rounds to a subnormal or overflows as it should.
+/// 2^n itself may be no `f32`, so it is applied in two halves; the first product is exact for |a| near 1, and
+/// the second one rounds to a subnormal or overflows as it should.
 #[inline(always)]
 fn scale<D: Domain>(d: &mut D, a: D::Real, shifted: D::Real) -> D::Real {
     // n + 256 is positive, so that a logical shift halves it; a half h + 128 has the exponent field h + 127.
@@ -191,11 +196,12 @@ fn scale<D: Domain>(d: &mut D, a: D::Real, shifted: D::Real) -> D::Real {
     product
 }
 
-/// e to the power a, within 1 ULP, also where the result is subnormal. Overflows to infinity above 88.72284; `exp(-inf) = 0`,
-/// `exp(0) = 1`, `exp(inf) = inf`, NaN gives NaN.
+/// e to the power a, within 1 ULP, also where the result is subnormal. Overflows to infinity above 88.72284;
+/// `exp(-inf) = 0`, `exp(0) = 1`, `exp(inf) = inf`, NaN gives NaN.
 #[inline(always)]
 pub fn exp<D: Domain>(d: &mut D, a: D::Real) -> D::Real {
-    // Beyond these the result is infinity and zero anyway. A NaN passes: min and max give their second operand for it.
+    // Beyond these the result is infinity and zero anyway. A NaN passes: min and max give their second
+    // operand for it.
     let highest = d.constant(89.0);
     let lowest = d.constant(-104.0);
     let x = d.min(highest, a);
@@ -221,7 +227,8 @@ pub fn exp<D: Domain>(d: &mut D, a: D::Real) -> D::Real {
     scale(d, value, shifted)
 }
 
-// ── logarithm ───────────────────────────────────────────────────────────────────────────────────────────────────
+// ── logarithm
+// ───────────────────────────────────────────────────────────────────────────────────────────────────
 
 /// The bits of the float below the square root of 1/2: mantissas are taken from there to its double.
 const SQRT_HALF: u32 = 0x3f35_04f3;
@@ -279,7 +286,8 @@ fn split<D: Domain>(d: &mut D, a: D::Real) -> Split<D> {
     Split { mantissa, exponent }
 }
 
-/// `value` for positive finite `a`; else what every logarithm gives: -inf at zeros, NaN below, the rest of `a` itself.
+/// `value` for positive finite `a`; else what every logarithm gives: -inf at zeros, NaN below, the rest of
+/// `a` itself.
 #[inline(always)]
 fn logarithm_or_special<D: Domain>(d: &mut D, a: D::Real, value: D::Real) -> D::Real {
     let zero = d.constant(0.0);
@@ -296,8 +304,8 @@ fn logarithm_or_special<D: Domain>(d: &mut D, a: D::Real, value: D::Real) -> D::
     d.select(normal, value, special)
 }
 
-/// The natural logarithm, within 1 ULP, subnormal operands included. `ln(1) = +0`, `ln(0) = -inf` for zeros of either sign,
-/// `ln(inf) = inf`; below zero and for NaN it gives NaN.
+/// The natural logarithm, within 1 ULP, subnormal operands included. `ln(1) = +0`, `ln(0) = -inf` for zeros
+/// of either sign, `ln(inf) = inf`; below zero and for NaN it gives NaN.
 #[inline(always)]
 pub fn ln<D: Domain>(d: &mut D, a: D::Real) -> D::Real {
     let Split { mantissa, exponent } = split(d, a);
@@ -319,14 +327,15 @@ pub fn ln<D: Domain>(d: &mut D, a: D::Real) -> D::Real {
     logarithm_or_special(d, a, value)
 }
 
-// ── power ───────────────────────────────────────────────────────────────────────────────────────────────────────
+// ── power
+// ───────────────────────────────────────────────────────────────────────────────────────────────────────
 
 /// 2 / ln 2 in two parts.
 const LOG2_FIRST: [f32; 2] = [2.885_39, 3.851_926e-8];
 /// 2 / (3 ln 2) in two parts.
 const LOG2_SECOND: [f32; 2] = [0.961_796_7, -7.028_462e-9];
-/// What follows in `log2((1 + s) / (1 - s)) / s` after these two, divided by z^2, in z = s^2, for s up to where the quotient is
-/// sqrt(2): error 2^-36.8 of the logarithm.
+/// What follows in `log2((1 + s) / (1 - s)) / s` after these two, divided by z^2, in z = s^2, for s up to
+/// where the quotient is sqrt(2): error 2^-36.8 of the logarithm.
 const LOG2: [f32; 3] = [0.577_080_2, 0.411_847_35, 0.337_876_56];
 /// `(2^r - 1) / r` for |r| <= 0.5003: error 2^-28.5 of the power.
 const EXP2: [f32; 6] =
@@ -366,7 +375,8 @@ impl<D: Domain> Pair<D> {
 fn log2_pair<D: Domain>(d: &mut D, a: D::Real) -> Pair<D> {
     let Split { mantissa, exponent } = split(d, a);
 
-    // s = (m - 1) / (m + 1): the numerator is exact, the denominator a pair, and `fma` gives the remainder of the quotient.
+    // s = (m - 1) / (m + 1): the numerator is exact, the denominator a pair, and `fma` gives the remainder of
+    // the quotient.
     let one = d.constant(1.0);
     let numerator = d.sub(mantissa, one);
     let denominator = d.add(mantissa, one);
@@ -396,15 +406,17 @@ fn log2_pair<D: Domain>(d: &mut D, a: D::Real) -> Pair<D> {
 
 /// `a` to the power `b`, within 1.25 ULP, also where the result is subnormal.
 ///
-/// Exactly: `pow(1, b) = 1` and `pow(a, 0) = 1` for **every** other operand, NaN too. Else a NaN gives NaN, and so does a negative
-/// `a`. Both zeros are alike: `pow(0, b)` is 0 for b > 0 and inf for b < 0. `pow(inf, b)` is inf for b > 0 and 0 for b < 0;
-/// `pow(a, inf)` is 0 for a < 1 and inf for a > 1, `pow(a, -inf)` the other way round.
+/// Exactly: `pow(1, b) = 1` and `pow(a, 0) = 1` for **every** other operand, NaN too. Else a NaN gives NaN,
+/// and so does a negative `a`. Both zeros are alike: `pow(0, b)` is 0 for b > 0 and inf for b < 0. `pow(inf,
+/// b)` is inf for b > 0 and 0 for b < 0; `pow(a, inf)` is 0 for a < 1 and inf for a > 1, `pow(a, -inf)` the
+/// other way round.
 #[inline(always)]
 pub fn pow<D: Domain>(d: &mut D, a: D::Real, b: D::Real) -> D::Real {
     let log = log2_pair(d, a);
     let log_high = logarithm_or_special(d, a, log.high);
 
-    // y = b log2(a) as a pair. Where it is out of every range or not finite, the low part would only make a NaN of it.
+    // y = b log2(a) as a pair. Where it is out of every range or not finite, the low part would only make a
+    // NaN of it.
     let high = d.mul(b, log_high);
     let negated = d.neg(high);
     let lost = d.fma(b, log_high, negated);

@@ -4,8 +4,8 @@
 //! what they mean), and a doc that *defines* it: rounding, NaN and signed zero. From the table come
 //!
 //! * [`Op`], its names and its type rule (the printer, the parser and the verifier read these),
-//! * [`Domain`], the trait with one method per op and **no default**: a meaning of the ops is one
-//!   `impl Domain` in one file of [`crate::domain`] (or the machine-code lowering of the `jit` crate), and an op
+//! * [`Domain`], the trait with one method per op and **no default**: a meaning of the ops is one `impl
+//!   Domain` in one file of [`crate::domain`] (or the machine-code lowering of the `jit` crate), and an op
 //!   that lacks a meaning somewhere does not compile,
 //! * [`apply`], which calls the method of an op that is known only at run time,
 //! * [`for_each_op!`](crate::for_each_op), which hands the rows to any macro: what does the same for every op
@@ -337,7 +337,8 @@ macro_rules! for_each_op {
             /// `a >> (by mod 32)`, zeros coming in. The verifier wants `by` to be a constant.
             Shr shr(a: bits, by: bits) -> bits;
 
-            // ── transcendentals: stay whole through the gradient, then `legalize` expands them by `crate::math`
+            // ── transcendentals: stay whole through the gradient, then `legalize` expands them by
+            // `crate::math`
 
             /// The sine of radians. `sin(-0) = -0`; infinities give NaN; a finite angle beyond
             /// [`crate::math::LARGEST_ANGLE`] counts as a zero of its sign. See [`crate::math`] for its
@@ -353,8 +354,8 @@ macro_rules! for_each_op {
             /// [`crate::math`] for its error.
             Ln ln(a: real) -> real, expanded;
             /// `a` to the power `b`, for `a >= 0`. `pow(1, b) = 1` and `pow(a, 0) = 1` for every other
-            /// operand, NaN and negative ones too; else a NaN or a negative `a` gives NaN. Exactly:
-            /// `pow(0, b)` is `+0` for b > 0 and inf for b < 0, for zeros of either sign. See [`crate::math`] for its
+            /// operand, NaN and negative ones too; else a NaN or a negative `a` gives NaN. Exactly: `pow(0,
+            /// b)` is `+0` for b > 0 and inf for b < 0, for zeros of either sign. See [`crate::math`] for its
             /// error.
             Pow pow(a: real, b: real) -> real, expanded;
 

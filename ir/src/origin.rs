@@ -1,8 +1,8 @@
 //! Where an instruction comes from: which leaf of the model, and which part of its work.
 //!
-//! A function knows nothing of trees. It knows *slots*: a slot is a leaf of the shape that it was lowered from, and the
-//! tables say which tree node stands in a slot for a given row (see [`crate::table::Tables`]). The counters multiply the
-//! two to say how often each leaf of a model was evaluated.
+//! A function knows nothing of trees. It knows *slots*: a slot is a leaf of the shape that it was lowered
+//! from, and the tables say which tree node stands in a slot for a given row (see [`crate::table::Tables`]).
+//! The counters multiply the two to say how often each leaf of a model was evaluated.
 
 use std::fmt;
 

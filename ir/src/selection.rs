@@ -1,7 +1,8 @@
 //! Which rows run: for each table a list of active rows, as engines read it.
 //!
-//! [`Tables`] say which rows a model has; a selection says which of them are run this time. In a part of space most rows add
-//! exactly nothing, so a selection for that part leaves them out, and the answers keep their bits.
+//! [`Tables`] say which rows a model has; a selection says which of them are run this time. In a part of
+//! space most rows add exactly nothing, so a selection for that part leaves them out, and the answers keep
+//! their bits.
 //!
 //! ```text
 //!    starts of t1, by the position of its parent's row in the parent's list      active rows of t1
@@ -9,15 +10,18 @@
 //!     first active row of the parent runs active[0..2]: rows 0 and 3; the second one runs rows 7 and 8
 //! ```
 //!
-//! Starts are kept by *position* and not by row, so that a selection is as long as what it selects, however many rows there are. A table
-//! is *present* if it has no parent, or if a row of its parent is active; of the others nothing is kept, and nobody looks at them.
+//! Starts are kept by *position* and not by row, so that a selection is as long as what it selects, however
+//! many rows there are. A table is *present* if it has no parent, or if a row of its parent is active; of the
+//! others nothing is kept, and nobody looks at them.
 //!
-//! Engines follow these lists blindly. So a selection is made in few ways only: from tables ([`Selection::new`]), and from
-//! another selection by leaving rows out ([`Selection::narrow`]), by giving them other numbers ([`Selection::shifted`]) or by following tables whose
-//! active rows have changed ([`Selection::switched`]). All keep this:
+//! Engines follow these lists blindly. So a selection is made in few ways only: from tables
+//! ([`Selection::new`]), and from another selection by leaving rows out ([`Selection::narrow`]), by giving
+//! them other numbers ([`Selection::shifted`]) or by following tables whose active rows have changed
+//! ([`Selection::switched`]). All keep this:
 //!
 //! * active rows exist in their table, and ascend in the range of one row of the parent;
-//! * a table has one start for each active row of its parent (for the one imaginary row, if it has no parent), from 0, and the end.
+//! * a table has one start for each active row of its parent (for the one imaginary row, if it has no
+//!   parent), from 0, and the end.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -86,7 +90,8 @@ pub struct Shift {
 pub const MAX_PARTS: usize = 8;
 
 impl Selection {
-    /// All rows that are active in the tables. Panics if the tables do not fit the function ([`Tables::check`]): machine code trusts selections.
+    /// All rows that are active in the tables. Panics if the tables do not fit the function
+    /// ([`Tables::check`]): machine code trusts selections.
     #[must_use]
     pub fn new(function: &Function, tables: &Tables) -> Self {
         match Self::checked(function, tables) {
@@ -131,8 +136,8 @@ impl Selection {
         self.present.clear();
     }
 
-    /// Begins the lists of a table under so many active rows: its starts are zeros, and its active rows follow, from this word on. A table under
-    /// none is not present.
+    /// Begins the lists of a table under so many active rows: its starts are zeros, and its active rows
+    /// follow, from this word on. A table under none is not present.
     fn begin(&mut self, table: Table, parents: usize) -> Option<usize> {
         if parents == 0 {
             return None;
@@ -169,7 +174,8 @@ impl Selection {
         self.spans.len()
     }
 
-    /// The tables that have no parent, and those whose parents have active rows, ascending. All others have no active rows.
+    /// The tables that have no parent, and those whose parents have active rows, ascending. All others have
+    /// no active rows.
     #[inline]
     #[must_use]
     pub fn present(&self) -> &[Table] {
@@ -218,11 +224,12 @@ impl Selection {
         self.len() == 0
     }
 
-    /// Makes shorter selections, at most [`MAX_PARTS`] at once: `masks` has a byte for each active row, in the order of the tables and of
-    /// [`active`](Self::active), whose bit `i` keeps the row in `parts[i]`. A row that hangs under one that is left out goes with it:
-    /// its bit is cleared.
+    /// Makes shorter selections, at most [`MAX_PARTS`] at once: `masks` has a byte for each active row, in
+    /// the order of the tables and of [`active`](Self::active), whose bit `i` keeps the row in `parts[i]`. A
+    /// row that hangs under one that is left out goes with it: its bit is cleared.
     ///
-    /// What is in `parts` before is forgotten, its memory used again. Panics if there are too many parts or too few masks.
+    /// What is in `parts` before is forgotten, its memory used again. Panics if there are too many parts or
+    /// too few masks.
     pub fn narrow(&self, masks: &mut [u8], parts: &mut [Self]) {
         assert!(parts.len() <= MAX_PARTS, "a bit for each part");
         let counts = counts(masks);
@@ -249,8 +256,8 @@ impl Selection {
         }
     }
 
-    /// The same rows in other tables of the same family, where some rows have other numbers: for each table, where they begin to, and
-    /// by how much. Panics if a row is not there.
+    /// The same rows in other tables of the same family, where some rows have other numbers: for each table,
+    /// where they begin to, and by how much. Panics if a row is not there.
     #[must_use]
     pub fn shifted(&self, extent: &Arc<Extent>, shifts: &[Shift]) -> Self {
         assert_eq!(extent.parents, self.extent.parents, "rows stay under their rows");
@@ -266,8 +273,9 @@ impl Selection {
         result
     }
 
-    /// The same rows after other rows have become active in the tables: a row that is not active any more goes, and one that was not active
-    /// before comes, each with all rows under it. Panics if the tables have other rows than those that this selects from.
+    /// The same rows after other rows have become active in the tables: a row that is not active any more
+    /// goes, and one that was not active before comes, each with all rows under it. Panics if the tables have
+    /// other rows than those that this selects from.
     #[must_use]
     pub fn switched(&self, before: &Tables, now: &Tables) -> Self {
         let mut result = Self::default();
@@ -300,7 +308,8 @@ impl Selection {
         result
     }
 
-    /// The active rows of a table's parent in another selection, each with its position here, if it is active here.
+    /// The active rows of a table's parent in another selection, each with its position here, if it is active
+    /// here.
     fn places(&self, other: &Self, table: Table) -> Vec<(u32, Option<usize>)> {
         let Some(parent) = self.extent.parents[table.index()] else { return vec![(0, Some(0))] };
         let here: HashMap<u32, usize> =

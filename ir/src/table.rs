@@ -1,6 +1,7 @@
 //! The numbers of a program: rows of tables, which of them are active, and which tree nodes they stand for.
 //!
-//! A function is the *shape* of a model, [`Tables`] are its *numbers*. Changing a number is a write here; no code changes.
+//! A function is the *shape* of a model, [`Tables`] are its *numbers*. Changing a number is a write here; no
+//! code changes.
 //!
 //! ```text
 //!    starts of t1 (one per row of its parent, and the end)     active rows of t1      numbers of t1
@@ -22,8 +23,8 @@ pub struct Rows {
     pub numbers: Vec<f32>,
     /// The active rows, ascending within the range of one parent row.
     pub active: Vec<u32>,
-    /// Where the active rows of each parent row begin in `active`, and after the last one the end. A table without parent
-    /// has one imaginary parent row.
+    /// Where the active rows of each parent row begin in `active`, and after the last one the end. A table
+    /// without parent has one imaginary parent row.
     pub starts: Vec<u32>,
     /// The tree node behind each leaf slot of each row: row-major, [`Schema::slots`] per row.
     pub nodes: Vec<u32>,

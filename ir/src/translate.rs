@@ -6,7 +6,8 @@
 //! renumber:  the same walk without a builder: instructions stay where they are, names become dense
 //! ```
 //!
-//! The recursion is over nested folds, at most [`crate::limits::MAX_FOLD_DEPTH`] deep; a block may be as long as it likes.
+//! The recursion is over nested folds, at most [`crate::limits::MAX_FOLD_DEPTH`] deep; a block may be as long
+//! as it likes.
 
 use crate::builder::FunctionBuilder;
 use crate::entity::{Block, Entity, Inst, Store, Value, Values};
@@ -14,8 +15,9 @@ use crate::function::{BlockData, Fold, Function, InstData, InstKind};
 use crate::op::{Domain, Op};
 use crate::origin::Part;
 
-/// Writes `function` again with `op` in place of each op. It gets the builder, the op, and its operands in the new function, and
-/// says which new value stands for the result. Inputs, constants, columns, folds, tables, origins and output names stay.
+/// Writes `function` again with `op` in place of each op. It gets the builder, the op, and its operands in
+/// the new function, and says which new value stands for the result. Inputs, constants, columns, folds,
+/// tables, origins and output names stay.
 #[must_use]
 pub fn rewrite(function: &Function, op: impl FnMut(&mut FunctionBuilder, Op, &[Value]) -> Value) -> Function {
     let mut rewrite = Rewrite {
@@ -67,7 +69,8 @@ impl<F: FnMut(&mut FunctionBuilder, Op, &[Value]) -> Value> Rewrite<'_, F> {
             InstKind::Op { op, args } => {
                 let args = self.map_all(args);
                 let result = (self.op)(&mut self.builder, *op, &args);
-                // A distance stays one for the counters, also if its value turns out to be there already for something else.
+                // A distance stays one for the counters, also if its value turns out to be there already for
+                // something else.
                 let computed = matches!(self.builder.definition(result), Some(InstKind::Op { .. }));
                 if computed && data.origin.part == Part::Distance {
                     self.builder.mark(result, data.origin);

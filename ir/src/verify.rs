@@ -1,26 +1,30 @@
-//! The rules of a function. Engines and passes rely on them and check nothing again: [`Verified`] is their only door.
+//! The rules of a function. Engines and passes rely on them and check nothing again: [`Verified`] is their
+//! only door.
 //!
-//!  1. *Shape.* The function's body exists. Every other block is the body of exactly one fold, and every instruction stands
-//!     exactly once in exactly one block, so that the blocks are a tree.
-//!  2. *Definition.* Every value is defined exactly once: as the result of an instruction, or as the accumulator that the body
-//!     of a fold binds.
-//!  3. *Use.* A value is used after its definition, in the same block or in one inside it. A fold's body sees its own
-//!     accumulators but not the fold's results.
-//!  4. *Results.* An instruction that is not a fold defines one value: real for an input, a constant or a column, bits for a
-//!     bits constant, and what the op table says for an op.
+//!  1. *Shape.* The function's body exists. Every other block is the body of exactly one fold, and every
+//!     instruction stands exactly once in exactly one block, so that the blocks are a tree.
+//!  2. *Definition.* Every value is defined exactly once: as the result of an instruction, or as the
+//!     accumulator that the body of a fold binds.
+//!  3. *Use.* A value is used after its definition, in the same block or in one inside it. A fold's body sees
+//!     its own accumulators but not the fold's results.
+//!  4. *Results.* An instruction that is not a fold defines one value: real for an input, a constant or a
+//!     column, bits for a bits constant, and what the op table says for an op.
 //!  5. *Operands.* An op has as many operands as its row of the op table, of the same types.
 //!  6. *Shifts.* The amount of `shl` and `shr` is a bits constant: vector units shift all lanes alike.
 //!  7. *Inputs.* An input that is read exists.
 //!  8. *Columns.* A column that is read exists, and the fold over its table encloses the reading.
-//!  9. *Tables.* The table of a fold exists, and no table is folded twice. The parent of a table is declared before it.
-//! 10. *Nesting.* The fold over a table with a parent stands inside the fold over the parent, at any depth: the parent's current
-//!     row says which rows run. A table without parent runs all its rows wherever its fold stands, be it inside another fold.
-//! 11. *Accumulators.* A fold's initial values, its body's accumulators, what its body yields, and the fold's results agree
-//!     in number and type.
+//!  9. *Tables.* The table of a fold exists, and no table is folded twice. The parent of a table is declared
+//!     before it.
+//! 10. *Nesting.* The fold over a table with a parent stands inside the fold over the parent, at any depth:
+//!     the parent's current row says which rows run. A table without parent runs all its rows wherever its
+//!     fold stands, be it inside another fold.
+//! 11. *Accumulators.* A fold's initial values, its body's accumulators, what its body yields, and the fold's
+//!     results agree in number and type.
 //! 12. *Outputs.* The function's body binds nothing and yields one real for each output name.
-//! 13. *Slots.* A leaf slot belongs to one table and stands there once. The slot of an origin belongs to some table.
-//! 14. *Limits.* There are at most [`MAX_VALUES`] values and [`MAX_TABLES`] tables, and at most [`MAX_FOLD_DEPTH`] folds in each
-//!     other.
+//! 13. *Slots.* A leaf slot belongs to one table and stands there once. The slot of an origin belongs to some
+//!     table.
+//! 14. *Limits.* There are at most [`MAX_VALUES`] values and [`MAX_TABLES`] tables, and at most
+//!     [`MAX_FOLD_DEPTH`] folds in each other.
 //!
 //! ```text
 //! declare the tables and their slots
@@ -97,7 +101,8 @@ pub struct VerifyError {
 /// Checks a function.
 ///
 /// # Errors
-/// Every rule that is broken, in the order of the function; each instruction, yield and table may add its own.
+/// Every rule that is broken, in the order of the function; each instruction, yield and table may add its
+/// own.
 pub fn verify(function: Function) -> Result<Verified, Vec<VerifyError>> {
     let mut verifier = Verifier::new(&function);
     verifier.tables();
@@ -129,7 +134,8 @@ struct Open {
     table: Option<Table>,
 }
 
-/// What has been seen so far. Every index that comes from the function is looked up with `get`: it may be wild.
+/// What has been seen so far. Every index that comes from the function is looked up with `get`: it may be
+/// wild.
 struct Verifier<'a> {
     function: &'a Function,
     errors: Vec<VerifyError>,

@@ -1,4 +1,5 @@
-//! Costs: ops by name, and evaluations by leaf, against figures counted by hand and against running the function.
+//! Costs: ops by name, and evaluations by leaf, against figures counted by hand and against running the
+//! function.
 
 mod common;
 
@@ -31,7 +32,8 @@ fn finish(b: FunctionBuilder, value: Value) -> Verified {
     verify(b.finish(&[("field".into(), value)])).expect("the function obeys the rules")
 }
 
-/// A sum over `t`, in which each slot has a distance of one instruction, made of x and a column, and a falloff of another one.
+/// A sum over `t`, in which each slot has a distance of one instruction, made of x and a column, and a
+/// falloff of another one.
 fn sum(b: &mut FunctionBuilder, t: Table, slots: &[u32], initial: Value) -> Value {
     let x = b.input(0);
     let mut acc = b.begin_fold(t, (FoldKind::Rows, Rule::Neutral), &[initial])[0];
@@ -192,7 +194,8 @@ fn a_hundred_thousand_rows_are_counted_without_running_them() {
 
 #[test]
 fn the_total_is_what_running_the_function_counts() {
-    // All ops of a random function become distances of one slot: then the evaluations are all the ops that run.
+    // All ops of a random function become distances of one slot: then the evaluations are all the ops that
+    // run.
     let mut folds = 0;
     for seed in 0..200 {
         let mut function = random::function(seed, 120);

@@ -23,7 +23,8 @@ fn lines<T: ToString>(items: &[T]) -> String {
     items.iter().map(|item| item.to_string() + "\n").collect()
 }
 
-/// A pass is a stage from text to text. Its golden files are in `tests/golden/<name>`; both sides obey every rule.
+/// A pass is a stage from text to text. Its golden files are in `tests/golden/<name>`; both sides obey every
+/// rule.
 #[test]
 fn passes() {
     for pass in [&GRADIENT, &GUARDED_GRADIENT, &INTERVAL].into_iter().chain(PIPELINE) {
@@ -39,12 +40,12 @@ fn text() {
     });
 }
 
-/// The number of rules at the head of the verifier. The last one, on limits, is tested with functions built by hand: the
-/// parser refuses texts beyond them.
+/// The number of rules at the head of the verifier. The last one, on limits, is tested with functions built
+/// by hand: the parser refuses texts beyond them.
 const RULES_WITH_A_FILE: usize = 13;
 
-/// Each file is a broken function in the printed form, with the errors on the lines that earn them. Its name begins with the
-/// number of the only rule that it breaks.
+/// Each file is a broken function in the printed form, with the errors on the lines that earn them. Its name
+/// begins with the number of the only rule that it breaks.
 #[test]
 fn verify_rules() {
     let mut failures = String::new();
@@ -134,7 +135,8 @@ fn read_case(op: Op, line: &str) -> Option<(Vec<Literal>, Literal)> {
     Some((args?, Literal::read(right.trim(), op.result())?))
 }
 
-/// Holds ops to `tests/golden/op/<op>.txt`. The expected results are the definition, written by hand: they are never blessed.
+/// Holds ops to `tests/golden/op/<op>.txt`. The expected results are the definition, written by hand: they
+/// are never blessed.
 fn check_ops(ops: &[Op]) {
     let mut failures = String::new();
     for &op in ops {

@@ -1,5 +1,5 @@
-//! Interval evaluation encloses: every value that a function computes in a box lies in the range that the box gives, whether the range is
-//! computed or emitted, and both give the same bits.
+//! Interval evaluation encloses: every value that a function computes in a box lies in the range that the box
+//! gives, whether the range is computed or emitted, and both give the same bits.
 //!
 //! `JBT_INTERVAL_EFFORT=20 cargo test --release --test interval` checks twenty times as many points.
 
@@ -415,7 +415,8 @@ fn single(op: Op, seed: u64) -> (Function, Tables) {
         Type::Mask => b.select(result, reals[0], reals[2]),
         Type::Bits => b.from_bits(result),
     };
-    // A range that is open at one end is everything outside. What limits it shows whether the other end is sound.
+    // A range that is open at one end is everything outside. What limits it shows whether the other end is
+    // sound.
     let number = random::number(&mut random);
     let limit = b.constant(if number.is_nan() { 1.0 } else { number });
     let (smaller, larger) = (b.min(result, limit), b.max(result, limit));

@@ -1,4 +1,5 @@
-//! The lanes interpreter gives the bits of the scalar domain: every length, every instruction set, any floating-point environment.
+//! The lanes interpreter gives the bits of the scalar domain: every length, every instruction set, any
+//! floating-point environment.
 
 mod common;
 
@@ -202,7 +203,8 @@ fn a_sum_of_sums_carries_one_accumulator() {
     let sum = b.end_fold(&[part])[0];
     let function = finish(b, &[sum]);
     assert_eq!(tape(&function).registers(), 2);
-    // Rows 0 and 1 of the inner table belong to outer row 0, rows 2 to 4 to row 2, which is active, and row 5 to row 3, which is not.
+    // Rows 0 and 1 of the inner table belong to outer row 0, rows 2 to 4 to row 2, which is active, and row 5
+    // to row 3, which is not.
     let tables = rows(&[
         (1, &[0.0; 4], &[0, 1, 2], &[0, 3]),
         (1, &[1.0, 10.0, 100.0, 1e3, 1e4, 1e5], &[0, 1, 2, 4, 5], &[0, 2, 2, 4, 5]),
@@ -306,7 +308,8 @@ fn a_function_without_inputs_fills_its_planes() {
 
 #[test]
 fn many_registers_make_short_blocks() {
-    // All 3,000 values are alive at once: each is used twice after the last one, so none is the first of a pair.
+    // All 3,000 values are alive at once: each is used twice after the last one, so none is the first of a
+    // pair.
     let mut b = FunctionBuilder::new("wide", &["x"]);
     let x = b.input(0);
     let values: Vec<Value> = (0..3000_u16)

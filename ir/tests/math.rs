@@ -1,4 +1,5 @@
-//! The transcendental ops against `f64`: the largest errors that their docs state, and the special cases, exactly.
+//! The transcendental ops against `f64`: the largest errors that their docs state, and the special cases,
+//! exactly.
 
 use jbt_ir::domain::scalar::Scalar;
 use jbt_ir::math;
@@ -51,7 +52,8 @@ fn pow(a: f32, b: f32) -> f32 {
 
 /// The distance between a result and the truth, in units of the last place that the truth has as an `f32`.
 ///
-/// Above the largest finite number the count goes on as if the next binade existed: infinity stands for 2^128.
+/// Above the largest finite number the count goes on as if the next binade existed: infinity stands for
+/// 2^128.
 fn error(got: f32, truth: f64) -> f64 {
     if got.is_nan() || truth.is_nan() {
         return if got.is_nan() && truth.is_nan() { 0.0 } else { f64::INFINITY };
@@ -70,7 +72,8 @@ fn worst(operands: impl Iterator<Item = f32>, ours: fn(f32) -> f32, truth: fn(f6
         .fold((0.0, 0.0), |worst, this| if this.0 > worst.0 { this } else { worst })
 }
 
-/// Numbers with a magnitude up to `limit`: half of them spread over the bit patterns, half of them over the numbers.
+/// Numbers with a magnitude up to `limit`: half of them spread over the bit patterns, half of them over the
+/// numbers.
 fn spread(seed: u64, limit: f32) -> impl Iterator<Item = f32> {
     let mut random = fastrand::Rng::with_seed(seed);
     let top = limit.to_bits();

@@ -1,4 +1,5 @@
-//! Every pass, and the whole pipeline, keeps the bits of random functions at spicy inputs; long chains do not overflow a stack.
+//! Every pass, and the whole pipeline, keeps the bits of random functions at spicy inputs; long chains do not
+//! overflow a stack.
 
 mod common;
 

@@ -77,7 +77,8 @@ fn planes() -> Function {
     with_points("", "")
 }
 
-/// The same, and after it more code and another table. That code makes v13 of v4, v0 and what the tables hold.
+/// The same, and after it more code and another table. That code makes v13 of v4, v0 and what the tables
+/// hold.
 fn with_points(table: &str, code: &str) -> Function {
     let code = if code.is_empty() { "v13 = hold v4" } else { code };
     let text = format!(

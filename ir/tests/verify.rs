@@ -229,7 +229,8 @@ fn damage_declarations(rng: &mut Rng, function: &mut Function) {
     }
 }
 
-/// Whatever is done to a function: either the verifier reports it, or the function runs. It also prints in any case.
+/// Whatever is done to a function: either the verifier reports it, or the function runs. It also prints in
+/// any case.
 #[test]
 fn a_broken_function_is_refused_or_runs() {
     let (mut refused, mut ran) = (0, 0);

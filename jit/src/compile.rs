@@ -6,6 +6,8 @@ use cranelift_codegen::Context;
 use cranelift_codegen::control::ControlPlane;
 use jbt_ir::limits::{MAX_JIT_LIVE_VALUES, MAX_JIT_VALUES};
 use jbt_ir::pass::{Gates, gates};
+use jbt_ir::plan::Plan;
+use jbt_ir::plan::pressure::{self, FIELD_CARRIES};
 use jbt_ir::{Function, InstKind, Level, Verified};
 
 use crate::error::CompileError;
@@ -13,8 +15,6 @@ use crate::memory::Code;
 use crate::options::{Allocator, Backend, Check, Options, Pieces, VectorCount};
 use crate::wide::{self, Blob, Emitted, Wish};
 use crate::{isa, lower};
-use jbt_ir::plan::Plan;
-use jbt_ir::plan::pressure::{self, FIELD_CARRIES};
 
 /// Up to this many live values the code is faster for having 16 points in a block: what is spilled costs less
 /// than reading every number of a row four times.
@@ -125,8 +125,8 @@ pub(crate) fn emit(function: &Verified, level: Level, options: &Options) -> Resu
     Ok(Emitted { blocks, rest })
 }
 
-/// Code for a few points: rays, boxes and small bricks have no more, and would compute a large block for them.
-/// None if it would be no smaller.
+/// Code for a few points: rays, boxes and small bricks have no more, and would compute a large block for
+/// them. None if it would be no smaller.
 fn emit_rest(
     function: &Function,
     (plan, gates): (&Plan, &Gates),

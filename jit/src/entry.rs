@@ -205,8 +205,8 @@ impl BoundKernel {
     /// Answers for all points: `inputs[plane][point]` to `outputs[plane][point]`.
     ///
     /// Any number is fine as an input, NaN and infinities included. What is left behind whole blocks of
-    /// [`Kernel::lanes`] points is done with the last block that ends where the planes do: some points twice, with
-    /// the same bits. Allocates nothing for up to 48 planes and 12 tables.
+    /// [`Kernel::lanes`] points is done with the last block that ends where the planes do: some points twice,
+    /// with the same bits. Allocates nothing for up to 48 planes and 12 tables.
     ///
     /// # Errors
     /// When the planes are not as many as the function's, not of one length, or that length is less than

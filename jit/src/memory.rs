@@ -45,9 +45,9 @@ struct Entry {
 
 /// Finished machine code.
 ///
-/// Contract: `blocks` and `rest` are functions in `pages` which were compiled from a [`Lowered`] or emitted as
-/// an [`Emitted`], so they keep to the ABI of [`crate::entry`], with blocks of so many points; the pages are
-/// executable, are not writable, and stay until the `Code` is dropped.
+/// Contract: `blocks` and `rest` are functions in `pages` which were compiled from a [`Lowered`] or emitted
+/// as an [`Emitted`], so they keep to the ABI of [`crate::entry`], with blocks of so many points; the pages
+/// are executable, are not writable, and stay until the `Code` is dropped.
 pub(crate) struct Code {
     blocks: Entry,
     /// For what is left behind whole blocks, in smaller blocks of which they are multiples.
@@ -132,8 +132,8 @@ impl Code {
         self.blocks.address
     }
 
-    /// Runs the code: whole blocks first, then what is left. The arguments were made for the function that this
-    /// is compiled from, see [`Arguments`].
+    /// Runs the code: whole blocks first, then what is left. The arguments were made for the function that
+    /// this is compiled from, see [`Arguments`].
     pub(crate) fn call(&self, Arguments { planes, bytes, tables }: Arguments<'_>) {
         let block = self.blocks.lanes * size_of::<f32>();
         let whole = if self.rest.is_some() { bytes - bytes % block } else { bytes };

@@ -216,7 +216,8 @@ fn the_limit_of_live_values_compiles_and_one_more_does_not() {
     assert_eq!(error, CompileError::LiveValues { live: MAX_JIT_LIVE_VALUES + 1, limit: MAX_JIT_LIVE_VALUES });
 }
 
-/// Accumulators that pass through many loops, each value with a place of its own where the allocator takes one pass.
+/// Accumulators that pass through many loops, each value with a place of its own where the allocator takes
+/// one pass.
 #[test]
 fn a_frame_that_is_too_large_is_refused() {
     let mut b = FunctionBuilder::new("frame", &["x"]);
@@ -253,7 +254,8 @@ fn levels_that_the_cpu_lacks_are_refused() {
     }
 }
 
-/// Wide code has no limit of live values but that of its frame, and takes fewer vectors for a value before it gives up.
+/// Wide code has no limit of live values but that of its frame, and takes fewer vectors for a value before it
+/// gives up.
 #[test]
 fn a_frame_of_wide_code_that_is_too_large_is_refused() {
     let whole = |backend, vectors| Options {

@@ -130,7 +130,8 @@ fn folds_follow_one_another() {
     check(&function, &tables(rows), points());
 }
 
-/// Three levels: each row of t0 owns rows of t1, each of these rows of t2. Columns of all levels are used inside.
+/// Three levels: each row of t0 owns rows of t1, each of these rows of t2. Columns of all levels are used
+/// inside.
 fn nested() -> Verified {
     let mut b = FunctionBuilder::new("nested", &["x", "y", "z"]);
     let t0 = table(&mut b, None, 2);
@@ -175,7 +176,8 @@ fn nested_folds_run_over_the_rows_that_the_parent_owns() {
     check(&nested(), &tables(none), points());
 }
 
-/// A loop over all rows of a table inside a loop over another, which does not own them; masks, bits and one value twice go round in it.
+/// A loop over all rows of a table inside a loop over another, which does not own them; masks, bits and one
+/// value twice go round in it.
 #[test]
 fn folds_may_stand_in_folds_that_own_nothing() {
     let mut b = FunctionBuilder::new("types", &["x", "y", "z"]);
@@ -259,7 +261,8 @@ fn many_accumulators_go_round() {
     check(&function, &tables([rows(count, 3, &[0, 1, 2], &[0, 3], number)]), points());
 }
 
-/// Random programs over random tables: every op that has an instruction, folds in folds, values from everywhere.
+/// Random programs over random tables: every op that has an instruction, folds in folds, values from
+/// everywhere.
 #[test]
 fn random_programs_have_the_bits_of_the_reference() {
     for seed in 0..40 {
@@ -342,8 +345,8 @@ fn grow(b: &mut FunctionBuilder, random: &mut fastrand::Rng, known: &mut Vec<Val
     }
 }
 
-/// The union over rows of blends of the rows that hang under them: most rows are out of reach of most points, and end
-/// early in machine code.
+/// The union over rows of blends of the rows that hang under them: most rows are out of reach of most points,
+/// and end early in machine code.
 fn blends() -> Verified {
     let mut b = FunctionBuilder::new("blends", &["x", "y", "z"]);
     let outer = table(&mut b, None, 1);
@@ -390,7 +393,8 @@ fn rows_that_change_nothing_may_end_early() {
     let tables = tables([around, inside]);
     let mut random = fastrand::Rng::with_seed(7);
     for spread in [0.0, 0.3, 3.0] {
-        // Blocks of neighbours: near no row, near one, near several; and among them numbers that break things.
+        // Blocks of neighbours: near no row, near one, near several; and among them numbers that break
+        // things.
         let mut planes = vec![Vec::new(); 3];
         for middle in [-9.0, 0.0, 1.4, 3.0, 20.0, 6.5, 7.0, f32::NAN] {
             for point in 0..64 {

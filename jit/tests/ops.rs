@@ -51,7 +51,8 @@ fn as_outputs(b: &mut FunctionBuilder, value: jbt_ir::Value, type_: Type) -> Vec
             let (one, zero) = (b.constant(1.0), b.constant(-0.0));
             vec![b.select(value, one, zero)]
         }
-        // Bits that happen to be a NaN may come back as another one when compared as reals: look at the halves.
+        // Bits that happen to be a NaN may come back as another one when compared as reals: look at the
+        // halves.
         Type::Bits => {
             let (low, high, by) =
                 (b.bits_constant(0xFFFF), b.bits_constant(0x3F80_0000), b.bits_constant(16));

@@ -1,6 +1,7 @@
-//! Draws every picture of the documentation again, into `docs/pictures/`: a scene of `examples/`, of `docs/members/`, of the README each. The
-//! steps of the tutorial are put into its page as well, `docs/tutorial.md`.
-//! The same files every time, on any number of threads. Two threads take a few minutes, and most of that for the particles.
+//! Draws every picture of the documentation again, into `docs/pictures/`: a scene of `examples/`, of
+//! `docs/members/`, of the README each. The steps of the tutorial are put into its page as well,
+//! `docs/tutorial.md`. The same files every time, on any number of threads. Two threads take a few minutes,
+//! and most of that for the particles.
 //!
 //! ```text
 //! cargo run --release -p jbt --example gallery

@@ -1,5 +1,5 @@
-//! The monocle of BABEL (Tobler, Galla, Löffelmann and Purgathofer, "BABEL: A Generic Data Structure for Geometric Modeling"), which took
-//! C++ for a modelling language, in Rust nearly as it was written there:
+//! The monocle of BABEL (Tobler, Galla, Löffelmann and Purgathofer, "BABEL: A Generic Data Structure for
+//! Geometric Modeling"), which took C++ for a modelling language, in Rust nearly as it was written there:
 //!
 //! ```text
 //! Solid sharedSphere = Solid::newSphere();
@@ -12,7 +12,8 @@
 //! cargo run --release -p jbt --example monocle
 //! ```
 //!
-//! It prints the model as text, counts its nodes, and says what it meets on a line across it. `examples/monocle.jbt` is the same tree.
+//! It prints the model as text, counts its nodes, and says what it meets on a line across it.
+//! `examples/monocle.jbt` is the same tree.
 #![allow(clippy::print_stdout, reason = "an example prints")]
 
 #[path = "monocle/solid.rs"]

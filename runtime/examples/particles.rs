@@ -1,5 +1,6 @@
-//! A splash of 100,000 particles: the crown that a drop throws up when it falls into milk (after Edgerton's photographs, 1936), as a fluid
-//! simulation would hand it over. It writes the model as text, the same one every time.
+//! A splash of 100,000 particles: the crown that a drop throws up when it falls into milk (after Edgerton's
+//! photographs, 1936), as a fluid simulation would hand it over. It writes the model as text, the same one
+//! every time.
 //!
 //! ```text
 //! cargo run --release -p jbt --example particles > particles.jbt

@@ -2,7 +2,8 @@
 
 use jbt_frontend::attribute::AttributeGroup;
 
-/// Which plane holds what: the field first, then the gradient, then the attributes, as far as they were asked for.
+/// Which plane holds what: the field first, then the gradient, then the attributes, as far as they were asked
+/// for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
     names: Vec<String>,
@@ -131,7 +132,8 @@ impl Samples {
         self.layout.gradient.then(|| [&self.planes[1][..], &self.planes[2], &self.planes[3]])
     }
 
-    /// The channels of an attribute group at every point; `None` if there is no such group or it was not asked for.
+    /// The channels of an attribute group at every point; `None` if there is no such group or it was not
+    /// asked for.
     #[must_use]
     pub fn attribute(&self, name: &str) -> Option<&[Vec<f32>]> {
         let (plane, width) = self.layout.attribute(name)?;

@@ -31,7 +31,8 @@ struct Known {
 const REMEMBERED: usize = 64;
 
 impl Compiler {
-    /// A compiler for the best engine that this machine has: machine code, or the SIMD interpreter with one warning in the log.
+    /// A compiler for the best engine that this machine has: machine code, or the SIMD interpreter with one
+    /// warning in the log.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
@@ -51,7 +52,8 @@ impl Compiler {
         self
     }
 
-    /// The same compiler for a level of the instruction set, of the interpreter and of machine code. Without it, it is [`Level::best`].
+    /// The same compiler for a level of the instruction set, of the interpreter and of machine code. Without
+    /// it, it is [`Level::best`].
     #[must_use]
     pub fn at_level(mut self, level: Level) -> Self {
         self.wish.level = Some(level);
@@ -59,11 +61,13 @@ impl Compiler {
         self
     }
 
-    /// The same compiler for models that are edited, or asked region by region: every row of a model stays a row of a table.
+    /// The same compiler for models that are edited, or asked region by region: every row of a model stays a
+    /// row of a table.
     ///
-    /// Without it, formulas that have much in common become straight code ([`jbt_ir::straight`]), which takes up to a third less time. Straight code
-    /// knows how many rows there are and which of their numbers are equal, so an edit that changes one of the two
-    /// compiles anew; and regions run another kernel, which is made for the first of them. The answers have the same bits.
+    /// Without it, formulas that have much in common become straight code ([`jbt_ir::straight`]), which takes
+    /// up to a third less time. Straight code knows how many rows there are and which of their numbers are
+    /// equal, so an edit that changes one of the two compiles anew; and regions run another kernel, which is
+    /// made for the first of them. The answers have the same bits.
     ///
     /// Rows of primitives, and models with parameters, stay as they are in any case.
     #[must_use]
@@ -72,8 +76,8 @@ impl Compiler {
         self
     }
 
-    /// The kernel that answers a query for a model, and the numbers to bind to it. `present` is a kernel for the same query, which is
-    /// kept where it fits.
+    /// The kernel that answers a query for a model, and the numbers to bind to it. `present` is a kernel for
+    /// the same query, which is kept where it fits.
     pub(crate) fn answers(
         &self,
         lowering: &Lowering<'_>,
@@ -94,7 +98,8 @@ impl Compiler {
         Ok((kernel, tables))
     }
 
-    /// A kernel of straight code for a lowered function and these tables; `None` if rows are as good, or if it is beyond a limit.
+    /// A kernel of straight code for a lowered function and these tables; `None` if rows are as good, or if
+    /// it is beyond a limit.
     fn straight(
         &self,
         function: &Function,

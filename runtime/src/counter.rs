@@ -4,8 +4,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use jbt_frontend::query::Query;
 
-/// Walks of the tree that separate evaluations take: 1 for the field; 4 more for the gradient by forward differences, at the point and a
-/// step along each axis; 1 more for the attributes.
+/// Walks of the tree that separate evaluations take: 1 for the field; 4 more for the gradient by forward
+/// differences, at the point and a step along each axis; 1 more for the attributes.
 #[must_use]
 pub fn walks(query: Query) -> u64 {
     1 + 4 * u64::from(query.gradient) + u64::from(query.attributes)
@@ -23,11 +23,12 @@ pub struct Counters {
     pub lanes: u64,
     /// Distances to skeletons that were computed, for the points asked for.
     pub primitive_evaluations: u64,
-    /// Distances that would have been computed on top of these if nothing had been left out at the points asked for: rows that do not
-    /// reach a region, operands that do not decide there.
+    /// Distances that would have been computed on top of these if nothing had been left out at the points
+    /// asked for: rows that do not reach a region, operands that do not decide there.
     pub evaluations_pruned: u64,
-    /// Distances that [separate walks](crate::statistics::walks) of the tree would have computed on top of these: for the field, for the
-    /// normal by differences and for the attributes, a shared subtree again at each use.
+    /// Distances that [separate walks](crate::statistics::walks) of the tree would have computed on top of
+    /// these: for the field, for the normal by differences and for the attributes, a shared subtree again at
+    /// each use.
     pub evaluations_avoided: u64,
 }
 
@@ -49,7 +50,8 @@ impl Tally {
         self.lanes.fetch_add(lanes as u64, Ordering::Relaxed);
     }
 
-    /// The counters, for a program that computes `evaluations` distances a point where separate walks compute `separate`.
+    /// The counters, for a program that computes `evaluations` distances a point where separate walks compute
+    /// `separate`.
     pub(crate) fn snapshot(&self, evaluations: u64, separate: u64) -> Counters {
         let points = self.points.load(Ordering::Relaxed);
         let pruned = self.pruned.load(Ordering::Relaxed);

@@ -66,7 +66,8 @@ pub enum Update {
 
 /// A compiled model: answers one query at any points.
 ///
-/// It is `Send + Sync`: threads may share it and evaluate at once. The code is freed with the last evaluator of its shape.
+/// It is `Send + Sync`: threads may share it and evaluate at once. The code is freed with the last evaluator
+/// of its shape.
 pub struct Evaluator {
     compiler: Compiler,
     /// What runs points anywhere.
@@ -93,7 +94,8 @@ impl fmt::Debug for Evaluator {
 }
 
 impl Evaluator {
-    /// An evaluator on the best engine that this machine has. To share code between models, use a [`Compiler`].
+    /// An evaluator on the best engine that this machine has. To share code between models, use a
+    /// [`Compiler`].
     ///
     /// # Errors
     /// Those of [`Compiler::evaluator`].
@@ -308,8 +310,8 @@ impl Evaluator {
         Ok(())
     }
 
-    /// As [`eval_planes`](Self::eval_planes), with the rows that matter in a region. The answers have the same bits, at points of the region's box; elsewhere
-    /// they mean nothing.
+    /// As [`eval_planes`](Self::eval_planes), with the rows that matter in a region. The answers have the
+    /// same bits, at points of the region's box; elsewhere they mean nothing.
     ///
     /// # Errors
     /// Those of [`eval_planes`](Self::eval_planes), and a region of a model with other numbers of rows.

@@ -1,16 +1,19 @@
 //! Gradients are finite at all points.
 //!
-//! A program multiplies a factor of 0 with what may have overflowed, far from all skeletons or where a formula is held by a bound, and 0 times an
-//! infinity is NaN. No select in it looks out for that. Instead all gradients are looked at when they are there:
+//! A program multiplies a factor of 0 with what may have overflowed, far from all skeletons or where a
+//! formula is held by a bound, and 0 times an infinity is NaN. No select in it looks out for that. Instead
+//! all gradients are looked at when they are there:
 //!
 //! ```text
 //! run the program
 //! where a component is NaN, or beyond 2^100:    run the guarded program there, for the gradient alone
 //! ```
 //!
-//! The guarded program has the same ops with guards between them, so it gives the same bits where nothing overflows, and 0 for what is multiplied by 0
-//! ([`jbt_ir::domain::tangent`]). Selects drop what they do not choose, sums and products keep a NaN or an infinity: a gradient that is finite has met none. So a point's
-//! answer depends neither on the points beside it nor on rows that are left out. It costs a comparison a component, and nothing a row.
+//! The guarded program has the same ops with guards between them, so it gives the same bits where nothing
+//! overflows, and 0 for what is multiplied by 0 ([`jbt_ir::domain::tangent`]). Selects drop what they do not
+//! choose, sums and products keep a NaN or an infinity: a gradient that is finite has met none. So a point's
+//! answer depends neither on the points beside it nor on rows that are left out. It costs a comparison a
+//! component, and nothing a row.
 
 use std::sync::Arc;
 
@@ -29,7 +32,8 @@ fn are_tame(plane: &[f32]) -> bool {
 }
 
 impl Bound {
-    /// As [`run`](Self::run), for a kernel that answers at points: its gradients are finite, and within [`LARGEST_SLOPE`].
+    /// As [`run`](Self::run), for a kernel that answers at points: its gradients are finite, and within
+    /// [`LARGEST_SLOPE`].
     pub(crate) fn run_finite(
         &self,
         selection: &Selection,

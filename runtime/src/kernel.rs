@@ -97,7 +97,8 @@ pub fn passes(purpose: Purpose) -> impl Iterator<Item = &'static Pass> {
 /// Runs the passes and verifies. The observer sees what every pass made.
 ///
 /// # Errors
-/// A function that a pass makes larger than [`limits::MAX_VALUES`]; broken rules, which are a defect of the compiler.
+/// A function that a pass makes larger than [`limits::MAX_VALUES`]; broken rules, which are a defect of the
+/// compiler.
 pub fn optimise(
     function: Function,
     purpose: Purpose,
@@ -106,8 +107,9 @@ pub fn optimise(
     finish(run(function, passes(purpose), observer)?)
 }
 
-/// Straight code for a lowered function and its tables, if it is worth it: made of what the purpose's own pass makes of the function, so that
-/// answers have the bits that they have without it. What was told apart in straight code for other numbers stays apart.
+/// Straight code for a lowered function and its tables, if it is worth it: made of what the purpose's own
+/// pass makes of the function, so that answers have the bits that they have without it. What was told apart
+/// in straight code for other numbers stays apart.
 ///
 /// # Errors
 /// Those of [`optimise`].
@@ -201,7 +203,8 @@ pub(crate) struct Kernel {
 }
 
 impl Kernel {
-    /// Prepares a function for an engine. Without an engine in mind, machine code is tried first and the interpreter then.
+    /// Prepares a function for an engine. Without an engine in mind, machine code is tried first and the
+    /// interpreter then.
     pub(crate) fn new(
         lowered: Function,
         straight: Option<Straight>,
@@ -249,8 +252,9 @@ impl Kernel {
         }
     }
 
-    /// A kernel for field and gradient at points where the gradient by this one is not finite; `None` if guards make its program too long. It
-    /// interprets: there are few such points as a rule, and a guarded program is several times as long.
+    /// A kernel for field and gradient at points where the gradient by this one is not finite; `None` if
+    /// guards make its program too long. It interprets: there are few such points as a rule, and a guarded
+    /// program is several times as long.
     pub(crate) fn guarded(&self) -> Option<&Arc<Self>> {
         let make = || {
             let mut field = self.lowered.clone();
@@ -279,13 +283,15 @@ impl Kernel {
         }
     }
 
-    /// Gives the kernel its numbers: those of the lowered function, which fit its straight code if it has one.
+    /// Gives the kernel its numbers: those of the lowered function, which fit its straight code if it has
+    /// one.
     pub(crate) fn bind(self: &Arc<Self>, lowered: Arc<Tables>) -> Bound {
         let tables = match &self.straight {
             None => Arc::clone(&lowered),
             Some(straight) => Arc::new(straight.tables(&lowered).expect("whoever binds has seen to that")),
         };
-        // Lowering made both, so they fit. It is checked all the same, because the engines' safety rests on it.
+        // Lowering made both, so they fit. It is checked all the same, because the engines' safety rests on
+        // it.
         let interpreted = || Arc::new(Selection::new(self.function.function(), &tables));
         #[cfg(feature = "jit")]
         let (machine, all) = match &self.code {
@@ -337,7 +343,8 @@ fn unavailable(level: Level) -> String {
     format!("this CPU has no level {level}; it has {}", available.join(", "))
 }
 
-/// The best level that may be used. Says once for each process what is wrong with the variable that bounds it.
+/// The best level that may be used. Says once for each process what is wrong with the variable that bounds
+/// it.
 fn best_level() -> Level {
     static WARNED: std::sync::Once = std::sync::Once::new();
     WARNED.call_once(|| {
@@ -444,7 +451,8 @@ impl Bound {
         }
     }
 
-    /// Straight from the caller's planes; fewer points than a block go through one that is filled up with the last.
+    /// Straight from the caller's planes; fewer points than a block go through one that is filled up with the
+    /// last.
     #[cfg(feature = "jit")]
     fn run_machine(
         &self,

@@ -1,8 +1,8 @@
-//! jbt compiles **BlobTrees** to SIMD machine code: the field, its gradient and its attributes come out of one evaluation of each
-//! primitive.
+//! jbt compiles **BlobTrees** to SIMD machine code: the field, its gradient and its attributes come out of
+//! one evaluation of each primitive.
 //!
-//! A BlobTree is a graph of skeletal implicit surfaces: primitives (a skeleton, and a falloff of the distance to it), blends, CSG,
-//! warps, affine maps, attributes. Inside means `field >= iso`.
+//! A BlobTree is a graph of skeletal implicit surfaces: primitives (a skeleton, and a falloff of the distance
+//! to it), blends, CSG, warps, affine maps, attributes. Inside means `field >= iso`.
 //!
 //! ```
 //! use jbt::build::{Axis, point};
@@ -33,16 +33,19 @@
 //!
 //! * [`Scene::load`], [`build`], [`text`] and [`import`] make a [`Model`]; [`Model::check`] says everything
 //!   that is wrong with it. [`tree`] is for programs that read one.
-//! * Numbers may follow named parameters ([`build::param`], `param` in a text): [`CheckedTree::with_parameters`] sets them, and
-//!   [`Evaluator::update`] then writes numbers and compiles nothing.
-//! * An [`Evaluator`] answers one [`Query`] at any points, on the [`Engine`] that the machine has; all engines give the same bits.
-//!   A [`Probe`] asks about a single point, in any order, for one evaluation.
+//! * Numbers may follow named parameters ([`build::param`], `param` in a text):
+//!   [`CheckedTree::with_parameters`] sets them, and [`Evaluator::update`] then writes numbers and compiles
+//!   nothing.
+//! * An [`Evaluator`] answers one [`Query`] at any points, on the [`Engine`] that the machine has; all
+//!   engines give the same bits. A [`Probe`] asks about a single point, in any order, for one evaluation.
 //! * [`Polygonize`] meshes a model, [`Render`] makes pictures of it; [`export`] writes both.
 //! * A [`contour::Slicer`] looks at a model in a plane: contours as closed loops, and images.
-//! * A [`Solid`] answers questions about the set that a model encloses: which side a point is on, which leaf decides there, how far it
-//!   reaches, how large it is.
-//! * A [`Tracer`] follows rays to where they hit the surface, singly or in packets, and misses nothing that is longer than a tolerance.
-//! * [`Counters`] say what was done, and what separate walks would have done; [`statistics`] foretell it, and say how much of it matters.
+//! * A [`Solid`] answers questions about the set that a model encloses: which side a point is on, which leaf
+//!   decides there, how far it reaches, how large it is.
+//! * A [`Tracer`] follows rays to where they hit the surface, singly or in packets, and misses nothing that
+//!   is longer than a tolerance.
+//! * [`Counters`] say what was done, and what separate walks would have done; [`statistics`] foretell it, and
+//!   say how much of it matters.
 //!
 //! # Errors
 //!

@@ -1,7 +1,7 @@
 //! Pictures: rows of pixels.
 
-/// Pixels of red, green, blue and opacity in eight bits each, as screens take them (sRGB; opacity is not multiplied in): row by row from the top, from
-/// the left.
+/// Pixels of red, green, blue and opacity in eight bits each, as screens take them (sRGB; opacity is not
+/// multiplied in): row by row from the top, from the left.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Picture {
     width: u32,
@@ -35,7 +35,8 @@ impl Picture {
         &self.pixels
     }
 
-    /// Red, green, blue and opacity of a pixel, the first one at the left and the top. Panics if there is no such pixel.
+    /// Red, green, blue and opacity of a pixel, the first one at the left and the top. Panics if there is no
+    /// such pixel.
     #[must_use]
     pub fn pixel(&self, x: u32, y: u32) -> [u8; 4] {
         assert!(x < self.width && y < self.height, "a pixel of the picture");

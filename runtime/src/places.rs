@@ -5,7 +5,8 @@
 //! a NaN           has no answer: field and gradient are NaN there, which is outside, attributes the defaults
 //! ```
 //!
-//! Programs know nothing of this. Whoever calls them looks at all points first, which costs a comparison a coordinate and nothing a row.
+//! Programs know nothing of this. Whoever calls them looks at all points first, which costs a comparison a
+//! coordinate and nothing a row.
 
 use crate::buffer::Layout;
 
@@ -22,7 +23,8 @@ pub fn placed(points: &[&[f32]; 3]) -> [Vec<f32>; 3] {
     points.map(|plane| plane.iter().map(place).collect())
 }
 
-/// Writes the answers of points that have a NaN for a coordinate over what was answered in the places that stood in for them.
+/// Writes the answers of points that have a NaN for a coordinate over what was answered in the places that
+/// stood in for them.
 pub fn blank(layout: &Layout, points: &[&[f32]; 3], answers: &mut [&mut [f32]]) {
     let blanks = layout.blanks();
     for index in 0..points[0].len() {

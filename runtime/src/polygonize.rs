@@ -103,9 +103,11 @@ pub struct MeshCounters {
     pub pulls: Counters,
     /// Everything, at vertices.
     pub vertices: Counters,
-    /// Distances that all points of the lattice would take with all rows: what an evaluator does that knows nothing.
+    /// Distances that all points of the lattice would take with all rows: what an evaluator does that knows
+    /// nothing.
     pub dense_evaluations: u64,
-    /// Those of them that were not computed because the range of a box said that no surface is in it, though some rows reach it.
+    /// Those of them that were not computed because the range of a box said that no surface is in it, though
+    /// some rows reach it.
     pub avoided_by_interval: u64,
     /// Those that were not computed because a row does not reach a box, or does not decide there.
     pub avoided_by_support: u64,
@@ -126,7 +128,8 @@ impl MeshCounters {
         let points = lattice.points().iter().fold(1_u64, |all, &points| all.saturating_mul(points as u64));
         let dense = points.saturating_mul(kernels.evaluations_per_point());
         let avoided = dense.saturating_sub(field.primitive_evaluations);
-        // A point on the far side of a box that was dropped may have been sampled for its neighbour: so not more than what is left.
+        // A point on the far side of a box that was dropped may have been sampled for its neighbour: so not
+        // more than what is left.
         let by_interval = report.evaluations_spared.min(avoided);
         Self {
             division: kernels.pruned(),
@@ -162,8 +165,8 @@ pub enum PolygonizeError {
     Mesh(#[from] MeshError<EvalError>),
 }
 
-/// The part of the support's longest side by which the default region exceeds it, so that rounded coordinates of the
-/// lattice's sides are outside.
+/// The part of the support's longest side by which the default region exceeds it, so that rounded coordinates
+/// of the lattice's sides are outside.
 const MARGIN: f64 = 1.0 / 512.0;
 
 impl Polygonize {

@@ -5,7 +5,8 @@ use std::cell::OnceCell;
 use crate::debug::brief_debug;
 use crate::evaluator::Evaluator;
 
-/// One point of a model: what is asked was declared by the evaluator's query, and everything is computed by the first question.
+/// One point of a model: what is asked was declared by the evaluator's query, and everything is computed by
+/// the first question.
 ///
 /// ```
 /// # use jbt::{Evaluator, Model, Query, build::point};

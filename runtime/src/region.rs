@@ -2,7 +2,8 @@
 
 use std::error::Error;
 
-/// A closed axis-aligned box: its sides belong to it. Corners are finite and in order where a function says so.
+/// A closed axis-aligned box: its sides belong to it. Corners are finite and in order where a function says
+/// so.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Box3 {
@@ -65,8 +66,8 @@ impl Box3 {
     }
 }
 
-/// What is known of the values in a box: an enclosing interval. `[-inf, inf]` says nothing, and admits NaN; any other range promises
-/// numbers.
+/// What is known of the values in a box: an enclosing interval. `[-inf, inf]` says nothing, and admits NaN;
+/// any other range promises numbers.
 pub type Range = [f32; 2];
 
 /// The range that says nothing.
@@ -77,8 +78,8 @@ pub const MAX_PARTS: usize = 8;
 
 /// A field that can be asked about boxes.
 ///
-/// A *region* is what is known of a box: which parts of the model matter in it. The region of a part is found from that of the whole,
-/// which is cheaper than from nothing.
+/// A *region* is what is known of a box: which parts of the model matter in it. The region of a part is found
+/// from that of the whole, which is cheaper than from nothing.
 pub trait Divisible: Sync {
     /// What can go wrong with an evaluation.
     type Error: Error + Send + 'static;

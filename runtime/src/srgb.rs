@@ -1,4 +1,5 @@
-//! The curve between linear light and the numbers that a screen is given (sRGB, IEC 61966-2-1), and eight bits of them.
+//! The curve between linear light and the numbers that a screen is given (sRGB, IEC 61966-2-1), and eight
+//! bits of them.
 
 /// From linear light to the number that a screen is given, 0 .. 1 (IEC 61966-2-1, sRGB).
 pub fn encode(linear: f32) -> f32 {
@@ -6,7 +7,8 @@ pub fn encode(linear: f32) -> f32 {
     if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 }
 }
 
-/// As [`encode`], rounded once: white is 1 and not 1 - 2^-24. For numbers that are kept; a picture's bytes do not see it.
+/// As [`encode`], rounded once: white is 1 and not 1 - 2^-24. For numbers that are kept; a picture's bytes do
+/// not see it.
 pub fn encode_precisely(linear: f32) -> f32 {
     let x = f64::from(unit(linear));
     let encoded = if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 };
@@ -46,8 +48,8 @@ mod tests {
         }
     }
 
-    /// Pairs that others have published: the ends and the joint of the standard's two pieces, the photographers' mid grey, and what
-    /// colour pickers give for halves on either side.
+    /// Pairs that others have published: the ends and the joint of the standard's two pieces, the
+    /// photographers' mid grey, and what colour pickers give for halves on either side.
     #[test]
     fn published_values() {
         let pairs = [

@@ -1,4 +1,5 @@
-//! Statistics: how many evaluations of primitives a question takes, in old ways and in ours, and how many of them matter.
+//! Statistics: how many evaluations of primitives a question takes, in old ways and in ours, and how many of
+//! them matter.
 //!
 //! ```text
 //! separate   walks(query) x uses of leaves           each walk goes down every path: shared subtrees again at each use
@@ -7,8 +8,8 @@
 //! matters    pairs of a point and an occurrence where the point is inside of the primitive's support
 //! ```
 //!
-//! An *evaluation* is one distance to one skeleton at one place. A *use* of a leaf is a path from the root to it; an *occurrence* is a leaf
-//! at a position, whatever the number of paths that lead there.
+//! An *evaluation* is one distance to one skeleton at one place. A *use* of a leaf is a path from the root to
+//! it; an *occurrence* is a leaf at a position, whatever the number of paths that lead there.
 
 use std::collections::BTreeMap;
 
@@ -25,7 +26,8 @@ use crate::evaluator::Evaluator;
 use crate::job::{Hook, Job};
 use crate::mesh::{Lattice, LatticeError};
 
-/// Different places that those walks ask about: the point, and the ends of the three steps of a gradient by differences.
+/// Different places that those walks ask about: the point, and the ends of the three steps of a gradient by
+/// differences.
 #[must_use]
 pub fn places(query: Query) -> u64 {
     1 + 3 * u64::from(query.gradient)
@@ -57,7 +59,8 @@ pub struct Statistics<'a> {
 
 brief_debug!(Statistics<'_>, "Statistics", this: uses = this.uses, occurrences = this.occurrences());
 
-/// How far around a leaf's support lattice points are tried, as a part of the largest coordinate: more than f32 is off by.
+/// How far around a leaf's support lattice points are tried, as a part of the largest coordinate: more than
+/// f32 is off by.
 const ROUNDING: f64 = 1.0 / (1 << 18) as f64;
 /// Points that are evaluated at once.
 const BATCH: usize = 1 << 13;
@@ -94,12 +97,13 @@ impl<'a> Statistics<'a> {
         }
     }
 
-    /// Counts the pairs of a lattice point and an occurrence where the point is inside of the primitive's support, nearer to its skeleton
-    /// than its radius.
+    /// Counts the pairs of a lattice point and an occurrence where the point is inside of the primitive's
+    /// support, nearer to its skeleton than its radius.
     ///
-    /// Every point near the box of a support is tried by the compiled field of that leaf alone, in the same f32 arithmetic as in the
-    /// whole model; points far from the box are outside. Maps and warps are those above the leaf; operators and strengths, which may
-    /// silence a leaf, do not count. The answer does not depend on the threads.
+    /// Every point near the box of a support is tried by the compiled field of that leaf alone, in the same
+    /// f32 arithmetic as in the whole model; points far from the box are outside. Maps and warps are those
+    /// above the leaf; operators and strengths, which may silence a leaf, do not count. The answer does not
+    /// depend on the threads.
     ///
     /// # Errors
     /// It was cancelled, a leaf could not be compiled, or the lattice has too many points to visit all.
@@ -153,7 +157,8 @@ pub struct Supports {
 }
 
 impl Supports {
-    /// The waste: the evaluations that were done for each one that matters, 1 at best; `None` if none matters.
+    /// The waste: the evaluations that were done for each one that matters, 1 at best; `None` if none
+    /// matters.
     #[must_use]
     pub fn waste(&self, evaluations: u64) -> Option<f64> {
         (self.pairs > 0).then(|| evaluations as f64 / self.pairs as f64)

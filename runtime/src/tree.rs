@@ -33,8 +33,8 @@
 //! assert_eq!(leaf.radius, 1.0);
 //! ```
 //!
-//! Values of nodes are best read by [`Skeleton::to_fields`] and its kind, and by [`NodeKind::rows`]: the structures in
-//! their variants are those of the compiler, in vectors of its own glam.
+//! Values of nodes are best read by [`Skeleton::to_fields`] and its kind, and by [`NodeKind::rows`]: the
+//! structures in their variants are those of the compiler, in vectors of its own glam.
 
 pub use jbt_frontend::attribute::{AttributeValue, Textured, UvMap};
 pub use jbt_frontend::check::CheckedNode;

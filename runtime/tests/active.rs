@@ -1,11 +1,13 @@
-//! Leaving a row out gives the bits that running it gives, where the row adds nothing: what pruning will rest on.
+//! Leaving a row out gives the bits that running it gives, where the row adds nothing: what pruning will rest
+//! on.
 
 use jbt::ir::domain::scalar::Scalar;
 use jbt::ir::{Entity, FoldKind, Rule, Tables, interpret};
 use jbt::{Compiler, Engine, Evaluator, Query};
 use jbt_frontend::text::{Options, parse};
 
-/// A sum and a Ricci blend of points and segments with colours, strengths of both signs and another attribute.
+/// A sum and a Ricci blend of points and segments with colours, strengths of both signs and another
+/// attribute.
 fn scene(rng: &mut fastrand::Rng, operator: &str) -> String {
     let mut number = |low: f64, high: f64| low + (high - low) * rng.f64();
     let mut parts = String::new();
@@ -35,7 +37,8 @@ fn answers(evaluator: &Evaluator, tables: &Tables, point: [f32; 3]) -> Vec<u32> 
     answers.into_iter().map(f32::to_bits).collect()
 }
 
-/// The tables without the rows that are neutral where they are zero, and whose leaf is out of reach of the point.
+/// The tables without the rows that are neutral where they are zero, and whose leaf is out of reach of the
+/// point.
 fn reduced(evaluator: &Evaluator, point: [f32; 3]) -> (Tables, usize) {
     let function = evaluator.program().function();
     let mut tables = evaluator.tables().clone();

@@ -1,4 +1,5 @@
-//! Attributes of any width and kind, from the text to files: what is evaluated, meshed and written is what the oracle says.
+//! Attributes of any width and kind, from the text to files: what is evaluated, meshed and written is what
+//! the oracle says.
 
 use jbt::export::{Format, write};
 use jbt::text::{Options, parse};
@@ -107,7 +108,8 @@ fn a_checker_is_where_it_should_be_on_a_mesh() {
     );
 }
 
-/// What answers where no field is: a leaf has its own values everywhere, operators give the default where nothing has weight.
+/// What answers where no field is: a leaf has its own values everywhere, operators give the default where
+/// nothing has weight.
 #[test]
 fn where_nothing_has_weight() {
     const RED: &str = "color (1 0 0) { point { radius 1 } }";
@@ -155,7 +157,8 @@ fn where_nothing_has_weight() {
     }
 }
 
-/// Steps of more than two children mix as they fold: the formulas of the page on attributes, with derivatives by differences.
+/// Steps of more than two children mix as they fold: the formulas of the page on attributes, with derivatives
+/// by differences.
 #[test]
 fn steps_weigh_two_sides_at_a_time() {
     let at = [0.1, 0.2, -0.15];

@@ -181,8 +181,8 @@ fn random(rng: &mut Rng) -> Model {
     Model { iso: (0.3 + 0.3 * rng.f64()).into(), ..Model::new(root) }
 }
 
-/// Whether the area of the contour is within 1 % of that of the pixels inside, nine of them to a cell; and a fiftieth of a cell along the contour and some
-/// pixels, for slivers and specks.
+/// Whether the area of the contour is within 1 % of that of the pixels inside, nine of them to a cell; and a
+/// fiftieth of a cell along the contour and some pixels, for slivers and specks.
 fn has_its_area(slicer: &Slicer, rectangle: &Rectangle, cells: usize) -> bool {
     let found = contour(slicer, rectangle, &detail(cells));
     let fine = ImageDetail { fineness: Fineness::Resolution(3 * cells), samples: 1 };
@@ -323,7 +323,8 @@ fn the_border_closes_what_it_cuts() {
 
 #[test]
 fn saddles_are_decided_by_their_middles() {
-    // x y >= 1/2 - c about the origin: the corners of the middle cell are inside crosswise, its middle is at the iso-value less c.
+    // x y >= 1/2 - c about the origin: the corners of the middle cell are inside crosswise, its middle is at
+    // the iso-value less c.
     for (constant, loops) in [(0.51, 1), (0.49, 2)] {
         let text = format!("jbt 1 expression {{ x * y + {constant} }}");
         let found = of_text(&text, 1.0, 7);

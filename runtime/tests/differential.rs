@@ -1,14 +1,17 @@
-//! The strongest test there is: random shapes, each with many sets of numbers, at friendly and at hostile points.
+//! The strongest test there is: random shapes, each with many sets of numbers, at friendly and at hostile
+//! points.
 //!
-//! * scalar = lanes = machine code, **bit for bit**, for every query and every length of the last block (a NaN equals
-//!   any NaN), at the best level of the instruction set that this CPU has, and at the others in turn;
+//! * scalar = lanes = machine code, **bit for bit**, for every query and every length of the last block (a
+//!   NaN equals any NaN), at the best level of the instruction set that this CPU has, and at the others in
+//!   turn;
 //! * the field has the same bits whatever else is asked;
 //! * a new set of numbers compiles nothing;
-//! * wherever coordinates are finite, so are gradients, and fields and attributes unless operators multiply fields that are at the bounds of formulas: engines agree
-//!   on a NaN, so this is asked for by itself;
+//! * wherever coordinates are finite, so are gradients, and fields and attributes unless operators multiply
+//!   fields that are at the bounds of formulas: engines agree on a NaN, so this is asked for by itself;
 //! * field, attributes and gradient agree with the f64 oracle `walk`, which shares no code with the compiler.
 //!
-//! `JBT_DIFFERENTIAL_SHAPES` sets the number of shapes, `JBT_DIFFERENTIAL_SEED` the first seed. A failure prints the model.
+//! `JBT_DIFFERENTIAL_SHAPES` sets the number of shapes, `JBT_DIFFERENTIAL_SEED` the first seed. A failure
+//! prints the model.
 #![allow(clippy::print_stdout, reason = "a test may show its figures")]
 
 mod common;
@@ -58,8 +61,8 @@ fn engines_agree_to_the_bit_and_with_the_oracle() {
     assert!(gradients * 4 > compared, "most gradients are compared");
 }
 
-/// All evaluators of one shape: for each query, for each engine at the best level of this CPU and at another one, which
-/// changes with the shape.
+/// All evaluators of one shape: for each query, for each engine at the best level of this CPU and at another
+/// one, which changes with the shape.
 fn evaluators(tree: &CheckedTree, shape: u64) -> Vec<Vec<Evaluator>> {
     let all = Level::available();
     let mut levels = vec![all[all.len() - 1], all[shape as usize % all.len()]];
@@ -121,7 +124,8 @@ fn hostile(rng: &mut fastrand::Rng, points: &Points) -> Points {
     (0..points.len()).map(one).collect()
 }
 
-/// Whether operators multiply fields, or square them: of formulas that are at their bound of 2^100 that is beyond f32.
+/// Whether operators multiply fields, or square them: of formulas that are at their bound of 2^100 that is
+/// beyond f32.
 fn multiplies(tree: &CheckedTree) -> bool {
     let multiplies = |kind: &NodeKind| {
         matches!(
@@ -132,7 +136,8 @@ fn multiplies(tree: &CheckedTree) -> bool {
     tree.nodes().iter().any(|node| multiplies(&node.kind))
 }
 
-/// Gradients at points with finite coordinates are finite; so are fields and attributes, if operators do not multiply fields.
+/// Gradients at points with finite coordinates are finite; so are fields and attributes, if operators do not
+/// multiply fields.
 fn check_finite(what: &str, model: &Model, tree: &CheckedTree, points: &Points, answers: &Samples) {
     let gradients = answers.layout().names().iter().zip(answers.planes()).skip(1).take(3);
     let all = answers.layout().names().iter().zip(answers.planes());

@@ -9,7 +9,8 @@ use jbt::Box3;
 use jbt::divide::{Cell, Decision, DivideError, Division, Edit, Limits, Outcome, divide};
 use jbt::region::{Divisible, Range};
 
-/// The distance from a centre, exactly enclosed. A region is its box; `asked` counts the boxes whose ranges were asked for.
+/// The distance from a centre, exactly enclosed. A region is its box; `asked` counts the boxes whose ranges
+/// were asked for.
 struct Ball {
     center: [f32; 3],
     asked: AtomicU64,
@@ -242,7 +243,8 @@ fn a_ray_passes_leaves_from_the_nearest_on() {
         let (origin, direction) = (vector(3.0), vector(1.0));
         let passed = division.ray(origin, direction);
         assert!(passed.is_sorted_by(|a, b| a.enter <= b.enter));
-        // The middle of a passage is in its box, as far as rounding goes; and no other leaf holds a point of the ray.
+        // The middle of a passage is in its box, as far as rounding goes; and no other leaf holds a point of
+        // the ray.
         for passage in &passed {
             let at = 0.5 * (passage.enter + passage.exit);
             let slack = 1e-5;

@@ -1,5 +1,5 @@
-//! Falloffs through the compiler: gradients against the oracle, what happens at the skeleton, at the rim and beyond it, parameters, and
-//! that pruning changes nothing.
+//! Falloffs through the compiler: gradients against the oracle, what happens at the skeleton, at the rim and
+//! beyond it, parameters, and that pruning changes nothing.
 
 use jbt::build::{Edge, Term, arctan, blanc, blinn, degree, inverse_power, param, point, segment};
 use jbt::region::Divisible;

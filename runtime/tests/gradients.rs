@@ -1,5 +1,5 @@
-//! Gradients are finite at all points with finite coordinates: they are 0 where a field stands still, saturate at 2^100, and have the bits that they
-//! had where nothing overflows, with the ops that they took.
+//! Gradients are finite at all points with finite coordinates: they are 0 where a field stands still,
+//! saturate at 2^100, and have the bits that they had where nothing overflows, with the ops that they took.
 
 mod common;
 
@@ -148,7 +148,8 @@ fn pruned_or_not_hostile_points_have_the_same_bits() {
     }
 }
 
-/// The price of all this at ordinary points: no op. A sum of points takes for each what it took before there were guards.
+/// The price of all this at ordinary points: no op. A sum of points takes for each what it took before there
+/// were guards.
 #[test]
 fn ordinary_gradients_gain_no_op() {
     let tree = tree("sum { point { radius 1 } point { at (1 2 3) radius 2 strength 0.5 } }");

@@ -1,4 +1,5 @@
-//! The monocle of BABEL: its text and its Rust are one tree, which has as many nodes as the C++ had, and is what it says.
+//! The monocle of BABEL: its text and its Rust are one tree, which has as many nodes as the C++ had, and is
+//! what it says.
 
 #[path = "../examples/monocle/solid.rs"]
 mod solid;

@@ -84,7 +84,8 @@ fn coloured_parts_have_the_values_of_the_oracle() {
     }
 }
 
-/// Distances by an independent count: every path from the root to a leaf with the map that it goes through, each pair once.
+/// Distances by an independent count: every path from the root to a leaf with the map that it goes through,
+/// each pair once.
 fn occurrences(tree: &CheckedTree) -> u64 {
     use jbt_frontend::kind::NodeKind;
     let mut found = std::collections::HashSet::new();

@@ -1,5 +1,5 @@
-//! What is often wrong with operators in systems of this kind, on every engine: lanes that share what the first of them decides, and models
-//! that end nowhere.
+//! What is often wrong with operators in systems of this kind, on every engine: lanes that share what the
+//! first of them decides, and models that end nowhere.
 
 use jbt::build::point;
 use jbt::{Compiler, Engine, Model, Points, Polygonize, PolygonizeError, Query, SetOperation, Tree};
@@ -54,7 +54,8 @@ fn an_unbounded_model_asks_for_a_region() {
     assert!(Polygonize::default().region(&cut).is_ok());
 }
 
-/// Both children of the formula are one leaf, of two colours: the field is theirs together, the slopes are not.
+/// Both children of the formula are one leaf, of two colours: the field is theirs together, the slopes are
+/// not.
 #[test]
 fn children_of_a_formula_that_share_a_field_have_weights_of_their_own() {
     let ball = point([0.0; 3], 1.0);
@@ -69,8 +70,8 @@ fn children_of_a_formula_that_share_a_field_have_weights_of_their_own() {
     }
 }
 
-/// Formulas that leave every bound, are no numbers, or are -0, as operands: where the field alone is asked, they are kept within bounds after one is chosen,
-/// else before.
+/// Formulas that leave every bound, are no numbers, or are -0, as operands: where the field alone is asked,
+/// they are kept within bounds after one is chosen, else before.
 #[test]
 fn operands_that_leave_all_bounds_give_the_same_field_to_every_query() {
     let formulas =

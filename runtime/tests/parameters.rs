@@ -1,5 +1,5 @@
-//! Parameters at run time: setting one writes numbers and compiles nothing, whatever the value, and gives what the model with that number
-//! written in gives.
+//! Parameters at run time: setting one writes numbers and compiles nothing, whatever the value, and gives
+//! what the model with that number written in gives.
 
 use jbt::build::{Axis, Number, param, point};
 use jbt::{CheckedTree, Compiler, Engine, Evaluator, Model, Points, Query, Samples, Update};
@@ -192,7 +192,8 @@ fn a_sweep_writes_numbers_and_agrees_with_the_model_with_the_number_written_in()
                 continue;
             }
             let found = answers(&evaluator, &points);
-            // The value from outside gives the same model; the number instead of the name one that may have another shape.
+            // The value from outside gives the same model; the number instead of the name one that may have
+            // another shape.
             assert_eq!(tree(&parametrised, Some(value)).nodes(), set.nodes(), "{what} at {value}");
             let plain = tree(&substituted(body, value), None);
             assert!(!plain.follows());

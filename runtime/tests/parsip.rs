@@ -1,4 +1,5 @@
-//! ParsIP scenes against values that a separate f64 program computed: on every engine, for field, gradient and colour.
+//! ParsIP scenes against values that a separate f64 program computed: on every engine, for field, gradient
+//! and colour.
 #![allow(clippy::print_stdout, reason = "a test may show its figures")]
 
 mod common;

@@ -1,4 +1,5 @@
-//! Points with coordinates that are not finite: an infinity is the largest number, a NaN has no answer; on all engines.
+//! Points with coordinates that are not finite: an infinity is the largest number, a NaN has no answer; on
+//! all engines.
 
 use jbt::{CheckedTree, Compiler, Engine, Points, Pruner, Query, Samples, text};
 

@@ -1,4 +1,5 @@
-//! Skeletons of any number of points: many of them are one fold in a fold, pieces out of reach are left out, and gradients have no facets.
+//! Skeletons of any number of points: many of them are one fold in a fold, pieces out of reach are left out,
+//! and gradients have no facets.
 
 use fastrand::Rng;
 use jbt::build::{bezier, catmull_rom, polygon, polyline};
@@ -169,7 +170,8 @@ fn the_gradient_of_a_curve_has_no_facets() {
             }
         }
         assert!(compared > 3000, "{compared}");
-        // Where two pieces meet, the rounding of their distances decides between places that are as far apart as its root.
+        // Where two pieces meet, the rounding of their distances decides between places that are as far apart
+        // as its root.
         assert!(
             worst < 1e-3 && off * 1000 < compared,
             "off by {worst} radians, {off} of {compared} by more than 5e-5"

@@ -1,10 +1,12 @@
 //! Pruning changes no bit, and ranges hold what they say.
 //!
-//! * Random shapes (those of the differential test: every operator, signed fields, warps, shared subtrees), random boxes, narrowed several times: at points of
-//!   the box every query gives the bits that it gives with all rows, on every engine.
+//! * Random shapes (those of the differential test: every operator, signed fields, warps, shared subtrees),
+//!   random boxes, narrowed several times: at points of the box every query gives the bits that it gives with
+//!   all rows, on every engine.
 //! * The field is in the range of each box around it.
 //!
-//! `JBT_PRUNE_SHAPES` sets the number of shapes, `JBT_PRUNE_POINTS` the points in each box. A failure prints the model.
+//! `JBT_PRUNE_SHAPES` sets the number of shapes, `JBT_PRUNE_POINTS` the points in each box. A failure prints
+//! the model.
 #![allow(clippy::print_stdout, reason = "a test may show its figures")]
 
 mod common;
@@ -143,7 +145,8 @@ fn formula(rng: &mut Rng) -> String {
     format!("color ({} {} {}) {{ expression {{ {formula} }} }} ", colour[0], colour[1], colour[2])
 }
 
-/// Operators of many formulas, in each other: formulas have no support, and only what they are in a box says that they do not decide there.
+/// Operators of many formulas, in each other: formulas have no support, and only what they are in a box says
+/// that they do not decide there.
 fn formulas(rng: &mut Rng) -> Model {
     let mut text = String::from("jbt 1 let shared = union { ");
     (0..rng.usize(2..5)).for_each(|_| text += &formula(rng));

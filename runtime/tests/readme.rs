@@ -1,4 +1,5 @@
-//! What the README shows is true: its scene is a good model with a closed surface, and its two commands are the only ones.
+//! What the README shows is true: its scene is a good model with a closed surface, and its two commands are
+//! the only ones.
 
 use jbt::{Compiler, Polygonize};
 use jbt_frontend::text::{Options, parse};

@@ -1,4 +1,5 @@
-//! Pictures: places, depths, normals and colours that were worked out by hand, the same bytes on any number of threads, and what is no picture.
+//! Pictures: places, depths, normals and colours that were worked out by hand, the same bytes on any number
+//! of threads, and what is no picture.
 
 use std::f64::consts::PI;
 

@@ -1,4 +1,5 @@
-//! Selectors: choosing another child writes numbers and compiles nothing, gives what the child alone gives, and costs what it costs.
+//! Selectors: choosing another child writes numbers and compiles nothing, gives what the child alone gives,
+//! and costs what it costs.
 
 use jbt::build::{param, point};
 use jbt::statistics::leaf_uses;

@@ -23,7 +23,8 @@ const APART: &str = "jbt 1 sum {
     point { at (0.5 0 0) radius 1 }
     point { radius 0.5 strength -1 }
 }";
-/// Operators under an intersection and a difference: in most boxes one side decides, and the others are left out.
+/// Operators under an intersection and a difference: in most boxes one side decides, and the others are left
+/// out.
 const NESTED: &str = "jbt 1 intersection {
     sum { point { at (-0.5 0 0) radius 1 } point { at (0.5 0 0) radius 1 } }
     difference {
@@ -64,7 +65,8 @@ const PI: f64 = std::f64::consts::PI;
 
 /// Volume and area of each model.
 fn closed_forms() -> [(&'static str, f64, f64); 5] {
-    // A box rounded by r: the box, a slab on each face, a quarter of a cylinder at each edge, an eighth of a ball at each corner.
+    // A box rounded by r: the box, a slab on each face, a quarter of a cylinder at each edge, an eighth of a
+    // ball at each corner.
     let ([a, b, c], r) = ([1.0, 0.6, 0.4], 0.1);
     let faces = 2.0 * (a * b + b * c + c * a);
     let round = a * b * c + faces * r + PI * r * r * (a + b + c) + 4.0 / 3.0 * PI * r * r * r;

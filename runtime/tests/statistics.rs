@@ -104,7 +104,8 @@ fn a_shared_subtree_is_walked_at_each_use_and_computed_once() {
     assert_eq!(per_point(Query::GRADIENT), PerPoint { separate: 40, cached: 16, fused: 4 });
     assert_eq!(per_point(Query::ATTRIBUTES), PerPoint { separate: 16, cached: 4, fused: 4 });
     assert_eq!(per_point(Query::ALL), PerPoint { separate: 48, cached: 16, fused: 4 });
-    // Two balls at each of two places, however often they are used; the lattice holds both places in the same way.
+    // Two balls at each of two places, however often they are used; the lattice holds both places in the same
+    // way.
     let lattice = Lattice::covering([-1.0625, -1.0625, -1.0625], [5.5625, 1.0625, 1.0625], 0.125).unwrap();
     let balls = [0.0, 0.5, 4.0, 4.5];
     let expected = balls.map(|x| count(&lattice, |p| p.distance(DVec3::new(x, 0.0, 0.0)) < 1.0));

@@ -1,5 +1,5 @@
-//! Straight code gives the bits of rows, for every query, engine and level; regions, counters and edits do not notice it, but for what an
-//! edit compiles.
+//! Straight code gives the bits of rows, for every query, engine and level; regions, counters and edits do
+//! not notice it, but for what an edit compiles.
 
 mod common;
 
@@ -35,7 +35,8 @@ fn nested() -> String {
     )
 }
 
-/// Waves under a union, coloured, beside points, a warp and a difference: what is straight code, and what is not.
+/// Waves under a union, coloured, beside points, a warp and a difference: what is straight code, and what is
+/// not.
 fn scene(heights: &[f64], phase: f64) -> String {
     let waves: Vec<String> = heights
         .iter()

@@ -1,4 +1,5 @@
-//! Thin parts in pictures of the default size: sheets, rods and specks, against closed forms of what the central rays of pixels meet.
+//! Thin parts in pictures of the default size: sheets, rods and specks, against closed forms of what the
+//! central rays of pixels meet.
 #![allow(clippy::print_stdout, reason = "a test may show its figures")]
 
 use jbt::render::{Mode, Render, Stance, View};
@@ -30,8 +31,9 @@ struct Seen {
     tolerance: f64,
 }
 
-/// A picture without perspective, of the default size and quality, from the direction of `eye`: what the rays through the middles of pixels meet, and what is
-/// shown. `chord` is how long a ray, from a point into a unit direction, is inside.
+/// A picture without perspective, of the default size and quality, from the direction of `eye`: what the rays
+/// through the middles of pixels meet, and what is shown. `chord` is how long a ray, from a point into a unit
+/// direction, is inside.
 fn look(model: &CheckedTree, eye: Vector, chord: impl Fn(Vector, Vector) -> f64) -> Seen {
     let stance = Stance::At { eye, target: [0.0; 3] };
     let lens = 2.0 * (1.2 / dot(eye, eye).sqrt()).atan().to_degrees();

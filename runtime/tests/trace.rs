@@ -1,6 +1,8 @@
-//! Rays, against closed forms, against dense sampling of the plain evaluator, and against themselves in other packets.
+//! Rays, against closed forms, against dense sampling of the plain evaluator, and against themselves in other
+//! packets.
 //!
-//! `JBT_TRACE_TREES` sets the number of random models, `JBT_TRACE_RAYS` the rays at each, `JBT_TRACE_SEED` the first seed. A failure prints the model.
+//! `JBT_TRACE_TREES` sets the number of random models, `JBT_TRACE_RAYS` the rays at each, `JBT_TRACE_SEED`
+//! the first seed. A failure prints the model.
 #![allow(clippy::print_stdout, reason = "a test may show its figures")]
 
 mod common;
@@ -338,7 +340,8 @@ fn setting(name: &str, default: u64) -> u64 {
     std::env::var(name).ok().and_then(|value| value.parse().ok()).unwrap_or(default)
 }
 
-/// Rays about random models, which are within 2 of the origin for the most part: from outside, from inside, along axes, with any length of direction.
+/// Rays about random models, which are within 2 of the origin for the most part: from outside, from inside,
+/// along axes, with any length of direction.
 fn random_ray(rng: &mut Rng) -> Ray {
     let origin = unit(rng).map(|x| x * [0.3, 1.5, 4.0][rng.usize(0..3)]);
     let target = unit(rng).map(|x| x * 1.2 * rng.f64());
@@ -417,7 +420,8 @@ fn sides(field: &Evaluator, iso: f32, ray: &Ray, times: &[f64]) -> Vec<bool> {
     samples.field().iter().map(|&value| value >= iso).collect()
 }
 
-/// Four points for each tolerance: every stretch that is longer is where the hits say, and every hit is a change. Returns how many points.
+/// Four points for each tolerance: every stretch that is longer is where the hits say, and every hit is a
+/// change. Returns how many points.
 fn compare_dense(
     field: &Evaluator,
     iso: f32,
@@ -449,7 +453,8 @@ fn compare_dense(
     while start < times.len() {
         let run = inside[start..].iter().take_while(|&&side| side == inside[start]).count();
         let end = start + run;
-        // A hit in a run is where something is too short for this sampling: that it is there, is checked below.
+        // A hit in a run is where something is too short for this sampling: that it is there, is checked
+        // below.
         let cuts = hits.iter().map(|hit| hit.0).filter(|t| (times[start]..times[end - 1]).contains(t));
         let mut ends: Vec<f64> = cuts.collect();
         ends.insert(0, times[start]);

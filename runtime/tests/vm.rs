@@ -1,6 +1,7 @@
 //! Programs of instructions compile quickly, and every engine and every pruned box gives their values.
 //!
-//! The samples are looked for in `shared/samples/vm`, or in the folder `vm` of `JBT_SAMPLES`; where they are missing, the test says so.
+//! The samples are looked for in `shared/samples/vm`, or in the folder `vm` of `JBT_SAMPLES`; where they are
+//! missing, the test says so.
 #![allow(clippy::print_stdout, reason = "a test may show its figures")]
 
 mod common;

@@ -4,8 +4,9 @@
 //! cargo run --release -p jbt-benches --features peers --bin compare -- [CASE ...] [--json] [--quick] [--threads N] [--level L]
 //! ```
 //!
-//! Everybody is built alike, with the workspace's `[profile.release]`: `opt-level = 3`, `codegen-units = 1`, no link-time optimisation, for
-//! any CPU of the architecture. Vector instructions beyond that are chosen when the program runs, by those who can.
+//! Everybody is built alike, with the workspace's `[profile.release]`: `opt-level = 3`, `codegen-units = 1`,
+//! no link-time optimisation, for any CPU of the architecture. Vector instructions beyond that are chosen
+//! when the program runs, by those who can.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "it is a program")]
 
 use std::process::{Command, ExitCode};
@@ -14,7 +15,8 @@ use clap::Parser;
 use jbt::level::{Level, VARIABLE};
 use jbt_benches::compare::{Case, Options, heading, line};
 
-/// Times the compiler, the hand-written limit and the peers on the same work, one after the other, and prints the medians.
+/// Times the compiler, the hand-written limit and the peers on the same work, one after the other, and prints
+/// the medians.
 #[derive(Parser, Debug)]
 #[command(after_help = after_help())]
 struct Arguments {
@@ -26,8 +28,8 @@ struct Arguments {
     #[arg(long)]
     json: bool,
 
-    /// Less of everything: a minute for all cases. What takes more than 5 s runs once, ours and the limit too; mesh-4096 without the
-    /// peers, fidget's other meshes by its fastest formulation alone
+    /// Less of everything: a minute for all cases. What takes more than 5 s runs once, ours and the limit
+    /// too; mesh-4096 without the peers, fidget's other meshes by its fastest formulation alone
     #[arg(long)]
     quick: bool,
 
@@ -35,8 +37,8 @@ struct Arguments {
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: u16,
 
-    /// The largest instruction set of ours and of the limit: baseline, avx2, avx512vl or avx512 [default: the best that this CPU has, or
-    /// JBT_LEVEL]. Peers take what they like
+    /// The largest instruction set of ours and of the limit: baseline, avx2, avx512vl or avx512 [default: the
+    /// best that this CPU has, or JBT_LEVEL]. Peers take what they like
     #[arg(long)]
     level: Option<Level>,
 }

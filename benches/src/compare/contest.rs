@@ -1,7 +1,8 @@
-//! A contest: contestants that were checked against each other do the same work in turn, and the median of each counts.
+//! A contest: contestants that were checked against each other do the same work in turn, and the median of
+//! each counts.
 //!
-//! A machine may change its clock while they run. So a ratio of two contestants is no ratio of their medians: it is the median of the ratios
-//! within each round, in which they ran one behind the other.
+//! A machine may change its clock while they run. So a ratio of two contestants is no ratio of their medians:
+//! it is the median of the ratios within each round, in which they ran one behind the other.
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -119,7 +120,8 @@ impl Entry<'_> {
         start.elapsed() / self.batch
     }
 
-    /// The first run, unless the check was: it warms caches up, and tells how often the others may run. It counts where it takes long.
+    /// The first run, unless the check was: it warms caches up, and tells how often the others may run. It
+    /// counts where it takes long.
     fn begin(&mut self) {
         let first = self.first.unwrap_or_else(|| self.measure());
         if first >= LONG {
@@ -183,8 +185,8 @@ impl Standings {
 }
 
 impl Standing {
-    /// How many times as long as another one this one takes: the median over all rounds in which both ran; of their medians, if there are
-    /// fewer than three of these.
+    /// How many times as long as another one this one takes: the median over all rounds in which both ran; of
+    /// their medians, if there are fewer than three of these.
     #[must_use]
     pub fn ratio(&self, other: &Self) -> f64 {
         let behind = |sample: &Sample| other.samples.iter().find(|their| their.round == sample.round);
@@ -213,7 +215,8 @@ impl<'a> Contest<'a> {
         Self::default()
     }
 
-    /// Enters a contestant whose answers were checked, or notes why it does not take part: they are not what they should be.
+    /// Enters a contestant whose answers were checked, or notes why it does not take part: they are not what
+    /// they should be.
     pub fn enter<T>(
         &mut self,
         contestant: Contestant,
@@ -224,8 +227,8 @@ impl<'a> Contest<'a> {
         self.admit(contestant, form, checked, None, run);
     }
 
-    /// Enters a contestant that takes long: it runs here for the first time, that run is timed and its answer checked. The
-    /// run counts where it is long, so that nothing runs for its check alone.
+    /// Enters a contestant that takes long: it runs here for the first time, that run is timed and its answer
+    /// checked. The run counts where it is long, so that nothing runs for its check alone.
     pub fn enter_checked<T>(
         &mut self,
         contestant: Contestant,

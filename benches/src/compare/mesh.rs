@@ -1,6 +1,6 @@
-//! From blobs to a mesh: everything from the model on counts, code included. Ours and the limit make normals and colours as
-//! well; the peers make positions alone. Nobody checks what was made; ours once more, with its search for parts that are
-//! thinner than a cell.
+//! From blobs to a mesh: everything from the model on counts, code included. Ours and the limit make normals
+//! and colours as well; the peers make positions alone. Nobody checks what was made; ours once more, with its
+//! search for parts that are thinner than a cell.
 
 use jbt::{Compiler, Polygonize, Polygonized};
 use jbt_frontend::check::CheckedTree;
@@ -60,7 +60,8 @@ impl Task {
         self.pool.install(|| limit::mesh::mesh(&self.blobs, &lattice, ISO))
     }
 
-    /// Whether the field at vertices is the iso-value, as far as a step or two of Newton's can bring it there.
+    /// Whether the field at vertices is the iso-value, as far as a step or two of Newton's can bring it
+    /// there.
     fn check(&self, positions: &[[f32; 3]]) -> Result<(), String> {
         let checked = (MOST_WALKED / self.blobs.len()).clamp(FEWEST_CHECKED, MOST_CHECKED);
         let step = positions.len().div_ceil(checked).max(1);
@@ -150,7 +151,8 @@ pub(super) fn blobs(count: usize, case: &'static str, options: Options) -> Vec<R
     vec![task.row(case, contest, made, options)]
 }
 
-/// The gates worth trying: `if` has always been the fastest, and without one nothing falls away, which takes minutes for thousands of blobs.
+/// The gates worth trying: `if` has always been the fastest, and without one nothing falls away, which takes
+/// minutes for thousands of blobs.
 fn gates(count: usize, options: Options) -> &'static [Gate] {
     match count {
         _ if options.quick => &[Gate::If],
@@ -159,8 +161,8 @@ fn gates(count: usize, options: Options) -> &'static [Gate] {
     }
 }
 
-/// A ball of particles of one size, each of which about 30 others reach. splashsurf computes another surface of the same particles, with the
-/// same reach and cells.
+/// A ball of particles of one size, each of which about 30 others reach. splashsurf computes another surface
+/// of the same particles, with the same reach and cells.
 pub(super) fn particles(options: Options) -> Vec<Row> {
     let counts: &[(usize, usize)] =
         if options.quick { &[(10_000, 83)] } else { &[(10_000, 83), (583_000, LATTICE_OF_PARTICLES - 1)] };
@@ -184,7 +186,8 @@ pub(super) fn particles(options: Options) -> Vec<Row> {
     counts.iter().map(row).collect()
 }
 
-/// Points of the lattice along an axis of [-1, 1]^3, for the most particles. Their fields end about six cells from them, those of fewer particles too.
+/// Points of the lattice along an axis of [-1, 1]^3, for the most particles. Their fields end about six cells
+/// from them, those of fewer particles too.
 const LATTICE_OF_PARTICLES: usize = 320;
 
 /// The ways of splashsurf that are worth trying: one grid for everything takes minutes for many particles.

@@ -4,7 +4,8 @@
 //! Case ──► models, points ──► Oracle checks every contestant ──► Contest runs them in turn ──► Row: medians, ratios
 //! ```
 //!
-//! All contestants of a case are given the same numbers and run on as many threads. Whoever's answers are off is named in the row and not timed.
+//! All contestants of a case are given the same numbers and run on as many threads. Whoever's answers are off
+//! is named in the row and not timed.
 
 mod contest;
 mod dense;

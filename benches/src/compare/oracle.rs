@@ -27,8 +27,9 @@ pub struct Tolerance {
 impl Tolerance {
     /// What f32 allows.
     pub const EXACT: Self = Self { field: 1e-4, gradient: 1e-3, attributes: 1e-3 };
-    /// For gradients by differences: a step of 1/1024 is off by half of it times the second derivative, which is 6 / R^2 at most for a
-    /// blob, so by up to 0.2 for the smallest of the blobs used here, where the slopes are above 2.
+    /// For gradients by differences: a step of 1/1024 is off by half of it times the second derivative, which
+    /// is 6 / R^2 at most for a blob, so by up to 0.2 for the smallest of the blobs used here, where the
+    /// slopes are above 2.
     pub const DIFFERENCES: Self = Self { gradient: 1e-1, ..Self::EXACT };
 }
 
@@ -60,7 +61,8 @@ impl Oracle {
         Self { indices, planes }
     }
 
-    /// Compares planes of answers at all points: the field, then perhaps the gradient, then perhaps the attributes.
+    /// Compares planes of answers at all points: the field, then perhaps the gradient, then perhaps the
+    /// attributes.
     ///
     /// # Errors
     /// What is off first, in words.

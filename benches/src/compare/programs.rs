@@ -1,4 +1,5 @@
-//! Programs of other systems, every instruction at every point: machine code and interpreters, ours and fidget's.
+//! Programs of other systems, every instruction at every point: machine code and interpreters, ours and
+//! fidget's.
 
 use fidget::eval::MathFunction;
 use fidget::render::RenderHints;

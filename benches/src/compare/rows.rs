@@ -13,7 +13,8 @@ use crate::model::{Blob, blobs, cube, tree};
 use crate::naive::Walker;
 use crate::peers::fidget::{Expression, FidgetModel, FieldTape, Gate, JitFunction, VmFunction};
 
-/// From a model to what answers with its field. fidget's time is that from its expression on: instructions and tape.
+/// From a model to what answers with its field. fidget's time is that from its expression on: instructions
+/// and tape.
 pub(super) fn compile(options: Options) -> Vec<Row> {
     [64, 512, 4_096].into_iter().map(|count| compile_of(count, options)).collect()
 }
@@ -87,7 +88,8 @@ impl Edit {
         Self { blobs, trees, points, oracle }
     }
 
-    /// Enters somebody who goes from one of the two models to its field. The runs alternate between the models.
+    /// Enters somebody who goes from one of the two models to its field. The runs alternate between the
+    /// models.
     fn enter<'a>(
         &'a self,
         contest: &mut Contest<'a>,

@@ -1,4 +1,5 @@
-//! A real scene: the locomotive of ParsIP (95 leaves, 31 operators) at every point of the lattice that it was published with.
+//! A real scene: the locomotive of ParsIP (95 leaves, 31 operators) at every point of the lattice that it was
+//! published with.
 
 use std::cell::RefCell;
 
@@ -17,7 +18,8 @@ use crate::naive::Walker;
 const CELL: f64 = 0.13;
 /// The file, in the folder of samples.
 const SCENE: &str = "parsip/train_corrected.scene";
-/// What ParsIP's authors report: field evaluations per second and core, with AVX (Shirazian, Wyvill and Duprat 2012).
+/// What ParsIP's authors report: field evaluations per second and core, with AVX (Shirazian, Wyvill and
+/// Duprat 2012).
 const PUBLISHED: f64 = 2.6e6;
 
 /// The scene, if it is here: in the folder that `JBT_SAMPLES` names, or beside the repository.

@@ -1,7 +1,8 @@
 //! All blobs at all points, without culling: the inner loops.
 //!
-//! The falloff `u^2 (5 + 4 u) / 9` of `u = max(1 - s, 0)` is written in `v = (4/9)^(1/3) u`, which makes it `v^2 (v + b)`: a plain
-//! addition where the polynomial in `u` takes a fused one. For the field that leaves, per blob and register of points,
+//! The falloff `u^2 (5 + 4 u) / 9` of `u = max(1 - s, 0)` is written in `v = (4/9)^(1/3) u`, which makes it
+//! `v^2 (v + b)`: a plain addition where the polynomial in `u` takes a fused one. For the field that leaves,
+//! per blob and register of points,
 //!
 //! ```text
 //!     dx = cx - x   dy = cy - y   dz = cz - z                   3 subtractions
@@ -10,9 +11,10 @@
 //!     F += v^2 (v + b)              b = (5/9) / a^2             1 product, 1 addition, 1 fused
 //! ```
 //!
-//! eleven instructions, of which six multiply. CPUs that add and multiply on different ports (AMD's since Zen) are limited by the six. Scaling
-//! the offsets by 1/R in fused instructions takes one instruction less and three multiplications more. `a - k q` expanded into
-//! a polynomial of the point takes three instructions less and cancels: its error grows with `|p|^2 / R^2`.
+//! eleven instructions, of which six multiply. CPUs that add and multiply on different ports (AMD's since
+//! Zen) are limited by the six. Scaling the offsets by 1/R in fused instructions takes one instruction less
+//! and three multiplications more. `a - k q` expanded into a polynomial of the point takes three instructions
+//! less and cancels: its error grows with `|p|^2 / R^2`.
 
 use super::vector::{Job, Vector};
 
@@ -146,7 +148,8 @@ pub(super) fn full_at<'a, V: Vector>(rows: impl Iterator<Item = &'a Row>, point:
         }
     }
     let six = V::splat(6.0);
-    // Without any field this is the default colour, white. A field that is not zero is larger by more than f32 can tell.
+    // Without any field this is the default colour, white. A field that is not zero is larger by more than
+    // f32 can tell.
     let tiny = V::splat(f32::MIN_POSITIVE);
     let share = field.add(tiny);
     for axis in 0..3 {
@@ -159,7 +162,8 @@ pub(super) fn full_at<'a, V: Vector>(rows: impl Iterator<Item = &'a Row>, point:
 
 /// Which answers to give: `N` reals for each point.
 ///
-/// (A trait and not a closure: only a function can be told to become part of its caller, and so use the caller's instructions.)
+/// (A trait and not a closure: only a function can be told to become part of its caller, and so use the
+/// caller's instructions.)
 pub(super) trait Answers<const N: usize> {
     /// Registers of points that are kept at once.
     const REGISTERS: usize;
@@ -244,7 +248,8 @@ impl<A: Answers<N>, const N: usize> Job for Dense<'_, A, N> {
         let Self { rows, points, mut answers, which } = self;
         let size = A::REGISTERS * V::LANES;
         let count = points[0].len();
-        // The last block, if it is shorter than the others, is filled up with the origin, and its answers are copied.
+        // The last block, if it is shorter than the others, is filled up with the origin, and its answers are
+        // copied.
         let mut inputs = [[0.0; MAX_BLOCK]; 3];
         let mut outputs = [[0.0; MAX_BLOCK]; N];
         for start in (0..count).step_by(size) {

@@ -1,5 +1,6 @@
-//! The physical limit: the fastest programs that we can think of for one kind of model, a plain sum of coloured soft-object
-//! points, written by hand for the registers of the CPU. What the compiler makes of any model is reported against them.
+//! The physical limit: the fastest programs that we can think of for one kind of model, a plain sum of
+//! coloured soft-object points, written by hand for the registers of the CPU. What the compiler makes of any
+//! model is reported against them.
 //!
 //! ```
 //! use jbt_benches::limit::Blobs;
@@ -11,8 +12,8 @@
 //! blobs.field([&x, &y, &z], &mut field);
 //! ```
 //!
-//! [`Blobs`] evaluates without culling, with AVX-512, AVX2 or neither, whichever the CPU has when the program runs. The three answers of
-//! one field differ by rounding only. Different CPUs may give different last bits.
+//! [`Blobs`] evaluates without culling, with AVX-512, AVX2 or neither, whichever the CPU has when the program
+//! runs. The three answers of one field differ by rounding only. Different CPUs may give different last bits.
 //! [`mesh::mesh`] meshes with culling.
 
 mod dense;
@@ -56,8 +57,8 @@ impl Blobs {
         self.answer(points, answers, Gradient);
     }
 
-    /// The field, its derivatives along x, y and z, and red, green and blue: the mean of the blobs' colours weighted by their
-    /// fields, white where all of them are zero.
+    /// The field, its derivatives along x, y and z, and red, green and blue: the mean of the blobs' colours
+    /// weighted by their fields, white where all of them are zero.
     pub fn full(&self, points: [&[f32]; 3], answers: [&mut [f32]; 7]) {
         self.answer(points, answers, Full);
     }

@@ -1,7 +1,9 @@
-//! Registers of 32-bit reals, one type for each instruction set, and the choice between them when the program runs.
+//! Registers of 32-bit reals, one type for each instruction set, and the choice between them when the program
+//! runs.
 //!
-//! The `unsafe` here has one contract: an instruction runs on a CPU that has it. The register types are private to this file;
-//! the rest of the module meets them as a type parameter of [`Job::run`] only, which [`dispatch`] calls on a CPU that it has asked.
+//! The `unsafe` here has one contract: an instruction runs on a CPU that has it. The register types are
+//! private to this file; the rest of the module meets them as a type parameter of [`Job::run`] only, which
+//! [`dispatch`] calls on a CPU that it has asked.
 
 /// A register. Arithmetic rounds to nearest, lane by lane.
 pub(super) trait Vector: Copy {
@@ -41,12 +43,13 @@ pub(super) trait Job {
     /// What it answers.
     type Output;
 
-    /// Does the work. Has to be `#[inline(always)]`, and all that it calls with registers too, so that all of it is compiled for the
-    /// instruction set of its caller.
+    /// Does the work. Has to be `#[inline(always)]`, and all that it calls with registers too, so that all of
+    /// it is compiled for the instruction set of its caller.
     fn run<V: Vector>(self) -> Self::Output;
 }
 
-/// The name of the instruction set that [`dispatch`] takes: the best that this CPU has and `JBT_LEVEL` allows.
+/// The name of the instruction set that [`dispatch`] takes: the best that this CPU has and `JBT_LEVEL`
+/// allows.
 pub(super) fn level() -> &'static str {
     #[cfg(target_arch = "x86_64")]
     {
@@ -76,13 +79,15 @@ pub(super) fn dispatch<J: Job>(job: J) -> J::Output {
     job.run::<Plain<8>>()
 }
 
-/// Runs a job as on a CPU without any of the instructions, in registers of 8 reals as AVX2 has them, or of 16 as AVX-512.
+/// Runs a job as on a CPU without any of the instructions, in registers of 8 reals as AVX2 has them, or of 16
+/// as AVX-512.
 #[cfg(test)]
 pub(super) fn run_plain<const N: usize, J: Job>(job: J) -> J::Output {
     job.run::<Plain<N>>()
 }
 
-/// Reals in loops, for CPUs without the instructions. Its fused operations are not fused, for fusing in software is slow.
+/// Reals in loops, for CPUs without the instructions. Its fused operations are not fused, for fusing in
+/// software is slow.
 #[derive(Clone, Copy)]
 struct Plain<const N: usize>([f32; N]);
 
@@ -192,7 +197,8 @@ mod x86 {
     macro_rules! vector {
         ($register:ident, $lanes:literal, $splat:ident, $load:ident, $store:ident, $sqrt:ident, $fma:ident, $fnma:ident,
          two: { $($name:ident: $instruction:ident),* }, at_least: |$a:ident, $b:ident| $compare:expr) => {
-            // In all methods, the register is of a type that is met only where a CPU with these instructions runs, see the two above.
+            // In all methods, the register is of a type that is met only where a CPU with these instructions
+            // runs, see the two above.
             impl Vector for $register {
                 const LANES: usize = $lanes;
 
@@ -204,13 +210,15 @@ mod x86 {
                 #[inline(always)]
                 fn load(from: &[f32]) -> Self {
                     let from = &from[..$lanes];
-                    // SAFETY: this CPU has the instruction; it reads as many reals as the slice has, wherever they lie.
+                    // SAFETY: this CPU has the instruction; it reads as many reals as the slice has, wherever
+                    // they lie.
                     Self(unsafe { $load(from.as_ptr()) })
                 }
                 #[inline(always)]
                 fn store(self, to: &mut [f32]) {
                     let to = &mut to[..$lanes];
-                    // SAFETY: this CPU has the instruction; it writes as many reals as the slice has, wherever they lie.
+                    // SAFETY: this CPU has the instruction; it writes as many reals as the slice has,
+                    // wherever they lie.
                     unsafe { $store(to.as_mut_ptr(), self.0) };
                 }
                 #[inline(always)]

@@ -1,11 +1,12 @@
-//! The compact tree of the walker: a list in the order of the walk, its leaves holding the product of all maps above them.
+//! The compact tree of the walker: a list in the order of the walk, its leaves holding the product of all
+//! maps above them.
 //!
 //! ```text
 //! union(a, rotate(difference(b, c, d)))   =   Open(union) a  Open(difference) b' Open(union) c' d' Close Close  Close
 //! ```
 //!
-//! Similarities disappear into the leaves' own numbers, other affine maps become one matrix at each leaf; only warps remain as nodes. A shared
-//! subtree is written down once for each path that leads to it.
+//! Similarities disappear into the leaves' own numbers, other affine maps become one matrix at each leaf;
+//! only warps remain as nodes. A shared subtree is written down once for each path that leads to it.
 
 use std::rc::Rc;
 
@@ -95,7 +96,8 @@ pub(super) struct Compact {
 }
 
 enum Task {
-    /// Write down a node: the map from its space to that of the warp above or the world, and its leaves' attributes.
+    /// Write down a node: the map from its space to that of the warp above or the world, and its leaves'
+    /// attributes.
     Write(NodeId, DAffine3, Rc<[f32]>),
     Push(Operator),
     Close,
@@ -150,7 +152,8 @@ impl Compact {
                 tasks.push(Task::Push(Operator::Warp(Warped { warp, map })));
             }
             NodeKind::Attribute { name, value } => {
-                // Numbers are all that it knows: where they are computed, the check against the oracle says that it is off.
+                // Numbers are all that it knows: where they are computed, the check against the oracle says
+                // that it is off.
                 let here: &[f64] = match value {
                     AttributeValue::Numbers(numbers) => numbers,
                     AttributeValue::Textured(_) | AttributeValue::Uv(_) | AttributeValue::Expressed(_) => &[],

@@ -1,7 +1,8 @@
 //! What an operator collects when field, gradient and attributes come out of one walk.
 //!
-//! A child weighs `max(0, f_i dF/df_i)`; means and dominant leaves are kept unnormalised while children answer one by one, and normalised when
-//! the operator closes. Attributes live in one buffer, a place for each depth of the stack.
+//! A child weighs `max(0, f_i dF/df_i)`; means and dominant leaves are kept unnormalised while children
+//! answer one by one, and normalised when the operator closes. Attributes live in one buffer, a place for
+//! each depth of the stack.
 
 use glam::Vec3;
 
@@ -21,8 +22,8 @@ impl Answer {
     pub(super) const NOTHING: Self = Self { field: 0.0, gradient: Vec3::ZERO, share: 1.0 };
 }
 
-/// The attributes of frames, a place for each depth of the stack, and of the child that answers: means and, if some group asks for
-/// them, those of the dominant leaf.
+/// The attributes of frames, a place for each depth of the stack, and of the child that answers: means and,
+/// if some group asks for them, those of the dominant leaf.
 pub(super) struct Values<'a> {
     defaults: &'a [f32],
     dominance: bool,
@@ -253,7 +254,8 @@ impl Frame {
         Answer { field, gradient, share: self.best }
     }
 
-    /// Ricci's blend: `F = m r` and `grad F = G / r^(n - 1)`, where `r^n` is the total weight S, so that `r^(n - 1) = S / r`.
+    /// Ricci's blend: `F = m r` and `grad F = G / r^(n - 1)`, where `r^n` is the total weight S, so that
+    /// `r^(n - 1) = S / r`.
     fn root(&self, root: f32) -> (f32, Vec3, f32) {
         let gradient = if self.total > 0.0 { self.gradient * (root / self.total) } else { Vec3::ZERO };
         (self.field * root, gradient, self.total)

@@ -1,7 +1,8 @@
 //! Naive baselines: trees that are walked at each point.
 //!
-//! [`Walker`] is such a system as one would write it today, [`separate()`] one that walks again for each answer. Both are scalar f32
-//! code without culling, in the same language and built by the same compiler as everything else here.
+//! [`Walker`] is such a system as one would write it today, [`separate()`] one that walks again for each
+//! answer. Both are scalar f32 code without culling, in the same language and built by the same compiler as
+//! everything else here.
 
 mod compact;
 mod mixing;

@@ -6,8 +6,8 @@
 //! attributes   1 walk      which evaluates the fields again, to weigh with
 //! ```
 //!
-//! Five evaluations of each primitive in all. (Central differences would take three more; a system that does not hand the field on to its
-//! normals takes one more: six.)
+//! Five evaluations of each primitive in all. (Central differences would take three more; a system that does
+//! not hand the field on to its normals takes one more: six.)
 
 use super::Walker;
 
@@ -24,7 +24,8 @@ pub fn separate(walker: &Walker, points: [&[f32]; 3], outs: &mut [&mut [f32]]) {
     walker.attributes(points, channels);
 }
 
-/// Field and gradient, by four walks: `outs` are the planes of the field and of the gradient's x, y and z. Panics if lengths differ.
+/// Field and gradient, by four walks: `outs` are the planes of the field and of the gradient's x, y and z.
+/// Panics if lengths differ.
 pub fn differences(walker: &Walker, points: [&[f32]; 3], [field, gradient @ ..]: [&mut [f32]; 4]) {
     walker.field(points, field);
     let mut moved = Vec::new();

@@ -1,4 +1,5 @@
-//! Skeletons in f32, for one point at a time: the squared distance, and the way from the nearest point of the skeleton.
+//! Skeletons in f32, for one point at a time: the squared distance, and the way from the nearest point of the
+//! skeleton.
 //!
 //! The gradient of a squared distance is twice the way from the nearest point, whatever the skeleton.
 

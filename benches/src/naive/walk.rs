@@ -1,4 +1,5 @@
-//! A walk over a compact tree, one point at a time, in f32: a decent BlobTree system of today without JIT and SIMD.
+//! A walk over a compact tree, one point at a time, in f32: a decent BlobTree system of today without JIT and
+//! SIMD.
 //!
 //! ```text
 //! for step in steps:   leaf    d^2 of the point, taken to the leaf's space if that is another  ->  answer
@@ -7,9 +8,10 @@
 //!                      and an answer goes into the topmost frame, at once
 //! ```
 //!
-//! What it takes from the literature (Grasberger, Duprat, Wyvill, Lalonde and Rossignac 2016): a linear tree that is walked bottom-up on a small
-//! explicit stack, and maps that were multiplied into the leaves beforehand. Operators take in their children one by one, so the stack is
-//! as high as the tree is nested. There is no culling: each leaf is evaluated at each point, but leaves out of reach stop at their distance.
+//! What it takes from the literature (Grasberger, Duprat, Wyvill, Lalonde and Rossignac 2016): a linear tree
+//! that is walked bottom-up on a small explicit stack, and maps that were multiplied into the leaves
+//! beforehand. Operators take in their children one by one, so the stack is as high as the tree is nested.
+//! There is no culling: each leaf is evaluated at each point, but leaves out of reach stop at their distance.
 
 use glam::{DVec3, Mat3, Vec3};
 use jbt_frontend::attribute::Mixing;
@@ -66,8 +68,8 @@ impl Walker {
         }
     }
 
-    /// Field, gradient and attributes in one walk: `outs` are the planes of the field, of the gradient's x, y and z, and of each
-    /// attribute channel. Panics if the number of planes or their lengths differ.
+    /// Field, gradient and attributes in one walk: `outs` are the planes of the field, of the gradient's x, y
+    /// and z, and of each attribute channel. Panics if the number of planes or their lengths differ.
     pub fn full(&self, points: [&[f32]; 3], outs: &mut [&mut [f32]]) {
         let (first, channels) = outs.split_at_mut(4);
         self.answers::<true>(points, channels, |i, answer| {
@@ -78,7 +80,8 @@ impl Walker {
         });
     }
 
-    /// Attributes alone: one plane for each channel. The fields are computed too, since they weigh the attributes.
+    /// Attributes alone: one plane for each channel. The fields are computed too, since they weigh the
+    /// attributes.
     pub fn attributes(&self, points: [&[f32]; 3], outs: &mut [&mut [f32]]) {
         self.answers::<false>(points, outs, |_, _| {});
     }
@@ -236,7 +239,8 @@ impl Walker {
         }
     }
 
-    /// The gradient outside of a warp: its transposed Jacobian, by central differences, applied to that inside.
+    /// The gradient outside of a warp: its transposed Jacobian, by central differences, applied to that
+    /// inside.
     fn unwarped(&self, warped: &Warped, p: Vec3, gradient: Vec3) -> Vec3 {
         let (p, step) = (self.mapped(warped.map, p).as_dvec3(), 1e-6);
         let by_p = DVec3::AXES.map(|axis| {
@@ -285,7 +289,8 @@ struct FieldFrame {
     p: Vec3,
     /// The field so far; of Ricci's blend, the largest operand so far.
     field: f32,
-    /// Of Ricci's blend, the sum of powers relative to the largest operand; of a difference, the number of children so far.
+    /// Of Ricci's blend, the sum of powers relative to the largest operand; of a difference, the number of
+    /// children so far.
     sum: f32,
 }
 

@@ -1,7 +1,8 @@
-//! fidget (Keeter), which compiles closed-form expressions to straight-line machine code and prunes them by interval evaluation.
+//! fidget (Keeter), which compiles closed-form expressions to straight-line machine code and prunes them by
+//! interval evaluation.
 //!
-//! The function is that of [`crate::model::tree`]: with `s = |p - c|^2 / R^2` and `u = max(1 - s, 0)`, the sum of `u^2 (5 + 4u) / 9`. Fidget's inside is
-//! negative, so its surface is that of `iso - F`.
+//! The function is that of [`crate::model::tree`]: with `s = |p - c|^2 / R^2` and `u = max(1 - s, 0)`, the
+//! sum of `u^2 (5 + 4u) / 9`. Fidget's inside is negative, so its surface is that of `iso - F`.
 //!
 //! ```text
 //! blobs -> Expression     nodes of a context            Expression::new
@@ -9,11 +10,13 @@
 //!       -> FieldTape      machine code or bytecode      FidgetModel::field, gradient
 //! ```
 //!
-//! Fidget simplifies an expression for a box where an op with two operands always takes the same one there. How a falloff of compact support
-//! is written decides what falls away, see [`Gate`]; whoever reports a time reports the best of them.
+//! Fidget simplifies an expression for a box where an op with two operands always takes the same one there.
+//! How a falloff of compact support is written decides what falls away, see [`Gate`]; whoever reports a time
+//! reports the best of them.
 //!
-//! **In a chain, the accumulator is the right operand of each sum** (`term + acc`): as the left one, it is evaluated before all terms, and all
-//! of them are alive at once. A context sorts the operands of a sum by age, so all terms are made before the first sum.
+//! **In a chain, the accumulator is the right operand of each sum** (`term + acc`): as the left one, it is
+//! evaluated before all terms, and all of them are alive at once. A context sorts the operands of a sum by
+//! age, so all terms are made before the first sum.
 
 use fidget::context::{Context, Node};
 use fidget::eval::{BulkEvaluator, Function, MathFunction};
@@ -34,7 +37,8 @@ pub enum Gate {
     None,
     /// `and(u, term)`: where u is 0, a zero is added.
     And,
-    /// `if u != 0 { term + acc } else { acc }`: where u is 0, nothing is left. Takes four ops more for each blob elsewhere.
+    /// `if u != 0 { term + acc } else { acc }`: where u is 0, nothing is left. Takes four ops more for each
+    /// blob elsewhere.
     If,
 }
 
@@ -58,12 +62,14 @@ impl Gate {
 pub enum Order {
     /// One after the other.
     Chain,
-    /// In pairs, and pairs of pairs. Only for gates that are part of the term: an `if` is a chain in any case.
+    /// In pairs, and pairs of pairs. Only for gates that are part of the term: an `if` is a chain in any
+    /// case.
     Balanced,
 }
 
 impl Order {
-    /// The one that fidget is faster with: pairs for fields (by a tenth) and for meshes (twice as fast with `and`), wherever there is a choice.
+    /// The one that fidget is faster with: pairs for fields (by a tenth) and for meshes (twice as fast with
+    /// `and`), wherever there is a choice.
     #[must_use]
     pub const fn best(gate: Gate) -> Self {
         match gate {
@@ -188,9 +194,10 @@ impl<F: MathFunction + RenderHints> FidgetModel<F> {
         GradientTape::new(&self.field)
     }
 
-    /// A mesh of the cube [-1, 1]^3, fidget's own domain, by manifold dual contouring with `2^depth` cells along each side: at depth 7,
-    /// cells are those of a lattice of 129^3 points. Fidget merges cells where the surface is flat enough, and
-    /// makes positions alone, neither normals nor attributes. Code is made on the way.
+    /// A mesh of the cube [-1, 1]^3, fidget's own domain, by manifold dual contouring with `2^depth` cells
+    /// along each side: at depth 7, cells are those of a lattice of 129^3 points. Fidget merges cells where
+    /// the surface is flat enough, and makes positions alone, neither normals nor attributes. Code is made on
+    /// the way.
     #[must_use]
     pub fn mesh(&self, depth: u8, threads: Threads) -> MeshSize {
         let shape: BoundShape<'_, F, f32> = self.surface.clone().try_into().expect("x, y and z alone");
@@ -203,8 +210,8 @@ impl<F: MathFunction + RenderHints> FidgetModel<F> {
 }
 
 impl<F: MathFunction + RenderHints> FidgetModel<F> {
-    /// A picture of the cube [-1, 1]^3 along z, of so many pixels along each side: the depth and the gradient of each. How many pixels see the
-    /// surface. Code is made on the way.
+    /// A picture of the cube [-1, 1]^3 along z, of so many pixels along each side: the depth and the gradient
+    /// of each. How many pixels see the surface. Code is made on the way.
     #[must_use]
     pub fn picture(&self, side: u32, threads: Threads) -> usize {
         let shape: BoundShape<'_, F, f32> = self.surface.clone().try_into().expect("x, y and z alone");
@@ -234,7 +241,8 @@ impl<F: MathFunction + RenderHints> FidgetProgram<F> {
         FieldTape::new(&self.0)
     }
 
-    /// The square [-1, 1]^2 of the plane z = 0, of so many pixels along each side: how many are inside. Code is made on the way.
+    /// The square [-1, 1]^2 of the plane z = 0, of so many pixels along each side: how many are inside. Code
+    /// is made on the way.
     #[must_use]
     pub fn inside(&self, side: u32, threads: Threads) -> usize {
         let shape: BoundShape<'_, F, f32> = self.0.clone().try_into().expect("x, y and z alone");
@@ -303,7 +311,8 @@ impl<F: Function> GradientTape<F> {
         Self { tape: shape.ez_grad_slice_tape(), evaluator, points: Default::default() }
     }
 
-    /// Field and gradient at points; `outs` are the planes of the field and of the gradient's x, y and z. Panics if lengths differ.
+    /// Field and gradient at points; `outs` are the planes of the field and of the gradient's x, y and z.
+    /// Panics if lengths differ.
     pub fn eval(&mut self, points: [&[f32]; 3], outs: [&mut [f32]; 4]) {
         let [f, gx, gy, gz] = outs;
         for start in (0..f.len()).step_by(Self::SLICE) {

@@ -1,16 +1,17 @@
 //! splashsurf (Löschner and others), which reconstructs the surface of particle fluids by marching cubes.
 //!
-//! It computes another function: a density by smoothed-particle hydrodynamics, with the cubic spline kernel and a volume for each particle that
-//! it finds from the neighbours first. So surfaces differ, and only the amount of work can be compared. It is alike where
+//! It computes another function: a density by smoothed-particle hydrodynamics, with the cubic spline kernel
+//! and a volume for each particle that it finds from the neighbours first. So surfaces differ, and only the
+//! amount of work can be compared. It is alike where
 //!
 //! * there are as many particles as blobs, at the same places;
-//! * the kernel reaches as far as a blob of the mean volume: the cubic mean of the radii, since particles have one radius. Then as
-//!   many pairs of particles and samples meet;
+//! * the kernel reaches as far as a blob of the mean volume: the cubic mean of the radii, since particles
+//!   have one radius. Then as many pairs of particles and samples meet;
 //! * a cell of its lattice is one of ours.
 //!
-//! The radius of a particle is a quarter of the kernel's reach (a smoothing length of 2 radii); it
-//! cancels out of the density, which is relative to the particle's own volume, and only sets margins. The iso-value is its default, 0.6.
-//! Positions and triangles are made, neither normals nor attributes.
+//! The radius of a particle is a quarter of the kernel's reach (a smoothing length of 2 radii); it cancels
+//! out of the density, which is relative to the particle's own volume, and only sets margins. The iso-value
+//! is its default, 0.6. Positions and triangles are made, neither normals nor attributes.
 
 use splashsurf_lib::nalgebra::Vector3;
 use splashsurf_lib::{GridDecompositionParameters, Parameters, SpatialDecomposition, reconstruct_surface};
@@ -43,8 +44,8 @@ pub struct Particles {
 pub struct SplashsurfError(String);
 
 impl Particles {
-    /// Particles in place of blobs, to be meshed with cells of side `cell`: for the lattice of 129^3 points in the cube [-1, 1]^3,
-    /// 1/64. Makes the threads, too.
+    /// Particles in place of blobs, to be meshed with cells of side `cell`: for the lattice of 129^3 points
+    /// in the cube [-1, 1]^3, 1/64. Makes the threads, too.
     ///
     /// # Errors
     /// Threads could not be made.

@@ -47,7 +47,8 @@ pub struct ContourArguments {
     /// Lines of a drawing: `none`, a colour as #rrggbb, or `attribute` [default: #000000]
     #[arg(long, value_name = "PAINT", value_parser = paint)]
     pub stroke: Option<PaintName>,
-    /// Areas of a drawing: `none`, a colour as #rrggbb, or `attribute` [default: #dde6f0; none with --quadtree]
+    /// Areas of a drawing: `none`, a colour as #rrggbb, or `attribute` [default: #dde6f0; none with
+    /// --quadtree]
     #[arg(long, value_name = "PAINT", value_parser = paint)]
     pub fill: Option<PaintName>,
     /// Divide down to single cells, and draw the squares

@@ -58,7 +58,8 @@ pub struct EngineArguments {
     /// What evaluates the field: all engines give the same bits
     #[arg(long, value_enum, default_value_t = EngineName::Jit)]
     pub engine: EngineName,
-    /// The largest instruction set that it uses: the bits stay the same [default: the best that this CPU has, or JBT_LEVEL]
+    /// The largest instruction set that it uses: the bits stay the same [default: the best that this CPU has,
+    /// or JBT_LEVEL]
     #[arg(long, value_enum)]
     pub level: Option<LevelName>,
 }

@@ -25,7 +25,8 @@ pub struct OutputArguments<K: FileKind> {
 }
 
 impl<K: FileKind> OutputArguments<K> {
-    /// Where the result for a scene goes. A place that cannot be written to is refused here, before any work is done.
+    /// Where the result for a scene goes. A place that cannot be written to is refused here, before any work
+    /// is done.
     pub fn destination(&self, scene: &Path) -> Result<Destination<K>, Failure> {
         let destination = match &self.output {
             Some(path) => Destination { path: path.clone(), kind: self.kind(path)?, replace: true },

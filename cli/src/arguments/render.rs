@@ -20,7 +20,8 @@ pub struct RenderArguments {
     /// Pixels: width and height, or one number for both
     #[arg(long, value_name = "WxH|N", default_value = "800x600", value_parser = size)]
     pub size: [u32; 2],
-    /// From where to look: three-quarter, iso, front, back, left, right, top, bottom, or a direction [default: three-quarter]
+    /// From where to look: three-quarter, iso, front, back, left, right, top, bottom, or a direction
+    /// [default: three-quarter]
     #[arg(long, value_name = "NAME|X,Y,Z", value_parser = view, conflicts_with = "eye", allow_hyphen_values = true)]
     pub view: Option<Stance>,
     /// Where the camera stands, instead of --view
@@ -57,7 +58,8 @@ pub struct RenderArguments {
     /// What catches the shadow of the model
     #[arg(long, value_enum, default_value_t = GroundName::Shadow)]
     pub ground: GroundName,
-    /// The box to look at: its smallest and its largest corner; it cuts the model open [default: the support of the model]
+    /// The box to look at: its smallest and its largest corner; it cuts the model open [default: the support
+    /// of the model]
     #[arg(long, value_name = "X0,Y0,Z0,X1,Y1,Z1", value_parser = region, allow_hyphen_values = true)]
     pub region: Option<Region>,
     #[command(flatten)]

@@ -11,7 +11,8 @@ pub struct LatticeArguments {
     /// Cells along the longest side of the region [default: 128]
     #[arg(long, value_name = "N", value_parser = cells, allow_negative_numbers = true)]
     pub resolution: Option<usize>,
-    /// The box that the lattice fills: its smallest and its largest corner [default: the support of the model]
+    /// The box that the lattice fills: its smallest and its largest corner [default: the support of the
+    /// model]
     #[arg(long, value_name = "X0,Y0,Z0,X1,Y1,Z1", value_parser = region, allow_hyphen_values = true)]
     pub region: Option<Region>,
 }
@@ -37,7 +38,8 @@ pub(super) fn cells(text: &str) -> Result<usize, String> {
     text.trim().parse().map_err(|_| "expected a whole number of cells, as 128".to_owned())
 }
 
-/// The corners of a region whose numbers have these names: finite, and the first below the last along each axis.
+/// The corners of a region whose numbers have these names: finite, and the first below the last along each
+/// axis.
 pub(super) fn corners<const N: usize>(text: &str, names: [[&str; N]; 2]) -> Result<[[f64; N]; 2], String> {
     let words: Vec<&str> = text.split(',').map(str::trim).collect();
     let all = names.concat();

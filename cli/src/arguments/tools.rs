@@ -28,10 +28,12 @@ pub struct ShowArguments {
     /// The answers that the program gives
     #[arg(long, value_enum, default_value_t = QueryName::All)]
     pub query: QueryName,
-    /// Show the straight code of formulas that have much in common: what points anywhere run, while regions run rows
+    /// Show the straight code of formulas that have much in common: what points anywhere run, while regions
+    /// run rows
     #[arg(long)]
     pub straight: bool,
-    /// The instruction set of `asm`, which this CPU need not have [default: the best that it has, or JBT_LEVEL]
+    /// The instruction set of `asm`, which this CPU need not have [default: the best that it has, or
+    /// JBT_LEVEL]
     #[arg(long, value_enum)]
     pub level: Option<LevelName>,
 }

@@ -34,7 +34,8 @@ fn mesh_writes_every_format_and_says_what_it_took() {
     assert_eq!(folder.read("a.glb"), folder.read("b.glb"));
 }
 
-/// A ball: its size, its volume and its area are those of the mesh, a little below the exact ones; half of it encloses nothing.
+/// A ball: its size, its volume and its area are those of the mesh, a little below the exact ones; half of it
+/// encloses nothing.
 #[test]
 fn mesh_measures_what_it_has_made() {
     let folder = folder().with("ball.jbt", "jbt 1 point { at (1 2 3) surface_radius 1 }");
@@ -376,7 +377,8 @@ fn count_compares_with_separate_walks() {
     assert!(!table.contains("attributes  "), "one query only: {table}");
 }
 
-/// One ball on a lattice that anybody can count: what `jbt mesh` asks, and the points that are nearer than its radius.
+/// One ball on a lattice that anybody can count: what `jbt mesh` asks, and the points that are nearer than
+/// its radius.
 #[test]
 fn count_tells_what_matters_on_the_lattice_of_mesh() {
     let ball = "jbt 1 let ball = point { radius 0.95 } union { use ball color (1 0 0) { use ball } }";

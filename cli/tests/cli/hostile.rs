@@ -1,4 +1,5 @@
-//! Whatever is wrong with files and options ends in a message and an exit code: never a panic, never a terminal escape.
+//! Whatever is wrong with files and options ends in a message and an exit code: never a panic, never a
+//! terminal escape.
 
 use std::fs;
 use std::process::{Command, Stdio};

@@ -4,7 +4,8 @@ use std::fs;
 
 use crate::folder::{Folder, SCENE};
 
-/// The commands that write a file, with the ending of the file that they write where nothing says which, and what makes them quick.
+/// The commands that write a file, with the ending of the file that they write where nothing says which, and
+/// what makes them quick.
 const WRITERS: [(&str, &str, &[&str]); 5] = [
     ("mesh", "glb", &["--resolution", "8"]),
     ("render", "png", &["--size", "8", "--quality", "draft"]),

@@ -21,8 +21,8 @@ impl Tree {
         self.given(name, WrittenAttribute::Numbers(numbers(values)))
     }
 
-    /// With a pattern of two values for every leaf below: `a` where it is 0, `b` where it is 1, mixed in between. It lies in the space of
-    /// this tree: maps of the whole move it, maps below do not.
+    /// With a pattern of two values for every leaf below: `a` where it is 0, `b` where it is 1, mixed in
+    /// between. It lies in the space of this tree: maps of the whole move it, maps below do not.
     ///
     /// ```
     /// use jbt_frontend::builder::{checker, point};

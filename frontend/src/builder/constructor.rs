@@ -1,8 +1,8 @@
-//! Constructors of members, made of their descriptions: one for each skeleton, falloff and texture, and a method of
-//! [`Tree`] for each warp and affine map.
+//! Constructors of members, made of their descriptions: one for each skeleton, falloff and texture, and a
+//! method of [`Tree`] for each warp and affine map.
 //!
-//! A constructor is called like the file of its member, and takes the parameters in their order. Lists of lengths and
-//! flags are left out, since they have defaults: [`Tree::radii`] and [`Tree::closed`] set them.
+//! A constructor is called like the file of its member, and takes the parameters in their order. Lists of
+//! lengths and flags are left out, since they have defaults: [`Tree::radii`] and [`Tree::closed`] set them.
 
 use super::{Axis, Edge, Number, Pattern, Rows, Vector, leaf, real, vector, vectors};
 use crate::falloff::FalloffKind;
@@ -13,8 +13,8 @@ use crate::tree::Tree;
 use crate::warp::WarpKind;
 use crate::written::{FieldNumber, WrittenFalloff};
 
-/// Goes through the fields of a member, and hands what they are as arguments, and their values as parameters, on:
-/// `arguments! { then (words) () () fields }` is `then! { (words) (arguments) (values) }`.
+/// Goes through the fields of a member, and hands what they are as arguments, and their values as parameters,
+/// on: `arguments! { then (words) () () fields }` is `then! { (words) (arguments) (values) }`.
 macro_rules! arguments {
     ($then:ident $words:tt ($($taken:tt)*) ($($value:tt)*)) => {
         $then! { $words ($($taken)*) ($($value)*) }

@@ -1,4 +1,5 @@
-//! Trees of several children: combinators by their names and by Rust's operators, maps of one field, and selectors.
+//! Trees of several children: combinators by their names and by Rust's operators, maps of one field, and
+//! selectors.
 
 use std::iter::{Product, Sum};
 use std::ops::{
@@ -69,8 +70,8 @@ impl Tree {
         Self::combine(Combinator::SymmetricDifference, children)
     }
 
-    /// Ricci's blend with exponent `n`: in [1, 1024], where 1 is the sum and large ones are near the union, or in [-1024, -1], near the
-    /// intersection.
+    /// Ricci's blend with exponent `n`: in [1, 1024], where 1 is the sum and large ones are near the union,
+    /// or in [-1024, -1], near the intersection.
     #[must_use]
     pub fn blend(n: impl Into<Number>, children: impl IntoIterator<Item = Self>) -> Self {
         Self::operator(Combinator::Ricci(0.0), [n.into()], children)
@@ -88,7 +89,8 @@ impl Tree {
         Self::combine(Combinator::Product, children)
     }
 
-    /// Union, intersection or difference that rounds where fields differ by less than `width`, in units of the field.
+    /// Union, intersection or difference that rounds where fields differ by less than `width`, in units of
+    /// the field.
     #[must_use]
     pub fn smooth(
         set: SetOperation,
@@ -116,7 +118,8 @@ impl Tree {
         Self::smooth(SetOperation::Difference, width, [self.clone(), other.clone()])
     }
 
-    /// Union, intersection or difference by R_alpha, with alpha in [-0.9, 1]: 0 is R_0, 1 the maximum or minimum.
+    /// Union, intersection or difference by R_alpha, with alpha in [-0.9, 1]: 0 is R_0, 1 the maximum or
+    /// minimum.
     #[must_use]
     pub fn rfunction(
         set: SetOperation,
@@ -167,7 +170,8 @@ impl Tree {
         Self::operator(Combinator::Offset(0.0), [by.into()], [self.clone()])
     }
 
-    /// The child whose place, from 0, is nearest to `which`; the others do not count. `which` is a parameter as a rule.
+    /// The child whose place, from 0, is nearest to `which`; the others do not count. `which` is a parameter
+    /// as a rule.
     ///
     /// ```
     /// use jbt_frontend::builder::{param, point};

@@ -6,8 +6,8 @@ use crate::warp::WarpKind;
 use crate::written::{FieldNumber, Written};
 
 impl Tree {
-    /// This tree, whose root is a warp, with the warp weighted by the field of another tree, between 0 and 1: where that is 0, the warp does
-    /// nothing. On any other node it is an error, which the check tells.
+    /// This tree, whose root is a warp, with the warp weighted by the field of another tree, between 0 and 1:
+    /// where that is 0, the warp does nothing. On any other node it is an error, which the check tells.
     ///
     /// ```
     /// use jbt_frontend::builder::{Axis, point, segment};

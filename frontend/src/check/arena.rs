@@ -54,7 +54,8 @@ impl Paths {
     }
 }
 
-/// The number of paths from the root to each node, through these children of each. Children come before their parents.
+/// The number of paths from the root to each node, through these children of each. Children come before their
+/// parents.
 fn paths(nodes: &[CheckedNode], below: impl Fn(&CheckedNode) -> &[NodeId]) -> Vec<u64> {
     let mut paths = vec![0_u64; nodes.len()];
     if let Some(root) = paths.last_mut() {

@@ -17,7 +17,8 @@ impl Nodes for &CheckedTree {
     }
 }
 
-/// A checked tree is an arena in postfix order, [`CheckedTree::nodes`]; these are for paths, and for other orders.
+/// A checked tree is an arena in postfix order, [`CheckedTree::nodes`]; these are for paths, and for other
+/// orders.
 impl CheckedTree {
     /// Parents before children, children in order.
     pub fn prefix(&self, visit: Visit) -> impl Iterator<Item = NodeId> {

@@ -95,12 +95,13 @@ impl CheckedTree {
     /// assert_eq!(tree.with_parameters(&[("bulge", -1.0)]).unwrap_err()[0].message, "the radius is -2");
     /// ```
     ///
-    /// Only numbers that follow these parameters are evaluated and checked again. Cost: that, and a copy of the nodes.
+    /// Only numbers that follow these parameters are evaluated and checked again. Cost: that, and a copy of
+    /// the nodes.
     ///
     /// # Errors
     ///
-    /// Parameters that are not there, formulas without a value, and numbers that the [check](crate::check) refuses; located where the
-    /// tree came from a text.
+    /// Parameters that are not there, formulas without a value, and numbers that the [check](crate::check)
+    /// refuses; located where the tree came from a text.
     pub fn with_parameters(&self, settings: &[(&str, f64)]) -> Result<Self, Diagnostics> {
         self.with_settings(settings).map_err(|list| self.diagnostics(list))
     }
@@ -176,8 +177,8 @@ impl CheckedTree {
         nodes.into()
     }
 
-    /// The nodes that a parameter can change, ascending: those with a number that follows it, through other parameters and the
-    /// iso-value too. None, if there is no such parameter.
+    /// The nodes that a parameter can change, ascending: those with a number that follows it, through other
+    /// parameters and the iso-value too. None, if there is no such parameter.
     #[must_use]
     pub fn affected_by(&self, name: &str) -> Vec<NodeId> {
         let Some(&index) = self.dependence.names.get(name) else { return Vec::new() };

@@ -251,7 +251,8 @@ fn the_box_of_each_kind_of_node() {
     let apart = combine(Combinator::Intersection, vec![point(0.0), point(9.0)]);
     assert!(support(apart.clone()).is_empty());
     assert_eq!(support(combine(Combinator::Union, vec![apart, point(0.0)])), between([-1.0; 3], [1.0; 3]));
-    // The minimum of a negative field and zero is negative: it reaches beyond the other operand, and no farther.
+    // The minimum of a negative field and zero is negative: it reaches beyond the other operand, and no
+    // farther.
     let hole = leaf(Point { at: DVec3::new(1.5, 0.0, 0.0) }, 1.0, -1.0);
     let of_hole = between([0.5, -1.0, -1.0], [2.5, 1.0, 1.0]);
     assert_eq!(support(combine(Combinator::Intersection, vec![point(0.0), hole])), of_hole);

@@ -98,15 +98,15 @@ impl CheckedTree {
         NodeId(self.nodes.len() as u32 - 1)
     }
 
-    /// How often each node is met from the root, along every path: 1 for the root, more below shared subtrees. In the order of
-    /// [`nodes`](Self::nodes).
+    /// How often each node is met from the root, along every path: 1 for the root, more below shared
+    /// subtrees. In the order of [`nodes`](Self::nodes).
     #[must_use]
     pub fn uses(&self) -> &[u64] {
         &self.paths.uses
     }
 
-    /// How often each node is asked from the root, along every path: as [`uses`](Self::uses), but through the chosen child of a
-    /// selector alone.
+    /// How often each node is asked from the root, along every path: as [`uses`](Self::uses), but through the
+    /// chosen child of a selector alone.
     #[must_use]
     pub fn asked(&self) -> &[u64] {
         &self.paths.asked
@@ -118,8 +118,9 @@ impl CheckedTree {
         self.paths.leaf_uses
     }
 
-    /// A leaf under maps, the nearest first, each with the node of this tree that gives its weight, if it has one. They are those of a checked tree,
-    /// or products of them, so they are not checked again. Its origin is that of the world.
+    /// A leaf under maps, the nearest first, each with the node of this tree that gives its weight, if it has
+    /// one. They are those of a checked tree, or products of them, so they are not checked again. Its origin
+    /// is that of the world.
     pub(crate) fn leaf_under(
         &self,
         leaf: Primitive,
@@ -145,9 +146,10 @@ impl CheckedTree {
         Self { origin: ModelOrigin::of(tree.support()), ..tree }
     }
 
-    /// The tree in other coordinates, with the iso-value and the attributes of this one and no parameters: under one more affine node, whose
-    /// map takes points of this tree's space to the new ones. It is given by rows, the last column is the
-    /// shift; it can be undone. An origin that is not that of the world is mapped too.
+    /// The tree in other coordinates, with the iso-value and the attributes of this one and no parameters:
+    /// under one more affine node, whose map takes points of this tree's space to the new ones. It is given
+    /// by rows, the last column is the shift; it can be undone. An origin that is not that of the world is
+    /// mapped too.
     #[must_use]
     pub fn mapped(&self, rows: [[f64; 4]; 3]) -> Self {
         let column = |place: usize| rows.map(|row| row[place]);
@@ -195,9 +197,11 @@ impl CheckedTree {
 }
 
 impl CheckedTree {
-    /// A box that holds the support of the field: outside of it the field is exactly zero. Empty if the field is zero everywhere.
+    /// A box that holds the support of the field: outside of it the field is exactly zero. Empty if the field
+    /// is zero everywhere.
     ///
-    /// Its sides may be infinite, as those of a half space are. Cost: linear in the number of nodes, shared ones counted once.
+    /// Its sides may be infinite, as those of a half space are. Cost: linear in the number of nodes, shared
+    /// ones counted once.
     #[must_use]
     pub fn support(&self) -> Bounds {
         let mut done: Vec<Extent> = Vec::with_capacity(self.nodes.len());

@@ -1,7 +1,8 @@
 //! The clamp: the field, but at least `low` and at most `high`.
 //!
-//! With `low <= 0 <= high` the support stays; else the field is `low`, or `high`, where the child's is 0, which is everywhere. A clamp to
-//! an interval that does not hold iso leaves no surface. Gradients jump where the field meets a limit.
+//! With `low <= 0 <= high` the support stays; else the field is `low`, or `high`, where the child's is 0,
+//! which is everywhere. A clamp to an interval that does not hold iso leaves no surface. Gradients jump where
+//! the field meets a limit.
 
 use jbt_ir::Domain;
 

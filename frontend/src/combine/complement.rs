@@ -1,7 +1,8 @@
 //! The complement: `2 iso - f` has the surface of f with inside and outside exchanged.
 //!
-//! It is signed, and 2 iso where f is 0: so its support is all of space, and a model whose root it is has to be given a region. An
-//! intersection with something bounded is bounded again: `a & !b` reaches as far as a and b do.
+//! It is signed, and 2 iso where f is 0: so its support is all of space, and a model whose root it is has to
+//! be given a region. An intersection with something bounded is bounded again: `a & !b` reaches as far as a
+//! and b do.
 
 use jbt_ir::Domain;
 

@@ -1,7 +1,9 @@
-//! The difference: the first child without the others, `min(a, max(0, 2 iso - b_1), max(0, 2 iso - b_2), ...)`.
+//! The difference: the first child without the others, `min(a, max(0, 2 iso - b_1), max(0, 2 iso - b_2),
+//! ...)`.
 //!
-//! `2 iso - b` has the surface of b with inside and outside exchanged. Clamped at zero, the field stays non-negative and within
-//! the support of the first child. The first child decides unless a subtracted one is strictly smaller.
+//! `2 iso - b` has the surface of b with inside and outside exchanged. Clamped at zero, the field stays
+//! non-negative and within the support of the first child. The first child decides unless a subtracted one is
+//! strictly smaller.
 
 use jbt_ir::Domain;
 
@@ -16,8 +18,9 @@ pub(super) fn field(fields: &[f64], iso: f64) -> f64 {
     super::intersection::field(&operands(fields, iso))
 }
 
-/// The child that decides. Among subtracted ones the one with the largest field, also where several are clamped to zero. One without
-/// field is not there: it limits the field of the first, and leaves the rest to it.
+/// The child that decides. Among subtracted ones the one with the largest field, also where several are
+/// clamped to zero. One without field is not there: it limits the field of the first, and leaves the rest to
+/// it.
 pub(super) fn winner(fields: &[f64], iso: f64) -> usize {
     let Some(largest) = (1..fields.len()).reduce(|best, i| if fields[i] > fields[best] { i } else { best })
     else {
@@ -36,7 +39,8 @@ pub(super) fn decision(fields: &[f64], iso: f64) -> f64 {
     if cut.max(0.0) >= fields[0] {
         return between;
     }
-    // Where a subtracted child decides: which one, whether its complement is clamped, and whether it is there.
+    // Where a subtracted child decides: which one, whether its complement is clamped, and whether it is
+    // there.
     let appears = if largest == 0.0 { f64::INFINITY } else { largest.abs() };
     let among = super::member::lead(fields[1..].iter().copied()).min(cut.abs()).min(appears);
     between.min(among)

@@ -1,7 +1,8 @@
-//! Where a node's field can be something else than zero, and where it can be negative, from where its children's can.
+//! Where a node's field can be something else than zero, and where it can be negative, from where its
+//! children's can.
 //!
-//! Both are needed: the smaller of a negative field and zero is the negative field, so an intersection reaches out of a child as far as the
-//! others can be negative.
+//! Both are needed: the smaller of a negative field and zero is the negative field, so an intersection
+//! reaches out of a child as far as the others can be negative.
 
 use super::member::Reach;
 use super::unary::UnaryKind;
@@ -21,7 +22,8 @@ impl Extent {
         Self { support: map(self.support), negative: map(self.negative) }
     }
 
-    /// That of a warp over a child with this, in which points move where another field, of extent `weight`, is not 0: elsewhere they stay.
+    /// That of a warp over a child with this, in which points move where another field, of extent `weight`,
+    /// is not 0: elsewhere they stay.
     pub(crate) fn weighted(self, weight: &Self) -> Self {
         self.map(|bounds| if bounds.is_empty() { bounds } else { bounds.hull(weight.support) })
     }

@@ -28,7 +28,8 @@ pub(super) trait Unary: Copy {
 pub(crate) struct Pair<R> {
     /// The field.
     pub(crate) field: R,
-    /// How much of the attributes comes from the left and from the right side, up to a common factor; at least 0.
+    /// How much of the attributes comes from the left and from the right side, up to a common factor; at
+    /// least 0.
     pub(crate) weights: [R; 2],
 }
 

@@ -9,10 +9,12 @@
 //! map    complement, clamp, shell, offset                     one child                                            (`unary`)
 //! ```
 //!
-//! and the difference, the first child without the union of the others, whose two sides may be left out where they do not decide.
+//! and the difference, the first child without the union of the others, whose two sides may be left out where
+//! they do not decide.
 //!
-//! A file states the plain formula in f64 for the oracle, and what the operator does with each row, pair or field for the compiler, with
-//! the same formula over the ops. It also says what zeros do to it, because the compiler leaves out what is zero in a box.
+//! A file states the plain formula in f64 for the oracle, and what the operator does with each row, pair or
+//! field for the compiler, with the same formula over the ops. It also says what zeros do to it, because the
+//! compiler leaves out what is zero in a box.
 //!
 //! | member | formula, iso-value c | 0 where | attributes |
 //! |---|---|---|---|
@@ -58,8 +60,8 @@ use unary::UnaryKind;
 pub enum Combinator {
     /// The sum of the fields: the plain blend.
     Sum,
-    /// Ricci's super-elliptic blend (Ricci 1973) with this exponent: in [1, 1024], where 1 is the sum and large ones are near the union, or in
-    /// [-1024, -1], near the intersection.
+    /// Ricci's super-elliptic blend (Ricci 1973) with this exponent: in [1, 1024], where 1 is the sum and
+    /// large ones are near the union, or in [-1024, -1], near the intersection.
     Ricci(f64),
     /// The product of the fields, each in units of the iso-value.
     Product,
@@ -215,8 +217,8 @@ impl Combinator {
 
     /// How much each child contributes, `max(0, f_i dF/df_i)` up to a common factor: what mixes attributes.
     ///
-    /// By Euler's identity these add up to F for operators that are homogeneous of degree 1. What is subtracted counts by its complement,
-    /// where it is there.
+    /// By Euler's identity these add up to F for operators that are homogeneous of degree 1. What is
+    /// subtracted counts by its complement, where it is there.
     #[must_use]
     pub fn weights(self, fields: &[f64], iso: f64) -> Vec<f64> {
         match self {
@@ -250,7 +252,8 @@ impl Combinator {
         }
     }
 
-    /// How far the fields are from where another child would win, or another formula hold; infinity if nothing is decided.
+    /// How far the fields are from where another child would win, or another formula hold; infinity if
+    /// nothing is decided.
     #[must_use]
     pub fn decision(self, fields: &[f64], iso: f64) -> f64 {
         match self {

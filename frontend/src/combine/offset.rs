@@ -1,7 +1,9 @@
-//! The offset: `f iso / (iso - t)`. The surface of level `iso - t` becomes that of iso: a positive t fattens, a negative one thins.
+//! The offset: `f iso / (iso - t)`. The surface of level `iso - t` becomes that of iso: a positive t fattens,
+//! a negative one thins.
 //!
-//! It is a factor and not a shift, so that what is 0 stays 0 and the support with it. `t` is in units of the field and below iso; in units of
-//! length the surface moves by about t over the gradient, and never out of the support.
+//! It is a factor and not a shift, so that what is 0 stays 0 and the support with it. `t` is in units of the
+//! field and below iso; in units of length the surface moves by about t over the gradient, and never out of
+//! the support.
 
 use jbt_ir::Domain;
 

@@ -1,8 +1,9 @@
 //! The product, each field in units of the iso-value: `F = iso prod (f_i / iso)`, for two `f_1 f_2 / iso`.
 //!
-//! It is an intersection that blends: 0 as soon as one field is, and iso where all are. A child whose field is iso changes nothing, a larger one
-//! fattens the others. (ParsIP's smooth difference `a (1 - b)`, whose iso is 1/2, is half the product of a and the complement of b.)
-//! `f_i dF/df_i` is F for every child, so attributes mix with equal weights, where F is positive.
+//! It is an intersection that blends: 0 as soon as one field is, and iso where all are. A child whose field
+//! is iso changes nothing, a larger one fattens the others. (ParsIP's smooth difference `a (1 - b)`, whose
+//! iso is 1/2, is half the product of a and the complement of b.) `f_i dF/df_i` is F for every child, so
+//! attributes mix with equal weights, where F is positive.
 
 use jbt_ir::Domain;
 

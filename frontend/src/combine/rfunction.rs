@@ -1,6 +1,8 @@
-//! R-functions (Rvachev 1963, 1982): set operations of functions whose sign is the inside, here without their background.
+//! R-functions (Rvachev 1963, 1982): set operations of functions whose sign is the inside, here without their
+//! background.
 //!
-//! With `x = a / iso - 1` and `y = b / iso - 1` the union is `R(x, y)`, the intersection `-R(-x, -y)`, the difference `-R(-x, y)`, and
+//! With `x = a / iso - 1` and `y = b / iso - 1` the union is `R(x, y)`, the intersection `-R(-x, -y)`, the
+//! difference `-R(-x, y)`, and
 //!
 //! | family | R(x, y) | numbers |
 //! |---|---|---|
@@ -8,29 +10,32 @@
 //! | order | `(x + y + s) s^m` with `s = sqrt(x^2 + y^2)`: R_0^m, with m continuous derivatives in the corner | m from 1 to 4 |
 //! | power | `x + y + (\|x\|^p + \|y\|^p)^(1/p)`: R_p | p in [1.1, 64]: 2 is R_0 |
 //!
-//! As it stands, R_p loses what the smaller argument has where the larger one is negative, and the slope along the larger one where p is large: both are
-//! differences of nearly equal numbers. With m the larger and r the ratio of the magnitudes, q = r^p and l = ln(1 + q), this is the same:
+//! As it stands, R_p loses what the smaller argument has where the larger one is negative, and the slope
+//! along the larger one where p is large: both are differences of nearly equal numbers. With m the larger and
+//! r the ratio of the magnitudes, q = r^p and l = ln(1 + q), this is the same:
 //!
 //! ```text
 //! R_p        max(x, y) + max(0, x + y) + m (e^(l/p) - 1)
 //! slopes     along the larger one 1 + G where it is positive, 1 - G where it is negative; along the smaller one 1 +- G q / r;  G = e^(-l (p-1)/p)
 //! ```
 //!
-//! l is a series of the area tangent, `l = 2 artanh(q / (2 + q))`, and `e^w - 1` one of w, so nothing cancels.
+//! l is a series of the area tangent, `l = 2 artanh(q / (2 + q))`, and `e^w - 1` one of w, so nothing
+//! cancels.
 //!
-//! As they are, R-functions have no support: R_0 of two fields that are 0 is 0.2 for iso 1/2, and not 0. So with B, their value where both
-//! fields are 0, the field is
+//! As they are, R-functions have no support: R_0 of two fields that are 0 is 0.2 for iso 1/2, and not 0. So
+//! with B, their value where both fields are 0, the field is
 //!
 //! ```text
 //! F = max(0, iso (1 - R / B))        0 where all fields are 0, iso where R is 0, and so that the surface stays
 //! ```
 //!
-//! R and B come from the same ops, so 0 is exact. A lone field is changed too (0.3 becomes 0.22 by R_0's union for iso 1/2), so no zero may be
-//! left out of a fold, and the intersection is not 0 where one field alone is (0.29 where the other one is 1, for iso 1/2): all have the hull of the children as support.
+//! R and B come from the same ops, so 0 is exact. A lone field is changed too (0.3 becomes 0.22 by R_0's
+//! union for iso 1/2), so no zero may be left out of a fold, and the intersection is not 0 where one field
+//! alone is (0.29 where the other one is 1, for iso 1/2): all have the hull of the children as support.
 //!
-//! Alpha below -0.9, where B goes to 0, and p near 1 leave too few digits in f32. Gradients are continuous but for the corner `x = y = 0` (and
-//! the tie of alpha = 1); there the root has the tangent 0. R_0^m is not monotone. Weights are `f dF/df`, those of what is subtracted by its complement,
-//! where it is there.
+//! Alpha below -0.9, where B goes to 0, and p near 1 leave too few digits in f32. Gradients are continuous
+//! but for the corner `x = y = 0` (and the tie of alpha = 1); there the root has the tangent 0. R_0^m is not
+//! monotone. Weights are `f dF/df`, those of what is subtracted by its complement, where it is there.
 
 use jbt_ir::{Domain, Rule};
 
@@ -306,8 +311,8 @@ fn emit_power<D: Domain>(d: &mut D, [x, y]: [D::Real; 2], row: &[D::Real]) -> Rv
     let (zero, one) = (d.constant(0.0), d.constant(1.0));
     let sum = d.add(x, y);
     let (highest, ahead) = (d.max(x, y), positive_part(d, sum));
-    // The larger one by magnitude is the higher one where the sum is positive. At ties the same one has to count as higher and as larger in all places,
-    // or else the gradient is that of no side.
+    // The larger one by magnitude is the higher one where the sum is positive. At ties the same one has to
+    // count as higher and as larger in all places, or else the gradient is that of no side.
     let (x_is_higher, is_ahead) = (d.lt(y, x), d.lt(zero, sum));
     let (both, either) = (d.both(x_is_higher, is_ahead), d.either(x_is_higher, is_ahead));
     let neither = d.not(either);

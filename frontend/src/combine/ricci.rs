@@ -1,21 +1,26 @@
-//! Ricci's blend (Ricci 1973): `F = (sum max(f_i, 0)^n)^(1/n)`; with n = 1 the plain sum, negative fields included.
+//! Ricci's blend (Ricci 1973): `F = (sum max(f_i, 0)^n)^(1/n)`; with n = 1 the plain sum, negative fields
+//! included.
 //!
-//! Scaled by the largest operand, no exponent overflows: `F = m (sum (f_i / m)^n)^(1/n)`. The weight of a child is `f_i^n`.
-//! With a negative exponent it is an intersection that blends, 0 where any operand is, and m is the smallest operand.
+//! Scaled by the largest operand, no exponent overflows: `F = m (sum (f_i / m)^n)^(1/n)`. The weight of a
+//! child is `f_i^n`. With a negative exponent it is an intersection that blends, 0 where any operand is, and
+//! m is the smallest operand.
 //!
-//! The compiler meets the operands one at a time and does not know the largest beforehand, so it keeps the largest so far, `m`, and the
-//! sum relative to it, `S = sum (f_i / m)^n`. A larger operand f rescales: `S (m / f)^n + 1`. Either way it takes one power:
+//! The compiler meets the operands one at a time and does not know the largest beforehand, so it keeps the
+//! largest so far, `m`, and the sum relative to it, `S = sum (f_i / m)^n`. A larger operand f rescales: `S (m
+//! / f)^n + 1`. Either way it takes one power:
 //!
 //! ```text
 //! p = (min(f, m) / max(f, m))^n
 //! S = f > m ? S p + 1 : S + p        m = max(f, m)        in the end F = m S^(1/n)
 //! ```
 //!
-//! m begins at a number so small that an operand below it counts for nothing; so it is never 0, and no quotient needs a guard.
-//! F does not depend on m, so m is held: its tangent would cancel. The 1 is `(f / f)^n` and has the tangent `n f' / f`.
+//! m begins at a number so small that an operand below it counts for nothing; so it is never 0, and no
+//! quotient needs a guard. F does not depend on m, so m is held: its tangent would cancel. The 1 is `(f /
+//! f)^n` and has the tangent `n f' / f`.
 //!
-//! A negative exponent exchanges larger and smaller: with p = -n, m is the smallest so far, which begins at a number above all fields, a *smaller*
-//! operand rescales, and `F = m / S^(1/p)`. Quotients are those of the smaller by the larger again; where that is 0, so is F.
+//! A negative exponent exchanges larger and smaller: with p = -n, m is the smallest so far, which begins at a
+//! number above all fields, a *smaller* operand rescales, and `F = m / S^(1/p)`. Quotients are those of the
+//! smaller by the larger again; where that is 0, so is F.
 
 use jbt_ir::Domain;
 
@@ -64,7 +69,8 @@ pub(crate) const FLOOR: f32 = 1.0 / (1u128 << 100) as f32;
 /// What the smallest operand is before there is one, for a negative exponent: about 1e30.
 pub(crate) const CEILING: f32 = (1u128 << 100) as f32;
 
-/// Roots of a power of two up to this exponent are taken by square roots: more of them take longer than a power.
+/// Roots of a power of two up to this exponent are taken by square roots: more of them take longer than a
+/// power.
 const MOST_SQUARE_ROOTS: u32 = 16;
 
 /// What [`Step`] has to know of a blend.

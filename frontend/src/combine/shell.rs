@@ -1,8 +1,9 @@
 //! The shell: a sheet around the surface, `max(0, iso - |f - iso|) iso / (iso - t / 2)`.
 //!
-//! `t` is the thickness in units of the field: inside is where f differs from iso by less than t / 2. In units of length it is about t
-//! over the gradient. The field is largest, `iso^2 / (iso - t / 2)`, on the child's surface, where its gradient jumps; it is 0 where the
-//! child's field is 0 (so the support stays), and deep inside, from 2 iso on. A sheet of both sides needs t < 2 iso.
+//! `t` is the thickness in units of the field: inside is where f differs from iso by less than t / 2. In
+//! units of length it is about t over the gradient. The field is largest, `iso^2 / (iso - t / 2)`, on the
+//! child's surface, where its gradient jumps; it is 0 where the child's field is 0 (so the support stays),
+//! and deep inside, from 2 iso on. A sheet of both sides needs t < 2 iso.
 
 use jbt_ir::Domain;
 

@@ -1,4 +1,5 @@
-//! Smooth set operations: union, intersection and difference that round where two fields differ by less than a width k.
+//! Smooth set operations: union, intersection and difference that round where two fields differ by less than
+//! a width k.
 //!
 //! ```text
 //! union         max(a, b) + D          D = (K - |a - b|)^2 / (4 K) where |a - b| < K, else 0
@@ -6,13 +7,16 @@
 //! difference    the intersection of a and max(0, 2 iso - b), where k has been limited by b first, in the way that a + b limits it
 //! ```
 //!
-//! D is the quadratic kernel of smooth distances (Quilez 2013). With K = k alone the union of nothing and nothing were k / 4. The limit of K by the
-//! fields, which is reached with its slope, makes D vanish exactly where a side is 0: so supports are those of the operations without
-//! `smooth`, zeros are left out by the same rules, and gradients are continuous wherever those of the fields are. Where `a + b >= 2 k`,
-//! K is k: with k up to 2/3 iso (4/3 iso for the intersection, 1/3 iso for the difference) that is so at every point of the surface.
+//! D is the quadratic kernel of smooth distances (Quilez 2013). With K = k alone the union of nothing and
+//! nothing were k / 4. The limit of K by the fields, which is reached with its slope, makes D vanish exactly
+//! where a side is 0: so supports are those of the operations without `smooth`, zeros are left out by the
+//! same rules, and gradients are continuous wherever those of the fields are. Where `a + b >= 2 k`, K is k:
+//! with k up to 2/3 iso (4/3 iso for the intersection, 1/3 iso for the difference) that is so at every point
+//! of the surface.
 //!
-//! Both operations grow with either field. Where the fields are small against k they are homogeneous: `max + min^2 / (a + b)`, `a b / (a + b)`.
-//! Fields that are negative are not rounded. Weights are `f dF/df`; what is subtracted counts by its complement, where it is there.
+//! Both operations grow with either field. Where the fields are small against k they are homogeneous: `max +
+//! min^2 / (a + b)`, `a b / (a + b)`. Fields that are negative are not rounded. Weights are `f dF/df`; what
+//! is subtracted counts by its complement, where it is there.
 
 use jbt_ir::{Domain, Rule};
 
@@ -20,7 +24,8 @@ use super::member::{Pair, Reach, Step};
 use super::set::SetOperation;
 use crate::skeleton::positive_part;
 
-/// Widths below this count as this where they divide: the squares of quotients, which derivatives are made of, have to be finite.
+/// Widths below this count as this where they divide: the squares of quotients, which derivatives are made
+/// of, have to be finite.
 const SMALLEST: f32 = 1.0 / (1u64 << 50) as f32;
 
 /// See the module.
@@ -62,7 +67,8 @@ fn rounded(is_union: bool, [a, b]: [f64; 2], width: f64) -> (f64, [f64; 2]) {
     (field, if left_is_smaller { [smaller, larger] } else { [larger, smaller] })
 }
 
-/// How far two fields are from where the rounding begins to be limited by zero, or a tie if they are not rounded.
+/// How far two fields are from where the rounding begins to be limited by zero, or a tie if they are not
+/// rounded.
 fn corner(is_union: bool, [a, b]: [f64; 2]) -> f64 {
     let reach = if is_union { a.max(b) } else { a.min(b) };
     if reach <= 0.0 { (a - b).abs().min(reach.abs()) } else { reach }
@@ -214,7 +220,8 @@ fn emit_rounded<D: Domain>(
     let part = d.div(apart, divisor);
     let left = d.sub(one, part);
     let q = positive_part(d, left);
-    // Where a side is 0, the limit is not above the difference: then nothing is rounded, whatever the quotient.
+    // Where a side is 0, the limit is not above the difference: then nothing is rounded, whatever the
+    // quotient.
     let near = d.lt(apart, limit);
     let q = d.select(near, q, zero);
     let square = d.mul(q, q);

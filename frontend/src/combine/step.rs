@@ -1,11 +1,12 @@
-//! Steps: operators of two fields that take more by folding from the left, in the order of the file. What the members have in common, and
-//! their list.
+//! Steps: operators of two fields that take more by folding from the left, in the order of the file. What the
+//! members have in common, and their list.
 //!
 //! ```text
 //! F = step(.. step(step(f_1, f_2), f_3) .., f_n)        A likewise: of both sides' attributes, by their weights
 //! ```
 //!
-//! A step weighs its two sides by `max(0, f dF/df)`; a side without weight is not there, nor is one whose own sides had none.
+//! A step weighs its two sides by `max(0, f dF/df)`; a side without weight is not there, nor is one whose own
+//! sides had none.
 
 use jbt_ir::{Domain, Rule};
 
@@ -81,7 +82,8 @@ impl StepKind {
         on_member!(self, member => children.fold(first, |left, right| member.is_non_negative([left, right])))
     }
 
-    /// The field of a step's children, and how much of the attributes comes from each: nothing at all where the field is not positive.
+    /// The field of a step's children, and how much of the attributes comes from each: nothing at all where
+    /// the field is not positive.
     pub(super) fn fold(self, number: f64, fields: &[f64], iso: f64) -> (f64, Vec<f64>) {
         let mut field = fields[0];
         let mut weights = vec![1.0];

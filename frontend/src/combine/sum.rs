@@ -1,4 +1,5 @@
-//! The sum of fields: the blend that made blobs famous (Blinn 1982). Homogeneous of degree 1, so the weight of a child is its field.
+//! The sum of fields: the blend that made blobs famous (Blinn 1982). Homogeneous of degree 1, so the weight
+//! of a child is its field.
 
 use jbt_ir::Domain;
 

@@ -1,10 +1,13 @@
-//! The symmetric difference: what is inside of exactly one of two, `min(max(a, b), max(0, 2 iso - min(a, b)))`.
+//! The symmetric difference: what is inside of exactly one of two, `min(max(a, b), max(0, 2 iso - min(a,
+//! b)))`.
 //!
-//! It is the difference of union and intersection, so `2 iso - f` stands for what is cut away, clamped at zero as in the difference. Of more than
-//! two children it is the fold from the left, which is inside of an odd number of them, as that of sets is. The child that decides gives the
-//! attributes: the larger one, or the smaller one where its complement is smaller still, and it is there (its field is positive).
+//! It is the difference of union and intersection, so `2 iso - f` stands for what is cut away, clamped at
+//! zero as in the difference. Of more than two children it is the fold from the left, which is inside of an
+//! odd number of them, as that of sets is. The child that decides gives the attributes: the larger one, or
+//! the smaller one where its complement is smaller still, and it is there (its field is positive).
 //!
-//! Far from the other side, a side is limited to 2 iso, and once it is, a zero changes nothing: of zero rows one has to stay.
+//! Far from the other side, a side is limited to 2 iso, and once it is, a zero changes nothing: of zero rows
+//! one has to stay.
 
 use jbt_ir::{Domain, Rule};
 

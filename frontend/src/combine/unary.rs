@@ -1,7 +1,8 @@
 //! Maps of one field: what the members have in common, and their list.
 //!
-//! A map keeps the attributes of its child where both fields are positive; elsewhere there is only the default, because a child whose
-//! field is 0 may have been left out. Where the map of 0 is 0, the support is that of the child; else there is a field everywhere.
+//! A map keeps the attributes of its child where both fields are positive; elsewhere there is only the
+//! default, because a child whose field is 0 may have been left out. Where the map of 0 is 0, the support is
+//! that of the child; else there is a field everywhere.
 
 use jbt_ir::Domain;
 

@@ -7,9 +7,9 @@
 //!                         step 3  add       step 0, step 2
 //! ```
 //!
-//! A form is canonical: steps stand in the order in which a walk from the result, operands from left to right, finishes them, and numbers and
-//! children are numbered in the order of the steps. However a formula was written, equal graphs give equal forms. A form may have several values: they are
-//! walked from in turn.
+//! A form is canonical: steps stand in the order in which a walk from the result, operands from left to
+//! right, finishes them, and numbers and children are numbered in the order of the steps. However a formula
+//! was written, equal graphs give equal forms. A form may have several values: they are walked from in turn.
 
 use glam::DVec3;
 use jbt_ir::Domain;
@@ -173,7 +173,8 @@ impl Form {
         nearest
     }
 
-    /// Whether it is 0 where all children are, whatever the coordinates and the numbers that `known` does not know.
+    /// Whether it is 0 where all children are, whatever the coordinates and the numbers that `known` does not
+    /// know.
     pub(crate) fn vanishes(&self, known: impl Fn(usize) -> Option<f64>) -> bool {
         let range = |operand| match operand {
             Operand::Child(_) => [0.0; 2],
@@ -234,7 +235,8 @@ impl Assembler {
         self.steps.len()
     }
 
-    /// What a step of postfix makes of operands, which are as many as it takes. What is made of constants is one.
+    /// What a step of postfix makes of operands, which are as many as it takes. What is made of constants is
+    /// one.
     pub(crate) fn apply(&mut self, step: &Step, operands: Vec<Draft>) -> Draft {
         let constants: Option<Vec<&Number>> = operands
             .iter()
@@ -261,7 +263,8 @@ impl Assembler {
         Draft::Step(self.steps.len() as u32 - 1)
     }
 
-    /// What a list of steps in postfix order stands for; `definition` are the values of definitions before it.
+    /// What a list of steps in postfix order stands for; `definition` are the values of definitions before
+    /// it.
     ///
     /// Steps that depend on no variable become one number, in time that is linear in the list.
     pub(crate) fn postfix(&mut self, steps: &[Step], definitions: &[Draft]) -> Draft {

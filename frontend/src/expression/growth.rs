@@ -1,4 +1,5 @@
-//! How large the values of a formula may become, and how fast they change, where coordinates are bounded: what excludes overflow.
+//! How large the values of a formula may become, and how fast they change, where coordinates are bounded:
+//! what excludes overflow.
 //!
 //! See [`Growth`].
 
@@ -37,7 +38,8 @@ impl Form {
     }
 }
 
-/// Bounds of an operation's result; `divisor` is the magnitude of its second operand, if that is a number other than 0.
+/// Bounds of an operation's result; `divisor` is the magnitude of its second operand, if that is a number
+/// other than 0.
 fn grown(operation: Operation, x: &[Growth], divisor: Option<f64>) -> Growth {
     match (operation, divisor) {
         (Operation::Negate, _) => x[0],

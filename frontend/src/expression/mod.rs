@@ -1,4 +1,5 @@
-//! Expressions: fields and attributes that are given by a formula of the coordinates, of other fields, and of numbers.
+//! Expressions: fields and attributes that are given by a formula of the coordinates, of other fields, and of
+//! numbers.
 //!
 //! ```text
 //! expression { 1 - sqrt(x^2 + y^2) / (1 + bulge) }                       a leaf of its own
@@ -8,43 +9,48 @@
 //! color expression { (0.5 + 0.5 * sin(x), y, 0.2) } { .. }               an attribute of the leaves below
 //! ```
 //!
-//! The shape of the formula ([`Form`]) is code; its numbers are numbers of a row. `x y z` are those of the node's own space: maps above it
-//! reach them as they reach a skeleton.
+//! The shape of the formula ([`Form`]) is code; its numbers are numbers of a row. `x y z` are those of the
+//! node's own space: maps above it reach them as they reach a skeleton.
 //!
 //! # What cannot be computed
 //!
-//! All formulas have a value everywhere, because engines have to agree and rows that add nothing must not show:
+//! All formulas have a value everywhere, because engines have to agree and rows that add nothing must not
+//! show:
 //!
 //! * a quotient by 0 is 0, and so is 0 to a negative power, and a remainder by 0;
 //! * a root, and a power with an exponent that is no whole literal, take what is negative as 0;
-//! * `ln` takes what is below the smallest normal f32 as that, 2^-126; `asin` and `acos` take what is outside of [-1, 1] as the nearer end;
+//! * `ln` takes what is below the smallest normal f32 as that, 2^-126; `asin` and `acos` take what is outside
+//!   of [-1, 1] as the nearer end;
 //! * rounding functions take numbers beyond 2^22 as whole;
-//! * the field itself is kept within [`LARGEST_FIELD`]; overflow ends there, and what is no number counts as the lowest field: 0, if the form of
-//!   the formula shows that it is never negative, else `-LARGEST_FIELD`.
+//! * the field itself is kept within [`LARGEST_FIELD`]; overflow ends there, and what is no number counts as
+//!   the lowest field: 0, if the form of the formula shows that it is never negative, else `-LARGEST_FIELD`.
 //!
 //! # Where the field is zero
 //!
-//! A formula is 0 outside of its box, if it has one. It is 0 where all its children are, if it is so for whatever coordinates
-//! ([`Expression::vanishes`]): then it reaches no further than they do. Any other expression reaches everywhere.
+//! A formula is 0 outside of its box, if it has one. It is 0 where all its children are, if it is so for
+//! whatever coordinates ([`Expression::vanishes`]): then it reaches no further than they do. Any other
+//! expression reaches everywhere.
 //!
 //! # Falloffs
 //!
-//! The falloff `linear` is 1 - r, where r is the distance over the radius. So a formula of r is one over a primitive with that falloff:
+//! The falloff `linear` is 1 - r, where r is the distance over the radius. So a formula of r is one over a
+//! primitive with that falloff:
 //!
 //! ```text
 //! let cone = point { radius 2 falloff linear }
 //! expression { r = 1 - field(cone), (1 - r)^2 * (1 + 2 * r) }            in Rust `point(..).falloff_by(|r| ..)`
 //! ```
 //!
-//! Beyond the radius r stays 1. If the formula is 0 there, exactly, the field is exactly 0 and is pruned like others; it need not fall everywhere.
+//! Beyond the radius r stays 1. If the formula is 0 there, exactly, the field is exactly 0 and is pruned like
+//! others; it need not fall everywhere.
 //!
 //! # Attributes
 //!
-//! Without children an expression is a leaf: it has the attributes of the way down. With one child it hands on the child's, where that has a
-//! field. With several it mixes them by `max(0, f_i dF/df_i)`.
+//! Without children an expression is a leaf: it has the attributes of the way down. With one child it hands
+//! on the child's, where that has a field. With several it mixes them by `max(0, f_i dF/df_i)`.
 //!
-//! An attribute may be an expression itself: one value for each channel, of the coordinates and of numbers, but of no fields. What is no number
-//! counts as 0 there, and overflow ends at [`LARGEST_FIELD`] too.
+//! An attribute may be an expression itself: one value for each channel, of the coordinates and of numbers,
+//! but of no fields. What is no number counts as 0 there, and overflow ends at [`LARGEST_FIELD`] too.
 
 mod form;
 mod growth;
@@ -66,14 +72,16 @@ pub(crate) use form::{Assembled, Assembler, Draft};
 pub(crate) use operand::Operand;
 pub(crate) use write::write;
 
-/// What the field of an expression, and the value of an attribute, is kept within, in magnitude: 2^100. Sums and products with ordinary fields stay finite.
+/// What the field of an expression, and the value of an attribute, is kept within, in magnitude: 2^100. Sums
+/// and products with ordinary fields stay finite.
 pub const LARGEST_FIELD: f32 = 1.267_650_6e30;
 
 /// A formula with its numbers, of a field or of the values of an attribute group.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Expression {
     pub(crate) form: Arc<Form>,
-    /// The numbers of the formula, in the order in which it asks for them; then the corners of the box, if there is one.
+    /// The numbers of the formula, in the order in which it asks for them; then the corners of the box, if
+    /// there is one.
     pub(crate) numbers: Vec<f64>,
 }
 
@@ -162,7 +170,8 @@ impl Expression {
         self.form.values(&self.numbers, p, &[]).into_iter().map(kept).collect()
     }
 
-    /// How far the point is from where the formula has a jump or a kink, in the units of what is compared there.
+    /// How far the point is from where the formula has a jump or a kink, in the units of what is compared
+    /// there.
     #[must_use]
     pub fn decision(&self, p: DVec3, children: &[f64]) -> f64 {
         let rim = self.bounds().map_or(f64::INFINITY, |bounds| {

@@ -1,8 +1,10 @@
-//! The operations of formulas: what each does, plainly in f64 and over the ops, and what is known of its value.
+//! The operations of formulas: what each does, plainly in f64 and over the ops, and what is known of its
+//! value.
 //!
-//! A rounding error over the ops is that of the ops it is made of, in units in the last place (ULP) of the result: half a unit for arithmetic and
-//! roots, those of [`jbt_ir::math`] for `sin`, `cos`, `exp`, `ln` and powers, at most 4 for `atan`, `atan2`, `asin` and `acos` (see `angle`), 3.5 for
-//! `tan`; a whole power is a chain of products, `x^n` in at most `2 log2 n` of them.
+//! A rounding error over the ops is that of the ops it is made of, in units in the last place (ULP) of the
+//! result: half a unit for arithmetic and roots, those of [`jbt_ir::math`] for `sin`, `cos`, `exp`, `ln` and
+//! powers, at most 4 for `atan`, `atan2`, `asin` and `acos` (see `angle`), 3.5 for `tan`; a whole power is a
+//! chain of products, `x^n` in at most `2 log2 n` of them.
 
 use jbt_ir::Domain;
 
@@ -92,7 +94,8 @@ impl Operation {
         }
     }
 
-    /// The sign of the value, rounding included: whether it is never negative, from the signs of the operands.
+    /// The sign of the value, rounding included: whether it is never negative, from the signs of the
+    /// operands.
     pub(crate) fn non_negative(self, operands: &[Operand], x: &[bool]) -> bool {
         let all = x.iter().all(|&sign| sign);
         match self {
@@ -124,7 +127,8 @@ impl Operation {
         }
     }
 
-    /// The value over the ops. `positive` says of each operand whether it is known not to be negative, `number` whether it is a number of the row.
+    /// The value over the ops. `positive` says of each operand whether it is known not to be negative,
+    /// `number` whether it is a number of the row.
     pub(crate) fn emit<D: Domain>(
         self,
         d: &mut D,

@@ -1,4 +1,5 @@
-//! Formulas as text: definitions first, for what is used more than once, then the value, or several in parentheses.
+//! Formulas as text: definitions first, for what is used more than once, then the value, or several in
+//! parentheses.
 
 use std::fmt;
 

@@ -4,26 +4,29 @@
 //! 1/2 + atan(p (1 - 2r)) / (2 atan p)        p the stiffness
 //! ```
 //!
-//! It is 1 at the skeleton, where it has a tip of slope `-q` in r, `q = p / ((1 + p^2) atan p)`, and 0 at the rim, where it ends with
-//! the same slope if its [`Edge`] is exact: the field is continuous and has a crease there. A smooth edge takes the crease away.
+//! It is 1 at the skeleton, where it has a tip of slope `-q` in r, `q = p / ((1 + p^2) atan p)`, and 0 at the
+//! rim, where it ends with the same slope if its [`Edge`] is exact: the field is continuous and has a crease
+//! there. A smooth edge takes the crease away.
 //!
 //! # The compiler's form
 //!
-//! There is no arc tangent among the ops, and polynomials for it are no chains of rising steps. The angle is `A = atan(p - 2pr) + atan(p)`
-//! over its largest value, `2 atan p`. With the depth `v = 1 - r` its cotangent is
+//! There is no arc tangent among the ops, and polynomials for it are no chains of rising steps. The angle is
+//! `A = atan(p - 2pr) + atan(p)` over its largest value, `2 atan p`. With the depth `v = 1 - r` its cotangent
+//! is
 //!
 //! ```text
 //! cot A = (1 + p^2) / (2 p v) - p
 //! ```
 //!
-//! and all that follows falls with it: `cot(x/2) = cot x + csc x`, three times, brings the angle down to an eighth; there
+//! and all that follows falls with it: `cot(x/2) = cot x + csc x`, three times, brings the angle down to an
+//! eighth; there
 //!
 //! ```text
 //! 1 / x = (7 cot x + 6 csc x + 16 csc(x/2)) / 45        with a relative error of 3.3e-5 x^6
 //! ```
 //!
-//! which is a Richardson extrapolation of polygons around and inside of a circle: the three weights are the only ones for which all terms
-//! before that error cancel. It is 1.2e-7 at most, for x below pi / 8.
+//! which is a Richardson extrapolation of polygons around and inside of a circle: the three weights are the
+//! only ones for which all terms before that error cancel. It is 1.2e-7 at most, for x below pi / 8.
 
 use jbt_ir::Domain;
 
@@ -42,7 +45,8 @@ member! {
     }
 }
 
-/// Nearer to the rim than this, as a part of the radius, the field is proportional to the distance from the rim: so no number gets large.
+/// Nearer to the rim than this, as a part of the radius, the field is proportional to the distance from the
+/// rim: so no number gets large.
 const THIN: f32 = 1.0 / (1 << 14) as f32;
 
 impl ArcTan {
@@ -153,7 +157,8 @@ mod tests {
             let exact = ArcTan { stiffness, edge: Edge::Exact };
             let steepest = Some((0.5, stiffness / stiffness.atan()));
             Published { half: Some(0.5), steepest }.check(exact.into());
-            // s = 1/4 is far inside of where a smooth edge begins, but the fall of a soft one is steeper there.
+            // s = 1/4 is far inside of where a smooth edge begins, but the fall of a soft one is steeper
+            // there.
             let steepest = steepest.filter(|_| stiffness > 1.0);
             let smooth = ArcTan { edge: Edge::Smooth, ..exact };
             Published { half: Some(0.5), steepest }.check(smooth.into());

@@ -5,8 +5,9 @@
 //! (1 - s)^2 / (3/4 - p + (3/2 + 4p) s)             1/4 <= s <= 1
 //! ```
 //!
-//! Whatever p is, it is 1/2 at half the radius, with slope `-(2 + 16/9 p)` in r there, C1 at the seam and at the rim. The larger p, the
-//! nearer it is to a step; p = 0 makes the inner piece `1 - 2s`. Both fall for every p >= 0.
+//! Whatever p is, it is 1/2 at half the radius, with slope `-(2 + 16/9 p)` in r there, C1 at the seam and at
+//! the rim. The larger p, the nearer it is to a step; p = 0 makes the inner piece `1 - 2s`. Both fall for
+//! every p >= 0.
 //!
 //! Over the ops it is the sum of the outer piece, as far as the seam, and of what the inner one adds:
 //!
@@ -78,7 +79,8 @@ impl FalloffMember for Blanc {
         let [one, half, four, nine] = [1.0, 0.5, 4.0, 9.0].map(|number| d.constant(number));
         let [outer_seam, inner_seam] = [1.125, 4.5].map(|number| d.constant(number));
 
-        // At the seam itself x moves with u, and y does not move: one of them has to, or the gradient would be 0 there.
+        // At the seam itself x moves with u, and y does not move: one of them has to, or the gradient would
+        // be 0 there.
         let x = d.min(seam_u, u);
         let square = d.mul(x, x);
         let before = d.sub(seam_u, x);

@@ -4,12 +4,12 @@
 //! exp(-h (c r)^2)        h the hardness, c the cutoff, r = d / R
 //! ```
 //!
-//! Blinn writes `b exp(-a d^2)`: here b is the strength of the primitive and `a = h c^2 / R^2`. Written with his blobbiness B as
-//! `exp(B d^2 / R0^2 - B)`, h is -B, and R0 is the support radius over the cutoff, R / c. So a cutoff of 2 makes the support
-//! twice as large as the radius that the hardness is meant for.
+//! Blinn writes `b exp(-a d^2)`: here b is the strength of the primitive and `a = h c^2 / R^2`. Written with
+//! his blobbiness B as `exp(B d^2 / R0^2 - B)`, h is -B, and R0 is the support radius over the cutoff, R / c.
+//! So a cutoff of 2 makes the support twice as large as the radius that the hardness is meant for.
 //!
-//! The Gaussian never reaches zero. With an exact [`Edge`] the field jumps from `exp(-h c^2)` to zero at the rim, by 0.00034 for the
-//! defaults.
+//! The Gaussian never reaches zero. With an exact [`Edge`] the field jumps from `exp(-h c^2)` to zero at the
+//! rim, by 0.00034 for the defaults.
 
 use jbt_ir::Domain;
 
@@ -17,7 +17,8 @@ use super::{Edge, FalloffMember, Nearness, bisect};
 use crate::member::member;
 
 member! {
-    /// A Gaussian. Text: `blinn { hardness 2 cutoff 2 edge smooth }`, which are the defaults; also `gaussian`, `blobby`.
+    /// A Gaussian. Text: `blinn { hardness 2 cutoff 2 edge smooth }`, which are the defaults; also
+    /// `gaussian`, `blobby`.
     #[derive(Clone, Copy, PartialEq, Debug)]
     pub struct Blinn = "blinn" {
         /// How fast it falls, in [0.001, 1000].

@@ -1,8 +1,8 @@
-//! The family `(1 - s)^n`, of degree 2n in the distance: Stolte's (n = 8 and others), [`Quartic`](super::Quartic) for n = 2,
-//! [`Wyvill`](super::Wyvill) for n = 3.
+//! The family `(1 - s)^n`, of degree 2n in the distance: Stolte's (n = 8 and others),
+//! [`Quartic`](super::Quartic) for n = 2, [`Wyvill`](super::Wyvill) for n = 3.
 //!
-//! A whole exponent up to [`MOST_WHOLE`] is code, a chain of products; others are powers. Below n = 1 the slope grows without bounds
-//! towards the rim: gradients are finite still, because u is 0 or at least 2^-48.
+//! A whole exponent up to [`MOST_WHOLE`] is code, a chain of products; others are powers. Below n = 1 the
+//! slope grows without bounds towards the rim: gradients are finite still, because u is 0 or at least 2^-48.
 
 use jbt_ir::Domain;
 

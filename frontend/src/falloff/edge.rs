@@ -8,10 +8,11 @@ use crate::member::Parameter;
 /// The edge of a falloff.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum Edge {
-    /// The published function inside of the support and zero from its rim outwards: if it is not zero there, the field jumps.
+    /// The published function inside of the support and zero from its rim outwards: if it is not zero there,
+    /// the field jumps.
     Exact,
-    /// The published function as far as `s = 1/2` (71 % of the support radius), and from there to the rim times a factor that
-    /// falls from 1 to 0 and is flat at both ends, so that the whole is C1:
+    /// The published function as far as `s = 1/2` (71 % of the support radius), and from there to the rim
+    /// times a factor that falls from 1 to 0 and is flat at both ends, so that the whole is C1:
     ///
     /// ```text
     /// 1 - (1 - z^2)^2,   z = min(2 (1 - s), 1)

@@ -4,13 +4,16 @@
 //! 1 / (1 + (c r)^n)        c the cutoff, n the exponent
 //! ```
 //!
-//! The potential `1 / d^n` of a charge is infinite at the charge; with the 1 in the divisor the field is 1 there, 1/2 at r = 1 / c,
-//! and near the inverse power from some two times that distance outwards. So the cutoff is the support radius in units of the distance at
-//! which the field has fallen to 1/2. n = 2 is Cauchy's (and Lorentz's) curve.
+//! The potential `1 / d^n` of a charge is infinite at the charge; with the 1 in the divisor the field is 1
+//! there, 1/2 at r = 1 / c, and near the inverse power from some two times that distance outwards. So the
+//! cutoff is the support radius in units of the distance at which the field has fallen to 1/2. n = 2 is
+//! Cauchy's (and Lorentz's) curve.
 //!
-//! It never reaches zero. With an exact [`Edge`] the field jumps from `1 / (1 + c^n)` to zero at the rim, by 1/17 for the defaults.
+//! It never reaches zero. With an exact [`Edge`] the field jumps from `1 / (1 + c^n)` to zero at the rim, by
+//! 1/17 for the defaults.
 //!
-//! A whole exponent is code: powers of s, and r once if it is odd. For n = 1 the field has a tip at the skeleton.
+//! A whole exponent is code: powers of s, and r once if it is odd. For n = 1 the field has a tip at the
+//! skeleton.
 
 use jbt_ir::Domain;
 
@@ -22,7 +25,8 @@ use crate::power::{Exponent, power};
 const MOST: u8 = 16;
 
 member! {
-    /// An inverse power. Text: `inverse_power { exponent 2 cutoff 4 edge smooth }`, which are the defaults; also `inverse`, `lorentz`.
+    /// An inverse power. Text: `inverse_power { exponent 2 cutoff 4 edge smooth }`, which are the defaults;
+    /// also `inverse`, `lorentz`.
     #[derive(Clone, Copy, PartialEq, Debug)]
     pub struct InversePower = "inverse_power" {
         /// n, in [1, 16].

@@ -1,4 +1,5 @@
-//! The distance itself: `1 - r`, a cone. Formulas of a falloff begin with it, because `1 - field` is the distance over the radius.
+//! The distance itself: `1 - r`, a cone. Formulas of a falloff begin with it, because `1 - field` is the
+//! distance over the radius.
 //!
 //! With `1 - r = u / (1 + r)` it rises with u, and is exactly 0 at the rim.
 

@@ -65,16 +65,20 @@ pub trait FalloffMember: Member {
     /// The field at `s = d^2 / R^2 >= 0`, plainly.
     fn value(&self, s: f64) -> f64;
 
-    /// The `s` at which the field is `level`, for `0 < level < 1`. Where the field jumps over the level: where it jumps.
+    /// The `s` at which the field is `level`, for `0 < level < 1`. Where the field jumps over the level:
+    /// where it jumps.
     fn inverse(&self, level: f64) -> f64;
 
-    /// A bound of the factors that the derivative by u multiplies where u is 0, and of their products: supports rest on it.
+    /// A bound of the factors that the derivative by u multiplies where u is 0, and of their products:
+    /// supports rest on it.
     fn steepness(&self) -> f64;
 
-    /// Whether the field has a tip at the skeleton: its slope in r is not 0 there, so that the gradient jumps.
+    /// Whether the field has a tip at the skeleton: its slope in r is not 0 there, so that the gradient
+    /// jumps.
     fn is_pointed(&self) -> bool;
 
-    /// The part of the parameters that selects code. If a parameter follows one of the model, `follows`, code serves all its values.
+    /// The part of the parameters that selects code. If a parameter follows one of the model, `follows`, code
+    /// serves all its values.
     fn variant(&self, follows: bool) -> u8;
 
     /// The names of the columns of a row, for this variant.

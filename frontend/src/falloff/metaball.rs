@@ -5,8 +5,9 @@
 //! 3/2 (1 - r)^2        1/3 <= r <= 1
 //! ```
 //!
-//! They touch at r = 1/3 and one is never below the other, so it takes a sum to follow the one and then the other: the second as far as
-//! `u = 1 - r^2 = 8/9`, and what the first one adds to it from there. With the depth `v(u) = 1 - r = u / (1 + sqrt(1 - u))`:
+//! They touch at r = 1/3 and one is never below the other, so it takes a sum to follow the one and then the
+//! other: the second as far as `u = 1 - r^2 = 8/9`, and what the first one adds to it from there. With the
+//! depth `v(u) = 1 - r = u / (1 + sqrt(1 - u))`:
 //!
 //! ```text
 //! 3/2 v(min(u, 8/9))^2 + 3 max(u - 8/9, 0)

@@ -1,7 +1,9 @@
-//! Falloffs, also called field functions: how a field fades with the distance to a skeleton. One file per member, one list.
+//! Falloffs, also called field functions: how a field fades with the distance to a skeleton. One file per
+//! member, one list.
 //!
-//! A falloff is a function g of `s = d^2 / R^2 = r^2`, 1 at the skeleton and 0 from the support radius R outwards, falling
-//! monotonically. Published field functions that never reach zero are cut off at R, and an [`Edge`] says how.
+//! A falloff is a function g of `s = d^2 / R^2 = r^2`, 1 at the skeleton and 0 from the support radius R
+//! outwards, falling monotonically. Published field functions that never reach zero are cut off at R, and an
+//! [`Edge`] says how.
 //!
 //! | falloff | g, with `u = 1 - s` | 1/2 at r | steepest, in r | at the rim |
 //! |---|---|---|---|---|
@@ -20,17 +22,21 @@
 //!
 //! # The compiler's form
 //!
-//! It is written in `u = max(1 - s, 0)`, and in s itself, as a chain of steps of which each one rises or falls with the distance, so that
+//! It is written in `u = max(1 - s, 0)`, and in s itself, as a chain of steps of which each one rises or
+//! falls with the distance, so that
 //!
-//! * it is exactly +0 at u = 0, never negative, and monotone in f32 too, because rounding is (but for [`Degree`] and [`InversePower`]
-//!   with powers that are not whole, and [`Blinn`]: an approximated power may step back by a unit in the last place);
-//! * a range of distances gives the exact image of it, the same values as at its ends: no difference of two terms that move together makes it
-//!   wider (where there are powers or exponentials, it is wider by their 4 units in the last place);
+//! * it is exactly +0 at u = 0, never negative, and monotone in f32 too, because rounding is (but for
+//!   [`Degree`] and [`InversePower`] with powers that are not whole, and [`Blinn`]: an approximated power may
+//!   step back by a unit in the last place);
+//! * a range of distances gives the exact image of it, the same values as at its ends: no difference of two
+//!   terms that move together makes it wider (where there are powers or exponentials, it is wider by their 4
+//!   units in the last place);
 //! * its derivative is finite everywhere: r is a root, whose tangent at 0 is 0.
 //!
-//! The root of `1 - u` is off by 2^-25 / r, because u has lost the last digits of a small s: at most 2^-13. Falloffs with a tip would show it, in
-//! the field and much more in its gradient, so [`Linear`], [`ArcTan`] and [`InversePower`] take the root of s. Others, which are flat at the
-//! skeleton, have all that follows from u alone, so that pieces of them meet.
+//! The root of `1 - u` is off by 2^-25 / r, because u has lost the last digits of a small s: at most 2^-13.
+//! Falloffs with a tip would show it, in the field and much more in its gradient, so [`Linear`], [`ArcTan`]
+//! and [`InversePower`] take the root of s. Others, which are flat at the skeleton, have all that follows
+//! from u alone, so that pieces of them meet.
 //!
 //! Polynomials in r are not such chains as they are published. Their files say by what they are replaced.
 
@@ -133,7 +139,8 @@ macro_rules! falloffs {
             #[must_use]
             pub fn kind(&self) -> FalloffKind { self.code(false) }
 
-            /// The kind, and the variant whose code serves these numbers or, if they follow a parameter, all numbers.
+            /// The kind, and the variant whose code serves these numbers or, if they follow a parameter, all
+            /// numbers.
             #[must_use]
             pub fn code(&self, follows: bool) -> FalloffKind {
                 match self {
@@ -178,7 +185,8 @@ macro_rules! falloffs {
                 match self { $( Self::$name => $name::IS_POINTED, )+ $( Self::$rich(falloff) => falloff.is_pointed(), )+ }
             }
 
-            /// The numbers of a row, for code of this kind and variant: one for each of [`FalloffKind::columns`].
+            /// The numbers of a row, for code of this kind and variant: one for each of
+            /// [`FalloffKind::columns`].
             pub fn columns(&self, code: FalloffKind, row: &mut Vec<f64>) {
                 match self { $( Self::$name => {} )+ $( Self::$rich(falloff) => falloff.columns(code.variant(), row), )+ }
             }

@@ -1,4 +1,5 @@
-//! The quartic falloff `(1 - s)^2`, of degree 4 in the distance: that of POV-Ray's blobs, and of Murakami and Ichihara (1987).
+//! The quartic falloff `(1 - s)^2`, of degree 4 in the distance: that of POV-Ray's blobs, and of Murakami and
+//! Ichihara (1987).
 
 use jbt_ir::Domain;
 

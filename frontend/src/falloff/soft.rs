@@ -1,4 +1,5 @@
-//! The soft object's falloff (Wyvill, McPheeters and Wyvill 1986): a cubic in `s` that is 1/2 at half the radius.
+//! The soft object's falloff (Wyvill, McPheeters and Wyvill 1986): a cubic in `s` that is 1/2 at half the
+//! radius.
 //!
 //! ```text
 //! 1 - 22/9 s + 17/9 s^2 - 4/9 s^3  =  u^2 (5 + 4u) / 9,   u = 1 - s

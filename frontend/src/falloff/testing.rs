@@ -1,4 +1,5 @@
-//! What the tests of all falloffs have in common: published figures of the plain form, and what is promised of the compiled one.
+//! What the tests of all falloffs have in common: published figures of the plain form, and what is promised
+//! of the compiled one.
 
 use jbt_ir::domain::interval::Interval;
 use jbt_ir::domain::scalar::Scalar;

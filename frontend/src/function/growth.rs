@@ -1,10 +1,11 @@
 //! How large a value of a formula may become, and how fast it changes.
 
-/// Bounds of a value and of the sum of its derivatives along the coordinates, in magnitude, as the program computes
-/// them in f32.
+/// Bounds of a value and of the sum of its derivatives along the coordinates, in magnitude, as the program
+/// computes them in f32.
 ///
-/// A bound of derivatives counts every factor of the chain rule as at least 1, so that no product of some of them is
-/// larger, in whatever order the program multiplies. What has poles, or slopes without bounds, is bounded by nothing.
+/// A bound of derivatives counts every factor of the chain rule as at least 1, so that no product of some of
+/// them is larger, in whatever order the program multiplies. What has poles, or slopes without bounds, is
+/// bounded by nothing.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct Growth {
     pub(crate) value: f64,

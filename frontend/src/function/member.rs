@@ -36,13 +36,14 @@ pub(super) trait FunctionMember {
         ANY
     }
 
-    /// Bounds of the value from bounds of the operands. `divisor`: the magnitude of the second operand, if that is a
-    /// number other than 0.
+    /// Bounds of the value from bounds of the operands. `divisor`: the magnitude of the second operand, if
+    /// that is a number other than 0.
     fn growth(x: &[Growth], divisor: Option<f64>) -> Growth {
         let _ = (x, divisor);
         Growth::UNKNOWN
     }
 
-    /// The value in formulas of a point, over the ops. `positive`: the first operand is known not to be negative.
+    /// The value in formulas of a point, over the ops. `positive`: the first operand is known not to be
+    /// negative.
     fn emit<D: Domain>(d: &mut D, x: &[D::Real], positive: bool) -> D::Real;
 }

@@ -1,13 +1,15 @@
 //! Functions of formulas: of parameters, and of a point. One row a member.
 //!
-//! A member states its word and operands, its value in f64 (the oracle), what is known of it without a point, and the
-//! same value over [`Domain`] (the compiler). To add one: write it into a file of this folder, add its line to the list.
+//! A member states its word and operands, its value in f64 (the oracle), what is known of it without a point,
+//! and the same value over [`Domain`] (the compiler). To add one: write it into a file of this folder, add
+//! its line to the list.
 //!
-//! Formulas of a point have functions besides that no list names: falloffs of a distance. See [`Function::Falloff`].
+//! Formulas of a point have functions besides that no list names: falloffs of a distance. See
+//! [`Function::Falloff`].
 //!
-//! A rounding error over the ops is that of the ops it is made of, in units in the last place (ULP) of the result: half a
-//! unit for arithmetic and roots, those of [`jbt_ir::math`] for `sin`, `cos`, `exp`, `ln` and powers, at most 4 for
-//! `atan`, `atan2`, `asin` and `acos` (see `angle`), 3.5 for `tan`.
+//! A rounding error over the ops is that of the ops it is made of, in units in the last place (ULP) of the
+//! result: half a unit for arithmetic and roots, those of [`jbt_ir::math`] for `sin`, `cos`, `exp`, `ln` and
+//! powers, at most 4 for `atan`, `atan2`, `asin` and `acos` (see `angle`), 3.5 for `tan`.
 
 use std::hash::{Hash, Hasher};
 
@@ -82,7 +84,8 @@ macro_rules! functions {
         #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
         pub(crate) enum Function {
             $( $name, )+
-            /// A falloff of the distance, 1 being where it ends; what is below 0 counts as 0. Known in formulas of a point alone.
+            /// A falloff of the distance, 1 being where it ends; what is below 0 counts as 0. Known in
+            /// formulas of a point alone.
             Falloff(FixedFalloff),
         }
 
@@ -95,7 +98,8 @@ macro_rules! functions {
                 match self { $( Self::$name => $module::$name::NAME, )+ Self::Falloff(falloff) => falloff.0.name() }
             }
 
-            /// Whether its word means nothing else, also where it is not called: no parameter has such a name.
+            /// Whether its word means nothing else, also where it is not called: no parameter has such a
+            /// name.
             pub(crate) const fn is_reserved(self) -> bool {
                 match self { $( Self::$name => $module::$name::RESERVED, )+ Self::Falloff(_) => false }
             }
@@ -133,13 +137,14 @@ macro_rules! functions {
                 match self { $( Self::$name => $module::$name::range(x), )+ Self::Falloff(_) => [0.0, 1.0] }
             }
 
-            /// Bounds of the value from bounds of the operands. `divisor`: the magnitude of the second operand, if that is a
-            /// number other than 0.
+            /// Bounds of the value from bounds of the operands. `divisor`: the magnitude of the second
+            /// operand, if that is a number other than 0.
             pub(crate) fn growth(self, x: &[Growth], divisor: Option<f64>) -> Growth {
                 match self { $( Self::$name => $module::$name::growth(x, divisor), )+ Self::Falloff(_) => Growth::UNKNOWN }
             }
 
-            /// The value in formulas of a point, over the ops. `positive`: the first operand is known not to be negative.
+            /// The value in formulas of a point, over the ops. `positive`: the first operand is known not to
+            /// be negative.
             pub(crate) fn emit<D: Domain>(self, d: &mut D, x: &[D::Real], positive: bool) -> D::Real {
                 match self {
                     $( Self::$name => $module::$name::emit(d, x, positive), )+

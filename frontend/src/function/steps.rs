@@ -152,7 +152,8 @@ impl FunctionMember for Round {
     }
 }
 
-/// What is left of the first after whole multiples of the second: at least 0, and below the second's magnitude.
+/// What is left of the first after whole multiples of the second: at least 0, and below the second's
+/// magnitude.
 pub(super) struct Mod;
 
 impl FunctionMember for Mod {

@@ -1,4 +1,5 @@
-//! Programs of implicit surfaces (`.vm`): one instruction a line, as fidget and libfive's tools write and read them.
+//! Programs of implicit surfaces (`.vm`): one instruction a line, as fidget and libfive's tools write and
+//! read them.
 //!
 //! ```text
 //! # a slab
@@ -8,14 +9,17 @@
 //! _3 sub _1 _2            the last line is the value: negative inside
 //! ```
 //!
-//! The model has the usual iso-value, 1/2, and its field is `1/2 - value`: so `field >= iso` where `value <= 0`, and the surface is the same.
+//! The model has the usual iso-value, 1/2, and its field is `1/2 - value`: so `field >= iso` where `value <=
+//! 0`, and the surface is the same.
 //!
-//! Minima and maxima on the way from the value down, through minus signs, become unions and intersections of formulas, `1/2 - min(a, b) =
-//! max(1/2 - a, 1/2 - b)`, so that what does not decide in a box can be left out there, and formulas that are alike are rows of one table. Of each of
-//! these formulas what it shares with others is written again; if that would make the program more than [`LONGEST`] times as long, all of it
+//! Minima and maxima on the way from the value down, through minus signs, become unions and intersections of
+//! formulas, `1/2 - min(a, b) = max(1/2 - a, 1/2 - b)`, so that what does not decide in a box can be left out
+//! there, and formulas that are alike are rows of one table. Of each of these formulas what it shares with
+//! others is written again; if that would make the program more than [`LONGEST`] times as long, all of it
 //! becomes one formula instead.
 //!
-//! What cannot be computed has the values of [`expression`](crate::expression): a quotient by 0 is 0, the root of a negative number is 0.
+//! What cannot be computed has the values of [`expression`](crate::expression): a quotient by 0 is 0, the
+//! root of a negative number is 0.
 
 use std::collections::HashMap;
 
@@ -112,8 +116,9 @@ impl Instruction {
 ///
 /// # Errors
 ///
-/// Everything that is wrong with the file, with its place: operations and names that are not there, operands that are missing, numbers that
-/// cannot be read, a name that is given twice, and a file without instructions.
+/// Everything that is wrong with the file, with its place: operations and names that are not there, operands
+/// that are missing, numbers that cannot be read, a name that is given twice, and a file without
+/// instructions.
 pub fn vm(bytes: &[u8]) -> Result<Imported, Diagnostics> {
     Imported::from(bytes, read(bytes))
 }

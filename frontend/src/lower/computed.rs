@@ -1,7 +1,8 @@
 //! Attribute values that are computed at the point: textures, uv, formulas.
 //!
-//! An attribute node that gives numbers ends up in the rows of the leaves below it. One that gives a function ends up there too: as the map to the
-//! space of the function, and the function's own numbers. So leaves under a thousand checkers of their own are rows of one table.
+//! An attribute node that gives numbers ends up in the rows of the leaves below it. One that gives a function
+//! ends up there too: as the map to the space of the function, and the function's own numbers. So leaves
+//! under a thousand checkers of their own are rows of one table.
 //!
 //! ```text
 //! leaf bound to a texture     its row: map, numbers of the texture, both values     code: t at the mapped point, (1 - t) a + t b
@@ -9,14 +10,15 @@
 //! leaf bound to a formula     its row: map, numbers of the formula                  code: min(max(F, -largest), largest), and 0 for a NaN
 //! ```
 //!
-//! A texture or formula that several leaves see in the same coordinates is evaluated once: it is lifted to the start of its space, and all of them take
-//! its value. Then the leaves differ in code from those of other textures, so only the [`MAX_SHARED`] textures with the most leaves are
-//! lifted; the others are evaluated for each leaf.
+//! A texture or formula that several leaves see in the same coordinates is evaluated once: it is lifted to
+//! the start of its space, and all of them take its value. Then the leaves differ in code from those of other
+//! textures, so only the [`MAX_SHARED`] textures with the most leaves are lifted; the others are evaluated
+//! for each leaf.
 //!
 //! All this is there for queries that ask for attributes; for others, rows have no such columns.
 //!
-//! To add another kind of computed value: a variant of [`AttributeValue`], one of [`ComputedKind`] with its columns and its code here, and
-//! what the oracle makes of it.
+//! To add another kind of computed value: a variant of [`AttributeValue`], one of [`ComputedKind`] with its
+//! columns and its code here, and what the oracle makes of it.
 
 use std::sync::Arc;
 
@@ -93,8 +95,8 @@ impl ComputedKind {
 /// Names of the columns of a uv's map.
 const UV_MATRIX: [&str; 6] = ["uu", "uv", "u", "vu", "vv", "v"];
 
-/// The value of a group over the ops, at a point of the function's space. `columns` gives the next columns of the row, and `channels` are the names
-/// of the group's.
+/// The value of a group over the ops, at a point of the function's space. `columns` gives the next columns of
+/// the row, and `channels` are the names of the group's.
 pub(super) fn emit(
     d: &mut FunctionBuilder,
     kind: &ComputedKind,
@@ -150,7 +152,8 @@ fn kept(d: &mut FunctionBuilder, value: Value) -> Value {
     d.min(value, largest)
 }
 
-/// The numbers of a computed value in a row, in the order in which [`emit`] asks for them behind those of the map.
+/// The numbers of a computed value in a row, in the order in which [`emit`] asks for them behind those of the
+/// map.
 pub(super) fn push_columns(tree: &CheckedTree, computed: &Computed, row: &mut Vec<f64>) {
     computed.map_kind.push_columns(&computed.map, row);
     match (attribute(tree, computed.node), &computed.kind) {
@@ -190,7 +193,8 @@ pub(super) fn attribute(tree: &CheckedTree, node: NodeId) -> &AttributeValue {
     }
 }
 
-/// Decides which textures and formulas are lifted: those with the most leaves; of equals those that are met first.
+/// Decides which textures and formulas are lifted: those with the most leaves; of equals those that are met
+/// first.
 pub(super) fn share(computed: &mut [Computed]) {
     let mut candidates: Vec<&mut Computed> = computed.iter_mut().filter(|it| it.uses > 1).collect();
     candidates.sort_by_key(|it| std::cmp::Reverse(it.uses));

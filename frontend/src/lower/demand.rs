@@ -1,8 +1,8 @@
 //! What selectors leave out: which occurrences are asked for now, and which whatever is chosen.
 //!
-//! A selector asks one of its children, and its code has all of them, each in a fold over one row that is active or not. What several
-//! places share is computed in front of them, where its space begins, so that needs a row of its own: unless the space is never
-//! entered without asking for it, whatever is chosen.
+//! A selector asks one of its children, and its code has all of them, each in a fold over one row that is
+//! active or not. What several places share is computed in front of them, where its space begins, so that
+//! needs a row of its own: unless the space is never entered without asking for it, whatever is chosen.
 //!
 //! ```text
 //! sum { use a  select 0 { use a  use b  sum { use b  use c } } }
@@ -67,8 +67,8 @@ impl Demand {
         !self.asked(lift).always
     }
 
-    /// Whether an answer can be the model's as it is, with nothing but warps and selectors between: then its attributes are seen even where
-    /// its field is zero. Without selectors nobody asks.
+    /// Whether an answer can be the model's as it is, with nothing but warps and selectors between: then its
+    /// attributes are seen even where its field is zero. Without selectors nobody asks.
     pub(super) fn is_bare(&self, OccurrenceId(id): OccurrenceId) -> bool {
         self.selects && self.bare[id as usize]
     }

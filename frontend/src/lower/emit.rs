@@ -12,8 +12,9 @@
 //! define under a guard: open a fold over a table of one row, define, close; the answer is what the fold carries out
 //! ```
 //!
-//! An explicit list of tasks takes the place of recursion, because a model may be a chain of any length. The columns of a row are
-//! declared in the order in which the code asks for them; [`super::rows`] goes through the same order for every row.
+//! An explicit list of tasks takes the place of recursion, because a model may be a chain of any length. The
+//! columns of a row are declared in the order in which the code asks for them; [`super::rows`] goes through
+//! the same order for every row.
 //!
 //! The guide function is emitted in the same way, and carries probes out of its guards: see `probe`.
 
@@ -60,7 +61,8 @@ pub(super) struct TableCode {
     pub(super) depth: usize,
     /// The space in which its fold stands, for its first row.
     pub(super) space: SpaceId,
-    /// The first of the three probes of the point in that space, in a guide function, if all rows see the same point.
+    /// The first of the three probes of the point in that space, in a guide function, if all rows see the
+    /// same point.
     pub(super) probe: Option<usize>,
 }
 
@@ -123,7 +125,8 @@ struct Reduce {
     order: Option<Value>,
     /// Where operands are rows, and each may be left out while it is not zero: the extreme of their fields.
     extreme: Option<(Extreme, Value)>,
-    /// Whether operands have not been kept within bounds on the far side, the upper one of a union: that is done in the end.
+    /// Whether operands have not been kept within bounds on the far side, the upper one of a union: that is
+    /// done in the end.
     open: bool,
 }
 
@@ -259,14 +262,7 @@ impl<'a> Emitter<'a> {
                 self.kept_fields.insert(field, value);
             }
             Task::LiftComputed(id) => self.lift_computed(id),
-            Task::LiftSpace(space) => {
-                self.tasks.push(Task::LeaveSpace);
-                let point = self.lift_point(space);
-                self.points.push((space, point));
-                self.probe_point(space, point);
-                self.kept_points.insert(space, point);
-                self.enter_space(space);
-            }
+            Task::LiftSpace(space) => self.lift_space(space),
             Task::LeaveSpace => {
                 self.points.pop();
             }
@@ -289,44 +285,69 @@ impl<'a> Emitter<'a> {
             Task::OpenFold => self.open_group(),
             Task::CloseFold => self.close_group(),
             Task::Order => self.read_order(),
-            Task::Step => {
-                let operand = self.answers.pop().expect("the operand has been defined");
-                let reduce = self.reduces.last_mut().expect("steps belong to operators");
-                let order = reduce.order.take();
-                if let Some((extreme, value)) = &mut reduce.extreme {
-                    *value = extreme.of(&mut self.builder, *value, operand.field);
-                }
-                reduce.state.step(&mut self.builder, &reduce.operator, &operand, order);
-            }
-            Task::FinishReduce => {
-                let reduce = self.reduces.pop().expect("it was started");
-                let mut answer = reduce.state.finish(&mut self.builder, &reduce.operator, &self.defaults);
-                if reduce.open {
-                    answer.field = self.closed(reduce.operator.code, answer.field);
-                }
-                self.end_operator(answer.field);
-                self.answers.push(answer);
-            }
-            Task::Seed => {
-                let operand = self.answers.pop().expect("the operand has been defined");
-                let reduce = self.reduces.last_mut().expect("steps belong to operators");
-                reduce.state.seed(&mut self.builder, &operand);
-            }
-            Task::Map(kind, row) => {
-                let child = self.answers.pop().expect("the child has been defined");
-                let iso2 = self.iso2.expect("the scene's row is open");
-                let field = kind.emit(&mut self.builder, child.field, &row, iso2);
-                self.answers.push(mapped(&mut self.builder, field, &child, &self.defaults));
-            }
-            Task::Difference => {
-                let right = self.answers.pop().expect("the right side has been defined");
-                let left = self.answers.pop().expect("the left side has been defined");
-                let iso2 = self.iso2.expect("the scene's row is open");
-                let answer = difference(&mut self.builder, &left, &right, iso2, &self.defaults);
-                self.end_operator(answer.field);
-                self.answers.push(answer);
-            }
+            Task::Step => self.step(),
+            Task::FinishReduce => self.finish_reduce(),
+            Task::Seed => self.seed(),
+            Task::Map(kind, row) => self.map(kind, &row),
+            Task::Difference => self.difference(),
         }
+    }
+
+    /// Computes a point that several uses share, and enters its space.
+    fn lift_space(&mut self, space: SpaceId) {
+        self.tasks.push(Task::LeaveSpace);
+        let point = self.lift_point(space);
+        self.points.push((space, point));
+        self.probe_point(space, point);
+        self.kept_points.insert(space, point);
+        self.enter_space(space);
+    }
+
+    /// The last answer comes to its operator.
+    fn step(&mut self) {
+        let operand = self.answers.pop().expect("the operand has been defined");
+        let reduce = self.reduces.last_mut().expect("steps belong to operators");
+        let order = reduce.order.take();
+        if let Some((extreme, value)) = &mut reduce.extreme {
+            *value = extreme.of(&mut self.builder, *value, operand.field);
+        }
+        reduce.state.step(&mut self.builder, &reduce.operator, &operand, order);
+    }
+
+    /// An operator answers.
+    fn finish_reduce(&mut self) {
+        let reduce = self.reduces.pop().expect("it was started");
+        let mut answer = reduce.state.finish(&mut self.builder, &reduce.operator, &self.defaults);
+        if reduce.open {
+            answer.field = self.closed(reduce.operator.code, answer.field);
+        }
+        self.end_operator(answer.field);
+        self.answers.push(answer);
+    }
+
+    /// The last answer is the first one of its operator.
+    fn seed(&mut self) {
+        let operand = self.answers.pop().expect("the operand has been defined");
+        let reduce = self.reduces.last_mut().expect("steps belong to operators");
+        reduce.state.seed(&mut self.builder, &operand);
+    }
+
+    /// The last answer goes through a map of the field.
+    fn map(&mut self, kind: UnaryKind, row: &[Value]) {
+        let child = self.answers.pop().expect("the child has been defined");
+        let iso2 = self.iso2.expect("the scene's row is open");
+        let field = kind.emit(&mut self.builder, child.field, row, iso2);
+        self.answers.push(mapped(&mut self.builder, field, &child, &self.defaults));
+    }
+
+    /// The last two answers are the sides of a difference.
+    fn difference(&mut self) {
+        let right = self.answers.pop().expect("the right side has been defined");
+        let left = self.answers.pop().expect("the left side has been defined");
+        let iso2 = self.iso2.expect("the scene's row is open");
+        let answer = difference(&mut self.builder, &left, &right, iso2, &self.defaults);
+        self.end_operator(answer.field);
+        self.answers.push(answer);
     }
 
     fn define(&mut self, id: OccurrenceId) {

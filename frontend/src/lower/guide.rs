@@ -1,17 +1,19 @@
 //! The guide: what a model's program does not say, and whoever leaves rows out has to know.
 //!
-//! A row may be left out of the active rows in a box of space where that changes no bit of any answer. There are two reasons:
+//! A row may be left out of the active rows in a box of space where that changes no bit of any answer. There
+//! are two reasons:
 //!
 //! ```text
 //! it is zero there     its support misses the box, and the table's rule lets zero rows go
 //! it does not decide   it is the one row of a guard, and the ranges of two fields in the box say that another operand is strictly ahead
 //! ```
 //!
-//! Supports and rules are here. The ranges come out of the *guide function*: the model's field followed by probes, over the same tables;
-//! run with intervals, it gives the ranges of them all over a box.
+//! Supports and rules are here. The ranges come out of the *guide function*: the model's field followed by
+//! probes, over the same tables; run with intervals, it gives the ranges of them all over a box.
 //!
-//! A *guard* is a fold over one row around an operand that has tables of its own. Where the row is left out, the operand's field is what
-//! the fold starts with: 0, or the lowest or highest number where that never decides.
+//! A *guard* is a fold over one row around an operand that has tables of its own. Where the row is left out,
+//! the operand's field is what the fold starts with: 0, or the lowest or highest number where that never
+//! decides.
 
 pub use jbt_ir::Rule;
 use jbt_ir::{Function, Store, Table, Tables};
@@ -22,7 +24,8 @@ use crate::check::NodeId;
 /// Supports say nothing about points with a coordinate beyond this, in magnitude: 2^20.
 pub const LARGEST_COORDINATE: f32 = 1_048_576.0;
 
-/// What there is to know about the tables of a model. It fits the programs of all queries, which have the same tables.
+/// What there is to know about the tables of a model. It fits the programs of all queries, which have the
+/// same tables.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Guide {
     /// By table.
@@ -44,10 +47,11 @@ pub struct TableGuide {
     pub supports: Vec<Support>,
     /// What may be done with rows that are zero.
     pub rule: Rule,
-    /// Of each row, the tree node whose field it computes: a leaf (for each of its pieces too), an operator, a selector, or a warp.
+    /// Of each row, the tree node whose field it computes: a leaf (for each of its pieces too), an operator,
+    /// a selector, or a warp.
     pub nodes: Vec<NodeId>,
-    /// Whether its row is computed for rows of other tables, and seen by these alone: a field, an answer, or the point inside of a warp, which
-    /// several share.
+    /// Whether its row is computed for rows of other tables, and seen by these alone: a field, an answer, or
+    /// the point inside of a warp, which several share.
     pub is_lifted: bool,
 }
 
@@ -56,8 +60,9 @@ pub struct TableGuide {
 pub enum SpaceGuide {
     /// The world: supports are compared with the box itself.
     World,
-    /// The inside of a warp, whose point has the ranges of this probe and the two after it. They mean nothing where the probe's
-    /// value does not count: when a guard around the warp has been left out, and then so have the rows.
+    /// The inside of a warp, whose point has the ranges of this probe and the two after it. They mean nothing
+    /// where the probe's value does not count: when a guard around the warp has been left out, and then so
+    /// have the rows.
     Probed(usize),
     /// The insides of several warps: rows are not left out by their supports.
     Unknown,
@@ -70,7 +75,8 @@ pub struct Decision {
     pub table: Table,
     /// Which rows of the table are an operand.
     pub rows: DecidedRows,
-    /// The probe of the operand's field: where operands are rows, of the largest or smallest among those that run.
+    /// The probe of the operand's field: where operands are rows, of the largest or smallest among those that
+    /// run.
     pub operand: usize,
     /// The probe of the operator's field.
     pub node: usize,
@@ -92,21 +98,25 @@ pub enum DecidedRows {
 
 /// When an operand does not decide. `iso2` is [`Guide::iso2`].
 ///
-/// If the guard itself, or one around it, has been left out already, the probes mean nothing, and there is nothing to decide.
+/// If the guard itself, or one around it, has been left out already, the probes mean nothing, and there is
+/// nothing to decide.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum DecisionKind {
     /// `operand.high < node.low`.
     UnionOperand,
     /// `operand.low > node.high`.
     IntersectionOperand,
-    /// `operand.low > node.high && node.high < iso2`. The second part says that what is subtracted is there, so that it gives the attributes too.
+    /// `operand.low > node.high && node.high < iso2`. The second part says that what is subtracted is there,
+    /// so that it gives the attributes too.
     DifferenceLeft,
-    /// `node.high < min(max(iso2 - operand.high, 0), iso2)`, in f32 as the program computes it, where the operand is what is subtracted.
+    /// `node.high < min(max(iso2 - operand.high, 0), iso2)`, in f32 as the program computes it, where the
+    /// operand is what is subtracted.
     DifferenceRight,
 }
 
 impl DecisionKind {
-    /// Whether the operand does not decide, from the low and high ends of the ranges of its field and of the operator's.
+    /// Whether the operand does not decide, from the low and high ends of the ranges of its field and of the
+    /// operator's.
     #[must_use]
     pub fn spares(self, operand: [f32; 2], node: [f32; 2], iso2: f32) -> bool {
         match self {
@@ -120,9 +130,10 @@ impl DecisionKind {
 
 /// Where a row's field may be something else than zero: within a distance of a box.
 ///
-/// At a point outside, the program computes +0 for the field of the row and zeros of some sign for its gradient. This is proven for points
-/// with coordinates up to [`LARGEST_COORDINATE`] in the world, of numbers in f32 with their rounding. (A leaf whose strength is so small
-/// that fields round to zero inside of its support, and which is an operand of an intersection, may leave a subnormal gradient there.)
+/// At a point outside, the program computes +0 for the field of the row and zeros of some sign for its
+/// gradient. This is proven for points with coordinates up to [`LARGEST_COORDINATE`] in the world, of numbers
+/// in f32 with their rounding. (A leaf whose strength is so small that fields round to zero inside of its
+/// support, and which is an operand of an intersection, may leave a subnormal gradient there.)
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Support {
     /// The smallest corner of the core. Above the largest if nothing is inside.
@@ -140,7 +151,8 @@ impl Support {
 
     /// The points within a distance of a box, rounded outwards.
     pub(super) fn around(core: Bounds, radius: f64) -> Self {
-        // A gap, its square and a sum of three are each off by half a unit at most: five in all, and a root of the square here.
+        // A gap, its square and a sum of three are each off by half a unit at most: five in all, and a root
+        // of the square here.
         let radius = (radius * (1.0 + 1.0 / (1 << 20) as f64)).powi(2);
         Self {
             low: core.low().map(round_down),

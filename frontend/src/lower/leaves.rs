@@ -7,8 +7,9 @@ use super::shape::Lift;
 use crate::check::{CheckedTree, NodeId};
 use crate::kind::{NodeKind, Primitive};
 
-/// The leaves of a tree at their positions: one for each leaf and way of coordinates to it, whatever the attributes. A leaf that
-/// several parents share under the same maps is there once. Of a selector's children, only the chosen one has leaves.
+/// The leaves of a tree at their positions: one for each leaf and way of coordinates to it, whatever the
+/// attributes. A leaf that several parents share under the same maps is there once. Of a selector's children,
+/// only the chosen one has leaves.
 ///
 /// ```
 /// use jbt_frontend::builder::point;
@@ -63,9 +64,9 @@ impl<'a> LeafOccurrences<'a> {
     }
 
     /// A model of this leaf alone, where it stands in the whole, in local coordinates of that and with
-    /// strength 1: its field is above zero exactly inside the
-    /// primitive's support. Its numbers are, to the bit, those that it has in the program of the whole model, unless they follow
-    /// parameters: then to within rounding. Panics if there are not as many.
+    /// strength 1: its field is above zero exactly inside the primitive's support. Its numbers are, to the
+    /// bit, those that it has in the program of the whole model, unless they follow parameters: then to
+    /// within rounding. Panics if there are not as many.
     #[must_use]
     pub fn alone(&self, index: usize) -> CheckedTree {
         let field = self.asked[index];

@@ -1,6 +1,7 @@
 //! The accumulators of an operator: its field, and its attributes in the same traversal.
 //!
-//! An operator either *weighs* its operands (sum, Ricci, product), lets one *win* (union, intersection) or *steps* from one to the next.
+//! An operator either *weighs* its operands (sum, Ricci, product), lets one *win* (union, intersection) or
+//! *steps* from one to the next.
 //!
 //! ```text
 //! weighs   blend:     A = sum w a            in the end A / W, W = sum w
@@ -10,24 +11,18 @@
 //!          dominant:  that with the larger share
 //! ```
 
+mod group;
+
 use std::rc::Rc;
 
 use jbt_ir::{Domain, FunctionBuilder, Value};
 
+pub(super) use self::group::GroupAnswer;
+use self::group::GroupState;
 use super::reducer::{ReducerCode, RicciCode};
 use crate::attribute::Mixing;
 use crate::combine::{intersection, product, ricci, sum, union};
 use crate::expression::LARGEST_FIELD;
-
-/// One attribute group of an answer.
-#[derive(Clone, Debug)]
-pub(super) struct GroupAnswer {
-    pub(super) channels: Vec<Value>,
-    /// For dominant groups: the part of the answer's weight that belongs to the leaf behind it; `None` is all of it.
-    pub(super) share: Option<Value>,
-    /// Whether the channels are numbers of a row: finite in every lane.
-    pub(super) numbers: bool,
-}
 
 /// What a subtree answers at a point.
 #[derive(Clone, Debug)]
@@ -70,13 +65,15 @@ impl Operator {
         self.blend.expect("a Ricci blend has an exponent")
     }
 
-    /// Whether it gives the field of one operand and tells nobody which. Then bounds may wait until that is known.
+    /// Whether it gives the field of one operand and tells nobody which. Then bounds may wait until that is
+    /// known.
     pub(super) fn only_chooses(&self) -> bool {
         let chooses = matches!(self.code, ReducerCode::Union | ReducerCode::Intersection);
         chooses && !self.moving && self.mixing.is_empty()
     }
 
-    /// Whether operands need their place in the file: something is decided among several groups, and somebody sees by whom.
+    /// Whether operands need their place in the file: something is decided among several groups, and somebody
+    /// sees by whom.
     pub(super) fn wants_order(&self) -> bool {
         wants_order(self.code, self.ordered, self.moving, &self.mixing)
     }
@@ -93,24 +90,16 @@ pub(super) fn wants_order(code: ReducerCode, ordered: bool, moving: bool, mixing
     ordered && decides
 }
 
-/// The accumulators of one attribute group.
-#[derive(Clone, Debug)]
-struct GroupState {
-    channels: Vec<Value>,
-    /// Dominant groups: the largest weight so far if the operator weighs, the winner's share if it lets one win.
-    best: Option<Value>,
-    /// The place in the file of the operand behind `best`, where it matters.
-    order: Option<Value>,
-}
-
 /// The accumulators of an operator.
 #[derive(Clone, Debug)]
 pub(super) struct State {
-    /// Sum and product: that. Ricci: the largest operand and the relative sum. Union and intersection: the best field. Step: the left side.
+    /// Sum and product: that. Ricci: the largest operand and the relative sum. Union and intersection: the
+    /// best field. Step: the left side.
     field: Vec<Value>,
     /// The place in the file of the winner, where it matters.
     order: Option<Value>,
-    /// The sum of weights, where it is not among `field`. Step: 1 where the attributes so far have any weight, else 0.
+    /// The sum of weights, where it is not among `field`. Step: 1 where the attributes so far have any
+    /// weight, else 0.
     total: Option<Value>,
     groups: Vec<GroupState>,
 }
@@ -126,7 +115,8 @@ impl State {
             ReducerCode::Product => vec![product::start(d, operator.iso2)],
             // Until its first operand comes.
             ReducerCode::Step(_) => vec![zero],
-            // Zero takes part without a row: whoever is above zero wins all the same, and where nobody is there is only the default.
+            // Zero takes part without a row: whoever is above zero wins all the same, and where nobody is
+            // there is only the default.
             ReducerCode::Union if operator.non_negative => vec![zero],
             // Finite, because a range with an infinite end says nothing: every field is nearer to zero.
             ReducerCode::Union => vec![d.constant(if operator.bounded { -LARGEST_FIELD } else { f32::MIN })],
@@ -280,7 +270,8 @@ impl State {
                 for (sum, &channel) in state.channels.iter_mut().zip(&answer.channels) {
                     let so_far = rescale.map_or(*sum, |rescale| d.mul(*sum, rescale));
                     let added = d.fma(weight, channel, so_far);
-                    // A row without weight leaves the sum alone, whatever is in its channels: 0 * NaN must not get in.
+                    // A row without weight leaves the sum alone, whatever is in its channels: 0 * NaN must
+                    // not get in.
                     *sum = if answer.numbers {
                         added
                     } else {
@@ -401,68 +392,6 @@ pub(super) fn weighted(
         .zip(defaults)
         .map(|(group, default)| group.normalised(d, (total, total), default))
         .collect()
-}
-
-impl GroupState {
-    /// Takes the operand's channels where `takes`.
-    fn take(&mut self, d: &mut FunctionBuilder, takes: Value, answer: &GroupAnswer, order: Option<Value>) {
-        for (channel, &taken) in self.channels.iter_mut().zip(&answer.channels) {
-            *channel = d.select(takes, taken, *channel);
-        }
-        if let (Some(so_far), Some(order)) = (self.order, order) {
-            self.order = Some(d.select(takes, order, so_far));
-        }
-    }
-
-    /// The right side of a step comes to the left one.
-    fn join(&mut self, d: &mut FunctionBuilder, [left, right]: [Value; 2], answer: &GroupAnswer) {
-        let zero = d.constant(0.0);
-        let (has_left, has_right) = (d.lt(zero, left), d.lt(zero, right));
-        let total = d.add(left, right);
-        let part = d.div(right, total);
-        // A side that is alone keeps its bits: then leaving out the other one changes none.
-        if let Some(share) = self.best {
-            let one = d.constant(1.0);
-            let theirs = answer.share.unwrap_or(one);
-            let rest = d.div(left, total);
-            let (candidate, so_far) = (d.mul(part, theirs), d.mul(rest, share));
-            let takes = d.lt(so_far, candidate);
-            let both = d.select(takes, candidate, so_far);
-            let alone = d.select(has_left, both, theirs);
-            self.best = Some(d.select(has_right, alone, share));
-            let without_left = d.not(has_left);
-            let takes = d.either(takes, without_left);
-            let takes = d.both(takes, has_right);
-            self.take(d, takes, answer, None);
-            return;
-        }
-        for (channel, &theirs) in self.channels.iter_mut().zip(&answer.channels) {
-            let difference = d.sub(theirs, *channel);
-            let mixed = d.fma(part, difference, *channel);
-            let alone = d.select(has_left, mixed, theirs);
-            *channel = d.select(has_right, alone, *channel);
-        }
-    }
-
-    /// The group's answer once all weights are in; the default where `seen` is not positive.
-    ///
-    /// Divided, and not multiplied with a reciprocal: that is infinite for subnormal sums, and mixes like values inexactly.
-    fn normalised(
-        &self,
-        d: &mut FunctionBuilder,
-        (total, seen): (Value, Value),
-        default: &[Value],
-    ) -> GroupAnswer {
-        let zero = d.constant(0.0);
-        let any = d.lt(zero, seen);
-        let channels = self.channels.iter().zip(default).map(|(&channel, &default)| {
-            let mixed = if self.best.is_some() { channel } else { d.div(channel, total) };
-            d.select(any, mixed, default)
-        });
-        let channels = channels.collect();
-        let share = self.best.map(|best| d.div(best, total));
-        GroupAnswer { channels, share, numbers: false }
-    }
 }
 
 type StepFn = fn(&mut FunctionBuilder, Value, Value) -> Value;

@@ -6,22 +6,24 @@
 //!      sharing                       are alike       ──rows──► ir::Tables         its numbers become rows
 //! ```
 //!
-//! * `occurrence`: affine and attribute nodes dissolve into the position and the attribute bindings of the leaves below them;
-//!   a node that is met twice at one position is one occurrence.
+//! * `occurrence`: affine and attribute nodes dissolve into the position and the attribute bindings of the
+//!   leaves below them; a node that is met twice at one position is one occurrence.
 //! * `shape`: nested operators of a kind flatten; occurrences that differ in numbers alone have one shape.
-//! * `emit`: children of one operator that have one shape are the rows of one table, under one fold. Field and attribute
-//!   weights come out of the same traversal; the gradient is the business of a later pass.
+//! * `emit`: children of one operator that have one shape are the rows of one table, under one fold. Field
+//!   and attribute weights come out of the same traversal; the gradient is the business of a later pass.
 //! * `slopes`: how a formula's value follows its children's, for the weights of their attributes.
 //! * `computed`: attribute values that are functions of the point.
 //! * `demand`: what selectors leave out has code, in folds whose rows are not active.
 //! * `rows`: walks the occurrences in the order of `emit` and writes down their numbers.
 //! * `support`: finds for each occurrence where it can be anything but zero, in the program's own arithmetic.
-//! * [`guide`]: what somebody has to know who leaves rows out: supports, rules, and a function of probes; `guided` makes it.
+//! * [`guide`]: what somebody has to know who leaves rows out: supports, rules, and a function of probes;
+//!   `guided` makes it.
 //! * `names`: the names that all of them use.
 //!
 //! The tables, their rows and the order of these are the same for every query; only columns differ.
 //!
-//! The program's body is a fold over the one row of the table `scene`, which holds the numbers of whatever is there once.
+//! The program's body is a fold over the one row of the table `scene`, which holds the numbers of whatever is
+//! there once.
 
 mod computed;
 mod demand;
@@ -59,7 +61,8 @@ pub struct Lowered {
     pub tables: Tables,
 }
 
-/// A model on its way to programs: what stands where, and which parts are alike. It is found once, for all that is asked of the model.
+/// A model on its way to programs: what stands where, and which parts are alike. It is found once, for all
+/// that is asked of the model.
 pub struct Lowering<'a> {
     scene: occurrence::Scene<'a>,
     shapes: shape::Shapes,
@@ -92,8 +95,8 @@ impl<'a> Lowering<'a> {
     /// Trees of one shape give equal functions, whatever their numbers; their tables may be exchanged.
     ///
     /// # Errors
-    /// Located diagnostics: numbers that leave the range of f32 once all transforms are applied, or a program beyond
-    /// [`jbt_ir::limits`].
+    /// Located diagnostics: numbers that leave the range of f32 once all transforms are applied, or a program
+    /// beyond [`jbt_ir::limits`].
     pub fn answers(&self, query: Query) -> Result<Lowered, Vec<Diagnostic>> {
         let code = emit::emit(&self.scene, &self.shapes, query)?;
         let rows = rows::rows(&self.scene, &self.shapes, query, &code)?;

@@ -1,7 +1,7 @@
 //! What stands where: the tree with affine and attribute nodes dissolved into positions and bindings.
 //!
-//! An *occurrence* is a node at a position with attribute bindings. A node that is reached twice with the same of each is one
-//! occurrence with two uses; under other coordinates it is another one.
+//! An *occurrence* is a node at a position with attribute bindings. A node that is reached twice with the
+//! same of each is one occurrence with two uses; under other coordinates it is another one.
 
 use std::borrow::Cow;
 
@@ -57,7 +57,8 @@ pub(super) struct LeafField {
     pub(super) uses: u32,
     /// The map from the skeleton's pose, scaled, to the space in which it is asked.
     pub(super) map: DAffine3,
-    /// How many times as large as it was written the skeleton is in its pose. A similarity ends up here; other maps leave it at 1.
+    /// How many times as large as it was written the skeleton is in its pose. A similarity ends up here;
+    /// other maps leave it at 1.
     pub(super) scale: f64,
     pub(super) code: LeafCode,
 }
@@ -73,7 +74,8 @@ pub(super) struct LeafCode {
     pub(super) strong: bool,
 }
 
-/// An operator whose operands are alike: any number of them, in any order but for ties; the operands of a step in that of the file.
+/// An operator whose operands are alike: any number of them, in any order but for ties; the operands of a
+/// step in that of the file.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) enum Reducer {
     Sum,
@@ -115,7 +117,8 @@ pub(super) enum OccurrenceKind {
         kind: UnaryKind,
         child: OccurrenceId,
     },
-    /// A formula of the point and of the children's fields: a leaf with attributes of its own, if there are none.
+    /// A formula of the point and of the children's fields: a leaf with attributes of its own, if there are
+    /// none.
     Expression {
         position: PositionId,
         /// What the sides of its box are counted from, in the space of the node.
@@ -142,7 +145,8 @@ pub(super) struct Occurrence {
     pub(super) uses: u32,
     /// Whether its field can never be negative.
     pub(super) non_negative: bool,
-    /// Whether its field is never further from 0 than [`LARGEST_FIELD`](crate::expression::LARGEST_FIELD), wherever the point is.
+    /// Whether its field is never further from 0 than [`LARGEST_FIELD`](crate::expression::LARGEST_FIELD),
+    /// wherever the point is.
     pub(super) bounded: bool,
 }
 

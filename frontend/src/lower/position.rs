@@ -1,4 +1,5 @@
-//! Where an occurrence stands: in which space its points are asked, and the affine map from there to its own space.
+//! Where an occurrence stands: in which space its points are asked, and the affine map from there to its own
+//! space.
 //!
 //! Affine runs collapse into one matrix. What a row has to do to the point depends on the matrix:
 //!
@@ -10,8 +11,9 @@
 //! | full | 12 | 9 fused steps |
 
 //!
-//! A map that follows parameters has the kind that serves all their values, and is told from others by how it was made: two that are equal
-//! for the present values are not one position, because they will not be equal for the next ones.
+//! A map that follows parameters has the kind that serves all their values, and is told from others by how it
+//! was made: two that are equal for the present values are not one position, because they will not be equal
+//! for the next ones.
 
 use std::collections::HashMap;
 
@@ -126,16 +128,17 @@ impl Position {
         MapKind::of(&self.map).max(least)
     }
 
-    /// The map from the frame in which a skeleton that stands here has its uv, and what its inverse is as code. `follows`: numbers of the
-    /// skeleton follow parameters.
+    /// The map from the frame in which a skeleton that stands here has its uv, and what its inverse is as
+    /// code. `follows`: numbers of the skeleton follow parameters.
     pub(super) fn of_uv(&self, skeleton: &Skeleton, follows: bool) -> (DAffine3, MapKind) {
         let map = self.map * skeleton.uv_frame();
         let least = if follows || self.trail.name != 0 { MapKind::Full } else { MapKind::Translation };
         (map, MapKind::of(&map).max(least))
     }
 
-    /// The map from the pose of a skeleton that stands here, the size of the skeleton there, and what the inverse of the map is as
-    /// code: at least a translation, so that a primitive that passes the origin keeps its code. `turns`: the skeleton itself can turn.
+    /// The map from the pose of a skeleton that stands here, the size of the skeleton there, and what the
+    /// inverse of the map is as code: at least a translation, so that a primitive that passes the origin
+    /// keeps its code. `turns`: the skeleton itself can turn.
     pub(super) fn of_skeleton(&self, skeleton: &Skeleton, turns: bool) -> (DAffine3, f64, MapKind) {
         let (pose, symmetry) = (skeleton.pose(), skeleton.kind().symmetry());
         let freedom = self.trail.freedom();

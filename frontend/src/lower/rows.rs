@@ -1,7 +1,7 @@
 //! The numbers of a scene: for every row, what its code asks for, in the order in which it asks.
 //!
-//! This goes through the occurrences as [`super::emit`] does, but through all members of a group and not the first alone, and writes
-//! numbers where that declares columns. Numbers are derived in f64 and rounded once.
+//! This goes through the occurrences as [`super::emit`] does, but through all members of a group and not the
+//! first alone, and writes numbers where that declares columns. Numbers are derived in f64 and rounded once.
 
 use jbt_ir::{Entity, Rows, Store, Table, Tables};
 
@@ -73,7 +73,8 @@ enum Task {
 /// What is behind a row.
 #[derive(Clone, Copy)]
 pub(super) enum Member {
-    /// What stands here: the scene, an operand, or a selector's child. And its place in the order of its operator, where that is a column.
+    /// What stands here: the scene, an operand, or a selector's child. And its place in the order of its
+    /// operator, where that is a column.
     Operand(OccurrenceId, Option<u32>),
     /// What is lifted and has a guard.
     Lifted(Lift),
@@ -326,7 +327,8 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// The numbers of a formula: the map to its space, its own, and those of the leaf that it is without children.
+    /// The numbers of a formula: the map to its space, its own, and those of the leaf that it is without
+    /// children.
     fn express(&mut self, id: OccurrenceId) {
         let occurrence = self.scene.occurrence(id);
         let OccurrenceKind::Expression { position, shift, bindings, children, computed } = &occurrence.kind

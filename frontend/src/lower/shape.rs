@@ -1,70 +1,26 @@
 //! Which occurrences are alike: same node kinds, different numbers.
 //!
-//! A shape is what selects code. Nested operators of a kind flatten into one; an occurrence with several uses is *lifted*: computed
-//! once, where its space begins, and seen by the others as a value. The children of an operator form groups, one for each shape; a
-//! group is the rows of one table, unless its shape holds tables of its own and there is one such child: that one is written out.
+//! A shape is what selects code. Nested operators of a kind flatten into one; an occurrence with several uses
+//! is *lifted*: computed once, where its space begins, and seen by the others as a value. The children of an
+//! operator form groups, one for each shape; a group is the rows of one table, unless its shape holds tables
+//! of its own and there is one such child: that one is written out.
 //!
-//! What is written out, and is worth it, gets a *guard*: it is the one row of a table, so that it can be left out where it does not matter.
+//! What is written out, and is worth it, gets a *guard*: it is the one row of a table, so that it can be left
+//! out where it does not matter.
+
+mod key;
 
 use std::sync::Arc;
 
 use rustc_hash::FxHashMap as HashMap;
 
+pub(super) use self::key::ShapeId;
+use self::key::{Content, ShapeKey};
 use super::computed::ComputedShape;
 use super::names::ComputedId;
 pub(super) use super::names::Lift;
 use super::occurrence::{FieldId, LeafCode, OccurrenceId, OccurrenceKind, Reducer, Scene, SpaceId};
-use super::position::MapKind;
 use super::reducer::ReducerCode;
-use crate::combine::unary::UnaryKind;
-use crate::expression::Form;
-use crate::warp::WarpCode;
-
-/// The name of a shape.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, PartialOrd, Ord)]
-pub(super) struct ShapeId(u32);
-
-#[derive(Clone, PartialEq, Eq, Hash, Debug)]
-enum ShapeKey {
-    Leaf(LeafCode, Box<[Option<ComputedShape>]>),
-    /// A lifted field with attributes of its own.
-    LeafOf(FieldId, Box<[Option<ComputedShape>]>),
-    Warp {
-        map: MapKind,
-        warp: WarpCode,
-        child: ShapeId,
-        weight: Option<ShapeId>,
-        pinned: Option<SpaceId>,
-    },
-    Reduce {
-        code: ReducerCode,
-        non_negative: bool,
-        groups: Vec<(ShapeId, usize)>,
-    },
-    Difference {
-        left: ShapeId,
-        right: ShapeId,
-    },
-    Map {
-        kind: UnaryKind,
-        child: ShapeId,
-    },
-    /// A use of a space that several lead into.
-    Inside {
-        space: SpaceId,
-        child: ShapeId,
-    },
-    Expression {
-        map: Option<MapKind>,
-        form: Arc<Form>,
-        vanishes: bool,
-        non_negative: bool,
-        children: Vec<ShapeId>,
-        computed: Box<[Option<ComputedShape>]>,
-    },
-    Select(Vec<ShapeId>),
-    Lifted(OccurrenceId),
-}
 
 /// The children of an operator that have one shape.
 #[derive(Clone, Debug)]
@@ -75,12 +31,6 @@ pub(super) struct Group {
     pub(super) members: Vec<(OccurrenceId, u32)>,
 }
 
-/// How many folds there may be around a guard. Behind so many, what is left of a deep model is mostly left out with what is around it.
-///
-/// Folds over several rows that own rows double the occurrences each, so there are at most 22 of these in each other, by
-/// [`jbt_ir::limits::MAX_OCCURRENCES`]; with this many guards they stay below [`jbt_ir::limits::MAX_FOLD_DEPTH`].
-const MAX_DEPTH_OF_GUARDS: usize = 24;
-
 /// Operations of a formula that cost as much as a leaf.
 const STEPS_OF_A_LEAF: usize = 16;
 
@@ -88,42 +38,6 @@ const STEPS_OF_A_LEAF: usize = 16;
 fn steps_of(scene: &Scene<'_>, computed: &[Option<ComputedId>]) -> usize {
     let here = computed.iter().flatten().map(|&id| scene.computed(id)).filter(|computed| !computed.shared);
     here.map(|computed| computed.kind.steps()).sum()
-}
-
-/// What the code of a shape consists of. The pieces of a leaf are a table, but a leaf is a row all the same: so any number of them is the
-/// same code.
-#[derive(Clone, Copy, Debug)]
-struct Content {
-    /// Whether a use of it has to be written out: it holds tables, or is a lifted value.
-    written_out: bool,
-    /// Whether tables hang under it. Lifted values count where they are computed.
-    tables: bool,
-    /// Leaves that are computed where it stands, those in tables left out.
-    leaves: usize,
-    /// Whether it holds a formula of the point, of which no support is known.
-    formulas: bool,
-}
-
-impl Content {
-    const LEAF: Self = Self { written_out: false, tables: false, leaves: 1, formulas: false };
-    const LIFTED: Self = Self { written_out: true, tables: false, leaves: 0, formulas: false };
-    /// Rows of a table.
-    const ROWS: Self = Self { written_out: true, tables: true, leaves: 0, formulas: false };
-
-    /// Both, one after the other.
-    const fn and(self, other: Self) -> Self {
-        Self {
-            written_out: self.written_out || other.written_out,
-            tables: self.tables || other.tables,
-            leaves: self.leaves.saturating_add(other.leaves),
-            formulas: self.formulas || other.formulas,
-        }
-    }
-
-    /// Whether it is worth a guard inside of so many folds.
-    const fn wants_guard(self, depth: usize) -> bool {
-        (self.tables || self.leaves > 1) && depth < MAX_DEPTH_OF_GUARDS
-    }
 }
 
 /// The shapes of a scene.
@@ -151,15 +65,16 @@ impl Shapes {
         self.contents[id.0 as usize].formulas
     }
 
-    /// Whether an operand that is not a row is computed under a guard, inside of `depth` folds. What is lifted is not: its value is there.
+    /// Whether an operand that is not a row is computed under a guard, inside of `depth` folds. What is
+    /// lifted is not: its value is there.
     pub(super) fn guards_operand(&self, scene: &Scene<'_>, id: OccurrenceId, depth: usize) -> bool {
         let content = self.contents[id.0 as usize];
         // Without tables of its own it may stand in a row, whose shape guards must not change.
         scene.occurrence(id).uses == 1 && content.written_out && content.wants_guard(depth)
     }
 
-    /// Whether what is lifted is computed under a guard, inside of `depth` folds: because some choices of selectors do without it, or
-    /// because it is worth one.
+    /// Whether what is lifted is computed under a guard, inside of `depth` folds: because some choices of
+    /// selectors do without it, or because it is worth one.
     pub(super) fn guards_lift(&self, scene: &Scene<'_>, lift: Lift, depth: usize) -> bool {
         let worth = match lift {
             Lift::Occurrence(id) => self.contents[id.0 as usize].wants_guard(depth),
@@ -243,8 +158,8 @@ impl<'a> Classifier<'a> {
         self.result
     }
 
-    /// Lifts the point inside of a weighted warp that several occurrences share, when the first of them is met: its weight, and whatever that is
-    /// made of, came before.
+    /// Lifts the point inside of a weighted warp that several occurrences share, when the first of them is
+    /// met: its weight, and whatever that is made of, came before.
     fn lift_weighted(&mut self, id: OccurrenceId) {
         let occurrence = self.scene.occurrence(id);
         let OccurrenceKind::Warp { inside, weight: Some(_), .. } = occurrence.kind else { return };
@@ -276,43 +191,8 @@ impl<'a> Classifier<'a> {
                 let computed = self.computed(computed, occurrence.space);
                 self.name(ShapeKey::LeafOf(*field, computed), Content::LIFTED)
             }
-            OccurrenceKind::Leaf { field, computed, .. } => {
-                let code = self.scene.field(*field).code;
-                let is_plain = computed.is_empty();
-                if let Some((last, shape)) = self.last_leaf
-                    && is_plain
-                    && last == code
-                {
-                    return shape;
-                }
-                let key = ShapeKey::Leaf(code, self.computed(computed, occurrence.space));
-                let tables = code.skeleton.pieces().is_some();
-                let leaves = 1 + steps_of(self.scene, computed) / STEPS_OF_A_LEAF;
-                let shape = self.name(key, Content { tables, leaves, ..Content::LEAF });
-                if is_plain {
-                    self.last_leaf = Some((code, shape));
-                }
-                shape
-            }
-            OccurrenceKind::Warp { position, inside, child, weight } => {
-                let (child, mut content) = self.of(*child);
-                let weight = weight.map(|weight| self.of(weight).0);
-                // A weight is a lifted value.
-                content.written_out |= weight.is_some();
-                if self.scene.is_shared(*inside) {
-                    content.written_out = true;
-                    return self.name(ShapeKey::Inside { space: *inside, child }, content);
-                }
-                // What is lifted to the start of this space has to be visible to all of it, so the warp stands alone.
-                let lifts = self.result.lifts.get(inside);
-                let pinned = lifts.map(|_| *inside);
-                content.written_out |= pinned.is_some();
-                content.leaves = content.leaves.saturating_add(lifts.map_or(0, Vec::len));
-                let map = self.scene.position(*position).kind();
-                let warp = self.scene.warp(occurrence.node).code();
-                let key = ShapeKey::Warp { map, warp, child, weight, pinned };
-                self.name(key, content)
-            }
+            OccurrenceKind::Leaf { field, computed, .. } => self.leaf(*field, computed, occurrence.space),
+            OccurrenceKind::Warp { .. } => self.warp(id),
             OccurrenceKind::Difference { left, right } => {
                 let ((left, content), (right, other)) = (self.of(*left), self.of(*right));
                 self.name(ShapeKey::Difference { left, right }, content.and(other))
@@ -331,33 +211,79 @@ impl<'a> Classifier<'a> {
                 // Its user asks for its children; nobody asks for its shape.
                 self.name(ShapeKey::Lifted(id), Content::LIFTED)
             }
-            OccurrenceKind::Reduce { reducer, .. } => {
-                let code = ReducerCode::of(*reducer);
-                let groups = self.group(id, code);
-                let content = groups.iter().fold(Content::LIFTED, |all, group| {
-                    let of = |member: &(OccurrenceId, u32)| self.of(member.0).1;
-                    match group.folded {
-                        true => {
-                            all.and(Content { formulas: of(&group.members[0]).formulas, ..Content::ROWS })
-                        }
-                        false => group.members.iter().fold(all, |all, member| all.and(of(member))),
-                    }
-                });
-                let key = ShapeKey::Reduce {
-                    code,
-                    non_negative: non_negative(self.scene, &groups),
-                    groups: groups
-                        .iter()
-                        .map(|group| {
-                            let (shape, _) = self.of(group.members[0].0);
-                            (shape, if group.folded { 0 } else { group.members.len() })
-                        })
-                        .collect(),
-                };
-                self.result.groups.insert(id, groups);
-                self.name(key, content)
-            }
+            OccurrenceKind::Reduce { reducer, .. } => self.reduce(id, ReducerCode::of(*reducer)),
         }
+    }
+
+    /// The shape of a leaf with its own field.
+    fn leaf(&mut self, field: FieldId, computed: &[Option<ComputedId>], space: SpaceId) -> ShapeId {
+        let code = self.scene.field(field).code;
+        let is_plain = computed.is_empty();
+        if let Some((last, shape)) = self.last_leaf
+            && is_plain
+            && last == code
+        {
+            return shape;
+        }
+        let key = ShapeKey::Leaf(code, self.computed(computed, space));
+        let tables = code.skeleton.pieces().is_some();
+        let leaves = 1 + steps_of(self.scene, computed) / STEPS_OF_A_LEAF;
+        let shape = self.name(key, Content { tables, leaves, ..Content::LEAF });
+        if is_plain {
+            self.last_leaf = Some((code, shape));
+        }
+        shape
+    }
+
+    /// The shape of a warp, with what is below it.
+    fn warp(&mut self, id: OccurrenceId) -> ShapeId {
+        let occurrence = self.scene.occurrence(id);
+        let OccurrenceKind::Warp { position, inside, child, weight } = &occurrence.kind else {
+            unreachable!("it is a warp")
+        };
+        let (child, mut content) = self.of(*child);
+        let weight = weight.map(|weight| self.of(weight).0);
+        // A weight is a lifted value.
+        content.written_out |= weight.is_some();
+        if self.scene.is_shared(*inside) {
+            content.written_out = true;
+            return self.name(ShapeKey::Inside { space: *inside, child }, content);
+        }
+        // What is lifted to the start of this space has to be visible to all of it, so the warp
+        // stands alone.
+        let lifts = self.result.lifts.get(inside);
+        let pinned = lifts.map(|_| *inside);
+        content.written_out |= pinned.is_some();
+        content.leaves = content.leaves.saturating_add(lifts.map_or(0, Vec::len));
+        let map = self.scene.position(*position).kind();
+        let warp = self.scene.warp(occurrence.node).code();
+        let key = ShapeKey::Warp { map, warp, child, weight, pinned };
+        self.name(key, content)
+    }
+
+    /// The shape of an operator, whose children of one shape are a group.
+    fn reduce(&mut self, id: OccurrenceId, code: ReducerCode) -> ShapeId {
+        let groups = self.group(id, code);
+        let content = groups.iter().fold(Content::LIFTED, |all, group| {
+            let of = |member: &(OccurrenceId, u32)| self.of(member.0).1;
+            match group.folded {
+                true => all.and(Content { formulas: of(&group.members[0]).formulas, ..Content::ROWS }),
+                false => group.members.iter().fold(all, |all, member| all.and(of(member))),
+            }
+        });
+        let key = ShapeKey::Reduce {
+            code,
+            non_negative: non_negative(self.scene, &groups),
+            groups: groups
+                .iter()
+                .map(|group| {
+                    let (shape, _) = self.of(group.members[0].0);
+                    (shape, if group.folded { 0 } else { group.members.len() })
+                })
+                .collect(),
+        };
+        self.result.groups.insert(id, groups);
+        self.name(key, content)
     }
 
     /// The shape of a formula: its form, and whether it asks for the point.
@@ -470,9 +396,11 @@ pub(super) fn bounded(scene: &Scene<'_>, groups: &[Group]) -> bool {
     groups.iter().flat_map(|group| &group.members).all(|(member, _)| scene.occurrence(*member).bounded)
 }
 
-/// Which operators dissolve into the operator that uses them: same kind, one use, and the same answers either way.
+/// Which operators dissolve into the operator that uses them: same kind, one use, and the same answers either
+/// way.
 ///
-/// A sum of sums mixes attributes in the same way only if no partial sum can be negative: a negative one has no weight as a whole.
+/// A sum of sums mixes attributes in the same way only if no partial sum can be negative: a negative one has
+/// no weight as a whole.
 fn flattened(scene: &Scene<'_>) -> Vec<bool> {
     let mut flattened = vec![false; scene.occurrences.len()];
     for occurrence in &scene.occurrences {

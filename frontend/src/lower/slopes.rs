@@ -1,12 +1,13 @@
-//! How a formula's value follows the fields of its children: `dF/df_i` for all of them, in one walk back over its ops (Linnainmaa 1970).
+//! How a formula's value follows the fields of its children: `dF/df_i` for all of them, in one walk back over
+//! its ops (Linnainmaa 1970).
 //!
 //! ```text
 //! forward    each op that the formula emits goes on a tape
 //! backward   dF/dF = 1; an op r = op(a, b) adds dF/dr dr/da to dF/da, and dF/dr dr/db to dF/db
 //! ```
 //!
-//! This is for the weights that mix attributes, `max(0, f_i dF/df_i)`. Time is linear in the formula, however many children it has. The gradient in
-//! space is another matter, and that of a pass.
+//! This is for the weights that mix attributes, `max(0, f_i dF/df_i)`. Time is linear in the formula, however
+//! many children it has. The gradient in space is another matter, and that of a pass.
 
 use rustc_hash::FxHashMap as HashMap;
 

@@ -1,29 +1,35 @@
 //! Supports: where an occurrence's field can be anything but zero, as the compiled program computes it.
 //!
-//! A leaf's field is zero where its skeleton is farther away than its radius, and so is, outside of a box, whatever is made of leaves. The
-//! program computes in f32, so all boxes are inflated by what rounding may do. With `u = 2^-24`, half a unit in the last place of 1:
+//! A leaf's field is zero where its skeleton is farther away than its radius, and so is, outside of a box,
+//! whatever is made of leaves. The program computes in f32, so all boxes are inflated by what rounding may
+//! do. With `u = 2^-24`, half a unit in the last place of 1:
 //!
-//! **The map.** A row holds `R = A^-1` and `t = -R a` for a map `p = A q + a`, each number off by u of itself, and the program takes
-//! at most three fused steps for a coordinate, each off by u of what it has so far. So coordinate k is off by at most
-//! `4.01 u (sum_j |R_kj p_j| + |t_k|)`, for which 6 u stands here; a subtraction is off by less. With `|p| <= |A| |q| + |a|` this is
+//! **The map.** A row holds `R = A^-1` and `t = -R a` for a map `p = A q + a`, each number off by u of
+//! itself, and the program takes at most three fused steps for a coordinate, each off by u of what it has so
+//! far. So coordinate k is off by at most `4.01 u (sum_j |R_kj p_j| + |t_k|)`, for which 6 u stands here; a
+//! subtraction is off by less. With `|p| <= |A| |q| + |a|` this is
 //!
 //! ```text
 //! e(q) <= N |q| + n        N = 6 u |R| |A| + |R A - I|        n = 6 u (|R| |a| + |t|) + |R a + t| + 2^-86
 //! ```
 //!
-//! where the second terms are what R, computed in f64, is no inverse of A by, and 2^-86 is more than underflow takes from numbers of a
-//! row, times coordinates up to 2^60.
+//! where the second terms are what R, computed in f64, is no inverse of A by, and 2^-86 is more than
+//! underflow takes from numbers of a row, times coordinates up to 2^60.
 //!
-//! **The distance.** It is that of a [`Metric`](crate::skeleton::Metric): it changes by at most S times the length of e, S the steepness, and is computed with the
-//! [`ROUNDING`] of skeletons. With the true distance d, the largest coordinates K of the skeleton in its pose, and the half sizes h of a box around the metric's
-//! unit ball, `|q_k| <= K_k + d h_k`. So what is computed is at least `d - S |N K + n| - d S |N h| - ROUNDING (|K| + d) - 2^-73`, which grows with d. Of the
-//! Euclidean distance, S is 1 and so are all h_k. Where d is at most r, q is in the skeleton grown by r times the unit ball, whose image reaches as far as the metric says.
+//! **The distance.** It is that of a [`Metric`](crate::skeleton::Metric): it changes by at most S times the
+//! length of e, S the steepness, and is computed with the [`ROUNDING`] of skeletons. With the true distance
+//! d, the largest coordinates K of the skeleton in its pose, and the half sizes h of a box around the
+//! metric's unit ball, `|q_k| <= K_k + d h_k`. So what is computed is at least `d - S |N K + n| - d S |N h| -
+//! ROUNDING (|K| + d) - 2^-73`, which grows with d. Of the Euclidean distance, S is 1 and so are all h_k.
+//! Where d is at most r, q is in the skeleton grown by r times the unit ball, whose image reaches as far as
+//! the metric says.
 //!
-//! **The falloff.** It is `max(fma(d^2, -1 / r^2 (1 + u), 1), 0)`: zero, with zero slope, as soon as the computed d is `r (1 + u)`.
-//! Whatever the falloff is, it is written in that, and is exactly +0 there. The factors of its derivative are bounded by its steepness.
+//! **The falloff.** It is `max(fma(d^2, -1 / r^2 (1 + u), 1), 0)`: zero, with zero slope, as soon as the
+//! computed d is `r (1 + u)`. Whatever the falloff is, it is written in that, and is exactly +0 there. The
+//! factors of its derivative are bounded by its steepness.
 //!
-//! All this takes numbers that do not overflow, so there is a bound of the coordinates at which points are asked,
-//! [`LARGEST_COORDINATE`], and rows whose numbers could overflow within it are bounded by nothing.
+//! All this takes numbers that do not overflow, so there is a bound of the coordinates at which points are
+//! asked, [`LARGEST_COORDINATE`], and rows whose numbers could overflow within it are bounded by nothing.
 
 use glam::{DAffine3, DMat3, DVec3};
 use rustc_hash::FxHashMap as HashMap;
@@ -41,7 +47,8 @@ use crate::skeleton::{Metric, ROUNDING};
 
 /// Half a unit in the last place of 1 in f32.
 const HALF_UNIT: f64 = 1.0 / (1 << 24) as f64;
-/// What numbers of the program may grow to: far from overflow, also if three squares of such numbers are added.
+/// What numbers of the program may grow to: far from overflow, also if three squares of such numbers are
+/// added.
 const LARGEST_NUMBER: f64 = (1u64 << 60) as f64;
 /// What factors of a derivative may grow to.
 const LARGEST_FACTOR: f64 = LARGEST_NUMBER * LARGEST_NUMBER;
@@ -227,7 +234,8 @@ fn sizes(scene: &Scene<'_>) -> Vec<Sizes> {
     sizes
 }
 
-/// Bounds of how fast the fields of occurrences change in their space, far above what they do: they are there to exclude overflow.
+/// Bounds of how fast the fields of occurrences change in their space, far above what they do: they are there
+/// to exclude overflow.
 fn slopes_of(scene: &Scene<'_>) -> Vec<f64> {
     let mut slopes: Vec<f64> = Vec::with_capacity(scene.occurrences.len());
     for occurrence in &scene.occurrences {
@@ -274,7 +282,8 @@ impl Sizes {
     }
 }
 
-/// The inverse of a map, and what rounding does to the coordinates that it gives: `error <= relative |q| + fixed`.
+/// The inverse of a map, and what rounding does to the coordinates that it gives: `error <= relative |q| +
+/// fixed`.
 struct Inverse {
     back: DAffine3,
     relative: DMat3,
@@ -400,7 +409,8 @@ impl<'a> Leaf<'a> {
     }
 }
 
-/// A box such that the program takes no point outside of it into `bounds`, by the inverse of a position's map.
+/// A box such that the program takes no point outside of it into `bounds`, by the inverse of a position's
+/// map.
 fn around_map(position: &Position, bounds: Bounds) -> Bounds {
     if bounds.is_empty() {
         return Bounds::EMPTY;

@@ -5,7 +5,8 @@ use glam::DAffine3;
 use crate::member::Member;
 use crate::report::Fault;
 
-/// How much the linear part of an affine map can change, from least to most: what its code has to be ready for.
+/// How much the linear part of an affine map can change, from least to most: what its code has to be ready
+/// for.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
 pub(crate) enum Freedom {
     /// Not at all.

@@ -1,7 +1,7 @@
 //! Affine maps as they are written. One file a member, one list.
 //!
-//! A map states its parameters, its matrix, and how much its linear part can change with parameters. To add one: write
-//! its file, add its line to the list below.
+//! A map states its parameters, its matrix, and how much its linear part can change with parameters. To add
+//! one: write its file, add its line to the list below.
 
 use glam::DAffine3;
 
@@ -35,7 +35,8 @@ macro_rules! maps {
             #[must_use]
             pub const fn fields(self) -> &'static [Field] { match self { $( Self::$name => $name::FIELDS, )+ } }
 
-            /// Whether the parameters are written by name. Otherwise there is one, whose value stands behind the word.
+            /// Whether the parameters are written by name. Otherwise there is one, whose value stands behind
+            /// the word.
             #[must_use]
             pub const fn is_named(self) -> bool { match self { $( Self::$name => $name::NAMED, )+ } }
 

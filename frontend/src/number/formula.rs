@@ -214,7 +214,8 @@ pub(crate) fn show<W: fmt::Write>(
                 pieces.push(Piece::Step(mine[0], SIGN));
             }
             Step::Binary(binary) => {
-                // Operands group to the left, powers to the right; a sign in an exponent needs no parentheses.
+                // Operands group to the left, powers to the right; a sign in an exponent needs no
+                // parentheses.
                 let (left, right) = match binary {
                     Binary::Power => (ATOM, SIGN),
                     Binary::Add | Binary::Subtract | Binary::Multiply | Binary::Divide => {

@@ -1,7 +1,7 @@
 //! The arc: a part of a circle, up to all of it.
 //!
-//! In the pose its middle is on the x axis, so that the two halves are alike and `|y|` will do. With a the angle from the middle to an end, and phi that of
-//! the point,
+//! In the pose its middle is on the x axis, so that the two halves are alike and `|y|` will do. With a the
+//! angle from the middle to an end, and phi that of the point,
 //!
 //! ```text
 //!       end                     phi <= a:   (rho - radius)^2 + z^2
@@ -10,9 +10,10 @@
 //!    ·────────●── x             phi <= a:   x sin a - |y| cos a >= 0,   for 0 < a <= pi
 //! ```
 //!
-//! The two distances are the same where phi = a, so that rounding may decide as it likes there. Their difference is largest on the other side, at
-//! a - phi = +-pi, where the condition is just as near to 0: but there, with a near 0 or pi, both its terms have one sign. A sine that is kept above 0
-//! makes that so for a = 0 and a = pi, too.
+//! The two distances are the same where phi = a, so that rounding may decide as it likes there. Their
+//! difference is largest on the other side, at a - phi = +-pi, where the condition is just as near to 0: but
+//! there, with a near 0 or pi, both its terms have one sign. A sine that is kept above 0 makes that so for a
+//! = 0 and a = pi, too.
 
 use glam::{DAffine3, DVec2, DVec3};
 use jbt_ir::Domain;
@@ -29,9 +30,11 @@ member! {
     pub struct Arc = "arc" {
         /// The middle of its circle.
         pub center: DVec3 [Position] = Vector([0.0; 3]),
-        /// The direction of the circle's axis, of any length but 0: seen from its tip the arc goes counterclockwise.
+        /// The direction of the circle's axis, of any length but 0: seen from its tip the arc goes
+        /// counterclockwise.
         pub normal: DVec3 [Direction] = Vector([0.0, 0.0, 1.0]),
-        /// The direction from the middle of the circle to where the arc begins: only the part across the normal counts.
+        /// The direction from the middle of the circle to where the arc begins: only the part across the
+        /// normal counts.
         pub start: DVec3 [Direction] = Vector([1.0, 0.0, 0.0]),
         /// How far it goes, in degrees: from 0 to 360.
         pub degrees: f64 [Degrees],
@@ -40,7 +43,8 @@ member! {
     }
 }
 
-/// What the sine in the condition is at least. It is far above what underflow takes from products with lengths.
+/// What the sine in the condition is at least. It is far above what underflow takes from products with
+/// lengths.
 const SMALLEST_SINE: f64 = 1e-20;
 
 impl Arc {
@@ -105,7 +109,8 @@ impl SkeletonMember for Arc {
         (DVec3::new(q.x, q.y.abs(), q.z) - self.radius * DVec3::new(cos, sin, 0.0)).length_squared()
     }
 
-    /// The gradient jumps on the axis, from which all points of the circle are equally far, and where both ends are.
+    /// The gradient jumps on the axis, from which all points of the circle are equally far, and where both
+    /// ends are.
     fn decision(&self, p: DVec3) -> f64 {
         if self.is_point() {
             return f64::INFINITY;
@@ -194,7 +199,8 @@ mod tests {
         }
     }
 
-    /// Both sides of pi, and of 0 and a whole turn; in its plane and in line with its middle, where the condition is decided by rounding.
+    /// Both sides of pi, and of 0 and a whole turn; in its plane and in line with its middle, where the
+    /// condition is decided by rounding.
     #[test]
     fn angles_next_to_special_ones() {
         for around in [0.0, 90.0, 180.0, 270.0, 360.0] {

@@ -7,11 +7,12 @@ use crate::diagnostic::Diagnostic;
 use crate::member::{Lengths, Member as _, Positions, member};
 
 member! {
-    /// A chain of cubic Bezier curves, each of four points, the last of one being the first of the next: 3 n + 1 points for n curves. The chain is
-    /// smooth at a point where two curves meet if that is on the line between its neighbours.
+    /// A chain of cubic Bezier curves, each of four points, the last of one being the first of the next: 3
+    /// n + 1 points for n curves. The chain is smooth at a point where two curves meet if that is on the line
+    /// between its neighbours.
     ///
-    /// With radii it is the solid tube of all balls with centres on the curve: radii are the Bezier coefficients of the radius, as points are
-    /// those of the centre. Its distance is 0 inside.
+    /// With radii it is the solid tube of all balls with centres on the curve: radii are the Bezier
+    /// coefficients of the radius, as points are those of the centre. Its distance is 0 inside.
     #[derive(Clone, PartialEq, Debug)]
     pub struct Bezier = "bezier" {
         /// The points: four, and three more for each further curve.

@@ -9,11 +9,12 @@ use crate::diagnostic::Diagnostic;
 use crate::member::{Lengths, Member as _, Positions, member};
 
 member! {
-    /// The curve that goes through points, at each along the line between its neighbours: `c'_i = (p_(i+1) - p_(i-1)) / 2`, and at an
-    /// open end along the line to its only neighbour.
+    /// The curve that goes through points, at each along the line between its neighbours: `c'_i = (p_(i+1) -
+    /// p_(i-1)) / 2`, and at an open end along the line to its only neighbour.
     ///
-    /// With radii it is the solid tube of all balls with centres on the curve. Radii go through theirs in the same way, but
-    /// change at a point by at most 3 times the radius there, so that they never fall below 0. Its distance is 0 inside.
+    /// With radii it is the solid tube of all balls with centres on the curve. Radii go through theirs in the
+    /// same way, but change at a point by at most 3 times the radius there, so that they never fall below 0.
+    /// Its distance is 0 inside.
     #[derive(Clone, PartialEq, Debug)]
     pub struct CatmullRom = "catmull_rom" {
         /// The points, at least two, or three if it is closed.

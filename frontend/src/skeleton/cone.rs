@@ -9,8 +9,9 @@
 //!     ├─────────────── r1              s, q:  along the side from its middle, and outwards from it
 //! ```
 //!
-//! A point is inside where it is between the planes of the ends, q is negative, and rho is below the larger radius. The last condition follows from the
-//! others, except by rounding at a sharp edge: it keeps the error to the size of the rounding.
+//! A point is inside where it is between the planes of the ends, q is negative, and rho is below the larger
+//! radius. The last condition follows from the others, except by rounding at a sharp edge: it keeps the error
+//! to the size of the rounding.
 
 use glam::{DAffine3, DVec2, DVec3};
 use jbt_ir::Domain;
@@ -23,7 +24,8 @@ use crate::member::member;
 member! {
     /// A solid cone or, with two radii, a frustum.
     ///
-    /// Equal radii make it a cylinder, radii of 0 a segment. Equal ends make it a disc of the larger radius, whose axis is z since they say nothing else.
+    /// Equal radii make it a cylinder, radii of 0 a segment. Equal ends make it a disc of the larger radius,
+    /// whose axis is z since they say nothing else.
     #[derive(Clone, Copy, PartialEq, Debug)]
     pub struct Cone = "cone" {
         /// One end of the axis.

@@ -1,28 +1,34 @@
-//! A curved piece of a tube: all balls with centres on a cubic Bezier curve, whose radii are a cubic of the same parameter.
+//! A curved piece of a tube: all balls with centres on a cubic Bezier curve, whose radii are a cubic of the
+//! same parameter.
 //!
 //! # The nearest ball
 //!
-//! With centre c(t) and radius r(t), the tube's distance from p is the minimum over t of `g(t) = |p - c(t)| - r(t)`. There is no closed form.
-//! On the host the curve is halved until each piece is nearly a [`Cone`]: its second differences say how far its balls are from those
-//! of the cone over its chord, at the same parameter,
+//! With centre c(t) and radius r(t), the tube's distance from p is the minimum over t of `g(t) = |p - c(t)| -
+//! r(t)`. There is no closed form. On the host the curve is halved until each piece is nearly a [`Cone`]: its
+//! second differences say how far its balls are from those of the cone over its chord, at the same parameter,
 //!
 //! ```text
 //! |c(t) - chord(t)| + |r(t) - taper(t)| <= deviation = 3/4 max over i of |c_i - 2 c_(i+1) + c_(i+2)| + |r_i - 2 r_(i+1) + r_(i+2)|
 //! ```
 //!
-//! The program starts at the ball that is nearest among those of the cone, takes [`STEPS`] of Newton's steps along g', clamped to
-//! the piece, and answers for the best ball that it has met (to within 2^-20 of its distance for each step).
+//! The program starts at the ball that is nearest among those of the cone, takes [`STEPS`] of Newton's steps
+//! along g', clamped to the piece, and answers for the best ball that it has met (to within 2^-20 of its
+//! distance for each step).
 //!
-//! **How wrong that can be.** The answer is the distance of a ball of the tube, so it is never too small, and the start alone is too large
-//! by at most twice the deviation: `g(start) <= cone(start) + deviation <= cone(best) + deviation <= g(best) + 2 deviation`. A piece is
-//! accepted with a deviation of at most [`COARSE`] support radii, so the distance is wrong by at most `2 COARSE` of the radius at worst, or
-//! by 2^-23 of the whole cubic's deviation where [`MAX_CURVE_HALVINGS`] end the division. The steps do far better where the curve
-//! turns little: accepted pieces turn by at most [`TURN`] (or deviate by less than [`FINE`]), and at a point that is nearer than the centre of
-//! curvature the error of a step is the square of the last one. At 10^5 random points within reach of random curves and tubes the error
-//! is below 1e-5 of the support radius (and rounding) for all but a few, which are near a centre of curvature, and 6e-5 at worst.
-//! The place is held, so the gradient is the unit vector from the ball's centre: off from the normal by as much as the place is. That is
-//! rounding, but for points whose nearest place is within the root of a rounding, half a thousandth of the distance, of where two
-//! pieces meet: there their distances are alike, and either piece may answer. So gradients are off by half a milliradian at worst, where the minimum is firm.
+//! **How wrong that can be.** The answer is the distance of a ball of the tube, so it is never too small, and
+//! the start alone is too large by at most twice the deviation: `g(start) <= cone(start) + deviation <=
+//! cone(best) + deviation <= g(best) + 2 deviation`. A piece is accepted with a deviation of at most
+//! [`COARSE`] support radii, so the distance is wrong by at most `2 COARSE` of the radius at worst, or by
+//! 2^-23 of the whole cubic's deviation where [`MAX_CURVE_HALVINGS`] end the division. The steps do far
+//! better where the curve turns little: accepted pieces turn by at most [`TURN`] (or deviate by less than
+//! [`FINE`]), and at a point that is nearer than the centre of curvature the error of a step is the square of
+//! the last one. At 10^5 random points within reach of random curves and tubes the error is below 1e-5 of the
+//! support radius (and rounding) for all but a few, which are near a centre of curvature, and 6e-5 at worst.
+//! The place is held, so the gradient is the unit vector from the ball's centre: off from the normal by as
+//! much as the place is. That is rounding, but for points whose nearest place is within the root of a
+//! rounding, half a thousandth of the distance, of where two pieces meet: there their distances are alike,
+//! and either piece may answer. So gradients are off by half a milliradian at worst, where the minimum is
+//! firm.
 
 use glam::{DAffine3, DVec3};
 use jbt_ir::Domain;
@@ -41,7 +47,8 @@ pub(super) const COARSE: f64 = 1.0 / 32.0;
 const TURN: f64 = 0.5;
 /// ... unless it deviates by less than this part of the support radius: at cusps.
 const FINE: f64 = 1.0 / (1 << 14) as f64;
-/// The least part of the squared speed that a step divides by: where the minimum is flat or a maximum is near, it has to be short.
+/// The least part of the squared speed that a step divides by: where the minimum is flat or a maximum is
+/// near, it has to be short.
 const DAMPING: f32 = 0.25;
 
 /// Distances of places that differ by less than this part are alike.
@@ -117,8 +124,8 @@ impl Cubic {
         p.distance(center) - radius
     }
 
-    /// How firmly a nearest ball is held at its place: the second derivative of the distance there, over what it is on a straight line. It is 0 at a
-    /// centre of curvature.
+    /// How firmly a nearest ball is held at its place: the second derivative of the distance there, over what
+    /// it is on a straight line. It is 0 at a centre of curvature.
     pub(super) fn firmness(&self, p: DVec3, t: f64) -> f64 {
         let ([_, c1, c2, c3], [_, _, r2, r3]) = self.powers();
         let e = self.at(t).0 - p;
@@ -159,7 +166,8 @@ impl Part for Cubic {
         let (centers, radii) = own.powers();
         row.extend(centers.iter().flat_map(DVec3::to_array));
         row.extend(radii);
-        // What takes a point to its place along the chord, and its distance from the chord to what the taper adds.
+        // What takes a point to its place along the chord, and its distance from the chord to what the taper
+        // adds.
         let chord = own.centers[3] - own.centers[0];
         let (along, lean) = match own.chord().taper() {
             Ok((_, lean)) => (super::unit(chord) / chord.length(), lean / chord.length()),
@@ -221,8 +229,9 @@ impl Part for Cubic {
     }
 }
 
-/// The distance and the place of the nearer ball, the later one if they are alike: where the distance is flat, its rounding must not choose a place that
-/// is farther from the minimum, in which the gradient has another direction.
+/// The distance and the place of the nearer ball, the later one if they are alike: where the distance is
+/// flat, its rounding must not choose a place that is farther from the minimum, in which the gradient has
+/// another direction.
 fn nearer<D: Domain>(
     d: &mut D,
     (later, t): (&Ball<D>, D::Real),
@@ -240,7 +249,8 @@ fn largest([a, b, c, d]: [f64; 4]) -> f64 {
         let s = 1.0 - t;
         s * s * s * a + 3.0 * s * s * t * b + 3.0 * s * t * t * c + t * t * t * d
     };
-    // Its derivative, in Bernstein's form u s^2 + 2 v s t + w t^2, has roots s : t = (-v +- root) : u, written without cancellation.
+    // Its derivative, in Bernstein's form u s^2 + 2 v s t + w t^2, has roots s : t = (-v +- root) : u,
+    // written without cancellation.
     let (u, v, w) = (b - a, c - b, d - c);
     let root = (v * v - u * w).max(0.0).sqrt();
     let q = -(v + v.signum() * root);

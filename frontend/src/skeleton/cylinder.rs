@@ -70,7 +70,8 @@ impl SkeletonMember for Cylinder {
 
     const UV_COLUMNS: &'static [&'static str] = &["inv_length"];
 
-    /// u: the angle about the axis. v: how far along it is, from 0 at `from` to 1 at `to`; 1/2 where the ends are equal.
+    /// u: the angle about the axis. v: how far along it is, from 0 at `from` to 1 at `to`; 1/2 where the ends
+    /// are equal.
     fn uv(&self, p: DVec3) -> [f64; 2] {
         let q = uv::within(&self.uv_frame(), p);
         let along = q.z * uv::inverse(self.from.distance(self.to)) + 0.5;

@@ -56,7 +56,8 @@ impl SkeletonMember for Disc {
 
     const UV_COLUMNS: &'static [&'static str] = &["inv_radius"];
 
-    /// u: the angle about the normal. v: the distance from the axis, from 0 in the middle to 1 at the rim; 0 if the radius is.
+    /// u: the angle about the normal. v: the distance from the axis, from 0 in the middle to 1 at the rim; 0
+    /// if the radius is.
     fn uv(&self, p: DVec3) -> [f64; 2] {
         let q = uv::within(&self.uv_frame(), p);
         [uv::turn(q.x, q.y), (q.x.hypot(q.y) * uv::inverse(self.radius)).min(1.0)]

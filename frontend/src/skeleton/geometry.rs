@@ -29,7 +29,8 @@ pub(super) fn circle_reach(map: &DAffine3, n: DVec3, radius: f64) -> DVec3 {
     radius * DVec3::from_array([0, 1, 2].map(|axis| map.matrix3.row(axis).cross(n).length()))
 }
 
-/// The rotation that takes the z axis to the direction of `v`, or against it: the identity if it need not move, or if `v` is zero.
+/// The rotation that takes the z axis to the direction of `v`, or against it: the identity if it need not
+/// move, or if `v` is zero.
 pub(super) fn along(v: DVec3) -> DMat3 {
     let z = unit(v);
     if z == DVec3::ZERO || z.z.abs() == 1.0 {
@@ -39,7 +40,8 @@ pub(super) fn along(v: DVec3) -> DMat3 {
     DMat3::from_cols(x, y, z)
 }
 
-/// What takes the z axis to the direction of `v`: a rotation, or the reflection in the origin where that will do; the identity if `v` is zero.
+/// What takes the z axis to the direction of `v`: a rotation, or the reflection in the origin where that will
+/// do; the identity if `v` is zero.
 pub(super) fn towards(v: DVec3) -> DMat3 {
     let z = unit(v);
     if z == DVec3::ZERO || z.z == 1.0 {
@@ -52,7 +54,8 @@ pub(super) fn towards(v: DVec3) -> DMat3 {
     DMat3::from_cols(x, y, z)
 }
 
-/// The rotation that takes the z axis to the direction of `normal`, and the x axis as near to that of `first` as it can be.
+/// The rotation that takes the z axis to the direction of `normal`, and the x axis as near to that of `first`
+/// as it can be.
 pub(super) fn frame(normal: DVec3, first: DVec3) -> DMat3 {
     let (z, first) = (unit(normal), unit(first));
     let across = |v: DVec3| v - v.dot(z) * z;
@@ -62,13 +65,15 @@ pub(super) fn frame(normal: DVec3, first: DVec3) -> DMat3 {
     DMat3::from_cols(x, z.cross(x), z)
 }
 
-/// Whether two directions lie along one line, as nearly as f32 can tell. A direction that is zero lies along none.
+/// Whether two directions lie along one line, as nearly as f32 can tell. A direction that is zero lies along
+/// none.
 fn are_along(a: DVec3, b: DVec3) -> bool {
     let (a, b) = (unit(a), unit(b));
     a != DVec3::ZERO && b != DVec3::ZERO && a.cross(b).length() < 1e-7
 }
 
-/// What is wrong with a direction that has to be across another one, if it lies along that; `what` is its name.
+/// What is wrong with a direction that has to be across another one, if it lies along that; `what` is its
+/// name.
 pub(super) fn along_normal(owner: &str, what: &str, normal: DVec3, direction: DVec3) -> Option<Diagnostic> {
     let error = || Diagnostic::error(None, format!("the `{what}` of the {owner} lies along its normal"));
     are_along(normal, direction).then(|| error().expected("expected a direction across it"))

@@ -1,7 +1,7 @@
 //! The half space: all that is on one side of a plane. It is unbounded, and so is what is made of it alone.
 //!
-//! Cut with something bounded it is bounded: `intersection { half_space .. sphere .. }` has a support, a half space by itself needs a region wherever
-//! a mesh or a volume is asked for.
+//! Cut with something bounded it is bounded: `intersection { half_space .. sphere .. }` has a support, a half
+//! space by itself needs a region wherever a mesh or a volume is asked for.
 
 use glam::{DAffine3, DVec3};
 use jbt_ir::Domain;

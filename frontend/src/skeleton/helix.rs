@@ -8,34 +8,39 @@
 //!
 //! # The nearest place
 //!
-//! Of a point at the distance rho from the axis, the angle phi and the height z, the squared distance from c(phi + 2 pi n + s) is, but for a part
-//! without s, `b^2 (2 A (1 - cos s) + (s - sigma)^2)`, with `A = rho R / b^2` and `sigma = z / b - phi - 2 pi n`. It is stationary where
+//! Of a point at the distance rho from the axis, the angle phi and the height z, the squared distance from
+//! c(phi + 2 pi n + s) is, but for a part without s, `b^2 (2 A (1 - cos s) + (s - sigma)^2)`, with `A = rho R
+//! / b^2` and `sigma = z / b - phi - 2 pi n`. It is stationary where
 //!
 //! ```text
 //! g(s) = A sin s + s - sigma = 0                                             (Kepler's equation, if A were below 0)
 //! ```
 //!
-//! *Which turn.* On an endless helix it is the one with |sigma| <= pi: by the mirror images of s in 0 and in pi the nearest place has an s in
-//! [0, sigma]. (Signs are taken off: sigma >= 0 from here on.) If that place is beyond an end, the end is nearer than all turns behind
-//! it, unless the end cuts off the place s = 0 as well, before its turn has come nearest: then the first whole turn is next. So n is rounded, and clamped to turns whose s = 0 is on the
-//! helix; a turn that is cut off before that is let in if the helix
-//! begins (or ends) towards the point, and not beyond its height, and not where it is farthest (A cos s < -1). That turn, clamped, and
-//! the two ends are all candidates.
+//! *Which turn.* On an endless helix it is the one with |sigma| <= pi: by the mirror images of s in 0 and in
+//! pi the nearest place has an s in [0, sigma]. (Signs are taken off: sigma >= 0 from here on.) If that place
+//! is beyond an end, the end is nearer than all turns behind it, unless the end cuts off the place s = 0 as
+//! well, before its turn has come nearest: then the first whole turn is next. So n is rounded, and clamped to
+//! turns whose s = 0 is on the helix; a turn that is cut off before that is let in if the helix begins (or
+//! ends) towards the point, and not beyond its height, and not where it is farthest (A cos s < -1). That
+//! turn, clamped, and the two ends are all candidates.
 //!
-//! *Which place.* Up to the first root, g is below 0, and it is concave in [0, pi]: Newton's steps from the left of the root stay there, and each is nearer. They
-//! start at the larger of two places that are never beyond the root, since `sin s <= s` and `sin s <= 4 s (pi - s) / pi^2`:
+//! *Which place.* Up to the first root, g is below 0, and it is concave in [0, pi]: Newton's steps from the
+//! left of the root stay there, and each is nearer. They start at the larger of two places that are never
+//! beyond the root, since `sin s <= s` and `sin s <= 4 s (pi - s) / pi^2`:
 //!
 //! ```text
 //! sigma / (1 + A)     and     2 sigma / (q + sqrt(q^2 - 4 k sigma)),   k = 4 A / pi^2,   q = 1 + pi k
 //! ```
 //!
-//! **How wrong that can be.** What is answered is the distance of a place of the curve, so it is never too small, but for rounding. After [`STEPS`]
-//! steps it is too large by at most 2^-19 of the larger of R and b: that is at the centres of curvature, where A = 1, sigma = pi and
-//! the root is threefold. Elsewhere steps converge quadratically, and rounding is all. The tests measure both.
+//! **How wrong that can be.** What is answered is the distance of a place of the curve, so it is never too
+//! small, but for rounding. After [`STEPS`] steps it is too large by at most 2^-19 of the larger of R and b:
+//! that is at the centres of curvature, where A = 1, sigma = pi and the root is threefold. Elsewhere steps
+//! converge quadratically, and rounding is all. The tests measure both.
 //!
-//! The place is made of the small angle phi + s and of the whole number n, so that its rounding does not grow with the number of turns: it is less
-//! than 8 units of R and of the height. (With less than one turn n is 0, since a turn is higher than all of the helix.) The angle is held: with the
-//! place fixed, the gradient is that of the distance from it.
+//! The place is made of the small angle phi + s and of the whole number n, so that its rounding does not grow
+//! with the number of turns: it is less than 8 units of R and of the height. (With less than one turn n is 0,
+//! since a turn is higher than all of the helix.) The angle is held: with the place fixed, the gradient is
+//! that of the distance from it.
 
 use std::f64::consts::{PI, TAU};
 
@@ -69,7 +74,8 @@ member! {
     pub struct Helix = "helix" {
         /// The middle of its axis.
         pub center: DVec3 [Position] = Vector([0.0; 3]),
-        /// The direction of its axis, of any length but 0: the helix rises along it, counterclockwise as seen from its tip.
+        /// The direction of its axis, of any length but 0: the helix rises along it, counterclockwise as seen
+        /// from its tip.
         pub normal: DVec3 [Direction] = Vector([0.0, 0.0, 1.0]),
         /// The direction from the axis to where the helix begins: only the part across the normal counts.
         pub start: DVec3 [Direction] = Vector([1.0, 0.0, 0.0]),
@@ -103,8 +109,8 @@ impl Helix {
         self.radius * (q.x * t.sin() - q.y * t.cos()) + self.rise() * (self.rise() * t - q.z)
     }
 
-    /// The nearest places of turns that may have the nearest of all, and the ends; `q` is in the pose. Of the ends, `all`, or those that are nearer than
-    /// what is next to them.
+    /// The nearest places of turns that may have the nearest of all, and the ends; `q` is in the pose. Of the
+    /// ends, `all`, or those that are nearer than what is next to them.
     fn places(&self, q: DVec3, all: bool) -> Vec<Place> {
         let (rho, phi, b) = (q.x.hypot(q.y), q.y.atan2(q.x), self.rise());
         let stretch = rho * self.radius / (b * b);
@@ -164,8 +170,8 @@ fn root(a: f64, sigma: f64) -> Option<f64> {
 }
 
 impl SkeletonMember for Helix {
-    // The end; the height of a turn and of a radian, the turns for each height and R / b; all turns, the nearest whole number of them, and the angle that
-    // is left of them, from -pi to pi.
+    // The end; the height of a turn and of a radian, the turns for each height and R / b; all turns, the
+    // nearest whole number of them, and the angle that is left of them, from -pi to pi.
     const COLUMNS: &'static [&'static str] = &[
         "radius", "end_x", "end_y", "end_z", "pitch", "rise", "inv_pitch", "lead", "turns", "whole", "rest",
     ];
@@ -184,7 +190,8 @@ impl SkeletonMember for Helix {
         let pose = *map * self.pose();
         let mut bounds = Bounds::around([0.0, self.last()].map(|t| pose.transform_point3(self.at(t))));
         for axis in 0..3 {
-            // A coordinate is a cos (t - top) + c t: stationary where sin (t - top) = c / a, in each turn; farthest in the first or the last of them.
+            // A coordinate is a cos (t - top) + c t: stationary where sin (t - top) = c / a, in each turn;
+            // farthest in the first or the last of them.
             let row = pose.matrix3.row(axis);
             let (top, reach) = (row.y.atan2(row.x), self.radius * row.x.hypot(row.y));
             let lean = row.z * self.rise() / reach;

@@ -1,18 +1,22 @@
-//! The L-metric: a point whose distance is a norm with any exponent, from the octahedron (1) over the ball (2) to the cube (many).
+//! The L-metric: a point whose distance is a norm with any exponent, from the octahedron (1) over the ball
+//! (2) to the cube (many).
 //!
 //! ```text
 //! d^l = |x / a|^l + |y / b|^l + |z / c|^l,   l >= 1
 //! ```
 //!
-//! **Powers of large and small numbers.** With m the largest of the three terms, `d = m (sum (|x_i| / m)^l)^(1/l)`: no quotient is above 1, and the sum is from 1 to
-//! 3. The scale m cancels, so `hold` keeps it out of the derivative, and limits that hold anyway (1 for a quotient, 1 for the sum) tell intervals so.
+//! **Powers of large and small numbers.** With m the largest of the three terms, `d = m (sum (|x_i| /
+//! m)^l)^(1/l)`: no quotient is above 1, and the sum is from 1 to
+//! 3. The scale m cancels, so `hold` keeps it out of the derivative, and limits that hold anyway (1 for a
+//!    quotient, 1 for the sum) tell intervals so.
 //!
-//! **Kinks.** Where a coordinate is 0 and l < 2, the gradient jumps (l = 1) or turns as fast as `|x|^(l-1)`: `decision` is the distance from these planes. It is finite
-//! everywhere, and 0 at the centre.
+//! **Kinks.** Where a coordinate is 0 and l < 2, the gradient jumps (l = 1) or turns as fast as `|x|^(l-1)`:
+//! `decision` is the distance from these planes. It is finite everywhere, and 0 at the centre.
 //!
-//! **Rounding.** In units of u = 2^-24: a term is off by 2 of itself, and m is one of them. A quotient takes 1 more, which a power makes l, and the power its own 2.5;
-//! exponent and power together take one for a rounded l. The root brings l back to 1, the others to at most 4.5 and its own rounding of `1 / l`, and has another 2.5. So
-//! less than 13 in all; powers that underflow are below any of this.
+//! **Rounding.** In units of u = 2^-24: a term is off by 2 of itself, and m is one of them. A quotient takes
+//! 1 more, which a power makes l, and the power its own 2.5; exponent and power together take one for a
+//! rounded l. The root brings l back to 1, the others to at most 4.5 and its own rounding of `1 / l`, and has
+//! another 2.5. So less than 13 in all; powers that underflow are below any of this.
 
 use glam::{DAffine3, DVec3};
 use jbt_ir::Domain;
@@ -102,7 +106,8 @@ pub(super) fn emit_norm<D: Domain>(d: &mut D, terms: &[D::Real], [l, inv_l]: [D:
     let mut sum = None;
     for &term in terms {
         let part = d.div(term, divisor);
-        // These limits change no number. The order of operands says whose slope counts where they are equal: not that of 1.
+        // These limits change no number. The order of operands says whose slope counts where they are equal:
+        // not that of 1.
         let part = d.min(one, part);
         let power = d.pow(part, l);
         sum = Some(sum.map_or(power, |sum| d.add(sum, power)));

@@ -11,8 +11,8 @@ use crate::member::Member;
 
 /// What a skeleton states about itself.
 ///
-/// Coordinates are those of the primitive's own space. The distance is Euclidean unless [`metric`](Self::metric) says otherwise; of a scaled
-/// skeleton and point it is as many times as large.
+/// Coordinates are those of the primitive's own space. The distance is Euclidean unless
+/// [`metric`](Self::metric) says otherwise; of a scaled skeleton and point it is as many times as large.
 pub trait SkeletonMember: Member {
     /// Names of the columns that [`columns`](Self::columns) fills, in order.
     const COLUMNS: &'static [&'static str];
@@ -20,8 +20,8 @@ pub trait SkeletonMember: Member {
     /// Its symmetry in its pose.
     const SYMMETRY: Symmetry;
 
-    /// How many distances that may be zero, as that from an axis, divide its derivative one after the other. All but the first of them
-    /// are at least the distance from the skeleton.
+    /// How many distances that may be zero, as that from an axis, divide its derivative one after the other.
+    /// All but the first of them are at least the distance from the skeleton.
     const DIVISORS: i32 = 1;
 
     /// What its distance is.
@@ -29,7 +29,8 @@ pub trait SkeletonMember: Member {
         Metric::EUCLIDEAN
     }
 
-    /// The smallest box that holds the image of the skeleton itself (not the support of its field) under a map. Its sides may be infinite.
+    /// The smallest box that holds the image of the skeleton itself (not the support of its field) under a
+    /// map. Its sides may be infinite.
     fn bounds_under(&self, map: &DAffine3) -> Bounds;
 
     /// The squared distance from `p`, plainly.
@@ -41,22 +42,23 @@ pub trait SkeletonMember: Member {
     /// The rigid motion from the pose to where the skeleton is.
     fn pose(&self) -> DAffine3;
 
-    /// The numbers of a row, derived from the parameters in f64: one for each of [`COLUMNS`](Self::COLUMNS). They are lengths,
-    /// of a skeleton that is `scale` times as large.
+    /// The numbers of a row, derived from the parameters in f64: one for each of [`COLUMNS`](Self::COLUMNS).
+    /// They are lengths, of a skeleton that is `scale` times as large.
     fn columns(&self, scale: f64, row: &mut Vec<f64>);
 
     /// The squared distance from `p`, over the ops, of the skeleton in its pose; `row` holds the columns.
     ///
-    /// In f32, with columns rounded once, its square root is off by at most [`ROUNDING`] of the distance and the largest coordinate of
-    /// the skeleton together (and by 2^-73, where squares fall below the smallest numbers): supports rest on it.
+    /// In f32, with columns rounded once, its square root is off by at most [`ROUNDING`] of the distance and
+    /// the largest coordinate of the skeleton together (and by 2^-73, where squares fall below the smallest
+    /// numbers): supports rest on it.
     fn emit<D: Domain>(d: &mut D, p: [D::Real; 3], row: &[D::Real]) -> D::Real;
 
-    /// What is folded over its pieces, if it is made of any number of them. Then the row that [`emit`](Self::emit) is given goes on behind the
-    /// columns with what the accumulators have come to.
+    /// What is folded over its pieces, if it is made of any number of them. Then the row that
+    /// [`emit`](Self::emit) is given goes on behind the columns with what the accumulators have come to.
     const PIECES: Option<Pieces> = None;
 
-    /// The numbers of its pieces, those of one behind those of the other, in the pose and `scale` times as large; `reach` is the support
-    /// radius, of the skeleton as it was written. There is at least one piece.
+    /// The numbers of its pieces, those of one behind those of the other, in the pose and `scale` times as
+    /// large; `reach` is the support radius, of the skeleton as it was written. There is at least one piece.
     fn pieces(&self, _scale: f64, _reach: f64, _rows: &mut Vec<f64>) {}
 
     /// The smallest boxes that hold the images of its pieces under a map, in their order.
@@ -69,12 +71,14 @@ pub trait SkeletonMember: Member {
         0
     }
 
-    /// The accumulators before the first piece. `beyond` is a distance of [`BEYOND`](super::BEYOND) support radii.
+    /// The accumulators before the first piece. `beyond` is a distance of [`BEYOND`](super::BEYOND) support
+    /// radii.
     fn begin<D: Domain>(_d: &mut D, _beyond: D::Real) -> Vec<D::Real> {
         Vec::new()
     }
 
-    /// The accumulators behind a piece, from those before it; `p` is a point in the pose, `piece` has the numbers of the piece.
+    /// The accumulators behind a piece, from those before it; `p` is a point in the pose, `piece` has the
+    /// numbers of the piece.
     fn step<D: Domain>(
         _d: &mut D,
         _p: [D::Real; 3],
@@ -84,7 +88,8 @@ pub trait SkeletonMember: Member {
         Vec::new()
     }
 
-    /// What is wrong with parameters that do not go together, each of which by itself is what its kind says; without a place.
+    /// What is wrong with parameters that do not go together, each of which by itself is what its kind says;
+    /// without a place.
     fn fault(&self) -> Option<Diagnostic> {
         None
     }
@@ -92,9 +97,8 @@ pub trait SkeletonMember: Member {
     /// Names of the columns that [`uv_columns`](Self::uv_columns) fills, in order.
     const UV_COLUMNS: &'static [&'static str] = &[];
 
-    /// Where `p` is on the skeleton, plainly: two numbers from 0 to 1, finite everywhere. What they mean stands at each skeleton; without
-    /// more, they are longitude
-    /// and latitude about the middle of the pose.
+    /// Where `p` is on the skeleton, plainly: two numbers from 0 to 1, finite everywhere. What they mean
+    /// stands at each skeleton; without more, they are longitude and latitude about the middle of the pose.
     fn uv(&self, p: DVec3) -> [f64; 2] {
         uv::sphere(p - self.pose().translation)
     }
@@ -104,13 +108,14 @@ pub trait SkeletonMember: Member {
         uv::sphere_decision(p - self.pose().translation)
     }
 
-    /// The rigid motion from the frame in which [`emit_uv`](Self::emit_uv) sees the skeleton to where it is. Unlike the pose it is not up to
-    /// symmetry.
+    /// The rigid motion from the frame in which [`emit_uv`](Self::emit_uv) sees the skeleton to where it is.
+    /// Unlike the pose it is not up to symmetry.
     fn uv_frame(&self) -> DAffine3 {
         DAffine3::from_translation(self.pose().translation)
     }
 
-    /// The numbers of a row that [`emit_uv`](Self::emit_uv) needs: one for each of [`UV_COLUMNS`](Self::UV_COLUMNS).
+    /// The numbers of a row that [`emit_uv`](Self::emit_uv) needs: one for each of
+    /// [`UV_COLUMNS`](Self::UV_COLUMNS).
     fn uv_columns(&self, row: &mut Vec<f64>) {
         let _ = row;
     }
@@ -124,18 +129,21 @@ pub trait SkeletonMember: Member {
 
 /// The rounding that [`SkeletonMember::emit`] may have: 64 units in the last place.
 ///
-/// A column is off by half a unit of what it holds. A difference of a coordinate and a length adds half a unit of both, a sum of two
-/// squares and its root less than two of the result: a cylinder, with two such terms, stays below 8 units, a box below 8. The sides of
-/// a triangle take two products and a sum, of numbers that are off themselves, so both its terms are off by up to 12 units of
-/// coordinates that are up to 1.5 times as large; and near a corner the test of what is inside may be off by three times as much. A cone's
+/// A column is off by half a unit of what it holds. A difference of a coordinate and a length adds half a
+/// unit of both, a sum of two squares and its root less than two of the result: a cylinder, with two such
+/// terms, stays below 8 units, a box below 8. The sides of a triangle take two products and a sum, of numbers
+/// that are off themselves, so both its terms are off by up to 12 units of coordinates that are up to 1.5
+/// times as large; and near a corner the test of what is inside may be off by three times as much. A cone's
 /// profile is a figure of such sides.
 ///
-/// Of solids around something (a sphere, a torus, a round cone), the distance from that is at most the distance from the solid and a
-/// coordinate of it: it is off by less than 8 units, and a radius takes one more. A round cone finds the nearest point of its axis with an error
-/// of its own, which matters in the second order alone; see there. An arc adds to a ring the choice between its ends and the circle, which
-/// are equally far away where rounding may take the one for the other. A helix answers for a place of its own that is off by less than 8 units, and for
-/// one that is farther away than the nearest by at most 32.
+/// Of solids around something (a sphere, a torus, a round cone), the distance from that is at most the
+/// distance from the solid and a coordinate of it: it is off by less than 8 units, and a radius takes one
+/// more. A round cone finds the nearest point of its axis with an error of its own, which matters in the
+/// second order alone; see there. An arc adds to a ring the choice between its ends and the circle, which are
+/// equally far away where rounding may take the one for the other. A helix answers for a place of its own
+/// that is off by less than 8 units, and for one that is farther away than the nearest by at most 32.
 ///
-/// Norms have no coordinates and are off by parts of themselves: an ellipsoid, with a product in each square, by less than 6 units, and those with
-/// powers by less than 13 for each norm in the other; see [`LMetric`](struct@super::LMetric).
+/// Norms have no coordinates and are off by parts of themselves: an ellipsoid, with a product in each square,
+/// by less than 6 units, and those with powers by less than 13 for each norm in the other; see
+/// [`LMetric`](struct@super::LMetric).
 pub const ROUNDING: f64 = 64.0 / (1 << 24) as f64;

@@ -1,7 +1,7 @@
 //! Metrics: what the distance from a skeleton is measured in, as far as supports ask.
 //!
-//! A metric is a norm N of the way from the nearest point of the skeleton. What has to be known of it is where its unit ball `N(v) <= 1` is, and how
-//! steep it is: with h the half sizes of a box around the ball,
+//! A metric is a norm N of the way from the nearest point of the skeleton. What has to be known of it is
+//! where its unit ball `N(v) <= 1` is, and how steep it is: with h the half sizes of a box around the ball,
 //!
 //! ```text
 //! |v_k| <= h_k N(v)        N(v) <= steepness |v|
@@ -26,9 +26,11 @@ impl Metric {
         Self { half, steepness: 1.0 / half.min_element(), round: true }
     }
 
-    /// A norm whose unit ball lies in the box with these half sizes and touches its six sides in their middles.
+    /// A norm whose unit ball lies in the box with these half sizes and touches its six sides in their
+    /// middles.
     pub(super) fn touching(half: DVec3) -> Self {
-        // The ball is convex, so that it holds the hull of the six middles: N is at most |x / a| + |y / b| + |z / c|.
+        // The ball is convex, so that it holds the hull of the six middles: N is at most |x / a| + |y /
+        // b| + |z / c|.
         Self { half, steepness: 3f64.sqrt() / half.min_element(), round: false }
     }
 

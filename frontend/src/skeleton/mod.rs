@@ -1,12 +1,12 @@
 //! Skeletons: the sets that primitives measure their distance to. One file per member, one list.
 //!
-//! A file has the same parts in the same order: what the skeleton is, its parameters, its text fields, its bounds, the plain
-//! formula in f64 (the oracle), its pose and the same formula over [`Domain`] (the compiler), tests. To add one: write its file, add its
-//! line to the list below.
+//! A file has the same parts in the same order: what the skeleton is, its parameters, its text fields, its
+//! bounds, the plain formula in f64 (the oracle), its pose and the same formula over [`Domain`] (the
+//! compiler), tests. To add one: write its file, add its line to the list below.
 //!
-//! The plain formula sees the skeleton where it is. The compiler's form sees it in its **pose**: about the origin, along the z axis. A row
-//! brings the point there, by the one matrix that it often needs anyway, and the formula has no directions left: a cylinder's
-//! distance is made of `|z|` and `sqrt(x^2 + y^2)`.
+//! The plain formula sees the skeleton where it is. The compiler's form sees it in its **pose**: about the
+//! origin, along the z axis. A row brings the point there, by the one matrix that it often needs anyway, and
+//! the formula has no directions left: a cylinder's distance is made of `|z|` and `sqrt(x^2 + y^2)`.
 
 use glam::{DAffine3, DVec3};
 use jbt_ir::Domain;

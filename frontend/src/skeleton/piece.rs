@@ -1,4 +1,5 @@
-//! Skeletons of any number of points: their pieces are rows of a table of their own, and their distance is a fold over these.
+//! Skeletons of any number of points: their pieces are rows of a table of their own, and their distance is a
+//! fold over these.
 //!
 //! ```text
 //! row of the leaf     point in the pose;  accumulators = begin(beyond)
@@ -6,8 +7,9 @@
 //! row of the leaf     squared distance = emit(point, columns and accumulators);  falloff
 //! ```
 //!
-//! So a curve through 5 points and one through 700 are the same code. A smallest distance begins at [`BEYOND`] support radii, where the
-//! field is exactly zero: a piece that is out of reach in a box, or all of them, can be left out there.
+//! So a curve through 5 points and one through 700 are the same code. A smallest distance begins at
+//! [`BEYOND`] support radii, where the field is exactly zero: a piece that is out of reach in a box, or all
+//! of them, can be left out there.
 
 /// What is folded over the pieces of a skeleton.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

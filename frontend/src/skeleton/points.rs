@@ -82,7 +82,8 @@ pub(super) fn distance_squared(places: impl IntoIterator<Item = Place>) -> f64 {
     nearest.max(0.0).powi(2)
 }
 
-/// By how much the nearest place is nearer than another one in another direction, whose turn it would be next.
+/// By how much the nearest place is nearer than another one in another direction, whose turn it would be
+/// next.
 pub(super) fn decision(places: &[Place]) -> f64 {
     let Some(best) = places.iter().min_by(|a, b| a.distance.total_cmp(&b.distance)) else {
         return f64::INFINITY;

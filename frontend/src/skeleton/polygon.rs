@@ -9,9 +9,10 @@
 //!        \/
 //! ```
 //!
-//! An edge is crossed if one of its ends is above the ray and the other is not. Both of its rows that have a corner hold the same f32 for it, so
-//! this is decided without error; where along the ray the crossing is, is off by no more than rounding, and decides only points that
-//! are as near to the edge. Crossings are counted of all edges, so none may be left out.
+//! An edge is crossed if one of its ends is above the ray and the other is not. Both of its rows that have a
+//! corner hold the same f32 for it, so this is decided without error; where along the ray the crossing is, is
+//! off by no more than rounding, and decides only points that are as near to the edge. Crossings are counted
+//! of all edges, so none may be left out.
 
 use glam::{DAffine3, DMat3, DVec2, DVec3};
 use jbt_ir::Domain;
@@ -31,8 +32,8 @@ const LEAST_AREA: f64 = 1e-9;
 member! {
     /// A filled polygon with corners in one plane, in either sense of rotation.
     ///
-    /// Where edges cross each other, a point is inside if a ray from it crosses an odd number of edges: the middle of a pentagram is a hole. Edges
-    /// always belong to it.
+    /// Where edges cross each other, a point is inside if a ray from it crosses an odd number of edges: the
+    /// middle of a pentagram is a hole. Edges always belong to it.
     #[derive(Clone, PartialEq, Debug)]
     pub struct Polygon = "polygon" {
         /// The corners, at least three.

@@ -1,4 +1,5 @@
-//! The polyline: straight lines from point to point, or a tube along them whose radius changes evenly between points.
+//! The polyline: straight lines from point to point, or a tube along them whose radius changes evenly between
+//! points.
 
 use super::points::Path;
 use super::tapered::Cone;
@@ -7,8 +8,8 @@ use crate::diagnostic::Diagnostic;
 use crate::member::{Lengths, Member as _, Positions, member};
 
 member! {
-    /// Lines through points in order, at least two. With radii it is the solid tube of all balls with centres on these lines: its distance is 0
-    /// inside.
+    /// Lines through points in order, at least two. With radii it is the solid tube of all balls with centres
+    /// on these lines: its distance is 0 inside.
     #[derive(Clone, PartialEq, Debug)]
     pub struct Polyline = "polyline" {
         /// The points, at least two.
@@ -70,7 +71,8 @@ mod tests {
 
     #[test]
     fn known_tapered_distances() {
-        // Radii 2 and 5 over a length of 5: the side leans by k = 3/5, so cos = 4/5. Above (x, y) the distance is 4/5 y - 3/5 x - 2.
+        // Radii 2 and 5 over a length of 5: the side leans by k = 3/5, so cos = 4/5. Above (x, y) the
+        // distance is 4/5 y - 3/5 x - 2.
         let cone = polyline(&[[0.0; 3], [5.0, 0.0, 0.0]], &[2.0, 5.0], false);
         let (x, y) = (-3.0_f64, 10.0_f64);
         testing::same_everywhere(&cone, DVec3::new(x, y, 0.0), (0.8 * y - 0.6 * x - 2.0).powi(2));

@@ -56,8 +56,8 @@ impl SkeletonMember for Ring {
 
     const UV_COLUMNS: &'static [&'static str] = &["uv_radius"];
 
-    /// u: the angle about the normal. v: the angle about the circle, from 0 outside of it over 1/4 above it (where the normal goes) and 1/2
-    /// inside of it.
+    /// u: the angle about the normal. v: the angle about the circle, from 0 outside of it over 1/4 above it
+    /// (where the normal goes) and 1/2 inside of it.
     fn uv(&self, p: DVec3) -> [f64; 2] {
         let q = uv::within(&self.uv_frame(), p);
         [uv::turn(q.x, q.y), uv::turn(q.x.hypot(q.y) - self.radius, q.z)]

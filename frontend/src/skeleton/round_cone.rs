@@ -1,15 +1,18 @@
-//! The round cone: a capsule with two radii, also called cone-sphere or tapered capsule; the hull of two balls.
+//! The round cone: a capsule with two radii, also called cone-sphere or tapered capsule; the hull of two
+//! balls.
 //!
-//! It is the union of balls along its axis, and the nearest of them decides. With the axis along z, balls of radius `r + k tau` at the heights
-//! `tau`, and y the distance from the axis, `sqrt(y^2 + (z - tau)^2) - k tau` is smallest at
+//! It is the union of balls along its axis, and the nearest of them decides. With the axis along z, balls of
+//! radius `r + k tau` at the heights `tau`, and y the distance from the axis, `sqrt(y^2 + (z - tau)^2) - k
+//! tau` is smallest at
 //!
 //! ```text
 //! tau = clamp(z + lean y, -half, half)        lean = k / sqrt(1 - k^2),   k = (r2 - r1) / length
 //! ```
 //!
-//! A slope k of magnitude 1 or more says that one ball holds the other: it is the skeleton alone. At its minimum a function does not move with its
-//! argument, so the gradient is that of the distance from the ball at a fixed tau (`hold`). For the same reason an error of tau counts in the second order:
-//! with rounding u, that of `lean y` is below `3 u y / sqrt(1 - k^2)`, and what it adds to the distance below `5 u^2 y`.
+//! A slope k of magnitude 1 or more says that one ball holds the other: it is the skeleton alone. At its
+//! minimum a function does not move with its argument, so the gradient is that of the distance from the ball
+//! at a fixed tau (`hold`). For the same reason an error of tau counts in the second order: with rounding u,
+//! that of `lean y` is below `3 u y / sqrt(1 - k^2)`, and what it adds to the distance below `5 u^2 y`.
 
 use glam::{DAffine3, DVec3};
 use jbt_ir::Domain;
@@ -141,7 +144,8 @@ mod tests {
         testing::same_everywhere(&point, DVec3::new(2.0, 3.0, 6.0), 49.0);
     }
 
-    /// The foot of the perpendicular, moved by the slope of the radius, `tau = x - y (r1 - r2) / L`, is near the nearest ball and is not it.
+    /// The foot of the perpendicular, moved by the slope of the radius, `tau = x - y (r1 - r2) / L`, is near
+    /// the nearest ball and is not it.
     #[test]
     fn the_nearest_ball_and_not_one_near_it() {
         let round = cone(5.0, 0.5, 2.0);

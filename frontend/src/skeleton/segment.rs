@@ -19,8 +19,8 @@ member! {
 }
 
 impl SkeletonMember for Segment {
-    // A unit direction and a length: no division, and nothing special where the ends are equal (then both are zero).
-    // Measured from the middle, both ends are one comparison.
+    // A unit direction and a length: no division, and nothing special where the ends are equal (then both are
+    // zero). Measured from the middle, both ends are one comparison.
     const COLUMNS: &'static [&'static str] = &["half"];
     const SYMMETRY: Symmetry = Symmetry::Axis;
 
@@ -51,7 +51,8 @@ impl SkeletonMember for Segment {
 
     const UV_COLUMNS: &'static [&'static str] = &["inv_length"];
 
-    /// u: the angle about the segment's direction. v: how far along it is, from 0 at `from` to 1 at `to`; 1/2 where the ends are equal.
+    /// u: the angle about the segment's direction. v: how far along it is, from 0 at `from` to 1 at `to`; 1/2
+    /// where the ends are equal.
     fn uv(&self, p: DVec3) -> [f64; 2] {
         let q = uv::within(&self.uv_frame(), p);
         let along = q.z * uv::inverse(self.from.distance(self.to)) + 0.5;

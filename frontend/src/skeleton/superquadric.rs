@@ -1,12 +1,14 @@
-//! The superquadric (Barr 1981): a point whose distance is a norm that rounds or squares its level sets in two ways.
+//! The superquadric (Barr 1981): a point whose distance is a norm that rounds or squares its level sets in
+//! two ways.
 //!
 //! ```text
 //! d^(2/e1) = (|x / a|^(2/e2) + |y / b|^(2/e2))^(e2/e1) + |z / c|^(2/e1)
 //! ```
 //!
-//! e1 shapes the profile along z, e2 the slices across it: 1 is round, towards 0 square, 2 has flat facets, as an octahedron. It is a norm of exponent 2/e1 over one of
-//! exponent 2/e2, so that everything said of [`LMetric`](super::LMetric) holds of each. Pinched shapes, with exponents above 2, are none: their distance is infinitely
-//! steep at the planes where a coordinate is 0, so they are refused.
+//! e1 shapes the profile along z, e2 the slices across it: 1 is round, towards 0 square, 2 has flat facets,
+//! as an octahedron. It is a norm of exponent 2/e1 over one of exponent 2/e2, so that everything said of
+//! [`LMetric`](super::LMetric) holds of each. Pinched shapes, with exponents above 2, are none: their
+//! distance is infinitely steep at the planes where a coordinate is 0, so they are refused.
 
 use glam::{DAffine3, DVec3};
 use jbt_ir::Domain;
@@ -57,7 +59,8 @@ impl SkeletonMember for Superquadric {
         norm(&[across, z], 2.0 / self.e1).powi(2)
     }
 
-    /// The planes on which a coordinate with a norm of exponent below 2 is 0, and the z axis, where both of one norm are.
+    /// The planes on which a coordinate with a norm of exponent below 2 is 0, and the z axis, where both of
+    /// one norm are.
     fn decision(&self, p: DVec3) -> f64 {
         let [x, y, z] = (p - self.center).abs().to_array();
         let across = if self.e2 > 1.0 { x.min(y) } else { f64::INFINITY };

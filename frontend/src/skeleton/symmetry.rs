@@ -18,7 +18,8 @@ pub enum Symmetry {
 }
 
 impl Symmetry {
-    /// A rotation (or reflection) that does the same to such a skeleton as `turn`; the identity, if that will do.
+    /// A rotation (or reflection) that does the same to such a skeleton as `turn`; the identity, if that will
+    /// do.
     #[must_use]
     pub fn simplest(self, turn: DMat3) -> DMat3 {
         let simplest = match self {

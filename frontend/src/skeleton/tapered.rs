@@ -8,8 +8,8 @@
 //!        ~~~---____/         at the distance |p - a - tau u| - (r_a + k tau).
 //! ```
 //!
-//! Where `|k| >= 1`, one end's ball holds all the others. The distance has its minimum at tau, so its gradient is that for a tau which is
-//! held: the direction from the ball's centre.
+//! Where `|k| >= 1`, one end's ball holds all the others. The distance has its minimum at tau, so its
+//! gradient is that for a tau which is held: the direction from the ball's centre.
 
 use glam::{DAffine3, DVec3};
 use jbt_ir::Domain;
@@ -26,12 +26,13 @@ pub(super) struct Cone {
 }
 
 impl Cone {
-    /// How fast the radius grows along the line, and how far that shifts the nearest ball for a distance from the line. Where one end
-    /// holds all: the place of that end in the list.
+    /// How fast the radius grows along the line, and how far that shifts the nearest ball for a distance from
+    /// the line. Where one end holds all: the place of that end in the list.
     pub(super) fn taper(&self) -> Result<(f64, f64), usize> {
         let k = (self.radii[1] - self.radii[0]) / self.centers[0].distance(self.centers[1]);
         let square = 1.0 - k * k;
-        // Equal centres give a NaN or an infinity. The other balls stick out by less than 1e-12 of the length.
+        // Equal centres give a NaN or an infinity. The other balls stick out by less than 1e-12 of the
+        // length.
         if square > 1e-12 {
             Ok((k, k / square.sqrt()))
         } else {

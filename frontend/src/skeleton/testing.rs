@@ -46,8 +46,8 @@ pub fn ball(shells: u32) -> impl Iterator<Item = DVec3> {
     (0..=shells).flat_map(shell)
 }
 
-/// The compiler's form in f32: numbers are derived in f64 and rounded once. The point is brought to the pose in f64, so that it
-/// is the form alone that is judged.
+/// The compiler's form in f32: numbers are derived in f64 and rounded once. The point is brought to the pose
+/// in f64, so that it is the form alone that is judged.
 pub fn emitted<S: SkeletonMember>(skeleton: &S, p: DVec3) -> f32 {
     emitted_scaled(skeleton, 1.0, p)
 }
@@ -178,7 +178,8 @@ where
     }
 }
 
-/// Judges random points with a norm as their distance: `make` gives a skeleton, its point, and ways from there at which the norm is 1.
+/// Judges random points with a norm as their distance: `make` gives a skeleton, its point, and ways from
+/// there at which the norm is 1.
 pub fn judge_norm<S>(mut make: impl FnMut(&mut fastrand::Rng) -> (S, DVec3, Vec<DVec3>))
 where
     S: SkeletonMember + PartialEq + Debug,
@@ -299,7 +300,8 @@ pub fn same_uv<S: SkeletonMember + Debug>(skeleton: &S, p: DVec3, expected: [f64
     }
 }
 
-/// Both forms of the uv agree away from seams and are in [0, 1] everywhere; the frame is rigid, and what jumps says so.
+/// Both forms of the uv agree away from seams and are in [0, 1] everywhere; the frame is rigid, and what
+/// jumps says so.
 pub fn judge_uv<S: SkeletonMember + Debug>(mut make: impl FnMut(&mut fastrand::Rng) -> S) {
     let mut rng = fastrand::Rng::with_seed(4);
     for _ in 0..40 {

@@ -8,7 +8,8 @@ use crate::bounds::Bounds;
 use crate::member::member;
 
 member! {
-    /// All points within `tube_radius` of a circle. A tube of radius 0 is the ring itself; a circle of radius 0 makes a ball.
+    /// All points within `tube_radius` of a circle. A tube of radius 0 is the ring itself; a circle of radius
+    /// 0 makes a ball.
     #[derive(Clone, Copy, PartialEq, Debug)]
     pub struct Torus = "torus" {
         /// Its middle.
@@ -40,7 +41,8 @@ impl SkeletonMember for Torus {
         (h.hypot(rho - self.ring_radius) - self.tube_radius).max(0.0).powi(2)
     }
 
-    /// All points of the ring are equally near to a point of its axis: there the gradient jumps, unless it is zero.
+    /// All points of the ring are equally near to a point of its axis: there the gradient jumps, unless it is
+    /// zero.
     fn decision(&self, p: DVec3) -> f64 {
         if self.ring_radius == 0.0 {
             return f64::INFINITY;

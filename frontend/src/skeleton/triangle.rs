@@ -1,7 +1,7 @@
 //! The triangle: the skeleton of plates and of solids made of them.
 //!
-//! The pose puts the triangle into the plane z = 0, the longest side on the x axis with its middle at the origin, and the third corner
-//! below it. Then
+//! The pose puts the triangle into the plane z = 0, the longest side on the x axis with its middle at the
+//! origin, and the third corner below it. Then
 //!
 //! ```text
 //!     A ─────────────── B        d^2 = z^2 + (inside ? 0 : the nearest of three sides)
@@ -10,8 +10,9 @@
 //!             C
 //! ```
 //!
-//! A point is inside where all three q are negative, and |s| of the longest side is within its half length. The last condition
-//! follows from the others, except by rounding in a very flat triangle: it keeps the error to the size of the rounding.
+//! A point is inside where all three q are negative, and |s| of the longest side is within its half length.
+//! The last condition follows from the others, except by rounding in a very flat triangle: it keeps the error
+//! to the size of the rounding.
 
 use glam::{DAffine3, DMat3, DVec3};
 use jbt_ir::{Domain, limits};
@@ -141,8 +142,9 @@ impl SkeletonMember for Triangle {
 
     const UV_COLUMNS: &'static [&'static str] = &["u_x", "u_y", "u_at", "v_x", "v_y", "v_at"];
 
-    /// Barycentric: u is the weight of `b`, v that of `c`, of the place's projection onto the plane, each between 0 and 1. So `a` is (0, 0), `b`
-    /// (1, 0) and `c` (0, 1). A flat triangle, which has no plane, gives (0, 0).
+    /// Barycentric: u is the weight of `b`, v that of `c`, of the place's projection onto the plane, each
+    /// between 0 and 1. So `a` is (0, 0), `b` (1, 0) and `c` (0, 1). A flat triangle, which has no plane,
+    /// gives (0, 0).
     fn uv(&self, p: DVec3) -> [f64; 2] {
         self.weights().map(|weight| (p - self.a).dot(weight).clamp(0.0, 1.0))
     }

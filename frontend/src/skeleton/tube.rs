@@ -1,7 +1,9 @@
-//! Tubes along paths: what lines and curves through points have in common. Each says of which [`Part`]s it consists; the rest stands here.
+//! Tubes along paths: what lines and curves through points have in common. Each says of which [`Part`]s it
+//! consists; the rest stands here.
 //!
-//! A tube is the solid of all balls with middles on the path, whose radii may differ: its distance is the smallest one of its parts, and 0 inside. A
-//! thin one has radii of 0. The parts, or what they are divided into, are pieces, so that a path of any length is the same code.
+//! A tube is the solid of all balls with middles on the path, whose radii may differ: its distance is the
+//! smallest one of its parts, and 0 inside. A thin one has radii of 0. The parts, or what they are divided
+//! into, are pieces, so that a path of any length is the same code.
 
 use glam::{DAffine3, DVec3};
 use jbt_ir::Domain;
@@ -20,7 +22,8 @@ pub(super) trait Part: Sized {
     /// The box around its image under a map.
     fn bounds_under(&self, map: &DAffine3) -> Bounds;
 
-    /// The nearest places of all parts, plainly: at each part, every place that is nearer than those around it.
+    /// The nearest places of all parts, plainly: at each part, every place that is nearer than those around
+    /// it.
     fn places(parts: impl Iterator<Item = Self>, p: DVec3) -> Vec<Place>;
 
     /// What the program sees of all parts, for this support radius.

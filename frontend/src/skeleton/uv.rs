@@ -1,11 +1,13 @@
 //! What the uv of skeletons is made of: angles as parts of a turn, and frames.
 //!
-//! Every skeleton gives each place of space two numbers in [0, 1]: where the place is *on the skeleton*, by the skeleton's own parameters.
-//! They are finite everywhere. Where they jump (at seams, poles and axes) is said by [`SkeletonMember::uv_decision`](super::SkeletonMember::uv_decision).
+//! Every skeleton gives each place of space two numbers in [0, 1]: where the place is *on the skeleton*, by
+//! the skeleton's own parameters. They are finite everywhere. Where they jump (at seams, poles and axes) is
+//! said by [`SkeletonMember::uv_decision`](super::SkeletonMember::uv_decision).
 //!
-//! Angles about an axis n start at the *zero direction*: the x axis without its part along n, or the y axis where n is closer than
-//! about 26 degrees to x (|n.x| > 0.9); they go right-handed about n. So a picture stays where it is when other numbers of the skeleton
-//! change. One whose z axis is n, and whose x axis is the zero direction, is the frame of the skeleton.
+//! Angles about an axis n start at the *zero direction*: the x axis without its part along n, or the y axis
+//! where n is closer than about 26 degrees to x (|n.x| > 0.9); they go right-handed about n. So a picture
+//! stays where it is when other numbers of the skeleton change. One whose z axis is n, and whose x axis is
+//! the zero direction, is the frame of the skeleton.
 //!
 //! uv feels rotations that distances do not, so it has a frame of its own beside the pose.
 
@@ -44,7 +46,8 @@ pub(super) fn turn_decision(x: f64, y: f64) -> f64 {
     if x > 0.0 { y.abs() } else { x.hypot(y) }
 }
 
-/// The uv of a ball: longitude about the z axis, and latitude from 0 at -z to 1 at +z. In the middle it is (0, 1/2).
+/// The uv of a ball: longitude about the z axis, and latitude from 0 at -z to 1 at +z. In the middle it is
+/// (0, 1/2).
 pub(super) fn sphere(p: DVec3) -> [f64; 2] {
     [turn(p.x, p.y), 0.5 + 2.0 * p.z.atan2(p.x.hypot(p.y)) / TAU]
 }
@@ -67,8 +70,8 @@ pub(super) fn emit_sphere<D: Domain>(d: &mut D, p: [D::Real; 3]) -> [D::Real; 2]
     [emit_turn(d, p[0], p[1]), v]
 }
 
-/// `atan(q) / (2 pi q)` in q^2, for q in [0, 1]: the error of the angle is below 1.5e-8 of a turn. Fitted by iterated least squares
-/// (Lawson 1961).
+/// `atan(q) / (2 pi q)` in q^2, for q in [0, 1]: the error of the angle is below 1.5e-8 of a turn. Fitted by
+/// iterated least squares (Lawson 1961).
 const ATAN: [f32; 8] = [
     0.159_154_93,
     -0.053_049_67,

@@ -27,7 +27,8 @@ const UV_WORDS: [&str; 3] = ["scale", "rotate", "shift"];
 const ENDS: [&str; 2] = ["a", "b"];
 
 impl Parser<'_> {
-    /// The value of the attribute `name`, whose token is `at`; nothing after an error in what is no list of numbers.
+    /// The value of the attribute `name`, whose token is `at`; nothing after an error in what is no list of
+    /// numbers.
     pub(super) fn attribute_value(
         &mut self,
         at: Token,

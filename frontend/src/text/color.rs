@@ -1,5 +1,5 @@
-//! Colours as screens have them, where values of an attribute may stand. They become linear light as they are read: a model knows no
-//! others, and so its printed text does not, either.
+//! Colours as screens have them, where values of an attribute may stand. They become linear light as they are
+//! read: a model knows no others, and so its printed text does not, either.
 //!
 //! ```text
 //! color "#ff8800" { .. }              three reals; "#f80" is the same
@@ -85,7 +85,8 @@ pub(super) fn color_hint(word: &str) -> Option<String> {
 }
 
 impl Parser<'_> {
-    /// Whether a colour is next, also one that is not written as it should be, as the values of a group of so many reals.
+    /// Whether a colour is next, also one that is not written as it should be, as the values of a group of so
+    /// many reals.
     pub(super) fn begins_color(&self, width: Option<usize>) -> bool {
         self.peek().kind == TokenKind::Quoted || self.begins_srgb() || self.hex_in_comment(width).is_some()
     }
@@ -167,7 +168,8 @@ impl Parser<'_> {
 
     /// A colour in hex without its quotes, which the rest of the line has become a comment with.
     ///
-    /// It is one as long as what stands behind the comment could not be meant: a comment may begin with such letters, too (`#add`).
+    /// It is one as long as what stands behind the comment could not be meant: a comment may begin with such
+    /// letters, too (`#add`).
     fn hex_in_comment(&self, width: Option<usize>) -> Option<Span> {
         let token = self.peek();
         let gap = Span::new(self.previous_end(), token.start);

@@ -7,8 +7,9 @@
 //!
 //! A number that could not be computed is NaN from there on, and is reported once: where it arose.
 //!
-//! What follows parameters is written down as a formula besides. Both stacks meet the operands in the order of the text, so the steps of
-//! the formula come out in postfix order, each operand's after those of the operand before it.
+//! What follows parameters is written down as a formula besides. Both stacks meet the operands in the order
+//! of the text, so the steps of the formula come out in postfix order, each operand's after those of the
+//! operand before it.
 
 use jbt_ir::limits::MAX_EXPRESSION_DEPTH;
 
@@ -70,7 +71,8 @@ struct Part {
 pub(super) enum Place {
     /// By itself: it goes on as long as operators follow.
     Alone,
-    /// Directly inside a vector: a `+` or `-` with a blank before it and none after it begins the next element.
+    /// Directly inside a vector: a `+` or `-` with a blank before it and none after it begins the next
+    /// element.
     Element,
 }
 
@@ -111,7 +113,8 @@ impl Stacks {
         }
     }
 
-    /// What became of the operands whose steps begin at `first`: `step` on top of theirs, or a value, if they are plain.
+    /// What became of the operands whose steps begin at `first`: `step` on top of theirs, or a value, if they
+    /// are plain.
     fn push_result(&mut self, value: f64, span: Span, first: u32, step: Option<Step>) {
         match step {
             Some(step) => {
@@ -192,7 +195,8 @@ impl Parser<'_> {
         place == Place::Element && additive && self.leans_right()
     }
 
-    /// The number that the stacks, the text and the place lead to; nothing after an error that has lost the place.
+    /// The number that the stacks, the text and the place lead to; nothing after an error that has lost the
+    /// place.
     fn finished(&mut self, stacks: &mut Stacks, mut wanted: bool, place: Place) -> Option<Operand> {
         loop {
             if stacks.waiting.len().max(stacks.operands.len()) >= MAX_EXPRESSION_DEPTH {
@@ -225,7 +229,8 @@ impl Parser<'_> {
         stacks.finish()
     }
 
-    /// Takes what may begin an operand. Returns whether one is still wanted, or nothing if none can begin here.
+    /// Takes what may begin an operand. Returns whether one is still wanted, or nothing if none can begin
+    /// here.
     fn operand(&mut self, stacks: &mut Stacks) -> Option<bool> {
         let token = self.peek();
         let at = token.start as u32;
@@ -293,7 +298,8 @@ impl Parser<'_> {
         }
     }
 
-    /// Takes what may follow an operand. Returns whether another one is wanted, or nothing if the expression ends here.
+    /// Takes what may follow an operand. Returns whether another one is wanted, or nothing if the expression
+    /// ends here.
     fn operator(&mut self, stacks: &mut Stacks, place: Place) -> Option<bool> {
         let token = self.peek();
         let TokenKind::Mark(mark) = token.kind else {
@@ -331,7 +337,8 @@ impl Parser<'_> {
         }
     }
 
-    /// Computes the waiting operators that bind at least as strongly as `strength`, down to the nearest open group.
+    /// Computes the waiting operators that bind at least as strongly as `strength`, down to the nearest open
+    /// group.
     fn reduce(&mut self, stacks: &mut Stacks, strength: u8) {
         while let Some(&(waiting, at)) = stacks.waiting.last() {
             if waiting.is_open() || waiting.strength() < strength {

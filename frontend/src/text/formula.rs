@@ -1,5 +1,5 @@
-//! The formula of a field: an expression over `x y z`, `field(name)`, definitions of its own and numbers. Or several, without fields: three of a point,
-//! or one for each channel of an attribute.
+//! The formula of a field: an expression over `x y z`, `field(name)`, definitions of its own and numbers. Or
+//! several, without fields: three of a point, or one for each channel of an attribute.
 //!
 //! It is read by the parser of numbers, which hands what is no number through as steps.
 
@@ -22,7 +22,8 @@ use crate::word::{COORDINATES, FIELD, is_statement};
 use crate::written::{Written, WrittenFalloff};
 
 impl<'a> Parser<'a> {
-    /// What a word that has just been taken stands for in a formula, if it is no number there; an error that has been told.
+    /// What a word that has just been taken stands for in a formula, if it is no number there; an error that
+    /// has been told.
     pub(super) fn variable(&mut self, word: &str, token: Token) -> Option<Result<Variable, ()>> {
         let scope = self.scope.as_ref()?;
         if let Some(&place) = scope.definitions.get(word) {
@@ -128,7 +129,8 @@ impl<'a> Parser<'a> {
         Some(Formula::new(assembled, None))
     }
 
-    /// A formula with so many values and the subtrees that it asks for, from behind its `{`, which is `open`, to behind its `}`.
+    /// A formula with so many values and the subtrees that it asks for, from behind its `{`, which is `open`,
+    /// to behind its `}`.
     fn formula(
         &mut self,
         (start, open): (Token, Token),
@@ -160,7 +162,8 @@ impl<'a> Parser<'a> {
         Some((assembled, children))
     }
 
-    /// The definitions of a formula and its value, or its values in parentheses, up to its end or to an error that has lost the place.
+    /// The definitions of a formula and its value, or its values in parentheses, up to its end or to an error
+    /// that has lost the place.
     fn definitions(&mut self, assembler: &mut Assembler, width: usize) -> Vec<Draft> {
         let mut values: Vec<Draft> = Vec::new();
         loop {
@@ -191,7 +194,8 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// The definitions and the values of a formula, this many, up to its end or to an error that has lost the place.
+    /// The definitions and the values of a formula, this many, up to its end or to an error that has lost the
+    /// place.
     fn formulas(&mut self, assembler: &mut Assembler, count: usize) -> Vec<Draft> {
         let (mut definitions, mut values): (Vec<Draft>, Vec<Draft>) = (Vec::new(), Vec::new());
         while values.len() < count {
@@ -223,7 +227,8 @@ impl<'a> Parser<'a> {
         values
     }
 
-    /// The node `warp`: its child is asked where three formulas of the point say. Its word has just been taken.
+    /// The node `warp`: its child is asked where three formulas of the point say. Its word has just been
+    /// taken.
     pub(super) fn formula_warp(&mut self, start: Token) -> Begun {
         let written = self.coordinates();
         let bounds = self.accept_word("within").then(|| self.corners());

@@ -1,4 +1,5 @@
-//! What to say to people who know another program's words: loops, modules, shapes with arguments in parentheses.
+//! What to say to people who know another program's words: loops, modules, shapes with arguments in
+//! parentheses.
 
 use super::words::field_word;
 use crate::skeleton::SkeletonKind;

@@ -71,35 +71,40 @@
 //! NAME       = letter { letter | digit | "_" } ;
 //! ```
 //!
-//! SKELETON, FALLOFF, WARP, TEXTURE and FIELD are the names that the members of [`skeleton`](crate::skeleton),
-//! [`falloff`](crate::falloff), [`warp`](crate::warp) and [`texture`](crate::texture) give themselves. Where a skeleton's own parameter is called like one
-//! that every primitive has, the skeleton's name goes before it: a disc has a `disc_radius`, and a `radius` around it.
+//! SKELETON, FALLOFF, WARP, TEXTURE and FIELD are the names that the members of
+//! [`skeleton`](crate::skeleton), [`falloff`](crate::falloff), [`warp`](crate::warp) and
+//! [`texture`](crate::texture) give themselves. Where a skeleton's own parameter is called like one that
+//! every primitive has, the skeleton's name goes before it: a disc has a `disc_radius`, and a `radius` around
+//! it.
 //!
-//! * `#` and `//` begin a comment that ends with the line: at a line feed, a carriage return, or both. Line ends are blanks like others.
-//! * Colours in hex stand in quotes, `color "#ff8800"`: without them they are comments. `srgb` takes numbers from 0 to 1, which may follow
-//!   parameters. Both become linear as they are read.
+//! * `#` and `//` begin a comment that ends with the line: at a line feed, a carriage return, or both. Line
+//!   ends are blanks like others.
+//! * Colours in hex stand in quotes, `color "#ff8800"`: without them they are comments. `srgb` takes numbers
+//!   from 0 to 1, which may follow parameters. Both become linear as they are read.
 //! * A parameter can be set from outside, `-D bulge=2`, and again at run time
-//!   ([`CheckedTree::with_parameters`](crate::check::CheckedTree::with_parameters)): numbers that mention it follow it, and so do
-//!   parameters whose defaults mention it, unless they are set themselves. Parameters in the width or the
-//!   default of an attribute group, or in the origin, count as they were read. An exponent of `ricci` that
-//!   follows a parameter is a blend also where it is 1: unlike the plain sum, it
-//!   takes negative fields as 0.
-//! * `select which { a b c }` is one of its children, and the others do not count: `a` for 0, `b` for 1, `c` for 2, and what is
-//!   between is rounded. A number that is near no child is an error.
-//! * Names are defined before they are used, and once. `color` is declared in every file (3 reals, white, blend) and may be
-//!   declared again to change its default or its mixing.
-//! * Behind an attribute's name a texture's name is the texture. A parameter of that name goes in parentheses: `rough (noise) { .. }`.
-//! * `uv { .. }` with `attribute uv 2` gives leaves the uv of their skeletons: the picture is scaled (by one number or two), then turned by
-//!   degrees about (0, 0), then shifted. Nothing is wrapped to 0 .. 1.
+//!   ([`CheckedTree::with_parameters`](crate::check::CheckedTree::with_parameters)): numbers that mention it
+//!   follow it, and so do parameters whose defaults mention it, unless they are set themselves. Parameters in
+//!   the width or the default of an attribute group, or in the origin, count as they were read. An exponent
+//!   of `ricci` that follows a parameter is a blend also where it is 1: unlike the plain sum, it takes
+//!   negative fields as 0.
+//! * `select which { a b c }` is one of its children, and the others do not count: `a` for 0, `b` for 1, `c`
+//!   for 2, and what is between is rounded. A number that is near no child is an error.
+//! * Names are defined before they are used, and once. `color` is declared in every file (3 reals, white,
+//!   blend) and may be declared again to change its default or its mixing.
+//! * Behind an attribute's name a texture's name is the texture. A parameter of that name goes in
+//!   parentheses: `rough (noise) { .. }`.
+//! * `uv { .. }` with `attribute uv 2` gives leaves the uv of their skeletons: the picture is scaled (by one
+//!   number or two), then turned by degrees about (0, 0), then shifted. Nothing is wrapped to 0 .. 1.
 //! * Angles of functions are radians. `^` goes to the right and binds before a minus sign: `-2^2` is -4.
-//! * **Directly inside a vector, a `+` or `-` with a blank before it and none after it begins the next number**:
-//!   `(1 -2 3)` are three numbers, `(1 - 2 3)`, `(1-2 3)` and `((1 -2) 3)` are two.
+//! * **Directly inside a vector, a `+` or `-` with a blank before it and none after it begins the next
+//!   number**: `(1 -2 3)` are three numbers, `(1 - 2 3)`, `(1-2 3)` and `((1 -2) 3)` are two.
 //!
 //! # Promises
 //!
-//! `parse(print(model)) == model` for every model that passes the check, with the same bits in every number, and with the same
-//! subtrees shared, as long as its text is not longer than [`jbt_ir::limits::MAX_SCENE_BYTES`]. Reading is iterative, takes
-//! memory for the model, and a copy of the text for messages, and reports every error with its place. Parameters are printed as such, with their
+//! `parse(print(model)) == model` for every model that passes the check, with the same bits in every number,
+//! and with the same subtrees shared, as long as its text is not longer than
+//! [`jbt_ir::limits::MAX_SCENE_BYTES`]. Reading is iterative, takes memory for the model, and a copy of the
+//! text for messages, and reports every error with its place. Parameters are printed as such, with their
 //! present values, and so are the expressions that mention them.
 
 mod attribute;
@@ -142,8 +147,8 @@ pub use words::OWN_FIELDS;
 ///
 /// # Errors
 ///
-/// All that is wrong with the text, in its order, up to [`jbt_ir::limits::MAX_ERRORS`] and a count of the others. Whether the
-/// model makes sense, [`check`](crate::check) says.
+/// All that is wrong with the text, in its order, up to [`jbt_ir::limits::MAX_ERRORS`] and a count of the
+/// others. Whether the model makes sense, [`check`](crate::check) says.
 pub fn parse(text: &[u8], options: &Options) -> Result<Model, Diagnostics> {
     let source = || Some(SourceText::new(SourceText::UNNAMED, text));
     match parse::read(text, options) {

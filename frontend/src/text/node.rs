@@ -110,7 +110,8 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// Past the parentheses that are next, whatever is in them, and a semicolon behind them; not into a block.
+    /// Past the parentheses that are next, whatever is in them, and a semicolon behind them; not into a
+    /// block.
     pub(super) fn skip_arguments(&mut self) {
         let mut depth = 0usize;
         loop {
@@ -350,7 +351,8 @@ impl<'a> Parser<'a> {
         format!("declared are {}", names.join(", "))
     }
 
-    /// A word that begins nothing. A block with values before it is read as that of a misspelt attribute, others are skipped.
+    /// A word that begins nothing. A block with values before it is read as that of a misspelt attribute,
+    /// others are skipped.
     fn unknown_node(&mut self, start: Token, word: &'a str) -> Begun {
         let foreign = foreign_word(word);
         let valued = foreign.is_none() && (self.peek().is(b'(') || self.peek().kind == TokenKind::Number);

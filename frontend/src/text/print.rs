@@ -1,9 +1,8 @@
 //! The printer: a model as text that reads back as the same model.
 //!
-//! Subtrees with several parents are printed once, as `let`, children first: a text is as long as its graph, however many
-//! paths the graph has.
-//! Maps and attributes stand on one line with their child; operators open a line for each child, down to a depth where the
-//! indentation would outweigh the text.
+//! Subtrees with several parents are printed once, as `let`, children first: a text is as long as its graph,
+//! however many paths the graph has. Maps and attributes stand on one line with their child; operators open a
+//! line for each child, down to a depth where the indentation would outweigh the text.
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
@@ -87,7 +86,8 @@ fn free_prefix(model: &Model) -> String {
     prefix
 }
 
-/// The subtrees that need a name, since they have more than one use or stand in a formula, children before parents, and the number of each by its identity.
+/// The subtrees that need a name, since they have more than one use or stand in a formula, children before
+/// parents, and the number of each by its identity.
 fn shared(root: &Tree) -> (Vec<&Tree>, HashMap<usize, usize>) {
     let mut uses: HashMap<usize, usize> = HashMap::new();
     let mut named = std::collections::HashSet::new();
@@ -206,7 +206,8 @@ fn operator(out: &mut String, combinator: Combinator, numbers: &[String]) {
     };
 }
 
-/// What stands before a node's block; of a primitive, all of it. Names of definitions begin with `definitions`.
+/// What stands before a node's block; of a primitive, all of it. Names of definitions begin with
+/// `definitions`.
 fn head(out: &mut String, written: &Written, definitions: &str) {
     match written {
         Written::Primitive { skeleton: kind, fields, falloff, radius, strength } => {

@@ -1,7 +1,8 @@
 //! The state of reading one text: tokens, messages, and what has been declared.
 //!
-//! Tokens are taken one at a time and nothing recurses, so that memory is bounded by the model and not by the text. After an
-//! error that has lost the place, tokens are skipped in silence until a word, a brace or a statement says where we are again.
+//! Tokens are taken one at a time and nothing recurses, so that memory is bounded by the model and not by the
+//! text. After an error that has lost the place, tokens are skipped in silence until a word, a brace or a
+//! statement says where we are again.
 
 use std::collections::HashMap;
 

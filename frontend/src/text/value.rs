@@ -63,7 +63,8 @@ impl Parser<'_> {
         Some(all)
     }
 
-    /// A number, or a vector. A vector of one element is a number in parentheses, which an operator may follow.
+    /// A number, or a vector. A vector of one element is a number in parentheses, which an operator may
+    /// follow.
     pub(super) fn number_or_elements(&mut self) -> Option<Elements> {
         if !self.peek().is(b'(') {
             let operand = self.expression(Place::Alone);
@@ -139,7 +140,8 @@ impl Parser<'_> {
         });
     }
 
-    /// The values of an attribute group; zeros after an error. The width is nothing if it has an error itself.
+    /// The values of an attribute group; zeros after an error. The width is nothing if it has an error
+    /// itself.
     pub(super) fn group_values(&mut self, width: Option<usize>) -> Vec<Number> {
         let zeros = vec![Number::from(0.0); width.unwrap_or(1)];
         let all = if self.begins_color(width) { self.color(width) } else { self.number_or_elements() };
@@ -209,7 +211,8 @@ impl Parser<'_> {
         }
     }
 
-    /// `( a b c )` of any number of elements, with blanks or commas between; those before an error, or up to the limit.
+    /// `( a b c )` of any number of elements, with blanks or commas between; those before an error, or up to
+    /// the limit.
     fn list<T>(&mut self, mut element: impl FnMut(&mut Self) -> T) -> Vec<T> {
         let mut all = Vec::new();
         let open = self.peek();

@@ -21,7 +21,8 @@ pub const OWN_FIELDS: [&str; 4] = ["radius", "surface_radius", "falloff", "stren
 /// The word before the block of a warp that a second child weighs.
 pub(super) const WEIGHTED: &str = "weighted";
 
-/// The word for a parameter of a skeleton: its name, after the skeleton's where every primitive has one of that name.
+/// The word for a parameter of a skeleton: its name, after the skeleton's where every primitive has one of
+/// that name.
 pub(super) fn field_word(kind: SkeletonKind, field: &Field) -> Cow<'static, str> {
     if OWN_FIELDS.contains(&field.name) {
         Cow::Owned(format!("{}_{}", kind.name(), field.name))
@@ -47,7 +48,8 @@ pub(super) const COMBINATORS: [Combinator; 6] = [
 pub(super) const OTHERS: [&str; 9] =
     ["use", "blend", "ricci", "select", "expression", "within", "falloff", "warp", GROUP_NODE];
 
-/// Whether a word begins a node, or a statement, in every file: a group of this name needs the word `with` before it.
+/// Whether a word begins a node, or a statement, in every file: a group of this name needs the word `with`
+/// before it.
 pub(super) fn is_reserved(word: &str) -> bool {
     is_statement(word) || fixed_words().any(|fixed| fixed == word)
 }

@@ -2,10 +2,12 @@
 
 use jbt_ir::Domain;
 
-/// How many cells from the origin a pattern goes on along an axis: 2^21. Beyond that f32 has no places left to tell cells apart.
+/// How many cells from the origin a pattern goes on along an axis: 2^21. Beyond that f32 has no places left
+/// to tell cells apart.
 pub const LARGEST_CELL: f32 = 2_097_152.0;
 
-/// 1.5 * 2^23: for |x| < 2^22 the sum `x + ROUND` is `ROUND` plus the integer nearest to x, and so are its bits.
+/// 1.5 * 2^23: for |x| < 2^22 the sum `x + ROUND` is `ROUND` plus the integer nearest to x, and so are its
+/// bits.
 pub(super) const ROUND: f32 = 12_582_912.0;
 
 /// The cell of a coordinate: its number, as the low bits, and how far into the cell it is, from 0 to 1.

@@ -9,7 +9,8 @@ use super::{TextureMember, emit_unit, first_three};
 use crate::member::member;
 
 member! {
-    /// A ramp between the planes through two places, across the line between them. Equal places give 0 everywhere.
+    /// A ramp between the planes through two places, across the line between them. Equal places give 0
+    /// everywhere.
     #[derive(Clone, Copy, PartialEq, Debug)]
     pub struct Gradient = "gradient" {
         /// Where t begins to rise.

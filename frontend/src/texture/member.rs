@@ -18,7 +18,8 @@ pub trait TextureMember: Member {
     /// How far `p` is from where the number jumps; infinity if it never does.
     fn decision(&self, p: DVec3) -> f64;
 
-    /// The part of the parameters that selects code. `follows`: they follow those of the model, so the code has to serve all their values.
+    /// The part of the parameters that selects code. `follows`: they follow those of the model, so the code
+    /// has to serve all their values.
     fn variant(&self, follows: bool) -> u8 {
         let _ = follows;
         0

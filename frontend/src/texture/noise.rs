@@ -1,14 +1,17 @@
-//! Noise: a smooth random number at every place (value noise: Perlin 1985 calls such a sum of octaves turbulence).
+//! Noise: a smooth random number at every place (value noise: Perlin 1985 calls such a sum of octaves
+//! turbulence).
 //!
-//! Every corner of a lattice of cubes has a random number, the hash of its whole coordinates; in a cube, numbers are mixed by
-//! `3 t^2 - 2 t^3` along each axis. Octave k has cubes of `size / 2^k` and half the weight of the one before; the weights add up to 1.
-//! A fractional number of octaves gives the last one a part of its weight.
+//! Every corner of a lattice of cubes has a random number, the hash of its whole coordinates; in a cube,
+//! numbers are mixed by `3 t^2 - 2 t^3` along each axis. Octave k has cubes of `size / 2^k` and half the
+//! weight of the one before; the weights add up to 1. A fractional number of octaves gives the last one a
+//! part of its weight.
 //!
 //! ```text
 //! t = sum w_k n_k(p 2^k / size)        w_k ~ 2^-k clamp(octaves - k, 0, 1)
 //! ```
 //!
-//! The hash is Jenkins' one-at-a-time (1997) over three words; only shifts, sums and exclusive ors of 32 bits.
+//! The hash is Jenkins' one-at-a-time (1997) over three words; only shifts, sums and exclusive ors of 32
+//! bits.
 
 use glam::DVec3;
 use jbt_ir::Domain;
@@ -27,7 +30,8 @@ member! {
     pub struct Noise = "noise" {
         /// The side of a cube of the first octave.
         pub size: f64 [Positive] = Real(1.0),
-        /// How many octaves, at most 8; less than one is one. The whole number above it selects code, unless it follows a parameter: then all eight are computed.
+        /// How many octaves, at most 8; less than one is one. The whole number above it selects code, unless
+        /// it follows a parameter: then all eight are computed.
         pub octaves: f64 [Positive] = Real(1.0),
         /// The nearest whole number, up to 2^21 in magnitude, tells one noise from another.
         pub seed: f64 [Real] = Real(0.0),
@@ -108,7 +112,8 @@ pub(super) fn emit_seed<D: Domain>(d: &mut D, seed: D::Real) -> D::Bits {
     d.int_sub(bits, offset)
 }
 
-/// The sum of octaves with these weights at `p`, whose coordinates are multiplied with `inv_size`: from 0 to 1.
+/// The sum of octaves with these weights at `p`, whose coordinates are multiplied with `inv_size`: from 0
+/// to 1.
 pub(super) fn emit_octaves<D: Domain>(
     d: &mut D,
     (p, inv_size): ([D::Real; 3], D::Real),

@@ -1,7 +1,8 @@
-//! Veins: waves across space that noise shakes (Perlin 1985), of which marble and the rings of trees are made.
+//! Veins: waves across space that noise shakes (Perlin 1985), of which marble and the rings of trees are
+//! made.
 //!
-//! `t = wave(distance / width + turbulence * noise(p / size))`, where the wave goes from 0 to 1 and back in each width, and the noise has
-//! three octaves. What the distance is measured from makes the texture.
+//! `t = wave(distance / width + turbulence * noise(p / size))`, where the wave goes from 0 to 1 and back in
+//! each width, and the noise has three octaves. What the distance is measured from makes the texture.
 
 use glam::DVec3;
 use jbt_ir::Domain;

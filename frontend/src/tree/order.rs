@@ -41,8 +41,8 @@ impl Tree {
 
     /// The tree with every node replaced for which `replace` returns another one.
     ///
-    /// Bottom-up: `replace` sees each node once, with its children already replaced. What it does not replace stays as it is: shared
-    /// nodes stay shared, untouched subtrees are those of the original.
+    /// Bottom-up: `replace` sees each node once, with its children already replaced. What it does not replace
+    /// stays as it is: shared nodes stay shared, untouched subtrees are those of the original.
     #[must_use]
     pub fn rewrite(&self, mut replace: impl FnMut(&Self) -> Option<Self>) -> Self {
         let mut done: HashMap<usize, Self> = HashMap::new();

@@ -9,21 +9,23 @@
 //!          z
 //! ```
 //!
-//! `center` is the place on the spine that stays. With Y measured from there, `A = 1 - k Z`, `B = k Y`, and the distance from the
-//! centre of curvature in radii, `h = sqrt(A^2 + B^2)`, the inverse map is
+//! `center` is the place on the spine that stays. With Y measured from there, `A = 1 - k Z`, `B = k Y`, and
+//! the distance from the centre of curvature in radii, `h = sqrt(A^2 + B^2)`, the inverse map is
 //!
 //! ```text
 //! inside:   s = atan2(B, A) / k          y = center + s          z = (1 - h) / k = (2 Z - k (Y^2 + Z^2)) / (1 + h)
 //! beyond:   with t = k e at the end e    y = center + e + Y cos t + (Z - 1/k) sin t          z = 1/k - Y sin t + (Z - 1/k) cos t
 //! ```
 //!
-//! Nothing is divided by k: the right form of z, and an arctangent by the half angle (`angle`), keep their digits however small k is, and a
-//! rate of 0 is the identity. (The form that is usually printed, `z = 1/k + h / |k|`, takes the other one of two roots.)
+//! Nothing is divided by k: the right form of z, and an arctangent by the half angle (`angle`), keep their
+//! digits however small k is, and a rate of 0 is the identity. (The form that is usually printed, `z = 1/k +
+//! h / |k|`, takes the other one of two roots.)
 //!
-//! **Limits.** What the child has beyond 1/k, behind the centre of curvature, is not seen inside the bend: its material would have to be there a second
-//! time. A bend of more than half a turn to one side ends at half a turn, and so does a straight part where it crosses the side opposite of the middle.
-//! At the centre of curvature all of the spine meets; within
-//! [`SMALLEST_DISTANCE`] of it, in radii, s fades to 0, so that everything is finite.
+//! **Limits.** What the child has beyond 1/k, behind the centre of curvature, is not seen inside the bend:
+//! its material would have to be there a second time. A bend of more than half a turn to one side ends at
+//! half a turn, and so does a straight part where it crosses the side opposite of the middle. At the centre
+//! of curvature all of the spine meets; within [`SMALLEST_DISTANCE`] of it, in radii, s fades to 0, so that
+//! everything is finite.
 
 use std::f64::consts::PI;
 
@@ -43,7 +45,8 @@ pub const SMALLEST_DISTANCE: f64 = 1.0 / 65_536.0;
 pub const LARGEST_RATE: f64 = 1e6;
 /// Products of rate and coordinates up to this have finite squares.
 const LARGEST_PRODUCT: f64 = (1_u64 << 60) as f64;
-/// Two squares of coordinates up to this, and of products of them with a rate up to 1, have a finite sum in f32: 2^63.
+/// Two squares of coordinates up to this, and of products of them with a rate up to 1, have a finite sum in
+/// f32: 2^63.
 const FARTHEST: f32 = (1_u64 << 63) as f32;
 
 member! {
@@ -63,7 +66,8 @@ member! {
     }
 }
 
-/// An end of the bend, and the rigid map from the warped space to the child's beyond it, in coordinates (Y, Z) and (y, z).
+/// An end of the bend, and the rigid map from the warped space to the child's beyond it, in coordinates (Y,
+/// Z) and (y, z).
 struct End {
     /// The place on the spine, from the centre.
     at: f64,
@@ -114,7 +118,8 @@ impl Bend {
         [self.center + s * along - z * sin, z * cos + s * across]
     }
 
-    /// A box around what the bend makes of a child, where it is bent and where it is not, both `slack` farther than they should be.
+    /// A box around what the bend makes of a child, where it is bent and where it is not, both `slack`
+    /// farther than they should be.
     fn bent(&self, child: Bounds, slack: f64) -> Bounds {
         let [a, u, v] = self.axis.order();
         let [lower, upper] = self.ends();
@@ -225,12 +230,14 @@ impl WarpMember for Bend {
         if child.is_finite() { self.bent(child, 0.0) } else { all_of_space(self.axis, child) }
     }
 
-    /// Let L be how far the point is from the place that stays; from there to the child's point it is as far along the spine and then up.
+    /// Let L be how far the point is from the place that stays; from there to the child's point it is as far
+    /// along the spine and then up.
     ///
-    /// Away from the centre of curvature (h > 1/2) the products of k are off by 4 units of 2^-24 of `1 + |k| L <= 2 + h`, which moves s and z by less
-    /// than 64 units of L. Nearer, `1 / |k| <= 2 L`, and what is off is as if the point was: by less than 16 units of L; the
-    /// arctangent adds 2^-21 of the angle, on a radius below L. Beyond the ends a rotation is off by 6 units of what it adds up. Which of the three
-    /// it is may be decided wrongly only within what s is off by, times h where it is a length.
+    /// Away from the centre of curvature (h > 1/2) the products of k are off by 4 units of 2^-24 of `1 + |k|
+    /// L <= 2 + h`, which moves s and z by less than 64 units of L. Nearer, `1 / |k| <= 2 L`, and what is off
+    /// is as if the point was: by less than 16 units of L; the arctangent adds 2^-21 of the angle, on a
+    /// radius below L. Beyond the ends a rotation is off by 6 units of what it adds up. Which of the three it
+    /// is may be decided wrongly only within what s is off by, times h where it is a length.
     fn reach(&self, child: Bounds) -> Bounds {
         if child.is_empty() {
             return child;
@@ -276,7 +283,8 @@ impl WarpMember for Bend {
         let (far_y, far_z) = (d.sub(p[u], center), p[v]);
         let one = d.constant(1.0);
         let back = d.neg(rate);
-        // Where squares of coordinates in radii would overflow, the bend sees a nearer place: far away from all of its spine, too.
+        // Where squares of coordinates in radii would overflow, the bend sees a nearer place: far away from
+        // all of its spine, too.
         let (steep, farthest) = (d.abs(rate), d.constant(FARTHEST));
         let steep = d.max(steep, one);
         let farthest = d.div(farthest, steep);
@@ -402,7 +410,8 @@ mod tests {
         }
     }
 
-    /// The published form takes the root with the other sign: it brings the point (0, 0, 0), which stays, to the height 2/k.
+    /// The published form takes the root with the other sign: it brings the point (0, 0, 0), which stays, to
+    /// the height 2/k.
     #[test]
     fn the_root_has_the_right_sign() {
         for rate in [0.5, -0.5] {

@@ -1,5 +1,5 @@
-//! The deformation: scaled, turned and moved. By itself it is an affine map that costs more than one; it is there to be *weighted*, so that another
-//! subtree's field says where it happens and how much.
+//! The deformation: scaled, turned and moved. By itself it is an affine map that costs more than one; it is
+//! there to be *weighted*, so that another subtree's field says where it happens and how much.
 //!
 //! ```text
 //! deform by (0 0 0.5) degrees 40 weighted { CHILD WEIGHT }
@@ -77,7 +77,8 @@ impl WarpMember for Deform {
         map_bounds(&self.map(), child)
     }
 
-    /// A coordinate takes three fused steps and numbers that are rounded once: it is off by less than 5 units of 2^-24 of what it adds up.
+    /// A coordinate takes three fused steps and numbers that are rounded once: it is off by less than 5 units
+    /// of 2^-24 of what it adds up.
     fn reach(&self, child: Bounds) -> Bounds {
         if child.is_empty() {
             return child;

@@ -5,11 +5,13 @@
 //! warp (t = 0.5 * z, x * cos(t) + y * sin(t), y * cos(t) - x * sin(t), z)   a twist, with a definition
 //! ```
 //!
-//! The form of the formulas is code, and their numbers are numbers of a row; see [`expression`](crate::expression), which also says what becomes of what
-//! cannot be computed. A coordinate is kept within [`LARGEST_WARPED`]; what is no number counts as the lowest.
+//! The form of the formulas is code, and their numbers are numbers of a row; see
+//! [`expression`](crate::expression), which also says what becomes of what cannot be computed. A coordinate
+//! is kept within [`LARGEST_WARPED`]; what is no number counts as the lowest.
 //!
-//! Formulas say where points are asked and not where the child comes out, so nothing is known of the box of what is not empty: it may be
-//! anywhere. Who knows better says so with a box, `warp (..) within (..) to (..)`, which is the node `within` around the warp.
+//! Formulas say where points are asked and not where the child comes out, so nothing is known of the box of
+//! what is not empty: it may be anywhere. Who knows better says so with a box, `warp (..) within (..) to
+//! (..)`, which is the node `within` around the warp.
 
 use std::sync::Arc;
 

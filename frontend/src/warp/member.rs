@@ -16,8 +16,8 @@ pub trait WarpMember: Member {
     /// Where the child is asked when the node is asked at `p`, plainly.
     fn inverse(&self, p: DVec3) -> DVec3;
 
-    /// How far a point is, about, from where the map has a crease or a jump: gradients of the warped child may jump there, too. Infinity
-    /// if it has none.
+    /// How far a point is, about, from where the map has a crease or a jump: gradients of the warped child
+    /// may jump there, too. Infinity if it has none.
     fn decision(&self, p: DVec3) -> f64;
 
     /// What is wrong with parameters of which each is what its [`FieldKind`] says.
@@ -26,8 +26,8 @@ pub trait WarpMember: Member {
     /// A box around the warped child, from a box around the child.
     fn forward_bounds(&self, child: Bounds) -> Bounds;
 
-    /// A box like [`forward_bounds`](Self::forward_bounds), for [`emit`](Self::emit) in f32 with its rounding: no point outside of it is
-    /// taken into the child's box. Supports rest on it.
+    /// A box like [`forward_bounds`](Self::forward_bounds), for [`emit`](Self::emit) in f32 with its
+    /// rounding: no point outside of it is taken into the child's box. Supports rest on it.
     fn reach(&self, child: Bounds) -> Bounds;
 
     /// What the inverse map makes of coordinates up to `largest` in magnitude.

@@ -1,10 +1,13 @@
-//! Warps: deformations of space. One file per member, one list; and one that is given by formulas ([`FormulaWarp`](struct@FormulaWarp)).
+//! Warps: deformations of space. One file per member, one list; and one that is given by formulas
+//! ([`FormulaWarp`](struct@FormulaWarp)).
 //!
-//! A warp states the *inverse* map, from the warped space (where points are asked) to the child's space (where it answers).
+//! A warp states the *inverse* map, from the warped space (where points are asked) to the child's space
+//! (where it answers).
 //!
-//! Any warp can be *weighted* by the field of a second child, which stands where the warp stands and gives nothing but that number: a point p
-//! is taken to `p + w (inverse(p) - p)`, where w is the field at p, between 0 and 1 (de Groot and Wyvill's deformation by a second BlobTree).
-//! So outside of the second child's support, the first one is as it was.
+//! Any warp can be *weighted* by the field of a second child, which stands where the warp stands and gives
+//! nothing but that number: a point p is taken to `p + w (inverse(p) - p)`, where w is the field at p,
+//! between 0 and 1 (de Groot and Wyvill's deformation by a second BlobTree). So outside of the second child's
+//! support, the first one is as it was.
 
 use std::sync::Arc;
 
@@ -167,7 +170,8 @@ impl WarpCode {
         }
     }
 
-    /// The inverse map over the ops, with a weight: see the module. Where the weight is 0, a point stays to the bit.
+    /// The inverse map over the ops, with a weight: see the module. Where the weight is 0, a point stays to
+    /// the bit.
     pub fn emit_weighted<D: Domain>(
         &self,
         d: &mut D,

@@ -1,8 +1,9 @@
 //! The repetition about an axis: copies of the child at equal angles, like spokes.
 //!
-//! The child stands about the first of the two directions across the axis (x for axis z, y for x, z for y), and is the first copy; the others are
-//! turned by whole multiples of a turn over `count`. Each point belongs to the sector of the copy whose direction is nearest, so copies
-//! cost nothing; what reaches out of its sector ends at the wall. Copies that meet at the axis meet without a jump.
+//! The child stands about the first of the two directions across the axis (x for axis z, y for x, z for y),
+//! and is the first copy; the others are turned by whole multiples of a turn over `count`. Each point belongs
+//! to the sector of the copy whose direction is nearest, so copies cost nothing; what reaches out of its
+//! sector ends at the wall. Copies that meet at the axis meet without a jump.
 
 use std::f64::consts::{PI, TAU};
 
@@ -71,7 +72,8 @@ impl WarpMember for RepeatAround {
         turned(self.axis, child, 1.0)
     }
 
-    /// Whichever copy it is, the computed sine and cosine are those of one angle but for rounding: see the twist.
+    /// Whichever copy it is, the computed sine and cosine are those of one angle but for rounding: see the
+    /// twist.
     fn reach(&self, child: Bounds) -> Bounds {
         if child.is_empty() {
             return child;

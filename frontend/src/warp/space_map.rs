@@ -4,9 +4,11 @@
 //! inverse:   p - f(t) (to - from),     t = |p - to| / radius,     f(t) = (1 - t)^3 / (1 + t) for t < 1, 0 beyond
 //! ```
 //!
-//! f falls from 1 to 0, so what appears at `to` is what the child has at `from`, and outside of the ball around `to` nothing moves. There are two
-//! derivatives at the rim; at `to` itself the map has a cone's tip. Several control points are maps inside each other. With a radius below four times the
-//! distance of the two, space folds: some of the child is seen more than once. HyperFun gives the radius as `ratio * (1 + |to - from|)`.
+//! f falls from 1 to 0, so what appears at `to` is what the child has at `from`, and outside of the ball
+//! around `to` nothing moves. There are two derivatives at the rim; at `to` itself the map has a cone's tip.
+//! Several control points are maps inside each other. With a radius below four times the distance of the two,
+//! space folds: some of the child is seen more than once. HyperFun gives the radius as `ratio * (1 + |to -
+//! from|)`.
 
 use glam::DVec3;
 use jbt_ir::Domain;
@@ -63,8 +65,8 @@ impl WarpMember for SpaceMap {
         if child.is_empty() { child } else { self.pulled(child, self.radius) }
     }
 
-    /// Where t is computed as 1 or more, nothing moves, to the bit; it is off by 4 units of itself and those of `to`. Elsewhere the point is
-    /// off by a few units of the shift and of itself.
+    /// Where t is computed as 1 or more, nothing moves, to the bit; it is off by 4 units of itself and those
+    /// of `to`. Elsewhere the point is off by a few units of the shift and of itself.
     fn reach(&self, child: Bounds) -> Bounds {
         if child.is_empty() {
             return child;

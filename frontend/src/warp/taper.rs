@@ -1,4 +1,5 @@
-//! The taper: slices across an axis shrink or grow with their height (Barr 1984), linearly between two heights.
+//! The taper: slices across an axis shrink or grow with their height (Barr 1984), linearly between two
+//! heights.
 //!
 //! ```text
 //!   start 1, end 0.3                r(h) = start + (end - start) t,   t = (h - from) / (to - from), clamped to [0, 1]
@@ -7,8 +8,8 @@
 //!    from  _|     |_                Below and above, the scale stays what it is at the end.
 //! ```
 //!
-//! A scale of zero makes a tip. Scales below [`SMALLEST_SCALE`] count as that, so that everything is finite: what is beyond a tip is a
-//! needle with 1/65,536 of the child's width.
+//! A scale of zero makes a tip. Scales below [`SMALLEST_SCALE`] count as that, so that everything is finite:
+//! what is beyond a tip is a needle with 1/65,536 of the child's width.
 
 use glam::DVec3;
 use jbt_ir::Domain;
@@ -48,7 +49,8 @@ impl Taper {
         self.start.max(self.end).max(SMALLEST_SCALE)
     }
 
-    /// A box around a child whose scales are between those at heights in [low, high], each off by up to `slack`.
+    /// A box around a child whose scales are between those at heights in [low, high], each off by up to
+    /// `slack`.
     fn scaled(&self, child: Bounds, low: f64, high: f64, slack: f64) -> Bounds {
         let [_, u, v] = self.axis.order();
         let (a, b) = (self.scale(low), self.scale(high));
@@ -103,8 +105,9 @@ impl WarpMember for Taper {
         self.scaled(child, child.min[h], child.max[h], 0.0)
     }
 
-    /// The height is kept to the bit, and `q r` is p but for 3 units of 2^-24. The scale is computed at a height that is off by 3 units
-    /// of itself, of `from` and of the distance of the two, and is off by 4 units of the largest one.
+    /// The height is kept to the bit, and `q r` is p but for 3 units of 2^-24. The scale is computed at a
+    /// height that is off by 3 units of itself, of `from` and of the distance of the two, and is off by 4
+    /// units of the largest one.
     fn reach(&self, child: Bounds) -> Bounds {
         if child.is_empty() {
             return child;

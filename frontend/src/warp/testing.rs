@@ -106,7 +106,8 @@ pub fn judge_formulas(warp: &Warp, rng: &mut fastrand::Rng) -> usize {
     (0..34).filter(|_| forms_agree(warp, vector(rng, 2.0).as_vec3())).count()
 }
 
-/// The two forms agree, and so do differences of the one with the derivative of the other. Whether it was compared.
+/// The two forms agree, and so do differences of the one with the derivative of the other. Whether it was
+/// compared.
 fn forms_agree(warp: &Warp, p: Vec3) -> bool {
     let step = 1e-6;
     let at = p.as_dvec3();
@@ -158,7 +159,8 @@ fn boxes_hold(warp: &Warp, rng: &mut fastrand::Rng) {
     }
 }
 
-/// Coordinates whose squares overflow, and some that are small, are taken to numbers, and into no box that does not reach there.
+/// Coordinates whose squares overflow, and some that are small, are taken to numbers, and into no box that
+/// does not reach there.
 fn far_is_far(warp: &Warp, rng: &mut fastrand::Rng) {
     const COORDINATES: [f32; 12] =
         [0.0, -0.0, 1e-45, 1.0, -7.0, 1e6, -1e10, 1e19, -2e19, 1e30, -3e38, f32::MAX];

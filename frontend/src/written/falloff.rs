@@ -15,7 +15,8 @@ pub struct WrittenFalloff {
 }
 
 impl WrittenFalloff {
-    /// The falloff of this kind, whatever its variant, with these parameters, in the order of [`FalloffKind::fields`].
+    /// The falloff of this kind, whatever its variant, with these parameters, in the order of
+    /// [`FalloffKind::fields`].
     #[must_use]
     pub fn new(kind: FalloffKind, fields: Vec<FieldNumber>) -> Self {
         Self { kind: kind.base(), fields }

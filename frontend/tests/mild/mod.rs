@@ -56,7 +56,8 @@ fn count(field: &Field, count: u8) -> f64 {
     f64::from(if field.default.is_none() { count + 1 } else { count })
 }
 
-/// Makes parameters that are well by themselves fit each other: a radius for all points or one for each, corners in a plane.
+/// Makes parameters that are well by themselves fit each other: a radius for all points or one for each,
+/// corners in a plane.
 fn fit(kind: SkeletonKind, values: &mut [FieldValue]) {
     if kind == SkeletonKind::Polygon
         && let [FieldValue::Vectors(points)] = values
@@ -123,7 +124,8 @@ pub fn warp(rng: &mut Rng) -> NodeKind {
     NodeKind::Warp(kind.from_fields(&fields(rng, kind.fields())))
 }
 
-/// A warp that is given by formulas: of bounded derivatives, with a definition, with a pole that is not there, with a crease.
+/// A warp that is given by formulas: of bounded derivatives, with a definition, with a pole that is not
+/// there, with a crease.
 pub fn formula_warp(rng: &mut Rng) -> NodeKind {
     let [p, q, r] = vector(rng, 1.0);
     let turn = p * z();

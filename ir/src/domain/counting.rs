@@ -1,8 +1,8 @@
 //! Counts instead of computing: how many ops a point takes, and how many evaluations each leaf of the model.
 //!
-//! [`Counting`] is a meaning of the ops in which a value is nothing and an op is one more of its kind. It runs every row, so it
-//! is for tests and for people. [`evaluations`] gives its sums for the distances without running anything, in a time
-//! that grows with the active rows and not with what they cost.
+//! [`Counting`] is a meaning of the ops in which a value is nothing and an op is one more of its kind. It
+//! runs every row, so it is for tests and for people. [`evaluations`] gives its sums for the distances
+//! without running anything, in a time that grows with the active rows and not with what they cost.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -16,7 +16,8 @@ use crate::verify::Verified;
 
 /// The counting domain: run a function in it ([`crate::interpret::run`]) to learn what one point costs.
 ///
-/// Constants, inputs and columns cost nothing. An op that stands in a fold counts once for each time that its body runs.
+/// Constants, inputs and columns cost nothing. An op that stands in a fold counts once for each time that its
+/// body runs.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Counting {
     counts: [u64; Op::ALL.len()],
@@ -60,19 +61,21 @@ impl Default for Counting {
 /// How often the distances to skeletons are computed for one point.
 #[derive(Clone, PartialEq, Eq, Default, Debug)]
 pub struct Evaluations {
-    /// By tree node, as [`Rows::nodes`](crate::table::Rows::nodes) names them. A node that is not evaluated is not here.
+    /// By tree node, as [`Rows::nodes`](crate::table::Rows::nodes) names them. A node that is not evaluated
+    /// is not here.
     pub per_node: BTreeMap<u32, u64>,
     /// All of them.
     pub total: u64,
 }
 
-/// How often each leaf of a model is evaluated for one point: how often the instructions run whose origin is the
-/// [distance](Part::Distance) of a leaf slot. `tables` fit the function ([`Tables::check`]).
+/// How often each leaf of a model is evaluated for one point: how often the instructions run whose origin is
+/// the [distance](Part::Distance) of a leaf slot. `tables` fit the function ([`Tables::check`]).
 ///
-/// An instruction runs as often as the block that it stands in, and it counts for the leaf that stands in its slot: for that
-/// of the current row of the slot's table. Where it was hoisted out of the fold over that table, because it depends on nothing in the
-/// row, it runs once for all the rows, and counts once, for the leaf of the first active row that it serves; if none
-/// is active, it still runs, and counts only in the total. Constants and columns cost nothing and do not count.
+/// An instruction runs as often as the block that it stands in, and it counts for the leaf that stands in its
+/// slot: for that of the current row of the slot's table. Where it was hoisted out of the fold over that
+/// table, because it depends on nothing in the row, it runs once for all the rows, and counts once, for the
+/// leaf of the first active row that it serves; if none is active, it still runs, and counts only in the
+/// total. Constants and columns cost nothing and do not count.
 ///
 /// Counts saturate at 2^64 - 1.
 #[must_use]
@@ -109,9 +112,10 @@ pub fn evaluations(function: &Verified, tables: &Tables) -> Evaluations {
     result
 }
 
-/// For each table, the distances that one run of the body of its fold computes, without those of folds inside. Times the active rows of a
-/// [`Selection`], and added up, these are the evaluations that a point takes, if each active row runs once: as in lowered
-/// functions, where the fold over a table stands in the body of the fold over its parent.
+/// For each table, the distances that one run of the body of its fold computes, without those of folds
+/// inside. Times the active rows of a [`Selection`], and added up, these are the evaluations that a point
+/// takes, if each active row runs once: as in lowered functions, where the fold over a table stands in the
+/// body of the fold over its parent.
 #[must_use]
 pub fn evaluations_per_row(function: &Function) -> Vec<u64> {
     let mut rows = vec![0; function.tables.len()];
@@ -137,8 +141,8 @@ pub fn ops_per_row(function: &Function) -> Vec<u64> {
     rows
 }
 
-/// What a point takes with the rows of a selection, where each row takes so much: `per_row` is what [`evaluations_per_row`] or [`ops_per_row`]
-/// gives.
+/// What a point takes with the rows of a selection, where each row takes so much: `per_row` is what
+/// [`evaluations_per_row`] or [`ops_per_row`] gives.
 #[must_use]
 pub fn of_selection(per_row: &[u64], selection: &Selection) -> u64 {
     let of = |&table: &Table| {
@@ -156,8 +160,8 @@ fn homes_of_slots(function: &Function) -> HashMap<u32, (Table, usize)> {
     function.tables.iter().flat_map(of_table).collect()
 }
 
-/// The blocks that compute distances: the tables of the folds around each, from the outermost, and how many instructions compute
-/// the distance of each slot.
+/// The blocks that compute distances: the tables of the folds around each, from the outermost, and how many
+/// instructions compute the distance of each slot.
 fn distances(function: &Function) -> Vec<(Vec<Table>, BTreeMap<u32, u64>)> {
     let mut found = Vec::new();
     let mut waiting: Vec<(Block, Vec<Table>)> = vec![(function.body, Vec::new())];
@@ -187,8 +191,9 @@ fn distances(function: &Function) -> Vec<(Vec<Table>, BTreeMap<u32, u64>)> {
     found
 }
 
-/// The folds around a block. The rows that one of them runs depend on the current row of its parent only, so that the folds are
-/// a forest, and the number of combinations of rows is a product over siblings of sums over rows.
+/// The folds around a block. The rows that one of them runs depend on the current row of its parent only, so
+/// that the folds are a forest, and the number of combinations of rows is a product over siblings of sums
+/// over rows.
 struct Chain<'a> {
     function: &'a Function,
     tables: &'a Tables,
@@ -215,8 +220,8 @@ impl<'a> Chain<'a> {
         self.product(None, None, 0)
     }
 
-    /// For each row of `table`, how often the block runs with it as the current row. If there is no fold over `table` around the
-    /// block, the runs count for the first active row that they serve.
+    /// For each row of `table`, how often the block runs with it as the current row. If there is no fold over
+    /// `table` around the block, the runs count for the first active row that they serve.
     fn runs_by_row(&self, table: Table) -> Vec<u64> {
         // The tables from the outermost ancestor to this one.
         let mut path = vec![table];
@@ -226,7 +231,8 @@ impl<'a> Chain<'a> {
         path.reverse();
         let inside = path.iter().take_while(|of| self.chain.contains(of)).count();
 
-        // From the outermost: how often the folds that are no descendants of the current table run, by its row.
+        // From the outermost: how often the folds that are no descendants of the current table run, by its
+        // row.
         let mut runs = vec![1_u64];
         for (at, &of) in path[..inside].iter().enumerate() {
             let parent = at.checked_sub(1).map(|at| path[at]);

@@ -7,8 +7,8 @@
 //!                                     the needed part of the body reads it
 //! ```
 //!
-//! So an accumulator that only feeds itself goes, and so does a fold without a needed accumulator. Tables and columns stay, used or
-//! not: the rows of numbers keep their layout.
+//! So an accumulator that only feeds itself goes, and so does a fold without a needed accumulator. Tables and
+//! columns stay, used or not: the rows of numbers keep their layout.
 
 use crate::entity::{Entity, Inst, Store, Value, Values};
 use crate::function::{Function, InstKind};
@@ -56,7 +56,8 @@ pub fn dce(function: &Function) -> Function {
     renumber(&pruned)
 }
 
-/// For each value, whether an output needs it. The inside and the final value of an accumulator are needed together.
+/// For each value, whether an output needs it. The inside and the final value of an accumulator are needed
+/// together.
 fn needed(function: &Function) -> Vec<bool> {
     let sources = sources(function);
     let mut needed = vec![false; function.values.len()];

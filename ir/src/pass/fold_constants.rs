@@ -1,8 +1,8 @@
 //! Computes ops on constants with the reference domain, so the bits are those that any engine would give.
 //!
 //! * An op whose result is a NaN stays: which NaN it gives is the engine's business.
-//! * There is no constant mask. A comparison of constants stays, but its truth is remembered, so that a selection by it becomes one of
-//!   its operands; the comparison then has no use and `dce` removes it.
+//! * There is no constant mask. A comparison of constants stays, but its truth is remembered, so that a
+//!   selection by it becomes one of its operands; the comparison then has no use and `dce` removes it.
 
 use std::collections::HashMap;
 

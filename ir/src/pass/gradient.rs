@@ -1,9 +1,10 @@
-//! Adds the gradient of the first output along the first three inputs: outputs `gx`, `gy` and `gz`, right behind it. A zero
-//! component is +0.
+//! Adds the gradient of the first output along the first three inputs: outputs `gx`, `gy` and `gz`, right
+//! behind it. A zero component is +0.
 //!
-//! The function is run once in the [`Tangent`] domain. Primal instructions are shared with the derivatives, so nothing is computed
-//! twice. A fold gets three more accumulators for each accumulator that moves and that the first output depends on; which ones do is
-//! found beforehand, because an accumulator can begin to move only in the body.
+//! The function is run once in the [`Tangent`] domain. Primal instructions are shared with the derivatives,
+//! so nothing is computed twice. A fold gets three more accumulators for each accumulator that moves and that
+//! the first output depends on; which ones do is found beforehand, because an accumulator can begin to move
+//! only in the body.
 //!
 //! ```text
 //! (s) = fold t0 rows neutral (0) (acc): ... yield next
@@ -26,8 +27,9 @@ pub fn gradient(function: &Function) -> Function {
     with_gradient(function, Tangent::new(FunctionBuilder::like(function)))
 }
 
-/// As [`gradient`], but of the same ops with guards: every component is finite and within [`LARGEST_SLOPE`](crate::domain::tangent::LARGEST_SLOPE), whatever
-/// overflows on the way. Where nothing does, the bits are the same. It costs several times as many ops.
+/// As [`gradient`], but of the same ops with guards: every component is finite and within
+/// [`LARGEST_SLOPE`](crate::domain::tangent::LARGEST_SLOPE), whatever overflows on the way. Where nothing
+/// does, the bits are the same. It costs several times as many ops.
 #[must_use]
 pub fn guarded_gradient(function: &Function) -> Function {
     with_gradient(function, Tangent::guarded(FunctionBuilder::like(function)))
@@ -61,7 +63,8 @@ fn wanted(function: &Function) -> Vec<bool> {
     let mut wanted = vec![false; function.values.len()];
     let mut waiting: Vec<Value> =
         function.blocks[function.body].results.first().copied().into_iter().collect();
-    // What a value is made of: its operands; for what a fold yields or binds, the accumulator's beginning and next value.
+    // What a value is made of: its operands; for what a fold yields or binds, the accumulator's beginning and
+    // next value.
     let mut sources: Vec<Vec<Value>> = vec![Vec::new(); function.values.len()];
     for inst in function.insts.values() {
         match &inst.kind {
@@ -107,7 +110,8 @@ fn moving(function: &Function) -> Vec<bool> {
     moves
 }
 
-/// Which values move with the inputs. Accumulators need a fixed point: one that stands still at first may be moved by the body.
+/// Which values move with the inputs. Accumulators need a fixed point: one that stands still at first may be
+/// moved by the body.
 fn moved(function: &Function) -> Vec<bool> {
     let mut moves = vec![false; function.values.len()];
     loop {

@@ -10,11 +10,11 @@
 //!     yield next, sum           m, s          what it was given: the row may end at the gate
 //! ```
 //!
-//! Most rows of a model are out of reach of most points. An engine that finds the gate to hold at all points that it
-//! computes together may leave the rest of the row out: every bit stays. A row around folds has another gate: that
-//! their results are the numbers that they began with, because all rows inside changed nothing. Both are proven here, by
-//! following what becomes of the numbers, and by facts of the accumulators that hold before every row. (All NaNs count
-//! as one.)
+//! Most rows of a model are out of reach of most points. An engine that finds the gate to hold at all points
+//! that it computes together may leave the rest of the row out: every bit stays. A row around folds has
+//! another gate: that their results are the numbers that they began with, because all rows inside changed
+//! nothing. Both are proven here, by following what becomes of the numbers, and by facts of the accumulators
+//! that hold before every row. (All NaNs count as one.)
 
 use std::collections::{HashMap, HashSet};
 
@@ -30,19 +30,20 @@ const LEAST_SPARED: usize = 12;
 const SLOW: usize = 6;
 /// Values of a body for which a proof is tried, at most.
 const MOST_TRIED: usize = 4;
-/// An fma with a constant at least as large has a product that is 0 or so near to it that the sum is not tiny: it is
-/// exact where it cancels, and its zero is +0.
+/// An fma with a constant at least as large has a product that is 0 or so near to it that the sum is not
+/// tiny: it is exact where it cancels, and its zero is +0.
 const LARGE: f32 = 1e-12;
 
-/// What has to hold at a point for a row to change no accumulator there: that these values are these numbers, bit for
-/// bit.
+/// What has to hold at a point for a row to change no accumulator there: that these values are these numbers,
+/// bit for bit.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Gate(pub Vec<(Value, f32)>);
 
 /// The gate of each fold's body, if it has one.
 pub type Gates = Store<Block, Option<Gate>>;
 
-/// For the body of each fold its gate, if it has one that spares enough to be asked for. Of several the first.
+/// For the body of each fold its gate, if it has one that spares enough to be asked for. Of several the
+/// first.
 #[must_use]
 pub fn gates(function: &Function) -> Gates {
     let mut gates = Store::new();
@@ -69,8 +70,8 @@ pub fn gates(function: &Function) -> Gates {
     gates
 }
 
-/// Where gates may be, and what they are. A number that is clamped at 0 is 0 at most points, as a rule; and if all
-/// rows of a fold inside change nothing, its results are what it began with.
+/// Where gates may be, and what they are. A number that is clamped at 0 is 0 at most points, as a rule; and
+/// if all rows of a fold inside change nothing, its results are what it began with.
 fn candidates(function: &Function, insts: &[Inst], constants: &[Option<f32>]) -> Vec<(usize, Gate)> {
     let is_zero = |value: Value| constants[value.index()].is_some_and(|number| number.to_bits() == 0);
     // Of each result of a fold in this block, what the first of the folds that hand it on began with.
@@ -100,8 +101,8 @@ fn candidates(function: &Function, insts: &[Inst], constants: &[Option<f32>]) ->
     candidates
 }
 
-/// Whether a row changes no accumulator where a gate holds, which is known behind an instruction. `now` has nothing in
-/// it, before and behind.
+/// Whether a row changes no accumulator where a gate holds, which is known behind an instruction. `now` has
+/// nothing in it, before and behind.
 fn is_idle(
     function: &Function,
     fold: &Fold,
@@ -136,7 +137,8 @@ fn is_idle(
     is_idle
 }
 
-/// What is left out of a body if its row ends where this instruction, and what it is made of, has been computed.
+/// What is left out of a body if its row ends where this instruction, and what it is made of, has been
+/// computed.
 fn spared(function: &Function, insts: &[Inst], at: usize) -> usize {
     let mut wanted: HashSet<Value> = function.operands(insts[at]).iter().copied().collect();
     let cost = |inst: Inst| match &function.insts[inst].kind {
@@ -342,7 +344,8 @@ mod tests {
     use crate::function::{Rule, Schema};
     use crate::op::Domain;
 
-    /// A fold of ten roots and what `write` makes of the accumulator, which begins at `start`, and of a clamped number.
+    /// A fold of ten roots and what `write` makes of the accumulator, which begins at `start`, and of a
+    /// clamped number.
     fn fold(start: f32, write: impl FnOnce(&mut FunctionBuilder, Value, Value) -> Value) -> Option<Gate> {
         let mut b = FunctionBuilder::new("fold", &["x"]);
         let columns = vec!["c".to_owned()];

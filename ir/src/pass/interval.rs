@@ -1,8 +1,8 @@
-//! Turns a function of numbers into a function of ranges: inputs `x`, `y` become `x.low`, `x.high`, `y.low`, `y.high`, an output `field`
-//! becomes `field.low`, `field.high`.
+//! Turns a function of numbers into a function of ranges: inputs `x`, `y` become `x.low`, `x.high`, `y.low`,
+//! `y.high`, an output `field` becomes `field.low`, `field.high`.
 //!
-//! The function is run once in the [interval domain](crate::domain::interval), which says what a range is, over a builder. Tables,
-//! columns and origins stay, so the rows of the one function are those of the other.
+//! The function is run once in the [interval domain](crate::domain::interval), which says what a range is,
+//! over a builder. Tables, columns and origins stay, so the rows of the one function are those of the other.
 //!
 //! ```text
 //! (s) = fold t0 rows neutral (0) (acc): ... yield next
@@ -10,10 +10,11 @@
 //! (s.low, s.high) = fold t0 rows neutral (0, 0) (acc.low, acc.high): ... yield next.low, next.high
 //! ```
 //!
-//! A mask accumulator becomes two masks: it certainly holds, it certainly does not. An accumulator that no input moves stays one
-//! value.
+//! A mask accumulator becomes two masks: it certainly holds, it certainly does not. An accumulator that no
+//! input moves stays one value.
 //!
-//! The transcendentals have to be whole, so it goes before `legalize`; behind `gradient`, it gives the ranges of the gradient.
+//! The transcendentals have to be whole, so it goes before `legalize`; behind `gradient`, it gives the ranges
+//! of the gradient.
 
 use crate::builder::FunctionBuilder;
 use crate::domain::interval::{Ground, Walk};
@@ -25,8 +26,8 @@ use crate::origin::{Origin, Part};
 /// What the names of low and of high bounds end with, in their order.
 pub const BOUND_SUFFIXES: [&str; 2] = [".low", ".high"];
 
-/// The function of ranges. Its inputs and outputs are those of `function`, two for each: `2 i` is the low bound of plane i and `2 i + 1`
-/// the high one.
+/// The function of ranges. Its inputs and outputs are those of `function`, two for each: `2 i` is the low
+/// bound of plane i and `2 i + 1` the high one.
 #[must_use]
 pub fn interval(function: &Function) -> Function {
     let mut bounds = FunctionBuilder::like(function);
@@ -49,7 +50,8 @@ struct Emitting;
 impl Ground for Emitting {
     type Bound = FunctionBuilder;
 
-    /// A distance is one value, for the counters: the high bound, which [`end`](Self::end) marks. What else it takes goes before it.
+    /// A distance is one value, for the counters: the high bound, which [`end`](Self::end) marks. What else
+    /// it takes goes before it.
     fn begin(&mut self, bounds: &mut FunctionBuilder, origin: Origin) {
         let part = if origin.part == Part::Distance { Part::Position } else { origin.part };
         bounds.set_origin(Origin { slot: origin.slot, part });

@@ -1,8 +1,9 @@
 //! How many values are alive at once: what decides whether registers, and then a frame, can hold a function.
 //!
-//! A value is alive from its definition to its last use in its own block. A fold uses its initial accumulators once, when it starts, and
-//! *captures* the values of the enclosing blocks that its body reads: these stay alive until it ends. So at a point inside a body, the
-//! values alive are those of the body and those that its fold keeps alive outside.
+//! A value is alive from its definition to its last use in its own block. A fold uses its initial
+//! accumulators once, when it starts, and *captures* the values of the enclosing blocks that its body reads:
+//! these stay alive until it ends. So at a point inside a body, the values alive are those of the body and
+//! those that its fold keeps alive outside.
 //!
 //! ```text
 //! peak(block) = the largest, over its instructions from last to first, of
@@ -14,8 +15,8 @@
 use crate::entity::{Block, Entity, Inst, Store, Value};
 use crate::function::{Function, InstKind};
 
-/// The largest number of values that are alive at once, in the present order. Constants, inputs and columns count from their
-/// instruction on, like every other value.
+/// The largest number of values that are alive at once, in the present order. Constants, inputs and columns
+/// count from their instruction on, like every other value.
 #[must_use]
 pub fn max_live(function: &Function) -> usize {
     let uses = Uses::new(function);
@@ -50,8 +51,8 @@ impl Uses {
         uses
     }
 
-    /// The values that an instruction reads when it starts, and those that it reads as long as it runs: none, but for a fold. A value may
-    /// come twice, and values of enclosing blocks are among them.
+    /// The values that an instruction reads when it starts, and those that it reads as long as it runs: none,
+    /// but for a fold. A value may come twice, and values of enclosing blocks are among them.
     pub fn of<'a>(&'a self, function: &'a Function, inst: Inst) -> (&'a [Value], &'a [Value]) {
         let captured = match &function.insts[inst].kind {
             InstKind::Fold(fold) => self.captured[fold.body].as_slice(),
@@ -64,7 +65,8 @@ impl Uses {
         (function.operands(inst), captured)
     }
 
-    /// Records a block after the blocks inside it; as deep as folds are nested. `seen` is the last block that captured a value.
+    /// Records a block after the blocks inside it; as deep as folds are nested. `seen` is the last block that
+    /// captured a value.
     fn block(&mut self, function: &Function, block: Block, seen: &mut [Option<Block>]) {
         let data = &function.blocks[block];
         for &param in &data.params {
@@ -112,8 +114,8 @@ impl<'a> Liveness<'a> {
         Self { function, peaks, alive: vec![false; function.values.len()], count: 0 }
     }
 
-    /// The largest number of values of this block, and of the blocks inside it, that are alive at once if its instructions run in this
-    /// order. The peaks of the blocks inside are known.
+    /// The largest number of values of this block, and of the blocks inside it, that are alive at once if its
+    /// instructions run in this order. The peaks of the blocks inside are known.
     pub fn peak(&mut self, uses: &Uses, block: Block, order: &[Inst]) -> usize {
         let function = self.function;
         let data = &function.blocks[block];
@@ -201,7 +203,8 @@ mod tests {
         let sum = b.add(product, y);
         let total = b.end_fold(&[sum]);
         let result = b.mul(total[0], z);
-        // x and y because the body reads them, z because it is read later, and inside the column and the accumulator.
+        // x and y because the body reads them, z because it is read later, and inside the column and the
+        // accumulator.
         assert_eq!(max_live(&b.finish(&[("out".into(), result)])), 5);
     }
 

@@ -1,15 +1,16 @@
 //! The passes, from a lowered function to one that an engine runs: one list, [`PIPELINE`].
 //!
-//! A pass takes a function that obeys the verifier's rules and gives another one that computes the same bits (any NaN equals any
-//! NaN). Between any two passes the observer of [`run_pipeline`] can print the function, verify it, or run it.
+//! A pass takes a function that obeys the verifier's rules and gives another one that computes the same bits
+//! (any NaN equals any NaN). Between any two passes the observer of [`run_pipeline`] can print the function,
+//! verify it, or run it.
 //!
 //! ```text
 //! lowered ─► (gradient) ─► (interval) ─► legalize ─► constant-folding ─► simplify ─► cse ─► dce ─► schedule ─► verify ─► engine
 //! ```
 //!
-//! The gradient and the interval change what is computed, and only for a query that asks for them; so they are not in the list but go
-//! before it: `run_pipeline(f, [&GRADIENT, &INTERVAL].into_iter().chain(PIPELINE), ..)`. They need the transcendentals whole, hence before
-//! `legalize`.
+//! The gradient and the interval change what is computed, and only for a query that asks for them; so they
+//! are not in the list but go before it: `run_pipeline(f, [&GRADIENT, &INTERVAL].into_iter().chain(PIPELINE),
+//! ..)`. They need the transcendentals whole, hence before `legalize`.
 
 mod dce;
 mod fold_constants;
@@ -53,7 +54,8 @@ pub const GRADIENT: Pass = Pass {
     run: gradient,
 };
 
-/// The pass that goes in the place of [`GRADIENT`] for the points where that gives a gradient that is not finite.
+/// The pass that goes in the place of [`GRADIENT`] for the points where that gives a gradient that is not
+/// finite.
 pub const GUARDED_GRADIENT: Pass = Pass {
     name: "guarded-gradient",
     what: "Adds the gradient of the first output, finite whatever overflows on the way.",
@@ -117,8 +119,8 @@ pub fn run_pipeline<'a>(
 
 /// Shares equal instructions and hoists: a plain rewrite, for the builder does both.
 ///
-/// Every pass that rewrites does it too. This one stands in the list because simplification makes operands equal which the
-/// instructions written before them did not know.
+/// Every pass that rewrites does it too. This one stands in the list because simplification makes operands
+/// equal which the instructions written before them did not know.
 #[must_use]
 pub fn share(function: &Function) -> Function {
     rewrite(function, FunctionBuilder::op)

@@ -1,8 +1,8 @@
-//! Replaces ops by cheaper ones that give the same bits for **every** operand: signed zeros, infinities and subnormals included; any NaN
-//! equals any NaN.
+//! Replaces ops by cheaper ones that give the same bits for **every** operand: signed zeros, infinities and
+//! subnormals included; any NaN equals any NaN.
 //!
-//! What is missing is missing on purpose. `x + 0` is not x (`-0 + 0 = +0`), `x * 0` is not 0 (infinities, NaN, signs), `x - x` is not 0, and
-//! `min` and `max` do not commute.
+//! What is missing is missing on purpose. `x + 0` is not x (`-0 + 0 = +0`), `x * 0` is not 0 (infinities,
+//! NaN, signs), `x - x` is not 0, and `min` and `max` do not commute.
 
 use crate::builder::FunctionBuilder;
 use crate::entity::Value;
@@ -179,7 +179,8 @@ fn without_signs(b: &mut FunctionBuilder, x: Value, y: Value) -> Option<(Value, 
 
 fn div(b: &mut FunctionBuilder, x: Value, y: Value) -> Step {
     if let Some(divisor) = b.as_constant(y) {
-        // 2^k has the exact inverse 2^-k if that is a number too: the real quotient and product are one number, rounded once.
+        // 2^k has the exact inverse 2^-k if that is a number too: the real quotient and product are one
+        // number, rounded once.
         let inverse = divisor.recip();
         let power_of_two = is_power_of_two(divisor) && is_power_of_two(inverse);
         if power_of_two {
@@ -300,7 +301,8 @@ mod tests {
     use crate::table::Tables;
     use crate::verify::verify;
 
-    /// How many instructions that are not inputs or constants are left, after checking that every spicy pair gives the same bits.
+    /// How many instructions that are not inputs or constants are left, after checking that every spicy pair
+    /// gives the same bits.
     fn left(name: &str, write: impl FnOnce(&mut FunctionBuilder, Value, Value) -> Value) -> usize {
         let mut b = FunctionBuilder::new(name, &["x", "y"]);
         let (x, y) = (b.input(0), b.input(1));
@@ -494,7 +496,8 @@ mod tests {
     #[test]
     fn neutral_bits_go() {
         for (op, number, expected) in [
-            // What is left: the inner absolute value, the bits of it, the op, the real, the outer absolute value.
+            // What is left: the inner absolute value, the bits of it, the op, the real, the outer absolute
+            // value.
             (Op::BitAnd, u32::MAX, 1),
             (Op::BitAnd, 0, 2),
             (Op::BitAnd, 1, 5),

@@ -1,5 +1,5 @@
-//! Plans of generators of machine code, made from the IR alone: where a long function is cut ([`strips`]), and how many
-//! values are alive at once ([`pressure`]).
+//! Plans of generators of machine code, made from the IR alone: where a long function is cut ([`strips`]),
+//! and how many values are alive at once ([`pressure`]).
 
 pub mod pressure;
 pub mod strips;

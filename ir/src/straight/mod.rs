@@ -1,4 +1,5 @@
-//! Straight code for tables of few rows: a copy of the body for each row, so that rows share what they have in common.
+//! Straight code for tables of few rows: a copy of the body for each row, so that rows share what they have
+//! in common.
 //!
 //! ```text
 //! table t0 "scene" (..)                                    table t0 "scene" (.., a, b)      a: number of rows 0 and 1, which
@@ -11,16 +12,20 @@
 //!         ..                                                   ..            row 1 has no `mul` of its own
 //! ```
 //!
-//! A program of formulas, such as one that was written by a machine, becomes many tables of two or three rows. Its rows have most of their
-//! numbers in common, and so most of their work; but a loop does the work of each row again. Straight code reads equal numbers from one
-//! column, and the builder, which writes no instruction twice, does the rest. The order of all steps stays, so the bits do.
+//! A program of formulas, such as one that was written by a machine, becomes many tables of two or three
+//! rows. Its rows have most of their numbers in common, and so most of their work; but a loop does the work
+//! of each row again. Straight code reads equal numbers from one column, and the builder, which writes no
+//! instruction twice, does the rest. The order of all steps stays, so the bits do.
 //!
-//! There is a price. Straight rows are always there: nothing can leave one out. And the code knows how many rows there are and which of their
-//! numbers are equal, so it fits fewer tables than the function that it was made from: see [`Straight::tables`].
+//! There is a price. Straight rows are always there: nothing can leave one out. And the code knows how many
+//! rows there are and which of their numbers are equal, so it fits fewer tables than the function that it was
+//! made from: see [`Straight::tables`].
 //!
-//! A pass that makes other steps of a function, as the gradient, comes before: what it makes of straight code has other roundings.
+//! A pass that makes other steps of a function, as the gradient, comes before: what it makes of straight code
+//! has other roundings.
 //!
-//! Rows of primitives stay rows. They seldom have anything in common, people edit them, and a row is what is counted and left out.
+//! Rows of primitives stay rows. They seldom have anything in common, people edit them, and a row is what is
+//! counted and left out.
 
 mod choose;
 mod plan;
@@ -38,12 +43,14 @@ use choose::Chosen;
 use plan::{Copied, Count, Place, Source, Under};
 use write::{Writer, Written};
 
-/// Ops of a point beyond which the folds stay: code that long no longer fits into the nearest cache for instructions.
+/// Ops of a point beyond which the folds stay: code that long no longer fits into the nearest cache for
+/// instructions.
 const MAX_OPS: u64 = 1 << 16;
 /// Straight code is worth it if it takes at most so much of the ops of the folds.
 const WORTH: f64 = 0.95;
 
-/// A function with straight code in place of some folds, and how tables of the one become tables of the other.
+/// A function with straight code in place of some folds, and how tables of the one become tables of the
+/// other.
 #[derive(Clone, Debug)]
 pub struct Straight {
     function: Function,
@@ -58,7 +65,8 @@ pub struct Straight {
 }
 
 impl Straight {
-    /// Straight code for these tables, if it is worth it: `None` if folds are as good. The tables fit the function ([`Tables::check`]).
+    /// Straight code for these tables, if it is worth it: `None` if folds are as good. The tables fit the
+    /// function ([`Tables::check`]).
     ///
     /// Time and memory are in proportion to the function and to 2^16 ops.
     #[must_use]
@@ -72,8 +80,8 @@ impl Straight {
         Self::with_apart(function, tables, worth, &HashMap::default())
     }
 
-    /// Straight code for other tables of the same function. Numbers that have been told apart before stay apart, so that a number which
-    /// moves ends up in a column of its own.
+    /// Straight code for other tables of the same function. Numbers that have been told apart before stay
+    /// apart, so that a number which moves ends up in a column of its own.
     #[must_use]
     pub fn again(&self, function: &Function, tables: &Tables) -> Option<Self> {
         let mut apart = HashMap::default();
@@ -112,8 +120,9 @@ impl Straight {
         &self.function
     }
 
-    /// The tables of [`function`](Self::function) for tables of the function that it was made from; `None` if they have other numbers of rows
-    /// where there is straight code now, or if numbers that share a column differ.
+    /// The tables of [`function`](Self::function) for tables of the function that it was made from; `None` if
+    /// they have other numbers of rows where there is straight code now, or if numbers that share a column
+    /// differ.
     #[must_use]
     pub fn tables(&self, tables: &Tables) -> Option<Tables> {
         let rows = self.rows(tables)?;
@@ -168,7 +177,8 @@ impl Straight {
             if index > 0 {
                 rows.push(tables.tables[place.table].range(rows[place.parent])[place.position] as usize);
             }
-            // The counts of a place stand in the order of places, before the places that they speak of are met.
+            // The counts of a place stand in the order of places, before the places that they speak of are
+            // met.
             while let Some(count) = next.filter(|count| count.place == index) {
                 if tables.tables[count.table].range(rows[index]).len() != count.rows {
                     return None;
@@ -180,7 +190,8 @@ impl Straight {
     }
 }
 
-/// The active rows under some rows, as a table of its own whose rows are all active; and which rows these are.
+/// The active rows under some rows, as a table of its own whose rows are all active; and which rows these
+/// are.
 fn copy(rows: &Rows, parents: &[u32], slots: usize) -> (Rows, Vec<u32>) {
     let mut starts = vec![0];
     let mut list: Vec<u32> = Vec::new();

@@ -2,7 +2,8 @@
 
 use crate::entity::Table;
 
-/// A row that became straight code: the n-th active one of a table under another place. The first place is the row that stays.
+/// A row that became straight code: the n-th active one of a table under another place. The first place is
+/// the row that stays.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) struct Place {
     pub(super) parent: usize,
@@ -25,7 +26,8 @@ pub(super) struct Source {
     pub(super) column: usize,
 }
 
-/// A table whose rows are rows of another one: the active ones that hang under a place, under the rows of a new table, or under nothing.
+/// A table whose rows are rows of another one: the active ones that hang under a place, under the rows of a
+/// new table, or under nothing.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) struct Copied {
     pub(super) table: Table,

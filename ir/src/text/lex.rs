@@ -82,8 +82,8 @@ fn word_end(bytes: &[u8], at: usize) -> usize {
     at + word.count()
 }
 
-/// The length of a number: digits or a word after a sign, then a fraction, then a signed exponent. A dot without a digit
-/// after it is not part of it, so that `@3.distance` reads well.
+/// The length of a number: digits or a word after a sign, then a fraction, then a signed exponent. A dot
+/// without a digit after it is not part of it, so that `@3.distance` reads well.
 fn number_length(rest: &str) -> usize {
     let bytes = rest.as_bytes();
     let digit = |at: usize| bytes.get(at).is_some_and(u8::is_ascii_digit);
@@ -146,7 +146,8 @@ pub(super) fn is_bare(name: &str) -> bool {
     })
 }
 
-/// Whether a character can be shown to a terminal as it is: no control characters, no invisible or reordering ones.
+/// Whether a character can be shown to a terminal as it is: no control characters, no invisible or reordering
+/// ones.
 pub(super) fn is_printable(letter: char) -> bool {
     letter == ' ' || letter.is_ascii_graphic() || (!letter.is_ascii() && letter.is_alphanumeric())
 }

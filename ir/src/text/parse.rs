@@ -1,7 +1,8 @@
 //! Reads the text form, line by line. An error ends its line, not the reading: the next line is tried afresh.
 //!
-//! Folds that are open stand on an explicit stack, so nested text needs no nested calls. What is read has the form of a
-//! function and nothing more: whether values are defined before they are used is for [`mod@crate::verify`] to say.
+//! Folds that are open stand on an explicit stack, so nested text needs no nested calls. What is read has the
+//! form of a function and nothing more: whether values are defined before they are used is for
+//! [`mod@crate::verify`] to say.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -17,8 +18,9 @@ use super::line::{Defined, Line, ParseError, Parsed, Span};
 /// Reads one function. The text form is described at the head of [`crate::text`].
 ///
 /// # Errors
-/// Every line that is wrong, once, in order; reading stops after [`MAX_ERRORS`] of them. Numbers of values and tables and the
-/// depth of folds are held to [`crate::limits`] here already, so that no text can ask for more memory than is in proportion to it.
+/// Every line that is wrong, once, in order; reading stops after [`MAX_ERRORS`] of them. Numbers of values
+/// and tables and the depth of folds are held to [`crate::limits`] here already, so that no text can ask for
+/// more memory than is in proportion to it.
 pub fn parse(text: &str) -> Result<Function, Vec<ParseError>> {
     let mut parser = Parser::new();
     let mut last = (1, "");
@@ -115,7 +117,8 @@ impl Parser {
         }
     }
 
-    /// After a wrong line, guesses what it was meant to be, so that the lines after it are not wrong because of it.
+    /// After a wrong line, guesses what it was meant to be, so that the lines after it are not wrong because
+    /// of it.
     fn recover(&mut self, stage: Stage, text: &str) {
         let text = text.split(';').next().unwrap_or_default().trim();
         match stage {

@@ -1,6 +1,7 @@
 //! Writes the text form. Total: a broken function prints too, so that one can see what is wrong with it.
 //!
-//! The walk over nested folds keeps an explicit stack, and no block is written twice: a second mention is only its name.
+//! The walk over nested folds keeps an explicit stack, and no block is written twice: a second mention is
+//! only its name.
 
 use std::collections::{HashMap, HashSet};
 use std::fmt::{self, Write};
@@ -226,7 +227,8 @@ fn first_of_name(names: &[String]) -> Vec<bool> {
     names.iter().map(|name| seen.insert(name)).collect()
 }
 
-/// Four spaces a level. No verified function is deeper than the limit, and a broken one need not be legible there.
+/// Four spaces a level. No verified function is deeper than the limit, and a broken one need not be legible
+/// there.
 fn indent(w: &mut impl Write, levels: usize) -> fmt::Result {
     (0..levels.min(MAX_FOLD_DEPTH + 1)).try_for_each(|_| w.write_str("    "))
 }

@@ -1,6 +1,8 @@
-//! Golden files: an input, a line of dashes, the expected output. `BLESS=1 cargo test` writes what came out as expected.
+//! Golden files: an input, a line of dashes, the expected output. `BLESS=1 cargo test` writes what came out
+//! as expected.
 //!
-//! A review reads the difference of these files, so blessing is no proof of anything: what changed has to be explained.
+//! A review reads the difference of these files, so blessing is no proof of anything: what changed has to be
+//! explained.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -34,7 +36,8 @@ pub fn blessing() -> bool {
     std::env::var_os("BLESS").is_some_and(|bless| bless == "1")
 }
 
-/// Runs every file of `tests/golden/<name>` and compares what comes out with what stands below its line of dashes.
+/// Runs every file of `tests/golden/<name>` and compares what comes out with what stands below its line of
+/// dashes.
 pub fn check_golden(name: &str, run: impl Fn(&str) -> String) {
     let mut failures = String::new();
     for (path, text) in files(name) {

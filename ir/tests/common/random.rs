@@ -1,4 +1,5 @@
-//! Random functions with fitting rows: every op, nested folds over tables with parents, inactive rows, and spicy numbers.
+//! Random functions with fitting rows: every op, nested folds over tables with parents, inactive rows, and
+//! spicy numbers.
 
 use jbt_ir::{
     Domain, FoldKind, Function, FunctionBuilder, Op, Rows, Rule, Schema, Table, Tables, Type, Value,

@@ -1,5 +1,5 @@
-//! Random functions that are awkward to print: names in need of quotes, accumulators of every type, NaNs of every kind, origins
-//! on any instruction. They obey every rule.
+//! Random functions that are awkward to print: names in need of quotes, accumulators of every type, NaNs of
+//! every kind, origins on any instruction. They obey every rule.
 
 use fastrand::Rng;
 use jbt_ir::{
@@ -120,7 +120,8 @@ impl Writer<'_> {
     }
 }
 
-/// Tables that fit a verified function: every parent row owns two rows, the second table row of five is not active.
+/// Tables that fit a verified function: every parent row owns two rows, the second table row of five is not
+/// active.
 pub fn tables(function: &Function) -> Tables {
     let mut tables = Tables::default();
     for schema in function.tables.values() {
@@ -146,7 +147,8 @@ fn index(number: usize) -> u32 {
     u32::try_from(number).expect("samples are small")
 }
 
-/// The function with its instructions numbered in the order of the text, and its constants told apart by their bits.
+/// The function with its instructions numbered in the order of the text, and its constants told apart by
+/// their bits.
 pub fn canonical(function: &Function) -> Function {
     use jbt_ir::{InstKind, Store};
     let mut result = function.clone();

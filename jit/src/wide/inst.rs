@@ -143,7 +143,8 @@ impl Predicate {
     }
 }
 
-/// When a jump is taken, after a comparison of unsigned integers; [`Equal`](Self::Equal) after a test that found zeros alone.
+/// When a jump is taken, after a comparison of unsigned integers; [`Equal`](Self::Equal) after a test that
+/// found zeros alone.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Condition {
     Below,

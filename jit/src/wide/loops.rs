@@ -104,8 +104,8 @@ impl State<'_> {
         so_far.expect("a gate asks for something")
     }
 
-    /// Puts what the top of a round relies on where it is there, and leaves what else there is in registers or
-    /// takes it to the frame.
+    /// Puts what the top of a round relies on where it is there, and leaves what else there is in registers
+    /// or takes it to the frame.
     fn put_header_back(&mut self) {
         let header = self.open.last().expect("a loop is open").header;
         for (register, &part) in (0..).zip(&header) {

@@ -19,6 +19,7 @@
 //! Emitting needs no CPU that can run it.
 
 mod assemble;
+mod build;
 pub(crate) mod check;
 mod counters;
 mod encode;
@@ -39,8 +40,11 @@ mod tests;
 mod transfers;
 
 use jbt_ir::pass::Gates;
+use jbt_ir::plan::Plan;
+use jbt_ir::plan::pressure::{self, FIELD_CARRIES};
 use jbt_ir::{Entity, Function, Level, limits};
 
+use self::build::list;
 use self::check::Replay;
 use self::encode::Shape;
 use self::linear::{Item, Linear};
@@ -48,8 +52,6 @@ use self::lives::Lives;
 use self::state::{Count, State, Task};
 use crate::error::CompileError;
 use crate::options::VectorCount;
-use jbt_ir::plan::Plan;
-use jbt_ir::plan::pressure::{self, FIELD_CARRIES};
 
 /// Finished code: a function of [`crate::entry`]'s ABI, with its constants, that runs at any address which is
 /// a multiple of 64.
@@ -109,7 +111,7 @@ pub(crate) fn emit(
     (plan, gates): (&Plan, &Gates),
     wish: &Wish,
 ) -> Result<Blob, CompileError> {
-    let linear = Linear::new(function, plan, gates);
+    let linear = list(function, plan, gates);
     let lives = Lives::new(&linear);
     let (shape, mut count) = shape(wish.level);
     if wish.few_registers {

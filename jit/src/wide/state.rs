@@ -93,7 +93,8 @@ pub(crate) struct State<'a> {
     full: u64,
     /// The registers of each class, a bit each.
     classes: [u64; 2],
-    /// Until where each register can do without its part, where that has been looked up; and where it has, a bit each.
+    /// Until where each register can do without its part, where that has been looked up; and where it has, a
+    /// bit each.
     wanted: [u32; REGISTERS],
     looked_up: u64,
     /// Where each part is.

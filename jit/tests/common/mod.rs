@@ -1,4 +1,5 @@
-//! What the tests share: tables by hand, numbers that break things, and the comparison with the scalar reference.
+//! What the tests share: tables by hand, numbers that break things, and the comparison with the scalar
+//! reference.
 #![allow(dead_code)] // Each test binary uses a part of it.
 
 use std::sync::Arc;
@@ -171,7 +172,8 @@ pub fn assert_same_bits(expected: &[Vec<f32>], given: &[Vec<f32>], what: &str) {
     }
 }
 
-/// All settings of the compiler, with the function whole, cut at folds, in pieces of a few instructions, and in the smallest there are.
+/// All settings of the compiler, with the function whole, cut at folds, in pieces of a few instructions, and
+/// in the smallest there are.
 pub fn all_options() -> Vec<Options> {
     let of_backend =
         |backend| Options { backend: Some(backend), check: Check::Registers, ..Options::default() };

@@ -1,4 +1,5 @@
-//! How scenes are looked at where the usual way is not the best one, and the pictures that show more than an example.
+//! How scenes are looked at where the usual way is not the best one, and the pictures that show more than an
+//! example.
 
 use std::error::Error;
 use std::path::Path;

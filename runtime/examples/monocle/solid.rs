@@ -12,7 +12,8 @@ pub enum Material {
 
 use Material::{Glass, Steel};
 
-/// The attribute group of materials. There is nothing half-way between glass and steel: the leaf that contributes most decides.
+/// The attribute group of materials. There is nothing half-way between glass and steel: the leaf that
+/// contributes most decides.
 const GROUP: &str = "material";
 
 impl Material {

@@ -1,5 +1,5 @@
-//! What is liquid: a pool with ripples, a wall that opens like a crown, its jets with beads at their ends and drops above them, and
-//! the column that rises in the middle.
+//! What is liquid: a pool with ripples, a wall that opens like a crown, its jets with beads at their ends and
+//! drops above them, and the column that rises in the middle.
 
 use std::f64::consts::TAU;
 

@@ -1,7 +1,8 @@
 //! The splash as a model: particles that are spread evenly in the liquid, each with its share of the field.
 //!
-//! The particles are the points of a sequence of low discrepancy that fall into the liquid, so they are spread evenly without being on
-//! a lattice. Each gives its share of the field: deep inside the shares add up to 1, and so the surface, at 1/2, is where the liquid ends.
+//! The particles are the points of a sequence of low discrepancy that fall into the liquid, so they are
+//! spread evenly without being on a lattice. Each gives its share of the field: deep inside the shares add up
+//! to 1, and so the surface, at 1/2, is where the liquid ends.
 
 #[path = "crown.rs"]
 mod crown;
@@ -17,18 +18,19 @@ pub const COUNT: usize = 100_000;
 /// The radius of a particle's field, in mean distances of particles.
 const REACH: f64 = 2.6;
 
-/// The integral of the falloff `soft` over the ball of its radius, for the radius 1: `4 pi` times that of `r^2 u^2 (5 + 4 u) / 9`,
-/// `u = 1 - r^2`, which is `8/105` for `u^2` and `16/315` for `u^3`.
+/// The integral of the falloff `soft` over the ball of its radius, for the radius 1: `4 pi` times that of
+/// `r^2 u^2 (5 + 4 u) / 9`, `u = 1 - r^2`, which is `8/105` for `u^2` and `16/315` for `u^3`.
 const SOFT_VOLUME: f64 = 4.0 * std::f64::consts::PI * (5.0 * 8.0 / 105.0 + 4.0 * 16.0 / 315.0) / 9.0;
 
-/// The point with this number of the sequence R_3 in the unit cube (Roberts 2018): multiples of powers of 1/g, where g^4 = g + 1.
+/// The point with this number of the sequence R_3 in the unit cube (Roberts 2018): multiples of powers of
+/// 1/g, where g^4 = g + 1.
 fn sequence(number: usize) -> [f64; 3] {
     const G: f64 = 1.220_744_084_605_76;
     [1, 2, 3].map(|power| (0.5 + number as f64 / G.powi(power)).fract())
 }
 
-/// The first points of the sequence that are in the liquid, and the mean distance of one to the next: the third root of the volume
-/// that each has.
+/// The first points of the sequence that are in the liquid, and the mean distance of one to the next: the
+/// third root of the volume that each has.
 fn particles() -> (Vec<[f64; 3]>, f64) {
     let size: [f64; 3] = std::array::from_fn(|axis| HIGH[axis] - LOW[axis]);
     let (mut found, mut number) = (Vec::with_capacity(COUNT), 0);

@@ -8,7 +8,8 @@
 //!   0 --0-- 1      joined. It is asked about the cell alone, so its answer does not depend on blocks.
 //! ```
 //!
-//! Beyond the rectangle everything is outside: there is one more row of cells around it, of no width, in which the contour follows the border.
+//! Beyond the rectangle everything is outside: there is one more row of cells around it, of no width, in
+//! which the contour follows the border.
 
 use super::divide::Square;
 use super::grid::Grid;
@@ -17,8 +18,9 @@ use super::slicer::Slicer;
 use crate::error::EvalError;
 use crate::prune::Region;
 
-/// The name of an edge of the lattice: the axis that it is along, then the row, then the column of the point at its upper end. One that leads to the lattice from
-/// beyond it has 0 along its axis, and one that leads out of it has one more than the last point.
+/// The name of an edge of the lattice: the axis that it is along, then the row, then the column of the point
+/// at its upper end. One that leads to the lattice from beyond it has 0 along its axis, and one that leads
+/// out of it has one more than the last point.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
 pub(super) struct Key(u64);
 
@@ -113,7 +115,8 @@ impl<'a> Block<'a> {
         here && self.value(point) >= self.slicer.iso
     }
 
-    /// The cells of the block, with those beyond the border that it touches: from the first to before the end.
+    /// The cells of the block, with those beyond the border that it touches: from the first to before the
+    /// end.
     fn cells(&self) -> [[u32; 2]; 2] {
         let points = self.grid.points().map(|points| points as u32);
         let first = self.first.map(|first| if first == 0 { 0 } else { first + 1 });
@@ -172,7 +175,8 @@ impl<'a> Block<'a> {
     fn draft(&self, cell: [u32; 2], inside: [bool; 4], join: bool, drafts: &mut Vec<Draft>) {
         let corners = Self::corners(cell);
         let [i, j] = cell;
-        // An edge at which a segment begins or ends has a point of the lattice, so nothing wraps here that is used.
+        // An edge at which a segment begins or ends has a point of the lattice, so nothing wraps here that is
+        // used.
         let key = |edge: usize| match edge {
             0 => Key::new(0, i, j.wrapping_sub(1)),
             1 => Key::new(1, i, j),
@@ -181,7 +185,8 @@ impl<'a> Block<'a> {
         };
         let ends = |edge: usize| inside[edge] != inside[(edge + 1) % 4] && !inside[edge];
         for edge in (0..4).filter(|&edge| inside[edge] && !inside[(edge + 1) % 4]) {
-            // Around the inside corner (clockwise from the edge), or, if it is joined to the other one, around the outside corner.
+            // Around the inside corner (clockwise from the edge), or, if it is joined to the other one,
+            // around the outside corner.
             let step = if join { 1 } else { 3 };
             let mut to = (edge + step) % 4;
             while !ends(to) {
@@ -202,7 +207,8 @@ impl<'a> Block<'a> {
         }
     }
 
-    /// The edge from an inside point to an outside one; on the border there is none, and the vertex is the inside point.
+    /// The edge from an inside point to an outside one; on the border there is none, and the vertex is the
+    /// inside point.
     fn crossing(&self, axis: usize, near: [u32; 2], far: [u32; 2]) -> (Option<Edge>, [f32; 2]) {
         let coordinate = |axis: usize, point: [u32; 2]| self.grid.axes[axis][point[axis] as usize];
         let place = [coordinate(0, near), coordinate(1, near)];
@@ -233,7 +239,8 @@ impl<'a> Block<'a> {
     }
 }
 
-/// The segments along the border of a square that is inside as a whole: one for each side that is on the border, and one for each corner.
+/// The segments along the border of a square that is inside as a whole: one for each side that is on the
+/// border, and one for each corner.
 pub(super) fn border(
     slicer: &Slicer,
     grid: &Grid,

@@ -12,8 +12,9 @@ const MOST: usize = 1 << 14;
 /// The most nodes that are visited for them, again at each use.
 const VISITED: usize = 1 << 18;
 
-/// Center and radius of the circle in which the support of each point primitive meets the plane, in coordinates of the plane. Points behind warps, and behind maps
-/// that are no similarities, have no circles, and other skeletons have none; of a very large model there are not all.
+/// Center and radius of the circle in which the support of each point primitive meets the plane, in
+/// coordinates of the plane. Points behind warps, and behind maps that are no similarities, have no circles,
+/// and other skeletons have none; of a very large model there are not all.
 #[must_use]
 pub fn circles(tree: &CheckedTree, plane: &Plane) -> Vec<([f64; 2], f64)> {
     let mut circles = Vec::new();

@@ -1,4 +1,5 @@
-//! The division of a rectangle of cells or pixels into squares: those that are inside or outside as a whole are dropped.
+//! The division of a rectangle of cells or pixels into squares: those that are inside or outside as a whole
+//! are dropped.
 //!
 //! ```text
 //! visit(square):      parts of it, 2 x 2 or more at once: their ranges and regions from one call     (survey)
@@ -7,8 +8,9 @@
 //!     else                         visit(part)
 //! ```
 //!
-//! Unlike the boxes of [`divide`](crate::divide), of which two or eight are decided at once, these are flat, and as many parts of one square are
-//! asked about in one call as fill the lanes of a kernel. What comes out is in the order of a walk down the tree, so it does not depend on threads.
+//! Unlike the boxes of [`divide`](crate::divide), of which two or eight are decided at once, these are flat,
+//! and as many parts of one square are asked about in one call as fill the lanes of a kernel. What comes out
+//! is in the order of a walk down the tree, so it does not depend on threads.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -135,7 +137,8 @@ pub(super) trait Work: Sync {
         around: &Region,
     ) -> Result<Option<Self::Piece>, EvalError>;
 
-    /// Whether a square is a leaf before it is small, because its points are evaluated sooner than it is divided.
+    /// Whether a square is a leaf before it is small, because its points are evaluated sooner than it is
+    /// divided.
     fn is_told(&self, square: &Square, region: &Region) -> bool;
 
     /// A leaf, and whether the contour crosses it.

@@ -6,7 +6,8 @@ use thiserror::Error;
 use crate::mesh::{Lattice, LatticeError};
 use crate::polygonize::Fineness;
 
-/// A rectangle in coordinates of a plane, with u to the right and v upwards. Its corners are finite and in order.
+/// A rectangle in coordinates of a plane, with u to the right and v upwards. Its corners are finite and in
+/// order.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Rectangle {
@@ -74,8 +75,8 @@ impl Rectangle {
     }
 }
 
-/// Coordinates of points along u and v: a rectangle of square cells, its first corner that of the rectangle that was asked for. It reaches the
-/// last one, or passes it by less than a cell.
+/// Coordinates of points along u and v: a rectangle of square cells, its first corner that of the rectangle
+/// that was asked for. It reaches the last one, or passes it by less than a cell.
 #[derive(Clone, PartialEq, Debug)]
 pub(super) struct Grid {
     /// The coordinates along u and v.
@@ -106,7 +107,8 @@ impl Grid {
         Ok(Self { axes: [u, v], spacing: lattice.spacing() })
     }
 
-    /// Pixels that fill a rectangle, with `samples` x `samples` points each, in the middles of its equal parts; `None` if there are too many.
+    /// Pixels that fill a rectangle, with `samples` x `samples` points each, in the middles of its equal
+    /// parts; `None` if there are too many.
     pub(super) fn pixels(
         rectangle: &Rectangle,
         fineness: Fineness,

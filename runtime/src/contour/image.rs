@@ -39,10 +39,11 @@ const fn block(engine: Engine) -> u32 {
 
 /// Halvings of a side at once: 16 parts are asked about in one call.
 const STEP: u32 = 2;
-/// Points times ops of a square up to which its points are evaluated at once, because to divide it would take longer: with 100 ops a point that is at 16 x 16
-/// points, with 1,000 at 8 x 8.
+/// Points times ops of a square up to which its points are evaluated at once, because to divide it would take
+/// longer: with 100 ops a point that is at 16 x 16 points, with 1,000 at 8 x 8.
 const CHEAP: u64 = 100_000;
-/// The same for each table of the program: to ask about a part takes a look at every table, whether it has rows or not.
+/// The same for each table of the program: to ask about a part takes a look at every table, whether it has
+/// rows or not.
 const CHEAP_FOR_A_TABLE: u64 = 12_000;
 
 /// How finely an image is made.
@@ -51,7 +52,8 @@ const CHEAP_FOR_A_TABLE: u64 = 12_000;
 pub struct ImageDetail {
     /// The pixels, along the longer side of the rectangle or by their edge.
     pub fineness: Fineness,
-    /// Points along the side of a pixel, 1 to [`MAX_SAMPLES`]: the image is smooth where there are several. Images of the field take one.
+    /// Points along the side of a pixel, 1 to [`MAX_SAMPLES`]: the image is smooth where there are several.
+    /// Images of the field take one.
     pub samples: usize,
 }
 
@@ -68,14 +70,15 @@ impl Default for ImageDetail {
 pub enum Mode {
     /// White inside, black outside.
     Inside,
-    /// The field, from blue outside over white at the iso-value to red inside, each as far as the field goes there; the contour is dark.
+    /// The field, from blue outside over white at the iso-value to red inside, each as far as the field goes
+    /// there; the contour is dark.
     Field,
     /// The field from black (the lowest) to white (the highest); the contour is red.
     Grey,
     /// The field as a landscape, lit from above on the left; the solid is brown, the contour dark.
     Height,
-    /// An attribute inside, nothing (transparent) outside. One channel is grey, two are red and green, of more the first three are red, green and blue: 0 to
-    /// 1, as they are.
+    /// An attribute inside, nothing (transparent) outside. One channel is grey, two are red and green, of
+    /// more the first three are red, green and blue: 0 to 1, as they are.
     Attribute(String),
 }
 
@@ -200,8 +203,8 @@ impl Work for Values<'_> {
         self.0.bounds(square)
     }
 
-    /// All values are wanted, but where there is only one. A zero may have either sign, but has the same all over the square: rows that do not reach it add
-    /// nothing, and nothing adds -0.
+    /// All values are wanted, but where there is only one. A zero may have either sign, but has the same all
+    /// over the square: rows that do not reach it add nothing, and nothing adds -0.
     fn verdict(&self, [low, high]: Range) -> Verdict {
         if low == high { Verdict::Outside } else { Verdict::Open }
     }
@@ -279,7 +282,8 @@ impl Work for Painted<'_> {
 }
 
 impl Slicer {
-    /// Which pixels of a rectangle are inside: 255 for those that are, 0 for those that are not, and with several samples the part of 255.
+    /// Which pixels of a rectangle are inside: 255 for those that are, 0 for those that are not, and with
+    /// several samples the part of 255.
     ///
     /// The same for any number of threads, and at each point what the field there says.
     ///

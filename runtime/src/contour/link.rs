@@ -25,11 +25,13 @@ pub struct Loop {
     pub end: usize,
     /// Whether what it encloses is outside: it goes clockwise then.
     pub is_hole: bool,
-    /// The loop around it: of a hole the outer loop that it is a hole of, of an outer loop the hole in which it is, if it is in one.
+    /// The loop around it: of a hole the outer loop that it is a hole of, of an outer loop the hole in which
+    /// it is, if it is in one.
     pub parent: Option<usize>,
     /// Loops around it: even for outer loops, odd for holes.
     pub depth: usize,
-    /// The area that it encloses, negative for a hole, in square units of the model: the sum over all loops is the area of the slice.
+    /// The area that it encloses, negative for a hole, in square units of the model: the sum over all loops
+    /// is the area of the slice.
     pub area: f64,
     /// Its length, in units of the model.
     pub length: f64,
@@ -52,7 +54,8 @@ pub(super) struct Linked {
     pub(super) loops: Vec<Loop>,
 }
 
-/// Links all segments. Panics if they are no closed loops: the field was on both sides of the iso-value at one point.
+/// Links all segments. Panics if they are no closed loops: the field was on both sides of the iso-value at
+/// one point.
 pub(super) fn link(pieces: Vec<Segments>, planes: usize) -> Linked {
     let mut segments: Vec<Segment> = Vec::with_capacity(pieces.iter().map(|piece| piece.list.len()).sum());
     let mut attributes = vec![Vec::with_capacity(segments.capacity()); planes];
@@ -169,7 +172,8 @@ fn nest(drafts: &[Draft], segments: &[Segment], of_segment: &[usize]) -> Vec<Opt
         let at = crossings.partition_point(|(key, _)| *key < leftmost);
         let before = at.checked_sub(1).map(|before| crossings[before]);
         let before = before.filter(|(key, _)| key.row() == leftmost.row()).map(|(_, other)| other);
-        // A hole with nothing before it is in what reaches the left border, where squares that are inside leave but a few crossings.
+        // A hole with nothing before it is in what reaches the left border, where squares that are inside
+        // leave but a few crossings.
         let border =
             || left.get(left.partition_point(|(row, _)| *row < leftmost.row())).map(|(_, other)| *other);
         let before = before.or_else(|| if is_hole { border() } else { None });

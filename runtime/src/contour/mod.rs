@@ -28,12 +28,14 @@
 //!     loops    = segments from end to end; which one is in which                            (link)
 //! ```
 //!
-//! Time and memory grow with the length of the contour. Every crossed edge of the lattice has one vertex, strictly inside of the edge (unless f32 has no
-//! number there), and every vertex is used once: loops neither cross nor touch themselves or each other. The result is the same to the
-//! bit for any number of threads and any size of squares.
+//! Time and memory grow with the length of the contour. Every crossed edge of the lattice has one vertex,
+//! strictly inside of the edge (unless f32 has no number there), and every vertex is used once: loops neither
+//! cross nor touch themselves or each other. The result is the same to the bit for any number of threads and
+//! any size of squares.
 //!
-//! **The border.** Beyond the rectangle everything counts as outside. So where the rectangle cuts the solid, loops are closed along its border, and the area is
-//! that of the part in the rectangle. `Contour::cut_sides` says where that is so.
+//! **The border.** Beyond the rectangle everything counts as outside. So where the rectangle cuts the solid,
+//! loops are closed along its border, and the area is that of the part in the rectangle. `Contour::cut_sides`
+//! says where that is so.
 
 mod cells;
 mod circles;
@@ -81,10 +83,12 @@ pub const MAX_BLOCK: usize = 64;
 pub struct Detail {
     /// The cells of the lattice, along the longer side of the rectangle or by their edge.
     pub fineness: Fineness,
-    /// Cells along the side of the squares at which division ends, a power of two up to [`MAX_BLOCK`]. It changes what is evaluated, but no bit of the
-    /// contour. `None`: 8. 1 is the classic quadtree, down to single cells.
+    /// Cells along the side of the squares at which division ends, a power of two up to [`MAX_BLOCK`]. It
+    /// changes what is evaluated, but no bit of the contour. `None`: 8. 1 is the classic quadtree, down to
+    /// single cells.
     pub block: Option<usize>,
-    /// Whether to divide squares into four parts, and to keep all of them: the quadtree, for pictures. Else squares are divided into sixteen, which is faster.
+    /// Whether to divide squares into four parts, and to keep all of them: the quadtree, for pictures. Else
+    /// squares are divided into sixteen, which is faster.
     pub quadtree: bool,
 }
 
@@ -122,7 +126,8 @@ impl Contour {
         self.loops.iter().map(|one| one.area).sum()
     }
 
-    /// The length of all loops, in units of the model; with the parts along the border, where it cuts the solid.
+    /// The length of all loops, in units of the model; with the parts along the border, where it cuts the
+    /// solid.
     #[must_use]
     pub fn length(&self) -> f64 {
         self.loops.iter().map(|one| one.length).sum()

@@ -70,7 +70,8 @@ impl Plane {
         Self(Kind::Across { axis, at }).checked()
     }
 
-    /// The plane through a point, with u along a direction and v in the plane of both, perpendicular to u. Lengths of directions do not matter.
+    /// The plane through a point, with u along a direction and v in the plane of both, perpendicular to u.
+    /// Lengths of directions do not matter.
     ///
     /// # Errors
     /// Numbers that are not finite in f32, directions that are 0 or parallel.

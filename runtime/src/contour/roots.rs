@@ -1,4 +1,5 @@
-//! Where the field is the iso-value on an edge of the lattice: all edges of a block at once, by false position.
+//! Where the field is the iso-value on an edge of the lattice: all edges of a block at once, by false
+//! position.
 //!
 //! ```text
 //!  field
@@ -13,11 +14,13 @@ use crate::error::EvalError;
 
 /// Evaluations of a vertex at most.
 const ROUNDS: usize = 24;
-/// The field is the iso-value, if it differs from it by not more than this part of what the ends of the edge differ by.
+/// The field is the iso-value, if it differs from it by not more than this part of what the ends of the edge
+/// differ by.
 const TOLERANCE: f64 = 1e-5;
 /// A place is known, if the ends are not farther apart than this part of the edge: where the field jumps.
 const WIDTH: f64 = 1.0 / 16384.0;
-/// How near a vertex may come to the end of its edge, in lengths of the edge. So no two vertices are at the same place.
+/// How near a vertex may come to the end of its edge, in lengths of the edge. So no two vertices are at the
+/// same place.
 const MARGIN: f64 = 1.0 / 4096.0;
 
 /// An edge with a point inside and one outside.

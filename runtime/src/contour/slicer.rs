@@ -18,8 +18,8 @@ use crate::region::Box3;
 
 /// A compiled model and a plane: makes contours and images, any number of them, from any thread.
 ///
-/// In a plane across a coordinate axis the answers have the bits of the model itself. For any other plane the model is moved, so that the plane becomes
-/// z = 0: that is another model, whose last digits differ.
+/// In a plane across a coordinate axis the answers have the bits of the model itself. For any other plane the
+/// model is moved, so that the plane becomes z = 0: that is another model, whose last digits differ.
 pub struct Slicer {
     plane: Plane,
     /// Where coordinates of points of the plane count from, in coordinates of the plane.
@@ -121,7 +121,8 @@ pub enum SliceError {
 const MARGIN: f64 = 1.0 / 512.0;
 
 impl Slicer {
-    /// Compiles a model for a plane. With `attributes` in the query contours have them, and there are images of them; the gradient is never needed.
+    /// Compiles a model for a plane. With `attributes` in the query contours have them, and there are images
+    /// of them; the gradient is never needed.
     ///
     /// # Errors
     /// The model is beyond a limit, or the engine cannot be had.
@@ -255,7 +256,8 @@ impl Slicer {
     }
 }
 
-/// The support in coordinates of the plane. Where the plane misses it, the field is zero, and the rectangle is where the support would be seen.
+/// The support in coordinates of the plane. Where the plane misses it, the field is zero, and the rectangle
+/// is where the support would be seen.
 fn support(tree: &CheckedTree, view: &View) -> Support {
     let support = tree.local_support();
     if support.is_empty() {

@@ -64,11 +64,14 @@ impl<R: Sync, D: Clone + PartialEq + Sync> Previous<R, D> for Before<'_, R, D> {
 }
 
 impl<R: Send + Sync, D: Clone + PartialEq + Send + Sync> Division<R, D> {
-    /// The division of an edited model: boxes that the edit does not touch, and whose split is as before, are not asked about again.
+    /// The division of an edited model: boxes that the edit does not touch, and whose split is as before, are
+    /// not asked about again.
     ///
-    /// `field` is the edited model, `edit` says where it differs from the one that was divided ([`Pruner::edit`](crate::Pruner::edit)), and `renew` makes the
-    /// region of an untouched box from what it was (its rows may have other numbers now: [`Pruner::renewed`](crate::Pruner::renewed)). The rest is as in [`divide`](super::divide),
-    /// and so is the answer, if `decide` depends on the cell and the data alone.
+    /// `field` is the edited model, `edit` says where it differs from the one that was divided
+    /// ([`Pruner::edit`](crate::Pruner::edit)), and `renew` makes the region of an untouched box from what it
+    /// was (its rows may have other numbers now: [`Pruner::renewed`](crate::Pruner::renewed)). The rest is as
+    /// in [`divide`](super::divide), and so is the answer, if `decide` depends on the cell and the data
+    /// alone.
     ///
     /// # Errors
     /// Those of [`divide`](super::divide).

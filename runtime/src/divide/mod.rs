@@ -13,9 +13,10 @@
 //! +-------------+------+--+--+
 //! ```
 //!
-//! After Bowyer's svLis (1999), where a decision procedure divides a set-theoretic model. A decision sees the box, a range of the field, and how
-//! much of the model is left there; both are found when they are asked for, and not before. Parts are in a fixed order (x fastest, then y, then z), so a division is the same
-//! for every number of threads, and its leaves are in the order of a walk down the tree.
+//! After Bowyer's svLis (1999), where a decision procedure divides a set-theoretic model. A decision sees the
+//! box, a range of the field, and how much of the model is left there; both are found when they are asked
+//! for, and not before. Parts are in a fixed order (x fastest, then y, then z), so a division is the same for
+//! every number of threads, and its leaves are in the order of a walk down the tree.
 //!
 //! After an edit, [`Division::redivide`] asks again only where rows or numbers have changed.
 
@@ -41,8 +42,8 @@ use crate::region::{Box3, Divisible};
 
 /// Divides a box.
 ///
-/// `decide` is asked once for each box, on the threads of the rayon pool in which this is called. If it depends on the cell and the data
-/// alone, so does the division.
+/// `decide` is asked once for each box, on the threads of the rayon pool in which this is called. If it
+/// depends on the cell and the data alone, so does the division.
 ///
 /// ```
 /// use jbt::divide::{Decision, Limits, divide};
@@ -68,8 +69,9 @@ use crate::region::{Box3, Divisible};
 /// ```
 ///
 /// # Errors
-/// A box that is not finite or not in order; a place that is not strictly inside its box; more boxes or depth than the limits allow, which
-/// is what becomes of a decider that never stops; and whatever the field or the decider report.
+/// A box that is not finite or not in order; a place that is not strictly inside its box; more boxes or depth
+/// than the limits allow, which is what becomes of a decider that never stops; and whatever the field or the
+/// decider report.
 pub fn divide<F: Divisible, D: Send + Sync>(
     field: &F,
     bounds: Box3,

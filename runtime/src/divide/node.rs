@@ -80,7 +80,8 @@ impl<R, D> Division<R, D> {
         })
     }
 
-    /// How many decisions it took: one for each box, or after a redivision one for each box that was asked about again.
+    /// How many decisions it took: one for each box, or after a redivision one for each box that was asked
+    /// about again.
     #[must_use]
     pub fn decisions(&self) -> u64 {
         self.decisions

@@ -17,10 +17,12 @@ pub struct Passage<'a, R, D> {
 }
 
 impl<R, D> Division<R, D> {
-    /// The leaves that a ray passes, by where it enters them; of equals the one that comes first in the division.
+    /// The leaves that a ray passes, by where it enters them; of equals the one that comes first in the
+    /// division.
     ///
-    /// A ray that runs along a side passes the boxes on both. Where a coordinate of the direction is 0 the ray stays at its origin's; a direction of zeros passes the boxes that
-    /// hold the origin. Cost: the boxes that it meets, and a sort of the leaves among them.
+    /// A ray that runs along a side passes the boxes on both. Where a coordinate of the direction is 0 the
+    /// ray stays at its origin's; a direction of zeros passes the boxes that hold the origin. Cost: the boxes
+    /// that it meets, and a sort of the leaves among them.
     #[must_use]
     pub fn ray(&self, origin: [f32; 3], direction: [f32; 3]) -> Vec<Passage<'_, R, D>> {
         let mut passages = Vec::new();
@@ -47,7 +49,8 @@ impl<R, D> Division<R, D> {
     }
 }
 
-/// From where to where a ray is in a box, if it meets it (Kay and Kajiya 1986, "Ray tracing complex scenes": slabs).
+/// From where to where a ray is in a box, if it meets it (Kay and Kajiya 1986, "Ray tracing complex scenes":
+/// slabs).
 fn passage(bounds: &Box3, origin: [f32; 3], direction: [f32; 3]) -> Option<[f32; 2]> {
     let (mut enter, mut exit) = (0.0_f32, f32::INFINITY);
     for axis in 0..3 {

@@ -9,10 +9,10 @@ use tempfile::{NamedTempFile, TempPath};
 
 /// The new contents of a file, which appear whole or not at all.
 ///
-/// They are written beside the file, under a temporary name that begins with `.jbt-`, and [`finish`](Self::finish) renames
-/// them; whoever drops this before, leaves the file as it was. A file that is there already keeps its permissions, a new
-/// one gets those that files usually get. A link is followed. What is not a file but can be written to (a pipe, a device)
-/// is written to as the bytes come.
+/// They are written beside the file, under a temporary name that begins with `.jbt-`, and
+/// [`finish`](Self::finish) renames them; whoever drops this before, leaves the file as it was. A file that
+/// is there already keeps its permissions, a new one gets those that files usually get. A link is followed.
+/// What is not a file but can be written to (a pipe, a device) is written to as the bytes come.
 #[derive(Debug)]
 pub struct AtomicFile {
     file: File,
@@ -36,7 +36,8 @@ enum Place {
 }
 
 impl AtomicFile {
-    /// Begins to write what stands at a path. Without `replace`, a file that has appeared there by the end is an error.
+    /// Begins to write what stands at a path. Without `replace`, a file that has appeared there by the end is
+    /// an error.
     ///
     /// # Errors
     ///

@@ -1,4 +1,5 @@
-//! What formats of mesh files differ in: how files end, which axis points up, how colours are written, what there is room for.
+//! What formats of mesh files differ in: how files end, which axis points up, how colours are written, what
+//! there is room for.
 
 use std::fmt;
 use std::ops::Sub;
@@ -15,7 +16,8 @@ pub struct Conventions {
     pub extension: &'static str,
     /// What it is.
     pub title: &'static str,
-    /// The axis that points up, unless [`ExportOptions::up`](super::ExportOptions::up) says otherwise: the one that its readers assume.
+    /// The axis that points up, unless [`ExportOptions::up`](super::ExportOptions::up) says otherwise: the
+    /// one that its readers assume.
     pub up: Up,
     /// How it has normals.
     pub normals: &'static str,
@@ -57,7 +59,8 @@ impl FarMeshes {
 pub struct Colors {
     /// The name and the type.
     pub place: &'static str,
-    /// What the numbers mean, unless [`ExportOptions::colors`](super::ExportOptions::colors) says otherwise: what its readers assume.
+    /// What the numbers mean, unless [`ExportOptions::colors`](super::ExportOptions::colors) says otherwise:
+    /// what its readers assume.
     pub encoding: ColorEncoding,
 }
 
@@ -65,7 +68,8 @@ pub struct Colors {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Up {
-    /// The model is turned by -90 degrees about x: its (x, y, z) is (x, z, -y) in the file. The model's -y is the file's +z.
+    /// The model is turned by -90 degrees about x: its (x, y, z) is (x, z, -y) in the file. The model's -y is
+    /// the file's +z.
     Y,
     /// As in the model.
     Z,
@@ -99,7 +103,8 @@ impl Up {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ColorEncoding {
-    /// As screens take them, in even steps for the eye (sRGB, IEC 61966-2-1): half the light is 0.735, or 188 of 255.
+    /// As screens take them, in even steps for the eye (sRGB, IEC 61966-2-1): half the light is 0.735, or 188
+    /// of 255.
     Srgb,
     /// As in the model.
     Linear,
@@ -118,7 +123,8 @@ impl ColorEncoding {
         }
     }
 
-    /// The number of a file, 0 .. 1, for one channel of a model. What is no number is 0, and others are clamped.
+    /// The number of a file, 0 .. 1, for one channel of a model. What is no number is 0, and others are
+    /// clamped.
     #[must_use]
     pub fn encode(self, linear: f32) -> f32 {
         match self {

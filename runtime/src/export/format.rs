@@ -74,7 +74,8 @@ impl Format {
     }
 }
 
-/// How a mesh is written where users may want it otherwise than a format's readers do. `None` is what [`Conventions`] say.
+/// How a mesh is written where users may want it otherwise than a format's readers do. `None` is what
+/// [`Conventions`] say.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ExportOptions {

@@ -4,16 +4,17 @@
 //!     "glTF" 2 length | length "JSON" text, padded by spaces | length "BIN" positions normals color uv others indices
 //! ```
 //!
-//! One node, which turns the model's z upwards to glTF's y and moves the mesh to its origin, and one mesh of one
-//! primitive.
+//! One node, which turns the model's z upwards to glTF's y and moves the mesh to its origin, and one mesh of
+//! one primitive.
 //!
-//! Colours are in `COLOR_0`, linear as glTF takes them; uv in `TEXCOORD_0`, as (u, 1 - v), because glTF's v goes down; every other
-//! attribute is `_NAME` in capitals, as glTF wants application-specific ones. An accessor has at most four reals, so wider ones are
-//! `_NAME_0`, `_NAME_1` and so on, of four reals each but for the last. Accessors must not be empty, so a mesh without triangles is a
-//! scene without nodes.
+//! Colours are in `COLOR_0`, linear as glTF takes them; uv in `TEXCOORD_0`, as (u, 1 - v), because glTF's v
+//! goes down; every other attribute is `_NAME` in capitals, as glTF wants application-specific ones. An
+//! accessor has at most four reals, so wider ones are `_NAME_0`, `_NAME_1` and so on, of four reals each but
+//! for the last. Accessors must not be empty, so a mesh without triangles is a scene without nodes.
 //!
-//! A coloured mesh has no material, and so glTF's default, which is white: trimesh gives colours up for any material, and everybody
-//! else shows them with none. A mesh without colours has a white, rough, non-metallic one.
+//! A coloured mesh has no material, and so glTF's default, which is white: trimesh gives colours up for any
+//! material, and everybody else shows them with none. A mesh without colours has a white, rough, non-metallic
+//! one.
 
 use std::f64::consts::FRAC_1_SQRT_2;
 use std::io::Write;
@@ -197,7 +198,8 @@ fn node(mesh: &Mesh, up: Up) -> Value {
     node
 }
 
-/// The exact bounds of the positions. In f64, so that their decimals are those of the same numbers in any parser.
+/// The exact bounds of the positions. In f64, so that their decimals are those of the same numbers in any
+/// parser.
 fn bounds(positions: &[[f32; 3]]) -> ([f64; 3], [f64; 3]) {
     let mut bounds = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
     for position in positions {

@@ -1,12 +1,14 @@
 //! Mesh files: GLB, PLY, OBJ and STL; contours: SVG; pictures: PNG.
 //!
-//! [`Format::conventions`] says for each format of meshes which axis points up in its files, how its colours are written, and what it
-//! has room for; `docs/files.md` has the table, and what other programs make of it. [`ExportOptions`] write it otherwise.
+//! [`Format::conventions`] says for each format of meshes which axis points up in its files, how its colours
+//! are written, and what it has room for; `docs/files.md` has the table, and what other programs make of it.
+//! [`ExportOptions`] write it otherwise.
 //!
-//! The colour is the attribute named `color` with three reals, which are linear, and are clamped to 0 .. 1. The uv is the attribute
-//! named `uv` with two reals, v upwards: GLB, where v goes down, gets 1 - v. Every vertex has one uv, so a triangle across a seam shows
-//! the picture backwards. [`write()`] writes to anything; [`save`] writes a file under a temporary name and renames it, so that nobody
-//! ever sees half a file.
+//! The colour is the attribute named `color` with three reals, which are linear, and are clamped to 0 .. 1.
+//! The uv is the attribute named `uv` with two reals, v upwards: GLB, where v goes down, gets 1 - v. Every
+//! vertex has one uv, so a triangle across a seam shows the picture backwards. [`write()`] writes to
+//! anything; [`save`] writes a file under a temporary name and renames it, so that nobody ever sees half a
+//! file.
 //!
 //! A mesh may have an [origin](Mesh::origin) of its own. GLB has it in its node, and vertices as they are in
 //! the mesh; in PLY and OBJ vertices are in the world, with all digits; in STL too, but rounded to f32, which
@@ -85,7 +87,8 @@ pub fn loses_digits(mesh: &Mesh, format: Format) -> bool {
 /// Writes a mesh as the readers of a format expect it.
 ///
 /// # Errors
-/// [`ExportError::Malformed`] and [`ExportError::TooLarge`] before anything is written; [`ExportError::Write`] later.
+/// [`ExportError::Malformed`] and [`ExportError::TooLarge`] before anything is written;
+/// [`ExportError::Write`] later.
 pub fn write(mesh: &Mesh, format: Format, out: &mut impl Write) -> Result<(), ExportError> {
     write_with(mesh, format, &ExportOptions::default(), out)
 }
@@ -116,7 +119,8 @@ pub fn write_with(
 /// The file appears whole or not at all: see [`AtomicFile`].
 ///
 /// # Errors
-/// As [`write()`], with [`ExportError::File`] for whatever the system refuses, and [`ExportError::Extension`].
+/// As [`write()`], with [`ExportError::File`] for whatever the system refuses, and
+/// [`ExportError::Extension`].
 pub fn save(path: &Path, mesh: &Mesh) -> Result<(), ExportError> {
     let format = Format::of(path).ok_or_else(|| ExportError::Extension { path: path.to_owned() })?;
     save_as(path, mesh, format)

@@ -1,6 +1,6 @@
-//! Wavefront OBJ: text, with colours behind the positions as many programs read them. Numbers are the shortest that give
-//! the same f32 back (or the same encoded colour, or the same f64 where the mesh has an origin of its own). A
-//! uv is `vt`; the format has no place for other attributes.
+//! Wavefront OBJ: text, with colours behind the positions as many programs read them. Numbers are the
+//! shortest that give the same f32 back (or the same encoded colour, or the same f64 where the mesh has an
+//! origin of its own). A uv is `vt`; the format has no place for other attributes.
 
 use std::fmt::Display;
 use std::io::Write;

@@ -54,8 +54,9 @@ pub(super) struct Named<'a> {
     pub(super) attribute: &'a Attribute,
 }
 
-/// The attributes besides the colour and the uv. `spell` turns a stem of ASCII letters, digits and underscores, and a width, into the
-/// names that the file needs; a number after the stem keeps them apart from the names of the others and from reserved ones.
+/// The attributes besides the colour and the uv. `spell` turns a stem of ASCII letters, digits and
+/// underscores, and a width, into the names that the file needs; a number after the stem keeps them apart
+/// from the names of the others and from reserved ones.
 pub(super) fn others<'a>(
     mesh: &'a Mesh,
     reserved: &[&str],

@@ -1,10 +1,12 @@
-//! Pictures as Portable Network Graphics: eight bits a channel, in the colours of screens (sRGB), as small as the format's own filters and compression make them.
+//! Pictures as Portable Network Graphics: eight bits a channel, in the colours of screens (sRGB), as small as
+//! the format's own filters and compression make them.
 
 use std::io::{self, Write};
 
 use crate::picture::Picture;
 
-/// Writes a picture. What is opaque everywhere has no opacity in the file. The same picture gives the same bytes.
+/// Writes a picture. What is opaque everywhere has no opacity in the file. The same picture gives the same
+/// bytes.
 ///
 /// # Errors
 /// Those of the writer.

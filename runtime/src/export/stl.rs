@@ -1,4 +1,5 @@
-//! Binary STL: triangles and nothing else. The normal of a facet follows from its corners, and is zero if it has no area.
+//! Binary STL: triangles and nothing else. The normal of a facet follows from its corners, and is zero if it
+//! has no area.
 
 use std::io::Write;
 

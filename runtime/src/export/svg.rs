@@ -1,7 +1,8 @@
 //! SVG: contours, and the quadtree that they were found with.
 //!
-//! Coordinates are those of the plane, in units of the model, to the last digit of f32; one `transform` turns the picture over, because v goes up and the y of
-//! SVG goes down. An outer loop is one path with its holes, filled by the even-odd rule.
+//! Coordinates are those of the plane, in units of the model, to the last digit of f32; one `transform` turns
+//! the picture over, because v goes up and the y of SVG goes down. An outer loop is one path with its holes,
+//! filled by the even-odd rule.
 
 use std::io::{self, Write};
 
@@ -15,8 +16,9 @@ pub enum Paint {
     None,
     /// Red, green and blue.
     Color([u8; 3]),
-    /// An attribute of the contour, 0 to 1 as it is: one channel is grey, two are red and green, of more the first three are red, green and blue. Areas have the
-    /// mean over the vertices of their outer loop, lines change from vertex to vertex.
+    /// An attribute of the contour, 0 to 1 as it is: one channel is grey, two are red and green, of more the
+    /// first three are red, green and blue. Areas have the mean over the vertices of their outer loop, lines
+    /// change from vertex to vertex.
     Attribute(String),
 }
 
@@ -29,7 +31,8 @@ pub struct Style {
     pub stroke_width: f64,
     /// The areas.
     pub fill: Paint,
-    /// Whether to draw the squares of the division, if the contour has kept them: the deeper, the darker, and those that the contour crosses in green.
+    /// Whether to draw the squares of the division, if the contour has kept them: the deeper, the darker, and
+    /// those that the contour crosses in green.
     pub quadtree: bool,
     /// Circles to draw over it: center and radius in coordinates of the plane.
     pub circles: Vec<([f64; 2], f64)>,
@@ -54,7 +57,8 @@ impl Default for Style {
 /// Writes a contour.
 ///
 /// # Errors
-/// Those of the writer; an attribute that the contour does not have ([`io::ErrorKind::InvalidInput`]), before anything is written.
+/// Those of the writer; an attribute that the contour does not have ([`io::ErrorKind::InvalidInput`]), before
+/// anything is written.
 pub fn write_svg(contour: &Contour, style: &Style, out: &mut dyn Write) -> io::Result<()> {
     let [stroke, fill] = [&style.stroke, &style.fill].map(|paint| resolve(contour, paint));
     let (stroke, fill) = (stroke?, fill?);

@@ -12,8 +12,9 @@
 //!      o---o---o---o---x
 //! ```
 //!
-//! Bricks are aligned to multiples of their edge, which is a power of two, and stand in Morton order as well. So bricks and their cells, one after the
-//! other, run through all cells in Morton order, whatever the edge is.
+//! Bricks are aligned to multiples of their edge, which is a power of two, and stand in Morton order as well.
+//! So bricks and their cells, one after the other, run through all cells in Morton order, whatever the edge
+//! is.
 
 use crate::region::Box3;
 
@@ -21,8 +22,8 @@ use crate::region::Box3;
 pub(crate) const NONE: u32 = u32::MAX;
 /// The neighbour of a brick in no direction: itself.
 pub(crate) const SELF: usize = direction([0, 0, 0]);
-/// Cells of bricks that a thread does at a time: small enough to share small meshes among threads, and large enough for
-/// the cost of sharing not to count.
+/// Cells of bricks that a thread does at a time: small enough to share small meshes among threads, and large
+/// enough for the cost of sharing not to count.
 const CELLS_AT_A_TIME: usize = 1 << 13;
 
 /// The number of a direction, from steps of -1, 0 or 1 along the axes: 0 to 26.
@@ -110,7 +111,8 @@ impl Bricks {
         (CELLS_AT_A_TIME / self.edge.pow(3)).max(1)
     }
 
-    /// Points along an edge, and the distance of rows in a table of a brick's points (x fastest, then y, then z).
+    /// Points along an edge, and the distance of rows in a table of a brick's points (x fastest, then y, then
+    /// z).
     pub(crate) fn stride(&self) -> usize {
         self.edge + 1
     }
@@ -142,7 +144,8 @@ impl Bricks {
         [0, 1, 2].map(|axis| self.edge.min(self.axes[axis].len() - 1 - origin[axis]))
     }
 
-    /// The sides of the lattice that a brick touches: bit `2 axis` for the low one, `2 axis + 1` for the high one.
+    /// The sides of the lattice that a brick touches: bit `2 axis` for the low one, `2 axis + 1` for the high
+    /// one.
     pub(crate) fn sides(&self, brick: usize) -> u8 {
         let (origin, extent) = (self.origin(brick), self.extent(brick));
         (0..3).fold(0, |sides, axis| {
@@ -170,7 +173,8 @@ pub(crate) fn box_of(axes: &[Vec<f32>; 3], first: [usize; 3], end: [usize; 3]) -
     }
 }
 
-/// Divides a slice among groups of bricks; the part of brick `b` is from `starts[b]` to `starts[b + 1]`, times `width`.
+/// Divides a slice among groups of bricks; the part of brick `b` is from `starts[b]` to `starts[b + 1]`,
+/// times `width`.
 pub(crate) fn split<'a, T>(
     mut slice: &'a mut [T],
     starts: &[usize],

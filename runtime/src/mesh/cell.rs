@@ -9,11 +9,12 @@
 //!      0-------1          z up, y into the page, x to the right
 //! ```
 //!
-//! A face of the cell is crossed on none, two or all four of its edges. Two crossings are joined by a segment. Four are an
-//! *ambiguous* face, the corners of which alternate: two segments join them in one of two ways, each of which cuts off a pair
-//! of opposite corners. The default cuts off the corners inside (so it keeps their neighbourhoods separate); a *flipped*
-//! face cuts off those outside. Every crossed edge lies on two faces and so has two segments: the segments make cycles, and
-//! each cycle bounds one *sheet* of the surface in this cell (Nielson 2004, "Dual marching cubes").
+//! A face of the cell is crossed on none, two or all four of its edges. Two crossings are joined by a
+//! segment. Four are an *ambiguous* face, the corners of which alternate: two segments join them in one of
+//! two ways, each of which cuts off a pair of opposite corners. The default cuts off the corners inside (so
+//! it keeps their neighbourhoods separate); a *flipped* face cuts off those outside. Every crossed edge lies
+//! on two faces and so has two segments: the segments make cycles, and each cycle bounds one *sheet* of the
+//! surface in this cell (Nielson 2004, "Dual marching cubes").
 //!
 //! All 256 cases follow from these sentences and are computed when this crate is compiled.
 
@@ -111,8 +112,8 @@ impl Sheets {
         SheetNumbers(numbers)
     }
 
-    /// Whether a face is ambiguous and both of its segments lie on one sheet. If that is so on both of its sides, the two
-    /// sheets would meet in one edge of the mesh twice, which would then have four triangles.
+    /// Whether a face is ambiguous and both of its segments lie on one sheet. If that is so on both of its
+    /// sides, the two sheets would meet in one edge of the mesh twice, which would then have four triangles.
     pub(crate) fn pinched(&self, face: usize) -> bool {
         self.pinched >> face & 1 == 1
     }
@@ -132,8 +133,8 @@ impl Sheets {
         edges
     }
 
-    /// The sheets that have quads, where the cell touches these sides of the lattice (a bit for each face): an edge on a side has
-    /// no cells all around it.
+    /// The sheets that have quads, where the cell touches these sides of the lattice (a bit for each face):
+    /// an edge on a side has no cells all around it.
     fn with_quads(self, sides: u8) -> Sheets {
         let mut names = [NO_SHEET; 4];
         let mut count = 0;
@@ -147,9 +148,11 @@ impl Sheets {
         Sheets { of_edge: self.of_edge.map(name), count, ..self }
     }
 
-    /// From the corners that are inside (a bit each) and the faces that are flipped (a bit each; it matters on ambiguous faces).
+    /// From the corners that are inside (a bit each) and the faces that are flipped (a bit each; it matters
+    /// on ambiguous faces).
     const fn new(signs: u8, flips: u8) -> Sheets {
-        // Every crossed edge starts alone, and each segment joins the groups of its ends under the smaller number.
+        // Every crossed edge starts alone, and each segment joins the groups of its ends under the smaller
+        // number.
         let mut group = [NO_SHEET; 12];
         let mut edge = 0;
         while edge < 12 {
@@ -237,23 +240,23 @@ const fn number(group: [u8; 12], pinched: u8) -> Sheets {
 }
 
 /// The way around the sheets of a cell, from its corners inside and its flipped faces, a bit each: for each
-/// crossed edge the next one of its sheet, counter-clockwise as seen from outside of the surface. An edge that
-/// is not crossed has itself.
+/// crossed edge the next one of its sheet, counter-clockwise as seen from outside of the surface. An edge
+/// that is not crossed has itself.
 pub(crate) fn following(signs: u8, flips: u8) -> [u8; 12] {
     let mut next: [u8; 12] = std::array::from_fn(|edge| edge as u8);
     for face in 0..6 {
         let (corners, edges) = (ring(face), ring_edges(face));
         let is_inside = |i: usize| inside(signs, corners[i % 4]);
-        // A segment joins where the walk around the face comes in to where it then goes out; on a flipped face,
-        // to where it went out before.
+        // A segment joins where the walk around the face comes in to where it then goes out; on a flipped
+        // face, to where it went out before.
         let back = flips >> face & 1 == 1 && ambiguous(signs, face);
         for enter in (0..4).filter(|&i| !is_inside(i) && is_inside(i + 1)) {
             let goes_out = |&i: &usize| is_inside(i) && !is_inside(i + 1);
             let leave = (1..4).map(|step| if back { enter + 4 - step } else { enter + step }).find(goes_out);
             let Some(leave) = leave else { continue };
             let (enter, leave) = (edges[enter], edges[leave % 4]);
-            // A ring goes counter-clockwise as seen from the high side of its axis: from outside of the cell for
-            // high faces alone.
+            // A ring goes counter-clockwise as seen from the high side of its axis: from outside of the cell
+            // for high faces alone.
             let [from, to] = if face & 1 == 1 { [enter, leave] } else { [leave, enter] };
             next[from] = to as u8;
         }
@@ -272,7 +275,8 @@ static DEFAULT: [Sheets; 256] = {
     sheets
 };
 
-/// For each edge of a cell that the surface crosses, and that has a quad, which sheet it belongs to: two bits each.
+/// For each edge of a cell that the surface crosses, and that has a quad, which sheet it belongs to: two bits
+/// each.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct SheetNumbers(u32);
 
@@ -320,8 +324,9 @@ pub(crate) fn sheets_with_quads(signs: u8, flips: u8, sides: u8) -> Sheets {
     if sides == 0 { sheets } else { sheets.with_quads(sides) }
 }
 
-/// Some crossed edges of a cell, all of one sheet, in one number: a bit for each edge; then, in three bits for each
-/// axis, how many of the edges along the others lie on the high side of the cell; then how many edges there are.
+/// Some crossed edges of a cell, all of one sheet, in one number: a bit for each edge; then, in three bits
+/// for each axis, how many of the edges along the others lie on the high side of the cell; then how many
+/// edges there are.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Edges(u32);
 
@@ -370,7 +375,8 @@ impl Edges {
         (self.0 >> Self::COUNT) as i32 as f32
     }
 
-    /// The sum of the unit vectors along the edges, from outside to inside, in a cell with these corners inside.
+    /// The sum of the unit vectors along the edges, from outside to inside, in a cell with these corners
+    /// inside.
     pub(crate) fn rise(self, signs: u8) -> [f32; 3] {
         let mut rise = [0.0; 3];
         for edge in (0..12).filter(|&edge| self.chosen(edge) != 0) {
@@ -379,8 +385,8 @@ impl Edges {
         rise
     }
 
-    /// Whether any of them has a quad, where the cell touches these sides of the lattice (a bit for each face): an
-    /// edge on a side has no cells all around it.
+    /// Whether any of them has a quad, where the cell touches these sides of the lattice (a bit for each
+    /// face): an edge on a side has no cells all around it.
     #[inline(always)]
     pub(crate) fn have_quad(self, sides: u8) -> bool {
         self.mask() & inner_edges(sides) != 0
@@ -414,8 +420,8 @@ pub(crate) fn edges(signs: u8, flips: u8) -> Vec<Edges> {
     (0..sheets.count()).map(|sheet| Edges::new(sheets.edges(sheet))).collect()
 }
 
-/// The edges of a cell that have cells all around them, a bit each, where it touches these sides of the lattice
-/// (a bit for each face).
+/// The edges of a cell that have cells all around them, a bit each, where it touches these sides of the
+/// lattice (a bit for each face).
 #[inline(always)]
 fn inner_edges(sides: u8) -> u16 {
     /// For each set of sides.
@@ -459,7 +465,8 @@ mod tests {
         assert_eq!(sheets(0, 0).count(), 0);
         assert_eq!(sheets(255, 0).count(), 0);
         assert_eq!(sheets(0b0000_0001, 0).count(), 1);
-        // Two opposite corners of a face: apart by default, one sheet when the face is flipped (face 4 is z = 0).
+        // Two opposite corners of a face: apart by default, one sheet when the face is flipped (face 4 is z =
+        // 0).
         assert_eq!(sheets(0b0000_1001, 0).count(), 2);
         assert_eq!(sheets(0b0000_1001, 1 << 4).count(), 1);
         // The checkerboard: four corners cut off, of the one or of the other kind.

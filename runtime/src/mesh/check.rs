@@ -43,7 +43,8 @@ struct Edges {
 }
 
 impl Edges {
-    /// Sorts the edges by where they begin, by counting. Fails with the first triangle that names a missing vertex.
+    /// Sorts the edges by where they begin, by counting. Fails with the first triangle that names a missing
+    /// vertex.
     fn new(vertices: usize, triangles: &[[u32; 3]]) -> Result<Self, usize> {
         let mut starts = vec![0_usize; vertices + 1];
         for (index, triangle) in triangles.iter().enumerate() {
@@ -99,7 +100,8 @@ impl Edges {
         let edges = self.of(vertex);
         let &(first, mut at) = edges.first()?;
         let mut triangles = 1;
-        // Every edge out of this vertex has a triangle on both sides, so the walk comes back to where it began.
+        // Every edge out of this vertex has a triangle on both sides, so the walk comes back to where it
+        // began.
         while at != first {
             let place = edges.partition_point(|&(end, _)| end < at);
             at = edges[place].1;
@@ -109,8 +111,9 @@ impl Edges {
     }
 }
 
-/// Whether every edge of these triangles has exactly two of them, in opposite directions. `vertices` is how many vertices
-/// the triangles may name. No triangles are closed; a triangle with an index out of range or a repeated vertex is not.
+/// Whether every edge of these triangles has exactly two of them, in opposite directions. `vertices` is how
+/// many vertices the triangles may name. No triangles are closed; a triangle with an index out of range or a
+/// repeated vertex is not.
 ///
 /// Linear in triangles and vertices, as long as few vertices have very many triangles.
 pub fn is_closed(vertices: usize, triangles: &[[u32; 3]]) -> bool {
@@ -154,7 +157,8 @@ const NO_END: u32 = u32::MAX;
 /// The slot of an edge's end, which is put there if it is new; or nothing if all slots have others.
 #[inline(always)]
 fn find(ends: &mut [u32; SLOTS], end: u32) -> Option<usize> {
-    // It is looked for first where few others are: multiplication by this (2^32 / the golden ratio) scatters numbers that are near each other.
+    // It is looked for first where few others are: multiplication by this (2^32 / the golden ratio) scatters
+    // numbers that are near each other.
     let first = (end.wrapping_mul(0x9e37_79b9) >> 29) as usize;
     for step in 0..SLOTS {
         let slot = (first + step) % SLOTS;
@@ -169,8 +173,8 @@ fn find(ends: &mut [u32; SLOTS], end: u32) -> Option<usize> {
     None
 }
 
-/// Checks that triangles form a closed manifold: they are closed as in [`is_closed`], and the triangles at each vertex form
-/// one fan. A vertex without triangles is no defect.
+/// Checks that triangles form a closed manifold: they are closed as in [`is_closed`], and the triangles at
+/// each vertex form one fan. A vertex without triangles is no defect.
 ///
 /// # Errors
 /// The first defect, in the order of the vertices; edges before fans.
@@ -209,7 +213,8 @@ mod tests {
         assert!(!is_closed(4, &twice));
     }
 
-    /// Two cones on a ring of vertices, which are more than there are slots: the first vertex is a tip, and has edges up to all others.
+    /// Two cones on a ring of vertices, which are more than there are slots: the first vertex is a tip, and
+    /// has edges up to all others.
     fn cones(ring: u32) -> Vec<[u32; 3]> {
         let at = |n: u32| 1 + n % ring;
         (0..ring).flat_map(|n| [[0, at(n), at(n + 1)], [ring + 1, at(n + 1), at(n)]]).collect()

@@ -1,9 +1,10 @@
 //! The cells that the surface crosses, and the faces that are flipped to keep the mesh manifold.
 //!
-//! An ambiguous face on which, in both of its cells, both segments lie on one sheet would give an edge of the mesh with four
-//! triangles. Flipping that face re-pairs two segments of one oriented cycle, which always splits the cycle, in both cells.
-//! A flip never joins two sheets, so a face that is good stays good, and one pass over the faces that are bad by default
-//! ends with all faces good. The pass is sequential and in the order of the cells; such faces are rare.
+//! An ambiguous face on which, in both of its cells, both segments lie on one sheet would give an edge of the
+//! mesh with four triangles. Flipping that face re-pairs two segments of one oriented cycle, which always
+//! splits the cycle, in both cells. A flip never joins two sheets, so a face that is good stays good, and one
+//! pass over the faces that are bad by default ends with all faces good. The pass is sequential and in the
+//! order of the cells; such faces are rare.
 
 use multiversion::multiversion;
 use rayon::prelude::*;
@@ -217,8 +218,8 @@ impl Signs {
             if signs == 0 || signs == u64::MAX {
                 continue;
             }
-            // In the others there is no telling: no jump, which would be guessed wrong, but what is not crossed is
-            // overwritten.
+            // In the others there is no telling: no jump, which would be guessed wrong, but what is not
+            // crossed is overwritten.
             let first = count;
             let mut pinched = false;
             for (rest, signs) in (0..).zip(signs.to_le_bytes()) {
@@ -287,7 +288,8 @@ fn flip(bricks: &Bricks, starts: &[usize], cells: &mut [Cell], suspects: &[(usiz
     count
 }
 
-/// The crossing cell below a crossing cell of a brick, if the lattice goes on there and the surface crosses it.
+/// The crossing cell below a crossing cell of a brick, if the lattice goes on there and the surface crosses
+/// it.
 fn below(
     bricks: &Bricks,
     starts: &[usize],
@@ -313,7 +315,8 @@ fn below(
     found.ok().map(|index| range.start + index)
 }
 
-/// Numbers the vertices of each brick in the order of its cells. Returns where the vertices and the quads of bricks begin.
+/// Numbers the vertices of each brick in the order of its cells. Returns where the vertices and the quads of
+/// bricks begin.
 fn number_vertices(
     bricks: &Bricks,
     starts_of_cells: &[usize],

@@ -1,4 +1,5 @@
-//! The recursive division of the lattice into bricks: boxes without surface are dropped, and nothing in them is ever asked again.
+//! The recursive division of the lattice into bricks: boxes without surface are dropped, and nothing in them
+//! is ever asked again.
 //!
 //! ```text
 //! boxes = [the whole lattice]
@@ -9,8 +10,8 @@
 //!     boxes = all children, in Morton order           their neighbours: children of their parents' neighbours
 //! ```
 //!
-//! A box is judged closed, far sides included: so a point that it shares with another box is on the same side of the surface for
-//! both, and a cell that the surface crosses is always in a brick.
+//! A box is judged closed, far sides included: so a point that it shares with another box is on the same side
+//! of the surface for both, and a cell that the surface crosses is always in a brick.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -80,7 +81,8 @@ type Descended<R> = (Level<R>, Option<Kept<R>>);
 pub(crate) const CHUNK: usize = 8;
 /// The edge of bricks, if the points are cheap.
 const DEFAULT_BRICK: usize = 8;
-/// The ops of a point, on average, from which on it pays to halve bricks: to have fewer points and more bricks.
+/// The ops of a point, on average, from which on it pays to halve bricks: to have fewer points and more
+/// bricks.
 const COSTLY: u64 = 200;
 
 impl<R> Level<R> {
@@ -326,7 +328,8 @@ fn link(places: &[[u32; 3]], neighbours: &[[u32; 27]], masks: &[u8]) -> (Vec<[u3
     (0..masks.len()).into_par_iter().with_min_len(64).flat_map_iter(of_parent).unzip()
 }
 
-/// For each child and each direction: the direction in which the parent of the neighbour is, and which child of it that is.
+/// For each child and each direction: the direction in which the parent of the neighbour is, and which child
+/// of it that is.
 static KIN: [[(u8, u8); 27]; 8] = {
     let mut kin = [[(0, 0); 27]; 8];
     let mut child = 0;
@@ -336,7 +339,8 @@ static KIN: [[(u8, u8); 27]; 8] = {
             let (mut parent, mut place) = (0, 0);
             let (mut axis, mut unit, mut rest) = (0, 1, direction);
             while axis < 3 {
-                // From one before the first child to one after the second, counted from 1: parents are 0, 1, 1, 2.
+                // From one before the first child to one after the second, counted from 1: parents are 0, 1,
+                // 1, 2.
                 let step = (child >> axis & 1) + rest % 3;
                 parent += unit * usize::div_ceil(step, 2);
                 place |= ((step + 1) % 2) << axis;
@@ -358,7 +362,8 @@ mod tests {
     use crate::mesh::Work as FieldWork;
     use crate::region::Divisible;
 
-    /// The ball of radius 2 about the origin, by its square, with exact ranges of boxes. Nothing is evaluated.
+    /// The ball of radius 2 about the origin, by its square, with exact ranges of boxes. Nothing is
+    /// evaluated.
     struct Ball;
 
     impl Divisible for Ball {

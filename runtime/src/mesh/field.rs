@@ -20,9 +20,10 @@ pub struct Work {
 ///             └─ field, gradient, all(region of a brick, points in it)
 /// ```
 ///
-/// All slices of points and answers in one call have the same length, which is at least 1 and otherwise free. The mesher calls from many threads
-/// at once. An answer at a point must have the same bits in every region that contains the point, and must not depend on the points beside
-/// it; then the mesh does not depend on how the points were grouped.
+/// All slices of points and answers in one call have the same length, which is at least 1 and otherwise free.
+/// The mesher calls from many threads at once. An answer at a point must have the same bits in every region
+/// that contains the point, and must not depend on the points beside it; then the mesh does not depend on how
+/// the points were grouped.
 pub trait Field: Divisible {
     /// The names and widths (1 to 4 reals) of the attributes that [`Field::all`] answers, in its order.
     fn attributes(&self) -> Vec<(String, usize)>;
@@ -30,7 +31,8 @@ pub trait Field: Divisible {
     /// What the field at a point of a region takes.
     fn work(&self, region: &Self::Region) -> Work;
 
-    /// The field at each point, all of which are in the region's box. Inside is `field >= iso`; NaN is outside.
+    /// The field at each point, all of which are in the region's box. Inside is `field >= iso`; NaN is
+    /// outside.
     ///
     /// # Errors
     /// Whatever the evaluation reports; the mesher stops and hands it on.
@@ -43,7 +45,8 @@ pub trait Field: Divisible {
         field: &mut [f32],
     ) -> Result<(), Self::Error>;
 
-    /// The field and its gradient at each point, to pull vertices onto the surface. The points are in the region's box.
+    /// The field and its gradient at each point, to pull vertices onto the surface. The points are in the
+    /// region's box.
     ///
     /// # Errors
     /// Whatever the evaluation reports; the mesher stops and hands it on.
@@ -57,8 +60,8 @@ pub trait Field: Divisible {
         gradient: [&mut [f32]; 3],
     ) -> Result<(), Self::Error>;
 
-    /// The field, its gradient and every attribute at each point, all of which are in the region's box. There is one plane for each real of
-    /// each attribute, in the order of [`Field::attributes`].
+    /// The field, its gradient and every attribute at each point, all of which are in the region's box. There
+    /// is one plane for each real of each attribute, in the order of [`Field::attributes`].
     ///
     /// # Errors
     /// Whatever the evaluation reports; the mesher stops and hands it on.

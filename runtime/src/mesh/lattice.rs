@@ -1,14 +1,15 @@
 //! The lattice: which points a mesh asks the field at.
 //!
-//! A coordinate is a function of a *global* integer index and of nothing else, `origin + spacing * index` in f64 (a product,
-//! then a sum, not fused) rounded once to f32. Whoever computes a corner, in whatever brick and on whatever thread, gets the
-//! same bits, so a corner that several cells share is one point and is evaluated once.
+//! A coordinate is a function of a *global* integer index and of nothing else, `origin + spacing * index` in
+//! f64 (a product, then a sum, not fused) rounded once to f32. Whoever computes a corner, in whatever brick
+//! and on whatever thread, gets the same bits, so a corner that several cells share is one point and is
+//! evaluated once.
 
 use jbt_ir::limits::{MAX_LATTICE_POINTS, MAX_RESOLUTION};
 use thiserror::Error;
 
-/// The part of a cell that [`Lattice::covering`] may leave uncovered, so that a region of 1.3 at a spacing of 0.13 has ten
-/// cells and not, by the rounding of the quotient, eleven.
+/// The part of a cell that [`Lattice::covering`] may leave uncovered, so that a region of 1.3 at a spacing of
+/// 0.13 has ten cells and not, by the rounding of the quotient, eleven.
 const UNCOVERED: f64 = 1e-6;
 
 /// Why a lattice cannot be.
@@ -65,7 +66,8 @@ fn axis_name(axis: usize) -> &'static str {
 
 /// A box of equal cubic cells, `cells[0] x cells[1] x cells[2]`, with its first corner at `origin`.
 ///
-/// A value of this type has at most [`MAX_RESOLUTION`] cells along an axis, and strictly increasing finite f32 coordinates.
+/// A value of this type has at most [`MAX_RESOLUTION`] cells along an axis, and strictly increasing finite
+/// f32 coordinates.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Lattice {
@@ -98,7 +100,8 @@ impl Lattice {
         Ok(lattice)
     }
 
-    /// The lattice of the given spacing that begins at `low` and reaches `high` (or passes it by less than a cell).
+    /// The lattice of the given spacing that begins at `low` and reaches `high` (or passes it by less than a
+    /// cell).
     ///
     /// # Errors
     /// As [`Lattice::new`], and [`LatticeError::EmptyRegion`].
@@ -175,7 +178,8 @@ impl Lattice {
         if !last.is_finite() || !self.coordinate(axis, self.cells[axis]).is_finite() {
             return Err(LatticeError::NotFinite);
         }
-        // Neighbours that are at least two steps of f32 apart, where its steps are widest, are still apart when both are rounded.
+        // Neighbours that are at least two steps of f32 apart, where its steps are widest, are still apart
+        // when both are rounded.
         let farthest = last.abs().max(self.coordinate(axis, self.cells[axis]).abs());
         if self.spacing >= 2.0 * f64::from(farthest.next_up() - farthest) {
             return Ok(());

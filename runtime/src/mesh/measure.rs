@@ -21,7 +21,8 @@ impl Mesh {
         Some(bounds)
     }
 
-    /// The area of all triangles together, in squared units of the model: half the lengths of the cross products of their edges, in f64.
+    /// The area of all triangles together, in squared units of the model: half the lengths of the cross
+    /// products of their edges, in f64.
     #[must_use]
     pub fn area(&self) -> f64 {
         let twice = |&triangle: &[u32; 3]| {
@@ -31,10 +32,12 @@ impl Mesh {
         0.5 * self.triangles.iter().map(twice).sum::<f64>()
     }
 
-    /// The volume that the mesh encloses, in cubed units of the model: by the divergence theorem, of the signed tetrahedra between each
-    /// triangle and the middle of the bounds, in f64. Where the mesh is inside out it is negative.
+    /// The volume that the mesh encloses, in cubed units of the model: by the divergence theorem, of the
+    /// signed tetrahedra between each triangle and the middle of the bounds, in f64. Where the mesh is inside
+    /// out it is negative.
     ///
-    /// Only a closed mesh encloses anything: for others this number depends on where they stand, and means nothing.
+    /// Only a closed mesh encloses anything: for others this number depends on where they stand, and means
+    /// nothing.
     #[must_use]
     pub fn volume(&self) -> f64 {
         let bounds = self.bounds().unwrap_or_default();

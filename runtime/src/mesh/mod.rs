@@ -25,14 +25,16 @@
 //!     search for parts that are too thin for the lattice, and report them                   (thin)
 //! ```
 //!
-//! No point is evaluated twice, and nothing is asked about a box without surface but its range. So time and memory grow with
-//! the surface, and not with the lattice: one of 4096^3 cells takes about 16 times as long as one of 1024^3.
+//! No point is evaluated twice, and nothing is asked about a box without surface but its range. So time and
+//! memory grow with the surface, and not with the lattice: one of 4096^3 cells takes about 16 times as long
+//! as one of 1024^3.
 //!
-//! A cell that two sheets pass through has two vertices (Nielson 2004), so they do not touch there. What remains is a face
-//! that both neighbours see twice from one sheet; such a face is resolved the other way, which splits both sheets (after the
-//! rule of Wenger 2013, "Isosurfaces", for manifold dual contours). The mesh is closed and manifold wherever the surface stays inside
-//! the lattice, for any field, also for one that is noise. The result is the same to the bit for every thread count and
-//! every brick size: cells are in Morton order, in which bricks of any power of two stand one after the other.
+//! A cell that two sheets pass through has two vertices (Nielson 2004), so they do not touch there. What
+//! remains is a face that both neighbours see twice from one sheet; such a face is resolved the other way,
+//! which splits both sheets (after the rule of Wenger 2013, "Isosurfaces", for manifold dual contours). The
+//! mesh is closed and manifold wherever the surface stays inside the lattice, for any field, also for one
+//! that is noise. The result is the same to the bit for every thread count and every brick size: cells are in
+//! Morton order, in which bricks of any power of two stand one after the other.
 
 mod brick;
 mod cell;
@@ -75,15 +77,16 @@ use vertex::batch::Source;
 
 /// Meshes the surface `field = iso` over a lattice.
 ///
-/// Vertices are in the order of their cells, which is Morton order (the bits of z, y and x interleaved, that of x lowest); triangles are in the order of the
-/// last cell that they touch. A vertex stays within its cell, off its sides; so positions differ, unless
-/// [`Report::crowded`] says otherwise.
+/// Vertices are in the order of their cells, which is Morton order (the bits of z, y and x interleaved, that
+/// of x lowest); triangles are in the order of the last cell that they touch. A vertex stays within its cell,
+/// off its sides; so positions differ, unless [`Report::crowded`] says otherwise.
 ///
 /// # Errors
 /// See [`MeshError`].
 ///
 /// # Panics
-/// If the field does not keep its promises: that it gives each box a region, and that it is within its ranges.
+/// If the field does not keep its promises: that it gives each box a region, and that it is within its
+/// ranges.
 pub fn extract<'a, F: Field>(
     field: &'a F,
     lattice: &'a Lattice,

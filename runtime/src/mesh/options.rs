@@ -10,17 +10,19 @@ use super::error::{MAX_BRICK, MAX_PULLS, MIN_BRICK, MeshError};
 pub struct Options {
     /// The surface is where the field has this value. Any finite number.
     pub iso: f32,
-    /// Newton steps that pull each vertex onto the surface, 0 to [`MAX_PULLS`]. Each costs a gradient per vertex and about
-    /// squares the distance that is left, in units of the radius of curvature; two suffice for a smooth field.
+    /// Newton steps that pull each vertex onto the surface, 0 to [`MAX_PULLS`]. Each costs a gradient per
+    /// vertex and about squares the distance that is left, in units of the radius of curvature; two suffice
+    /// for a smooth field.
     pub pulls: usize,
-    /// Cells along the edge of the bricks at which division ends: a power of two from [`MIN_BRICK`] to [`MAX_BRICK`]. Small ones waste fewer points
-    /// far from the surface, large ones fewer calls. It changes what is evaluated, but no bit of the mesh. `None`: 8, or 4 where a point takes
-    /// long.
+    /// Cells along the edge of the bricks at which division ends: a power of two from [`MIN_BRICK`] to
+    /// [`MAX_BRICK`]. Small ones waste fewer points far from the surface, large ones fewer calls. It changes
+    /// what is evaluated, but no bit of the mesh. `None`: 8, or 4 where a point takes long.
     pub brick: Option<usize>,
-    /// Whether to look at every edge of the mesh to say that it is closed. Where no side of the lattice cuts the body it is, by construction.
+    /// Whether to look at every edge of the mesh to say that it is closed. Where no side of the lattice cuts
+    /// the body it is, by construction.
     pub verify: bool,
-    /// Whether to search for parts that are thinner than a cell: see [`Report::thin`](super::Report::thin). It takes a field that
-    /// knows ranges of boxes, and changes nothing of the mesh.
+    /// Whether to search for parts that are thinner than a cell: see [`Report::thin`](super::Report::thin).
+    /// It takes a field that knows ranges of boxes, and changes nothing of the mesh.
     pub thin_parts: bool,
 }
 

@@ -22,9 +22,11 @@ pub(super) fn all(conditions: &[u32; LANES]) -> bool {
     conditions.iter().fold(1, |all, condition| all & condition) == 1
 }
 
-/// Pulls vertices, each from its position with the field and the gradient there, within the boxes from `low` to `high`.
+/// Pulls vertices, each from its position with the field and the gradient there, within the boxes from `low`
+/// to `high`.
 ///
-/// A plain step that stays in its box is taken by all lanes at once; those that would leave it go on one by one.
+/// A plain step that stays in its box is taken by all lanes at once; those that would leave it go on one by
+/// one.
 #[inline(always)]
 pub(super) fn pull_lanes(
     iso: f32,
@@ -60,8 +62,9 @@ pub(super) fn pull_lanes(
 
 /// Newton's step along the gradient of one vertex, within a box.
 ///
-/// A step that would leave the box goes as far as its sides and spends what is left along them, so that a surface which
-/// leaves the box beside the vertex is still met. Where the gradient vanishes or is no number, the position stays.
+/// A step that would leave the box goes as far as its sides and spends what is left along them, so that a
+/// surface which leaves the box beside the vertex is still met. Where the gradient vanishes or is no number,
+/// the position stays.
 pub(super) fn pull(
     iso: f32,
     position: [f32; 3],

@@ -48,10 +48,12 @@ impl fmt::Display for Sides {
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Report {
-    /// Whether every edge has exactly two triangles, in opposite directions. A mesh without triangles is closed. It has been looked at if
-    /// [`Options::verify`](super::Options::verify) said so, and follows from `cut_sides` otherwise.
+    /// Whether every edge has exactly two triangles, in opposite directions. A mesh without triangles is
+    /// closed. It has been looked at if [`Options::verify`](super::Options::verify) said so, and follows from
+    /// `cut_sides` otherwise.
     pub closed: bool,
-    /// The sides of the lattice that cut the body: some lattice point on that side is inside. Without any, the mesh is closed.
+    /// The sides of the lattice that cut the body: some lattice point on that side is inside. Without any,
+    /// the mesh is closed.
     pub cut_sides: Sides,
     /// Boxes whose range was asked, to find the bricks.
     pub boxes: u64,
@@ -59,30 +61,33 @@ pub struct Report {
     pub boxes_inside: u64,
     /// Those that were dropped because they are outside as a whole.
     pub boxes_outside: u64,
-    /// Evaluations of primitives that the points of these boxes would have taken, with the rows that matter in the box around each.
+    /// Evaluations of primitives that the points of these boxes would have taken, with the rows that matter
+    /// in the box around each.
     pub evaluations_spared: u64,
     /// Bricks that were left and sampled.
     pub bricks: u64,
     /// Points at which the field alone was evaluated: the lattice points of the bricks, once each.
     pub field_evaluations: u64,
-    /// Points at which field and gradient were evaluated: at each vertex once for each pull, and some more for those that a crease keeps off the surface.
+    /// Points at which field and gradient were evaluated: at each vertex once for each pull, and some more
+    /// for those that a crease keeps off the surface.
     pub gradient_evaluations: u64,
-    /// Points at which everything was evaluated: once for each vertex, and once more for those that a crease has kept off
-    /// the surface, or that are at a jump.
+    /// Points at which everything was evaluated: once for each vertex, and once more for those that a crease
+    /// has kept off the surface, or that are at a jump.
     pub full_evaluations: u64,
-    /// Points at which the field alone was evaluated to find out where it jumps: on crossed edges of cells that
-    /// raise suspicion, and at walls.
+    /// Points at which the field alone was evaluated to find out where it jumps: on crossed edges of cells
+    /// that raise suspicion, and at walls.
     pub jump_evaluations: u64,
     /// Vertices at which the field jumps, as at the walls of `within`.
     pub jump_vertices: u64,
-    /// Whether cells are shorter than 16 steps of f32 somewhere in the lattice: then vertices of different cells
-    /// may coincide.
+    /// Whether cells are shorter than 16 steps of f32 somewhere in the lattice: then vertices of different
+    /// cells may coincide.
     pub crowded: bool,
     /// Cells that the surface crosses.
     pub crossing_cells: u64,
     /// Ambiguous faces that were resolved the other way, to keep the mesh manifold.
     pub flipped_faces: u64,
-    /// Parts that are thinner than a cell, if [`Options::thin_parts`](super::Options::thin_parts) said to search for them.
+    /// Parts that are thinner than a cell, if [`Options::thin_parts`](super::Options::thin_parts) said to
+    /// search for them.
     pub thin: Option<ThinReport>,
 }
 

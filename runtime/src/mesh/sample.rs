@@ -1,4 +1,5 @@
-//! The field at the points of bricks, each once: who owns a point that bricks share, and how the others get it.
+//! The field at the points of bricks, each once: who owns a point that bricks share, and how the others get
+//! it.
 //!
 //! ```text
 //!     +-------+-------+          A point on the sides of bricks touches up to eight of them. Its owner is the first that
@@ -11,8 +12,9 @@
 //!     +-------+-------+
 //! ```
 //!
-//! On each axis a point of a brick is low (the first), in the middle, or high (the first of the next brick). That makes 27 *classes* of
-//! points, for each of which the order of preference is known when this crate is compiled.
+//! On each axis a point of a brick is low (the first), in the middle, or high (the first of the next brick).
+//! That makes 27 *classes* of points, for each of which the order of preference is known when this crate is
+//! compiled.
 
 use std::error::Error;
 
@@ -65,7 +67,8 @@ static CLASSES: [Class; 27] = {
 
 const fn class(kinds: Kinds, empty: Class) -> Class {
     let mut class = Class { kinds, ..empty };
-    // The brick above along every axis comes first; a bit of `below` takes the one below along an axis instead.
+    // The brick above along every axis comes first; a bit of `below` takes the one below along an axis
+    // instead.
     let mut below = 0;
     while below < 8 {
         let (mut steps, mut seen, mut exists) = ([0_i8; 3], kinds, true);
@@ -98,7 +101,8 @@ const fn class_number(kinds: Kinds) -> usize {
     kinds[0] as usize + 3 * kinds[1] as usize + 9 * kinds[2] as usize
 }
 
-/// For each set of axes: the classes that are high on just those, which the brick in that direction owns if it is there.
+/// For each set of axes: the classes that are high on just those, which the brick in that direction owns if
+/// it is there.
 static SIDES: [(usize, &[usize]); 7] = [
     (direction([1, 0, 0]), &[2, 5, 11, 14]),
     (direction([0, 1, 0]), &[6, 7, 15, 16]),
@@ -158,8 +162,8 @@ pub(crate) fn sample<F: Field>(
 
 /// Zeros, or an error where the allocator would have aborted.
 fn allocate<T: Copy + Default, E: Error + 'static>(points: usize) -> Result<Vec<T>, MeshError<E>> {
-    // Zeroed memory comes from the system page by page when the threads first touch it, which is faster than to fill it
-    // here; but only `try_reserve` can fail. So the room is asked for first.
+    // Zeroed memory comes from the system page by page when the threads first touch it, which is faster than
+    // to fill it here; but only `try_reserve` can fail. So the room is asked for first.
     let mut room = Vec::<T>::new();
     room.try_reserve_exact(points).map_err(|_| MeshError::Memory { points })?;
     drop(room);
@@ -259,8 +263,8 @@ impl Samples {
         self.values.len()
     }
 
-    /// The field at all points of a brick's closed box, into a table (x fastest, then y, then z, in rows and layers of
-    /// [`Bricks::stride`]). Where the lattice cuts the brick, the rest of the table stays as it is.
+    /// The field at all points of a brick's closed box, into a table (x fastest, then y, then z, in rows and
+    /// layers of [`Bricks::stride`]). Where the lattice cuts the brick, the rest of the table stays as it is.
     pub(crate) fn gather(&self, bricks: &Bricks, brick: usize, table: &mut [f32]) {
         let source = &self.values[..];
         let (extent, stride) = (bricks.extent(brick), bricks.stride());

@@ -18,9 +18,9 @@ const HALVINGS: usize = 10;
 /// A vertex strays when its distance to the surface, by its own gradient, is more than this part of its cell.
 const TOLERANCE: f32 = 1e-3;
 
-/// Which vertices are far from the surface, 1 or 0 each, in cells with these low and high sides along x; `square`
-/// is that of the length of their gradient. Where the gradient is no number nothing can be said, and a vertex is
-/// not.
+/// Which vertices are far from the surface, 1 or 0 each, in cells with these low and high sides along x;
+/// `square` is that of the length of their gradient. Where the gradient is no number nothing can be said, and
+/// a vertex is not.
 #[inline(always)]
 pub(super) fn is_far(iso: f32, [low, high]: [&Lanes; 2], values: &Lanes, square: &Lanes) -> [u32; LANES] {
     let mut far = [0; LANES];

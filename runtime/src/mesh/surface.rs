@@ -1,7 +1,8 @@
 //! The triangles: a quad around each crossed edge of the lattice, split along its shorter diagonal.
 //!
-//! A quad belongs to the last of the four cells around its edge, the one that has the edge at its low corner. The other three may be in bricks below; so
-//! each brick sees its cells in a table with one more layer on each low side, filled from those bricks.
+//! A quad belongs to the last of the four cells around its edge, the one that has the edge at its low corner.
+//! The other three may be in bricks below; so each brick sees its cells in a table with one more layer on
+//! each low side, filled from those bricks.
 
 use multiversion::multiversion;
 use rayon::prelude::*;
@@ -59,10 +60,11 @@ struct Around {
     table: Vec<Entry>,
     /// Room for the places of some cells of a brick among all of its crossed ones.
     chosen: Vec<u16>,
-    /// The quads of the brick: eight times the place of the last cell around the edge, and the number of its turn.
+    /// The quads of the brick: eight times the place of the last cell around the edge, and the number of its
+    /// turn.
     quads: Vec<u32>,
-    /// The four cells around an edge along an axis, counter-clockwise as seen from its end or, where the inside is
-    /// there, from its beginning: for `2 axis` and `2 axis + 1`.
+    /// The four cells around an edge along an axis, counter-clockwise as seen from its end or, where the
+    /// inside is there, from its beginning: for `2 axis` and `2 axis + 1`.
     turns: [[Corner; 4]; 8],
     /// The place of the brick's first cell.
     first: usize,
@@ -88,8 +90,8 @@ impl Around {
         Self { table, chosen: Vec::new(), quads: Vec::new(), turns, first, steps }
     }
 
-    /// Fills the table as far as it is looked at: `lows` are the sets of axes along which cells of the brick are its
-    /// first ones.
+    /// Fills the table as far as it is looked at: `lows` are the sets of axes along which cells of the brick
+    /// are its first ones.
     fn fill(&mut self, bricks: &Bricks, crossings: &Crossings, brick: usize, lows: u8) {
         self.push(bricks, crossings, brick, 0, self.first);
         // The cells around an edge are back along two axes at most.
@@ -109,7 +111,8 @@ impl Around {
         }
     }
 
-    /// Puts those cells of a brick into the table that have all bits of a number in theirs, as seen from its first cell.
+    /// Puts those cells of a brick into the table that have all bits of a number in theirs, as seen from its
+    /// first cell.
     fn push(&mut self, bricks: &Bricks, crossings: &Crossings, brick: usize, bits: u16, first: usize) {
         let vertex = crossings.vertices[brick] as u32;
         let sides = bricks.sides(brick);
@@ -135,8 +138,8 @@ impl Around {
         }
     }
 
-    /// Finds the quads of a brick: the crossed edges at the low corners of its cells that have cells all around. Returns
-    /// on which low sides of the brick such cells are, as a set of sets of axes.
+    /// Finds the quads of a brick: the crossed edges at the low corners of its cells that have cells all
+    /// around. Returns on which low sides of the brick such cells are, as a set of sets of axes.
     fn find_quads(&mut self, bricks: &Bricks, crossings: &Crossings, brick: usize) -> u8 {
         let sides = bricks.sides(brick);
         let cut = sides & 1 | sides >> 1 & 2 | sides >> 2 & 4;
@@ -188,15 +191,16 @@ fn halves([p, q, r, s]: [u32; 4], positions: &[[f32; 3]]) -> [[u32; 3]; 2] {
         let [x, y, z] = [0, 1, 2].map(|axis| f64::from(p[axis]) - f64::from(q[axis]));
         x * x + y * y + z * z
     };
-    // Both ways, q r s or p q r comes first: a choice of numbers, and no jump that would be guessed wrong half of the time.
+    // Both ways, q r s or p q r comes first: a choice of numbers, and no jump that would be guessed wrong
+    // half of the time.
     let (d, e) = if distance(p, r) <= distance(q, s) { (p, r) } else { (s, q) };
     [[q, r, d], [e, s, p]]
 }
 
-/// Looks at some vertices, ascending, with their triangles. One without a normal (the gradient vanishes there, or
-/// is no number) gets that of its triangles, weighted by area; or up, if they have no area either. One whose normal
-/// is more than 90 degrees off that gets it too: where two surfaces are closer than a cell the gradient may be that
-/// of the other one.
+/// Looks at some vertices, ascending, with their triangles. One without a normal (the gradient vanishes
+/// there, or is no number) gets that of its triangles, weighted by area; or up, if they have no area either.
+/// One whose normal is more than 90 degrees off that gets it too: where two surfaces are closer than a cell
+/// the gradient may be that of the other one.
 pub(crate) fn repair_normals(mesh: &mut Mesh, bricks: &Bricks, crossings: &Crossings, vertices: &[u32]) {
     if vertices.is_empty() {
         return;
@@ -231,9 +235,9 @@ pub(crate) fn repair_normals(mesh: &mut Mesh, bricks: &Bricks, crossings: &Cross
     }
 }
 
-/// The bricks that have triangles of some vertices, which ascend: a quad belongs to the last cell around its edge,
-/// so these are the vertices' own and those above. They ascend too, so that sums are the same for bricks of any
-/// size.
+/// The bricks that have triangles of some vertices, which ascend: a quad belongs to the last cell around its
+/// edge, so these are the vertices' own and those above. They ascend too, so that sums are the same for
+/// bricks of any size.
 fn bricks_around(bricks: &Bricks, crossings: &Crossings, vertices: &[u32]) -> Vec<usize> {
     let (mut own, mut around) = (0, Vec::new());
     let mut last = None;

@@ -1,5 +1,5 @@
-//! Vertices: where they start, how they are pulled onto the surface, and what they carry. Brick by brick: everything stays at hand, and each
-//! evaluation is of all vertices of a brick, in the brick's region.
+//! Vertices: where they start, how they are pulled onto the surface, and what they carry. Brick by brick:
+//! everything stays at hand, and each evaluation is of all vertices of a brick, in the brick's region.
 
 pub(super) mod batch;
 mod bracket;
@@ -39,8 +39,8 @@ struct Target<'a> {
     attributes: Vec<&'a mut [f32]>,
 }
 
-/// Makes one vertex for each sheet of each crossing cell that has quads. A vertex at which the gradient vanishes or is no number has the
-/// normal zero.
+/// Makes one vertex for each sheet of each crossing cell that has quads. A vertex at which the gradient
+/// vanishes or is no number has the normal zero.
 pub(crate) fn finish<F: Field>(
     source: &Source<'_, F>,
     progress: &Progress<'_>,

@@ -7,7 +7,8 @@
 //!   `-'   +-----+          c: the core, rounded by the radius; a support without a radius is its core
 //! ```
 //!
-//! A support is wider than what it stands for by more than these few roundings are off (see `jbt_frontend::lower::guide::Support`).
+//! A support is wider than what it stands for by more than these few roundings are off (see
+//! `jbt_frontend::lower::guide::Support`).
 
 use jbt_frontend::lower::guide::{LARGEST_COORDINATE, Support};
 

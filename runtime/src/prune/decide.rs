@@ -1,4 +1,5 @@
-//! Operands that do not decide: in a box where another operand of a union is larger everywhere, this one need not be known.
+//! Operands that do not decide: in a box where another operand of a union is larger everywhere, this one need
+//! not be known.
 
 use jbt_frontend::lower::guide::{DecidedRows, Decision, Guide};
 use jbt_ir::{Entity, Selection, Table};
@@ -17,8 +18,8 @@ pub(super) fn firsts(selection: &Selection) -> Vec<usize> {
     firsts
 }
 
-/// Takes the rows of operands that do not decide out of the masks, for each box where that is so. `probes` are what the interval kernel
-/// gave for the boxes with the rows of the selection.
+/// Takes the rows of operands that do not decide out of the masks, for each box where that is so. `probes`
+/// are what the interval kernel gave for the boxes with the rows of the selection.
 pub(super) fn leave_out(guide: &Guide, probes: Probes<'_>, selection: &Selection, masks: &mut [u8]) {
     let decisions = || guide.decisions.iter().filter(|decision| decision.rows == DecidedRows::All);
     if decisions().next().is_none() {
@@ -126,8 +127,8 @@ impl<'a> Alone<'a> {
         count
     }
 
-    /// Notes the boxes in which the rows at this number do not decide, a bit each. `probes` are what the interval kernel gave for the whole
-    /// selection, and `alone` for these rows alone.
+    /// Notes the boxes in which the rows at this number do not decide, a bit each. `probes` are what the
+    /// interval kernel gave for the whole selection, and `alone` for these rows alone.
     pub(super) fn spare(
         &self,
         (selection, iso2): (&Selection, f32),

@@ -92,8 +92,9 @@ impl Pruner {
         Some(())
     }
 
-    /// Adds the boxes in which it makes a difference which rows of a table are active. What is lifted makes none: some selector has chosen
-    /// another child as well, or nobody would begin to ask for it, or cease to.
+    /// Adds the boxes in which it makes a difference which rows of a table are active. What is lifted makes
+    /// none: some selector has chosen another child as well, or nobody would begin to ask for it, or cease
+    /// to.
     fn edit_choice(&self, before: &Self, table: Table, boxes: &mut Vec<Box3>) -> Option<()> {
         if !(before.has_single_rows(table) && self.has_single_rows(table)) {
             return None;
@@ -143,8 +144,8 @@ impl Pruner {
         }
     }
 
-    /// Whether rows of a table may come and go without anything else being moved: a row that is zero makes no difference, all run, no table hangs
-    /// under them, and they hang under single rows.
+    /// Whether rows of a table may come and go without anything else being moved: a row that is zero makes no
+    /// difference, all run, no table hangs under them, and they hang under single rows.
     fn may_shift(&self, table: Table) -> bool {
         let function = self.kernel.kernel.function.function();
         let tables = &self.tables().tables;
@@ -184,7 +185,8 @@ impl Pruner {
         Some((parent, starts.partition_point(|&start| start as usize <= row) - 1))
     }
 
-    /// Whether each row of the table above owns one row of this: those of guards and selectors are such tables, and no others have rows that are not active.
+    /// Whether each row of the table above owns one row of this: those of guards and selectors are such
+    /// tables, and no others have rows that are not active.
     fn has_single_rows(&self, table: Table) -> bool {
         let tables = &self.tables().tables;
         let parent = self.kernel.kernel.function.function().tables[table].parent;

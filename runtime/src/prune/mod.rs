@@ -8,13 +8,13 @@
 //!          leave the others out, by the rule of the operator                                  (rule)
 //! ```
 //!
-//! A selection is right if evaluating with it gives, at every point of its box, the bits that evaluating with all rows gives: field, gradient,
-//! attributes. Three things make it so:
+//! A selection is right if evaluating with it gives, at every point of its box, the bits that evaluating with
+//! all rows gives: field, gradient, attributes. Three things make it so:
 //!
-//! * Outside of its support a row's field and gradient are exactly zero in the arithmetic of the kernels; each operator's rule says
-//!   what leaving zeros out does ([`jbt_frontend::lower::guide::Rule`]).
-//! * The interval kernel runs the kernel's own ops on bounds, so a range encloses every f32 value that the kernel gives in the box. An
-//!   operand is left out only if it is strictly beaten by such ranges.
+//! * Outside of its support a row's field and gradient are exactly zero in the arithmetic of the kernels;
+//!   each operator's rule says what leaving zeros out does ([`jbt_frontend::lower::guide::Rule`]).
+//! * The interval kernel runs the kernel's own ops on bounds, so a range encloses every f32 value that the
+//!   kernel gives in the box. An operand is left out only if it is strictly beaten by such ranges.
 //! * Rows stay in their order.
 
 mod cull;
@@ -66,7 +66,8 @@ impl Region {
         &self.selection
     }
 
-    /// Appends the regions of parts: `masks` has a byte for each row that runs, a bit for each part in which it matters.
+    /// Appends the regions of parts: `masks` has a byte for each row that runs, a bit for each part in which
+    /// it matters.
     fn narrow_by(&self, boxes: &[Box3], mut masks: Vec<u8>, parts: &mut Vec<Self>) {
         let mut selections: [Selection; MAX_PARTS] = Default::default();
         self.selection.narrow(&mut masks, &mut selections[..boxes.len()]);
@@ -112,8 +113,8 @@ pub struct PruneCounters {
     pub interval_evaluations: u64,
 }
 
-/// The most rows in a region for which ranges of its parts are computed. The field of so many is bounded by nothing useful; the parts of its
-/// parts will tell.
+/// The most rows in a region for which ranges of its parts are computed. The field of so many is bounded by
+/// nothing useful; the parts of its parts will tell.
 const MAX_RANGED_ROWS: usize = 4096;
 
 impl Pruner {
@@ -125,7 +126,8 @@ impl Pruner {
         Self::of(compiler, &Lowering::new(tree), None)
     }
 
-    /// As [`new`](Self::new), for a model of which more is asked. `present` is a kernel that may have its shape.
+    /// As [`new`](Self::new), for a model of which more is asked. `present` is a kernel that may have its
+    /// shape.
     pub(crate) fn of(
         compiler: &Compiler,
         lowering: &Lowering<'_>,
@@ -204,8 +206,9 @@ impl Pruner {
         of_selection(&self.kernel.kernel.per_row, rows).saturating_mul(boxes as u64)
     }
 
-    /// For each active row of the region, the boxes in which it matters: a bit each. It is told by the ranges of the field and of all probes in
-    /// these boxes, if they are known. Operands that are rows are for [`spared`](Self::spared).
+    /// For each active row of the region, the boxes in which it matters: a bit each. It is told by the ranges
+    /// of the field and of all probes in these boxes, if they are known. Operands that are rows are for
+    /// [`spared`](Self::spared).
     fn masks(&self, region: &Region, boxes: &[Box3], probes: Option<Probes<'_>>) -> Vec<u8> {
         let world = Boxes::new(boxes);
         let selection = &*region.selection;
@@ -237,8 +240,9 @@ impl Pruner {
         masks
     }
 
-    /// For each active row of the region, the boxes in which it need not be known because it is an operand that does not decide there: a bit
-    /// each, of at most [`MAX_SPARED`] boxes. Nothing where to find out costs more than it saves.
+    /// For each active row of the region, the boxes in which it need not be known because it is an operand
+    /// that does not decide there: a bit each, of at most [`MAX_SPARED`] boxes. Nothing where to find out
+    /// costs more than it saves.
     fn spared(
         &self,
         region: &Region,
@@ -289,7 +293,8 @@ impl Pruner {
     }
 }
 
-/// The most boxes of which is found out together which operands do not decide: a bit of a word each, and a multiple of [`MAX_PARTS`].
+/// The most boxes of which is found out together which operands do not decide: a bit of a word each, and a
+/// multiple of [`MAX_PARTS`].
 const MAX_SPARED: usize = 32;
 
 /// The supports of a table, if rows are left out by them.

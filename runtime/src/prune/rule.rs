@@ -2,8 +2,8 @@
 
 use jbt_frontend::lower::guide::Rule;
 
-/// Makes of what rows reach what they keep: `masks` has a byte for each active row of a table, a bit for each box that the row reaches; `starts` are
-/// those of the selection.
+/// Makes of what rows reach what they keep: `masks` has a byte for each active row of a table, a bit for each
+/// box that the row reaches; `starts` are those of the selection.
 pub(super) fn apply(rule: Rule, starts: &[u32], masks: &mut [u8], all: u8) {
     match rule {
         // A zero adds nothing.

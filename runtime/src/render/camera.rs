@@ -31,7 +31,8 @@ const THREE_QUARTER: Vector = [1.0, -0.62, 0.5];
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Stance {
-    /// It looks at the model from this direction, of any length, and stands where the model fills the picture.
+    /// It looks at the model from this direction, of any length, and stands where the model fills the
+    /// picture.
     From([f64; 3]),
     /// It stands at a point and looks at another one.
     At {
@@ -50,8 +51,9 @@ pub struct View {
     pub stance: Stance,
     /// What is up in the picture, of any length; without one it is z, or y where one looks along z.
     pub up: Option<[f64; 3]>,
-    /// The angle from the bottom to the top of the picture, in degrees: greater than 0, less than 180. Without perspective it matters only for how much
-    /// a camera that stands at a point sees: at its target, what it would see with perspective.
+    /// The angle from the bottom to the top of the picture, in degrees: greater than 0, less than 180.
+    /// Without perspective it matters only for how much a camera that stands at a point sees: at its target,
+    /// what it would see with perspective.
     pub lens: f64,
     /// How much larger everything is than it would be. Greater than 0.
     pub zoom: f64,
@@ -135,7 +137,8 @@ pub struct Camera {
     pub up: [f64; 3],
     /// From what it sees to the eye.
     pub back: [f64; 3],
-    /// Half the width and half the height of what it sees: at the distance 1, or, without perspective, at any distance.
+    /// Half the width and half the height of what it sees: at the distance 1, or, without perspective, at any
+    /// distance.
     pub half: [f64; 2],
     /// Whether there is no perspective.
     pub orthographic: bool,
@@ -201,7 +204,8 @@ impl View {
         Ok([right, cross(back, right), back])
     }
 
-    /// The camera for a picture that is `aspect` times as wide as high. One that frames itself shows all of these points, of which there is one at least.
+    /// The camera for a picture that is `aspect` times as wide as high. One that frames itself shows all of
+    /// these points, of which there is one at least.
     ///
     /// # Errors
     /// See [`CameraError`].
@@ -228,8 +232,8 @@ impl View {
 }
 
 impl Camera {
-    /// The ray of a place of the picture: where it begins, and its unit direction. x goes from 0 at the left side to 1 at the right one, y from 0 at the top to 1
-    /// at the bottom.
+    /// The ray of a place of the picture: where it begins, and its unit direction. x goes from 0 at the left
+    /// side to 1 at the right one, y from 0 at the top to 1 at the bottom.
     #[must_use]
     pub fn ray(&self, x: f64, y: f64) -> ([f64; 3], [f64; 3]) {
         let aside = add(
@@ -282,7 +286,8 @@ impl Seen {
 
     /// The nearest place of an eye from where all points are within these tangents of the middle.
     ///
-    /// A point is if `|x - cx| <= (d - z) t` for the eye (cx, cy, d): so `x + z t <= cx + d t` and `x - z t >= cx - d t`.
+    /// A point is if `|x - cx| <= (d - z) t` for the eye (cx, cy, d): so `x + z t <= cx + d t` and `x - z
+    /// t >= cx - d t`.
     fn perspective(&self, tangents: [f64; 2]) -> Vector {
         let mut eye = [0.0, 0.0, self.high[2] + 1e-3 * self.radius];
         for axis in 0..2 {

@@ -5,7 +5,8 @@ pub use crate::srgb::{byte, decode, encode, unit};
 /// Red, green and blue.
 pub type Rgb = [f32; 3];
 
-/// Light of any strength as light that a screen has: as it is up to 0.6, then ever less, up to 1. Continuous with its derivative.
+/// Light of any strength as light that a screen has: as it is up to 0.6, then ever less, up to 1. Continuous
+/// with its derivative.
 pub fn shoulder(light: f32) -> f32 {
     const KNEE: f32 = 0.6;
     const ROOM: f32 = 1.0 - KNEE;
@@ -16,15 +17,16 @@ pub fn shoulder(light: f32) -> f32 {
     KNEE + ROOM * over / (1.0 + over)
 }
 
-/// The colour of a number from 0 to 1 on the map *viridis* (Smith and van der Walt, 2015), as numbers for a screen: dark blue, green, yellow. Equal
-/// steps look equally large.
+/// The colour of a number from 0 to 1 on the map *viridis* (Smith and van der Walt, 2015), as numbers for a
+/// screen: dark blue, green, yellow. Equal steps look equally large.
 ///
 /// A polynomial that Zucker fitted to it (2019), off by less than 0.02.
 pub fn viridis(t: f32) -> Rgb {
     polynomial(&VIRIDIS, t)
 }
 
-/// The colour of a number from 0 to 1 on the map *inferno* (Smith and van der Walt, 2015): black, red, yellow. From the same source as [`viridis`].
+/// The colour of a number from 0 to 1 on the map *inferno* (Smith and van der Walt, 2015): black, red,
+/// yellow. From the same source as [`viridis`].
 pub fn inferno(t: f32) -> Rgb {
     polynomial(&INFERNO, t)
 }

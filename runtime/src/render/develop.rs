@@ -4,7 +4,8 @@ use super::color::{Rgb, byte, decode, encode, inferno, viridis};
 use super::settings::{Background, Meaning};
 use crate::picture::Picture;
 
-/// What was gathered for a pixel, as means over its rays: three numbers, multiplied by the share of the rays that have any, and this share.
+/// What was gathered for a pixel, as means over its rays: three numbers, multiplied by the share of the rays
+/// that have any, and this share.
 pub type Gathered = [f32; 4];
 
 /// Develops a film into a picture. Also the range of its numbers, where a colour stands for one.
@@ -51,7 +52,8 @@ fn part(number: f32, [low, high]: [f32; 2]) -> f32 {
     if high > low { (number - low) / (high - low) } else { 0.0 }
 }
 
-/// A pixel in front of a background, as bytes. The front is multiplied by its opacity; light is mixed as light.
+/// A pixel in front of a background, as bytes. The front is multiplied by its opacity; light is mixed as
+/// light.
 fn over(front: Rgb, opacity: f32, behind: Option<Rgb>, is_light: bool) -> [u8; 4] {
     let show = |x: f32| byte(if is_light { encode(x) } else { x });
     match behind {

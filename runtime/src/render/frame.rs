@@ -17,7 +17,8 @@ pub struct Frame<'a> {
     pub region: [Vector; 2],
     /// The side of a pixel, at the near side of the model.
     pub pixel: f64,
-    /// What is thinner along a ray of the camera may be missed; where a ray hits, it does so to a small part of this.
+    /// What is thinner along a ray of the camera may be missed; where a ray hits, it does so to a small part
+    /// of this.
     pub tolerance: f64,
     /// The middle of the model, and half the diagonal of its bounds.
     pub middle: Vector,

@@ -88,7 +88,8 @@ impl<'a> Frame<'a> {
         Ok(if lowest.is_finite() { lowest } else { bottom })
     }
 
-    /// Moves the camera so that what is seen of the model fills the picture, found out by a coarse picture of all of it.
+    /// Moves the camera so that what is seen of the model fills the picture, found out by a coarse picture of
+    /// all of it.
     fn fit(&mut self, corners: &[Vector]) -> Result<(), RenderError> {
         let view = View { zoom: 1.0, ..self.view };
         self.camera = view.camera(self.render.aspect(), corners)?;

@@ -177,7 +177,8 @@ fn open_ground(frame: &Frame<'_>, position: Vector, direction: Vector) -> f64 {
 /// Parts of a direction's coordinates by which rays are told apart that go different ways.
 const WAYS: f64 = 4.0;
 
-/// Which way a ray goes, roughly: rays of one way stay close to each other, which is what makes packets cheap.
+/// Which way a ray goes, roughly: rays of one way stay close to each other, which is what makes packets
+/// cheap.
 fn way(ray: &Ray) -> [i8; 3] {
     ray.direction.map(|coordinate| (coordinate * WAYS).floor() as i8)
 }
@@ -204,7 +205,8 @@ fn blocked(
     Ok(answers)
 }
 
-/// Whether rays come into the region where it cuts the solid: inside of it from the beginning, they may meet no surface.
+/// Whether rays come into the region where it cuts the solid: inside of it from the beginning, they may meet
+/// no surface.
 fn cut(frame: &Frame<'_>, rays: &[Ray], evaluations: &mut f64) -> Result<Vec<bool>, RenderError> {
     let mut cut = vec![false; rays.len()];
     if frame.render.region.is_none() {

@@ -35,8 +35,8 @@ pub fn sky(height: f64) -> Rgb {
     [0, 1, 2].map(|channel| HORIZON[channel] + HEIGHT[channel] * height as f32)
 }
 
-/// The mean of the sky over the hemisphere above a surface whose unit normal goes up so far, weighted with the cosine: that of a linear function is its value
-/// at 2/3 of the normal.
+/// The mean of the sky over the hemisphere above a surface whose unit normal goes up so far, weighted with
+/// the cosine: that of a linear function is its value at 2/3 of the normal.
 pub fn sky_above(height: f64) -> Rgb {
     sky(height * 2.0 / 3.0)
 }

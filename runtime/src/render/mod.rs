@@ -8,8 +8,8 @@
 //! develop: means over the rays of each pixel ── colours, over the background                   (picture)
 //! ```
 //!
-//! A picture is the same to the byte on any number of threads: tiles are always the same, and directions come from sequences that each pixel shifts by a
-//! number that depends on its place alone.
+//! A picture is the same to the byte on any number of threads: tiles are always the same, and directions come
+//! from sequences that each pixel shifts by a number that depends on its place alone.
 
 mod camera;
 mod cast;

@@ -1,14 +1,15 @@
-//! Directions that fill a cone or a hemisphere evenly: the same for a pixel in every run, others for the next pixel.
+//! Directions that fill a cone or a hemisphere evenly: the same for a pixel in every run, others for the next
+//! pixel.
 
 use super::vector::{Vector, add, scale, tangents};
 
 /// Evenly spread points of the unit square for one pixel.
 ///
 /// All pixels share one sequence, a Sobol' sequence of two dimensions: any 2^k points of it that begin at a
-/// multiple of 2^k are spread evenly in every way of dividing the square into 2^k equal boxes. Pixels take their
-/// points from it in Morton order, so those of a pixel are spread evenly, and those of its block of 2 x 2, 4 x 4,
-/// ... pixels as well: what one pixel has too much of its neighbours have too little of, and noise is fine and
-/// without a pattern (Ahmed and Wonka, Screen-space blue-noise diffusion, 2020).
+/// multiple of 2^k are spread evenly in every way of dividing the square into 2^k equal boxes. Pixels take
+/// their points from it in Morton order, so those of a pixel are spread evenly, and those of its block of 2 x
+/// 2, 4 x 4, ... pixels as well: what one pixel has too much of its neighbours have too little of, and noise
+/// is fine and without a pattern (Ahmed and Wonka, Screen-space blue-noise diffusion, 2020).
 #[derive(Clone, Copy)]
 pub struct Sequence {
     /// The number of the pixel's first point in the sequence.
@@ -48,8 +49,8 @@ fn sobol(index: u32) -> u32 {
     sum
 }
 
-/// Owen's scrambling (1995): each bit is flipped or not by a hash of the bits above it. Evenly spread points stay
-/// evenly spread. The hash is that of Laine and Karras (2011), with the constants of Vegdahl.
+/// Owen's scrambling (1995): each bit is flipped or not by a hash of the bits above it. Evenly spread points
+/// stay evenly spread. The hash is that of Laine and Karras (2011), with the constants of Vegdahl.
 fn scrambled(bits: u32, seed: u32) -> u32 {
     let mut low_first = bits.reverse_bits();
     low_first ^= low_first.wrapping_mul(0x3d20_adea);
@@ -68,7 +69,8 @@ fn hashed(number: u32) -> u32 {
     bits ^ bits >> 16
 }
 
-/// A unit vector above a surface with this unit normal, as likely as the cosine of the angle to the normal, from a point of the unit square.
+/// A unit vector above a surface with this unit normal, as likely as the cosine of the angle to the normal,
+/// from a point of the unit square.
 pub fn above(normal: Vector, [u, v]: [f64; 2]) -> Vector {
     let (radius, height) = (u.sqrt(), (1.0 - u).sqrt());
     add(across(normal, radius, v), scale(normal, height))
@@ -91,7 +93,8 @@ mod tests {
     use super::super::vector::{dot, length};
     use super::*;
 
-    /// Points of a block of 2 x 2 pixels, and of each pixel, are one in each part of the square, whatever its shape.
+    /// Points of a block of 2 x 2 pixels, and of each pixel, are one in each part of the square, whatever its
+    /// shape.
     #[test]
     fn points_of_a_pixel_and_of_its_neighbours_are_spread_evenly() {
         for (stream, corner) in [(0, [0, 0]), (1, [6, 2]), (2, [8190, 4])] {

@@ -35,7 +35,8 @@ impl Renderer {
         })
     }
 
-    /// A renderer for another model, usually an edited one. If it has the shape of this one, nothing is compiled.
+    /// A renderer for another model, usually an edited one. If it has the shape of this one, nothing is
+    /// compiled.
     ///
     /// # Errors
     /// Those of [`new`](Self::new).

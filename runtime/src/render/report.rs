@@ -23,15 +23,16 @@ pub struct Report {
     pub camera: Option<Camera>,
     /// The pixels in which a ray met the surface.
     pub pixels_hit: u64,
-    /// What is thinner along a ray of the camera may be missed, in units of the model: a part of a pixel where the model is nearest, by the quality
-    /// (an eighth for the best one, a quarter, half for a draft). 0 if there was nothing to look at.
+    /// What is thinner along a ray of the camera may be missed, in units of the model: a part of a pixel
+    /// where the model is nearest, by the quality (an eighth for the best one, a quarter, half for a draft).
+    /// 0 if there was nothing to look at.
     pub tolerance: f64,
     /// Rays, by kind.
     pub rays: Rays,
     /// Distances to skeletons that were evaluated for all rays.
     pub evaluations: u64,
-    /// What the ends of the scale of colours or greys stand for: distances from the eye, an attribute, evaluations of a pixel that takes any. `None` where colours are colours,
-    /// and if nothing is seen.
+    /// What the ends of the scale of colours or greys stand for: distances from the eye, an attribute,
+    /// evaluations of a pixel that takes any. `None` where colours are colours, and if nothing is seen.
     pub range: Option<[f32; 2]>,
     /// What ran the kernels.
     pub engine: Engine,

@@ -32,9 +32,11 @@ pub struct Render {
     pub quality: Quality,
     /// A pixel takes so many rays along each of its sides: 1 to [`MAX_ANTIALIAS`].
     pub antialias: u32,
-    /// What is seen where nothing is. `None` is the studio for a shaded surface, and nothing for the other modes.
+    /// What is seen where nothing is. `None` is the studio for a shaded surface, and nothing for the other
+    /// modes.
     pub background: Option<Background>,
-    /// Whether the model stands on something that catches its shadow. It is seen from above alone, and only of a shaded surface; a draft has none.
+    /// Whether the model stands on something that catches its shadow. It is seen from above alone, and only
+    /// of a shaded surface; a draft has none.
     pub ground: bool,
     /// The box that is looked at, about the origin of the model; it cuts the model open, and the cut is
     /// shown. `None` is the model's support.
@@ -68,11 +70,11 @@ pub enum Mode {
     Normal,
     /// How far the surface is in front of the eye: the nearest place is white, the farthest is dark.
     Depth,
-    /// An attribute group: one real as its place between the smallest and the largest one that are seen, on the map viridis; more reals as red, green and blue of
-    /// linear light, clamped to 0 .. 1.
+    /// An attribute group: one real as its place between the smallest and the largest one that are seen, on
+    /// the map viridis; more reals as red, green and blue of linear light, clamped to 0 .. 1.
     Attribute(String),
-    /// The distances to skeletons that the rays of each pixel took: their logarithm, on the map inferno. What takes the fewest is black, like
-    /// what takes none.
+    /// The distances to skeletons that the rays of each pixel took: their logarithm, on the map inferno. What
+    /// takes the fewest is black, like what takes none.
     Evaluations,
 }
 
@@ -107,7 +109,8 @@ impl Quality {
         }
     }
 
-    /// The tolerance of rays to the light and the sky, in pixels: a shadow is softer than a rim, so what is thinner may cast none.
+    /// The tolerance of rays to the light and the sky, in pixels: a shadow is softer than a rim, so what is
+    /// thinner may cast none.
     pub(super) fn softness(self) -> f64 {
         match self {
             Self::Draft => 16.0,
@@ -142,7 +145,8 @@ pub enum Background {
 const STUDIO: [Rgb; 2] = [[0.965, 0.972, 0.98], [0.845, 0.862, 0.885]];
 
 impl Background {
-    /// Its colour at a height of the picture, 0 at the top and 1 at the bottom, as screens take it; `None` where there is nothing.
+    /// Its colour at a height of the picture, 0 at the top and 1 at the bottom, as screens take it; `None`
+    /// where there is nothing.
     pub(super) fn at(self, y: f32) -> Option<Rgb> {
         match self {
             Self::Studio => {
@@ -236,7 +240,8 @@ impl Render {
     }
 }
 
-/// The part of the support's longest side by which the region that nobody gave exceeds it: more than f32 is off by.
+/// The part of the support's longest side by which the region that nobody gave exceeds it: more than f32 is
+/// off by.
 const MARGIN: f64 = 1.0 / 512.0;
 
 /// The reals of an attribute group.

@@ -1,7 +1,7 @@
 //! Light: where it comes from, and what surfaces and the ground make of it.
 //!
-//! All of it is linear. The key light is warm and comes over the left shoulder of whoever looks, a weak one from the right fills its shadows, and the sky is
-//! brighter and bluer the higher it is.
+//! All of it is linear. The key light is warm and comes over the left shoulder of whoever looks, a weak one
+//! from the right fills its shadows, and the sky is brighter and bluer the higher it is.
 
 use super::cast::Met;
 use super::color::{Rgb, shoulder};
@@ -71,7 +71,8 @@ pub struct Ground {
     pub sample: u32,
 }
 
-/// How deep the shadow on the ground is: red, green and blue of it, multiplied by the opacity that comes last.
+/// How deep the shadow on the ground is: red, green and blue of it, multiplied by the opacity that comes
+/// last.
 pub fn shadows(frame: &Frame<'_>, places: &[Ground]) -> Result<(Vec<[f32; 4]>, Cost), RenderError> {
     let spots: Vec<Spot> =
         places.iter().map(|place| spot(frame, place.position, frame.up, place.pixel, place.sample)).collect();

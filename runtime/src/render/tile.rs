@@ -73,7 +73,8 @@ impl Tile {
     }
 }
 
-/// A ray of the camera that goes somewhere: the number of its pixel in the tile, of the ray in the pixel, and its place in the picture, 0 .. 1.
+/// A ray of the camera that goes somewhere: the number of its pixel in the tile, of the ray in the pixel, and
+/// its place in the picture, 0 .. 1.
 #[derive(Clone, Copy)]
 struct Aim {
     pixel: usize,

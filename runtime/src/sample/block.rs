@@ -25,8 +25,8 @@ impl Block {
         self.indices.map(|[first, end]| (end - first) as usize)
     }
 
-    /// The answers, plane by plane in the order of the evaluator's layout: x fastest, then y, then z; or a single number in each plane, if all points of the
-    /// block have the same answers.
+    /// The answers, plane by plane in the order of the evaluator's layout: x fastest, then y, then z; or a
+    /// single number in each plane, if all points of the block have the same answers.
     #[must_use]
     pub fn planes(&self) -> &[Vec<f32>] {
         &self.planes

@@ -7,7 +7,8 @@
 //!     else                            its points are evaluated with its rows
 //! ```
 //!
-//! Coordinates are those of the [`Lattice`], so that the bits are those of any other way to ask at these points.
+//! Coordinates are those of the [`Lattice`], so that the bits are those of any other way to ask at these
+//! points.
 
 mod block;
 mod npy;
@@ -133,7 +134,8 @@ impl Sampler {
         })
     }
 
-    /// The answers at all points of a lattice: a plane for each name of the [`layout`](Evaluator::layout), x fastest, then y, then z.
+    /// The answers at all points of a lattice: a plane for each name of the [`layout`](Evaluator::layout), x
+    /// fastest, then y, then z.
     ///
     /// # Errors
     /// See [`SampleError`]. The number of numbers is checked before memory is taken.

@@ -2,8 +2,9 @@
 
 use std::io::{self, Write};
 
-/// Writes the planes of a lattice as one array of little-endian f32: of the shape (nx, ny, nz), or (nx, ny, nz, planes) if there are several, in
-/// Fortran's order, in which x is fastest: `array[i, j, k]` is the answer at the point with these indices.
+/// Writes the planes of a lattice as one array of little-endian f32: of the shape (nx, ny, nz), or (nx, ny,
+/// nz, planes) if there are several, in Fortran's order, in which x is fastest: `array[i, j, k]` is the
+/// answer at the point with these indices.
 ///
 /// Panics if a plane has another number of points.
 ///
@@ -18,7 +19,8 @@ pub fn write_npy(points: [usize; 3], planes: &[Vec<f32>], writer: &mut dyn Write
         several => format!("({x}, {y}, {z}, {several})"),
     };
     let mut header = format!("{{'descr': '<f4', 'fortran_order': True, 'shape': {shape}, }}");
-    // Magic, version and length take 10 bytes; all of it is filled up to a multiple of 64 and ends with a line feed.
+    // Magic, version and length take 10 bytes; all of it is filled up to a multiple of 64 and ends with a
+    // line feed.
     let length = (10 + header.len() + 1).next_multiple_of(64) - 10;
     header.extend(std::iter::repeat_n(' ', length - header.len() - 1));
     header.push('\n');

@@ -24,12 +24,14 @@ use crate::region::{ANYTHING, Box3, Divisible as _, MAX_PARTS};
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TightBounds {
-    /// Every point of the region that is inside is in this box: proven. `None`: the region holds no inside point.
+    /// Every point of the region that is inside is in this box: proven. `None`: the region holds no inside
+    /// point.
     pub outer: Option<Box3>,
     /// The smallest box around the points that are known to be inside. `None` if none was found.
     pub inner: Option<Box3>,
-    /// Whether each side of the outer box is within the tolerance of that of the inner one, or the solid is empty. It is not where
-    /// ranges do not converge, or do so after too many boxes ([`MAX_SEARCH_BOXES`] for a side), or where f32 is coarser than the tolerance.
+    /// Whether each side of the outer box is within the tolerance of that of the inner one, or the solid is
+    /// empty. It is not where ranges do not converge, or do so after too many boxes ([`MAX_SEARCH_BOXES`] for
+    /// a side), or where f32 is coarser than the tolerance.
     pub converged: bool,
 }
 
@@ -51,11 +53,13 @@ pub enum BoundsError {
 }
 
 impl Solid {
-    /// A box around the part of the solid that is in a region; each side is within the tolerance (in units of the model) of the true one, if the answer
-    /// says [`converged`](TightBounds::converged). Without a region it is the model's support, so all of the solid.
+    /// A box around the part of the solid that is in a region; each side is within the tolerance (in units of
+    /// the model) of the true one, if the answer says [`converged`](TightBounds::converged). Without a region
+    /// it is the model's support, so all of the solid.
     ///
     /// # Errors
-    /// A region that is infinite, flat, not a number or not in order; none for an unbounded model; a tolerance that is not finite and greater than 0.
+    /// A region that is infinite, flat, not a number or not in order; none for an unbounded model; a
+    /// tolerance that is not finite and greater than 0.
     pub fn tight_bounds(&self, region: Option<Box3>, tolerance: f32) -> Result<TightBounds, BoundsError> {
         if !(tolerance > 0.0 && tolerance.is_finite()) {
             return Err(BoundsError::Tolerance { tolerance });
@@ -297,8 +301,8 @@ impl<'a> Search<'a> {
         point
     }
 
-    /// Goes from an inside point to inside points that reach farther, as far as there are any: straight ahead, or to the sides and a little
-    /// ahead, in steps that get smaller where all lead outside.
+    /// Goes from an inside point to inside points that reach farther, as far as there are any: straight
+    /// ahead, or to the sides and a little ahead, in steps that get smaller where all lead outside.
     fn climb(&mut self, mut point: [f32; 3]) -> Result<(), EvalError> {
         let everywhere = self.solid.pruner.everywhere();
         let whole = self.whole;

@@ -8,14 +8,17 @@
 //!     |   |    |
 //! ```
 //!
-//! Over a random shift of the lattice, the number of crossings along `k` is the integral of `|n_k|` over the surface by the cross-section of a
-//! line. With the weight `|n_k|`, three axes together give the integral of `n . n`, which is the area. The ends of a line are places of the
-//! next box, too, with the same bits. So every crossing has one box, also where a flat face lies in the plane between two boxes.
+//! Over a random shift of the lattice, the number of crossings along `k` is the integral of `|n_k|` over the
+//! surface by the cross-section of a line. With the weight `|n_k|`, three axes together give the integral of
+//! `n . n`, which is the area. The ends of a line are places of the next box, too, with the same bits. So
+//! every crossing has one box, also where a flat face lies in the plane between two boxes.
 //!
-//! Near a convex edge a line may enter and leave within one segment, so edges lose area in proportion to the length `h` of a segment. What
-//! segments of twice that length would miss is seen: two neighbours that are both crossed. Counting those twice extrapolates to `h = 0`. What is
-//! left is of the order of `h^2` for smooth surfaces, and for edges of the order of `h`: an edge of length `l` with two faces of 90 degrees is
-//! off by at most `l h / 4`. Where lines are in a box is scattered, or flat faces and edges along an axis would meet all of them alike.
+//! Near a convex edge a line may enter and leave within one segment, so edges lose area in proportion to the
+//! length `h` of a segment. What segments of twice that length would miss is seen: two neighbours that are
+//! both crossed. Counting those twice extrapolates to `h = 0`. What is left is of the order of `h^2` for
+//! smooth surfaces, and for edges of the order of `h`: an edge of length `l` with two faces of 90 degrees is
+//! off by at most `l h / 4`. Where lines are in a box is scattered, or flat faces and edges along an axis
+//! would meet all of them alike.
 
 use super::{Batch, Solid};
 use crate::error::EvalError;
@@ -31,11 +34,13 @@ const SEGMENTS: usize = 4;
 const PLACES: usize = SEGMENTS + 1;
 /// A crossing of a smooth surface is within this part of a segment from where a linear field has it.
 const NEAR: f64 = 0.1;
-/// Between places as near as that, a smooth field rises by less than this part of what it rises by along the segment.
+/// Between places as near as that, a smooth field rises by less than this part of what it rises by along the
+/// segment.
 const NEAR_RISE: f32 = 0.4;
 /// Halvings that locate a crossing which is not there.
 const HALVINGS: usize = 12;
-/// After so many halvings the rise of the field between the ends is noted. The other halvings make it 1/64 of that where the field is steep.
+/// After so many halvings the rise of the field between the ends is noted. The other halvings make it 1/64 of
+/// that where the field is steep.
 const NOTED: usize = 6;
 /// The surface is a wall, a jump of the field, if the rise does not shrink to this part.
 const WALL_RISE: f32 = 0.25;
@@ -127,8 +132,8 @@ impl Lattice<'_> {
         ((f64::from(low) + self.side(axis) * part) as f32).clamp(low, high)
     }
 
-    /// Where a line is in its part of the cross-section of the box, in [0, 1) along each direction: anywhere, but always the same for all boxes
-    /// in a row along the line.
+    /// Where a line is in its part of the cross-section of the box, in [0, 1) along each direction: anywhere,
+    /// but always the same for all boxes in a row along the line.
     fn scattered(&self, axis: usize, across: [usize; 2], line: usize) -> [f64; 2] {
         let start = mixed((axis * LINES * LINES + line) as u64);
         let bits = across.map(|other| u64::from((self.bounds.low[other] + 0.0).to_bits()));
@@ -154,7 +159,8 @@ impl Lattice<'_> {
         Ok(Crossed { area, walled_part: has_wall.then_some(part) })
     }
 
-    /// The crossed segments, and how much of the lines is inside, in sides of the box, where a crossed segment counts as half.
+    /// The crossed segments, and how much of the lines is inside, in sides of the box, where a crossed
+    /// segment counts as half.
     fn crossings(&self) -> Result<(Vec<Crossing>, f64), EvalError> {
         let mut batch = Batch::default();
         for axis in 0..3 {
@@ -224,10 +230,11 @@ impl Lattice<'_> {
         PROBE * (0..3).map(|axis| self.side(axis)).fold(f64::INFINITY, f64::min) / SEGMENTS as f64
     }
 
-    /// The normal of the wall at a crossing, from where the wall is nearby. `around` is the region of all that is probed, once it is known.
+    /// The normal of the wall at a crossing, from where the wall is nearby. `around` is the region of all
+    /// that is probed, once it is known.
     ///
-    /// The sides of the 26 places around the crossing tell the axis that the wall is most across. Four lines along this axis, beside the
-    /// crossing, meet the wall at places whose differences are its slopes.
+    /// The sides of the 26 places around the crossing tell the axis that the wall is most across. Four lines
+    /// along this axis, beside the crossing, meet the wall at places whose differences are its slopes.
     fn wall_normal(
         &self,
         crossing: &Crossing,
@@ -310,7 +317,8 @@ impl Lattice<'_> {
     }
 }
 
-/// Finds where segments are crossed. Where the surface is not where a linear field has it, or the field jumps, segments are halved.
+/// Finds where segments are crossed. Where the surface is not where a linear field has it, or the field
+/// jumps, segments are halved.
 fn locate(solid: &Solid, region: &Region, crossings: &mut [Crossing]) -> Result<(), EvalError> {
     let mut batch = Batch::default();
     for crossing in &mut *crossings {
@@ -363,7 +371,8 @@ fn unit(vector: [f64; 3]) -> Option<[f64; 3]> {
     (length > 0.0 && length.is_finite()).then(|| vector.map(|x| x / length))
 }
 
-/// A number whose bits all depend on all bits of another one (Steele, Lea and Flood 2014, "Fast splittable pseudorandom number generators").
+/// A number whose bits all depend on all bits of another one (Steele, Lea and Flood 2014, "Fast splittable
+/// pseudorandom number generators").
 fn mixed(number: u64) -> u64 {
     let number = number.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let number = (number ^ number >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);

@@ -1,16 +1,18 @@
-//! A box cut by a plane: the linear field that fits a field best, and how much of the box is on its upper side.
+//! A box cut by a plane: the linear field that fits a field best, and how much of the box is on its upper
+//! side.
 //!
-//! The fit takes the field at Gauss's eight points of the box. The mean of a field of the third degree there is its mean in the box; so what
-//! curvature moves the plane by cancels out over many boxes.
+//! The fit takes the field at Gauss's eight points of the box. The mean of a field of the third degree there
+//! is its mean in the box; so what curvature moves the plane by cancels out over many boxes.
 //!
-//! With `m_i = |g_i| side_i`, the part of the box where `g . (p - corner) <= a`, from the corner where that is least, is
+//! With `m_i = |g_i| side_i`, the part of the box where `g . (p - corner) <= a`, from the corner where that
+//! is least, is
 //!
 //! ```text
 //! V(a) = (a^3 - sum (a - m_i)+^3 + sum (a - m_i - m_j)+^3 - (a - m_1 - m_2 - m_3)+^3) / (6 m_1 m_2 m_3)
 //! ```
 //!
-//! of its volume (Scardovelli and Zaleski 2000, "Analytical relations connecting linear interfaces and volume fractions in rectangular
-//! grids").
+//! of its volume (Scardovelli and Zaleski 2000, "Analytical relations connecting linear interfaces and volume
+//! fractions in rectangular grids").
 
 /// How far Gauss's points are from the middle of an edge of length 1: `1 / (2 sqrt(3))`.
 const GAUSS: f64 = 0.288_675_134_594_812_9;
@@ -33,7 +35,8 @@ pub(super) struct Linear {
 }
 
 impl Linear {
-    /// Fits values at eight points: the corners of a box with these coordinates, bit 0 of their number is x, bit 1 y, bit 2 z.
+    /// Fits values at eight points: the corners of a box with these coordinates, bit 0 of their number is x,
+    /// bit 1 y, bit 2 z.
     pub(super) fn fit(places: &[[f32; 2]; 3], values: &[f32]) -> Self {
         let middle = values.iter().map(|&value| f64::from(value)).sum::<f64>() / 8.0;
         let sign = |point: usize, axis: usize| if point >> axis & 1 == 1 { 1.0 } else { -1.0 };
@@ -52,13 +55,15 @@ impl Linear {
     }
 }
 
-/// Components of the gradient that are smaller than this part of the largest count as this much: the formula divides by all of them.
+/// Components of the gradient that are smaller than this part of the largest count as this much: the formula
+/// divides by all of them.
 const FLATTEST: f64 = 1e-4;
 
-/// The part of a box with these sides, in [0, 1], where the linear field of this gradient is not negative; `middle` is its value in the middle
-/// of the box.
+/// The part of a box with these sides, in [0, 1], where the linear field of this gradient is not negative;
+/// `middle` is its value in the middle of the box.
 ///
-/// A gradient of zero, or one that is no number, cuts nothing: the box is above if the middle is not negative.
+/// A gradient of zero, or one that is no number, cuts nothing: the box is above if the middle is not
+/// negative.
 pub(super) fn fraction(sides: [f64; 3], middle: f64, gradient: [f64; 3]) -> f64 {
     let slopes: [f64; 3] = std::array::from_fn(|axis| gradient[axis].abs() * sides[axis]);
     let steepest = slopes.iter().fold(0.0, |most: f64, &slope| most.max(slope));

@@ -8,9 +8,10 @@
 //! +-------+---+---+
 //! ```
 //!
-//! The bounds of the volume are proven. The estimates converge at least with the square of the edge of the smallest boxes where the surface is
-//! smooth, and with the edge at creases. The area is that of crossings with lines (`crossings.rs`); where the surface is a wall, a jump of the
-//! field, the volume is that of the same lines.
+//! The bounds of the volume are proven. The estimates converge at least with the square of the edge of the
+//! smallest boxes where the surface is smooth, and with the edge at creases. The area is that of crossings
+//! with lines (`crossings.rs`); where the surface is a wall, a jump of the field, the volume is that of the
+//! same lines.
 
 use rayon::prelude::*;
 
@@ -86,7 +87,8 @@ pub struct Measures {
     pub volume: Volume,
     /// The area of the surface in the region, about; where the region cuts the solid, the cut does not count.
     pub area: f64,
-    /// The centre of mass of a solid of one density, about, in the world; `None` if the estimated volume is 0.
+    /// The centre of mass of a solid of one density, about, in the world; `None` if the estimated volume
+    /// is 0.
     pub center: Option<[f64; 3]>,
     /// Boxes by how often they were split and what became of them.
     pub levels: Vec<Level>,
@@ -154,7 +156,8 @@ const SLACK: f64 = 1e-3;
 
 /// How far a field may be from a linear one, as a part of its rise along an edge of the box.
 const MAX_RESIDUAL: f64 = 0.05;
-/// A linear field that is farther than so many residuals from the iso-value all over a box has no surface there.
+/// A linear field that is farther than so many residuals from the iso-value all over a box has no surface
+/// there.
 const REACH: f64 = 4.0;
 /// How often a box is cut into eight where no linear field fits.
 const MAX_REFINEMENT: u32 = 2;
@@ -168,7 +171,8 @@ impl Solid {
     /// The answer does not depend on the threads.
     ///
     /// # Errors
-    /// A region or a cell that cannot be; an empty or an unbounded model without a region; more than [`MAX_MEASURE_BOXES`] boxes; it was cancelled.
+    /// A region or a cell that cannot be; an empty or an unbounded model without a region; more than
+    /// [`MAX_MEASURE_BOXES`] boxes; it was cancelled.
     pub fn measure(&self, settings: &Measure) -> Job<'_, Measures, MeasureError> {
         let settings = *settings;
         Job::new(move |hook| self.measure_hooked(&settings, hook))
@@ -239,8 +243,8 @@ impl Solid {
         Ok(Piece { volume, area: crossed.area, primitives: self.field.evaluations_in(region) })
     }
 
-    /// The volume of the solid in a box that may hold surface, about. The box is cut where the linear field that fits best is zero; where none
-    /// fits well, as at creases, its parts are asked.
+    /// The volume of the solid in a box that may hold surface, about. The box is cut where the linear field
+    /// that fits best is zero; where none fits well, as at creases, its parts are asked.
     fn linear_volume(&self, bounds: &Box3, region: &Region) -> Result<f64, EvalError> {
         let mut volume = 0.0;
         let mut batch = Batch::default();

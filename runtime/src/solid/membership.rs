@@ -28,8 +28,8 @@ pub enum Membership {
     Inside,
     /// Outside: so is every f32 point of the cube around it. A field that is not a number is outside.
     Outside,
-    /// The surface may pass through the cube around the point: there are points of both sides in it, or it could not be
-    /// proven in a bounded number of steps that there are none.
+    /// The surface may pass through the cube around the point: there are points of both sides in it, or it
+    /// could not be proven in a bounded number of steps that there are none.
     Surface,
 }
 
@@ -82,13 +82,14 @@ impl Solid {
         Ok(self.memberships(&points, eps)?[0])
     }
 
-    /// Where points are: inside, outside, or where the surface may pass within `eps` of them in the maximum norm, in units of the model: through
-    /// the cube of half edge `eps` around the point, rounded outwards. With `eps` 0 a point is inside if its field is at least
-    /// the iso-value, else outside.
+    /// Where points are: inside, outside, or where the surface may pass within `eps` of them in the maximum
+    /// norm, in units of the model: through the cube of half edge `eps` around the point, rounded outwards.
+    /// With `eps` 0 a point is inside if its field is at least the iso-value, else outside.
     ///
-    /// *Inside* and *outside* are proven for the whole cube; *surface* is the answer wherever that does not succeed with
-    /// [`MAX_MEMBERSHIP_BOXES`] ranges. Points near each other share what they take, so many at once cost less
-    /// than one after the other. Runs on the threads of the rayon pool in which this is called; the answers do not depend on them.
+    /// *Inside* and *outside* are proven for the whole cube; *surface* is the answer wherever that does not
+    /// succeed with [`MAX_MEMBERSHIP_BOXES`] ranges. Points near each other share what they take, so many at
+    /// once cost less than one after the other. Runs on the threads of the rayon pool in which this is
+    /// called; the answers do not depend on them.
     ///
     /// # Errors
     /// A distance or a point that is not finite, or a negative distance.

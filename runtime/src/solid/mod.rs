@@ -1,4 +1,5 @@
-//! Solids: questions about the set where the field is at least the iso-value, and not about single values of the field.
+//! Solids: questions about the set where the field is at least the iso-value, and not about single values of
+//! the field.
 //!
 //! ```text
 //! membership     which side a point is on, and whether the surface may pass within some distance of it
@@ -7,9 +8,11 @@
 //! measure        volume between bounds, area, centre of mass, and what the division that found them is like
 //! ```
 //!
-//! The field is that of the compiled kernels, in f32, and the iso-value is rounded to f32, as meshing has them. What is said to hold in a box is
-//! proven by enclosing ranges ([`Divisible`](crate::region::Divisible)), so it holds for every value that a kernel gives there. What is estimated says so.
-//! After Bowyer's svLis (1999): its membership test, its tight fit and the report of its divisions.
+//! The field is that of the compiled kernels, in f32, and the iso-value is rounded to f32, as meshing has
+//! them. What is said to hold in a box is proven by enclosing ranges
+//! ([`Divisible`](crate::region::Divisible)), so it holds for every value that a kernel gives there. What is
+//! estimated says so. After Bowyer's svLis (1999): its membership test, its tight fit and the report of its
+//! divisions.
 
 mod bounds;
 mod crossings;
@@ -82,7 +85,8 @@ pub enum RegionError {
     Unbounded,
 }
 
-/// The part of the support's longest side by which the region that nobody gave exceeds it: more than f32 is off by.
+/// The part of the support's longest side by which the region that nobody gave exceeds it: more than f32 is
+/// off by.
 const MARGIN: f64 = 1.0 / 512.0;
 
 impl Solid {
@@ -155,13 +159,15 @@ impl Solid {
     /// The leaf that decides the field at a point of the world, in f64 by a plain walk: see
     /// [`jbt_frontend::owner`].
     ///
-    /// `None` where the field is 0, or where it is negative because nothing with a positive field is left. Cost: all paths of the tree.
+    /// `None` where the field is 0, or where it is negative because nothing with a positive field is left.
+    /// Cost: all paths of the tree.
     #[must_use]
     pub fn owner(&self, point: [f64; 3]) -> Option<Owner> {
         owner::owner(&self.tree, point)
     }
 
-    /// The leaves that may matter in a box, ascending: whatever the others are, the field in the box is the same to the bit.
+    /// The leaves that may matter in a box, ascending: whatever the others are, the field in the box is the
+    /// same to the bit.
     ///
     /// A leaf that is shared between parents at the same place may be named where it does not matter.
     ///
@@ -174,7 +180,8 @@ impl Solid {
         Ok(self.field.leaves_in(&self.pruner.region(bounds)?))
     }
 
-    /// Which side of the surface all values of a range are on: true is inside. `None` if the range does not tell.
+    /// Which side of the surface all values of a range are on: true is inside. `None` if the range does not
+    /// tell.
     fn side(&self, [low, high]: Range) -> Option<bool> {
         if low >= self.iso {
             Some(true)
@@ -262,7 +269,8 @@ impl Batch {
     }
 }
 
-/// Cuts a box into equal parts, so many along each axis, x fastest; fewer where f32 has no more numbers between the sides.
+/// Cuts a box into equal parts, so many along each axis, x fastest; fewer where f32 has no more numbers
+/// between the sides.
 fn cut(bounds: &Box3, counts: [usize; 3]) -> Vec<Box3> {
     let sides: [Vec<f32>; 3] = [0, 1, 2].map(|axis| {
         let (low, high) = (f64::from(bounds.low[axis]), f64::from(bounds.high[axis]));

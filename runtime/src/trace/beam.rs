@@ -1,7 +1,9 @@
-//! A run of rays seen as one: between which bounds their origins and directions are, and boxes around parts of them.
+//! A run of rays seen as one: between which bounds their origins and directions are, and boxes around parts
+//! of them.
 //!
-//! A position is `f32(origin + t * direction)` with each operation rounded in f64. Rounding is monotone, so for t between two ends and for origins and directions
-//! between two bounds every coordinate is between those that the same operations give for the ends and bounds: boxes need no margin.
+//! A position is `f32(origin + t * direction)` with each operation rounded in f64. Rounding is monotone, so
+//! for t between two ends and for origins and directions between two bounds every coordinate is between those
+//! that the same operations give for the ends and bounds: boxes need no margin.
 
 use super::ray::Line;
 use crate::region::Box3;
@@ -57,7 +59,8 @@ impl Beam {
         bounds
     }
 
-    /// How long the rays are between two places, and how far they are from each other in the middle: as boxes see it, along the longest side.
+    /// How long the rays are between two places, and how far they are from each other in the middle: as boxes
+    /// see it, along the longest side.
     pub(super) fn proportions(&self, places: [i64; 2]) -> [f64; 2] {
         let length = |axis: usize| {
             let [low, high] = self.direction[axis];

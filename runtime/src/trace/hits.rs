@@ -19,7 +19,8 @@ pub struct Hits {
     pub positions: Points,
     /// The answers to the tracer's query at these positions.
     pub samples: Samples,
-    /// For each ray, the distances to skeletons that were evaluated for it: at points, and its share of those for boxes.
+    /// For each ray, the distances to skeletons that were evaluated for it: at points, and its share of those
+    /// for boxes.
     pub evaluations: Vec<f32>,
 }
 
@@ -59,7 +60,8 @@ impl Hits {
 pub struct Blocked {
     /// For each ray, whether the side changes along it.
     pub blocked: Vec<bool>,
-    /// For each ray, the distances to skeletons that were evaluated for it: at points, and its share of those for boxes.
+    /// For each ray, the distances to skeletons that were evaluated for it: at points, and its share of those
+    /// for boxes.
     pub evaluations: Vec<f32>,
 }
 
@@ -90,7 +92,8 @@ impl Hit {
         self.layout.has_gradient().then(|| [self.answers[1], self.answers[2], self.answers[3]])
     }
 
-    /// The unit normal, outwards: against the gradient. `None` if the query has no gradient or it vanishes here.
+    /// The unit normal, outwards: against the gradient. `None` if the query has no gradient or it vanishes
+    /// here.
     #[must_use]
     pub fn normal(&self) -> Option<[f32; 3]> {
         crate::probe::normal(self.gradient()?)

@@ -1,7 +1,8 @@
 //! Rays: where they hit the surface of a model, with nothing missed that is longer than a tolerance.
 //!
-//! A *hit* is where the side changes along a ray, from `field < iso` to `field >= iso` or back. The side is known at places of the ray that are no farther apart than
-//! the tolerance, so a stretch inside or outside that is longer holds one of them, and its ends are found:
+//! A *hit* is where the side changes along a ray, from `field < iso` to `field >= iso` or back. The side is
+//! known at places of the ray that are no farther apart than the tolerance, so a stretch inside or outside
+//! that is longer holds one of them, and its ends are found:
 //!
 //! ```text
 //! outside  ------+            +------------------+    +------          shorter than the tolerance: this dent may be missed
@@ -10,18 +11,22 @@
 //!                ^            ^
 //! ```
 //!
-//! Only every 16th place, a coarse one, is asked at once. What is between two coarse places on one side is shorter than 16 tolerances, or it is not there: ranges
-//! of short boxes prove that, and where these do not, the places between are asked. So a tolerance that is much finer than what is seen of a model costs
-//! little more, and a sheet, a rod or a speck is found if it is as thick along the ray as the tolerance.
+//! Only every 16th place, a coarse one, is asked at once. What is between two coarse places on one side is
+//! shorter than 16 tolerances, or it is not there: ranges of short boxes prove that, and where these do not,
+//! the places between are asked. So a tolerance that is much finer than what is seen of a model costs little
+//! more, and a sheet, a rod or a speck is found if it is as thick along the ray as the tolerance.
 //!
-//! Most places are never asked: ranges of the field ([`Divisible`](crate::region::Divisible)) prove of whole boxes that all of them are on one side. What is found
-//! is what asking all of them would find, to the bit. Everything is about the field that the kernels compute in f32, at positions rounded to f32: between the
-//! ends of a part of a ray each coordinate stays between those at the ends, rounding included, so the box of the ends holds all that is asked between them.
+//! Most places are never asked: ranges of the field ([`Divisible`](crate::region::Divisible)) prove of whole
+//! boxes that all of them are on one side. What is found is what asking all of them would find, to the bit.
+//! Everything is about the field that the kernels compute in f32, at positions rounded to f32: between the
+//! ends of a part of a ray each coordinate stays between those at the ends, rounding included, so the box of
+//! the ends holds all that is asked between them.
 //!
-//! * Between two places on different sides the change is found by false position, to 1/1024 of the tolerance or the next f32. If there are three changes there,
-//!   one of them is found.
-//! * Packets are quicker than single rays: rays side by side share boxes, rows and calls. Whatever the packet, each ray is answered as if it were alone, to the bit.
-//!   Rays that are neighbours should follow each other, as in the tiles of a picture.
+//! * Between two places on different sides the change is found by false position, to 1/1024 of the tolerance
+//!   or the next f32. If there are three changes there, one of them is found.
+//! * Packets are quicker than single rays: rays side by side share boxes, rows and calls. Whatever the
+//!   packet, each ray is answered as if it were alone, to the bit. Rays that are neighbours should follow
+//!   each other, as in the tiles of a picture.
 //! * All answers about a hit come from one evaluation at its position.
 //! * Rays are in the world, in f64; the f32 positions of hits count from the model's origin
 //!   ([`jbt_frontend::origin`]), which is 0 for most models.
@@ -178,7 +183,8 @@ impl Tracer {
 
     /// The first hit of a ray. A ray that begins inside hits the surface where it leaves.
     ///
-    /// The tolerance is a length in space: no stretch that is longer is missed. Cost: grows with the logarithm of length by tolerance, away from the surface.
+    /// The tolerance is a length in space: no stretch that is longer is missed. Cost: grows with the
+    /// logarithm of length by tolerance, away from the surface.
     ///
     /// # Errors
     /// See [`TraceError`].
@@ -212,8 +218,8 @@ impl Tracer {
         self.hits(Want::First, STRIDE, &self.localized(rays), tolerance)
     }
 
-    /// As [`first_of`](Self::first_of), of rays that count from the model's origin, with so many tolerances, 1 to
-    /// [`STRIDE`], from one coarse place to the next one.
+    /// As [`first_of`](Self::first_of), of rays that count from the model's origin, with so many tolerances,
+    /// 1 to [`STRIDE`], from one coarse place to the next one.
     pub(crate) fn first_of_local(
         &self,
         rays: &[Ray],
@@ -239,7 +245,8 @@ impl Tracer {
         self.blocked(STRIDE, &self.localized(rays), tolerance)
     }
 
-    /// As [`any_of`](Self::any_of), of rays that count from the model's origin, with a tolerance that is about as long as what is to be found.
+    /// As [`any_of`](Self::any_of), of rays that count from the model's origin, with a tolerance that is
+    /// about as long as what is to be found.
     pub(crate) fn any_of_local(&self, rays: &[Ray], tolerance: f64) -> Result<Blocked, TraceError> {
         self.blocked(1, rays, tolerance)
     }
@@ -263,15 +270,15 @@ impl Tracer {
     /// The leaf that decides at a position, which counts from the model's origin as those of hits do, and the
     /// way down to it: see [`jbt_frontend::owner`].
     ///
-    /// `None` where the field is 0, or where it is negative because nothing with a positive field is left: neither is so at hits. Cost: a plain walk over
-    /// all paths of the tree.
+    /// `None` where the field is 0, or where it is negative because nothing with a positive field is left:
+    /// neither is so at hits. Cost: a plain walk over all paths of the tree.
     #[must_use]
     pub fn owner(&self, position: [f32; 3]) -> Option<Owner> {
         owner::owner(&self.tree, self.tree.origin().world(position.map(f64::from)))
     }
 
-    /// The leaf that decides at a position: that of [`owner`](Self::owner). If no other leaf matters at the position, no walk is needed to
-    /// know it.
+    /// The leaf that decides at a position: that of [`owner`](Self::owner). If no other leaf matters at the
+    /// position, no walk is needed to know it.
     ///
     /// # Errors
     /// Those of the evaluation.

@@ -9,8 +9,9 @@
 //!                                  else: its rows, and onto the list, the nearest part on top
 //! ```
 //!
-//! Cells are closed: both sides of a cut ask the place of the cut, and get the same bits, because leaving rows out changes none. So every pair of neighbouring
-//! coarse places belongs to one cell, and what is found is what asking all places would find.
+//! Cells are closed: both sides of a cut ask the place of the cut, and get the same bits, because leaving
+//! rows out changes none. So every pair of neighbouring coarse places belongs to one cell, and what is found
+//! is what asking all places would find.
 
 use std::ops::Range;
 
@@ -92,8 +93,8 @@ const POINT: u64 = 6;
 /// Divisions that drop nothing, after which not more points are asked at once.
 const MOST_FRUITLESS: u32 = 3;
 
-/// The points of a cell up to which asking them is quicker than dividing it, where a point takes so many distances. The counts are of
-/// instructions, roughly; only time depends on them.
+/// The points of a cell up to which asking them is quicker than dividing it, where a point takes so many
+/// distances. The counts are of instructions, roughly; only time depends on them.
 fn worth_asking(each: u64) -> u64 {
     RANGES.saturating_mul(each).saturating_add(DIVISION) / each.saturating_add(POINT)
 }
@@ -272,8 +273,8 @@ impl<'a> Run<'a> {
         Ok(())
     }
 
-    /// Finds neighbouring coarse places of one ray that are on different sides, and the stretches between them: of the fields, some are
-    /// those from some place on.
+    /// Finds neighbouring coarse places of one ray that are on different sides, and the stretches between
+    /// them: of the fields, some are those from some place on.
     fn find_changes(&mut self, line: usize, first: i64, fields: &[f32], of: Range<usize>) {
         let iso = self.tracer.iso;
         let here = &self.lines[line];
@@ -365,7 +366,8 @@ fn common(a: [i64; 2], b: [i64; 2]) -> [i64; 2] {
     [a[0].max(b[0]), a[1].min(b[1])]
 }
 
-/// Adds the points of a ray from one place to another, both included, whose times are those of the lattice but for the ray's ends.
+/// Adds the points of a ray from one place to another, both included, whose times are those of the lattice
+/// but for the ray's ends.
 fn push_places(batch: &mut Batch, line: &Line, places: [i64; 2], times: &[f64]) {
     let ends = [0, 1].map(|end| (places[end] == line.places[end]).then(|| line.position(line.span[end])));
     for (axis, plane) in batch.points.iter_mut().enumerate() {

@@ -1,4 +1,5 @@
-//! From two places on different sides to where the side changes: false position with its guards, all brackets of a cell at once.
+//! From two places on different sides to where the side changes: false position with its guards, all brackets
+//! of a cell at once.
 //!
 //! ```text
 //! while a bracket is too long:
@@ -26,7 +27,8 @@ const CHECKED: u32 = 3;
 pub(super) struct Bracket {
     line: usize,
     times: [f64; 2],
-    /// What the fields at the ends exceed the iso-value by, as false position sees them: that of an end that stays is halved.
+    /// What the fields at the ends exceed the iso-value by, as false position sees them: that of an end that
+    /// stays is halved.
     weighed: [f64; 2],
     /// Which end stayed.
     stayed: Option<usize>,
@@ -83,7 +85,8 @@ impl Bracket {
         self.rounds
     }
 
-    /// Where the ray hits: the end that is inside. Where a field jumps, the other one sees nothing of what is hit.
+    /// Where the ray hits: the end that is inside. Where a field jumps, the other one sees nothing of what is
+    /// hit.
     pub(super) fn best(&self) -> f64 {
         self.times[usize::from(self.entering)]
     }

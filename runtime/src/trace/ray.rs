@@ -6,18 +6,20 @@
 //! lattice     |  *--+-----+-----+-----+-----+-*   |     |     |        multiples of the step; the ends of the span close it
 //! ```
 //!
-//! A place of the lattice is asked only if it matters; one of each `stride` of them is a *coarse place*, and cells are made of these. Answers do
-//! not depend on the stride.
+//! A place of the lattice is asked only if it matters; one of each `stride` of them is a *coarse place*, and
+//! cells are made of these. Answers do not depend on the stride.
 //!
-//! The step is the tolerance divided by the length of the direction, cut to four binary digits: so rays of about the same length of direction have the same
-//! step, and one lattice of t. A number of a place times the step is exact. The lattice is counted from t = 0, and so a ray's places are those of the ray alone, whatever
-//! packet it is in and wherever its span begins.
+//! The step is the tolerance divided by the length of the direction, cut to four binary digits: so rays of
+//! about the same length of direction have the same step, and one lattice of t. A number of a place times the
+//! step is exact. The lattice is counted from t = 0, and so a ray's places are those of the ray alone,
+//! whatever packet it is in and wherever its span begins.
 
 use jbt_frontend::bounds::Bounds;
 
 use super::error::TraceError;
 
-/// The points `origin + t * direction` for t in the span. The direction may have any length but 0: t counts in lengths of it.
+/// The points `origin + t * direction` for t in the span. The direction may have any length but 0: t counts
+/// in lengths of it.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Ray {
@@ -29,7 +31,8 @@ pub struct Ray {
     pub span: [f64; 2],
 }
 
-/// Steps of the lattice from one coarse place to the next one, where the tolerance is much finer than the model. Only time depends on it.
+/// Steps of the lattice from one coarse place to the next one, where the tolerance is much finer than the
+/// model. Only time depends on it.
 pub(super) const STRIDE: i64 = 16;
 
 /// The box outside of which the field is 0, and a little more.
@@ -65,7 +68,8 @@ impl Reach {
         Some(Self { low: low.map(|side| side - beyond(side)), high: high.map(|side| side + beyond(side)) })
     }
 
-    /// The part of a ray's span that is in the box (Kay and Kajiya 1986, "Ray tracing complex scenes": slabs).
+    /// The part of a ray's span that is in the box (Kay and Kajiya 1986, "Ray tracing complex scenes":
+    /// slabs).
     fn clip(&self, ray: &Ray) -> Option<[f64; 2]> {
         let [mut enter, mut exit] = ray.span;
         for axis in 0..3 {
@@ -187,9 +191,11 @@ impl Line {
     }
 }
 
-/// The last place of the lattice that is not after t. Places between the first and the last one of a ray are inside of its span.
+/// The last place of the lattice that is not after t. Places between the first and the last one of a ray are
+/// inside of its span.
 fn last_before(t: f64, step: f64) -> i64 {
-    // Below 2^50, because the tolerance is above the resolution; times the step it has no rounding, but the quotient has.
+    // Below 2^50, because the tolerance is above the resolution; times the step it has no rounding, but the
+    // quotient has.
     let quotient = t / step;
     let whole = quotient as i64 as f64;
     let near = if whole > quotient { whole - 1.0 } else { whole };

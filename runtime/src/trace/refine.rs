@@ -9,8 +9,8 @@
 //! a segment                                  all of its places are asked, and neighbours on different sides hold a hit
 //! ```
 //!
-//! A segment of which the ends are on different sides is asked without further ado. What is found is what asking all places finds: ranges only
-//! spare questions whose answers they prove.
+//! A segment of which the ends are on different sides is asked without further ado. What is found is what
+//! asking all places finds: ranges only spare questions whose answers they prove.
 
 use std::ops::Range;
 
@@ -72,7 +72,8 @@ pub(super) struct Refiner<'a> {
 }
 
 impl Refiner<'_> {
-    /// Finds the changes of side in segments, and in stretches, whose fields are among those given; in no order.
+    /// Finds the changes of side in segments, and in stretches, whose fields are among those given; in no
+    /// order.
     pub(super) fn refine(
         &mut self,
         stretches: &[Stretch],
@@ -215,8 +216,8 @@ impl Group {
         self.stretches.len() == 1 && self.places[1] - self.places[0] == 1
     }
 
-    /// Adds its quarters, or what there is of them: it is cut along its rays where it is longer than wide, counted in segments
-    /// and rays.
+    /// Adds its quarters, or what there is of them: it is cut along its rays where it is longer than wide,
+    /// counted in segments and rays.
     fn cut(&self, parts: &mut Vec<Self>) {
         for half in self.halves() {
             parts.extend(half.halves());

@@ -4,10 +4,9 @@
 //! files of a crate -> tokens -> `use` items and paths -> Import { from, to, name, line }
 //! ```
 //!
-//! A name is followed through re-exports to the file that defines it. A re-export itself is no import, unless the
-//! file also uses the name. Code under `#[cfg(test)]` and files `tests.rs` and
-//! `testing.rs` do not count. A line `module::Name` in the list of a macro
-//! imports `Name`, and hands it on.
+//! A name is followed through re-exports to the file that defines it. A re-export itself is no import, unless
+//! the file also uses the name. Code under `#[cfg(test)]` and files `tests.rs` and `testing.rs` do not count.
+//! A line `module::Name` in the list of a macro imports `Name`, and hands it on.
 
 use std::collections::{BTreeMap, BTreeSet};
 

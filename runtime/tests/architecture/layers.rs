@@ -11,7 +11,8 @@ use crate::sources;
 /// All crates.
 const CRATES: [&str; 6] = ["frontend", "ir", "jit", "runtime", "cli", "benches"];
 
-/// The files and folders of `frontend/src`, from the ground up: those of a row import none of the rows behind it.
+/// The files and folders of `frontend/src`, from the ground up: those of a row import none of the rows behind
+/// it.
 const FRONTEND: &[&[&str]] = &[
     // Ground: numbers, boxes, messages.
     &["affine", "angle", "bounds", "diagnostic", "field", "power", "query", "report", "word"],

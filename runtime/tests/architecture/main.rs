@@ -3,6 +3,7 @@
 mod circles;
 mod imports;
 mod layers;
+mod lengths;
 
 use std::path::{Path, PathBuf};
 

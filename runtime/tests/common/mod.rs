@@ -1,4 +1,5 @@
-//! Random models: a shape from one seed, its numbers from another, so that one shape can be tried with many sets of numbers.
+//! Random models: a shape from one seed, its numbers from another, so that one shape can be tried with many
+//! sets of numbers.
 #![allow(dead_code, reason = "each test file uses its own part")]
 #![allow(clippy::print_stderr, reason = "a skipped test says so")]
 
@@ -361,7 +362,8 @@ impl Random {
     }
 }
 
-/// Makes parameters that are well by themselves fit each other: a radius for all points or one for each, corners in a plane.
+/// Makes parameters that are well by themselves fit each other: a radius for all points or one for each,
+/// corners in a plane.
 pub fn fit(kind: SkeletonKind, values: &mut [FieldValue]) {
     if kind == SkeletonKind::Polygon
         && let [FieldValue::Vectors(points)] = values
@@ -431,7 +433,8 @@ pub fn points(rng: &mut Rng, count: usize, size: f32) -> jbt::Points {
         .collect()
 }
 
-/// The folder with sample scenes that are not part of the project; `None`, with a message, where it is missing.
+/// The folder with sample scenes that are not part of the project; `None`, with a message, where it is
+/// missing.
 pub fn samples(folder: &str) -> Option<std::path::PathBuf> {
     let root = std::env::var_os("JBT_SAMPLES")
         .map(std::path::PathBuf::from)

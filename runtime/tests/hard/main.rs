@@ -23,7 +23,8 @@ const VOLUME: f64 = 0.005;
 /// Cells along each side of the dense sampling, with one point anywhere in each.
 const DENSE: usize = 160;
 
-/// A vertex whose triangles nearly cancel out, with a sum of vectors below this part of the sum of areas, is a needle: it has no outside.
+/// A vertex whose triangles nearly cancel out, with a sum of vectors below this part of the sum of areas, is
+/// a needle: it has no outside.
 const NEEDLE: f64 = 0.2;
 
 /// What became of a scene.
@@ -111,7 +112,8 @@ fn judge(seed: u64) -> Found {
     found
 }
 
-/// How many normals are more than 90 degrees off the sum of the normals of their triangles, and how many vertices are needles.
+/// How many normals are more than 90 degrees off the sum of the normals of their triangles, and how many
+/// vertices are needles.
 fn normals(mesh: &Mesh, is_left_out: impl Fn(usize) -> bool) -> (usize, usize) {
     let mut sums = vec![([0.0_f64; 3], 0.0_f64); mesh.positions.len()];
     for &triangle in &mesh.triangles {

@@ -1,4 +1,5 @@
-//! Ways to mix attributes, by groups of every width; what attribute nodes give: numbers, textures, uv, formulas; and every texture.
+//! Ways to mix attributes, by groups of every width; what attribute nodes give: numbers, textures, uv,
+//! formulas; and every texture.
 
 use jbt::{CheckedTree, Mixing, Model};
 use jbt_frontend::check::CheckedNode;

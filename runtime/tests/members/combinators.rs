@@ -1,6 +1,7 @@
 //! Combinators, of a red ball at (-1, 0, 0) and a blue one at (1, 0, 0) as a rule. Both reach 2 far.
 //!
-//! Rows of folds and of the difference stand here, those of operators of two fields in `steps`, those of one field in `unary`.
+//! Rows of folds and of the difference stand here, those of operators of two fields in `steps`, those of one
+//! field in `unary`.
 
 mod steps;
 mod unary;

@@ -1,5 +1,5 @@
-//! Mistakes that other systems have made. Each test states one, holds the formula that makes it beside the right one, sees that the two
-//! differ where it looks, and that every engine has the right one.
+//! Mistakes that other systems have made. Each test states one, holds the formula that makes it beside the
+//! right one, sees that the two differ where it looks, and that every engine has the right one.
 //!
 //! Whoever adds a member that others got wrong adds its test at the end.
 
@@ -42,7 +42,8 @@ fn judge_seen(root: &Tree, point: [f64; 3], right: [f64; 3], defective: [f64; 3]
     }
 }
 
-/// Every engine has the right field at some points, and finite gradients; a defective formula has another field at each, or none.
+/// Every engine has the right field at some points, and finite gradients; a defective formula has another
+/// field at each, or none.
 fn judge_fields(root: &Tree, places: &[([f64; 3], f64)], defective: impl Fn([f64; 3]) -> f64) {
     let points: Vec<[f32; 3]> = places.iter().map(|(at, _)| at.map(|x| x as f32)).collect();
     for (engine, samples) in answers(root, &points) {
@@ -130,8 +131,9 @@ fn segments_end() {
     }
 }
 
-/// A difference (`a - b^n`, in three-js-blobtree) had the gradient `grad a - b^n grad b`. The factor of `grad b` is the derivative by b:
-/// `n b^(n-1)` there, and here, where the cut `2 iso - b` decides, 1; `grad a` has no part in it.
+/// A difference (`a - b^n`, in three-js-blobtree) had the gradient `grad a - b^n grad b`. The factor of `grad
+/// b` is the derivative by b: `n b^(n-1)` there, and here, where the cut `2 iso - b` decides, 1; `grad a` has
+/// no part in it.
 #[test]
 fn the_gradient_of_a_difference_is_that_of_what_decides() {
     let (a, b) = ([0.0; 3], [1.0, 0.0, 0.0]);
@@ -155,8 +157,9 @@ fn the_gradient_of_a_difference_is_that_of_what_decides() {
     assert!((defective([0.25, cut[1], cut[2]], 2.0)[0] - difference).abs() > 0.1);
 }
 
-/// A twist handed its child's gradient on as it was, in the child's directions. It has to be turned back, and the height takes part in
-/// the turning: `(c gx - s gy, s gx + c gy, gz + k (yl gx - xl gy))`, with the child's gradient g at the child's point (xl, yl, zl).
+/// A twist handed its child's gradient on as it was, in the child's directions. It has to be turned back, and
+/// the height takes part in the turning: `(c gx - s gy, s gx + c gy, gz + k (yl gx - xl gy))`, with the
+/// child's gradient g at the child's point (xl, yl, zl).
 #[test]
 fn the_gradient_of_a_twist_is_turned_back() {
     let (rate, center) = (1.5, [0.5, 0.0, 0.25]);
@@ -173,8 +176,8 @@ fn the_gradient_of_a_twist_is_turned_back() {
     }
 }
 
-/// A scale handed its child's gradient on as it was. Along each axis it has to be divided by the factor; multiplied with it, as positions
-/// are, it is worse.
+/// A scale handed its child's gradient on as it was. Along each axis it has to be divided by the factor;
+/// multiplied with it, as positions are, it is worse.
 #[test]
 fn the_gradient_of_a_scale_is_divided_by_it() {
     let (factors, center) = ([2.0, 0.5, 1.5], [0.25, 0.0, 0.0]);
@@ -194,7 +197,8 @@ fn the_gradient_of_a_scale_is_divided_by_it() {
     judge(&ball.scale(2.0), p, times(0.5, g), g);
 }
 
-/// Ricci's blend took powers of the fields as they are: with n = 512 they leave the range of f32, so that the blend was 0 or infinite.
+/// Ricci's blend took powers of the fields as they are: with n = 512 they leave the range of f32, so that the
+/// blend was 0 or infinite.
 #[test]
 fn large_exponents_do_not_overflow() {
     const N: i32 = 512;
@@ -249,8 +253,9 @@ fn warps_do_something_in_lanes() {
     }
 }
 
-/// A round cone took the ball at `x - y (r1 - r2) / L` for the nearest one (in three-js-blobtree), where x is along the axis and y beside it: the foot of
-/// the perpendicular, moved by the slope of the radius, `k = (r2 - r1) / L`. The nearest one is at `x + y k / sqrt(1 - k^2)`.
+/// A round cone took the ball at `x - y (r1 - r2) / L` for the nearest one (in three-js-blobtree), where x is
+/// along the axis and y beside it: the foot of the perpendicular, moved by the slope of the radius, `k =
+/// (r2 - r1) / L`. The nearest one is at `x + y k / sqrt(1 - k^2)`.
 #[test]
 fn the_ball_of_a_round_cone_is_the_nearest_one() {
     let (length_of_axis, radius, p) = (5.0, 6.0, [1.5, 4.0, 0.0]);
@@ -284,7 +289,8 @@ fn turned([x, y, z]: [f64; 3]) -> [f64; 3] {
 
 // Below: the defects of members that others had and got wrong, one test each, added together with the member.
 
-/// A blend with a negative exponent took powers of the fields as they are: with n = -512 they are infinite or 0, and so it was 0 or infinite.
+/// A blend with a negative exponent took powers of the fields as they are: with n = -512 they are infinite or
+/// 0, and so it was 0 or infinite.
 #[test]
 fn large_negative_exponents_do_not_overflow() {
     const N: i32 = -512;
@@ -306,8 +312,8 @@ fn large_negative_exponents_do_not_overflow() {
     }
 }
 
-/// R-functions were taken as they are: R_0 of two fields that are 0 is not 0, so the union had a field everywhere and the intersection was
-/// -1.2 where there is nothing.
+/// R-functions were taken as they are: R_0 of two fields that are 0 is not 0, so the union had a field
+/// everywhere and the intersection was -1.2 where there is nothing.
 #[test]
 fn rfunctions_have_no_background() {
     let r = |x: f64, y: f64| x + y + x.hypot(y);
@@ -347,7 +353,8 @@ fn a_taper_to_radius_zero_is_a_number() {
     judge_fields(&tree, &places, |_| f64::NAN);
 }
 
-/// HyperFun's taper takes a scale near 0 as 1, so that at the tip, and beyond it, the child is seen in its full width: a jump.
+/// HyperFun's taper takes a scale near 0 as 1, so that at the tip, and beyond it, the child is seen in its
+/// full width: a jump.
 #[test]
 fn a_taper_has_no_jump_at_its_tip() {
     let tree = segment([0.5, 0.0, 0.0], [0.5, 0.0, 3.0], 1.0).taper(Axis::Z, 0.0, 1.0, 1.0, 0.0);
@@ -365,7 +372,8 @@ fn a_taper_has_no_jump_at_its_tip() {
     judge_fields(&tree, &[([0.5, 0.0, 1.0], 0.0), ([0.75, 0.25, 1.0], 0.0), ([0.5, 0.0, 2.0], 0.0)], jumps);
 }
 
-/// Barr's bend in its usual form, about x towards z: the child's height is `1/k - root`, its place on the spine `atan2 / k`.
+/// Barr's bend in its usual form, about x towards z: the child's height is `1/k - root`, its place on the
+/// spine `atan2 / k`.
 fn printed_bend([_, y, z]: [f32; 3], k: f32, sign: f32) -> [f64; 2] {
     let (sense, up) = (k.signum(), z - 1.0 / k);
     let place = (sense * y).atan2(-sense * up) / k;
@@ -388,7 +396,8 @@ fn a_bend_of_rate_zero_is_the_identity() {
     }
 }
 
-/// The bend is printed with the other one of two roots, `1/k + root`: the place that stays came to the height 2/k.
+/// The bend is printed with the other one of two roots, `1/k + root`: the place that stays came to the height
+/// 2/k.
 #[test]
 fn a_bend_takes_the_right_root() {
     for rate in [0.5f64, -0.5] {
@@ -411,7 +420,8 @@ fn a_bend_takes_the_right_root() {
     }
 }
 
-/// A twist kept the box of its child: a bar across the axis, which is turned out of it, was clipped, or left out where somebody looked.
+/// A twist kept the box of its child: a bar across the axis, which is turned out of it, was clipped, or left
+/// out where somebody looked.
 #[test]
 fn a_twist_has_a_box_of_its_own() {
     let bar = segment([-2.0, 0.0, 1.0], [2.0, 0.0, 1.0], 0.5);

@@ -1,4 +1,5 @@
-//! Falloffs, around a point and where the gradient of the distance jumps: around a ring, on whose axis all of it is equally near.
+//! Falloffs, around a point and where the gradient of the distance jumps: around a ring, on whose axis all of
+//! it is equally near.
 
 use jbt::{CheckedTree, Falloff, Model};
 use jbt_frontend::check::CheckedNode;

@@ -1,5 +1,5 @@
-//! Every member of the open sets, in a few small models with known answers: skeletons, falloffs, combinators, warps, affine maps, kinds of
-//! nodes, ways to mix attributes.
+//! Every member of the open sets, in a few small models with known answers: skeletons, falloffs, combinators,
+//! warps, affine maps, kinds of nodes, ways to mix attributes.
 //!
 //! ```text
 //! members! { SkeletonKind {                                   a member without its line does not compile,
@@ -11,10 +11,12 @@
 //! } }
 //! ```
 //!
-//! That is all that a row has to say. What it is judged by stands in `check/`: values, oracle, support, ranges, engines, round trip.
-//! A failure prints the family, the member, the row, the check, the point, what was expected and what came out.
+//! That is all that a row has to say. What it is judged by stands in `check/`: values, oracle, support,
+//! ranges, engines, round trip. A failure prints the family, the member, the row, the check, the point, what
+//! was expected and what came out.
 //!
-//! `defects` are mistakes that other systems have made, each with the formula that makes it; `folds` says what a sum of all skeletons compiles to.
+//! `defects` are mistakes that other systems have made, each with the formula that makes it; `folds` says
+//! what a sum of all skeletons compiles to.
 
 mod attributes;
 mod check;

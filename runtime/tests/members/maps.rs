@@ -1,4 +1,5 @@
-//! Affine maps whose numbers follow parameters: their code serves all values of them. (`nodes` has plain ones.)
+//! Affine maps whose numbers follow parameters: their code serves all values of them. (`nodes` has plain
+//! ones.)
 
 use jbt::{CheckedTree, Model, Tree};
 use jbt_frontend::map::MapKind;

@@ -1,4 +1,5 @@
-//! Kinds of nodes. Those that hold an open set of their own have a row here for what has nothing to do with its members.
+//! Kinds of nodes. Those that hold an open set of their own have a row here for what has nothing to do with
+//! its members.
 
 mod expressions;
 

@@ -34,7 +34,8 @@ pub fn with_sides(rng: &mut Rng, bounds: &Box3, count: usize) -> Points {
     (0..count).map(|_| point()).collect()
 }
 
-/// Points of a box, every fourth with zeros of both signs, huge numbers, infinities or NaN among its coordinates.
+/// Points of a box, every fourth with zeros of both signs, huge numbers, infinities or NaN among its
+/// coordinates.
 pub fn spiced(rng: &mut Rng, bounds: &Box3, count: usize) -> Points {
     let mut point = || {
         let mut point = inside(rng, bounds);
@@ -48,8 +49,8 @@ pub fn spiced(rng: &mut Rng, bounds: &Box3, count: usize) -> Points {
     (0..count).map(|_| point()).collect()
 }
 
-/// The points of a box with round coordinates: multiples of a power of two, about 16 along its longest side. That is where
-/// skeletons begin, end and have their centres.
+/// The points of a box with round coordinates: multiples of a power of two, about 16 along its longest side.
+/// That is where skeletons begin, end and have their centres.
 pub fn round(bounds: &Box3) -> Points {
     let step = (bounds.longest_side() / 16.0).log2().ceil().exp2();
     let [x, y, z] = [0, 1, 2].map(|axis| {

@@ -26,8 +26,8 @@ pub struct Attributes {
     pub values: Vec<f64>,
 }
 
-/// A row: a model (what follows `jbt 1`), and points with the field there. Some of the points are those where formulas break: on
-/// skeletons, axes and rims.
+/// A row: a model (what follows `jbt 1`), and points with the field there. Some of the points are those where
+/// formulas break: on skeletons, axes and rims.
 pub fn row(name: &'static str, text: impl Into<String>, fields: &[([f64; 3], f64)]) -> Row {
     Row { name, text: text.into(), fields: fields.to_vec(), attributes: Vec::new(), unbounded: None }
 }
@@ -69,8 +69,8 @@ pub struct Family {
 
 /// The rows of every variant of an enum, and `name`, which gives a value's variant.
 ///
-/// `members! { Warp { Twist(_) => vec![row(..), row(..)], .. } }`: there is no way to write a wildcard for variants, so the compiler
-/// asks for those that are missing.
+/// `members! { Warp { Twist(_) => vec![row(..), row(..)], .. } }`: there is no way to write a wildcard for
+/// variants, so the compiler asks for those that are missing.
 macro_rules! members {
     ($kind:ident { $(
         $variant:ident $(($($part:pat),+))? $({ $($field:tt)* })? => $rows:expr

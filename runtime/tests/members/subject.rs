@@ -5,7 +5,8 @@ use jbt::{Box3, CheckedTree, Compiler, Engine, Evaluator, Model, Points, Query, 
 
 use crate::row::Row;
 
-/// How much larger than the support the box is in which points are taken, on each side, as a part of its longest side.
+/// How much larger than the support the box is in which points are taken, on each side, as a part of its
+/// longest side.
 const AROUND: f64 = 1.0 / 64.0;
 
 /// A row with its model on all engines.

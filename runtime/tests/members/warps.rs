@@ -1,5 +1,5 @@
-//! Warps, of balls and rods with the soft object's falloff: 1 on the skeleton, 1/2 at half the radius. A row names the child's point where
-//! that is not plain.
+//! Warps, of balls and rods with the soft object's falloff: 1 on the skeleton, 1/2 at half the radius. A row
+//! names the child's point where that is not plain.
 
 mod cells;
 mod local;
@@ -143,7 +143,8 @@ fn tapers() -> Vec<Row> {
                 ([2.0, 0.5, 1.0], 0.5),
             ],
         ),
-        // A cone whose tip is at 2. On the axis everything is as it was; at the tip, and beyond, nothing is beside it.
+        // A cone whose tip is at 2. On the axis everything is as it was; at the tip, and beyond, nothing is
+        // beside it.
         row(
             "to a tip",
             cone,
@@ -166,8 +167,8 @@ fn tapers() -> Vec<Row> {
 }
 
 fn bends() -> Vec<Row> {
-    // A quarter turn for each unit of the spine: a radius of 2 / pi. A place s of the spine at height z comes to
-    // r sin(t) - z sin(t), r - (r - z) cos(t) with t = pi / 2 * s.
+    // A quarter turn for each unit of the spine: a radius of 2 / pi. A place s of the spine at height z comes
+    // to r sin(t) - z sin(t), r - (r - z) cos(t) with t = pi / 2 * s.
     let r = 2.0 * FRAC_1_PI;
     let (sin, cos) = FRAC_PI_4.sin_cos();
     let inner = r - 0.125;
@@ -223,8 +224,8 @@ fn bends() -> Vec<Row> {
                 ([3.0, 0.0, 0.0], 0.0),
             ],
         ),
-        // About y the spine is z and turns to x. A circle of radius 1/2 is closed by less than 3 to both sides: what is more is not seen; at its
-        // centre the rod is 1/2 away.
+        // About y the spine is z and turns to x. A circle of radius 1/2 is closed by less than 3 to both
+        // sides: what is more is not seen; at its centre the rod is 1/2 away.
         row(
             "past half a turn",
             past_half,

@@ -1,4 +1,5 @@
-//! What is asked of a field that knows something about boxes: no point twice, no point out of its region, and little far from the surface.
+//! What is asked of a field that knows something about boxes: no point twice, no point out of its region, and
+//! little far from the surface.
 
 use std::collections::HashSet;
 use std::convert::Infallible;
@@ -12,8 +13,8 @@ use jbt::region::Divisible;
 use crate::fields::{Closed, Sample, hash, signs, sphere, torus};
 use crate::topology::bits;
 
-/// A field with its range in a box. It checks that boxes are inside of their regions and points too, and that the field is not asked
-/// twice at a point of the lattice.
+/// A field with its range in a box. It checks that boxes are inside of their regions and points too, and that
+/// the field is not asked twice at a point of the lattice.
 struct Checked<F, R> {
     field: Closed<F>,
     range: R,
@@ -264,7 +265,8 @@ fn a_large_lattice_costs_what_its_surface_costs() {
     let (mesh, report) = extract(&checked, &lattice, &Options::default()).run().unwrap();
     assert!(report.closed);
     assert_eq!(mesh.positions.len() as u64, report.crossing_cells);
-    // The radius is 41 cells: a crossed cell for each of 3/2 the area, and in the bricks less than 15 points for each.
+    // The radius is 41 cells: a crossed cell for each of 3/2 the area, and in the bricks less than 15 points
+    // for each.
     assert!((25_000..40_000).contains(&report.crossing_cells), "{}", report.crossing_cells);
     assert!(report.field_evaluations < 15 * report.crossing_cells, "{}", report.field_evaluations);
     assert!(report.boxes < 5_000, "{}", report.boxes);

@@ -9,7 +9,8 @@ use jbt::region::Divisible;
 /// A field and its gradient at one point.
 pub type Sample = (f32, [f32; 3]);
 
-/// A field from a function of a point. It knows nothing of boxes. Its attributes are `color` (the point itself) and `height` (z).
+/// A field from a function of a point. It knows nothing of boxes. Its attributes are `color` (the point
+/// itself) and `height` (z).
 pub struct Closed<F>(pub F);
 
 /// Says nothing about some boxes.
@@ -99,7 +100,8 @@ pub fn sphere(center: [f32; 3], radius: f32) -> impl Fn([f32; 3]) -> Sample + Sy
     }
 }
 
-/// (1 - d^2 / r^2)^3 within the support radius r, a Wyvill cubic around the origin. It is 0.5 at d = r sqrt(1 - 0.5^(1/3)).
+/// (1 - d^2 / r^2)^3 within the support radius r, a Wyvill cubic around the origin. It is 0.5 at d = r
+/// sqrt(1 - 0.5^(1/3)).
 pub fn cubic(support: f32) -> impl Fn([f32; 3]) -> Sample + Sync {
     move |p| {
         let square = p.iter().map(|c| c * c).sum::<f32>() / (support * support);

@@ -1,4 +1,5 @@
-//! Surfaces in closed form: where they are, how large they are, how they are connected; and what the report says.
+//! Surfaces in closed form: where they are, how large they are, how they are connected; and what the report
+//! says.
 
 use std::convert::Infallible;
 use std::sync::Mutex;
@@ -114,7 +115,8 @@ fn more_pulls_come_nearer() {
         let options = Options { pulls, ..Options::default() };
         let (mesh, report) = extract(&Closed(cubic(1.0)), &lattice(1.0, 0.25), &options).run().unwrap();
         let vertices = mesh.positions.len() as u64;
-        // One pull leaves vertices of such large cells off the surface; those are pulled on, and evaluated once more.
+        // One pull leaves vertices of such large cells off the surface; those are pulled on, and evaluated
+        // once more.
         let more = report.gradient_evaluations - pulls as u64 * vertices;
         assert_eq!(more > 0, pulls == 1, "{pulls} pulls");
         assert_eq!(report.full_evaluations > vertices, pulls == 1, "{pulls} pulls");
@@ -239,7 +241,8 @@ fn an_empty_field_gives_an_empty_closed_mesh() {
 
 #[test]
 fn nan_and_infinity_are_taken_as_they_come() {
-    // A ball of radius 1 where the half z > 0 answers NaN: what remains is the lower half, closed by a flat lid.
+    // A ball of radius 1 where the half z > 0 answers NaN: what remains is the lower half, closed by a flat
+    // lid.
     let half = |p: [f32; 3]| {
         let ball = sphere([0.0; 3], 1.0)(p);
         if p[2] > 0.01 { (f32::NAN, [f32::NAN; 3]) } else { ball }
@@ -392,8 +395,8 @@ impl Field for Failing {
 
 #[test]
 fn an_error_of_the_field_is_handed_on() {
-    // Two levels of boxes: the region, its range, those of its children, their regions. Then eight bricks: the lattice, two pulls
-    // and the rest of each.
+    // Two levels of boxes: the region, its range, those of its children, their regions. Then eight bricks:
+    // the lattice, two pulls and the rest of each.
     let lattice = lattice(1.0, 0.125);
     let needed = 4 + 8 * (1 + 2 + 1);
     for calls in 0..needed {

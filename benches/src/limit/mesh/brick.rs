@@ -10,8 +10,8 @@ use super::scene::{BRICK, Scene};
 /// The flipped faces of cells that have any, a bit each.
 pub(super) type Flips = HashMap<[usize; 3], u8>;
 
-/// A crossed cell, in 32 bits: its first vertex, counted from that of its brick; its signs; its flipped faces. A cell that is not crossed
-/// has anything.
+/// A crossed cell, in 32 bits: its first vertex, counted from that of its brick; its signs; its flipped
+/// faces. A cell that is not crossed has anything.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Cell(u32);
 
@@ -39,7 +39,8 @@ pub(super) struct Brick {
     pub(super) place: [usize; 3],
     /// The first of its vertices, among those of its unit.
     pub(super) first: u32,
-    /// How many quads it has: crossed edges of the lattice, at the low corners of its cells and not at the lattice's low sides.
+    /// How many quads it has: crossed edges of the lattice, at the low corners of its cells and not at the
+    /// lattice's low sides.
     pub(super) quads: usize,
     /// For each z: whether the cell `x + 8 y` is crossed, a bit each.
     layers: [u64; BRICK],
@@ -128,7 +129,8 @@ fn corners(samples: &Samples, corner: usize, z: usize) -> [f32; 8] {
     [near[0], near[1], near[9], near[10], far[0], far[1], far[9], far[10]]
 }
 
-/// The vertices of a cell start at the means of the crossings of their sheets, the field being linear along each edge.
+/// The vertices of a cell start at the means of the crossings of their sheets, the field being linear along
+/// each edge.
 #[inline(always)]
 fn start(
     scene: &Scene,

@@ -1,17 +1,20 @@
 //! How the crossings of one cell join into sheets, for each of its 256 cases.
 //!
-//! Corners are numbered `x + 2 y + 4 z`; edges `4 axis + b + 2 c`, with `(b, c)` their place along the two axes that follow their own;
-//! faces `2 axis + side`. On each face, the crossings of its edges are joined in pairs. Where four are crossed (the corners alternate),
-//! each corner inside is cut off, or each one outside if the face is flipped. Edges that are joined bound one sheet.
+//! Corners are numbered `x + 2 y + 4 z`; edges `4 axis + b + 2 c`, with `(b, c)` their place along the two
+//! axes that follow their own; faces `2 axis + side`. On each face, the crossings of its edges are joined in
+//! pairs. Where four are crossed (the corners alternate), each corner inside is cut off, or each one outside
+//! if the face is flipped. Edges that are joined bound one sheet.
 
 /// The sheets of a cell.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sheets {
-    /// The sheet of each crossed edge, from 0 in the order of the edges; [`NONE`] where an edge is not crossed.
+    /// The sheet of each crossed edge, from 0 in the order of the edges; [`NONE`] where an edge is not
+    /// crossed.
     pub(super) of_edge: [u8; 12],
     /// How many there are: 0 to 4.
     pub(super) count: u8,
-    /// Ambiguous faces, a bit each, whose four crossings are all on one sheet. If they are so in both cells, the mesh is pinched there.
+    /// Ambiguous faces, a bit each, whose four crossings are all on one sheet. If they are so in both cells,
+    /// the mesh is pinched there.
     pub(super) pinched: u8,
 }
 

@@ -63,7 +63,8 @@ pub(super) struct Bounds {
     pub(super) upper: f32,
 }
 
-/// By how much, relatively, a bound may be off because its terms are added in another order than those of the field.
+/// By how much, relatively, a bound may be off because its terms are added in another order than those of the
+/// field.
 const ORDER: f32 = 1e-4;
 
 impl Job for Cull<'_> {

@@ -1,4 +1,5 @@
-//! From where vertices start to where they are: Newton's steps, normals and colours, a register of vertices at a time.
+//! From where vertices start to where they are: Newton's steps, normals and colours, a register of vertices
+//! at a time.
 
 use std::ops::Range;
 

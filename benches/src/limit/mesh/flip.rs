@@ -1,5 +1,6 @@
-//! Flips the faces that would pinch the mesh: ambiguous ones, all four crossings of which are on one sheet in both of their cells. Such a
-//! face would give an edge of the mesh four triangles. Flipping it splits the sheet in both cells and joins none.
+//! Flips the faces that would pinch the mesh: ambiguous ones, all four crossings of which are on one sheet in
+//! both of their cells. Such a face would give an edge of the mesh four triangles. Flipping it splits the
+//! sheet in both cells and joins none.
 
 use std::collections::BTreeSet;
 
@@ -8,7 +9,8 @@ use super::cell::sheets;
 use super::scene::{BRICK, Scene};
 use super::unit::{self, Unit};
 
-/// Flips faces in the order of the lattice and makes their bricks again. Answers how many there were: few, if any.
+/// Flips faces in the order of the lattice and makes their bricks again. Answers how many there were: few, if
+/// any.
 pub(super) fn flip(scene: &Scene, units: &mut [Unit]) -> u64 {
     let mut suspects: Vec<[usize; 3]> = units.iter().flat_map(|unit| unit.suspects.iter().copied()).collect();
     if suspects.is_empty() {

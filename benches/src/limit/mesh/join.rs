@@ -108,7 +108,8 @@ fn brick_triangles(
     }
 }
 
-/// The two triangles around the edge along an axis at the low corner of a crossed cell, if the edge is crossed.
+/// The two triangles around the edge along an axis at the low corner of a crossed cell, if the edge is
+/// crossed.
 #[inline(always)]
 fn edge_triangles<const AXIS: usize>(
     grid: &Grid<'_>,
@@ -123,7 +124,8 @@ fn edge_triangles<const AXIS: usize>(
     if inside[0] == inside[1] {
         return;
     }
-    // Around the edge, seen from its end. A cell that lies back along an axis has the edge on its high side there.
+    // Around the edge, seen from its end. A cell that lies back along an axis has the edge on its high side
+    // there.
     let (b, c) = (const { STRIDE[(AXIS + 1) % 3] }, const { STRIDE[(AXIS + 2) % 3] });
     let quad = if !(number / b).is_multiple_of(BRICK) && !(number / c).is_multiple_of(BRICK) {
         [
@@ -139,7 +141,8 @@ fn edge_triangles<const AXIS: usize>(
     // Where the inside is at the end, it is seen from the other side.
     let [p, q, r, s] = if inside[1] { [quad[3], quad[2], quad[1], quad[0]] } else { quad };
     let shorter = squared_distance(positions, p, r) <= squared_distance(positions, q, s);
-    // Both ways, q r s or p q r comes first: a choice of numbers, and no jump that would be guessed wrong half of the time.
+    // Both ways, q r s or p q r comes first: a choice of numbers, and no jump that would be guessed wrong
+    // half of the time.
     let (d, e) = if shorter { (p, r) } else { (s, q) };
     if let Some(triangles) = quads.next() {
         *triangles = [[q, r, d], [e, s, p]];

@@ -1,4 +1,5 @@
-//! The surface of a sum of blobs over a lattice, by hand: hierarchical culling, then dual marching cubes in the bricks that are left.
+//! The surface of a sum of blobs over a lattice, by hand: hierarchical culling, then dual marching cubes in
+//! the bricks that are left.
 //!
 //! ```text
 //! for each unit of 4^3 bricks, in parallel:
@@ -11,10 +12,11 @@
 //! one quad, two triangles, for each crossed edge of the lattice                              (join)
 //! ```
 //!
-//! The rule for sheets and ambiguous faces is that of `jbt::mesh`: one vertex for each sheet of a cell (Nielson 2004), and the
-//! mesh is a closed manifold where the surface stays inside the lattice. Corners that bricks share are evaluated in each of them, with
-//! the same bits: the coordinates are those of the lattice, and a blob that does not reach a brick adds exactly nothing in it, for
-//! the bound by which it is dropped is made of the same operations, each of which is monotone.
+//! The rule for sheets and ambiguous faces is that of `jbt::mesh`: one vertex for each sheet of a cell
+//! (Nielson 2004), and the mesh is a closed manifold where the surface stays inside the lattice. Corners that
+//! bricks share are evaluated in each of them, with the same bits: the coordinates are those of the lattice,
+//! and a blob that does not reach a brick adds exactly nothing in it, for the bound by which it is dropped is
+//! made of the same operations, each of which is monotone.
 
 mod brick;
 mod cell;
@@ -37,8 +39,8 @@ pub use scene::{Lattice, Mesh, Statistics};
 use scene::Scene;
 use unit::Unit;
 
-/// Meshes the surface `field = iso` of a sum of blobs, on the threads of the rayon pool in which this is called. The result does not depend
-/// on how many they are.
+/// Meshes the surface `field = iso` of a sum of blobs, on the threads of the rayon pool in which this is
+/// called. The result does not depend on how many they are.
 ///
 /// Triangles that the border of the lattice would cut are left out. Vertices are numbered brick by brick.
 ///

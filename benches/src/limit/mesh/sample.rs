@@ -1,7 +1,7 @@
 //! The field at the corners of a brick.
 //!
-//! Corners with the same x and y share most of a blob: with `column = a - k (dx^2 + dy^2)` and `height = k dz^2`, what is left for each of
-//! the nine corners of a column is
+//! Corners with the same x and y share most of a blob: with `column = a - k (dx^2 + dy^2)` and `height = k
+//! dz^2`, what is left for each of the nine corners of a column is
 //!
 //! ```text
 //!     v = max(column - height, 0)     F += v^2 (v + b)           5 instructions, two of which multiply

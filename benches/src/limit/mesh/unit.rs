@@ -1,4 +1,5 @@
-//! A unit of bricks: culls its blobs down to each brick, and makes the vertices of those that the surface crosses.
+//! A unit of bricks: culls its blobs down to each brick, and makes the vertices of those that the surface
+//! crosses.
 
 use crate::limit::dense::Row;
 use crate::limit::vector::dispatch;
@@ -61,7 +62,8 @@ pub(super) fn make(scene: &Scene, place: [usize; 3]) -> Unit {
     unit
 }
 
-/// Divides a cube of `size` bricks along each axis into eight, as long as the surface may be in it. (Two levels deep.)
+/// Divides a cube of `size` bricks along each axis into eight, as long as the surface may be in it. (Two
+/// levels deep.)
 fn divide(
     scene: &Scene,
     place: [usize; 3],

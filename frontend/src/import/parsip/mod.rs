@@ -17,12 +17,13 @@
 //! RootIDs=(0)
 //! ```
 //!
-//! Every leaf has the cubic falloff of radius 1 in its own space, before its map. Its diffuse colour becomes `color`. An
-//! instance is another use of a node, with that node's map below its own.
+//! Every leaf has the cubic falloff of radius 1 in its own space, before its map. Its diffuse colour becomes
+//! `color`. An instance is another use of a node, with that node's map below its own.
 //!
-//! The reader follows the mathematics of the format where ParsIP's own evaluators differ from each other: names are read in any
-//! case, operators do what they are called also where their children are given as a range, quaternions are normalised, lines
-//! end at their ends. Its NUL bytes and CRs are dropped wherever they are.
+//! The reader follows the mathematics of the format where ParsIP's own evaluators differ from each other:
+//! names are read in any case, operators do what they are called also where their children are given as a
+//! range, quaternions are normalised, lines end at their ends. Its NUL bytes and CRs are dropped wherever
+//! they are.
 
 mod node;
 mod scan;
@@ -48,8 +49,9 @@ use crate::warp::Warp;
 ///
 /// # Errors
 ///
-/// Everything that is wrong with the file, with its place: numbers and names that cannot be read, nodes that are missing or
-/// contain themselves, zero scales, a root that is missing or not alone, operators that have no counterpart here.
+/// Everything that is wrong with the file, with its place: numbers and names that cannot be read, nodes that
+/// are missing or contain themselves, zero scales, a root that is missing or not alone, operators that have
+/// no counterpart here.
 pub fn parsip(bytes: &[u8]) -> Result<Imported, Diagnostics> {
     Imported::from(bytes, read(bytes))
 }

@@ -198,8 +198,9 @@ impl Importer<'_> {
         };
     }
 
-    /// ParsIP turns the point by `factor * height` from the first to the second of the other axes, in the order x, y, z. Our
-    /// inverse map turns it the other way about the axis, right-handed, where y has its others in the order z, x.
+    /// ParsIP turns the point by `factor * height` from the first to the second of the other axes, in the
+    /// order x, y, z. Our inverse map turns it the other way about the axis, right-handed, where y has its
+    /// others in the order z, x.
     fn twist(&mut self, section: &Section) -> Option<Twist> {
         let factor =
             if section.get(Key::Factor).is_some() { self.number(section, Key::Factor)? } else { 1.0 };

@@ -1,7 +1,7 @@
 //! Bytes to sections: nodes and the places of their values.
 //!
-//! Nothing of the text is copied. An entry is the range of bytes behind its `=`; what has to be dropped from it (NUL and CR) is
-//! dropped when it is read, so that every place stays one of the file.
+//! Nothing of the text is copied. An entry is the range of bytes behind its `=`; what has to be dropped from
+//! it (NUL and CR) is dropped when it is read, so that every place stays one of the file.
 
 use std::borrow::Cow;
 use std::collections::HashMap;

@@ -68,7 +68,8 @@ impl Importer<'_> {
         }
     }
 
-    /// A tuple of `N` finite numbers, of which `extra` more are ignored. Nothing if the key is missing, or after a message.
+    /// A tuple of `N` finite numbers, of which `extra` more are ignored. Nothing if the key is missing, or
+    /// after a message.
     pub(super) fn tuple<const N: usize>(
         &mut self,
         section: &Section,

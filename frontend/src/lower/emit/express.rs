@@ -7,9 +7,10 @@
 //!        0 outside of the box                  if there is one, so that the row may be left out
 //! ```
 //!
-//! The operands of a union or an intersection of bounded fields, of which nothing but the field is asked, are left open: bounds and +0
-//! change neither which of them is chosen nor what is chosen, so they wait until it is. Only a NaN has to be seen to before, where it would not count as
-//! the lowest field: a union passes it over anyway, as far as its start is as low.
+//! The operands of a union or an intersection of bounded fields, of which nothing but the field is asked, are
+//! left open: bounds and +0 change neither which of them is chosen nor what is chosen, so they wait until it
+//! is. Only a NaN has to be seen to before, where it would not count as the lowest field: a union passes it
+//! over anyway, as far as its start is as low.
 
 use jbt_ir::{Domain, FunctionBuilder, Origin, Value};
 use rustc_hash::FxHashSet;

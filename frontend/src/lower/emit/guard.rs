@@ -5,8 +5,9 @@
 //!                                                                                               else: the field is `start`
 //! ```
 //!
-//! What a guard starts with never decides: 0 is neutral for sums, blends and unions without negative operands, the lowest or the highest
-//! number for the others. It is finite, because a range with an infinite end says nothing.
+//! What a guard starts with never decides: 0 is neutral for sums, blends and unions without negative
+//! operands, the lowest or the highest number for the others. It is finite, because a range with an infinite
+//! end says nothing.
 
 use jbt_ir::{Domain, FoldKind, Rule, Value};
 
@@ -59,7 +60,8 @@ impl Emitter<'_> {
         self.open_fold(name, space, (FoldKind::Guard, rule), initial);
     }
 
-    /// Closes a fold over one row that was opened with so many values. What it carries out behind these begins at 0; probes come out too.
+    /// Closes a fold over one row that was opened with so many values. What it carries out behind these
+    /// begins at 0; probes come out too.
     pub(super) fn close_only(&mut self, mut next: Vec<Value>, opened: usize) -> Vec<Value> {
         let wanted = next.len();
         let probes = self.leave_row();

@@ -127,7 +127,8 @@ pub(super) struct Probes {
     pub(super) count: usize,
     /// The probes in each open row of the scene and of guards; no others are open outside of these.
     pub(super) open: Vec<Vec<Probe>>,
-    /// The point in the world, and in spaces where it is one number for a point of the world: the first of three probes.
+    /// The point in the world, and in spaces where it is one number for a point of the world: the first of
+    /// three probes.
     pub(super) points: HashMap<SpaceId, usize>,
     /// Guards whose operators are in progress, and for each operator in progress, how many are not its own.
     pub(super) operands: Vec<Operand>,

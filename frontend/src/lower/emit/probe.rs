@@ -1,7 +1,8 @@
 //! Probes: numbers of a point that the guide function carries out of its folds.
 //!
-//! A probe is one number for a point, so it can only be taken where no fold over several rows is open: in the row of the scene and in the rows of
-//! guards in it. It comes out of each of these folds as one more accumulator, which begins at 0.
+//! A probe is one number for a point, so it can only be taken where no fold over several rows is open: in the
+//! row of the scene and in the rows of guards in it. It comes out of each of these folds as one more
+//! accumulator, which begins at 0.
 
 use jbt_ir::{Table, Value};
 
@@ -24,7 +25,8 @@ impl Probes {
         name
     }
 
-    /// Makes outputs of the probes that somebody uses, and gives them their final names in the tables and decisions.
+    /// Makes outputs of the probes that somebody uses, and gives them their final names in the tables and
+    /// decisions.
     pub(super) fn finish(
         self,
         outputs: &mut Vec<(String, Value)>,
@@ -116,8 +118,8 @@ impl Emitter<'_> {
         }
     }
 
-    /// What to keep of operands that are about to become rows, so that each may be left out while it is not zero. Supports say nothing
-    /// about formulas; of other rows they say enough.
+    /// What to keep of operands that are about to become rows, so that each may be left out while it is not
+    /// zero. Supports say nothing about formulas; of other rows they say enough.
     pub(super) fn decides_rows(&mut self, code: ReducerCode, member: OccurrenceId) -> Option<Extreme> {
         let extreme = match code {
             ReducerCode::Union => Extreme::Largest,

@@ -52,7 +52,8 @@ impl Emitter<'_> {
         if strong {
             let strength = self.column("strength");
             let product = self.builder.mul(strength, value);
-            // Where the falloff is 0, a negative strength makes -0 of it, and sums must not depend on what adds nothing.
+            // Where the falloff is 0, a negative strength makes -0 of it, and sums must not depend on what
+            // adds nothing.
             let zero = self.builder.constant(0.0);
             value = self.builder.add(product, zero);
         }
@@ -60,12 +61,14 @@ impl Emitter<'_> {
         value
     }
 
-    /// What the accumulators of a leaf come to: a fold over the rows of its pieces, which hang under the row of the leaf.
+    /// What the accumulators of a leaf come to: a fold over the rows of its pieces, which hang under the row
+    /// of the leaf.
     fn fold_pieces(&mut self, skeleton: SkeletonKind, pieces: Pieces, point: [Value; 3]) -> Vec<Value> {
         let beyond = self.column("beyond");
         let initial = skeleton.begin(&mut self.builder, beyond);
         let (space, _) = *self.points.last().expect("a space is open");
-        // A piece that is out of reach is no farther than where distances begin: the field is zero either way.
+        // A piece that is out of reach is no farther than where distances begin: the field is zero either
+        // way.
         let rule = if pieces.local { Rule::Neutral } else { Rule::Never };
         let so_far = self.open_fold("pieces", space, (FoldKind::Pieces, rule), &initial);
         let piece = self.columns(pieces.columns);

@@ -1,4 +1,5 @@
-//! Folds over one row that may not be active: the children of a selector, and what is lifted though some choices do without it.
+//! Folds over one row that may not be active: the children of a selector, and what is lifted though some
+//! choices do without it.
 //!
 //! ```text
 //! select a, b, c:   v0 = 0
@@ -7,8 +8,9 @@
 //!                   v3 = fold table of c, only, from v2: yield c
 //! ```
 //!
-//! The active row may be left out where its field is zero: then what stands is 0, with attributes that are 0 too. No operator looks at the
-//! attributes of a field of 0, but the model's own answer does, so the rows of a selector that answers for the whole model always stay.
+//! The active row may be left out where its field is zero: then what stands is 0, with attributes that are 0
+//! too. No operator looks at the attributes of a field of 0, but the model's own answer does, so the rows of
+//! a selector that answers for the whole model always stay.
 
 use jbt_ir::{Domain, Rule, Value};
 

@@ -1,4 +1,5 @@
-//! How occurrences are found: a walk from the root that remembers what it has met, by node, position and bindings.
+//! How occurrences are found: a walk from the root that remembers what it has met, by node, position and
+//! bindings.
 
 use glam::{DAffine3, DVec3};
 use rustc_hash::FxHashMap as HashMap;
@@ -20,8 +21,8 @@ use crate::origin::ModelOrigin;
 use crate::written::{Freedom, Written};
 
 impl<'a> Scene<'a> {
-    /// Finds every occurrence, without recursion. All attribute groups count, whatever is asked: so the tables of a tree, which are made of
-    /// its occurrences, have the same rows for every query.
+    /// Finds every occurrence, without recursion. All attribute groups count, whatever is asked: so the
+    /// tables of a tree, which are made of its occurrences, have the same rows for every query.
     pub(in super::super) fn new(tree: &'a CheckedTree) -> Self {
         Finder::new(tree).run()
     }
@@ -55,7 +56,8 @@ pub(super) struct Finder<'a> {
     field_names: HashMap<(NodeId, PositionId), FieldId>,
     inside_names: HashMap<(NodeId, PositionId), (SpaceId, PositionId)>,
     known: HashMap<Key, OccurrenceId>,
-    /// For each node, whether one path leads to it from the root: then it is met once, and nothing has to be remembered of it.
+    /// For each node, whether one path leads to it from the root: then it is met once, and nothing has to be
+    /// remembered of it.
     once: Vec<bool>,
     /// Whether there is a selector.
     selects: bool,
@@ -177,7 +179,8 @@ impl<'a> Finder<'a> {
                 | NodeKind::Select(_)
                 | NodeKind::Primitive(_)
                 | NodeKind::Warp(_) => {
-                    // Nobody asks again for what is met once and has nothing below it that others meet: it needs no name.
+                    // Nobody asks again for what is met once and has nothing below it that others meet: it
+                    // needs no name.
                     let alone = self.once[node.0 as usize] && data.children.is_empty();
                     let position = match (moved, alone) {
                         (None, _) => position,

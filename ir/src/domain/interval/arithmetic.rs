@@ -1,6 +1,7 @@
 //! Products, quotients, roots and magnitudes of ranges.
 //!
-//! A product of ranges has its ends at products of ends. Which ones is known from signs, at the latest from four candidates:
+//! A product of ranges has its ends at products of ends. Which ones is known from signs, at the latest from
+//! four candidates:
 //!
 //! ```text
 //!                    low        high
@@ -89,7 +90,8 @@ impl<D: Domain> Interval<D> {
             (Sign::NonNegative | Sign::NonPositive, Sign::Unknown) => self.signed(a, b),
             (Sign::Unknown, Sign::NonNegative | Sign::NonPositive) => self.signed(b, a),
             (Sign::Unknown, Sign::Unknown) => {
-                // Widths are not finite where a bound is not, and then neither is their product with anything.
+                // Widths are not finite where a bound is not, and then neither is their product with
+                // anything.
                 let width = self.domain.sub(a.high, a.low);
                 let other = self.domain.sub(b.high, b.low);
                 let guard = self.domain.mul(width, other);
@@ -129,7 +131,8 @@ impl<D: Domain> Interval<D> {
         Ends::At((at_low, low), (at_high, high))
     }
 
-    /// A number of the range that is nearest to 0, and one whose magnitude is the largest. The latter is not finite where a bound is not.
+    /// A number of the range that is nearest to 0, and one whose magnitude is the largest. The latter is not
+    /// finite where a bound is not.
     fn near_and_far(&mut self, a: Range<D>) -> Pair<D> {
         match a.facts.sign {
             Sign::NonNegative => (a.low, a.high),

@@ -1,9 +1,10 @@
-//! What is known of a range before there are any numbers: from the op that made it, and from what is known of its operands.
+//! What is known of a range before there are any numbers: from the op that made it, and from what is known of
+//! its operands.
 //!
-//! Facts make programs small: an end of a product of ranges that are not negative takes one op, not four products and their smallest.
-//! They are found in one place, from ops alone, so that an emitted program and the scalar meaning take the same forms
-//! and give the same bounds.
-//! Those of accumulators are found by [`crate::facts`].
+//! Facts make programs small: an end of a product of ranges that are not negative takes one op, not four
+//! products and their smallest. They are found in one place, from ops alone, so that an emitted program and
+//! the scalar meaning take the same forms and give the same bounds. Those of accumulators are found by
+//! [`crate::facts`].
 
 use crate::facts::Fact;
 use crate::function::InstKind;
@@ -51,13 +52,15 @@ impl Sign {
 /// What is known of a value of any type.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub(super) struct Facts {
-    /// The value itself is there, bit for bit: both bounds of a real are that value, a mask is decided, bits are known.
+    /// The value itself is there, bit for bit: both bounds of a real are that value, a mask is decided, bits
+    /// are known.
     pub(super) point: bool,
     /// The number, where the program has it; never NaN.
     pub(super) constant: Option<f32>,
     /// Of a real.
     pub(super) sign: Sign,
-    /// Of a real: where the low bound is NaN, the high one is NaN or inf; where the high one is, the low one is NaN or -inf.
+    /// Of a real: where the low bound is NaN, the high one is NaN or inf; where the high one is, the low one
+    /// is NaN or -inf.
     pub(super) paired: bool,
 }
 
@@ -150,7 +153,8 @@ fn product(args: &[Facts], same: bool) -> Sign {
 
 /// The sign of `max`, where `beyond` is [`Sign::NonNegative`], or of `min`, where it is the other one.
 ///
-/// The second operand alone brings it, because it is the result where an operand is NaN. As a point it might be NaN itself.
+/// The second operand alone brings it, because it is the result where an operand is NaN. As a point it might
+/// be NaN itself.
 fn extreme(args: &[Facts], beyond: Sign) -> Sign {
     if args[1].sign != beyond {
         return args[0].sign.and(args[1].sign);

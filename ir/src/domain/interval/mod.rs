@@ -1,38 +1,45 @@
-//! Ranges as a meaning of the ops: every real is a range that encloses what it can be while the inputs stay in theirs.
+//! Ranges as a meaning of the ops: every real is a range that encloses what it can be while the inputs stay
+//! in theirs.
 //!
-//! [`Interval<D>`] stands on another domain `D`, in which the bounds are computed. On `Scalar` it is interval arithmetic; on
-//! `FunctionBuilder` it *emits* another function, whose inputs and outputs are bounds: the pass
-//! [`interval`](crate::pass::interval()). Both are this one implementation, take the same forms and give the same bounds.
+//! [`Interval<D>`] stands on another domain `D`, in which the bounds are computed. On `Scalar` it is interval
+//! arithmetic; on `FunctionBuilder` it *emits* another function, whose inputs and outputs are bounds: the
+//! pass [`interval`](crate::pass::interval()). Both are this one implementation, take the same forms and give
+//! the same bounds.
 //!
 //! # What a range is
 //!
-//! At the doors (the inputs and outputs of [`enclose`] and of the pass) a range is two numbers, low <= high. **(-inf, inf) admits
-//! anything, NaN too. Every other range promises: the value is not NaN, and low <= value <= high.** There is no empty range; two inputs
-//! that are none, because low > high or a bound is NaN, count as (-inf, inf). -0 and +0 are the same bound.
+//! At the doors (the inputs and outputs of [`enclose`] and of the pass) a range is two numbers, low <= high.
+//! **(-inf, inf) admits anything, NaN too. Every other range promises: the value is not NaN, and low <= value
+//! <= high.** There is no empty range; two inputs that are none, because low > high or a bound is NaN, count
+//! as (-inf, inf). -0 and +0 are the same bound.
 //!
 //! Between the doors less is promised, so that no op has to tidy up behind itself:
 //!
-//! > *Whenever the value is a number, it is not below `low` and not above `high`. If both bounds are finite, it is a number.*
+//! > *Whenever the value is a number, it is not below `low` and not above `high`. If both bounds are finite,
+//! > it is a number.*
 //!
-//! So a bound that is NaN bounds nothing on its side, and a bound that is not finite says that the value may be NaN. With that, the plain
-//! ops on the bounds do most of the work: NaN comes from NaN, `inf - inf`, `0 * inf` and the like, hence only from ranges with a bound that is not
-//! finite, and sums, differences and products of such a bound are not finite either. Where a form would lose it
-//! (`max(x, 0)`, a square), the bound is *guarded*: `fma(other, 0, bound)` is the bound, or NaN where the other one is not finite.
-//! The outputs are tidy again: two finite bounds, or (-inf, inf).
+//! So a bound that is NaN bounds nothing on its side, and a bound that is not finite says that the value may
+//! be NaN. With that, the plain ops on the bounds do most of the work: NaN comes from NaN, `inf - inf`, `0 *
+//! inf` and the like, hence only from ranges with a bound that is not finite, and sums, differences and
+//! products of such a bound are not finite either. Where a form would lose it (`max(x, 0)`, a square), the
+//! bound is *guarded*: `fma(other, 0, bound)` is the bound, or NaN where the other one is not finite. The
+//! outputs are tidy again: two finite bounds, or (-inf, inf).
 //!
-//! A mask is what is certain of it: that it holds, that it does not, or neither. Bits are known exactly or not at all.
+//! A mask is what is certain of it: that it holds, that it does not, or neither. Bits are known exactly or
+//! not at all.
 //!
 //! # What is promised
 //!
-//! Enclosure of every `f32` that *the function's own ops* compute at points whose inputs are in the ranges. Rounding to nearest is
-//! monotone, so the ops at the ends enclose, and nothing is rounded outwards. The transcendentals are the exception: their
-//! approximations need not be monotone, so their bounds are widened by 4 units in the last place, more than twice the error that
-//! [`crate::math`] states. A *point*, a value that depends on no input, is computed as it is, in one op.
+//! Enclosure of every `f32` that *the function's own ops* compute at points whose inputs are in the ranges.
+//! Rounding to nearest is monotone, so the ops at the ends enclose, and nothing is rounded outwards. The
+//! transcendentals are the exception: their approximations need not be monotone, so their bounds are widened
+//! by 4 units in the last place, more than twice the error that [`crate::math`] states. A *point*, a value
+//! that depends on no input, is computed as it is, in one op.
 //!
 //! # What makes it sharp
 //!
-//! * Every result has an identity, so `x * x` and `fma(x, x, c)` are known to be squares. Two ranges with equal bounds are not one value;
-//!   one value that is used twice is.
+//! * Every result has an identity, so `x * x` and `fma(x, x, c)` are known to be squares. Two ranges with
+//!   equal bounds are not one value; one value that is used twice is.
 //! * Facts that are known before there are numbers, signs above all, choose short forms.
 
 mod arithmetic;

@@ -1,7 +1,8 @@
 //! Comparisons of ranges, and choices between them.
 //!
-//! `max(a, b)` is b where either is NaN. So where a may be NaN, the result may be b alone, and the low bound is that of b; and where
-//! b may be NaN, the result may be NaN, and a bound has to say so. `min` is its mirror image.
+//! `max(a, b)` is b where either is NaN. So where a may be NaN, the result may be b alone, and the low bound
+//! is that of b; and where b may be NaN, the result may be NaN, and a bound has to say so. `min` is its
+//! mirror image.
 
 use crate::facts::Fact as _;
 use crate::op::{Domain, Op};
@@ -94,7 +95,8 @@ impl<D: Domain> Interval<D> {
         if a.facts.point { a.high } else { self.guarded(a.high, a.low) }
     }
 
-    /// As [`sure_low`](Self::sure_low), and NaN where it is infinite: so that infinities do not seem to be equal where one may be NaN.
+    /// As [`sure_low`](Self::sure_low), and NaN where it is infinite: so that infinities do not seem to be
+    /// equal where one may be NaN.
     fn finite_low(&mut self, a: Range<D>) -> D::Real {
         let low = self.sure_low(a);
         if a.facts.point { low } else { self.guarded(low, low) }

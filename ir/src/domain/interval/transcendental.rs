@@ -1,21 +1,24 @@
 //! Ranges of sine, cosine, exponential, logarithm and power: the ops themselves at the ends, widened.
 //!
-//! An approximation g of a monotone function f need not be monotone. With `|g(x) - f(x)| <= e |f(x)| + t` for all x, and for x above
-//! the low end a,
+//! An approximation g of a monotone function f need not be monotone. With `|g(x) - f(x)| <= e |f(x)| + t` for
+//! all x, and for x above the low end a,
 //!
 //! ```text
 //! g(x) >= f(x) - e |f(x)| - t >= f(a) - e |f(a)| - t >= g(a) - 2e/(1-e) (|g(a)| + t) - 2t
 //! ```
 //!
-//! [`crate::math`] states errors up to 1.25 units in the last place, so e = 1.25 * 2^-23 and t = 1.25 * 2^-149. Bounds are widened by
-//! [`RELATIVE`] of themselves and [`ABSOLUTE`], which is more than that by enough for the roundings of the widening itself.
+//! [`crate::math`] states errors up to 1.25 units in the last place, so e = 1.25 * 2^-23 and t = 1.25 *
+//! 2^-149. Bounds are widened by [`RELATIVE`] of themselves and [`ABSOLUTE`], which is more than that by
+//! enough for the roundings of the widening itself.
 //!
-//! **Sine and cosine** have a peak or a trough between the ends if a whole number lies between the ends in turns, shifted by where it stands
-//! in a turn. The turns are computed with an error below 2^-23 of the angle and 2^-21; the ends are moved apart by more than that, so
-//! a peak is never missed, and one that is nearly there may be seen. Then the bound is 1 or -1, which the ops never leave.
+//! **Sine and cosine** have a peak or a trough between the ends if a whole number lies between the ends in
+//! turns, shifted by where it stands in a turn. The turns are computed with an error below 2^-23 of the angle
+//! and 2^-21; the ends are moved apart by more than that, so a peak is never missed, and one that is nearly
+//! there may be seen. Then the bound is 1 or -1, which the ops never leave.
 //!
-//! **Powers** of positive bases are monotone in both operands for a given sign of the other one's distance from 1 or 0. So the extremes are at
-//! corners: where the sign of the exponent is known at one corner each, otherwise at one of four.
+//! **Powers** of positive bases are monotone in both operands for a given sign of the other one's distance
+//! from 1 or 0. So the extremes are at corners: where the sign of the exponent is known at one corner each,
+//! otherwise at one of four.
 
 use super::arithmetic::{greatest, least};
 use super::facts::{Facts, Sign};
@@ -142,7 +145,8 @@ impl<D: Domain> Interval<D> {
         d.both(above, below)
     }
 
-    /// Whether a whole number may lie among the angles in turns, plus `phase`. Means nothing where the angles are not known.
+    /// Whether a whole number may lie among the angles in turns, plus `phase`. Means nothing where the angles
+    /// are not known.
     fn has_whole_turn(&mut self, a: Range<D>, phase: f32) -> D::Mask {
         let d = &mut self.domain;
         let (turns, phase) = (d.constant(TURNS), d.constant(phase));
@@ -156,7 +160,8 @@ impl<D: Domain> Interval<D> {
         let first = d.sub(first, error);
         let last = d.add(last, error);
 
-        // The greatest whole number that is not above the last: half a turn before it, rounded to the nearest.
+        // The greatest whole number that is not above the last: half a turn before it, rounded to the
+        // nearest.
         let (half, round) = (d.constant(0.5), d.constant(ROUND));
         let before = d.sub(last, half);
         let shifted = d.add(before, round);
@@ -201,7 +206,8 @@ impl<D: Domain> Interval<D> {
         (d.pow(base_low, exponent_low), d.pow(base_high, exponent_high))
     }
 
-    /// The bounds where no base is negative and everything is finite; elsewhere anything, for a power may be 1 whatever the base is.
+    /// The bounds where no base is negative and everything is finite; elsewhere anything, for a power may be
+    /// 1 whatever the base is.
     fn where_powers_are_numbers(
         &mut self,
         facts: Facts,

@@ -1,5 +1,5 @@
-//! Goes through a function in the interval domain, on the ground that the bounds stand on: on rows, which are run ([`enclose`]), or on a
-//! builder, into which folds are written (the pass).
+//! Goes through a function in the interval domain, on the ground that the bounds stand on: on rows, which are
+//! run ([`enclose`]), or on a builder, into which folds are written (the pass).
 //!
 //! Both grounds get the same values with the same facts and identities, hence the same bounds:
 //!
@@ -8,8 +8,8 @@
 //! columns         are points of which nothing is known, whatever number the row has
 //! ```
 //!
-//! A fold has for each accumulator what is left of it: two bounds of a real, two masks for what is certain of a mask; one value
-//! of a point, and nothing for bits that are not known.
+//! A fold has for each accumulator what is left of it: two bounds of a real, two masks for what is certain of
+//! a mask; one value of a point, and nothing for bits that are not known.
 
 use super::facts::Facts;
 use super::value::{Certainty, Interval, Known};
@@ -22,8 +22,9 @@ use crate::origin::Origin;
 use crate::table::Tables;
 use crate::verify::Verified;
 
-/// The bounds of the outputs of `function` for inputs between these bounds: for each plane low and high, as [the module](super) defines a
-/// range. `tables` fit the function ([`Tables::check`]); `inputs` has one entry per plane.
+/// The bounds of the outputs of `function` for inputs between these bounds: for each plane low and high, as
+/// [the module](super) defines a range. `tables` fit the function ([`Tables::check`]); `inputs` has one entry
+/// per plane.
 ///
 /// The pass [`interval`](crate::pass::interval()) makes a function that gives the same bits.
 #[must_use]

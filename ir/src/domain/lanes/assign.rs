@@ -1,8 +1,8 @@
 //! Gives every value a place: a register for a block, a slot for a splat.
 //!
 //! First, values that a copy would connect are put into one *class*, where their lives do not overlap: a
-//! fold's parameter and its result always, its next value and its initial value where possible. So
-//! `acc' = fma(a, b, acc)` writes where it read, and a sum of sums carries one register through all its folds. Then
+//! fold's parameter and its result always, its next value and its initial value where possible. So `acc' =
+//! fma(a, b, acc)` writes where it read, and a sum of sums carries one register through all its folds. Then
 //! classes get registers in order of their first definition, a free one with the lowest number each (Poletto
 //! and Sarkar 1999, "Linear scan register allocation").
 

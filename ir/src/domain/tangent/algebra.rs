@@ -2,11 +2,12 @@
 //!
 //! The factors stay a list until somebody needs a number, for three reasons:
 //!
-//! * What two tangents along one base have in common is taken out of their sum: the derivative of `u^2 (4u + 5)` becomes `u` times a
-//!   fused step, and not two products.
-//! * Constants and columns are multiplied with each other first. That happens once for a row and not for each point.
-//! * A condition, from `max` or `select`, is a factor too. Where another factor is zero anyway outside of it, as
-//!   `max(t, 0)` is outside of `0 < t`, nobody has to ask.
+//! * What two tangents along one base have in common is taken out of their sum: the derivative of `u^2 (4u +
+//!   5)` becomes `u` times a fused step, and not two products.
+//! * Constants and columns are multiplied with each other first. That happens once for a row and not for each
+//!   point.
+//! * A condition, from `max` or `select`, is a factor too. Where another factor is zero anyway outside of it,
+//!   as `max(t, 0)` is outside of `0 < t`, nobody has to ask.
 
 use crate::entity::Value;
 use crate::function::InstKind;
@@ -95,7 +96,8 @@ impl Tangent {
         Some([args[0], args[1]])
     }
 
-    /// `constant * product of list` as one value: what is the same for all points of a row first, conditions last.
+    /// `constant * product of list` as one value: what is the same for all points of a row first, conditions
+    /// last.
     fn product_of(&mut self, constant: f32, list: &[Factor]) -> Value {
         let one = self.builder.constant(1.0);
         let (mut row, mut lanes) = (self.builder.constant(constant), one);
@@ -395,7 +397,8 @@ mod tests {
 
     #[test]
     fn common_factors_leave_a_sum() {
-        // u^2 (4u + 5): the primal takes 3 ops, its derivative 2u (4u + 5 + 2u) a fused step, a product and the doubling of the column.
+        // u^2 (4u + 5): the primal takes 3 ops, its derivative 2u (4u + 5 + 2u) a fused step, a product and
+        // the doubling of the column.
         let f = derivative(|d, x, c| {
             let u = d.mul(x, c);
             let (four, five) = (d.constant(4.0), d.constant(5.0));

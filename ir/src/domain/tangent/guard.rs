@@ -5,8 +5,9 @@
 //! products and sums         of finite numbers are no NaN; infinities count as the largest numbers
 //! ```
 //!
-//! So 0 times anything is 0: outside of a support, and where a field is held by a bound, the slope is exactly 0 however far squares have
-//! overflowed. Where nothing overflows every op gives the bits that it gives without guards: the ops are the same, in the same order.
+//! So 0 times anything is 0: outside of a support, and where a field is held by a bound, the slope is exactly
+//! 0 however far squares have overflowed. Where nothing overflows every op gives the bits that it gives
+//! without guards: the ops are the same, in the same order.
 
 use rustc_hash::FxHashSet as HashSet;
 
@@ -25,7 +26,8 @@ impl Tangent {
         Self { tame: Some(HashSet::default()), ..Self::new(builder) }
     }
 
-    /// The value; if the domain is guarded, as a finite number: 0 for NaN, the largest of its sign for an infinity.
+    /// The value; if the domain is guarded, as a finite number: 0 for NaN, the largest of its sign for an
+    /// infinity.
     pub(super) fn tame(&mut self, value: Value) -> Value {
         if !self.is_wild(value) {
             return value;
@@ -79,8 +81,8 @@ impl Tangent {
         self.builder.max(held, smallest)
     }
 
-    /// The derivative `b a^(b-1)` of a power along its base, given as `b * (a^b / a)`; if the domain is guarded, as `(b a^b) / a` where that quotient has
-    /// overflowed, as it does for subnormal bases.
+    /// The derivative `b a^(b-1)` of a power along its base, given as `b * (a^b / a)`; if the domain is
+    /// guarded, as `(b a^b) / a` where that quotient has overflowed, as it does for subnormal bases.
     pub(super) fn power_slope(&mut self, slope: Value, [a, b, value]: [Value; 3], positive: Value) -> Value {
         if self.tame.is_none() {
             return slope;

@@ -1,18 +1,20 @@
 //! Forward-mode differentiation as a meaning of the ops: every real carries its tangent along x, y and z.
 //!
-//! Running a function in this domain *emits* another function: the primal instructions, shared by hash-consing with whatever is
-//! there already, and the tangents after them. A tangent is kept as a product,
+//! Running a function in this domain *emits* another function: the primal instructions, shared by
+//! hash-consing with whatever is there already, and the tangents after them. A tangent is kept as a product,
 //!
 //! ```text
 //! constant * factors * (bx, by, bz)
 //! ```
 //!
-//! because along a chain of one variable (a squared distance, its falloff, a strength) only the scalar factors change: the
-//! derivative of a falloff is computed once and not three times. Components that are zero are not there at all, and squares keep
-//! their 2 in the constant, so that the gradient of `|p - c|^2` is `2 * (dx, dy, dz)` and costs nothing.
+//! because along a chain of one variable (a squared distance, its falloff, a strength) only the scalar
+//! factors change: the derivative of a falloff is computed once and not three times. Components that are zero
+//! are not there at all, and squares keep their 2 in the constant, so that the gradient of `|p - c|^2` is
+//! `2 * (dx, dy, dz)` and costs nothing.
 //!
-//! A factor of 0 and a base that has overflowed make a NaN of a slope that is 0. A *guarded* domain ([`Tangent::guarded`]) emits the same products
-//! and sums, and keeps what goes into them and what comes out finite (`guard.rs`).
+//! A factor of 0 and a base that has overflowed make a NaN of a slope that is 0. A *guarded* domain
+//! ([`Tangent::guarded`]) emits the same products and sums, and keeps what goes into them and what comes out
+//! finite (`guard.rs`).
 
 use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 

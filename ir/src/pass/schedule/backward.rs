@@ -1,15 +1,16 @@
-//! An order written from the last instruction to the first: of those whose readers all have their place, the next one is the one
-//! that leaves the fewest values alive before it.
+//! An order written from the last instruction to the first: of those whose readers all have their place, the
+//! next one is the one that leaves the fewest values alive before it.
 //!
-//! Where several results share their work, as a field and its gradient do, going depth-first from one of them computes and keeps
-//! everything that the others share with it. Backwards, the instructions that read the same values attract each other.
+//! Where several results share their work, as a field and its gradient do, going depth-first from one of them
+//! computes and keeps everything that the others share with it. Backwards, the instructions that read the
+//! same values attract each other.
 //!
 //! ```text
 //! growth(node) = the operands that nothing placed so far reads - the values of the node that something placed so far reads
 //! ```
 //!
-//! An operand that reads nothing itself and has no other reader left does not count: it will come directly before its reader. [`Tie`]
-//! says which of several nodes with equal growth comes first.
+//! An operand that reads nothing itself and has no other reader left does not count: it will come directly
+//! before its reader. [`Tie`] says which of several nodes with equal growth comes first.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -81,7 +82,8 @@ fn depths(graph: &Graph) -> Vec<usize> {
 }
 
 impl Backward<'_> {
-    /// Puts a node on the heap if it can be placed. An older entry for it stays and is passed over later: growth only falls.
+    /// Puts a node on the heap if it can be placed. An older entry for it stays and is passed over later:
+    /// growth only falls.
     fn offer(&mut self, node: usize) {
         if node < self.graph.insts.len() && self.waiting[node] == 0 && !self.placed[node] {
             self.time += 1;

@@ -1,5 +1,6 @@
-//! An order that goes depth-first from the block's results, and of several operands to the one with the largest need first (Sethi and
-//! Ullman, 1970): while it is computed nothing else waits, and only one value of it remains.
+//! An order that goes depth-first from the block's results, and of several operands to the one with the
+//! largest need first (Sethi and Ullman, 1970): while it is computed nothing else waits, and only one value
+//! of it remains.
 //!
 //! ```text
 //! need(node) = the largest, over its operands in descending order of need, of need(operand) + how many come before it

@@ -16,8 +16,8 @@ impl Lists {
     }
 }
 
-/// The dependences in a block. A node is the position of an instruction in the block; after the instructions come the block's
-/// parameters. What enclosing blocks define is no node: it is alive all the time.
+/// The dependences in a block. A node is the position of an instruction in the block; after the instructions
+/// come the block's parameters. What enclosing blocks define is no node: it is alive all the time.
 pub(super) struct Graph {
     /// The instructions, by node.
     pub insts: Vec<Inst>,
@@ -32,7 +32,8 @@ pub(super) struct Graph {
 }
 
 impl Graph {
-    /// The graph of a block. `node` is room for the node of each value, `peaks` are the peaks of the blocks inside.
+    /// The graph of a block. `node` is room for the node of each value, `peaks` are the peaks of the blocks
+    /// inside.
     pub fn new(function: &Function, uses: &Uses, block: Block, peaks: &[usize], node: &mut [usize]) -> Self {
         let data = &function.blocks[block];
         let insts = data.insts.clone();
@@ -85,7 +86,8 @@ impl Graph {
         self.readers.get(node)
     }
 
-    /// Whether the node is an instruction that reads nothing of the block: it can stand directly before its reader.
+    /// Whether the node is an instruction that reads nothing of the block: it can stand directly before its
+    /// reader.
     pub fn is_free(&self, node: usize) -> bool {
         node < self.insts.len() && self.operands(node).is_empty()
     }

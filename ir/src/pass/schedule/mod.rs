@@ -1,7 +1,8 @@
-//! Orders the instructions of each block so that few values are alive at once. Everything is pure, so only uses decide.
+//! Orders the instructions of each block so that few values are alive at once. Everything is pure, so only
+//! uses decide.
 //!
-//! No order is best for every graph, and counting is cheap: heuristics propose orders, and the block takes the one with the
-//! smallest peak of values, or stays as it is if none is better.
+//! No order is best for every graph, and counting is cheap: heuristics propose orders, and the block takes
+//! the one with the smallest peak of values, or stays as it is if none is better.
 //!
 //! * [`depth_first`] is optimal for trees: sums of many terms become chains.
 //! * [`backward`] is good where results share their work, as a field and its gradient do.

@@ -41,8 +41,8 @@ pub(super) struct Machine {
 }
 
 impl Machine {
-    /// As a function finds it: registers hold nothing, but for the upper halves of vectors that the caller has
-    /// cleared, see [`crate::memory`].
+    /// As a function finds it: registers hold nothing, but for the upper halves of vectors that the caller
+    /// has cleared, see [`crate::memory`].
     pub(super) fn new(memory: Memory) -> Self {
         let mut vectors = [[POISON; 16]; 32];
         vectors[..16].iter_mut().for_each(|lanes| lanes[4..].fill(0));

@@ -6,10 +6,10 @@
 //!                                       step by step, until the code returns
 //! ```
 //!
-//! It knows the few dozen instructions that we emit, and nothing else: an instruction that it does not know is
-//! a fault. So is each byte that the code reads or writes outside of what it may touch ([`memory`]), a jump
-//! into the middle of an instruction, a register that a callee has to keep and does not, and code that never
-//! ends.
+//! It knows the few dozen instructions that we emit, and nothing else: an instruction that it does not know
+//! is a fault. So is each byte that the code reads or writes outside of what it may touch ([`memory`]), a
+//! jump into the middle of an instruction, a register that a callee has to keep and does not, and code that
+//! never ends.
 
 mod integer;
 mod machine;

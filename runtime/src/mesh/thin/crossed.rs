@@ -49,7 +49,8 @@ const ROW: [u8; 64] = {
     }
     rows
 };
-/// Along each axis the distance of neighbours in rows, and the cells at the low and at the high end, a bit each.
+/// Along each axis the distance of neighbours in rows, and the cells at the low and at the high end, a bit
+/// each.
 const STEPS: [u32; 3] = [1, 4, 16];
 const FIRST: [u64; 3] = [0x1111_1111_1111_1111, 0x000f_000f_000f_000f, 0x0000_0000_0000_ffff];
 const LAST: [u64; 3] = [FIRST[0] << 3, FIRST[1] << 12, FIRST[2] << 48];
@@ -122,8 +123,8 @@ pub(super) struct Crossed<'a> {
     masks: Vec<u64>,
     /// Where the cells of each begin.
     firsts: Vec<usize>,
-    /// The edges along each axis that are crossed and begin at the first corner of a cell: a bit for each cell, in
-    /// rows.
+    /// The edges along each axis that are crossed and begin at the first corner of a cell: a bit for each
+    /// cell, in rows.
     edges: Vec<[u64; 3]>,
 }
 

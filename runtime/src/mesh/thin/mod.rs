@@ -1,9 +1,9 @@
 //! Parts that are thinner than a cell: a lattice cannot show them, so they are reported.
 //!
 //! ```text
-//! crossed blocks (4^3 cells)      what the corners of their cells tell: scraps, rows of lone points    
-//! (crossed) the others, in bricks           ranges exclude the other side, or a point on it is found        
-//!      (search) alarms, joined to places        a point of each, and how fine cells would have to be        
+//! crossed blocks (4^3 cells)      what the corners of their cells tell: scraps, rows of lone points
+//! (crossed) the others, in bricks           ranges exclude the other side, or a point on it is found
+//!      (search) alarms, joined to places        a point of each, and how fine cells would have to be
 //!          (measure)
 //! ```
 //!

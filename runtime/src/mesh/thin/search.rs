@@ -7,12 +7,12 @@
 //!                 8 boxes a step, the best first; a point on the other side in the middle of one ends it
 //! ```
 //!
-//! A step costs one, and what it proves to be empty pays for others: the search goes on while it gets somewhere,
-//! and no further than [`MAX_STEPS`]. Chunks are boxes of the division, whose regions are found by halving the
-//! lattice again and again; so all of this is a function of the lattice, whatever the bricks are.
+//! A step costs one, and what it proves to be empty pays for others: the search goes on while it gets
+//! somewhere, and no further than [`MAX_STEPS`]. Chunks are boxes of the division, whose regions are found by
+//! halving the lattice again and again; so all of this is a function of the lattice, whatever the bricks are.
 //!
-//! A chunk that the surface crosses is left out: nearly all of space beside a smooth surface is in such, and would
-//! cost more than the mesh.
+//! A chunk that the surface crosses is left out: nearly all of space beside a smooth surface is in such, and
+//! would cost more than the mesh.
 
 use super::crossed::{Crossed, EDGE, bits, morton};
 use crate::mesh::brick::{box_of, place};
@@ -61,8 +61,8 @@ pub(super) struct Search<'a, F: Field> {
     pub(super) axes: &'a [Vec<f32>; 3],
     pub(super) iso: f32,
     pub(super) crossed: &'a Crossed<'a>,
-    /// The places of the blocks that the surface may be in, in Morton order, and their regions, if the division went
-    /// so far.
+    /// The places of the blocks that the surface may be in, in Morton order, and their regions, if the
+    /// division went so far.
     pub(super) blocks: Option<Blocks<'a, F::Region>>,
 }
 

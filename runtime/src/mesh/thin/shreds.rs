@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! scrap:  one point of the lattice alone is on its side of the surface, among all 26 around it        an
-//! alarm thin:   a cell below the vertex, against its normal, it is outside again                           
+//! alarm thin:   a cell below the vertex, against its normal, it is outside again
 //! a vote of the vertex
 //!             __v________
 //!             __|________      a sheet

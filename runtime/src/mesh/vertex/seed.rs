@@ -1,5 +1,5 @@
-//! What vertices grow from: the cells of some of them side by side, so that all is computed for [`LANES`] of them at a
-//! time.
+//! What vertices grow from: the cells of some of them side by side, so that all is computed for [`LANES`] of
+//! them at a time.
 //!
 //! ```text
 //! mean  = sum of the crossings of the sheet / how many they are, in units of the cell
@@ -29,8 +29,8 @@ pub(super) struct Group {
     /// The low and the high corners of the boxes in which they stay.
     pub(super) low: [Lanes; 3],
     pub(super) high: [Lanes; 3],
-    /// By how much the field rises along the axes, roughly: from the low corners of their cells to the high ones,
-    /// or along the edges that their sheets cross.
+    /// By how much the field rises along the axes, roughly: from the low corners of their cells to the high
+    /// ones, or along the edges that their sheets cross.
     pub(super) rise: [Lanes; 3],
     /// By how much the field differs at most among the corners of their cells.
     pub(super) spread: Lanes,
@@ -75,9 +75,9 @@ impl Seeds {
         points
     }
 
-    /// The means of the crossings, in units of the cells, if no difference overflows, and whether that is so, 1 or 0
-    /// each. On the way notes what the corners say. (One loop for all of it is one that the compiler makes vectors
-    /// of.)
+    /// The means of the crossings, in units of the cells, if no difference overflows, and whether that is so,
+    /// 1 or 0 each. On the way notes what the corners say. (One loop for all of it is one that the compiler
+    /// makes vectors of.)
     // Plain indices become vectors.
     #[allow(clippy::needless_range_loop)]
     #[inline(always)]
@@ -116,8 +116,8 @@ impl Seeds {
     }
 }
 
-/// The mean of the crossings of a sheet, in units of the cell: each coordinate is from 0 to 1, or a little more by
-/// rounding. All edges are looked at: that is quicker than to ask.
+/// The mean of the crossings of a sheet, in units of the cell: each coordinate is from 0 to 1, or a little
+/// more by rounding. All edges are looked at: that is quicker than to ask.
 // Plain indices become vectors.
 #[allow(clippy::needless_range_loop)]
 #[inline(always)]
@@ -146,7 +146,8 @@ pub(super) fn grow(iso: f32, seeds: &[Seeds], groups: &mut [Group], points: [&mu
     }
 }
 
-/// Where along a crossed edge the surface crosses, from 0 to 1, if the field is linear there; the middle if that is no number.
+/// Where along a crossed edge the surface crosses, from 0 to 1, if the field is linear there; the middle if
+/// that is no number.
 fn crossing(iso: f32, low: f32, high: f32) -> f32 {
     let rise = high - low;
     let t = (iso - low) / rise;

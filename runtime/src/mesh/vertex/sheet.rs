@@ -37,8 +37,8 @@ pub(super) struct Sheet {
 }
 
 impl Sheet {
-    /// The sheet with a number in a cell of a brick, its edges put among the others of the brick. `values` are
-    /// those of the field at the corners.
+    /// The sheet with a number in a cell of a brick, its edges put among the others of the brick. `values`
+    /// are those of the field at the corners.
     pub(super) fn new(
         bricks: &Bricks,
         brick: usize,

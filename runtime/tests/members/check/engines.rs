@@ -1,5 +1,6 @@
-//! Scalar, lanes and machine code agree to the bit, for the field alone and for everything, at ordinary points, at NaN, at infinities and at
-//! huge numbers; and wherever the model is, on skeletons, axes and centres too, all answers are finite.
+//! Scalar, lanes and machine code agree to the bit, for the field alone and for everything, at ordinary
+//! points, at NaN, at infinities and at huge numbers; and wherever the model is, on skeletons, axes and
+//! centres too, all answers are finite.
 
 use fastrand::Rng;
 use jbt::{Evaluator, Points, Samples};

@@ -1,5 +1,6 @@
-//! Field, gradient and attributes are finite wherever coordinates are: far away, where squares overflow, at subnormal numbers, at zeros of both
-//! signs, on skeletons. Engines agree on a NaN, so nothing else would see one. Outside of the support the field is +0 there, too.
+//! Field, gradient and attributes are finite wherever coordinates are: far away, where squares overflow, at
+//! subnormal numbers, at zeros of both signs, on skeletons. Engines agree on a NaN, so nothing else would see
+//! one. Outside of the support the field is +0 there, too.
 
 use jbt::Points;
 

@@ -1,4 +1,5 @@
-//! What every row is judged by. Each check has one file, and says in its first words what it holds a member to.
+//! What every row is judged by. Each check has one file, and says in its first words what it holds a member
+//! to.
 
 mod engines;
 mod finite;

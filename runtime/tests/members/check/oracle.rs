@@ -1,14 +1,17 @@
-//! Field, attributes and gradient agree with the oracle at points all over the model: the gradient with its central differences.
+//! Field, attributes and gradient agree with the oracle at points all over the model: the gradient with its
+//! central differences.
 //!
-//! * The field and the attributes are those of `walk`, within what f32 makes of coordinates where the field is steep.
+//! * The field and the attributes are those of `walk`, within what f32 makes of coordinates where the field
+//!   is steep.
 //! * The gradient is off by less than 1e-3 of its length at 99.9 % of the points.
-//! * Nowhere does it have a wrong sign: where it is not small against the largest gradient of the model, it points to the same
-//!   side as the difference (their product is positive), and every component that is not small against the others has the sign of
-//!   the difference.
+//! * Nowhere does it have a wrong sign: where it is not small against the largest gradient of the model, it
+//!   points to the same side as the difference (their product is positive), and every component that is not
+//!   small against the others has the sign of the difference.
 //!
 //! Where the field jumps, the one on either side is right.
 //!
-//! Points near a decision (a tie, a rim: `walk` says how near) are left out, since a difference would look at both sides of it.
+//! Points near a decision (a tie, a rim: `walk` says how near) are left out, since a difference would look at
+//! both sides of it.
 
 use fastrand::Rng;
 use jbt::{CheckedTree, Engine, Points, Samples};
@@ -19,7 +22,8 @@ use crate::points;
 use crate::subject::Subject;
 
 const POINTS: usize = 10_000;
-/// The step of differences: in f64 both the error of the formula (the square of it) and that of rounding (2^-53 over it) are below 1e-9.
+/// The step of differences: in f64 both the error of the formula (the square of it) and that of rounding
+/// (2^-53 over it) are below 1e-9.
 const STEP: f64 = 1e-5;
 /// How near to a decision is too near, where the field changes by 1 for each unit of length.
 const DECISION: f64 = 10.0 * STEP;
@@ -31,8 +35,8 @@ const FAINT: f64 = 1e-3;
 /// What a gradient may be off by, relatively, and how many may be off by more: one of a thousand.
 const GRADIENT: f64 = 1e-3;
 const EXCEPTIONS: usize = 1000;
-/// What is small: a gradient against the largest one of the model, where errors count as those of one so large; where its direction
-/// does not count; a component against its gradient.
+/// What is small: a gradient against the largest one of the model, where errors count as those of one so
+/// large; where its direction does not count; a component against its gradient.
 const TINY: f64 = 1e-4;
 const FLAT: f64 = 1e-3;
 const SMALL: f64 = 1e-2;
@@ -87,7 +91,8 @@ fn compare(
     Ok(Some(Slope { at, got, expected }))
 }
 
-/// Whether this is the field on some side of a jump at a point: a falloff with an exact edge jumps at the rim.
+/// Whether this is the field on some side of a jump at a point: a falloff with an exact edge jumps at the
+/// rim.
 fn is_beside(tree: &CheckedTree, at: [f64; 3], field: f64) -> bool {
     let beside = |axis: usize, offset: f64| {
         let mut p = at;
@@ -187,7 +192,8 @@ mod tests {
         for got in [[-3.0, -4.0, 0.0], [3.0, -4.0, 0.0], [0.0; 3]] {
             assert!(judged(&[([3.0, 4.0, 0.0], got)]).is_err(), "{got:?}");
         }
-        // A component that is small against the others says nothing, nor does a gradient that is small against those elsewhere.
+        // A component that is small against the others says nothing, nor does a gradient that is small
+        // against those elsewhere.
         assert_eq!(judged(&[([3.0, 4.0, 0.001], [3.0, 4.0, -0.001])]), Ok(()));
         assert_eq!(judged(&[([1e-8, 0.0, 0.0], [-1e-8, 0.0, 0.0])]), Ok(()));
     }

@@ -1,4 +1,5 @@
-//! Ranges of boxes enclose the values in them, and the rows that matter in a box give the bits that all rows give.
+//! Ranges of boxes enclose the values in them, and the rows that matter in a box give the bits that all rows
+//! give.
 
 use fastrand::Rng;
 use jbt::prune::Region;
@@ -24,7 +25,8 @@ pub fn check(subject: &Subject) -> Verdict {
     beside_itself(subject).map_err(|wrong| format!("beside itself: {wrong}"))
 }
 
-/// The model twice, in a sum: so each of its parts is far from something and can be left out there, a lone leaf too.
+/// The model twice, in a sum: so each of its parts is far from something and can be left out there, a lone
+/// leaf too.
 fn beside_itself(subject: &Subject) -> Verdict {
     let (model, mut bounds) = (&subject.model, subject.bounds);
     let apart = 0.75 * bounds.longest_side();

@@ -1,6 +1,7 @@
 //! Outside of the support every engine's field is +0.0, to the bit.
 //!
-//! The support is a box in f64; the program knows it to within its rounding, which the box is inflated by here.
+//! The support is a box in f64; the program knows it to within its rounding, which the box is inflated by
+//! here.
 
 use fastrand::Rng;
 use jbt::Points;
@@ -9,7 +10,8 @@ use super::Verdict;
 use crate::subject::{Subject, answers};
 
 const POINTS: usize = 1000;
-/// How far outside a point has to be, as a part of the largest coordinate of the support and of its longest side together.
+/// How far outside a point has to be, as a part of the largest coordinate of the support and of its longest
+/// side together.
 const ROUNDING: f64 = 1e-5;
 /// How far outside points are, at most, as a multiple of the same.
 const FAR: f64 = 1e12;

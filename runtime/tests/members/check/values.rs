@@ -1,5 +1,6 @@
-//! Field and attributes at the named points are those that were worked out by hand: in the oracle to 1e-12, attributes to 1e-9,
-//! because the oracle takes weights of expressions by differences; on every engine to 1e-5, relatively.
+//! Field and attributes at the named points are those that were worked out by hand: in the oracle to 1e-12,
+//! attributes to 1e-9, because the oracle takes weights of expressions by differences; on every engine to
+//! 1e-5, relatively.
 
 use jbt::Points;
 use jbt_frontend::walk::walk;

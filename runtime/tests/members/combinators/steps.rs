@@ -64,7 +64,8 @@ fn limited(k: f64, s: f64) -> [f64; 2] {
     if k == 0.0 || s <= 0.0 { [0.0; 2] } else { [k - missing * missing / (4.0 * k), missing / (2.0 * k)] }
 }
 
-/// `D = K q^2 / 4` with `q = 1 - |a - b| / K`, and the derivatives of that by `a + b` and by `-|a - b|`: with `dD/dK = q (2 - q) / 4`.
+/// `D = K q^2 / 4` with `q = 1 - |a - b| / K`, and the derivatives of that by `a + b` and by `-|a - b|`: with
+/// `dD/dK = q (2 - q) / 4`.
 fn rounding(k: f64, a: f64, b: f64) -> [f64; 3] {
     let [width, slope] = limited(k, a + b);
     let q = if width == 0.0 { 0.0 } else { (1.0 - (a - b).abs() / width).max(0.0) };
@@ -180,7 +181,8 @@ fn three_at_one(k: f64) -> f64 {
     intersection(k)(of_two, 1.0)
 }
 
-/// Where the left ball is, and the right one is not inside; both fields are about as far from the iso-value, so that no slope is near 0.
+/// Where the left ball is, and the right one is not inside; both fields are about as far from the iso-value,
+/// so that no slope is near 0.
 const LEFT: [[f64; 3]; 4] = [[-0.125, 0.0, 0.0], [-0.25, 0.0, 0.0], [-0.5, 0.0, 0.0], [-0.75, 0.0, 0.0]];
 
 /// R and its derivatives.
@@ -206,7 +208,8 @@ fn power(x: f64, y: f64, p: f64) -> [f64; 3] {
     [x + y + s, slope(x), slope(y)]
 }
 
-/// A set operation by R: `R(x, y)`, `-R(-x, -y)`, `-R(-x, y)` of `x = a / iso - 1`, less its background: `iso (1 - R / B)`, at least 0.
+/// A set operation by R: `R(x, y)`, `-R(-x, -y)`, `-R(-x, y)` of `x = a / iso - 1`, less its background: `iso
+/// (1 - R / B)`, at least 0.
 fn rvachev(set: &str, r: Rvachev, number: f64, iso: f64) -> impl Fn(f64, f64) -> [f64; 3] + Copy {
     let [left, right] = match set {
         "union" => [1.0, 1.0],
@@ -278,7 +281,8 @@ fn sharp() -> [Row; 3] {
 fn rvachev_of_others() -> Vec<Row> {
     let root = 2.0f64.sqrt();
     vec![
-        // R_0 of 1 and 0 is 2 - sqrt(2) there, in units of iso: an R-intersection reaches as far as its union.
+        // R_0 of 1 and 0 is 2 - sqrt(2) there, in units of iso: an R-intersection reaches as far as its
+        // union.
         row(
             "an intersection of one alone",
             format!("rfunction intersection {{ {RED} {GREEN} }}"),

@@ -49,8 +49,9 @@ pub fn polylines() -> Vec<Row> {
                 ([0.0, 0.0, -3.0], 0.0),
             ],
         ),
-        // The radius grows by 3/5 of the way, so the flank of the first line faces (-3, 4) / 5. From the middle, with the radius 5/2, that
-        // reaches the flank after 5/2 and a distance of 1 after 7/2. The second line is the same the other way round.
+        // The radius grows by 3/5 of the way, so the flank of the first line faces (-3, 4) / 5. From the
+        // middle, with the radius 5/2, that reaches the flank after 5/2 and a distance of 1 after 7/2. The
+        // second line is the same the other way round.
         row(
             "with a radius for each point",
             "polyline { points ((0 0 0) (5 0 0) (5 5 0)) radii (1 4 1) radius 2 }",
@@ -86,8 +87,9 @@ pub fn beziers() -> Vec<Row> {
                 ([5.0, 0.0, 0.0], 0.0),
             ],
         ),
-        // y = x^2 / 3 from -3 to 3. At x = 9/8 the slope is 3/4, and what is out of it lies towards (3, -4) / 5. On the axis the nearest place is
-        // the vertex as far as 3/2, its radius of curvature; from (0, 5/2) there are two, where x^2 = 3.
+        // y = x^2 / 3 from -3 to 3. At x = 9/8 the slope is 3/4, and what is out of it lies towards (3, -4)
+        // / 5. On the axis the nearest place is the vertex as far as 3/2, its radius of curvature; from (0,
+        // 5/2) there are two, where x^2 = 3.
         row(
             "along a parabola",
             "bezier { points ((-3 3 0) (-1 -1 0) (1 -1 0) (3 3 0)) radius 4 }",
@@ -146,7 +148,8 @@ pub fn catmull_roms() -> Vec<Row> {
                 ([-2.0, 0.0, 0.0], 0.0),
             ],
         ),
-        // With w = |x| / 5 it is y = 3 w^2 (2 - w): the coefficients of a half are 3, 2, 0, 0. At w = 1/2 the slope is 3/5 (4 w - 3 w^2) = 3/4.
+        // With w = |x| / 5 it is y = 3 w^2 (2 - w): the coefficients of a half are 3, 2, 0, 0. At w = 1/2 the
+        // slope is 3/5 (4 w - 3 w^2) = 3/4.
         row(
             "through three points",
             "catmull_rom { points ((-5 3 0) (0 0 0) (5 3 0)) radius 2 }",
@@ -162,8 +165,8 @@ pub fn catmull_roms() -> Vec<Row> {
                 ([5.0 + 4.0 / 5.0, 3.0 + 3.0 / 5.0, 0.0], 0.5),
             ],
         ),
-        // The curve above the middle has the coefficients y = 1, 4/3, 4/3, 1: it is highest in the middle, 5/4. At the corners it goes across the
-        // diagonal and lies behind it.
+        // The curve above the middle has the coefficients y = 1, 4/3, 4/3, 1: it is highest in the middle,
+        // 5/4. At the corners it goes across the diagonal and lies behind it.
         row(
             "that is closed, with a radius",
             "catmull_rom { points ((1 1 0) (-1 1 0) (-1 -1 0) (1 -1 0)) radii (0.25) closed yes radius 2 }",

@@ -123,7 +123,8 @@ pub fn cones() -> Vec<Row> {
 }
 
 pub fn round_cones() -> Vec<Row> {
-    // The radius grows by k = 0.3 of the way, so the flank faces (-k, sqrt(1 - k^2)): 1 outside of the ball of radius 1.1 at x = 2.
+    // The radius grows by k = 0.3 of the way, so the flank faces (-k, sqrt(1 - k^2)): 1 outside of the ball
+    // of radius 1.1 at x = 2.
     let (k, far) = (0.3, 1.1 + 1.0);
     let beside = [2.0 - far * k, far * (1f64 - k * k).sqrt(), 0.0];
     vec![

@@ -1,4 +1,5 @@
-//! Warps that show one child several times: mirror and repetitions. Walls stand between what they show; what does not fit ends there, with a jump.
+//! Warps that show one child several times: mirror and repetitions. Walls stand between what they show; what
+//! does not fit ends there, with a jump.
 
 use crate::falloffs::soft;
 use crate::row::{Row, row};
@@ -66,7 +67,8 @@ pub(super) fn repetitions() -> Vec<Row> {
             ],
         )
         .attribute("color", [2.25, 0.0, 0.0], &[1.0, 0.0, 0.0]),
-        // The wall is at 1. On its one side the ball is 0.4 away, on the other one 1.4; the first and the last copy end where they do.
+        // The wall is at 1. On its one side the ball is 0.4 away, on the other one 1.4; the first and the
+        // last copy end where they do.
         row(
             "that walls cut",
             "repeat axis x spacing 2 count 2 { point { at (0.5 0 0) radius 2 } }",

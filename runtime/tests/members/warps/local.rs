@@ -139,7 +139,8 @@ fn weighted_deformations() -> [Row; 4] {
 /// Other warps with a weight.
 pub(super) fn weighted_twists() -> [Row; 2] {
     [
-        // At height 1/2 it is a quarter turn, which takes (1/2, 0) from (0, -1/2); half of the way is (1/4, -1/4).
+        // At height 1/2 it is a quarter turn, which takes (1/2, 0) from (0, -1/2); half of the way is (1/4,
+        // -1/4).
         row(
             "by a weight",
             "twist rate pi weighted { point { at (0.25 -0.25 0.5) radius 1 } point { at (0.5 0 1) radius 1 } }",

@@ -1,0 +1,361 @@
+//! From the IR to the list: pieces of the plan, folds, ops.
+
+use jbt_ir::pass::{Gate, Gates};
+use jbt_ir::plan::{Plan, Slot, Then};
+use jbt_ir::{Block, Entity, Fold, FoldKind, Function, Inst, InstKind, Op, Type, Value};
+use rustc_hash::FxHashSet as HashSet;
+
+use super::linear::{Data, Home, Item, Kind, Linear, Loop, LoopId, NONE, Name, Over, POINTERS, Phi};
+
+/// The list of a function in the pieces of a plan, which was made for it as the gates were.
+pub(crate) fn list(function: &Function, plan: &Plan, gates: &Gates) -> Linear {
+    let mut builder = Builder {
+        function,
+        plan,
+        gates,
+        linear: Linear::default(),
+        bindings: vec![Binding::Nothing; function.values.len()],
+        rows: vec![NONE; function.tables.len()],
+        current: NONE,
+        points: NONE,
+        depth: 0,
+        kept: Vec::new(),
+    };
+    if plan.is_whole() {
+        builder.pieces(function.body);
+    } else {
+        builder.open(Over::Strips, Vec::new());
+        builder.pieces(function.body);
+        builder.close();
+    }
+    builder.linear
+}
+
+/// What an IR value is bound to.
+#[derive(Clone, Copy)]
+enum Binding {
+    Nothing,
+    Name(Name),
+    /// To a leaf that is another one in each loop over points: the name of the last such loop and there.
+    PerPiece(Home, LoopId, Name),
+}
+
+/// The walk over a function.
+struct Builder<'a> {
+    function: &'a Function,
+    plan: &'a Plan,
+    /// What has to hold for a row to change nothing.
+    gates: &'a Gates,
+    linear: Linear,
+    bindings: Vec<Binding>,
+    /// The loop over each table that is open.
+    rows: Vec<LoopId>,
+    current: LoopId,
+    /// The loop over points that is open.
+    points: LoopId,
+    depth: usize,
+    /// What the current piece keeps.
+    kept: Vec<Value>,
+}
+
+impl<'a> Builder<'a> {
+    fn push(&mut self, item: Item) {
+        self.linear.items.push(item);
+    }
+
+    fn name(&mut self, data: Data) -> Name {
+        self.linear.names.push(data);
+        self.linear.names.len() as Name - 1
+    }
+
+    fn open(&mut self, over: Over, phis: Vec<Phi>) -> LoopId {
+        let id = self.linear.loops.len() as LoopId;
+        let open = self.linear.items.len() as u32;
+        self.linear.loops.push(Loop {
+            over,
+            parent: self.current,
+            open,
+            close: open,
+            phis,
+            inputs: 0,
+            gate: Vec::new(),
+        });
+        self.push(Item::Open(id));
+        self.current = id;
+        if let Some(table) = over.table() {
+            self.rows[table.index()] = id;
+            self.depth += 1;
+            self.linear.depth = self.linear.depth.max(self.depth);
+        }
+        id
+    }
+
+    fn close(&mut self) {
+        let id = self.current;
+        self.push(Item::Close(id));
+        let close = self.linear.items.len() as u32 - 1;
+        let data = &mut self.linear.loops[id as usize];
+        data.close = close;
+        self.current = data.parent;
+        if let Some(table) = data.over.table() {
+            self.rows[table.index()] = NONE;
+            self.depth -= 1;
+        }
+    }
+
+    /// The function's body, or that of a fold that is cut.
+    fn pieces(&mut self, block: Block) {
+        let (function, plan) = (self.function, self.plan);
+        let data = &function.blocks[block];
+        for piece in plan.pieces(block) {
+            let insts = &data.insts[piece.insts.clone()];
+            if self.has_no_work(insts, piece.then) {
+                insts.iter().for_each(|&inst| self.inst(inst));
+            } else {
+                self.points = self.open(Over::Points, Vec::new());
+                match piece.then {
+                    // The accumulators are in their slots.
+                    Then::End => self.insts(block, insts),
+                    Then::Next | Then::Fold(_) => insts.iter().for_each(|&inst| self.inst(inst)),
+                }
+                match piece.then {
+                    Then::Next => {}
+                    Then::Fold(fold) => {
+                        let (fold, _) = self.folded(fold);
+                        self.keep_all(&function.blocks[fold.body].params, &fold.initial);
+                    }
+                    Then::End if block == function.body => self.outputs(&data.results),
+                    Then::End => self.keep_all(&data.params, &data.results),
+                }
+                self.close();
+                self.points = NONE;
+                for value in std::mem::take(&mut self.kept) {
+                    self.bind_slot(value);
+                }
+            }
+            if let Then::Fold(fold) = piece.then {
+                let (fold, results) = self.folded(fold);
+                for &value in function.blocks[fold.body].params.iter().chain(results) {
+                    self.bind_slot(value);
+                }
+                self.open(Over::RowsOfStrip(fold.table), Vec::new());
+                self.pieces(fold.body);
+                self.close();
+            }
+        }
+    }
+
+    /// Whether a piece computes nothing, and the fold behind it finds its accumulators where they have to be.
+    fn has_no_work(&self, insts: &[Inst], then: Then) -> bool {
+        let is_ready = match then {
+            Then::Next => true,
+            Then::Fold(fold) => {
+                let (fold, _) = self.folded(fold);
+                self.moves(&self.function.blocks[fold.body].params, &fold.initial).next().is_none()
+            }
+            Then::End => false,
+        };
+        is_ready && insts.iter().all(|&inst| self.function.insts[inst].kind.is_leaf())
+    }
+
+    /// A fold and its results.
+    fn folded(&self, inst: Inst) -> (&'a Fold, &'a [Value]) {
+        let data = &self.function.insts[inst];
+        let InstKind::Fold(fold) = &data.kind else { unreachable!("a fold is cut, and nothing else") };
+        (fold, &data.results)
+    }
+
+    fn bind_slot(&mut self, value: Value) {
+        if let Some(slot) = self.plan.slot(value) {
+            self.bindings[value.index()] = Binding::PerPiece(Home::Slot(slot), NONE, NONE);
+        }
+    }
+
+    /// Pairs of values of which the first is to have what the second is, without those that share a slot:
+    /// they have it.
+    fn moves(&self, targets: &[Value], values: &[Value]) -> impl Iterator<Item = (Value, Value)> {
+        let pairs = targets.iter().copied().zip(values.iter().copied());
+        pairs.filter(|&(target, value)| self.plan.slot(target) != self.plan.slot(value))
+    }
+
+    /// Stores values into the slots of others, as if all were read before the first is written.
+    fn keep_all(&mut self, targets: &[Value], values: &[Value]) {
+        let moves: Vec<_> = self.moves(targets, values).collect();
+        let written: Vec<Slot> = moves.iter().filter_map(|&(target, _)| self.plan.slot(target)).collect();
+        let mut names = Vec::with_capacity(moves.len());
+        for &(_, value) in &moves {
+            let mut name = self.read(value);
+            let data = self.linear.names[name as usize];
+            if let Kind::Leaf(Home::Slot(slot)) = data.kind
+                && written.contains(&slot)
+            {
+                let from = name;
+                name = self.name(Data { kind: Kind::Computed, ..data });
+                self.push(Item::Read { to: name, from });
+            }
+            names.push(name);
+        }
+        for ((target, _), value) in moves.into_iter().zip(names) {
+            if let Some(slot) = self.plan.slot(target) {
+                self.push(Item::Keep { slot, value });
+            }
+        }
+    }
+
+    fn outputs(&mut self, results: &[Value]) {
+        for (plane, &result) in results.iter().enumerate() {
+            let value = self.read(result);
+            self.push(Item::Output { plane, value });
+        }
+    }
+
+    /// The last instructions of a block, up to its end: the gate comes as early as it can.
+    fn insts(&mut self, block: Block, insts: &[Inst]) {
+        let function = self.function;
+        let is_at_hand = |&(value, _): &(Value, f32)| {
+            let here = |&inst: &Inst| {
+                function.insts[inst].results.contains(&value) || function.operands(inst).contains(&value)
+            };
+            insts.iter().any(here) || function.blocks[block].results.contains(&value)
+        };
+        // What an earlier piece computes, and nobody reads here, is not kept.
+        let gate = self.gates[block].as_ref().filter(|Gate(gate)| gate.iter().all(is_at_hand));
+        let Some(Gate(gate)) = gate else {
+            return insts.iter().for_each(|&inst| self.inst(inst));
+        };
+        let mut wanted: HashSet<Value> = gate.iter().map(|&(value, _)| value).collect();
+        let mut is_first = vec![false; insts.len()];
+        for (at, &inst) in insts.iter().enumerate().rev() {
+            let data = &function.insts[inst];
+            is_first[at] = data.kind.is_leaf() || data.results.iter().any(|value| wanted.contains(value));
+            if is_first[at] {
+                wanted.extend(function.operands(inst));
+                if let InstKind::Fold(fold) = &data.kind {
+                    self.reads(fold.body, &mut wanted);
+                }
+            }
+        }
+        let mut both = insts.iter().zip(&is_first);
+        both.clone().filter(|&(_, &is_first)| is_first).for_each(|(&inst, _)| self.inst(inst));
+        let gate: Vec<_> = gate.iter().map(|&(value, number)| (self.read(value), number.to_bits())).collect();
+        let id = self.current;
+        self.linear.loops[id as usize].gate = gate;
+        self.push(Item::Skip(id));
+        both.by_ref().filter(|&(_, &is_first)| !is_first).for_each(|(&inst, _)| self.inst(inst));
+    }
+
+    /// What a block and those in it read.
+    fn reads(&self, block: Block, read: &mut HashSet<Value>) {
+        let function = self.function;
+        read.extend(&function.blocks[block].results);
+        for &inst in &function.blocks[block].insts {
+            read.extend(function.operands(inst));
+            if let InstKind::Fold(fold) = &function.insts[inst].kind {
+                self.reads(fold.body, read);
+            }
+        }
+    }
+
+    fn inst(&mut self, inst: Inst) {
+        let function = self.function;
+        let data = &function.insts[inst];
+        let result = data.results.first().copied();
+        match &data.kind {
+            InstKind::Input(index) => self.bind_leaf(result, Home::Input(*index)),
+            InstKind::Constant(number) => self.bind_leaf(result, Home::Number(number.to_bits())),
+            InstKind::BitsConstant(bits) => self.bind_leaf(result, Home::Number(*bits)),
+            InstKind::Column { table, column } => self.bind_leaf(result, Home::Column(*table, *column)),
+            InstKind::Op { op, args } => {
+                let result = data.results[0];
+                self.op(*op, args, result);
+                if let Some(slot) = self.plan.slot(result) {
+                    let value = self.read(result);
+                    self.push(Item::Keep { slot, value });
+                    self.kept.push(result);
+                }
+            }
+            InstKind::Fold(fold) => self.fold(fold, &data.results),
+        }
+    }
+
+    fn bind_leaf(&mut self, value: Option<Value>, home: Home) {
+        let value = value.expect("a verified leaf defines one value").index();
+        let scope = match home {
+            Home::Number(_) => NONE,
+            Home::Column(table, _) => self.rows[table.index()],
+            Home::Input(_) | Home::Slot(_) => {
+                self.bindings[value] = Binding::PerPiece(home, NONE, NONE);
+                return;
+            }
+        };
+        let data = Data { kind: Kind::Leaf(home), is_uniform: true, is_mask: false, scope };
+        self.bindings[value] = Binding::Name(self.name(data));
+    }
+
+    /// The name of a value that is read here.
+    fn read(&mut self, value: Value) -> Name {
+        match self.bindings[value.index()] {
+            Binding::Nothing => unreachable!("a verified function defines values before it uses them"),
+            Binding::Name(name) => name,
+            Binding::PerPiece(_, points, name) if points == self.points => name,
+            Binding::PerPiece(home, ..) => {
+                let is_mask = self.function.values[value] == Type::Mask;
+                let data = Data { kind: Kind::Leaf(home), is_uniform: false, is_mask, scope: self.points };
+                let name = self.name(data);
+                if let Home::Input(index) = home
+                    && index < POINTERS
+                {
+                    self.linear.loops[self.points as usize].inputs |= 1 << index;
+                }
+                self.bindings[value.index()] = Binding::PerPiece(home, self.points, name);
+                name
+            }
+        }
+    }
+
+    fn op(&mut self, op: Op, args: &[Value], result: Value) {
+        if matches!(op, Op::Hold | Op::ToBits | Op::FromBits) {
+            let name = self.read(args[0]);
+            self.bindings[result.index()] = Binding::Name(name);
+            return;
+        }
+        let mut names = [NONE; 3];
+        for (name, &arg) in names.iter_mut().zip(args) {
+            *name = self.read(arg);
+        }
+        let mut known = names.iter().filter(|&&name| name != NONE);
+        let is_uniform = known.all(|&name| self.linear.names[name as usize].is_uniform);
+        let is_mask = op.result() == Type::Mask;
+        let to = self.name(Data { kind: Kind::Computed, is_uniform, is_mask, scope: self.current });
+        self.push(Item::Op { op, to, args: names });
+        self.bindings[result.index()] = Binding::Name(to);
+    }
+
+    /// A fold that is not cut.
+    fn fold(&mut self, fold: &Fold, results: &[Value]) {
+        let function = self.function;
+        let body = &function.blocks[fold.body];
+        let id = self.linear.loops.len() as LoopId;
+        let mut phis = Vec::with_capacity(fold.initial.len());
+        for (&initial, &param) in fold.initial.iter().zip(&body.params) {
+            let initial = self.read(initial);
+            let is_mask = function.values[param] == Type::Mask;
+            let scope = self.current;
+            let value = self.name(Data { kind: Kind::Phi(id), is_uniform: false, is_mask, scope });
+            phis.push(Phi { value, initial, next: NONE });
+            self.bindings[param.index()] = Binding::Name(value);
+        }
+        let is_guard = fold.kind == FoldKind::Guard;
+        let over = if is_guard { Over::Guard(fold.table) } else { Over::Rows(fold.table) };
+        self.open(over, phis);
+        self.insts(fold.body, &body.insts);
+        for (index, &next) in body.results.iter().enumerate() {
+            let next = self.read(next);
+            self.linear.loops[id as usize].phis[index].next = next;
+        }
+        self.close();
+        for (&result, phi) in results.iter().zip(&self.linear.loops[id as usize].phis) {
+            self.bindings[result.index()] = Binding::Name(phi.value);
+        }
+    }
+}
