@@ -30,7 +30,7 @@ pub fn answers(tree: &CheckedTree, evaluator: &Evaluator, points: &Points) {
     for index in indices() {
         let p = points.get(index).map(f64::from);
         let expected = walk(tree, p);
-        if expected.decision < DECISION {
+        if expected.kink_distance < DECISION {
             continue;
         }
         compared += 1;

@@ -95,7 +95,7 @@ pub(crate) fn atan2<D: Domain>(d: &mut D, y: D::Real, x: D::Real) -> D::Real {
     // So no quotient is NaN, not even where a range has the origin in it.
     let size = d.max(size, least);
     let size = d.min(size, most);
-    let size = d.hold(size);
+    let size = d.stop_gradient(size);
     let mut part = |side| {
         // Ranges do not know that no side is longer than the longer one. In this order a tie gives the side,
         // and its slope.

@@ -38,7 +38,7 @@ pub struct Sample {
     ///
     /// Where this is small, gradients and attributes of another engine may differ: it may have decided
     /// otherwise.
-    pub decision: f64,
+    pub kink_distance: f64,
 }
 
 /// The values of all attribute groups at a leaf.
@@ -60,7 +60,7 @@ type Way = Rc<[Given]>;
 #[derive(Clone)]
 struct Answer {
     field: f64,
-    decision: f64,
+    kink_distance: f64,
     /// The field is zero around the point, not only at it: all leaves that matter are out of reach.
     silent: bool,
     /// The mean of the leaves' values, for each group.
@@ -131,15 +131,15 @@ impl Question for Samples<'_> {
     }
 
     fn mark(&self, warp: &Warp, p: DVec3, weight: Option<&Answer>) -> f64 {
-        let Some(weight) = weight else { return warp.decision(p) };
+        let Some(weight) = weight else { return warp.kink_distance(p) };
         // Where the weight is clamped, there is a crease.
         let clamp = if weight.silent { f64::INFINITY } else { weight.field.abs() };
         let clamp = clamp.min((weight.field - 1.0).abs());
-        warp.decision(p).min(weight.decision).min(clamp)
+        warp.kink_distance(p).min(weight.kink_distance).min(clamp)
     }
 
     fn marked(&self, answer: &mut Answer, crease: f64) {
-        answer.decision = answer.decision.min(crease);
+        answer.kink_distance = answer.kink_distance.min(crease);
     }
 }
 
@@ -160,10 +160,12 @@ pub fn walk_gradient(tree: &CheckedTree, p: [f64; 3], step: f64) -> [f64; 3] {
 fn given(value: &AttributeValue, p: DVec3) -> Given {
     match value {
         AttributeValue::Numbers(numbers) => Given::Value(numbers.clone(), f64::INFINITY),
-        AttributeValue::Textured(textured) => Given::Value(textured.value(p), textured.texture.decision(p)),
+        AttributeValue::Textured(textured) => {
+            Given::Value(textured.value(p), textured.texture.kink_distance(p))
+        }
         AttributeValue::Uv(map) => Given::Uv(*map),
         AttributeValue::Expressed(expression) => {
-            Given::Value(expression.values(p), expression.decision(p, &[]))
+            Given::Value(expression.values(p), expression.kink_distance(p, &[]))
         }
     }
 }
@@ -175,8 +177,8 @@ fn values_at(way: &Way, skeleton: &Skeleton, p: DVec3) -> (Values, f64) {
         Given::Uv(map) => map.apply(skeleton.uv(p)).to_vec(),
     };
     let jump = |given: &Given| match given {
-        Given::Value(_, decision) => *decision,
-        Given::Uv(_) => skeleton.uv_decision(p),
+        Given::Value(_, kink_distance) => *kink_distance,
+        Given::Uv(_) => skeleton.uv_kink_distance(p),
     };
     (way.iter().map(value).collect(), way.iter().map(jump).fold(f64::INFINITY, f64::min))
 }
@@ -189,8 +191,8 @@ fn primitive(leaf: &Primitive, p: DVec3, way: &Way) -> Answer {
     // At the tip of a falloff, as at the axis of a ring, the gradient jumps.
     let tip = if leaf.falloff.is_pointed() { s.sqrt() * leaf.radius } else { f64::INFINITY };
     let (values, jump) = values_at(way, &leaf.skeleton, p);
-    let decision = if silent { rim } else { rim.min(tip).min(jump).min(leaf.skeleton.decision(p)) };
-    Answer { field, decision, silent, mean: values.clone(), dominant: values, share: 1.0, second: 0.0 }
+    let kink_distance = if silent { rim } else { rim.min(tip).min(jump).min(leaf.skeleton.kink_distance(p)) };
+    Answer { field, kink_distance, silent, mean: values.clone(), dominant: values, share: 1.0, second: 0.0 }
 }
 
 fn combine(combinator: Combinator, iso: f64, children: &[Answer], defaults: &Values) -> Answer {
@@ -201,8 +203,8 @@ fn combine(combinator: Combinator, iso: f64, children: &[Answer], defaults: &Val
     let fields: Vec<f64> = children.iter().map(|child| child.field).collect();
     let field = combinator.field(&fields, iso);
     let weights = combinator.weights(&fields, iso);
-    let (decision, silent) = decide(combinator, iso, children, combinator.winner(&fields, iso), field);
-    mixed(children, &weights, defaults, (field, decision, silent))
+    let (kink_distance, silent) = decide(combinator, iso, children, combinator.winner(&fields, iso), field);
+    mixed(children, &weights, defaults, (field, kink_distance, silent))
 }
 
 /// The field of a formula, and the attributes of the leaf that it is, of its only child, or of several by
@@ -216,39 +218,45 @@ fn express(
 ) -> Answer {
     let fields: Vec<f64> = children.iter().map(|child| child.field).collect();
     let field = expression.field(p, &fields);
-    let heard = expression.decision(p, &fields);
-    let decision = children.iter().fold(heard, |d, child| d.min(child.decision));
+    let heard = expression.kink_distance(p, &fields);
+    let kink_distance = children.iter().fold(heard, |d, child| d.min(child.kink_distance));
     let silent = !children.is_empty() && children.iter().all(|child| child.silent) && expression.vanishes();
     match children {
         [] => {
-            let (mean, dominant, decision) = (values.clone(), values, decision.min(jump));
-            Answer { field, decision, silent, mean, dominant, share: 1.0, second: 0.0 }
+            let (mean, dominant, kink_distance) = (values.clone(), values, kink_distance.min(jump));
+            Answer { field, kink_distance, silent, mean, dominant, share: 1.0, second: 0.0 }
         }
         [child] => {
-            let decision = if child.silent { decision } else { decision.min(child.field.abs()) };
-            mixed(children, &[f64::from(u8::from(child.field != 0.0))], defaults, (field, decision, silent))
+            let kink_distance =
+                if child.silent { kink_distance } else { kink_distance.min(child.field.abs()) };
+            mixed(
+                children,
+                &[f64::from(u8::from(child.field != 0.0))],
+                defaults,
+                (field, kink_distance, silent),
+            )
         }
         _ => {
             let weights = expression.weights(p, &fields);
             let total: f64 = weights.iter().sum();
             // Where the weight falls to zero, attributes jump to their defaults.
-            let decision = if silent { decision } else { decision.min(total) };
-            mixed(children, &weights, defaults, (field, decision, silent))
+            let kink_distance = if silent { kink_distance } else { kink_distance.min(total) };
+            mixed(children, &weights, defaults, (field, kink_distance, silent))
         }
     }
 }
 
-/// The answer of a node with this field and decision, whose attributes are those of its children by weight.
+/// The answer of a node with this field and distance to a kink, whose attributes are those of its children by weight.
 fn mixed(
     children: &[Answer],
     weights: &[f64],
     defaults: &Values,
-    (field, decision, silent): (f64, f64, bool),
+    (field, kink_distance, silent): (f64, f64, bool),
 ) -> Answer {
     let total: f64 = weights.iter().sum();
     if total <= 0.0 {
         let (mean, dominant) = (defaults.clone(), defaults.clone());
-        return Answer { field, decision, silent, mean, dominant, share: 1.0, second: 0.0 };
+        return Answer { field, kink_distance, silent, mean, dominant, share: 1.0, second: 0.0 };
     }
     let mut mean: Vec<Vec<f64>> = defaults.iter().map(|default| vec![0.0; default.len()]).collect();
     let mut dominant = defaults;
@@ -269,10 +277,10 @@ fn mixed(
         }
         second = second.max(part * child.second);
     }
-    Answer { field, decision, silent, mean: mean.into(), dominant: dominant.clone(), share, second }
+    Answer { field, kink_distance, silent, mean: mean.into(), dominant: dominant.clone(), share, second }
 }
 
-/// How far a node is from any decision that reaches its answer, and whether its field is zero all around.
+/// How far a node is from any kink that reaches its answer, and whether its field is zero all around.
 fn decide(
     combinator: Combinator,
     iso: f64,
@@ -280,7 +288,7 @@ fn decide(
     winner: Option<usize>,
     field: f64,
 ) -> (f64, bool) {
-    let nearest = |d: f64, child: &Answer| d.min(child.decision);
+    let nearest = |d: f64, child: &Answer| d.min(child.kink_distance);
     let all_nearest = || children.iter().fold(f64::INFINITY, nearest);
     if children.iter().all(|child| child.silent) {
         // The complement of nothing is something, but it is the same all around.
@@ -300,12 +308,12 @@ fn decide(
             if field == 0.0 && children.iter().any(|child| child.silent) {
                 return (all_nearest(), true);
             }
-            (combinator.decision(&fields, iso).min(all_nearest()).min(field.abs()), false)
+            (combinator.kink_distance(&fields, iso).min(all_nearest()).min(field.abs()), false)
         }
         Combinator::Complement | Combinator::Clamp { .. } | Combinator::Shell(_) | Combinator::Offset(_) => {
             let child = &children[0];
             let fading = child.field.abs().min(field.abs());
-            (combinator.decision(&[child.field], iso).min(child.decision).min(fading), false)
+            (combinator.kink_distance(&[child.field], iso).min(child.kink_distance).min(fading), false)
         }
         Combinator::Sum | Combinator::Ricci(_) => {
             // Where the total weight falls to zero, attributes jump to their defaults.
@@ -326,7 +334,7 @@ fn decide(
             let silent = winner.silent && field == 0.0;
             // Where the field falls to zero, attributes jump to their defaults.
             let fading = if silent { f64::INFINITY } else { field.abs() };
-            (combinator.decision(&rivals, iso).min(winner.decision).min(fading), silent)
+            (combinator.kink_distance(&rivals, iso).min(winner.kink_distance).min(fading), silent)
         }
     }
 }
@@ -340,5 +348,5 @@ fn finish(tree: &CheckedTree, root: &Answer) -> Sample {
     let attributes = tree.attributes().iter().zip(values).map(pick).collect();
     let dominance = tree.attributes().iter().any(|group| group.mixing == Mixing::Dominant);
     let lead = if dominance { root.share - root.second } else { f64::INFINITY };
-    Sample { field: root.field, attributes, decision: root.decision.min(lead) }
+    Sample { field: root.field, attributes, kink_distance: root.kink_distance.min(lead) }
 }

@@ -243,7 +243,7 @@ fn gradients_agree_with_differences() {
             let found = compiled(&tree, p);
             let large = oracle.field.abs().max(1.0);
             assert!((found[0] - oracle.field).abs() < 2e-5 * large, "{combinator:?} at {p:?}: {found:?}");
-            if oracle.decision < 1e-3 || oracle.field < 1e-3 {
+            if oracle.kink_distance < 1e-3 || oracle.field < 1e-3 {
                 continue;
             }
             tried += 1;
@@ -276,7 +276,7 @@ fn weights_are_fields_times_partial_derivatives() {
         }
         for _ in 0..100 {
             let f = [0.1 + rng.f64(), 0.1 + rng.f64()];
-            if combinator.decision(&f, 0.5) < 1e-2 || combinator.field(&f, 0.5) < 1e-3 {
+            if combinator.kink_distance(&f, 0.5) < 1e-2 || combinator.field(&f, 0.5) < 1e-3 {
                 continue;
             }
             let partial = |i: usize| {

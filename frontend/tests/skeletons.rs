@@ -57,7 +57,7 @@ fn gradients_are_those_of_plain_formulas() {
                 let at = p.map(f64::from);
                 let sample = walk(&tree, at);
                 assert!((f64::from(field) - sample.field).abs() < 2e-5, "{} at {p:?}: {field}", kind.name());
-                if sample.decision < 1e-3 || sample.field == 0.0 {
+                if sample.kink_distance < 1e-3 || sample.field == 0.0 {
                     continue;
                 }
                 compared += 1;

@@ -39,7 +39,7 @@ fn the_peanut() {
     let sample = at(&peanut, [0.0, 0.1, 0.0]);
     assert!((sample.field - (0.794_976 + 0.5)).abs() < 1e-12);
     assert!(near(color(&peanut, [0.0, 0.1, 0.0]), [0.613_892, 0.0, 0.386_108], 5e-7));
-    assert_eq!(sample.decision, 0.75, "of all, the rim of the farther ball is nearest: 1 - s = 0.75");
+    assert_eq!(sample.kink_distance, 0.75, "of all, the rim of the farther ball is nearest: 1 - s = 0.75");
 }
 
 #[test]
@@ -69,7 +69,7 @@ fn union_intersection_and_difference() {
     let (a, b) = (level(0.3).color(RED), level(0.6).color(BLUE));
     assert_eq!((at(&(&a | &b), HERE).field, color(&(&a | &b), HERE)), (0.6, BLUE));
     assert_eq!((at(&(&a & &b), HERE).field, color(&(&a & &b), HERE)), (0.3, RED));
-    assert!((at(&(&a | &b), HERE).decision - 0.3).abs() < 1e-15);
+    assert!((at(&(&a | &b), HERE).kink_distance - 0.3).abs() < 1e-15);
     // With iso 1/2, a - b is min(a, max(0, 1 - b)).
     let cut = &b - &a;
     assert_eq!(
@@ -87,7 +87,7 @@ fn union_intersection_and_difference() {
     let tie = [level(0.5).color(RED), level(0.5).color(BLUE)];
     for combinator in [Combinator::Union, Combinator::Intersection, Combinator::Difference] {
         let tree = Tree::combine(combinator, tie.clone());
-        assert_eq!((color(&tree, HERE), at(&tree, HERE).decision), (RED, 0.0));
+        assert_eq!((color(&tree, HERE), at(&tree, HERE).kink_distance), (RED, 0.0));
     }
 }
 
@@ -135,7 +135,11 @@ fn dominance() {
         [4.0]
     );
     let tie = walk(&model(three), HERE);
-    assert_eq!((tie.attributes[1].as_slice(), tie.decision), ([1.0].as_slice(), 0.0), "the first of equals");
+    assert_eq!(
+        (tie.attributes[1].as_slice(), tie.kink_distance),
+        ([1.0].as_slice(), 0.0),
+        "the first of equals"
+    );
     let none = walk(&model(part(1.0, 1.0) + part(1.0, 2.0)), [5.0, 0.0, 0.0]);
     assert_eq!(none.attributes[1], [-1.0]);
 }
@@ -154,7 +158,10 @@ fn textures_lie_in_the_space_of_their_node() {
     // A quarter turn at z = 1/2: (-0.1, 0.1) comes from (0.1, 0.1).
     let q = [-0.1, 0.1, 0.5 - 1e-9];
     assert_eq!(color(&twisted, q), color(&checked(&ball), [0.1, 0.1, 0.5 - 1e-9]));
-    assert!((at(&checked(&ball), [0.1, 0.2, 0.3]).decision - 0.1).abs() < 1e-15, "0.1 from the plane x = 0");
+    assert!(
+        (at(&checked(&ball), [0.1, 0.2, 0.3]).kink_distance - 0.1).abs() < 1e-15,
+        "0.1 from the plane x = 0"
+    );
     // A nearer node wins, and weights mix as always.
     assert_eq!(color(&checked(&ball.color(GREEN)), [0.1; 3]), GREEN);
     let mixed = checked(&ball) + ball.color(GREEN);
@@ -239,18 +246,18 @@ fn only_decisions_that_matter_count() {
     let (ball, far) = (point(HERE, 1.0), point([9.0, 0.0, 0.0], 1.0));
     // Inside the ball, a union that is out of reach decides nothing; its ties are of zeros.
     let tie = &far | &far.color(RED);
-    assert!(at(&(&ball + &tie), [0.1, 0.0, 0.0]).decision > 0.9);
-    assert!(at(&(&ball - &tie), [0.1, 0.0, 0.0]).decision > 0.01);
-    assert!(at(&(&ball & &far & &tie), [0.1, 0.0, 0.0]).decision > 0.9);
-    assert!(at(&tie, [0.1, 0.0, 0.0]).decision > 1.0);
+    assert!(at(&(&ball + &tie), [0.1, 0.0, 0.0]).kink_distance > 0.9);
+    assert!(at(&(&ball - &tie), [0.1, 0.0, 0.0]).kink_distance > 0.01);
+    assert!(at(&(&ball & &far & &tie), [0.1, 0.0, 0.0]).kink_distance > 0.9);
+    assert!(at(&tie, [0.1, 0.0, 0.0]).kink_distance > 1.0);
     // The axis of a ring matters where the ring has a field that is used.
     let torus = ring(HERE, [0.0, 0.0, 1.0], 0.5, 1.0);
-    assert_eq!(at(&(&torus + &ball), HERE).decision, 0.0);
-    assert!(at(&(&torus | &ball), HERE).decision > 0.01, "here the ball wins");
+    assert_eq!(at(&(&torus + &ball), HERE).kink_distance, 0.0);
+    assert!(at(&(&torus | &ball), HERE).kink_distance > 0.01, "here the ball wins");
     // Ties, clamps and rims do matter.
-    assert_eq!(at(&(&ball | &ball), [0.1, 0.0, 0.0]).decision, 0.0);
-    assert!(at(&ball, [1.0 - 1e-9, 0.0, 0.0]).decision < 1e-8);
-    assert_eq!(at(&(&ball - &ball), [0.5, 0.0, 0.0]).decision, 0.0);
+    assert_eq!(at(&(&ball | &ball), [0.1, 0.0, 0.0]).kink_distance, 0.0);
+    assert!(at(&ball, [1.0 - 1e-9, 0.0, 0.0]).kink_distance < 1e-8);
+    assert_eq!(at(&(&ball - &ball), [0.5, 0.0, 0.0]).kink_distance, 0.0);
 }
 
 #[test]

@@ -56,7 +56,7 @@ fn gradients_are_differences_of_the_oracle() {
             for _ in 0..40 {
                 let p = DVec3::from(mild::vector(&mut rng, 1.5)).as_vec3().as_dvec3();
                 let sample = walk(&tree, p.into());
-                if sample.decision < 2e-3 || sample.field < 1e-3 {
+                if sample.kink_distance < 2e-3 || sample.field < 1e-3 {
                     continue;
                 }
                 let expected = DVec3::from(walk_gradient(&tree, p.into(), 1e-6));
@@ -96,7 +96,7 @@ fn gradients_of_weighted_warps_are_differences_of_the_oracle() {
             let expected = DVec3::from(walk_gradient(&tree, p.into(), 1e-6));
             let coarse = DVec3::from(walk_gradient(&tree, p.into(), 4e-6));
             let size = 1.0 + expected.length();
-            if sample.decision < 2e-3 || size > 100.0 || expected.distance(coarse) > 1e-5 * size {
+            if sample.kink_distance < 2e-3 || size > 100.0 || expected.distance(coarse) > 1e-5 * size {
                 continue;
             }
             let found = gradient(&program, p);

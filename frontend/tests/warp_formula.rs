@@ -42,7 +42,7 @@ fn compare(tree: &CheckedTree, rng: &mut Rng) -> usize {
         let expected = DVec3::from(walk_gradient(tree, p.into(), 1e-6));
         let coarse = DVec3::from(walk_gradient(tree, p.into(), 4e-6));
         let size = 1.0 + expected.length();
-        if sample.decision < 2e-3 || size > 100.0 || expected.distance(coarse) > 1e-5 * size {
+        if sample.kink_distance < 2e-3 || size > 100.0 || expected.distance(coarse) > 1e-5 * size {
             continue;
         }
         let (field, found) = run(&program, p);

@@ -362,7 +362,7 @@ macro_rules! for_each_op {
             // ── differentiation ──────────────────────────────────────────────────────────────────────
 
             /// `a`, bit for bit, with zero tangent: a running scale that cancels must not be differentiated.
-            Hold hold(a: real) -> real, renames;
+            StopGradient stop_gradient(a: real) -> real, renames;
         }
     };
 }

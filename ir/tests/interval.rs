@@ -232,7 +232,7 @@ impl Tame {
             Op::Div,
             Op::Sin,
             Op::Cos,
-            Op::Hold,
+            Op::StopGradient,
             Op::Select,
             Op::Sqrt,
         ];

@@ -287,7 +287,7 @@ fn outputs_may_be_constants_inputs_and_one_value_twice() {
     let (x, seven) = (b.input(0), b.constant(7.0));
     let bits = b.to_bits(x);
     let again = b.from_bits(bits);
-    let held = b.hold(again);
+    let held = b.stop_gradient(again);
     let function = finish(b, &[seven, x, x, held]);
     assert_eq!(tape(&function).registers(), 1, "ops that rename cost nothing");
     let x = vec![vec![1.0, -0.0, f32::INFINITY]];

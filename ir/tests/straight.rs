@@ -80,7 +80,7 @@ fn planes() -> Function {
 /// The same, and after it more code and another table. That code makes v13 of v4, v0 and what the tables
 /// hold.
 fn with_points(table: &str, code: &str) -> Function {
-    let code = if code.is_empty() { "v13 = hold v4" } else { code };
+    let code = if code.is_empty() { "v13 = stop_gradient v4" } else { code };
     let text = format!(
         r#"function "union" (x, y, z) -> (field) {{
     table t0 "scene" (iso2)

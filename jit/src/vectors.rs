@@ -235,7 +235,7 @@ impl<const K: usize> Domain for Vectors<'_, K> {
         math::pow(self, a, b)
     }
 
-    fn hold(&mut self, a: [Value; K]) -> [Value; K] {
+    fn stop_gradient(&mut self, a: [Value; K]) -> [Value; K] {
         a
     }
 }

@@ -324,7 +324,7 @@ fn grow(b: &mut FunctionBuilder, random: &mut fastrand::Rng, known: &mut Vec<Val
             7 => b.sqrt(x),
             8 => b.min(x, y),
             9 => b.max(x, y),
-            10 => b.hold(x),
+            10 => b.stop_gradient(x),
             11 => {
                 let mask = b.le(x, y);
                 b.select(mask, y, z)

@@ -53,7 +53,7 @@ fn groups_of_any_width_go_all_the_way() {
         assert_eq!(found.len(), width);
         for index in 0..points.len() {
             let sample = walk(&tree, points.get(index).map(f64::from));
-            if sample.decision > 1e-5 {
+            if sample.kink_distance > 1e-5 {
                 for (plane, expected) in found.iter().zip(&sample.attributes[1]) {
                     assert!((f64::from(plane[index]) - expected).abs() < 1e-5, "{width} reals");
                 }

@@ -242,12 +242,12 @@ fn compare_oracle(
             assert!(
                 (value - expected).abs() <= bound,
                 "{what}: {name} is {value}, the oracle has {expected} (decision {:e}) at {point:?}\n{}",
-                oracle.decision,
+                oracle.kink_distance,
                 print(model)
             );
         };
         let gradient = answers.gradient().expect("asked for").map(|plane| f64::from(plane[index]));
-        if jumps && oracle.decision < 1e-5 {
+        if jumps && oracle.kink_distance < 1e-5 {
             // On which side of a wall a point on it is, engines may see otherwise than the oracle.
             continue;
         }
@@ -256,7 +256,7 @@ fn compare_oracle(
         let steep = gradient.iter().fold(size, |steep: f64, g| steep.max(g.abs()));
         close(field, oracle.field, FIELD_BOUND * steep, "the field");
         tally.compared.fetch_add(1, Ordering::Relaxed);
-        if oracle.decision < 1e-4 * steep || field < 1e-3 {
+        if oracle.kink_distance < 1e-4 * steep || field < 1e-3 {
             continue;
         }
         let differences = walk_gradient(tree, point, 1e-6);

@@ -61,7 +61,7 @@ fn gradients_are_those_of_the_oracle() {
             for index in 0..points.len() {
                 let p = points.get(index).map(f64::from);
                 let oracle = walk(&checked, p);
-                if oracle.decision < 1e-4 {
+                if oracle.kink_distance < 1e-4 {
                     continue;
                 }
                 let [fine, coarse] = [1e-6, 1e-5].map(|step| walk_gradient(&checked, p, step));

@@ -71,7 +71,7 @@ fn coloured_parts_have_the_values_of_the_oracle() {
             let oracle = jbt_frontend::walk::walk(tree, points.get(index).map(f64::from));
             let field = f64::from(samples.field()[index]);
             assert!((field - oracle.field).abs() < 1e-4, "{name}: {field}, not {}", oracle.field);
-            if oracle.decision < 1e-3 || field < 1e-3 {
+            if oracle.kink_distance < 1e-3 || field < 1e-3 {
                 continue;
             }
             compared += 1;

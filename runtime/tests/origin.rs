@@ -216,7 +216,7 @@ fn fields_far_away_are_those_of_the_oracle() {
             let p = points.world(index);
             let oracle = walk(&far, p);
             let steep = walk_gradient(&far, p, 1e-5).iter().fold(1.0, |most: f64, g| most.max(g.abs()));
-            if oracle.decision < 1e-4 * steep {
+            if oracle.kink_distance < 1e-4 * steep {
                 continue;
             }
             let off = (f64::from(*field) - oracle.field).abs();
@@ -265,7 +265,7 @@ fn try_shape(shape: u64) -> usize {
             let gradient = samples.gradient().expect("asked for").map(|plane| f64::from(plane[index]));
             let steep = gradient.iter().fold(oracle.field.abs().max(1.0), |steep: f64, g| steep.max(g.abs()));
             let off = (f64::from(samples.field()[index]) - oracle.field).abs() / steep;
-            (off, oracle.decision < 1e-3 * steep)
+            (off, oracle.kink_distance < 1e-3 * steep)
         };
         let ((off_here, decided), (off_there, decided_there)) =
             (off(&home, &near, &here), off(&far, &away, &there));

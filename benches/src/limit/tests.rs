@@ -37,7 +37,7 @@ fn dense_answers_agree_with_the_oracle_at_any_length() {
             for axis in 0..3 {
                 assert_near("the slope", gradient[1 + axis][index], slope[axis], 1.0);
                 assert_near("the slope", full[1 + axis][index], slope[axis], 1.0);
-                if expected.decision > 1e-5 {
+                if expected.kink_distance > 1e-5 {
                     assert_near("the colour", full[4 + axis][index], expected.attributes[0][axis], 0.1);
                 }
             }

@@ -58,7 +58,7 @@ fn compare_point(what: &str, tree: &CheckedTree, point: [f32; 3], fused: &[f64],
         near(&format!("{what} the difference"), apart[1 + axis], expected, 5.0 * GRADIENT_BOUND * steep);
     }
     let smooth = fine.iter().zip(coarse).all(|(fine, coarse)| (fine - coarse).abs() < 1e-4 * steep);
-    if oracle.decision < 1e-4 * steep || oracle.field < 1e-3 || !smooth {
+    if oracle.kink_distance < 1e-4 * steep || oracle.field < 1e-3 || !smooth {
         return false;
     }
     for (slope, expected) in fused[1..4].iter().zip(fine) {

@@ -24,7 +24,7 @@ impl Unary for Clamp {
         f.max(numbers[0]).min(numbers[1])
     }
 
-    fn decision(self, f: f64, numbers: &[f64], _: f64) -> f64 {
+    fn kink_distance(self, f: f64, numbers: &[f64], _: f64) -> f64 {
         (f - numbers[0]).abs().min((f - numbers[1]).abs())
     }
 

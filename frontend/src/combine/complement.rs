@@ -21,7 +21,7 @@ impl Unary for Complement {
         2.0 * iso - f
     }
 
-    fn decision(self, _: f64, _: &[f64], _: f64) -> f64 {
+    fn kink_distance(self, _: f64, _: &[f64], _: f64) -> f64 {
         f64::INFINITY
     }
 

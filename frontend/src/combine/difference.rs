@@ -30,7 +30,7 @@ pub(super) fn winner(fields: &[f64], iso: f64) -> usize {
     if cuts && fields[largest] > 0.0 { largest } else { 0 }
 }
 
-pub(super) fn decision(fields: &[f64], iso: f64) -> f64 {
+pub(super) fn kink_distance(fields: &[f64], iso: f64) -> f64 {
     let Some(largest) = fields[1..].iter().copied().reduce(f64::max) else {
         return f64::INFINITY;
     };

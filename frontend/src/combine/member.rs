@@ -14,7 +14,7 @@ pub(super) trait Unary: Copy {
     fn field(self, f: f64, numbers: &[f64], iso: f64) -> f64;
 
     /// How far a field is from where another formula holds.
-    fn decision(self, f: f64, numbers: &[f64], iso: f64) -> f64;
+    fn kink_distance(self, f: f64, numbers: &[f64], iso: f64) -> f64;
 
     /// Whether the field can never be negative, if that of the child can (`false`) or cannot (`true`).
     fn is_non_negative(self, child: bool, numbers: &[f64]) -> bool;
@@ -56,7 +56,7 @@ pub(super) trait Step: Copy {
     fn pair(self, sides: [f64; 2], number: f64, iso: f64) -> Pair<f64>;
 
     /// How far two fields are from where another formula holds, or another side wins.
-    fn decision(self, sides: [f64; 2], number: f64, iso: f64) -> f64;
+    fn kink_distance(self, sides: [f64; 2], number: f64, iso: f64) -> f64;
 
     /// Where it can be something else than 0.
     fn reach(self) -> Reach;

@@ -255,18 +255,18 @@ impl Combinator {
     /// How far the fields are from where another child would win, or another formula hold; infinity if
     /// nothing is decided.
     #[must_use]
-    pub fn decision(self, fields: &[f64], iso: f64) -> f64 {
+    pub fn kink_distance(self, fields: &[f64], iso: f64) -> f64 {
         match self {
-            Self::Ricci(n) if n < 0.0 => ricci::decision(fields),
+            Self::Ricci(n) if n < 0.0 => ricci::kink_distance(fields),
             Self::Sum | Self::Ricci(_) | Self::Product => f64::INFINITY,
-            Self::Union => union::decision(fields),
-            Self::Intersection => intersection::decision(fields),
-            Self::Difference => difference::decision(fields, iso),
+            Self::Union => union::kink_distance(fields),
+            Self::Intersection => intersection::kink_distance(fields),
+            Self::Difference => difference::kink_distance(fields, iso),
             Self::SymmetricDifference | Self::Smooth(..) | Self::RFunction(..) => {
-                self.as_step(|kind, number| kind.decision(number, fields, iso))
+                self.as_step(|kind, number| kind.kink_distance(number, fields, iso))
             }
             Self::Complement | Self::Clamp { .. } | Self::Shell(_) | Self::Offset(_) => {
-                self.as_map(|kind, numbers| kind.decision(fields[0], numbers, iso))
+                self.as_map(|kind, numbers| kind.kink_distance(fields[0], numbers, iso))
             }
         }
     }

@@ -28,7 +28,7 @@ impl Unary for Offset {
         f * factor(numbers[0], iso)
     }
 
-    fn decision(self, _: f64, _: &[f64], _: f64) -> f64 {
+    fn kink_distance(self, _: f64, _: &[f64], _: f64) -> f64 {
         f64::INFINITY
     }
 

@@ -205,7 +205,7 @@ impl Step for RFunction {
         Pair { field: iso * relative.max(0.0), weights }
     }
 
-    fn decision(self, [a, b]: [f64; 2], number: f64, iso: f64) -> f64 {
+    fn kink_distance(self, [a, b]: [f64; 2], number: f64, iso: f64) -> f64 {
         let (relative, here) = self.relative([a, b], number, iso);
         let appears = match self.0 {
             SetOperation::Difference if b != 0.0 => b.abs(),

@@ -59,7 +59,7 @@ pub(super) fn weights(fields: &[f64], n: f64) -> Vec<f64> {
 }
 
 /// How far the operands of a negative exponent are from where one becomes 0.
-pub(super) fn decision(fields: &[f64]) -> f64 {
+pub(super) fn kink_distance(fields: &[f64]) -> f64 {
     fields.iter().fold(f64::INFINITY, |nearest, f| nearest.min(f.abs()))
 }
 
@@ -119,7 +119,7 @@ pub(crate) fn step<D: Domain>(
     let (takes, scale, ratio) = if negative {
         let takes = d.lt(field, so_far.largest);
         let scale = d.min(field, so_far.largest);
-        let scale = d.hold(scale);
+        let scale = d.stop_gradient(scale);
         // In this order: of equals the operand, whose tangent counts. Two zeros have the quotient 0.
         let (larger, floor) = (d.max(so_far.largest, field), d.constant(FLOOR));
         let larger = d.max(larger, floor);
@@ -127,7 +127,7 @@ pub(crate) fn step<D: Domain>(
     } else {
         let takes = d.lt(so_far.largest, field);
         let scale = d.max(field, so_far.largest);
-        let scale = d.hold(scale);
+        let scale = d.stop_gradient(scale);
         // In this order: of equals the operand, whose tangent counts.
         let smaller = d.min(so_far.largest, field);
         (takes, scale, d.div(smaller, scale))
@@ -175,7 +175,7 @@ fn unit<D: Domain>(
     };
     let inverse = d.div(one, divisor);
     let quotient = d.mul(field, inverse);
-    let held = d.hold(quotient);
+    let held = d.stop_gradient(quotient);
     let still = if negative { d.sub(held, quotient) } else { d.sub(quotient, held) };
     let n = match exponent {
         Exponent::Integer(n) => d.constant(n as f32),

@@ -30,7 +30,7 @@ impl Unary for Shell {
         (iso - (f - iso).abs()).max(0.0) * factor(numbers[0], iso)
     }
 
-    fn decision(self, f: f64, _: &[f64], iso: f64) -> f64 {
+    fn kink_distance(self, f: f64, _: &[f64], iso: f64) -> f64 {
         (f - iso).abs().min(f.abs()).min((f - 2.0 * iso).abs())
     }
 

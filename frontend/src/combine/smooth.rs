@@ -100,7 +100,7 @@ impl Step for Smooth {
         }
     }
 
-    fn decision(self, [a, b]: [f64; 2], _: f64, iso: f64) -> f64 {
+    fn kink_distance(self, [a, b]: [f64; 2], _: f64, iso: f64) -> f64 {
         match self.0 {
             SetOperation::Union => corner(true, [a, b]),
             SetOperation::Intersection => corner(false, [a, b]),

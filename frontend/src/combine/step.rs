@@ -107,13 +107,13 @@ impl StepKind {
         (field, weights)
     }
 
-    /// How far a step's children are from any decision.
-    pub(super) fn decision(self, number: f64, fields: &[f64], iso: f64) -> f64 {
+    /// How far a step's children are from any kink.
+    pub(super) fn kink_distance(self, number: f64, fields: &[f64], iso: f64) -> f64 {
         let mut field = fields[0];
         let mut nearest = f64::INFINITY;
         for &right in &fields[1..] {
             let sides = [field, right];
-            nearest = on_member!(self, member => nearest.min(member.decision(sides, number, iso)));
+            nearest = on_member!(self, member => nearest.min(member.kink_distance(sides, number, iso)));
             field = on_member!(self, member => member.pair(sides, number, iso)).field;
         }
         nearest

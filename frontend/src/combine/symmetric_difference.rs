@@ -34,7 +34,7 @@ impl Step for SymmetricDifference {
         Pair { field: cut.min(larger), weights }
     }
 
-    fn decision(self, [a, b]: [f64; 2], _: f64, iso: f64) -> f64 {
+    fn kink_distance(self, [a, b]: [f64; 2], _: f64, iso: f64) -> f64 {
         let (larger, smaller) = (a.max(b), a.min(b));
         let cut = 2.0 * iso - smaller;
         let between = (a - b).abs().min((cut.max(0.0) - larger).abs());

@@ -73,9 +73,9 @@ impl UnaryKind {
         on_member!(self, member => member.field(f, numbers, iso))
     }
 
-    /// How far a field is from any decision of the map.
-    pub(super) fn decision(self, f: f64, numbers: &[f64], iso: f64) -> f64 {
-        on_member!(self, member => member.decision(f, numbers, iso))
+    /// How far a field is from any kink of the map.
+    pub(super) fn kink_distance(self, f: f64, numbers: &[f64], iso: f64) -> f64 {
+        on_member!(self, member => member.kink_distance(f, numbers, iso))
     }
 
     /// The field over the ops.

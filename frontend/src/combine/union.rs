@@ -10,7 +10,7 @@ pub(super) fn winner(fields: &[f64]) -> usize {
     (1..fields.len()).fold(0, |best, i| if fields[i] > fields[best] { i } else { best })
 }
 
-pub(super) fn decision(fields: &[f64]) -> f64 {
+pub(super) fn kink_distance(fields: &[f64]) -> f64 {
     super::member::lead(fields.iter().copied())
 }
 

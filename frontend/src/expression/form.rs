@@ -161,12 +161,12 @@ impl Form {
     }
 
     /// How far the nearest jump or kink of an operation is.
-    pub(crate) fn decision(&self, numbers: &[f64], p: DVec3, children: &[f64]) -> f64 {
+    pub(crate) fn kink_distance(&self, numbers: &[f64], p: DVec3, children: &[f64]) -> f64 {
         let mut nearest = f64::INFINITY;
         self.fold(
             |operand| leaf(operand, numbers, p, children),
             |operation, _, x| {
-                nearest = nearest.min(operation.decision(x));
+                nearest = nearest.min(operation.kink_distance(x));
                 operation.value(x)
             },
         );

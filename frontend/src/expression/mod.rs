@@ -173,7 +173,7 @@ impl Expression {
     /// How far the point is from where the formula has a jump or a kink, in the units of what is compared
     /// there.
     #[must_use]
-    pub fn decision(&self, p: DVec3, children: &[f64]) -> f64 {
+    pub fn kink_distance(&self, p: DVec3, children: &[f64]) -> f64 {
         let rim = self.bounds().map_or(f64::INFINITY, |bounds| {
             let (low, high) = ((p - bounds.min).abs(), (p - bounds.max).abs());
             low.min(high).min_element()
@@ -181,7 +181,7 @@ impl Expression {
         if !self.contains(p) {
             return rim;
         }
-        self.form.decision(&self.numbers, p, children).min(rim)
+        self.form.kink_distance(&self.numbers, p, children).min(rim)
     }
 }
 

@@ -78,7 +78,7 @@ impl Operation {
     }
 
     /// How far the operands are from a jump, a kink or a pole.
-    pub(super) fn decision(self, x: &[f64]) -> f64 {
+    pub(super) fn kink_distance(self, x: &[f64]) -> f64 {
         match self {
             Self::Negate | Self::Add | Self::Subtract | Self::Multiply => f64::INFINITY,
             Self::Divide => x[1].abs(),
@@ -90,7 +90,7 @@ impl Operation {
                     f64::INFINITY
                 }
             }
-            Self::Call(function) => function.decision(x),
+            Self::Call(function) => function.kink_distance(x),
         }
     }
 

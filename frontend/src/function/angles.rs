@@ -18,7 +18,7 @@ impl FunctionMember for Sin {
         x[0].sin()
     }
 
-    fn decision(_: &[f64]) -> f64 {
+    fn kink_distance(_: &[f64]) -> f64 {
         f64::INFINITY
     }
 
@@ -46,7 +46,7 @@ impl FunctionMember for Cos {
         x[0].cos()
     }
 
-    fn decision(_: &[f64]) -> f64 {
+    fn kink_distance(_: &[f64]) -> f64 {
         f64::INFINITY
     }
 
@@ -73,7 +73,7 @@ impl FunctionMember for Tan {
         x[0].tan()
     }
 
-    fn decision(x: &[f64]) -> f64 {
+    fn kink_distance(x: &[f64]) -> f64 {
         x[0].cos().abs()
     }
 
@@ -101,7 +101,7 @@ impl FunctionMember for Asin {
         x[0].clamp(-1.0, 1.0).asin()
     }
 
-    fn decision(x: &[f64]) -> f64 {
+    fn kink_distance(x: &[f64]) -> f64 {
         (1.0 - x[0].abs()).abs()
     }
 
@@ -129,7 +129,7 @@ impl FunctionMember for Acos {
         x[0].clamp(-1.0, 1.0).acos()
     }
 
-    fn decision(x: &[f64]) -> f64 {
+    fn kink_distance(x: &[f64]) -> f64 {
         (1.0 - x[0].abs()).abs()
     }
 
@@ -153,7 +153,7 @@ impl FunctionMember for Atan {
         x[0].atan()
     }
 
-    fn decision(_: &[f64]) -> f64 {
+    fn kink_distance(_: &[f64]) -> f64 {
         f64::INFINITY
     }
 
@@ -178,7 +178,7 @@ impl FunctionMember for Atan2 {
         x[0].atan2(x[1])
     }
 
-    fn decision(x: &[f64]) -> f64 {
+    fn kink_distance(x: &[f64]) -> f64 {
         if x[1] < 0.0 { x[0].abs() } else { x[0].hypot(x[1]) }
     }
 

@@ -41,7 +41,7 @@ pub(super) fn nearest<D: Domain>(d: &mut D, x: D::Real) -> D::Real {
     let magnitude = d.abs(x);
     let small = d.lt(magnitude, whole);
     let nearest = d.select(small, rounded, x);
-    d.hold(nearest)
+    d.stop_gradient(nearest)
 }
 
 pub(super) fn floor<D: Domain>(d: &mut D, x: D::Real) -> D::Real {
@@ -50,7 +50,7 @@ pub(super) fn floor<D: Domain>(d: &mut D, x: D::Real) -> D::Real {
     let above = d.lt(x, nearest);
     let before = d.sub(nearest, one);
     let floor = d.select(above, before, nearest);
-    d.hold(floor)
+    d.stop_gradient(floor)
 }
 
 /// What is left of `x` after whole multiples of `by`.

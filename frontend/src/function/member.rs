@@ -25,7 +25,7 @@ pub(super) trait FunctionMember {
     }
 
     /// How far the operands are from a jump, a kink or a pole.
-    fn decision(x: &[f64]) -> f64;
+    fn kink_distance(x: &[f64]) -> f64;
 
     /// Whether the value is never negative, rounding included, from the same about the operands.
     fn non_negative(x: &[bool]) -> bool;

@@ -46,7 +46,7 @@ impl FixedFalloff {
         self.0.value(x[0].max(0.0).powi(2))
     }
 
-    fn decision(&self, x: &[f64]) -> f64 {
+    fn kink_distance(&self, x: &[f64]) -> f64 {
         let tip = if self.0.is_pointed() { x[0].abs() } else { f64::INFINITY };
         (1.0 - x[0]).abs().min(tip)
     }
@@ -123,8 +123,8 @@ macro_rules! functions {
             }
 
             /// How far the operands are from a jump, a kink or a pole.
-            pub(crate) fn decision(self, x: &[f64]) -> f64 {
-                match self { $( Self::$name => $module::$name::decision(x), )+ Self::Falloff(falloff) => falloff.decision(x) }
+            pub(crate) fn kink_distance(self, x: &[f64]) -> f64 {
+                match self { $( Self::$name => $module::$name::kink_distance(x), )+ Self::Falloff(falloff) => falloff.kink_distance(x) }
             }
 
             /// Whether the value is never negative, rounding included, from the same about the operands.

@@ -24,7 +24,7 @@ impl FunctionMember for Sqrt {
         x[0].max(0.0).sqrt()
     }
 
-    fn decision(x: &[f64]) -> f64 {
+    fn kink_distance(x: &[f64]) -> f64 {
         x[0].abs().sqrt()
     }
 
@@ -54,7 +54,7 @@ impl FunctionMember for Exp {
         x[0].exp()
     }
 
-    fn decision(_: &[f64]) -> f64 {
+    fn kink_distance(_: &[f64]) -> f64 {
         f64::INFINITY
     }
 
@@ -92,7 +92,7 @@ impl FunctionMember for Ln {
         x[0].max(f64::from(f32::MIN_POSITIVE)).ln()
     }
 
-    fn decision(x: &[f64]) -> f64 {
+    fn kink_distance(x: &[f64]) -> f64 {
         x[0].abs()
     }
 
@@ -117,7 +117,7 @@ impl FunctionMember for Square {
         x[0] * x[0]
     }
 
-    fn decision(_: &[f64]) -> f64 {
+    fn kink_distance(_: &[f64]) -> f64 {
         f64::INFINITY
     }
 
@@ -146,7 +146,7 @@ impl FunctionMember for Pow {
         x[0].powf(x[1])
     }
 
-    fn decision(x: &[f64]) -> f64 {
+    fn kink_distance(x: &[f64]) -> f64 {
         x[0].abs()
     }
 

@@ -18,7 +18,7 @@ impl FunctionMember for Min {
         x.iter().copied().fold(x[0], f64::min)
     }
 
-    fn decision(x: &[f64]) -> f64 {
+    fn kink_distance(x: &[f64]) -> f64 {
         lead(x.iter().map(|x| -x))
     }
 
@@ -51,7 +51,7 @@ impl FunctionMember for Max {
         x.iter().copied().fold(x[0], f64::max)
     }
 
-    fn decision(x: &[f64]) -> f64 {
+    fn kink_distance(x: &[f64]) -> f64 {
         lead(x.iter().copied())
     }
 
@@ -83,7 +83,7 @@ impl FunctionMember for Clamp {
         x[0].max(x[1]).min(x[2])
     }
 
-    fn decision(x: &[f64]) -> f64 {
+    fn kink_distance(x: &[f64]) -> f64 {
         (x[0] - x[1]).abs().min((x[0] - x[2]).abs())
     }
 
@@ -116,7 +116,7 @@ impl FunctionMember for Mix {
         x[0] + (x[1] - x[0]) * x[2]
     }
 
-    fn decision(_: &[f64]) -> f64 {
+    fn kink_distance(_: &[f64]) -> f64 {
         f64::INFINITY
     }
 
@@ -145,7 +145,7 @@ impl FunctionMember for Length {
         x.iter().map(|x| x * x).sum::<f64>().sqrt()
     }
 
-    fn decision(x: &[f64]) -> f64 {
+    fn kink_distance(x: &[f64]) -> f64 {
         Self::value(x)
     }
 

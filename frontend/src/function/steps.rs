@@ -17,7 +17,7 @@ impl FunctionMember for Abs {
         x[0].abs()
     }
 
-    fn decision(x: &[f64]) -> f64 {
+    fn kink_distance(x: &[f64]) -> f64 {
         x[0].abs()
     }
 
@@ -48,7 +48,7 @@ impl FunctionMember for Sign {
         if x[0] == 0.0 { 0.0 } else { x[0].signum() }
     }
 
-    fn decision(x: &[f64]) -> f64 {
+    fn kink_distance(x: &[f64]) -> f64 {
         x[0].abs()
     }
 
@@ -79,7 +79,7 @@ impl FunctionMember for Floor {
         x[0].floor()
     }
 
-    fn decision(x: &[f64]) -> f64 {
+    fn kink_distance(x: &[f64]) -> f64 {
         to_whole(x[0])
     }
 
@@ -106,7 +106,7 @@ impl FunctionMember for Ceil {
         x[0].ceil()
     }
 
-    fn decision(x: &[f64]) -> f64 {
+    fn kink_distance(x: &[f64]) -> f64 {
         to_whole(x[0])
     }
 
@@ -135,7 +135,7 @@ impl FunctionMember for Round {
         x[0].round_ties_even()
     }
 
-    fn decision(x: &[f64]) -> f64 {
+    fn kink_distance(x: &[f64]) -> f64 {
         to_whole(x[0] + 0.5)
     }
 
@@ -169,7 +169,7 @@ impl FunctionMember for Mod {
         if x[1] == 0.0 { 0.0 } else { Self::value(x) }
     }
 
-    fn decision(x: &[f64]) -> f64 {
+    fn kink_distance(x: &[f64]) -> f64 {
         if x[1] == 0.0 { 0.0 } else { to_whole(x[0] / x[1]) * x[1].abs() }
     }
 
@@ -202,7 +202,7 @@ impl FunctionMember for Step {
         f64::from(u8::from(x[1] >= x[0]))
     }
 
-    fn decision(x: &[f64]) -> f64 {
+    fn kink_distance(x: &[f64]) -> f64 {
         (x[0] - x[1]).abs()
     }
 

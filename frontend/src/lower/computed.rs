@@ -10,9 +10,9 @@
 //! leaf bound to a formula     its row: map, numbers of the formula                  code: min(max(F, -largest), largest), and 0 for a NaN
 //! ```
 //!
-//! A texture or formula that several leaves see in the same coordinates is evaluated once: it is lifted to
+//! A texture or formula that several leaves see in the same coordinates is evaluated once: it is hoisted to
 //! the start of its space, and all of them take its value. Then the leaves differ in code from those of other
-//! textures, so only the [`MAX_SHARED`] textures with the most leaves are lifted; the others are evaluated
+//! textures, so only the [`MAX_SHARED`] textures with the most leaves are hoisted; the others are evaluated
 //! for each leaf.
 //!
 //! All this is there for queries that ask for attributes; for others, rows have no such columns.
@@ -34,7 +34,7 @@ use crate::kind::NodeKind;
 use crate::skeleton::SkeletonKind;
 use crate::texture::TextureKind;
 
-/// How many textures and formulas may be lifted, because several leaves share them.
+/// How many textures and formulas may be hoisted, because several leaves share them.
 pub(super) const MAX_SHARED: usize = 32;
 
 /// The function: what selects code.
@@ -61,7 +61,7 @@ pub(super) struct Computed {
     pub(super) map_kind: MapKind,
     /// How many leaf occurrences are bound to it.
     pub(super) uses: u32,
-    /// Whether it is lifted to the start of its space.
+    /// Whether it is hoisted to the start of its space.
     pub(super) shared: bool,
 }
 
@@ -70,7 +70,7 @@ pub(super) struct Computed {
 pub(super) enum ComputedShape {
     /// Computed in the leaf's row, from the point so many spaces outside of the leaf's.
     Here { up: u32, map: MapKind, kind: ComputedKind },
-    /// Lifted.
+    /// Hoisted.
     Shared(ComputedId),
 }
 
@@ -193,7 +193,7 @@ pub(super) fn attribute(tree: &CheckedTree, node: NodeId) -> &AttributeValue {
     }
 }
 
-/// Decides which textures and formulas are lifted: those with the most leaves; of equals those that are met
+/// Decides which textures and formulas are hoisted: those with the most leaves; of equals those that are met
 /// first.
 pub(super) fn share(computed: &mut [Computed]) {
     let mut candidates: Vec<&mut Computed> = computed.iter_mut().filter(|it| it.uses > 1).collect();

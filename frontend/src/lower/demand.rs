@@ -11,7 +11,7 @@
 //! b   asked for by the selector's children    computed in front, in a fold over one row; not now, so its row is not active
 //! ```
 
-use super::names::{FieldId, Lift, OccurrenceId, SpaceId};
+use super::names::{FieldId, Hoist, OccurrenceId, SpaceId};
 
 /// Who asks for something.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -49,22 +49,22 @@ impl Demand {
         selects: false,
     };
 
-    fn asked(&self, lift: Lift) -> Asked {
+    fn asked(&self, hoist: Hoist) -> Asked {
         if !self.selects {
             return Asked { always: true, now: true };
         }
-        match lift {
-            Lift::Field(FieldId(id)) => self.fields[id as usize],
-            Lift::Space(SpaceId(id)) => self.spaces[id as usize],
-            Lift::Occurrence(OccurrenceId(id)) => self.occurrences[id as usize],
+        match hoist {
+            Hoist::Field(FieldId(id)) => self.fields[id as usize],
+            Hoist::Space(SpaceId(id)) => self.spaces[id as usize],
+            Hoist::Occurrence(OccurrenceId(id)) => self.occurrences[id as usize],
             // It has no row of its own.
-            Lift::Computed(_) => Asked { always: true, now: true },
+            Hoist::Computed(_) => Asked { always: true, now: true },
         }
     }
 
-    /// Whether what is lifted needs a row of its own, because some choices do without it.
-    pub(super) fn is_guarded(&self, lift: Lift) -> bool {
-        !self.asked(lift).always
+    /// Whether what is hoisted needs a row of its own, because some choices do without it.
+    pub(super) fn is_guarded(&self, hoist: Hoist) -> bool {
+        !self.asked(hoist).always
     }
 
     /// Whether an answer can be the model's as it is, with nothing but warps and selectors between: then its
@@ -74,7 +74,7 @@ impl Demand {
     }
 
     /// Whether anybody asks for it now.
-    pub(super) fn is_asked(&self, lift: Lift) -> bool {
-        self.asked(lift).now
+    pub(super) fn is_asked(&self, hoist: Hoist) -> bool {
+        self.asked(hoist).now
     }
 }

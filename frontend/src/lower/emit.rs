@@ -37,7 +37,7 @@ use super::guide::{Decision, DecisionKind};
 use super::mixing::{Answer, Operator, State, difference, mapped};
 use super::names::ComputedId;
 use super::occurrence::{FieldId, OccurrenceId, OccurrenceKind, Scene, SpaceId};
-use super::shape::{Lift, Shapes};
+use super::shape::{Hoist, Shapes};
 use crate::attribute::Mixing;
 use crate::check::CheckedTree;
 use crate::combine::unary::UnaryKind;
@@ -88,10 +88,10 @@ enum Task {
     Define(OccurrenceId),
     /// What was computed here is what all uses see.
     Keep(OccurrenceId),
-    LiftField(FieldId),
-    LiftComputed(ComputedId),
+    HoistField(FieldId),
+    HoistComputed(ComputedId),
     /// The point in a space is what all uses see.
-    LiftSpace(SpaceId),
+    HoistSpace(SpaceId),
     LeaveSpace,
     OpenFold,
     CloseFold,
@@ -257,12 +257,12 @@ impl<'a> Emitter<'a> {
                 let answer = self.answers.pop().expect("it has just been defined");
                 self.kept.insert(id, answer);
             }
-            Task::LiftField(field) => {
-                let value = self.lift_field(field);
+            Task::HoistField(field) => {
+                let value = self.hoist_field(field);
                 self.kept_fields.insert(field, value);
             }
-            Task::LiftComputed(id) => self.lift_computed(id),
-            Task::LiftSpace(space) => self.lift_space(space),
+            Task::HoistComputed(id) => self.hoist_computed(id),
+            Task::HoistSpace(space) => self.hoist_space(space),
             Task::LeaveSpace => {
                 self.points.pop();
             }
@@ -294,9 +294,9 @@ impl<'a> Emitter<'a> {
     }
 
     /// Computes a point that several uses share, and enters its space.
-    fn lift_space(&mut self, space: SpaceId) {
+    fn hoist_space(&mut self, space: SpaceId) {
         self.tasks.push(Task::LeaveSpace);
-        let point = self.lift_point(space);
+        let point = self.hoist_point(space);
         self.points.push((space, point));
         self.probe_point(space, point);
         self.kept_points.insert(space, point);
@@ -385,7 +385,7 @@ impl<'a> Emitter<'a> {
         }
     }
 
-    /// Computes the point inside a warp, and what is lifted to the start of its space.
+    /// Computes the point inside a warp, and what is hoisted to the start of its space.
     fn enter_warp(&mut self, space: SpaceId) {
         let point = self.point_inside(space);
         self.points.push((space, point));
@@ -412,18 +412,18 @@ impl<'a> Emitter<'a> {
         }
     }
 
-    /// Puts what is lifted to the start of a space on top of the tasks.
+    /// Puts what is hoisted to the start of a space on top of the tasks.
     fn enter_space(&mut self, space: SpaceId) {
-        for lift in self.shapes.lifts(space).iter().rev() {
-            match lift {
-                Lift::Field(field) => self.tasks.push(Task::LiftField(*field)),
-                Lift::Computed(id) => self.tasks.push(Task::LiftComputed(*id)),
-                Lift::Space(space) => self.tasks.push(Task::LiftSpace(*space)),
-                Lift::Occurrence(id) if self.guards_lift(*lift) => {
+        for hoist in self.shapes.hoists(space).iter().rev() {
+            match hoist {
+                Hoist::Field(field) => self.tasks.push(Task::HoistField(*field)),
+                Hoist::Computed(id) => self.tasks.push(Task::HoistComputed(*id)),
+                Hoist::Space(space) => self.tasks.push(Task::HoistSpace(*space)),
+                Hoist::Occurrence(id) if self.guards_hoisted(*hoist) => {
                     self.tasks.extend([Task::Keep(*id), Task::CloseGuard(None), Task::Define(*id)]);
                     self.tasks.push(Task::OpenGuard(*id, GuardStart::Zero));
                 }
-                Lift::Occurrence(id) => self.tasks.extend([Task::Keep(*id), Task::Define(*id)]),
+                Hoist::Occurrence(id) => self.tasks.extend([Task::Keep(*id), Task::Define(*id)]),
             }
         }
     }

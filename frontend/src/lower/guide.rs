@@ -52,7 +52,7 @@ pub struct TableGuide {
     pub nodes: Vec<NodeId>,
     /// Whether its row is computed for rows of other tables, and seen by these alone: a field, an answer, or
     /// the point inside of a warp, which several share.
-    pub is_lifted: bool,
+    pub is_hoisted: bool,
 }
 
 /// The space in which the fold over a table stands.

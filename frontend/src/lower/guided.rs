@@ -6,7 +6,7 @@ use super::emit::{self, TableCode};
 use super::guide::{Guide, Guided, SpaceGuide, Support, TableGuide};
 use super::occurrence::{Scene, SpaceId};
 use super::rows::{self, Member};
-use super::shape::{Lift, Shapes};
+use super::shape::{Hoist, Shapes};
 use super::support::Supports;
 use crate::diagnostic::Diagnostic;
 use crate::query::Query;
@@ -53,15 +53,15 @@ fn table_guide(
         supports: members.iter().map(|member| support(supports, member)).collect(),
         rule,
         nodes: members.iter().map(|member| member.node(scene)).collect(),
-        is_lifted: members.iter().any(|member| matches!(member, Member::Lifted(_))),
+        is_hoisted: members.iter().any(|member| matches!(member, Member::Hoisted(_))),
     }
 }
 
 fn support(supports: &Supports<'_>, member: &Member) -> Support {
     match member {
-        Member::Operand(id, _) | Member::Lifted(Lift::Occurrence(id)) => supports.of(*id),
-        Member::Lifted(Lift::Field(field)) => supports.of_field(*field),
+        Member::Operand(id, _) | Member::Hoisted(Hoist::Occurrence(id)) => supports.of(*id),
+        Member::Hoisted(Hoist::Field(field)) => supports.of_field(*field),
         Member::Piece(field, piece) => supports.of_piece(*field, *piece),
-        Member::Lifted(Lift::Space(_) | Lift::Computed(_)) => Support::EVERYWHERE,
+        Member::Hoisted(Hoist::Space(_) | Hoist::Computed(_)) => Support::EVERYWHERE,
     }
 }

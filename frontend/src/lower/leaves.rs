@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::occurrence::{FieldId, Scene};
-use super::shape::Lift;
+use super::shape::Hoist;
 use crate::check::{CheckedTree, NodeId};
 use crate::kind::{NodeKind, Primitive};
 
@@ -41,7 +41,7 @@ impl<'a> LeafOccurrences<'a> {
     pub fn new(tree: &'a CheckedTree) -> Self {
         let scene = Scene::new(tree);
         let all = (0..scene.fields.len() as u32).map(FieldId);
-        let asked = all.filter(|&field| scene.demand.is_asked(Lift::Field(field))).collect();
+        let asked = all.filter(|&field| scene.demand.is_asked(Hoist::Field(field))).collect();
         Self { scene, asked }
     }
 

@@ -1,4 +1,4 @@
-//! Names: of what stands where, and of what is lifted.
+//! Names: of what stands where, and of what is hoisted.
 
 /// The name of an occurrence.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, PartialOrd, Ord)]
@@ -26,11 +26,11 @@ pub(super) struct ComputedId(pub(super) u32);
 
 /// What has to be computed at the start of a space, in this order.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Lift {
+pub(super) enum Hoist {
     Field(FieldId),
     /// An attribute value that several leaves share.
     Computed(ComputedId),
-    /// The point in a space that several lead into, and what is lifted to its start.
+    /// The point in a space that several lead into, and what is hoisted to its start.
     Space(SpaceId),
     Occurrence(OccurrenceId),
 }

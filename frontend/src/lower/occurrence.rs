@@ -101,7 +101,7 @@ pub(super) enum OccurrenceKind {
         position: PositionId,
         inside: SpaceId,
         child: OccurrenceId,
-        /// What weighs it, in the space where the warp stands. It is always lifted.
+        /// What weighs it, in the space where the warp stands. It is always hoisted.
         weight: Option<OccurrenceId>,
     },
     Reduce {

@@ -11,7 +11,7 @@ use super::mixing::wants_order;
 use super::names::ComputedId;
 use super::occurrence::{BindingsId, FieldId, LeafField, OccurrenceId, OccurrenceKind, Scene, SpaceId};
 use super::reducer::ReducerCode;
-use super::shape::{Lift, Shapes};
+use super::shape::{Hoist, Shapes};
 use crate::attribute::{AttributeValue, Mixing};
 use crate::check::NodeId;
 use crate::diagnostic::Diagnostic;
@@ -59,7 +59,7 @@ enum Task {
     Use(OccurrenceId),
     Define(OccurrenceId),
     Order(u32),
-    Lift(Lift),
+    Hoist(Hoist),
     /// The members of a folded group become rows of the next child table.
     Rows(OccurrenceId, usize),
     /// The numbers of a formula, behind those of its children.
@@ -76,8 +76,8 @@ pub(super) enum Member {
     /// What stands here: the scene, an operand, or a selector's child. And its place in the order of its
     /// operator, where that is a column.
     Operand(OccurrenceId, Option<u32>),
-    /// What is lifted and has a guard.
-    Lifted(Lift),
+    /// What is hoisted and has a guard.
+    Hoisted(Hoist),
     /// A piece of a leaf's skeleton, by its place among them.
     Piece(FieldId, u32),
 }
@@ -86,10 +86,10 @@ impl Member {
     /// The tree node whose numbers stand in the row.
     pub(super) fn node(self, scene: &Scene<'_>) -> NodeId {
         match self {
-            Self::Operand(id, _) | Self::Lifted(Lift::Occurrence(id)) => scene.occurrence(id).node,
-            Self::Lifted(Lift::Field(field)) | Self::Piece(field, _) => scene.field(field).node,
-            Self::Lifted(Lift::Computed(id)) => scene.computed(id).node,
-            Self::Lifted(Lift::Space(space)) => scene.inside(space).expect("the world is not lifted").warp,
+            Self::Operand(id, _) | Self::Hoisted(Hoist::Occurrence(id)) => scene.occurrence(id).node,
+            Self::Hoisted(Hoist::Field(field)) | Self::Piece(field, _) => scene.field(field).node,
+            Self::Hoisted(Hoist::Computed(id)) => scene.computed(id).node,
+            Self::Hoisted(Hoist::Space(space)) => scene.inside(space).expect("the world is not hoisted").warp,
         }
     }
 }
@@ -154,10 +154,10 @@ impl<'a> Writer<'a> {
                 tasks.push(Task::Use(member));
                 self.row.extend(order.map(f64::from));
             }
-            Member::Lifted(Lift::Field(field)) => self.leaf(field),
-            Member::Lifted(Lift::Computed(id)) => self.computed(id),
-            Member::Lifted(Lift::Space(space)) => self.warp(space),
-            Member::Lifted(Lift::Occurrence(id)) => tasks.push(Task::Define(id)),
+            Member::Hoisted(Hoist::Field(field)) => self.leaf(field),
+            Member::Hoisted(Hoist::Computed(id)) => self.computed(id),
+            Member::Hoisted(Hoist::Space(space)) => self.warp(space),
+            Member::Hoisted(Hoist::Occurrence(id)) => tasks.push(Task::Define(id)),
             Member::Piece(..) => unreachable!("pieces are written with their leaves"),
         }
         if table.index() == 0 {
@@ -165,12 +165,12 @@ impl<'a> Writer<'a> {
         }
         while let Some(task) = tasks.pop() {
             match task {
-                // It is computed where it is lifted to.
+                // It is computed where it is hoisted to.
                 Task::Use(id) if self.scene.occurrence(id).uses > 1 => {}
                 Task::Use(id) | Task::Define(id) => self.define(id, &mut tasks),
                 Task::Order(order) => self.row.push(f64::from(order)),
                 Task::Express(id) => self.express(id),
-                Task::Lift(lift) => self.lift(lift, depth, &mut tasks),
+                Task::Hoist(hoist) => self.hoist(hoist, depth, &mut tasks),
                 Task::Rows(id, group) => self.hand_out(id, group),
                 Task::Operand(id) => {
                     let guarded = self.shapes.guards_operand(self.scene, id, depth);
@@ -207,26 +207,26 @@ impl<'a> Writer<'a> {
         self.scene.warp(inside.warp).columns(&mut self.row);
     }
 
-    /// What is lifted: here, or in a row of its own.
-    fn lift(&mut self, lift: Lift, depth: usize, tasks: &mut Vec<Task>) {
-        let guarded = self.shapes.guards_lift(self.scene, lift, depth);
-        match lift {
-            Lift::Computed(id) if !self.mixing.is_empty() => self.computed(id),
-            Lift::Computed(_) => {}
-            Lift::Field(field) if !guarded => self.leaf(field),
-            Lift::Space(space) if !guarded => self.enter_warp(space, tasks),
-            Lift::Occurrence(id) if !guarded => tasks.push(Task::Define(id)),
+    /// What is hoisted: here, or in a row of its own.
+    fn hoist(&mut self, hoist: Hoist, depth: usize, tasks: &mut Vec<Task>) {
+        let guarded = self.shapes.guards_hoisted(self.scene, hoist, depth);
+        match hoist {
+            Hoist::Computed(id) if !self.mixing.is_empty() => self.computed(id),
+            Hoist::Computed(_) => {}
+            Hoist::Field(field) if !guarded => self.leaf(field),
+            Hoist::Space(space) if !guarded => self.enter_warp(space, tasks),
+            Hoist::Occurrence(id) if !guarded => tasks.push(Task::Define(id)),
             // Only the point is computed under the guard.
-            Lift::Space(space) => self.enter_space(space, tasks),
-            Lift::Field(_) | Lift::Occurrence(_) => {}
+            Hoist::Space(space) => self.enter_space(space, tasks),
+            Hoist::Field(_) | Hoist::Occurrence(_) => {}
         }
         if guarded {
-            tasks.push(Task::Guard(Member::Lifted(lift), self.scene.demand.is_asked(lift)));
+            tasks.push(Task::Guard(Member::Hoisted(hoist), self.scene.demand.is_asked(hoist)));
         }
     }
 
     fn enter_space(&self, space: SpaceId, tasks: &mut Vec<Task>) {
-        tasks.extend(self.shapes.lifts(space).iter().rev().map(|&lift| Task::Lift(lift)));
+        tasks.extend(self.shapes.hoists(space).iter().rev().map(|&hoist| Task::Hoist(hoist)));
     }
 
     fn define(&mut self, id: OccurrenceId, tasks: &mut Vec<Task>) {

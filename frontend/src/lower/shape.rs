@@ -1,7 +1,7 @@
 //! Which occurrences are alike: same node kinds, different numbers.
 //!
 //! A shape is what selects code. Nested operators of a kind flatten into one; an occurrence with several uses
-//! is *lifted*: computed once, where its space begins, and seen by the others as a value. The children of an
+//! is *hoisted*: computed once, where its space begins, and seen by the others as a value. The children of an
 //! operator form groups, one for each shape; a group is the rows of one table, unless its shape holds tables
 //! of its own and there is one such child: that one is written out.
 //!
@@ -18,7 +18,7 @@ pub(super) use self::key::ShapeId;
 use self::key::{Content, ShapeKey};
 use super::computed::ComputedShape;
 use super::names::ComputedId;
-pub(super) use super::names::Lift;
+pub(super) use super::names::Hoist;
 use super::occurrence::{FieldId, LeafCode, OccurrenceId, OccurrenceKind, Reducer, Scene, SpaceId};
 use super::reducer::ReducerCode;
 
@@ -44,7 +44,7 @@ fn steps_of(scene: &Scene<'_>, computed: &[Option<ComputedId>]) -> usize {
 pub(super) struct Shapes {
     /// Groups of each operator that has not been flattened into another.
     groups: HashMap<OccurrenceId, Vec<Group>>,
-    lifts: HashMap<SpaceId, Vec<Lift>>,
+    hoists: HashMap<SpaceId, Vec<Hoist>>,
     /// Of each occurrence, where it is computed. Not of those that have been flattened.
     contents: Vec<Content>,
 }
@@ -66,26 +66,26 @@ impl Shapes {
     }
 
     /// Whether an operand that is not a row is computed under a guard, inside of `depth` folds. What is
-    /// lifted is not: its value is there.
+    /// hoisted is not: its value is there.
     pub(super) fn guards_operand(&self, scene: &Scene<'_>, id: OccurrenceId, depth: usize) -> bool {
         let content = self.contents[id.0 as usize];
         // Without tables of its own it may stand in a row, whose shape guards must not change.
         scene.occurrence(id).uses == 1 && content.written_out && content.wants_guard(depth)
     }
 
-    /// Whether what is lifted is computed under a guard, inside of `depth` folds: because some choices of
+    /// Whether what is hoisted is computed under a guard, inside of `depth` folds: because some choices of
     /// selectors do without it, or because it is worth one.
-    pub(super) fn guards_lift(&self, scene: &Scene<'_>, lift: Lift, depth: usize) -> bool {
-        let worth = match lift {
-            Lift::Occurrence(id) => self.contents[id.0 as usize].wants_guard(depth),
-            Lift::Field(_) | Lift::Space(_) | Lift::Computed(_) => false,
+    pub(super) fn guards_hoisted(&self, scene: &Scene<'_>, hoist: Hoist, depth: usize) -> bool {
+        let worth = match hoist {
+            Hoist::Occurrence(id) => self.contents[id.0 as usize].wants_guard(depth),
+            Hoist::Field(_) | Hoist::Space(_) | Hoist::Computed(_) => false,
         };
-        worth || scene.demand.is_guarded(lift)
+        worth || scene.demand.is_guarded(hoist)
     }
 
-    /// What is lifted to the start of a space.
-    pub(super) fn lifts(&self, space: SpaceId) -> &[Lift] {
-        self.lifts.get(&space).map_or(&[], Vec::as_slice)
+    /// What is hoisted to the start of a space.
+    pub(super) fn hoists(&self, space: SpaceId) -> &[Hoist] {
+        self.hoists.get(&space).map_or(&[], Vec::as_slice)
     }
 }
 
@@ -100,14 +100,14 @@ struct Classifier<'a> {
     last_leaf: Option<(LeafCode, ShapeId)>,
     /// Whether an operator dissolves into its only user.
     flattened: Vec<bool>,
-    /// Weighted warps whose points are lifted already.
+    /// Weighted warps whose points are hoisted already.
     entered: rustc_hash::FxHashSet<SpaceId>,
     result: Shapes,
 }
 
 impl<'a> Classifier<'a> {
     fn new(scene: &'a Scene<'a>) -> Self {
-        let result = Shapes { groups: HashMap::default(), lifts: HashMap::default(), contents: Vec::new() };
+        let result = Shapes { groups: HashMap::default(), hoists: HashMap::default(), contents: Vec::new() };
         let flattened = flattened(scene);
         Self {
             scene,
@@ -122,15 +122,15 @@ impl<'a> Classifier<'a> {
     }
 
     fn run(mut self) -> Shapes {
-        // First of all: what is lifted behind them may hold leaves that are bound to them.
+        // First of all: what is hoisted behind them may hold leaves that are bound to them.
         for (index, computed) in self.scene.computed.iter().enumerate().filter(|(_, it)| it.shared) {
-            let lift = Lift::Computed(ComputedId(index as u32));
-            self.result.lifts.entry(computed.space).or_default().push(lift);
+            let hoist = Hoist::Computed(ComputedId(index as u32));
+            self.result.hoists.entry(computed.space).or_default().push(hoist);
         }
         for (index, field) in self.scene.fields.iter().enumerate() {
             if field.uses > 1 {
                 let space = self.scene.position(field.position).space;
-                self.result.lifts.entry(space).or_default().push(Lift::Field(FieldId(index as u32)));
+                self.result.hoists.entry(space).or_default().push(Hoist::Field(FieldId(index as u32)));
             }
         }
         for (index, inside) in self.scene.insides.iter().enumerate() {
@@ -138,18 +138,18 @@ impl<'a> Classifier<'a> {
             // A weighted one comes behind its weight.
             if self.scene.is_shared(space) && inside.weight.is_none() {
                 let outside = self.scene.position(inside.position).space;
-                self.result.lifts.entry(outside).or_default().push(Lift::Space(space));
+                self.result.hoists.entry(outside).or_default().push(Hoist::Space(space));
             }
         }
         for index in 0..self.scene.occurrences.len() {
             let id = OccurrenceId(index as u32);
-            self.lift_weighted(id);
+            self.hoist_weighted(id);
             let shape = self.shape(id);
             let occurrence = self.scene.occurrence(id);
             self.result.contents.push(self.contents[shape.0 as usize]);
             let shape = if occurrence.uses > 1 {
-                self.result.lifts.entry(occurrence.space).or_default().push(Lift::Occurrence(id));
-                self.name(ShapeKey::Lifted(id), Content::LIFTED)
+                self.result.hoists.entry(occurrence.space).or_default().push(Hoist::Occurrence(id));
+                self.name(ShapeKey::Hoisted(id), Content::HOISTED)
             } else {
                 shape
             };
@@ -158,14 +158,14 @@ impl<'a> Classifier<'a> {
         self.result
     }
 
-    /// Lifts the point inside of a weighted warp that several occurrences share, when the first of them is
+    /// Hoists the point inside of a weighted warp that several occurrences share, when the first of them is
     /// met: its weight, and whatever that is made of, came before.
-    fn lift_weighted(&mut self, id: OccurrenceId) {
+    fn hoist_weighted(&mut self, id: OccurrenceId) {
         let occurrence = self.scene.occurrence(id);
         let OccurrenceKind::Warp { inside, weight: Some(_), .. } = occurrence.kind else { return };
         let shared = self.scene.is_shared(inside);
         if shared && self.entered.insert(inside) {
-            self.result.lifts.entry(occurrence.space).or_default().push(Lift::Space(inside));
+            self.result.hoists.entry(occurrence.space).or_default().push(Hoist::Space(inside));
         }
     }
 
@@ -189,7 +189,7 @@ impl<'a> Classifier<'a> {
         match &occurrence.kind {
             OccurrenceKind::Leaf { field, computed, .. } if self.scene.field(*field).uses > 1 => {
                 let computed = self.computed(computed, occurrence.space);
-                self.name(ShapeKey::LeafOf(*field, computed), Content::LIFTED)
+                self.name(ShapeKey::LeafOf(*field, computed), Content::HOISTED)
             }
             OccurrenceKind::Leaf { field, computed, .. } => self.leaf(*field, computed, occurrence.space),
             OccurrenceKind::Warp { .. } => self.warp(id),
@@ -209,7 +209,7 @@ impl<'a> Classifier<'a> {
             }
             OccurrenceKind::Reduce { .. } if self.flattened[id.0 as usize] => {
                 // Its user asks for its children; nobody asks for its shape.
-                self.name(ShapeKey::Lifted(id), Content::LIFTED)
+                self.name(ShapeKey::Hoisted(id), Content::HOISTED)
             }
             OccurrenceKind::Reduce { reducer, .. } => self.reduce(id, ReducerCode::of(*reducer)),
         }
@@ -243,18 +243,18 @@ impl<'a> Classifier<'a> {
         };
         let (child, mut content) = self.of(*child);
         let weight = weight.map(|weight| self.of(weight).0);
-        // A weight is a lifted value.
+        // A weight is a hoisted value.
         content.written_out |= weight.is_some();
         if self.scene.is_shared(*inside) {
             content.written_out = true;
             return self.name(ShapeKey::Inside { space: *inside, child }, content);
         }
-        // What is lifted to the start of this space has to be visible to all of it, so the warp
+        // What is hoisted to the start of this space has to be visible to all of it, so the warp
         // stands alone.
-        let lifts = self.result.lifts.get(inside);
-        let pinned = lifts.map(|_| *inside);
+        let hoists = self.result.hoists.get(inside);
+        let pinned = hoists.map(|_| *inside);
         content.written_out |= pinned.is_some();
-        content.leaves = content.leaves.saturating_add(lifts.map_or(0, Vec::len));
+        content.leaves = content.leaves.saturating_add(hoists.map_or(0, Vec::len));
         let map = self.scene.position(*position).kind();
         let warp = self.scene.warp(occurrence.node).code();
         let key = ShapeKey::Warp { map, warp, child, weight, pinned };
@@ -264,7 +264,7 @@ impl<'a> Classifier<'a> {
     /// The shape of an operator, whose children of one shape are a group.
     fn reduce(&mut self, id: OccurrenceId, code: ReducerCode) -> ShapeId {
         let groups = self.group(id, code);
-        let content = groups.iter().fold(Content::LIFTED, |all, group| {
+        let content = groups.iter().fold(Content::HOISTED, |all, group| {
             let of = |member: &(OccurrenceId, u32)| self.of(member.0).1;
             match group.folded {
                 true => all.and(Content { formulas: of(&group.members[0]).formulas, ..Content::ROWS }),
@@ -375,9 +375,9 @@ impl<'a> Classifier<'a> {
     /// Whether operands of one shape are rows of a table.
     fn is_folded(&self, members: &[(OccurrenceId, u32)]) -> bool {
         let first = members[0].0;
-        let lifted = self.scene.occurrence(first).uses > 1;
+        let hoisted = self.scene.occurrence(first).uses > 1;
         let written_out = self.of(first).1.written_out;
-        !written_out || (members.len() > 1 && !lifted && !self.is_leaf(first))
+        !written_out || (members.len() > 1 && !hoisted && !self.is_leaf(first))
     }
 
     fn is_leaf(&self, id: OccurrenceId) -> bool {

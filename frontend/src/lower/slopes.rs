@@ -177,7 +177,7 @@ fn back(d: &mut FunctionBuilder, entry: &Entry, slope: Value, slopes: &mut HashM
         | Op::IntSub
         | Op::Shl
         | Op::Shr
-        | Op::Hold => {}
+        | Op::StopGradient => {}
     }
 }
 

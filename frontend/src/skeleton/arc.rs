@@ -111,7 +111,7 @@ impl SkeletonMember for Arc {
 
     /// The gradient jumps on the axis, from which all points of the circle are equally far, and where both
     /// ends are.
-    fn decision(&self, p: DVec3) -> f64 {
+    fn kink_distance(&self, p: DVec3) -> f64 {
         if self.is_point() {
             return f64::INFINITY;
         }
@@ -181,8 +181,8 @@ mod tests {
             // On the axis all of it is equally near.
             testing::same_everywhere(&arc(degrees), DVec3::new(0.0, 0.0, 1.5), 6.25);
         }
-        assert!(arc(90.0).decision(DVec3::new(-3.0, -3.0, 1.0)) < 1e-15);
-        assert!((arc(360.0).decision(DVec3::new(-3.0, -4.0, 1.0)) - 5.0).abs() < 1e-15);
+        assert!(arc(90.0).kink_distance(DVec3::new(-3.0, -3.0, 1.0)) < 1e-15);
+        assert!((arc(360.0).kink_distance(DVec3::new(-3.0, -4.0, 1.0)) - 5.0).abs() < 1e-15);
     }
 
     #[test]

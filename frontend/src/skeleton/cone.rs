@@ -86,7 +86,7 @@ impl SkeletonMember for Cone {
         ends[0].min(ends[1]).min(segment(corners[0], corners[1]))
     }
 
-    fn decision(&self, _p: DVec3) -> f64 {
+    fn kink_distance(&self, _p: DVec3) -> f64 {
         f64::INFINITY
     }
 

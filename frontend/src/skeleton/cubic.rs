@@ -190,7 +190,7 @@ impl Part for Cubic {
         }
         let at = curve.ball(d, t);
         let (_, t) = nearer(d, (&at, t), best);
-        let t = d.hold(t);
+        let t = d.stop_gradient(t);
         curve.ball(d, t).distance
     }
 

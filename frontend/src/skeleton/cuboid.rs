@@ -31,7 +31,7 @@ impl SkeletonMember for Cuboid {
         ((p - self.center).abs() - self.half).max(DVec3::ZERO).length_squared()
     }
 
-    fn decision(&self, _p: DVec3) -> f64 {
+    fn kink_distance(&self, _p: DVec3) -> f64 {
         f64::INFINITY
     }
 
@@ -69,7 +69,7 @@ impl SkeletonMember for Cuboid {
         }
     }
 
-    fn uv_decision(&self, p: DVec3) -> f64 {
+    fn uv_kink_distance(&self, p: DVec3) -> f64 {
         let q = (p - self.center).abs();
         let mut beyond = [0, 1, 2].map(|axis| (q[axis] - self.half[axis], axis));
         beyond.sort_by(|a, b| b.0.total_cmp(&a.0));

@@ -35,7 +35,7 @@ impl SkeletonMember for Disc {
         h * h + (rho - self.radius).max(0.0).powi(2)
     }
 
-    fn decision(&self, _p: DVec3) -> f64 {
+    fn kink_distance(&self, _p: DVec3) -> f64 {
         f64::INFINITY
     }
 
@@ -63,9 +63,9 @@ impl SkeletonMember for Disc {
         [uv::turn(q.x, q.y), (q.x.hypot(q.y) * uv::inverse(self.radius)).min(1.0)]
     }
 
-    fn uv_decision(&self, p: DVec3) -> f64 {
+    fn uv_kink_distance(&self, p: DVec3) -> f64 {
         let q = uv::within(&self.uv_frame(), p);
-        uv::turn_decision(q.x, q.y)
+        uv::turn_kink_distance(q.x, q.y)
     }
 
     fn uv_frame(&self) -> DAffine3 {

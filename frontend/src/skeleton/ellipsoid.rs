@@ -43,7 +43,7 @@ impl SkeletonMember for Ellipsoid {
         ((p - self.center) / self.stretch).length_squared()
     }
 
-    fn decision(&self, _p: DVec3) -> f64 {
+    fn kink_distance(&self, _p: DVec3) -> f64 {
         f64::INFINITY
     }
 

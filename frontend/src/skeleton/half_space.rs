@@ -44,7 +44,7 @@ impl SkeletonMember for HalfSpace {
         (p - self.at).dot(self.normal.normalize()).max(0.0).powi(2)
     }
 
-    fn decision(&self, _p: DVec3) -> f64 {
+    fn kink_distance(&self, _p: DVec3) -> f64 {
         f64::INFINITY
     }
 

@@ -214,8 +214,8 @@ impl SkeletonMember for Helix {
         points::distance_squared(self.places(self.posed(p), true))
     }
 
-    fn decision(&self, p: DVec3) -> f64 {
-        points::decision(&self.places(self.posed(p), false))
+    fn kink_distance(&self, p: DVec3) -> f64 {
+        points::kink_distance(&self.places(self.posed(p), false))
     }
 
     fn pose(&self) -> DAffine3 {
@@ -238,7 +238,7 @@ impl SkeletonMember for Helix {
         let (phi, height) = (atan2(d, p[1], p[0]), d.mul(p[2], row[6]));
         let height = clamped(d, height, HIGHEST);
         let turn = curve.turn(d, p, phi, height);
-        let turn = d.hold(turn);
+        let turn = d.stop_gradient(turn);
 
         let rho = super::emit_off_axis(d, p);
         // R / b and 1 / b, which is 2 pi / pitch.
@@ -377,7 +377,7 @@ impl<D: Domain> Curve<D> {
         let least = d.neg(behind);
         let angle = d.min(angle, most);
         let angle = d.max(angle, least);
-        let angle = d.hold(angle);
+        let angle = d.stop_gradient(angle);
         let (cos, sin) = (d.cos(angle), d.sin(angle));
         let below = d.mul(turn, self.pitch);
         [d.mul(self.radius, cos), d.mul(self.radius, sin), d.fma(self.rise, angle, below)]

@@ -7,11 +7,11 @@
 //!
 //! **Powers of large and small numbers.** With m the largest of the three terms, `d = m (sum (|x_i| /
 //! m)^l)^(1/l)`: no quotient is above 1, and the sum is from 1 to
-//! 3. The scale m cancels, so `hold` keeps it out of the derivative, and limits that hold anyway (1 for a
+//! 3. The scale m cancels, so `stop_gradient` keeps it out of the derivative, and limits that hold anyway (1 for a
 //!    quotient, 1 for the sum) tell intervals so.
 //!
 //! **Kinks.** Where a coordinate is 0 and l < 2, the gradient jumps (l = 1) or turns as fast as `|x|^(l-1)`:
-//! `decision` is the distance from these planes. It is finite everywhere, and 0 at the centre.
+//! `kink_distance` is the distance from these planes. It is finite everywhere, and 0 at the centre.
 //!
 //! **Rounding.** In units of u = 2^-24: a term is off by 2 of itself, and m is one of them. A quotient takes
 //! 1 more, which a power makes l, and the power its own 2.5; exponent and power together take one for a
@@ -57,7 +57,7 @@ impl SkeletonMember for LMetric {
         norm(&((p - self.center) / self.stretch).to_array(), self.exponent).powi(2)
     }
 
-    fn decision(&self, p: DVec3) -> f64 {
+    fn kink_distance(&self, p: DVec3) -> f64 {
         if self.exponent < 2.0 { (p - self.center).abs().min_element() } else { f64::INFINITY }
     }
 
@@ -101,7 +101,7 @@ pub(super) fn emit_norm<D: Domain>(d: &mut D, terms: &[D::Real], [l, inv_l]: [D:
     for &term in &terms[1..] {
         largest = d.max(largest, term);
     }
-    let largest = d.hold(largest);
+    let largest = d.stop_gradient(largest);
     let divisor = d.max(largest, smallest);
     let mut sum = None;
     for &term in terms {
@@ -141,8 +141,8 @@ mod tests {
         }
         let stretched = LMetric { stretch: DVec3::new(2.0, 1.0, 0.5), ..metric(1.0) };
         testing::same_everywhere(&stretched, DVec3::new(4.0, -1.0, 1.0), 25.0);
-        assert_eq!(metric(1.5).decision(DVec3::new(3.0, -0.25, 1.0)), 0.25);
-        assert_eq!(metric(2.0).decision(DVec3::ZERO), f64::INFINITY);
+        assert_eq!(metric(1.5).kink_distance(DVec3::new(3.0, -0.25, 1.0)), 0.25);
+        assert_eq!(metric(2.0).kink_distance(DVec3::ZERO), f64::INFINITY);
     }
 
     #[test]

@@ -37,7 +37,7 @@ pub trait SkeletonMember: Member {
     fn distance_squared(&self, p: DVec3) -> f64;
 
     /// How far `p` is from where the gradient of the squared distance jumps; infinity if it never does.
-    fn decision(&self, p: DVec3) -> f64;
+    fn kink_distance(&self, p: DVec3) -> f64;
 
     /// The rigid motion from the pose to where the skeleton is.
     fn pose(&self) -> DAffine3;
@@ -104,8 +104,8 @@ pub trait SkeletonMember: Member {
     }
 
     /// How far `p` is from where [`uv`](Self::uv) jumps; infinity if it never does.
-    fn uv_decision(&self, p: DVec3) -> f64 {
-        uv::sphere_decision(p - self.pose().translation)
+    fn uv_kink_distance(&self, p: DVec3) -> f64 {
+        uv::sphere_kink_distance(p - self.pose().translation)
     }
 
     /// The rigid motion from the frame in which [`emit_uv`](Self::emit_uv) sees the skeleton to where it is.

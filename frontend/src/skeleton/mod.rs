@@ -120,9 +120,9 @@ macro_rules! skeletons {
             #[must_use]
             pub fn distance_squared(&self, p: DVec3) -> f64 { match self { $( Self::$name(s) => s.distance_squared(p), )+ } }
 
-            /// See [`SkeletonMember::decision`].
+            /// See [`SkeletonMember::kink_distance`].
             #[must_use]
-            pub fn decision(&self, p: DVec3) -> f64 { match self { $( Self::$name(s) => s.decision(p), )+ } }
+            pub fn kink_distance(&self, p: DVec3) -> f64 { match self { $( Self::$name(s) => s.kink_distance(p), )+ } }
 
             /// See [`SkeletonMember::pose`].
             #[must_use]
@@ -158,9 +158,9 @@ macro_rules! skeletons {
             #[must_use]
             pub fn uv(&self, p: DVec3) -> [f64; 2] { match self { $( Self::$name(s) => s.uv(p), )+ } }
 
-            /// See [`SkeletonMember::uv_decision`].
+            /// See [`SkeletonMember::uv_kink_distance`].
             #[must_use]
-            pub fn uv_decision(&self, p: DVec3) -> f64 { match self { $( Self::$name(s) => s.uv_decision(p), )+ } }
+            pub fn uv_kink_distance(&self, p: DVec3) -> f64 { match self { $( Self::$name(s) => s.uv_kink_distance(p), )+ } }
 
             /// See [`SkeletonMember::uv_frame`].
             #[must_use]

@@ -28,7 +28,7 @@ impl SkeletonMember for Point {
         (p - self.at).length_squared()
     }
 
-    fn decision(&self, _p: DVec3) -> f64 {
+    fn kink_distance(&self, _p: DVec3) -> f64 {
         f64::INFINITY
     }
 

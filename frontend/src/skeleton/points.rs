@@ -84,7 +84,7 @@ pub(super) fn distance_squared(places: impl IntoIterator<Item = Place>) -> f64 {
 
 /// By how much the nearest place is nearer than another one in another direction, whose turn it would be
 /// next.
-pub(super) fn decision(places: &[Place]) -> f64 {
+pub(super) fn kink_distance(places: &[Place]) -> f64 {
     let Some(best) = places.iter().min_by(|a, b| a.distance.total_cmp(&b.distance)) else {
         return f64::INFINITY;
     };

@@ -101,8 +101,8 @@ impl SkeletonMember for Polygon {
         if places.is_empty() { q.z * q.z } else { points::distance_squared(places) }
     }
 
-    fn decision(&self, p: DVec3) -> f64 {
-        points::decision(&self.places(self.pose().inverse().transform_point3(p)))
+    fn kink_distance(&self, p: DVec3) -> f64 {
+        points::kink_distance(&self.places(self.pose().inverse().transform_point3(p)))
     }
 
     fn pose(&self) -> DAffine3 {
@@ -165,7 +165,7 @@ impl SkeletonMember for Polygon {
         let along = d.fma(from_a[1], edge[3], along_x);
         let along = super::positive_part(d, along);
         let along = d.min(along, edge[4]);
-        let back = d.hold(along);
+        let back = d.stop_gradient(along);
         let back = d.neg(back);
         let off = [d.fma(back, edge[2], from_a[0]), d.fma(back, edge[3], from_a[1])];
         let square = super::sum_of_squares(d, off[0], off[1]);

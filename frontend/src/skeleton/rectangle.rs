@@ -49,7 +49,7 @@ impl SkeletonMember for Rectangle {
         past(length, self.half_length) + past(n.cross(length), self.half_width) + v.dot(n).powi(2)
     }
 
-    fn decision(&self, _p: DVec3) -> f64 {
+    fn kink_distance(&self, _p: DVec3) -> f64 {
         f64::INFINITY
     }
 

@@ -36,7 +36,7 @@ impl SkeletonMember for Ring {
     }
 
     /// All points of the ring are equally near to a point of its axis: there the gradient jumps.
-    fn decision(&self, p: DVec3) -> f64 {
+    fn kink_distance(&self, p: DVec3) -> f64 {
         if self.radius == 0.0 { f64::INFINITY } else { super::cylindrical(p - self.center, super::unit(self.normal)).1 }
     }
 
@@ -63,9 +63,9 @@ impl SkeletonMember for Ring {
         [uv::turn(q.x, q.y), uv::turn(q.x.hypot(q.y) - self.radius, q.z)]
     }
 
-    fn uv_decision(&self, p: DVec3) -> f64 {
+    fn uv_kink_distance(&self, p: DVec3) -> f64 {
         let q = uv::within(&self.uv_frame(), p);
-        uv::turn_decision(q.x, q.y).min(uv::turn_decision(q.x.hypot(q.y) - self.radius, q.z))
+        uv::turn_kink_distance(q.x, q.y).min(uv::turn_kink_distance(q.x.hypot(q.y) - self.radius, q.z))
     }
 
     fn uv_frame(&self) -> DAffine3 {
@@ -95,8 +95,8 @@ mod tests {
         for (p, expected) in [([0.0, 3.0, 0.0], 0.0), ([0.0, 1.0, 0.0], 4.0), ([4.0, 0.0, 6.0], 25.0), ([4.0, 0.0, 0.0], 25.0)] {
             testing::same_everywhere(&ring, p.into(), expected);
         }
-        assert_eq!(ring.decision(DVec3::new(9.0, 0.0, 0.0)), 0.0);
-        assert_eq!(ring.decision(DVec3::new(9.0, 3.0, 4.0)), 5.0);
+        assert_eq!(ring.kink_distance(DVec3::new(9.0, 0.0, 0.0)), 0.0);
+        assert_eq!(ring.kink_distance(DVec3::new(9.0, 3.0, 4.0)), 5.0);
     }
 
     #[test]

@@ -11,7 +11,7 @@
 //!
 //! A slope k of magnitude 1 or more says that one ball holds the other: it is the skeleton alone. At its
 //! minimum a function does not move with its argument, so the gradient is that of the distance from the ball
-//! at a fixed tau (`hold`). For the same reason an error of tau counts in the second order: with rounding u,
+//! at a fixed tau (`stop_gradient`). For the same reason an error of tau counts in the second order: with rounding u,
 //! that of `lean y` is below `3 u y / sqrt(1 - k^2)`, and what it adds to the distance below `5 u^2 y`.
 
 use glam::{DAffine3, DVec3};
@@ -87,7 +87,7 @@ impl SkeletonMember for RoundCone {
         nearest.max(0.0).powi(2)
     }
 
-    fn decision(&self, _p: DVec3) -> f64 {
+    fn kink_distance(&self, _p: DVec3) -> f64 {
         f64::INFINITY
     }
 
@@ -109,7 +109,7 @@ impl SkeletonMember for RoundCone {
         let tau = d.min(tau, half);
         let lowest = d.neg(half);
         let tau = d.max(tau, lowest);
-        let tau = d.hold(tau);
+        let tau = d.stop_gradient(tau);
         let along = d.sub(z, tau);
         let square = super::length_squared(d, [x, y, along]);
         let radius = d.fma(slope, tau, radius);

@@ -32,7 +32,7 @@ impl SkeletonMember for Segment {
         segment_distance_squared(p, self.from, self.to)
     }
 
-    fn decision(&self, _p: DVec3) -> f64 {
+    fn kink_distance(&self, _p: DVec3) -> f64 {
         f64::INFINITY
     }
 
@@ -59,9 +59,9 @@ impl SkeletonMember for Segment {
         [uv::turn(q.x, q.y), along.clamp(0.0, 1.0)]
     }
 
-    fn uv_decision(&self, p: DVec3) -> f64 {
+    fn uv_kink_distance(&self, p: DVec3) -> f64 {
         let q = uv::within(&self.uv_frame(), p);
-        uv::turn_decision(q.x, q.y)
+        uv::turn_kink_distance(q.x, q.y)
     }
 
     fn uv_frame(&self) -> DAffine3 {

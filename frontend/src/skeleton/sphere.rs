@@ -32,7 +32,7 @@ impl SkeletonMember for Sphere {
         (p.distance(self.center) - self.radius).max(0.0).powi(2)
     }
 
-    fn decision(&self, _p: DVec3) -> f64 {
+    fn kink_distance(&self, _p: DVec3) -> f64 {
         f64::INFINITY
     }
 

@@ -61,7 +61,7 @@ impl SkeletonMember for Superquadric {
 
     /// The planes on which a coordinate with a norm of exponent below 2 is 0, and the z axis, where both of
     /// one norm are.
-    fn decision(&self, p: DVec3) -> f64 {
+    fn kink_distance(&self, p: DVec3) -> f64 {
         let [x, y, z] = (p - self.center).abs().to_array();
         let across = if self.e2 > 1.0 { x.min(y) } else { f64::INFINITY };
         let along = if self.e1 > 1.0 { z.min(x.hypot(y)) } else { f64::INFINITY };
@@ -104,9 +104,9 @@ mod tests {
         ] {
             testing::same_everywhere(&shape(e1, e2), p.into(), f64::powi(expected, 2));
         }
-        assert_eq!(shape(1.0, 1.0).decision(DVec3::ZERO), f64::INFINITY);
-        assert_eq!(shape(1.0, 1.5).decision(DVec3::new(-1.0, 0.5, 0.0)), 0.5);
-        assert_eq!(shape(1.5, 1.0).decision(DVec3::new(3.0, 4.0, -9.0)), 5.0);
+        assert_eq!(shape(1.0, 1.0).kink_distance(DVec3::ZERO), f64::INFINITY);
+        assert_eq!(shape(1.0, 1.5).kink_distance(DVec3::new(-1.0, 0.5, 0.0)), 0.5);
+        assert_eq!(shape(1.5, 1.0).kink_distance(DVec3::new(3.0, 4.0, -9.0)), 5.0);
     }
 
     #[test]

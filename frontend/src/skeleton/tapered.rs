@@ -95,7 +95,7 @@ impl Part for Cone {
         let tau = d.fma(y, lean, x);
         let tau = super::positive_part(d, tau);
         let tau = d.min(tau, length);
-        let tau = d.hold(tau);
+        let tau = d.stop_gradient(tau);
         let from_center = super::minus_multiple(d, from_a, tau, along);
         let distance = super::length(d, from_center);
         let ball = d.fma(tau, taper, radius);

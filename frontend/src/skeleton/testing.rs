@@ -109,7 +109,7 @@ where
             let size = size.min.abs().max(size.max.abs()).max_element();
             let allowed = (ROUNDING + 2f64.powi(-24)) * (size + distance) + 2f64.powi(-73);
             assert!(got >= distance - allowed, "{skeleton:?} at {p}: {got} in f32, {distance} in f64");
-            if skeleton.decision(p) > 1e-4 {
+            if skeleton.kink_distance(p) > 1e-4 {
                 assert!(got <= distance + allowed, "{skeleton:?} at {p}: {got} in f32, {distance} in f64");
             }
         }
@@ -312,7 +312,7 @@ pub fn judge_uv<S: SkeletonMember + Debug>(mut make: impl FnMut(&mut fastrand::R
         for _ in 0..200 {
             let p = 2.0 * position(&mut rng);
             let (plain, got) = (skeleton.uv(p), emitted_uv(&skeleton, p));
-            let decision = skeleton.uv_decision(p);
+            let decision = skeleton.uv_kink_distance(p);
             let step = direction(&mut rng) * 1e-6;
             let near = skeleton.uv(p + step);
             for part in 0..2 {

@@ -43,7 +43,7 @@ impl SkeletonMember for Torus {
 
     /// All points of the ring are equally near to a point of its axis: there the gradient jumps, unless it is
     /// zero.
-    fn decision(&self, p: DVec3) -> f64 {
+    fn kink_distance(&self, p: DVec3) -> f64 {
         if self.ring_radius == 0.0 {
             return f64::INFINITY;
         }
@@ -80,8 +80,8 @@ mod tests {
         {
             testing::same_everywhere(&torus, p.into(), expected);
         }
-        assert_eq!(torus.decision(DVec3::new(9.0, 0.0, 0.0)), 0.0);
-        assert_eq!(torus.decision(DVec3::new(9.0, 3.0, 4.0)), 5.0);
+        assert_eq!(torus.kink_distance(DVec3::new(9.0, 0.0, 0.0)), 0.0);
+        assert_eq!(torus.kink_distance(DVec3::new(9.0, 3.0, 4.0)), 5.0);
     }
 
     #[test]

@@ -89,7 +89,7 @@ impl SkeletonMember for Triangle {
         sides.iter().map(|(from, to)| segment_distance_squared(p, *from, *to)).fold(f64::INFINITY, f64::min)
     }
 
-    fn decision(&self, _p: DVec3) -> f64 {
+    fn kink_distance(&self, _p: DVec3) -> f64 {
         f64::INFINITY
     }
 
@@ -149,7 +149,7 @@ impl SkeletonMember for Triangle {
         self.weights().map(|weight| (p - self.a).dot(weight).clamp(0.0, 1.0))
     }
 
-    fn uv_decision(&self, _p: DVec3) -> f64 {
+    fn uv_kink_distance(&self, _p: DVec3) -> f64 {
         f64::INFINITY
     }
 

@@ -64,8 +64,8 @@ impl<T: Tube> SkeletonMember for T {
         points::distance_squared(T::Part::places(self.parts(), p))
     }
 
-    fn decision(&self, p: DVec3) -> f64 {
-        points::decision(&T::Part::places(self.parts(), p))
+    fn kink_distance(&self, p: DVec3) -> f64 {
+        points::kink_distance(&T::Part::places(self.parts(), p))
     }
 
     fn pose(&self) -> DAffine3 {

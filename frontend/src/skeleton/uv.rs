@@ -2,7 +2,7 @@
 //!
 //! Every skeleton gives each place of space two numbers in [0, 1]: where the place is *on the skeleton*, by
 //! the skeleton's own parameters. They are finite everywhere. Where they jump (at seams, poles and axes) is
-//! said by [`SkeletonMember::uv_decision`](super::SkeletonMember::uv_decision).
+//! said by [`SkeletonMember::uv_kink_distance`](super::SkeletonMember::uv_kink_distance).
 //!
 //! Angles about an axis n start at the *zero direction*: the x axis without its part along n, or the y axis
 //! where n is closer than about 26 degrees to x (|n.x| > 0.9); they go right-handed about n. So a picture
@@ -42,7 +42,7 @@ pub(super) fn turn(x: f64, y: f64) -> f64 {
 }
 
 /// How far (x, y) is from where [`turn`] jumps: the x axis on its positive side.
-pub(super) fn turn_decision(x: f64, y: f64) -> f64 {
+pub(super) fn turn_kink_distance(x: f64, y: f64) -> f64 {
     if x > 0.0 { y.abs() } else { x.hypot(y) }
 }
 
@@ -53,8 +53,8 @@ pub(super) fn sphere(p: DVec3) -> [f64; 2] {
 }
 
 /// How far `p` is from where [`sphere`] jumps.
-pub(super) fn sphere_decision(p: DVec3) -> f64 {
-    turn_decision(p.x, p.y)
+pub(super) fn sphere_kink_distance(p: DVec3) -> f64 {
+    turn_kink_distance(p.x, p.y)
 }
 
 /// [`sphere`] over the ops.

@@ -42,7 +42,7 @@ pub(super) fn cell(x: f64) -> (i32, f64) {
 }
 
 /// How far a coordinate is from where its cell ends.
-pub(super) fn cell_decision(x: f64) -> f64 {
+pub(super) fn cell_kink_distance(x: f64) -> f64 {
     (x - x.round()).abs()
 }
 

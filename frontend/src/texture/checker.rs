@@ -7,7 +7,7 @@
 use glam::DVec3;
 use jbt_ir::Domain;
 
-use super::{TextureMember, cell, cell_decision, emit_cell, emit_odd};
+use super::{TextureMember, cell, cell_kink_distance, emit_cell, emit_odd};
 use crate::member::member;
 
 member! {
@@ -25,8 +25,8 @@ impl TextureMember for Checker {
         f64::from(sum.rem_euclid(2))
     }
 
-    fn decision(&self, p: DVec3) -> f64 {
-        p.to_array().iter().map(|x| self.size * cell_decision(x / self.size)).fold(f64::INFINITY, f64::min)
+    fn kink_distance(&self, p: DVec3) -> f64 {
+        p.to_array().iter().map(|x| self.size * cell_kink_distance(x / self.size)).fold(f64::INFINITY, f64::min)
     }
 
     fn columns(_variant: u8) -> &'static [&'static str] {
@@ -66,7 +66,7 @@ mod tests {
             assert_eq!(checker.value(p.into()), expected, "{p:?}");
             assert_eq!(f64::from(testing::emitted(&checker, p.map(|x| x as f32))), expected, "{p:?}");
         }
-        assert!((checker.decision([0.6, 0.2, 0.25].into()) - 0.1).abs() < 1e-15);
+        assert!((checker.kink_distance([0.6, 0.2, 0.25].into()) - 0.1).abs() < 1e-15);
     }
 
     #[test]

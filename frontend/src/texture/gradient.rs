@@ -33,7 +33,7 @@ impl TextureMember for Gradient {
         (p - self.from).dot(self.slope()).clamp(0.0, 1.0)
     }
 
-    fn decision(&self, _p: DVec3) -> f64 {
+    fn kink_distance(&self, _p: DVec3) -> f64 {
         f64::INFINITY
     }
 

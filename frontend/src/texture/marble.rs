@@ -38,7 +38,7 @@ impl TextureMember for Marble {
         self.veins().value(p, p.dot(self.veins().direction()))
     }
 
-    fn decision(&self, _p: DVec3) -> f64 {
+    fn kink_distance(&self, _p: DVec3) -> f64 {
         f64::INFINITY
     }
 

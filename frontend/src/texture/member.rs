@@ -16,7 +16,7 @@ pub trait TextureMember: Member {
     fn value(&self, p: DVec3) -> f64;
 
     /// How far `p` is from where the number jumps; infinity if it never does.
-    fn decision(&self, p: DVec3) -> f64;
+    fn kink_distance(&self, p: DVec3) -> f64;
 
     /// The part of the parameters that selects code. `follows`: they follow those of the model, so the code
     /// has to serve all their values.

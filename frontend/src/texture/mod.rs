@@ -23,8 +23,8 @@ mod member;
 
 pub use cells::LARGEST_CELL;
 use cells::{
-    ROUND, cell, cell_decision, emit_cell, emit_dot, emit_odd, emit_smooth, emit_wave, first_three, smooth,
-    wave,
+    ROUND, cell, cell_kink_distance, emit_cell, emit_dot, emit_odd, emit_smooth, emit_wave, first_three,
+    smooth, wave,
 };
 pub use member::TextureMember;
 
@@ -101,9 +101,9 @@ macro_rules! textures {
             #[must_use]
             pub fn value(&self, p: DVec3) -> f64 { match self { $( Self::$name(t) => t.value(p), )+ } }
 
-            /// See [`TextureMember::decision`].
+            /// See [`TextureMember::kink_distance`].
             #[must_use]
-            pub fn decision(&self, p: DVec3) -> f64 { match self { $( Self::$name(t) => t.decision(p), )+ } }
+            pub fn kink_distance(&self, p: DVec3) -> f64 { match self { $( Self::$name(t) => t.kink_distance(p), )+ } }
         }
 
         $crate::member::each! { ($) texture $($module)+ }

@@ -68,7 +68,7 @@ impl TextureMember for Noise {
         sum.clamp(0.0, 1.0)
     }
 
-    fn decision(&self, _p: DVec3) -> f64 {
+    fn kink_distance(&self, _p: DVec3) -> f64 {
         f64::INFINITY
     }
 

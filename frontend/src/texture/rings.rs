@@ -39,7 +39,7 @@ impl TextureMember for Rings {
         self.veins().value(p, (p - p.dot(n) * n).length())
     }
 
-    fn decision(&self, _p: DVec3) -> f64 {
+    fn kink_distance(&self, _p: DVec3) -> f64 {
         f64::INFINITY
     }
 

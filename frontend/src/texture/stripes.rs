@@ -5,7 +5,7 @@
 use glam::DVec3;
 use jbt_ir::Domain;
 
-use super::{TextureMember, cell, cell_decision, emit_cell, emit_dot, emit_odd, first_three};
+use super::{TextureMember, cell, cell_kink_distance, emit_cell, emit_dot, emit_odd, first_three};
 use crate::member::member;
 
 member! {
@@ -31,8 +31,8 @@ impl TextureMember for Stripes {
         f64::from(cell(self.layers(p)).0.rem_euclid(2))
     }
 
-    fn decision(&self, p: DVec3) -> f64 {
-        self.width * cell_decision(self.layers(p))
+    fn kink_distance(&self, p: DVec3) -> f64 {
+        self.width * cell_kink_distance(self.layers(p))
     }
 
     fn columns(_variant: u8) -> &'static [&'static str] {
@@ -61,7 +61,7 @@ mod tests {
         for (y, expected) in [(0.1, 0.0), (0.6, 1.0), (-0.1, 1.0), (-0.6, 0.0)] {
             assert_eq!(stripes.value(DVec3::new(7.0, y, -3.0)), expected, "{y}");
         }
-        assert!((stripes.decision(DVec3::new(0.0, 0.6, 0.0)) - 0.1).abs() < 1e-15);
+        assert!((stripes.kink_distance(DVec3::new(0.0, 0.6, 0.0)) - 0.1).abs() < 1e-15);
     }
 
     #[test]

@@ -37,7 +37,7 @@ pub fn judge<T: TextureMember + PartialEq + Debug>(
             let at = DVec3::from_array(p.map(f64::from));
             let value = texture.value(at);
             assert!((0.0..=1.0).contains(&value), "{texture:?} at {at}: {value}");
-            if texture.decision(at) > 1e-4 {
+            if texture.kink_distance(at) > 1e-4 {
                 for variant in [texture.variant(false), texture.variant(true)] {
                     let got = f64::from(emitted_variant(&texture, variant, p));
                     assert!((got - value).abs() < 1e-4, "{texture:?} at {at}: {got} in f32, not {value}");

@@ -200,7 +200,7 @@ impl WarpMember for Bend {
         q
     }
 
-    fn decision(&self, p: DVec3) -> f64 {
+    fn kink_distance(&self, p: DVec3) -> f64 {
         if self.rate == 0.0 {
             return f64::INFINITY;
         }

@@ -60,7 +60,7 @@ impl WarpMember for Deform {
         self.map().inverse().transform_point3(p)
     }
 
-    fn decision(&self, _: DVec3) -> f64 {
+    fn kink_distance(&self, _: DVec3) -> f64 {
         f64::INFINITY
     }
 

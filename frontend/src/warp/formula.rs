@@ -55,8 +55,8 @@ impl FormulaWarp {
         DVec3::from_array(std::array::from_fn(|axis| kept(values[axis])))
     }
 
-    pub(super) fn decision(&self, p: DVec3) -> f64 {
-        self.form.decision(&self.numbers, p, &[])
+    pub(super) fn kink_distance(&self, p: DVec3) -> f64 {
+        self.form.kink_distance(&self.numbers, p, &[])
     }
 
     pub(super) fn fault(&self) -> Option<WarpFault> {

@@ -18,7 +18,7 @@ pub trait WarpMember: Member {
 
     /// How far a point is, about, from where the map has a crease or a jump: gradients of the warped child
     /// may jump there, too. Infinity if it has none.
-    fn decision(&self, p: DVec3) -> f64;
+    fn kink_distance(&self, p: DVec3) -> f64;
 
     /// What is wrong with parameters of which each is what its [`FieldKind`] says.
     fn fault(&self) -> Option<WarpFault>;

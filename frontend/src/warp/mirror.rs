@@ -31,7 +31,7 @@ impl WarpMember for Mirror {
         q
     }
 
-    fn decision(&self, p: DVec3) -> f64 {
+    fn kink_distance(&self, p: DVec3) -> f64 {
         p[self.axis.index()].abs()
     }
 

@@ -104,9 +104,9 @@ macro_rules! warps {
             #[must_use]
             pub fn inverse(&self, p: DVec3) -> DVec3 { match self { $( Self::$name(w) => w.inverse(p), )+ Self::Formula(w) => w.inverse(p) } }
 
-            /// See [`WarpMember::decision`].
+            /// See [`WarpMember::kink_distance`].
             #[must_use]
-            pub fn decision(&self, p: DVec3) -> f64 { match self { $( Self::$name(w) => w.decision(p), )+ Self::Formula(w) => w.decision(p) } }
+            pub fn kink_distance(&self, p: DVec3) -> f64 { match self { $( Self::$name(w) => w.kink_distance(p), )+ Self::Formula(w) => w.kink_distance(p) } }
 
             /// See [`WarpMember::fault`].
             #[must_use]

@@ -62,7 +62,7 @@ impl WarpMember for Repeat {
         q
     }
 
-    fn decision(&self, p: DVec3) -> f64 {
+    fn kink_distance(&self, p: DVec3) -> f64 {
         let [lower, upper] = self.walls();
         let x = p[self.axis.index()];
         let cell = (x - lower) / self.spacing;
@@ -140,7 +140,7 @@ impl WarpMember for Repeat {
         let copy = d.sub(shifted, round);
         let copy = d.max(first, copy);
         let copy = d.min(last, copy);
-        let copy = d.hold(copy);
+        let copy = d.stop_gradient(copy);
         let back = d.neg(copy);
         let inside = d.fma(back, spacing, between);
         let other_half = d.neg(half);
@@ -193,7 +193,7 @@ mod tests {
     fn decides_at_its_walls() {
         let repeat = Repeat { axis: Axis::X, spacing: 2.0, count: 2.0 };
         for (x, expected) in [(-4.0, 5.0), (0.5, 0.5), (1.0, 0.0), (1.25, 0.25), (9.0, 8.0)] {
-            assert!((repeat.decision(DVec3::new(x, 0.0, 0.0)) - expected).abs() < 1e-12, "at {x}");
+            assert!((repeat.kink_distance(DVec3::new(x, 0.0, 0.0)) - expected).abs() < 1e-12, "at {x}");
         }
     }
 }

@@ -48,7 +48,7 @@ impl WarpMember for RepeatAround {
         q
     }
 
-    fn decision(&self, p: DVec3) -> f64 {
+    fn kink_distance(&self, p: DVec3) -> f64 {
         if self.count == 1.0 {
             return f64::INFINITY;
         }
@@ -97,7 +97,7 @@ impl WarpMember for RepeatAround {
         let [_, u, v] = Axis::ALL[usize::from(variant)].order();
         let half_turn = d.constant(PI as f32);
         // The copy does not move with the point, so neither do angle and turn.
-        let still = [d.hold(p[u]), d.hold(p[v])];
+        let still = [d.stop_gradient(p[u]), d.stop_gradient(p[v])];
         let polar = angle::emit(d, still, still[1], half_turn, f32::MIN_POSITIVE);
         let sectors = d.mul(polar.angle, row[0]);
         let round = d.constant(ROUND);
@@ -136,8 +136,8 @@ mod tests {
     #[test]
     fn decides_at_its_walls() {
         let four = RepeatAround { axis: Axis::Z, count: 4.0 };
-        assert!(four.decision(DVec3::new(1.0, 1.0, 0.0)).abs() < 1e-15);
-        assert!((four.decision(DVec3::new(2.0, 0.0, 0.0)) - 2f64.sqrt()).abs() < 1e-12);
+        assert!(four.kink_distance(DVec3::new(1.0, 1.0, 0.0)).abs() < 1e-15);
+        assert!((four.kink_distance(DVec3::new(2.0, 0.0, 0.0)) - 2f64.sqrt()).abs() < 1e-12);
     }
 
     #[test]

@@ -53,7 +53,7 @@ impl WarpMember for SpaceMap {
         p - (1.0 - t).max(0.0).powi(3) / (1.0 + t) * self.shift()
     }
 
-    fn decision(&self, p: DVec3) -> f64 {
+    fn kink_distance(&self, p: DVec3) -> f64 {
         if self.from == self.to { f64::INFINITY } else { p.distance(self.to) }
     }
 

@@ -77,7 +77,7 @@ impl WarpMember for Taper {
         q
     }
 
-    fn decision(&self, p: DVec3) -> f64 {
+    fn kink_distance(&self, p: DVec3) -> f64 {
         if self.start == self.end {
             return f64::INFINITY;
         }

@@ -111,7 +111,7 @@ pub fn judge_formulas(warp: &Warp, rng: &mut fastrand::Rng) -> usize {
 fn forms_agree(warp: &Warp, p: Vec3) -> bool {
     let step = 1e-6;
     let at = p.as_dvec3();
-    if warp.decision(at) < 1e-3 {
+    if warp.kink_distance(at) < 1e-3 {
         return false;
     }
     let central = |step: f64| {

@@ -34,7 +34,7 @@ impl WarpMember for Twist {
         q
     }
 
-    fn decision(&self, _: DVec3) -> f64 {
+    fn kink_distance(&self, _: DVec3) -> f64 {
         f64::INFINITY
     }
 

@@ -176,7 +176,7 @@ impl Domain for Scalar {
     }
 
     #[inline]
-    fn hold(&mut self, a: f32) -> f32 {
+    fn stop_gradient(&mut self, a: f32) -> f32 {
         a
     }
 }

@@ -91,7 +91,7 @@ fn decide(masks: &HashMap<Value, bool>, op: Op, args: &[Value]) -> Option<Value>
         | Op::Exp
         | Op::Ln
         | Op::Pow
-        | Op::Hold => None,
+        | Op::StopGradient => None,
     }
 }
 

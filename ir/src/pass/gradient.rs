@@ -121,7 +121,7 @@ fn moved(function: &Function) -> Vec<bool> {
                 InstKind::Input(index) => moves[inst.results[0].index()] = *index < 3,
                 InstKind::Constant(_) | InstKind::BitsConstant(_) | InstKind::Column { .. } => {}
                 InstKind::Op { op, args } => {
-                    let held = *op == Op::Hold || op.result() != Type::Real;
+                    let held = *op == Op::StopGradient || op.result() != Type::Real;
                     moves[inst.results[0].index()] = !held && args.iter().any(|arg| moves[arg.index()]);
                 }
                 InstKind::Fold(fold) => {

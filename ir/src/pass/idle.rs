@@ -223,7 +223,7 @@ impl Fact for Facts {
                 ..Self::default()
             },
             Op::Select => args[1].join(args[2]),
-            Op::Hold => args[0],
+            Op::StopGradient => args[0],
             // Only -0 and -0 give -0: where a sum cancels it is +0, and sums are never too small to be exact.
             Op::Add => minus(args[0].is_not_minus_zero || args[1].is_not_minus_zero),
             Op::Fma => minus(args[2].constant.is_some_and(|number| number.abs() >= LARGE)),
@@ -282,7 +282,7 @@ fn step(op: Op, args: &[Value], facts: &[Facts], now: &[Option<Now>], result: Va
     let facts_of = |value: Value| facts[value.index()];
     let is_positive = |value: Value| facts_of(value).is_positive;
     match (op, &args[..]) {
-        (Op::Hold, &[value]) => value,
+        (Op::StopGradient, &[value]) => value,
         (Op::Mul, &[Zero { .. }, Zero { .. }]) => Zero { is_plus: false },
         (Op::Mul, &[Zero { .. }, Number(number)] | &[Number(number), Zero { .. }]) if number.is_finite() => {
             Zero { is_plus: false }

@@ -1,7 +1,7 @@
 //! Expands the ops that no machine has.
 //!
 //! The transcendentals become the steps of [`crate::math`], written through the builder, so every engine runs
-//! the very same ones. `hold` is there for the gradient only, which has been taken by now: it becomes its
+//! the very same ones. `stop_gradient` is there for the gradient only, which has been taken by now: it becomes its
 //! operand.
 
 use crate::builder::FunctionBuilder;
@@ -11,7 +11,7 @@ use crate::math;
 use crate::op::Op;
 use crate::translate::rewrite;
 
-/// The function without transcendentals and `hold`.
+/// The function without transcendentals and `stop_gradient`.
 #[must_use]
 pub fn legalize(function: &Function) -> Function {
     rewrite(function, expand)
@@ -24,7 +24,7 @@ fn expand(builder: &mut FunctionBuilder, op: Op, args: &[Value]) -> Value {
         Op::Exp => math::exp(builder, args[0]),
         Op::Ln => math::ln(builder, args[0]),
         Op::Pow => math::pow(builder, args[0], args[1]),
-        Op::Hold => args[0],
+        Op::StopGradient => args[0],
         Op::Add
         | Op::Sub
         | Op::Mul
@@ -64,12 +64,12 @@ mod tests {
     fn nothing_is_left_to_expand() {
         let mut b = FunctionBuilder::new("all", &["x", "y"]);
         let (x, y) = (b.input(0), b.input(1));
-        let values = [b.sin(x), b.cos(x), b.exp(x), b.ln(x), b.pow(x, y), b.hold(x)];
+        let values = [b.sin(x), b.cos(x), b.exp(x), b.ln(x), b.pow(x, y), b.stop_gradient(x)];
         let outputs: Vec<_> = values.iter().map(|&value| (value.to_string(), value)).collect();
         let legal = legalize(&b.finish(&outputs));
         for data in legal.insts.values() {
             if let InstKind::Op { op, .. } = data.kind {
-                assert!(!matches!(op, Op::Sin | Op::Cos | Op::Exp | Op::Ln | Op::Pow | Op::Hold));
+                assert!(!matches!(op, Op::Sin | Op::Cos | Op::Exp | Op::Ln | Op::Pow | Op::StopGradient));
             }
         }
         assert_eq!(legal.outputs.len(), 6);

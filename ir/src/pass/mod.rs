@@ -73,7 +73,7 @@ pub const INTERVAL: Pass = Pass {
 pub const PIPELINE: &[Pass] = &[
     Pass {
         name: "legalize",
-        what: "Expands the transcendentals into the ops that machines have, and drops `hold`.",
+        what: "Expands the transcendentals into the ops that machines have, and drops `stop_gradient`.",
         run: legalize,
     },
     Pass {

@@ -12,7 +12,7 @@
 //! ```
 //!
 //! *Leaves* (constants, columns, inputs, what other pieces have kept) are not in the list. They have a home
-//! in memory, and whoever reads them finds them there. Ops that change no bit (`hold`, `to_bits`,
+//! in memory, and whoever reads them finds them there. Ops that change no bit (`stop_gradient`, `to_bits`,
 //! `from_bits`) are not there either: their result has the name of their operand.
 
 use jbt_ir::plan::Slot;

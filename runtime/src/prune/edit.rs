@@ -92,14 +92,14 @@ impl Pruner {
         Some(())
     }
 
-    /// Adds the boxes in which it makes a difference which rows of a table are active. What is lifted makes
+    /// Adds the boxes in which it makes a difference which rows of a table are active. What is hoisted makes
     /// none: some selector has chosen another child as well, or nobody would begin to ask for it, or cease
     /// to.
     fn edit_choice(&self, before: &Self, table: Table, boxes: &mut Vec<Box3>) -> Option<()> {
         if !(before.has_single_rows(table) && self.has_single_rows(table)) {
             return None;
         }
-        if self.guide.tables[table].is_lifted {
+        if self.guide.tables[table].is_hoisted {
             return Some(());
         }
         for row in 0..self.tables().tables[table].len() {

@@ -1,4 +1,4 @@
-//! Attribute values that are computed: in the row of their leaf, or lifted to the start of their space.
+//! Attribute values that are computed: in the row of their leaf, or hoisted to the start of their space.
 
 use jbt_ir::Value;
 
@@ -56,7 +56,7 @@ impl Emitter<'_> {
     }
 
     /// Computes what several leaves share, if anybody asks for attributes.
-    pub(super) fn lift_computed(&mut self, id: ComputedId) {
+    pub(super) fn hoist_computed(&mut self, id: ComputedId) {
         if self.mixing.is_empty() {
             return;
         }

@@ -16,12 +16,12 @@ use super::parts::GuardStart;
 use crate::lower::guide::{DecidedRows, DecisionKind};
 use crate::lower::mixing::{Answer, GroupAnswer};
 use crate::lower::occurrence::{OccurrenceId, SpaceId};
-use crate::lower::shape::Lift;
+use crate::lower::shape::Hoist;
 
 impl Emitter<'_> {
-    /// Whether what is lifted here is computed under a guard.
-    pub(super) fn guards_lift(&self, lift: Lift) -> bool {
-        self.shapes.guards_lift(self.scene, lift, self.builder.fold_depth())
+    /// Whether what is hoisted here is computed under a guard.
+    pub(super) fn guards_hoisted(&self, hoist: Hoist) -> bool {
+        self.shapes.guards_hoisted(self.scene, hoist, self.builder.fold_depth())
     }
 
     pub(super) fn open_guard(&mut self, id: OccurrenceId, start: GuardStart) {

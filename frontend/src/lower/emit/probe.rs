@@ -131,7 +131,7 @@ impl Emitter<'_> {
         (self.shapes.holds_formulas(member) && self.probes_here().is_some()).then_some(extreme)
     }
 
-    /// Whether what is computed here needs no rows but those above and under it: nothing has been lifted.
+    /// Whether what is computed here needs no rows but those above and under it: nothing has been hoisted.
     pub(super) fn is_free(&self) -> bool {
         self.points.len() == 1
             && self.kept.is_empty()

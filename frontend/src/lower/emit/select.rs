@@ -1,4 +1,4 @@
-//! Folds over one row that may not be active: the children of a selector, and what is lifted though some
+//! Folds over one row that may not be active: the children of a selector, and what is hoisted though some
 //! choices do without it.
 //!
 //! ```text
@@ -19,7 +19,7 @@ use super::parts::Select;
 use super::{Emitter, Task};
 use crate::attribute::Mixing;
 use crate::lower::occurrence::{FieldId, OccurrenceId, SpaceId};
-use crate::lower::shape::Lift;
+use crate::lower::shape::Hoist;
 
 impl Emitter<'_> {
     /// Leaves the parts of a selector on the tasks.
@@ -79,8 +79,8 @@ impl Emitter<'_> {
     }
 
     /// The field of a leaf that several occurrences share.
-    pub(super) fn lift_field(&mut self, field: FieldId) -> Value {
-        if !self.guards_lift(Lift::Field(field)) {
+    pub(super) fn hoist_field(&mut self, field: FieldId) -> Value {
+        if !self.guards_hoisted(Hoist::Field(field)) {
             return self.leaf(field);
         }
         let name = self.scene.field(field).code.skeleton.name();
@@ -91,11 +91,11 @@ impl Emitter<'_> {
     }
 
     /// The point inside a warp that several occurrences share.
-    pub(super) fn lift_point(&mut self, space: SpaceId) -> [Value; 3] {
-        if !self.guards_lift(Lift::Space(space)) {
+    pub(super) fn hoist_point(&mut self, space: SpaceId) -> [Value; 3] {
+        if !self.guards_hoisted(Hoist::Space(space)) {
             return self.point_inside(space);
         }
-        let inside = self.scene.inside(space).expect("the world is not lifted");
+        let inside = self.scene.inside(space).expect("the world is not hoisted");
         let name = self.scene.warp(inside.warp).name();
         let outside = self.scene.position(inside.position).space;
         // A point is no field: where it is zero says nothing.

@@ -361,7 +361,7 @@ impl<'a> Finder<'a> {
             self.scene.occurrences[child.0 as usize].uses += 1;
         }
         if let OccurrenceKind::Warp { weight: Some(weight), .. } = kind {
-            // The point inside uses it once more, so that it is lifted: known before any row that enters.
+            // The point inside uses it once more, so that it is hoisted: known before any row that enters.
             self.scene.occurrences[weight.0 as usize].uses += 1;
         }
         self.scene.occurrences.push(Occurrence { node, kind, space, uses: 0, non_negative, bounded });

@@ -18,7 +18,7 @@ pub(in crate::lower) struct ShapeId(pub(super) u32);
 #[derive(Clone, PartialEq, Eq, Hash, Debug)]
 pub(super) enum ShapeKey {
     Leaf(LeafCode, Box<[Option<ComputedShape>]>),
-    /// A lifted field with attributes of its own.
+    /// A hoisted field with attributes of its own.
     LeafOf(FieldId, Box<[Option<ComputedShape>]>),
     Warp {
         map: MapKind,
@@ -54,7 +54,7 @@ pub(super) enum ShapeKey {
         computed: Box<[Option<ComputedShape>]>,
     },
     Select(Vec<ShapeId>),
-    Lifted(OccurrenceId),
+    Hoisted(OccurrenceId),
 }
 
 /// How many folds there may be around a guard. Behind so many, what is left of a deep model is mostly left
@@ -69,9 +69,9 @@ const MAX_DEPTH_OF_GUARDS: usize = 24;
 /// so any number of them is the same code.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Content {
-    /// Whether a use of it has to be written out: it holds tables, or is a lifted value.
+    /// Whether a use of it has to be written out: it holds tables, or is a hoisted value.
     pub(super) written_out: bool,
-    /// Whether tables hang under it. Lifted values count where they are computed.
+    /// Whether tables hang under it. Hoisted values count where they are computed.
     pub(super) tables: bool,
     /// Leaves that are computed where it stands, those in tables left out.
     pub(super) leaves: usize,
@@ -81,7 +81,7 @@ pub(super) struct Content {
 
 impl Content {
     pub(super) const LEAF: Self = Self { written_out: false, tables: false, leaves: 1, formulas: false };
-    pub(super) const LIFTED: Self = Self { written_out: true, tables: false, leaves: 0, formulas: false };
+    pub(super) const HOISTED: Self = Self { written_out: true, tables: false, leaves: 0, formulas: false };
     /// Rows of a table.
     pub(super) const ROWS: Self = Self { written_out: true, tables: true, leaves: 0, formulas: false };
 

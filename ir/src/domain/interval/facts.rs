@@ -107,7 +107,7 @@ impl Fact for Facts {
         let paired = match op {
             Op::Add | Op::Sub => args[0].paired && args[1].paired,
             Op::Neg => args[0].paired,
-            Op::Hold => return args[0],
+            Op::StopGradient => return args[0],
             Op::FromBits => true,
             Op::Mul | Op::Div | Op::Fma | Op::Abs | Op::Sqrt | Op::Min | Op::Max | Op::Select => false,
             Op::Sin | Op::Cos | Op::Exp | Op::Ln | Op::Pow => false,
@@ -139,7 +139,7 @@ fn sign(op: Op, args: &[Facts], same: bool) -> Sign {
         Op::Min => extreme(args, Sign::NonPositive),
         Op::Max => extreme(args, Sign::NonNegative),
         Op::Select => of(1).and(of(2)),
-        Op::Hold => of(0),
+        Op::StopGradient => of(0),
         Op::Sin | Op::Cos | Op::Ln | Op::FromBits => Sign::Unknown,
         Op::Lt | Op::Le | Op::Eq | Op::Both | Op::Either | Op::Not => Sign::Unknown,
         Op::ToBits | Op::BitAnd | Op::BitOr | Op::BitXor => Sign::Unknown,

@@ -214,7 +214,7 @@ impl<D: Domain> Domain for Interval<D> {
     }
 
     /// The same value, so it keeps its identity.
-    fn hold(&mut self, a: Range<D>) -> Range<D> {
+    fn stop_gradient(&mut self, a: Range<D>) -> Range<D> {
         a
     }
 }

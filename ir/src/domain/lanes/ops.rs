@@ -344,7 +344,7 @@ impl Domain for Lanes<'_> {
     }
 
     #[inline(always)]
-    fn hold(&mut self, a: Handle) -> Handle {
+    fn stop_gradient(&mut self, a: Handle) -> Handle {
         self.unary(a, |a| a)
     }
 }

@@ -340,7 +340,7 @@ impl Domain for Tangent {
         })
     }
 
-    fn hold(&mut self, a: Dual) -> Dual {
-        Self::still(self.builder.op(Op::Hold, &[a.value]))
+    fn stop_gradient(&mut self, a: Dual) -> Dual {
+        Self::still(self.builder.op(Op::StopGradient, &[a.value]))
     }
 }

@@ -76,7 +76,7 @@ fn compare(
     let expected = walk_gradient(&subject.tree, at, STEP);
     let steep = length(expected).max(1.0);
     let field = f64::from(samples.field()[index]);
-    let decided = plain.decision < DECISION * steep;
+    let decided = plain.kink_distance < DECISION * steep;
     let near = (field - plain.field).abs() <= FIELD * steep;
     if !(near || decided && is_beside(&subject.tree, at, field)) {
         return Err(format!("the field at {at:?}: expected {:?}, got {field:?}", plain.field));
