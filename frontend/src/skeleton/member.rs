@@ -12,7 +12,8 @@ use crate::member::Member;
 /// What a skeleton states about itself.
 ///
 /// Coordinates are those of the primitive's own space. The distance is Euclidean unless
-/// [`metric`](Self::metric) says otherwise; of a scaled skeleton and point it is as many times as large.
+/// [`metric`](Self::metric) says otherwise. Scaling the skeleton and the point by a factor scales the
+/// distance by the same factor.
 pub trait SkeletonMember: Member {
     /// Names of the columns that [`columns`](Self::columns) fills, in order.
     const COLUMNS: &'static [&'static str];
