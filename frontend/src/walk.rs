@@ -246,7 +246,8 @@ fn express(
     }
 }
 
-/// The answer of a node with this field and distance to a kink, whose attributes are those of its children by weight.
+/// The answer of a node with this field and distance to a kink, whose attributes are those of its children by
+/// weight.
 fn mixed(
     children: &[Answer],
     weights: &[f64],

@@ -7,8 +7,8 @@
 //!
 //! **Powers of large and small numbers.** With m the largest of the three terms, `d = m (sum (|x_i| /
 //! m)^l)^(1/l)`: no quotient is above 1, and the sum is from 1 to
-//! 3. The scale m cancels, so `stop_gradient` keeps it out of the derivative, and limits that hold anyway (1 for a
-//!    quotient, 1 for the sum) tell intervals so.
+//! 3. The scale m cancels, so `stop_gradient` keeps it out of the derivative, and limits that hold anyway (1
+//!    for a quotient, 1 for the sum) tell intervals so.
 //!
 //! **Kinks.** Where a coordinate is 0 and l < 2, the gradient jumps (l = 1) or turns as fast as `|x|^(l-1)`:
 //! `kink_distance` is the distance from these planes. It is finite everywhere, and 0 at the centre.

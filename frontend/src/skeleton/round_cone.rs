@@ -11,8 +11,9 @@
 //!
 //! A slope k of magnitude 1 or more says that one ball holds the other: it is the skeleton alone. At its
 //! minimum a function does not move with its argument, so the gradient is that of the distance from the ball
-//! at a fixed tau (`stop_gradient`). For the same reason an error of tau counts in the second order: with rounding u,
-//! that of `lean y` is below `3 u y / sqrt(1 - k^2)`, and what it adds to the distance below `5 u^2 y`.
+//! at a fixed tau (`stop_gradient`). For the same reason an error of tau counts in the second order: with
+//! rounding u, that of `lean y` is below `3 u y / sqrt(1 - k^2)`, and what it adds to the distance below `5
+//! u^2 y`.
 
 use glam::{DAffine3, DVec3};
 use jbt_ir::Domain;

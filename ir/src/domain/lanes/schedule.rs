@@ -42,8 +42,8 @@ pub(super) struct Range {
 pub(super) struct Schedule<'a> {
     pub function: &'a Function,
     pub events: Vec<Event>,
-    /// The value that holds the bits of each value: itself, unless an op like `stop_gradient` or `to_bits` only
-    /// renames it.
+    /// The value that holds the bits of each value: itself, unless an op like `stop_gradient` or `to_bits`
+    /// only renames it.
     pub holder: Vec<Value>,
     /// For each holder, whether it is the same in all lanes.
     pub splat: Vec<bool>,
