@@ -2,7 +2,6 @@
 //! of one shape should cost their rows alone; shapes cost code.)
 
 use std::hint::black_box;
-use std::path::Path;
 use std::time::Duration;
 
 use criterion::measurement::WallTime;
@@ -11,9 +10,11 @@ use jbt::ir::domain::lanes::Tape;
 use jbt::ir::pass::run_pipeline;
 use jbt::ir::verify;
 use jbt::kernel::Purpose;
-use jbt::{CheckedTree, Compiler, Query, Scene, Update};
+use jbt::{CheckedTree, Compiler, Query, Update};
 use jbt_benches::check;
+use jbt_benches::compare::sample;
 use jbt_benches::model::{cube, varied};
+use jbt_frontend::import::vm;
 use jbt_frontend::lower::lower;
 
 fn compile(c: &mut Criterion) {
@@ -35,10 +36,11 @@ fn compile(c: &mut Criterion) {
     group.finish();
 }
 
-/// A long program of the samples, if the environment variable JBT_SAMPLES names a folder that has them.
+/// A long program of the samples, if they are here.
 fn program(name: &str) -> Option<CheckedTree> {
-    let path = Path::new(&std::env::var_os("JBT_SAMPLES")?).join("vm").join(name).with_extension("vm");
-    Some(Scene::load(path).ok()?.check().expect("the program is a model"))
+    let bytes = sample(&format!("vm/{name}.vm")).ok()?;
+    let imported = vm(&bytes).expect("the program reads");
+    Some(imported.model.check().expect("the program is a model"))
 }
 
 /// The stages on the way to an evaluator of everything, each on what the one before it made.

@@ -135,6 +135,7 @@ impl Model {
             let id = NodeId(nodes.len() as u32);
             let written = node.written();
             if written.follows(&self.iso) || (self.iso.follows() && written.is_limited_by_iso()) {
+                // A limit of an operator has to be checked again when the iso-value moves.
                 dependence.add(id, &Arc::new(written.clone()));
             }
             if let Some(formula) = written.formula() {

@@ -205,12 +205,14 @@ macro_rules! describe {
     };
 }
 
-/// Defines the macro `each!` of a list: `each! { then }` hands the description of each member, the name of
-/// its file in front, on to `then!`.
+/// Defines the macro `each!` of a list: `each! { then words }` hands the description of each member on to
+/// `then!`, behind the words and the name of its file.
 macro_rules! each {
     (($d:tt) $folder:ident $($member:ident)+) => {
         macro_rules! each {
-            ($d then:ident) => { $( $crate::$folder::$member! { $d then $member } )+ };
+            ($d then:ident $d ($d words:tt)*) => {
+                $( $crate::$folder::$member! { $d then $d ($d words)* $member } )+
+            };
         }
         pub(crate) use each;
     };

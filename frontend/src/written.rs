@@ -9,10 +9,10 @@
 //!                                          meant    Affine(a 3x4 matrix), for the present value of t
 //! ```
 
-mod plain;
-
+mod attribute;
 mod falloff;
 mod field;
+mod plain;
 
 use std::sync::Arc;
 
@@ -31,12 +31,10 @@ use crate::skeleton::SkeletonKind;
 use crate::warp::{FormulaWarp, WarpKind};
 
 pub(crate) use crate::map::Freedom;
+pub use attribute::{WrittenAttribute, WrittenTextured, WrittenUv};
 pub use falloff::WrittenFalloff;
 pub use field::FieldNumber;
-
-mod attribute;
-
-pub use attribute::{WrittenAttribute, WrittenTextured, WrittenUv};
+pub(crate) use field::as_written;
 
 /// The radius of a primitive.
 #[derive(Clone, PartialEq, Debug)]
@@ -67,7 +65,7 @@ pub enum Written {
         /// The factor of the field.
         strength: Number,
     },
-    /// An operator with numbers.
+    /// An operator.
     Combine {
         /// The operator; the numbers in it are not looked at, and are 0.
         combinator: Combinator,
@@ -181,16 +179,7 @@ impl Written {
 
     /// Whether the node depends on the iso-value of its model.
     pub(crate) fn asks_iso(&self) -> bool {
-        match self {
-            Self::Primitive { radius, .. } => matches!(radius, Radius::Surface(_)),
-            Self::Combine { .. }
-            | Self::Expression(_)
-            | Self::Select(_)
-            | Self::Map { .. }
-            | Self::Warp { .. }
-            | Self::FormulaWarp(_)
-            | Self::Attribute { .. } => false,
-        }
+        matches!(self, Self::Primitive { radius: Radius::Surface(_), .. })
     }
 
     /// Whether the iso-value of the model decides if its numbers can be.
@@ -315,21 +304,12 @@ impl Written {
 
     /// Whether the strength of a primitive follows a parameter.
     pub(crate) fn strength_follows(&self) -> bool {
-        match self {
-            Self::Primitive { strength, .. } => strength.follows(),
-            Self::Combine { .. }
-            | Self::Expression(_)
-            | Self::Select(_)
-            | Self::Map { .. }
-            | Self::Warp { .. }
-            | Self::FormulaWarp(_)
-            | Self::Attribute { .. } => false,
-        }
+        matches!(self, Self::Primitive { strength, .. } if strength.follows())
     }
 
     /// Whether a parameter of a primitive's falloff follows one of the model.
     pub(crate) fn falloff_follows(&self) -> bool {
-        if let Self::Primitive { falloff, .. } = self { falloff.follows() } else { false }
+        matches!(self, Self::Primitive { falloff, .. } if falloff.follows())
     }
 
     /// The same with another strength, if it is a primitive.
@@ -365,7 +345,7 @@ impl Written {
             each.map(|((field, before), after)| if before == after { field.clone() } else { after.into() })
                 .collect()
         } else {
-            after.into_iter().map(FieldNumber::from).collect()
+            as_written(after)
         };
         let radius = if old.radius.to_bits() == new.radius.to_bits() {
             radius.clone()

@@ -27,7 +27,11 @@ impl Options {
 }
 
 /// A file of the samples, if it is here: in the folder that `JBT_SAMPLES` names, or beside the repository.
-pub(super) fn sample(name: &str) -> Result<Vec<u8>, String> {
+///
+/// # Errors
+///
+/// Whatever the system says of a file that cannot be read, in words for people.
+pub fn sample(name: &str) -> Result<Vec<u8>, String> {
     let root = std::env::var_os("JBT_SAMPLES")
         .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/samples"), PathBuf::from);
     std::fs::read(root.join(name))

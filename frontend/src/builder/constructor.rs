@@ -55,91 +55,91 @@ fn rows(rows: impl Into<Rows>) -> FieldNumber {
     FieldNumber::Reals(rows.into().0.into_iter().flatten().collect())
 }
 
-/// Takes the derives away that stand between the documentation and the name of a member.
+/// Hands the description of a member on, as its documentation, its arguments and their values:
+/// `constructor! { then file; description }` is `then! { (file Name documentation) (arguments) (values) }`.
 macro_rules! constructor {
-    ($then:ident $function:ident; $(#[doc = $doc:literal])* #[derive $derived:tt] $name:ident { $($fields:tt)* }) => {
-        arguments! { $then ($function $name $($doc)*) () () $($fields)* }
+    (
+        $then:ident $function:ident;
+        $(#[doc = $doc:literal])* #[derive $derived:tt] $name:ident { $($fields:tt)* }
+    ) => {
+        arguments! { $then ($function $name [$($doc)*]) () () $($fields)* }
+    };
+}
+
+/// A function with the documentation of a member.
+macro_rules! documented {
+    ($folder:ident $name:ident [$($doc:literal)*] $($function:tt)*) => {
+        $(#[doc = $doc])*
+        ///
+        #[doc = concat!(
+            "See [`", stringify!($name), "`](struct@crate::", stringify!($folder), "::", stringify!($name), ")."
+        )]
+        #[must_use]
+        $($function)*
     };
 }
 
 macro_rules! skeleton {
-    (($function:ident $name:ident $($doc:literal)*) ($($taken:tt)*) ($($value:tt)*)) => {
-        $(#[doc = $doc])*
-        ///
-        #[doc = concat!("See [`", stringify!($name), "`](struct@crate::skeleton::", stringify!($name), ").")]
-        /// At the distance `support_radius` from it, the field reaches zero.
-        #[must_use]
-        pub fn $function($($taken)* support_radius: impl Into<Number>) -> Tree {
-            leaf(SkeletonKind::$name, vec![$($value)*], support_radius)
+    (($function:ident $name:ident $doc:tt) ($($taken:tt)*) ($($value:tt)*)) => {
+        documented! { skeleton $name $doc
+            /// At the distance `support_radius` from it, the field reaches zero.
+            pub fn $function($($taken)* support_radius: impl Into<Number>) -> Tree {
+                leaf(SkeletonKind::$name, vec![$($value)*], support_radius)
+            }
         }
     };
-    ($($description:tt)*) => { constructor! { skeleton $($description)* } };
 }
-
-crate::skeleton::each! { skeleton }
 
 macro_rules! falloff {
-    (($function:ident $name:ident $($doc:literal)*) ($($taken:tt)*) ($($value:tt)*)) => {
-        $(#[doc = $doc])*
-        ///
-        #[doc = concat!("See [`", stringify!($name), "`](struct@crate::falloff::", stringify!($name), ").")]
-        #[must_use]
-        pub fn $function($($taken)*) -> WrittenFalloff {
-            WrittenFalloff::new(FalloffKind::$name(0), vec![$($value)*])
+    (($function:ident $name:ident $doc:tt) ($($taken:tt)*) ($($value:tt)*)) => {
+        documented! { falloff $name $doc
+            pub fn $function($($taken)*) -> WrittenFalloff {
+                WrittenFalloff::new(FalloffKind::$name(0), vec![$($value)*])
+            }
         }
     };
-    ($($description:tt)*) => { constructor! { falloff $($description)* } };
 }
-
-crate::falloff::each! { falloff }
 
 macro_rules! texture {
-    (($function:ident $name:ident $($doc:literal)*) ($($taken:tt)*) ($($value:tt)*)) => {
-        $(#[doc = $doc])*
-        ///
-        #[doc = concat!("See [`", stringify!($name), "`](struct@crate::texture::", stringify!($name), ").")]
-        #[must_use]
-        pub fn $function($($taken)*) -> Pattern {
-            Pattern { texture: TextureKind::$name(0), fields: vec![$($value)*] }
+    (($function:ident $name:ident $doc:tt) ($($taken:tt)*) ($($value:tt)*)) => {
+        documented! { texture $name $doc
+            pub fn $function($($taken)*) -> Pattern {
+                Pattern { texture: TextureKind::$name(0), fields: vec![$($value)*] }
+            }
         }
     };
-    ($($description:tt)*) => { constructor! { texture $($description)* } };
 }
-
-crate::texture::each! { texture }
 
 macro_rules! warp {
-    (($function:ident $name:ident $($doc:literal)*) ($($taken:tt)*) ($($value:tt)*)) => {
-        $(#[doc = $doc])*
-        ///
-        #[doc = concat!("See [`", stringify!($name), "`](struct@crate::warp::", stringify!($name), ").")]
-        #[must_use]
-        pub fn $function(&self, $($taken)*) -> Self {
-            self.warped(WarpKind::$name(0), vec![$($value)*])
+    (($function:ident $name:ident $doc:tt) ($($taken:tt)*) ($($value:tt)*)) => {
+        documented! { warp $name $doc
+            pub fn $function(&self, $($taken)*) -> Self {
+                self.warped(WarpKind::$name(0), vec![$($value)*])
+            }
         }
     };
-    ($($description:tt)*) => { constructor! { warp $($description)* } };
-}
-
-/// Deformed trees.
-impl Tree {
-    crate::warp::each! { warp }
 }
 
 macro_rules! map {
-    (($function:ident $name:ident $($doc:literal)*) ($($taken:tt)*) ($($value:tt)*)) => {
-        $(#[doc = $doc])*
-        ///
-        #[doc = concat!("See [`", stringify!($name), "`](struct@crate::map::", stringify!($name), ").")]
-        #[must_use]
-        pub fn $function(&self, $($taken)*) -> Self {
-            self.mapped(MapKind::$name, vec![$($value)*])
+    (($function:ident $name:ident $doc:tt) ($($taken:tt)*) ($($value:tt)*)) => {
+        documented! { map $name $doc
+            pub fn $function(&self, $($taken)*) -> Self {
+                self.mapped(MapKind::$name, vec![$($value)*])
+            }
         }
     };
-    ($($description:tt)*) => { constructor! { map $($description)* } };
+}
+
+crate::skeleton::each! { constructor skeleton }
+crate::falloff::each! { constructor falloff }
+crate::texture::each! { constructor texture }
+
+/// Deformed trees.
+impl Tree {
+    crate::warp::each! { constructor warp }
 }
 
 /// The same trees elsewhere: affine maps.
 impl Tree {
-    crate::map::each! { map }
+    crate::map::each! { constructor map }
 }

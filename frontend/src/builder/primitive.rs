@@ -4,14 +4,13 @@ use super::Number;
 use crate::falloff::Falloff;
 use crate::skeleton::{Skeleton, SkeletonKind};
 use crate::tree::Tree;
-use crate::written::{FieldNumber, Radius, Written};
+use crate::written::{FieldNumber, Radius, Written, as_written};
 
 /// A primitive of strength 1 with the soft object's falloff; `radius` is where its field reaches zero.
 #[must_use]
 pub fn primitive(skeleton: impl Into<Skeleton>, radius: impl Into<Number>) -> Tree {
     let skeleton = skeleton.into();
-    let fields = skeleton.to_fields().into_iter().map(FieldNumber::from).collect();
-    leaf(skeleton.kind(), fields, radius)
+    leaf(skeleton.kind(), as_written(skeleton.to_fields()), radius)
 }
 
 /// A primitive whose skeleton's parameters may follow those of the model.

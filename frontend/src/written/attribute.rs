@@ -1,6 +1,6 @@
 //! The written of what an attribute node gives to leaves.
 
-use super::field::FieldNumber;
+use super::field::{FieldNumber, as_written};
 use crate::attribute::{AttributeValue, Textured, UvMap};
 use crate::expression::Formula;
 use crate::number::{Number, values};
@@ -64,7 +64,7 @@ impl From<&AttributeValue> for WrittenAttribute {
             AttributeValue::Numbers(numbers) => Self::Numbers(all(numbers)),
             AttributeValue::Textured(Textured { texture, a, b }) => Self::Textured(WrittenTextured {
                 texture: texture.kind(),
-                fields: texture.to_fields().into_iter().map(FieldNumber::from).collect(),
+                fields: as_written(texture.to_fields()),
                 a: all(a),
                 b: all(b),
             }),

@@ -1,6 +1,6 @@
 //! The written of a falloff.
 
-use super::field::FieldNumber;
+use super::field::{FieldNumber, as_written};
 use crate::falloff::{Falloff, FalloffKind};
 use crate::field::FieldValue;
 use crate::number::Number;
@@ -55,6 +55,6 @@ impl WrittenFalloff {
 impl<T: Into<Falloff>> From<T> for WrittenFalloff {
     fn from(falloff: T) -> Self {
         let falloff = falloff.into();
-        Self::new(falloff.kind(), falloff.to_fields().into_iter().map(FieldNumber::from).collect())
+        Self::new(falloff.kind(), as_written(falloff.to_fields()))
     }
 }

@@ -23,6 +23,11 @@ impl FieldNumber {
     }
 }
 
+/// Plain values, as they are written.
+pub(crate) fn as_written(values: Vec<FieldValue>) -> Vec<FieldNumber> {
+    values.into_iter().map(FieldNumber::from).collect()
+}
+
 impl From<FieldValue> for FieldNumber {
     fn from(value: FieldValue) -> Self {
         value.map(|&number| Number::from(number))

@@ -1,12 +1,9 @@
 //! How nodes with plain values are written.
 
-use std::sync::Arc;
-
 use glam::{DAffine3, DVec3};
 
-use super::{FieldNumber, Radius, Written};
+use super::{Radius, Written, as_written};
 use crate::combine::Combinator;
-use crate::field::FieldValue;
 use crate::kind::{NodeKind, Primitive};
 use crate::map::{Affine, MapKind, Scale, ScaleAxes, Translate};
 use crate::member::Member;
@@ -21,9 +18,7 @@ impl From<NodeKind> for Written {
             NodeKind::Select(which) => Self::Select(which.into()),
             NodeKind::Affine(map) => map.into(),
             NodeKind::Warp(warp) => warp.into(),
-            NodeKind::Attribute { name, value } => {
-                Self::Attribute { name: Arc::clone(&name), value: (&value).into() }
-            }
+            NodeKind::Attribute { name, value } => Self::Attribute { name, value: (&value).into() },
         }
     }
 }
@@ -32,7 +27,7 @@ impl From<Primitive> for Written {
     fn from(leaf: Primitive) -> Self {
         Self::Primitive {
             skeleton: leaf.skeleton.kind(),
-            fields: numbers(leaf.skeleton.to_fields()),
+            fields: as_written(leaf.skeleton.to_fields()),
             falloff: leaf.falloff.into(),
             radius: Radius::Support(leaf.radius.into()),
             strength: leaf.strength.into(),
@@ -49,11 +44,11 @@ impl From<Combinator> for Written {
 
 impl From<Warp> for Written {
     fn from(warp: Warp) -> Self {
-        match (warp.kind(), &warp) {
-            (_, Warp::Formula(warp)) => Self::FormulaWarp(warp.into()),
-            (Some(kind), warp) => Self::Warp { warp: kind, fields: numbers(warp.to_fields()) },
-            (None, _) => unreachable!("all warps but formulas are members"),
+        if let Warp::Formula(formulas) = &warp {
+            return Self::FormulaWarp(formulas.into());
         }
+        let kind = warp.kind().expect("all warps but formulas are members");
+        Self::Warp { warp: kind, fields: as_written(warp.to_fields()) }
     }
 }
 
@@ -73,10 +68,6 @@ impl From<DAffine3> for Written {
         } else {
             (MapKind::ScaleAxes, ScaleAxes { by: diagonal }.to_fields())
         };
-        Self::Map { map, fields: numbers(fields) }
+        Self::Map { map, fields: as_written(fields) }
     }
-}
-
-fn numbers(values: Vec<FieldValue>) -> Vec<FieldNumber> {
-    values.into_iter().map(Into::into).collect()
 }

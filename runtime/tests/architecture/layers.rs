@@ -6,10 +6,7 @@ use std::collections::BTreeSet;
 
 use crate::circles::circles;
 use crate::imports::{Import, imports};
-use crate::sources;
-
-/// All crates.
-const CRATES: [&str; 6] = ["frontend", "ir", "jit", "runtime", "cli", "benches"];
+use crate::{CRATES, sources};
 
 /// The files and folders of `frontend/src`, from the ground up: those of a row import none of the rows behind
 /// it.

@@ -2,9 +2,8 @@
 
 use std::path::Path;
 
-use crate::sources;
+use crate::{CRATES, sources};
 
-const CRATES: [&str; 6] = ["frontend", "ir", "jit", "runtime", "cli", "benches"];
 /// The most lines of a file, its tests left out.
 const FILE: usize = 500;
 /// The most lines of a function, unless it is a table.

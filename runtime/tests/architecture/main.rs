@@ -7,6 +7,9 @@ mod lengths;
 
 use std::path::{Path, PathBuf};
 
+/// All crates.
+const CRATES: [&str; 6] = ["frontend", "ir", "jit", "runtime", "cli", "benches"];
+
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
@@ -60,7 +63,7 @@ fn unsafe_code_has_its_homes() {
         "ir/src/domain/lanes/level.rs",
         "benches/src/limit/vector.rs",
     ];
-    for name in ["frontend", "ir", "jit", "runtime", "cli", "benches"] {
+    for name in CRATES {
         for (path, text) in sources(name) {
             let at_home = homes.iter().any(|home| path.ends_with(home));
             let code = text.lines().filter(|line| !line.trim_start().starts_with("//"));
@@ -97,7 +100,7 @@ fn files_are_opened_at_two_doors() {
 
 #[test]
 fn every_file_says_what_it_is() {
-    for name in ["frontend", "ir", "jit", "runtime", "cli", "benches"] {
+    for name in CRATES {
         for (path, text) in sources(name) {
             assert!(text.starts_with("//! "), "{} begins with a sentence", path.display());
         }
@@ -106,7 +109,7 @@ fn every_file_says_what_it_is() {
 
 #[test]
 fn nothing_is_left_for_later() {
-    for name in ["frontend", "ir", "jit", "runtime", "cli", "benches"] {
+    for name in CRATES {
         for (path, text) in sources(name) {
             for word in ["todo!(", "unimplemented!(", "dbg!("] {
                 assert!(!text.contains(word), "{} has {word}", path.display());
