@@ -20,13 +20,12 @@ use std::sync::Arc;
 use jbt_ir::Selection;
 use jbt_ir::domain::tangent::LARGEST_SLOPE;
 use jbt_ir::pass::GRADIENT_OUTPUTS;
-use multiversion::multiversion;
 
 use crate::error::EvalError;
 use crate::kernel::Bound;
 
 /// Whether components of gradients need no second look.
-#[multiversion(targets("x86_64+avx2"))]
+#[cfg_attr(feature = "levels", multiversion::multiversion(targets("x86_64+avx2")))]
 fn are_tame(plane: &[f32]) -> bool {
     plane.chunks(1 << 12).all(|chunk| chunk.iter().fold(true, |all, g| all & (g.abs() <= LARGEST_SLOPE)))
 }

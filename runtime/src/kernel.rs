@@ -22,7 +22,7 @@ use jbt_ir::pass::{GRADIENT, GUARDED_GRADIENT, INTERVAL, PIPELINE, Pass, dce, ru
 use jbt_ir::{Function, Selection, Straight, Tables, Verified, interpret, limits, verify};
 
 use crate::error::{CompileError, EvalError};
-use crate::export::{UnknownWord, find};
+use crate::word::{UnknownWord, find};
 
 /// What runs a program.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]

@@ -66,7 +66,10 @@
 //!
 //! | feature | what for |
 //! |---|---|
-//! | `jit` (default) | machine code by Cranelift; without it the SIMD interpreter runs, with the same bits |
+//! | `jit` (default) | machine code; without it the SIMD interpreter runs, with the same bits |
+//! | `parallel` (default) | long work on the threads of the rayon pool in which it is called; without it on one |
+//! | `levels` (default) | loops of the mesher in AVX2 where the CPU has it, with the same bits |
+//! | `export` (default) | files: meshes, contours, pictures, atomic replacement |
 //! | `glam` | vectors and affine maps of glam 0.34 wherever numbers and points go |
 //! | `mint` | the same for mint 0.5, for any other library of vectors |
 //! | `serde` | meshes, points, samples, settings and reports can be written, and read where nothing can be wrong with them |
@@ -84,11 +87,13 @@ mod debug;
 pub mod divide;
 mod error;
 mod evaluator;
+#[cfg(feature = "export")]
 pub mod export;
 mod finite;
 mod job;
 pub mod kernel;
 pub mod mesh;
+mod parallel;
 mod picture;
 mod places;
 mod points;
@@ -100,10 +105,11 @@ pub mod render;
 pub mod sample;
 mod scene;
 pub mod solid;
-mod srgb;
+pub mod srgb;
 pub mod statistics;
 pub mod trace;
 pub mod tree;
+mod word;
 
 /// README's program runs.
 #[cfg(doctest)]
@@ -150,3 +156,4 @@ pub use scene::{Scene, SceneFormat};
 pub use solid::{Membership, Solid};
 pub use trace::{Ray, Tracer};
 pub use tree::{Node, NodeKind};
+pub use word::UnknownWord;

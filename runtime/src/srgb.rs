@@ -1,7 +1,9 @@
 //! The curve between linear light and the numbers that a screen is given (sRGB, IEC 61966-2-1), and eight
 //! bits of them.
 
-/// From linear light to the number that a screen is given, 0 .. 1 (IEC 61966-2-1, sRGB).
+/// From linear light to the number that a screen is given, 0 .. 1 (IEC 61966-2-1, sRGB). Light beyond 0 .. 1 is
+/// clamped; NaN is 0.
+#[must_use]
 pub fn encode(linear: f32) -> f32 {
     let x = unit(linear);
     if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 }
@@ -9,6 +11,7 @@ pub fn encode(linear: f32) -> f32 {
 
 /// As [`encode`], rounded once: white is 1 and not 1 - 2^-24. For numbers that are kept; a picture's bytes do
 /// not see it.
+#[must_use]
 pub fn encode_precisely(linear: f32) -> f32 {
     let x = f64::from(unit(linear));
     let encoded = if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 };
@@ -16,18 +19,19 @@ pub fn encode_precisely(linear: f32) -> f32 {
 }
 
 /// From the number that a screen is given to linear light: the inverse of [`encode`].
+#[must_use]
 pub fn decode(encoded: f32) -> f32 {
     let x = unit(encoded);
     if x <= 0.040_45 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }
 }
 
 /// Eight bits of a number from 0 to 1.
-pub fn byte(x: f32) -> u8 {
+pub(crate) fn byte(x: f32) -> u8 {
     (unit(x) * 255.0 + 0.5) as u8
 }
 
 /// A number as 0 .. 1; what is no number is 0.
-pub fn unit(x: f32) -> f32 {
+pub(crate) fn unit(x: f32) -> f32 {
     if x.is_nan() { 0.0 } else { x.clamp(0.0, 1.0) }
 }
 

@@ -13,10 +13,10 @@
 
 use std::collections::BTreeMap;
 
+use crate::parallel::*;
 use jbt_frontend::check::CheckedTree;
 use jbt_frontend::lower::LeafOccurrences;
 use jbt_frontend::query::Query;
-use rayon::prelude::*;
 
 use crate::compiler::Compiler;
 pub use crate::counter::walks;

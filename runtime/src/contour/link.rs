@@ -11,7 +11,7 @@
 //!                           ^ what is left of it           (after Suzuki and Abe 1985, who follow borders in pictures)
 //! ```
 
-use rayon::prelude::*;
+use crate::parallel::*;
 
 use super::cells::{Key, Segment, Segments};
 
@@ -90,7 +90,7 @@ fn following(segments: &[Segment]) -> Vec<usize> {
         order.par_sort_unstable_by_key(|&segment| key(&segments[segment]));
         order
     };
-    let (begins, ends) = rayon::join(|| sorted(|segment| segment.from), || sorted(|segment| segment.to));
+    let (begins, ends) = join(|| sorted(|segment| segment.from), || sorted(|segment| segment.to));
     let mut next = vec![0; segments.len()];
     for (&begin, &end) in begins.iter().zip(&ends) {
         let fits = segments[begin].from == segments[end].to;

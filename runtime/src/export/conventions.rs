@@ -5,9 +5,8 @@ use std::fmt;
 use std::ops::Sub;
 use std::str::FromStr;
 
-use thiserror::Error;
-
 use crate::srgb;
+use crate::word::{UnknownWord, find};
 
 /// What a format is like: what its file in this folder states.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -140,23 +139,6 @@ pub(super) struct Choices {
     pub up: Up,
     /// Any, where there are no colours.
     pub colors: ColorEncoding,
-}
-
-/// A word that stands for no member of a list.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("{word:?} is none of: {known}")]
-pub struct UnknownWord {
-    /// The word.
-    pub word: String,
-    /// All members, with commas between them.
-    pub known: String,
-}
-
-/// The member of a list that prints as a word.
-pub(crate) fn find<T: Copy + fmt::Display>(all: &[T], word: &str) -> Result<T, UnknownWord> {
-    let words: Vec<String> = all.iter().map(T::to_string).collect();
-    let found = words.iter().position(|known| known == word).map(|index| all[index]);
-    found.ok_or_else(|| UnknownWord { word: word.to_owned(), known: words.join(", ") })
 }
 
 impl fmt::Display for Up {

@@ -5,10 +5,11 @@ use std::io::Write;
 use std::path::Path;
 use std::str::FromStr;
 
-use super::conventions::{Choices, ColorEncoding, Conventions, UnknownWord, Up, find};
+use super::conventions::{Choices, ColorEncoding, Conventions, Up};
 use super::parts::WriteError;
 use super::{glb, obj, ply, stl};
 use crate::mesh::Mesh;
+use crate::word::{UnknownWord, find};
 
 macro_rules! formats {
     ($( $(#[doc = $doc:literal])* $variant:ident $module:ident; )+) => {

@@ -26,7 +26,7 @@ mod stl;
 pub mod svg;
 
 pub use atomic::AtomicFile;
-pub use conventions::{ColorEncoding, Colors, Conventions, FarMeshes, UnknownWord, Up};
+pub use conventions::{ColorEncoding, Colors, Conventions, FarMeshes, Up};
 pub use format::{ExportOptions, Format};
 pub use png::write_png;
 
@@ -38,7 +38,6 @@ use thiserror::Error;
 
 use crate::mesh::{Attribute, Mesh};
 use conventions::Choices;
-pub(crate) use conventions::find;
 use parts::WriteError;
 
 /// Bytes that are collected before they go to a file.

@@ -5,7 +5,7 @@ use std::io::Write;
 
 use super::conventions::{Choices, Conventions, FarMeshes, Up};
 use super::parts::{WriteError, write_reals};
-use crate::mesh::{Mesh, facet_normal};
+use crate::mesh::{Mesh, area_vector, unit};
 
 /// Readers take a file for text if it begins with "solid"; this does not.
 const HEADER: [u8; 80] = {
@@ -40,7 +40,7 @@ pub(super) fn write(mesh: &Mesh, choices: Choices, out: &mut impl Write) -> Resu
     out.write_all(&count.to_le_bytes())?;
     for triangle in &mesh.triangles {
         let corners = triangle.map(|vertex| choices.up.place(mesh.positions[vertex as usize]));
-        let normal = facet_normal(corners).unwrap_or([0.0; 3]);
+        let normal = unit(area_vector(corners)).unwrap_or([0.0; 3]);
         let rounded = |vertex: u32| choices.up.place(mesh.world(vertex as usize).map(|x| x as f32));
         write_reals(out, normal.into_iter().chain(triangle.map(rounded).into_iter().flatten()))?;
         // The attribute byte count, which has no agreed meaning.

@@ -1,6 +1,6 @@
 //! Whether a mesh is closed, and whether it is a manifold.
 
-use rayon::prelude::*;
+use crate::parallel::*;
 use thiserror::Error;
 
 /// What keeps a mesh from being a closed manifold.

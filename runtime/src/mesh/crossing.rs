@@ -6,8 +6,7 @@
 //! pass over the faces that are bad by default ends with all faces good. The pass is sequential and in the
 //! order of the cells; such faces are rare.
 
-use multiversion::multiversion;
-use rayon::prelude::*;
+use crate::parallel::*;
 
 use super::brick::{Bricks, NONE, cell_sides, direction, number, place, split, starts};
 use super::cell::{default_edges, default_sheets, sheets, sheets_with_quads};
@@ -241,7 +240,7 @@ impl Signs {
 }
 
 /// Which values are inside, 1 or 0 each.
-#[multiversion(targets("x86_64+avx2"))]
+#[cfg_attr(feature = "levels", multiversion::multiversion(targets("x86_64+avx2")))]
 fn compare(iso: f32, values: &[f32], inside: &mut [u8]) {
     for (bit, value) in inside.iter_mut().zip(values) {
         *bit = u8::from(*value >= iso);

@@ -15,7 +15,7 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use rayon::prelude::*;
+use crate::parallel::*;
 
 use super::brick::{Bricks, NONE, SELF, box_of};
 use super::error::{MAX_BRICK, MeshError};

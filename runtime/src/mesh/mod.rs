@@ -66,7 +66,8 @@ pub use lattice::{Lattice, LatticeError};
 pub use options::Options;
 pub use report::{MAX_NEAR, Report, Sides, ThinReport};
 
-pub(crate) use surface::facet_normal;
+#[cfg(feature = "export")]
+pub(crate) use surface::{area_vector, unit};
 
 use crate::job::{Hook, Job};
 

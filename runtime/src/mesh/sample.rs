@@ -18,7 +18,7 @@
 
 use std::error::Error;
 
-use rayon::prelude::*;
+use crate::parallel::*;
 
 use super::brick::{Bricks, NONE, SELF, direction, split, starts};
 use super::error::MeshError;

@@ -4,8 +4,7 @@
 //! The other three may be in bricks below; so each brick sees its cells in a table with one more layer on
 //! each low side, filled from those bricks.
 
-use multiversion::multiversion;
-use rayon::prelude::*;
+use crate::parallel::*;
 
 use super::brick::{Bricks, NONE, cell_sides, direction, number, split};
 use super::cell::{EDGE_CORNERS, SheetNumbers, default_numbers, sheets_with_quads};
@@ -175,7 +174,7 @@ impl Around {
 const LAST: u16 = 0b100_1001_0010_0100;
 
 /// The two triangles of each quad of a brick.
-#[multiversion(targets("x86_64+avx2"))]
+#[cfg_attr(feature = "levels", multiversion::multiversion(targets("x86_64+avx2")))]
 fn split_quads(around: &Around, positions: &[[f32; 3]], pairs: &mut [[[u32; 3]; 2]]) {
     for (pair, &quad) in pairs.iter_mut().zip(&around.quads) {
         let (at, turn) = ((quad / 8) as usize, around.turns[(quad % 8) as usize]);
@@ -260,13 +259,8 @@ fn bricks_around(bricks: &Bricks, crossings: &Crossings, vertices: &[u32]) -> Ve
     around
 }
 
-/// The normal of a triangle, counter-clockwise, if it has an area.
-pub(crate) fn facet_normal(corners: [[f32; 3]; 3]) -> Option<[f32; 3]> {
-    unit(area_vector(corners))
-}
-
 /// The vector along the normal of a triangle, as long as twice its area.
-pub(super) fn area_vector(corners: [[f32; 3]; 3]) -> [f64; 3] {
+pub(crate) fn area_vector(corners: [[f32; 3]; 3]) -> [f64; 3] {
     let [p, q, r] = corners;
     let from = |end: [f32; 3], axis: usize| f64::from(end[axis]) - f64::from(p[axis]);
     let [u, v] = [[from(q, 0), from(q, 1), from(q, 2)], [from(r, 0), from(r, 1), from(r, 2)]];

@@ -14,9 +14,8 @@ mod wall;
 
 use std::ops::Range;
 
+use crate::parallel::*;
 use jbt_ir::limits::MAX_ATTRIBUTE_WIDTH;
-use multiversion::multiversion;
-use rayon::prelude::*;
 
 use super::brick::split;
 use super::error::MeshError;
@@ -181,7 +180,7 @@ impl Batch {
 }
 
 /// Writes positions, and normals against gradients. Returns whether a normal is missing.
-#[multiversion(targets("x86_64+avx2"))]
+#[cfg_attr(feature = "levels", multiversion::multiversion(targets("x86_64+avx2")))]
 fn write_places(
     (points, positions): (&Planes, &mut [[f32; 3]]),
     (gradient, normals): (&Planes, &mut [[f32; 3]]),
@@ -213,7 +212,7 @@ fn weave([x, y, z]: &[Lanes; 3], vectors: &mut [[f32; 3]]) {
 }
 
 /// Writes planes that stand one after the other as vectors.
-#[multiversion(targets("x86_64+avx2"))]
+#[cfg_attr(feature = "levels", multiversion::multiversion(targets("x86_64+avx2")))]
 fn interleave<const WIDTH: usize>(planes: &[f32], vectors: &mut [f32]) {
     let (vectors, count) = (vectors.as_chunks_mut::<WIDTH>().0, planes.len() / WIDTH);
     let planes: [&[f32]; WIDTH] = std::array::from_fn(|n| &planes[n * count..][..count]);
@@ -223,7 +222,7 @@ fn interleave<const WIDTH: usize>(planes: &[f32], vectors: &mut [f32]) {
 }
 
 /// A pull of all vertices.
-#[multiversion(targets("x86_64+avx2"))]
+#[cfg_attr(feature = "levels", multiversion::multiversion(targets("x86_64+avx2")))]
 fn pull_all(iso: f32, groups: &[Group], points: &mut Planes, values: &[f32], gradient: &Planes) {
     for (chunk, group) in groups.iter().enumerate() {
         let mut lanes_of = lanes(points, chunk);

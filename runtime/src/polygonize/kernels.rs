@@ -27,12 +27,17 @@ impl Kernels {
         let compiler = &compiler.clone().for_edits();
         let lowering = Lowering::new(tree);
         let evaluator = |query| compiler.evaluator_of(&lowering, query);
-        let (all, (gradient, (pruner, field))) = rayon::join(
+        let (all, (gradient, (pruner, field))) = crate::parallel::join(
             || evaluator(Query::ALL),
             || {
-                rayon::join(
+                crate::parallel::join(
                     || evaluator(Query::GRADIENT),
-                    || rayon::join(|| Pruner::of(compiler, &lowering, None), || evaluator(Query::FIELD)),
+                    || {
+                        crate::parallel::join(
+                            || Pruner::of(compiler, &lowering, None),
+                            || evaluator(Query::FIELD),
+                        )
+                    },
                 )
             },
         );

@@ -1,6 +1,6 @@
 //! Colours: what a screen shows, and how numbers become colours.
 
-pub use crate::srgb::{byte, decode, encode, unit};
+pub(super) use crate::srgb::{byte, decode, encode, unit};
 
 /// Red, green and blue.
 pub type Rgb = [f32; 3];

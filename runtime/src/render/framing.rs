@@ -1,6 +1,6 @@
 //! Framing: where the camera stands, how exact rays are, and where the ground is.
 
-use rayon::prelude::*;
+use crate::parallel::*;
 
 use super::camera::{Stance, View, is_usable};
 use super::cast::cast;

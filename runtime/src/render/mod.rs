@@ -36,7 +36,7 @@ pub use settings::{Background, Mode, Quality, Render};
 
 use std::time::{Duration, Instant};
 
-use rayon::prelude::*;
+use crate::parallel::*;
 
 use jbt_frontend::check::CheckedTree;
 

@@ -16,7 +16,7 @@ mod npy;
 pub use block::Block;
 pub use npy::write_npy;
 
-use rayon::prelude::*;
+use crate::parallel::*;
 
 use jbt_frontend::check::CheckedTree;
 use jbt_frontend::kind::NodeKind;

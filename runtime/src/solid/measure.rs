@@ -13,7 +13,7 @@
 //! with lines (`crossings.rs`); where the surface is a wall, a jump of the field, the volume is that of the
 //! same lines.
 
-use rayon::prelude::*;
+use crate::parallel::*;
 
 use jbt_ir::limits::{MAX_MEASURE_BOXES, MAX_RESOLUTION};
 

@@ -173,8 +173,10 @@ impl Question<'_> {
         let (order, rest) = order.split_at_mut(middle);
         let (answers, others) = answers.split_at_mut(middle);
         // As deep as the number of points has binary digits.
-        let (below, above) =
-            rayon::join(|| self.group(&region, order, answers), || self.group(&region, rest, others));
+        let (below, above) = crate::parallel::join(
+            || self.group(&region, order, answers),
+            || self.group(&region, rest, others),
+        );
         below.and(above)
     }
 

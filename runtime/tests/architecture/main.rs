@@ -4,6 +4,7 @@ mod circles;
 mod imports;
 mod layers;
 mod lengths;
+mod packages;
 
 use std::path::{Path, PathBuf};
 

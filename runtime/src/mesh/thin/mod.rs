@@ -15,7 +15,7 @@ mod measure;
 mod search;
 mod shreds;
 
-use rayon::prelude::*;
+use crate::parallel::*;
 
 use super::crossing::Crossings;
 use super::divide::Division;

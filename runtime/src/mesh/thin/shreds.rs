@@ -14,7 +14,7 @@
 //! at sharp edges and tips, so it takes many votes, and half of a block's. Narrow gaps do not count, unless
 //! they are scraps: bodies that touch have one between them.
 
-use rayon::prelude::*;
+use crate::parallel::*;
 
 use super::alarm::{ALARM, Alarm};
 use super::crossed::{Crossed, morton};

@@ -6,8 +6,6 @@
 //! start = the mean, in the room that a vertex has in its cell
 //! ```
 
-use multiversion::multiversion;
-
 use super::super::cell::{EDGE_CORNERS, Edges};
 use super::super::pull::{LANES, Lanes, all};
 use super::margin::room;
@@ -138,7 +136,7 @@ fn tame_mean(iso: f32, corners: &[f32; 8], edges: Edges) -> [f32; 3] {
 }
 
 /// Puts vertices where they start, and says what is known of them.
-#[multiversion(targets("x86_64+avx2"))]
+#[cfg_attr(feature = "levels", multiversion::multiversion(targets("x86_64+avx2")))]
 pub(super) fn grow(iso: f32, seeds: &[Seeds], groups: &mut [Group], points: [&mut [f32]; 3]) {
     let [x, y, z] = points.map(|plane| plane.as_chunks_mut::<LANES>().0);
     for ((seeds, group), ((x, y), z)) in seeds.iter().zip(groups).zip(x.iter_mut().zip(y).zip(z)) {

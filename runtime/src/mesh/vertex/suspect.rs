@@ -12,8 +12,6 @@
 //! they are compared with the triangles later. For a smooth surface all this costs a few multiplications a
 //! vertex.
 
-use multiversion::multiversion;
-
 use super::super::field::Field;
 use super::super::pull::{LANES, Lanes, squares};
 use super::super::settle::{Place, Stray, is_far, settle};
@@ -60,7 +58,7 @@ fn judge(iso: f32, group: &Group, values: &Lanes, gradient: &[Lanes; 3]) -> Verd
 }
 
 /// The groups about which there is something to say.
-#[multiversion(targets("x86_64+avx2"))]
+#[cfg_attr(feature = "levels", multiversion::multiversion(targets("x86_64+avx2")))]
 fn judge_all(
     iso: f32,
     groups: &[Group],

@@ -1,0 +1,104 @@
+//! The one door to threads: rayon with the feature `parallel`, and the same words on one thread without.
+//!
+//! Whatever runs here gives the same bits for any number of threads, so the serial words are no second
+//! meaning: they are the case of one thread.
+
+#[cfg(feature = "parallel")]
+pub(crate) use rayon::{join, prelude::*};
+
+#[cfg(not(feature = "parallel"))]
+pub(crate) use serial::{IntoParallelIterator, ParallelIterator, ParallelSlice, join};
+
+#[cfg(not(feature = "parallel"))]
+mod serial {
+    //! What this crate uses of rayon's interface, on iterators of the standard library.
+
+    use std::slice::{Chunks, Iter};
+
+    /// Both, the first one first.
+    pub(crate) fn join<A, B>(first: impl FnOnce() -> A, second: impl FnOnce() -> B) -> (A, B) {
+        (first(), second())
+    }
+
+    pub(crate) trait IntoParallelIterator: IntoIterator + Sized {
+        fn into_par_iter(self) -> Self::IntoIter {
+            self.into_iter()
+        }
+    }
+
+    impl<I: IntoIterator> IntoParallelIterator for I {}
+
+    pub(crate) trait ParallelSlice<T> {
+        fn par_iter(&self) -> Iter<'_, T>;
+        fn par_chunks(&self, size: usize) -> Chunks<'_, T>;
+        fn par_sort_unstable_by_key<K: Ord>(&mut self, key: impl FnMut(&T) -> K);
+    }
+
+    impl<T> ParallelSlice<T> for [T] {
+        fn par_iter(&self) -> Iter<'_, T> {
+            self.iter()
+        }
+
+        fn par_chunks(&self, size: usize) -> Chunks<'_, T> {
+            self.chunks(size)
+        }
+
+        fn par_sort_unstable_by_key<K: Ord>(&mut self, key: impl FnMut(&T) -> K) {
+            self.sort_unstable_by_key(key);
+        }
+    }
+
+    /// What rayon's iterators have beyond those of the standard library.
+    pub(crate) trait ParallelIterator: Iterator + Sized {
+        fn with_min_len(self, _length: usize) -> Self {
+            self
+        }
+
+        fn map_init<S, R>(
+            self,
+            start: impl FnOnce() -> S,
+            mut each: impl FnMut(&mut S, Self::Item) -> R,
+        ) -> impl Iterator<Item = R> {
+            let mut state = start();
+            self.map(move |item| each(&mut state, item))
+        }
+
+        fn for_each_init<S>(self, start: impl FnOnce() -> S, mut each: impl FnMut(&mut S, Self::Item)) {
+            let mut state = start();
+            self.for_each(|item| each(&mut state, item));
+        }
+
+        fn try_for_each_init<S, E>(
+            mut self,
+            start: impl FnOnce() -> S,
+            mut each: impl FnMut(&mut S, Self::Item) -> Result<(), E>,
+        ) -> Result<(), E> {
+            let mut state = start();
+            self.try_for_each(|item| each(&mut state, item))
+        }
+
+        fn flat_map_iter<I: IntoIterator>(
+            self,
+            each: impl FnMut(Self::Item) -> I,
+        ) -> impl Iterator<Item = I::Item> {
+            self.flat_map(each)
+        }
+
+        fn find_map_first<R>(mut self, each: impl FnMut(Self::Item) -> Option<R>) -> Option<R> {
+            self.find_map(each)
+        }
+
+        fn try_reduce<T, E>(
+            mut self,
+            start: impl FnOnce() -> T,
+            mut both: impl FnMut(T, T) -> Result<T, E>,
+        ) -> Result<T, E>
+        where
+            Self: Iterator<Item = Result<T, E>>,
+        {
+            self.try_fold(start(), |all, one| both(all, one?))
+        }
+    }
+
+    impl<I: Iterator> ParallelIterator for I {}
+}

@@ -1,0 +1,33 @@
+//! How many packages of others somebody takes who embeds the evaluator: `cargo tree` is asked.
+
+use std::collections::BTreeSet;
+use std::process::Command;
+
+use crate::root;
+
+/// Packages that are not ours, in what `jbt` needs with these features.
+fn packages(features: &str) -> BTreeSet<String> {
+    let mut command = Command::new(env!("CARGO"));
+    command.current_dir(root()).args(["tree", "--offline", "--locked", "-e", "normal", "--prefix", "none"]);
+    command.args(["-p", "jbt", "--no-default-features", "--features", features]);
+    let output = command.output().expect("cargo runs");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8(output.stdout).expect("text");
+    // A line is a name, a version, and what else there is to say.
+    let names = text.lines().filter_map(|line| line.split_whitespace().next());
+    names.filter(|name| *name != "jbt" && !name.starts_with("jbt-")).map(str::to_owned).collect()
+}
+
+#[test]
+fn the_interpreters_need_few_packages() {
+    let found = packages("");
+    assert!(found.len() <= 12, "{} packages: {found:?}", found.len());
+}
+
+#[test]
+fn machine_code_needs_cranelift_and_little_else() {
+    let without = packages("");
+    let with = packages("jit");
+    let more: Vec<&String> = with.difference(&without).filter(|name| !name.contains("cranelift")).collect();
+    assert!(more.len() <= 24, "{} packages beside Cranelift's: {more:?}", more.len());
+}
