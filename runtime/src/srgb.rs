@@ -1,8 +1,8 @@
 //! The curve between linear light and the numbers that a screen is given (sRGB, IEC 61966-2-1), and eight
 //! bits of them.
 
-/// From linear light to the number that a screen is given, 0 .. 1 (IEC 61966-2-1, sRGB). Light beyond 0 .. 1 is
-/// clamped; NaN is 0.
+/// From linear light to the number that a screen is given, 0 .. 1 (IEC 61966-2-1, sRGB). Light beyond 0 .. 1
+/// is clamped; NaN is 0.
 #[must_use]
 pub fn encode(linear: f32) -> f32 {
     let x = unit(linear);
