@@ -2,7 +2,6 @@
 
 use jbt::{Model, Points, text};
 use jbt_frontend::check::CheckedTree;
-use jbt_frontend::combine::Combinator;
 use jbt_frontend::falloff::Falloff;
 use jbt_frontend::kind::{NodeKind, Primitive};
 use jbt_frontend::skeleton::{Cuboid, Cylinder, Disc, Point, Ring, Segment, Skeleton, Triangle};
@@ -83,7 +82,7 @@ pub fn tree(blobs: &[Blob]) -> CheckedTree {
         let values = blob.color.map(f64::from).to_vec();
         Tree::new(NodeKind::Attribute { name: "color".into(), value: values.into() }, vec![leaf])
     };
-    let tree = Tree::new(NodeKind::Combine(Combinator::Sum), blobs.iter().map(leaf).collect());
+    let tree = Tree::sum(blobs.iter().map(leaf));
     Model::new(tree).check().expect("blobs are a good model")
 }
 
@@ -127,7 +126,7 @@ pub fn varied(count: usize, shapes: usize, seed: u64) -> CheckedTree {
         leaf.color(blob.color.map(f64::from))
     };
     let blobs = blobs(count, seed);
-    let sum = Tree::combine(Combinator::Sum, blobs.iter().enumerate().map(leaf));
+    let sum = Tree::sum(blobs.iter().enumerate().map(leaf));
     Model::new(sum).check().expect("primitives are a good model")
 }
 

@@ -21,6 +21,13 @@ pub enum FieldKind {
     Choice(&'static [&'static str]),
     /// A whole number from 0 to [`jbt_ir::limits::MAX_COPIES`].
     Count,
+    /// A whole number in a range, ends included, that follows no parameter: it selects code.
+    Whole {
+        /// The smallest one.
+        least: u32,
+        /// The largest one.
+        most: u32,
+    },
     /// An angle in degrees, from 0 to 360.
     Degrees,
     /// Three finite numbers: a position.

@@ -75,6 +75,16 @@ impl Parameter for f64 {
     }
 }
 
+impl Parameter for u32 {
+    fn read(value: &FieldValue) -> Self {
+        value.real() as Self
+    }
+
+    fn write(&self) -> FieldValue {
+        FieldValue::Real(f64::from(*self))
+    }
+}
+
 impl Parameter for bool {
     fn read(value: &FieldValue) -> Self {
         value.real() != 0.0

@@ -2,13 +2,13 @@
 //!
 //! ```
 //! use jbt_frontend::builder::point;
-//! use jbt_frontend::combine::Combinator;
+//! use jbt_frontend::combine::{Sum, Union};
 //! use jbt_frontend::scopes::Scopes;
 //!
-//! let mut scene = Scopes::new(Combinator::Union);
-//! scene.begin(Combinator::Sum);
+//! let mut scene = Scopes::new(Union {});
+//! scene.begin(Sum {});
 //! for (y, color) in [(0.4, [1.0, 0.0, 0.0]), (-0.4, [0.0, 0.0, 1.0])] {
-//!     scene.begin(Combinator::Sum).attribute("color", &color).translate([0.0, y, 0.0]);
+//!     scene.begin(Sum {}).attribute("color", &color).translate([0.0, y, 0.0]);
 //!     scene.primitive(point([0.0; 3], 1.0));
 //!     scene.end()?;
 //! }
@@ -70,8 +70,8 @@ impl Scope {
 impl Scopes {
     /// An empty scene, whose parts will be combined so.
     #[must_use]
-    pub fn new(combinator: Combinator) -> Self {
-        Self { root: Scope::new(combinator), open: Vec::new() }
+    pub fn new(combinator: impl Into<Combinator>) -> Self {
+        Self { root: Scope::new(combinator.into()), open: Vec::new() }
     }
 
     fn scope(&mut self) -> &mut Scope {
@@ -79,8 +79,8 @@ impl Scopes {
     }
 
     /// Opens a scope: what follows is combined so.
-    pub fn begin(&mut self, combinator: Combinator) -> &mut Self {
-        self.open.push(Scope::new(combinator));
+    pub fn begin(&mut self, combinator: impl Into<Combinator>) -> &mut Self {
+        self.open.push(Scope::new(combinator.into()));
         self
     }
 
@@ -137,12 +137,13 @@ impl Scopes {
 mod tests {
     use super::*;
     use crate::builder::point;
+    use crate::combine::{Sum, Union};
 
     #[test]
     fn scopes_nest_and_state_ends_with_them() {
         let ball = || point([0.0; 3], 1.0);
-        let mut scene = Scopes::new(Combinator::Union);
-        scene.begin(Combinator::Sum).attribute("color", &[1.0, 0.0, 0.0]).translate([0.0, 1.0, 0.0]);
+        let mut scene = Scopes::new(Union {});
+        scene.begin(Sum {}).attribute("color", &[1.0, 0.0, 0.0]).translate([0.0, 1.0, 0.0]);
         scene.primitive(ball()).translate([2.0, 0.0, 0.0]).primitive(ball());
         scene.end().unwrap().primitive(ball());
         let moved = ball().translate([0.0, 1.0, 0.0]).color([1.0, 0.0, 0.0]);
@@ -152,9 +153,9 @@ mod tests {
 
     #[test]
     fn unbalanced_scopes_are_errors() {
-        let mut scene = Scopes::new(Combinator::Sum);
+        let mut scene = Scopes::new(Sum {});
         assert_eq!(scene.end().map(|_| ()), Err(ScopeError::NothingOpen));
-        scene.begin(Combinator::Sum).begin(Combinator::Union);
+        scene.begin(Sum {}).begin(Union {});
         let error = scene.finish().unwrap_err();
         assert_eq!(
             (error, error.to_string().as_str()),

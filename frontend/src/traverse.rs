@@ -119,7 +119,7 @@ mod tests {
     use super::*;
     use crate::builder::{point, ring};
     use crate::check::NodeId;
-    use crate::combine::Combinator;
+    use crate::combine::{Combinator, Union};
     use crate::kind::NodeKind;
     use crate::model::Model;
     use crate::skeleton::SkeletonKind;
@@ -157,7 +157,7 @@ mod tests {
     fn infix_is_between_all_children() {
         let d = point([0.0; 3], 1.0);
         let [b, c] = [d.color([1.0, 0.0, 0.0]), d.translate([1.0, 0.0, 0.0])];
-        let three = Tree::new(Combinator::Union, vec![b, c.clone(), c]);
+        let three = Tree::new(Combinator::from(Union {}), vec![b, c.clone(), c]);
         assert_eq!(letters(three.infix(Visit::Paths)), "bdacdacd");
         // What was there already is left out, not the node in front of it.
         assert_eq!(letters(three.infix(Visit::Nodes)), "bdaca");
@@ -188,7 +188,7 @@ mod tests {
         let ball = point([0.0; 3], 1.0);
         let text = format!("{:?}", &ball | &ball);
         assert!(text.starts_with("{0: (Primitive {"), "{text}");
-        assert!(text.ends_with(", 1: (Combine { combinator: Union, numbers: [] }, [0, 0])}"), "{text}");
+        assert!(text.ends_with(", 1: (Combine { combinator: Union, fields: [] }, [0, 0])}"), "{text}");
     }
 
     #[test]

@@ -18,7 +18,7 @@ use glam::DVec3;
 
 use crate::attribute::{AttributeGroup, AttributeValue, Mixing, UvMap};
 use crate::check::{CheckedTree, NodeId};
-use crate::combine::Combinator;
+use crate::combine::{Combinator, Form, ReduceCode};
 use crate::descent::{Question, ask};
 use crate::expression::Expression;
 use crate::kind::{NodeKind, Primitive};
@@ -297,36 +297,36 @@ fn decide(
     }
     let heard_fields =
         || children.iter().filter(|child| !child.silent).map(|child| child.field).collect::<Vec<_>>();
-    match combinator {
-        Combinator::Product | Combinator::Ricci(..0.0) => {
+    match combinator.form(false) {
+        Form::Reduce(ReduceCode::Fold(code)) if code.absorbs() => {
             let silent = children.iter().any(|child| child.silent);
             // Where the field falls to zero, attributes jump to their defaults.
             let fading = heard_fields().iter().fold(f64::INFINITY, |least, f| least.min(f.abs()));
             (all_nearest().min(if silent { f64::INFINITY } else { fading }), silent)
         }
-        Combinator::SymmetricDifference | Combinator::Smooth(..) | Combinator::RFunction(..) => {
+        Form::Reduce(ReduceCode::Step(_)) => {
             let fields: Vec<f64> = children.iter().map(|child| child.field).collect();
             if field == 0.0 && children.iter().any(|child| child.silent) {
                 return (all_nearest(), true);
             }
             (combinator.kink_distance(&fields, iso).min(all_nearest()).min(field.abs()), false)
         }
-        Combinator::Complement | Combinator::Clamp { .. } | Combinator::Shell(_) | Combinator::Offset(_) => {
+        Form::Map(_) => {
             let child = &children[0];
             let fading = child.field.abs().min(field.abs());
             (combinator.kink_distance(&[child.field], iso).min(child.kink_distance).min(fading), false)
         }
-        Combinator::Sum | Combinator::Ricci(_) => {
+        Form::Reduce(ReduceCode::Fold(_)) => {
             // Where the total weight falls to zero, attributes jump to their defaults.
             let heard = || children.iter().filter(|child| !child.silent).map(|child| child.field);
             let largest = heard().fold(f64::NEG_INFINITY, f64::max);
             (children.iter().fold(largest.abs(), nearest), false)
         }
-        Combinator::Union | Combinator::Intersection | Combinator::Difference => {
+        form @ (Form::Reduce(ReduceCode::Choice(_)) | Form::Difference) => {
             let winner = &children[winner.unwrap_or(0)];
             // A tie of children that are zero all around is none: the first of them wins, whatever the
             // engine.
-            let first = usize::from(combinator == Combinator::Difference);
+            let first = usize::from(form == Form::Difference);
             let quiet = children.iter().skip(first).position(|child| child.silent).map(|i| i + first);
             let rivals: Vec<f64> = (0..children.len())
                 .filter(|&i| i < first || !children[i].silent || Some(i) == quiet)

@@ -18,7 +18,7 @@ use std::sync::Arc;
 
 use glam::DAffine3;
 
-use crate::combine::Combinator;
+use crate::combine::CombinatorKind;
 use crate::diagnostic::Diagnostic;
 use crate::expression::Formula;
 use crate::falloff::Falloff;
@@ -67,10 +67,10 @@ pub enum Written {
     },
     /// An operator.
     Combine {
-        /// The operator; the numbers in it are not looked at, and are 0.
-        combinator: Combinator,
-        /// Its numbers, in their order.
-        numbers: Vec<Number>,
+        /// The kind.
+        combinator: CombinatorKind,
+        /// Its parameters, in the order of [`CombinatorKind::fields`].
+        fields: Vec<FieldNumber>,
     },
     /// A formula.
     Expression(Formula),
@@ -138,11 +138,12 @@ impl Written {
             Self::Primitive { fields, radius, strength, .. } => {
                 (fields, &[], [Some(radius.number()), Some(strength)])
             }
-            Self::Combine { numbers, .. } => (&[], numbers, [None; 2]),
             Self::Select(number) => (&[], &[], [Some(number), None]),
             Self::Expression(formula) | Self::FormulaWarp(formula) => (&[], &formula.numbers, [None; 2]),
             Self::Attribute { .. } => (&[], &[], [None; 2]),
-            Self::Map { fields, .. } | Self::Warp { fields, .. } => (fields, &[], [None; 2]),
+            Self::Combine { fields, .. } | Self::Map { fields, .. } | Self::Warp { fields, .. } => {
+                (fields, &[], [None; 2])
+            }
         };
         let value = if let Self::Attribute { value, .. } = self { Some(value) } else { None };
         let numbers = numbers.iter().chain(value.into_iter().flat_map(WrittenAttribute::numbers));
@@ -157,10 +158,9 @@ impl Written {
                 let fields = fields.iter_mut().chain(falloff.fields_mut());
                 fields.flat_map(FieldNumber::numbers_mut).chain(own).collect()
             }
-            Self::Combine { numbers, .. } => numbers.iter_mut().collect(),
             Self::Select(number) => vec![number],
             Self::Expression(formula) | Self::FormulaWarp(formula) => formula.numbers.iter_mut().collect(),
-            Self::Map { fields, .. } | Self::Warp { fields, .. } => {
+            Self::Combine { fields, .. } | Self::Map { fields, .. } | Self::Warp { fields, .. } => {
                 fields.iter_mut().flat_map(FieldNumber::numbers_mut).collect()
             }
             Self::Attribute { value, .. } => value.numbers_mut(),
@@ -219,12 +219,10 @@ impl Written {
                 let skeleton = skeleton.from_fields(&values(fields));
                 NodeKind::Primitive(Primitive { skeleton, falloff, radius, strength })
             }
-            Self::Combine { combinator: Combinator::Ricci(_), numbers } => {
-                NodeKind::Combine(Combinator::Ricci(above_one(&numbers[0])))
-            }
-            Self::Combine { combinator, numbers } => {
-                let values: Vec<f64> = numbers.iter().map(Number::value).collect();
-                NodeKind::Combine(combinator.with_numbers(&values))
+            Self::Combine { combinator, fields } => {
+                let combinator = combinator.from_fields(&values(fields));
+                let follows = self.following().next().is_some();
+                NodeKind::Combine(if follows { combinator.following() } else { combinator })
             }
             Self::Expression(formula) => NodeKind::Expression(formula.expression()),
             Self::Select(which) => NodeKind::Select(which.value()),
@@ -290,6 +288,7 @@ impl Written {
                 | FieldKind::Within { .. }
                 | FieldKind::Choice(_)
                 | FieldKind::Count
+                | FieldKind::Whole { .. }
                 | FieldKind::Rows
                 | FieldKind::Flag => false,
             };
@@ -356,14 +355,6 @@ impl Written {
         let falloff = if new.falloff == old.falloff { falloff.clone() } else { new.falloff.into() };
         Self::Primitive { skeleton, fields, falloff, radius, strength }
     }
-}
-
-/// An exponent that follows a parameter is never exactly 1: the plain sum is another operator where fields
-/// are negative, and passing by it must not exchange one for the other. The next number above 1 is the same
-/// exponent in f32.
-fn above_one(exponent: &Number) -> f64 {
-    let n = exponent.value();
-    if exponent.follows() && n == 1.0 { 1.0 + f64::EPSILON } else { n }
 }
 
 /// The support radius of a primitive whose surface alone has this radius: `r / sqrt(s)` with `falloff(s) =

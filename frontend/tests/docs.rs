@@ -5,7 +5,7 @@
 use std::path::{Path, PathBuf};
 
 use jbt_frontend::check::CheckedTree;
-use jbt_frontend::combine::{Combinator, Family, SetOperation};
+use jbt_frontend::combine::CombinatorKind;
 use jbt_frontend::diagnostic::{Diagnostics, Source};
 use jbt_frontend::falloff::FalloffKind;
 use jbt_frontend::field::{Field, FieldKind, FieldValue};
@@ -67,6 +67,7 @@ fn values(kind: FieldKind) -> String {
         FieldKind::Within { least, most } => format!("{} .. {most}", fraction(least)),
         FieldKind::Choice(words) => words.join(", "),
         FieldKind::Count => format!("whole, 0 .. {}", jbt_ir::limits::MAX_COPIES),
+        FieldKind::Whole { least, most } => format!("whole, {least} .. {most}"),
         FieldKind::Degrees => "0 .. 360".to_owned(),
         FieldKind::Position => "3 numbers".to_owned(),
         FieldKind::Extents => "3 numbers >= 0".to_owned(),
@@ -170,49 +171,18 @@ fn all_warps_and_maps() {
     }
 }
 
-/// The words of an operator's numbers.
-fn words(combinator: Combinator) -> &'static [&'static str] {
-    match combinator {
-        Combinator::Smooth(..) => &["width"],
-        Combinator::RFunction(..) => &["alpha", "power", "order"],
-        Combinator::Clamp { .. } => &["low", "high"],
-        Combinator::Shell(_) => &["thickness"],
-        Combinator::Offset(_) => &["by"],
-        Combinator::Sum
-        | Combinator::Ricci(_)
-        | Combinator::Product
-        | Combinator::Union
-        | Combinator::Intersection
-        | Combinator::Difference
-        | Combinator::SymmetricDifference
-        | Combinator::Complement => &[],
-    }
-}
-
 #[test]
 fn all_operators() {
     let page = page("operators.md");
-    let smooth = SetOperation::ALL.map(|set| Combinator::Smooth(set, 0.1));
-    let others = [
-        Combinator::Sum,
-        Combinator::Ricci(2.0),
-        Combinator::Product,
-        Combinator::Union,
-        Combinator::Intersection,
-        Combinator::Difference,
-        Combinator::SymmetricDifference,
-        Combinator::RFunction(SetOperation::Union, Family::Alpha(0.0)),
-        Combinator::Complement,
-        Combinator::Clamp { low: 0.0, high: 1.0 },
-        Combinator::Shell(0.1),
-        Combinator::Offset(0.1),
-    ];
-    for combinator in smooth.into_iter().chain(others) {
-        has_scene("operators", combinator.name());
-        let text = section(&page, combinator.name()).join("\n");
-        assert!(text.contains("```jbt"), "`{}`: an example", combinator.name());
-        for word in words(combinator) {
-            assert!(text.contains(word), "`{}`: {word}", combinator.name());
+    for kind in CombinatorKind::ALL {
+        has_scene("operators", kind.name());
+        let text = section(&page, kind.name()).join("\n");
+        assert!(text.contains("```jbt"), "`{}`: an example", kind.name());
+        for field in kind.fields() {
+            let words = if let FieldKind::Choice(words) = field.kind { words } else { &[field.name][..] };
+            for word in words {
+                assert!(text.contains(word), "`{}`: {word}", kind.name());
+            }
         }
     }
     has_scene("operators", "select");

@@ -3,7 +3,10 @@
 
 use jbt_frontend::builder::{param, point, segment};
 use jbt_frontend::check::CheckedTree;
-use jbt_frontend::combine::{Combinator, Family, SetOperation};
+use jbt_frontend::combine::{
+    Combinator, Difference, Intersection, Product, RFunction, RFunctionOrder, RFunctionPower, Ricci,
+    SetOperation, Sum, SymmetricDifference, Union,
+};
 use jbt_frontend::lower::lower;
 use jbt_frontend::model::Model;
 use jbt_frontend::query::Query;
@@ -68,24 +71,24 @@ const ALL_SETS: [SetOperation; 3] = SetOperation::ALL;
 
 /// One of each operator of several children.
 fn of_two() -> Vec<Combinator> {
-    let mut all = vec![
-        Combinator::Sum,
-        Combinator::Ricci(3.0),
-        Combinator::Ricci(-2.0),
-        Combinator::Ricci(-2.5),
-        Combinator::Product,
-        Combinator::Union,
-        Combinator::Intersection,
-        Combinator::Difference,
-        Combinator::SymmetricDifference,
+    let mut all: Vec<Combinator> = vec![
+        Sum {}.into(),
+        Ricci { exponent: 3.0 }.into(),
+        Ricci { exponent: -2.0 }.into(),
+        Ricci { exponent: -2.5 }.into(),
+        Product {}.into(),
+        Union {}.into(),
+        Intersection {}.into(),
+        Difference {}.into(),
+        SymmetricDifference {}.into(),
     ];
     for set in ALL_SETS {
-        all.push(Combinator::Smooth(set, 0.2));
+        all.push(Combinator::smooth(set, 0.2));
         for alpha in [-0.9, 0.0, 0.7, 1.0] {
-            all.push(Combinator::RFunction(set, Family::Alpha(alpha)));
+            all.push(RFunction { set, alpha }.into());
         }
-        all.extend([1, 2, 4].map(|order| Combinator::RFunction(set, Family::Order(order))));
-        all.extend([1.1, 2.0, 3.5, 64.0].map(|power| Combinator::RFunction(set, Family::Power(power))));
+        all.extend([1, 2, 4].map(|order| Combinator::from(RFunctionOrder { set, order })));
+        all.extend([1.1, 2.0, 3.5, 64.0].map(|power| Combinator::from(RFunctionPower { set, power })));
     }
     all
 }
@@ -138,8 +141,12 @@ fn surfaces_are_those_of_the_set_operations() {
     let mut rng = fastrand::Rng::with_seed(3);
     for combinator in of_two() {
         let (set, exact) = match combinator {
-            Combinator::RFunction(set, _) => (set, true),
-            Combinator::Smooth(set, _) => (set, false),
+            Combinator::RFunction(RFunction { set, .. })
+            | Combinator::RFunctionPower(RFunctionPower { set, .. })
+            | Combinator::RFunctionOrder(RFunctionOrder { set, .. }) => (set, true),
+            Combinator::SmoothUnion(_) => (SetOperation::Union, false),
+            Combinator::SmoothIntersection(_) => (SetOperation::Intersection, false),
+            Combinator::SmoothDifference(_) => (SetOperation::Difference, false),
             _ => continue,
         };
         for _ in 0..200 {
@@ -191,14 +198,15 @@ fn r_functions_by_their_closed_forms() {
     // Alpha 1 is the plain operation, clamped at 0; power 2 is R_0.
     for set in ALL_SETS {
         for (a, b) in [(0.2, 0.9), (0.9, 0.2), (0.3, 0.3), (0.6, 0.7)] {
-            let by = |family| Combinator::RFunction(set, family).field(&[a, b], 0.5);
+            let by = |operator: Combinator| operator.field(&[a, b], 0.5);
+            let by_alpha = |alpha| by(RFunction { set, alpha }.into());
             let plain = match set {
                 SetOperation::Union => a.max(b),
                 SetOperation::Intersection => a.min(b),
                 SetOperation::Difference => a.min(1.0 - b),
             };
-            assert!((by(Family::Alpha(1.0)) - plain).abs() < 1e-12, "{set:?} of {a}, {b}");
-            assert!((by(Family::Power(2.0)) - by(Family::Alpha(0.0))).abs() < 1e-12);
+            assert!((by_alpha(1.0) - plain).abs() < 1e-12, "{set:?} of {a}, {b}");
+            assert!((by(RFunctionPower { set, power: 2.0 }.into()) - by_alpha(0.0)).abs() < 1e-12);
         }
     }
 }
@@ -267,10 +275,15 @@ fn gradients_agree_with_differences() {
 fn weights_are_fields_times_partial_derivatives() {
     let mut rng = fastrand::Rng::with_seed(5);
     for combinator in of_two() {
-        if matches!(combinator, Combinator::Difference | Combinator::SymmetricDifference)
-            || matches!(combinator, Combinator::Smooth(SetOperation::Difference, _))
-            || matches!(combinator, Combinator::RFunction(SetOperation::Difference, _))
-        {
+        let subtracts = match combinator {
+            Combinator::Difference(_) | Combinator::SymmetricDifference(_) => true,
+            Combinator::SmoothDifference(_) => true,
+            Combinator::RFunction(RFunction { set, .. })
+            | Combinator::RFunctionPower(RFunctionPower { set, .. })
+            | Combinator::RFunctionOrder(RFunctionOrder { set, .. }) => set == SetOperation::Difference,
+            _ => false,
+        };
+        if subtracts {
             // What is subtracted counts by its complement.
             continue;
         }
@@ -340,7 +353,7 @@ fn maps_of_one_field() {
 
 #[test]
 fn symmetric_difference_is_inside_of_an_odd_number() {
-    let inside = |fields: &[f64]| Combinator::SymmetricDifference.field(fields, 0.5) > 0.5;
+    let inside = |fields: &[f64]| Combinator::from(SymmetricDifference {}).field(fields, 0.5) > 0.5;
     for bits in 0..8u32 {
         let fields = [0, 1, 2].map(|i| if bits >> i & 1 == 1 { 0.8 } else { 0.2 });
         assert_eq!(inside(&fields), bits.count_ones() % 2 == 1, "{fields:?}");

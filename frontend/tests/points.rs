@@ -69,9 +69,7 @@ fn curves_have_a_limit_of_pieces() {
     let pieces = lowered.tables.tables.values().last().expect("there are tables").len();
     assert_eq!(pieces, 1 << limits::MAX_CURVE_HALVINGS);
     // Each is a row: 977 of them are more than there may be.
-    let many = |count: usize| {
-        Model::new(Tree::combine(jbt_frontend::combine::Combinator::Sum, (0..count).map(|_| arc())))
-    };
+    let many = |count: usize| Model::new(Tree::sum((0..count).map(|_| arc())));
     assert!(many(970).check().is_ok());
     let errors = many(980).check().unwrap_err();
     assert!(errors[0].message.contains("nodes and pieces; it may have 4000000"), "{}", errors[0].message);

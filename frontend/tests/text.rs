@@ -166,7 +166,7 @@ fn random_models_survive_printing() {
 fn a_graph_prints_as_long_as_it_is() {
     let mut tree = random::point();
     for _ in 0..30 {
-        tree = Tree::new(jbt_frontend::combine::Combinator::Sum, vec![tree.clone(), random::point(), tree]);
+        tree = Tree::sum(vec![tree.clone(), random::point(), tree]);
     }
     let model = Model::new(tree);
     let text = print(&model);

@@ -2,7 +2,7 @@
 
 use jbt_frontend::attribute::{AttributeGroup, Mixing};
 use jbt_frontend::builder::{Axis, Term, checker, cuboid, point, ring, segment, x, y, z};
-use jbt_frontend::combine::Combinator;
+use jbt_frontend::combine::{Combinator, Difference, Intersection, Union};
 use jbt_frontend::falloff::Falloff;
 use jbt_frontend::model::Model;
 use jbt_frontend::traverse::Visit;
@@ -81,11 +81,11 @@ fn union_intersection_and_difference() {
     assert!((at(&cut, HERE).field - 0.2).abs() < 1e-15);
     assert_eq!(color(&cut, HERE), RED, "the subtracted child decides: its colour is that of the cut");
     assert_eq!(at(&(&b - level(1.7)), HERE).field, 0.0, "clamped: never negative");
-    let many = Tree::combine(Combinator::Difference, [b.clone(), a.clone(), level(0.9).color(GREEN), a]);
+    let many = Tree::difference([b.clone(), a.clone(), level(0.9).color(GREEN), a]);
     assert_eq!(color(&many, HERE), GREEN);
     // Ties go to the first; in a difference to the left.
     let tie = [level(0.5).color(RED), level(0.5).color(BLUE)];
-    for combinator in [Combinator::Union, Combinator::Intersection, Combinator::Difference] {
+    for combinator in [Combinator::from(Union {}), Intersection {}.into(), Difference {}.into()] {
         let tree = Tree::combine(combinator, tie.clone());
         assert_eq!((color(&tree, HERE), at(&tree, HERE).kink_distance), (RED, 0.0));
     }
@@ -130,10 +130,7 @@ fn dominance() {
     assert_eq!(sample.attributes, [WHITE.to_vec(), vec![2.0], vec![0.25 * 1.0 + 0.5 * 2.0 - 0.25]]);
     // 3 : 2 at the outer node, but the 3 are three leaves of 1.
     let three = part(1.0, 1.0) + part(1.0, 2.0) + part(1.0, 3.0);
-    assert_eq!(
-        walk(&model(Tree::combine(Combinator::Sum, [three.clone(), part(2.0, 4.0)])), HERE).attributes[1],
-        [4.0]
-    );
+    assert_eq!(walk(&model(Tree::sum([three.clone(), part(2.0, 4.0)])), HERE).attributes[1], [4.0]);
     let tie = walk(&model(three), HERE);
     assert_eq!(
         (tie.attributes[1].as_slice(), tie.kink_distance),

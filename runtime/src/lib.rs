@@ -123,7 +123,7 @@ pub use jbt_jit as jit;
 pub use jbt_frontend::attribute::{AttributeGroup, Mixing};
 pub use jbt_frontend::builder as build;
 pub use jbt_frontend::check::{CheckedTree, NodeId};
-pub use jbt_frontend::combine::{Combinator, Family, SetOperation};
+pub use jbt_frontend::combine::{self, Combinator, SetOperation};
 pub use jbt_frontend::diagnostic::{self, Diagnostic, Diagnostics};
 pub use jbt_frontend::falloff::Falloff;
 pub use jbt_frontend::import;

@@ -38,7 +38,7 @@
 
 pub use jbt_frontend::attribute::{AttributeValue, Textured, UvMap};
 pub use jbt_frontend::check::CheckedNode;
-pub use jbt_frontend::combine::{Combinator, Family, SetOperation};
+pub use jbt_frontend::combine::{Combinator, CombinatorKind, SetOperation, Syntax};
 pub use jbt_frontend::expression::Expression;
 pub use jbt_frontend::falloff::{Falloff, FalloffKind};
 pub use jbt_frontend::field::{Field, FieldKind, FieldValue};

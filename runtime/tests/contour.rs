@@ -12,7 +12,7 @@ use fastrand::Rng;
 use jbt::build::{Axis, cuboid, point, segment, x, y, z};
 use jbt::contour::{Contour, Detail, Fate, ImageDetail, Mode, Plane, Rectangle, SliceError, Slicer, circles};
 use jbt::export::svg::{Paint, Style, write_svg};
-use jbt::{CancelToken, Combinator, Compiler, Engine, Evaluator, Fineness, Model, Points, Query, Tree, text};
+use jbt::{CancelToken, Compiler, Engine, Evaluator, Fineness, Model, Points, Query, Tree, text};
 
 fn checked(text: &str) -> jbt::CheckedTree {
     text::parse(text.as_bytes(), &text::Options::default()).expect("it reads").check().expect("a good model")
@@ -163,11 +163,11 @@ fn random(rng: &mut Rng) -> Model {
         let (a, b) = (trees.remove(0), trees.remove(rng.usize(0..trees.len())));
         let pair = [a, b];
         let tree = match rng.u8(0..7) {
-            0 => Tree::combine(Combinator::Union, pair),
-            1 => Tree::combine(Combinator::Difference, pair),
-            2 => Tree::combine(Combinator::Intersection, pair),
+            0 => Tree::union(pair),
+            1 => Tree::difference(pair),
+            2 => Tree::intersection(pair),
             3 => Tree::blend(2.0 + 3.0 * rng.f64(), pair),
-            _ => Tree::combine(Combinator::Sum, pair),
+            _ => Tree::sum(pair),
         };
         trees.push(match rng.u8(0..8) {
             0 => tree.rotate([0.0, 0.0, 1.0], 360.0 * rng.f64()),
@@ -517,7 +517,7 @@ fn the_twenty_circles_have_the_crossing_cells_of_the_quadtree() {
     let mut reader = csv::Reader::from_path(folder.join("circles_seed1.csv")).expect("a table of circles");
     let rows: Vec<[f64; 5]> = reader.deserialize().collect::<Result<_, _>>().expect("five numbers a row");
     let leaves = rows.iter().map(|&[_, radius, x, _, z]| point([x, z, 0.0], radius));
-    let tree = Model::new(Tree::combine(Combinator::Sum, leaves)).check().expect("a good model");
+    let tree = Model::new(Tree::sum(leaves)).check().expect("a good model");
     let slicer = slicer(&tree, "z=0", Query::FIELD);
     let quadtree = Detail { block: Some(1), quadtree: true, ..detail(256) };
     let found = contour(&slicer, &square(2.0), &quadtree);

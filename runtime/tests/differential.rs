@@ -130,7 +130,13 @@ fn multiplies(tree: &CheckedTree) -> bool {
     let multiplies = |kind: &NodeKind| {
         matches!(
             kind,
-            NodeKind::Combine(Combinator::Product | Combinator::Offset(_) | Combinator::RFunction(..))
+            NodeKind::Combine(
+                Combinator::Product(_)
+                    | Combinator::Offset(_)
+                    | Combinator::RFunction(_)
+                    | Combinator::RFunctionPower(_)
+                    | Combinator::RFunctionOrder(_)
+            )
         )
     };
     tree.nodes().iter().any(|node| multiplies(&node.kind))

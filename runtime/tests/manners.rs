@@ -5,6 +5,7 @@ use std::error::Error;
 use std::path::Path;
 
 use jbt::build::{Axis, param, point, segment, x};
+use jbt::combine::{Difference, Intersection, Sum, SymmetricDifference, Union};
 use jbt::contour::{Detail, ImageDetail, Plane, SliceError, Slicer};
 use jbt::diagnostic::Severity;
 use jbt::render::RenderError;
@@ -105,11 +106,11 @@ fn trees_add_up() {
     assert_eq!(Tree::product(balls.clone()), balls.iter().product());
     type Grow = fn(&mut Tree, Tree);
     let cases: [(Combinator, Tree, Grow); 5] = [
-        (Combinator::Sum, Tree::sum(balls.clone()), |tree, other| *tree += other),
-        (Combinator::Union, Tree::union(balls.clone()), |tree, other| *tree |= other),
-        (Combinator::Intersection, Tree::intersection(balls.clone()), |tree, other| *tree &= other),
-        (Combinator::Difference, Tree::difference(balls.clone()), |tree, other| *tree -= other),
-        (Combinator::SymmetricDifference, Tree::symmetric_difference(balls.clone()), |tree, other| {
+        (Sum {}.into(), Tree::sum(balls.clone()), |tree, other| *tree += other),
+        (Union {}.into(), Tree::union(balls.clone()), |tree, other| *tree |= other),
+        (Intersection {}.into(), Tree::intersection(balls.clone()), |tree, other| *tree &= other),
+        (Difference {}.into(), Tree::difference(balls.clone()), |tree, other| *tree -= other),
+        (SymmetricDifference {}.into(), Tree::symmetric_difference(balls.clone()), |tree, other| {
             *tree ^= other;
         }),
     ];

@@ -13,7 +13,7 @@ fn balls(operator: impl Fn([Tree; 2]) -> Tree) -> Tree {
         // Who wins alternates.
         operator(if i % 2 == 0 { [near, far] } else { [far.strength(1.2), near.strength(0.9)] })
     };
-    Tree::combine(jbt::Combinator::Union, (0..8).map(pair))
+    Tree::union((0..8).map(pair))
 }
 
 #[test]

@@ -5,9 +5,7 @@ use fastrand::Rng;
 use jbt::build::{bezier, catmull_rom, polygon, polyline};
 use jbt::divide::Edit;
 use jbt::region::Divisible;
-use jbt::{
-    Box3, Combinator, Compiler, Engine, Evaluator, Model, Points, Pruner, Query, Samples, Tree, Update,
-};
+use jbt::{Box3, Compiler, Engine, Evaluator, Model, Points, Pruner, Query, Samples, Tree, Update};
 
 fn positions(rng: &mut Rng, count: usize, around: [f64; 3], size: f64) -> Vec<[f64; 3]> {
     (0..count).map(|_| around.map(|x| x + size * (2.0 * rng.f64() - 1.0))).collect()
@@ -22,7 +20,7 @@ fn lines(count: usize, seed: u64) -> Model {
         let radii: Vec<f64> = (0..points).map(|_| 0.05 * rng.f64()).collect();
         polyline(positions(&mut rng, points, around, 0.3), 0.2).radii(radii)
     };
-    Model::new(Tree::combine(Combinator::Sum, (0..count).map(line)))
+    Model::new(Tree::sum((0..count).map(line)))
 }
 
 fn points(seed: u64, count: usize, size: f32) -> Points {

@@ -19,8 +19,6 @@ use jbt::divide::Edit;
 use jbt::prune::Region;
 use jbt::region::{ANYTHING, Divisible};
 use jbt::{Box3, CheckedTree, Compiler, Engine, Evaluator, Model, Points, Pruner, Query, Update};
-use jbt_frontend::combine::Combinator;
-use jbt_frontend::kind::NodeKind;
 use jbt_frontend::text::{Options, parse, print};
 use jbt_frontend::tree::Tree;
 use rayon::prelude::*;
@@ -241,7 +239,7 @@ fn blobs(count: usize, seed: u64) -> Model {
         let at = [0; 3].map(|_: i32| 2.0 * rng.f64() - 1.0);
         jbt::build::point(at, 0.15)
     };
-    Model::new(Tree::new(NodeKind::Combine(Combinator::Sum), (0..count).map(leaf).collect()))
+    Model::new(Tree::sum((0..count).map(leaf)))
 }
 
 #[test]

@@ -4,8 +4,6 @@ use jbt::divide::{Cell, Decision, Division, Edit, Limits, divide};
 use jbt::prune::Region;
 use jbt::region::Divisible;
 use jbt::{Box3, Compiler, Engine, EvalError, Model, Pruner};
-use jbt_frontend::combine::Combinator;
-use jbt_frontend::kind::NodeKind;
 use jbt_frontend::tree::Tree;
 
 /// Centres and radii of many small blobs in [-1, 1]^3.
@@ -17,8 +15,8 @@ fn blobs(count: usize) -> Vec<([f64; 3], f64)> {
 }
 
 fn pruner(compiler: &Compiler, blobs: &[([f64; 3], f64)]) -> Pruner {
-    let leaves = blobs.iter().map(|&(at, radius)| jbt::build::point(at, radius)).collect();
-    let model = Model::new(Tree::new(NodeKind::Combine(Combinator::Sum), leaves));
+    let leaves = blobs.iter().map(|&(at, radius)| jbt::build::point(at, radius));
+    let model = Model::new(Tree::sum(leaves));
     Pruner::new(compiler, &model.check().expect("a good model")).expect("it compiles")
 }
 

@@ -177,10 +177,7 @@ fn many_selectors_of_one_shape_are_rows_of_one_table() {
         let cut = ball(0.9) - ball(0.4).translate([0.2, 0.0, 0.0]);
         Tree::select(which + param("step", 0.0), [ball(0.5), cut])
     };
-    let root = Tree::combine(
-        jbt::Combinator::Union,
-        (0..6).map(|i| selector(f64::from(i) * 0.3, f64::from(i % 2) * 0.4)),
-    );
+    let root = Tree::union((0..6).map(|i| selector(f64::from(i) * 0.3, f64::from(i % 2) * 0.4)));
     let start = Model::new(root).check().unwrap();
     let mut evaluator = Evaluator::compile(&start, Query::ALL).unwrap();
     assert_eq!(evaluator.evaluations_per_point(), 6);

@@ -684,7 +684,7 @@ fn threads_share_a_tracer() {
     let mut rng = Rng::with_seed(3);
     let leaf = |_| jbt::build::point([0; 3].map(|_: i32| 2.0 * rng.f64() - 1.0), 0.3);
     let leaves: Vec<_> = (0..200).map(leaf).collect();
-    let tree = Model::new(jbt::Tree::combine(jbt::Combinator::Sum, leaves)).check().expect("a good model");
+    let tree = Model::new(jbt::Tree::sum(leaves)).check().expect("a good model");
     let tracer = Tracer::new(&Compiler::new(), &tree, Query::ALL).expect("it compiles");
     let pixel = |x: usize, y: usize| {
         let [x, y] = [x, y].map(|i| 2.4 * (i as f64 + 0.5) / 32.0 - 1.2);

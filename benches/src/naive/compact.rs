@@ -13,7 +13,7 @@ use std::rc::Rc;
 use glam::{DAffine3, Mat3, Vec3};
 use jbt_frontend::attribute::AttributeValue;
 use jbt_frontend::check::{CheckedTree, NodeId};
-use jbt_frontend::combine::Combinator;
+use jbt_frontend::combine::{Combinator, Ricci};
 use jbt_frontend::falloff::Falloff;
 use jbt_frontend::kind::{NodeKind, Primitive};
 use jbt_frontend::warp::Warp;
@@ -214,19 +214,29 @@ fn combine(
 ) {
     let write = |id: &NodeId| Task::Write(*id, map, values.clone());
     let operator = match combinator {
-        Combinator::Sum => Operator::Sum,
-        Combinator::Ricci(1.0) => Operator::Sum,
-        Combinator::Ricci(n) if n.fract() == 0.0 && n > 0.0 => Operator::Powers(n as i32),
-        Combinator::Ricci(n) => Operator::Ricci(n as f32),
-        Combinator::Union => Operator::Union,
-        Combinator::Intersection => Operator::Intersection,
-        Combinator::Difference => Operator::Difference,
-        Combinator::Product
-        | Combinator::SymmetricDifference
-        | Combinator::Smooth(..)
-        | Combinator::RFunction(..)
-        | Combinator::Complement
-        | Combinator::Clamp { .. }
+        Combinator::Sum(_) => Operator::Sum,
+        Combinator::Ricci(Ricci { exponent: n }) => {
+            if n == 1.0 {
+                Operator::Sum
+            } else if n.fract() == 0.0 && n > 0.0 {
+                Operator::Powers(n as i32)
+            } else {
+                Operator::Ricci(n as f32)
+            }
+        }
+        Combinator::Union(_) => Operator::Union,
+        Combinator::Intersection(_) => Operator::Intersection,
+        Combinator::Difference(_) => Operator::Difference,
+        Combinator::Product(_)
+        | Combinator::SymmetricDifference(_)
+        | Combinator::SmoothUnion(_)
+        | Combinator::SmoothIntersection(_)
+        | Combinator::SmoothDifference(_)
+        | Combinator::RFunction(_)
+        | Combinator::RFunctionPower(_)
+        | Combinator::RFunctionOrder(_)
+        | Combinator::Complement(_)
+        | Combinator::Clamp(_)
         | Combinator::Shell(_)
         | Combinator::Offset(_) => panic!("no case compares walks of `{}`", combinator.name()),
     };

@@ -5,7 +5,7 @@ use std::path::Path;
 use jbt::{Model, Points};
 use jbt_frontend::builder::{Axis, cuboid, cylinder, disc, point, ring, segment, triangle};
 use jbt_frontend::check::CheckedTree;
-use jbt_frontend::combine::Combinator;
+use jbt_frontend::combine::{Combinator, Difference, Intersection, Ricci, Sum, Union};
 use jbt_frontend::falloff::Falloff;
 use jbt_frontend::text::{Options, parse};
 use jbt_frontend::tree::Tree;
@@ -134,15 +134,15 @@ fn every_skeleton_alone() {
 #[test]
 fn every_operator() {
     for combinator in [
-        Combinator::Sum,
-        Combinator::Ricci(1.0),
-        Combinator::Ricci(2.0),
-        Combinator::Ricci(3.0),
-        Combinator::Ricci(2.6),
-        Combinator::Ricci(200.0),
-        Combinator::Union,
-        Combinator::Intersection,
-        Combinator::Difference,
+        Combinator::from(Sum {}),
+        Ricci { exponent: 1.0 }.into(),
+        Ricci { exponent: 2.0 }.into(),
+        Ricci { exponent: 3.0 }.into(),
+        Ricci { exponent: 2.6 }.into(),
+        Ricci { exponent: 200.0 }.into(),
+        Union {}.into(),
+        Intersection {}.into(),
+        Difference {}.into(),
     ] {
         let inner = Tree::combine(combinator, leaves().into_iter().take(3));
         let nested =
@@ -161,7 +161,9 @@ fn every_operator() {
 #[test]
 fn negative_fields_and_missing_attributes() {
     let pushed = point([0.2, 0.0, 0.0], 0.9).strength(-0.6).color([1.0, 0.0, 0.0]);
-    for combinator in [Combinator::Sum, Combinator::Ricci(2.0), Combinator::Union, Combinator::Difference] {
+    for combinator in
+        [Combinator::from(Sum {}), Ricci { exponent: 2.0 }.into(), Union {}.into(), Difference {}.into()]
+    {
         let tree = Tree::combine(combinator, [point([-0.2, 0.0, 0.0], 1.0), pushed.clone()]);
         compare(
             &format!("{combinator:?}"),

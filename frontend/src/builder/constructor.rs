@@ -1,10 +1,11 @@
-//! Constructors of members, made of their descriptions: one for each skeleton, falloff and texture, and a
-//! method of [`Tree`] for each warp and affine map.
+//! Constructors of members, made of their descriptions: one for each skeleton, falloff and texture, a method
+//! of [`Tree`] for each warp and affine map, and a function or method of it for each operator.
 //!
 //! A constructor is called like the file of its member, and takes the parameters in their order. Lists of
 //! lengths and flags are left out, since they have defaults: [`Tree::radii`] and [`Tree::closed`] set them.
 
 use super::{Axis, Edge, Number, Pattern, Rows, Vector, leaf, real, vector, vectors};
+use crate::combine::{CombinatorKind, SetOperation};
 use crate::falloff::FalloffKind;
 use crate::map::MapKind;
 use crate::skeleton::SkeletonKind;
@@ -34,6 +35,14 @@ macro_rules! arguments {
     ($then:ident $words:tt ($($taken:tt)*) ($($value:tt)*) $field:ident: Edge $default:tt $($rest:tt)*) => {
         arguments! { $then $words
             ($($taken)* $field: Edge,) ($($value)* $field.to_field().into(),) $($rest)* }
+    };
+    ($then:ident $words:tt ($($taken:tt)*) ($($value:tt)*) $field:ident: SetOperation $default:tt $($rest:tt)*) => {
+        arguments! { $then $words
+            ($($taken)* $field: SetOperation,) ($($value)* $field.to_field().into(),) $($rest)* }
+    };
+    ($then:ident $words:tt ($($taken:tt)*) ($($value:tt)*) $field:ident: u32 $default:tt $($rest:tt)*) => {
+        arguments! { $then $words
+            ($($taken)* $field: u32,) ($($value)* real(f64::from($field)),) $($rest)* }
     };
     ($then:ident $words:tt ($($taken:tt)*) ($($value:tt)*) $field:ident: Matrix $default:tt $($rest:tt)*) => {
         arguments! { $then $words
@@ -130,6 +139,45 @@ macro_rules! map {
     };
 }
 
+macro_rules! several {
+    // These have methods of two trees; `Tree::blend` and `Tree::smooth` take any number.
+    ((ricci $($rest:tt)*) $taken:tt $value:tt) => { pair! { (ricci $($rest)*) $taken $value } };
+    ((smooth_union $($rest:tt)*) $taken:tt $value:tt) => { pair! { (smooth_union $($rest)*) $taken $value } };
+    ((smooth_intersection $($rest:tt)*) $taken:tt $value:tt) => {
+        pair! { (smooth_intersection $($rest)*) $taken $value }
+    };
+    ((smooth_difference $($rest:tt)*) $taken:tt $value:tt) => {
+        pair! { (smooth_difference $($rest)*) $taken $value }
+    };
+    (($function:ident $name:ident $doc:tt) ($($taken:tt)*) ($($value:tt)*)) => {
+        documented! { combine $name $doc
+            pub fn $function($($taken)* children: impl IntoIterator<Item = Self>) -> Self {
+                Self::operator(CombinatorKind::$name, vec![$($value)*], children)
+            }
+        }
+    };
+}
+
+macro_rules! pair {
+    (($function:ident $name:ident $doc:tt) ($($taken:tt)*) ($($value:tt)*)) => {
+        documented! { combine $name $doc
+            pub fn $function(&self, $($taken)* other: &Self) -> Self {
+                Self::operator(CombinatorKind::$name, vec![$($value)*], [self.clone(), other.clone()])
+            }
+        }
+    };
+}
+
+macro_rules! single {
+    (($function:ident $name:ident $doc:tt) ($($taken:tt)*) ($($value:tt)*)) => {
+        documented! { combine $name $doc
+            pub fn $function(&self, $($taken)*) -> Self {
+                Self::operator(CombinatorKind::$name, vec![$($value)*], [self.clone()])
+            }
+        }
+    };
+}
+
 crate::skeleton::each! { constructor skeleton }
 crate::falloff::each! { constructor falloff }
 crate::texture::each! { constructor texture }
@@ -142,4 +190,10 @@ impl Tree {
 /// The same trees elsewhere: affine maps.
 impl Tree {
     crate::map::each! { constructor map }
+}
+
+/// Trees whose fields become one field: operators.
+impl Tree {
+    crate::combine::several::each! { constructor several }
+    crate::combine::single::each! { constructor single }
 }

@@ -1,7 +1,7 @@
 //! Builders make the trees that they say.
 
 use super::*;
-use crate::combine::Combinator;
+use crate::combine::{Combinator, Difference, Intersection, Sum, Union};
 use crate::falloff::Falloff;
 use crate::model::Model;
 use crate::walk::walk;
@@ -13,12 +13,15 @@ fn field(tree: &Tree, p: [f64; 3]) -> f64 {
 #[test]
 fn operators_take_trees_and_references() {
     let (a, b) = (point([0.0; 3], 1.0), point([0.5, 0.0, 0.0], 1.0));
-    let expected = Tree::combine(Combinator::Union, [a.clone(), b.clone()]);
+    let expected = Tree::combine(Combinator::Union(Union {}), [a.clone(), b.clone()]);
     for tree in [&a | &b, a.clone() | &b, &a | b.clone(), a.clone() | b.clone()] {
         assert_eq!(tree, expected);
     }
-    let kinds =
-        [(&a + &b, Combinator::Sum), (&a & &b, Combinator::Intersection), (&a - &b, Combinator::Difference)];
+    let kinds = [
+        (&a + &b, Combinator::Sum(Sum {})),
+        (&a & &b, Combinator::Intersection(Intersection {})),
+        (&a - &b, Combinator::Difference(Difference {})),
+    ];
     for (tree, combinator) in kinds {
         assert_eq!(tree, Tree::combine(combinator, [a.clone(), b.clone()]));
         assert_eq!(tree.node().children()[0].identity(), a.identity(), "shared, not copied");

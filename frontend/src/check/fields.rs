@@ -41,6 +41,9 @@ pub(super) fn check_fields(
             FieldKind::Choice(words) => {
                 check_within(report, span, &what, value.real(), 0.0..=words.len() as f64 - 1.0);
             }
+            FieldKind::Whole { least, most } => {
+                check_within(report, span, &what, value.real(), least.into()..=most.into());
+            }
             FieldKind::Count => check_count(report, span, &what, value.real()),
             FieldKind::Degrees => check_within(report, span, &what, value.real(), 0.0..=360.0),
             FieldKind::Extents => check_numbers(report, span, &what, &value.vector(), 0.0),

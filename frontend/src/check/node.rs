@@ -7,8 +7,7 @@ use jbt_ir::limits;
 
 use super::fields::{check_expressed, check_falloff, check_fields};
 use super::groups::check_attribute;
-use super::numbers::{check_choice, check_combinator, check_formula, check_number, check_numbers};
-use crate::combine::Form;
+use super::numbers::{check_choice, check_formula, check_number, check_numbers};
 use crate::diagnostic::{Diagnostic, Span};
 use crate::kind::{NodeKind, Primitive};
 use crate::report::Report;
@@ -36,11 +35,12 @@ pub(super) fn check_node(
             (count == 0, "no children")
         }
         NodeKind::Combine(combinator) => {
-            check_combinator(report, span, *combinator, iso);
-            match combinator.form() {
-                Form::Map(_) => (count == 1, "one child"),
-                Form::Fold | Form::Difference | Form::Step(_) => (count >= 1, "at least one child"),
+            let kind = combinator.kind();
+            let well = check_fields(report, span, kind.name(), kind.fields(), &combinator.to_fields());
+            if let Some(fault) = combinator.fault(iso).filter(|_| well) {
+                report.add(|| Diagnostic { span, ..fault });
             }
+            if kind.takes_one() { (count == 1, "one child") } else { (count >= 1, "at least one child") }
         }
         NodeKind::Expression(expression) => {
             check_expressed(report, span, expression, (1, count));

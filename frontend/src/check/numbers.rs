@@ -4,8 +4,6 @@ use std::ops::RangeInclusive;
 
 use jbt_ir::limits;
 
-use crate::combine::rfunction::{LARGEST_ORDER, LEAST_ALPHA, POWERS};
-use crate::combine::{Combinator, Family};
 use crate::diagnostic::{Diagnostic, Span};
 use crate::expression::{Expression, Form, Formula};
 use crate::number::{Formula as NumberFormula, Number};
@@ -116,92 +114,6 @@ pub(super) fn check_choice(report: &mut Report, span: Option<Span>, which: f64, 
         report.add(|| {
             Diagnostic::error(span, format!("the selector chooses child {which} of {count}"))
                 .expected(format!("expected a number from 0 to {}; the nearest whole one counts", count - 1))
-        });
-    }
-}
-
-/// The numbers of an operator.
-pub(super) fn check_combinator(report: &mut Report, span: Option<Span>, combinator: Combinator, iso: f64) {
-    match combinator {
-        Combinator::Sum
-        | Combinator::Product
-        | Combinator::Union
-        | Combinator::Intersection
-        | Combinator::Difference
-        | Combinator::SymmetricDifference
-        | Combinator::Complement => {}
-        Combinator::Ricci(n) => check_exponent(report, span, n),
-        Combinator::Smooth(_, width) => {
-            let what = format!("the width of the {}", combinator.name());
-            check_number(report, span, &what, width, limits::MIN_LENGTH);
-        }
-        Combinator::RFunction(_, family) => check_family(report, span, family),
-        Combinator::Clamp { low, high } => {
-            let mut fine = true;
-            for (what, number) in [("the low end of the clamp", low), ("the high end of the clamp", high)] {
-                fine &= check_number(report, span, what, number, f64::NEG_INFINITY);
-            }
-            if fine && low > high {
-                report.add(|| {
-                    Diagnostic::error(span, format!("the clamp is from {low} to {high}"))
-                        .expected("expected the low end to be at most the high end")
-                });
-            }
-        }
-        Combinator::Shell(thickness) => {
-            if check_number(report, span, "the thickness of the shell", thickness, limits::MIN_LENGTH) {
-                check_below(
-                    report,
-                    span,
-                    "the thickness of the shell",
-                    thickness,
-                    ("twice the iso-value", 2.0 * iso),
-                );
-            }
-        }
-        Combinator::Offset(by) => {
-            if check_number(report, span, "the offset", by, f64::NEG_INFINITY) {
-                check_below(report, span, "the offset", by, ("the iso-value", iso));
-            }
-        }
-    }
-}
-
-/// A number of the field that has to stay below a limit, so far that the rest is a number of f32.
-fn check_below(report: &mut Report, span: Option<Span>, what: &str, value: f64, (name, limit): (&str, f64)) {
-    // Written so that a NaN limit, whose error has been told, is none.
-    if value > limit * (1.0 - 1e-6) {
-        report.add(|| {
-            Diagnostic::error(span, format!("{what} is {value}"))
-                .expected(format!("expected a number below {name}, {limit}"))
-        });
-    }
-}
-
-/// The number of a family of R-functions.
-fn check_family(report: &mut Report, span: Option<Span>, family: Family) {
-    let (what, value, [least, most]) = match family {
-        Family::Alpha(alpha) => ("the alpha of the R-function", alpha, [LEAST_ALPHA, 1.0]),
-        Family::Power(power) => ("the power of the R-function", power, POWERS),
-        Family::Order(order) => {
-            ("the order of the R-function", f64::from(order), [1.0, f64::from(LARGEST_ORDER)])
-        }
-    };
-    if !(least..=most).contains(&value) {
-        report.add(|| {
-            Diagnostic::error(span, format!("{what} is {value}"))
-                .expected(format!("expected a number from {least} to {most}"))
-        });
-    }
-}
-
-/// The exponent of a Ricci blend.
-fn check_exponent(report: &mut Report, span: Option<Span>, n: f64) {
-    let most = limits::MAX_RICCI_EXPONENT;
-    if !(1.0..=most).contains(&n.abs()) {
-        report.add(|| {
-            Diagnostic::error(span, format!("the exponent of the Ricci blend is {n}"))
-                .expected(format!("expected a number from 1 to {most}, or from -{most} to -1"))
         });
     }
 }

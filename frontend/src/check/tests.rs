@@ -10,7 +10,10 @@ use crate::attribute::AttributeGroup;
 use crate::attribute::Mixing;
 use crate::axis::Axis;
 use crate::bounds::Bounds;
-use crate::combine::{Combinator, Family, SetOperation};
+use crate::combine::{
+    Clamp, Combinator, Complement, Difference, Intersection, Offset, RFunction, RFunctionOrder,
+    RFunctionPower, Ricci, SetOperation, Shell, Sum, Union,
+};
 use crate::diagnostic::Severity;
 use crate::diagnostic::Span;
 use crate::falloff::Falloff;
@@ -28,8 +31,8 @@ fn point(x: f64) -> Tree {
     leaf(Point { at: DVec3::new(x, 0.0, 0.0) }, 1.0, 1.0)
 }
 
-fn combine(combinator: Combinator, children: Vec<Tree>) -> Tree {
-    Tree::new(NodeKind::Combine(combinator), children)
+fn combine(combinator: impl Into<Combinator>, children: Vec<Tree>) -> Tree {
+    Tree::new(NodeKind::Combine(combinator.into()), children)
 }
 
 fn affine(map: DAffine3, child: Tree) -> Tree {
@@ -71,36 +74,36 @@ fn refuses_numbers_and_children_that_make_no_sense() {
             Tree::new(NodeKind::Warp(Twist { axis: Axis::Z, rate: f64::NAN }.into()), vec![point(0.0)]),
             "the `rate` of the twist is NaN",
         ),
-        (combine(Combinator::Sum, vec![]), "a node `sum` has 0 children"),
-        (combine(Combinator::Difference, vec![]), "a node `difference` has 0 children"),
-        (combine(Combinator::Ricci(0.5), vec![point(0.0)]), "the exponent of the Ricci blend is 0.5"),
-        (combine(Combinator::Ricci(0.0), vec![point(0.0)]), "the exponent of the Ricci blend is 0"),
-        (combine(Combinator::Ricci(-0.5), vec![point(0.0)]), "the exponent of the Ricci blend is -0.5"),
-        (combine(Combinator::Ricci(-1025.0), vec![point(0.0)]), "the exponent of the Ricci blend is -1025"),
-        (combine(Combinator::Complement, vec![]), "a node `complement` has 0 children"),
-        (combine(Combinator::Shell(0.1), vec![point(0.0); 2]), "a node `shell` has 2 children"),
-        (combine(Combinator::Shell(1.0), vec![point(0.0)]), "the thickness of the shell is 1"),
-        (combine(Combinator::Shell(0.0), vec![point(0.0)]), "the thickness of the shell is 0"),
-        (combine(Combinator::Offset(0.5), vec![point(0.0)]), "the offset is 0.5"),
-        (combine(Combinator::Clamp { low: 1.0, high: 0.0 }, vec![point(0.0)]), "the clamp is from 1 to 0"),
+        (combine(Sum {}, vec![]), "a node `sum` has 0 children"),
+        (combine(Difference {}, vec![]), "a node `difference` has 0 children"),
+        (combine(Ricci { exponent: 0.5 }, vec![point(0.0)]), "the exponent of the Ricci blend is 0.5"),
+        (combine(Ricci { exponent: 0.0 }, vec![point(0.0)]), "the exponent of the Ricci blend is 0"),
+        (combine(Ricci { exponent: -0.5 }, vec![point(0.0)]), "the exponent of the Ricci blend is -0.5"),
+        (combine(Ricci { exponent: -1025.0 }, vec![point(0.0)]), "the exponent of the Ricci blend is -1025"),
+        (combine(Complement {}, vec![]), "a node `complement` has 0 children"),
+        (combine(Shell { thickness: 0.1 }, vec![point(0.0); 2]), "a node `shell` has 2 children"),
+        (combine(Shell { thickness: 1.0 }, vec![point(0.0)]), "the thickness of the shell is 1"),
+        (combine(Shell { thickness: 0.0 }, vec![point(0.0)]), "the `thickness` of the shell is 0"),
+        (combine(Offset { by: 0.5 }, vec![point(0.0)]), "the offset is 0.5"),
+        (combine(Clamp { low: 1.0, high: 0.0 }, vec![point(0.0)]), "the clamp is from 1 to 0"),
         (
-            combine(Combinator::Smooth(SetOperation::Union, -1.0), vec![point(0.0)]),
-            "the width of the smooth_union is -1",
+            combine(Combinator::smooth(SetOperation::Union, -1.0), vec![point(0.0)]),
+            "the `width` of the smooth_union is -1",
         ),
         (
-            combine(Combinator::RFunction(SetOperation::Union, Family::Alpha(-1.0)), vec![point(0.0)]),
-            "the alpha of the R-function is -1",
+            combine(RFunction { set: SetOperation::Union, alpha: -1.0 }, vec![point(0.0)]),
+            "the `alpha` of the rfunction is -1",
         ),
         (
-            combine(Combinator::RFunction(SetOperation::Union, Family::Power(1.0)), vec![point(0.0)]),
-            "the power of the R-function is 1",
+            combine(RFunctionPower { set: SetOperation::Union, power: 1.0 }, vec![point(0.0)]),
+            "the `power` of the rfunction is 1",
         ),
         (
-            combine(Combinator::RFunction(SetOperation::Union, Family::Order(5)), vec![point(0.0)]),
-            "the order of the R-function is 5",
+            combine(RFunctionOrder { set: SetOperation::Union, order: 5 }, vec![point(0.0)]),
+            "the `order` of the rfunction is 5",
         ),
-        (combine(Combinator::Ricci(1025.0), vec![point(0.0)]), "the exponent of the Ricci blend is 1025"),
-        (combine(Combinator::Ricci(f64::NAN), vec![point(0.0)]), "the exponent of the Ricci blend is NaN"),
+        (combine(Ricci { exponent: 1025.0 }, vec![point(0.0)]), "the exponent of the Ricci blend is 1025"),
+        (combine(Ricci { exponent: f64::NAN }, vec![point(0.0)]), "the `exponent` of the ricci is NaN"),
         (Tree::new(NodeKind::Affine(DAffine3::IDENTITY), vec![]), "an affine map has 0 children"),
         (Tree::new(point(0.0).node().written().clone(), vec![point(1.0)]), "a point has 1 children"),
         (scaled(1.0, 0.0, 1.0), "the affine map is singular: its reciprocal condition is 0.0e0"),
@@ -128,7 +131,7 @@ fn lets_the_extremes_through() {
     assert_eq!(messages(point(1e15)), [""; 0]);
     assert_eq!(messages(leaf(Point { at: DVec3::ZERO }, 1e-15, -1e15)), [""; 0]);
     for n in [1.0, 1024.0, -1.0, -1024.0] {
-        assert_eq!(messages(combine(Combinator::Ricci(n), vec![point(0.0)])), [""; 0]);
+        assert_eq!(messages(combine(Ricci { exponent: n }, vec![point(0.0)])), [""; 0]);
     }
 }
 
@@ -140,15 +143,15 @@ fn reports_everything_in_the_order_of_the_text() {
     };
     let shared = bad(9, -9.0);
     let sum = vec![shared.clone(), bad(5, -5.0), shared];
-    let root = Tree::at(Span::new(2, 30), NodeKind::Combine(Combinator::Ricci(0.0)), sum);
+    let root = Tree::at(Span::new(2, 30), NodeKind::Combine(Ricci { exponent: 0.0 }.into()), sum);
     let errors = Model::new(root).check().unwrap_err();
     let starts: Vec<_> = errors.iter().map(|error| error.span.unwrap().start).collect();
     assert_eq!(starts, [2, 5, 9], "the parent first, the shared leaf once");
 
     let many = |count| (0..count).map(|i| bad(i, -1.0)).collect();
-    let errors = Model::new(combine(Combinator::Sum, many(limits::MAX_ERRORS))).check().unwrap_err();
+    let errors = Model::new(combine(Sum {}, many(limits::MAX_ERRORS))).check().unwrap_err();
     assert_eq!(errors.len(), limits::MAX_ERRORS);
-    let errors = Model::new(combine(Combinator::Sum, many(limits::MAX_ERRORS + 2))).check().unwrap_err();
+    let errors = Model::new(combine(Sum {}, many(limits::MAX_ERRORS + 2))).check().unwrap_err();
     assert_eq!(errors.len(), limits::MAX_ERRORS + 1);
     assert_eq!(errors.last().unwrap().message, "and 2 more errors");
 }
@@ -190,7 +193,7 @@ fn judges_the_model_itself() {
 fn shared_nodes_stand_once_and_the_root_last() {
     let shared = attribute("color", &[0.0, 0.5, 1.0], point(0.0));
     let moved = affine(DAffine3::from_translation(DVec3::X), shared.clone());
-    let checked = Model::new(combine(Combinator::Difference, vec![moved, shared])).check().unwrap();
+    let checked = Model::new(combine(Difference {}, vec![moved, shared])).check().unwrap();
     assert_eq!(checked.nodes().len(), 4);
     assert_eq!(checked.root(), NodeId(3));
     assert_eq!(checked.node(NodeId(3)).children.to_vec(), [NodeId(2), NodeId(1)]);
@@ -199,12 +202,12 @@ fn shared_nodes_stand_once_and_the_root_last() {
 
 #[test]
 fn limits_hold_at_their_value_and_not_one_past_it() {
-    let chain = |n: usize| (1..n).fold(point(0.0), |tree, _| combine(Combinator::Sum, vec![tree]));
+    let chain = |n: usize| (1..n).fold(point(0.0), |tree, _| combine(Sum {}, vec![tree]));
     assert!(Model::new(chain(100)).check_within(100, 100).is_ok());
     let errors = Model::new(chain(101)).check_within(100, 1000).unwrap_err();
     assert_eq!((errors.len(), errors[0].severity), (1, Severity::Limit));
 
-    let times = |n, tree: &Tree| combine(Combinator::Union, vec![tree.clone(); n]);
+    let times = |n, tree: &Tree| combine(Union {}, vec![tree.clone(); n]);
     // A root over n uses of a node over m leaves: 1 + n + n m uses.
     let many = |n, m| Model::new(times(n, &times(m, &point(0.0))));
     assert!(many(10, 20).check_within(100, 211).is_ok());
@@ -215,7 +218,7 @@ fn limits_hold_at_their_value_and_not_one_past_it() {
     assert!(many(2000, 2000).check().is_err());
     // Sharing a long chain of nodes with one child each is as much to go through, though it has few leaves.
     let chains = |link: &dyn Fn(Tree) -> Tree| times(3000, &(0..3000).fold(point(0.0), |tree, _| link(tree)));
-    for link in [&(|tree| combine(Combinator::Sum, vec![tree])) as &dyn Fn(Tree) -> Tree, &|tree| {
+    for link in [&(|tree| combine(Sum {}, vec![tree])) as &dyn Fn(Tree) -> Tree, &|tree| {
         affine(DAffine3::from_translation(DVec3::X), tree)
     }] {
         let errors = Model::new(chains(link)).check().unwrap_err();
@@ -240,22 +243,19 @@ fn between(min: [f64; 3], max: [f64; 3]) -> Bounds {
 fn the_box_of_each_kind_of_node() {
     let ends = || vec![point(0.0), point(1.5)];
     let hull = between([-1.0, -1.0, -1.0], [2.5, 1.0, 1.0]);
-    assert_eq!(support(combine(Combinator::Sum, ends())), hull);
-    assert_eq!(support(combine(Combinator::Ricci(3.0), ends())), hull);
-    assert_eq!(support(combine(Combinator::Union, ends())), hull);
-    assert_eq!(
-        support(combine(Combinator::Intersection, ends())),
-        between([0.5, -1.0, -1.0], [1.0, 1.0, 1.0])
-    );
-    assert_eq!(support(combine(Combinator::Difference, ends())), between([-1.0; 3], [1.0; 3]));
-    let apart = combine(Combinator::Intersection, vec![point(0.0), point(9.0)]);
+    assert_eq!(support(combine(Sum {}, ends())), hull);
+    assert_eq!(support(combine(Ricci { exponent: 3.0 }, ends())), hull);
+    assert_eq!(support(combine(Union {}, ends())), hull);
+    assert_eq!(support(combine(Intersection {}, ends())), between([0.5, -1.0, -1.0], [1.0, 1.0, 1.0]));
+    assert_eq!(support(combine(Difference {}, ends())), between([-1.0; 3], [1.0; 3]));
+    let apart = combine(Intersection {}, vec![point(0.0), point(9.0)]);
     assert!(support(apart.clone()).is_empty());
-    assert_eq!(support(combine(Combinator::Union, vec![apart, point(0.0)])), between([-1.0; 3], [1.0; 3]));
+    assert_eq!(support(combine(Union {}, vec![apart, point(0.0)])), between([-1.0; 3], [1.0; 3]));
     // The minimum of a negative field and zero is negative: it reaches beyond the other operand, and no
     // farther.
     let hole = leaf(Point { at: DVec3::new(1.5, 0.0, 0.0) }, 1.0, -1.0);
     let of_hole = between([0.5, -1.0, -1.0], [2.5, 1.0, 1.0]);
-    assert_eq!(support(combine(Combinator::Intersection, vec![point(0.0), hole])), of_hole);
+    assert_eq!(support(combine(Intersection {}, vec![point(0.0), hole])), of_hole);
 
     let map = DAffine3::from_scale_rotation_translation(
         DVec3::new(-2.0, 1.0, 1.0),

@@ -227,7 +227,7 @@ fn node_extent(kind: &NodeKind, children: &[Extent], iso: f64) -> Extent {
             Extent { support, negative: if leaf.strength < 0.0 { support } else { Bounds::EMPTY } }
         }
         NodeKind::Combine(combinator) if children.len() == 1 && combinator.passes_single() => children[0],
-        NodeKind::Combine(combinator) => Extent::of(*combinator, children, iso),
+        NodeKind::Combine(combinator) => combinator.extent(children, iso),
         NodeKind::Expression(expression) => {
             let signs: Vec<bool> = children.iter().map(|child| child.negative.is_empty()).collect();
             let hull = || children.iter().fold(Bounds::EMPTY, |all, child| all.hull(child.support));

@@ -6,33 +6,52 @@
 
 use jbt_ir::Domain;
 
-use super::member::Unary;
+use super::member::{Operator, Unary};
+use crate::diagnostic::Diagnostic;
+use crate::member::member;
 
-/// See the module.
-#[derive(Clone, Copy)]
-pub(super) struct Clamp;
+member! {
+    /// The field, but at least `low` and at most `high`.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct Clamp = "clamp" {
+        /// The smallest value.
+        pub low: f64 [Real],
+        /// The largest value.
+        pub high: f64 [Real],
+    }
+}
+
+impl Operator for Clamp {
+    fn fault(&self, _: f64) -> Option<Diagnostic> {
+        let Self { low, high } = self;
+        (low > high).then(|| {
+            Diagnostic::error(None, format!("the clamp is from {low} to {high}"))
+                .expected("expected the low end to be at most the high end")
+        })
+    }
+}
 
 impl Unary for Clamp {
     const COLUMNS: &'static [&'static str] = &["low", "high"];
 
-    fn columns(self, numbers: &[f64], _: f64, row: &mut Vec<f64>) {
+    fn push_columns(self, _: f64, row: &mut Vec<f64>) {
         // Adding 0 takes the sign from a zero: no field is -0.
-        row.extend(numbers.iter().map(|number| number + 0.0));
+        row.extend([self.low + 0.0, self.high + 0.0]);
     }
 
-    fn field(self, f: f64, numbers: &[f64], _: f64) -> f64 {
-        f.max(numbers[0]).min(numbers[1])
+    fn field(self, f: f64, _: f64) -> f64 {
+        f.max(self.low).min(self.high)
     }
 
-    fn kink_distance(self, f: f64, numbers: &[f64], _: f64) -> f64 {
-        (f - numbers[0]).abs().min((f - numbers[1]).abs())
+    fn kink_distance(self, f: f64, _: f64) -> f64 {
+        (f - self.low).abs().min((f - self.high).abs())
     }
 
-    fn is_non_negative(self, child: bool, numbers: &[f64]) -> bool {
-        numbers[1] >= 0.0 && (child || numbers[0] >= 0.0)
+    fn is_non_negative(self, child: bool, fixed: bool) -> bool {
+        fixed && self.high >= 0.0 && (child || self.low >= 0.0)
     }
 
-    fn emit<D: Domain>(self, d: &mut D, f: D::Real, row: &[D::Real], _: D::Real) -> D::Real {
+    fn emit<D: Domain>(d: &mut D, f: D::Real, row: &[D::Real], _: D::Real) -> D::Real {
         let above = d.max(row[0], f);
         d.min(row[1], above)
     }

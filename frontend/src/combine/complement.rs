@@ -6,30 +6,33 @@
 
 use jbt_ir::Domain;
 
-use super::member::Unary;
+use super::member::{Operator, Unary};
+use crate::member::member;
 
-/// See the module.
-#[derive(Clone, Copy)]
-pub(super) struct Complement;
+member! {
+    /// Inside and outside exchanged: `2 iso - f`. It is unbounded.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct Complement = "complement" {}
+}
+
+impl Operator for Complement {}
 
 impl Unary for Complement {
-    const COLUMNS: &'static [&'static str] = &[];
+    const REVERSES: bool = true;
 
-    fn columns(self, _: &[f64], _: f64, _: &mut Vec<f64>) {}
-
-    fn field(self, f: f64, _: &[f64], iso: f64) -> f64 {
+    fn field(self, f: f64, iso: f64) -> f64 {
         2.0 * iso - f
     }
 
-    fn kink_distance(self, _: f64, _: &[f64], _: f64) -> f64 {
+    fn kink_distance(self, _: f64, _: f64) -> f64 {
         f64::INFINITY
     }
 
-    fn is_non_negative(self, _: bool, _: &[f64]) -> bool {
+    fn is_non_negative(self, _: bool, _: bool) -> bool {
         false
     }
 
-    fn emit<D: Domain>(self, d: &mut D, f: D::Real, _: &[D::Real], iso2: D::Real) -> D::Real {
+    fn emit<D: Domain>(d: &mut D, f: D::Real, _: &[D::Real], iso2: D::Real) -> D::Real {
         d.sub(iso2, f)
     }
 }

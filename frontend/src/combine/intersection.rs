@@ -1,25 +1,17 @@
 //! The intersection: the smallest field. The child that has it wins; of equals, the first.
 
-use jbt_ir::Domain;
+use super::extreme::Extreme;
+use super::member::{Choice, Operator};
+use crate::member::member;
 
-pub(super) fn field(fields: &[f64]) -> f64 {
-    fields[winner(fields)]
+member! {
+    /// The smallest field: what is inside of all.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct Intersection = "intersection" {}
 }
 
-pub(super) fn winner(fields: &[f64]) -> usize {
-    (1..fields.len()).fold(0, |best, i| if fields[i] < fields[best] { i } else { best })
-}
+impl Operator for Intersection {}
 
-pub(super) fn kink_distance(fields: &[f64]) -> f64 {
-    super::member::lead(fields.iter().map(|f| -f))
-}
-
-/// The smaller of two fields, over the ops; the accumulated one if they are equal.
-pub(crate) fn step<D: Domain>(d: &mut D, smallest: D::Real, field: D::Real) -> D::Real {
-    d.min(field, smallest)
-}
-
-/// Whether an operand beats the smallest so far.
-pub(crate) fn beats<D: Domain>(d: &mut D, smallest: D::Real, field: D::Real) -> D::Mask {
-    d.lt(field, smallest)
+impl Choice for Intersection {
+    const EXTREME: Extreme = Extreme::Smallest;
 }

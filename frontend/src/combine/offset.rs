@@ -7,36 +7,55 @@
 
 use jbt_ir::Domain;
 
-use super::member::Unary;
+use super::limit::below;
+use super::member::{Operator, Syntax, Unary};
+use crate::diagnostic::Diagnostic;
+use crate::member::member;
 
-/// See the module.
-#[derive(Clone, Copy)]
-pub(super) struct Offset;
+member! {
+    /// The surface moved to where the field is less than the iso-value by this.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct Offset = "offset" {
+        /// In units of the field, below iso; outwards if it is positive.
+        pub by: f64 [Real],
+    }
+}
 
-fn factor(by: f64, iso: f64) -> f64 {
-    iso / (iso - by)
+impl Operator for Offset {
+    const SYNTAX: Syntax = Syntax::Labelled;
+    const ASKS_ISO: bool = true;
+
+    fn fault(&self, iso: f64) -> Option<Diagnostic> {
+        below("the offset", self.by, ("the iso-value", iso))
+    }
+}
+
+impl Offset {
+    fn factor(self, iso: f64) -> f64 {
+        iso / (iso - self.by)
+    }
 }
 
 impl Unary for Offset {
     const COLUMNS: &'static [&'static str] = &["factor"];
 
-    fn columns(self, numbers: &[f64], iso: f64, row: &mut Vec<f64>) {
-        row.push(factor(numbers[0], iso));
+    fn push_columns(self, iso: f64, row: &mut Vec<f64>) {
+        row.push(self.factor(iso));
     }
 
-    fn field(self, f: f64, numbers: &[f64], iso: f64) -> f64 {
-        f * factor(numbers[0], iso)
+    fn field(self, f: f64, iso: f64) -> f64 {
+        f * self.factor(iso)
     }
 
-    fn kink_distance(self, _: f64, _: &[f64], _: f64) -> f64 {
+    fn kink_distance(self, _: f64, _: f64) -> f64 {
         f64::INFINITY
     }
 
-    fn is_non_negative(self, child: bool, _: &[f64]) -> bool {
+    fn is_non_negative(self, child: bool, _: bool) -> bool {
         child
     }
 
-    fn emit<D: Domain>(self, d: &mut D, f: D::Real, row: &[D::Real], _: D::Real) -> D::Real {
+    fn emit<D: Domain>(d: &mut D, f: D::Real, row: &[D::Real], _: D::Real) -> D::Real {
         let product = d.mul(f, row[0]);
         // A tiny negative field may round to -0, and nothing is -0.
         let zero = d.constant(0.0);

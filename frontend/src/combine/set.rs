@@ -1,5 +1,8 @@
 //! The three operations on sets.
 
+use crate::field::FieldValue;
+use crate::member::Parameter;
+
 /// What is made of sets.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum SetOperation {
@@ -15,13 +18,27 @@ impl SetOperation {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::Union, Self::Intersection, Self::Difference];
 
+    /// The words of the text format, in the order of [`ALL`](Self::ALL).
+    pub const WORDS: &'static [&'static str] = &["union", "intersection", "difference"];
+
     /// The word of the text format.
     #[must_use]
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::Union => "union",
-            Self::Intersection => "intersection",
-            Self::Difference => "difference",
-        }
+        Self::WORDS[self as usize]
+    }
+
+    /// It as the value of a parameter: its place among the [words](Self::WORDS).
+    pub(crate) fn to_field(self) -> FieldValue {
+        FieldValue::Real(f64::from(self as u8))
+    }
+}
+
+impl Parameter for SetOperation {
+    fn read(value: &FieldValue) -> Self {
+        Self::ALL[(value.real() as usize).min(2)]
+    }
+
+    fn write(&self) -> FieldValue {
+        self.to_field()
     }
 }

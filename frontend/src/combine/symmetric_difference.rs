@@ -11,21 +11,24 @@
 
 use jbt_ir::{Domain, Rule};
 
-use super::member::{Pair, Reach, Step};
+use super::member::{Operator, Pair, Reach, Step};
+use crate::member::member;
 use crate::skeleton::positive_part;
 
-/// See the module.
-#[derive(Clone, Copy)]
-pub(super) struct SymmetricDifference;
+member! {
+    /// What is inside of an odd number of the children: of two, inside of exactly one.
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    pub struct SymmetricDifference = "symmetric_difference" {}
+}
+
+impl Operator for SymmetricDifference {}
 
 impl Step for SymmetricDifference {
-    fn column_names(self) -> &'static [&'static str] {
-        &[]
-    }
+    type Code = ();
 
-    fn columns(self, _: f64, _: &mut Vec<f64>) {}
+    fn code(self) {}
 
-    fn pair(self, [a, b]: [f64; 2], _: f64, iso: f64) -> Pair<f64> {
+    fn pair(self, [a, b]: [f64; 2], iso: f64) -> Pair<f64> {
         let (larger, smaller) = (a.max(b), a.min(b));
         let cut = (2.0 * iso - smaller).max(0.0);
         let right_is_larger = a < b;
@@ -34,7 +37,7 @@ impl Step for SymmetricDifference {
         Pair { field: cut.min(larger), weights }
     }
 
-    fn kink_distance(self, [a, b]: [f64; 2], _: f64, iso: f64) -> f64 {
+    fn kink_distance(self, [a, b]: [f64; 2], iso: f64) -> f64 {
         let (larger, smaller) = (a.max(b), a.min(b));
         let cut = 2.0 * iso - smaller;
         let between = (a - b).abs().min((cut.max(0.0) - larger).abs());
@@ -49,15 +52,21 @@ impl Step for SymmetricDifference {
         Reach::Any
     }
 
-    fn rule(self, non_negative: bool) -> Rule {
-        if non_negative { Rule::KeepOne } else { Rule::Never }
-    }
-
     fn is_non_negative(self, [left, right]: [bool; 2]) -> bool {
         left || right
     }
 
-    fn emit<D: Domain>(self, d: &mut D, [a, b]: [D::Real; 2], _: &[D::Real], iso2: D::Real) -> Pair<D::Real> {
+    fn rule((): (), non_negative: bool) -> Rule {
+        if non_negative { Rule::KeepOne } else { Rule::Never }
+    }
+
+    fn emit<D: Domain>(
+        (): (),
+        d: &mut D,
+        [a, b]: [D::Real; 2],
+        _: &[D::Real],
+        iso2: D::Real,
+    ) -> Pair<D::Real> {
         let (larger, smaller) = (d.max(b, a), d.min(b, a));
         let complement = d.sub(iso2, smaller);
         let cut = positive_part(d, complement);

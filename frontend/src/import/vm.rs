@@ -26,7 +26,7 @@ use std::collections::HashMap;
 use jbt_ir::limits::MAX_SCENE_BYTES;
 
 use super::Imported;
-use crate::combine::Combinator;
+use crate::combine::{Combinator, Intersection, Union};
 use crate::diagnostic::{Diagnostic, Diagnostics, Span};
 use crate::expression::{Assembler, Draft, Formula};
 use crate::function::Function;
@@ -298,10 +298,10 @@ impl Program {
         let both = [a, b].map(|line| Wanted { line, negative });
         match instruction.code {
             Code::Negate => Split::Same(Wanted { line: a, negative: !negative }),
-            Code::Call(Function::Min) if negative => Split::Combine(Combinator::Union, both),
-            Code::Call(Function::Min) => Split::Combine(Combinator::Intersection, both),
-            Code::Call(Function::Max) if negative => Split::Combine(Combinator::Intersection, both),
-            Code::Call(Function::Max) => Split::Combine(Combinator::Union, both),
+            Code::Call(Function::Min) if negative => Split::Combine(Union {}.into(), both),
+            Code::Call(Function::Min) => Split::Combine(Intersection {}.into(), both),
+            Code::Call(Function::Max) if negative => Split::Combine(Intersection {}.into(), both),
+            Code::Call(Function::Max) => Split::Combine(Union {}.into(), both),
             Code::Coordinate(_)
             | Code::Constant(_)
             | Code::Binary(_)

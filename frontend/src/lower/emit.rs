@@ -32,7 +32,7 @@ use std::rc::Rc;
 
 use jbt_ir::{Domain, Function, FunctionBuilder, Rule, Table, Value, limits};
 
-use self::parts::{Extreme, Guard, GuardStart, Probes, Select};
+use self::parts::{Guard, GuardStart, Probes, Select};
 use super::guide::{Decision, DecisionKind};
 use super::mixing::{Answer, Operator, State, difference, mapped};
 use super::names::ComputedId;
@@ -40,7 +40,7 @@ use super::occurrence::{FieldId, OccurrenceId, OccurrenceKind, Scene, SpaceId};
 use super::shape::{Hoist, Shapes};
 use crate::attribute::Mixing;
 use crate::check::CheckedTree;
-use crate::combine::unary::UnaryKind;
+use crate::combine::{Extreme, MapCode};
 use crate::diagnostic::Diagnostic;
 use crate::query::Query;
 
@@ -108,7 +108,7 @@ enum Task {
     Seed,
     Difference,
     /// The child of a map has its answer; these are the map's numbers.
-    Map(UnaryKind, Vec<Value>),
+    Map(MapCode, Vec<Value>),
     BeginSelect,
     OpenChild(OccurrenceId),
     CloseChild,
@@ -288,7 +288,7 @@ impl<'a> Emitter<'a> {
             Task::Step => self.step(),
             Task::FinishReduce => self.finish_reduce(),
             Task::Seed => self.seed(),
-            Task::Map(kind, row) => self.map(kind, &row),
+            Task::Map(code, row) => self.map(code, &row),
             Task::Difference => self.difference(),
         }
     }
@@ -309,7 +309,7 @@ impl<'a> Emitter<'a> {
         let reduce = self.reduces.last_mut().expect("steps belong to operators");
         let order = reduce.order.take();
         if let Some((extreme, value)) = &mut reduce.extreme {
-            *value = extreme.of(&mut self.builder, *value, operand.field);
+            *value = extreme.step(&mut self.builder, operand.field, *value);
         }
         reduce.state.step(&mut self.builder, &reduce.operator, &operand, order);
     }
@@ -333,10 +333,10 @@ impl<'a> Emitter<'a> {
     }
 
     /// The last answer goes through a map of the field.
-    fn map(&mut self, kind: UnaryKind, row: &[Value]) {
+    fn map(&mut self, code: MapCode, row: &[Value]) {
         let child = self.answers.pop().expect("the child has been defined");
         let iso2 = self.iso2.expect("the scene's row is open");
-        let field = kind.emit(&mut self.builder, child.field, row, iso2);
+        let field = code.emit(&mut self.builder, child.field, row, iso2);
         self.answers.push(mapped(&mut self.builder, field, &child, &self.defaults));
     }
 
@@ -370,9 +370,9 @@ impl<'a> Emitter<'a> {
                 self.tasks.push(Task::Operand(*right, Guard::RIGHT));
                 self.tasks.push(Task::Operand(*left, Guard::LEFT));
             }
-            OccurrenceKind::Map { kind, child } => {
-                let row = self.columns(kind.columns());
-                self.tasks.push(Task::Map(*kind, row));
+            OccurrenceKind::Map { code, child } => {
+                let row = self.columns(code.columns());
+                self.tasks.push(Task::Map(*code, row));
                 self.tasks.push(Task::Operand(*child, Guard::ZERO));
             }
             OccurrenceKind::Expression { children, .. } => {

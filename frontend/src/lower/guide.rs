@@ -20,6 +20,7 @@ use jbt_ir::{Function, Store, Table, Tables};
 
 use crate::bounds::Bounds;
 use crate::check::NodeId;
+use crate::combine::Extreme;
 
 /// Supports say nothing about points with a coordinate beyond this, in magnitude: 2^20.
 pub const LARGEST_COORDINATE: f32 = 1_048_576.0;
@@ -115,6 +116,14 @@ pub enum DecisionKind {
 }
 
 impl DecisionKind {
+    /// That of an operand where one wins.
+    pub(super) const fn of(extreme: Extreme) -> Self {
+        match extreme {
+            Extreme::Largest => Self::UnionOperand,
+            Extreme::Smallest => Self::IntersectionOperand,
+        }
+    }
+
     /// Whether the operand does not decide, from the low and high ends of the ranges of its field and of the
     /// operator's.
     #[must_use]

@@ -18,10 +18,9 @@ use std::rc::Rc;
 use jbt_ir::{Domain, FunctionBuilder, Value};
 
 pub(super) use self::group::GroupAnswer;
-use self::group::GroupState;
-use super::reducer::{ReducerCode, RicciCode};
+use self::group::{GroupState, group_states};
 use crate::attribute::Mixing;
-use crate::combine::{intersection, product, ricci, sum, union};
+use crate::combine::{Extreme, Met, ReduceCode, Setting};
 use crate::expression::LARGEST_FIELD;
 
 /// What a subtree answers at a point.
@@ -34,9 +33,7 @@ pub(super) struct Answer {
 /// What an operator is, to its accumulators.
 #[derive(Clone, Debug)]
 pub(super) struct Operator {
-    pub(super) code: ReducerCode,
-    /// Of Ricci's blend.
-    pub(super) blend: Option<ricci::Blend<Value>>,
+    pub(super) code: ReduceCode,
     /// The numbers that the row of the operator keeps.
     pub(super) row: Vec<Value>,
     /// Twice the iso-value.
@@ -56,19 +53,21 @@ pub(super) struct Operator {
 impl Operator {
     const fn weighs(&self) -> bool {
         match self.code {
-            ReducerCode::Sum | ReducerCode::Ricci(_) | ReducerCode::Product => true,
-            ReducerCode::Union | ReducerCode::Intersection | ReducerCode::Step(_) => false,
+            ReduceCode::Fold(_) => true,
+            ReduceCode::Choice(_) | ReduceCode::Step(_) => false,
         }
     }
 
-    fn blend(&self) -> ricci::Blend<Value> {
-        self.blend.expect("a Ricci blend has an exponent")
+    /// What folds have to know.
+    fn setting(&self) -> Setting<'_, Value> {
+        let Self { iso2, non_negative, moving, .. } = *self;
+        Setting { row: &self.row, iso2, non_negative, moving }
     }
 
     /// Whether it gives the field of one operand and tells nobody which. Then bounds may wait until that is
     /// known.
     pub(super) fn only_chooses(&self) -> bool {
-        let chooses = matches!(self.code, ReducerCode::Union | ReducerCode::Intersection);
+        let chooses = matches!(self.code, ReduceCode::Choice(_));
         chooses && !self.moving && self.mixing.is_empty()
     }
 
@@ -80,21 +79,31 @@ impl Operator {
 }
 
 /// See [`Operator::wants_order`].
-pub(super) fn wants_order(code: ReducerCode, ordered: bool, moving: bool, mixing: &[Mixing]) -> bool {
+pub(super) fn wants_order(code: ReduceCode, ordered: bool, moving: bool, mixing: &[Mixing]) -> bool {
     let decides = match code {
-        ReducerCode::Sum | ReducerCode::Ricci(_) | ReducerCode::Product => mixing.contains(&Mixing::Dominant),
-        ReducerCode::Union | ReducerCode::Intersection => moving || !mixing.is_empty(),
+        ReduceCode::Fold(_) => mixing.contains(&Mixing::Dominant),
+        ReduceCode::Choice(_) => moving || !mixing.is_empty(),
         // They come in that order.
-        ReducerCode::Step(_) => false,
+        ReduceCode::Step(_) => false,
     };
     ordered && decides
+}
+
+/// What no field goes beyond on the far side of an extreme. Finite, because a range with an infinite end says
+/// nothing: every field is nearer to zero. `bounded`: no field is further from 0 than [`LARGEST_FIELD`].
+pub(super) const fn beyond(extreme: Extreme, bounded: bool) -> f32 {
+    match extreme {
+        Extreme::Largest if bounded => -LARGEST_FIELD,
+        Extreme::Largest => f32::MIN,
+        Extreme::Smallest if bounded => LARGEST_FIELD,
+        Extreme::Smallest => f32::MAX,
+    }
 }
 
 /// The accumulators of an operator.
 #[derive(Clone, Debug)]
 pub(super) struct State {
-    /// Sum and product: that. Ricci: the largest operand and the relative sum. Union and intersection: the
-    /// best field. Step: the left side.
+    /// Fold: its own. Choice: the best field. Step: the left side.
     field: Vec<Value>,
     /// The place in the file of the winner, where it matters.
     order: Option<Value>,
@@ -109,45 +118,23 @@ impl State {
     pub(super) fn new(d: &mut FunctionBuilder, operator: &Operator, defaults: &[Vec<Value>]) -> Self {
         let zero = d.constant(0.0);
         let field = match operator.code {
-            ReducerCode::Sum => vec![zero],
-            ReducerCode::Ricci(RicciCode { negative: false, .. }) => vec![d.constant(ricci::FLOOR), zero],
-            ReducerCode::Ricci(RicciCode { negative: true, .. }) => vec![d.constant(ricci::CEILING), zero],
-            ReducerCode::Product => vec![product::start(d, operator.iso2)],
+            ReduceCode::Fold(code) => code.start(d, operator.setting()),
             // Until its first operand comes.
-            ReducerCode::Step(_) => vec![zero],
+            ReduceCode::Step(_) => vec![zero],
             // Zero takes part without a row: whoever is above zero wins all the same, and where nobody is
             // there is only the default.
-            ReducerCode::Union if operator.non_negative => vec![zero],
-            // Finite, because a range with an infinite end says nothing: every field is nearer to zero.
-            ReducerCode::Union => vec![d.constant(if operator.bounded { -LARGEST_FIELD } else { f32::MIN })],
-            ReducerCode::Intersection => {
-                vec![d.constant(if operator.bounded { LARGEST_FIELD } else { f32::MAX })]
-            }
+            ReduceCode::Choice(Extreme::Largest) if operator.non_negative => vec![zero],
+            ReduceCode::Choice(extreme) => vec![d.constant(beyond(extreme, operator.bounded))],
         };
         let weighs = operator.weighs();
         let wants_attributes = !defaults.is_empty();
         let separate_total = wants_attributes
             && match operator.code {
-                ReducerCode::Sum => !operator.non_negative,
-                ReducerCode::Product | ReducerCode::Step(_) => true,
-                ReducerCode::Ricci(_) | ReducerCode::Union | ReducerCode::Intersection => false,
+                ReduceCode::Fold(code) => code.has_total(operator.non_negative),
+                ReduceCode::Step(_) => true,
+                ReduceCode::Choice(_) => false,
             };
-        let groups = defaults
-            .iter()
-            .zip(operator.mixing.iter())
-            .map(|(default, mixing)| match mixing {
-                Mixing::Blend => GroupState {
-                    channels: if weighs { vec![zero; default.len()] } else { default.clone() },
-                    best: None,
-                    order: None,
-                },
-                Mixing::Dominant => GroupState {
-                    channels: default.clone(),
-                    best: Some(zero),
-                    order: (weighs && operator.wants_order()).then_some(zero),
-                },
-            })
-            .collect();
+        let groups = group_states(zero, &operator.mixing, defaults, weighs, operator.wants_order());
         Self {
             field,
             order: (!weighs && operator.wants_order()).then_some(zero),
@@ -189,34 +176,21 @@ impl State {
         order: Option<Value>,
     ) {
         match operator.code {
-            ReducerCode::Sum => {
-                self.field[0] = sum::step(d, self.field[0], operand.field);
-                if !self.groups.is_empty() {
-                    let weight = sum::weight(d, operand.field, operator.non_negative);
+            ReduceCode::Fold(code) => {
+                let weighs = !self.groups.is_empty();
+                let setting = operator.setting();
+                let Met { so_far, weight, rescale } =
+                    code.meet(d, &self.field, operand.field, setting, weighs);
+                self.field = so_far;
+                if let Some(weight) = weight.filter(|_| weighs) {
                     if let Some(total) = &mut self.total {
                         *total = d.add(*total, weight);
                     }
-                    self.weigh(d, weight, None, operand, order);
+                    weigh(d, &mut self.groups, (weight, rescale), operand, order);
                 }
             }
-            ReducerCode::Ricci(_) => {
-                let so_far = ricci::Scaled { largest: self.field[0], sum: self.field[1] };
-                let step = ricci::step(d, so_far, operand.field, operator.blend());
-                self.field = vec![step.next.largest, step.next.sum];
-                if !self.groups.is_empty() {
-                    self.weigh(d, step.weight, Some(step.rescale), operand, order);
-                }
-            }
-            ReducerCode::Product => {
-                self.field[0] = product::step(d, self.field[0], operand.field, operator.iso2);
-                if let Some(total) = self.total {
-                    let one = d.constant(1.0);
-                    self.total = Some(d.add(total, one));
-                    self.weigh(d, one, None, operand, order);
-                }
-            }
-            ReducerCode::Step(kind) => {
-                let pair = kind.emit(d, [self.field[0], operand.field], &operator.row, operator.iso2);
+            ReduceCode::Step(code) => {
+                let pair = code.emit(d, [self.field[0], operand.field], &operator.row, operator.iso2);
                 self.field[0] = pair.field;
                 let Some(known) = self.total else { return };
                 let (zero, one) = (d.constant(0.0), d.constant(1.0));
@@ -230,14 +204,7 @@ impl State {
                 let any = d.lt(zero, total);
                 self.total = Some(d.select(any, one, zero));
             }
-            ReducerCode::Union => {
-                let beats = union::beats::<FunctionBuilder>;
-                self.win(d, (union::step::<FunctionBuilder>, beats), operand, order);
-            }
-            ReducerCode::Intersection => {
-                let beats = intersection::beats::<FunctionBuilder>;
-                self.win(d, (intersection::step::<FunctionBuilder>, beats), operand, order);
-            }
+            ReduceCode::Choice(extreme) => self.win(d, extreme, operand, order),
         }
     }
 
@@ -255,60 +222,20 @@ impl State {
         }
     }
 
-    /// Adds a weighted operand's attributes.
-    fn weigh(
-        &mut self,
-        d: &mut FunctionBuilder,
-        weight: Value,
-        rescale: Option<Value>,
-        operand: &Answer,
-        order: Option<Value>,
-    ) {
-        let zero = d.constant(0.0);
-        for (state, answer) in self.groups.iter_mut().zip(&operand.groups) {
-            let Some(best) = state.best else {
-                for (sum, &channel) in state.channels.iter_mut().zip(&answer.channels) {
-                    let so_far = rescale.map_or(*sum, |rescale| d.mul(*sum, rescale));
-                    let added = d.fma(weight, channel, so_far);
-                    // A row without weight leaves the sum alone, whatever is in its channels: 0 * NaN must
-                    // not get in.
-                    *sum = if answer.numbers {
-                        added
-                    } else {
-                        let counts = d.lt(zero, weight);
-                        d.select(counts, added, so_far)
-                    };
-                }
-                continue;
-            };
-            let candidate = answer.share.map_or(weight, |share| d.mul(weight, share));
-            let best = rescale.map_or(best, |rescale| d.mul(best, rescale));
-            let takes = takes(d, union::beats::<FunctionBuilder>, best, candidate, state.order.zip(order));
-            state.best = Some(d.select(takes, candidate, best));
-            state.take(d, takes, answer, order);
-        }
-    }
-
     /// Lets the operand win, where it does.
-    fn win(
-        &mut self,
-        d: &mut FunctionBuilder,
-        (step, beats): (StepFn, BeatsFn),
-        operand: &Answer,
-        order: Option<Value>,
-    ) {
+    fn win(&mut self, d: &mut FunctionBuilder, extreme: Extreme, operand: &Answer, order: Option<Value>) {
         let best = self.field[0];
         if self.order.is_none() && self.groups.is_empty() {
-            self.field[0] = step(d, best, operand.field);
+            self.field[0] = extreme.step(d, best, operand.field);
             return;
         }
-        let takes = takes(d, beats, best, operand.field, self.order.zip(order));
+        let takes = takes(d, extreme, best, operand.field, self.order.zip(order));
         self.field[0] = match (self.order, order) {
             (Some(so_far), Some(order)) => {
                 self.order = Some(d.select(takes, order, so_far));
                 d.select(takes, operand.field, best)
             }
-            _ => step(d, best, operand.field),
+            _ => extreme.step(d, best, operand.field),
         };
         for (state, answer) in self.groups.iter_mut().zip(&operand.groups) {
             if let Some(share) = state.best {
@@ -328,21 +255,12 @@ impl State {
     ) -> Answer {
         // What it divides by, and what has to be positive for that.
         let (field, total, seen) = match operator.code {
-            ReducerCode::Sum => {
-                let total = self.total.unwrap_or(self.field[0]);
-                (self.field[0], total, total)
+            ReduceCode::Fold(code) => {
+                let finished = code.finish(d, &self.field, self.total, operator.setting());
+                (finished.field, finished.total, finished.seen)
             }
-            ReducerCode::Ricci(code) => {
-                let scaled = ricci::Scaled { largest: self.field[0], sum: self.field[1] };
-                let field = ricci::finish(d, scaled, operator.blend());
-                (field, self.field[1], if code.negative { field } else { self.field[1] })
-            }
-            ReducerCode::Product => {
-                let field = product::finish(d, self.field[0]);
-                (field, self.total.unwrap_or(field), field)
-            }
-            ReducerCode::Union | ReducerCode::Intersection => (self.field[0], self.field[0], self.field[0]),
-            ReducerCode::Step(_) => {
+            ReduceCode::Choice(_) => (self.field[0], self.field[0], self.field[0]),
+            ReduceCode::Step(_) => {
                 let seen = self.total.map_or(self.field[0], |known| d.min(self.field[0], known));
                 (self.field[0], seen, seen)
             }
@@ -362,55 +280,68 @@ impl State {
 /// The attributes of operands by these weights, none of which is negative.
 pub(super) fn weighted(
     d: &mut FunctionBuilder,
-    mixing: &Rc<[Mixing]>,
+    mixing: &[Mixing],
     operands: &[Answer],
     weights: &[Value],
     defaults: &[Vec<Value>],
 ) -> Vec<GroupAnswer> {
     let zero = d.constant(0.0);
-    let operator = Operator {
-        code: ReducerCode::Sum,
-        blend: None,
-        row: Vec::new(),
-        // Sums do not ask for it.
-        iso2: zero,
-        non_negative: true,
-        bounded: false,
-        ordered: false,
-        moving: false,
-        mixing: Rc::clone(mixing),
-    };
-    let mut state = State::new(d, &operator, defaults);
+    let mut groups = group_states(zero, mixing, defaults, true, false);
     let mut total = zero;
     for (operand, &weight) in operands.iter().zip(weights) {
-        state.weigh(d, weight, None, operand, None);
+        weigh(d, &mut groups, (weight, None), operand, None);
         total = d.add(total, weight);
     }
-    state
-        .groups
-        .iter()
-        .zip(defaults)
-        .map(|(group, default)| group.normalised(d, (total, total), default))
-        .collect()
+    groups.iter().zip(defaults).map(|(group, default)| group.normalised(d, (total, total), default)).collect()
 }
-
-type StepFn = fn(&mut FunctionBuilder, Value, Value) -> Value;
-type BeatsFn = fn(&mut FunctionBuilder, Value, Value) -> Value;
 
 /// Whether a candidate takes over: it beats what is there, or equals it and comes earlier in the file.
 fn takes(
     d: &mut FunctionBuilder,
-    beats: BeatsFn,
+    extreme: Extreme,
     so_far: Value,
     candidate: Value,
     orders: Option<(Value, Value)>,
 ) -> Value {
-    let better = beats(d, so_far, candidate);
+    let better = extreme.beats(d, so_far, candidate);
     let Some((order_so_far, order)) = orders else { return better };
     let equal = d.eq(so_far, candidate);
     let earlier = d.lt(order, order_so_far);
     let tie = d.both(equal, earlier);
     d.either(better, tie)
+}
+
+/// Adds the attributes of an operand with a weight; what weights so far are multiplied with comes behind it.
+fn weigh(
+    d: &mut FunctionBuilder,
+    groups: &mut [GroupState],
+    (weight, rescale): (Value, Option<Value>),
+    operand: &Answer,
+    order: Option<Value>,
+) {
+    let zero = d.constant(0.0);
+    for (state, answer) in groups.iter_mut().zip(&operand.groups) {
+        let Some(best) = state.best else {
+            for (sum, &channel) in state.channels.iter_mut().zip(&answer.channels) {
+                let so_far = rescale.map_or(*sum, |rescale| d.mul(*sum, rescale));
+                let added = d.fma(weight, channel, so_far);
+                // A row without weight leaves the sum alone, whatever is in its channels: 0 * NaN must not
+                // get in.
+                *sum = if answer.numbers {
+                    added
+                } else {
+                    let counts = d.lt(zero, weight);
+                    d.select(counts, added, so_far)
+                };
+            }
+            continue;
+        };
+        let candidate = answer.share.map_or(weight, |share| d.mul(weight, share));
+        let best = rescale.map_or(best, |rescale| d.mul(best, rescale));
+        let takes = takes(d, Extreme::Largest, best, candidate, state.order.zip(order));
+        state.best = Some(d.select(takes, candidate, best));
+        state.take(d, takes, answer, order);
+    }
 }
 
 /// The channels of whoever decided; the default where the field that was decided on has no weight.

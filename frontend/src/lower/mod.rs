@@ -35,7 +35,6 @@ mod mixing;
 mod names;
 mod occurrence;
 mod position;
-mod reducer;
 mod rows;
 mod shape;
 mod slopes;

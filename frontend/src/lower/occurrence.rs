@@ -13,9 +13,7 @@ use super::names::ComputedId;
 pub(super) use super::names::{BindingsId, FieldId, OccurrenceId, PositionId, SpaceId};
 use super::position::{MapKind, Position};
 use crate::check::{CheckedTree, NodeId};
-use crate::combine::Combinator;
-use crate::combine::step::StepKind;
-use crate::combine::unary::UnaryKind;
+use crate::combine::{Combinator, MapCode, ReduceCode};
 use crate::expression::Expression;
 use crate::falloff::FalloffKind;
 use crate::kind::{NodeKind, Primitive};
@@ -74,21 +72,6 @@ pub(super) struct LeafCode {
     pub(super) strong: bool,
 }
 
-/// An operator whose operands are alike: any number of them, in any order but for ties; the operands of a
-/// step in that of the file.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub(super) enum Reducer {
-    Sum,
-    Ricci(f64),
-    /// Ricci's blend whose exponent follows a parameter.
-    RicciFollowing(f64),
-    Product,
-    Union,
-    Intersection,
-    /// A fold from the left, and the number of its step.
-    Step(StepKind, f64),
-}
-
 #[derive(Clone, Debug)]
 pub(super) enum OccurrenceKind {
     Leaf {
@@ -104,8 +87,11 @@ pub(super) enum OccurrenceKind {
         /// What weighs it, in the space where the warp stands. It is always hoisted.
         weight: Option<OccurrenceId>,
     },
+    /// An operator whose operands are alike: any number of them, in any order but for ties; the operands of a
+    /// step in that of the file.
     Reduce {
-        reducer: Reducer,
+        operator: Combinator,
+        code: ReduceCode,
         children: Vec<OccurrenceId>,
     },
     Difference {
@@ -114,7 +100,7 @@ pub(super) enum OccurrenceKind {
     },
     /// A map of one field.
     Map {
-        kind: UnaryKind,
+        code: MapCode,
         child: OccurrenceId,
     },
     /// A formula of the point and of the children's fields: a leaf with attributes of its own, if there are

@@ -10,10 +10,10 @@ use super::emit::{Code, groups};
 use super::mixing::wants_order;
 use super::names::ComputedId;
 use super::occurrence::{BindingsId, FieldId, LeafField, OccurrenceId, OccurrenceKind, Scene, SpaceId};
-use super::reducer::ReducerCode;
 use super::shape::{Hoist, Shapes};
 use crate::attribute::{AttributeValue, Mixing};
 use crate::check::NodeId;
+use crate::combine::Combinator;
 use crate::diagnostic::Diagnostic;
 use crate::query::Query;
 use crate::skeleton::BEYOND;
@@ -247,9 +247,8 @@ impl<'a> Writer<'a> {
             OccurrenceKind::Difference { left, right } => {
                 tasks.extend([Task::Operand(*right), Task::Operand(*left)]);
             }
-            OccurrenceKind::Map { kind, child } => {
-                let combinator = self.scene.combinator(occurrence.node);
-                kind.push_columns(&combinator.numbers(), self.scene.tree.iso(), &mut self.row);
+            OccurrenceKind::Map { child, .. } => {
+                self.operator(occurrence.node, self.scene.combinator(occurrence.node));
                 tasks.push(Task::Operand(*child));
             }
             OccurrenceKind::Expression { children, .. } => {
@@ -261,11 +260,10 @@ impl<'a> Writer<'a> {
                     tasks.push(Task::Guard(Member::Operand(child, None), place == *chosen));
                 }
             }
-            OccurrenceKind::Reduce { reducer, .. } => {
-                let code = ReducerCode::of(*reducer);
-                code.push_columns(*reducer, &mut self.row);
+            OccurrenceKind::Reduce { operator, code, .. } => {
+                self.operator(occurrence.node, *operator);
                 let groups = self.shapes.groups(id);
-                let ordered = wants_order(code, groups.len() > 1, self.query.gradient, &self.mixing);
+                let ordered = wants_order(*code, groups.len() > 1, self.query.gradient, &self.mixing);
                 for (index, group) in groups.iter().enumerate().rev() {
                     if group.folded {
                         tasks.push(Task::Rows(id, index));
@@ -282,14 +280,19 @@ impl<'a> Writer<'a> {
         }
     }
 
+    /// The numbers of an operator.
+    fn operator(&mut self, node: NodeId, operator: Combinator) {
+        let follows = self.scene.tree.written(node).is_some();
+        operator.push_columns(follows, self.scene.tree.iso(), &mut self.row);
+    }
+
     /// Makes the members of a group rows of the next child table, owned by the row in progress.
     fn hand_out(&mut self, id: OccurrenceId, group: usize) {
-        let OccurrenceKind::Reduce { reducer, .. } = &self.scene.occurrence(id).kind else {
+        let OccurrenceKind::Reduce { code, .. } = &self.scene.occurrence(id).kind else {
             unreachable!("only operators have groups")
         };
         let groups = self.shapes.groups(id);
-        let ordered =
-            wants_order(ReducerCode::of(*reducer), groups.len() > 1, self.query.gradient, &self.mixing);
+        let ordered = wants_order(*code, groups.len() > 1, self.query.gradient, &self.mixing);
         let member = |&(occurrence, order)| Member::Operand(occurrence, ordered.then_some(order));
         let members: Vec<Member> = groups[group].members.iter().map(member).collect();
         self.own(&members, true);

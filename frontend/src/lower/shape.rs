@@ -19,8 +19,8 @@ use self::key::{Content, ShapeKey};
 use super::computed::ComputedShape;
 use super::names::ComputedId;
 pub(super) use super::names::Hoist;
-use super::occurrence::{FieldId, LeafCode, OccurrenceId, OccurrenceKind, Reducer, Scene, SpaceId};
-use super::reducer::ReducerCode;
+use super::occurrence::{FieldId, LeafCode, OccurrenceId, OccurrenceKind, Scene, SpaceId};
+use crate::combine::ReduceCode;
 
 /// The children of an operator that have one shape.
 #[derive(Clone, Debug)]
@@ -197,9 +197,9 @@ impl<'a> Classifier<'a> {
                 let ((left, content), (right, other)) = (self.of(*left), self.of(*right));
                 self.name(ShapeKey::Difference { left, right }, content.and(other))
             }
-            OccurrenceKind::Map { kind, child } => {
+            OccurrenceKind::Map { code, child } => {
                 let (child, content) = self.of(*child);
-                self.name(ShapeKey::Map { kind: *kind, child }, content)
+                self.name(ShapeKey::Map { code: *code, child }, content)
             }
             OccurrenceKind::Expression { .. } => self.expression(id),
             OccurrenceKind::Select { children, .. } => {
@@ -211,7 +211,7 @@ impl<'a> Classifier<'a> {
                 // Its user asks for its children; nobody asks for its shape.
                 self.name(ShapeKey::Hoisted(id), Content::HOISTED)
             }
-            OccurrenceKind::Reduce { reducer, .. } => self.reduce(id, ReducerCode::of(*reducer)),
+            OccurrenceKind::Reduce { code, .. } => self.reduce(id, *code),
         }
     }
 
@@ -262,7 +262,7 @@ impl<'a> Classifier<'a> {
     }
 
     /// The shape of an operator, whose children of one shape are a group.
-    fn reduce(&mut self, id: OccurrenceId, code: ReducerCode) -> ShapeId {
+    fn reduce(&mut self, id: OccurrenceId, code: ReduceCode) -> ShapeId {
         let groups = self.group(id, code);
         let content = groups.iter().fold(Content::HOISTED, |all, group| {
             let of = |member: &(OccurrenceId, u32)| self.of(member.0).1;
@@ -322,9 +322,10 @@ impl<'a> Classifier<'a> {
     }
 
     /// The operands of an operator, those of flattened ones among them, by shape.
-    fn group(&self, id: OccurrenceId, code: ReducerCode) -> Vec<Group> {
-        if code.is_ordered() {
-            return self.runs(id);
+    fn group(&self, id: OccurrenceId, code: ReduceCode) -> Vec<Group> {
+        match code {
+            ReduceCode::Step(_) => return self.runs(id),
+            ReduceCode::Fold(_) | ReduceCode::Choice(_) => {}
         }
         let mut by_shape: HashMap<ShapeId, Vec<(OccurrenceId, u32)>> = HashMap::default();
         let mut stack = vec![id];
@@ -396,27 +397,20 @@ pub(super) fn bounded(scene: &Scene<'_>, groups: &[Group]) -> bool {
     groups.iter().flat_map(|group| &group.members).all(|(member, _)| scene.occurrence(*member).bounded)
 }
 
-/// Which operators dissolve into the operator that uses them: same kind, one use, and the same answers either
+/// Which operators dissolve into the operator that uses them: equal ones, one use, and the same answers either
 /// way.
-///
-/// A sum of sums mixes attributes in the same way only if no partial sum can be negative: a negative one has
-/// no weight as a whole.
 fn flattened(scene: &Scene<'_>) -> Vec<bool> {
     let mut flattened = vec![false; scene.occurrences.len()];
     for occurrence in &scene.occurrences {
-        let OccurrenceKind::Reduce { reducer, children } = &occurrence.kind else { continue };
+        let OccurrenceKind::Reduce { operator, children, .. } = &occurrence.kind else { continue };
+        // Numbers that are equal now may differ later.
+        let fixed = scene.tree.written(occurrence.node).is_none();
         for child in children {
             let inner = scene.occurrence(*child);
-            if let OccurrenceKind::Reduce { reducer: inner_reducer, children: operands } = &inner.kind {
-                let safe = match reducer {
-                    Reducer::Sum => operands.iter().all(|id| scene.occurrence(*id).non_negative),
-                    Reducer::Ricci(_) | Reducer::Union | Reducer::Intersection => true,
-                    // Exponents that are equal now may differ later.
-                    Reducer::RicciFollowing(_) => false,
-                    // Nested ones mix attributes by twos.
-                    Reducer::Product | Reducer::Step(..) => false,
-                };
-                flattened[child.0 as usize] = inner_reducer == reducer && inner.uses == 1 && safe;
+            if let OccurrenceKind::Reduce { operator: nested, children: operands, .. } = &inner.kind {
+                let non_negative = || operands.iter().all(|id| scene.occurrence(*id).non_negative);
+                let like = fixed && nested == operator && inner.uses == 1;
+                flattened[child.0 as usize] = like && operator.flattens(non_negative());
             }
         }
     }

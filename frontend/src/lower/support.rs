@@ -35,12 +35,12 @@ use glam::{DAffine3, DMat3, DVec3};
 use rustc_hash::FxHashMap as HashMap;
 
 use super::guide::{LARGEST_COORDINATE, Support};
-use super::occurrence::{FieldId, OccurrenceId, OccurrenceKind, PositionId, Reducer, Scene};
+use super::occurrence::{FieldId, OccurrenceId, OccurrenceKind, PositionId, Scene};
 use super::position::{MapKind, Position};
 use crate::affine::{Similarity, map_bounds};
 use crate::bounds::Bounds;
 use crate::check::NodeId;
-use crate::combine::Combinator;
+use crate::combine::ReduceCode;
 use crate::combine::extent::Extent;
 use crate::kind::Primitive;
 use crate::skeleton::{Metric, ROUNDING};
@@ -156,17 +156,10 @@ impl<'a> Supports<'a> {
                 let position = self.scene.position(*position);
                 of(child).map(|bounds| around_map(position, warp.reach(bounds)))
             }
-            OccurrenceKind::Reduce { reducer, children } => {
-                let combinator = match (reducer, self.scene.combinator(occurrence.node)) {
-                    // What a difference subtracts.
-                    (Reducer::Union, _) => Combinator::Union,
-                    (_, combinator) => combinator,
-                };
-                Extent::of(combinator, &all(children), iso)
-            }
+            OccurrenceKind::Reduce { operator, children, .. } => operator.extent(&all(children), iso),
             OccurrenceKind::Difference { left, .. } => of(left),
             OccurrenceKind::Map { child, .. } => {
-                Extent::of(self.scene.combinator(occurrence.node), &[of(child)], iso)
+                self.scene.combinator(occurrence.node).extent(&[of(child)], iso)
             }
             OccurrenceKind::Expression { position, shift, children, .. } => {
                 let support = self.of_expression(occurrence.node, (*position, *shift), &all(children));
@@ -252,15 +245,10 @@ fn slopes_of(scene: &Scene<'_>) -> Vec<f64> {
             OccurrenceKind::Warp { .. } | OccurrenceKind::Expression { .. } | OccurrenceKind::Map { .. } => {
                 f64::INFINITY
             }
-            OccurrenceKind::Reduce { reducer: Reducer::Product | Reducer::Step(..), .. } => f64::INFINITY,
+            OccurrenceKind::Reduce { code: ReduceCode::Step(_), .. } => f64::INFINITY,
+            OccurrenceKind::Reduce { code: ReduceCode::Fold(code), .. } if code.is_steep() => f64::INFINITY,
             OccurrenceKind::Reduce {
-                reducer:
-                    Reducer::Sum
-                    | Reducer::Ricci(_)
-                    | Reducer::RicciFollowing(_)
-                    | Reducer::Union
-                    | Reducer::Intersection,
-                children,
+                code: ReduceCode::Fold(_) | ReduceCode::Choice(_), children, ..
             }
             | OccurrenceKind::Select { children, .. } => children.iter().map(of).sum(),
             OccurrenceKind::Difference { left, right } => of(left) + of(right),

@@ -1,14 +1,15 @@
 //! Blocks of a text, and what their nodes become.
 
-use crate::combine::Combinator;
+use crate::combine::CombinatorKind;
 use crate::diagnostic::Span;
 use crate::tree::Tree;
 use crate::written::Written;
 
 /// What an open block becomes.
 pub(super) enum Head {
-    Combine(Combinator),
-    /// An operator with a number.
+    /// An operator without parameters.
+    Combine(CombinatorKind),
+    /// An operator with parameters.
     Operator(Box<Written>),
     /// With one child. Boxed, so that a million open blocks are small.
     Unary(Box<Written>),

@@ -7,7 +7,8 @@ use super::expression::Place;
 use super::hints::foreign_word;
 use super::lex::{Token, TokenKind};
 use super::state::Parser;
-use super::words::{COMBINATORS, GROUP_NODE, OPERATORS, WEIGHTED, fixed_words};
+use super::words::{GROUP_NODE, WEIGHTED, fixed_words};
+use crate::combine::CombinatorKind;
 use crate::diagnostic::{Diagnostic, Span};
 use crate::map::MapKind;
 use crate::report::{clip, nearest};
@@ -171,8 +172,8 @@ impl<'a> Parser<'a> {
             self.count_node(start.span());
             return Begun::Leaf(self.primitive(kind, start));
         }
-        if let Some(combinator) = COMBINATORS.iter().copied().find(|combinator| combinator.name() == word) {
-            return self.block(start, Head::Combine(combinator));
+        if let Some(kind) = CombinatorKind::named(word).next() {
+            return self.combinator(start, kind);
         }
         if let Some(kind) = WarpKind::ALL.iter().copied().find(|kind| kind.name() == word) {
             let fields = self.slots(kind.fields(), "a warp").complete(self, start, kind.name());
@@ -183,7 +184,6 @@ impl<'a> Parser<'a> {
         }
         match word {
             "use" => Begun::Leaf(self.use_node()),
-            "ricci" => self.ricci(start),
             "select" => self.select(start),
             "warp" => self.formula_warp(start),
             "expression" => Begun::Leaf(self.expression_node(start)),
@@ -197,10 +197,9 @@ impl<'a> Parser<'a> {
                     );
                     return self.block(start, Head::Broken);
                 }
-                self.ricci(start)
+                self.combinator(start, CombinatorKind::Ricci)
             }
             _ if MapKind::named(word).next().is_some() => self.map(start, word),
-            _ if OPERATORS.contains(&word) => self.operator_head(start, word),
             GROUP_NODE => match self.peek_word() {
                 Some(name) => {
                     let at = self.next();
@@ -261,7 +260,7 @@ impl<'a> Parser<'a> {
         let written = match frame.head {
             Head::Broken => return self.broken.clone(),
             Head::Combine(combinator) => {
-                return Tree::at(frame.span, combinator, children);
+                return Tree::at(frame.span, Written::Combine { combinator, fields: Vec::new() }, children);
             }
             Head::Operator(written) => *written,
             Head::Weighted(written) => {

@@ -1,121 +1,117 @@
-//! Operators of a text that have numbers, or one child: what stands before their blocks.
+//! Operators of a text: what stands between their words and their blocks.
+//!
+//! ```text
+//! word  [set operation]  numbers  {
+//!                        name number name number    in any order: an operator with names
+//!                        [name] number              one number: with a label, or without
+//! ```
+//!
+//! Operators of one word differ in the names of their numbers.
 
 use super::block::{Begun, Head};
 use super::expression::Place;
 use super::lex::Token;
 use super::state::Parser;
-use crate::combine::{Combinator, Family, SetOperation};
-use crate::diagnostic::{Diagnostic, Span};
-use crate::number::Number;
-use crate::written::Written;
+use crate::combine::{CombinatorKind, SetOperation, Syntax};
+use crate::diagnostic::Diagnostic;
+use crate::field::{Field, FieldKind, FieldValue};
+use crate::report::clip;
+use crate::written::{FieldNumber, Written};
 
 impl Parser<'_> {
-    /// The operator that begins with one of [`WORDS`].
-    pub(super) fn operator_head(&mut self, start: Token, word: &str) -> Begun {
-        let smooth = |set: SetOperation| Combinator::Smooth(set, 0.0);
-        match word {
-            "smooth_union" => self.with_one(start, smooth(SetOperation::Union), "width"),
-            "smooth_intersection" => self.with_one(start, smooth(SetOperation::Intersection), "width"),
-            "smooth_difference" => self.with_one(start, smooth(SetOperation::Difference), "width"),
-            "rfunction" => self.rfunction(start),
-            "complement" => self.one_child(start, Combinator::Complement, Vec::new()),
-            "clamp" => self.clamp(start),
-            "shell" => {
-                let thickness = self.labelled("thickness");
-                self.one_child(start, Combinator::Shell(0.0), vec![thickness])
-            }
-            _ => {
-                let by = self.labelled("by");
-                self.one_child(start, Combinator::Offset(0.0), vec![by])
-            }
+    /// The operator that begins with the word of a kind, which has been taken.
+    pub(super) fn combinator(&mut self, start: Token, first: CombinatorKind) -> Begun {
+        if first.fields().is_empty() && !first.takes_one() {
+            return self.block(start, Head::Combine(first));
         }
+        let read = match (first.syntax(), first.fields()) {
+            (Syntax::Named, _) => self.named_numbers(first.name()),
+            (Syntax::Labelled | Syntax::Alone, [field]) => {
+                if first.syntax() == Syntax::Labelled {
+                    self.accept_word(field.name);
+                }
+                Some((first, vec![self.field_value(field.kind)]))
+            }
+            (Syntax::Labelled | Syntax::Alone, _) => unreachable!("without names there is one number"),
+        };
+        let head = match read {
+            None => Head::Broken,
+            Some((combinator, fields)) => {
+                let written = Box::new(Written::Combine { combinator, fields });
+                if combinator.takes_one() { Head::Unary(written) } else { Head::Operator(written) }
+            }
+        };
+        self.block(start, head)
     }
 
-    /// `ricci` and its exponent: the word has been read.
-    pub(super) fn ricci(&mut self, start: Token) -> Begun {
-        let exponent = self.expression(Place::Alone).number;
-        self.many_children(start, Combinator::Ricci(0.0), vec![exponent])
-    }
-
-    /// A number that may have its name before it.
-    fn labelled(&mut self, label: &str) -> Number {
-        self.accept_word(label);
-        self.expression(Place::Alone).number
-    }
-
-    fn with_one(&mut self, start: Token, combinator: Combinator, label: &str) -> Begun {
-        let number = self.labelled(label);
-        self.many_children(start, combinator, vec![number])
-    }
-
-    fn many_children(&mut self, start: Token, combinator: Combinator, numbers: Vec<Number>) -> Begun {
-        let written = Written::Combine { combinator, numbers };
-        self.block(start, Head::Operator(Box::new(written)))
-    }
-
-    fn one_child(&mut self, start: Token, combinator: Combinator, numbers: Vec<Number>) -> Begun {
-        let written = Written::Combine { combinator, numbers };
-        self.block(start, Head::Unary(Box::new(written)))
-    }
-
-    /// `clamp low A high B`, in either order.
-    fn clamp(&mut self, start: Token) -> Begun {
-        let (mut low, mut high) = (None, None);
-        while let Some(word @ ("low" | "high")) = self.peek_word() {
-            let token = self.next();
-            let end = if word == "low" { &mut low } else { &mut high };
-            if end.replace(self.expression(Place::Alone).number).is_some() {
+    /// The set operation of an operator that has one, then its numbers behind their names, which tell the kind
+    /// among those of a word. Nothing after an error.
+    fn named_numbers(&mut self, word: &str) -> Option<(CombinatorKind, Vec<FieldNumber>)> {
+        let mut kinds: Vec<CombinatorKind> = CombinatorKind::named(word).collect();
+        let mut values: Vec<(&'static str, FieldNumber)> = Vec::new();
+        if let Some(field) = kinds[0].fields().iter().find(|field| is_set(field)) {
+            let Some(place) = SetOperation::WORDS.iter().position(|set| self.accept_word(set)) else {
+                self.expected_at(self.peek(), "expected `union`, `intersection` or `difference`");
+                return None;
+            };
+            values.push((field.name, FieldValue::Real(place as f64).into()));
+        }
+        while let Some((token, field)) = self.next_named(&kinds) {
+            if values.iter().any(|(name, _)| *name == field.name) {
                 self.report(|| {
-                    Diagnostic::error(Some(token.span()), format!("a second `{word}`"))
+                    Diagnostic::error(Some(token.span()), format!("a second `{}`", field.name))
                         .expected("expected it once")
                 });
             }
+            let value = match field.kind {
+                FieldKind::Whole { .. } => self.whole(word, field.name)?,
+                kind => self.field_value(kind),
+            };
+            values.push((field.name, value));
+            kinds.retain(|kind| kind.fields().iter().any(|other| other.name == field.name));
         }
-        let (Some(low), Some(high)) = (low, high) else {
-            self.expected_at(self.peek(), "expected `clamp low` and a number, `high` and a number");
-            return self.block(start, Head::Broken);
+        let value = |field: &Field| {
+            let written = values.iter().find(|(name, _)| *name == field.name).map(|(_, value)| value.clone());
+            written.or_else(|| field.default.clone().map(FieldNumber::from))
         };
-        self.one_child(start, Combinator::Clamp { low: 0.0, high: 0.0 }, vec![low, high])
+        let complete = |kind: &CombinatorKind| kind.fields().iter().map(value).collect::<Option<Vec<_>>>();
+        let found = kinds.iter().find_map(|kind| Some((*kind, complete(kind)?)));
+        if found.is_none() {
+            let names: Vec<&str> = kinds[0].fields().iter().filter(|f| !is_set(f)).map(|f| f.name).collect();
+            let numbers = names.join("` and a number, `");
+            self.expected_at(self.peek(), &format!("expected `{word} {numbers}` and a number"));
+        }
+        found
     }
 
-    /// `rfunction union alpha 0`: the set operation, then a family. R_0 if there is none.
-    fn rfunction(&mut self, start: Token) -> Begun {
-        let Some(set) = SetOperation::ALL.into_iter().find(|set| self.accept_word(set.name())) else {
-            self.expected_at(self.peek(), "expected `union`, `intersection` or `difference`");
-            return self.block(start, Head::Broken);
-        };
-        if self.accept_word("order") {
-            return match self.order() {
-                Some(order) => {
-                    self.many_children(start, Combinator::RFunction(set, Family::Order(order)), Vec::new())
-                }
-                None => self.block(start, Head::Broken),
-            };
-        }
-        let (family, number) = if self.accept_word("power") {
-            (Family::Power(0.0), self.expression(Place::Alone).number)
-        } else if self.accept_word("alpha") {
-            (Family::Alpha(0.0), self.expression(Place::Alone).number)
-        } else {
-            (Family::Alpha(0.0), 0.0.into())
-        };
-        self.many_children(start, Combinator::RFunction(set, family), vec![number])
+    /// The name that is next, if it is that of a number of one of these kinds, which is taken.
+    fn next_named(&mut self, kinds: &[CombinatorKind]) -> Option<(Token, &'static Field)> {
+        let word = self.peek_word()?;
+        let mut fields = kinds.iter().flat_map(|kind| kind.fields()).filter(|field| !is_set(field));
+        let field = fields.find(|field| field.name == word)?;
+        Some((self.next(), field))
     }
 
     /// A whole number that follows no parameter: it selects code.
-    fn order(&mut self) -> Option<u32> {
+    fn whole(&mut self, word: &str, name: &str) -> Option<FieldNumber> {
         let value = self.expression(Place::Alone);
-        let (number, span): (Number, Span) = (value.number, value.span);
-        let order = number.value();
-        if !number.follows() && order.fract() == 0.0 && (0.0..=1e9).contains(&order) {
-            return Some(order as u32);
+        let (number, span) = (value.number, value.span);
+        let whole = number.value();
+        if !number.follows() && whole.fract() == 0.0 && (0.0..=1e9).contains(&whole) {
+            return Some(FieldNumber::Real(number));
         }
-        if !order.is_nan() || number.follows() {
+        if !whole.is_nan() || number.follows() {
             self.report(|| {
-                Diagnostic::error(Some(span), "the order of an R-function is no whole number")
+                let what = format!("the `{name}` of the {} is no whole number", clip(word));
+                Diagnostic::error(Some(span), what)
                     .expected("expected a whole number that follows no parameter")
             });
         }
         None
     }
+}
+
+/// Whether a parameter is written as a set operation, in front of the numbers.
+fn is_set(field: &Field) -> bool {
+    field.kind == FieldKind::Choice(SetOperation::WORDS)
 }

@@ -9,10 +9,10 @@ use std::fmt::Write as _;
 
 use super::words::{EXPRESSION, GROUP_NODE, WEIGHTED, field_word, texture_named};
 use crate::attribute::AttributeGroup;
-use crate::combine::{Combinator, Family};
+use crate::combine::{CombinatorKind, Syntax};
 use crate::expression::{Formula, write as write_formula};
 use crate::falloff::FalloffKind;
-use crate::field::NumberText;
+use crate::field::{FieldKind, NumberText as _};
 use crate::model::Model;
 use crate::number::Number;
 use crate::tree::Tree;
@@ -190,20 +190,19 @@ impl Printer {
     }
 }
 
-/// The head of an operator with these numbers.
-fn operator(out: &mut String, combinator: Combinator, numbers: &[String]) {
-    let _ = match (combinator, numbers) {
-        (Combinator::Ricci(_), [exponent]) => write!(out, "blend ricci {exponent}"),
-        (Combinator::Clamp { .. }, [low, high]) => write!(out, "clamp low {low} high {high}"),
-        (Combinator::RFunction(set, Family::Order(order)), _) => {
-            write!(out, "rfunction {} order {order}", set.name())
-        }
-        (Combinator::RFunction(set, family), [number]) => {
-            write!(out, "rfunction {} {} {number}", set.name(), family.name())
-        }
-        (_, [number]) => write!(out, "{} {number}", combinator.name()),
-        _ => write!(out, "{}", combinator.name()),
-    };
+/// The head of an operator. Numbers are written even where they have their defaults.
+fn operator(out: &mut String, kind: CombinatorKind, fields: &[FieldNumber]) {
+    out.push_str(kind.head());
+    for (described, value) in kind.fields().iter().zip(fields) {
+        let FieldNumber::Real(number) = value else { unreachable!("operators have numbers") };
+        let _ = match (described.kind, kind.syntax()) {
+            (FieldKind::Choice(words), _) => {
+                write!(out, " {}", words.get(number.value() as usize).unwrap_or(&words[0]))
+            }
+            (_, Syntax::Named) => write!(out, " {} {number}", described.name),
+            (_, Syntax::Labelled | Syntax::Alone) => write!(out, " {number}"),
+        };
+    }
 }
 
 /// What stands before a node's block; of a primitive, all of it. Names of definitions begin with
@@ -221,9 +220,7 @@ fn head(out: &mut String, written: &Written, definitions: &str) {
             };
             rest_of_primitive(out, falloff, strength);
         }
-        Written::Combine { combinator, numbers } => {
-            operator(out, *combinator, &numbers.iter().map(NumberText::text).collect::<Vec<_>>());
-        }
+        Written::Combine { combinator, fields } => operator(out, *combinator, fields),
         Written::Expression(formula) => expression(out, formula, |place| format!("n{place}"), definitions),
         Written::Select(which) => {
             let _ = write!(out, "select {which}");

@@ -10,7 +10,7 @@ use super::hints::foreign_mark;
 use super::lex::{Lexer, Token, TokenKind};
 use super::scope::Scope;
 use crate::attribute::AttributeGroup;
-use crate::combine::Combinator;
+use crate::combine::{Combinator, Sum};
 use crate::diagnostic::{Diagnostic, Span};
 use crate::model::Model;
 use crate::number::Number;
@@ -74,7 +74,7 @@ impl<'a> Parser<'a> {
             nodes: 0,
             root: None,
             ended: false,
-            broken: Tree::new(Combinator::Sum, Vec::new()),
+            broken: Tree::new(Combinator::from(Sum {}), Vec::new()),
         }
     }
 

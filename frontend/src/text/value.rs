@@ -166,6 +166,7 @@ impl Parser<'_> {
             | FieldKind::NonNegative
             | FieldKind::Degrees
             | FieldKind::Count
+            | FieldKind::Whole { .. }
             | FieldKind::Within { .. } => FieldNumber::Real(self.expression(Place::Alone).number),
             FieldKind::Position | FieldKind::Extents | FieldKind::Stretches => {
                 FieldNumber::Vector(self.vector())

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::f64::consts::PI;
 
-use crate::combine::Combinator;
+use crate::combine::CombinatorKind;
 use crate::field::Field;
 use crate::function::Function;
 use crate::map::MapKind;
@@ -34,19 +34,9 @@ pub(super) fn field_word(kind: SkeletonKind, field: &Field) -> Cow<'static, str>
 /// The word for a formula.
 pub(super) const EXPRESSION: &str = "expression";
 
-/// The combinators without parameters.
-pub(super) const COMBINATORS: [Combinator; 6] = [
-    Combinator::Sum,
-    Combinator::Product,
-    Combinator::Union,
-    Combinator::Intersection,
-    Combinator::Difference,
-    Combinator::SymmetricDifference,
-];
-
 /// The other words that begin a node.
-pub(super) const OTHERS: [&str; 9] =
-    ["use", "blend", "ricci", "select", "expression", "within", "falloff", "warp", GROUP_NODE];
+pub(super) const OTHERS: [&str; 8] =
+    ["use", "blend", "select", "expression", "within", "falloff", "warp", GROUP_NODE];
 
 /// Whether a word begins a node, or a statement, in every file: a group of this name needs the word `with`
 /// before it.
@@ -54,30 +44,13 @@ pub(super) fn is_reserved(word: &str) -> bool {
     is_statement(word) || fixed_words().any(|fixed| fixed == word)
 }
 
-/// The words that begin a node in every file; one that begins several maps is there as often.
+/// The words that begin a node in every file; one that begins several maps or operators is there as often.
 pub(super) fn fixed_words() -> impl Iterator<Item = &'static str> {
     let members = SkeletonKind::ALL.iter().map(|kind| kind.name());
     let warps = WarpKind::ALL.iter().map(|kind| kind.name());
     let maps = MapKind::ALL.iter().map(|kind| kind.name());
-    members
-        .chain(warps)
-        .chain(COMBINATORS.iter().map(|c| c.name()))
-        .chain(OPERATORS)
-        .chain(OTHERS)
-        .chain(maps)
+    members.chain(warps).chain(CombinatorKind::ALL.iter().map(|kind| kind.name())).chain(OTHERS).chain(maps)
 }
-
-/// The words that begin them, but for those of Ricci's blend.
-pub(super) const OPERATORS: [&str; 8] = [
-    "smooth_union",
-    "smooth_intersection",
-    "smooth_difference",
-    "rfunction",
-    "complement",
-    "clamp",
-    "shell",
-    "offset",
-];
 
 pub(super) const CONSTANTS: &[(&str, f64)] = &[("pi", PI)];
 

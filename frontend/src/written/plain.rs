@@ -37,8 +37,7 @@ impl From<Primitive> for Written {
 
 impl From<Combinator> for Written {
     fn from(combinator: Combinator) -> Self {
-        let numbers = combinator.numbers().into_iter().map(Into::into).collect();
-        Self::Combine { combinator: combinator.with_numbers(&[0.0; 2]), numbers }
+        Self::Combine { combinator: combinator.kind(), fields: as_written(combinator.to_fields()) }
     }
 }
 

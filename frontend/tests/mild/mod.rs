@@ -6,7 +6,10 @@ use glam::{DAffine3, DQuat, DVec3};
 use jbt_frontend::affine::scale_rotate_translate;
 use jbt_frontend::attribute::{AttributeGroup, AttributeValue, Mixing, Textured, UvMap};
 use jbt_frontend::builder::{Term, x, y, z};
-use jbt_frontend::combine::{Combinator, Family, SetOperation};
+use jbt_frontend::combine::{
+    Clamp, Combinator, Complement, Difference, Intersection, Offset, Product, RFunction, RFunctionOrder,
+    RFunctionPower, Ricci, SetOperation, Shell, Sum, SymmetricDifference, Union,
+};
 use jbt_frontend::falloff::{Falloff, FalloffKind};
 use jbt_frontend::field::{Field, FieldKind, FieldValue};
 use jbt_frontend::kind::{NodeKind, Primitive};
@@ -33,6 +36,7 @@ pub fn fields(rng: &mut Rng, fields: &[Field]) -> Vec<FieldValue> {
             FieldValue::Real(if most > 2.0 && rng.bool() { number.ceil() } else { number })
         }
         FieldKind::Choice(words) => FieldValue::Real(rng.usize(..words.len()) as f64),
+        FieldKind::Whole { least, most } => FieldValue::Real(rng.u32(least..=most).into()),
         FieldKind::Count => FieldValue::Real(count(field, rng.u8(..6))),
         FieldKind::Position | FieldKind::Direction => FieldValue::Vector(vector(rng, 1.0)),
         FieldKind::Degrees => FieldValue::Real(360.0 * rng.f64()),
@@ -135,18 +139,18 @@ pub fn formula_warp(rng: &mut Rng) -> NodeKind {
         2 => [x() / (1.0 + r.abs() * z() * z()), y(), z() + 0.2 * q],
         _ => [x().abs() + 0.3 * p, y() + 0.1 * x() * y(), z().max(2.0 * z() + q)],
     };
-    let still = Tree::combine(Combinator::Sum, Vec::<Tree>::new()).warp(coordinates);
+    let still = Tree::sum(Vec::<Tree>::new()).warp(coordinates);
     still.node().written().evaluated(0.5).expect("formulas mean something")
 }
 
 /// A map of the field, for iso-values from 0.2.
 fn field_map(rng: &mut Rng) -> NodeKind {
     NodeKind::Combine(match rng.u8(..6) {
-        0 => Combinator::Complement,
-        1 => Combinator::Clamp { low: 0.4 * rng.f64() - 0.2, high: 0.3 + rng.f64() },
-        2 => Combinator::Clamp { low: 0.0, high: 0.3 + rng.f64() },
-        3 | 4 => Combinator::Shell(0.05 + 0.3 * rng.f64()),
-        _ => Combinator::Offset(0.3 * rng.f64() - 0.15),
+        0 => Complement {}.into(),
+        1 => Clamp { low: 0.4 * rng.f64() - 0.2, high: 0.3 + rng.f64() }.into(),
+        2 => Clamp { low: 0.0, high: 0.3 + rng.f64() }.into(),
+        3 | 4 => Shell { thickness: 0.05 + 0.3 * rng.f64() }.into(),
+        _ => Offset { by: 0.3 * rng.f64() - 0.15 }.into(),
     })
 }
 
@@ -212,11 +216,11 @@ fn following(rng: &mut Rng, tree: &Tree, index: usize) -> Tree {
     }
 }
 
-fn family(rng: &mut Rng) -> Family {
+fn rfunction(rng: &mut Rng, set: SetOperation) -> Combinator {
     match rng.u8(..3) {
-        0 => Family::Alpha(1.9 * rng.f64() - 0.9),
-        1 => Family::Order(rng.u32(1..5)),
-        _ => Family::Power(1.5 + 4.0 * rng.f64()),
+        0 => RFunction { set, alpha: 1.9 * rng.f64() - 0.9 }.into(),
+        1 => RFunctionOrder { set, order: rng.u32(1..5) }.into(),
+        _ => RFunctionPower { set, power: 1.5 + 4.0 * rng.f64() }.into(),
     }
 }
 
@@ -239,19 +243,19 @@ fn expression(rng: &mut Rng, [a, b, c]: &[Tree; 3]) -> Tree {
 fn combinator(rng: &mut Rng) -> Combinator {
     let set = SetOperation::ALL[rng.usize(..3)];
     match rng.u8(..17) {
-        14..17 => Combinator::Difference,
-        7 => Combinator::Product,
-        8 => Combinator::SymmetricDifference,
-        9 | 10 => Combinator::Smooth(set, 0.05 + 0.4 * rng.f64()),
-        11 => Combinator::RFunction(set, family(rng)),
-        12 => Combinator::Ricci(-f64::from(rng.u32(1..5))),
-        13 => Combinator::Ricci(-1.0 - 4.0 * rng.f64()),
-        0 | 1 => Combinator::Sum,
-        2 => Combinator::Ricci(f64::from(rng.u32(1..5))),
-        3 => Combinator::Ricci(1.0 + 4.0 * rng.f64()),
-        4 => Combinator::Intersection,
-        5 => Combinator::Difference,
-        _ => Combinator::Union,
+        14..17 => Difference {}.into(),
+        7 => Product {}.into(),
+        8 => SymmetricDifference {}.into(),
+        9 | 10 => Combinator::smooth(set, 0.05 + 0.4 * rng.f64()),
+        11 => rfunction(rng, set),
+        12 => Ricci { exponent: -f64::from(rng.u32(1..5)) }.into(),
+        13 => Ricci { exponent: -1.0 - 4.0 * rng.f64() }.into(),
+        0 | 1 => Sum {}.into(),
+        2 => Ricci { exponent: f64::from(rng.u32(1..5)) }.into(),
+        3 => Ricci { exponent: 1.0 + 4.0 * rng.f64() }.into(),
+        4 => Intersection {}.into(),
+        5 => Difference {}.into(),
+        _ => Union {}.into(),
     }
 }
 

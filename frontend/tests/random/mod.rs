@@ -6,7 +6,10 @@ use fastrand::Rng;
 use glam::{DAffine3, DMat3, DVec3};
 use jbt_frontend::attribute::{AttributeGroup, AttributeValue, Mixing, Textured, UvMap};
 use jbt_frontend::builder::{Term, param, x, y, z};
-use jbt_frontend::combine::{Combinator, Family, SetOperation};
+use jbt_frontend::combine::{
+    Clamp, Combinator, Complement, Difference, Intersection, Offset, Product, RFunction, RFunctionOrder,
+    RFunctionPower, Ricci, SetOperation, Shell, Sum, SymmetricDifference, Union,
+};
 use jbt_frontend::falloff::{Falloff, FalloffKind};
 use jbt_frontend::field::{Field, FieldKind, FieldValue};
 use jbt_frontend::kind::{NodeKind, Primitive};
@@ -48,6 +51,7 @@ fn fields(rng: &mut Rng, fields: &[Field]) -> Vec<FieldValue> {
         }
         (FieldKind::Within { least, most }, _) => FieldValue::Real(number(rng).clamp(least, most)),
         (FieldKind::Choice(words), _) => FieldValue::Real(rng.usize(..words.len()) as f64),
+        (FieldKind::Whole { least, most }, _) => FieldValue::Real(rng.u32(least..=most).into()),
         (FieldKind::Count, _) => {
             FieldValue::Real(if rng.bool() { f64::from(rng.u8(..9)) } else { number(rng) })
         }
@@ -214,14 +218,7 @@ pub fn model(rng: &mut Rng) -> Model {
             }
             _ => {
                 let combinator = combinator(rng);
-                let single = matches!(
-                    combinator,
-                    Combinator::Complement
-                        | Combinator::Clamp { .. }
-                        | Combinator::Shell(_)
-                        | Combinator::Offset(_)
-                );
-                let count = if single { 1 } else { rng.usize(1..5) };
+                let count = if combinator.kind().takes_one() { 1 } else { rng.usize(1..5) };
                 let children = (0..count).map(|_| pick(rng)).collect();
                 Tree::new(NodeKind::Combine(combinator), children)
             }
@@ -236,22 +233,22 @@ pub fn model(rng: &mut Rng) -> Model {
 fn combinator(rng: &mut Rng) -> Combinator {
     let set = SetOperation::ALL[rng.usize(..3)];
     match rng.u8(..14) {
-        0 => Combinator::Sum,
-        1 => Combinator::Ricci(number(rng)),
-        2 => Combinator::Union,
-        3 => Combinator::Intersection,
-        4 => Combinator::Difference,
-        5 => Combinator::Product,
-        6 => Combinator::SymmetricDifference,
-        7 => Combinator::Smooth(set, number(rng)),
-        8 => Combinator::RFunction(set, Family::Alpha(number(rng))),
+        0 => Sum {}.into(),
+        1 => Ricci { exponent: number(rng) }.into(),
+        2 => Union {}.into(),
+        3 => Intersection {}.into(),
+        4 => Difference {}.into(),
+        5 => Product {}.into(),
+        6 => SymmetricDifference {}.into(),
+        7 => Combinator::smooth(set, number(rng)),
+        8 => RFunction { set, alpha: number(rng) }.into(),
         9 => match rng.bool() {
-            true => Combinator::RFunction(set, Family::Power(number(rng))),
-            false => Combinator::RFunction(set, Family::Order(rng.u32(..9))),
+            true => RFunctionPower { set, power: number(rng) }.into(),
+            false => RFunctionOrder { set, order: rng.u32(..9) }.into(),
         },
-        10 => Combinator::Complement,
-        11 => Combinator::Clamp { low: number(rng), high: number(rng) },
-        12 => Combinator::Shell(number(rng)),
-        _ => Combinator::Offset(number(rng)),
+        10 => Complement {}.into(),
+        11 => Clamp { low: number(rng), high: number(rng) }.into(),
+        12 => Shell { thickness: number(rng) }.into(),
+        _ => Offset { by: number(rng) }.into(),
     }
 }

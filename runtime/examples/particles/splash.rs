@@ -8,7 +8,7 @@
 mod crown;
 
 use jbt::build::{gradient, point};
-use jbt::{Combinator, Model, Tree};
+use jbt::{Model, Tree};
 
 use crown::{HIGH, LOW, inside};
 
@@ -56,7 +56,7 @@ pub fn model() -> Model {
     let radius = rounded(REACH * distance);
     let strength = rounded((distance / radius).powi(3) / SOFT_VOLUME);
     let leaf = |place: [f64; 3]| point(place.map(rounded), radius).strength(strength);
-    let splash = Tree::combine(Combinator::Sum, places.into_iter().map(leaf));
+    let splash = Tree::sum(places.into_iter().map(leaf));
     let shades = gradient([0.0, 0.0, -0.1], [0.0, 0.0, 0.5]);
     Model::new(splash.textured("color", shades, &[0.55, 0.70, 0.78], &[0.92, 0.90, 0.86]))
 }

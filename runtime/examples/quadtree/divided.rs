@@ -18,7 +18,7 @@ use std::error::Error;
 
 use jbt::build::point;
 use jbt::divide::{Cell, Decision, Division, Limits, Outcome, divide};
-use jbt::{Box3, Combinator, Compiler, EvalError, Evaluator, Model, Points, Pruner, Query, Region, Tree};
+use jbt::{Box3, Compiler, EvalError, Evaluator, Model, Points, Pruner, Query, Region, Tree};
 
 use super::circles::{Circle, ISO};
 use super::lattice::{Block, Lattice, Place, coordinate, crossing_cells, is_crossed, points};
@@ -53,7 +53,7 @@ pub struct Divided {
 /// The circles as points of the plane z = 0, and the sum of their fields.
 pub fn model(circles: &[Circle]) -> Model {
     let leaf = |circle: &Circle| point([circle.center[0], circle.center[1], 0.0], circle.radius);
-    let root = Tree::combine(Combinator::Sum, circles.iter().map(leaf));
+    let root = Tree::sum(circles.iter().map(leaf));
     Model { iso: ISO.into(), ..Model::new(root) }
 }
 

@@ -10,7 +10,10 @@ use jbt::build::{Term, noise, param, x, y, z};
 use jbt::{Model, Number};
 use jbt_frontend::affine::scale_rotate_translate;
 use jbt_frontend::attribute::{AttributeGroup, AttributeValue, Mixing, Textured, UvMap};
-use jbt_frontend::combine::{Combinator, Family, SetOperation};
+use jbt_frontend::combine::{
+    Clamp, Combinator, Complement, Difference, Intersection, Offset, Product, RFunction, RFunctionOrder,
+    RFunctionPower, Ricci, SetOperation, Shell, Sum, SymmetricDifference, Union,
+};
 use jbt_frontend::falloff::{Falloff, FalloffKind};
 use jbt_frontend::field::{Field, FieldKind, FieldValue};
 use jbt_frontend::kind::{NodeKind, Primitive};
@@ -77,27 +80,31 @@ impl Random {
                 (0..parts).map(|_| self.tree(leaves / parts, attributes, depth + 1)).collect();
             let set = SetOperation::ALL[self.shape.usize(0..3)];
             let kind = NodeKind::Combine(match self.shape.u8(0..21) {
-                9 => Combinator::Product,
-                10 => Combinator::SymmetricDifference,
-                11 => Combinator::Smooth(set, self.between(0.05, 0.5)),
+                9 => Product {}.into(),
+                10 => SymmetricDifference {}.into(),
+                11 => Combinator::smooth(set, self.between(0.05, 0.5)),
                 12 => {
                     let width = self.between(0.05, 0.5);
                     let width = self.parameter("width", width);
                     return self.finished(Tree::smooth(set, width, children), attributes);
                 }
-                13 => Combinator::RFunction(set, self.family()),
-                14 => Combinator::Ricci(match self.shape.u8(0..3) {
-                    0 => -f64::from(self.shape.u32(1..20)),
-                    1 => -self.between(1.01, 9.9),
-                    _ => -512.0,
+                13 => self.rfunction(set),
+                14 => Combinator::Ricci(Ricci {
+                    exponent: match self.shape.u8(0..3) {
+                        0 => -f64::from(self.shape.u32(1..20)),
+                        1 => -self.between(1.01, 9.9),
+                        _ => -512.0,
+                    },
                 }),
-                0 | 1 => Combinator::Sum,
-                2 => Combinator::Ricci(f64::from(self.shape.u32(1..20))),
-                3 => Combinator::Ricci(if self.shape.bool() { self.between(1.01, 9.9) } else { 1024.0 }),
-                4 => Combinator::Intersection,
-                5 => Combinator::Difference,
-                6 | 7 | 15..18 => Combinator::Union,
-                18 => Combinator::Sum,
+                0 | 1 => Sum {}.into(),
+                2 => Ricci { exponent: f64::from(self.shape.u32(1..20)) }.into(),
+                3 => Combinator::Ricci(Ricci {
+                    exponent: if self.shape.bool() { self.between(1.01, 9.9) } else { 1024.0 },
+                }),
+                4 => Intersection {}.into(),
+                5 => Difference {}.into(),
+                6 | 7 | 15..18 => Union {}.into(),
+                18 => Sum {}.into(),
                 8 | 19 => return self.expression(&children, attributes),
                 _ => {
                     // Which child answers is a number as any other.
@@ -169,6 +176,7 @@ impl Random {
                 }
                 FieldKind::Within { least, most } => FieldValue::Real(self.between(least, most.min(8.0))),
                 FieldKind::Choice(words) => FieldValue::Real(self.shape.usize(0..words.len()) as f64),
+                FieldKind::Whole { least, most } => FieldValue::Real(self.shape.u32(least..=most).into()),
                 // 0 where that is the default.
                 FieldKind::Count if field.default.is_some() => FieldValue::Real(self.numbers.u8(0..6).into()),
                 FieldKind::Count => FieldValue::Real(self.numbers.u8(1..6).into()),
@@ -253,27 +261,27 @@ impl Random {
             2 => [x() / (1.0 + r.abs() * z() * z()), y(), z() + 0.2 * q],
             _ => [x().abs() + 0.3 * p, y() + 0.1 * x() * y(), z().max(2.0 * z() + q)],
         };
-        let still = Tree::combine(Combinator::Sum, Vec::<Tree>::new()).warp(coordinates);
+        let still = Tree::sum(Vec::<Tree>::new()).warp(coordinates);
         still.node().written().evaluated(0.5).expect("formulas mean something")
     }
 
-    fn family(&mut self) -> Family {
+    fn rfunction(&mut self, set: SetOperation) -> Combinator {
         match self.shape.u8(0..3) {
-            0 => Family::Alpha(self.between(-0.8, 1.0)),
-            1 => Family::Order(self.shape.u32(1..4)),
-            _ => Family::Power(self.between(1.5, 6.0)),
+            0 => RFunction { set, alpha: self.between(-0.8, 1.0) }.into(),
+            1 => RFunctionOrder { set, order: self.shape.u32(1..4) }.into(),
+            _ => RFunctionPower { set, power: self.between(1.5, 6.0) }.into(),
         }
     }
 
     /// A map of the field, for iso-values from 0.3. Whether a clamp lets negative fields pass selects code.
     fn field_map(&mut self) -> NodeKind {
         NodeKind::Combine(match self.shape.u8(0..6) {
-            0 => Combinator::Complement,
-            1 => Combinator::Clamp { low: -self.between(0.01, 0.5), high: self.between(0.4, 1.3) },
-            2 => Combinator::Clamp { low: self.between(0.0, 0.2), high: self.between(0.4, 1.3) },
-            3 => Combinator::Clamp { low: 0.0, high: self.between(0.4, 1.3) },
-            4 => Combinator::Shell(self.between(0.05, 0.5)),
-            _ => Combinator::Offset(self.between(-0.3, 0.2)),
+            0 => Complement {}.into(),
+            1 => Clamp { low: -self.between(0.01, 0.5), high: self.between(0.4, 1.3) }.into(),
+            2 => Clamp { low: self.between(0.0, 0.2), high: self.between(0.4, 1.3) }.into(),
+            3 => Clamp { low: 0.0, high: self.between(0.4, 1.3) }.into(),
+            4 => Shell { thickness: self.between(0.05, 0.5) }.into(),
+            _ => Offset { by: self.between(-0.3, 0.2) }.into(),
         })
     }
 

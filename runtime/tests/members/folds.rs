@@ -2,7 +2,7 @@
 
 use fastrand::Rng;
 use jbt::ir::{Function, Rows, Schema};
-use jbt::{Combinator, Compiler, Engine, Falloff, Model, Query, Tree};
+use jbt::{Compiler, Engine, Falloff, Model, Query, Tree};
 use jbt_frontend::kind::{NodeKind, Primitive};
 use jbt_frontend::lower::lower;
 use jbt_frontend::skeleton::SkeletonKind;
@@ -22,7 +22,7 @@ fn sum(count: usize) -> Model {
         let leaf = Primitive { skeleton, falloff: Falloff::Soft, radius, strength: 1.0 };
         Tree::new(NodeKind::Primitive(leaf), Vec::new())
     };
-    Model::new(Tree::combine(Combinator::Sum, (0..count).map(leaf)))
+    Model::new(Tree::sum((0..count).map(leaf)))
 }
 
 /// Tables whose rows are operands of the sum: those under the scene's one row.

@@ -37,7 +37,7 @@ use self::node::Reading;
 use self::scan::{Key, Section};
 use self::state::{Importer, Meaning, State};
 use super::Imported;
-use crate::combine::Combinator;
+use crate::combine::{Combinator, Sum};
 use crate::diagnostic::{Diagnostic, Diagnostics, Span};
 use crate::kind::NodeKind;
 use crate::model::Model;
@@ -167,7 +167,7 @@ impl Importer<'_> {
             Enter(u32, Span),
             Leave(u32, Box<Reading>),
         }
-        let broken = Tree::new(Combinator::Sum, Vec::new());
+        let broken = Tree::new(Combinator::from(Sum {}), Vec::new());
         let mut states = vec![State::New; self.sections.nodes.len()];
         let mut tasks = vec![Task::Enter(root, reference)];
         while let Some(task) = tasks.pop() {

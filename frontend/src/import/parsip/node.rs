@@ -8,7 +8,7 @@ use super::scan::{Key, Section};
 use super::state::{Importer, Meaning};
 use crate::affine::scale_rotate_translate;
 use crate::axis::Axis;
-use crate::combine::Combinator;
+use crate::combine::{Combinator, Difference, Intersection, Ricci, Sum, Union};
 use crate::diagnostic::{Diagnostic, Span};
 use crate::falloff::Falloff;
 use crate::kind::Primitive;
@@ -30,18 +30,18 @@ enum Operator {
 }
 
 const OPERATORS: &[(&str, Operator)] = &[
-    ("UNION", Operator::Combine(Combinator::Union)),
-    ("INTERSECTION", Operator::Combine(Combinator::Intersection)),
-    ("DIFFERENCE", Operator::Combine(Combinator::Difference)),
+    ("UNION", Operator::Combine(Combinator::Union(Union {}))),
+    ("INTERSECTION", Operator::Combine(Combinator::Intersection(Intersection {}))),
+    ("DIFFERENCE", Operator::Combine(Combinator::Difference(Difference {}))),
     (
         "SMOOTH DIFFERENCE",
         Operator::Foreign("the product of the first field and the complements of the others"),
     ),
-    ("BLEND", Operator::Combine(Combinator::Sum)),
-    ("GRADIENT BLEND", Operator::Combine(Combinator::Sum)),
+    ("BLEND", Operator::Combine(Combinator::Sum(Sum {}))),
+    ("GRADIENT BLEND", Operator::Combine(Combinator::Sum(Sum {}))),
     ("RICCI BLEND", Operator::Ricci),
-    ("FASTQUADRICPOINTSET", Operator::Combine(Combinator::Sum)),
-    ("FASTQUADRATICPOINTSET", Operator::Combine(Combinator::Sum)),
+    ("FASTQUADRICPOINTSET", Operator::Combine(Combinator::Sum(Sum {}))),
+    ("FASTQUADRATICPOINTSET", Operator::Combine(Combinator::Sum(Sum {}))),
     ("PCM", Operator::Foreign("precise contact of two deforming bodies")),
     ("CACHE", Operator::Pass),
     ("TEXTURE", Operator::Pass),
@@ -187,7 +187,8 @@ impl Importer<'_> {
             Operator::Combine(combinator) => Some(Meaning::Combine(combinator)),
             Operator::Ricci => {
                 let power = self.number(section, Key::Power).unwrap_or(0.0);
-                Some(Meaning::Combine(Combinator::Ricci(if power == 0.0 { 2.0 } else { power })))
+                let exponent = if power == 0.0 { 2.0 } else { power };
+                Some(Meaning::Combine(Ricci { exponent }.into()))
             }
             Operator::Pass => Some(Meaning::Same),
             Operator::Twist => self.twist(section).map(Meaning::Warp),

@@ -16,11 +16,14 @@ use jbt_ir::{Domain, FunctionBuilder, Origin, Value};
 use rustc_hash::FxHashSet;
 
 use super::{Emitter, Reduce, Task};
+use crate::combine::{Extreme, ReduceCode};
 use crate::expression::{Form, LARGEST_FIELD, Operand};
 use crate::lower::mixing::{Answer, GroupAnswer, weighted};
 use crate::lower::occurrence::{OccurrenceId, OccurrenceKind};
-use crate::lower::reducer::ReducerCode;
 use crate::lower::slopes::{Tape, slopes};
+
+/// What a union is as code.
+const UNION: ReduceCode = ReduceCode::Choice(Extreme::Largest);
 
 /// What a formula is about.
 struct Leaves {
@@ -110,7 +113,7 @@ impl Emitter<'_> {
         let reduce = self.reduces.last_mut().expect("it is the operand of an operator");
         reduce.open = true;
         let start = if reduce.operator.non_negative { 0.0 } else { -LARGEST_FIELD };
-        if reduce.operator.code == ReducerCode::Union && lowest.to_bits() == start.to_bits() {
+        if reduce.operator.code == UNION && lowest.to_bits() == start.to_bits() {
             return value;
         }
         let lowest = self.builder.constant(lowest);
@@ -118,11 +121,11 @@ impl Emitter<'_> {
     }
 
     /// The field of an operator whose operands were left open.
-    pub(super) fn closed(&mut self, code: ReducerCode, field: Value) -> Value {
+    pub(super) fn closed(&mut self, code: ReduceCode, field: Value) -> Value {
         let d = &mut self.builder;
         let (zero, largest) = (d.constant(0.0), d.constant(LARGEST_FIELD));
         // An intersection begins with the largest.
-        let field = if code == ReducerCode::Union { d.min(field, largest) } else { field };
+        let field = if code == UNION { d.min(field, largest) } else { field };
         d.add(field, zero)
     }
 

@@ -6,45 +6,29 @@ use jbt_ir::{Domain as _, Entity, FoldKind, Rule, Schema, Value};
 
 use super::parts::Guard;
 use super::{Emitter, Reduce, TableCode, Task};
-use crate::combine::ricci::Blend;
-use crate::lower::guide::DecidedRows;
-use crate::lower::mixing::{Operator, State};
+use crate::combine::ReduceCode;
+use crate::lower::guide::{DecidedRows, DecisionKind};
+use crate::lower::mixing::{Operator, State, beyond};
 use crate::lower::occurrence::{OccurrenceId, OccurrenceKind, SpaceId};
-use crate::lower::reducer::{ReducerCode, RicciCode};
 use crate::lower::shape::{bounded, non_negative};
-use crate::power::Exponent;
 
 impl Emitter<'_> {
     /// An operator: its accumulators, and what is to be done for its operands.
     pub(super) fn begin_reduce(&mut self, id: OccurrenceId) {
         let occurrence = self.scene.occurrence(id);
-        let OccurrenceKind::Reduce { reducer, .. } = &occurrence.kind else {
+        let OccurrenceKind::Reduce { code, .. } = occurrence.kind else {
             unreachable!("only operators are reduced")
         };
         let groups = self.shapes.groups(id);
-        let code = ReducerCode::of(*reducer);
         let row = self.columns(code.columns());
-        let (non_negative, moving) = (non_negative(self.scene, groups), self.query.gradient);
-        let blend = match code {
-            ReducerCode::Ricci(RicciCode { integer, negative }) => {
-                let exponent = integer.map_or_else(|| Exponent::General(row[0], row[1]), Exponent::Integer);
-                Some(Blend { exponent, negative, non_negative, moving })
-            }
-            ReducerCode::Sum
-            | ReducerCode::Product
-            | ReducerCode::Union
-            | ReducerCode::Intersection
-            | ReducerCode::Step(_) => None,
-        };
         let operator = Operator {
             code,
-            blend,
             row,
             iso2: self.iso2.expect("the scene's row is open"),
-            non_negative,
+            non_negative: non_negative(self.scene, groups),
             bounded: bounded(self.scene, groups),
             ordered: groups.len() > 1,
-            moving,
+            moving: self.query.gradient,
             mixing: Rc::clone(&self.mixing),
         };
         let state = State::new(&mut self.builder, &operator, &self.defaults);
@@ -60,8 +44,8 @@ impl Emitter<'_> {
                 for &(member, order) in group.members.iter().rev() {
                     // A step begins with its first operand.
                     let step = match code {
-                        ReducerCode::Step(_) if order == 0 => Task::Seed,
-                        _ => Task::Step,
+                        ReduceCode::Step(_) if order == 0 => Task::Seed,
+                        ReduceCode::Step(_) | ReduceCode::Fold(_) | ReduceCode::Choice(_) => Task::Step,
                     };
                     self.tasks.extend([step, Task::Operand(member, guard), Task::Order]);
                 }
@@ -98,16 +82,8 @@ impl Emitter<'_> {
         let name = self.group_name(member);
         let extreme = self.decides_rows(reduce.operator.code, member);
         let mut initial = reduce.state.values();
-        initial.extend(extreme.map(|extreme| self.builder.constant(extreme.start())));
-        let rule = match reduce.operator.code {
-            ReducerCode::Sum | ReducerCode::Ricci(RicciCode { negative: false, .. }) => Rule::Neutral,
-            // Whatever the others are: a zero makes it zero.
-            ReducerCode::Product | ReducerCode::Ricci(RicciCode { negative: true, .. }) => Rule::OnlyZero,
-            ReducerCode::Step(kind) => kind.rule(reduce.operator.non_negative),
-            ReducerCode::Union if reduce.operator.non_negative => Rule::Neutral,
-            ReducerCode::Intersection if reduce.operator.non_negative => Rule::OnlyZero,
-            ReducerCode::Union | ReducerCode::Intersection => Rule::KeepOne,
-        };
+        initial.extend(extreme.map(|extreme| self.builder.constant(beyond(extreme, false))));
+        let rule = reduce.operator.code.rule(reduce.operator.non_negative);
         let (space, _) = *self.points.last().expect("a space is open");
         let mut params = self.open_fold(&name, space, (FoldKind::Rows, rule), &initial);
         reduce.extreme =
@@ -128,7 +104,7 @@ impl Emitter<'_> {
         if let Some((extreme, _)) = extreme {
             let value = results.pop().expect("it is the last that was carried out");
             let rows = DecidedRows::Each { free: self.is_free() };
-            self.probe_operand(table, rows, Some(extreme.decision()), value);
+            self.probe_operand(table, rows, Some(DecisionKind::of(extreme)), value);
         }
         let reduce = self.reduces.last_mut().expect("folds belong to operators");
         reduce.state.replace(&results);
@@ -145,7 +121,7 @@ impl Emitter<'_> {
             }
             OccurrenceKind::Expression { .. } => "expression".to_owned(),
             OccurrenceKind::Select { .. } => "select".to_owned(),
-            OccurrenceKind::Reduce { reducer, .. } => ReducerCode::of(*reducer).name().to_owned(),
+            OccurrenceKind::Reduce { operator, .. } => operator.name().to_owned(),
         }
     }
 }

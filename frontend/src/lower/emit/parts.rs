@@ -1,11 +1,11 @@
 //! What is in progress while code is emitted: guards, probes, selectors.
 
-use jbt_ir::{Domain as _, FunctionBuilder, Rule, Table, Value};
+use jbt_ir::{Rule, Table, Value};
 use rustc_hash::FxHashMap as HashMap;
 
+use crate::combine::{Extreme, ReduceCode};
 use crate::lower::guide::{DecidedRows, Decision, DecisionKind};
 use crate::lower::names::SpaceId;
-use crate::lower::reducer::ReducerCode;
 
 /// The field of a guard whose row is left out.
 #[derive(Clone, Copy, Debug)]
@@ -56,17 +56,16 @@ impl Guard {
     pub(super) const ALONE: Self = Self { start: GuardStart::Zero, decision: None };
 
     /// Of an operand.
-    pub(super) const fn of(code: ReducerCode, non_negative: bool) -> Self {
+    pub(super) const fn of(code: ReduceCode, non_negative: bool) -> Self {
         match code {
-            ReducerCode::Sum | ReducerCode::Ricci(_) | ReducerCode::Product | ReducerCode::Step(_) => {
-                Self::ZERO
-            }
-            ReducerCode::Union => {
-                let start = if non_negative { GuardStart::Zero } else { GuardStart::Lowest };
-                Self { start, decision: Some(DecisionKind::UnionOperand) }
-            }
-            ReducerCode::Intersection => {
-                Self { start: GuardStart::Highest, decision: Some(DecisionKind::IntersectionOperand) }
+            ReduceCode::Fold(_) | ReduceCode::Step(_) => Self::ZERO,
+            ReduceCode::Choice(extreme) => {
+                let start = match extreme {
+                    Extreme::Largest if non_negative => GuardStart::Zero,
+                    Extreme::Largest => GuardStart::Lowest,
+                    Extreme::Smallest => GuardStart::Highest,
+                };
+                Self { start, decision: Some(DecisionKind::of(extreme)) }
             }
         }
     }
@@ -85,39 +84,6 @@ pub(super) struct Operand {
     pub(super) rows: DecidedRows,
     pub(super) kind: DecisionKind,
     pub(super) name: usize,
-}
-
-/// Which of the fields of rows decides.
-#[derive(Clone, Copy)]
-pub(super) enum Extreme {
-    /// Of a union.
-    Largest,
-    /// Of an intersection.
-    Smallest,
-}
-
-impl Extreme {
-    /// What no field goes beyond.
-    pub(super) const fn start(self) -> f32 {
-        match self {
-            Self::Largest => f32::MIN,
-            Self::Smallest => f32::MAX,
-        }
-    }
-
-    pub(super) fn of(self, builder: &mut FunctionBuilder, a: Value, b: Value) -> Value {
-        match self {
-            Self::Largest => builder.max(a, b),
-            Self::Smallest => builder.min(a, b),
-        }
-    }
-
-    pub(super) const fn decision(self) -> DecisionKind {
-        match self {
-            Self::Largest => DecisionKind::UnionOperand,
-            Self::Smallest => DecisionKind::IntersectionOperand,
-        }
-    }
 }
 
 /// The probes of a guide function.

@@ -6,11 +6,11 @@
 
 use jbt_ir::{Table, Value};
 
-use super::parts::{Extreme, Operand, Probe, Probes};
+use super::parts::{Operand, Probe, Probes};
 use super::{Emitter, TableCode};
+use crate::combine::{Extreme, ReduceCode};
 use crate::lower::guide::{DecidedRows, Decision, DecisionKind};
 use crate::lower::occurrence::{OccurrenceId, SpaceId};
-use crate::lower::reducer::ReducerCode;
 
 impl Probes {
     /// The first of the three probes of the point in a space.
@@ -120,13 +120,10 @@ impl Emitter<'_> {
 
     /// What to keep of operands that are about to become rows, so that each may be left out while it is not
     /// zero. Supports say nothing about formulas; of other rows they say enough.
-    pub(super) fn decides_rows(&mut self, code: ReducerCode, member: OccurrenceId) -> Option<Extreme> {
+    pub(super) fn decides_rows(&mut self, code: ReduceCode, member: OccurrenceId) -> Option<Extreme> {
         let extreme = match code {
-            ReducerCode::Union => Extreme::Largest,
-            ReducerCode::Intersection => Extreme::Smallest,
-            ReducerCode::Sum | ReducerCode::Ricci(_) | ReducerCode::Product | ReducerCode::Step(_) => {
-                return None;
-            }
+            ReduceCode::Choice(extreme) => extreme,
+            ReduceCode::Fold(_) | ReduceCode::Step(_) => return None,
         };
         (self.shapes.holds_formulas(member) && self.probes_here().is_some()).then_some(extreme)
     }

@@ -2,6 +2,8 @@
 
 use jbt_ir::{Domain, FunctionBuilder, Value};
 
+use crate::attribute::Mixing;
+
 /// One attribute group of an answer.
 #[derive(Clone, Debug)]
 pub(in crate::lower) struct GroupAnswer {
@@ -91,4 +93,28 @@ impl GroupState {
         let share = self.best.map(|best| d.div(best, total));
         GroupAnswer { channels, share, numbers: false }
     }
+}
+
+/// The accumulators of all groups before the first operand. `weighs`: operands are weighed; `ordered`: ties
+/// need their order in the file.
+pub(super) fn group_states(
+    zero: Value,
+    mixing: &[Mixing],
+    defaults: &[Vec<Value>],
+    weighs: bool,
+    ordered: bool,
+) -> Vec<GroupState> {
+    let of = |(default, mixing): (&Vec<Value>, &Mixing)| match mixing {
+        Mixing::Blend => GroupState {
+            channels: if weighs { vec![zero; default.len()] } else { default.clone() },
+            best: None,
+            order: None,
+        },
+        Mixing::Dominant => GroupState {
+            channels: default.clone(),
+            best: Some(zero),
+            order: (weighs && ordered).then_some(zero),
+        },
+    };
+    defaults.iter().zip(mixing).map(of).collect()
 }

@@ -7,10 +7,10 @@ use rustc_hash::FxHashMap as HashMap;
 use super::asked;
 use super::{
     BindingsId, Bound, FieldId, Inside, LeafCode, LeafField, Occurrence, OccurrenceId, OccurrenceKind,
-    PositionId, Reducer, Scene, SpaceId, children,
+    PositionId, Scene, SpaceId, children,
 };
 use crate::check::{CheckedTree, NodeId};
-use crate::combine::{Combinator, Form};
+use crate::combine::{Combinator, Extreme, Form, ReduceCode, Union};
 use crate::expression::Expression;
 use crate::kind::{NodeKind, Primitive, chosen};
 use crate::lower::computed::share;
@@ -295,28 +295,13 @@ impl<'a> Finder<'a> {
         position: PositionId,
         children: Vec<OccurrenceId>,
     ) -> OccurrenceKind {
-        let reducer = match combinator {
-            Combinator::Sum => Reducer::Sum,
-            Combinator::Ricci(n) if self.scene.tree.written(node).is_some() => Reducer::RicciFollowing(n),
-            Combinator::Ricci(1.0) => Reducer::Sum,
-            Combinator::Ricci(n) => Reducer::Ricci(n),
-            Combinator::Product => Reducer::Product,
-            Combinator::Union => Reducer::Union,
-            Combinator::Intersection => Reducer::Intersection,
-            Combinator::Difference
-            | Combinator::SymmetricDifference
-            | Combinator::Smooth(..)
-            | Combinator::RFunction(..)
-            | Combinator::Complement
-            | Combinator::Clamp { .. }
-            | Combinator::Shell(_)
-            | Combinator::Offset(_) => match (combinator.form(), combinator.step()) {
-                (Form::Map(kind), _) => return OccurrenceKind::Map { kind, child: children[0] },
-                (_, Some((kind, number))) => Reducer::Step(kind, number),
-                (_, None) => return self.difference(node, position, &children),
-            },
-        };
-        OccurrenceKind::Reduce { reducer, children }
+        let follows = self.scene.tree.written(node).is_some();
+        let operator = if follows { combinator } else { combinator.simplest() };
+        match operator.form(follows) {
+            Form::Reduce(code) => OccurrenceKind::Reduce { operator, code, children },
+            Form::Difference => self.difference(node, position, &children),
+            Form::Map(code) => OccurrenceKind::Map { code, child: children[0] },
+        }
     }
 
     /// The field of a leaf at a position.
@@ -347,8 +332,9 @@ impl<'a> Finder<'a> {
         let right = match children[1..] {
             [only] => only,
             _ => {
-                let children = children[1..].to_vec();
-                self.push(node, position, OccurrenceKind::Reduce { reducer: Reducer::Union, children })
+                let (operator, children) = (Union {}.into(), children[1..].to_vec());
+                let code = ReduceCode::Choice(Extreme::Largest);
+                self.push(node, position, OccurrenceKind::Reduce { operator, code, children })
             }
         };
         OccurrenceKind::Difference { left: children[0], right }
@@ -378,9 +364,9 @@ impl<'a> Finder<'a> {
             }
             OccurrenceKind::Warp { child, .. } => of(child),
             OccurrenceKind::Difference { left, .. } => of(left),
-            OccurrenceKind::Map { kind, child } => {
+            OccurrenceKind::Map { child, .. } => {
                 let fixed = self.scene.tree.written(node).is_none();
-                kind.is_non_negative(of(child), &self.scene.combinator(node).numbers(), fixed)
+                self.scene.combinator(node).is_non_negative(&mut std::iter::once(of(child)), fixed)
             }
             OccurrenceKind::Expression { children, .. } => {
                 let signs: Vec<bool> = children.iter().map(of).collect();
@@ -389,12 +375,10 @@ impl<'a> Finder<'a> {
                 self.scene.expression(node).form().non_negative(&signs, positive)
             }
             OccurrenceKind::Select { children, .. } => children.iter().all(of),
-            OccurrenceKind::Reduce { reducer, children } => match reducer {
-                Reducer::Sum | Reducer::Product | Reducer::Intersection => children.iter().all(of),
-                Reducer::Ricci(_) | Reducer::RicciFollowing(_) => true,
-                Reducer::Union => children.iter().any(of),
-                Reducer::Step(kind, _) => kind.is_non_negative(children.iter().map(of)),
-            },
+            OccurrenceKind::Reduce { operator, children, .. } => {
+                let fixed = self.scene.tree.written(node).is_none();
+                operator.is_non_negative(&mut children.iter().map(of), fixed)
+            }
         }
     }
 
@@ -405,9 +389,7 @@ impl<'a> Finder<'a> {
             OccurrenceKind::Expression { .. } => true,
             OccurrenceKind::Warp { child, .. } => of(child),
             OccurrenceKind::Select { children, .. }
-            | OccurrenceKind::Reduce { reducer: Reducer::Union | Reducer::Intersection, children } => {
-                children.iter().all(of)
-            }
+            | OccurrenceKind::Reduce { code: ReduceCode::Choice(_), children, .. } => children.iter().all(of),
             OccurrenceKind::Leaf { .. }
             | OccurrenceKind::Difference { .. }
             | OccurrenceKind::Map { .. }

@@ -2,12 +2,11 @@
 
 use std::sync::Arc;
 
-use crate::combine::unary::UnaryKind;
+use crate::combine::{MapCode, ReduceCode};
 use crate::expression::Form;
 use crate::lower::computed::ComputedShape;
 use crate::lower::occurrence::{FieldId, LeafCode, OccurrenceId, SpaceId};
 use crate::lower::position::MapKind;
-use crate::lower::reducer::ReducerCode;
 use crate::warp::WarpCode;
 
 /// The name of a shape.
@@ -28,7 +27,7 @@ pub(super) enum ShapeKey {
         pinned: Option<SpaceId>,
     },
     Reduce {
-        code: ReducerCode,
+        code: ReduceCode,
         non_negative: bool,
         groups: Vec<(ShapeId, usize)>,
     },
@@ -37,7 +36,7 @@ pub(super) enum ShapeKey {
         right: ShapeId,
     },
     Map {
-        kind: UnaryKind,
+        code: MapCode,
         child: ShapeId,
     },
     /// A use of a space that several lead into.

@@ -97,7 +97,13 @@ fn weights(k: f64, is_union: bool) -> impl Fn(f64, f64) -> [f64; 2] + Copy {
     }
 }
 
-pub(super) fn smooth() -> Vec<Row> {
+/// Rows of one of the smooth set operations.
+pub(super) fn smooth(set: &str) -> Vec<Row> {
+    let word = format!("smooth_{set} ");
+    all_smooth().into_iter().filter(|row| row.text.contains(&word)).collect()
+}
+
+fn all_smooth() -> Vec<Row> {
     let text = |operator: &str, k: f64| format!("smooth_{operator} {k} {{ {RED} {BLUE} }}");
     let of_unions = [("a narrow union", 0.25), ("a wide union", 0.5), ("a union wider than the fields", 2.0)];
     let of_intersections = [
@@ -229,7 +235,13 @@ fn lone(f: f64) -> f64 {
     0.5 * (1.0 - (x - 1.0 + x.hypot(1.0)) / (2.0f64.sqrt() - 2.0))
 }
 
-pub(super) fn rfunctions() -> Vec<Row> {
+/// Rows of one family of R-functions; alpha is the one that is taken if none is written.
+pub(super) fn rfunctions(family: &str) -> Vec<Row> {
+    let of = |text: &str| ["power", "order"].into_iter().find(|word| text.contains(&format!(" {word} ")));
+    all_rfunctions().into_iter().filter(|row| of(&row.text).unwrap_or("alpha") == family).collect()
+}
+
+fn all_rfunctions() -> Vec<Row> {
     let families: [(&str, Rvachev, &[f64]); 3] = [
         ("alpha", alpha, &[-0.9, 0.0, 0.5]),
         ("order", order, &[1.0, 2.0, 4.0]),
