@@ -14,8 +14,8 @@ use jbt::{CheckedTree, Compiler, Query, Update};
 use jbt_benches::check;
 use jbt_benches::compare::sample;
 use jbt_benches::model::{cube, varied};
-use jbt_frontend::import::vm;
-use jbt_frontend::lower::lower;
+use jbt_lower::lower;
+use jbt_text::import::vm;
 
 fn compile(c: &mut Criterion) {
     let mut group = c.benchmark_group("compile");

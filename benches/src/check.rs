@@ -1,8 +1,8 @@
 //! The checks that answers have to pass before anything is timed.
 
 use jbt::{Evaluator, Points, Polygonized};
-use jbt_frontend::check::CheckedTree;
-use jbt_frontend::walk::{walk, walk_gradient};
+use jbt_model::check::CheckedTree;
+use jbt_model::walk::{walk, walk_gradient};
 
 /// Compares the field with the f64 oracle at some of the points. Panics where it is off.
 pub fn field(tree: &CheckedTree, evaluator: &Evaluator, points: &Points) {

@@ -4,11 +4,11 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use jbt::{Compiler, Engine, Query};
-use jbt_frontend::attribute::AttributeGroup;
-use jbt_frontend::bounds::Bounds;
-use jbt_frontend::check::CheckedTree;
-use jbt_frontend::diagnostic::escape;
-use jbt_frontend::kind::NodeKind;
+use jbt_model::attribute::AttributeGroup;
+use jbt_model::bounds::Bounds;
+use jbt_model::check::CheckedTree;
+use jbt_model::diagnostic::escape;
+use jbt_model::kind::NodeKind;
 use serde_json::{Map, Value, json};
 
 use crate::arguments::{CheckArguments, SceneArguments};

@@ -8,7 +8,7 @@ use jbt::export::svg::{Paint, Style, write_svg};
 use jbt::export::write_png;
 use jbt::mesh::LatticeError;
 use jbt::{CheckedTree, Fineness, ModelOrigin, Query};
-use jbt_frontend::diagnostic::{Diagnostic, escape};
+use jbt_model::diagnostic::{Diagnostic, escape};
 use serde_json::{Value, json};
 
 use crate::arguments::{ContourArguments, ModeName, PaintName};

@@ -21,9 +21,9 @@ use std::fmt::Write as _;
 use jbt::mesh::Lattice;
 use jbt::statistics::{PerPoint, Statistics, Supports, SupportsError, walks};
 use jbt::{Compiler, Engine, MeshCounters, ModelOrigin, Polygonize, PolygonizeError, Query};
-use jbt_frontend::check::CheckedTree;
-use jbt_frontend::diagnostic::Source;
-use jbt_frontend::kind::NodeKind;
+use jbt_model::check::CheckedTree;
+use jbt_model::diagnostic::Source;
+use jbt_model::kind::NodeKind;
 use serde_json::{Value, json};
 
 use crate::arguments::CountArguments;
@@ -155,7 +155,7 @@ struct Leaf {
 fn leaves(scene: &Scene, tree: &CheckedTree) -> Vec<Leaf> {
     let uses = tree.asked();
     let lines = Lines::new(scene.source());
-    let leaf = |(index, node): (usize, &jbt_frontend::check::CheckedNode)| match &node.kind {
+    let leaf = |(index, node): (usize, &jbt_model::check::CheckedNode)| match &node.kind {
         NodeKind::Primitive(primitive) => Some(Leaf {
             node: index as u32,
             kind: primitive.skeleton.kind().name(),

@@ -2,7 +2,7 @@
 
 use jbt::mesh::{Lattice, LatticeError, MeshError};
 use jbt::{Box3, Fineness, ModelOrigin, Polygonize, PolygonizeError};
-use jbt_frontend::diagnostic::Diagnostic;
+use jbt_model::diagnostic::Diagnostic;
 
 use crate::arguments::LatticeArguments;
 use crate::failure::Failure;

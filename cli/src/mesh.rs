@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use jbt::export::{self, ColorEncoding, ExportError, ExportOptions, Format};
 use jbt::mesh::ThinReport;
 use jbt::{MeshCounters, ModelOrigin, Polygonize, Polygonized};
-use jbt_frontend::diagnostic::escape;
+use jbt_model::diagnostic::escape;
 use serde_json::json;
 
 use crate::arguments::MeshArguments;

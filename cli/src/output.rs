@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use clap::builder::styling::{AnsiColor, Style};
 use jbt::export::AtomicFile;
-use jbt_frontend::diagnostic::{Severity, escape};
+use jbt_model::diagnostic::{Severity, escape};
 
 use crate::failure::Failure;
 use crate::standard::is_standard;

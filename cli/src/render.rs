@@ -6,7 +6,7 @@ use jbt::ModelOrigin;
 use jbt::export::write_png;
 use jbt::render::{Camera, Mode, Render, RenderError, Rendered, Report as Taken, Stance, View};
 use jbt::solid::{BoundsError, RegionError};
-use jbt_frontend::diagnostic::escape;
+use jbt_model::diagnostic::escape;
 use serde_json::json;
 
 use crate::arguments::{GroundName, RenderArguments};

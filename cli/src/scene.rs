@@ -4,8 +4,8 @@ use std::io;
 
 use jbt::text::Options;
 use jbt::{Compiler, Evaluator, Model, Query};
-use jbt_frontend::check::CheckedTree;
-use jbt_frontend::diagnostic::{Severity, Source, SourceText};
+use jbt_model::check::CheckedTree;
+use jbt_model::diagnostic::{Severity, Source, SourceText};
 
 use crate::arguments::SceneArguments;
 use crate::failure::Failure;

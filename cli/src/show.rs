@@ -4,9 +4,9 @@ use jbt::ir::pass::GRADIENT;
 use jbt::ir::{Function, Straight};
 use jbt::kernel::{Purpose, optimise, optimise_straight, passes, straighten};
 use jbt::{CompileError, Level, Query};
-use jbt_frontend::diagnostic::escape;
-use jbt_frontend::lower::{Lowered, lower};
-use jbt_frontend::text;
+use jbt_lower::{Lowered, lower};
+use jbt_model::diagnostic::escape;
+use jbt_text as text;
 
 use crate::arguments::{LevelName, ShowArguments};
 use crate::failure::Failure;

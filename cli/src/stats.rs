@@ -13,8 +13,8 @@ use std::time::{Duration, Instant};
 use jbt::divide::DivideError;
 use jbt::solid::{BoundsError, Level, Measure, MeasureError, Measures, RegionError, Solid, TightBounds};
 use jbt::{Box3, Compiler, Fineness, ModelOrigin, Polygonize};
-use jbt_frontend::bounds::Bounds;
-use jbt_frontend::diagnostic::{Diagnostic, escape};
+use jbt_model::bounds::Bounds;
+use jbt_model::diagnostic::{Diagnostic, escape};
 use serde_json::{Value, json};
 
 use crate::arguments::StatsArguments;

@@ -22,7 +22,7 @@ mod solid;
 use std::error::Error;
 
 use jbt::{Evaluator, Query, text};
-use jbt_frontend::traverse::Visit;
+use jbt_model::traverse::Visit;
 
 use solid::{Material, model, monocle};
 

@@ -1,6 +1,6 @@
 //! Samples, as structures of arrays: one plane of numbers for each answer.
 
-use jbt_frontend::attribute::AttributeGroup;
+use jbt_model::attribute::AttributeGroup;
 
 /// Which plane holds what: the field first, then the gradient, then the attributes, as far as they were asked
 /// for.

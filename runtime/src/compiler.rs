@@ -3,9 +3,9 @@
 use std::fmt;
 use std::sync::{Arc, Mutex};
 
-use jbt_frontend::lower::{Lowered, Lowering};
-use jbt_frontend::query::Query;
 use jbt_ir::{Function, Level, Tables, limits};
+use jbt_lower::{Lowered, Lowering};
+use jbt_model::query::Query;
 
 use crate::error::CompileError;
 use crate::kernel::{Engine, Kernel, Purpose, Wish, optimise, optimise_straight, straighten};

@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use jbt_frontend::query::Query;
+use jbt_model::query::Query;
 
 /// Walks of the tree that separate evaluations take: 1 for the field; 4 more for the gradient by forward
 /// differences, at the point and a step along each axis; 1 more for the attributes.

@@ -1,7 +1,7 @@
 //! Why a model has no evaluator.
 
-use jbt_frontend::diagnostic::Diagnostics;
 use jbt_ir::VerifyError;
+use jbt_model::diagnostic::Diagnostics;
 
 /// Why a model could not be compiled.
 #[derive(Clone, Debug, thiserror::Error)]

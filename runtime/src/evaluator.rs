@@ -5,12 +5,12 @@ use std::fmt;
 use std::sync::{Arc, OnceLock};
 
 use crate::parallel::*;
-use jbt_frontend::check::{CheckedTree, NodeId};
-use jbt_frontend::lower::Lowering;
-use jbt_frontend::origin::ModelOrigin;
-use jbt_frontend::query::Query;
 use jbt_ir::domain::counting::{Evaluations, evaluations, of_selection};
 use jbt_ir::{Selection, Tables, Verified};
+use jbt_lower::Lowering;
+use jbt_model::check::{CheckedTree, NodeId};
+use jbt_model::origin::ModelOrigin;
+use jbt_model::query::Query;
 
 use crate::buffer::{Layout, Samples};
 use crate::compiler::Compiler;

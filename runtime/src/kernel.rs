@@ -12,14 +12,14 @@ use std::fmt;
 use std::str::FromStr;
 use std::sync::{Arc, Mutex, OnceLock};
 
-use jbt_frontend::diagnostic::Diagnostic;
-use jbt_frontend::query::Query;
 use jbt_ir::domain::counting::{evaluations_per_row, ops_per_row};
 use jbt_ir::domain::lanes::{Scratch, Tape};
 use jbt_ir::domain::scalar::Scalar;
 use jbt_ir::level::{self, Level};
 use jbt_ir::pass::{GRADIENT, GUARDED_GRADIENT, INTERVAL, PIPELINE, Pass, dce, run_pipeline};
 use jbt_ir::{Function, Selection, Straight, Tables, Verified, interpret, limits, verify};
+use jbt_model::diagnostic::Diagnostic;
+use jbt_model::query::Query;
 
 use crate::error::{CompileError, EvalError};
 use crate::word::{UnknownWord, find};

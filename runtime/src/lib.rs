@@ -120,23 +120,23 @@ pub use jbt_ir as ir;
 #[cfg(feature = "jit")]
 pub use jbt_jit as jit;
 
-pub use jbt_frontend::attribute::{AttributeGroup, Mixing};
-pub use jbt_frontend::builder as build;
-pub use jbt_frontend::check::{CheckedTree, NodeId};
-pub use jbt_frontend::combine::{self, Combinator, SetOperation};
-pub use jbt_frontend::diagnostic::{self, Diagnostic, Diagnostics};
-pub use jbt_frontend::falloff::Falloff;
-pub use jbt_frontend::import;
-pub use jbt_frontend::model::Model;
-pub use jbt_frontend::number::Number;
-pub use jbt_frontend::origin::ModelOrigin;
-pub use jbt_frontend::parameter::Parameter;
-pub use jbt_frontend::query::Query;
-pub use jbt_frontend::text;
-pub use jbt_frontend::tree::Tree;
-pub use jbt_frontend::walk;
 pub use jbt_ir::level::{self, Level};
 pub use jbt_ir::limits;
+pub use jbt_model::attribute::{AttributeGroup, Mixing};
+pub use jbt_model::builder as build;
+pub use jbt_model::check::{CheckedTree, NodeId};
+pub use jbt_model::combine::{self, Combinator, SetOperation};
+pub use jbt_model::diagnostic::{self, Diagnostic, Diagnostics};
+pub use jbt_model::falloff::Falloff;
+pub use jbt_model::model::Model;
+pub use jbt_model::number::Number;
+pub use jbt_model::origin::ModelOrigin;
+pub use jbt_model::parameter::Parameter;
+pub use jbt_model::query::Query;
+pub use jbt_model::tree::Tree;
+pub use jbt_model::walk;
+pub use jbt_text as text;
+pub use jbt_text::import;
 
 pub use buffer::{Layout, Samples};
 pub use compiler::Compiler;

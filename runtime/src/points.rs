@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use jbt_frontend::origin::ModelOrigin;
+use jbt_model::origin::ModelOrigin;
 
 /// A point of f32: an array, or a type of another library (features `glam` and `mint`).
 pub trait AsPoint {

@@ -10,7 +10,7 @@ mod kernels;
 
 use std::time::{Duration, Instant};
 
-use jbt_frontend::check::CheckedTree;
+use jbt_model::check::CheckedTree;
 
 use crate::compiler::Compiler;
 use crate::counter::Counters;
@@ -263,7 +263,7 @@ impl Polygonize {
 
 #[cfg(test)]
 mod tests {
-    use jbt_frontend::text::{Options, parse};
+    use jbt_text::{Options, parse};
 
     use super::*;
 

@@ -4,12 +4,12 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use jbt_frontend::check::CheckedTree;
-use jbt_frontend::diagnostic::{Diagnostic, Diagnostics, SourceText};
-use jbt_frontend::import::{Imported, parsip, vm};
-use jbt_frontend::model::Model;
-use jbt_frontend::text::{self, Options};
 use jbt_ir::limits::MAX_SCENE_BYTES;
+use jbt_model::check::CheckedTree;
+use jbt_model::diagnostic::{Diagnostic, Diagnostics, SourceText};
+use jbt_model::model::Model;
+use jbt_text::import::{Imported, parsip, vm};
+use jbt_text::{self, Options};
 
 /// A scene that was read: its model, and what is odd about its text.
 ///
@@ -167,9 +167,8 @@ impl Scene {
             return Err(too_large(name));
         }
         let imported = match format {
-            SceneFormat::Jbt => {
-                text::parse(bytes, options).map(|model| Imported { model, warnings: Diagnostics::default() })
-            }
+            SceneFormat::Jbt => jbt_text::parse(bytes, options)
+                .map(|model| Imported { model, warnings: Diagnostics::default() }),
             SceneFormat::Parsip | SceneFormat::Vm => {
                 if let Some((parameter, _)) = options.parameters.first() {
                     return Err(fixed(name, format, parameter));
@@ -209,7 +208,7 @@ fn fixed(name: &str, format: SceneFormat, parameter: &str) -> Diagnostics {
 mod tests {
     use std::io;
 
-    use jbt_frontend::diagnostic::Severity;
+    use jbt_model::diagnostic::Severity;
 
     use super::*;
 

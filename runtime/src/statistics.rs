@@ -14,9 +14,9 @@
 use std::collections::BTreeMap;
 
 use crate::parallel::*;
-use jbt_frontend::check::CheckedTree;
-use jbt_frontend::lower::LeafOccurrences;
-use jbt_frontend::query::Query;
+use jbt_lower::LeafOccurrences;
+use jbt_model::check::CheckedTree;
+use jbt_model::query::Query;
 
 use crate::compiler::Compiler;
 pub use crate::counter::walks;

@@ -36,20 +36,20 @@
 //! Values of nodes are best read by [`Skeleton::to_fields`] and its kind, and by [`NodeKind::rows`]: the
 //! structures in their variants are those of the compiler, in vectors of its own glam.
 
-pub use jbt_frontend::attribute::{AttributeValue, Textured, UvMap};
-pub use jbt_frontend::check::CheckedNode;
-pub use jbt_frontend::combine::{Combinator, CombinatorKind, SetOperation, Syntax};
-pub use jbt_frontend::expression::Expression;
-pub use jbt_frontend::falloff::{Falloff, FalloffKind};
-pub use jbt_frontend::field::{Field, FieldKind, FieldValue};
-pub use jbt_frontend::kind::{NodeKind, Primitive};
-pub use jbt_frontend::map::MapKind;
-pub use jbt_frontend::member::{Lengths, Matrix, Member, Positions};
-pub use jbt_frontend::skeleton::{Skeleton, SkeletonKind};
-pub use jbt_frontend::texture::{Texture, TextureKind};
-pub use jbt_frontend::traverse::Visit;
-pub use jbt_frontend::tree::{Node, Tree};
-pub use jbt_frontend::warp::{Warp, WarpKind};
-pub use jbt_frontend::written::{
+pub use jbt_model::attribute::{AttributeValue, Textured, UvMap};
+pub use jbt_model::check::CheckedNode;
+pub use jbt_model::combine::{Combinator, CombinatorKind, SetOperation, Syntax};
+pub use jbt_model::expression::Expression;
+pub use jbt_model::falloff::{Falloff, FalloffKind};
+pub use jbt_model::field::{Field, FieldKind, FieldValue};
+pub use jbt_model::kind::{NodeKind, Primitive};
+pub use jbt_model::map::MapKind;
+pub use jbt_model::member::{Lengths, Matrix, Member, Positions};
+pub use jbt_model::skeleton::{Skeleton, SkeletonKind};
+pub use jbt_model::texture::{Texture, TextureKind};
+pub use jbt_model::traverse::Visit;
+pub use jbt_model::tree::{Node, Tree};
+pub use jbt_model::warp::{Warp, WarpKind};
+pub use jbt_model::written::{
     FieldNumber, Radius, Written, WrittenAttribute, WrittenFalloff, WrittenTextured, WrittenUv,
 };

@@ -4,7 +4,7 @@
 use jbt::ir::domain::scalar::Scalar;
 use jbt::ir::{Entity, FoldKind, Rule, Tables, interpret};
 use jbt::{Compiler, Engine, Evaluator, Query};
-use jbt_frontend::text::{Options, parse};
+use jbt_text::{Options, parse};
 
 /// A sum and a Ricci blend of points and segments with colours, strengths of both signs and another
 /// attribute.

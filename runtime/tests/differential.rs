@@ -20,11 +20,11 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use common::{HOSTILE, Random, points};
 use jbt::{Combinator, Compiler, Engine, Evaluator, Level, Model, Points, Query, Samples, Update};
-use jbt_frontend::check::CheckedTree;
-use jbt_frontend::kind::NodeKind;
-use jbt_frontend::text::print;
-use jbt_frontend::walk::{walk, walk_gradient};
-use jbt_frontend::warp::Warp;
+use jbt_model::check::CheckedTree;
+use jbt_model::kind::NodeKind;
+use jbt_model::walk::{walk, walk_gradient};
+use jbt_model::warp::Warp;
+use jbt_text::print;
 use rayon::prelude::*;
 
 const SHAPES: u64 = 400;

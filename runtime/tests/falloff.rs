@@ -5,7 +5,7 @@ use jbt::build::{Edge, Term, arctan, blanc, blinn, degree, inverse_power, param,
 use jbt::region::Divisible;
 use jbt::walk::{walk, walk_gradient};
 use jbt::{Box3, Compiler, Engine, Falloff, Model, Points, Pruner, Query, Samples, Tree, Update};
-use jbt_frontend::written::WrittenFalloff;
+use jbt_model::written::WrittenFalloff;
 
 /// Every falloff, those with parameters with several.
 fn falloffs() -> Vec<WrittenFalloff> {

@@ -6,8 +6,8 @@ mod solid;
 
 use jbt::text::{Options, parse, print};
 use jbt::{Evaluator, Model, Query};
-use jbt_frontend::traverse::Visit;
-use jbt_frontend::walk::walk;
+use jbt_model::traverse::Visit;
+use jbt_model::walk::walk;
 
 use solid::{Material, model, monocle};
 

@@ -2,8 +2,8 @@
 
 use jbt::statistics::leaf_uses;
 use jbt::{Compiler, Engine, Query};
-use jbt_frontend::check::CheckedTree;
-use jbt_frontend::text;
+use jbt_model::check::CheckedTree;
+use jbt_text as text;
 
 /// Every scene of the examples folder, and one that shares what none of them does.
 fn examples() -> Vec<(String, CheckedTree)> {
@@ -68,7 +68,7 @@ fn coloured_parts_have_the_values_of_the_oracle() {
         let colors = samples.attribute("color").expect("it has colours");
         let mut compared = 0;
         for index in 0..points.len() {
-            let oracle = jbt_frontend::walk::walk(tree, points.get(index).map(f64::from));
+            let oracle = jbt_model::walk::walk(tree, points.get(index).map(f64::from));
             let field = f64::from(samples.field()[index]);
             assert!((field - oracle.field).abs() < 1e-4, "{name}: {field}, not {}", oracle.field);
             if oracle.kink_distance < 1e-3 || field < 1e-3 {
@@ -87,7 +87,7 @@ fn coloured_parts_have_the_values_of_the_oracle() {
 /// Distances by an independent count: every path from the root to a leaf with the map that it goes through,
 /// each pair once.
 fn occurrences(tree: &CheckedTree) -> u64 {
-    use jbt_frontend::kind::NodeKind;
+    use jbt_model::kind::NodeKind;
     let mut found = std::collections::HashSet::new();
     let mut stack = vec![(tree.root(), String::new(), glam::DAffine3::IDENTITY)];
     while let Some((id, mut warps, mut map)) = stack.pop() {
@@ -144,7 +144,7 @@ fn each_occurrence_is_evaluated_once_for_any_query() {
 fn a_leaf_that_is_computed_twice_is_counted_twice() {
     use jbt::ir::domain::counting::evaluations;
     let (_, tree) = examples().swap_remove(0);
-    let lowered = jbt_frontend::lower::lower(&tree, Query::FIELD).expect("examples compile");
+    let lowered = jbt_lower::lower(&tree, Query::FIELD).expect("examples compile");
     let function = jbt::ir::verify(lowered.function).expect("lowering keeps the rules");
     let before = evaluations(&function, &lowered.tables).total;
     // Running a row twice is what a lowering that forgets about sharing does.

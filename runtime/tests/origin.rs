@@ -26,7 +26,7 @@ use jbt::{
     Box3, CheckedTree, Compiler, Engine, Evaluator, Fineness, Model, ModelOrigin, Points, Polygonize,
     Polygonized, Pruner, Query, Ray, Samples, Tracer, Tree,
 };
-use jbt_frontend::walk::{walk, walk_gradient};
+use jbt_model::walk::{walk, walk_gradient};
 use rayon::prelude::*;
 
 /// A place where f32 has steps of 0.008.

@@ -3,8 +3,8 @@
 
 use jbt::build::{Axis, Number, param, point};
 use jbt::{CheckedTree, Compiler, Engine, Evaluator, Model, Points, Query, Samples, Update};
-use jbt_frontend::text::{Options, parse, print};
-use jbt_frontend::walk::walk;
+use jbt_model::walk::walk;
+use jbt_text::{Options, parse, print};
 
 /// Models with the parameter `p`, each in another place that numbers can have.
 const SWEPT: [(&str, f64, f64, &str); 26] = [

@@ -5,7 +5,7 @@
 mod common;
 
 use jbt::{Compiler, Engine, Points, Query};
-use jbt_frontend::import;
+use jbt_text::import;
 
 /// Field absolute, gradient relative to `1 + |g|`, colour absolute.
 const FIELD: f64 = 2e-5;

@@ -19,8 +19,8 @@ use jbt::divide::Edit;
 use jbt::prune::Region;
 use jbt::region::{ANYTHING, Divisible};
 use jbt::{Box3, CheckedTree, Compiler, Engine, Evaluator, Model, Points, Pruner, Query, Update};
-use jbt_frontend::text::{Options, parse, print};
-use jbt_frontend::tree::Tree;
+use jbt_model::tree::Tree;
+use jbt_text::{Options, parse, print};
 use rayon::prelude::*;
 
 const SHAPES: u64 = 250;

@@ -2,7 +2,7 @@
 //! the only ones.
 
 use jbt::{Compiler, Polygonize};
-use jbt_frontend::text::{Options, parse};
+use jbt_text::{Options, parse};
 
 fn readme() -> String {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../README.md");

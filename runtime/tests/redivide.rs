@@ -4,7 +4,7 @@ use jbt::divide::{Cell, Decision, Division, Edit, Limits, divide};
 use jbt::prune::Region;
 use jbt::region::Divisible;
 use jbt::{Box3, Compiler, Engine, EvalError, Model, Pruner};
-use jbt_frontend::tree::Tree;
+use jbt_model::tree::Tree;
 
 /// Centres and radii of many small blobs in [-1, 1]^3.
 fn blobs(count: usize) -> Vec<([f64; 3], f64)> {

@@ -3,7 +3,7 @@
 use jbt::mesh::Lattice;
 use jbt::sample::{SampleError, Sampler, Wanted};
 use jbt::{CancelToken, CheckedTree, Compiler, Engine, Points, Query};
-use jbt_frontend::text::{Options, parse};
+use jbt_text::{Options, parse};
 
 fn tree(text: &str) -> CheckedTree {
     parse(text.as_bytes(), &Options::default()).unwrap().check().unwrap()

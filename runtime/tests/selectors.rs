@@ -4,8 +4,8 @@
 use jbt::build::{param, point};
 use jbt::statistics::leaf_uses;
 use jbt::{CheckedTree, Compiler, Engine, Evaluator, Model, Points, Query, Samples, Tree, Update};
-use jbt_frontend::text::{Options, parse, print};
-use jbt_frontend::walk::walk;
+use jbt_model::walk::walk;
+use jbt_text::{Options, parse, print};
 
 /// Children of many kinds: leaves, blends, cuts, maps, warps, attributes of both ways to mix.
 const CHILDREN: [&str; 7] = [

@@ -6,8 +6,8 @@ use jbt::solid::{
 use jbt::text::{Options, parse};
 use jbt::walk::walk;
 use jbt::{Box3, CancelToken, CheckedTree, Compiler, Engine, Fineness, Points, Polygonize};
-use jbt_frontend::check::NodeId;
-use jbt_frontend::kind::NodeKind;
+use jbt_model::check::NodeId;
+use jbt_model::kind::NodeKind;
 
 const BALL: &str = "jbt 1 point { surface_radius 1 }";
 const TORUS: &str = "jbt 1 translate (1 2 3) { ring { ring_radius 1 surface_radius 0.25 } }";
@@ -513,7 +513,7 @@ fn a_long_chain_has_an_owner() {
     let depth = 100_000;
     let text = format!("jbt 1 {}point {{ radius 1 }}{}", "color (1 0 0) { ".repeat(depth), "}".repeat(depth));
     let tree = tree(&text);
-    let owner = jbt_frontend::owner::owner(&tree, [0.0; 3]).unwrap();
+    let owner = jbt_model::owner::owner(&tree, [0.0; 3]).unwrap();
     assert_eq!(owner.above.len(), depth);
     assert_eq!(owner.path(&tree).len(), depth * "color.0/".len() + "point".len());
 }

@@ -4,11 +4,11 @@ use glam::{DAffine3, DVec3};
 use jbt::mesh::Lattice;
 use jbt::statistics::{PerPoint, Statistics, Supports, SupportsError};
 use jbt::{CancelToken, Compiler, Fineness, Polygonize, Query};
-use jbt_frontend::check::{CheckedTree, NodeId};
-use jbt_frontend::kind::NodeKind;
-use jbt_frontend::text;
-use jbt_frontend::walk::walk;
-use jbt_frontend::warp::Warp;
+use jbt_model::check::{CheckedTree, NodeId};
+use jbt_model::kind::NodeKind;
+use jbt_model::walk::walk;
+use jbt_model::warp::Warp;
+use jbt_text as text;
 
 fn tree(text: &str) -> CheckedTree {
     let model = text::parse(text.as_bytes(), &text::Options::default()).expect("it reads");

@@ -6,8 +6,8 @@ mod common;
 use jbt::ir::Level;
 use jbt::region::Divisible;
 use jbt::{Box3, Compiler, Engine, Evaluator, Points, Pruner, Query, Update};
-use jbt_frontend::check::CheckedTree;
-use jbt_frontend::text::{Options, parse};
+use jbt_model::check::CheckedTree;
+use jbt_text::{Options, parse};
 
 fn tree(text: &str) -> CheckedTree {
     let model = parse(text.as_bytes(), &Options::default()).unwrap_or_else(|e| panic!("{text}\n{e:?}"));

@@ -16,7 +16,7 @@ use jbt::region::{ANYTHING, Divisible as _};
 use jbt::text::{Options, parse, print};
 use jbt::trace::{Hits, Ray, TraceError, Tracer};
 use jbt::{Box3, CheckedTree, Compiler, Engine, Evaluator, Model, Points, Pruner, Query, Samples};
-use jbt_frontend::kind::NodeKind;
+use jbt_model::kind::NodeKind;
 use rayon::prelude::*;
 
 const BALL: &str = "jbt 1 point { surface_radius 1 }";

@@ -10,8 +10,8 @@ use std::time::Instant;
 
 use jbt::region::Divisible;
 use jbt::{Box3, Compiler, Engine, Points, Pruner, Query};
-use jbt_frontend::import::vm;
-use jbt_frontend::walk::walk;
+use jbt_model::walk::walk;
+use jbt_text::import::vm;
 
 /// Of the largest coordinate or value: f32 rounds some thousand times on the way, most of it near 0.
 const BOUND: f64 = 2e-5;

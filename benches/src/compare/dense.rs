@@ -3,7 +3,7 @@
 use fidget::eval::MathFunction;
 use fidget::render::RenderHints;
 use jbt::{Compiler, Engine, Points, Query};
-use jbt_frontend::check::CheckedTree;
+use jbt_model::check::CheckedTree;
 use serde_json::json;
 
 use super::contest::{Contest, Contestant};

@@ -3,8 +3,8 @@
 //! search for parts that are thinner than a cell.
 
 use jbt::{Compiler, Polygonize, Polygonized};
-use jbt_frontend::check::CheckedTree;
-use jbt_frontend::walk::walk;
+use jbt_model::check::CheckedTree;
+use jbt_model::walk::walk;
 use serde_json::json;
 
 use super::contest::{Contest, Contestant};

@@ -6,9 +6,9 @@ use std::time::Instant;
 use jbt::contour::{ImageDetail, Plane, Rectangle, Slicer};
 use jbt::render::{Mode, Render, Renderer, View};
 use jbt::{Box3, Compiler, Fineness, Query};
-use jbt_frontend::check::CheckedTree;
-use jbt_frontend::import;
-use jbt_frontend::walk::walk;
+use jbt_model::check::CheckedTree;
+use jbt_model::walk::walk;
+use jbt_text::import;
 use serde_json::json;
 
 use super::contest::{Contest, Contestant, Standings};

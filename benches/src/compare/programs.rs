@@ -4,9 +4,9 @@
 use fidget::eval::MathFunction;
 use fidget::render::RenderHints;
 use jbt::{Compiler, Engine, Points, Query};
-use jbt_frontend::check::CheckedTree;
-use jbt_frontend::import;
-use jbt_frontend::walk::walk;
+use jbt_model::check::CheckedTree;
+use jbt_model::walk::walk;
+use jbt_text::import;
 use serde_json::json;
 
 use super::contest::{Contest, Contestant, Standings};

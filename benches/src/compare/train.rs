@@ -4,8 +4,8 @@
 use std::cell::RefCell;
 
 use jbt::{Compiler, Points, Query};
-use jbt_frontend::check::CheckedTree;
-use jbt_frontend::import;
+use jbt_model::check::CheckedTree;
+use jbt_text::import;
 use serde_json::json;
 
 use super::contest::{Contest, Contestant, Standings};

@@ -1,6 +1,6 @@
 //! The hand-written loops against the f64 oracle.
 
-use jbt_frontend::walk::{walk, walk_gradient};
+use jbt_model::walk::{walk, walk_gradient};
 
 use crate::model::{blobs, cube, tree};
 

@@ -11,12 +11,12 @@
 use std::rc::Rc;
 
 use glam::{DAffine3, Mat3, Vec3};
-use jbt_frontend::attribute::AttributeValue;
-use jbt_frontend::check::{CheckedTree, NodeId};
-use jbt_frontend::combine::{Combinator, Ricci};
-use jbt_frontend::falloff::Falloff;
-use jbt_frontend::kind::{NodeKind, Primitive};
-use jbt_frontend::warp::Warp;
+use jbt_model::attribute::AttributeValue;
+use jbt_model::check::{CheckedTree, NodeId};
+use jbt_model::combine::{Combinator, Ricci};
+use jbt_model::falloff::Falloff;
+use jbt_model::kind::{NodeKind, Primitive};
+use jbt_model::warp::Warp;
 
 use super::skeleton::Skeleton;
 

@@ -3,13 +3,13 @@
 use std::path::Path;
 
 use jbt::{Model, Points};
-use jbt_frontend::builder::{Axis, cuboid, cylinder, disc, point, ring, segment, triangle};
-use jbt_frontend::check::CheckedTree;
-use jbt_frontend::combine::{Combinator, Difference, Intersection, Ricci, Sum, Union};
-use jbt_frontend::falloff::Falloff;
-use jbt_frontend::text::{Options, parse};
-use jbt_frontend::tree::Tree;
-use jbt_frontend::walk::{walk, walk_gradient};
+use jbt_model::builder::{Axis, cuboid, cylinder, disc, point, ring, segment, triangle};
+use jbt_model::check::CheckedTree;
+use jbt_model::combine::{Combinator, Difference, Intersection, Ricci, Sum, Union};
+use jbt_model::falloff::Falloff;
+use jbt_model::tree::Tree;
+use jbt_model::walk::{walk, walk_gradient};
+use jbt_text::{Options, parse};
 
 use super::{STEP, Walker, separate};
 use crate::model;

@@ -14,9 +14,9 @@
 //! There is no culling: each leaf is evaluated at each point, but leaves out of reach stop at their distance.
 
 use glam::{DVec3, Mat3, Vec3};
-use jbt_frontend::attribute::Mixing;
-use jbt_frontend::check::CheckedTree;
-use jbt_frontend::falloff::Falloff;
+use jbt_model::attribute::Mixing;
+use jbt_model::check::CheckedTree;
+use jbt_model::falloff::Falloff;
 
 use super::compact::{self, Compact, Leaf, Map, Operator, Step, Twist, Warped};
 use super::mixing::{Answer, Frame, Values, root};
@@ -36,7 +36,7 @@ impl Walker {
     /// The walker of a tree. Cost: linear in the number of paths to nodes.
     #[must_use]
     pub fn new(tree: &CheckedTree) -> Self {
-        let follow = |group: &jbt_frontend::attribute::AttributeGroup| {
+        let follow = |group: &jbt_model::attribute::AttributeGroup| {
             vec![group.mixing == Mixing::Dominant; group.width()]
         };
         Self {
@@ -235,7 +235,7 @@ impl Walker {
     fn warped(&self, warped: &Warped, p: DVec3) -> DVec3 {
         match &self.compact.warps[warped.warp as usize] {
             (warp, None) => warp.inverse(p),
-            (warp, Some(weight)) => warp.weighted(p, jbt_frontend::walk::walk(weight, p.to_array()).field),
+            (warp, Some(weight)) => warp.weighted(p, jbt_model::walk::walk(weight, p.to_array()).field),
         }
     }
 

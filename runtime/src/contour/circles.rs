@@ -1,9 +1,9 @@
 //! The circles in which a plane cuts the supports of points: what a picture of a quadtree is drawn over.
 
-use jbt_frontend::affine::{IDENTITY, Similarity};
-use jbt_frontend::check::CheckedTree;
-use jbt_frontend::kind::NodeKind;
-use jbt_frontend::skeleton::Skeleton;
+use jbt_model::affine::{IDENTITY, Similarity};
+use jbt_model::check::CheckedTree;
+use jbt_model::kind::NodeKind;
+use jbt_model::skeleton::Skeleton;
 
 use super::plane::Plane;
 
@@ -65,7 +65,7 @@ mod tests {
             segment { from (0 0 0) to (1 0 0) radius 1 }
             twist axis z rate 1 { point { radius 1 } }
         }";
-        let tree = jbt_frontend::text::parse(text, &Default::default()).unwrap().check().unwrap();
+        let tree = jbt_text::parse(text, &Default::default()).unwrap().check().unwrap();
         let found = circles(&tree, &Plane::default());
         let expected = [([1.0, 0.0], 1.0), ([1.0, 2.0], 0.8)];
         assert_eq!(found.len(), 2);

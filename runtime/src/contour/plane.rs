@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use jbt_frontend::builder::Axis;
+use jbt_model::builder::Axis;
 use thiserror::Error;
 
 /// A plane with two perpendicular axes u and v of length 1: lengths and areas in it are those of the model.

@@ -1,7 +1,7 @@
 //! A model that can be looked at in a plane, again and again.
 
-use jbt_frontend::check::CheckedTree;
-use jbt_frontend::query::Query;
+use jbt_model::check::CheckedTree;
+use jbt_model::query::Query;
 use thiserror::Error;
 
 use super::grid::{Rectangle, RectangleError};

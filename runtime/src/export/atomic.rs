@@ -4,7 +4,7 @@ use std::fs::{self, File, Permissions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use jbt_frontend::diagnostic::escape;
+use jbt_model::diagnostic::escape;
 use tempfile::{NamedTempFile, TempPath};
 
 /// The new contents of a file, which appear whole or not at all.

@@ -1,6 +1,6 @@
 //! An indexed triangle mesh: what meshing makes.
 
-use jbt_frontend::origin::ModelOrigin;
+use jbt_model::origin::ModelOrigin;
 
 use crate::points::Points;
 

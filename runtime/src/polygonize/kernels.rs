@@ -1,8 +1,8 @@
 //! The kernels of a mesh as a field, and the pruner that says what matters where.
 
-use jbt_frontend::check::CheckedTree;
-use jbt_frontend::lower::Lowering;
-use jbt_frontend::query::Query;
+use jbt_lower::Lowering;
+use jbt_model::check::CheckedTree;
+use jbt_model::query::Query;
 
 use crate::compiler::Compiler;
 use crate::counter::Counters;

@@ -8,9 +8,9 @@
 //! ```
 //!
 //! A support is wider than what it stands for by more than these few roundings are off (see
-//! `jbt_frontend::lower::guide::Support`).
+//! `jbt_lower::guide::Support`).
 
-use jbt_frontend::lower::guide::{LARGEST_COORDINATE, Support};
+use jbt_lower::guide::{LARGEST_COORDINATE, Support};
 
 use crate::region::{Box3, MAX_PARTS};
 

@@ -1,8 +1,8 @@
 //! Operands that do not decide: in a box where another operand of a union is larger everywhere, this one need
 //! not be known.
 
-use jbt_frontend::lower::guide::{DecidedRows, Decision, Guide};
 use jbt_ir::{Entity, Selection, Table};
+use jbt_lower::guide::{DecidedRows, Decision, Guide};
 
 use super::ranges::Probes;
 use crate::region::MAX_PARTS;

@@ -11,9 +11,9 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use jbt_frontend::lower::guide::{Rule, SpaceGuide, Support};
 use jbt_ir::selection::Shift;
 use jbt_ir::{Rows, Table};
+use jbt_lower::guide::{Rule, SpaceGuide, Support};
 
 use super::cull::Supports;
 use super::{Pruner, Region};

@@ -12,7 +12,7 @@
 //! all rows gives: field, gradient, attributes. Three things make it so:
 //!
 //! * Outside of its support a row's field and gradient are exactly zero in the arithmetic of the kernels;
-//!   each operator's rule says what leaving zeros out does ([`jbt_frontend::lower::guide::Rule`]).
+//!   each operator's rule says what leaving zeros out does ([`jbt_lower::guide::Rule`]).
 //! * The interval kernel runs the kernel's own ops on bounds, so a range encloses every f32 value that the
 //!   kernel gives in the box. An operand is left out only if it is strictly beaten by such ranges.
 //! * Rows stay in their order.
@@ -27,13 +27,13 @@ mod survey;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use jbt_frontend::check::CheckedTree;
-use jbt_frontend::lower::Lowering;
-use jbt_frontend::lower::guide::{Guide, Guided, Rule, SpaceGuide, TableGuide};
-use jbt_frontend::origin::ModelOrigin;
 use jbt_ir::domain::counting::of_selection;
 use jbt_ir::selection::Extent;
 use jbt_ir::{Entity as _, Selection, Tables};
+use jbt_lower::Lowering;
+use jbt_lower::guide::{Guide, Guided, Rule, SpaceGuide, TableGuide};
+use jbt_model::check::CheckedTree;
+use jbt_model::origin::ModelOrigin;
 
 use crate::compiler::Compiler;
 use crate::debug::brief_debug;

@@ -1,6 +1,6 @@
 //! What leaving zero rows out does to an operator.
 
-use jbt_frontend::lower::guide::Rule;
+use jbt_lower::guide::Rule;
 
 /// Makes of what rows reach what they keep: `masks` has a byte for each active row of a table, a bit for each
 /// box that the row reaches; `starts` are those of the selection.

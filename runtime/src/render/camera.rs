@@ -9,7 +9,7 @@
 //!        o------- x  forward
 //! ```
 
-use jbt_frontend::origin::ModelOrigin;
+use jbt_model::origin::ModelOrigin;
 
 use super::vector::{Vector, add, along, cross, dot, is_finite, length, scale, sub, unit};
 

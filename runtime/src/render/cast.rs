@@ -7,8 +7,8 @@ use super::settings::Mode;
 use super::vector::{Vector, along, scale, unit};
 use crate::buffer::Samples;
 use crate::trace::Ray;
-use jbt_frontend::check::CheckedTree;
-use jbt_frontend::kind::NodeKind;
+use jbt_model::check::CheckedTree;
+use jbt_model::kind::NodeKind;
 
 /// What a ray meets.
 pub struct Met {

@@ -38,7 +38,7 @@ use std::time::{Duration, Instant};
 
 use crate::parallel::*;
 
-use jbt_frontend::check::CheckedTree;
+use jbt_model::check::CheckedTree;
 
 use crate::compiler::Compiler;
 use crate::job::{Hook, Job};

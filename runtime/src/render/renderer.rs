@@ -1,7 +1,7 @@
 //! A model that is compiled for pictures.
 
-use jbt_frontend::check::CheckedTree;
-use jbt_frontend::query::Query;
+use jbt_model::check::CheckedTree;
+use jbt_model::query::Query;
 
 use crate::compiler::Compiler;
 use crate::debug::brief_debug;

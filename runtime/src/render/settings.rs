@@ -1,8 +1,8 @@
 //! What a picture is asked to be.
 
-use jbt_frontend::attribute::AttributeGroup;
-use jbt_frontend::check::CheckedTree;
 use jbt_ir::limits::{MAX_ANTIALIAS, MAX_PICTURE_PIXELS, MAX_PICTURE_SIDE};
+use jbt_model::attribute::AttributeGroup;
+use jbt_model::check::CheckedTree;
 
 use super::camera::View;
 use super::color::Rgb;

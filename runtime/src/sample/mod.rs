@@ -18,10 +18,10 @@ pub use npy::write_npy;
 
 use crate::parallel::*;
 
-use jbt_frontend::check::CheckedTree;
-use jbt_frontend::kind::NodeKind;
-use jbt_frontend::query::Query;
 use jbt_ir::limits::MAX_LATTICE_POINTS;
+use jbt_model::check::CheckedTree;
+use jbt_model::kind::NodeKind;
+use jbt_model::query::Query;
 
 use crate::buffer::Layout;
 use crate::compiler::Compiler;

@@ -22,16 +22,16 @@ mod membership;
 pub(crate) mod progress;
 
 pub use bounds::{BoundsError, TightBounds};
-pub use jbt_frontend::check::NodeId;
-pub use jbt_frontend::owner::Owner;
+pub use jbt_model::check::NodeId;
+pub use jbt_model::owner::Owner;
 pub use measure::{Contents, Level, Measure, MeasureError, Measures, Volume};
 pub use membership::{Membership, MembershipError};
 
 use std::sync::OnceLock;
 
-use jbt_frontend::check::CheckedTree;
-use jbt_frontend::owner;
-use jbt_frontend::query::Query;
+use jbt_model::check::CheckedTree;
+use jbt_model::owner;
+use jbt_model::query::Query;
 
 use crate::compiler::Compiler;
 use crate::counter::Counters;
@@ -157,7 +157,7 @@ impl Solid {
     }
 
     /// The leaf that decides the field at a point of the world, in f64 by a plain walk: see
-    /// [`jbt_frontend::owner`].
+    /// [`jbt_model::owner`].
     ///
     /// `None` where the field is 0, or where it is negative because nothing with a positive field is left.
     /// Cost: all paths of the tree.

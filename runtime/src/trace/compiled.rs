@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use jbt_frontend::origin::ModelOrigin;
+use jbt_model::origin::ModelOrigin;
 
 use super::ray::Reach;
 use crate::buffer::Layout;

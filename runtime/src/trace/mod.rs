@@ -29,7 +29,7 @@
 //!   each other, as in the tiles of a picture.
 //! * All answers about a hit come from one evaluation at its position.
 //! * Rays are in the world, in f64; the f32 positions of hits count from the model's origin
-//!   ([`jbt_frontend::origin`]), which is 0 for most models.
+//!   ([`jbt_model::origin`]), which is 0 for most models.
 
 mod batch;
 mod beam;
@@ -44,18 +44,18 @@ mod refine;
 
 pub use error::TraceError;
 pub use hits::{Blocked, Hit, Hits};
-pub use jbt_frontend::owner::Owner;
+pub use jbt_model::owner::Owner;
 pub use ray::Ray;
 
 use std::borrow::Cow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use jbt_frontend::check::{CheckedTree, NodeId};
-use jbt_frontend::lower::Lowering;
-use jbt_frontend::owner;
-use jbt_frontend::query::Query;
 use jbt_ir::limits::MAX_PACKET_RAYS;
+use jbt_lower::Lowering;
+use jbt_model::check::{CheckedTree, NodeId};
+use jbt_model::owner;
+use jbt_model::query::Query;
 
 use crate::buffer::Layout;
 use crate::compiler::Compiler;
@@ -268,7 +268,7 @@ impl Tracer {
     }
 
     /// The leaf that decides at a position, which counts from the model's origin as those of hits do, and the
-    /// way down to it: see [`jbt_frontend::owner`].
+    /// way down to it: see [`jbt_model::owner`].
     ///
     /// `None` where the field is 0, or where it is negative because nothing with a positive field is left:
     /// neither is so at hits. Cost: a plain walk over all paths of the tree.

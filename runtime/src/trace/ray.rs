@@ -14,7 +14,7 @@
 //! step is exact. The lattice is counted from t = 0, and so a ray's places are those of the ray alone,
 //! whatever packet it is in and wherever its span begins.
 
-use jbt_frontend::bounds::Bounds;
+use jbt_model::bounds::Bounds;
 
 use super::error::TraceError;
 

@@ -8,19 +8,19 @@ use std::sync::Arc;
 use fastrand::Rng;
 use jbt::build::{Term, noise, param, x, y, z};
 use jbt::{Model, Number};
-use jbt_frontend::affine::scale_rotate_translate;
-use jbt_frontend::attribute::{AttributeGroup, AttributeValue, Mixing, Textured, UvMap};
-use jbt_frontend::combine::{
+use jbt_model::affine::scale_rotate_translate;
+use jbt_model::attribute::{AttributeGroup, AttributeValue, Mixing, Textured, UvMap};
+use jbt_model::combine::{
     Clamp, Combinator, Complement, Difference, Intersection, Offset, Product, RFunction, RFunctionOrder,
     RFunctionPower, Ricci, SetOperation, Shell, Sum, SymmetricDifference, Union,
 };
-use jbt_frontend::falloff::{Falloff, FalloffKind};
-use jbt_frontend::field::{Field, FieldKind, FieldValue};
-use jbt_frontend::kind::{NodeKind, Primitive};
-use jbt_frontend::skeleton::SkeletonKind;
-use jbt_frontend::texture::TextureKind;
-use jbt_frontend::tree::Tree;
-use jbt_frontend::warp::WarpKind;
+use jbt_model::falloff::{Falloff, FalloffKind};
+use jbt_model::field::{Field, FieldKind, FieldValue};
+use jbt_model::kind::{NodeKind, Primitive};
+use jbt_model::skeleton::SkeletonKind;
+use jbt_model::texture::TextureKind;
+use jbt_model::tree::Tree;
+use jbt_model::warp::WarpKind;
 
 /// The seeds of a model: what selects code comes from `shape`, everything else from `numbers`.
 pub struct Random {

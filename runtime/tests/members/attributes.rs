@@ -2,8 +2,8 @@
 //! formulas; and every texture.
 
 use jbt::{CheckedTree, Mixing, Model};
-use jbt_frontend::check::CheckedNode;
-use jbt_frontend::kind::NodeKind;
+use jbt_model::check::CheckedNode;
+use jbt_model::kind::NodeKind;
 
 use crate::check::judge;
 use crate::falloffs::soft;
@@ -92,9 +92,9 @@ fn dominant() -> Vec<Row> {
 /// What attribute nodes give.
 mod values {
     use jbt::{CheckedTree, Model};
-    use jbt_frontend::attribute::AttributeValue;
-    use jbt_frontend::check::CheckedNode;
-    use jbt_frontend::kind::NodeKind;
+    use jbt_model::attribute::AttributeValue;
+    use jbt_model::check::CheckedNode;
+    use jbt_model::kind::NodeKind;
 
     use crate::check::judge;
     use crate::row::{Family, Row, members, row};
@@ -192,10 +192,10 @@ mod values {
 /// Patterns, from a = 0 to b = 1 of a group of one real.
 mod textures {
     use jbt::{CheckedTree, Model};
-    use jbt_frontend::attribute::AttributeValue;
-    use jbt_frontend::check::CheckedNode;
-    use jbt_frontend::kind::NodeKind;
-    use jbt_frontend::texture::TextureKind;
+    use jbt_model::attribute::AttributeValue;
+    use jbt_model::check::CheckedNode;
+    use jbt_model::kind::NodeKind;
+    use jbt_model::texture::TextureKind;
 
     use crate::check::judge;
     use crate::row::{Family, Row, members, row};

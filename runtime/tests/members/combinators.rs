@@ -7,8 +7,8 @@ mod steps;
 mod unary;
 
 use jbt::{CheckedTree, Combinator, Model};
-use jbt_frontend::check::CheckedNode;
-use jbt_frontend::kind::NodeKind;
+use jbt_model::check::CheckedNode;
+use jbt_model::kind::NodeKind;
 
 use crate::check::judge;
 use crate::falloffs::soft;

@@ -2,9 +2,9 @@
 //! it is equally near.
 
 use jbt::{CheckedTree, Falloff, Model};
-use jbt_frontend::check::CheckedNode;
-use jbt_frontend::falloff::FalloffKind;
-use jbt_frontend::kind::NodeKind;
+use jbt_model::check::CheckedNode;
+use jbt_model::falloff::FalloffKind;
+use jbt_model::kind::NodeKind;
 
 use crate::check::judge;
 use crate::row::{Family, Row, members, row};

@@ -3,9 +3,9 @@
 use fastrand::Rng;
 use jbt::ir::{Function, Rows, Schema};
 use jbt::{Compiler, Engine, Falloff, Model, Query, Tree};
-use jbt_frontend::kind::{NodeKind, Primitive};
-use jbt_frontend::lower::lower;
-use jbt_frontend::skeleton::SkeletonKind;
+use jbt_lower::lower;
+use jbt_model::kind::{NodeKind, Primitive};
+use jbt_model::skeleton::SkeletonKind;
 
 use crate::common::{Random, fit};
 

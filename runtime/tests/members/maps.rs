@@ -2,9 +2,9 @@
 //! ones.)
 
 use jbt::{CheckedTree, Model, Tree};
-use jbt_frontend::map::MapKind;
-use jbt_frontend::traverse::Visit;
-use jbt_frontend::written::Written;
+use jbt_model::map::MapKind;
+use jbt_model::traverse::Visit;
+use jbt_model::written::Written;
 
 use crate::check::judge;
 use crate::falloffs::soft;

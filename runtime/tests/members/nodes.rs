@@ -4,7 +4,7 @@
 mod expressions;
 
 use jbt::{CheckedTree, Model};
-use jbt_frontend::kind::NodeKind;
+use jbt_model::kind::NodeKind;
 
 use crate::check::judge;
 use crate::falloffs::soft;

@@ -6,9 +6,9 @@ mod norms;
 mod solids;
 
 use jbt::{CheckedTree, Model};
-use jbt_frontend::check::CheckedNode;
-use jbt_frontend::kind::NodeKind;
-use jbt_frontend::skeleton::SkeletonKind;
+use jbt_model::check::CheckedNode;
+use jbt_model::kind::NodeKind;
+use jbt_model::skeleton::SkeletonKind;
 
 use crate::check::judge;
 use crate::falloffs::soft;

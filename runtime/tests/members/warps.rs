@@ -7,9 +7,9 @@ mod local;
 use std::f64::consts::{FRAC_1_PI, FRAC_1_SQRT_2, FRAC_PI_4};
 
 use jbt::{CheckedTree, Model};
-use jbt_frontend::check::CheckedNode;
-use jbt_frontend::kind::NodeKind;
-use jbt_frontend::warp::Warp;
+use jbt_model::check::CheckedNode;
+use jbt_model::kind::NodeKind;
+use jbt_model::warp::Warp;
 
 use crate::check::judge;
 use crate::falloffs::soft;

@@ -2,7 +2,7 @@
 
 use jbt::mesh::check_manifold;
 use jbt::{Compiler, Fineness, Polygonize};
-use jbt_frontend::walk::{walk, walk_gradient};
+use jbt_model::walk::{walk, walk_gradient};
 
 use crate::model::{ISO, blobs, tree};
 

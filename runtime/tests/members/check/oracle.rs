@@ -15,7 +15,7 @@
 
 use fastrand::Rng;
 use jbt::{CheckedTree, Engine, Points, Samples};
-use jbt_frontend::walk::{Sample, walk, walk_gradient};
+use jbt_model::walk::{Sample, walk, walk_gradient};
 
 use super::Verdict;
 use crate::points;
@@ -158,7 +158,7 @@ fn shown(slope: &Slope) -> String {
 mod tests {
     use jbt::build::point;
     use jbt::{Falloff, Model};
-    use jbt_frontend::falloff::{Blinn, Edge};
+    use jbt_model::falloff::{Blinn, Edge};
 
     use super::*;
 

@@ -3,7 +3,7 @@
 //! 1e-5, relatively.
 
 use jbt::Points;
-use jbt_frontend::walk::walk;
+use jbt_model::walk::walk;
 
 use super::Verdict;
 use crate::subject::{Subject, answers};

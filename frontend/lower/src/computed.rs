@@ -1,0 +1,202 @@
+//! Attribute values that are computed at the point: textures, uv, formulas.
+//!
+//! An attribute node that gives numbers ends up in the rows of the leaves below it. One that gives a function
+//! ends up there too: as the map to the space of the function, and the function's own numbers. So leaves
+//! under a thousand checkers of their own are rows of one table.
+//!
+//! ```text
+//! leaf bound to a texture     its row: map, numbers of the texture, both values     code: t at the mapped point, (1 - t) a + t b
+//! leaf bound to uv            its row: map to the skeleton's frame, uv columns, a 2x3 matrix
+//! leaf bound to a formula     its row: map, numbers of the formula                  code: min(max(F, -largest), largest), and 0 for a NaN
+//! ```
+//!
+//! A texture or formula that several leaves see in the same coordinates is evaluated once: it is hoisted to
+//! the start of its space, and all of them take its value. Then the leaves differ in code from those of other
+//! textures, so only the [`MAX_SHARED`] textures with the most leaves are hoisted; the others are evaluated
+//! for each leaf.
+//!
+//! All this is there for queries that ask for attributes; for others, rows have no such columns.
+//!
+//! To add another kind of computed value: a variant of [`AttributeValue`], one of [`ComputedKind`] with its
+//! columns and its code here, and what the oracle makes of it.
+
+use std::sync::Arc;
+
+use glam::DAffine3;
+use jbt_ir::{Domain, FunctionBuilder, Value};
+
+use super::names::{ComputedId, SpaceId};
+use super::position::MapKind;
+use jbt_model::attribute::{AttributeValue, Textured, UvMap};
+use jbt_model::check::{CheckedTree, NodeId};
+use jbt_model::expression::{Form, LARGEST_FIELD, Operand};
+use jbt_model::kind::NodeKind;
+use jbt_model::skeleton::SkeletonKind;
+use jbt_model::texture::TextureKind;
+
+/// How many textures and formulas may be hoisted, because several leaves share them.
+pub(super) const MAX_SHARED: usize = 32;
+
+/// The function: what selects code.
+#[derive(Clone, PartialEq, Eq, Hash, Debug)]
+pub(super) enum ComputedKind {
+    Texture(TextureKind),
+    Uv(SkeletonKind),
+    Formula(Arc<Form>),
+}
+
+/// A function in coordinates.
+#[derive(Clone, Debug)]
+pub(super) struct Computed {
+    pub(super) kind: ComputedKind,
+    /// The attribute node.
+    pub(super) node: NodeId,
+    /// The leaf whose uv it is.
+    pub(super) leaf: Option<NodeId>,
+    /// The space of whose points the map takes the inverse.
+    pub(super) space: SpaceId,
+    /// The map from the function's space.
+    pub(super) map: DAffine3,
+    /// What the inverse of the map is as code.
+    pub(super) map_kind: MapKind,
+    /// How many leaf occurrences are bound to it.
+    pub(super) uses: u32,
+    /// Whether it is hoisted to the start of its space.
+    pub(super) shared: bool,
+}
+
+/// What a computed value is as code, for the leaf that has it.
+#[derive(Clone, PartialEq, Eq, Hash, Debug)]
+pub(super) enum ComputedShape {
+    /// Computed in the leaf's row, from the point so many spaces outside of the leaf's.
+    Here { up: u32, map: MapKind, kind: ComputedKind },
+    /// Hoisted.
+    Shared(ComputedId),
+}
+
+impl ComputedKind {
+    /// Whether its values are finite at every point, infinite ones and NaN too.
+    pub(super) const fn is_finite(&self) -> bool {
+        match self {
+            // Formulas are kept within bounds.
+            Self::Texture(_) | Self::Uv(_) | Self::Formula(_) => true,
+        }
+    }
+
+    /// How many operations of a formula it takes.
+    pub(super) fn steps(&self) -> usize {
+        match self {
+            Self::Texture(_) | Self::Uv(_) => 0,
+            Self::Formula(form) => form.steps(),
+        }
+    }
+}
+
+/// Names of the columns of a uv's map.
+const UV_MATRIX: [&str; 6] = ["uu", "uv", "u", "vu", "vv", "v"];
+
+/// The value of a group over the ops, at a point of the function's space. `columns` gives the next columns of
+/// the row, and `channels` are the names of the group's.
+pub(super) fn emit(
+    d: &mut FunctionBuilder,
+    kind: &ComputedKind,
+    point: [Value; 3],
+    channels: &[String],
+    mut columns: impl FnMut(&mut FunctionBuilder, &[&str]) -> Vec<Value>,
+) -> Vec<Value> {
+    match kind {
+        ComputedKind::Texture(texture) => {
+            let row = columns(d, texture.columns());
+            let t = texture.emit(d, point, &row);
+            let one = d.constant(1.0);
+            let rest = d.sub(one, t);
+            let names: Vec<&str> = channels.iter().map(String::as_str).collect();
+            let a = columns(d, &names);
+            let b = columns(d, &names);
+            // Exact where t is 0 or 1.
+            let mix = |(&a, &b): (&Value, &Value)| {
+                let part = d.mul(rest, a);
+                d.fma(t, b, part)
+            };
+            a.iter().zip(&b).map(mix).collect()
+        }
+        ComputedKind::Uv(skeleton) => {
+            let row = columns(d, skeleton.uv_columns());
+            let [u, v] = skeleton.emit_uv(d, point, &row);
+            let row = columns(d, &UV_MATRIX);
+            let part = |row: &[Value]| {
+                let by_u = d.fma(u, row[0], row[2]);
+                d.fma(v, row[1], by_u)
+            };
+            row.chunks_exact(3).map(part).collect()
+        }
+        ComputedKind::Formula(form) => {
+            let row = columns(d, &vec!["number"; form.numbers()]);
+            let values = form.emit(d, |operand| match operand {
+                Operand::Coordinate(axis) => point[axis as usize],
+                Operand::Number(number) => row[number as usize],
+                Operand::Child(_) | Operand::Step(_) => unreachable!("an attribute asks for no fields"),
+            });
+            values.into_iter().map(|value| kept(d, value)).collect()
+        }
+    }
+}
+
+/// The value within bounds, and 0 instead of a NaN.
+fn kept(d: &mut FunctionBuilder, value: Value) -> Value {
+    let bounds = [-LARGEST_FIELD, LARGEST_FIELD, 0.0];
+    let [lowest, largest, zero] = bounds.map(|number| d.constant(number));
+    let is_number = d.eq(value, value);
+    let value = d.select(is_number, value, zero);
+    let value = d.max(value, lowest);
+    d.min(value, largest)
+}
+
+/// The numbers of a computed value in a row, in the order in which [`emit`] asks for them behind those of the
+/// map.
+pub(super) fn push_columns(tree: &CheckedTree, computed: &Computed, row: &mut Vec<f64>) {
+    computed.map_kind.push_columns(&computed.map, row);
+    match (attribute(tree, computed.node), &computed.kind) {
+        (AttributeValue::Textured(Textured { texture, a, b }), ComputedKind::Texture(kind)) => {
+            kind.push_columns(texture, row);
+            row.extend(a);
+            row.extend(b);
+        }
+        (AttributeValue::Uv(map), ComputedKind::Uv(_)) => push_uv(tree, computed, map, row),
+        (AttributeValue::Expressed(expression), ComputedKind::Formula(_)) => row.extend(expression.numbers()),
+        (
+            AttributeValue::Numbers(_)
+            | AttributeValue::Textured(_)
+            | AttributeValue::Uv(_)
+            | AttributeValue::Expressed(_),
+            _,
+        ) => unreachable!("the kind is that of the node"),
+    }
+}
+
+fn push_uv(tree: &CheckedTree, computed: &Computed, map: &UvMap, row: &mut Vec<f64>) {
+    let leaf = computed.leaf.expect("a uv has its leaf");
+    tree.node(leaf).kind.uv_skeleton().uv_columns(row);
+    row.extend(map.matrix().as_flattened());
+}
+
+/// What an attribute node gives.
+pub(super) fn attribute(tree: &CheckedTree, node: NodeId) -> &AttributeValue {
+    match &tree.node(node).kind {
+        NodeKind::Attribute { value, .. } => value,
+        NodeKind::Primitive(_)
+        | NodeKind::Combine(_)
+        | NodeKind::Expression(_)
+        | NodeKind::Select(_)
+        | NodeKind::Affine(_)
+        | NodeKind::Warp(_) => unreachable!("bindings name attribute nodes"),
+    }
+}
+
+/// Decides which textures and formulas are hoisted: those with the most leaves; of equals those that are met
+/// first.
+pub(super) fn share(computed: &mut [Computed]) {
+    let mut candidates: Vec<&mut Computed> = computed.iter_mut().filter(|it| it.uses > 1).collect();
+    candidates.sort_by_key(|it| std::cmp::Reverse(it.uses));
+    candidates.into_iter().take(MAX_SHARED).for_each(|it| it.shared = true);
+}

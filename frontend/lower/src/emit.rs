@@ -1,0 +1,430 @@
+//! The code of a scene: every shape once, from its first occurrence.
+//!
+//! ```text
+//! define(occurrence):  leaf        its point, squared distance, falloff, strength; attributes are columns
+//!                      warp        its point in a new space, then the child there
+//!                      difference  both sides, then the smaller
+//!                      map         the child, then the map of its field
+//!                      expression  each child; then the formula of the point and their fields
+//!                      selector    for each child: a fold over one row, which is active or not
+//!                      operator    for each group:  folded   open a fold over a table, define the first member, step, close
+//!                                                   else     for each member: define, step; the first member of a step is the beginning
+//! define under a guard: open a fold over a table of one row, define, close; the answer is what the fold carries out
+//! ```
+//!
+//! An explicit list of tasks takes the place of recursion, because a model may be a chain of any length. The
+//! columns of a row are declared in the order in which the code asks for them; [`super::rows`] goes through
+//! the same order for every row.
+//!
+//! The guide function is emitted in the same way, and carries probes out of its guards: see `probe`.
+
+mod computed;
+mod express;
+mod fold;
+mod guard;
+mod parts;
+mod probe;
+mod row;
+mod select;
+
+use rustc_hash::FxHashMap as HashMap;
+use std::rc::Rc;
+
+use jbt_ir::{Domain, Function, FunctionBuilder, Rule, Table, Value, limits};
+
+use self::parts::{Guard, GuardStart, Probes, Select};
+use super::guide::{Decision, DecisionKind};
+use super::mixing::{Answer, Operator, State, difference, mapped};
+use super::names::ComputedId;
+use super::occurrence::{FieldId, OccurrenceId, OccurrenceKind, Scene, SpaceId};
+use super::shape::{Hoist, Shapes};
+use jbt_model::attribute::Mixing;
+use jbt_model::check::CheckedTree;
+use jbt_model::combine::{Extreme, MapCode};
+use jbt_model::diagnostic::Diagnostic;
+use jbt_model::query::Query;
+
+/// A function, and what the rows need to know about it.
+pub(super) struct Code {
+    pub(super) function: Function,
+    /// By table.
+    pub(super) tables: Vec<TableCode>,
+    /// Of a guide function; others have none.
+    pub(super) decisions: Vec<Decision>,
+}
+
+/// What the code says about a table.
+pub(super) struct TableCode {
+    /// The tables under it, in the order in which a row meets them.
+    pub(super) children: Vec<Table>,
+    /// How many folds are open in its rows.
+    pub(super) depth: usize,
+    /// The space in which its fold stands, for its first row.
+    pub(super) space: SpaceId,
+    /// The first of the three probes of the point in that space, in a guide function, if all rows see the
+    /// same point.
+    pub(super) probe: Option<usize>,
+}
+
+/// How many attribute groups a query asks for.
+pub(super) fn groups(tree: &CheckedTree, query: Query) -> usize {
+    if query.attributes { tree.attributes().len() } else { 0 }
+}
+
+/// Writes the code.
+pub(super) fn emit(scene: &Scene<'_>, shapes: &Shapes, query: Query) -> Result<Code, Vec<Diagnostic>> {
+    Emitter::new(scene, shapes, query, None).run()
+}
+
+/// Writes the guide function.
+pub(super) fn emit_guide(scene: &Scene<'_>, shapes: &Shapes) -> Result<Code, Vec<Diagnostic>> {
+    Emitter::new(scene, shapes, Query::FIELD, Some(Probes::default())).run()
+}
+
+enum Task {
+    /// The answer of an occurrence, for one of its uses.
+    Use(OccurrenceId),
+    /// The answer of an occurrence, computed here.
+    Define(OccurrenceId),
+    /// What was computed here is what all uses see.
+    Keep(OccurrenceId),
+    HoistField(FieldId),
+    HoistComputed(ComputedId),
+    /// The point in a space is what all uses see.
+    HoistSpace(SpaceId),
+    LeaveSpace,
+    OpenFold,
+    CloseFold,
+    /// An operand that is written out: under a guard, if it is worth one.
+    Operand(OccurrenceId, Guard),
+    OpenGuard(OccurrenceId, GuardStart),
+    CloseGuard(Option<DecisionKind>),
+    /// The children of a formula have their answers.
+    Express(OccurrenceId),
+    /// The next operand of an operator has its answer.
+    Step,
+    FinishReduce,
+    /// The first operand of a step has its answer: the others come to it.
+    Seed,
+    Difference,
+    /// The child of a map has its answer; these are the map's numbers.
+    Map(MapCode, Vec<Value>),
+    BeginSelect,
+    OpenChild(OccurrenceId),
+    CloseChild,
+    FinishSelect,
+    /// An operand that is written out: its place in the file is a number of the current row.
+    Order,
+}
+
+/// An operator in progress.
+struct Reduce {
+    operator: Operator,
+    state: State,
+    /// The place in the file of the operand in progress.
+    order: Option<Value>,
+    /// Where operands are rows, and each may be left out while it is not zero: the extreme of their fields.
+    extreme: Option<(Extreme, Value)>,
+    /// Whether operands have not been kept within bounds on the far side, the upper one of a union: that is
+    /// done in the end.
+    open: bool,
+}
+
+struct Emitter<'a> {
+    scene: &'a Scene<'a>,
+    shapes: &'a Shapes,
+    query: Query,
+    mixing: Rc<[Mixing]>,
+    builder: FunctionBuilder,
+    tasks: Vec<Task>,
+    answers: Vec<Answer>,
+    /// The point in each space that is open.
+    points: Vec<(SpaceId, [Value; 3])>,
+    /// The tables whose rows are open.
+    rows: Vec<Table>,
+    tables: Vec<TableCode>,
+    reduces: Vec<Reduce>,
+    selects: Vec<Select>,
+    kept: HashMap<OccurrenceId, Answer>,
+    kept_fields: HashMap<FieldId, Value>,
+    kept_computed: HashMap<ComputedId, Vec<Value>>,
+    kept_points: HashMap<SpaceId, [Value; 3]>,
+    slots: u32,
+    iso2: Option<Value>,
+    defaults: Vec<Vec<Value>>,
+    /// In a guide function.
+    probes: Option<Probes>,
+}
+
+impl<'a> Emitter<'a> {
+    fn new(scene: &'a Scene<'a>, shapes: &'a Shapes, query: Query, probes: Option<Probes>) -> Self {
+        let attributes = &scene.tree.attributes()[..groups(scene.tree, query)];
+        Self {
+            scene,
+            shapes,
+            query,
+            mixing: attributes.iter().map(|group| group.mixing).collect(),
+            builder: FunctionBuilder::new("model", &["x", "y", "z"]),
+            tasks: Vec::new(),
+            answers: Vec::new(),
+            points: Vec::new(),
+            rows: Vec::new(),
+            tables: Vec::new(),
+            reduces: Vec::new(),
+            selects: Vec::new(),
+            kept: HashMap::default(),
+            kept_fields: HashMap::default(),
+            kept_computed: HashMap::default(),
+            kept_points: HashMap::default(),
+            slots: 0,
+            iso2: None,
+            defaults: Vec::new(),
+            probes,
+        }
+    }
+
+    fn run(mut self) -> Result<Code, Vec<Diagnostic>> {
+        self.start();
+        while let Some(task) = self.tasks.pop() {
+            self.work(task);
+            self.check_limits()?;
+        }
+        Ok(self.finish())
+    }
+
+    /// Opens the scene's row.
+    fn start(&mut self) {
+        let point = std::array::from_fn(|axis| self.builder.input(axis));
+        self.points.push((SpaceId(0), point));
+        let zero = self.builder.constant(0.0);
+        self.open_only("scene", SpaceId(0), Rule::Never, &[zero]);
+        self.iso2 = Some(self.column("iso2"));
+        for group in &self.scene.tree.attributes()[..self.mixing.len()] {
+            let default = (0..group.width()).map(|i| self.column(&group.channel(i))).collect();
+            self.defaults.push(default);
+        }
+        self.tasks.push(Task::Use(self.scene.root));
+        self.enter_space(SpaceId(0));
+    }
+
+    /// Closes the scene's row: its answer is the function's.
+    fn finish(mut self) -> Code {
+        let answer = self.answers.pop().expect("the root has an answer");
+        let mut next = vec![answer.field];
+        let zero = self.builder.constant(0.0);
+        for group in &answer.groups {
+            // The sign of a zero may depend on rows that add nothing; no answer shows it.
+            next.extend(group.channels.iter().map(|&channel| self.builder.add(channel, zero)));
+        }
+        let results = self.close_only(next, 1);
+        let mut names = vec!["field".to_owned()];
+        for group in &self.scene.tree.attributes()[..self.mixing.len()] {
+            names.extend((0..group.width()).map(|i| group.channel(i)));
+        }
+        let mut outputs: Vec<_> = names.into_iter().zip(results).collect();
+        let decisions =
+            self.probes.map_or_else(Vec::new, |probes| probes.finish(&mut outputs, &mut self.tables));
+        Code { function: self.builder.finish(&outputs), tables: self.tables, decisions }
+    }
+
+    fn check_limits(&self) -> Result<(), Vec<Diagnostic>> {
+        let function = self.builder.function();
+        let limit = |what: &str, limit: usize| {
+            let message = format!("the model has too many different parts: more than {limit} {what}");
+            Err(vec![Diagnostic::limit(None, message)])
+        };
+        if function.values.len() > limits::MAX_VALUES {
+            return limit("values in its program", limits::MAX_VALUES);
+        }
+        if function.tables.len() > limits::MAX_TABLES {
+            return limit("tables", limits::MAX_TABLES);
+        }
+        // A leaf opens and closes the fold over its pieces at once, so the deepest fold need not be open now.
+        if self.tables.last().is_some_and(|table| table.depth > limits::MAX_FOLD_DEPTH) {
+            return limit("operators of many like children inside each other", limits::MAX_FOLD_DEPTH);
+        }
+        Ok(())
+    }
+
+    fn work(&mut self, task: Task) {
+        match task {
+            Task::Use(id) => match self.kept.get(&id) {
+                Some(answer) => self.answers.push(answer.clone()),
+                None => self.define(id),
+            },
+            Task::Define(id) => self.define(id),
+            Task::Keep(id) => {
+                let answer = self.answers.pop().expect("it has just been defined");
+                self.kept.insert(id, answer);
+            }
+            Task::HoistField(field) => {
+                let value = self.hoist_field(field);
+                self.kept_fields.insert(field, value);
+            }
+            Task::HoistComputed(id) => self.hoist_computed(id),
+            Task::HoistSpace(space) => self.hoist_space(space),
+            Task::LeaveSpace => {
+                self.points.pop();
+            }
+            Task::Operand(id, guard) => {
+                if self.shapes.guards_operand(self.scene, id, self.builder.fold_depth()) {
+                    self.tasks.push(Task::CloseGuard(guard.decision));
+                    self.tasks.push(Task::Define(id));
+                    self.tasks.push(Task::OpenGuard(id, guard.start));
+                } else {
+                    self.tasks.push(Task::Use(id));
+                }
+            }
+            Task::OpenGuard(id, start) => self.open_guard(id, start),
+            Task::CloseGuard(decision) => self.close_guard(decision),
+            Task::Express(id) => self.express(id),
+            Task::BeginSelect => self.begin_select(),
+            Task::OpenChild(id) => self.open_child(id),
+            Task::CloseChild => self.close_child(),
+            Task::FinishSelect => self.finish_select(),
+            Task::OpenFold => self.open_group(),
+            Task::CloseFold => self.close_group(),
+            Task::Order => self.read_order(),
+            Task::Step => self.step(),
+            Task::FinishReduce => self.finish_reduce(),
+            Task::Seed => self.seed(),
+            Task::Map(code, row) => self.map(code, &row),
+            Task::Difference => self.difference(),
+        }
+    }
+
+    /// Computes a point that several uses share, and enters its space.
+    fn hoist_space(&mut self, space: SpaceId) {
+        self.tasks.push(Task::LeaveSpace);
+        let point = self.hoist_point(space);
+        self.points.push((space, point));
+        self.probe_point(space, point);
+        self.kept_points.insert(space, point);
+        self.enter_space(space);
+    }
+
+    /// The last answer comes to its operator.
+    fn step(&mut self) {
+        let operand = self.answers.pop().expect("the operand has been defined");
+        let reduce = self.reduces.last_mut().expect("steps belong to operators");
+        let order = reduce.order.take();
+        if let Some((extreme, value)) = &mut reduce.extreme {
+            *value = extreme.step(&mut self.builder, operand.field, *value);
+        }
+        reduce.state.step(&mut self.builder, &reduce.operator, &operand, order);
+    }
+
+    /// An operator answers.
+    fn finish_reduce(&mut self) {
+        let reduce = self.reduces.pop().expect("it was started");
+        let mut answer = reduce.state.finish(&mut self.builder, &reduce.operator, &self.defaults);
+        if reduce.open {
+            answer.field = self.closed(reduce.operator.code, answer.field);
+        }
+        self.end_operator(answer.field);
+        self.answers.push(answer);
+    }
+
+    /// The last answer is the first one of its operator.
+    fn seed(&mut self) {
+        let operand = self.answers.pop().expect("the operand has been defined");
+        let reduce = self.reduces.last_mut().expect("steps belong to operators");
+        reduce.state.seed(&mut self.builder, &operand);
+    }
+
+    /// The last answer goes through a map of the field.
+    fn map(&mut self, code: MapCode, row: &[Value]) {
+        let child = self.answers.pop().expect("the child has been defined");
+        let iso2 = self.iso2.expect("the scene's row is open");
+        let field = code.emit(&mut self.builder, child.field, row, iso2);
+        self.answers.push(mapped(&mut self.builder, field, &child, &self.defaults));
+    }
+
+    /// The last two answers are the sides of a difference.
+    fn difference(&mut self) {
+        let right = self.answers.pop().expect("the right side has been defined");
+        let left = self.answers.pop().expect("the left side has been defined");
+        let iso2 = self.iso2.expect("the scene's row is open");
+        let answer = difference(&mut self.builder, &left, &right, iso2, &self.defaults);
+        self.end_operator(answer.field);
+        self.answers.push(answer);
+    }
+
+    fn define(&mut self, id: OccurrenceId) {
+        match &self.scene.occurrence(id).kind {
+            OccurrenceKind::Leaf { field, .. } => {
+                let value = self.kept_fields.get(field).copied().unwrap_or_else(|| self.leaf(*field));
+                let groups = self.leaf_attributes(id);
+                self.answers.push(Answer { field: value, groups });
+            }
+            OccurrenceKind::Warp { inside, child, .. } => {
+                self.tasks.extend([Task::LeaveSpace, Task::Use(*child)]);
+                match self.kept_points.get(inside) {
+                    Some(&point) => self.points.push((*inside, point)),
+                    None => self.enter_warp(*inside),
+                }
+            }
+            OccurrenceKind::Difference { left, right } => {
+                self.begin_operator();
+                self.tasks.push(Task::Difference);
+                self.tasks.push(Task::Operand(*right, Guard::RIGHT));
+                self.tasks.push(Task::Operand(*left, Guard::LEFT));
+            }
+            OccurrenceKind::Map { code, child } => {
+                let row = self.columns(code.columns());
+                self.tasks.push(Task::Map(*code, row));
+                self.tasks.push(Task::Operand(*child, Guard::ZERO));
+            }
+            OccurrenceKind::Expression { children, .. } => {
+                self.tasks.push(Task::Express(id));
+                let operand = |&child: &OccurrenceId| Task::Operand(child, Guard::ALONE);
+                self.tasks.extend(children.iter().rev().map(operand));
+            }
+            OccurrenceKind::Select { children, .. } => self.select(children),
+            OccurrenceKind::Reduce { .. } => self.begin_reduce(id),
+        }
+    }
+
+    /// Computes the point inside a warp, and what is hoisted to the start of its space.
+    fn enter_warp(&mut self, space: SpaceId) {
+        let point = self.point_inside(space);
+        self.points.push((space, point));
+        self.probe_point(space, point);
+        self.enter_space(space);
+    }
+
+    /// The point inside a warp.
+    fn point_inside(&mut self, space: SpaceId) -> [Value; 3] {
+        let inside = self.scene.inside(space).expect("the world is no warp's inside");
+        let map = self.scene.position(inside.position).kind();
+        let (_, outer) = *self.points.last().expect("a space is open");
+        let row = self.columns(map.columns());
+        let point = map.emit(&mut self.builder, outer, &row);
+        let code = self.scene.warp(inside.warp).code();
+        let row = self.columns(&code.columns());
+        match inside.weight {
+            None => code.emit(&mut self.builder, point, &row),
+            Some(weight) => {
+                // It was computed where the space began in which the warp stands, at the point in that space.
+                let weight = self.kept[&weight].field;
+                code.emit_weighted(&mut self.builder, point, &row, weight)
+            }
+        }
+    }
+
+    /// Puts what is hoisted to the start of a space on top of the tasks.
+    fn enter_space(&mut self, space: SpaceId) {
+        for hoist in self.shapes.hoists(space).iter().rev() {
+            match hoist {
+                Hoist::Field(field) => self.tasks.push(Task::HoistField(*field)),
+                Hoist::Computed(id) => self.tasks.push(Task::HoistComputed(*id)),
+                Hoist::Space(space) => self.tasks.push(Task::HoistSpace(*space)),
+                Hoist::Occurrence(id) if self.guards_hoisted(*hoist) => {
+                    self.tasks.extend([Task::Keep(*id), Task::CloseGuard(None), Task::Define(*id)]);
+                    self.tasks.push(Task::OpenGuard(*id, GuardStart::Zero));
+                }
+                Hoist::Occurrence(id) => self.tasks.extend([Task::Keep(*id), Task::Define(*id)]),
+            }
+        }
+    }
+}

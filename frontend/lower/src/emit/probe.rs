@@ -1,0 +1,151 @@
+//! Probes: numbers of a point that the guide function carries out of its folds.
+//!
+//! A probe is one number for a point, so it can only be taken where no fold over several rows is open: in the
+//! row of the scene and in the rows of guards in it. It comes out of each of these folds as one more
+//! accumulator, which begins at 0.
+
+use jbt_ir::{Table, Value};
+
+use super::parts::{Operand, Probe, Probes};
+use super::{Emitter, TableCode};
+use crate::guide::{DecidedRows, Decision, DecisionKind};
+use crate::occurrence::{OccurrenceId, SpaceId};
+use jbt_model::combine::{Extreme, ReduceCode};
+
+impl Probes {
+    /// The first of the three probes of the point in a space.
+    pub(super) fn point(&self, space: SpaceId) -> Option<usize> {
+        self.points.get(&space).copied()
+    }
+
+    fn take(&mut self, value: Value) -> usize {
+        let name = self.count;
+        self.count += 1;
+        self.open.last_mut().expect("a row is open").push(Probe { name, value });
+        name
+    }
+
+    /// Makes outputs of the probes that somebody uses, and gives them their final names in the tables and
+    /// decisions.
+    pub(super) fn finish(
+        self,
+        outputs: &mut Vec<(String, Value)>,
+        tables: &mut [TableCode],
+    ) -> Vec<Decision> {
+        let mut used = vec![false; self.count];
+        for first in tables.iter().filter_map(|table| table.probe) {
+            used[first..first + 3].fill(true);
+        }
+        for decision in &self.decisions {
+            used[decision.operand] = true;
+            used[decision.node] = true;
+        }
+        let mut values: Vec<Option<Value>> = vec![None; self.count];
+        for probe in &self.results {
+            values[probe.name] = Some(probe.value);
+        }
+        let mut names = vec![0; self.count];
+        let before = outputs.len();
+        for (name, value) in values.into_iter().enumerate().filter(|&(name, _)| used[name]) {
+            names[name] = outputs.len() - before;
+            let value = value.expect("every probe comes out of the scene's row");
+            outputs.push((format!("probe{}", names[name]), value));
+        }
+        for probe in tables.iter_mut().filter_map(|table| table.probe.as_mut()) {
+            *probe = names[*probe];
+        }
+        let rename = |decision: Decision| Decision {
+            operand: names[decision.operand],
+            node: names[decision.node],
+            ..decision
+        };
+        self.decisions.into_iter().map(rename).collect()
+    }
+}
+
+impl Emitter<'_> {
+    /// The probes, if there are any in this function and one could be taken here.
+    fn probes_here(&mut self) -> Option<&mut Probes> {
+        let rows = self.rows.len();
+        self.probes.as_mut().filter(|probes| probes.open.len() == rows)
+    }
+
+    /// The row of the scene or of a guard is about to be opened.
+    pub(super) fn probe_row(&mut self) {
+        if let Some(probes) = self.probes_here() {
+            probes.open.push(Vec::new());
+        }
+    }
+
+    /// The probes in the row of a scene or guard that is about to be closed.
+    pub(super) fn leave_row(&mut self) -> Vec<Probe> {
+        self.probes_here().and_then(|probes| probes.open.pop()).unwrap_or_default()
+    }
+
+    /// The probes in a row that has been closed, as they are seen outside.
+    pub(super) fn probe_again(&mut self, inner: &[Probe], results: &[Value]) {
+        let Some(probes) = &mut self.probes else { return };
+        let outer = probes.open.last_mut().unwrap_or(&mut probes.results);
+        outer.extend(inner.iter().zip(results).map(|(probe, &value)| Probe { value, ..*probe }));
+    }
+
+    /// The point in a space.
+    pub(super) fn probe_point(&mut self, space: SpaceId, point: [Value; 3]) {
+        if let Some(probes) = self.probes_here() {
+            let first = point.map(|coordinate| probes.take(coordinate))[0];
+            probes.points.insert(space, first);
+        }
+    }
+
+    /// The operands of an operator come next.
+    pub(super) fn begin_operator(&mut self) {
+        if let Some(probes) = &mut self.probes {
+            probes.outer.push(probes.operands.len());
+        }
+    }
+
+    /// The field of an operand that a guard has carried out, or of the operands that are the rows of a table.
+    pub(super) fn probe_operand(
+        &mut self,
+        table: Table,
+        rows: DecidedRows,
+        decision: Option<DecisionKind>,
+        field: Value,
+    ) {
+        if let (Some(kind), Some(probes)) = (decision, self.probes_here()) {
+            let name = probes.take(field);
+            probes.operands.push(Operand { table, rows, kind, name });
+        }
+    }
+
+    /// What to keep of operands that are about to become rows, so that each may be left out while it is not
+    /// zero. Supports say nothing about formulas; of other rows they say enough.
+    pub(super) fn decides_rows(&mut self, code: ReduceCode, member: OccurrenceId) -> Option<Extreme> {
+        let extreme = match code {
+            ReduceCode::Choice(extreme) => extreme,
+            ReduceCode::Fold(_) | ReduceCode::Step(_) => return None,
+        };
+        (self.shapes.holds_formulas(member) && self.probes_here().is_some()).then_some(extreme)
+    }
+
+    /// Whether what is computed here needs no rows but those above and under it: nothing has been hoisted.
+    pub(super) fn is_free(&self) -> bool {
+        self.points.len() == 1
+            && self.kept.is_empty()
+            && self.kept_fields.is_empty()
+            && self.kept_points.is_empty()
+    }
+
+    /// The field of the operator whose operands have been met.
+    pub(super) fn end_operator(&mut self, field: Value) {
+        let Some(probes) = &mut self.probes else { return };
+        let first = probes.outer.pop().expect("the operator has begun");
+        if probes.operands.len() == first {
+            return;
+        }
+        let node = probes.take(field);
+        for Operand { table, rows, kind, name } in probes.operands.split_off(first) {
+            probes.decisions.push(Decision { table, rows, operand: name, node, kind });
+        }
+    }
+}

@@ -1,0 +1,201 @@
+//! The guide: what a model's program does not say, and whoever leaves rows out has to know.
+//!
+//! A row may be left out of the active rows in a box of space where that changes no bit of any answer. There
+//! are two reasons:
+//!
+//! ```text
+//! it is zero there     its support misses the box, and the table's rule lets zero rows go
+//! it does not decide   it is the one row of a guard, and the ranges of two fields in the box say that another operand is strictly ahead
+//! ```
+//!
+//! Supports and rules are here. The ranges come out of the *guide function*: the model's field followed by
+//! probes, over the same tables; run with intervals, it gives the ranges of them all over a box.
+//!
+//! A *guard* is a fold over one row around an operand that has tables of its own. Where the row is left out,
+//! the operand's field is what the fold starts with: 0, or the lowest or highest number where that never
+//! decides.
+
+pub use jbt_ir::Rule;
+use jbt_ir::{Function, Store, Table, Tables};
+
+use jbt_model::bounds::Bounds;
+use jbt_model::check::NodeId;
+use jbt_model::combine::Extreme;
+
+/// Supports say nothing about points with a coordinate beyond this, in magnitude: 2^20.
+pub const LARGEST_COORDINATE: f32 = 1_048_576.0;
+
+/// What there is to know about the tables of a model. It fits the programs of all queries, which have the
+/// same tables.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Guide {
+    /// By table.
+    pub tables: Store<Table, TableGuide>,
+    /// How many probes the guide function has, behind the field.
+    pub probes: usize,
+    /// What may be left out because it does not decide. Operators come after their operands.
+    pub decisions: Vec<Decision>,
+    /// Twice the iso-value, as the program has it: see [`DecisionKind`].
+    pub iso2: f32,
+}
+
+/// What there is to know about the rows of a table.
+#[derive(Clone, PartialEq, Debug)]
+pub struct TableGuide {
+    /// Which coordinates the supports are in.
+    pub space: SpaceGuide,
+    /// Of each row, where its field may be something else than zero.
+    pub supports: Vec<Support>,
+    /// What may be done with rows that are zero.
+    pub rule: Rule,
+    /// Of each row, the tree node whose field it computes: a leaf (for each of its pieces too), an operator,
+    /// a selector, or a warp.
+    pub nodes: Vec<NodeId>,
+    /// Whether its row is computed for rows of other tables, and seen by these alone: a field, an answer, or
+    /// the point inside of a warp, which several share.
+    pub is_hoisted: bool,
+}
+
+/// The space in which the fold over a table stands.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum SpaceGuide {
+    /// The world: supports are compared with the box itself.
+    World,
+    /// The inside of a warp, whose point has the ranges of this probe and the two after it. They mean nothing
+    /// where the probe's value does not count: when a guard around the warp has been left out, and then so
+    /// have the rows.
+    Probed(usize),
+    /// The insides of several warps: rows are not left out by their supports.
+    Unknown,
+}
+
+/// What may be left out where it does not decide. It is told by the ranges of two probes over a box.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Decision {
+    /// The guard, a table of one row; or operands that are rows.
+    pub table: Table,
+    /// Which rows of the table are an operand.
+    pub rows: DecidedRows,
+    /// The probe of the operand's field: where operands are rows, of the largest or smallest among those that
+    /// run.
+    pub operand: usize,
+    /// The probe of the operator's field.
+    pub node: usize,
+    /// When the operand does not decide.
+    pub kind: DecisionKind,
+}
+
+/// What an operand of a [`Decision`] is.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum DecidedRows {
+    /// All rows: that of a guard.
+    All,
+    /// Each row is an operand: run it without the others of its table, and the probe tells about it alone.
+    Each {
+        /// Whether it needs no rows but those above and under it.
+        free: bool,
+    },
+}
+
+/// When an operand does not decide. `iso2` is [`Guide::iso2`].
+///
+/// If the guard itself, or one around it, has been left out already, the probes mean nothing, and there is
+/// nothing to decide.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum DecisionKind {
+    /// `operand.high < node.low`.
+    UnionOperand,
+    /// `operand.low > node.high`.
+    IntersectionOperand,
+    /// `operand.low > node.high && node.high < iso2`. The second part says that what is subtracted is there,
+    /// so that it gives the attributes too.
+    DifferenceLeft,
+    /// `node.high < min(max(iso2 - operand.high, 0), iso2)`, in f32 as the program computes it, where the
+    /// operand is what is subtracted.
+    DifferenceRight,
+}
+
+impl DecisionKind {
+    /// That of an operand where one wins.
+    pub(super) const fn of(extreme: Extreme) -> Self {
+        match extreme {
+            Extreme::Largest => Self::UnionOperand,
+            Extreme::Smallest => Self::IntersectionOperand,
+        }
+    }
+
+    /// Whether the operand does not decide, from the low and high ends of the ranges of its field and of the
+    /// operator's.
+    #[must_use]
+    pub fn spares(self, operand: [f32; 2], node: [f32; 2], iso2: f32) -> bool {
+        match self {
+            Self::UnionOperand => operand[1] < node[0],
+            Self::IntersectionOperand => operand[0] > node[1],
+            Self::DifferenceLeft => operand[0] > node[1] && node[1] < iso2,
+            Self::DifferenceRight => node[1] < (iso2 - operand[1]).max(0.0) && node[1] < iso2,
+        }
+    }
+}
+
+/// Where a row's field may be something else than zero: within a distance of a box.
+///
+/// At a point outside, the program computes +0 for the field of the row and zeros of some sign for its
+/// gradient. This is proven for points with coordinates up to [`LARGEST_COORDINATE`] in the world, of numbers
+/// in f32 with their rounding. (A leaf whose strength is so small that fields round to zero inside of its
+/// support, and which is an operand of an intersection, may leave a subnormal gradient there.)
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Support {
+    /// The smallest corner of the core. Above the largest if nothing is inside.
+    pub low: [f32; 3],
+    /// The largest corner of the core.
+    pub high: [f32; 3],
+    /// The square of the distance, a little enlarged: see [`misses`](Self::misses).
+    pub radius_squared: f32,
+}
+
+impl Support {
+    /// All points are inside.
+    pub const EVERYWHERE: Self =
+        Self { low: [f32::NEG_INFINITY; 3], high: [f32::INFINITY; 3], radius_squared: 0.0 };
+
+    /// The points within a distance of a box, rounded outwards.
+    pub(super) fn around(core: Bounds, radius: f64) -> Self {
+        // A gap, its square and a sum of three are each off by half a unit at most: five in all, and a root
+        // of the square here.
+        let radius = (radius * (1.0 + 1.0 / (1 << 20) as f64)).powi(2);
+        Self {
+            low: core.low().map(round_down),
+            high: core.high().map(|side| -round_down(-side)),
+            radius_squared: -round_down(-radius),
+        }
+    }
+
+    /// Whether a closed box is outside: no point of it is inside. Computed in f32, in any order of the sum.
+    #[must_use]
+    pub fn misses(&self, low: [f32; 3], high: [f32; 3]) -> bool {
+        let gap = |axis: usize| {
+            let (before, behind) = (self.low[axis] - high[axis], low[axis] - self.high[axis]);
+            let gap = if before > behind { before } else { behind };
+            if gap > 0.0 { gap } else { 0.0 }
+        };
+        let [x, y, z] = [gap(0), gap(1), gap(2)];
+        x * x + y * y + z * z > self.radius_squared
+    }
+}
+
+/// The largest f32 that is not above a number.
+fn round_down(number: f64) -> f32 {
+    let nearest = number as f32;
+    if f64::from(nearest) > number { nearest.next_down() } else { nearest }
+}
+
+/// A model's guide function with its numbers, and the guide.
+#[derive(Clone, Debug)]
+pub struct Guided {
+    /// Outputs: `field`, then `probe0`, `probe1`, and so on. A probe whose guard is left out is 0.
+    pub function: Function,
+    /// Its numbers: the rows of the program of any query, without orders and attributes.
+    pub tables: Tables,
+    /// What there is to know about the tables.
+    pub guide: Guide,
+}

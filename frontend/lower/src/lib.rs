@@ -1,0 +1,128 @@
+//! Lowering: a checked tree and a query become a program and its numbers.
+//!
+//! ```text
+//! tree ──occurrence──► occurrences ──shape──► shapes ──emit──► ir::Function      the shape of the tree becomes code,
+//!      what stands where,            which of them            one body a shape
+//!      sharing                       are alike       ──rows──► ir::Tables         its numbers become rows
+//! ```
+//!
+//! * `occurrence`: affine and attribute nodes dissolve into the position and the attribute bindings of the
+//!   leaves below them; a node that is met twice at one position is one occurrence.
+//! * `shape`: nested operators of a kind flatten; occurrences that differ in numbers alone have one shape.
+//! * `emit`: children of one operator that have one shape are the rows of one table, under one fold. Field
+//!   and attribute weights come out of the same traversal; the gradient is the business of a later pass.
+//! * `slopes`: how a formula's value follows its children's, for the weights of their attributes.
+//! * `computed`: attribute values that are functions of the point.
+//! * `demand`: what selectors leave out has code, in folds whose rows are not active.
+//! * `rows`: walks the occurrences in the order of `emit` and writes down their numbers.
+//! * `support`: finds for each occurrence where it can be anything but zero, in the program's own arithmetic.
+//! * [`guide`]: what somebody has to know who leaves rows out: supports, rules, and a function of probes;
+//!   `guided` makes it.
+//! * `names`: the names that all of them use.
+//!
+//! The tables, their rows and the order of these are the same for every query; only columns differ.
+//!
+//! The program's body is a fold over the one row of the table `scene`, which holds the numbers of whatever is
+//! there once.
+
+mod computed;
+mod demand;
+mod emit;
+pub mod guide;
+mod guided;
+mod leaves;
+mod mixing;
+mod names;
+mod occurrence;
+mod position;
+mod rows;
+mod shape;
+mod slopes;
+mod support;
+
+use std::fmt;
+
+use jbt_ir::{Function, Tables};
+
+use jbt_model::check::CheckedTree;
+use jbt_model::diagnostic::Diagnostic;
+use jbt_model::query::Query;
+
+pub use guide::{Guide, Guided};
+pub use leaves::LeafOccurrences;
+
+/// A program, before any pass, and its numbers.
+#[derive(Clone, Debug)]
+pub struct Lowered {
+    /// The shape of the model as code. Outputs: `field`, then the channels of every attribute group in order.
+    pub function: Function,
+    /// The numbers of the model. Nodes of rows are [`jbt_model::check::NodeId`]s.
+    pub tables: Tables,
+}
+
+/// A model on its way to programs: what stands where, and which parts are alike. It is found once, for all
+/// that is asked of the model.
+pub struct Lowering<'a> {
+    scene: occurrence::Scene<'a>,
+    shapes: shape::Shapes,
+}
+
+impl fmt::Debug for Lowering<'_> {
+    /// The tree, and not what was found in it.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Lowering").field("tree", self.tree()).finish_non_exhaustive()
+    }
+}
+
+impl<'a> Lowering<'a> {
+    /// Cost: all paths of the tree that do not lead to the same place.
+    #[must_use]
+    pub fn new(tree: &'a CheckedTree) -> Self {
+        let scene = occurrence::Scene::new(tree);
+        let shapes = shape::Shapes::new(&scene);
+        Self { scene, shapes }
+    }
+
+    /// The model.
+    #[must_use]
+    pub fn tree(&self) -> &'a CheckedTree {
+        self.scene.tree
+    }
+
+    /// The program for a query.
+    ///
+    /// Trees of one shape give equal functions, whatever their numbers; their tables may be exchanged.
+    ///
+    /// # Errors
+    /// Located diagnostics: numbers that leave the range of f32 once all transforms are applied, or a program
+    /// beyond [`jbt_ir::limits`].
+    pub fn answers(&self, query: Query) -> Result<Lowered, Vec<Diagnostic>> {
+        let code = emit::emit(&self.scene, &self.shapes, query)?;
+        let rows = rows::rows(&self.scene, &self.shapes, query, &code)?;
+        Ok(Lowered { function: code.function, tables: rows.tables })
+    }
+
+    /// The guide function, and what there is to know about the tables of all queries.
+    ///
+    /// # Errors
+    /// Those of [`answers`](Self::answers).
+    pub fn guided(&self) -> Result<Guided, Vec<Diagnostic>> {
+        guided::guided(&self.scene, &self.shapes)
+    }
+}
+
+/// Lowers a model for one query: see [`Lowering`].
+///
+/// # Errors
+/// Those of [`Lowering::answers`].
+pub fn lower(tree: &CheckedTree, query: Query) -> Result<Lowered, Vec<Diagnostic>> {
+    Lowering::new(tree).answers(query)
+}
+
+/// Lowers a model to its guide function, and says what there is to know about its tables: see [`Lowering`].
+///
+/// # Errors
+/// Those of [`Lowering::guided`].
+pub fn lower_guided(tree: &CheckedTree) -> Result<Guided, Vec<Diagnostic>> {
+    Lowering::new(tree).guided()
+}

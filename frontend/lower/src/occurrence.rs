@@ -1,0 +1,297 @@
+//! What stands where: the tree with affine and attribute nodes dissolved into positions and bindings.
+//!
+//! An *occurrence* is a node at a position with attribute bindings. A node that is reached twice with the
+//! same of each is one occurrence with two uses; under other coordinates it is another one.
+
+use std::borrow::Cow;
+
+use glam::{DAffine3, DVec3};
+
+use super::computed::Computed;
+use super::demand::Demand;
+use super::names::ComputedId;
+pub(super) use super::names::{BindingsId, FieldId, OccurrenceId, PositionId, SpaceId};
+use super::position::{MapKind, Position};
+use jbt_model::check::{CheckedTree, NodeId};
+use jbt_model::combine::{Combinator, MapCode, ReduceCode};
+use jbt_model::expression::Expression;
+use jbt_model::falloff::FalloffKind;
+use jbt_model::kind::{NodeKind, Primitive};
+use jbt_model::skeleton::SkeletonKind;
+use jbt_model::warp::Warp;
+use jbt_model::written::Written;
+
+mod asked;
+mod binding;
+mod find;
+
+/// What a leaf is bound to, of one attribute group.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub(super) struct Bound {
+    /// The attribute node.
+    pub(super) node: NodeId,
+    /// Where it stands, if what it gives depends on that.
+    at: Option<PositionId>,
+}
+
+/// The inside of a warp.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Inside {
+    pub(super) warp: NodeId,
+    /// Where the warp stands.
+    pub(super) position: PositionId,
+    /// Whose field is its weight, if it has one: known once its occurrence is.
+    pub(super) weight: Option<OccurrenceId>,
+    /// How many occurrences, with different attributes, lead into it.
+    pub(super) uses: u32,
+}
+
+/// A leaf at a position.
+#[derive(Clone, Debug)]
+pub(super) struct LeafField {
+    pub(super) node: NodeId,
+    pub(super) position: PositionId,
+    /// How many occurrences, with different attributes, have this field.
+    pub(super) uses: u32,
+    /// The map from the skeleton's pose, scaled, to the space in which it is asked.
+    pub(super) map: DAffine3,
+    /// How many times as large as it was written the skeleton is in its pose. A similarity ends up here;
+    /// other maps leave it at 1.
+    pub(super) scale: f64,
+    pub(super) code: LeafCode,
+}
+
+/// What a leaf without computed attributes is as code.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub(super) struct LeafCode {
+    /// The inverse of its map.
+    pub(super) map: MapKind,
+    pub(super) skeleton: SkeletonKind,
+    pub(super) falloff: FalloffKind,
+    /// Whether the strength is a number of its row.
+    pub(super) strong: bool,
+}
+
+#[derive(Clone, Debug)]
+pub(super) enum OccurrenceKind {
+    Leaf {
+        field: FieldId,
+        bindings: BindingsId,
+        /// Of each attribute group, the value that is computed for it; empty if none is.
+        computed: Box<[Option<ComputedId>]>,
+    },
+    Warp {
+        position: PositionId,
+        inside: SpaceId,
+        child: OccurrenceId,
+        /// What weighs it, in the space where the warp stands. It is always hoisted.
+        weight: Option<OccurrenceId>,
+    },
+    /// An operator whose operands are alike: any number of them, in any order but for ties; the operands of a
+    /// step in that of the file.
+    Reduce {
+        operator: Combinator,
+        code: ReduceCode,
+        children: Vec<OccurrenceId>,
+    },
+    Difference {
+        left: OccurrenceId,
+        right: OccurrenceId,
+    },
+    /// A map of one field.
+    Map {
+        code: MapCode,
+        child: OccurrenceId,
+    },
+    /// A formula of the point and of the children's fields: a leaf with attributes of its own, if there are
+    /// none.
+    Expression {
+        position: PositionId,
+        /// What the sides of its box are counted from, in the space of the node.
+        shift: DVec3,
+        bindings: BindingsId,
+        children: Vec<OccurrenceId>,
+        /// As for a leaf.
+        computed: Box<[Option<ComputedId>]>,
+    },
+    /// One child answers now; all have code.
+    Select {
+        children: Vec<OccurrenceId>,
+        chosen: usize,
+    },
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct Occurrence {
+    pub(super) node: NodeId,
+    pub(super) kind: OccurrenceKind,
+    /// The space in which it is asked.
+    pub(super) space: SpaceId,
+    /// How many places ask for it.
+    pub(super) uses: u32,
+    /// Whether its field can never be negative.
+    pub(super) non_negative: bool,
+    /// Whether its field is never further from 0 than
+    /// [`LARGEST_FIELD`](jbt_model::expression::LARGEST_FIELD), wherever the point is.
+    pub(super) bounded: bool,
+}
+
+/// All occurrences of a tree, children before parents.
+pub(super) struct Scene<'a> {
+    pub(super) tree: &'a CheckedTree,
+    pub(super) occurrences: Vec<Occurrence>,
+    pub(super) fields: Vec<LeafField>,
+    pub(super) root: OccurrenceId,
+    positions: Vec<Position>,
+    /// Of each set of bindings, what each attribute group is bound to.
+    bindings: Vec<Option<Bound>>,
+    /// Attribute values that are computed.
+    pub(super) computed: Vec<Computed>,
+    /// By the numbers of spaces without that of the world, which is 0.
+    pub(super) insides: Vec<Inside>,
+    pub(super) demand: Demand,
+}
+
+impl<'a> Scene<'a> {
+    pub(super) fn occurrence(&self, id: OccurrenceId) -> &Occurrence {
+        &self.occurrences[id.0 as usize]
+    }
+
+    pub(super) fn field(&self, id: FieldId) -> &LeafField {
+        &self.fields[id.0 as usize]
+    }
+
+    pub(super) fn position(&self, id: PositionId) -> &Position {
+        &self.positions[id.0 as usize]
+    }
+
+    /// What each attribute group is bound to, `None` for the default.
+    pub(super) fn bindings(&self, id: BindingsId) -> &[Option<Bound>] {
+        let groups = self.tree.attributes().len();
+        &self.bindings[id.0 as usize * groups..][..groups]
+    }
+
+    pub(super) fn computed(&self, id: ComputedId) -> &Computed {
+        &self.computed[id.0 as usize]
+    }
+
+    /// How many spaces `outer` is outside of `space`, in which it lies.
+    pub(super) fn spaces_between(&self, outer: SpaceId, mut space: SpaceId) -> u32 {
+        let mut count = 0;
+        while space != outer {
+            let inside = self.inside(space).expect("the world is the outermost space");
+            space = self.position(inside.position).space;
+            count += 1;
+        }
+        count
+    }
+
+    pub(super) fn primitive(&self, field: FieldId) -> &'a Primitive {
+        match &self.tree.node(self.field(field).node).kind {
+            NodeKind::Primitive(primitive) => primitive,
+            NodeKind::Combine(_)
+            | NodeKind::Expression(_)
+            | NodeKind::Select(_)
+            | NodeKind::Affine(_)
+            | NodeKind::Warp(_)
+            | NodeKind::Attribute { .. } => {
+                unreachable!("leaf fields are made of primitives")
+            }
+        }
+    }
+
+    pub(super) fn expression(&self, node: NodeId) -> &'a Expression {
+        match &self.tree.node(node).kind {
+            NodeKind::Expression(expression) => expression,
+            NodeKind::Combine(_)
+            | NodeKind::Select(_)
+            | NodeKind::Affine(_)
+            | NodeKind::Primitive(_)
+            | NodeKind::Warp(_)
+            | NodeKind::Attribute { .. } => {
+                unreachable!("only formulas have expressions")
+            }
+        }
+    }
+
+    /// A number of an expression, if it is the same for all values of the parameters.
+    pub(super) fn fixed_number(&self, node: NodeId, number: usize) -> Option<f64> {
+        let follows = match self.tree.written(node) {
+            Some(Written::Expression(formula)) => formula.numbers[number].follows(),
+            Some(_) | None => false,
+        };
+        (!follows).then(|| self.expression(node).numbers()[number])
+    }
+
+    /// Whether an expression is 0 wherever its children are, for all values of the parameters.
+    pub(super) fn vanishes(&self, node: NodeId) -> bool {
+        self.expression(node).form().vanishes(|number| self.fixed_number(node, number))
+    }
+
+    /// What a space is the inside of; `None` for the world.
+    pub(super) fn inside(&self, space: SpaceId) -> Option<&Inside> {
+        self.insides.get((space.0 as usize).checked_sub(1)?)
+    }
+
+    /// Whether several occurrences lead into a space: then its points are computed once, for all of them.
+    pub(super) fn is_shared(&self, space: SpaceId) -> bool {
+        self.inside(space).is_some_and(|inside| inside.uses > 1)
+    }
+
+    /// What an operator does.
+    pub(super) fn combinator(&self, node: NodeId) -> Combinator {
+        match &self.tree.node(node).kind {
+            NodeKind::Combine(combinator) => *combinator,
+            NodeKind::Primitive(_)
+            | NodeKind::Expression(_)
+            | NodeKind::Select(_)
+            | NodeKind::Affine(_)
+            | NodeKind::Warp(_)
+            | NodeKind::Attribute { .. } => {
+                unreachable!("operators are made of combinators")
+            }
+        }
+    }
+
+    /// The attribute group that a node names.
+    pub(super) fn attribute_name(&self, node: NodeId) -> &'a str {
+        match &self.tree.node(node).kind {
+            NodeKind::Attribute { name, .. } => name,
+            NodeKind::Primitive(_)
+            | NodeKind::Combine(_)
+            | NodeKind::Expression(_)
+            | NodeKind::Select(_)
+            | NodeKind::Affine(_)
+            | NodeKind::Warp(_) => unreachable!("bindings name attribute nodes"),
+        }
+    }
+
+    pub(super) fn warp(&self, node: NodeId) -> &'a Warp {
+        match &self.tree.node(node).kind {
+            NodeKind::Warp(warp) => warp,
+            NodeKind::Combine(_)
+            | NodeKind::Expression(_)
+            | NodeKind::Select(_)
+            | NodeKind::Affine(_)
+            | NodeKind::Primitive(_)
+            | NodeKind::Attribute { .. } => {
+                unreachable!("spaces are the insides of warps")
+            }
+        }
+    }
+}
+
+/// The occurrences that one asks for.
+pub(super) fn children(kind: &OccurrenceKind) -> Cow<'_, [OccurrenceId]> {
+    match kind {
+        OccurrenceKind::Leaf { .. } => Cow::Borrowed(&[]),
+        OccurrenceKind::Warp { child, weight: None, .. } | OccurrenceKind::Map { child, .. } => {
+            Cow::Borrowed(std::slice::from_ref(child))
+        }
+        OccurrenceKind::Warp { child, weight: Some(weight), .. } => Cow::Owned(vec![*child, *weight]),
+        OccurrenceKind::Reduce { children, .. }
+        | OccurrenceKind::Expression { children, .. }
+        | OccurrenceKind::Select { children, .. } => Cow::Borrowed(children),
+        OccurrenceKind::Difference { left, right } => Cow::Owned(vec![*left, *right]),
+    }
+}

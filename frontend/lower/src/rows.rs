@@ -1,0 +1,418 @@
+//! The numbers of a scene: for every row, what its code asks for, in the order in which it asks.
+//!
+//! This goes through the occurrences as [`super::emit`] does, but through all members of a group and not the
+//! first alone, and writes numbers where that declares columns. Numbers are derived in f64 and rounded once.
+
+use jbt_ir::{Entity, Rows, Store, Table, Tables};
+
+use super::computed;
+use super::emit::{Code, groups};
+use super::mixing::wants_order;
+use super::names::ComputedId;
+use super::occurrence::{BindingsId, FieldId, LeafField, OccurrenceId, OccurrenceKind, Scene, SpaceId};
+use super::shape::{Hoist, Shapes};
+use jbt_model::attribute::{AttributeValue, Mixing};
+use jbt_model::check::NodeId;
+use jbt_model::combine::Combinator;
+use jbt_model::diagnostic::Diagnostic;
+use jbt_model::query::Query;
+use jbt_model::skeleton::BEYOND;
+
+/// The numbers, and what they belong to.
+pub(super) struct Written {
+    pub(super) tables: Tables,
+    /// What is behind each row of each table.
+    pub(super) members: Vec<Vec<Member>>,
+}
+
+/// Writes the numbers.
+pub(super) fn rows(
+    scene: &Scene<'_>,
+    shapes: &Shapes,
+    query: Query,
+    code: &Code,
+) -> Result<Written, Vec<Diagnostic>> {
+    let mut writer = Writer::new(scene, shapes, query, code);
+    for table in code.function.tables.keys() {
+        // Pieces have been written with their leaves.
+        for row in writer.tables[table.index()].count..writer.members[table.index()].len() {
+            writer.row(table, row);
+        }
+        let columns = code.function.tables[table].columns.len();
+        assert_eq!(
+            writer.tables[table.index()].numbers.len(),
+            columns * writer.members[table.index()].len(),
+            "rows and code agree on the columns of {table}"
+        );
+    }
+    if !writer.errors.is_empty() {
+        return Err(writer.errors);
+    }
+    let mut tables = Store::new();
+    for rows in writer.tables {
+        tables.push(rows);
+    }
+    Ok(Written { tables: Tables { tables }, members: writer.members })
+}
+
+enum Task {
+    Use(OccurrenceId),
+    Define(OccurrenceId),
+    Order(u32),
+    Hoist(Hoist),
+    /// The members of a folded group become rows of the next child table.
+    Rows(OccurrenceId, usize),
+    /// The numbers of a formula, behind those of its children.
+    Express(OccurrenceId),
+    /// An operand that is written out: the row of the next child table, if it has a guard.
+    Operand(OccurrenceId),
+    /// One row of the next child table, active or not.
+    Guard(Member, bool),
+}
+
+/// What is behind a row.
+#[derive(Clone, Copy)]
+pub(super) enum Member {
+    /// What stands here: the scene, an operand, or a selector's child. And its place in the order of its
+    /// operator, where that is a column.
+    Operand(OccurrenceId, Option<u32>),
+    /// What is hoisted and has a guard.
+    Hoisted(Hoist),
+    /// A piece of a leaf's skeleton, by its place among them.
+    Piece(FieldId, u32),
+}
+
+impl Member {
+    /// The tree node whose numbers stand in the row.
+    pub(super) fn node(self, scene: &Scene<'_>) -> NodeId {
+        match self {
+            Self::Operand(id, _) | Self::Hoisted(Hoist::Occurrence(id)) => scene.occurrence(id).node,
+            Self::Hoisted(Hoist::Field(field)) | Self::Piece(field, _) => scene.field(field).node,
+            Self::Hoisted(Hoist::Computed(id)) => scene.computed(id).node,
+            Self::Hoisted(Hoist::Space(space)) => scene.inside(space).expect("the world is not hoisted").warp,
+        }
+    }
+}
+
+struct Writer<'a> {
+    scene: &'a Scene<'a>,
+    shapes: &'a Shapes,
+    code: &'a Code,
+    query: Query,
+    mixing: Vec<Mixing>,
+    tables: Vec<Rows>,
+    /// By table and row.
+    members: Vec<Vec<Member>>,
+    errors: Vec<Diagnostic>,
+    row: Vec<f64>,
+    /// The tables under the row in progress, the next one last.
+    children: Vec<Table>,
+    nodes: Vec<u32>,
+    /// Empty between rows.
+    tasks: Vec<Task>,
+}
+
+impl<'a> Writer<'a> {
+    fn new(scene: &'a Scene<'a>, shapes: &'a Shapes, query: Query, code: &'a Code) -> Self {
+        let count = code.function.tables.len();
+        let mut tables = vec![Rows::default(); count];
+        for (rows, schema) in tables.iter_mut().zip(code.function.tables.values()) {
+            rows.stride = schema.columns.len();
+            rows.starts.push(0);
+        }
+        let mut members = vec![Vec::new(); count];
+        members[0].push(Member::Operand(scene.root, None));
+        tables[0].active.push(0);
+        tables[0].starts.push(1);
+        let attributes = &scene.tree.attributes()[..groups(scene.tree, query)];
+        let mixing = attributes.iter().map(|group| group.mixing).collect();
+        Self {
+            scene,
+            shapes,
+            code,
+            query,
+            mixing,
+            tables,
+            members,
+            errors: Vec::new(),
+            row: Vec::new(),
+            children: Vec::new(),
+            nodes: Vec::new(),
+            tasks: Vec::new(),
+        }
+    }
+
+    /// Writes one row, and hands the rows of the tables under it out.
+    fn row(&mut self, table: Table, index: usize) {
+        let member = self.members[table.index()][index];
+        let mut tasks = std::mem::take(&mut self.tasks);
+        let depth = self.code.tables[table.index()].depth;
+        self.children.clear();
+        self.children.extend(self.code.tables[table.index()].children.iter().rev());
+        match member {
+            Member::Operand(member, order) => {
+                tasks.push(Task::Use(member));
+                self.row.extend(order.map(f64::from));
+            }
+            Member::Hoisted(Hoist::Field(field)) => self.leaf(field),
+            Member::Hoisted(Hoist::Computed(id)) => self.computed(id),
+            Member::Hoisted(Hoist::Space(space)) => self.warp(space),
+            Member::Hoisted(Hoist::Occurrence(id)) => tasks.push(Task::Define(id)),
+            Member::Piece(..) => unreachable!("pieces are written with their leaves"),
+        }
+        if table.index() == 0 {
+            self.start(&mut tasks);
+        }
+        while let Some(task) = tasks.pop() {
+            match task {
+                // It is computed where it is hoisted to.
+                Task::Use(id) if self.scene.occurrence(id).uses > 1 => {}
+                Task::Use(id) | Task::Define(id) => self.define(id, &mut tasks),
+                Task::Order(order) => self.row.push(f64::from(order)),
+                Task::Express(id) => self.express(id),
+                Task::Hoist(hoist) => self.hoist(hoist, depth, &mut tasks),
+                Task::Rows(id, group) => self.hand_out(id, group),
+                Task::Operand(id) => {
+                    let guarded = self.shapes.guards_operand(self.scene, id, depth);
+                    let guard = Task::Guard(Member::Operand(id, None), true);
+                    tasks.push(if guarded { guard } else { Task::Use(id) });
+                }
+                Task::Guard(member, active) => {
+                    self.own(&[member], active);
+                }
+            }
+        }
+        self.tasks = tasks;
+        self.flush(table, member);
+    }
+
+    /// The numbers of the scene itself.
+    fn start(&mut self, tasks: &mut Vec<Task>) {
+        self.row.push(2.0 * self.scene.tree.iso());
+        for group in &self.scene.tree.attributes()[..self.mixing.len()] {
+            self.row.extend(&group.default);
+        }
+        self.enter_space(SpaceId(0), tasks);
+    }
+
+    fn enter_warp(&mut self, space: SpaceId, tasks: &mut Vec<Task>) {
+        self.warp(space);
+        self.enter_space(space, tasks);
+    }
+
+    fn warp(&mut self, space: SpaceId) {
+        let inside = self.scene.inside(space).expect("the world is no warp's inside");
+        let position = self.scene.position(inside.position);
+        position.kind().push_columns(&position.map, &mut self.row);
+        self.scene.warp(inside.warp).columns(&mut self.row);
+    }
+
+    /// What is hoisted: here, or in a row of its own.
+    fn hoist(&mut self, hoist: Hoist, depth: usize, tasks: &mut Vec<Task>) {
+        let guarded = self.shapes.guards_hoisted(self.scene, hoist, depth);
+        match hoist {
+            Hoist::Computed(id) if !self.mixing.is_empty() => self.computed(id),
+            Hoist::Computed(_) => {}
+            Hoist::Field(field) if !guarded => self.leaf(field),
+            Hoist::Space(space) if !guarded => self.enter_warp(space, tasks),
+            Hoist::Occurrence(id) if !guarded => tasks.push(Task::Define(id)),
+            // Only the point is computed under the guard.
+            Hoist::Space(space) => self.enter_space(space, tasks),
+            Hoist::Field(_) | Hoist::Occurrence(_) => {}
+        }
+        if guarded {
+            tasks.push(Task::Guard(Member::Hoisted(hoist), self.scene.demand.is_asked(hoist)));
+        }
+    }
+
+    fn enter_space(&self, space: SpaceId, tasks: &mut Vec<Task>) {
+        tasks.extend(self.shapes.hoists(space).iter().rev().map(|&hoist| Task::Hoist(hoist)));
+    }
+
+    fn define(&mut self, id: OccurrenceId, tasks: &mut Vec<Task>) {
+        let occurrence = self.scene.occurrence(id);
+        match &occurrence.kind {
+            OccurrenceKind::Leaf { field, bindings, computed } => {
+                if self.scene.field(*field).uses == 1 {
+                    self.leaf(*field);
+                }
+                self.attributes(*bindings, computed);
+            }
+            OccurrenceKind::Warp { inside, child, .. } => {
+                tasks.push(Task::Use(*child));
+                if !self.scene.is_shared(*inside) {
+                    self.enter_warp(*inside, tasks);
+                }
+            }
+            OccurrenceKind::Difference { left, right } => {
+                tasks.extend([Task::Operand(*right), Task::Operand(*left)]);
+            }
+            OccurrenceKind::Map { child, .. } => {
+                self.operator(occurrence.node, self.scene.combinator(occurrence.node));
+                tasks.push(Task::Operand(*child));
+            }
+            OccurrenceKind::Expression { children, .. } => {
+                tasks.push(Task::Express(id));
+                tasks.extend(children.iter().rev().map(|&child| Task::Operand(child)));
+            }
+            OccurrenceKind::Select { children, chosen } => {
+                for (place, &child) in children.iter().enumerate().rev() {
+                    tasks.push(Task::Guard(Member::Operand(child, None), place == *chosen));
+                }
+            }
+            OccurrenceKind::Reduce { operator, code, .. } => {
+                self.operator(occurrence.node, *operator);
+                let groups = self.shapes.groups(id);
+                let ordered = wants_order(*code, groups.len() > 1, self.query.gradient, &self.mixing);
+                for (index, group) in groups.iter().enumerate().rev() {
+                    if group.folded {
+                        tasks.push(Task::Rows(id, index));
+                        continue;
+                    }
+                    for &(member, order) in group.members.iter().rev() {
+                        tasks.push(Task::Operand(member));
+                        if ordered {
+                            tasks.push(Task::Order(order));
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// The numbers of an operator.
+    fn operator(&mut self, node: NodeId, operator: Combinator) {
+        let follows = self.scene.tree.written(node).is_some();
+        operator.push_columns(follows, self.scene.tree.iso(), &mut self.row);
+    }
+
+    /// Makes the members of a group rows of the next child table, owned by the row in progress.
+    fn hand_out(&mut self, id: OccurrenceId, group: usize) {
+        let OccurrenceKind::Reduce { code, .. } = &self.scene.occurrence(id).kind else {
+            unreachable!("only operators have groups")
+        };
+        let groups = self.shapes.groups(id);
+        let ordered = wants_order(*code, groups.len() > 1, self.query.gradient, &self.mixing);
+        let member = |&(occurrence, order)| Member::Operand(occurrence, ordered.then_some(order));
+        let members: Vec<Member> = groups[group].members.iter().map(member).collect();
+        self.own(&members, true);
+    }
+
+    /// These are the rows of the next child table that the row in progress owns, active or not.
+    fn own(&mut self, owned: &[Member], active: bool) -> Table {
+        let child = self
+            .children
+            .pop()
+            .expect("the code has a table for each folded group, guard and fold of pieces");
+        let (rows, members) = (&mut self.tables[child.index()], &mut self.members[child.index()]);
+        if active {
+            rows.active.extend((members.len()..members.len() + owned.len()).map(|row| row as u32));
+        }
+        members.extend(owned);
+        rows.starts.push(rows.active.len() as u32);
+        child
+    }
+
+    fn leaf(&mut self, field: FieldId) {
+        self.nodes.push(self.scene.field(field).node.0);
+        let primitive = self.scene.primitive(field);
+        let LeafField { map, scale, code, .. } = self.scene.field(field);
+        code.map.push_columns(map, &mut self.row);
+        primitive.skeleton.columns(*scale, &mut self.row);
+        if let Some(pieces) = code.skeleton.pieces() {
+            self.row.push(BEYOND * scale * primitive.radius);
+            self.pieces(field, pieces.columns.len());
+        }
+        self.row.push(-(scale * primitive.radius).powi(-2));
+        primitive.falloff.columns(code.falloff, &mut self.row);
+        if code.strong {
+            self.row.push(primitive.strength);
+        }
+    }
+
+    /// The numbers of a formula: the map to its space, its own, and those of the leaf that it is without
+    /// children.
+    fn express(&mut self, id: OccurrenceId) {
+        let occurrence = self.scene.occurrence(id);
+        let OccurrenceKind::Expression { position, shift, bindings, children, computed } = &occurrence.kind
+        else {
+            unreachable!("only formulas are expressed")
+        };
+        let expression = self.scene.expression(occurrence.node);
+        if expression.form().asks_point() {
+            let position = self.scene.position(*position);
+            position.kind().push_columns(&position.map, &mut self.row);
+        }
+        self.row.extend(expression.numbers_from(*shift));
+        if children.is_empty() {
+            self.attributes(*bindings, computed);
+        }
+    }
+
+    /// Writes the rows of a leaf's pieces.
+    fn pieces(&mut self, field: FieldId, columns: usize) {
+        let (primitive, scale) = (self.scene.primitive(field), self.scene.field(field).scale);
+        let mut numbers = Vec::new();
+        primitive.skeleton.pieces(scale, primitive.radius, &mut numbers);
+        // At most limits::MAX_OCCURRENCES.
+        let members: Vec<Member> =
+            (0..numbers.len() / columns).map(|piece| Member::Piece(field, piece as u32)).collect();
+        let table = self.own(&members, true);
+        for (member, piece) in members.into_iter().zip(numbers.chunks_exact(columns)) {
+            self.append(table, member, piece);
+        }
+    }
+
+    /// The attributes of a leaf: numbers, and the numbers of what is computed in its row.
+    fn attributes(&mut self, bindings: BindingsId, computed: &[Option<ComputedId>]) {
+        let bindings = self.scene.bindings(bindings);
+        let groups = &self.scene.tree.attributes()[..self.mixing.len()];
+        for (index, (group, bound)) in groups.iter().zip(bindings).enumerate() {
+            match (computed.get(index).copied().flatten(), bound) {
+                (Some(id), _) if self.scene.computed(id).shared => {}
+                (Some(id), _) => self.computed(id),
+                (None, Some(bound)) => match computed::attribute(self.scene.tree, bound.node) {
+                    AttributeValue::Numbers(numbers) => self.row.extend(numbers),
+                    AttributeValue::Textured(_) | AttributeValue::Uv(_) | AttributeValue::Expressed(_) => {
+                        unreachable!("it is computed")
+                    }
+                },
+                (None, None) => self.row.extend(&group.default),
+            }
+        }
+    }
+
+    fn computed(&mut self, id: ComputedId) {
+        computed::push_columns(self.scene.tree, self.scene.computed(id), &mut self.row);
+    }
+
+    /// Rounds the row and appends it to its table.
+    fn flush(&mut self, table: Table, member: Member) {
+        self.tables[table.index()].nodes.append(&mut self.nodes);
+        let mut row = std::mem::take(&mut self.row);
+        self.append(table, member, &row);
+        row.clear();
+        self.row = row;
+    }
+
+    /// Rounds numbers and appends them as a row.
+    fn append(&mut self, table: Table, member: Member, row: &[f64]) {
+        let rows = &mut self.tables[table.index()];
+        rows.count += 1;
+        rows.numbers.extend(row.iter().map(|&number| number as f32));
+        for &number in row.iter().filter(|number| !(**number as f32).is_finite()) {
+            self.complain(member, number);
+        }
+    }
+
+    /// A number of a row is none in f32.
+    #[cold]
+    fn complain(&mut self, member: Member, number: f64) {
+        if self.errors.len() < jbt_ir::limits::MAX_ERRORS {
+            let node = self.scene.tree.node(member.node(self.scene));
+            let message = format!("a number derived from this part leaves the range of f32: {number:e}");
+            let help = "the part is too small, too large or too far away once all transforms are applied";
+            self.errors.push(Diagnostic::error(node.span, message).expected(help));
+        }
+    }
+}

@@ -1,0 +1,421 @@
+//! Supports: where an occurrence's field can be anything but zero, as the compiled program computes it.
+//!
+//! A leaf's field is zero where its skeleton is farther away than its radius, and so is, outside of a box,
+//! whatever is made of leaves. The program computes in f32, so all boxes are inflated by what rounding may
+//! do. With `u = 2^-24`, half a unit in the last place of 1:
+//!
+//! **The map.** A row holds `R = A^-1` and `t = -R a` for a map `p = A q + a`, each number off by u of
+//! itself, and the program takes at most three fused steps for a coordinate, each off by u of what it has so
+//! far. So coordinate k is off by at most `4.01 u (sum_j |R_kj p_j| + |t_k|)`, for which 6 u stands here; a
+//! subtraction is off by less. With `|p| <= |A| |q| + |a|` this is
+//!
+//! ```text
+//! e(q) <= N |q| + n        N = 6 u |R| |A| + |R A - I|        n = 6 u (|R| |a| + |t|) + |R a + t| + 2^-86
+//! ```
+//!
+//! where the second terms are what R, computed in f64, is no inverse of A by, and 2^-86 is more than
+//! underflow takes from numbers of a row, times coordinates up to 2^60.
+//!
+//! **The distance.** It is that of a [`Metric`](jbt_model::skeleton::Metric): it changes by at most S times
+//! the length of e, S the steepness, and is computed with the [`ROUNDING`] of skeletons. With the true
+//! distance d, the largest coordinates K of the skeleton in its pose, and the half sizes h of a box around
+//! the metric's unit ball, `|q_k| <= K_k + d h_k`. So what is computed is at least `d - S |N K + n| - d S |N
+//! h| - ROUNDING (|K| + d) - 2^-73`, which grows with d. Of the Euclidean distance, S is 1 and so are all
+//! h_k. Where d is at most r, q is in the skeleton grown by r times the unit ball, whose image reaches as far
+//! as the metric says.
+//!
+//! **The falloff.** It is `max(fma(d^2, -1 / r^2 (1 + u), 1), 0)`: zero, with zero slope, as soon as the
+//! computed d is `r (1 + u)`. Whatever the falloff is, it is written in that, and is exactly +0 there. The
+//! factors of its derivative are bounded by its steepness.
+//!
+//! All this takes numbers that do not overflow, so there is a bound of the coordinates at which points are
+//! asked, [`LARGEST_COORDINATE`], and rows whose numbers could overflow within it are bounded by nothing.
+
+use glam::{DAffine3, DMat3, DVec3};
+use rustc_hash::FxHashMap as HashMap;
+
+use super::guide::{LARGEST_COORDINATE, Support};
+use super::occurrence::{FieldId, OccurrenceId, OccurrenceKind, PositionId, Scene};
+use super::position::{MapKind, Position};
+use jbt_model::affine::{Similarity, map_bounds};
+use jbt_model::bounds::Bounds;
+use jbt_model::check::NodeId;
+use jbt_model::combine::ReduceCode;
+use jbt_model::combine::extent::Extent;
+use jbt_model::kind::Primitive;
+use jbt_model::skeleton::{Metric, ROUNDING};
+
+/// Half a unit in the last place of 1 in f32.
+const HALF_UNIT: f64 = 1.0 / (1 << 24) as f64;
+/// What numbers of the program may grow to: far from overflow, also if three squares of such numbers are
+/// added.
+const LARGEST_NUMBER: f64 = (1u64 << 60) as f64;
+/// What factors of a derivative may grow to.
+const LARGEST_FACTOR: f64 = LARGEST_NUMBER * LARGEST_NUMBER;
+/// More than any number of f64 that is made of a few others is off by, relative to the largest of them.
+const F64_SLACK: f64 = 1.0 / (1u64 << 44) as f64;
+/// A root of a sum of squares of this size may lose all its bits to underflow.
+const SMALLEST_ROOT: f64 = 1.0 / (1u128 << 73) as f64;
+/// More than any falloff changes by, in radii.
+const STEEPEST: f64 = (1 << 20) as f64;
+/// Where rounding may take more than this part of a length, nothing is promised.
+const LARGEST_PART: f64 = 0.25;
+
+/// All points within a distance of a box.
+#[derive(Clone, Copy, Debug)]
+struct Rounded {
+    core: Bounds,
+    radius: f64,
+}
+
+impl Rounded {
+    const EVERYWHERE: Self = Self { core: Bounds::EVERYWHERE, radius: 0.0 };
+
+    fn bounds(self) -> Bounds {
+        self.core.grown(self.radius)
+    }
+}
+
+/// The supports of all occurrences of a scene, each in the space in which it is asked.
+pub(super) struct Supports<'a> {
+    scene: &'a Scene<'a>,
+    fields: Vec<Rounded>,
+    /// Of leaves whose pieces count near themselves only.
+    pieces: HashMap<FieldId, Vec<Rounded>>,
+    /// By occurrence.
+    extents: Vec<Extent>,
+}
+
+impl<'a> Supports<'a> {
+    /// Finds them, children before parents.
+    pub(super) fn new(scene: &'a Scene<'a>) -> Self {
+        let sizes = sizes(scene);
+        let mut pieces = HashMap::default();
+        let field = |index| {
+            let id = FieldId(index as u32);
+            let leaf = Leaf::new(scene, id, &sizes);
+            if scene.field(id).code.skeleton.pieces().is_some_and(|pieces| pieces.local) {
+                pieces.insert(id, leaf.pieces());
+            }
+            leaf.whole()
+        };
+        let fields = (0..scene.fields.len()).map(field).collect();
+        let mut supports =
+            Self { scene, fields, pieces, extents: Vec::with_capacity(scene.occurrences.len()) };
+        for index in 0..scene.occurrences.len() {
+            let extent = supports.find(OccurrenceId(index as u32));
+            // Whatever is empty is empty in every direction, so that it adds nothing to a box around several.
+            supports
+                .extents
+                .push(extent.map(|bounds| if bounds.is_empty() { Bounds::EMPTY } else { bounds }));
+        }
+        supports
+    }
+
+    /// The support of an occurrence: round for a leaf, a box otherwise.
+    pub(super) fn of(&self, id: OccurrenceId) -> Support {
+        match &self.scene.occurrence(id).kind {
+            OccurrenceKind::Leaf { field, .. } => self.of_field(*field),
+            OccurrenceKind::Warp { .. }
+            | OccurrenceKind::Reduce { .. }
+            | OccurrenceKind::Expression { .. }
+            | OccurrenceKind::Select { .. }
+            | OccurrenceKind::Map { .. }
+            | OccurrenceKind::Difference { .. } => Support::around(self.extents[id.0 as usize].support, 0.0),
+        }
+    }
+
+    /// The support of a leaf's field.
+    pub(super) fn of_field(&self, id: FieldId) -> Support {
+        let Rounded { core, radius } = self.fields[id.0 as usize];
+        Support::around(core, radius)
+    }
+
+    /// Where a piece of a leaf is near enough to count.
+    pub(super) fn of_piece(&self, id: FieldId, piece: u32) -> Support {
+        let piece = self.pieces.get(&id).map(|pieces| pieces[piece as usize]);
+        piece.map_or(Support::EVERYWHERE, |Rounded { core, radius }| Support::around(core, radius))
+    }
+
+    fn find(&self, id: OccurrenceId) -> Extent {
+        let of = |id: &OccurrenceId| self.extents[id.0 as usize];
+        let all = |children: &[OccurrenceId]| children.iter().map(of).collect::<Vec<_>>();
+        let (occurrence, iso) = (self.scene.occurrence(id), self.scene.tree.iso());
+        match &occurrence.kind {
+            OccurrenceKind::Leaf { field, .. } => {
+                let support = self.fields[field.0 as usize].bounds();
+                let signed = self.scene.primitive(*field).strength < 0.0;
+                Extent { support, negative: if signed { support } else { Bounds::EMPTY } }
+            }
+            OccurrenceKind::Warp { position, child, weight: Some(weight), .. } => {
+                let position = self.scene.position(*position);
+                of(child).map(|bounds| around_map(position, bounds)).weighted(&of(weight))
+            }
+            OccurrenceKind::Warp { position, inside, child, weight: None } => {
+                let warp = self.scene.warp(self.scene.insides[inside.0 as usize - 1].warp);
+                let position = self.scene.position(*position);
+                of(child).map(|bounds| around_map(position, warp.reach(bounds)))
+            }
+            OccurrenceKind::Reduce { operator, children, .. } => operator.extent(&all(children), iso),
+            OccurrenceKind::Difference { left, .. } => of(left),
+            OccurrenceKind::Map { child, .. } => {
+                self.scene.combinator(occurrence.node).extent(&[of(child)], iso)
+            }
+            OccurrenceKind::Expression { position, shift, children, .. } => {
+                let support = self.of_expression(occurrence.node, (*position, *shift), &all(children));
+                let negative = if occurrence.non_negative { Bounds::EMPTY } else { support };
+                Extent { support, negative }
+            }
+            OccurrenceKind::Select { children, chosen } => of(&children[*chosen]),
+        }
+    }
+
+    /// Where a formula's field can be something else than zero.
+    fn of_expression(
+        &self,
+        node: NodeId,
+        (position, shift): (PositionId, DVec3),
+        children: &[Extent],
+    ) -> Bounds {
+        let reach = if self.scene.vanishes(node) {
+            children.iter().fold(Bounds::EMPTY, |all, child| all.hull(child.support))
+        } else {
+            Bounds::EVERYWHERE
+        };
+        match self.scene.expression(node).bounds() {
+            None => reach,
+            // The program compares with these sides as they are in f32.
+            Some(bounds) => {
+                let Bounds { min, max } = bounds.moved(-shift);
+                let sides = Bounds::new(min.as_vec3().as_dvec3(), max.as_vec3().as_dvec3());
+                around_map(self.scene.position(position), sides).intersection(reach)
+            }
+        }
+    }
+}
+
+/// How large the numbers of a space may become.
+#[derive(Clone, Copy)]
+struct Sizes {
+    /// A bound of coordinates, in magnitude.
+    coordinates: f64,
+    /// A bound of the sum of a coordinate's derivatives along the axes of the world, in magnitude.
+    derivatives: f64,
+}
+
+/// The sizes of all spaces, the world first. A space comes after the one in which its warp stands.
+fn sizes(scene: &Scene<'_>) -> Vec<Sizes> {
+    let mut slopes = None;
+    let mut sizes = vec![Sizes { coordinates: f64::from(LARGEST_COORDINATE), derivatives: 1.0 }];
+    for inside in &scene.insides {
+        let position = scene.position(inside.position);
+        let outer = sizes[position.space.0 as usize].after(&Inverse::new(position.kind(), &position.map));
+        let growth = scene.warp(inside.warp).growth(outer.coordinates);
+        let (mut coordinates, mut derivatives) = (growth.coordinates, outer.derivatives * growth.derivatives);
+        if let Some(weight) = inside.weight {
+            // The way from a point to where it is taken, and as it moves with the weight.
+            let slope = slopes.get_or_insert_with(|| slopes_of(scene))[weight.0 as usize];
+            coordinates += outer.coordinates;
+            derivatives +=
+                2.0 * outer.derivatives + coordinates * slope * sizes[position.space.0 as usize].derivatives;
+        }
+        // What is too large stays so, whatever a map behind it does.
+        let fits = outer.coordinates <= LARGEST_NUMBER && derivatives <= LARGEST_FACTOR;
+        let coordinates = if fits { coordinates } else { f64::INFINITY };
+        sizes.push(Sizes { coordinates, derivatives });
+    }
+    sizes
+}
+
+/// Bounds of how fast the fields of occurrences change in their space, far above what they do: they are there
+/// to exclude overflow.
+fn slopes_of(scene: &Scene<'_>) -> Vec<f64> {
+    let mut slopes: Vec<f64> = Vec::with_capacity(scene.occurrences.len());
+    for occurrence in &scene.occurrences {
+        let of = |id: &OccurrenceId| slopes[id.0 as usize];
+        let slope = match &occurrence.kind {
+            OccurrenceKind::Leaf { field, .. } => {
+                let (leaf, primitive) = (scene.field(*field), scene.primitive(*field));
+                let rows = absolute(leaf.code.map.inverse(&leaf.map).matrix3) * DVec3::ONE;
+                let metric = primitive.skeleton.metric().steepness();
+                let slope = STEEPEST * primitive.strength.abs() * rows.max_element() * metric;
+                slope / (leaf.scale * primitive.radius)
+            }
+            // Behind a warp nothing is known, nor of formulas.
+            OccurrenceKind::Warp { .. } | OccurrenceKind::Expression { .. } | OccurrenceKind::Map { .. } => {
+                f64::INFINITY
+            }
+            OccurrenceKind::Reduce { code: ReduceCode::Step(_), .. } => f64::INFINITY,
+            OccurrenceKind::Reduce { code: ReduceCode::Fold(code), .. } if code.is_steep() => f64::INFINITY,
+            OccurrenceKind::Reduce {
+                code: ReduceCode::Fold(_) | ReduceCode::Choice(_), children, ..
+            }
+            | OccurrenceKind::Select { children, .. } => children.iter().map(of).sum(),
+            OccurrenceKind::Difference { left, right } => of(left) + of(right),
+        };
+        slopes.push(slope);
+    }
+    slopes
+}
+
+impl Sizes {
+    /// The sizes behind a map; twice what it is without rounding.
+    fn after(self, inverse: &Inverse) -> Self {
+        let sums = absolute(inverse.back.matrix3) * DVec3::ONE;
+        let shifts = inverse.back.translation.abs();
+        Self {
+            coordinates: 2.0 * (self.coordinates * sums + shifts).max_element(),
+            derivatives: 2.0 * self.derivatives * sums.max_element(),
+        }
+    }
+}
+
+/// The inverse of a map, and what rounding does to the coordinates that it gives: `error <= relative |q| +
+/// fixed`.
+struct Inverse {
+    back: DAffine3,
+    relative: DMat3,
+    fixed: DVec3,
+}
+
+impl Inverse {
+    fn new(kind: MapKind, map: &DAffine3) -> Self {
+        let back = kind.inverse(map);
+        if kind == MapKind::Identity {
+            return Self { back, relative: DMat3::ZERO, fixed: DVec3::ZERO };
+        }
+        let rows = absolute(back.matrix3);
+        let units = 6.0 * HALF_UNIT;
+        let residual = back.matrix3 * map.matrix3 - DMat3::IDENTITY;
+        let shift = back.matrix3 * map.translation + back.translation;
+        let size = rows * map.translation.abs() + back.translation.abs();
+        Self {
+            back,
+            relative: units * (rows * absolute(map.matrix3)) + absolute(residual),
+            fixed: units * size + shift.abs() + 2f64.powi(-86),
+        }
+    }
+}
+
+fn absolute(matrix: DMat3) -> DMat3 {
+    DMat3::from_cols(matrix.x_axis.abs(), matrix.y_axis.abs(), matrix.z_axis.abs())
+}
+
+/// A leaf, and how far its field reaches from its skeleton.
+struct Leaf<'a> {
+    primitive: &'a Primitive,
+    /// From the skeleton's own space to the one in which it is asked.
+    map: DAffine3,
+    /// How far, along each axis of that space; nothing, if that is not known.
+    reach: Option<Reach>,
+}
+
+/// How far a field reaches from a box around its skeleton.
+enum Reach {
+    /// From a box that is grown by the one, in all directions alike by the other.
+    Round(f64, f64),
+    /// Along each axis.
+    Axes(DVec3),
+}
+
+impl<'a> Leaf<'a> {
+    fn new(scene: &'a Scene<'_>, id: FieldId, sizes: &[Sizes]) -> Self {
+        let (field, primitive) = (scene.field(id), scene.primitive(id));
+        let (map, skeleton) = (&field.map, &primitive.skeleton);
+        let radius = field.scale * primitive.radius;
+        let slope = radius.powi(-2);
+        let inverse = Inverse::new(field.code.map, map);
+        let to_pose = DAffine3::from_scale(DVec3::splat(field.scale)) * skeleton.pose().inverse();
+        let pose = skeleton.bounds_under(&to_pose);
+        let size = pose.min.abs().max(pose.max.abs());
+        let whole = *map * to_pose;
+
+        let asked = sizes[scene.position(field.position).space.0 as usize].after(&inverse);
+        let factor = slope * primitive.strength.abs().max(1.0) * primitive.falloff.steepness();
+        let (metric, nearness) = (skeleton.metric(), radius.recip().max(1.0));
+        let steepness = metric.steepness();
+        // Terms of a norm have their weights, and the largest of them, as divisors.
+        let weights = if metric == Metric::EUCLIDEAN {
+            0.0
+        } else {
+            factor * steepness.max(1.0).powi(2) * asked.coordinates.max(1.0) * nearness
+        };
+        let divisors = nearness.powi(skeleton.kind().divisors() - 1) / SMALLEST_ROOT;
+        let small = slope >= f64::from(f32::MIN_POSITIVE)
+            && asked.coordinates * steepness.max(1.0) <= LARGEST_NUMBER
+            && weights <= LARGEST_FACTOR
+            && asked.derivatives * asked.coordinates <= LARGEST_FACTOR
+            // A derivative of a distance from an axis has that distance as its divisor.
+            && factor * size.max_element() * divisors <= LARGEST_FACTOR
+            && factor * asked.coordinates <= LARGEST_FACTOR;
+        let part = steepness * (inverse.relative * metric.half()).length() + ROUNDING;
+        // Written so that a NaN is no promise either.
+        if !(small && part <= LARGEST_PART) {
+            return Self { primitive, map: whole, reach: None };
+        }
+        let lost = steepness * (inverse.relative * size + inverse.fixed).length()
+            + ROUNDING * size.max_element()
+            + SMALLEST_ROOT;
+        let reach = (radius * (1.0 + 4.0 * HALF_UNIT) + lost) / (1.0 - part);
+
+        let own = skeleton.bounds();
+        let own = field.scale * own.min.abs().max(own.max.abs()).max_element();
+        let rows = DVec3::from_array([0, 1, 2].map(|axis| map.matrix3.row(axis).length()));
+        let slack = F64_SLACK
+            * (2.0 * rows.max_element() * (own + reach * metric.half().max_element())
+                + map.translation.abs().max_element());
+        // A rigid map leaves distances alone.
+        let rigid = Similarity::from_affine(map).is_some_and(|it| (it.scale() - 1.0).abs() < 1e-11);
+        let reach = if rigid && metric == Metric::EUCLIDEAN {
+            Reach::Round(slack, reach * (1.0 + 1e-10))
+        } else {
+            Reach::Axes(slack + reach * metric.reach(map.matrix3))
+        };
+        Self { primitive, map: whole, reach: Some(reach) }
+    }
+
+    /// The support of the field.
+    fn whole(&self) -> Rounded {
+        self.around(self.primitive.skeleton.bounds_under(&self.map))
+    }
+
+    /// The support of each piece: where it is near enough to count.
+    fn pieces(&self) -> Vec<Rounded> {
+        let pieces = self.primitive.skeleton.piece_bounds_under(self.primitive.radius, &self.map);
+        pieces.into_iter().map(|piece| self.around(piece)).collect()
+    }
+
+    /// What is in reach of a part of the skeleton in this box.
+    fn around(&self, part: Bounds) -> Rounded {
+        match self.reach {
+            None => Rounded::EVERYWHERE,
+            Some(Reach::Round(slack, radius)) => Rounded { core: part.grown(slack), radius },
+            Some(Reach::Axes(reach)) => {
+                Rounded { core: Bounds::new(part.min - reach, part.max + reach), radius: 0.0 }
+            }
+        }
+    }
+}
+
+/// A box such that the program takes no point outside of it into `bounds`, by the inverse of a position's
+/// map.
+fn around_map(position: &Position, bounds: Bounds) -> Bounds {
+    if bounds.is_empty() {
+        return Bounds::EMPTY;
+    }
+    let (map, kind) = (&position.map, position.kind());
+    if kind == MapKind::Identity {
+        return bounds;
+    }
+    let inverse = Inverse::new(kind, map);
+    // Where the computed point is in the box, the true one is within e of it: e <= part (size + e) + fixed.
+    let size = bounds.min.abs().max(bounds.max.abs()).max_element();
+    let part = (inverse.relative * DVec3::ONE).max_element();
+    if !(size.is_finite() && part <= LARGEST_PART) {
+        return Bounds::EVERYWHERE;
+    }
+    let error = (part * size + inverse.fixed.max_element()) / (1.0 - part);
+    let image = map_bounds(map, bounds.grown(error));
+    let sums = absolute(map.matrix3) * DVec3::splat(size + error) + map.translation.abs();
+    image.grown(F64_SLACK * sums.max_element())
+}

@@ -1,0 +1,314 @@
+//! What the guide says holds to the bit: supports, rules and decisions, tried at points of random models.
+
+#[path = "../../text/tests/mild/mod.rs"]
+mod mild;
+
+use fastrand::Rng;
+use glam::{DAffine3, DMat3, DQuat, DVec3};
+use jbt_ir::domain::scalar::Scalar;
+use jbt_ir::pass::{GRADIENT, PIPELINE, run_pipeline};
+use jbt_ir::{Function, Table, Tables, Verified, interpret, verify};
+use jbt_lower::guide::{LARGEST_COORDINATE, Rule, SpaceGuide, Support};
+use jbt_lower::{Guided, lower, lower_guided};
+use jbt_model::check::CheckedTree;
+use jbt_model::falloff::Falloff;
+use jbt_model::kind::{NodeKind, Primitive};
+use jbt_model::model::Model;
+use jbt_model::query::Query;
+use jbt_model::skeleton::{Point, Skeleton};
+use jbt_model::tree::Tree;
+use jbt_text::{Options, parse, print};
+
+fn program(function: Function, gradient: bool) -> Verified {
+    let passes = gradient.then_some(&GRADIENT).into_iter().chain(PIPELINE);
+    verify(run_pipeline(function, passes, &mut |_, _| {})).expect("lowering and passes keep the rules")
+}
+
+/// The program of a model for a query, with its numbers.
+fn compiled(tree: &CheckedTree, query: Query) -> (Verified, Tables) {
+    let lowered = lower(tree, query).expect("it can be lowered");
+    (program(lowered.function, query.gradient), lowered.tables)
+}
+
+fn under(maps: impl IntoIterator<Item = NodeKind>, leaf: Primitive) -> Model {
+    let leaf = Tree::new(NodeKind::Primitive(leaf), Vec::new());
+    Model::new(maps.into_iter().fold(leaf, |tree, map| Tree::new(map, vec![tree])))
+}
+
+/// The support of the whole model: that of the scene's row.
+fn support(tree: &CheckedTree) -> Support {
+    let guided = lower_guided(tree).expect("it can be lowered");
+    let guide = guided.guide.tables.values().next().expect("there is the scene");
+    assert_eq!((guide.space, guide.rule), (SpaceGuide::World, Rule::Never));
+    guide.supports[0]
+}
+
+/// A point outside of a support, hardly or by up to a thousandth; `None` if all directions from the inside
+/// stay inside.
+fn outside(support: &Support, rng: &mut Rng) -> Option<[f32; 3]> {
+    let out = |p: [f32; 3]| support.misses(p, p);
+    let from: [f32; 3] =
+        std::array::from_fn(|k| support.low[k] + rng.f32() * (support.high[k] - support.low[k]));
+    let size = (0..3).map(|k| support.high[k] - support.low[k]).fold(support.radius_squared.sqrt(), f32::max);
+    let mut way = DVec3::from(mild::vector(rng, 1.0));
+    if rng.bool() {
+        // Along an axis, where boxes are as large as what they are around.
+        way = way.signum() * DVec3::AXES[rng.usize(..3)];
+    }
+    let way = way.normalize().as_vec3().to_array();
+    let at = |t: f32| std::array::from_fn(|k| from[k] + t * way[k]);
+    let (mut inside, mut outside) = (0.0f32, 4.0 * size);
+    if !size.is_finite() || !out(at(outside)) {
+        return None;
+    }
+    while let middle = 0.5 * (inside + outside)
+        && inside < middle
+        && middle < outside
+    {
+        if out(at(middle)) { outside = middle } else { inside = middle }
+    }
+    let farther = if rng.bool() { 0.0 } else { 10f32.powf(-3.0 - 5.0 * rng.f32()) };
+    let point = at(outside * (1.0 + farther));
+    out(point).then_some(point)
+}
+
+/// Tries points hardly outside; returns how many.
+fn silent_outside(tree: &CheckedTree, points: usize, rng: &mut Rng, what: &str) -> usize {
+    let support = support(tree);
+    let (program, tables) = compiled(tree, Query::GRADIENT);
+    let mut tried = 0;
+    for _ in 0..points {
+        let Some(point) = outside(&support, rng) else { continue };
+        if point.iter().any(|x| x.abs() > LARGEST_COORDINATE) {
+            continue;
+        }
+        tried += 1;
+        let answers = interpret::run(&program, &tables, &mut Scalar, &point);
+        assert_eq!(
+            answers[0].to_bits(),
+            0,
+            "{what}: the field at {point:?}, outside of {support:?}: {answers:?}"
+        );
+        assert!(answers[1..].iter().all(|&g| g == 0.0), "{what}: the gradient at {point:?}: {answers:?}");
+    }
+    tried
+}
+
+/// A map of any size and place.
+fn wild_affine(rng: &mut Rng) -> DAffine3 {
+    let mut log = |low: f64, high: f64| 10f64.powf(low + (high - low) * rng.f64());
+    let (size, far, stretch) = (log(-3.0, 3.0), log(-3.0, 4.0), log(-2.0, 2.0));
+    let turn =
+        DMat3::from_quat(DQuat::from_vec4(mild::vector(rng, 1.0).map(|x| x + 0.1).into_vec4()).normalize());
+    let to = far * DVec3::from(mild::vector(rng, 1.0));
+    let matrix = match rng.u8(..5) {
+        0 => DMat3::IDENTITY,
+        1 => DMat3::from_diagonal(DVec3::splat(size)),
+        2 => size * turn,
+        3 => turn * DMat3::from_diagonal(size * DVec3::new(1.0, stretch, 1.0)),
+        _ => turn * DMat3::from_diagonal(size * DVec3::new(1.0, stretch, -0.3)) * turn,
+    };
+    DAffine3::from_mat3_translation(matrix, to)
+}
+
+trait IntoVec4 {
+    fn into_vec4(self) -> glam::DVec4;
+}
+
+impl IntoVec4 for [f64; 3] {
+    fn into_vec4(self) -> glam::DVec4 {
+        glam::DVec4::new(self[0], self[1], self[2], 0.4)
+    }
+}
+
+#[test]
+fn a_leaf_is_silent_outside_of_its_support() {
+    let mut rng = Rng::with_seed(1);
+    let mut tried = 0;
+    for index in 0..3000 {
+        let maps = (0..rng.usize(..3)).map(|_| NodeKind::Affine(wild_affine(&mut rng))).collect::<Vec<_>>();
+        let mut leaf = mild::leaf(&mut rng, true);
+        leaf.radius = 10f64.powf(2.0 - 5.0 * rng.f64());
+        let model = under(maps, leaf);
+        let Ok(tree) = model.check() else { continue };
+        tried += silent_outside(&tree, 60, &mut rng, &format!("leaf {index}\n{}", print(&model)));
+    }
+    assert!(tried > 100_000, "{tried} points");
+}
+
+#[test]
+fn a_warped_leaf_is_silent_outside_of_its_support() {
+    let mut rng = Rng::with_seed(2);
+    let mut tried = 0;
+    for index in 0..1200 {
+        let mut maps = Vec::new();
+        for _ in 0..rng.usize(1..4) {
+            maps.push(NodeKind::Affine(mild::affine(&mut rng)));
+            maps.push(mild::warp(&mut rng));
+        }
+        maps.push(NodeKind::Affine(wild_affine(&mut rng)));
+        let model = under(maps, mild::leaf(&mut rng, true));
+        let tree = model.check().expect("its numbers are mild");
+        tried += silent_outside(&tree, 60, &mut rng, &format!("leaf {index}\n{}", print(&model)));
+    }
+    assert!(tried > 20_000, "{tried} points");
+}
+
+#[test]
+fn a_tree_is_silent_outside_of_its_support() {
+    let mut rng = Rng::with_seed(3);
+    let mut tried = 0;
+    for index in 0..600 {
+        let model = mild::model(&mut rng, 3 + index % 25, index % 2 == 0);
+        let tree = model.check().expect("its numbers are mild");
+        tried += silent_outside(&tree, 40, &mut rng, &format!("tree {index}\n{}", print(&model)));
+    }
+    assert!(tried > 15_000, "{tried} points");
+}
+
+#[test]
+fn supports_of_points_are_no_larger_than_they_have_to_be() {
+    let mut rng = Rng::with_seed(4);
+    for _ in 0..2000 {
+        let map = mild::affine(&mut rng);
+        let (at, radius) = (DVec3::from(mild::vector(&mut rng, 1.0)), 0.1 + rng.f64());
+        let skeleton = Skeleton::from(Point { at });
+        let leaf = Primitive { skeleton, falloff: Falloff::Soft, radius, strength: 1.0 };
+        let tree = under([NodeKind::Affine(map)], leaf).check().expect("its numbers are mild");
+        let support = support(&tree);
+        let (program, tables) = compiled(&tree, Query::FIELD);
+        let (axis, side) = (rng.usize(..3), if rng.bool() { 1.0 } else { -1.0 });
+        // Where the image of the ball reaches farthest along an axis.
+        let farthest = map.matrix3.transpose() * (side * DVec3::AXES[axis]);
+        let reach =
+            |part: f64| map.transform_point3(at + farthest.normalize() * radius * part).as_vec3().to_array();
+        let field = interpret::run(&program, &tables, &mut Scalar, &reach(1.0 - 1e-3))[0];
+        assert!(field > 0.0 && !support.misses(reach(1.0 - 1e-3), reach(1.0 - 1e-3)));
+        let beyond = reach(1.0 + 1e-3);
+        assert!(support.misses(beyond, beyond), "{support:?} holds {beyond:?}");
+    }
+}
+
+#[test]
+fn a_turned_segment_has_its_ends_and_not_a_turned_box() {
+    let text = "jbt 1 rotate axis z degrees 45 { segment { from (0 0 0) to (1 0 0) radius 0.1 } }";
+    let tree = parse(text.as_bytes(), &Options::default()).expect("it reads").check().expect("it is a model");
+    let support = support(&tree);
+    let half = 0.5f32.sqrt();
+    for (side, expected) in support.low.iter().chain(&support.high).zip([0.0, 0.0, 0.0, half, half, 0.0]) {
+        assert!((side - expected).abs() < 1e-5, "{support:?}");
+    }
+    assert!((support.radius_squared - 0.01).abs() < 1e-5);
+    // The corner of the box around it that a box would have, and a rounded one has not.
+    assert!(support.misses([-0.08, -0.08, 0.0], [-0.08, -0.08, 0.0]));
+    assert!(!support.misses([-0.05, -0.05, 0.0], [-0.05, -0.05, 0.0]));
+}
+
+/// Counts of what was left out, by reason.
+#[derive(Default, Debug)]
+struct Tally {
+    zero: usize,
+    probed: usize,
+    alone: usize,
+    decided: [usize; 4],
+    points: usize,
+}
+
+/// Leaves out all that the guide allows at a point.
+fn prune(guided: &Guided, tables: &Tables, point: [f32; 3], probes: &[f32], tally: &mut Tally) -> Tables {
+    let mut pruned = tables.clone();
+    for (table, guide) in guided.guide.tables.iter() {
+        let at = match guide.space {
+            SpaceGuide::World => point,
+            SpaceGuide::Probed(first) => std::array::from_fn(|k| probes[first + k]),
+            SpaceGuide::Unknown => continue,
+        };
+        let rows = &mut pruned.tables[table];
+        let zero = |row: &u32| guide.supports[*row as usize].misses(at, at);
+        let (mut active, mut starts) = (Vec::new(), vec![0]);
+        for parent in 0..rows.starts.len() - 1 {
+            let range = rows.range(parent);
+            let first = range.iter().position(zero);
+            let stays = |(place, row): (usize, &u32)| match guide.rule {
+                Rule::Neutral => !zero(row),
+                Rule::KeepOne => !zero(row) || Some(place) == first,
+                Rule::OnlyZero => first.is_none() || Some(place) == first,
+                Rule::Never => true,
+            };
+            active.extend(
+                range.iter().enumerate().filter(|&(place, row)| stays((place, row))).map(|(_, row)| row),
+            );
+            starts.push(active.len() as u32);
+        }
+        let out = rows.active.len() - active.len();
+        match (guide.rule, guide.space) {
+            (Rule::OnlyZero, _) => tally.alone += out,
+            (_, SpaceGuide::Probed(_)) => tally.probed += out,
+            (Rule::Neutral | Rule::KeepOne | Rule::Never, _) => tally.zero += out,
+        }
+        (rows.active, rows.starts) = (active, starts);
+    }
+    for decision in &guided.guide.decisions {
+        let [operand, node] = [decision.operand, decision.node].map(|probe| [probes[probe]; 2]);
+        let rows = &mut pruned.tables[decision.table];
+        assert_eq!(rows.len(), 1, "a guard has one row");
+        if !rows.active.is_empty() && decision.kind.spares(operand, node, guided.guide.iso2) {
+            tally.decided[decision.kind as usize] += 1;
+            rows.active.clear();
+            rows.starts = vec![0, 0];
+        }
+    }
+    pruned
+}
+
+fn run(program: &Verified, tables: &Tables, point: &[f32; 3]) -> Vec<f32> {
+    interpret::run(program, tables, &mut Scalar, point)
+}
+
+/// The same rows active.
+fn with_active(tables: &Tables, active: &Tables) -> Tables {
+    let mut result = tables.clone();
+    for table in tables.tables.keys().collect::<Vec<Table>>() {
+        result.tables[table].active.clone_from(&active.tables[table].active);
+        result.tables[table].starts.clone_from(&active.tables[table].starts);
+    }
+    result
+}
+
+#[test]
+fn leaving_out_what_the_guide_allows_changes_no_bit() {
+    let mut rng = Rng::with_seed(5);
+    let mut tally = Tally::default();
+    for index in 0..1000 {
+        let model = mild::model(&mut rng, 4 + index % 40, index % 3 == 0);
+        let tree = model.check().expect("its numbers are mild");
+        let guided = lower_guided(&tree).expect("it can be lowered");
+        assert_eq!(guided.function.outputs.len(), 1 + guided.guide.probes);
+        guided.tables.check(&guided.function).expect("its rows fit");
+        let probing = program(guided.function.clone(), false);
+        let (full, tables) = compiled(&tree, Query::ALL);
+        for _ in 0..25 {
+            let point: [f32; 3] = mild::vector(&mut rng, 1.8).map(|x| x as f32);
+            tally.points += 1;
+            let expected = run(&full, &tables, &point);
+            let mut active = guided.tables.clone();
+            // Twice: what is left out is left out of the guide function, too.
+            for round in 0..2 {
+                let probes = run(&probing, &active, &point);
+                assert_eq!(probes[0].to_bits(), expected[0].to_bits(), "the guide function has the field");
+                active = prune(&guided, &active, point, &probes[1..], &mut tally);
+                let pruned = with_active(&tables, &active);
+                pruned.check(full.function()).expect("fewer rows fit as well");
+                let found = run(&full, &pruned, &point);
+                let same = |(a, b): (&f32, &f32)| a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan();
+                assert!(
+                    expected.iter().zip(&found).all(same),
+                    "tree {index}, round {round}, {point:?}: {expected:?} became {found:?}\n{}",
+                    print(&model)
+                );
+            }
+        }
+    }
+    assert!(tally.zero > 10_000 && tally.probed > 3000 && tally.alone > 30, "{tally:?}");
+    assert!(tally.decided.iter().all(|&count| count > 15), "{tally:?}");
+}

@@ -1,0 +1,219 @@
+//! Parameters of a checked tree: what follows them, and setting them again without the text.
+
+use std::sync::Arc;
+
+use jbt_ir::limits;
+
+use super::arena::{CheckedNode, NodeId, Paths, check_occurrences};
+use super::groups::widths;
+use super::node::check_node;
+use super::numbers::check_number;
+use super::tree::CheckedTree;
+use crate::diagnostic::{Diagnostic, Diagnostics, Span};
+use crate::kind::NodeKind;
+use crate::number::{Formula, Number, Values};
+use crate::parameter::{Parameter, is_name, not_finite, refresh, unknown};
+use crate::report::{Report, clip};
+use crate::written::Written;
+
+/// What a node means with these values of parameters.
+pub(super) fn evaluate(
+    written: &Written,
+    values: &Values,
+    iso: f64,
+    span: Option<Span>,
+) -> Result<NodeKind, Diagnostic> {
+    let is_plain = written.following().next().is_none();
+    let meant = if is_plain { written.evaluated(iso) } else { written.refreshed(values)?.evaluated(iso) };
+    meant.map_err(|fault| Diagnostic { span, ..fault })
+}
+
+/// The iso-value for these values of parameters, checked.
+pub(super) fn check_iso(report: &mut Report, iso: &Number, values: &Values) -> f64 {
+    let span = iso.formula().and_then(Formula::span);
+    let iso = match iso.refreshed(values) {
+        Ok(iso) => iso.value(),
+        Err(error) => {
+            report.add(|| error);
+            return f64::NAN;
+        }
+    };
+    check_number(report, span, "the iso-value", iso, 0.0);
+    if (0.0..limits::MIN_LENGTH).contains(&iso) {
+        let message = format!("the iso-value is {iso:?}");
+        report.add(|| {
+            Diagnostic::error(span, message)
+                .expected(format!("a number of at least {:e}", limits::MIN_LENGTH))
+        });
+    }
+    iso
+}
+
+/// Names that can stand in formulas, each once, with finite values.
+pub(super) fn check_names(report: &mut Report, parameters: &[Parameter]) {
+    let mut seen = std::collections::HashSet::new();
+    for parameter in parameters {
+        let (name, span) = (clip(&parameter.name), parameter.span);
+        if !is_name(&parameter.name) {
+            report.add(|| {
+                Diagnostic::error(span, format!("a parameter is called `{name}`"))
+                    .expected("expected letters, digits and underscores, beginning with a letter, and no word of expressions")
+            });
+        }
+        if !seen.insert(&parameter.name) {
+            report.add(|| Diagnostic::error(span, format!("two parameters are called `{name}`")));
+        }
+        let plain = parameter.setting.is_some() || !parameter.default.follows();
+        if plain && !parameter.value().is_finite() {
+            let value = parameter.value();
+            report.add(|| {
+                Diagnostic::error(span, format!("the parameter `{name}` is {value}"))
+                    .expected("expected a finite number")
+            });
+        }
+    }
+}
+
+impl CheckedTree {
+    /// The named parameters, in the order of their declarations.
+    #[must_use]
+    pub fn parameters(&self) -> &[Parameter] {
+        &self.parameters
+    }
+
+    /// The same tree with other values of some parameters: what evaluators of this one take without compiling
+    /// (`Evaluator::update`). Parameters that are not named keep theirs.
+    ///
+    /// ```
+    /// use jbt_text::{Options, parse};
+    /// let text = b"jbt 1 param bulge = 0.6 param all = bulge * 2 point { radius all }";
+    /// let tree = parse(text, &Options::default()).unwrap().check().unwrap();
+    /// let fat = tree.with_parameters(&[("bulge", 1.5)]).unwrap();
+    /// assert_eq!(fat.parameters()[1].value(), 3.0);
+    /// assert_eq!(fat.support().high(), [3.0; 3]);
+    /// assert_eq!(tree.affected_by("bulge"), [tree.root()]);
+    /// assert_eq!(tree.with_parameters(&[("bulge", -1.0)]).unwrap_err()[0].message, "the radius is -2");
+    /// ```
+    ///
+    /// Only numbers that follow these parameters are evaluated and checked again. Cost: that, and a copy of
+    /// the nodes.
+    ///
+    /// # Errors
+    ///
+    /// Parameters that are not there, formulas without a value, and numbers that the [check](crate::check)
+    /// refuses; located where the tree came from a text.
+    pub fn with_parameters(&self, settings: &[(&str, f64)]) -> Result<Self, Diagnostics> {
+        self.with_settings(settings).map_err(|list| self.diagnostics(list))
+    }
+
+    fn with_settings(&self, settings: &[(&str, f64)]) -> Result<Self, Vec<Diagnostic>> {
+        let mut report = Report::default();
+        let mut parameters = self.parameters.clone();
+        for &(name, value) in settings {
+            match self.dependence.names.get(name) {
+                None => report.add(|| unknown(name, &self.parameters)),
+                Some(_) if !value.is_finite() => report.add(|| not_finite(name)),
+                Some(&index) => parameters[index].setting = Some(value),
+            }
+        }
+        if !report.is_empty() {
+            return Err(report.finish());
+        }
+        let values = refresh(&mut parameters)?;
+        let mut moved: Vec<bool> = parameters
+            .iter()
+            .zip(&self.parameters)
+            .map(|(new, old)| new.value().to_bits() != old.value().to_bits())
+            .collect();
+        for (parameter, _) in parameters.iter().zip(&moved).filter(|(_, moved)| **moved) {
+            if let Some(place) = parameter.declares {
+                report.add(|| declares(&parameter.name, place));
+            }
+        }
+        let iso = match &self.dependence.iso {
+            Some(iso) => check_iso(&mut report, iso, &values),
+            None => self.iso,
+        };
+        let nodes = self.evaluated_again(&mut moved, (iso, &values), &mut report);
+        if !report.is_empty() {
+            report.sort();
+            return Err(report.finish());
+        }
+        let (attributes, dependence) = (self.attributes.clone(), Arc::clone(&self.dependence));
+        let (origin, source) = (self.origin, self.source.clone());
+        Ok(Self { iso, attributes, paths: Paths::new(&nodes), nodes, parameters, dependence, origin, source })
+    }
+
+    /// The nodes, those that follow parameters that have moved made and checked again.
+    fn evaluated_again(
+        &self,
+        moved: &mut [bool],
+        (iso, values): (f64, &Values),
+        report: &mut Report,
+    ) -> Arc<[CheckedNode]> {
+        let affected = self.dependence.affected(&self.parameters, moved);
+        if affected.is_empty() {
+            return Arc::clone(&self.nodes);
+        }
+        let groups = widths(&self.attributes);
+        let mut nodes = self.nodes.to_vec();
+        let mut in_pieces = false;
+        for id in affected {
+            let node = &mut nodes[id.0 as usize];
+            let written = self.dependence.written(id).expect("affected nodes are kept as written");
+            match evaluate(written, values, iso, node.span) {
+                Ok(kind) => {
+                    check_node(report, &kind, node.children.len(), node.span, &groups, iso);
+                    in_pieces |= is_in_pieces(&kind);
+                    node.kind = kind;
+                }
+                Err(error) => report.add(|| error),
+            }
+        }
+        // A curve may have more pieces now.
+        if in_pieces && report.is_empty() {
+            check_occurrences(report, &nodes, limits::MAX_OCCURRENCES);
+        }
+        nodes.into()
+    }
+
+    /// The nodes that a parameter can change, ascending: those with a number that follows it, through other
+    /// parameters and the iso-value too. None, if there is no such parameter.
+    #[must_use]
+    pub fn affected_by(&self, name: &str) -> Vec<NodeId> {
+        let Some(&index) = self.dependence.names.get(name) else { return Vec::new() };
+        let mut moved = vec![false; self.parameters.len()];
+        moved[index] = true;
+        self.dependence.affected(&self.parameters, &mut moved)
+    }
+
+    /// What a node was written as, if one of its numbers follows a parameter.
+    #[must_use]
+    pub fn written(&self, id: NodeId) -> Option<&Written> {
+        self.dependence.written(id).map(|written| &**written)
+    }
+
+    /// Whether any number follows a parameter.
+    #[must_use]
+    pub fn follows(&self) -> bool {
+        !self.dependence.nodes.is_empty()
+    }
+}
+
+/// Whether it is a leaf whose skeleton has any number of pieces.
+fn is_in_pieces(kind: &NodeKind) -> bool {
+    match kind {
+        NodeKind::Primitive(leaf) => leaf.skeleton.kind().pieces().is_some(),
+        NodeKind::Combine(_)
+        | NodeKind::Expression(_)
+        | NodeKind::Select(_)
+        | NodeKind::Affine(_)
+        | NodeKind::Warp(_)
+        | NodeKind::Attribute { .. } => false,
+    }
+}
+
+fn declares(name: &str, place: Span) -> Diagnostic {
+    let message = format!("`{}` stands in a declaration, which stays as it was read", clip(name));
+    Diagnostic::error(Some(place), message).expected("set it before the text is read")
+}

@@ -1,0 +1,248 @@
+//! What has passed the check: an arena of nodes.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use glam::DAffine3;
+
+use super::arena::{CheckedNode, Children, NodeId, Paths};
+use super::dependence::Dependence;
+use crate::affine;
+use crate::attribute::AttributeGroup;
+use crate::bounds::Bounds;
+use crate::combine::extent::Extent;
+use crate::diagnostic::{Diagnostic, Diagnostics, SourceText};
+use crate::kind::{NodeKind, Primitive};
+use crate::origin::ModelOrigin;
+use crate::parameter::Parameter;
+
+/// A model that makes sense, as an arena: children before parents, shared nodes once, the root last.
+#[derive(Clone, Debug)]
+pub struct CheckedTree {
+    pub(super) iso: f64,
+    pub(super) attributes: Vec<AttributeGroup>,
+    pub(super) nodes: Arc<[CheckedNode]>,
+    /// Of the nodes.
+    pub(super) paths: Paths,
+    pub(super) parameters: Vec<Parameter>,
+    pub(super) dependence: Arc<Dependence>,
+    pub(super) origin: ModelOrigin,
+    /// The text that places are in.
+    pub(super) source: Option<SourceText>,
+}
+
+impl PartialEq for CheckedTree {
+    /// The same nodes, attributes and parameters; the text that they came from does not matter.
+    fn eq(&self, other: &Self) -> bool {
+        let Self { iso, attributes, nodes, parameters, dependence, origin, paths: _, source: _ } = self;
+        *iso == other.iso
+            && *attributes == other.attributes
+            && *nodes == other.nodes
+            && *parameters == other.parameters
+            && *dependence == other.dependence
+            && *origin == other.origin
+    }
+}
+
+impl CheckedTree {
+    /// Messages about this tree, located in the text that it came from.
+    #[must_use]
+    pub fn diagnostics(&self, list: Vec<Diagnostic>) -> Diagnostics {
+        Diagnostics::new(list, self.source.clone())
+    }
+
+    /// The field value of the surface.
+    #[must_use]
+    pub fn iso(&self) -> f64 {
+        self.iso
+    }
+
+    /// The attribute groups, `color` first.
+    #[must_use]
+    pub fn attributes(&self) -> &[AttributeGroup] {
+        &self.attributes
+    }
+
+    /// Where its local coordinates begin: programs, lattices, boxes and meshes of it are about them. The tree
+    /// itself, its [support](Self::support) and the oracle are about the world.
+    ///
+    /// It is the one that the model sets, or else one that was found at the check; other values of parameters
+    /// leave it.
+    #[must_use]
+    pub fn origin(&self) -> ModelOrigin {
+        self.origin
+    }
+
+    /// The same tree with another origin, as that of a model of which it is an edit. Its coordinates are
+    /// finite.
+    #[must_use]
+    pub fn with_origin(&self, origin: ModelOrigin) -> Self {
+        Self { origin, ..self.clone() }
+    }
+
+    /// All nodes.
+    #[must_use]
+    pub fn nodes(&self) -> &[CheckedNode] {
+        &self.nodes
+    }
+
+    /// A node.
+    #[must_use]
+    pub fn node(&self, id: NodeId) -> &CheckedNode {
+        &self.nodes[id.0 as usize]
+    }
+
+    /// The root.
+    #[must_use]
+    pub fn root(&self) -> NodeId {
+        NodeId(self.nodes.len() as u32 - 1)
+    }
+
+    /// How often each node is met from the root, along every path: 1 for the root, more below shared
+    /// subtrees. In the order of [`nodes`](Self::nodes).
+    #[must_use]
+    pub fn uses(&self) -> &[u64] {
+        &self.paths.uses
+    }
+
+    /// How often each node is asked from the root, along every path: as [`uses`](Self::uses), but through the
+    /// chosen child of a selector alone.
+    #[must_use]
+    pub fn asked(&self) -> &[u64] {
+        &self.paths.asked
+    }
+
+    /// Uses of leaves: paths from the root to a leaf, through the chosen child of a selector alone.
+    #[must_use]
+    pub fn leaf_uses(&self) -> u64 {
+        self.paths.leaf_uses
+    }
+
+    /// A leaf under maps, the nearest first, each with the node of this tree that gives its weight, if it has
+    /// one. They are those of a checked tree, or products of them, so they are not checked again. Its origin
+    /// is that of the world.
+    pub fn leaf_under(
+        &self,
+        leaf: Primitive,
+        maps: impl IntoIterator<Item = (NodeKind, Option<NodeId>)>,
+    ) -> Self {
+        let mut nodes =
+            vec![CheckedNode { kind: NodeKind::Primitive(leaf), children: Children::new(), span: None }];
+        for (kind, weight) in maps {
+            let mut children = Children::from_slice(&[NodeId(nodes.len() as u32 - 1)]);
+            children.extend(weight.map(|weight| self.copy_below(weight, &mut nodes)));
+            nodes.push(CheckedNode { kind, children, span: None });
+        }
+        self.of_nodes(nodes)
+    }
+
+    /// A subtree as a tree of its own, with the iso-value of this one, no parameters, and an origin that is
+    /// found for it.
+    #[must_use]
+    pub fn subtree(&self, root: NodeId) -> Self {
+        let mut nodes = Vec::new();
+        self.copy_below(root, &mut nodes);
+        let tree = self.of_nodes(nodes);
+        Self { origin: ModelOrigin::of(tree.support()), ..tree }
+    }
+
+    /// The tree in other coordinates, with the iso-value and the attributes of this one and no parameters:
+    /// under one more affine node, whose map takes points of this tree's space to the new ones. It is given
+    /// by rows, the last column is the shift; it can be undone. An origin that is not that of the world is
+    /// mapped too.
+    #[must_use]
+    pub fn mapped(&self, rows: [[f64; 4]; 3]) -> Self {
+        let column = |place: usize| rows.map(|row| row[place]);
+        let columns: [[f64; 3]; 4] = std::array::from_fn(column);
+        let mut nodes = self.nodes.to_vec();
+        let map = DAffine3::from_cols_array_2d(&columns);
+        let children = Children::from_slice(&[self.root()]);
+        nodes.push(CheckedNode { kind: NodeKind::Affine(map), children, span: None });
+        let mapped = || ModelOrigin::new(map.transform_point3(self.origin.point().into()).to_array());
+        let origin = if self.origin.is_world() { self.origin } else { mapped() };
+        Self { origin, ..self.of_nodes(nodes) }
+    }
+
+    /// Copies a subtree behind other nodes; gives the place of its root.
+    fn copy_below(&self, root: NodeId, nodes: &mut Vec<CheckedNode>) -> NodeId {
+        let mut copies: BTreeMap<NodeId, NodeId> = BTreeMap::new();
+        // Children come before their parents: whatever is below, from the last to the first.
+        let mut below = std::collections::BTreeSet::from([root]);
+        let mut order = Vec::new();
+        while let Some(id) = below.pop_last() {
+            below.extend(&self.node(id).children);
+            order.push(id);
+        }
+        for id in order.into_iter().rev() {
+            copies.insert(id, NodeId(nodes.len() as u32));
+            let node = self.node(id);
+            let children = node.children.iter().map(|child| copies[child]).collect();
+            nodes.push(CheckedNode { children, ..node.clone() });
+        }
+        copies[&root]
+    }
+
+    fn of_nodes(&self, nodes: Vec<CheckedNode>) -> Self {
+        Self {
+            iso: self.iso,
+            attributes: self.attributes.clone(),
+            paths: Paths::new(&nodes),
+            nodes: nodes.into(),
+            parameters: Vec::new(),
+            dependence: Arc::default(),
+            origin: ModelOrigin::WORLD,
+            source: self.source.clone(),
+        }
+    }
+}
+
+impl CheckedTree {
+    /// A box that holds the support of the field: outside of it the field is exactly zero. Empty if the field
+    /// is zero everywhere.
+    ///
+    /// Its sides may be infinite, as those of a half space are. Cost: linear in the number of nodes, shared
+    /// ones counted once.
+    #[must_use]
+    pub fn support(&self) -> Bounds {
+        let mut done: Vec<Extent> = Vec::with_capacity(self.nodes.len());
+        for node in &*self.nodes {
+            let children: Vec<_> = node.children.iter().map(|id| done[id.0 as usize]).collect();
+            done.push(node_extent(&node.kind, &children, self.iso));
+        }
+        done.last().map_or(Bounds::EMPTY, |root| root.support)
+    }
+
+    /// The [support](Self::support) in local coordinates.
+    #[must_use]
+    pub fn local_support(&self) -> Bounds {
+        self.origin.local_bounds(self.support())
+    }
+}
+
+/// The extent of a node, from those of its children.
+fn node_extent(kind: &NodeKind, children: &[Extent], iso: f64) -> Extent {
+    match kind {
+        NodeKind::Primitive(leaf) => {
+            let support = leaf.skeleton.bounds_within(leaf.radius);
+            Extent { support, negative: if leaf.strength < 0.0 { support } else { Bounds::EMPTY } }
+        }
+        NodeKind::Combine(combinator) if children.len() == 1 && combinator.passes_single() => children[0],
+        NodeKind::Combine(combinator) => combinator.extent(children, iso),
+        NodeKind::Expression(expression) => {
+            let signs: Vec<bool> = children.iter().map(|child| child.negative.is_empty()).collect();
+            let hull = || children.iter().fold(Bounds::EMPTY, |all, child| all.hull(child.support));
+            let reach = if expression.vanishes() { hull() } else { Bounds::EVERYWHERE };
+            let support = expression.bounds().map_or(reach, |bounds| reach.intersection(bounds));
+            let support = if support.is_empty() { Bounds::EMPTY } else { support };
+            Extent {
+                support,
+                negative: if expression.non_negative(&signs) { Bounds::EMPTY } else { support },
+            }
+        }
+        NodeKind::Select(_) => kind.asked(children)[0],
+        NodeKind::Affine(map) => children[0].map(|bounds| affine::map_bounds(map, bounds)),
+        NodeKind::Warp(_) if children.len() > 1 => children[0].weighted(&children[1]),
+        NodeKind::Warp(warp) => children[0].map(|bounds| warp.forward_bounds(bounds)),
+        NodeKind::Attribute { .. } => children[0],
+    }
+}

@@ -1,0 +1,246 @@
+//! What every operator states about itself: its text in [`Operator`], and its field in the trait of its form.
+//!
+//! | form | operands | trait |
+//! |---|---|---|
+//! | fold | any number in any order, each with a weight | [`Fold`] |
+//! | choice | any number in any order, one of which wins | [`Choice`] |
+//! | step | two at a time, from the left | [`Step`] |
+//! | map | one | [`Unary`] |
+//!
+//! What operators of one form have in common is made of these, in [`form`](super::form).
+
+use std::fmt::Debug;
+use std::hash::Hash;
+
+use jbt_ir::{Domain, Rule};
+
+use super::extreme::Extreme;
+use crate::diagnostic::Diagnostic;
+use crate::member::Member;
+
+/// How the numbers of an operator are written, between its word and its block. A set operation is a word
+/// alone, in front of them.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Syntax {
+    /// Each behind its name, in any order.
+    Named,
+    /// One number, which may have its name before it.
+    Labelled,
+    /// One number, without its name.
+    Alone,
+}
+
+/// What an operator states about its text and its parameters.
+pub trait Operator: Member + Copy {
+    /// How its numbers are written.
+    const SYNTAX: Syntax = Syntax::Named;
+    /// What it is printed as.
+    const HEAD: &'static str = Self::NAME;
+    /// Whether what its numbers may be depends on the iso-value.
+    const ASKS_ISO: bool = false;
+
+    /// What is wrong with numbers each of which by itself is what its kind says; without a place.
+    fn fault(&self, _iso: f64) -> Option<Diagnostic> {
+        None
+    }
+
+    /// The operator with this value of a number that follows a parameter. Passing by a value must not
+    /// exchange one operator for another.
+    fn following(self) -> Self {
+        self
+    }
+}
+
+/// What the operands of an operator have in common, over the ops, and its numbers.
+#[derive(Clone, Copy, Debug)]
+pub struct Setting<'a, R> {
+    /// The columns.
+    pub row: &'a [R],
+    /// Twice the iso-value.
+    pub iso2: R,
+    /// Whether no operand can be negative.
+    pub non_negative: bool,
+    /// Whether the field will be differentiated.
+    pub moving: bool,
+}
+
+/// What an operand makes of a fold.
+#[derive(Clone, Debug)]
+pub struct Met<R> {
+    /// The accumulators behind it.
+    pub so_far: Vec<R>,
+    /// How much of the attributes comes from it, up to a common factor; at least 0. Nothing if nobody asks.
+    pub weight: Option<R>,
+    /// What weights so far have to be multiplied with.
+    pub rescale: Option<R>,
+}
+
+/// What a fold comes to.
+#[derive(Clone, Copy, Debug)]
+pub struct Finished<R> {
+    /// The field.
+    pub field: R,
+    /// The sum of the weights.
+    pub total: R,
+    /// What has to be positive, so that there are attributes.
+    pub seen: R,
+}
+
+/// What a fold states: operands come in any order, and each has a weight.
+pub trait Fold: Operator {
+    /// What of it selects code.
+    type Code: Copy + Eq + Hash + Debug;
+    /// Whether a single child answers as if the operator were not there.
+    const PASSES_SINGLE: bool = false;
+    /// Whether slopes of the field are not bounded by the sum of those of the operands.
+    const IS_STEEP: bool = false;
+
+    /// What of it selects code; `follows`: numbers follow parameters, so that the code has to serve all
+    /// values.
+    fn code(self, follows: bool) -> Self::Code;
+
+    /// The field, plainly.
+    fn field(self, fields: &[f64], iso: f64) -> f64;
+
+    /// How much each child contributes, `max(0, f_i dF/df_i)` up to a common factor.
+    fn weights(self, fields: &[f64], iso: f64) -> Vec<f64>;
+
+    /// How far the fields are from where another formula holds; infinity if nothing is decided.
+    fn kink_distance(self, _fields: &[f64]) -> f64 {
+        f64::INFINITY
+    }
+
+    /// Whether the field can never be negative, if those of some children can (`false`) or of none (`true`).
+    fn is_non_negative(self, children: bool) -> bool;
+
+    /// Whether operands of one that is the operand of an equal one may be that one's, where no such operand
+    /// can be negative, or some can.
+    fn flattens(self, _non_negative: bool) -> bool {
+        false
+    }
+
+    /// Whether a zero makes it zero, whatever the others are; otherwise it changes nothing.
+    fn absorbs(code: Self::Code) -> bool;
+
+    /// Names of the numbers that a row keeps for it.
+    fn columns(_code: Self::Code) -> &'static [&'static str] {
+        &[]
+    }
+
+    /// Pushes these numbers.
+    fn push_columns(self, _code: Self::Code, _row: &mut Vec<f64>) {}
+
+    /// The accumulators before the first operand, over the ops.
+    fn start<D: Domain>(code: Self::Code, d: &mut D, setting: Setting<'_, D::Real>) -> Vec<D::Real>;
+
+    /// One operand more; `weighs`: somebody asks for its weight.
+    fn meet<D: Domain>(
+        code: Self::Code,
+        d: &mut D,
+        so_far: &[D::Real],
+        operand: D::Real,
+        setting: Setting<'_, D::Real>,
+        weighs: bool,
+    ) -> Met<D::Real>;
+
+    /// Whether the sum of weights is an accumulator of its own.
+    fn has_total(_code: Self::Code, non_negative: bool) -> bool;
+
+    /// What it comes to; `total` is the sum of weights, where that is an accumulator of its own.
+    fn finish<D: Domain>(
+        code: Self::Code,
+        d: &mut D,
+        so_far: &[D::Real],
+        total: Option<D::Real>,
+        setting: Setting<'_, D::Real>,
+    ) -> Finished<D::Real>;
+}
+
+/// What a choice states: operands come in any order, and the first of those with the extreme field wins.
+pub trait Choice: Operator {
+    /// Which field wins.
+    const EXTREME: Extreme;
+}
+
+/// What becomes of two sides.
+#[derive(Clone, Copy, Debug)]
+pub struct Pair<R> {
+    /// The field.
+    pub field: R,
+    /// How much of the attributes comes from the left and from the right side, up to a common factor; at
+    /// least 0.
+    pub weights: [R; 2],
+}
+
+/// Where an operator can be something else than 0.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Reach {
+    /// Where any side is.
+    Any,
+    /// Where all are, if none is negative anywhere.
+    Both,
+    /// Where the left side is.
+    Left,
+}
+
+/// What a step states: it takes two fields at a time, from the left.
+pub trait Step: Operator {
+    /// What of it selects code.
+    type Code: Copy + Eq + Hash + Debug;
+    /// Names of the numbers that a row keeps for it.
+    const COLUMNS: &'static [&'static str] = &[];
+
+    /// What of it selects code.
+    fn code(self) -> Self::Code;
+
+    /// Pushes the numbers of a row.
+    fn push_columns(self, _row: &mut Vec<f64>) {}
+
+    /// The step, plainly.
+    fn pair(self, sides: [f64; 2], iso: f64) -> Pair<f64>;
+
+    /// How far two fields are from where another formula holds, or another side wins.
+    fn kink_distance(self, sides: [f64; 2], iso: f64) -> f64;
+
+    /// Where it can be something else than 0.
+    fn reach(self) -> Reach;
+
+    /// Whether the field can never be negative, if those of the sides can (`false`) or cannot (`true`).
+    fn is_non_negative(self, sides: [bool; 2]) -> bool;
+
+    /// What may be done with right sides that are rows and zero; `non_negative`: no field can be negative.
+    fn rule(code: Self::Code, non_negative: bool) -> Rule;
+
+    /// The step over the ops. `iso2` is twice the iso-value.
+    fn emit<D: Domain>(
+        code: Self::Code,
+        d: &mut D,
+        sides: [D::Real; 2],
+        row: &[D::Real],
+        iso2: D::Real,
+    ) -> Pair<D::Real>;
+}
+
+/// What a map states: it takes one field.
+pub trait Unary: Operator {
+    /// Names of the numbers that a row keeps for it.
+    const COLUMNS: &'static [&'static str] = &[];
+    /// Whether a positive field may become negative.
+    const REVERSES: bool = false;
+
+    /// Pushes the numbers of a row.
+    fn push_columns(self, _iso: f64, _row: &mut Vec<f64>) {}
+
+    /// The field, plainly.
+    fn field(self, f: f64, iso: f64) -> f64;
+
+    /// How far a field is from where another formula holds.
+    fn kink_distance(self, f: f64, iso: f64) -> f64;
+
+    /// Whether the field can never be negative, if that of the child can (`false`) or cannot (`true`).
+    /// `fixed`: the numbers follow no parameter; otherwise they may become anything.
+    fn is_non_negative(self, child: bool, fixed: bool) -> bool;
+
+    /// The field over the ops. `iso2` is twice the iso-value.
+    fn emit<D: Domain>(d: &mut D, f: D::Real, row: &[D::Real], iso2: D::Real) -> D::Real;
+}

@@ -1,0 +1,93 @@
+//! Formulas as text: definitions first, for what is used more than once, then the value, or several in
+//! parentheses.
+
+use std::fmt;
+
+use super::form::Form;
+use super::operand::Operand;
+use super::operation::Operation;
+use crate::function::Function;
+use crate::number::{Binary, Number, Step, Variable, show};
+
+/// Writes a formula; `child` and `definition` name children and definitions.
+pub fn write<W: fmt::Write>(
+    out: &mut W,
+    form: &Form,
+    numbers: &[Number],
+    child: impl Fn(usize) -> String,
+    definition: impl Fn(usize) -> String,
+    tuple: bool,
+) -> fmt::Result {
+    let shared: Vec<u32> =
+        (0..).zip(form.uses()).filter(|(_, uses)| *uses > 1).map(|(step, _)| step).collect();
+    let mut place = vec![None; form.steps()];
+    let all: Vec<(Operation, &[Operand])> = form.iter().collect();
+    let mut name = |out: &mut W, variable: Variable| match variable {
+        Variable::Coordinate(axis) => out.write_str(["x", "y", "z"][axis as usize]),
+        Variable::Child(index) => write!(out, "field({})", child(index as usize)),
+        Variable::Definition(index) => out.write_str(&definition(index as usize)),
+    };
+    for (index, &step) in shared.iter().enumerate() {
+        write!(out, "{} = ", definition(index))?;
+        let steps = postfix(&all, Operand::Step(step), numbers, &place);
+        show(&steps, out, &mut name)?;
+        out.write_str(", ")?;
+        place[step as usize] = Some(index as u32);
+    }
+    out.write_str(if tuple { "(" } else { "" })?;
+    for (index, &result) in form.results.iter().enumerate() {
+        out.write_str(if index == 0 { "" } else { ", " })?;
+        show(&postfix(&all, result, numbers, &place), out, &mut name)?;
+    }
+    out.write_str(if tuple { ")" } else { "" })
+}
+
+/// The steps of a part, in postfix order, without what has a definition.
+fn postfix(
+    all: &[(Operation, &[Operand])],
+    part: Operand,
+    numbers: &[Number],
+    definitions: &[Option<u32>],
+) -> Vec<Step> {
+    let mut steps = Vec::new();
+    let mut stack = vec![(part, false)];
+    while let Some((operand, done)) = stack.pop() {
+        match operand {
+            Operand::Coordinate(axis) => steps.push(Step::Variable(Variable::Coordinate(axis))),
+            Operand::Child(child) => steps.push(Step::Variable(Variable::Child(child))),
+            Operand::Number(number) => steps.extend(numbers[number as usize].steps()),
+            Operand::Step(step) => {
+                let (operation, operands) = all[step as usize];
+                if let Some(definition) = definitions[step as usize] {
+                    steps.push(Step::Variable(Variable::Definition(definition)));
+                } else if done {
+                    finish(&mut steps, operation, operands.len());
+                } else {
+                    stack.push((operand, true));
+                    stack.extend(operands.iter().rev().map(|&operand| (operand, false)));
+                }
+            }
+        }
+    }
+    steps
+}
+
+fn finish(steps: &mut Vec<Step>, operation: Operation, operands: usize) {
+    let last = match operation {
+        Operation::Negate => Step::Negate,
+        Operation::Add => Step::Binary(Binary::Add),
+        Operation::Subtract => Step::Binary(Binary::Subtract),
+        Operation::Multiply => Step::Binary(Binary::Multiply),
+        Operation::Divide => Step::Binary(Binary::Divide),
+        Operation::Power => Step::Binary(Binary::Power),
+        Operation::Raise(n) => {
+            steps.push(Step::Literal(f64::from(n)));
+            Step::Binary(Binary::Power)
+        }
+        Operation::Call(function) => {
+            debug_assert!(function != Function::Pow && function != Function::Square, "these have operations");
+            Step::Call(function, operands as u32)
+        }
+    };
+    steps.push(last);
+}

@@ -1,0 +1,113 @@
+//! What a node does.
+
+use std::sync::Arc;
+
+use glam::{DAffine3, DVec3};
+
+use crate::attribute::AttributeValue;
+use crate::combine::Combinator;
+use crate::expression::Expression;
+use crate::falloff::Falloff;
+use crate::skeleton::{Point, Skeleton};
+use crate::warp::Warp;
+
+/// A leaf: a skeleton, and the field around it.
+///
+/// The field at squared distance `d^2` from the skeleton is `strength * falloff(d^2 / radius^2)`.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Primitive {
+    /// What the distance is measured to.
+    pub skeleton: Skeleton,
+    /// How the field fades.
+    pub falloff: Falloff,
+    /// The support radius: where the field reaches zero.
+    pub radius: f64,
+    /// The factor of the field; negative ones push surfaces away.
+    pub strength: f64,
+}
+
+/// What a node does.
+#[derive(Clone, PartialEq, Debug)]
+pub enum NodeKind {
+    /// A leaf.
+    Primitive(Primitive),
+    /// Fields of the children become one field.
+    Combine(Combinator),
+    /// The field is a formula of the coordinates and of the children's fields: a leaf, if it has no children.
+    Expression(Expression),
+    /// One child answers, the others do not count: that whose place, from 0, is nearest to this number.
+    Select(f64),
+    /// The child stands elsewhere: the map takes the child's space to the parent's.
+    Affine(DAffine3),
+    /// The child is deformed. A second child, if there is one, gives the weight of the deformation: see
+    /// [`warp`](crate::warp).
+    Warp(Warp),
+    /// The leaves below have this attribute, unless another node of the same name stands nearer to them.
+    Attribute {
+        /// The attribute group.
+        name: Arc<str>,
+        /// What they have.
+        value: AttributeValue,
+    },
+}
+
+impl NodeKind {
+    /// The skeleton whose uv the field of a leaf has: a formula has that of a point at the origin of its
+    /// space.
+    #[must_use]
+    pub fn uv_skeleton(&self) -> &Skeleton {
+        match self {
+            Self::Primitive(primitive) => &primitive.skeleton,
+            Self::Combine(_)
+            | Self::Expression(_)
+            | Self::Select(_)
+            | Self::Affine(_)
+            | Self::Warp(_)
+            | Self::Attribute { .. } => Self::origin(),
+        }
+    }
+
+    /// A point at the origin, whose uv formulas have.
+    pub(crate) const fn origin() -> &'static Skeleton {
+        static ORIGIN: Skeleton = Skeleton::Point(Point { at: DVec3::ZERO });
+        &ORIGIN
+    }
+
+    /// The rows of an affine map, the last column of which is the shift; `None` for any other node.
+    #[must_use]
+    pub fn rows(&self) -> Option<[[f64; 4]; 3]> {
+        match self {
+            Self::Affine(map) => {
+                let columns = map.to_cols_array_2d();
+                Some([0, 1, 2].map(|row| columns.map(|column| column[row])))
+            }
+            Self::Primitive(_)
+            | Self::Combine(_)
+            | Self::Expression(_)
+            | Self::Select(_)
+            | Self::Warp(_)
+            | Self::Attribute { .. } => None,
+        }
+    }
+
+    /// The children that answer: of a selector the chosen one, of any other node all. Panics, if a selector's
+    /// number is near no child: the check has excluded it.
+    #[must_use]
+    pub fn asked<'a, T>(&self, children: &'a [T]) -> &'a [T] {
+        match self {
+            Self::Select(which) => std::slice::from_ref(&children[chosen(*which)]),
+            Self::Primitive(_)
+            | Self::Combine(_)
+            | Self::Expression(_)
+            | Self::Affine(_)
+            | Self::Warp(_)
+            | Self::Attribute { .. } => children,
+        }
+    }
+}
+
+/// The place of the child that a selector's number stands for: the nearest whole number. The number has been
+/// checked.
+pub fn chosen(which: f64) -> usize {
+    which.round() as usize
+}

@@ -1,0 +1,208 @@
+//! Owners: the leaf that decides the field at a point, and the way down to it.
+//!
+//! ```text
+//! owner(node, p):   primitive      itself, where its field is not 0
+//!                   union          the owner of the largest operand, of the smallest at an intersection, of the one that decides at a difference
+//!                   sum, Ricci     of the operands' owners, the leaf with the largest share of the weight
+//! ```
+//!
+//! Shares are those that mix attributes: the owner is the leaf whose value a `dominant` attribute takes. Of
+//! equals the first in the file owns the point. The walk is in f64 over plain formulas, one point at a time,
+//! on a list of its own: a chain of a million nodes is a tree like any other.
+
+use std::fmt::Write as _;
+
+use glam::DVec3;
+
+use crate::attribute::AttributeValue;
+use crate::check::{CheckedTree, NodeId};
+use crate::combine::Combinator;
+use crate::descent::{Question, ask};
+use crate::diagnostic::Span;
+use crate::expression::Expression;
+use crate::kind::{NodeKind, Primitive};
+use crate::warp::Warp;
+
+/// A leaf that decides, as one of its occurrences.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Owner {
+    /// The leaf.
+    pub node: NodeId,
+    /// Where it stands in its source text.
+    pub span: Option<Span>,
+    /// Its part of the weight of the whole field, in (0, 1]. It is 1 unless fields are blended.
+    pub share: f64,
+    /// The nodes above it, the root first, each with the number of the child that leads to the leaf.
+    pub above: Vec<(NodeId, u32)>,
+}
+
+impl Owner {
+    /// The way from the root to the leaf: kinds and numbers of children, as in `union.2/color.0/segment`.
+    #[must_use]
+    pub fn path(&self, tree: &CheckedTree) -> String {
+        let mut path = String::new();
+        for &(node, child) in &self.above {
+            let _ = write!(path, "{}.{child}/", name(&tree.node(node).kind));
+        }
+        path + name(&tree.node(self.node).kind)
+    }
+}
+
+/// The word for a node.
+fn name(kind: &NodeKind) -> &str {
+    match kind {
+        NodeKind::Primitive(leaf) => leaf.skeleton.kind().name(),
+        NodeKind::Combine(combinator) => combinator.name(),
+        NodeKind::Affine(_) => "affine",
+        NodeKind::Warp(warp) => warp.name(),
+        NodeKind::Attribute { name, .. } => name,
+        NodeKind::Select(_) => "select",
+        NodeKind::Expression(_) => "expression",
+    }
+}
+
+/// A node at the end of a path from the root.
+struct Step {
+    node: NodeId,
+    /// The step above, and which of its children this is; the root is its own.
+    above: u32,
+    child: u32,
+}
+
+/// What is known at a node.
+#[derive(Clone, Copy)]
+struct Answer {
+    field: f64,
+    /// The step of the leaf that decides, and its share of the weight here. Nobody decides where nothing has
+    /// weight.
+    leaf: Option<(u32, f64)>,
+}
+
+/// The leaf that decides at `p`: `None` where the field is 0, or where it is negative because nothing with a
+/// positive field is left.
+///
+/// Cost: all paths of the tree.
+#[must_use]
+pub fn owner(tree: &CheckedTree, p: [f64; 3]) -> Option<Owner> {
+    let mut found = Owners { iso: tree.iso(), steps: Vec::new() };
+    let root = ask(tree, &mut found, Place::default(), p.into());
+    let (leaf, share) = root.leaf.filter(|_| root.field != 0.0)?;
+    Some(describe(tree, &found.steps, leaf, share))
+}
+
+/// The question for the leaf that decides.
+struct Owners {
+    iso: f64,
+    steps: Vec<Step>,
+}
+
+/// On the way to a node: the step above, and which of its children this is. At the node: its own step.
+#[derive(Clone, Copy, Default)]
+struct Place {
+    step: u32,
+    child: u32,
+}
+
+impl Question for Owners {
+    type Way = Place;
+    type Answer = Answer;
+    type Mark = ();
+
+    fn enter(&mut self, node: NodeId, way: Place) -> Place {
+        // At most limits::MAX_OCCURRENCES.
+        let step = self.steps.len() as u32;
+        self.steps.push(Step { node, above: way.step, child: way.child });
+        Place { step, child: 0 }
+    }
+
+    fn below(&self, way: &Place, child: usize) -> Place {
+        Place { child: child as u32, ..*way }
+    }
+
+    fn given(&self, way: Place, _name: &str, _value: &AttributeValue, _p: DVec3) -> Place {
+        way
+    }
+
+    fn primitive(&self, leaf: &Primitive, p: DVec3, way: &Place) -> Answer {
+        let s = leaf.skeleton.distance_squared(p) / (leaf.radius * leaf.radius);
+        Answer::of_leaf(leaf.strength * leaf.falloff.value(s), way.step)
+    }
+
+    fn combine(&self, combinator: Combinator, children: &[Answer]) -> Answer {
+        combine(combinator, self.iso, children)
+    }
+
+    fn express(&self, formula: &Expression, p: DVec3, way: &Place, children: &[Answer]) -> Answer {
+        if children.is_empty() {
+            Answer::of_leaf(formula.field(p, &[]), way.step)
+        } else {
+            express(formula, p, children)
+        }
+    }
+
+    fn field(answer: &Answer) -> f64 {
+        answer.field
+    }
+
+    fn mark(&self, _warp: &Warp, _p: DVec3, _weight: Option<&Answer>) {}
+
+    fn marked(&self, _answer: &mut Answer, (): ()) {}
+}
+
+impl Answer {
+    fn of_leaf(field: f64, step: u32) -> Self {
+        Self { field, leaf: (field != 0.0).then_some((step, 1.0)) }
+    }
+}
+
+fn combine(combinator: Combinator, iso: f64, children: &[Answer]) -> Answer {
+    if children.len() == 1 && combinator.passes_single() {
+        // There is nothing to decide.
+        return children[0];
+    }
+    let fields: Vec<f64> = children.iter().map(|child| child.field).collect();
+    let weights = combinator.weights(&fields, iso);
+    Answer { field: combinator.field(&fields, iso), leaf: heaviest(children, &weights) }
+}
+
+/// A formula of one child is that child's; of several, of the leaf with the largest share.
+fn express(expression: &Expression, p: DVec3, children: &[Answer]) -> Answer {
+    let fields: Vec<f64> = children.iter().map(|child| child.field).collect();
+    let field = expression.field(p, &fields);
+    if let [child] = children {
+        return Answer { field, leaf: child.leaf };
+    }
+    Answer { field, leaf: heaviest(children, &expression.weights(p, &fields)) }
+}
+
+/// The leaf with the largest share of the weight.
+fn heaviest(children: &[Answer], weights: &[f64]) -> Option<(u32, f64)> {
+    let total: f64 = weights.iter().sum();
+    let mut best = None;
+    let mut most = 0.0;
+    for (child, weight) in children.iter().zip(weights) {
+        let Some((leaf, share)) = child.leaf else { continue };
+        let share = weight / total * share;
+        // Strictly: of equals the first in the file stays. A total of zero gives no number, which is not
+        // more.
+        if share > most {
+            (best, most) = (Some((leaf, share)), share);
+        }
+    }
+    best
+}
+
+/// The way up from a leaf.
+fn describe(tree: &CheckedTree, steps: &[Step], leaf: u32, share: f64) -> Owner {
+    let node = steps[leaf as usize].node;
+    let mut above = Vec::new();
+    let mut at = leaf;
+    // The first step is the root's.
+    while at != 0 {
+        let step = &steps[at as usize];
+        above.push((steps[step.above as usize].node, step.child));
+        at = step.above;
+    }
+    above.reverse();
+    Owner { node, span: tree.node(node).span, share, above }
+}

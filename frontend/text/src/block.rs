@@ -1,0 +1,52 @@
+//! Blocks of a text, and what their nodes become.
+
+use jbt_model::combine::CombinatorKind;
+use jbt_model::diagnostic::Span;
+use jbt_model::tree::Tree;
+use jbt_model::written::Written;
+
+/// What an open block becomes.
+pub(super) enum Head {
+    /// An operator without parameters.
+    Combine(CombinatorKind),
+    /// An operator with parameters.
+    Operator(Box<Written>),
+    /// With one child. Boxed, so that a million open blocks are small.
+    Unary(Box<Written>),
+    /// A warp whose second child weighs it.
+    Weighted(Box<Written>),
+    /// The head has an error; the block is read for its own errors.
+    Broken,
+}
+
+/// An open block.
+pub(super) struct Frame {
+    pub(super) head: Head,
+    /// Its first child on the stack of finished subtrees.
+    pub(super) first: u32,
+    /// The node's words before the block.
+    pub(super) span: Span,
+    /// The byte of the opening brace.
+    pub(super) open: u32,
+    /// Something in the block could not be read: its children are not counted.
+    pub(super) incomplete: bool,
+    /// A node around it, which its words give as well.
+    pub(super) around: Option<Box<Written>>,
+}
+
+impl Frame {
+    /// With a node around it.
+    pub(super) fn inside(self, around: Written) -> Self {
+        Self { around: Some(Box::new(around)), ..self }
+    }
+}
+
+/// What begins with a word.
+pub(super) enum Begun {
+    /// A whole subtree.
+    Leaf(Tree),
+    /// A block is open.
+    Block(Frame),
+    /// Nothing: the word was skipped.
+    Nothing,
+}

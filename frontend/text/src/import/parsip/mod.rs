@@ -1,0 +1,277 @@
+//! ParsIP scenes: numbered nodes in the clothes of an INI file.
+//!
+//! ```text
+//! [BLOBNODE 0]                       an operator over its children
+//! IsOperator=1
+//! OperatorType=RICCI BLEND
+//! ChildrenCount=2
+//! ChildrenIDs=(1, 2)
+//! power=2.000000
+//! [BLOBNODE 1]                       a leaf: a skeleton under scale, rotation (a quaternion) and translation
+//! IsOperator=0
+//! AffineScale=(2.000000, 1.000000, 1.000000)
+//! MtrlDiffused=(0.4, 0.4, 0.4, 1.0)
+//! PrimitiveType=POINT
+//! ...
+//! [Global]
+//! RootIDs=(0)
+//! ```
+//!
+//! Every leaf has the cubic falloff of radius 1 in its own space, before its map. Its diffuse colour becomes
+//! `color`. An instance is another use of a node, with that node's map below its own.
+//!
+//! The reader follows the mathematics of the format where ParsIP's own evaluators differ from each other:
+//! names are read in any case, operators do what they are called also where their children are given as a
+//! range, quaternions are normalised, lines end at their ends. Its NUL bytes and CRs are dropped wherever
+//! they are.
+
+mod node;
+mod scan;
+mod state;
+mod value;
+
+use glam::DAffine3;
+use jbt_ir::limits::{MAX_NODES, MAX_SCENE_BYTES};
+
+use self::node::Reading;
+use self::scan::{Key, Section};
+use self::state::{Importer, Meaning, State};
+use super::Imported;
+use jbt_model::combine::{Combinator, Sum};
+use jbt_model::diagnostic::{Diagnostic, Diagnostics, Span};
+use jbt_model::kind::NodeKind;
+use jbt_model::model::Model;
+use jbt_model::report::Report;
+use jbt_model::tree::Tree;
+use jbt_model::warp::Warp;
+
+/// The model of a ParsIP scene (`.blob`, `.scene`).
+///
+/// # Errors
+///
+/// Everything that is wrong with the file, with its place: numbers and names that cannot be read, nodes that
+/// are missing or contain themselves, zero scales, a root that is missing or not alone, operators that have
+/// no counterpart here.
+pub fn parsip(bytes: &[u8]) -> Result<Imported, Diagnostics> {
+    Imported::from(bytes, read(bytes))
+}
+
+fn read(bytes: &[u8]) -> Result<(Model, Vec<Diagnostic>), Vec<Diagnostic>> {
+    if bytes.len() > MAX_SCENE_BYTES {
+        let message = format!("the file has {} bytes; at most {MAX_SCENE_BYTES} are read", bytes.len());
+        return Err(vec![Diagnostic::limit(None, message)]);
+    }
+    let (mut errors, mut warnings) = (Report::default(), Report::default());
+    let sections = scan::sections(bytes, &mut errors, &mut warnings);
+    let adopted = vec![false; sections.nodes.len()];
+    let mut importer = Importer { bytes, sections, errors, warnings, edges: 0, adopted };
+    let root = importer.root().map(|(root, span)| importer.build(root, span));
+    match root {
+        Some(root) if importer.errors.is_empty() => {
+            importer.count();
+            Ok((Model::new(root), importer.warnings.finish()))
+        }
+        _ => Err([importer.errors.finish(), importer.warnings.finish()].concat()),
+    }
+}
+
+impl Importer<'_> {
+    /// The root, and where it is named.
+    fn root(&mut self) -> Option<(u32, Span)> {
+        let named = self.sections.global.as_ref().and_then(|global| global.get(Key::RootIds));
+        let Some(span) = named else {
+            let span = self.sections.global.as_ref().map(|global| global.span);
+            self.errors.add(|| {
+                Diagnostic::error(span, "the file names no root").expected("expected RootIDs=(n) in [Global]")
+            });
+            return None;
+        };
+        let roots = self.list(span, Key::RootIds, MAX_NODES)?;
+        let &[root] = roots.as_slice() else {
+            let count = roots.len();
+            self.errors.add(|| {
+                Diagnostic::error(Some(span), format!("the file has {count} roots"))
+                    .expected("expected one; an operator over them makes them one object")
+            });
+            return None;
+        };
+        self.find(root, span).map(|root| (root, span))
+    }
+
+    /// The place of a node in the list; a message if no node has this number.
+    fn find(&mut self, id: i64, reference: Span) -> Option<u32> {
+        let found = self.sections.by_id.get(&id).copied();
+        if found.is_none() {
+            self.errors.add(|| Diagnostic::error(Some(reference), format!("there is no node {id}")));
+        }
+        found
+    }
+
+    /// The children of an operator, by list or by range.
+    fn children(&mut self, section: &Section, reading: &mut Reading) {
+        let key = if self.flag(section, Key::UseRange) { Key::Range } else { Key::ChildrenIds };
+        let Some(span) = self.need(section, key) else {
+            return;
+        };
+        reading.reference = span;
+        let room = MAX_NODES.saturating_sub(self.edges);
+        let Some(mut ids) = self.list(span, key, room) else {
+            return;
+        };
+        if key == Key::Range {
+            // A range longer than the file has nodes names at least one that is missing, however long it is.
+            let nodes = self.sections.nodes.len() as i64;
+            match *ids.as_slice() {
+                [first, last] if first <= last && last.saturating_sub(first) < nodes => {
+                    ids = (first..=last).collect();
+                }
+                _ => {
+                    let shown = self.shown(span);
+                    return self.bad(span, key, &shown, "(first, last), of nodes of the file");
+                }
+            }
+        }
+        let id = section.id;
+        if ids.is_empty() {
+            self.errors.add(|| Diagnostic::error(Some(span), format!("the operator {id} has no children")));
+        }
+        if ids.len() > room {
+            self.errors.add(|| Diagnostic::limit(Some(span), format!("more than {MAX_NODES} uses of nodes")));
+            return;
+        }
+        self.edges += ids.len();
+        if let Some(count) = self.integer(section, Key::ChildrenCount)
+            && count != ids.len() as i64
+        {
+            let (at, length) = (section.get(Key::ChildrenCount), ids.len());
+            self.warnings.add(|| {
+                Diagnostic::warning(at, format!("`ChildrenCount` is {count}, and the list has {length}"))
+            });
+        }
+        for child in ids {
+            let Some(index) = self.find(child, span) else {
+                continue;
+            };
+            if std::mem::replace(&mut self.adopted[index as usize], true) {
+                self.warnings.add(|| {
+                    Diagnostic::warning(Some(span), format!("node {child} is a child more than once"))
+                });
+            }
+            reading.children.push(index);
+        }
+    }
+
+    /// The tree below a node: depth first, with a list of what is left to do in place of recursion.
+    fn build(&mut self, root: u32, reference: Span) -> Tree {
+        enum Task {
+            Enter(u32, Span),
+            Leave(u32, Box<Reading>),
+        }
+        let broken = Tree::new(Combinator::from(Sum {}), Vec::new());
+        let mut states = vec![State::New; self.sections.nodes.len()];
+        let mut tasks = vec![Task::Enter(root, reference)];
+        while let Some(task) = tasks.pop() {
+            match task {
+                Task::Enter(index, reference) => match states[index as usize] {
+                    State::Done(_) => {}
+                    State::Open => {
+                        let id = self.sections.nodes[index as usize].id;
+                        self.errors
+                            .add(|| Diagnostic::error(Some(reference), format!("node {id} contains itself")));
+                    }
+                    State::New => {
+                        states[index as usize] = State::Open;
+                        let section = self.sections.nodes[index as usize].clone();
+                        let reading = self.node(&section);
+                        let (children, reference) = (reading.children.clone(), reading.reference);
+                        tasks.push(Task::Leave(index, Box::new(reading)));
+                        tasks.extend(children.into_iter().rev().map(|child| Task::Enter(child, reference)));
+                    }
+                },
+                Task::Leave(index, reading) => {
+                    let children = reading.children.iter().map(|&child| match &states[child as usize] {
+                        State::Done(tree) => tree.clone(),
+                        // Only a cycle, which has been reported, leaves a child unfinished.
+                        State::New | State::Open => broken.clone(),
+                    });
+                    let children: Vec<Tree> = children.collect();
+                    let span = self.sections.nodes[index as usize].span;
+                    let tree = reading
+                        .meaning
+                        .and_then(|meaning| assemble(span, meaning, reading.map, children))
+                        .unwrap_or_else(|| broken.clone());
+                    states[index as usize] = State::Done(tree);
+                }
+            }
+        }
+        self.unreached(&states);
+        match &states[root as usize] {
+            State::Done(tree) => tree.clone(),
+            State::New | State::Open => broken,
+        }
+    }
+
+    /// Nodes that nobody uses.
+    fn unreached(&mut self, states: &[State]) {
+        let unused = states.iter().enumerate().filter(|(_, state)| matches!(state, State::New));
+        let unused: Vec<usize> = unused.map(|(index, _)| index).collect();
+        if let Some(&first) = unused.first() {
+            let section = &self.sections.nodes[first];
+            let (id, span, count) = (section.id, section.span, unused.len());
+            self.warnings.add(|| {
+                let message = match count {
+                    1 => format!("node {id} is not used"),
+                    _ => format!("{count} nodes are not used, node {id} among them"),
+                };
+                Diagnostic::warning(Some(span), message)
+            });
+        }
+    }
+
+    /// Compares what the file says about itself with what it has.
+    fn count(&mut self) {
+        let Some(global) = self.sections.global.clone() else {
+            return;
+        };
+        let is_operator = |section: &&Section| section.get(Key::OperatorType).is_some();
+        let operators = self.sections.nodes.iter().filter(is_operator).count();
+        let leaves = self.sections.nodes.len() - operators;
+        for (key, found) in
+            [(Key::CountPrimitives, leaves), (Key::CountOperators, operators), (Key::NumLayers, 1)]
+        {
+            let Some(span) = global.get(key) else {
+                continue;
+            };
+            if self.shown(span).parse() != Ok(found) {
+                let shown = jbt_model::report::clip(&self.shown(span));
+                self.warnings.add(|| {
+                    let message = format!("`{}` is {shown}, and the file has {found}", key.name());
+                    Diagnostic::warning(Some(span), message)
+                });
+            }
+        }
+    }
+}
+
+/// The tree of a node. Nothing if a child is missing, after a message about it.
+fn assemble(span: Span, meaning: Meaning, map: Option<DAffine3>, children: Vec<Tree>) -> Option<Tree> {
+    let tree = match meaning {
+        Meaning::Combine(combinator) => Tree::at(span, combinator, children),
+        Meaning::Warp(twist) => Tree::at(span, Warp::from(twist), vec![children.into_iter().next()?]),
+        Meaning::Same => children.into_iter().next()?,
+        Meaning::Leaf { leaf, color } => {
+            let tree = Tree::at(span, leaf, Vec::new());
+            match color {
+                None => tree,
+                Some(color) => {
+                    let kind = NodeKind::Attribute { name: "color".into(), value: color.to_vec().into() };
+                    Tree::at(span, kind, vec![tree])
+                }
+            }
+        }
+    };
+    Some(match map {
+        None => tree,
+        Some(map) => Tree::at(span, map, vec![tree]),
+    })
+}

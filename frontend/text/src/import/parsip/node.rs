@@ -1,0 +1,311 @@
+//! What one node means: its map, its leaf, its operator.
+
+use std::fmt::Write as _;
+
+use glam::{DAffine3, DQuat, DVec3};
+
+use super::scan::{Key, Section};
+use super::state::{Importer, Meaning};
+use jbt_model::affine::scale_rotate_translate;
+use jbt_model::axis::Axis;
+use jbt_model::combine::{Combinator, Difference, Intersection, Ricci, Sum, Union};
+use jbt_model::diagnostic::{Diagnostic, Span};
+use jbt_model::falloff::Falloff;
+use jbt_model::kind::Primitive;
+use jbt_model::report::{clip, nearest};
+use jbt_model::skeleton::{self, Cylinder, Disc, Point, Ring, Segment, Skeleton, Triangle};
+use jbt_model::warp::Twist;
+
+/// What an operator's name says.
+#[derive(Clone, Copy, PartialEq, Debug)]
+enum Operator {
+    /// A combinator without parameters.
+    Combine(Combinator),
+    Ricci,
+    /// The child as it is.
+    Pass,
+    Twist,
+    /// No member of this project: what it does.
+    Foreign(&'static str),
+}
+
+const OPERATORS: &[(&str, Operator)] = &[
+    ("UNION", Operator::Combine(Combinator::Union(Union {}))),
+    ("INTERSECTION", Operator::Combine(Combinator::Intersection(Intersection {}))),
+    ("DIFFERENCE", Operator::Combine(Combinator::Difference(Difference {}))),
+    (
+        "SMOOTH DIFFERENCE",
+        Operator::Foreign("the product of the first field and the complements of the others"),
+    ),
+    ("BLEND", Operator::Combine(Combinator::Sum(Sum {}))),
+    ("GRADIENT BLEND", Operator::Combine(Combinator::Sum(Sum {}))),
+    ("RICCI BLEND", Operator::Ricci),
+    ("FASTQUADRICPOINTSET", Operator::Combine(Combinator::Sum(Sum {}))),
+    ("FASTQUADRATICPOINTSET", Operator::Combine(Combinator::Sum(Sum {}))),
+    ("PCM", Operator::Foreign("precise contact of two deforming bodies")),
+    ("CACHE", Operator::Pass),
+    ("TEXTURE", Operator::Pass),
+    ("TWIST", Operator::Twist),
+    ("TAPER", Operator::Foreign("a scale along one axis that changes along another")),
+    ("SHEAR", Operator::Foreign("a shift along one axis that changes along another")),
+    ("BEND", Operator::Foreign("the bend of an axis about a circle")),
+];
+
+/// What a leaf's name says.
+#[derive(Clone, Copy, PartialEq, Debug)]
+enum Leaf {
+    Point,
+    Line,
+    Cylinder,
+    Disc,
+    Ring,
+    Cube,
+    Triangle,
+    Null,
+    Instance,
+    /// No member of this project: what it is.
+    Foreign(&'static str),
+}
+
+const LEAVES: &[(&str, Leaf)] = &[
+    ("POINT", Leaf::Point),
+    ("LINE", Leaf::Line),
+    ("CYLINDER", Leaf::Cylinder),
+    ("DISC", Leaf::Disc),
+    ("RING", Leaf::Ring),
+    ("CUBE", Leaf::Cube),
+    ("TRIANGLE", Leaf::Triangle),
+    ("QUADRICPOINT", Leaf::Foreign("a ball whose field falls as the square of 1 - d^2/R^2")),
+    ("NULL", Leaf::Null),
+    ("INSTANCE", Leaf::Instance),
+];
+
+/// A node as far as it can be told without its children.
+pub(super) struct Reading {
+    /// What it is; nothing after a message.
+    pub(super) meaning: Option<Meaning>,
+    /// The nodes below it, and where they are named.
+    pub(super) children: Vec<u32>,
+    pub(super) reference: Span,
+    /// The map to the parent's space, unless it is the identity.
+    pub(super) map: Option<DAffine3>,
+}
+
+impl Importer<'_> {
+    /// Reads one node.
+    pub(super) fn node(&mut self, section: &Section) -> Reading {
+        let map = self.map(section);
+        let operator = match section.get(Key::IsOperator) {
+            Some(_) => self.flag(section, Key::IsOperator),
+            None => section.get(Key::OperatorType).is_some(),
+        };
+        let mut reading = Reading { meaning: None, children: Vec::new(), reference: section.span, map };
+        if operator {
+            self.operator(section, &mut reading);
+        } else {
+            self.leaf(section, &mut reading);
+        }
+        reading
+    }
+
+    /// The map of a node: scale first, then rotation, then translation. The quaternion is normalised.
+    fn map(&mut self, section: &Section) -> Option<DAffine3> {
+        let scale = self.tuple::<3>(section, Key::Scale, 0).map_or(DVec3::ONE, DVec3::from);
+        let rotation = self.tuple::<4>(section, Key::Rotate, 0).map_or(DQuat::IDENTITY, DQuat::from_array);
+        let translation = self.tuple::<3>(section, Key::Translate, 0).map_or(DVec3::ZERO, DVec3::from);
+        if scale.cmpeq(DVec3::ZERO).any() {
+            let (span, id) = (section.get(Key::Scale), section.id);
+            self.errors.add(|| Diagnostic::error(span, format!("node {id} has a scale factor of zero")));
+            return None;
+        }
+        if rotation.length_squared() < f64::MIN_POSITIVE {
+            let (span, id) = (section.get(Key::Rotate), section.id);
+            self.errors.add(|| {
+                Diagnostic::error(span, format!("the rotation of node {id} is zero"))
+                    .expected("expected a quaternion (x, y, z, w)")
+            });
+            return None;
+        }
+        let map = scale_rotate_translate(scale, rotation, translation);
+        (map != DAffine3::IDENTITY).then_some(map)
+    }
+
+    /// The name of a node's type, and where it stands.
+    fn type_name(&mut self, section: &Section, keys: &[Key]) -> Option<(String, Span)> {
+        let found = keys.iter().find_map(|&key| section.get(key));
+        let span = match found {
+            Some(span) => span,
+            None => self.need(section, keys[0])?,
+        };
+        Some((self.shown(span), span))
+    }
+
+    /// Looks a name up. A name that nobody knows is an error.
+    fn look_up<T: Copy>(&mut self, what: &str, name: &str, span: Span, table: &[(&str, T)]) -> Option<T> {
+        let found = table.iter().find(|(known, _)| known.eq_ignore_ascii_case(name));
+        if found.is_none() {
+            self.errors.add(|| {
+                let mut help = String::new();
+                if let Some(near) = nearest(name, table.iter().map(|(known, _)| *known)) {
+                    let _ = write!(help, "perhaps {near}; ");
+                }
+                let known: Vec<&str> = table.iter().map(|(known, _)| *known).collect();
+                let _ = write!(help, "known are {}", known.join(", "));
+                Diagnostic::error(Some(span), format!("no {what} is called {}", clip(name))).expected(help)
+            });
+        }
+        found.map(|&(_, value)| value)
+    }
+
+    fn foreign(&mut self, name: &str, span: Span, does: &str) {
+        self.errors.add(|| {
+            Diagnostic::error(Some(span), format!("{name} ({does}) has no counterpart in this model format"))
+        });
+    }
+
+    fn operator(&mut self, section: &Section, reading: &mut Reading) {
+        self.children(section, reading);
+        let Some((name, span)) = self.type_name(section, &[Key::OperatorType]) else {
+            return;
+        };
+        let Some(operator) = self.look_up("operator", &name, span, OPERATORS) else {
+            return;
+        };
+        let unary = match operator {
+            Operator::Pass | Operator::Twist => true,
+            Operator::Combine(_) | Operator::Ricci | Operator::Foreign(_) => false,
+        };
+        let (id, reference, count) = (section.id, reading.reference, reading.children.len());
+        if unary && count > 1 {
+            self.errors.add(|| {
+                Diagnostic::error(Some(reference), format!("{name} of node {id} has {count} children"))
+                    .expected("expected one")
+            });
+            return;
+        }
+        reading.meaning = match operator {
+            Operator::Combine(combinator) => Some(Meaning::Combine(combinator)),
+            Operator::Ricci => {
+                let power = self.number(section, Key::Power).unwrap_or(0.0);
+                let exponent = if power == 0.0 { 2.0 } else { power };
+                Some(Meaning::Combine(Ricci { exponent }.into()))
+            }
+            Operator::Pass => Some(Meaning::Same),
+            Operator::Twist => self.twist(section).map(Meaning::Warp),
+            Operator::Foreign(does) => {
+                self.foreign(&name, span, does);
+                None
+            }
+        };
+    }
+
+    /// ParsIP turns the point by `factor * height` from the first to the second of the other axes, in the
+    /// order x, y, z. Our inverse map turns it the other way about the axis, right-handed, where y has its
+    /// others in the order z, x.
+    fn twist(&mut self, section: &Section) -> Option<Twist> {
+        let factor =
+            if section.get(Key::Factor).is_some() { self.number(section, Key::Factor)? } else { 1.0 };
+        let axis = if section.get(Key::Axis).is_some() { self.integer(section, Key::Axis)? } else { 2 };
+        match axis {
+            0 => Some(Twist { axis: Axis::X, rate: -factor }),
+            1 => Some(Twist { axis: Axis::Y, rate: factor }),
+            2 => Some(Twist { axis: Axis::Z, rate: -factor }),
+            _ => {
+                let span = section.get(Key::Axis).unwrap_or(section.span);
+                self.bad(span, Key::Axis, &axis.to_string(), "0, 1 or 2");
+                None
+            }
+        }
+    }
+
+    fn leaf(&mut self, section: &Section, reading: &mut Reading) {
+        let Some((name, span)) = self.type_name(section, &[Key::PrimitiveType, Key::SkeletonType]) else {
+            return;
+        };
+        let Some(leaf) = self.look_up("primitive", &name, span, LEAVES) else {
+            return;
+        };
+        let strength = if leaf == Leaf::Null { 0.0 } else { 1.0 };
+        let skeleton = match leaf {
+            Leaf::Instance => {
+                if let Some(span) = self.need(section, Key::Original)
+                    && let Some(original) = self.integer(section, Key::Original)
+                {
+                    reading.reference = span;
+                    reading.children.extend(self.find(original, span));
+                    reading.meaning = Some(Meaning::Same);
+                }
+                return;
+            }
+            Leaf::Foreign(is) => return self.foreign(&name, span, is),
+            Leaf::Null => Some(Point { at: DVec3::ZERO }.into()),
+            Leaf::Point
+            | Leaf::Line
+            | Leaf::Cylinder
+            | Leaf::Disc
+            | Leaf::Ring
+            | Leaf::Cube
+            | Leaf::Triangle => self.skeleton(section, leaf),
+        };
+        let color = self.tuple::<3>(section, Key::Diffused, 1);
+        reading.meaning = skeleton.map(|skeleton| {
+            let leaf = Primitive { skeleton, falloff: Falloff::Wyvill, radius: 1.0, strength };
+            Meaning::Leaf { leaf, color: color.filter(|_| strength != 0.0) }
+        });
+    }
+
+    /// The skeleton of a leaf that has one. Nothing after a message.
+    fn skeleton(&mut self, section: &Section, leaf: Leaf) -> Option<Skeleton> {
+        let position = match section.get(Key::Position) {
+            Some(_) => self.tuple::<3>(section, Key::Position, 0)?.into(),
+            None => DVec3::ZERO,
+        };
+        Some(match leaf {
+            Leaf::Line => {
+                let (start, end) =
+                    (self.needed_tuple(section, Key::Start), self.needed_tuple(section, Key::End));
+                Segment { from: start?.into(), to: end?.into() }.into()
+            }
+            Leaf::Cylinder => {
+                let direction = self.direction(section);
+                let (radius, height) = (self.length(section, Key::Radius), self.length(section, Key::Height));
+                let (direction, radius, height) = (direction?, radius?, height?);
+                // Without height the axis would lose its direction.
+                if height == 0.0 {
+                    Disc { center: position, normal: direction, radius }.into()
+                } else {
+                    Cylinder { from: position, to: position + height * direction, radius }.into()
+                }
+            }
+            Leaf::Disc => {
+                let (normal, radius) = (self.direction(section), self.length(section, Key::Radius));
+                Disc { center: position, normal: normal?, radius: radius? }.into()
+            }
+            Leaf::Ring => {
+                let (normal, radius) = (self.direction(section), self.length(section, Key::Radius));
+                Ring { center: position, normal: normal?, radius: radius? }.into()
+            }
+            Leaf::Cube => {
+                let half = self.length(section, Key::Side)?;
+                skeleton::Cuboid { center: position, half: DVec3::splat(half) }.into()
+            }
+            Leaf::Triangle => {
+                let corners = [Key::Corner0, Key::Corner1, Key::Corner2]
+                    .map(|key| self.needed_tuple::<3>(section, key).map(DVec3::from));
+                Triangle { a: corners[0]?, b: corners[1]?, c: corners[2]? }.into()
+            }
+            Leaf::Point | Leaf::Null | Leaf::Instance | Leaf::Foreign(_) => Point { at: position }.into(),
+        })
+    }
+
+    /// A direction of length 1.
+    fn direction(&mut self, section: &Section) -> Option<DVec3> {
+        let direction: DVec3 = self.needed_tuple::<3>(section, Key::Direction)?.into();
+        let unit = direction.try_normalize();
+        if unit.is_none() {
+            let span = section.get(Key::Direction);
+            self.errors.add(|| Diagnostic::error(span, "the direction is zero"));
+        }
+        unit
+    }
+}

@@ -1,0 +1,41 @@
+//! The state of reading one ParsIP file, and what its nodes mean.
+
+use super::scan::Sections;
+use jbt_model::combine::Combinator;
+use jbt_model::kind::Primitive;
+use jbt_model::report::Report;
+use jbt_model::tree::Tree;
+use jbt_model::warp::Twist;
+
+/// What a node is, apart from its children and its map.
+pub(super) enum Meaning {
+    Combine(Combinator),
+    Warp(Twist),
+    /// Its only child: a cache, a texture, an instance.
+    Same,
+    Leaf {
+        leaf: Primitive,
+        color: Option<[f64; 3]>,
+    },
+}
+
+/// Where the reading of a node is.
+#[derive(Clone)]
+pub(super) enum State {
+    New,
+    /// Its children are being read: to meet it now is a cycle.
+    Open,
+    Done(Tree),
+}
+
+/// The state of reading one file.
+pub(super) struct Importer<'a> {
+    pub(super) bytes: &'a [u8],
+    pub(super) sections: Sections,
+    pub(super) errors: Report,
+    pub(super) warnings: Report,
+    /// Uses of nodes by others, so far.
+    pub(super) edges: usize,
+    /// Whether a node is the child of an operator already.
+    pub(super) adopted: Vec<bool>,
+}

@@ -1,0 +1,391 @@
+//! Nodes of a text: a stack of open blocks, and one of finished subtrees.
+
+use jbt_ir::limits::MAX_NODES;
+
+use super::block::{Begun, Frame, Head};
+use super::expression::Place;
+use super::hints::foreign_word;
+use super::lex::{Token, TokenKind};
+use super::state::Parser;
+use super::words::{GROUP_NODE, WEIGHTED, fixed_words};
+use jbt_model::combine::CombinatorKind;
+use jbt_model::diagnostic::{Diagnostic, Span};
+use jbt_model::map::MapKind;
+use jbt_model::report::{clip, nearest};
+use jbt_model::skeleton::SkeletonKind;
+use jbt_model::tree::Tree;
+use jbt_model::warp::WarpKind;
+use jbt_model::word::is_statement;
+use jbt_model::written::Written;
+
+impl<'a> Parser<'a> {
+    /// Whether a word begins a node of this file.
+    pub(super) fn begins_node(&self, word: &str) -> bool {
+        fixed_words().any(|fixed| fixed == word) || self.group(word).is_some()
+    }
+
+    /// All words that begin a node of this file.
+    fn node_words(&self) -> impl Iterator<Item = &str> {
+        let fixed = fixed_words().map(|word| -> &str { word });
+        fixed.chain(self.attributes.iter().map(|group| &*group.name))
+    }
+
+    /// A node with everything below it.
+    pub(super) fn tree(&mut self) -> Tree {
+        let mut frames: Vec<Frame> = Vec::new();
+        let mut finished: Vec<Tree> = Vec::new();
+        loop {
+            let token = self.peek();
+            let word = self.peek_word();
+            match token.kind {
+                TokenKind::Word if !word.is_some_and(is_statement) => match self.begin() {
+                    Begun::Leaf(tree) => finished.push(tree),
+                    Begun::Block(frame) => {
+                        frames.push(Frame { first: finished.len() as u32, ..frame });
+                        continue;
+                    }
+                    Begun::Nothing => {}
+                },
+                TokenKind::Mark(b'}') if let Some(frame) = frames.pop() => {
+                    self.find_place();
+                    self.next();
+                    let children = finished.drain(frame.first as usize..).collect();
+                    let tree = self.close(frame, children);
+                    finished.push(tree);
+                }
+                TokenKind::Word | TokenKind::End => {
+                    match frames.last() {
+                        Some(frame) => self.unclosed(frame.open, token),
+                        None => self.expected_at(token, "expected a node"),
+                    }
+                    return self.broken.clone();
+                }
+                TokenKind::Mark(_) | TokenKind::Number | TokenKind::Quoted | TokenKind::Unknown => {
+                    let Some(frame) = frames.last_mut() else {
+                        self.expected_at(token, "expected a node");
+                        return self.broken.clone();
+                    };
+                    frame.incomplete = true;
+                    self.expected_at(token, "expected a node or `}`");
+                    self.skip_token();
+                }
+            }
+            if frames.is_empty() {
+                return finished.pop().unwrap_or_else(|| self.broken.clone());
+            }
+        }
+    }
+
+    /// Past the next token, or past the whole block that it opens.
+    pub(super) fn skip_token(&mut self) {
+        if self.peek().is(b'{') {
+            self.skip_block();
+        } else {
+            self.next();
+        }
+    }
+
+    /// Past the block that is next, whatever is in it.
+    pub(super) fn skip_block(&mut self) {
+        let open = self.peek();
+        let mut depth = 0usize;
+        loop {
+            let token = self.next();
+            match token.kind {
+                TokenKind::Mark(b'{') => depth += 1,
+                TokenKind::Mark(b'}') => depth -= 1,
+                TokenKind::End => {
+                    self.find_place();
+                    self.unclosed(open.start as u32, token);
+                    return;
+                }
+                TokenKind::Mark(_)
+                | TokenKind::Word
+                | TokenKind::Number
+                | TokenKind::Quoted
+                | TokenKind::Unknown => {}
+            }
+            if depth == 0 {
+                return;
+            }
+        }
+    }
+
+    /// Past the parentheses that are next, whatever is in them, and a semicolon behind them; not into a
+    /// block.
+    pub(super) fn skip_arguments(&mut self) {
+        let mut depth = 0usize;
+        loop {
+            match self.peek().kind {
+                TokenKind::Mark(b'(') => depth += 1,
+                TokenKind::Mark(b')') if depth > 0 => depth -= 1,
+                TokenKind::Mark(b'{' | b'}') | TokenKind::End => return,
+                TokenKind::Mark(_)
+                | TokenKind::Word
+                | TokenKind::Number
+                | TokenKind::Quoted
+                | TokenKind::Unknown => {
+                    if depth == 0 {
+                        break;
+                    }
+                }
+            }
+            self.next();
+        }
+        if self.text(self.peek()) == ";" {
+            self.next();
+        }
+    }
+
+    /// Reports a brace that is not closed where `token` stands.
+    pub(super) fn unclosed(&mut self, open: u32, token: Token) {
+        // Only the innermost of the braces that the end of the file leaves open.
+        if token.kind == TokenKind::End && std::mem::replace(&mut self.ended, true) {
+            return;
+        }
+        let found = self.describe(token);
+        self.report(|| {
+            Diagnostic::error(Some(Span { start: open, end: open + 1 }), "this `{` is not closed")
+                .expected(format!("expected `}}` before {found}"))
+        });
+    }
+
+    /// Counts a node.
+    pub(super) fn count_node(&mut self, span: Span) {
+        self.nodes += 1;
+        if self.nodes > MAX_NODES {
+            self.give_up(Diagnostic::limit(Some(span), format!("more than {MAX_NODES} nodes")));
+        }
+    }
+
+    /// What begins with the word that is next.
+    fn begin(&mut self) -> Begun {
+        let start = self.next();
+        let word = self.text(start);
+        if self.is_lost() {
+            if !self.begins_node(word) {
+                return Begun::Nothing;
+            }
+            self.find_place();
+        }
+        if let Some(kind) = SkeletonKind::ALL.iter().copied().find(|kind| kind.name() == word) {
+            self.count_node(start.span());
+            return Begun::Leaf(self.primitive(kind, start));
+        }
+        if let Some(kind) = CombinatorKind::named(word).next() {
+            return self.combinator(start, kind);
+        }
+        if let Some(kind) = WarpKind::ALL.iter().copied().find(|kind| kind.name() == word) {
+            let fields = self.slots(kind.fields(), "a warp").complete(self, start, kind.name());
+            let written = fields.map(|fields| Box::new(Written::Warp { warp: kind, fields }));
+            let weighted = self.accept_word(WEIGHTED);
+            let head = if weighted { Head::Weighted } else { Head::Unary };
+            return self.block(start, written.map_or(Head::Broken, head));
+        }
+        match word {
+            "use" => Begun::Leaf(self.use_node()),
+            "select" => self.select(start),
+            "warp" => self.formula_warp(start),
+            "expression" => Begun::Leaf(self.expression_node(start)),
+            "within" => self.within(start),
+            "falloff" => self.falloff_node(start),
+            "blend" => {
+                if !self.accept_word("ricci") {
+                    self.expected_at(
+                        self.peek(),
+                        "expected `ricci` and its exponent; `sum` is the plain blend",
+                    );
+                    return self.block(start, Head::Broken);
+                }
+                self.combinator(start, CombinatorKind::Ricci)
+            }
+            _ if MapKind::named(word).next().is_some() => self.map(start, word),
+            GROUP_NODE => match self.peek_word() {
+                Some(name) => {
+                    let at = self.next();
+                    self.attribute(start, at, name)
+                }
+                None => {
+                    self.expected_at(self.peek(), "expected an attribute's name");
+                    self.block(start, Head::Broken)
+                }
+            },
+            _ if self.group(word).is_some() => self.attribute(start, start, word),
+            _ => self.unknown_node(start, word),
+        }
+    }
+
+    /// The block of a node whose head has been read.
+    pub(super) fn block(&mut self, start: Token, head: Head) -> Begun {
+        let span = Span::new(start.start, self.previous_end());
+        self.count_node(span);
+        match self.open() {
+            Some(open) => {
+                let open = open.start as u32;
+                Begun::Block(Frame { head, first: 0, span, open, incomplete: false, around: None })
+            }
+            None => Begun::Leaf(self.broken.clone()),
+        }
+    }
+
+    /// The opening brace of a node, after an error also a later one that must be meant.
+    pub(super) fn open(&mut self) -> Option<Token> {
+        if self.peek().is(b'(') {
+            self.expected_at(self.peek(), "expected `{`: no parentheses stand before a block");
+            self.skip_arguments();
+        }
+        if !self.peek().is(b'{') {
+            self.expected_at(self.peek(), "expected `{`");
+            while let token = self.peek()
+                && !token.is(b'{')
+            {
+                let word = self.peek_word();
+                let found = word.is_some_and(|word| is_statement(word) || self.begins_node(word));
+                if found || token.is(b'}') || token.kind == TokenKind::End {
+                    return None;
+                }
+                self.next();
+            }
+        }
+        self.find_place();
+        self.accept(b'{')
+    }
+
+    pub(super) fn unary(&mut self, start: Token, written: Option<Written>) -> Begun {
+        self.block(start, written.map_or(Head::Broken, |written| Head::Unary(Box::new(written))))
+    }
+
+    /// The node of a block that has been closed.
+    fn close(&mut self, frame: Frame, children: Vec<Tree>) -> Tree {
+        let written = match frame.head {
+            Head::Broken => return self.broken.clone(),
+            Head::Combine(combinator) => {
+                return Tree::at(frame.span, Written::Combine { combinator, fields: Vec::new() }, children);
+            }
+            Head::Operator(written) => *written,
+            Head::Weighted(written) => {
+                let count = children.len();
+                if count != 2 && !frame.incomplete {
+                    self.report(|| {
+                        let what = format!("a weighted warp has {count} nodes in its block");
+                        Diagnostic::error(Some(frame.span), what)
+                            .expected("expected two: what it deforms, and what gives the weight")
+                    });
+                }
+                *written
+            }
+            Head::Unary(written) => {
+                let count = children.len();
+                if count != 1 && !frame.incomplete {
+                    let word = self.source(frame.span).split_ascii_whitespace().next().unwrap_or_default();
+                    self.report(|| {
+                        let error = |what: &str| {
+                            Diagnostic::error(Some(frame.span), format!("`{}` has {what}", clip(word)))
+                        };
+                        match count {
+                            0 => error("no node in its block").expected("expected one"),
+                            _ => error(&format!("{count} nodes in its block"))
+                                .expected("expected one; `sum { .. }` around them makes them one"),
+                        }
+                    });
+                }
+                *written
+            }
+        };
+        let made = Tree::at(frame.span, written, children);
+        let Some(around) = frame.around else { return made };
+        Tree::at(frame.span, *around, vec![made])
+    }
+
+    fn select(&mut self, start: Token) -> Begun {
+        let which = self.expression(Place::Alone).number;
+        self.block(start, Head::Operator(Box::new(Written::Select(which))))
+    }
+
+    fn use_node(&mut self) -> Tree {
+        let token = self.peek();
+        let Some(name) = self.peek_word() else {
+            self.expected_at(token, "expected the name of a `let`");
+            return self.broken.clone();
+        };
+        if let Some(tree) = self.lets.get(name).cloned() {
+            self.next();
+            return tree;
+        }
+        if self.begins_node(name) || is_statement(name) {
+            self.report(|| {
+                Diagnostic::error(Some(token.span()), format!("`use` has no name before `{name}`"))
+                    .expected("expected the name of a `let`")
+            });
+            return self.broken.clone();
+        }
+        self.next();
+        self.report_with(|parser| {
+            let error =
+                Diagnostic::error(Some(token.span()), format!("no `let {}` stands above", clip(name)));
+            match nearest(name, parser.lets.keys().copied()) {
+                Some(near) => error.expected(format!("perhaps `{near}`")),
+                None => error,
+            }
+        });
+        self.broken.clone()
+    }
+
+    fn attribute(&mut self, start: Token, at: Token, name: &str) -> Begun {
+        let group = self.attributes.iter().find(|group| &*group.name == name);
+        let Some((name, width)) = group.map(|group| (group.name.clone(), group.width())) else {
+            self.report_with(|parser| {
+                Diagnostic::error(Some(at.span()), format!("no attribute is named `{}`", clip(name)))
+                    .expected(parser.known_groups())
+            });
+            self.number_or_elements();
+            return self.block(start, Head::Broken);
+        };
+        let value = self.attribute_value(at, &name, width);
+        self.unary(start, value.map(|value| Written::Attribute { name, value }))
+    }
+
+    fn known_groups(&self) -> String {
+        let names: Vec<&str> = self.attributes.iter().map(|group| &*group.name).collect();
+        format!("declared are {}", names.join(", "))
+    }
+
+    /// A word that begins nothing. A block with values before it is read as that of a misspelt attribute,
+    /// others are skipped.
+    fn unknown_node(&mut self, start: Token, word: &'a str) -> Begun {
+        let foreign = foreign_word(word);
+        let valued = foreign.is_none() && (self.peek().is(b'(') || self.peek().kind == TokenKind::Number);
+        let assigned = self.peek().is(b'=');
+        self.report_with(|parser| {
+            let known = parser.node_words();
+            let error = Diagnostic::error(Some(start.span()), format!("no node is called `{}`", clip(word)));
+            if parser.lets.contains_key(word) {
+                return error.expected(format!("perhaps `use {word}`"));
+            }
+            if let Some(hint) = foreign {
+                return error.expected(hint);
+            }
+            match nearest(word, known) {
+                Some(near) => error.expected(format!("perhaps `{near}`")),
+                None if assigned => {
+                    let name = clip(word);
+                    error.expected(format!("a number is `param {name} = ..`, a node `let {name} = ..`"))
+                }
+                None if word == "uv" => error.expected("declare it first: attribute uv 2"),
+                None if valued => error.expected(parser.known_groups()),
+                None => error,
+            }
+        });
+        if valued {
+            self.number_or_elements();
+            return self.block(start, Head::Broken);
+        }
+        self.stay_lost();
+        self.skip_arguments();
+        if self.peek().is(b'{') {
+            self.skip_block();
+            self.find_place();
+        }
+        Begun::Leaf(self.broken.clone())
+    }
+}

@@ -1,0 +1,341 @@
+//! The statements of a file. The state of the parser is in `state`, nodes are in `node`, values in `value`.
+
+use std::sync::Arc;
+
+use jbt_ir::limits::{MAX_ATTRIBUTE_WIDTH, MAX_ATTRIBUTES, MAX_SCENE_BYTES};
+
+use super::expression::Place;
+use super::lex::{Token, TokenKind};
+use super::state::{Options, Parser};
+use super::words::is_builtin;
+use jbt_model::attribute::{AttributeGroup, Mixing};
+use jbt_model::diagnostic::{Diagnostic, Span};
+use jbt_model::model::Model;
+use jbt_model::number::{Formula, Number};
+use jbt_model::parameter::{Parameter, not_finite, unknown};
+use jbt_model::report::clip;
+use jbt_model::word::is_statement;
+
+/// The model of a text, or everything that is wrong with it.
+pub(super) fn read(text: &[u8], options: &Options) -> Result<Model, Vec<Diagnostic>> {
+    if text.len() > MAX_SCENE_BYTES {
+        let message = format!("the file has {} bytes; at most {MAX_SCENE_BYTES} are read", text.len());
+        return Err(vec![Diagnostic::limit(None, message)]);
+    }
+    let whole = std::str::from_utf8(text).map_err(|error| {
+        let at = error.valid_up_to();
+        let end = error.error_len().map_or(text.len(), |length| at + length);
+        vec![
+            Diagnostic::error(Some(Span::new(at, end)), "this is not UTF-8")
+                .expected("expected a text file, in the encoding UTF-8"),
+        ]
+    })?;
+    let mut parser = Parser::new(whole, options);
+    parser.file();
+    parser.finish()
+}
+
+/// The value of a text that is one expression, or everything that is wrong with it.
+pub(super) fn read_number(text: &str) -> Result<f64, Vec<Diagnostic>> {
+    let options = Options::default();
+    let mut parser = Parser::new(text, &options);
+    let value = parser.expression(Place::Alone).number.value();
+    let rest = parser.peek();
+    if rest.kind != TokenKind::End {
+        parser.expected_at(rest, "expected one number");
+    }
+    if parser.report.is_empty() { Ok(value) } else { Err(parser.report.finish()) }
+}
+
+impl<'a> Parser<'a> {
+    fn file(&mut self) {
+        self.header();
+        loop {
+            let token = self.peek();
+            match token.kind {
+                TokenKind::End => return,
+                TokenKind::Word => {
+                    let word = self.text(token);
+                    if is_statement(word) {
+                        self.find_place();
+                        self.next();
+                        self.statement(word, token.span());
+                    } else if self.is_lost() && !self.begins_node(word) {
+                        self.next();
+                    } else {
+                        self.find_place();
+                        self.root(token);
+                    }
+                }
+                TokenKind::Mark(b'{') => {
+                    self.expected_at(token, "expected a node's name before it");
+                    self.skip_block();
+                }
+                TokenKind::Mark(b'}') => {
+                    self.expected_at(token, "no block is open here");
+                    self.next();
+                }
+                TokenKind::Mark(_) | TokenKind::Number | TokenKind::Quoted | TokenKind::Unknown => {
+                    self.expected_at(token, "expected a statement or a node");
+                    self.next();
+                }
+            }
+        }
+    }
+
+    fn header(&mut self) {
+        let token = self.peek();
+        if self.whole.trim().is_empty() {
+            return;
+        }
+        if !self.accept_word("jbt") {
+            let span = Span::new(
+                token.start,
+                token.start + self.whole[token.start..].chars().take(1).map(char::len_utf8).sum::<usize>(),
+            );
+            self.report(|| {
+                Diagnostic::error(Some(span), "the file does not begin with `jbt 1`")
+                    .expected("expected the format and its version first")
+            });
+            return;
+        }
+        let version = self.peek();
+        if version.kind != TokenKind::Number {
+            self.expected_at(version, "expected the version: jbt 1");
+        } else if self.text(version) == "1" {
+            self.next();
+        } else {
+            let found = clip(self.text(version));
+            self.give_up(
+                Diagnostic::error(Some(version.span()), format!("the file has version {found}"))
+                    .expected("expected version 1: jbt 1"),
+            );
+        }
+    }
+
+    fn statement(&mut self, word: &str, span: Span) {
+        match word {
+            "iso" => self.iso_statement(span),
+            "origin" => self.origin_statement(span),
+            "param" => self.param_statement(),
+            "attribute" => self.attribute_statement(),
+            "let" => self.let_statement(),
+            _ => {
+                self.report(|| {
+                    Diagnostic::error(Some(span), "a second `jbt`")
+                        .expected("expected it once, at the beginning")
+                });
+                self.next();
+            }
+        }
+    }
+
+    fn iso_statement(&mut self, span: Span) {
+        let value = self.expression(Place::Alone).number;
+        if self.iso_at.is_some() {
+            self.report(|| Diagnostic::error(Some(span), "a second `iso`").expected("expected it once"));
+        } else if self.nodes > 0 {
+            self.report(|| {
+                Diagnostic::error(Some(span), "`iso` stands after a node")
+                    .expected("expected it before all nodes, since it gives `surface_radius` its meaning")
+            });
+        }
+        self.iso_at = Some(span);
+        self.iso = value;
+    }
+
+    fn origin_statement(&mut self, span: Span) {
+        let from = self.peek().start;
+        let numbers: [Number; 3] = self.vector();
+        for number in &numbers {
+            self.declares(number, Span::new(from, self.previous_end()));
+        }
+        if self.origin.replace(numbers.map(|number| number.value())).is_some() {
+            self.report(|| Diagnostic::error(Some(span), "a second `origin`").expected("expected it once"));
+        }
+    }
+
+    /// A name that is being defined.
+    fn name(&mut self, what: &str) -> Option<(&'a str, Span)> {
+        let token = self.peek();
+        if token.kind != TokenKind::Word {
+            self.expected_at(token, &format!("expected the {what}'s name"));
+            return None;
+        }
+        self.next();
+        Some((self.text(token), token.span()))
+    }
+
+    fn equals(&mut self) {
+        if self.accept(b'=').is_none() {
+            self.expected_at(self.peek(), "expected `=`");
+        }
+    }
+
+    fn param_statement(&mut self) {
+        let Some((name, span)) = self.name("parameter") else {
+            return;
+        };
+        self.equals();
+        let lost = self.is_lost();
+        let default = if lost { f64::NAN.into() } else { self.expression(Place::Alone).number };
+        if is_builtin(name) {
+            self.report(|| Diagnostic::error(Some(span), format!("`{name}` means something else already")));
+        } else if self.references.contains_key(name) {
+            self.report(|| Diagnostic::error(Some(span), format!("a second parameter `{}`", clip(name))));
+        } else {
+            let set = self.options.parameters.iter().rev().find(|(set, _)| set == name);
+            let setting = set.map(|&(_, value)| value);
+            let parameter = Parameter::declared(name, default, setting, span);
+            self.references.insert(name, parameter.reference());
+            self.parameters.push(parameter);
+        }
+    }
+
+    fn attribute_statement(&mut self) {
+        let Some((name, span)) = self.name("attribute") else {
+            return;
+        };
+        let width_at = self.peek();
+        let width = self.expression(Place::Alone);
+        self.declares(&width.number, width.span);
+        let (width, width_span) = (width.number.value(), width.span);
+        let right = width.fract() == 0.0 && (1.0..=MAX_ATTRIBUTE_WIDTH as f64).contains(&width);
+        if !right && !width.is_nan() {
+            self.report(|| {
+                Diagnostic::error(
+                    Some(width_span),
+                    format!("the width of `{}` is not 1 to {MAX_ATTRIBUTE_WIDTH}", clip(name)),
+                )
+                .expected("expected the number of its reals")
+            });
+        }
+        let width = right.then_some(width as usize);
+        let mut default = None;
+        if !self.is_lost() && self.accept_word("default") {
+            let from = self.peek().start;
+            let values = self.group_values(width);
+            for number in &values {
+                self.declares(number, Span::new(from, self.previous_end()));
+            }
+            default = Some(values.iter().map(Number::value).collect());
+        }
+        let mixing = Mixing::ALL.into_iter().find(|mixing| self.accept_word(mixing.name()));
+        if self.is_lost() || width_at.kind == TokenKind::End {
+            return;
+        }
+        let width = width.unwrap_or(1);
+        let group = AttributeGroup {
+            name: Arc::from(name),
+            default: default.unwrap_or_else(|| vec![if name == "color" { 1.0 } else { 0.0 }; width]),
+            mixing: mixing.unwrap_or(Mixing::Blend),
+        };
+        self.declare(group, span);
+    }
+
+    /// Marks the parameters of a number that stays as it is read.
+    fn declares(&mut self, number: &Number, span: Span) {
+        for (name, _) in number.formula().into_iter().flat_map(Formula::parameters) {
+            let declared = self.parameters.iter_mut().find(|parameter| parameter.name() == &**name);
+            if let Some(parameter) = declared {
+                parameter.declares(span);
+            }
+        }
+    }
+
+    fn declare(&mut self, group: AttributeGroup, span: Span) {
+        let name = Arc::clone(&group.name);
+        if &*name == "color" {
+            if group.width() != 3 {
+                self.report(|| {
+                    Diagnostic::error(Some(span), "`color` has 3 reals: red, green and blue")
+                        .expected("expected width 3")
+                });
+            }
+            self.attributes[0] = group;
+        } else if self.group(&name).is_some() {
+            self.report(|| Diagnostic::error(Some(span), format!("a second attribute `{}`", clip(&name))));
+        } else if self.attributes.len() == MAX_ATTRIBUTES {
+            let message = format!("more than {MAX_ATTRIBUTES} attributes, `color` included");
+            self.report(|| Diagnostic::limit(Some(span), message));
+        } else {
+            self.attributes.push(group);
+        }
+    }
+
+    /// The width of a declared group.
+    pub(super) fn group(&self, name: &str) -> Option<usize> {
+        self.attributes.iter().find(|group| &*group.name == name).map(AttributeGroup::width)
+    }
+
+    fn let_statement(&mut self) {
+        let Some((name, span)) = self.name("subtree") else {
+            return;
+        };
+        self.equals();
+        if self.peek_word().is_some_and(|word| self.begins_node(word)) {
+            self.find_place();
+        }
+        if self.is_lost() {
+            self.lets.entry(name).or_insert_with(|| self.broken.clone());
+            return;
+        }
+        let tree = self.tree();
+        if self.lets.insert(name, tree).is_some() {
+            self.report(|| Diagnostic::error(Some(span), format!("a second `let {}`", clip(name))));
+        }
+    }
+
+    fn root(&mut self, token: Token) {
+        let tree = self.tree();
+        // What could not be read is no root that another one would be the second beside.
+        let broken = self.broken.identity();
+        if self.root.as_ref().is_none_or(|root| root.identity() == broken) {
+            self.root = Some(tree);
+        } else if tree.identity() != broken {
+            self.report(|| {
+                Diagnostic::error(Some(token.span()), "a second root")
+                    .expected("expected one node; `sum { .. }` or `union { .. }` around both makes them one")
+            });
+        }
+    }
+
+    // The end.
+
+    fn finish(mut self) -> Result<Model, Vec<Diagnostic>> {
+        self.check_options();
+        if self.root.is_none() {
+            let end = Span::new(self.whole.len(), self.whole.len());
+            self.report(|| {
+                if self.whole.trim().is_empty() {
+                    let empty = Diagnostic::error(Some(end), "the file is empty");
+                    return empty.expected("expected `jbt 1` and a node, as point { surface_radius 1 }");
+                }
+                Diagnostic::error(Some(end), "the file has no node").expected("expected the tree")
+            });
+        }
+        let report = std::mem::take(&mut self.report);
+        match self.root {
+            Some(root) if report.is_empty() => Ok(Model {
+                iso: self.iso,
+                attributes: self.attributes,
+                root,
+                parameters: self.parameters,
+                origin: self.origin,
+                source: None,
+            }),
+            _ => Err(report.finish()),
+        }
+    }
+
+    /// Values from outside are for parameters that exist, and are numbers.
+    fn check_options(&mut self) {
+        for (name, value) in &self.options.parameters {
+            if !self.references.contains_key(name.as_str()) {
+                self.report_with(|parser| unknown(name, &parser.parameters));
+            } else if !value.is_finite() {
+                self.report(|| not_finite(name));
+            }
+        }
+    }
+}

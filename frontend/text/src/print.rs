@@ -1,0 +1,331 @@
+//! The printer: a model as text that reads back as the same model.
+//!
+//! Subtrees with several parents are printed once, as `let`, children first: a text is as long as its graph,
+//! however many paths the graph has. Maps and attributes stand on one line with their child; operators open a
+//! line for each child, down to a depth where the indentation would outweigh the text.
+
+use std::collections::HashMap;
+use std::fmt::Write as _;
+
+use super::words::{EXPRESSION, GROUP_NODE, WEIGHTED, field_word, texture_named};
+use jbt_model::attribute::AttributeGroup;
+use jbt_model::combine::{CombinatorKind, Syntax};
+use jbt_model::expression::{Formula, write as write_formula};
+use jbt_model::falloff::FalloffKind;
+use jbt_model::field::{FieldKind, NumberText as _};
+use jbt_model::model::Model;
+use jbt_model::number::Number;
+use jbt_model::tree::Tree;
+use jbt_model::written::{
+    FieldNumber, Radius, Written, WrittenAttribute, WrittenFalloff, WrittenTextured, WrittenUv,
+};
+
+/// Operators below this depth are printed on one line.
+const DEEPEST: usize = 12;
+
+/// The model as text. See [`parse`](super::parse) for the promise.
+#[must_use]
+pub fn print(model: &Model) -> String {
+    let mut out = "jbt 1\n".to_owned();
+    for parameter in model.all_parameters() {
+        let _ = writeln!(out, "param {} = {}", parameter.name(), parameter.source());
+    }
+    let _ = writeln!(out, "iso {}", model.iso);
+    if let Some(point) = model.origin {
+        let _ = writeln!(out, "origin {}", vector(point));
+    }
+    for group in &model.attributes {
+        if *group != AttributeGroup::color() {
+            declaration(&mut out, group);
+        }
+    }
+    out.push('\n');
+    let (order, names) = shared(&model.root);
+    let printer = Printer { names, definitions: free_prefix(model) };
+    for tree in order {
+        let _ = write!(out, "let n{} = ", printer.names[&tree.identity()]);
+        printer.tree(&mut out, tree);
+        out.push_str("\n\n");
+    }
+    printer.tree(&mut out, &model.root);
+    out.push('\n');
+    out
+}
+
+fn vector(numbers: impl IntoIterator<Item = impl Into<Number>>) -> String {
+    let numbers: Vec<String> = numbers.into_iter().map(|number| number.into().text()).collect();
+    format!("({})", numbers.join(" "))
+}
+
+/// The values of an attribute: one number without parentheses.
+fn group_values<T: Into<Number>>(values: impl IntoIterator<Item = T>) -> String {
+    let values: Vec<Number> = values.into_iter().map(Into::into).collect();
+    match &values[..] {
+        [value] => value.text(),
+        values => vector(values),
+    }
+}
+
+fn declaration(out: &mut String, group: &AttributeGroup) {
+    let (width, default, mixing) =
+        (group.width(), group_values(group.default.iter().copied()), group.mixing.name());
+    let _ = writeln!(out, "attribute {} {width} default {default} {mixing}", group.name);
+}
+
+/// What names of definitions begin with, before a number, so that no parameter has such a name.
+fn free_prefix(model: &Model) -> String {
+    let parameters = model.all_parameters();
+    let mut prefix = "t".to_owned();
+    let is_taken = |prefix: &str| {
+        let rests = parameters.iter().filter_map(|parameter| parameter.name().strip_prefix(prefix));
+        rests.into_iter().any(|rest| rest.bytes().all(|byte| byte.is_ascii_digit()))
+    };
+    while is_taken(&prefix) {
+        prefix.push('t');
+    }
+    prefix
+}
+
+/// The subtrees that need a name, since they have more than one use or stand in a formula, children before
+/// parents, and the number of each by its identity.
+fn shared(root: &Tree) -> (Vec<&Tree>, HashMap<usize, usize>) {
+    let mut uses: HashMap<usize, usize> = HashMap::new();
+    let mut named = std::collections::HashSet::new();
+    let mut finished = Vec::new();
+    // A node is on the stack once before its children (false) and once after them (true).
+    let mut stack = vec![(root, false)];
+    while let Some((tree, done)) = stack.pop() {
+        if done {
+            finished.push(tree);
+            continue;
+        }
+        let count = uses.entry(tree.identity()).or_default();
+        *count += 1;
+        if *count == 1 {
+            stack.push((tree, true));
+            if matches!(tree.node().written(), Written::Expression(_)) {
+                named.extend(tree.node().children().iter().map(Tree::identity));
+            }
+            stack.extend(tree.node().children().iter().rev().map(|child| (child, false)));
+        }
+    }
+    finished.retain(|tree| uses[&tree.identity()] > 1 || named.contains(&tree.identity()));
+    let names = finished.iter().enumerate().map(|(i, tree)| (tree.identity(), i + 1)).collect();
+    (finished, names)
+}
+
+/// What is left to print.
+enum Item<'a> {
+    Tree(&'a Tree, usize),
+    Text(&'static str),
+    Line(usize),
+}
+
+struct Printer {
+    names: HashMap<usize, usize>,
+    /// What names of definitions begin with.
+    definitions: String,
+}
+
+impl Printer {
+    /// A subtree, also if it has a name itself.
+    fn tree(&self, out: &mut String, root: &Tree) {
+        let mut stack = Vec::new();
+        self.open(out, &mut stack, root, 0);
+        while let Some(item) = stack.pop() {
+            match item {
+                Item::Text(text) => out.push_str(text),
+                Item::Line(depth) if depth <= DEEPEST => {
+                    out.push('\n');
+                    out.extend(std::iter::repeat_n("    ", depth));
+                }
+                Item::Line(_) => out.push(' '),
+                Item::Tree(tree, depth) => match self.names.get(&tree.identity()) {
+                    Some(name) => {
+                        let _ = write!(out, "use n{name}");
+                    }
+                    None => self.open(out, &mut stack, tree, depth),
+                },
+            }
+        }
+    }
+
+    /// Prints a node's head and leaves the rest of it on the stack.
+    fn open<'a>(&self, out: &mut String, stack: &mut Vec<Item<'a>>, tree: &'a Tree, depth: usize) {
+        let children = tree.node().children();
+        let child = |place: usize| match children.get(place) {
+            Some(child) => format!("n{}", self.names[&child.identity()]),
+            None => format!("missing{place}"),
+        };
+        match tree.node().written() {
+            Written::Expression(formula) => expression(out, formula, child, &self.definitions),
+            written => head(out, written, &self.definitions),
+        }
+        match tree.node().written() {
+            Written::Primitive { .. } | Written::Expression(_) => {}
+            Written::Combine { .. } | Written::Select(_) => {
+                out.push_str(" {");
+                stack.push(Item::Text("}"));
+                stack.push(Item::Line(depth));
+                for child in children.iter().rev() {
+                    stack.push(Item::Tree(child, depth + 1));
+                    stack.push(Item::Line(depth + 1));
+                }
+            }
+            Written::Map { .. }
+            | Written::Warp { .. }
+            | Written::FormulaWarp(_)
+            | Written::Attribute { .. } => {
+                let weighted = children.len() > 1;
+                let _ = if weighted { write!(out, " {WEIGHTED} {{ ") } else { write!(out, " {{ ") };
+                stack.push(Item::Text(" }"));
+                for (place, child) in children.iter().enumerate().rev() {
+                    stack.push(Item::Tree(child, depth));
+                    if place > 0 {
+                        stack.push(Item::Text(" "));
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The head of an operator. Numbers are written even where they have their defaults.
+fn operator(out: &mut String, kind: CombinatorKind, fields: &[FieldNumber]) {
+    out.push_str(kind.head());
+    for (described, value) in kind.fields().iter().zip(fields) {
+        let FieldNumber::Real(number) = value else { unreachable!("operators have numbers") };
+        let _ = match (described.kind, kind.syntax()) {
+            (FieldKind::Choice(words), _) => {
+                write!(out, " {}", words.get(number.value() as usize).unwrap_or(&words[0]))
+            }
+            (_, Syntax::Named) => write!(out, " {} {number}", described.name),
+            (_, Syntax::Labelled | Syntax::Alone) => write!(out, " {number}"),
+        };
+    }
+}
+
+/// What stands before a node's block; of a primitive, all of it. Names of definitions begin with
+/// `definitions`.
+fn head(out: &mut String, written: &Written, definitions: &str) {
+    match written {
+        Written::Primitive { skeleton: kind, fields, falloff, radius, strength } => {
+            let _ = write!(out, "{} {{", kind.name());
+            for (described, value) in kind.fields().iter().zip(fields) {
+                described.write(out, &field_word(*kind, described), value);
+            }
+            let _ = match radius {
+                Radius::Support(radius) => write!(out, " radius {radius}"),
+                Radius::Surface(radius) => write!(out, " surface_radius {radius}"),
+            };
+            rest_of_primitive(out, falloff, strength);
+        }
+        Written::Combine { combinator, fields } => operator(out, *combinator, fields),
+        Written::Expression(formula) => expression(out, formula, |place| format!("n{place}"), definitions),
+        Written::Select(which) => {
+            let _ = write!(out, "select {which}");
+        }
+        Written::Map { map, fields } => {
+            out.push_str(map.name());
+            if map.is_named() {
+                map.fields()
+                    .iter()
+                    .zip(fields)
+                    .for_each(|(field, value)| field.write(out, field.name, value));
+            } else {
+                let all: Vec<&Number> = fields.iter().flat_map(FieldNumber::numbers).collect();
+                let _ = write!(out, " {}", group_values(all));
+            }
+        }
+        Written::Warp { warp, fields } => {
+            out.push_str(warp.name());
+            for (described, value) in warp.fields().iter().zip(fields) {
+                described.write(out, described.name, value);
+            }
+        }
+        Written::FormulaWarp(formula) => formula_warp(out, formula, definitions),
+        Written::Attribute { name, value } => attribute(out, name, value, definitions),
+    }
+}
+
+/// The head of a warp that is given by formulas.
+fn formula_warp(out: &mut String, formula: &Formula, definitions: &str) {
+    out.push_str("warp (");
+    let definition = |place: usize| format!("{definitions}{}", place + 1);
+    // The check refuses those that ask for fields.
+    let child = |place: usize| format!("missing{place}");
+    let _ = write_formula(out, &formula.form, &formula.numbers, child, definition, false);
+    out.push(')');
+}
+
+/// A formula with its block. `child` names the trees that it asks for.
+fn expression(out: &mut String, formula: &Formula, child: impl Fn(usize) -> String, definitions: &str) {
+    let _ = write!(out, "{EXPRESSION} ");
+    if let Some(sides) = formula.form.box_numbers(&formula.numbers) {
+        let _ = write!(out, "within {} to {} ", vector(&sides[..3]), vector(&sides[3..]));
+    }
+    out.push_str("{ ");
+    let definition = |place: usize| format!("{definitions}{}", place + 1);
+    let tuple = formula.form.results.len() > 1;
+    let _ = write_formula(out, &formula.form, &formula.numbers, child, definition, tuple);
+    out.push_str(" }");
+}
+
+fn attribute(out: &mut String, name: &str, value: &WrittenAttribute, definitions: &str) {
+    if super::words::is_reserved(name) {
+        let _ = write!(out, "{GROUP_NODE} ");
+    }
+    out.push_str(name);
+    match value {
+        WrittenAttribute::Numbers(numbers) => {
+            let text = group_values(numbers);
+            let first = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').next();
+            // A parameter that is called like what computes.
+            let hidden = first.is_some_and(|word| word == EXPRESSION || texture_named(word).is_some());
+            let _ = if hidden { write!(out, " ({text})") } else { write!(out, " {text}") };
+        }
+        WrittenAttribute::Textured(WrittenTextured { texture, fields, a, b }) => {
+            let _ = write!(out, " {} {{ a {} b {}", texture.name(), group_values(a), group_values(b));
+            for (described, value) in texture.fields().iter().zip(fields) {
+                described.write(out, described.name, value);
+            }
+            out.push_str(" }");
+        }
+        WrittenAttribute::Uv(map) => uv(out, map),
+        WrittenAttribute::Expressed(formula) => {
+            out.push(' ');
+            expression(out, formula, |place| format!("n{place}"), definitions);
+        }
+    }
+}
+
+/// A map of uv, without the parts that change nothing.
+fn uv(out: &mut String, map: &WrittenUv) {
+    let identity = WrittenUv::default();
+    if !same_numbers(&map.scale, &identity.scale) {
+        let _ = write!(out, " scale {}", vector(&map.scale));
+    }
+    if !same_numbers(std::slice::from_ref(&map.degrees), &[identity.degrees]) {
+        let _ = write!(out, " rotate {}", map.degrees);
+    }
+    if !same_numbers(&map.shift, &identity.shift) {
+        let _ = write!(out, " shift {}", vector(&map.shift));
+    }
+}
+
+/// Whether numbers are plain and have the same bits.
+fn same_numbers(a: &[Number], b: &[Number]) -> bool {
+    let plain = |number: &Number| (!number.follows()).then(|| number.value().to_bits());
+    a.iter().zip(b).all(|(a, b)| plain(a).is_some() && plain(a) == plain(b))
+}
+
+/// What follows a primitive's radius.
+fn rest_of_primitive(out: &mut String, falloff: &WrittenFalloff, strength: &Number) {
+    if falloff.kind() != FalloffKind::Soft {
+        let _ = write!(out, " falloff {}", falloff.kind().text(falloff.fields()));
+    }
+    if strength.follows() || strength.value().to_bits() != 1f64.to_bits() {
+        let _ = write!(out, " strength {strength}");
+    }
+    out.push_str(" }");
+}

@@ -1,0 +1,220 @@
+//! The state of reading one text: tokens, messages, and what has been declared.
+//!
+//! Tokens are taken one at a time and nothing recurses, so that memory is bounded by the model and not by the
+//! text. After an error that has lost the place, tokens are skipped in silence until a word, a brace or a
+//! statement says where we are again.
+
+use std::collections::HashMap;
+
+use super::hints::foreign_mark;
+use super::lex::{Lexer, Token, TokenKind};
+use super::scope::Scope;
+use jbt_model::attribute::AttributeGroup;
+use jbt_model::combine::{Combinator, Sum};
+use jbt_model::diagnostic::{Diagnostic, Span};
+use jbt_model::model::Model;
+use jbt_model::number::Number;
+use jbt_model::parameter::Parameter;
+use jbt_model::report::{Report, clip};
+use jbt_model::tree::Tree;
+
+/// What is set from outside a text.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct Options {
+    /// Values of parameters, by name; the last one of a name counts.
+    pub parameters: Vec<(String, f64)>,
+}
+
+/// The state of reading one text.
+pub(super) struct Parser<'a> {
+    pub(super) lexer: Lexer<'a>,
+    pub(super) whole: &'a str,
+    pub(super) report: Report,
+    /// The place is lost: messages are withheld until it is found again.
+    pub(super) lost: bool,
+    /// Reading has stopped for good.
+    pub(super) stopped: bool,
+    pub(super) options: &'a Options,
+    pub(super) parameters: Vec<Parameter>,
+    /// Each parameter as formulas have it; its value is NaN where its expression has an error.
+    pub(super) references: HashMap<&'a str, Number>,
+    pub(super) lets: HashMap<&'a str, Tree>,
+    /// Inside of the formula of a field: what it may be about besides numbers.
+    pub(super) scope: Option<Scope<'a>>,
+    pub(super) attributes: Vec<AttributeGroup>,
+    pub(super) iso: Number,
+    pub(super) iso_at: Option<Span>,
+    pub(super) origin: Option<[f64; 3]>,
+    /// Nodes so far, shared ones once.
+    pub(super) nodes: usize,
+    pub(super) root: Option<Tree>,
+    /// A brace that the end of the file leaves open has been reported.
+    pub(super) ended: bool,
+    /// Stands for every node that could not be read.
+    pub(super) broken: Tree,
+}
+
+impl<'a> Parser<'a> {
+    pub(super) fn new(whole: &'a str, options: &'a Options) -> Self {
+        Self {
+            lexer: Lexer::new(whole),
+            whole,
+            report: Report::default(),
+            lost: false,
+            stopped: false,
+            options,
+            parameters: Vec::new(),
+            references: HashMap::new(),
+            lets: HashMap::new(),
+            scope: None,
+            attributes: vec![AttributeGroup::color()],
+            iso: Model::DEFAULT_ISO.into(),
+            iso_at: None,
+            origin: None,
+            nodes: 0,
+            root: None,
+            ended: false,
+            broken: Tree::new(Combinator::from(Sum {}), Vec::new()),
+        }
+    }
+
+    // The tokens.
+
+    pub(super) fn peek(&self) -> Token {
+        self.lexer.peek()
+    }
+
+    pub(super) fn next(&mut self) -> Token {
+        self.lexer.next()
+    }
+
+    pub(super) fn peek_behind(&self) -> Token {
+        self.lexer.peek_behind()
+    }
+
+    /// Goes back to a byte that has been skipped as a part of a comment.
+    pub(super) fn resume(&mut self, at: usize) {
+        self.lexer.resume(at);
+    }
+
+    pub(super) fn leans_right(&self) -> bool {
+        self.lexer.leans_right()
+    }
+
+    /// Where the last taken token ended.
+    pub(super) fn previous_end(&self) -> usize {
+        self.lexer.previous_end()
+    }
+
+    pub(super) fn text(&self, token: Token) -> &'a str {
+        self.lexer.text(token)
+    }
+
+    pub(super) fn source(&self, span: Span) -> &'a str {
+        &self.whole[span.start as usize..span.end as usize]
+    }
+
+    /// The next token, if it is a word.
+    pub(super) fn peek_word(&self) -> Option<&'a str> {
+        let token = self.peek();
+        (token.kind == TokenKind::Word).then(|| self.text(token))
+    }
+
+    /// Takes the next token if it is this mark.
+    pub(super) fn accept(&mut self, mark: u8) -> Option<Token> {
+        self.peek().is(mark).then(|| self.next())
+    }
+
+    /// Takes the next token if it is this word.
+    pub(super) fn accept_word(&mut self, word: &str) -> bool {
+        let found = self.peek_word() == Some(word);
+        if found {
+            self.next();
+        }
+        found
+    }
+
+    // Messages.
+
+    /// Reports, wherever we are.
+    pub(super) fn report(&mut self, make: impl FnOnce() -> Diagnostic) {
+        if !self.stopped {
+            self.report.add(make);
+        }
+    }
+
+    /// Reports what `make` finds out from the parser's state.
+    pub(super) fn report_with(&mut self, make: impl FnOnce(&Self) -> Diagnostic) {
+        let made = (!self.stopped && !self.report.is_full()).then(|| make(self));
+        self.report(|| made.unwrap_or_else(|| Diagnostic::error(None, "")));
+    }
+
+    /// Reports, unless the place is lost already, and loses it.
+    pub(super) fn lose_place(&mut self, make: impl FnOnce() -> Diagnostic) {
+        if !self.lost {
+            self.report(make);
+        }
+        self.lost = true;
+    }
+
+    /// Loses the place after an error that has been reported.
+    pub(super) fn stay_lost(&mut self) {
+        self.lost = true;
+    }
+
+    /// We know again where we are.
+    pub(super) fn find_place(&mut self) {
+        self.lost = false;
+    }
+
+    pub(super) fn is_lost(&self) -> bool {
+        self.lost
+    }
+
+    /// Loses the place at a token that is not what was expected.
+    pub(super) fn expected_at(&mut self, token: Token, expected: &str) {
+        let found = if self.lost { String::new() } else { self.describe(token) };
+        let hint = if token.kind == TokenKind::End { None } else { foreign_mark(self.text(token)) };
+        self.lose_place(|| {
+            let error = Diagnostic::error(Some(token.span()), format!("unexpected {found}"));
+            match hint {
+                Some(hint) => error.expected(format!("{expected}; {hint}")),
+                None => error.expected(expected),
+            }
+        });
+    }
+
+    /// A token in words.
+    pub(super) fn describe(&self, token: Token) -> String {
+        match token.kind {
+            TokenKind::End => "end of the file".to_owned(),
+            TokenKind::Word
+            | TokenKind::Number
+            | TokenKind::Mark(_)
+            | TokenKind::Quoted
+            | TokenKind::Unknown => {
+                format!("`{}`", clip(self.text(token)))
+            }
+        }
+    }
+
+    /// Reports a limit and stops reading.
+    pub(super) fn give_up(&mut self, limit: Diagnostic) {
+        if !self.stopped {
+            self.report.add_last(limit);
+        }
+        self.stopped = true;
+        self.lost = true;
+        self.lexer.finish();
+    }
+
+    // Parameters.
+
+    pub(super) fn parameter(&self, name: &str) -> Option<&Number> {
+        self.references.get(name)
+    }
+
+    pub(super) fn parameter_names(&self) -> impl Iterator<Item = &str> {
+        self.parameters.iter().map(Parameter::name)
+    }
+}
