@@ -2,6 +2,7 @@
 
 use jbt_frontend::diagnostic::Diagnostics;
 use jbt_ir::VerifyError;
+use jbt_ir::engine::RunError;
 
 /// Why a model could not be compiled.
 #[derive(Clone, Debug, thiserror::Error)]
@@ -47,4 +48,16 @@ pub enum EvalError {
     /// The buffer was made for another query or model.
     #[error("the samples were made for another query or model")]
     Layout,
+}
+
+impl From<RunError> for EvalError {
+    fn from(error: RunError) -> Self {
+        match error {
+            RunError::Selection => Self::Selection,
+            RunError::Inputs { expected, given } | RunError::Outputs { expected, given } => {
+                Self::Planes { expected, given }
+            }
+            RunError::Length { expected, given, .. } => Self::Length { expected, given },
+        }
+    }
 }

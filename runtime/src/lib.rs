@@ -111,8 +111,6 @@ pub mod tree;
 mod readme {}
 
 pub use jbt_ir as ir;
-#[cfg(feature = "jit")]
-pub use jbt_jit as jit;
 
 pub use jbt_frontend::attribute::{AttributeGroup, Mixing};
 pub use jbt_frontend::builder as build;
