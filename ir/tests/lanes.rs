@@ -399,7 +399,7 @@ fn planes_that_do_not_fit_are_refused() {
     assert_eq!(two, Err(RunError::Outputs { expected: 1, given: 2 }));
     let longer = tape.run(tables, &[&x], &mut [&mut more], &mut scratch);
     assert_eq!(longer, Err(RunError::Length { plane: 1, expected: 4, given: 5 }));
-    assert_eq!(longer.unwrap_err().to_string(), "the first plane has 4 points, another one has 5");
+    assert_eq!(longer.unwrap_err().to_string(), "the first plane has 4 points, plane 1 (inputs first) has 5");
 }
 
 #[test]
