@@ -1,8 +1,8 @@
 //! Machine code for jbt programs: wide code of our own on x86-64 with AVX2 or AVX-512, elsewhere by
 //! Cranelift.
 //!
-//! A verified function goes in, a program comes out ([`jbt_ir::engine`] is its door). Bound to the rows of its
-//! tables it takes planes of numbers to planes of answers, and every lane has the bits that the scalar
+//! A verified function goes in, a program comes out ([`jbt_ir::engine`] is its door). Bound to the rows of
+//! its tables it takes planes of numbers to planes of answers, and every lane has the bits that the scalar
 //! reference gives (a NaN for a NaN).
 //!
 //! ```text

@@ -54,19 +54,19 @@ fn planes_and_rows_that_do_not_fit_are_one_error_on_every_engine() {
     for (backend, level) in backends() {
         let bound = bind(backend, level, rows(3));
         let foreign = Selection::new(function().function(), &rows(4));
-        let plane = [1.0_f32; 24];
+        let plane: &[f32] = &[1.0; 24];
         let (mut a, mut b) = ([7.0_f32; 24], [7.0_f32; 24]);
         let length = |plane, given| RunError::Length { plane, expected: 24, given };
         let cases = [
-            (bound.run_selected(&foreign, &[&plane; 2], &mut [&mut a, &mut b]), RunError::Selection),
-            (bound.run_selected(&foreign, &[&plane], &mut []), RunError::Selection),
-            (bound.run(&[&plane], &mut [&mut a, &mut b]), RunError::Inputs { expected: 2, given: 1 }),
-            (bound.run(&[&plane; 3], &mut [&mut a, &mut b]), RunError::Inputs { expected: 2, given: 3 }),
-            (bound.run(&[&plane; 2], &mut [&mut a]), RunError::Outputs { expected: 2, given: 1 }),
-            (bound.run(&[&plane; 2], &mut []), RunError::Outputs { expected: 2, given: 0 }),
-            (bound.run(&[&plane, &plane[..16]], &mut [&mut a, &mut b]), length(1, 16)),
-            (bound.run(&[&plane; 2], &mut [&mut a, &mut b[..8]]), length(3, 8)),
-            (bound.run(&[&plane; 2], &mut [&mut a[..0], &mut b]), length(2, 0)),
+            (bound.run_selected(&foreign, &[plane; 2], &mut [&mut a, &mut b]), RunError::Selection),
+            (bound.run_selected(&foreign, &[plane], &mut []), RunError::Selection),
+            (bound.run(&[plane], &mut [&mut a, &mut b]), RunError::Inputs { expected: 2, given: 1 }),
+            (bound.run(&[plane; 3], &mut [&mut a, &mut b]), RunError::Inputs { expected: 2, given: 3 }),
+            (bound.run(&[plane; 2], &mut [&mut a]), RunError::Outputs { expected: 2, given: 1 }),
+            (bound.run(&[plane; 2], &mut []), RunError::Outputs { expected: 2, given: 0 }),
+            (bound.run(&[plane, &plane[..16]], &mut [&mut a, &mut b]), length(1, 16)),
+            (bound.run(&[plane; 2], &mut [&mut a, &mut b[..8]]), length(3, 8)),
+            (bound.run(&[plane; 2], &mut [&mut a[..0], &mut b]), length(2, 0)),
         ];
         for (given, expected) in cases {
             assert_eq!(given, Err(expected), "{} at {level}", backend.name());
@@ -116,7 +116,7 @@ fn levels_that_the_cpu_lacks_are_one_error_on_every_engine() {
     let tree = Model::new(build::point([0, 0, 0], 1)).check().expect("it is a model");
     for level in Level::ALL {
         for engine in Engine::ALL {
-            for backend in choose(engine.backends(), level) {
+            if let Some(backend) = choose(engine.backends(), level) {
                 assert_eq!(backend.supports(level).is_ok(), level.is_available(), "{}", backend.name());
             }
             let made = Compiler::for_engine(engine).at_level(level).evaluator(&tree, Query::FIELD);
