@@ -137,7 +137,6 @@ fn emit_rest(
 }
 
 #[cfg(any(feature = "listing", test))]
-#[expect(clippy::unnecessary_wraps, reason = "other builds have no listing")]
 fn listing(emitted: &Emitted) -> Result<String, CompileError> {
     Ok(super::listing::listing(emitted))
 }
