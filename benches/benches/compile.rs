@@ -2,15 +2,17 @@
 //! of one shape should cost their rows alone; shapes cost code.)
 
 use std::hint::black_box;
+use std::sync::Arc;
 use std::time::Duration;
 
 use criterion::measurement::WallTime;
 use criterion::{BatchSize, BenchmarkGroup, BenchmarkId, Criterion, criterion_group, criterion_main};
 use jbt::ir::domain::lanes::Tape;
+use jbt::ir::engine::choose;
 use jbt::ir::pass::run_pipeline;
 use jbt::ir::verify;
 use jbt::kernel::Purpose;
-use jbt::{CheckedTree, Compiler, Query, Update};
+use jbt::{CheckedTree, Compiler, Engine, Level, Query, Update};
 use jbt_benches::check;
 use jbt_benches::compare::sample;
 use jbt_benches::model::{cube, varied};
@@ -58,12 +60,14 @@ fn stages(group: &mut BenchmarkGroup<'_, WallTime>, name: &str, tree: &CheckedTr
     group.bench_function(BenchmarkId::new("verify", name), |b| {
         b.iter_batched(|| function.clone(), verify, BatchSize::SmallInput);
     });
-    let verified = verify(function).expect("passes keep the rules");
+    let verified = Arc::new(verify(function).expect("passes keep the rules"));
+    let level = Level::best();
+    let generator = choose(Engine::Jit.backends(), level).expect("this build has a JIT");
     group.bench_function(BenchmarkId::new("lanes tape", name), |b| {
         b.iter(|| Tape::new(black_box(&verified)).expect("the program is legalized"));
     });
     group.bench_function(BenchmarkId::new("machine code", name), |b| {
-        b.iter(|| jbt::jit::Kernel::compile(black_box(&verified)).expect("this machine has a JIT"));
+        b.iter(|| generator.compile(black_box(&verified), level).expect("this machine has a JIT"));
     });
 }
 

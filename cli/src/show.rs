@@ -1,8 +1,8 @@
 //! `jbt show`: a scene as one of the stages on its way to machine code.
 
 use jbt::ir::pass::GRADIENT;
-use jbt::ir::{Function, Straight};
-use jbt::kernel::{Purpose, optimise, optimise_straight, passes, straighten};
+use jbt::ir::{Function, Straight, Verified};
+use jbt::kernel::{Purpose, form, forms, optimise, optimise_straight, passes, straighten};
 use jbt::{CompileError, Level, Query};
 use jbt_lower::{Lowered, lower};
 use jbt_model::diagnostic::escape;
@@ -13,11 +13,9 @@ use crate::failure::Failure;
 use crate::output::print;
 use crate::scene::Scene;
 
-/// The stages that are not passes.
+/// The stages that are neither passes nor forms of engines.
 const TREE: &str = "tree";
 const IR: &str = "ir";
-const CLIF: &str = "clif";
-const ASM: &str = "asm";
 
 /// The message where there is nothing to show.
 const NOT_STRAIGHT: &str = "the scene has no straight code: it has no formulas of which a few have much in common; see it without --straight";
@@ -68,35 +66,24 @@ pub fn run(arguments: &ShowArguments, quiet: bool) -> Result<(), Failure> {
     let verified = verified.map_err(|error| fail(&error))?;
     match shown {
         Some(text) => print(text.trim_end()),
-        None => print(machine(&verified, stage, arguments.level.map(LevelName::level))?.trim_end()),
+        None => {
+            let level = arguments.level.map_or_else(Level::best, LevelName::level);
+            print(machine(&verified, stage, level)?.trim_end())
+        }
     }
 }
 
-/// The program as the code generator has it.
-#[cfg(feature = "jit")]
-fn machine(function: &jbt::ir::Verified, stage: &str, level: Option<Level>) -> Result<String, Failure> {
-    let backend = level.map(jbt::jit::Backend::at);
-    let text = if stage == CLIF {
-        jbt::jit::clif(function)
-    } else {
-        jbt::jit::asm(function, &jbt::jit::Options { backend, ..jbt::jit::Options::default() })
-    };
-    text.map_err(|error| Failure::Limit(error.to_string()))
-}
-
-#[cfg(not(feature = "jit"))]
-fn machine(_function: &jbt::ir::Verified, _stage: &str, _level: Option<Level>) -> Result<String, Failure> {
-    Err(Failure::Usage("this build has no machine code (cargo feature `jit`)".to_owned()))
+/// The program as an engine has it. Every stage that is no pass is a form of some engine.
+fn machine(function: &Verified, stage: &str, level: Level) -> Result<String, Failure> {
+    let form = form(stage, level)
+        .ok_or_else(|| Failure::Usage(format!("there is no stage `{stage}` for the level {level}")))?;
+    (form.text)(function, level).map_err(|declined| Failure::Limit(declined.reason))
 }
 
 /// All stages for a query, in order, and what each shows.
 fn stages(query: Query) -> impl Iterator<Item = (&'static str, &'static str)> {
     let first = [(TREE, "The scene as .jbt text."), (IR, "The lowered program, before any pass.")];
-    let last = [
-        (CLIF, "The program in Cranelift's language."),
-        (ASM, "The machine's instructions, registers chosen."),
-    ];
-    let last = last.into_iter().filter(|_| cfg!(feature = "jit"));
+    let last = forms().into_iter().map(|form| (form.name, form.what));
     first.into_iter().chain(passes(Purpose::Answers(query)).map(|pass| (pass.name, pass.what))).chain(last)
 }
 

@@ -65,6 +65,14 @@ impl Level {
         self <= Self::of_cpu()
     }
 
+    /// Asks for it.
+    ///
+    /// # Errors
+    /// This CPU lacks it.
+    pub fn require(self) -> Result<(), MissingLevel> {
+        if self.is_available() { Ok(()) } else { Err(MissingLevel(self)) }
+    }
+
     /// All levels that this CPU has, from the smallest.
     #[must_use]
     pub fn available() -> Vec<Self> {
@@ -98,6 +106,19 @@ impl fmt::Display for Level {
     }
 }
 
+/// A level that this CPU lacks.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct MissingLevel(pub Level);
+
+impl fmt::Display for MissingLevel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let available: Vec<&str> = Level::available().into_iter().map(Level::name).collect();
+        write!(f, "this CPU has no level {}; it has {}", self.0, available.join(", "))
+    }
+}
+
+impl std::error::Error for MissingLevel {}
+
 /// A word that names no level.
 #[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
 #[error("`{0}` is no level: there are baseline, avx2, avx512vl and avx512")]
@@ -126,5 +147,8 @@ mod tests {
         assert!("avx1024".parse::<Level>().is_err());
         assert!(Level::available().contains(&Level::Baseline));
         assert!(Level::best() <= Level::of_cpu());
+        for level in Level::ALL {
+            assert_eq!(level.require().is_ok(), level.is_available());
+        }
     }
 }

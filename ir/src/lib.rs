@@ -8,6 +8,7 @@
 
 pub mod builder;
 pub mod domain;
+pub mod engine;
 pub mod entity;
 pub mod environment;
 mod facts;

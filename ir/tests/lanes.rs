@@ -4,8 +4,9 @@
 mod common;
 
 use common::random;
-use jbt_ir::domain::lanes::{Level, NotLegalized, RunError, Scratch, Tape};
+use jbt_ir::domain::lanes::{Level, NotLegalized, Scratch, Tape};
 use jbt_ir::domain::scalar::Scalar;
+use jbt_ir::engine::RunError;
 use jbt_ir::interpret;
 use jbt_ir::pass::{PIPELINE, legalize, run_pipeline};
 use jbt_ir::{
@@ -397,8 +398,8 @@ fn planes_that_do_not_fit_are_refused() {
     let two = tape.run(tables, &[&x], &mut [&mut out, &mut more], &mut scratch);
     assert_eq!(two, Err(RunError::Outputs { expected: 1, given: 2 }));
     let longer = tape.run(tables, &[&x], &mut [&mut more], &mut scratch);
-    assert_eq!(longer, Err(RunError::Length { expected: 4, given: 5 }));
-    assert_eq!(longer.unwrap_err().to_string(), "the first plane has 4 points, another one has 5");
+    assert_eq!(longer, Err(RunError::Length { plane: 1, expected: 4, given: 5 }));
+    assert_eq!(longer.unwrap_err().to_string(), "the first plane has 4 points, plane 1 (inputs first) has 5");
 }
 
 #[test]

@@ -23,8 +23,8 @@ impl TableView {
     pub(crate) const STARTS: usize = offset_of!(Self, starts);
 }
 
-/// Everything that one call of a kernel is given. Made by [`crate::BoundKernel::run_selected`] alone, from
-/// what it has checked.
+/// Everything that one call of a kernel is given. Made by [`crate::Kernel`] alone, from what its
+/// door has checked.
 pub(crate) struct Arguments<'a> {
     /// Input planes, then output planes. They are moved on to their ends.
     pub(crate) planes: &'a mut [*const f32],

@@ -1,4 +1,4 @@
-//! The door: what the machine code is given, and the checks that make it safe to give.
+//! The way into machine code: what it is given, and why that is safe to give.
 //!
 //! ```text
 //! fn(planes, bytes, tables)
@@ -7,162 +7,95 @@
 //!   tables  one view for each table:  numbers | active | starts   (three pointers)
 //! ```
 //!
-//! The code follows every pointer and index blindly. So the tables are checked once, when a [`Kernel`] is
-//! bound to them; a [`Selection`] leads only to rows that exist by the way it is made, if it was made for as
-//! many; and the planes are checked at each [`run`](BoundKernel::run), which costs nothing beside the run.
+//! The code follows every pointer and index blindly. So a [`Kernel`] takes [`Run`]s alone, which the door of
+//! all engines has checked: tables once, when they are bound; selections and planes at each run. A
+//! [`Selection`] leads only to rows that exist by the way it is made, if it was made for as many.
 
 use std::fmt;
 use std::sync::Arc;
 
-use jbt_ir::selection::Extent;
-use jbt_ir::{Function, Selection, TableError, Tables, Verified};
+use jbt_ir::engine::{Interface, Planes, Program, Run};
+use jbt_ir::{Function, Selection, Tables};
 
 use crate::abi::{Arguments, TableView};
-use crate::compile;
-use crate::error::CompileError;
 use crate::memory::Code;
-use crate::options::Options;
 
-/// What one kernel and its handles share.
-struct Shared {
-    code: Code,
-    /// The function without its instructions: planes and tables.
-    interface: Function,
-}
-
-/// Machine code for one function. Cloning gives another handle; the code is freed with the last one.
-#[derive(Clone)]
+/// Machine code for one function.
 pub struct Kernel {
-    shared: Arc<Shared>,
+    code: Code,
+    interface: Arc<Interface>,
 }
 
 impl Kernel {
-    /// A multiple of [`lanes`](Self::lanes) of every kernel: planes of as many numbers suit them all.
+    /// A multiple of the [`block`](Program::block) of every kernel.
     pub const MAX_LANES: usize = 32;
 
-    /// Compiles a function, with the settings that measurements favour for one of its size.
-    ///
-    /// # Errors
-    /// When the processor, a limit or the system forbids it; an interpreter then gives the same bits, and
-    /// needs more time.
-    pub fn compile(function: &Verified) -> Result<Self, CompileError> {
-        Self::compile_with(function, &Options::default())
-    }
-
-    /// Compiles a function with given settings. They change the time that compiling and running takes, and no
-    /// bit of an answer.
-    ///
-    /// # Errors
-    /// As for [`compile`](Self::compile).
-    pub fn compile_with(function: &Verified, options: &Options) -> Result<Self, CompileError> {
-        let code = compile::compile(function, options)?;
-        let mut interface = Function::new(&function.function().name, &[]);
-        interface.inputs.clone_from(&function.function().inputs);
-        interface.outputs.clone_from(&function.function().outputs);
-        interface.tables.clone_from(&function.function().tables);
-        Ok(Self { shared: Arc::new(Shared { code, interface }) })
-    }
-
-    /// Points in the smallest block: the length of planes must be a multiple of it. Many points run in larger
-    /// blocks, which suit the function better.
-    #[must_use]
-    pub fn lanes(&self) -> usize {
-        self.shared.code.lanes()
+    /// A kernel of code that was made for a function.
+    pub(crate) fn new(code: Code, function: &Function) -> Self {
+        Self { code, interface: Arc::new(Interface::new(function)) }
     }
 
     /// Bytes of machine code, its constants included.
     #[must_use]
     pub fn code_bytes(&self) -> usize {
-        self.shared.code.bytes()
+        self.code.bytes()
     }
 
     /// Bytes of stack that a run takes.
     #[must_use]
     pub fn frame_bytes(&self) -> usize {
-        self.shared.code.frame_bytes()
+        self.code.frame_bytes()
     }
 
     /// Where the code is, for a look at the memory's rights.
     #[cfg(test)]
     pub(crate) fn code_address(&self) -> *const u8 {
-        self.shared.code.address()
-    }
-
-    /// Gives the kernel the rows that it will run over. Costs one look at every active row, so do it once for
-    /// many runs.
-    ///
-    /// # Errors
-    /// When the tables do not fit the function that the kernel was compiled from.
-    pub fn bind(&self, tables: Arc<Tables>) -> Result<BoundKernel, TableError> {
-        let all = Arc::new(Selection::checked(&self.shared.interface, &tables)?);
-        Ok(BoundKernel { kernel: self.clone(), tables, all })
+        self.code.address()
     }
 }
 
 impl fmt::Debug for Kernel {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Kernel")
-            .field("function", &self.shared.interface.name)
-            .field("lanes", &self.lanes())
+            .field("function", &self.interface.name())
+            .field("block", &self.block())
             .field("code_bytes", &self.code_bytes())
             .finish_non_exhaustive()
     }
 }
 
-/// A kernel together with rows that fit it: the thing that runs. Cloning is cheap.
-#[derive(Clone)]
-pub struct BoundKernel {
-    kernel: Kernel,
-    tables: Arc<Tables>,
-    /// All rows that are active.
-    all: Arc<Selection>,
-}
+impl Program for Kernel {
+    fn interface(&self) -> &Arc<Interface> {
+        &self.interface
+    }
 
-/// Why planes do not fit a kernel.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, thiserror::Error)]
-pub enum RunError {
-    /// The number of input planes is not the function's.
-    #[error("{given} input planes for a function of {expected}")]
-    Inputs {
-        /// Planes of the function.
-        expected: usize,
-        /// Planes of this call.
-        given: usize,
-    },
-    /// The number of output planes is not the function's.
-    #[error("{given} output planes for a function of {expected}")]
-    Outputs {
-        /// Planes of the function.
-        expected: usize,
-        /// Planes of this call.
-        given: usize,
-    },
-    /// A plane is not as long as the first one.
-    #[error("plane {plane} (inputs first) has {given} numbers, the first one has {expected}")]
-    Length {
-        /// Position of the plane, inputs first.
-        plane: usize,
-        /// Length of the first plane.
-        expected: usize,
-        /// Length of this plane.
-        given: usize,
-    },
-    /// The selection was made from rows of other tables.
-    #[error("the selection was made for tables with other numbers of rows")]
-    Selection,
-    /// The planes are shorter than a block.
-    #[error("planes of {length} numbers do not fill a block of {lanes}")]
-    Partial {
-        /// Length of the planes.
-        length: usize,
-        /// Numbers in a block.
-        lanes: usize,
-    },
+    /// Points in the smallest block. Many points run in larger blocks, which suit the function better.
+    fn block(&self) -> usize {
+        self.code.lanes()
+    }
+
+    /// Straight from the caller's planes. What is left behind whole blocks is done with the last block that
+    /// ends where the planes do: some points twice, with the same bits. Allocates nothing for up to 48 planes
+    /// and 12 tables.
+    fn run(&self, run: Run<'_, '_>) {
+        let planes = run.planes(&self.interface);
+        if planes.points >= self.block() {
+            let inputs = planes.inputs.iter().map(|plane| plane.as_ptr());
+            let outputs = planes.outputs.iter_mut().map(|plane| plane.as_mut_ptr().cast_const());
+            self.call((planes.tables, planes.selection), inputs.chain(outputs), planes.points);
+        } else if planes.points > 0 {
+            self.run_few(planes);
+        }
+    }
 }
 
 /// Planes up to which a call needs no allocation, and tables.
 const FEW_PLANES: usize = 48;
 const FEW_TABLES: usize = 12;
+/// Planes up to which a block that is filled up is on the stack: a range along each axis; field, gradient and
+/// colour.
+const FEW_INPUTS: usize = 6;
+const FEW_OUTPUTS: usize = 8;
 
 /// `count` places, in `small` if they fit, else in `large`.
 fn places<'a, T: Copy, const FEW: usize>(
@@ -177,72 +110,45 @@ fn places<'a, T: Copy, const FEW: usize>(
     large
 }
 
-impl BoundKernel {
-    /// The kernel.
-    #[must_use]
-    pub fn kernel(&self) -> &Kernel {
-        &self.kernel
+impl Kernel {
+    /// Fewer points than a block, at least one: they go through a block that is filled up with the last.
+    fn run_few(&self, planes: Planes<'_, '_>) {
+        let Planes { points, tables, selection, inputs, outputs } = planes;
+        let lanes = self.block();
+        let (mut small, mut large) = ([0.0_f32; FEW_INPUTS * Self::MAX_LANES], Vec::new());
+        let asked = places(&mut small, &mut large, inputs.len() * lanes);
+        for (block, plane) in asked.chunks_exact_mut(lanes).zip(inputs) {
+            block[..points].copy_from_slice(plane);
+            block[points..].fill(plane[points - 1]);
+        }
+        let (mut small, mut large) = ([0.0_f32; FEW_OUTPUTS * Self::MAX_LANES], Vec::new());
+        let answers = places(&mut small, &mut large, outputs.len() * lanes);
+        let given = asked.chunks_exact(lanes).map(<[f32]>::as_ptr);
+        let wanted = answers.chunks_exact_mut(lanes).map(|block| block.as_mut_ptr().cast_const());
+        self.call((tables, selection), given.chain(wanted), lanes);
+        for (plane, block) in outputs.iter_mut().zip(answers.chunks_exact(lanes)) {
+            plane.copy_from_slice(&block[..points]);
+        }
     }
 
-    /// The rows.
-    #[must_use]
-    pub fn tables(&self) -> &Arc<Tables> {
-        &self.tables
-    }
-
-    /// All rows that are active.
-    #[must_use]
-    pub fn all(&self) -> &Arc<Selection> {
-        &self.all
-    }
-
-    /// What selections are made from: those of other kernels fit if their tables have as many rows.
-    #[must_use]
-    pub fn extent(&self) -> &Arc<Extent> {
-        self.all.extent()
-    }
-
-    /// Answers for all points: `inputs[plane][point]` to `outputs[plane][point]`.
-    ///
-    /// Any number is fine as an input, NaN and infinities included. What is left behind whole blocks of
-    /// [`Kernel::lanes`] points is done with the last block that ends where the planes do: some points twice,
-    /// with the same bits. Allocates nothing for up to 48 planes and 12 tables.
-    ///
-    /// # Errors
-    /// When the planes are not as many as the function's, not of one length, or that length is less than
-    /// [`Kernel::lanes`] and not zero. Nothing is written then.
-    pub fn run(&self, inputs: &[&[f32]], outputs: &mut [&mut [f32]]) -> Result<(), RunError> {
-        self.run_selected(&self.all, inputs, outputs)
-    }
-
-    /// As [`run`](Self::run), with the rows of a selection.
-    ///
-    /// # Errors
-    /// As for [`run`](Self::run), and when the selection was made for other numbers of rows.
-    pub fn run_selected(
+    /// Runs the code on planes of so many points, at least a block: inputs, then outputs, which nothing else
+    /// borrows, as many as the function has.
+    fn call(
         &self,
-        selection: &Selection,
-        inputs: &[&[f32]],
-        outputs: &mut [&mut [f32]],
-    ) -> Result<(), RunError> {
-        if !selection.fits(self.extent()) {
-            return Err(RunError::Selection);
-        }
-        let length = self.check(inputs, outputs)?;
-        if length == 0 {
-            return Ok(());
-        }
+        (tables, selection): (&Tables, &Selection),
+        planes: impl Iterator<Item = *const f32>,
+        points: usize,
+    ) {
         let (mut small, mut large) = ([std::ptr::null(); FEW_PLANES], Vec::new());
-        let planes = places(&mut small, &mut large, inputs.len() + outputs.len());
-        let inputs = inputs.iter().map(|plane| plane.as_ptr());
-        let outputs = outputs.iter_mut().map(|plane| plane.as_mut_ptr().cast_const());
-        for (place, plane) in planes.iter_mut().zip(inputs.chain(outputs)) {
+        let (inputs, outputs) = self.interface.planes();
+        let pointers = places(&mut small, &mut large, inputs + outputs);
+        for (place, plane) in pointers.iter_mut().zip(planes) {
             *place = plane;
         }
         let (mut small, mut large) = ([TableView::NOWHERE; FEW_TABLES], Vec::new());
-        let views = places(&mut small, &mut large, self.tables.tables.len());
+        let views = places(&mut small, &mut large, tables.tables.len());
         for ((view, rows), (starts, active)) in
-            views.iter_mut().zip(self.tables.tables.values()).zip(selection.lists())
+            views.iter_mut().zip(tables.tables.values()).zip(selection.lists())
         {
             *view = TableView {
                 numbers: rows.numbers.as_ptr(),
@@ -250,42 +156,12 @@ impl BoundKernel {
                 starts: starts.as_ptr(),
             };
         }
-        let code = &self.kernel.shared.code;
-        let (block, bytes) = (code.lanes() * size_of::<f32>(), length * size_of::<f32>());
+        let (block, bytes) = (self.block() * size_of::<f32>(), points * size_of::<f32>());
         let rest = bytes % block;
-        code.call(Arguments { planes: &mut *planes, bytes: bytes - rest, tables: views });
+        self.code.call(Arguments { planes: &mut *pointers, bytes: bytes - rest, tables: views });
         if rest > 0 {
-            planes.iter_mut().for_each(|plane| *plane = plane.wrapping_byte_sub(block - rest));
-            code.call(Arguments { planes, bytes: block, tables: views });
+            pointers.iter_mut().for_each(|plane| *plane = plane.wrapping_byte_sub(block - rest));
+            self.code.call(Arguments { planes: pointers, bytes: block, tables: views });
         }
-        Ok(())
-    }
-
-    /// The common length of the planes.
-    fn check(&self, inputs: &[&[f32]], outputs: &[&mut [f32]]) -> Result<usize, RunError> {
-        let Shared { code, interface } = &*self.kernel.shared;
-        if inputs.len() != interface.inputs.len() {
-            return Err(RunError::Inputs { expected: interface.inputs.len(), given: inputs.len() });
-        }
-        if outputs.len() != interface.outputs.len() {
-            return Err(RunError::Outputs { expected: interface.outputs.len(), given: outputs.len() });
-        }
-        let mut lengths =
-            inputs.iter().map(|plane| plane.len()).chain(outputs.iter().map(|plane| plane.len())).enumerate();
-        let (_, expected) = lengths.next().unwrap_or_default();
-        if let Some((plane, given)) = lengths.find(|&(_, given)| given != expected) {
-            return Err(RunError::Length { plane, expected, given });
-        }
-        let lanes = code.lanes();
-        if (1..lanes).contains(&expected) {
-            return Err(RunError::Partial { length: expected, lanes });
-        }
-        Ok(expected)
-    }
-}
-
-impl fmt::Debug for BoundKernel {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("BoundKernel").field("kernel", &self.kernel).finish_non_exhaustive()
     }
 }

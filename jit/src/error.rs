@@ -1,5 +1,6 @@
 //! Why there is no machine code for a function.
 
+use jbt_ir::engine::Declined;
 use jbt_ir::{Inst, Op};
 
 /// Why there is no machine code for a function. An interpreter can run it all the same.
@@ -55,4 +56,10 @@ pub enum CompileError {
     /// Cranelift fails.
     #[error("the code generator fails: {0}")]
     Cranelift(String),
+}
+
+impl From<CompileError> for Declined {
+    fn from(error: CompileError) -> Self {
+        Self { reason: error.to_string() }
+    }
 }

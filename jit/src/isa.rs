@@ -12,12 +12,15 @@ use crate::options::{Allocator, OptLevel};
 /// `fma` is an op whose result is rounded once, and without the instruction it would be a call for each lane:
 /// then we decline. AVX is wanted for its three operand forms and its unaligned memory operands.
 pub(crate) fn host(opt_level: OptLevel, allocator: Allocator) -> Result<OwnedTargetIsa, CompileError> {
-    if let Some(missing) = missing_feature() {
-        return Err(CompileError::Processor { missing });
-    }
+    require()?;
     let flags = flags(opt_level, allocator).map_err(|error| CompileError::Cranelift(error.to_string()))?;
     let builder = cranelift_native::builder().map_err(|error| CompileError::Cranelift(error.to_owned()))?;
     builder.finish(flags).map_err(|error| CompileError::Cranelift(error.to_string()))
+}
+
+/// Asks the processor for what we need.
+pub(crate) fn require() -> Result<(), CompileError> {
+    missing_feature().map_or(Ok(()), |missing| Err(CompileError::Processor { missing }))
 }
 
 /// What the processor would need to have and has not.

@@ -1,21 +1,18 @@
 //! Machine code for jbt programs: wide code of our own on x86-64 with AVX2 or AVX-512, elsewhere by
 //! Cranelift.
 //!
-//! A verified function goes in, a [`Kernel`] comes out. Bound to the rows of its tables it takes planes of
-//! numbers to planes of answers, and every lane has the bits that the scalar reference gives (a NaN for a
-//! NaN).
+//! A verified function goes in, a program comes out ([`jbt_ir::engine`] is its door). Bound to the rows of
+//! its tables it takes planes of numbers to planes of answers, and every lane has the bits that the scalar
+//! reference gives (a NaN for a NaN).
 //!
 //! ```text
-//!   Verified ──► strips ───► pressure ──► lower ─────────► memory ──► Kernel ──bind(Tables)──► BoundKernel
-//!                where it    how many     Cranelift IR,    machine code                       run(inputs, outputs)
-//!                is cut      are alive    by `vectors`     in pages
+//!   Verified ──► prepare ──► cranelift ──► Cranelift IR ──┐
+//!                limits,                                  ├─► memory ──► Kernel
+//!                pieces  ──► wide ───────► bytes ─────────┘   pages
 //! ```
 //!
-//! Wide code has a way of its own from the plan on, with the same result (`wide/`):
-//!
-//! ```text
-//!   Verified ──► strips ───► wide: one list, registers in one walk, bytes ──► memory ──► Kernel
-//! ```
+//! A generator of machine code is a [`Backend`](jbt_ir::engine::Backend): [`BACKENDS`] lists them, and says
+//! which one makes the code for a level of the instruction set.
 //!
 //! What the code does, in pseudo-code, with a block of K vectors of 4 points (8 or 16 in wide code):
 //!
@@ -36,39 +33,44 @@
 //!
 //! ```
 //! use std::sync::Arc;
-//! use jbt_ir::{Domain, FunctionBuilder, Tables, verify};
-//! use jbt_jit::{CompileError, Kernel};
+//! use jbt_ir::engine::{BoundProgram, choose};
+//! use jbt_ir::{Domain, FunctionBuilder, Level, verify};
 //!
 //! let mut b = FunctionBuilder::new("twice", &["x"]);
 //! let x = b.input(0);
 //! let sum = b.add(x, x);
-//! let function = verify(b.finish(&[("sum".to_owned(), sum)])).unwrap();
+//! let function = Arc::new(verify(b.finish(&[("sum".to_owned(), sum)])).unwrap());
 //!
-//! let kernel = match Kernel::compile(&function) {
-//!     Ok(kernel) => kernel,
-//!     Err(CompileError::Processor { .. }) => return, // then interpret it
-//!     Err(error) => panic!("{error}"),
-//! };
-//! let mut out = vec![0.0; Kernel::MAX_LANES];
-//! let kernel = kernel.bind(Arc::new(Tables::default())).unwrap();
-//! kernel.run(&[&[1.5; Kernel::MAX_LANES]], &mut [&mut out]).unwrap();
+//! let level = Level::best();
+//! let generator = choose(jbt_jit::BACKENDS, level).unwrap();
+//! if generator.supports(level).is_err() {
+//!     return; // then interpret it
+//! }
+//! let bound = BoundProgram::new(generator.compile(&function, level).unwrap(), Arc::default()).unwrap();
+//! let mut out = [0.0; 20];
+//! bound.run(&[&[1.5; 20]], &mut [&mut out]).unwrap();
 //! assert!(out.iter().all(|&number| number == 3.0));
 //! ```
 
 #![deny(unsafe_code)]
 
 mod abi;
-mod compile;
+mod backends;
+mod blob;
+mod cranelift;
 mod entry;
 mod error;
+#[cfg(test)]
+mod golden;
 mod isa;
-mod lower;
 mod memory;
 mod options;
-mod vectors;
+mod prepare;
 mod wide;
 
-pub use compile::{asm, clif};
-pub use entry::{BoundKernel, Kernel, RunError};
+pub use backends::{BACKENDS, available};
+pub use cranelift::Cranelift;
+pub use entry::Kernel;
 pub use error::CompileError;
-pub use options::{Allocator, Backend, Check, OptLevel, Options, Pieces, VectorCount};
+pub use options::{Allocator, Check, OptLevel, Pieces, VectorCount};
+pub use wide::Wide;

@@ -17,9 +17,11 @@ use cranelift_module::{Linkage, Module, ModuleError, default_libcall_names};
 use jbt_ir::limits;
 
 use crate::abi::{Arguments, TableView};
+use crate::blob::{Blob, Emitted};
+use crate::cranelift::lower::Lowered;
 use crate::error::CompileError;
-use crate::lower::Lowered;
-use crate::wide::{Blob, Emitted};
+use crate::isa;
+use crate::options::{Allocator, OptLevel};
 
 /// A module whose memory goes with it. The module's own drop would leak it.
 struct Pages(Option<JITModule>);
@@ -86,8 +88,10 @@ impl Code {
     }
 
     /// Makes finished bytes executable. The caller has asked the CPU for what they need.
-    pub(crate) fn from_emitted(emitted: &Emitted, isa: OwnedTargetIsa) -> Result<Self, CompileError> {
+    pub(crate) fn from_emitted(emitted: &Emitted) -> Result<Self, CompileError> {
         let Emitted { blocks, rest } = emitted;
+        // The module compiles nothing: any settings give its pages.
+        let isa = isa::host(OptLevel::None, Allocator::SinglePass)?;
         let mut pages = Pages(Some(JITModule::new(JITBuilder::with_isa(isa, default_libcall_names()))));
         let module = pages.0.as_mut().expect("the module stays until the pages are dropped");
         let signature = module.make_signature();
@@ -140,7 +144,7 @@ impl Code {
         for (entry, bytes) in [(Some(self.blocks), whole), (self.rest, bytes - whole)] {
             let Some(entry) = entry.filter(|_| bytes > 0) else { continue };
             // SAFETY: the contract of `Code` says that this is a function of the ABI that `enter` expects.
-            // `Arguments` come from `BoundKernel::run_selected`: there is a plane of this many bytes for each
+            // `Arguments` come from `Kernel::call`: there is a plane of this many bytes for each
             // input and output, at least one block long and whole blocks; outputs come from exclusive
             // borrows, so that no other plane overlaps them; the tables have been checked against the
             // function, the selection fits them, and both are borrowed by the caller. What else the code
@@ -223,9 +227,18 @@ mod tests {
     use std::process::Command;
     use std::sync::Arc;
 
-    use jbt_ir::{Domain, FunctionBuilder, Tables, Verified, verify};
+    use jbt_ir::engine::BoundProgram;
+    use jbt_ir::{Domain, FunctionBuilder, Level, Tables, Verified, verify};
 
-    use crate::{CompileError, Kernel};
+    use crate::{CompileError, Cranelift, Kernel, Wide};
+
+    /// Code for the level that is used here.
+    fn compile(function: &Verified) -> Result<Kernel, CompileError> {
+        match Level::best() {
+            Level::Baseline => Cranelift::STANDARD.kernel(function),
+            level @ (Level::Avx2 | Level::Avx512Vl | Level::Avx512) => Wide::STANDARD.kernel(function, level),
+        }
+    }
 
     /// `x * y` and `x / y`.
     fn arithmetic() -> Verified {
@@ -250,8 +263,9 @@ mod tests {
 
     #[test]
     fn a_kernel_runs_in_the_default_environment_and_leaves_that_of_its_caller() {
-        let Ok(kernel) = Kernel::compile(&arithmetic()) else { return };
-        let kernel = kernel.bind(Arc::new(Tables::default())).expect("there are no tables");
+        let Ok(kernel) = compile(&arithmetic()) else { return };
+        let kernel =
+            BoundProgram::new(Arc::new(kernel), Arc::new(Tables::default())).expect("there are no tables");
         let (subnormal, third) = (vec![1e-40_f32; 32], vec![3.0_f32; 32]);
         let (mut product, mut quotient) = (vec![0.0; 32], vec![0.0; 32]);
         // Flush to zero, subnormals are zeros, round toward zero; all exceptions masked, one flag raised.
@@ -269,7 +283,7 @@ mod tests {
 
     #[test]
     fn code_is_executable_and_not_writable() {
-        let Ok(kernel) = Kernel::compile(&arithmetic()) else { return };
+        let Ok(kernel) = compile(&arithmetic()) else { return };
         let address = kernel.code_address().addr();
         let maps = std::fs::read_to_string("/proc/self/maps").expect("Linux lists the mappings");
         let holds_the_code = |line: &&str| {
@@ -301,8 +315,8 @@ mod tests {
                 in("r8") 0, out("rcx") _, out("r11") _);
         }
         // An older kernel does not know the request, and an older processor gets another error first.
-        if result == 0 && !matches!(Kernel::compile(&arithmetic()), Err(CompileError::Processor { .. })) {
-            assert!(matches!(Kernel::compile(&arithmetic()), Err(CompileError::Memory(_))));
+        if result == 0 && !matches!(compile(&arithmetic()), Err(CompileError::Processor { .. })) {
+            assert!(matches!(compile(&arithmetic()), Err(CompileError::Memory(_))));
         }
     }
 }

@@ -1,8 +1,14 @@
-//! Settings of the compiler.
+//! What the settings of generators are made of.
 
-use jbt_ir::Level;
+use jbt_ir::engine::{Declined, Form};
+use jbt_ir::{Level, Verified};
 
-/// Vectors for each value. A vector has as many lanes as the [`Backend`] says.
+/// The form that all generators have.
+pub(crate) const fn asm(text: fn(&Verified, Level) -> Result<String, Declined>) -> Form {
+    Form { name: "asm", what: "The machine's instructions, registers chosen.", text }
+}
+
+/// Vectors for each value. A vector has as many lanes as the generator says.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum VectorCount {
     /// One.
@@ -24,50 +30,6 @@ impl VectorCount {
             Self::One => 1,
             Self::Two => 2,
             Self::Four => 4,
-        }
-    }
-}
-
-/// What makes the machine code. All give the same bits.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-pub enum Backend {
-    /// Cranelift: vectors of 128 bits.
-    Cranelift,
-    /// An emitter of our own for x86-64, at a level from [`Level::Avx2`] on. [`Level::Baseline`] is taken for
-    /// that one.
-    Wide(Level),
-}
-
-impl Backend {
-    /// The one that is used where nobody wishes another: wide code, if [`Level::best`] has it.
-    #[must_use]
-    pub fn best() -> Self {
-        Self::at(Level::best())
-    }
-
-    /// The one for a level.
-    #[must_use]
-    pub const fn at(level: Level) -> Self {
-        match level {
-            Level::Baseline => Self::Cranelift,
-            level @ (Level::Avx2 | Level::Avx512Vl | Level::Avx512) => Self::Wide(level),
-        }
-    }
-
-    /// All whose code this CPU can run.
-    #[must_use]
-    pub fn available() -> Vec<Self> {
-        let wide = Level::available().into_iter().filter(|&level| level > Level::Baseline);
-        std::iter::once(Self::Cranelift).chain(wide.map(Self::Wide)).collect()
-    }
-
-    /// Lanes of one vector.
-    #[must_use]
-    pub const fn lanes(self) -> usize {
-        match self {
-            Self::Cranelift => 4,
-            Self::Wide(Level::Baseline | Level::Avx2 | Level::Avx512Vl) => 8,
-            Self::Wide(Level::Avx512) => 16,
         }
     }
 }
@@ -128,24 +90,6 @@ pub enum Pieces {
     /// Into pieces of at most so many instructions, with a cut before and behind every fold. If the values
     /// that pieces hand to each other are too many for the nearer caches, not at all.
     Of(usize),
-}
-
-/// Settings of the compiler. What is `None` is chosen by the CPU and the function.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-pub struct Options {
-    /// What makes the code.
-    pub backend: Option<Backend>,
-    /// Vectors for each value. Where they are open, wide code has a second function of one vector, for points
-    /// that fill no larger block.
-    pub vectors: Option<VectorCount>,
-    /// Effort of Cranelift.
-    pub opt_level: OptLevel,
-    /// Register allocator of Cranelift.
-    pub allocator: Option<Allocator>,
-    /// How a function is cut.
-    pub pieces: Option<Pieces>,
-    /// How wide code is checked while it is made.
-    pub check: Check,
 }
 
 /// How wide code is checked while it is made. For tests: it takes time, and code with few registers is slow.

@@ -1,16 +1,17 @@
 //! What a kernel refuses, and how a handle behaves.
 
-// Elsewhere there is no machine code, and `Kernel::compile` says so.
+// Elsewhere there is no machine code, and generators say so.
 #![cfg(target_arch = "x86_64")]
 
 mod common;
 
 use std::sync::Arc;
 
-use common::{assert_same_bits, finish, reference, rows, run, spicy_plane, table, tables};
+use common::{assert_same_bits, bind, compile, finish, reference, rows, run, spicy_plane, table, tables};
+use jbt_ir::engine::{Backend, BoundProgram, Program, RunError, choose};
 use jbt_ir::limits::{MAX_JIT_FRAME_BYTES, MAX_JIT_LIVE_VALUES, MAX_JIT_VALUES};
 use jbt_ir::{Domain, FoldKind, FunctionBuilder, Level, Rule, Tables, Value, Verified};
-use jbt_jit::{Allocator, Backend, CompileError, Kernel, Options, Pieces, RunError, VectorCount, clif};
+use jbt_jit::{Allocator, BACKENDS, CompileError, Cranelift, Kernel, Pieces, VectorCount, Wide, available};
 
 /// The sum over rows of `c0 * x`, and `y`.
 fn function() -> Verified {
@@ -28,55 +29,52 @@ fn three_rows() -> Tables {
     tables([rows(1, 3, &[0, 1, 2], &[0, 3], |row, _| row as f32 + 0.5)])
 }
 
+/// The kernels of all generators and levels that this CPU runs, with each number of vectors.
+fn kernels(function: &Verified) -> Vec<Arc<dyn Program>> {
+    let compiled = |kernel: Result<Kernel, CompileError>| kernel.expect("it compiles");
+    let mut all: Vec<Arc<dyn Program>> = Vec::new();
+    for vectors in [None].into_iter().chain(VectorCount::ALL.map(Some)) {
+        let cranelift = Cranelift { vectors, ..Cranelift::STANDARD };
+        all.push(Arc::new(compiled(cranelift.kernel(function))));
+        for level in Level::available().into_iter().filter(|&level| Wide::STANDARD.covers(level)) {
+            let wide = Wide { vectors, ..Wide::STANDARD };
+            all.push(Arc::new(compiled(wide.kernel(function, level))));
+        }
+    }
+    all
+}
+
+/// Planes of wrong numbers and lengths, and foreign rows, are for the door of all engines
+/// (`runtime/tests/engines.rs`): here, that nothing is written then.
 #[test]
 fn planes_that_do_not_fit_are_refused_and_nothing_is_written() {
-    let options =
-        Options { backend: Some(Backend::Cranelift), vectors: Some(VectorCount::Two), ..Options::default() };
-    let kernel = Kernel::compile_with(&function(), &options).expect("it compiles");
-    assert_eq!(kernel.lanes(), 8);
-    let kernel = kernel.bind(Arc::new(three_rows())).expect("the tables fit");
-    let plane = [1.0_f32; 24];
-    let (mut a, mut b) = ([7.0_f32; 24], [7.0_f32; 24]);
-    let errors = [
-        (kernel.run(&[&plane], &mut [&mut a, &mut b]), RunError::Inputs { expected: 2, given: 1 }),
-        (
-            kernel.run(&[&plane, &plane, &plane], &mut [&mut a, &mut b]),
-            RunError::Inputs { expected: 2, given: 3 },
-        ),
-        (kernel.run(&[&plane, &plane], &mut [&mut a]), RunError::Outputs { expected: 2, given: 1 }),
-        (kernel.run(&[&plane, &plane], &mut []), RunError::Outputs { expected: 2, given: 0 }),
-        (
-            kernel.run(&[&plane, &plane[..16]], &mut [&mut a, &mut b]),
-            RunError::Length { plane: 1, expected: 24, given: 16 },
-        ),
-        (
-            kernel.run(&[&plane, &plane], &mut [&mut a, &mut b[..8]]),
-            RunError::Length { plane: 3, expected: 24, given: 8 },
-        ),
-        (
-            kernel.run(&[&plane[..7], &plane[..7]], &mut [&mut a[..7], &mut b[..7]]),
-            RunError::Partial { length: 7, lanes: 8 },
-        ),
-    ];
-    for (given, expected) in errors {
-        assert_eq!(given, Err(expected));
+    for program in kernels(&function()) {
+        let bound = bind(&program, &Arc::new(three_rows()));
+        let plane = [1.0_f32; 24];
+        let (mut a, mut b) = ([7.0_f32; 24], [7.0_f32; 24]);
+        let given = bound.run(&[&plane, &plane], &mut [&mut a, &mut b[..8]]);
+        assert_eq!(given, Err(RunError::Length { plane: 3, expected: 24, given: 8 }));
+        assert_eq!((a, b), ([7.0; 24], [7.0; 24]));
+        assert_eq!(bound.run(&[&[], &[]], &mut [&mut [], &mut []]), Ok(()));
     }
-    assert_eq!((a, b), ([7.0; 24], [7.0; 24]));
-    assert_eq!(kernel.run(&[&[], &[]], &mut [&mut [], &mut []]), Ok(()));
 }
 
 #[test]
 fn planes_may_begin_anywhere_and_nothing_beside_them_is_written() {
     let function = function();
-    for vectors in VectorCount::ALL {
-        let options = Options { vectors: Some(vectors), ..Options::default() };
-        let kernel = Kernel::compile_with(&function, &options).expect("it compiles");
-        let bound = kernel.bind(Arc::new(three_rows())).expect("the tables fit");
-        let lanes = kernel.lanes();
-        // Whole blocks, and some with a last one that overlaps the one before it.
-        for (start, length) in
-            [(0, 3 * lanes), (1, 3 * lanes), (2, lanes), (3, 3 * lanes + 1), (0, 2 * lanes - 1)]
-        {
+    for program in kernels(&function) {
+        let bound = bind(&program, &Arc::new(three_rows()));
+        let block = program.block();
+        // Fewer points than a block, whole blocks, and some with a last one that overlaps the one before it.
+        for (start, length) in [
+            (2, 1),
+            (1, block - 1),
+            (0, 3 * block),
+            (1, 3 * block),
+            (2, block),
+            (3, 3 * block + 1),
+            (0, 2 * block - 1),
+        ] {
             let (x, y) = (spicy_plane(1, length + 8), spicy_plane(2, length + 8));
             let (mut a, mut b) = (vec![7.0; length + 8], vec![7.0; length + 8]);
             let inputs = [&x[start..start + length], &y[3 - start..3 - start + length]];
@@ -96,9 +94,33 @@ fn planes_may_begin_anywhere_and_nothing_beside_them_is_written() {
     }
 }
 
+/// A run is checked for one program, and no other one takes it.
+#[test]
+#[should_panic(expected = "a run is checked for the program that runs it")]
+fn a_run_of_another_program_is_refused() {
+    #[derive(Debug)]
+    struct Thief(Arc<dyn Program>, Arc<dyn Program>);
+    impl Program for Thief {
+        fn interface(&self) -> &Arc<jbt_ir::engine::Interface> {
+            self.0.interface()
+        }
+        fn block(&self) -> usize {
+            1
+        }
+        fn run(&self, run: jbt_ir::engine::Run<'_, '_>) {
+            self.1.run(run);
+        }
+    }
+    let mut b = FunctionBuilder::new("one", &["x"]);
+    let x = b.input(0);
+    let one = compile(&finish(b, &[x]));
+    let thief: Arc<dyn Program> = Arc::new(Thief(one, compile(&function())));
+    bind(&thief, &Arc::default()).run(&[&[1.0]], &mut [&mut [0.0]]).expect("the planes fit");
+}
+
 #[test]
 fn tables_that_do_not_fit_are_refused() {
-    let kernel = Kernel::compile(&function()).expect("it compiles");
+    let program = compile(&function());
     let bad = [
         Tables::default(),
         tables([rows(2, 3, &[0], &[0, 1], |_, _| 0.0)]),
@@ -108,16 +130,16 @@ fn tables_that_do_not_fit_are_refused() {
         tables([rows(1, 3, &[0, 1], &[0, 2], |_, _| 0.0), rows(1, 3, &[0], &[0, 1], |_, _| 0.0)]),
     ];
     for tables in bad {
-        assert!(kernel.bind(Arc::new(tables)).is_err());
+        assert!(BoundProgram::new(Arc::clone(&program), Arc::new(tables)).is_err());
     }
-    assert!(kernel.bind(Arc::new(three_rows())).is_ok());
+    assert!(BoundProgram::new(program, Arc::new(three_rows())).is_ok());
 }
 
 /// Other rows need no other code.
 #[test]
 fn one_kernel_runs_over_many_tables() {
     let function = function();
-    let kernel = Kernel::compile(&function).expect("it compiles");
+    let kernel = compile(&function);
     let inputs = [spicy_plane(3, 32), spicy_plane(4, 32)];
     for count in [0_u32, 1, 5, 40] {
         let active: Vec<u32> = (0..count).collect();
@@ -129,12 +151,9 @@ fn one_kernel_runs_over_many_tables() {
 }
 
 #[test]
-fn a_kernel_runs_on_many_threads_and_outlives_its_first_handle() {
+fn a_program_runs_on_many_threads_and_outlives_its_first_handle() {
     let function = function();
-    let bound = {
-        let kernel = Kernel::compile(&function).expect("it compiles");
-        kernel.bind(Arc::new(three_rows())).expect("the tables fit")
-    };
+    let bound = bind(&compile(&function), &Arc::new(three_rows()));
     std::thread::scope(|scope| {
         for seed in 0..8 {
             let (bound, function) = (bound.clone(), &function);
@@ -162,7 +181,7 @@ fn more_planes_than_the_stack_holds_are_fine() {
         })
         .collect();
     let function = finish(b, &outputs);
-    let kernel = Kernel::compile(&function).expect("it compiles");
+    let kernel = compile(&function);
     let inputs = [spicy_plane(5, 32)];
     let expected = reference(&function, &Tables::default(), &inputs);
     assert_same_bits(&expected, &run(&kernel, &Arc::default(), &inputs, 100), "100 planes");
@@ -197,22 +216,26 @@ fn crowd(live: usize) -> Verified {
 
 #[test]
 fn the_limit_of_values_compiles_and_one_more_does_not() {
-    assert!(Kernel::compile(&chain(MAX_JIT_VALUES)).is_ok());
-    let error = Kernel::compile(&chain(MAX_JIT_VALUES + 1)).expect_err("it is too long");
-    assert_eq!(error, CompileError::Values { values: MAX_JIT_VALUES + 1, limit: MAX_JIT_VALUES });
-    assert!(clif(&chain(MAX_JIT_VALUES + 1)).is_err());
+    compile(&chain(MAX_JIT_VALUES));
+    let too_long = chain(MAX_JIT_VALUES + 1);
+    let error = CompileError::Values { values: MAX_JIT_VALUES + 1, limit: MAX_JIT_VALUES };
+    assert_eq!(Cranelift::STANDARD.kernel(&too_long).err(), Some(error.clone()));
+    assert_eq!(Cranelift::STANDARD.clif(&too_long), Err(error.clone()));
+    if Level::Avx2.is_available() {
+        assert_eq!(Wide::STANDARD.kernel(&too_long, Level::Avx2).err(), Some(error));
+    }
 }
 
 #[test]
 fn the_limit_of_live_values_compiles_and_one_more_does_not() {
-    let kernel = Kernel::compile(&crowd(MAX_JIT_LIVE_VALUES)).expect("it is within the limit");
+    let kernel = Cranelift::STANDARD.kernel(&crowd(MAX_JIT_LIVE_VALUES)).expect("it is within the limit");
     assert!(kernel.frame_bytes() > 16 * MAX_JIT_LIVE_VALUES, "so many values need a frame");
     let inputs = [vec![0.5; 32]];
     let expected = reference(&crowd(MAX_JIT_LIVE_VALUES), &Tables::default(), &inputs);
+    let kernel: Arc<dyn Program> = Arc::new(kernel);
     assert_same_bits(&expected, &run(&kernel, &Arc::default(), &inputs, 1), "a crowd");
-    let options = Options { backend: Some(Backend::Cranelift), ..Options::default() };
     let too_many = crowd(MAX_JIT_LIVE_VALUES + 1);
-    let error = Kernel::compile_with(&too_many, &options).expect_err("it is too crowded");
+    let error = Cranelift::STANDARD.kernel(&too_many).expect_err("it is too crowded");
     assert_eq!(error, CompileError::LiveValues { live: MAX_JIT_LIVE_VALUES + 1, limit: MAX_JIT_LIVE_VALUES });
 }
 
@@ -230,11 +253,13 @@ fn a_frame_that_is_too_large_is_refused() {
         values = b.end_fold(&next);
     }
     let function = finish(b, &values);
-    let vectors = Some(VectorCount::Four);
-    let (allocator, pieces) = (Some(Allocator::SinglePass), Some(Pieces::One));
-    let backend = Some(Backend::Cranelift);
-    let options = Options { backend, vectors, allocator, pieces, ..Options::default() };
-    let error = Kernel::compile_with(&function, &options).expect_err("the frame is too large");
+    let cranelift = Cranelift {
+        vectors: Some(VectorCount::Four),
+        allocator: Some(Allocator::SinglePass),
+        pieces: Some(Pieces::One),
+        ..Cranelift::STANDARD
+    };
+    let error = cranelift.kernel(&function).expect_err("the frame is too large");
     assert!(matches!(error, CompileError::Frame { bytes, limit } if bytes > limit), "{error}");
 }
 
@@ -242,8 +267,7 @@ fn a_frame_that_is_too_large_is_refused() {
 #[test]
 fn levels_that_the_cpu_lacks_are_refused() {
     for level in Level::ALL {
-        let options = Options { backend: Some(Backend::Wide(level)), ..Options::default() };
-        match Kernel::compile_with(&function(), &options) {
+        match Wide::STANDARD.kernel(&function(), level) {
             // There is no wide code for the baseline: it is that for AVX2.
             Ok(_) => assert!(level.max(Level::Avx2).is_available()),
             Err(CompileError::Processor { missing }) => {
@@ -258,50 +282,49 @@ fn levels_that_the_cpu_lacks_are_refused() {
 /// gives up.
 #[test]
 fn a_frame_of_wide_code_that_is_too_large_is_refused() {
-    let whole = |backend, vectors| Options {
-        backend: Some(backend),
-        vectors,
-        pieces: Some(Pieces::One),
-        ..Options::default()
-    };
-    for backend in Backend::available().into_iter().filter(|&backend| backend != Backend::Cranelift) {
-        let bytes = 4 * backend.lanes();
+    let whole = |vectors| Wide { vectors, pieces: Some(Pieces::One), ..Wide::STANDARD };
+    for level in Level::available().into_iter().filter(|&level| Wide::STANDARD.covers(level)) {
+        let bytes = 4 * Wide::lanes(level);
         let fits = crowd(MAX_JIT_FRAME_BYTES / bytes - 50);
-        let kernel =
-            Kernel::compile_with(&fits, &whole(backend, None)).expect("the frame is as large as allowed");
-        assert!(kernel.frame_bytes() > MAX_JIT_FRAME_BYTES * 9 / 10 && kernel.lanes() == backend.lanes());
+        let kernel = whole(None).kernel(&fits, level).expect("the frame is as large as allowed");
+        assert!(kernel.frame_bytes() > MAX_JIT_FRAME_BYTES * 9 / 10 && kernel.block() == Wide::lanes(level));
         let inputs = [spicy_plane(6, 32)];
         let expected = reference(&fits, &Tables::default(), &inputs);
+        let kernel: Arc<dyn Program> = Arc::new(kernel);
         assert_same_bits(&expected, &run(&kernel, &Arc::default(), &inputs, 1), "a large frame");
-        let two = Kernel::compile_with(&fits, &whole(backend, Some(VectorCount::Two)));
+        let two = whole(Some(VectorCount::Two)).kernel(&fits, level);
         assert!(matches!(two, Err(CompileError::Frame { bytes, limit }) if bytes > limit));
         let crowd = crowd(MAX_JIT_FRAME_BYTES / bytes + 50);
-        let error = Kernel::compile_with(&crowd, &whole(backend, None)).expect_err("the frame is too large");
+        let error = whole(None).kernel(&crowd, level).expect_err("the frame is too large");
         assert!(matches!(error, CompileError::Frame { bytes, limit } if bytes > limit), "{error}");
     }
 }
 
 #[test]
 fn the_text_shows_the_loop_over_rows() {
-    let text = clif(&function()).expect("it is within the limits");
+    let text = Cranelift::STANDARD.clif(&function()).expect("it is within the limits");
     for part in ["fma", "f32x4", "uload32", "brif", "splat"] {
         assert!(text.contains(part), "{part} is missing in\n{text}");
     }
 }
 
 #[test]
-fn every_block_divides_the_padding() {
-    for vectors in VectorCount::ALL {
-        assert!(
-            Backend::available().iter().all(|backend| backend.lanes() * vectors.count() > Kernel::MAX_LANES
-                || Kernel::MAX_LANES.is_multiple_of(backend.lanes() * vectors.count()))
-        );
+fn every_block_divides_the_largest() {
+    for program in kernels(&function()) {
+        let block = program.block();
+        assert!(block > Kernel::MAX_LANES || Kernel::MAX_LANES.is_multiple_of(block), "{program:?}");
     }
 }
 
+/// Wide code where the level has it, Cranelift's elsewhere; and what is listed as available is.
 #[test]
-fn handles_cross_threads() {
-    fn crosses<T: Send + Sync + Clone>() {}
-    crosses::<Kernel>();
-    crosses::<jbt_jit::BoundKernel>();
+fn a_level_has_one_generator() {
+    for level in Level::ALL {
+        let generator = choose(BACKENDS, level).expect("there is one for each level");
+        assert_eq!(generator.name(), if level == Level::Baseline { "cranelift" } else { "wide" });
+    }
+    let function = Arc::new(function());
+    for (generator, level) in available() {
+        assert!(level.is_available() && generator.compile(&function, level).is_ok(), "{generator:?}");
+    }
 }

@@ -1,6 +1,6 @@
 //! Folds against the scalar reference, bit for bit, with every setting of the compiler.
 
-// Elsewhere there is no machine code, and `Kernel::compile` says so.
+// Elsewhere there is no machine code, and generators say so.
 #![cfg(target_arch = "x86_64")]
 
 mod common;

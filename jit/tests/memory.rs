@@ -7,9 +7,8 @@ mod common;
 
 use std::sync::Arc;
 
-use common::{finish, rows, run, table, tables};
+use common::{compile, finish, rows, run, table, tables};
 use jbt_ir::{Domain, FoldKind, FunctionBuilder, Rule};
-use jbt_jit::Kernel;
 
 /// Mappings of this process, and its pages of address space.
 fn mappings() -> (usize, usize) {
@@ -31,14 +30,14 @@ fn compiling_and_dropping_does_not_grow_the_process() {
     let function = finish(b, &out);
     let tables = Arc::new(tables([rows(1, 2, &[0, 1], &[0, 2], |row, _| row as f32 + 1.0)]));
     let once = || {
-        let kernel = Kernel::compile(&function).expect("it compiles");
-        let second = kernel.clone();
-        drop(kernel);
+        let program = compile(&function);
+        let second = Arc::clone(&program);
+        drop(program);
         assert_eq!(run(&second, &tables, &[vec![2.0; 32]], 1), [vec![6.0; 32]]);
     };
     (0..20).for_each(|_| once()); // The allocator takes what it needs.
     let (maps, pages) = mappings();
-    let alive: Vec<Kernel> = (0..50).map(|_| Kernel::compile(&function).expect("it compiles")).collect();
+    let alive: Vec<_> = (0..50).map(|_| compile(&function)).collect();
     assert!(mappings().0 >= maps + 50 || mappings().1 >= pages + 50, "a kernel has pages of its own");
     drop(alive);
     (0..200).for_each(|_| once());

@@ -1,13 +1,13 @@
 //! Every op against the scalar reference, bit for bit, on the numbers where engines differ.
 
-// Elsewhere there is no machine code, and `Kernel::compile` says so.
+// Elsewhere there is no machine code, and generators say so.
 #![cfg(target_arch = "x86_64")]
 
 mod common;
 
 use common::{SPICE, check, finish, spicy_plane};
 use jbt_ir::{Domain, FunctionBuilder, Op, Tables, Type};
-use jbt_jit::{CompileError, Kernel};
+use jbt_jit::{CompileError, Cranelift};
 
 /// Ops that are expanded before code is made.
 const EXPANDED: [Op; 5] = [Op::Sin, Op::Cos, Op::Exp, Op::Ln, Op::Pow];
@@ -154,7 +154,7 @@ fn an_op_that_is_not_expanded_is_an_error_that_names_it() {
         let mut b = FunctionBuilder::new("raw", &["a", "b"]);
         let args = [b.input(0), b.input(1)];
         let result = b.op(op, &args[..op.operands().len()]);
-        let error = Kernel::compile(&finish(b, &[result])).expect_err("it has no instruction");
+        let error = Cranelift::STANDARD.kernel(&finish(b, &[result])).expect_err("it has no instruction");
         assert!(matches!(error, CompileError::Op { op: named, .. } if named == op));
         assert!(error.to_string().contains(op.name()));
     }

@@ -1,6 +1,7 @@
 //! Why a model has no evaluator.
 
 use jbt_ir::VerifyError;
+use jbt_ir::engine::RunError;
 use jbt_model::diagnostic::Diagnostics;
 
 /// Why a model could not be compiled.
@@ -47,4 +48,16 @@ pub enum EvalError {
     /// The buffer was made for another query or model.
     #[error("the samples were made for another query or model")]
     Layout,
+}
+
+impl From<RunError> for EvalError {
+    fn from(error: RunError) -> Self {
+        match error {
+            RunError::Selection => Self::Selection,
+            RunError::Inputs { expected, given } | RunError::Outputs { expected, given } => {
+                Self::Planes { expected, given }
+            }
+            RunError::Length { expected, given, .. } => Self::Length { expected, given },
+        }
+    }
 }

@@ -182,6 +182,11 @@ impl Evaluator {
         self.bound.kernel.engine()
     }
 
+    /// Points that run together.
+    pub(crate) fn block(&self) -> usize {
+        self.bound.kernel.block()
+    }
+
     /// Which plane of the samples holds what.
     #[must_use]
     pub fn layout(&self) -> &Layout {
@@ -302,9 +307,9 @@ impl Evaluator {
     /// If there are too many or too few planes, or their lengths differ.
     pub fn eval_planes(&self, points: [&[f32]; 3], answers: &mut [&mut [f32]]) -> Result<(), EvalError> {
         let lanes = if places::are_places(&points) {
-            self.bound.run_finite(&self.bound.all, &points, answers)?
+            self.bound.run_finite(self.bound.all(), &points, answers)?
         } else {
-            self.run_placed(&self.bound, &self.bound.all, points, answers)?
+            self.run_placed(&self.bound, self.bound.all(), points, answers)?
         };
         self.tally.add(points[0].len(), lanes, 0);
         Ok(())
@@ -357,7 +362,7 @@ impl Evaluator {
     /// How many distances to skeletons one point takes.
     #[must_use]
     pub fn evaluations_per_point(&self) -> u64 {
-        of_selection(&self.bound.kernel.per_row, &self.bound.all)
+        of_selection(&self.bound.kernel.per_row, self.bound.all())
     }
 
     /// How many distances to skeletons one point of a region takes.
@@ -371,7 +376,7 @@ impl Evaluator {
         let mut leaves = BTreeSet::new();
         let bound = self.rows();
         let schemas = &bound.kernel.function.function().tables;
-        for (table, rows) in bound.tables.tables.iter() {
+        for (table, rows) in bound.tables().tables.iter() {
             let slots = schemas[table].slots.len();
             for &row in region.selection().active(table) {
                 leaves.extend(&rows.nodes[row as usize * slots..][..slots]);
@@ -389,7 +394,7 @@ impl Evaluator {
     /// How many distances one point takes, by tree node.
     #[must_use]
     pub fn evaluations_by_node(&self) -> Evaluations {
-        evaluations(&self.bound.kernel.function, &self.bound.tables)
+        evaluations(&self.bound.kernel.function, self.bound.tables())
     }
 
     /// The program that runs points anywhere.
@@ -401,6 +406,6 @@ impl Evaluator {
     /// The numbers that it runs on.
     #[must_use]
     pub fn tables(&self) -> &Tables {
-        &self.bound.tables
+        self.bound.tables()
     }
 }

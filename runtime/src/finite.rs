@@ -60,7 +60,7 @@ impl Bound {
         let mut found = vec![vec![0.0; wild.len()]; 4];
         let mut planes: Vec<&mut [f32]> = found.iter_mut().map(Vec::as_mut_slice).collect();
         // It is never straight code, so it has other rows than straight code.
-        let selection = if self.kernel.straight.is_some() { &guarded.all } else { selection };
+        let selection = if self.kernel.straight.is_some() { guarded.all() } else { selection };
         let more = guarded.run(selection, &places.each_ref().map(Vec::as_slice), &mut planes)?;
         for (plane, found) in gradient.iter_mut().zip(&found[1..]) {
             for (&index, &component) in wild.iter().zip(found) {

@@ -117,8 +117,6 @@ mod word;
 mod readme {}
 
 pub use jbt_ir as ir;
-#[cfg(feature = "jit")]
-pub use jbt_jit as jit;
 
 pub use jbt_ir::level::{self, Level};
 pub use jbt_ir::limits;

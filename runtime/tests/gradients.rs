@@ -27,9 +27,10 @@ fn answers(tree: &CheckedTree, points: &Points) -> Samples {
         evaluator.eval(points, &mut samples).expect("the buffers fit");
         samples
     });
-    let [scalar, lanes, jit] = answers;
-    assert_eq!(bits(&scalar), bits(&lanes));
-    assert_eq!(bits(&scalar), bits(&jit));
+    let [scalar, others @ ..] = answers;
+    for other in &others {
+        assert_eq!(bits(&scalar), bits(other));
+    }
     scalar
 }
 

@@ -42,7 +42,7 @@ fn bits(samples: &Samples) -> Vec<Vec<u32>> {
 fn a_thousand_lines_are_one_fold_in_a_fold() {
     let tree = lines(1000, 1).check().expect("a good model");
     let points = points(2, 37, 2.0);
-    let [scalar, lanes, jit] = Engine::ALL.map(|engine| {
+    let found = Engine::ALL.map(|engine| {
         let mut evaluator = Compiler::for_engine(engine)
             .evaluator(&lines(2, 3).check().expect("a good model"), Query::ALL)
             .expect("it compiles");
@@ -55,8 +55,9 @@ fn a_thousand_lines_are_one_fold_in_a_fold() {
         assert_eq!(evaluator.evaluations_per_point(), 1000, "a line is evaluated once, however long it is");
         answers(&evaluator, &points)
     });
-    assert_eq!(bits(&scalar), bits(&lanes));
-    assert_eq!(bits(&scalar), bits(&jit));
+    for samples in &found[1..] {
+        assert_eq!(bits(&found[0]), bits(samples));
+    }
 }
 
 #[test]

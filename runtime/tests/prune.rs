@@ -91,7 +91,7 @@ fn try_shape(shape: u64, count: usize, tally: &Tally) {
 
 fn try_model(model: &Model, shape: u64, count: usize, tally: &Tally) {
     let tree = model.check().expect("a random model is a good model");
-    let engine = Engine::ALL[(shape % 3) as usize];
+    let engine = Engine::ALL[shape as usize % Engine::ALL.len()];
     let compiler = Compiler::for_engine(engine);
     let pruner = Pruner::new(&compiler, &tree).expect("the model compiles");
     let evaluators = Query::EVERY.map(|query| compiler.evaluator(&tree, query).expect("the model compiles"));

@@ -69,11 +69,7 @@ impl EngineArguments {
     pub fn compiler(&self) -> Result<Compiler, Failure> {
         let compiler = self.engine.required().map_or_else(Compiler::new, Compiler::for_engine);
         let Some(level) = self.level.map(LevelName::level) else { return Ok(compiler) };
-        if level.is_available() {
-            return Ok(compiler.at_level(level));
-        }
-        let available: Vec<&str> = Level::available().into_iter().map(Level::name).collect();
-        let message = format!("this CPU has no level {level}; it has {}", available.join(", "));
-        Err(Failure::Usage(message))
+        level.require().map_err(|missing| Failure::Usage(missing.to_string()))?;
+        Ok(compiler.at_level(level))
     }
 }

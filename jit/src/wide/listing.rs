@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use iced_x86::{Decoder, DecoderOptions, Formatter as _, IntelFormatter};
 
-use super::{Blob, Emitted};
+use crate::blob::{Blob, Emitted};
 
 /// Bytes of constants in a line.
 const LINE: usize = 16;

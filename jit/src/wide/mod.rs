@@ -19,16 +19,17 @@
 //! Emitting needs no CPU that can run it.
 
 mod assemble;
+mod backend;
 mod build;
-pub(crate) mod check;
+mod check;
 mod counters;
 mod encode;
 mod event;
 mod frame;
 mod inst;
 mod linear;
-#[cfg(feature = "listing")]
-pub(crate) mod listing;
+#[cfg(any(feature = "listing", test))]
+mod listing;
 mod lives;
 mod loops;
 mod ops;
@@ -50,43 +51,20 @@ use self::encode::Shape;
 use self::linear::{Item, Linear};
 use self::lives::Lives;
 use self::state::{Count, State, Task};
+use crate::blob::Blob;
 use crate::error::CompileError;
 use crate::options::VectorCount;
 
-/// Finished code: a function of [`crate::entry`]'s ABI, with its constants, that runs at any address which is
-/// a multiple of 64.
-#[derive(Clone, Debug)]
-pub(crate) struct Blob {
-    pub(crate) bytes: Vec<u8>,
-    /// Bytes of `bytes` that are instructions, at its start.
-    #[cfg_attr(not(any(feature = "listing", test)), expect(dead_code, reason = "for listings"))]
-    pub(crate) code_bytes: usize,
-    /// Bytes of `bytes` that are constants, at its end.
-    #[cfg_attr(not(feature = "listing"), expect(dead_code, reason = "for listings"))]
-    pub(crate) constants: usize,
-    /// Bytes of stack.
-    pub(crate) frame_bytes: usize,
-    /// Points in a block.
-    pub(crate) lanes: usize,
-}
-
-/// The functions that a kernel consists of.
-#[derive(Clone, Debug)]
-pub(crate) struct Emitted {
-    /// For whole blocks of points, as large as suits the function.
-    pub(crate) blocks: Blob,
-    /// For the points that are left, in blocks of one vector.
-    pub(crate) rest: Option<Blob>,
-}
+pub use self::backend::Wide;
 
 /// What is asked of the emitter.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Wish {
-    pub(crate) level: Level,
-    pub(crate) vectors: Option<VectorCount>,
+struct Wish {
+    level: Level,
+    vectors: Option<VectorCount>,
     /// Replays the code, and fails if it is wrong; and gives it few registers if wanted.
-    pub(crate) is_checked: bool,
-    pub(crate) few_registers: bool,
+    is_checked: bool,
+    few_registers: bool,
 }
 
 /// Registers of a test that makes everything spill: vectors, masks.
@@ -102,15 +80,16 @@ const fn shape(level: Level) -> (Shape, Count) {
     }
 }
 
+/// Lanes of one vector of a level.
+const fn lanes(level: Level) -> usize {
+    shape(level).0.bytes / size_of::<f32>()
+}
+
 /// Emits a function in the pieces of a plan, which was made for it as the gates were.
 ///
 /// # Errors
 /// When the frame is too large; when it is checked and found wrong, which is a defect of the emitter.
-pub(crate) fn emit(
-    function: &Function,
-    (plan, gates): (&Plan, &Gates),
-    wish: &Wish,
-) -> Result<Blob, CompileError> {
+fn emit(function: &Function, (plan, gates): (&Plan, &Gates), wish: &Wish) -> Result<Blob, CompileError> {
     let linear = list(function, plan, gates);
     let lives = Lives::new(&linear);
     let (shape, mut count) = shape(wish.level);

@@ -4,10 +4,10 @@ use iced_x86::{Decoder, DecoderOptions, Instruction, MemorySize, Mnemonic, OpKin
 
 use jbt_ir::{Domain, FoldKind, FunctionBuilder, Level, Rule, Schema, Value, Verified, verify};
 
-use crate::compile::emit;
-use crate::options::{Backend, Check, Options, Pieces, VectorCount};
+use crate::blob::Emitted;
+use crate::options::{Check, Pieces, VectorCount};
 
-use super::Emitted;
+use super::Wide;
 use super::encode::{Encoder, Shape};
 use super::inst::{Base, Binary, Condition, Form, Gpr, Inst, Integer, Label, Memory, Operand, Predicate};
 
@@ -461,10 +461,10 @@ fn every_level_is_emitted_and_decoded() {
         for vectors in [None, Some(VectorCount::One), Some(VectorCount::Two), Some(VectorCount::Four)] {
             for pieces in [Pieces::One, Pieces::Of(3)] {
                 for check in [Check::Registers, Check::FewRegisters] {
-                    let options = Options { vectors, pieces: Some(pieces), check, ..Options::default() };
-                    let emitted = emit(&function, level, &options).expect("it is emitted, and right");
+                    let wide = Wide { vectors, pieces: Some(pieces), check };
+                    let emitted = wide.emit(&function, level).expect("it is emitted, and right");
                     let Emitted { blocks, rest } = emitted;
-                    let lanes = Backend::Wide(level).lanes();
+                    let lanes = Wide::lanes(level.max(Level::Avx2));
                     assert_eq!(rest.is_some(), vectors.is_none() && blocks.lanes > lanes, "{level}");
                     assert!(rest.iter().all(|rest| rest.lanes == lanes), "{level}");
                     assert_decoded(&blocks.bytes[..blocks.code_bytes], level == Level::Avx512);

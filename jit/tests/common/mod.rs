@@ -5,11 +5,12 @@
 use std::sync::Arc;
 
 use jbt_ir::domain::scalar::Scalar;
+use jbt_ir::engine::{Backend, BoundProgram, Program, choose};
 use jbt_ir::{
-    Function, FunctionBuilder, Rows, Schema, Selection, Store, Table, Tables, Value, Verified, interpret,
-    verify,
+    Function, FunctionBuilder, Level, Rows, Schema, Selection, Store, Table, Tables, Value, Verified,
+    interpret, verify,
 };
-use jbt_jit::{Allocator, Backend, Check, Kernel, OptLevel, Options, Pieces, VectorCount};
+use jbt_jit::{Allocator, BACKENDS, Check, Cranelift, Kernel, OptLevel, Pieces, VectorCount, Wide};
 
 /// Numbers on which engines have been seen to differ.
 pub const SPICE: [f32; 22] = [
@@ -131,28 +132,38 @@ pub fn reference_selected(
     outputs
 }
 
-/// What a kernel gives, by output plane.
-pub fn run(kernel: &Kernel, tables: &Arc<Tables>, inputs: &[Vec<f32>], outputs: usize) -> Vec<Vec<f32>> {
-    let mut planes = vec![vec![-7.0_f32; inputs[0].len()]; outputs];
-    let inputs: Vec<&[f32]> = inputs.iter().map(Vec::as_slice).collect();
-    let mut views: Vec<&mut [f32]> = planes.iter_mut().map(Vec::as_mut_slice).collect();
-    let bound = kernel.bind(Arc::clone(tables)).expect("the test's tables fit");
-    bound.run(&inputs, &mut views).expect("the test's planes fit");
-    planes
+/// Machine code of the standard generator here.
+pub fn compile(function: &Verified) -> Arc<dyn Program> {
+    let generator = choose(BACKENDS, Level::best()).expect("there is one for each level");
+    generator.compile(&Arc::new(function.clone()), Level::best()).expect("the test's function compiles")
 }
 
-/// What a kernel gives with the rows of a selection, by output plane.
-pub fn run_selected(
-    kernel: &Kernel,
-    (tables, selection): (&Arc<Tables>, &Selection),
+/// A program with tables that fit it.
+pub fn bind(program: &Arc<dyn Program>, tables: &Arc<Tables>) -> BoundProgram {
+    BoundProgram::new(Arc::clone(program), Arc::clone(tables)).expect("the test's tables fit")
+}
+
+/// What a program gives, by output plane.
+pub fn run(
+    program: &Arc<dyn Program>,
+    tables: &Arc<Tables>,
     inputs: &[Vec<f32>],
     outputs: usize,
 ) -> Vec<Vec<f32>> {
-    let length = inputs[0].len();
-    let mut planes = vec![vec![-7.0_f32; length]; outputs];
+    let bound = bind(program, tables);
+    run_selected(&bound, bound.all(), inputs, outputs)
+}
+
+/// What a program gives with the rows of a selection, by output plane.
+pub fn run_selected(
+    bound: &BoundProgram,
+    selection: &Selection,
+    inputs: &[Vec<f32>],
+    outputs: usize,
+) -> Vec<Vec<f32>> {
+    let mut planes = vec![vec![-7.0_f32; inputs[0].len()]; outputs];
     let inputs: Vec<&[f32]> = inputs.iter().map(Vec::as_slice).collect();
     let mut views: Vec<&mut [f32]> = planes.iter_mut().map(Vec::as_mut_slice).collect();
-    let bound = kernel.bind(Arc::clone(tables)).expect("the test's tables fit");
     bound.run_selected(selection, &inputs, &mut views).expect("the test's planes fit");
     planes
 }
@@ -172,39 +183,38 @@ pub fn assert_same_bits(expected: &[Vec<f32>], given: &[Vec<f32>], what: &str) {
     }
 }
 
-/// All settings of the compiler, with the function whole, cut at folds, in pieces of a few instructions, and
-/// in the smallest there are.
-pub fn all_options() -> Vec<Options> {
-    let of_backend =
-        |backend| Options { backend: Some(backend), check: Check::Registers, ..Options::default() };
-    let mut all = vec![Options::default()];
-    all.extend(Backend::available().into_iter().map(of_backend));
-    let pieces = [Pieces::One, Pieces::Of(usize::MAX), Pieces::Of(7), Pieces::Of(1)];
-    for backend in Backend::available().into_iter().filter(|&backend| backend != Backend::Cranelift) {
+/// A generator, a level, and whether the vectors of a value are open.
+type Setting = (Box<dyn Backend>, Level, bool);
+
+/// All settings of all generators, with the function whole, cut at folds, in pieces of a few instructions,
+/// and in the smallest there are.
+pub fn all_settings() -> Vec<Setting> {
+    let mut all: Vec<Setting> = vec![(Box::new(Cranelift::STANDARD), Level::Baseline, true)];
+    let levels: Vec<Level> =
+        Level::available().into_iter().filter(|&level| Wide::STANDARD.covers(level)).collect();
+    for &level in &levels {
+        all.push((Box::new(Wide { check: Check::Registers, ..Wide::STANDARD }), level, true));
+        all.push((Box::new(Wide::STANDARD), level, true));
+    }
+    let pieces = [Pieces::One, Pieces::Of(usize::MAX), Pieces::Of(7), Pieces::Of(1)].map(Some);
+    for level in levels {
         for vectors in VectorCount::ALL {
-            if backend.lanes() * vectors.count() > Kernel::MAX_LANES {
+            if Wide::lanes(level) * vectors.count() > Kernel::MAX_LANES {
                 continue;
             }
             for pieces in pieces {
                 for check in [Check::Registers, Check::FewRegisters] {
-                    let (backend, vectors, pieces) = (Some(backend), Some(vectors), Some(pieces));
-                    all.push(Options { backend, vectors, pieces, check, ..Options::default() });
+                    all.push((Box::new(Wide { vectors: Some(vectors), pieces, check }), level, false));
                 }
             }
         }
     }
-    for vectors in VectorCount::ALL {
+    for vectors in VectorCount::ALL.map(Some) {
         for opt_level in OptLevel::ALL {
-            for allocator in Allocator::ALL {
+            for allocator in Allocator::ALL.map(Some) {
                 for pieces in pieces {
-                    all.push(Options {
-                        backend: Some(Backend::Cranelift),
-                        vectors: Some(vectors),
-                        opt_level,
-                        allocator: Some(allocator),
-                        pieces: Some(pieces),
-                        check: Check::Off,
-                    });
+                    let cranelift = Cranelift { vectors, opt_level, allocator, pieces };
+                    all.push((Box::new(cranelift), Level::Baseline, false));
                 }
             }
         }
@@ -212,19 +222,20 @@ pub fn all_options() -> Vec<Options> {
     all
 }
 
-/// Asserts the bits of the first few points: of smaller blocks alone, and of larger blocks with some behind.
+/// Asserts the bits of the first few points: of fewer than a block, of smaller blocks alone, and of larger
+/// blocks with some behind.
 fn check_few(
-    kernel: &Kernel,
-    rows: (&Arc<Tables>, &Selection),
+    bound: &BoundProgram,
+    selection: &Selection,
     (inputs, expected): (&[Vec<f32>], &[Vec<f32>]),
     what: &str,
 ) {
-    for blocks in [1, 2, 3, 5, 9, 17] {
-        let length = blocks * kernel.lanes();
+    let block = bound.program().block();
+    for length in [1, block - 1, block, 2 * block, 3 * block, 5 * block, 9 * block + 1, 17 * block] {
         let cut = |planes: &[Vec<f32>]| -> Vec<Vec<f32>> {
             planes.iter().map(|plane| plane[..length].to_vec()).collect()
         };
-        let given = run_selected(kernel, rows, &cut(inputs), expected.len());
+        let given = run_selected(bound, selection, &cut(inputs), expected.len());
         assert_same_bits(&cut(expected), &given, &format!("{what}, {length} points"));
     }
 }
@@ -237,25 +248,23 @@ fn repeated(planes: &[Vec<f32>]) -> Vec<Vec<f32>> {
     planes.iter().map(|plane| plane.repeat(POINTS.div_ceil(plane.len()))).collect()
 }
 
-/// Asserts that every setting of the compiler gives the reference's bits. Inputs are cut to whole blocks.
-pub fn check(function: &Verified, tables: &Tables, mut inputs: Vec<Vec<f32>>) {
-    for plane in &mut inputs {
-        plane.truncate(plane.len() / Kernel::MAX_LANES * Kernel::MAX_LANES);
-        assert!(!plane.is_empty(), "a test without points tests nothing");
-    }
+/// Asserts that every setting of every generator gives the reference's bits.
+pub fn check(function: &Verified, tables: &Tables, inputs: Vec<Vec<f32>>) {
+    assert!(!inputs[0].is_empty(), "a test without points tests nothing");
     let selections = [Selection::new(function.function(), tables), thinned(function, tables)];
     let expected =
         selections.each_ref().map(|selection| reference_selected(function, (tables, selection), &inputs));
     let (inputs, expected) = (repeated(&inputs), expected.map(|planes| repeated(&planes)));
-    let tables = Arc::new(tables.clone());
-    for options in all_options() {
-        let kernel = Kernel::compile_with(function, &options).expect("the test's function compiles");
+    let (function, tables) = (Arc::new(function.clone()), Arc::new(tables.clone()));
+    for (generator, level, is_open) in all_settings() {
+        let program = generator.compile(&function, level).expect("the test's function compiles");
+        let bound = bind(&program, &tables);
         for (selection, expected) in selections.iter().zip(&expected) {
-            let given = run_selected(&kernel, (&tables, selection), &inputs, expected.len());
-            let what = format!("{options:?}, {} rows", selection.len());
+            let given = run_selected(&bound, selection, &inputs, expected.len());
+            let what = format!("{level} {generator:?}, {} rows", selection.len());
             assert_same_bits(expected, &given, &what);
-            if options.vectors.is_none() {
-                check_few(&kernel, (&tables, selection), (&inputs, expected), &what);
+            if is_open {
+                check_few(&bound, selection, (&inputs, expected), &what);
             }
         }
     }

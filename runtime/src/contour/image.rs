@@ -19,7 +19,6 @@ use super::slicer::{SliceError, Slicer};
 use crate::error::EvalError;
 use crate::evaluator::Evaluator;
 use crate::job::{Hook, Job};
-use crate::kernel::Engine;
 use crate::picture::Picture;
 use crate::polygonize::Fineness;
 use crate::prune::Region;
@@ -29,12 +28,17 @@ use crate::solid::progress::Progress;
 /// The largest [`ImageDetail::samples`].
 pub const MAX_SAMPLES: usize = 8;
 
-/// Pixels along the side of the smallest squares: an engine takes about as many points at once.
-const fn block(engine: Engine) -> u32 {
-    match engine {
-        Engine::Scalar | Engine::Jit => 4,
-        Engine::Lanes => 8,
+/// Pixels along the side of the smallest squares that are evaluated point by point: such a square fills a
+/// block of the engine, and is never smaller than this.
+const SMALLEST: u32 = 4;
+
+/// Pixels along the side of the smallest squares, for an engine that runs so many points together.
+const fn smallest(block: usize) -> u32 {
+    let mut side = SMALLEST;
+    while ((side * side) as usize) < block {
+        side *= 2;
     }
+    side
 }
 
 /// Halvings of a side at once: 16 parts are asked about in one call.
@@ -105,7 +109,7 @@ impl<'a> Canvas<'a> {
     }
 
     fn plan(&self) -> Plan {
-        let leaf = block(self.slicer.engine());
+        let leaf = smallest(self.slicer.field.block());
         Plan { cells: self.pixels().map(|pixels| pixels as u32), leaf, step: STEP, keep: false }
     }
 

@@ -62,7 +62,7 @@ impl Pruner {
             return Edit::Everywhere;
         }
         // Which rows are active is compared by their numbers, which are not the same where rows come and go.
-        if self.is_switched(before) && !before.kernel.all.fits(self.extent()) {
+        if self.is_switched(before) && !before.kernel.all().fits(self.extent()) {
             return Edit::Everywhere;
         }
         let mut boxes = Vec::new();

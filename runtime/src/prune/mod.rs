@@ -175,15 +175,15 @@ impl Pruner {
     #[must_use]
     pub fn everywhere(&self) -> Region {
         let bounds = Box3::new([f32::MIN; 3], [f32::MAX; 3]);
-        Region { bounds, selection: Arc::clone(&self.kernel.all) }
+        Region { bounds, selection: Arc::clone(self.kernel.all()) }
     }
 
     fn extent(&self) -> &Arc<Extent> {
-        self.kernel.all.extent()
+        self.kernel.all().extent()
     }
 
     fn tables(&self) -> &Tables {
-        &self.kernel.tables
+        self.kernel.tables()
     }
 
     /// Ranges of the field and of all probes in boxes, by one run of the interval kernel, which is counted.

@@ -41,5 +41,5 @@ mod tests;
 
 pub use crate::level::Level;
 pub use ops::WIDTH;
-pub use run::{NotLegalized, RunError};
+pub use run::NotLegalized;
 pub use tape::{Scratch, Tape};

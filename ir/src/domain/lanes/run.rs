@@ -1,5 +1,6 @@
 //! The door to the lanes interpreter: a function becomes a tape, and a tape runs on planes.
 
+use crate::engine::{Planes, RunError, check};
 use crate::entity::Inst;
 use crate::function::InstKind;
 use crate::level::Level;
@@ -21,35 +22,6 @@ pub struct NotLegalized {
     pub inst: Inst,
     /// Its op.
     pub op: Op,
-}
-
-/// Why planes do not fit a tape.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, thiserror::Error)]
-pub enum RunError {
-    /// Another number of input planes.
-    #[error("the function has {expected} input planes, {given} were given")]
-    Inputs {
-        /// What the function has.
-        expected: usize,
-        /// What was given.
-        given: usize,
-    },
-    /// Another number of output planes.
-    #[error("the function has {expected} output planes, {given} were given")]
-    Outputs {
-        /// What the function has.
-        expected: usize,
-        /// What was given.
-        given: usize,
-    },
-    /// Planes of different lengths.
-    #[error("the first plane has {expected} points, another one has {given}")]
-    Length {
-        /// The length of the first input plane; of the first output plane, where there are no inputs.
-        expected: usize,
-        /// The length of the first plane that differs.
-        given: usize,
-    },
 }
 
 impl Tape {
@@ -101,26 +73,15 @@ impl Tape {
         outputs: &mut [&mut [f32]],
         scratch: &mut Scratch,
     ) -> Result<(), RunError> {
-        let points = self.check_planes(inputs, outputs)?;
-        scratch.reserve(self);
-        level::run(level, Job { tape: self, tables, selection, inputs, outputs, scratch, points });
+        let points = check((self.inputs, self.outputs.len()), inputs, outputs)?;
+        self.run_checked(level, Planes { points, tables, selection, inputs, outputs }, scratch);
         Ok(())
     }
 
-    /// The common length of all planes.
-    fn check_planes(&self, inputs: &[&[f32]], outputs: &[&mut [f32]]) -> Result<usize, RunError> {
-        if inputs.len() != self.inputs {
-            return Err(RunError::Inputs { expected: self.inputs, given: inputs.len() });
-        }
-        if outputs.len() != self.outputs.len() {
-            return Err(RunError::Outputs { expected: self.outputs.len(), given: outputs.len() });
-        }
-        let mut lengths =
-            inputs.iter().map(|plane| plane.len()).chain(outputs.iter().map(|plane| plane.len()));
-        let expected = lengths.next().unwrap_or(0);
-        match lengths.find(|&given| given != expected) {
-            Some(given) => Err(RunError::Length { expected, given }),
-            None => Ok(expected),
-        }
+    /// Like [`run_at`](Self::run_at), for planes that have been checked.
+    pub(crate) fn run_checked(&self, level: Level, planes: Planes<'_, '_>, scratch: &mut Scratch) {
+        let Planes { points, tables, selection, inputs, outputs } = planes;
+        scratch.reserve(self);
+        level::run(level, Job { tape: self, tables, selection, inputs, outputs, scratch, points });
     }
 }

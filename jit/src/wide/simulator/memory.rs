@@ -2,7 +2,7 @@
 //! whoever reads or writes there faults.
 
 use crate::abi::TableView;
-use crate::wide::Blob;
+use crate::blob::Blob;
 
 /// What an instruction may say instead of a result.
 pub(super) type Step<T = ()> = Result<T, String>;

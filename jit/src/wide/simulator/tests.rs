@@ -3,18 +3,18 @@
 use std::sync::Arc;
 
 use jbt_ir::domain::scalar::Scalar;
+use jbt_ir::engine::BoundProgram;
 use jbt_ir::pass::{PIPELINE, run_pipeline};
 use jbt_ir::{Entity, Level, Selection, Table, Tables, Verified, interpret, verify};
 
 use super::machine::Fault;
 use super::memory::Call;
 use super::run;
-use crate::compile::emit;
-use crate::entry::Kernel;
-use crate::options::{Backend, Check, Options, Pieces, VectorCount};
+use crate::blob::{Blob, Emitted};
+use crate::options::{Check, Pieces, VectorCount};
+use crate::wide::Wide;
 use crate::wide::encode::{Encoder, Shape};
 use crate::wide::inst::{Base, Condition, Gpr, Inst, Integer, Label, Memory};
-use crate::wide::{Blob, Emitted};
 
 #[path = "../../../../ir/tests/common/random.rs"]
 #[allow(dead_code, reason = "tests of other crates use more of it")]
@@ -73,9 +73,9 @@ impl Case {
     }
 
     /// What this CPU makes of the same code.
-    fn execute(&self, options: &Options, points: usize) -> Vec<Vec<f32>> {
-        let kernel = Kernel::compile_with(&self.function, options).expect("the CPU has the level");
-        let bound = kernel.bind(Arc::new(self.tables.clone())).expect("the rows fit");
+    fn execute(&self, (wide, level): (&Wide, Level), points: usize) -> Vec<Vec<f32>> {
+        let kernel = wide.kernel(&self.function, level).expect("the CPU has the level");
+        let bound = BoundProgram::new(Arc::new(kernel), Arc::new(self.tables.clone())).expect("the rows fit");
         let inputs = cut(&self.inputs, 0..points);
         let inputs: Vec<&[f32]> = inputs.iter().map(Vec::as_slice).collect();
         let mut planes = vec![vec![0.0; points]; self.expected.len()];
@@ -103,14 +103,13 @@ fn assert_same(expected: &[Vec<f32>], given: &[Vec<f32>], what: &str) {
 }
 
 /// The settings that a function is emitted with: different ones for each function, all for all together.
-fn settings(seed: u64) -> impl Iterator<Item = Options> {
+fn settings(seed: u64) -> impl Iterator<Item = (Wide, Level)> {
     let vectors = [None, Some(VectorCount::One), Some(VectorCount::Two), Some(VectorCount::Four)];
     let pieces = [None, Some(Pieces::One), Some(Pieces::Of(7))][seed as usize % 3];
     let check = [Check::Registers, Check::FewRegisters][seed as usize / 3 % 2];
-    [Level::Avx2, Level::Avx512Vl, Level::Avx512].into_iter().flat_map(move |level| {
-        let backend = Some(Backend::Wide(level));
-        vectors.map(|vectors| Options { backend, vectors, pieces, check, ..Options::default() })
-    })
+    [Level::Avx2, Level::Avx512Vl, Level::Avx512]
+        .into_iter()
+        .flat_map(move |level| vectors.map(|vectors| (Wide { vectors, pieces, check }, level)))
 }
 
 #[test]
@@ -119,9 +118,8 @@ fn simulated_code_has_the_bits_of_the_reference_and_of_the_cpu() {
     let mut ran = [0; Level::ALL.len()];
     for seed in 0..FUNCTIONS {
         let case = Case::new(seed);
-        for options in settings(seed) {
-            let Some(Backend::Wide(level)) = options.backend else { unreachable!("all settings are wide") };
-            let Emitted { blocks, rest } = emit(&case.function, level, &options).expect("it is short");
+        for (wide, level) in settings(seed) {
+            let Emitted { blocks, rest } = wide.emit(&case.function, level).expect("it is short");
             let whole = POINTS / blocks.lanes * blocks.lanes;
             let mut simulated = case.simulate(&blocks, 0..whole).unwrap_or_else(|fault| panic!("{fault}"));
             if let Some(rest) = rest {
@@ -129,10 +127,10 @@ fn simulated_code_has_the_bits_of_the_reference_and_of_the_cpu() {
                 simulated.iter_mut().zip(left).for_each(|(plane, left)| plane.extend(left));
             }
             let points = simulated[0].len();
-            let what = format!("function {seed}, {options:?}");
+            let what = format!("function {seed}, {level}, {wide:?}");
             assert_same(&cut(&case.expected, 0..points), &simulated, &what);
             if level.is_available() {
-                assert_same(&simulated, &case.execute(&options, points), &what);
+                assert_same(&simulated, &case.execute((&wide, level), points), &what);
                 ran[level as usize] += 1;
             }
         }

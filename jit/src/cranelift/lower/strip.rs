@@ -9,7 +9,7 @@ use jbt_ir::plan::{Column, Piece, Slot, Then};
 use jbt_ir::{Any, Block, Entity, Fold, Inst, InstKind, Type, Value};
 
 use super::{Lowering, Place, Points, SLOT, Strip, offset};
-use crate::vectors::{VECTOR_BYTES, Vectors};
+use crate::cranelift::vectors::{VECTOR_BYTES, Vectors};
 
 impl<'f, const K: usize> Lowering<'f, K> {
     /// Emits a loop over offsets in the planes, which runs at least once: `from` is before `to`. Its last

@@ -8,7 +8,7 @@ use jbt_ir::{Any, Entity, Fold, Table};
 
 use super::{Lowering, Place, READ, Row, offset};
 use crate::abi::TableView;
-use crate::vectors::Vectors;
+use crate::cranelift::vectors::Vectors;
 
 /// The active rows of a table that the current row of its parent owns: addresses.
 #[derive(Clone, Copy)]

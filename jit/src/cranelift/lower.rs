@@ -61,8 +61,8 @@ use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
 use jbt_ir::plan::{Plan, Slot};
 use jbt_ir::{Any, Block, Domain, Entity, Function, Inst, InstKind, Table, Type, Value, apply};
 
+use crate::cranelift::vectors::{VECTOR_BYTES, Vectors};
 use crate::options::VectorCount;
-use crate::vectors::{VECTOR_BYTES, Vectors};
 
 /// A Cranelift function that keeps to the ABI of [`crate::entry`]: it reads the input planes, the table views
 /// and what these point to as far as checked tables go, writes the output planes, and touches no other memory

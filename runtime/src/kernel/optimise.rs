@@ -1,0 +1,111 @@
+//! From a lowered function to one that engines accept: the passes that a purpose asks for, and straight code.
+
+use jbt_ir::pass::{GRADIENT, GUARDED_GRADIENT, INTERVAL, PIPELINE, Pass, run_pipeline};
+use jbt_ir::{Function, Straight, Tables, Verified, limits, verify};
+use jbt_model::diagnostic::Diagnostic;
+use jbt_model::query::Query;
+
+use crate::error::CompileError;
+
+/// What a kernel is for.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum Purpose {
+    /// To answer a query at points.
+    Answers(Query),
+    /// To answer with field and gradient where the gradient is not finite otherwise.
+    Guarded,
+    /// To enclose the field in boxes.
+    Ranges,
+}
+
+impl Purpose {
+    /// The pass that goes before the others, and changes what is computed.
+    fn first_pass(self) -> Option<&'static Pass> {
+        match self {
+            Self::Answers(query) => query.gradient.then_some(&GRADIENT),
+            Self::Guarded => Some(&GUARDED_GRADIENT),
+            Self::Ranges => Some(&INTERVAL),
+        }
+    }
+}
+
+/// The passes that a function goes through.
+pub fn passes(purpose: Purpose) -> impl Iterator<Item = &'static Pass> {
+    purpose.first_pass().into_iter().chain(PIPELINE)
+}
+
+/// Runs the passes and verifies. The observer sees what every pass made.
+///
+/// # Errors
+/// A function that a pass makes larger than [`limits::MAX_VALUES`]; broken rules, which are a defect of the
+/// compiler.
+pub fn optimise(
+    function: Function,
+    purpose: Purpose,
+    observer: &mut dyn FnMut(&str, &Function),
+) -> Result<Verified, CompileError> {
+    finish(run(function, passes(purpose), observer)?)
+}
+
+/// Straight code for a lowered function and its tables, if it is worth it: made of what the purpose's own
+/// pass makes of the function, so that answers have the bits that they have without it. What was told apart
+/// in straight code for other numbers stays apart.
+///
+/// # Errors
+/// Those of [`optimise`].
+pub fn straighten(
+    function: &Function,
+    tables: &Tables,
+    purpose: Purpose,
+    before: Option<&Straight>,
+) -> Result<Option<Straight>, CompileError> {
+    let made;
+    let function = match purpose.first_pass() {
+        None => function,
+        // Most functions are told to be none for straight code without it.
+        Some(_) if before.is_none() && Straight::new(function, tables).is_none() => return Ok(None),
+        Some(first) => {
+            made = run(function.clone(), [first], &mut |_, _| {})?;
+            &made
+        }
+    };
+    Ok(match before {
+        Some(before) => before.again(function, tables),
+        None => Straight::new(function, tables),
+    })
+}
+
+/// Runs the passes that straight code has still to go through, and verifies.
+///
+/// # Errors
+/// Those of [`optimise`].
+pub fn optimise_straight(
+    straight: &Straight,
+    observer: &mut dyn FnMut(&str, &Function),
+) -> Result<Verified, CompileError> {
+    finish(run(straight.function().clone(), PIPELINE, observer)?)
+}
+
+fn run<'a>(
+    mut function: Function,
+    passes: impl IntoIterator<Item = &'a Pass>,
+    observer: &mut dyn FnMut(&str, &Function),
+) -> Result<Function, CompileError> {
+    for pass in passes {
+        function = run_pipeline(function, [pass], observer);
+        let values = function.values.len();
+        if values > limits::MAX_VALUES {
+            let most = limits::MAX_VALUES;
+            let message = format!(
+                "after the pass {}, the model's program has {values} values; it may have {most}",
+                pass.name
+            );
+            return Err(CompileError::Model(vec![Diagnostic::limit(None, message)].into()));
+        }
+    }
+    Ok(function)
+}
+
+fn finish(function: Function) -> Result<Verified, CompileError> {
+    verify(function).map_err(CompileError::Internal)
+}
