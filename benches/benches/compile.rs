@@ -12,10 +12,10 @@ use jbt::ir::verify;
 use jbt::kernel::Purpose;
 use jbt::{CheckedTree, Compiler, Query, Update};
 use jbt_benches::check;
-use jbt_benches::compare::sample;
 use jbt_benches::model::{cube, varied};
 use jbt_frontend::import::vm;
 use jbt_frontend::lower::lower;
+use jbt_testkit::samples;
 
 fn compile(c: &mut Criterion) {
     let mut group = c.benchmark_group("compile");
@@ -38,7 +38,7 @@ fn compile(c: &mut Criterion) {
 
 /// A long program of the samples, if they are here.
 fn program(name: &str) -> Option<CheckedTree> {
-    let bytes = sample(&format!("vm/{name}.vm")).ok()?;
+    let bytes = samples::file(&format!("vm/{name}.vm")).ok()?;
     let imported = vm(&bytes).expect("the program reads");
     Some(imported.model.check().expect("the program is a model"))
 }

@@ -2,10 +2,9 @@
 //! and colour.
 #![allow(clippy::print_stdout, reason = "a test may show its figures")]
 
-mod common;
-
 use jbt::{Compiler, Engine, Points, Query};
 use jbt_frontend::import;
+use jbt_testkit::samples;
 
 /// Field absolute, gradient relative to `1 + |g|`, colour absolute.
 const FIELD: f64 = 2e-5;
@@ -28,7 +27,7 @@ fn oracle(path: &std::path::Path) -> Vec<[f64; 10]> {
 
 #[test]
 fn every_scene_has_the_values_that_others_computed() {
-    let Some(folder) = common::samples("parsip") else { return };
+    let Some(folder) = samples::folder("parsip") else { return };
     let mut scenes = 0;
     for entry in std::fs::read_dir(folder).expect("a readable folder") {
         let path = entry.expect("a readable folder").path();

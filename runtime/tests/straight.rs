@@ -1,8 +1,6 @@
 //! Straight code gives the bits of rows, for every query, engine and level; regions, counters and edits do
 //! not notice it, but for what an edit compiles.
 
-mod common;
-
 use jbt::ir::Level;
 use jbt::region::Divisible;
 use jbt::{Box3, Compiler, Engine, Evaluator, Points, Pruner, Query, Update};

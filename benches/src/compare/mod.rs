@@ -19,7 +19,7 @@ mod rows;
 mod train;
 
 pub use contest::{Contestant, Effort, Standing, Standings};
-pub use options::{Options, sample};
+pub use options::Options;
 pub use report::{Row, heading, line};
 
 /// A case.

@@ -9,11 +9,12 @@ use jbt::{Box3, Compiler, Fineness, Query};
 use jbt_frontend::check::CheckedTree;
 use jbt_frontend::import;
 use jbt_frontend::walk::walk;
+use jbt_testkit::samples;
 use serde_json::json;
 
 use super::contest::{Contest, Contestant, Standings};
 use super::mesh::peer_threads;
-use super::options::{Options, sample};
+use super::options::Options;
 use super::report::Row;
 use crate::model;
 use crate::peers::fidget::{FidgetModel, FidgetProgram, Gate, JitFunction, VmFunction};
@@ -87,7 +88,7 @@ pub(super) fn prospero(options: Options) -> Vec<Row> {
 
 /// The program's text, and its model.
 fn program() -> Result<(Vec<u8>, CheckedTree), String> {
-    let bytes = sample(PROGRAM)?;
+    let bytes = samples::file(PROGRAM)?;
     let imported = import::vm(&bytes).map_err(|_| "the program has errors".to_owned())?;
     let tree = imported.model.check().map_err(|_| "the model has errors".to_owned())?;
     Ok((bytes, tree))

@@ -7,10 +7,11 @@ use jbt::{Compiler, Engine, Points, Query};
 use jbt_frontend::check::CheckedTree;
 use jbt_frontend::import;
 use jbt_frontend::walk::walk;
+use jbt_testkit::samples;
 use serde_json::json;
 
 use super::contest::{Contest, Contestant, Standings};
-use super::options::{Options, sample};
+use super::options::Options;
 use super::report::Row;
 use crate::model;
 use crate::peers::fidget::{FidgetProgram, JitFunction, VmFunction};
@@ -35,7 +36,7 @@ struct Program {
 
 impl Program {
     fn new(name: &'static str) -> Result<Self, String> {
-        let bytes = sample(&format!("vm/{name}.vm"))?;
+        let bytes = samples::file(&format!("vm/{name}.vm"))?;
         let imported = import::vm(&bytes).map_err(|_| format!("{name} has errors"))?;
         let tree = imported.model.check().map_err(|_| format!("the model of {name} has errors"))?;
         let points = model::cube(POINTS, 3);

@@ -8,7 +8,7 @@ mod lengths;
 use std::path::{Path, PathBuf};
 
 /// All crates.
-const CRATES: [&str; 6] = ["frontend", "ir", "jit", "runtime", "cli", "benches"];
+const CRATES: [&str; 7] = ["frontend", "ir", "jit", "runtime", "cli", "benches", "testkit"];
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")

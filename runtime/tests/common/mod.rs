@@ -1,7 +1,6 @@
 //! Random models: a shape from one seed, its numbers from another, so that one shape can be tried with many
 //! sets of numbers.
 #![allow(dead_code, reason = "each test file uses its own part")]
-#![allow(clippy::print_stderr, reason = "a skipped test says so")]
 
 use std::sync::Arc;
 
@@ -431,18 +430,4 @@ pub fn points(rng: &mut Rng, count: usize, size: f32) -> jbt::Points {
             point
         })
         .collect()
-}
-
-/// The folder with sample scenes that are not part of the project; `None`, with a message, where it is
-/// missing.
-pub fn samples(folder: &str) -> Option<std::path::PathBuf> {
-    let root = std::env::var_os("JBT_SAMPLES")
-        .map(std::path::PathBuf::from)
-        .unwrap_or_else(|| std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/samples"));
-    let path = root.join(folder);
-    if path.is_dir() {
-        return Some(path);
-    }
-    eprintln!("skipped: no sample scenes at {} (set JBT_SAMPLES)", path.display());
-    None
 }
