@@ -4,13 +4,12 @@
 //! error says so behind `#~`, with the columns; the marks are taken off before the text is read. `BLESS=1`
 //! writes what is found. What reads well is checked. A line `#! -D NAME=VALUE` sets a parameter from outside.
 
-mod random;
-
 use std::collections::HashSet;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use jbt_frontend::attribute::AttributeValue;
+use jbt_frontend::builder::point;
 use jbt_frontend::diagnostic::{Diagnostic, Diagnostics, Severity, Source};
 use jbt_frontend::kind::NodeKind;
 use jbt_frontend::model::Model;
@@ -18,6 +17,7 @@ use jbt_frontend::text::{Options, parse, print};
 use jbt_frontend::traverse::Visit;
 use jbt_frontend::tree::Tree;
 use jbt_ir::limits;
+use jbt_testkit::random::{Numbers, Random, Settings};
 
 fn golden_files() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/text");
@@ -150,8 +150,9 @@ fn root(model: &Model) -> NodeKind {
 
 #[test]
 fn random_models_survive_printing() {
+    let settings = Settings { numbers: Numbers::Hostile, ..Settings::default() };
     for seed in 0..2_000 {
-        let model = random::model(&mut fastrand::Rng::with_seed(seed));
+        let model = Random::with_settings(seed, !seed, settings).model(1 + seed as usize % 20);
         let text = print(&model);
         let again = parse(text.as_bytes(), &Options::default())
             .unwrap_or_else(|errors| panic!("seed {seed}\n{}", marked(&text, &errors)));
@@ -164,9 +165,10 @@ fn random_models_survive_printing() {
 
 #[test]
 fn a_graph_prints_as_long_as_it_is() {
-    let mut tree = random::point();
+    let mut tree = point([0.0; 3], 1.0);
     for _ in 0..30 {
-        tree = Tree::new(jbt_frontend::combine::Combinator::Sum, vec![tree.clone(), random::point(), tree]);
+        tree =
+            Tree::new(jbt_frontend::combine::Combinator::Sum, vec![tree.clone(), point([0.0; 3], 1.0), tree]);
     }
     let model = Model::new(tree);
     let text = print(&model);

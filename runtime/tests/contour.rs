@@ -10,12 +10,9 @@ use fastrand::Rng;
 use jbt::build::{Axis, cuboid, point, segment, x, y, z};
 use jbt::contour::{Contour, Detail, Fate, ImageDetail, Mode, Plane, Rectangle, SliceError, Slicer, circles};
 use jbt::export::svg::{Paint, Style, write_svg};
-use jbt::{CancelToken, Combinator, Compiler, Engine, Evaluator, Fineness, Model, Points, Query, Tree, text};
+use jbt::{CancelToken, Combinator, Compiler, Engine, Evaluator, Fineness, Model, Points, Query, Tree};
 use jbt_testkit::samples;
-
-fn checked(text: &str) -> jbt::CheckedTree {
-    text::parse(text.as_bytes(), &text::Options::default()).expect("it reads").check().expect("a good model")
-}
+use jbt_testkit::scene::{self, tree as checked};
 
 fn slicer(tree: &jbt::CheckedTree, plane: &str, query: Query) -> Slicer {
     Slicer::new(&Compiler::new(), tree, &plane.parse().expect("a plane"), query).expect("it compiles")
@@ -192,7 +189,7 @@ fn has_its_area(slicer: &Slicer, rectangle: &Rectangle, cells: usize) -> bool {
 }
 
 fn models() -> u64 {
-    std::env::var("JBT_CONTOUR_MODELS").ok().and_then(|count| count.parse().ok()).unwrap_or(1000)
+    scene::count("JBT_CONTOUR_MODELS", 1000)
 }
 
 #[test]

@@ -5,12 +5,7 @@ use jbt::ir::Level;
 use jbt::region::Divisible;
 use jbt::{Box3, Compiler, Engine, Evaluator, Points, Pruner, Query, Update};
 use jbt_frontend::check::CheckedTree;
-use jbt_frontend::text::{Options, parse};
-
-fn tree(text: &str) -> CheckedTree {
-    let model = parse(text.as_bytes(), &Options::default()).unwrap_or_else(|e| panic!("{text}\n{e:?}"));
-    model.check().unwrap_or_else(|errors| panic!("{text}\n{errors:?}"))
-}
+use jbt_testkit::scene::tree;
 
 /// A wave at a height; waves share everything but this and their `phase`.
 fn wave(height: f64, phase: f64) -> String {
