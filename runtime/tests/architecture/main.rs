@@ -4,6 +4,8 @@ mod circles;
 mod imports;
 mod layers;
 mod lengths;
+mod paths;
+mod types;
 
 use std::path::{Path, PathBuf};
 
