@@ -12,7 +12,7 @@ use serde_json::json;
 use super::contest::{Contest, Contestant, Standings};
 use super::options::Options;
 use super::oracle::{Oracle, Tolerance};
-use super::report::Row;
+use super::report::ResultRow;
 use crate::naive::Walker;
 
 /// The edge of a cell.
@@ -45,8 +45,8 @@ fn lattice(tree: &CheckedTree) -> Points {
 }
 
 /// The field on the lattice, unpruned, on one core.
-pub(super) fn train(options: Options) -> Vec<Row> {
-    let row = |primitives, points: usize, standings, extra| Row {
+pub(super) fn train(options: Options) -> Vec<ResultRow> {
+    let row = |primitives, points: usize, standings, extra| ResultRow {
         case: "train",
         primitives,
         points,
