@@ -4,5 +4,8 @@
 //! program. The packages that it depends on have it as a dev-dependency. Cargo allows that circle, and
 //! integration tests see one and the same library on both ways.
 
+pub mod points;
+pub mod random;
 pub mod samples;
+pub mod scene;
 pub mod skip;
