@@ -14,9 +14,9 @@ use jbt::ir::verify;
 use jbt::kernel::Purpose;
 use jbt::{CheckedTree, Compiler, Engine, Level, Query, Update};
 use jbt_benches::check;
-use jbt_benches::compare::sample;
 use jbt_benches::model::{cube, varied};
 use jbt_lower::lower;
+use jbt_testkit::samples;
 use jbt_text::import::vm;
 
 fn compile(c: &mut Criterion) {
@@ -40,7 +40,7 @@ fn compile(c: &mut Criterion) {
 
 /// A long program of the samples, if they are here.
 fn program(name: &str) -> Option<CheckedTree> {
-    let bytes = sample(&format!("vm/{name}.vm")).ok()?;
+    let bytes = samples::file(&format!("vm/{name}.vm")).ok()?;
     let imported = vm(&bytes).expect("the program reads");
     Some(imported.model.check().expect("the program is a model"))
 }

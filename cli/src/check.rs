@@ -24,7 +24,7 @@ pub fn run(arguments: &CheckArguments, quiet: bool) -> Result<(), Failure> {
     if arguments.scenes.iter().filter(|path| is_standard(path)).count() > 1 {
         return Err(Failure::Usage("the standard input can be read once".to_owned()));
     }
-    let mut told = Told::default();
+    let mut told = Findings::default();
     for path in &arguments.scenes {
         let scene = SceneArguments { path: path.clone(), definitions: arguments.definitions.clone() };
         let checked = check(&scene, quiet || arguments.json);
@@ -66,14 +66,14 @@ fn check(arguments: &SceneArguments, quiet: bool) -> Result<Checked, Failure> {
 
 /// What has been found out about the files so far.
 #[derive(Default)]
-struct Told {
+struct Findings {
     files: Vec<Value>,
     diagnostics: Vec<Value>,
     /// Of the first failure.
     code: Option<u8>,
 }
 
-impl Told {
+impl Findings {
     fn add(&mut self, path: &Path, checked: &Result<Checked, Failure>) {
         let name = if is_standard(path) { "<stdin>".to_owned() } else { path.display().to_string() };
         match checked {

@@ -56,7 +56,7 @@ pub fn run(arguments: &ContourArguments, quiet: bool, start: Instant) -> Result<
         warnings.iter().for_each(|warning| warn(warning));
     }
     warnings.splice(0..0, scene.warnings.iter().cloned());
-    let report = Report {
+    let report = ContourReport {
         made: &made,
         slicer: &slicer,
         origin: tree.origin(),
@@ -249,7 +249,7 @@ fn cut(contour: &Contour) -> String {
 }
 
 /// What is told about a slice.
-struct Report<'a> {
+struct ContourReport<'a> {
     made: &'a Made,
     slicer: &'a Slicer,
     origin: ModelOrigin,
@@ -257,7 +257,7 @@ struct Report<'a> {
     total: Duration,
 }
 
-impl Report<'_> {
+impl ContourReport<'_> {
     /// For machines.
     fn json(&self) -> Value {
         let (ranges, field, full) = self.slicer.counters();

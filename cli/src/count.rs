@@ -49,10 +49,10 @@ pub fn run(arguments: &CountArguments, quiet: bool) -> Result<(), Failure> {
         None => Query::EVERY.to_vec(),
     };
     let statistics = Statistics::new(&tree);
-    let field = Count::new(&scene, &tree, &statistics, Query::FIELD)?;
+    let field = QueryCount::new(&scene, &tree, &statistics, Query::FIELD)?;
     let counts = queries
         .into_iter()
-        .map(|query| Count::new(&scene, &tree, &statistics, query))
+        .map(|query| QueryCount::new(&scene, &tree, &statistics, query))
         .collect::<Result<_, _>>()?;
     let mut warnings = Vec::new();
     let lattice = match settings.lattice(&tree) {
@@ -71,7 +71,7 @@ pub fn run(arguments: &CountArguments, quiet: bool) -> Result<(), Failure> {
         warnings.iter().for_each(|warning| warn(warning));
     }
     warnings.splice(0..0, scene.warnings.iter().cloned());
-    let report = Report {
+    let report = CountReport {
         origin: tree.origin(),
         counts,
         leaves: leaves(&scene, &tree),
@@ -119,13 +119,13 @@ fn mesh(
 }
 
 /// The evaluations for one query.
-struct Count {
+struct QueryCount {
     query: Query,
     evaluations: PerPoint,
     by_node: BTreeMap<u32, u64>,
 }
 
-impl Count {
+impl QueryCount {
     fn new(
         scene: &Scene,
         tree: &CheckedTree,
@@ -138,13 +138,13 @@ impl Count {
         Ok(Self { query, evaluations: statistics.per_point(&evaluator), by_node })
     }
 
-    fn of(&self, leaf: &Leaf) -> u64 {
+    fn of(&self, leaf: &CountedLeaf) -> u64 {
         self.by_node.get(&leaf.node).copied().unwrap_or(0)
     }
 }
 
 /// A leaf of the tree.
-struct Leaf {
+struct CountedLeaf {
     node: u32,
     kind: &'static str,
     place: Option<(usize, usize)>,
@@ -152,11 +152,11 @@ struct Leaf {
     uses: u64,
 }
 
-fn leaves(scene: &Scene, tree: &CheckedTree) -> Vec<Leaf> {
+fn leaves(scene: &Scene, tree: &CheckedTree) -> Vec<CountedLeaf> {
     let uses = tree.asked();
     let lines = Lines::new(scene.source());
     let leaf = |(index, node): (usize, &jbt_model::check::CheckedNode)| match &node.kind {
-        NodeKind::Primitive(primitive) => Some(Leaf {
+        NodeKind::Primitive(primitive) => Some(CountedLeaf {
             node: index as u32,
             kind: primitive.skeleton.kind().name(),
             place: node.span.map(|span| lines.position(span.start as usize)),
@@ -169,7 +169,7 @@ fn leaves(scene: &Scene, tree: &CheckedTree) -> Vec<Leaf> {
         | NodeKind::Warp(_)
         | NodeKind::Attribute { .. } => None,
     };
-    let mut leaves: Vec<Leaf> = tree.nodes().iter().enumerate().filter_map(leaf).collect();
+    let mut leaves: Vec<CountedLeaf> = tree.nodes().iter().enumerate().filter_map(leaf).collect();
     leaves.sort_by_key(|leaf| (leaf.place, leaf.node));
     leaves
 }
@@ -195,11 +195,11 @@ impl<'a> Lines<'a> {
 }
 
 /// What is told.
-struct Report {
+struct CountReport {
     /// That of the model.
     origin: ModelOrigin,
-    counts: Vec<Count>,
-    leaves: Vec<Leaf>,
+    counts: Vec<QueryCount>,
+    leaves: Vec<CountedLeaf>,
     uses: u64,
     occurrences: u64,
     /// Evaluations that the field of one point takes.
@@ -210,7 +210,7 @@ struct Report {
     warnings: Vec<String>,
 }
 
-impl Report {
+impl CountReport {
     /// Points of the lattice.
     fn points(&self) -> u64 {
         self.lattice.as_ref().map_or(0, |(_, supports)| supports.points)
@@ -231,7 +231,7 @@ impl Report {
         supports.waste(self.field_of_lattice())
     }
 
-    fn pairs_of(&self, leaf: &Leaf) -> u64 {
+    fn pairs_of(&self, leaf: &CountedLeaf) -> u64 {
         self.lattice.as_ref().and_then(|(_, supports)| supports.by_node.get(&leaf.node).copied()).unwrap_or(0)
     }
 
@@ -273,7 +273,7 @@ impl Report {
             "{:<12}{:>6}{:>20}{:>20}{:>20}{:>8}",
             "query", "walks", "separate", "cached", "fused", "ratio"
         );
-        for Count { query, evaluations: PerPoint { separate, cached, fused }, .. } in &self.counts {
+        for QueryCount { query, evaluations: PerPoint { separate, cached, fused }, .. } in &self.counts {
             let ratio = *separate as f64 / (*fused).max(1) as f64;
             let [separate, cached, fused] =
                 [separate, cached, fused].map(|count| grouped(count.saturating_mul(points)));
@@ -329,7 +329,7 @@ impl Report {
         })
     }
 
-    fn json_query(&self, count: &Count) -> Value {
+    fn json_query(&self, count: &QueryCount) -> Value {
         let PerPoint { separate, cached, fused } = count.evaluations;
         let total = |evaluations: u64| evaluations.saturating_mul(self.points());
         json!({
@@ -342,7 +342,7 @@ impl Report {
         })
     }
 
-    fn json_leaf(&self, leaf: &Leaf) -> Value {
+    fn json_leaf(&self, leaf: &CountedLeaf) -> Value {
         let evaluations: serde_json::Map<_, _> =
             self.counts.iter().map(|count| (count.query.name().to_owned(), count.of(leaf).into())).collect();
         json!({

@@ -19,12 +19,12 @@ pub trait FileKind: Copy + Debug + Send + Sync + 'static {
     /// What a file of them holds, with its article.
     const RESULT: &'static str;
     /// The table. Its first row counts where nothing says what to write.
-    const ROWS: &'static [Row<Self>];
+    const ROWS: &'static [FormatRow<Self>];
 }
 
 /// A kind of file.
 #[derive(Clone, Copy, Debug)]
-pub struct Row<K> {
+pub struct FormatRow<K> {
     /// What is written.
     pub kind: K,
     /// How names of its files end, without the dot; also the word of `--format`.
@@ -33,13 +33,13 @@ pub struct Row<K> {
     pub about: &'static str,
 }
 
-const fn row<K: Copy>(kind: K, extension: &'static str, about: &'static str) -> Row<K> {
-    Row { kind, extension, about }
+const fn row<K: Copy>(kind: K, extension: &'static str, about: &'static str) -> FormatRow<K> {
+    FormatRow { kind, extension, about }
 }
 
 impl FileKind for Format {
     const RESULT: &'static str = "a mesh";
-    const ROWS: &'static [Row<Self>] = &{
+    const ROWS: &'static [FormatRow<Self>] = &{
         let mut rows = [row(Self::ALL[0], "", ""); Self::ALL.len()];
         let mut index = 0;
         while index < rows.len() {
@@ -60,7 +60,7 @@ pub enum PictureKind {
 
 impl FileKind for PictureKind {
     const RESULT: &'static str = "a picture";
-    const ROWS: &'static [Row<Self>] = &[row(Self::Png, "png", "An image")];
+    const ROWS: &'static [FormatRow<Self>] = &[row(Self::Png, "png", "An image")];
 }
 
 /// What `jbt contour` writes.
@@ -74,7 +74,7 @@ pub enum SliceKind {
 
 impl FileKind for SliceKind {
     const RESULT: &'static str = "a slice";
-    const ROWS: &'static [Row<Self>] =
+    const ROWS: &'static [FormatRow<Self>] =
         &[row(Self::Svg, "svg", "The contour as a drawing"), row(Self::Png, "png", "The slice as an image")];
 }
 
@@ -87,7 +87,7 @@ pub enum ArrayKind {
 
 impl FileKind for ArrayKind {
     const RESULT: &'static str = "an array";
-    const ROWS: &'static [Row<Self>] = &[row(Self::Npy, "npy", "An array for numpy")];
+    const ROWS: &'static [FormatRow<Self>] = &[row(Self::Npy, "npy", "An array for numpy")];
 }
 
 /// What `jbt eval` writes.
@@ -99,21 +99,21 @@ pub enum TableKind {
 
 impl FileKind for TableKind {
     const RESULT: &'static str = "a table";
-    const ROWS: &'static [Row<Self>] = &[row(Self::Csv, "csv", "A table with a header")];
+    const ROWS: &'static [FormatRow<Self>] = &[row(Self::Csv, "csv", "A table with a header")];
 }
 
 /// The row that counts where nothing says which.
-pub fn first<K: FileKind>() -> &'static Row<K> {
+pub fn first<K: FileKind>() -> &'static FormatRow<K> {
     &K::ROWS[0]
 }
 
 /// The row that a word of `--format` means.
-pub fn named<K: FileKind>(word: &str) -> Option<&'static Row<K>> {
+pub fn named<K: FileKind>(word: &str) -> Option<&'static FormatRow<K>> {
     K::ROWS.iter().find(|row| row.extension == word)
 }
 
 /// The row that the end of a path names, in any case.
-pub fn of_path<K: FileKind>(path: &Path) -> Option<&'static Row<K>> {
+pub fn of_path<K: FileKind>(path: &Path) -> Option<&'static FormatRow<K>> {
     let extension = path.extension()?;
     K::ROWS.iter().find(|row| extension.eq_ignore_ascii_case(row.extension))
 }
@@ -134,7 +134,7 @@ mod tests {
 
     #[test]
     fn kinds_by_word_and_by_path() {
-        let kind = |row: Option<&Row<SliceKind>>| row.map(|row| row.kind);
+        let kind = |row: Option<&FormatRow<SliceKind>>| row.map(|row| row.kind);
         assert_eq!(kind(named("png")), Some(SliceKind::Png));
         assert_eq!(kind(named("jpg")), None);
         assert_eq!(kind(of_path(Path::new("a.b.SVG"))), Some(SliceKind::Svg));

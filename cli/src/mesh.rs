@@ -47,7 +47,7 @@ pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(),
         warnings.iter().for_each(|warning| warn(warning));
     }
     warnings.splice(0..0, scene.warnings);
-    let report = Report {
+    let report = MeshReport {
         made: &made,
         format: destination.kind,
         options,
@@ -115,7 +115,7 @@ fn thin_warning(thin: &ThinReport) -> Option<String> {
 }
 
 /// What is told about a mesh.
-struct Report<'a> {
+struct MeshReport<'a> {
     made: &'a Polygonized,
     format: Format,
     options: ExportOptions,
@@ -123,7 +123,7 @@ struct Report<'a> {
     total: Duration,
 }
 
-impl Report<'_> {
+impl MeshReport<'_> {
     /// For machines.
     fn json(&self) -> serde_json::Value {
         let Polygonized { mesh, report, lattice, counters, .. } = self.made;

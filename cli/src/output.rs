@@ -24,16 +24,16 @@ pub struct Destination<K> {
 
 /// A place for results. A file keeps its old contents until [`Output::finish`].
 pub struct Output {
-    writer: BufWriter<Target>,
+    writer: BufWriter<OutputTarget>,
     name: String,
 }
 
-enum Target {
+enum OutputTarget {
     Standard(Stdout),
     File(AtomicFile),
 }
 
-impl Write for Target {
+impl Write for OutputTarget {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match self {
             Self::Standard(stdout) => stdout.write(bytes),
@@ -55,10 +55,10 @@ impl Output {
         let path = &destination.path;
         let name = path.display().to_string();
         let target = if is_standard(path) {
-            Target::Standard(io::stdout())
+            OutputTarget::Standard(io::stdout())
         } else {
             let file = AtomicFile::create(path, destination.replace);
-            Target::File(file.map_err(|error| Failure::io("write", &name, error))?)
+            OutputTarget::File(file.map_err(|error| Failure::io("write", &name, error))?)
         };
         Ok(Self { writer: BufWriter::with_capacity(1 << 16, target), name })
     }
@@ -66,8 +66,8 @@ impl Output {
     /// Says which file could not be written. A reader that went away is no error.
     pub fn failure(&self, error: io::Error) -> Failure {
         match self.writer.get_ref() {
-            Target::Standard(_) => Failure::stdout(error),
-            Target::File(_) => Failure::io("write", &self.name, error),
+            OutputTarget::Standard(_) => Failure::stdout(error),
+            OutputTarget::File(_) => Failure::io("write", &self.name, error),
         }
     }
 
@@ -78,8 +78,8 @@ impl Output {
         // Everything has been flushed.
         let (target, _) = writer.into_parts();
         match target {
-            Target::Standard(_) => Ok(()),
-            Target::File(file) => file.finish().map_err(|error| Failure::io("write", name, error)),
+            OutputTarget::Standard(_) => Ok(()),
+            OutputTarget::File(file) => file.finish().map_err(|error| Failure::io("write", name, error)),
         }
     }
 }

@@ -47,7 +47,7 @@ pub fn run(arguments: &RenderArguments, quiet: bool, start: Instant) -> Result<(
         warnings.iter().for_each(|warning| warn(warning));
     }
     warnings.splice(0..0, scene.warnings.iter().cloned());
-    let report = Report {
+    let report = RenderReport {
         made: &made,
         mode: &settings.mode,
         origin: tree.origin(),
@@ -127,7 +127,7 @@ fn failure(scene: &Scene, error: RenderError) -> Failure {
 }
 
 /// What is told about a picture.
-struct Report<'a> {
+struct RenderReport<'a> {
     made: &'a Rendered,
     mode: &'a Mode,
     origin: ModelOrigin,
@@ -135,7 +135,7 @@ struct Report<'a> {
     total: Duration,
 }
 
-impl Report<'_> {
+impl RenderReport<'_> {
     fn pixels(&self) -> u64 {
         u64::from(self.made.picture.width()) * u64::from(self.made.picture.height())
     }

@@ -39,7 +39,7 @@ pub fn run(arguments: &SampleArguments, quiet: bool, start: Instant) -> Result<(
     }
     .map_err(|error| output.failure(error))?;
     output.finish()?;
-    let report = Report {
+    let report = SampleReport {
         sampler: &sampler,
         lattice: &lattice,
         counters: sampler.evaluator().counters(),
@@ -74,7 +74,7 @@ fn failure(scene: &Scene, error: SampleError) -> Failure {
 }
 
 /// What is told about samples.
-struct Report<'a> {
+struct SampleReport<'a> {
     sampler: &'a Sampler,
     lattice: &'a Lattice,
     counters: Counters,
@@ -82,7 +82,7 @@ struct Report<'a> {
     total: Duration,
 }
 
-impl Report<'_> {
+impl SampleReport<'_> {
     /// For machines.
     fn json(&self) -> serde_json::Value {
         let (low, high) = lattice::corners(self.lattice, self.sampler.evaluator().origin());

@@ -47,7 +47,7 @@ pub fn run(arguments: &StatsArguments, quiet: bool, start: Instant) -> Result<()
         warnings.iter().for_each(|warning| warn(warning));
     }
     warnings.splice(0..0, scene.warnings.iter().cloned());
-    let report = Report {
+    let report = StatsReport {
         name: scene.name(),
         support: tree.support(),
         solid: &solid,
@@ -119,7 +119,7 @@ fn warnings(tight: &TightBounds, tolerance: f32) -> Vec<String> {
 }
 
 /// What is told.
-struct Report<'a> {
+struct StatsReport<'a> {
     name: &'a str,
     support: Bounds,
     solid: &'a Solid,
@@ -130,7 +130,7 @@ struct Report<'a> {
     total: Duration,
 }
 
-impl Report<'_> {
+impl StatsReport<'_> {
     fn origin(&self) -> ModelOrigin {
         self.solid.tree().origin()
     }

@@ -3,8 +3,6 @@
 //! `JBT_CONTOUR_MODELS` says how many random models are tried.
 #![allow(clippy::print_stdout, reason = "a test may show its figures")]
 
-mod common;
-
 use std::collections::HashSet;
 use std::f64::consts::PI;
 
@@ -12,11 +10,9 @@ use fastrand::Rng;
 use jbt::build::{Axis, cuboid, point, segment, x, y, z};
 use jbt::contour::{Contour, Detail, Fate, ImageDetail, Mode, Plane, Rectangle, SliceError, Slicer, circles};
 use jbt::export::svg::{Paint, Style, write_svg};
-use jbt::{CancelToken, Compiler, Engine, Evaluator, Fineness, Model, Points, Query, Tree, text};
-
-fn checked(text: &str) -> jbt::CheckedTree {
-    text::parse(text.as_bytes(), &text::Options::default()).expect("it reads").check().expect("a good model")
-}
+use jbt::{CancelToken, Compiler, Engine, Evaluator, Fineness, Model, Points, Query, Tree};
+use jbt_testkit::samples;
+use jbt_testkit::scene::{self, tree as checked};
 
 fn slicer(tree: &jbt::CheckedTree, plane: &str, query: Query) -> Slicer {
     Slicer::new(&Compiler::new(), tree, &plane.parse().expect("a plane"), query).expect("it compiles")
@@ -193,7 +189,7 @@ fn has_its_area(slicer: &Slicer, rectangle: &Rectangle, cells: usize) -> bool {
 }
 
 fn models() -> u64 {
-    std::env::var("JBT_CONTOUR_MODELS").ok().and_then(|count| count.parse().ok()).unwrap_or(1000)
+    scene::count("JBT_CONTOUR_MODELS", 1000)
 }
 
 #[test]
@@ -513,7 +509,7 @@ fn svg_files_are_well_formed_and_complete() {
 
 #[test]
 fn the_twenty_circles_have_the_crossing_cells_of_the_quadtree() {
-    let Some(folder) = common::samples("quadtree") else { return };
+    let Some(folder) = samples::folder("quadtree") else { return };
     let mut reader = csv::Reader::from_path(folder.join("circles_seed1.csv")).expect("a table of circles");
     let rows: Vec<[f64; 5]> = reader.deserialize().collect::<Result<_, _>>().expect("five numbers a row");
     let leaves = rows.iter().map(|&[_, radius, x, _, z]| point([x, z, 0.0], radius));
@@ -541,7 +537,7 @@ fn the_twenty_circles_have_the_crossing_cells_of_the_quadtree() {
 
 #[test]
 fn a_program_of_instructions_is_drawn_as_its_field_says() {
-    let Some(folder) = common::samples("vm") else { return };
+    let Some(folder) = samples::folder("vm") else { return };
     let bytes = std::fs::read(folder.join("prospero.vm")).expect("a program");
     let tree = jbt::import::vm(&bytes).expect("it reads").model.check().expect("a good model");
     let slicer = slicer(&tree, "z=0", Query::FIELD);

@@ -14,16 +14,16 @@
 //! prints the model.
 #![allow(clippy::print_stdout, reason = "a test may show its figures")]
 
-mod common;
-
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use common::{HOSTILE, Random, points};
 use jbt::{Combinator, Compiler, Engine, Evaluator, Level, Model, Points, Query, Samples, Update};
 use jbt_model::check::CheckedTree;
 use jbt_model::kind::NodeKind;
 use jbt_model::walk::{walk, walk_gradient};
 use jbt_model::warp::Warp;
+use jbt_testkit::points::{HOSTILE, spicy};
+use jbt_testkit::random::Random;
+use jbt_testkit::scene::count;
 use jbt_text::print;
 use rayon::prelude::*;
 
@@ -35,10 +35,6 @@ const FIELD_BOUND: f64 = 4e-5;
 const GRADIENT_BOUND: f64 = 2e-3;
 const ATTRIBUTE_BOUND: f64 = 2e-3;
 
-fn setting(name: &str, default: u64) -> u64 {
-    std::env::var(name).ok().and_then(|value| value.parse().ok()).unwrap_or(default)
-}
-
 #[derive(Default)]
 struct Tally {
     without_surface: AtomicU64,
@@ -48,7 +44,7 @@ struct Tally {
 
 #[test]
 fn engines_agree_to_the_bit_and_with_the_oracle() {
-    let (shapes, seed) = (setting("JBT_DIFFERENTIAL_SHAPES", SHAPES), setting("JBT_DIFFERENTIAL_SEED", 0));
+    let (shapes, seed) = (count("JBT_DIFFERENTIAL_SHAPES", SHAPES), count("JBT_DIFFERENTIAL_SEED", 0));
     let tally = Tally::default();
     (seed..seed + shapes).into_par_iter().for_each(|shape| try_shape(shape, &tally));
     let without = tally.without_surface.load(Ordering::Relaxed);
@@ -101,7 +97,7 @@ fn try_shape(shape: u64, tally: &Tally) {
         }
         let mut rng = fastrand::Rng::with_seed(shape * SETS + set);
         // Every length of a last block comes up, with and without whole blocks before it.
-        let points = points(&mut rng, 1 + (shape + 7 * set) as usize % 45, 1.6);
+        let points = spicy(&mut rng, 1 + (shape + 7 * set) as usize % 45, 1.6).collect();
         let what = format!("shape {shape}, set {set}");
         let answers = compare_engines(&what, &model, all.as_ref().expect("made above"), &points);
         check_finite(&what, &model, &tree, &points, &answers);

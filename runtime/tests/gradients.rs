@@ -1,12 +1,10 @@
 //! Gradients are finite at all points with finite coordinates: they are 0 where a field stands still,
 //! saturate at 2^100, and have the bits that they had where nothing overflows, with the ops that they took.
 
-mod common;
-
-use common::HOSTILE;
 use fastrand::Rng;
 use jbt::region::Divisible;
 use jbt::{Box3, CheckedTree, Compiler, Engine, Points, Pruner, Query, Samples, text};
+use jbt_testkit::points::HOSTILE;
 
 /// Beyond this gradients saturate: 2^100.
 const LARGEST: f32 = (1u128 << 100) as f32;

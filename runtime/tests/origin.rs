@@ -9,9 +9,6 @@
 //!
 //! `JBT_ORIGIN_SHAPES` sets the number of random shapes.
 
-mod common;
-
-use common::Random;
 use fastrand::Rng;
 use jbt::contour::{Detail, Slicer};
 use jbt::divide::Edit;
@@ -27,18 +24,12 @@ use jbt::{
     Polygonized, Pruner, Query, Ray, Samples, Tracer, Tree,
 };
 use jbt_model::walk::{walk, walk_gradient};
+use jbt_testkit::random::Random;
+use jbt_testkit::scene::{count, model, tree};
 use rayon::prelude::*;
 
 /// A place where f32 has steps of 0.008.
 const FAR: [f64; 3] = [1e5, -1e5, 3.3e4];
-
-fn model(text: &str) -> Model {
-    parse(text.as_bytes(), &Options::default()).expect("it reads")
-}
-
-fn tree(text: &str) -> CheckedTree {
-    model(text).check().expect("it is a good model")
-}
 
 /// The node of a text somewhere else.
 fn moved(node: &str, [x, y, z]: [f64; 3]) -> String {
@@ -227,7 +218,7 @@ fn fields_far_away_are_those_of_the_oracle() {
 
 #[test]
 fn random_models_far_away_agree_with_the_oracle_as_well_as_at_home() {
-    let shapes = std::env::var("JBT_ORIGIN_SHAPES").ok().and_then(|value| value.parse().ok()).unwrap_or(200);
+    let shapes = count("JBT_ORIGIN_SHAPES", 200);
     let compared: usize = (0..shapes).into_par_iter().map(try_shape).sum();
     assert!(compared > 20 * shapes as usize, "{compared} points of {shapes} shapes were compared");
 }

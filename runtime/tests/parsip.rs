@@ -2,9 +2,8 @@
 //! and colour.
 #![allow(clippy::print_stdout, reason = "a test may show its figures")]
 
-mod common;
-
 use jbt::{Compiler, Engine, Points, Query};
+use jbt_testkit::samples;
 use jbt_text::import;
 
 /// Field absolute, gradient relative to `1 + |g|`, colour absolute.
@@ -28,7 +27,7 @@ fn oracle(path: &std::path::Path) -> Vec<[f64; 10]> {
 
 #[test]
 fn every_scene_has_the_values_that_others_computed() {
-    let Some(folder) = common::samples("parsip") else { return };
+    let Some(folder) = samples::folder("parsip") else { return };
     let mut scenes = 0;
     for entry in std::fs::read_dir(folder).expect("a readable folder") {
         let path = entry.expect("a readable folder").path();

@@ -9,28 +9,23 @@
 //! the model.
 #![allow(clippy::print_stdout, reason = "a test may show its figures")]
 
-mod common;
-
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use common::Random;
 use fastrand::Rng;
 use jbt::divide::Edit;
 use jbt::prune::Region;
 use jbt::region::{ANYTHING, Divisible};
-use jbt::{Box3, CheckedTree, Compiler, Engine, Evaluator, Model, Points, Pruner, Query, Update};
+use jbt::{Box3, Compiler, Engine, Evaluator, Model, Points, Pruner, Query, Update};
 use jbt_model::tree::Tree;
-use jbt_text::{Options, parse, print};
+use jbt_testkit::random::Random;
+use jbt_testkit::scene::{count, model, tree};
+use jbt_text::print;
 use rayon::prelude::*;
 
 const SHAPES: u64 = 250;
 const POINTS: u64 = 24;
 /// Boxes of each shape.
 const BOXES: usize = 10;
-
-fn setting(name: &str, default: u64) -> u64 {
-    std::env::var(name).ok().and_then(|value| value.parse().ok()).unwrap_or(default)
-}
 
 #[derive(Default)]
 struct Tally {
@@ -46,7 +41,7 @@ struct Tally {
 
 #[test]
 fn pruned_answers_have_the_bits_of_all_rows() {
-    let (shapes, points) = (setting("JBT_PRUNE_SHAPES", SHAPES), setting("JBT_PRUNE_POINTS", POINTS));
+    let (shapes, points) = (count("JBT_PRUNE_SHAPES", SHAPES), count("JBT_PRUNE_POINTS", POINTS));
     let tally = Tally::default();
     (0..shapes).into_par_iter().for_each(|shape| try_shape(shape, points as usize, &tally));
     let Tally { points, all, selected, bounded, .. } = tally;
@@ -262,14 +257,6 @@ fn an_edit_is_where_the_rows_have_changed() {
     assert_eq!(renewed.selection(), more.region(far).unwrap().selection());
 }
 
-fn model(text: &str) -> Model {
-    parse(text.as_bytes(), &Options::default()).expect("it reads")
-}
-
-fn text(text: &str) -> CheckedTree {
-    model(text).check().expect("it is a model")
-}
-
 /// A row of tanks, or one alone. The last has a choice of turrets, some of which share parts.
 const TANKS: &str = "jbt 1 param turret = 0 param scene = 0
     let ball = point { at (3 0 0.4) radius 0.4 }
@@ -296,7 +283,7 @@ const TANKS: &str = "jbt 1 param turret = 0 param scene = 0
 
 #[test]
 fn a_choice_is_an_edit_where_the_children_are() {
-    let (model, start) = (model(TANKS), text(TANKS));
+    let (model, start) = (model(TANKS), tree(TANKS));
     let whole = Box3::new([-1.0; 3], [4.0, 1.0, 1.5]);
     let points = points_in(&mut Rng::with_seed(4), &whole, 2000);
     for engine in Engine::ALL {
@@ -362,7 +349,7 @@ fn setting_a_parameter_is_an_edit_where_something_has_changed() {
     let compiler = Compiler::for_engine(Engine::Lanes);
     let whole = Box3::new([-3.0; 3], [3.0; 3]);
     let (mut edits, mut bounded) = (0, 0);
-    for shape in 0..setting("JBT_PRUNE_SHAPES", 200).min(200) {
+    for shape in 0..count("JBT_PRUNE_SHAPES", 200).min(200) {
         let mut rng = Rng::with_seed(shape);
         let points = points_in(&mut rng, &whole, 200);
         let model = Random::new(shape, shape).model(1 + (shape % 23) as usize);
@@ -398,15 +385,15 @@ fn setting_a_parameter_is_an_edit_where_something_has_changed() {
 fn rows_that_come_to_an_intersection_matter_everywhere() {
     let compiler = Compiler::for_engine(Engine::Lanes);
     let ball = "point { at (0 0 0) radius 1 }";
-    let two = Pruner::new(&compiler, &text(&format!("jbt 1 intersection {{ {ball} {ball} }}"))).unwrap();
+    let two = Pruner::new(&compiler, &tree(&format!("jbt 1 intersection {{ {ball} {ball} }}"))).unwrap();
     let three = format!("jbt 1 intersection {{ {ball} {ball} point {{ at (0.9 0 0) radius 0.2 }} }}");
-    assert_eq!(two.updated(&text(&three)).unwrap().edit(&two), Edit::Everywhere);
+    assert_eq!(two.updated(&tree(&three)).unwrap().edit(&two), Edit::Everywhere);
 }
 
 #[test]
 fn a_survey_is_ranges_and_regions_in_one() {
     let bits = |range: [f32; 2]| range.map(f32::to_bits);
-    for shape in 0..setting("JBT_PRUNE_SHAPES", SHAPES).min(60) {
+    for shape in 0..count("JBT_PRUNE_SHAPES", SHAPES).min(60) {
         let tree = Random::new(shape, shape).model(12).check().expect("a good model");
         let pruner = Pruner::new(&Compiler::for_engine(Engine::Lanes), &tree).expect("it compiles");
         let around = Box3::new([-2.0; 3], [2.0; 3]);
@@ -444,7 +431,7 @@ fn operands_that_do_not_decide_are_the_same_for_any_number_of_boxes() {
     let at = |index: i32| f64::from(index) / 8.0 - 4.0;
     let formulas: String =
         (0..64).map(|index| format!("expression {{ 1 - abs(x - {}) - abs(y) }}\n", at(index))).collect();
-    let tree = text(&format!("jbt 1 union {{ {formulas} }}"));
+    let tree = tree(&format!("jbt 1 union {{ {formulas} }}"));
     for engine in [Engine::Lanes, Engine::Jit] {
         let pruner = Pruner::new(&Compiler::for_engine(engine), &tree).expect("it compiles");
         let region = pruner.region(Box3::new([-5.0; 3], [5.0; 3])).expect("a region");

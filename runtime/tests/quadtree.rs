@@ -2,7 +2,6 @@
 
 #[path = "../examples/quadtree/circles.rs"]
 mod circles;
-mod common;
 #[path = "../examples/quadtree/divided.rs"]
 mod divided;
 #[path = "../examples/quadtree/lattice.rs"]
@@ -14,6 +13,7 @@ mod published;
 
 use circles::{CIRCLES, Circle, ISO};
 use jbt::{Compiler, Engine};
+use jbt_testkit::samples;
 use lattice::Block;
 use picture::{Panel, svg};
 
@@ -64,7 +64,7 @@ fn a_scene_that_is_no_model_is_an_error() {
 
 #[test]
 fn the_samples_agree() {
-    let Some(folder) = common::samples("quadtree") else { return };
+    let Some(folder) = samples::folder("quadtree") else { return };
     let mut reader = csv::Reader::from_path(folder.join("circles_seed1.csv")).expect("a table of circles");
     let rows: Vec<[f64; 5]> = reader.deserialize().collect::<Result<_, _>>().expect("five numbers a row");
     let circles: Vec<Circle> =

@@ -1,18 +1,11 @@
 //! Straight code gives the bits of rows, for every query, engine and level; regions, counters and edits do
 //! not notice it, but for what an edit compiles.
 
-mod common;
-
 use jbt::ir::Level;
 use jbt::region::Divisible;
 use jbt::{Box3, Compiler, Engine, Evaluator, Points, Pruner, Query, Update};
 use jbt_model::check::CheckedTree;
-use jbt_text::{Options, parse};
-
-fn tree(text: &str) -> CheckedTree {
-    let model = parse(text.as_bytes(), &Options::default()).unwrap_or_else(|e| panic!("{text}\n{e:?}"));
-    model.check().unwrap_or_else(|errors| panic!("{text}\n{errors:?}"))
-}
+use jbt_testkit::scene::tree;
 
 /// A wave at a height; waves share everything but this and their `phase`.
 fn wave(height: f64, phase: f64) -> String {

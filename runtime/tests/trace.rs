@@ -5,29 +5,20 @@
 //! the first seed. A failure prints the model.
 #![allow(clippy::print_stdout, reason = "a test may show its figures")]
 
-mod common;
-
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use common::Random;
 use fastrand::Rng;
 use jbt::region::{ANYTHING, Divisible as _};
-use jbt::text::{Options, parse, print};
+use jbt::text::print;
 use jbt::trace::{Hits, Ray, TraceError, Tracer};
-use jbt::{Box3, CheckedTree, Compiler, Engine, Evaluator, Model, Points, Pruner, Query, Samples};
+use jbt::{Box3, Compiler, Engine, Evaluator, Model, Points, Pruner, Query, Samples};
 use jbt_model::kind::NodeKind;
+use jbt_testkit::random::Random;
+use jbt_testkit::scene::{count, tree};
 use rayon::prelude::*;
 
 const BALL: &str = "jbt 1 point { surface_radius 1 }";
-
-fn model(text: &str) -> Model {
-    parse(text.as_bytes(), &Options::default()).unwrap_or_else(|errors| panic!("{text}\n{errors:?}"))
-}
-
-fn tree(text: &str) -> CheckedTree {
-    model(text).check().unwrap_or_else(|errors| panic!("{text}\n{errors:?}"))
-}
 
 fn tracer(text: &str) -> Tracer {
     Tracer::new(&Compiler::new(), &tree(text), Query::ALL).expect("it compiles")
@@ -336,10 +327,6 @@ fn a_field_that_says_nothing_of_boxes_takes_no_longer_than_the_limit() {
     assert_eq!(tracer.any(&long, 1e-5), Err(TraceError::Work { rays: 1 }));
 }
 
-fn setting(name: &str, default: u64) -> u64 {
-    std::env::var(name).ok().and_then(|value| value.parse().ok()).unwrap_or(default)
-}
-
 /// Rays about random models, which are within 2 of the origin for the most part: from outside, from inside,
 /// along axes, with any length of direction.
 fn random_ray(rng: &mut Rng) -> Ray {
@@ -368,8 +355,8 @@ struct Tally {
 #[test]
 fn random_models_are_hit_where_dense_sampling_says() {
     let default = if cfg!(debug_assertions) { 12 } else { 300 };
-    let (trees, seed) = (setting("JBT_TRACE_TREES", default), setting("JBT_TRACE_SEED", 0));
-    let rays = setting("JBT_TRACE_RAYS", 100) as usize;
+    let (trees, seed) = (count("JBT_TRACE_TREES", default), count("JBT_TRACE_SEED", 0));
+    let rays = count("JBT_TRACE_RAYS", 100) as usize;
     let tally = Tally::default();
     (seed..seed + trees).into_par_iter().for_each(|seed| try_model(seed, rays, &tally));
     let Tally { hits, rays, points, dense } = tally;
@@ -504,7 +491,7 @@ impl Places {
 #[test]
 fn rays_hit_what_is_defined_without_boxes() {
     let models = if cfg!(debug_assertions) { 6 } else { 72 };
-    let seed = setting("JBT_TRACE_SEED", 0);
+    let seed = count("JBT_TRACE_SEED", 0);
     let [thin, hits] = [const { AtomicU64::new(0) }; 2];
     (seed..seed + models).into_par_iter().for_each(|seed| {
         let model = Random::new(seed, seed ^ 0x7417).model(1 + (seed % 17) as usize);

@@ -1,16 +1,14 @@
 //! Programs of instructions compile quickly, and every engine and every pruned box gives their values.
 //!
-//! The samples are looked for in `shared/samples/vm`, or in the folder `vm` of `JBT_SAMPLES`; where they are
-//! missing, the test says so.
+//! The samples are those of the folder `vm`, see `jbt_testkit::samples`.
 #![allow(clippy::print_stdout, reason = "a test may show its figures")]
-
-mod common;
 
 use std::time::Instant;
 
 use jbt::region::Divisible;
 use jbt::{Box3, Compiler, Engine, Points, Pruner, Query};
 use jbt_model::walk::walk;
+use jbt_testkit::samples;
 use jbt_text::import::vm;
 
 /// Of the largest coordinate or value: f32 rounds some thousand times on the way, most of it near 0.
@@ -18,7 +16,7 @@ const BOUND: f64 = 2e-5;
 
 #[test]
 fn samples_compile_and_agree() {
-    let Some(folder) = common::samples("vm") else { return };
+    let Some(folder) = samples::folder("vm") else { return };
     let mut rng = fastrand::Rng::with_seed(3);
     for (name, size) in [("hi", 1.5f32), ("bear", 12.0), ("colonnade", 1.2), ("prospero", 1.0)] {
         let start = Instant::now();

@@ -90,7 +90,7 @@ const SAMPLE: Duration = Duration::from_millis(1);
 const LONG: Duration = Duration::from_millis(100);
 
 /// Somebody's way of doing the work.
-struct Entry<'a> {
+struct ContestEntry<'a> {
     contestant: Contestant,
     /// Which of the contestant's ways.
     form: &'static str,
@@ -99,19 +99,19 @@ struct Entry<'a> {
     first: Option<Duration>,
     /// Runs in a measurement.
     batch: u32,
-    samples: Vec<Sample>,
+    samples: Vec<TimeSample>,
 }
 
 /// A measurement.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Sample {
+pub struct TimeSample {
     /// The round, from 1; 0 for a first run that counts.
     pub round: usize,
     /// Of a whole run.
     pub time: Duration,
 }
 
-impl Entry<'_> {
+impl ContestEntry<'_> {
     fn measure(&mut self) -> Duration {
         let start = Instant::now();
         for _ in 0..self.batch {
@@ -125,7 +125,7 @@ impl Entry<'_> {
     fn begin(&mut self) {
         let first = self.first.unwrap_or_else(|| self.measure());
         if first >= LONG {
-            self.samples.push(Sample { round: 0, time: first });
+            self.samples.push(TimeSample { round: 0, time: first });
             return;
         }
         if first < SAMPLE {
@@ -137,7 +137,7 @@ impl Entry<'_> {
 
     /// Whether another round is needed; `over` once the contest has gone on for long enough.
     fn goes_on(&self, effort: Effort, over: bool) -> bool {
-        let Some(&Sample { time: first, .. }) = self.samples.first() else { return true };
+        let Some(&TimeSample { time: first, .. }) = self.samples.first() else { return true };
         if first > effort.endurance {
             return false;
         }
@@ -164,7 +164,7 @@ pub struct Standing {
     /// Of a whole run.
     pub median: Duration,
     /// All measurements, in their order.
-    pub samples: Vec<Sample>,
+    pub samples: Vec<TimeSample>,
 }
 
 /// What came out.
@@ -189,7 +189,7 @@ impl Standing {
     /// their medians, if there are fewer than three of these.
     #[must_use]
     pub fn ratio(&self, other: &Self) -> f64 {
-        let behind = |sample: &Sample| other.samples.iter().find(|their| their.round == sample.round);
+        let behind = |sample: &TimeSample| other.samples.iter().find(|their| their.round == sample.round);
         let pairs = self.samples.iter().filter_map(|sample| Some((sample.time, behind(sample)?.time)));
         let mut ratios: Vec<f64> =
             pairs.map(|(ours, theirs)| ours.as_secs_f64() / theirs.as_secs_f64()).collect();
@@ -204,7 +204,7 @@ impl Standing {
 /// A contest that is being prepared.
 #[derive(Default)]
 pub struct Contest<'a> {
-    entries: Vec<Entry<'a>>,
+    entries: Vec<ContestEntry<'a>>,
     disagreements: Vec<String>,
 }
 
@@ -262,7 +262,7 @@ impl<'a> Contest<'a> {
         let run = Box::new(move || {
             black_box(run());
         });
-        self.entries.push(Entry { contestant, form, run, first, batch: 1, samples: Vec::new() });
+        self.entries.push(ContestEntry { contestant, form, run, first, batch: 1, samples: Vec::new() });
     }
 
     /// Lets all run in turn.
@@ -278,7 +278,7 @@ impl<'a> Contest<'a> {
             for entry in &mut self.entries {
                 if entry.goes_on(effort, over) {
                     let time = entry.measure();
-                    entry.samples.push(Sample { round: round + 1, time });
+                    entry.samples.push(TimeSample { round: round + 1, time });
                     ran = true;
                 }
             }
@@ -291,9 +291,9 @@ impl<'a> Contest<'a> {
 }
 
 /// The fastest form of each contestant.
-fn standings(entries: Vec<Entry<'_>>) -> Vec<Standing> {
+fn standings(entries: Vec<ContestEntry<'_>>) -> Vec<Standing> {
     let mut standings: Vec<Standing> = Vec::new();
-    for Entry { contestant, form, samples, .. } in entries {
+    for ContestEntry { contestant, form, samples, .. } in entries {
         let mut times: Vec<Duration> = samples.iter().map(|sample| sample.time).collect();
         let standing = Standing { contestant, form, median: median(&mut times), samples };
         match standings.iter_mut().find(|standing| standing.contestant == contestant) {
@@ -342,7 +342,7 @@ mod tests {
     fn a_clock_that_changes_does_not_change_ratios() {
         let ms = Duration::from_millis;
         let standing = |contestant, times: [u64; 5]| {
-            let samples = times.iter().zip(1..).map(|(&time, round)| Sample { round, time: ms(time) });
+            let samples = times.iter().zip(1..).map(|(&time, round)| TimeSample { round, time: ms(time) });
             Standing { contestant, form: "", median: median(&mut times.map(ms)), samples: samples.collect() }
         };
         // The clock halves in the third round, between the two.

@@ -9,7 +9,7 @@ use serde_json::json;
 use super::contest::{Contest, Contestant};
 use super::options::Options;
 use super::oracle::{Oracle, Tolerance};
-use super::report::Row;
+use super::report::ResultRow;
 use crate::limit;
 use crate::model::{Blob, blobs, cube, tree};
 use crate::naive::{Walker, differences, separate};
@@ -19,14 +19,14 @@ const PRIMITIVES: usize = 200;
 const POINTS: usize = 16_384;
 
 /// A model and points, for everybody.
-struct Task {
+struct DenseTask {
     blobs: Vec<Blob>,
     tree: CheckedTree,
     points: Points,
     oracle: Oracle,
 }
 
-impl Task {
+impl DenseTask {
     fn new(primitives: usize, points: usize) -> Self {
         let blobs = blobs(primitives, 1);
         let (tree, points) = (tree(&blobs), cube(points, 2));
@@ -107,8 +107,8 @@ impl Task {
     }
 
     /// The row of a contest whose unit is a primitive at a point.
-    fn row(&self, case: &'static str, engine: &str, contest: Contest<'_>, options: Options) -> Row {
-        Row {
+    fn row(&self, case: &'static str, engine: &str, contest: Contest<'_>, options: Options) -> ResultRow {
+        ResultRow {
             case,
             primitives: self.blobs.len(),
             points: self.points.len(),
@@ -121,8 +121,8 @@ impl Task {
 }
 
 /// The field.
-pub(super) fn field(options: Options) -> Vec<Row> {
-    let task = Task::new(PRIMITIVES, POINTS);
+pub(super) fn field(options: Options) -> Vec<ResultRow> {
+    let task = DenseTask::new(PRIMITIVES, POINTS);
     let mut contest = Contest::new();
     let engine = task.ours(&mut contest, Query::FIELD, None);
     task.limit_field(&mut contest);
@@ -132,8 +132,8 @@ pub(super) fn field(options: Options) -> Vec<Row> {
 }
 
 /// Field and gradient.
-pub(super) fn gradient(options: Options) -> Vec<Row> {
-    let task = Task::new(PRIMITIVES, POINTS);
+pub(super) fn gradient(options: Options) -> Vec<ResultRow> {
+    let task = DenseTask::new(PRIMITIVES, POINTS);
     let (limit, walker) = (limit::Blobs::new(&task.blobs), Walker::new(&task.tree));
     let mut contest = Contest::new();
     let engine = task.ours(&mut contest, Query::GRADIENT, None);
@@ -152,8 +152,8 @@ pub(super) fn gradient(options: Options) -> Vec<Row> {
 }
 
 /// Field, gradient and colour.
-pub(super) fn full(options: Options) -> Vec<Row> {
-    let task = Task::new(PRIMITIVES, POINTS);
+pub(super) fn full(options: Options) -> Vec<ResultRow> {
+    let task = DenseTask::new(PRIMITIVES, POINTS);
     let (limit, walker) = (limit::Blobs::new(&task.blobs), Walker::new(&task.tree));
     let mut contest = Contest::new();
     let engine = task.ours(&mut contest, Query::ALL, None);
@@ -169,8 +169,8 @@ pub(super) fn full(options: Options) -> Vec<Row> {
 }
 
 /// The field without machine code.
-pub(super) fn interpreter(options: Options) -> Vec<Row> {
-    let task = Task::new(PRIMITIVES, POINTS);
+pub(super) fn interpreter(options: Options) -> Vec<ResultRow> {
+    let task = DenseTask::new(PRIMITIVES, POINTS);
     let mut contest = Contest::new();
     let engine = task.ours(&mut contest, Query::FIELD, Some(Engine::Lanes));
     task.limit_field(&mut contest);
@@ -180,10 +180,10 @@ pub(super) fn interpreter(options: Options) -> Vec<Row> {
 }
 
 /// The field, by number of primitives.
-pub(super) fn scaling(options: Options) -> Vec<Row> {
+pub(super) fn scaling(options: Options) -> Vec<ResultRow> {
     let counts: &[usize] = if options.quick { &[20, 200, 2_000] } else { &[20, 200, 2_000, 20_000] };
     let row = |&count: &usize| {
-        let task = Task::new(count, 4_096);
+        let task = DenseTask::new(count, 4_096);
         let mut contest = Contest::new();
         let engine = task.ours(&mut contest, Query::FIELD, None);
         task.limit_field(&mut contest);
@@ -193,7 +193,7 @@ pub(super) fn scaling(options: Options) -> Vec<Row> {
         }
         task.walk_field(&mut contest);
         let row = task.row("scaling", engine, contest, options);
-        Row { unit: "run", units: 1.0, ..row }
+        ResultRow { unit: "run", units: 1.0, ..row }
     };
     counts.iter().map(row).collect()
 }

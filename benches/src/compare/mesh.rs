@@ -10,7 +10,7 @@ use serde_json::json;
 use super::contest::{Contest, Contestant};
 use super::options::Options;
 use super::oracle::{Oracle, Tolerance};
-use super::report::Row;
+use super::report::ResultRow;
 use crate::limit;
 use crate::model::{self, Blob, ISO};
 use crate::peers::Threads;
@@ -32,14 +32,14 @@ const MOST_WALKED: usize = 10_000_000;
 const TRIANGLES_OFF: f64 = 0.01;
 
 /// What is meshed, and on which threads.
-struct Task {
+struct MeshTask {
     blobs: Vec<Blob>,
     tree: CheckedTree,
     cells: usize,
     pool: rayon::ThreadPool,
 }
 
-impl Task {
+impl MeshTask {
     fn new(blobs: Vec<Blob>, cells: usize, options: Options) -> Self {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build();
         let tree = model::tree(&blobs);
@@ -109,8 +109,8 @@ impl Task {
         contest: Contest<'_>,
         (triangles, engine): (usize, &str),
         options: Options,
-    ) -> Row {
-        Row {
+    ) -> ResultRow {
+        ResultRow {
             case,
             primitives: self.blobs.len(),
             points: (self.cells + 1).pow(3),
@@ -132,8 +132,8 @@ pub(super) fn peer_threads(options: Options) -> Threads {
 }
 
 /// Blobs in a cube.
-pub(super) fn blobs(count: usize, case: &'static str, options: Options) -> Vec<Row> {
-    let task = Task::new(model::blobs(count, 1), CELLS, options);
+pub(super) fn blobs(count: usize, case: &'static str, options: Options) -> Vec<ResultRow> {
+    let task = MeshTask::new(model::blobs(count, 1), CELLS, options);
     let mut contest = Contest::new();
     let made = task.enter(&mut contest);
     if !(options.quick && count > 1_000) {
@@ -163,12 +163,12 @@ fn gates(count: usize, options: Options) -> &'static [Gate] {
 
 /// A ball of particles of one size, each of which about 30 others reach. splashsurf computes another surface
 /// of the same particles, with the same reach and cells.
-pub(super) fn particles(options: Options) -> Vec<Row> {
+pub(super) fn particles(options: Options) -> Vec<ResultRow> {
     let counts: &[(usize, usize)] =
         if options.quick { &[(10_000, 83)] } else { &[(10_000, 83), (583_000, LATTICE_OF_PARTICLES - 1)] };
     let row = |&(count, cells): &(usize, usize)| {
         let particles = model::particles(count, 1);
-        let task = Task::new(particles, cells, options);
+        let task = MeshTask::new(particles, cells, options);
         let mut contest = Contest::new();
         let made = task.enter(&mut contest);
         let cell = 2.0 / cells as f32;
@@ -197,11 +197,11 @@ fn divisions(count: usize) -> Vec<(Division, &'static str)> {
 }
 
 /// Blobs of constant overlap in number, on one lattice: what a blob more costs.
-pub(super) fn scaling(options: Options) -> Vec<Row> {
+pub(super) fn scaling(options: Options) -> Vec<ResultRow> {
     let counts: &[usize] =
         if options.quick { &[1_000, 10_000] } else { &[1_000, 10_000, 100_000, 1_000_000] };
     let row = |&count: &usize| {
-        let task = Task::new(model::blobs(count, 1), 2 * CELLS, options);
+        let task = MeshTask::new(model::blobs(count, 1), 2 * CELLS, options);
         let mut contest = Contest::new();
         let made = task.enter(&mut contest);
         task.row("mesh-scaling", contest, made, options)

@@ -1,7 +1,7 @@
 //! Ours against the physical limit and the peers: cases, each a contest over one kind of work.
 //!
 //! ```text
-//! Case ──► models, points ──► Oracle checks every contestant ──► Contest runs them in turn ──► Row: medians, ratios
+//! Case ──► models, points ──► Oracle checks every contestant ──► Contest runs them in turn ──► ResultRow: medians, ratios
 //! ```
 //!
 //! All contestants of a case are given the same numbers and run on as many threads. Whoever's answers are off
@@ -19,8 +19,8 @@ mod rows;
 mod train;
 
 pub use contest::{Contestant, Effort, Standing, Standings};
-pub use options::{Options, sample};
-pub use report::{Row, heading, line};
+pub use options::Options;
+pub use report::{ResultRow, heading, line};
 
 /// A case.
 #[derive(Clone, Copy)]
@@ -29,7 +29,7 @@ pub struct Case {
     pub name: &'static str,
     /// What is measured, for people.
     pub what: &'static str,
-    run: fn(Options) -> Vec<Row>,
+    run: fn(Options) -> Vec<ResultRow>,
 }
 
 impl Case {
@@ -109,7 +109,7 @@ impl Case {
 
     /// Runs it.
     #[must_use]
-    pub fn run(&self, options: Options) -> Vec<Row> {
+    pub fn run(&self, options: Options) -> Vec<ResultRow> {
         (self.run)(options)
     }
 }

@@ -1,6 +1,5 @@
-//! What applies to every case, and the samples.
+//! What applies to every case.
 
-use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use super::contest::Effort;
@@ -24,16 +23,4 @@ impl Options {
         };
         Effort { budget, patience, endurance }
     }
-}
-
-/// A file of the samples, if it is here: in the folder that `JBT_SAMPLES` names, or beside the repository.
-///
-/// # Errors
-///
-/// Whatever the system says of a file that cannot be read, in words for people.
-pub fn sample(name: &str) -> Result<Vec<u8>, String> {
-    let root = std::env::var_os("JBT_SAMPLES")
-        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/samples"), PathBuf::from);
-    std::fs::read(root.join(name))
-        .map_err(|error| format!("no {name} in the folder that JBT_SAMPLES names: {error}"))
 }

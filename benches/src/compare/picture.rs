@@ -8,13 +8,14 @@ use jbt::render::{Mode, Render, Renderer, View};
 use jbt::{Box3, Compiler, Fineness, Query};
 use jbt_model::check::CheckedTree;
 use jbt_model::walk::walk;
+use jbt_testkit::samples;
 use jbt_text::import;
 use serde_json::json;
 
 use super::contest::{Contest, Contestant, Standings};
 use super::mesh::peer_threads;
-use super::options::{Options, sample};
-use super::report::Row;
+use super::options::Options;
+use super::report::ResultRow;
 use crate::model;
 use crate::peers::fidget::{FidgetModel, FidgetProgram, Gate, JitFunction, VmFunction};
 
@@ -38,9 +39,9 @@ fn pool(options: Options) -> rayon::ThreadPool {
 }
 
 /// Which pixels of a slice are inside.
-pub(super) fn prospero(options: Options) -> Vec<Row> {
+pub(super) fn prospero(options: Options) -> Vec<ResultRow> {
     let pixels = (SIDE * SIDE) as usize;
-    let row = |primitives, standings, extra| Row {
+    let row = |primitives, standings, extra| ResultRow {
         case: "prospero",
         primitives,
         points: pixels,
@@ -87,7 +88,7 @@ pub(super) fn prospero(options: Options) -> Vec<Row> {
 
 /// The program's text, and its model.
 fn program() -> Result<(Vec<u8>, CheckedTree), String> {
-    let bytes = sample(PROGRAM)?;
+    let bytes = samples::file(PROGRAM)?;
     let imported = import::vm(&bytes).map_err(|_| "the program has errors".to_owned())?;
     let tree = imported.model.check().map_err(|_| "the model has errors".to_owned())?;
     Ok((bytes, tree))
@@ -110,7 +111,7 @@ fn check(tree: &CheckedTree, image: &[u8]) -> Result<(), String> {
 }
 
 /// A picture with normals of blobs, one of which has just been edited.
-pub(super) fn blobs(options: Options) -> Vec<Row> {
+pub(super) fn blobs(options: Options) -> Vec<ResultRow> {
     let blobs = model::blobs(BLOBS, 1);
     let mut edited = blobs.clone();
     edited[0].radius *= 1.1;
@@ -150,7 +151,7 @@ pub(super) fn blobs(options: Options) -> Vec<Row> {
     }
     let extra = vec![("threads", json!(options.threads)), ("pixels_hit", json!(seen))];
     let standings = contest.run(options.effort());
-    vec![Row {
+    vec![ResultRow {
         case: "picture",
         primitives: BLOBS,
         points: (PICTURE * PICTURE) as usize,

@@ -6,12 +6,13 @@ use fidget::render::RenderHints;
 use jbt::{Compiler, Engine, Points, Query};
 use jbt_model::check::CheckedTree;
 use jbt_model::walk::walk;
+use jbt_testkit::samples;
 use jbt_text::import;
 use serde_json::json;
 
 use super::contest::{Contest, Contestant, Standings};
-use super::options::{Options, sample};
-use super::report::Row;
+use super::options::Options;
+use super::report::ResultRow;
 use crate::model;
 use crate::peers::fidget::{FidgetProgram, JitFunction, VmFunction};
 
@@ -24,7 +25,7 @@ const LOOKS: usize = 64;
 const TOLERANCE: f64 = 1e-3;
 
 /// A program, and points in the cube [-1, 1]^3.
-struct Program {
+struct ImportedProgram {
     name: &'static str,
     bytes: Vec<u8>,
     tree: CheckedTree,
@@ -33,9 +34,9 @@ struct Program {
     known: Vec<(usize, f64)>,
 }
 
-impl Program {
+impl ImportedProgram {
     fn new(name: &'static str) -> Result<Self, String> {
-        let bytes = sample(&format!("vm/{name}.vm"))?;
+        let bytes = samples::file(&format!("vm/{name}.vm"))?;
         let imported = import::vm(&bytes).map_err(|_| format!("{name} has errors"))?;
         let tree = imported.model.check().map_err(|_| format!("the model of {name} has errors"))?;
         let points = model::cube(POINTS, 3);
@@ -78,13 +79,13 @@ impl Program {
         contest.enter(contestant, "", checked, move || tape.eval(self.points.planes(), &mut values));
     }
 
-    fn row(&self, options: Options) -> Row {
+    fn row(&self, options: Options) -> ResultRow {
         let mut contest = Contest::new();
         self.ours(&mut contest, Contestant::Ours, &Compiler::new());
         self.ours(&mut contest, Contestant::Lanes, &Compiler::for_engine(Engine::Lanes));
         self.fidget::<JitFunction>(&mut contest, Contestant::FidgetJit);
         self.fidget::<VmFunction>(&mut contest, Contestant::FidgetVm);
-        Row {
+        ResultRow {
             case: "programs",
             primitives: self.bytes.iter().filter(|&&byte| byte == b'\n').count(),
             points: POINTS,
@@ -97,10 +98,10 @@ impl Program {
 }
 
 /// The field of each program, without leaving anything out.
-pub(super) fn programs(options: Options) -> Vec<Row> {
-    let row = |name| match Program::new(name) {
+pub(super) fn programs(options: Options) -> Vec<ResultRow> {
+    let row = |name| match ImportedProgram::new(name) {
         Ok(program) => program.row(options),
-        Err(reason) => Row {
+        Err(reason) => ResultRow {
             case: "programs",
             primitives: 0,
             points: 0,

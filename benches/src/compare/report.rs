@@ -8,7 +8,7 @@ use super::contest::{Contestant, Standings};
 
 /// One row of results.
 #[derive(Clone, PartialEq, Debug)]
-pub struct Row {
+pub struct ResultRow {
     /// The case.
     pub case: &'static str,
     /// Primitives of the model.
@@ -25,7 +25,7 @@ pub struct Row {
     pub extra: Vec<(&'static str, Value)>,
 }
 
-impl Row {
+impl ResultRow {
     /// Nanoseconds per unit of a contestant, if it was timed.
     #[must_use]
     pub fn nanoseconds(&self, contestant: Contestant) -> Option<f64> {
@@ -113,7 +113,7 @@ pub fn heading() -> String {
 
 /// A row of the table.
 #[must_use]
-pub fn line(row: &Row) -> String {
+pub fn line(row: &ResultRow) -> String {
     let [case, primitives, points, unit] = HEAD.map(|(_, width)| width);
     let mut line = format!(
         "{:<case$}{:>primitives$}{:>points$}{:>unit$}",
@@ -148,12 +148,12 @@ mod tests {
     use super::super::contest::Standing;
     use super::*;
 
-    fn row() -> Row {
+    fn row() -> ResultRow {
         let standing = |contestant, form, micros| {
             let median = Duration::from_micros(micros);
             Standing { contestant, form, median, samples: Vec::new() }
         };
-        Row {
+        ResultRow {
             case: "dense-field",
             primitives: 200,
             points: 1000,

@@ -7,7 +7,7 @@ use serde_json::json;
 use super::contest::{Contest, Contestant};
 use super::options::Options;
 use super::oracle::{Oracle, Tolerance};
-use super::report::Row;
+use super::report::ResultRow;
 use crate::limit;
 use crate::model::{Blob, blobs, cube, tree};
 use crate::naive::Walker;
@@ -15,11 +15,11 @@ use crate::peers::fidget::{Expression, FidgetModel, FieldTape, Gate, JitFunction
 
 /// From a model to what answers with its field. fidget's time is that from its expression on: instructions
 /// and tape.
-pub(super) fn compile(options: Options) -> Vec<Row> {
+pub(super) fn compile(options: Options) -> Vec<ResultRow> {
     [64, 512, 4_096].into_iter().map(|count| compile_of(count, options)).collect()
 }
 
-fn compile_of(count: usize, options: Options) -> Row {
+fn compile_of(count: usize, options: Options) -> ResultRow {
     let blobs = blobs(count, 1);
     let (tree, points) = (tree(&blobs), cube(1_000, 2));
     let oracle = Oracle::new(&tree, &points);
@@ -46,7 +46,7 @@ fn compile_of(count: usize, options: Options) -> Row {
     let walker = Walker::new(&tree);
     let checked = field_of(&points, &oracle, |p, field| walker.field(p, field));
     contest.enter(Contestant::Walk, "", checked, || Walker::new(&tree));
-    Row {
+    ResultRow {
         case: "compile",
         primitives: count,
         points: 0,
@@ -69,14 +69,14 @@ fn field_of(
 }
 
 /// A model, and the same with one radius changed.
-struct Edit {
+struct EditCase {
     blobs: [Vec<Blob>; 2],
     trees: [CheckedTree; 2],
     points: Points,
     oracle: Oracle,
 }
 
-impl Edit {
+impl EditCase {
     fn new(count: usize, points: usize) -> Self {
         let before = blobs(count, 1);
         let mut after = before.clone();
@@ -110,8 +110,8 @@ impl Edit {
 }
 
 /// Change a number, evaluate again.
-pub(super) fn edit(options: Options) -> Vec<Row> {
-    let edit = &Edit::new(512, 4_096);
+pub(super) fn edit(options: Options) -> Vec<ResultRow> {
+    let edit = &EditCase::new(512, 4_096);
     let mut contest = Contest::new();
     let mut evaluator = Compiler::new().evaluator(&edit.trees[1], Query::FIELD).expect("blobs compile");
     let engine = evaluator.engine().name();
@@ -134,7 +134,7 @@ pub(super) fn edit(options: Options) -> Vec<Row> {
     edit.enter(&mut contest, Contestant::Walk, "", |which, points, field| {
         Walker::new(&edit.trees[which]).field(points, field);
     });
-    vec![Row {
+    vec![ResultRow {
         case: "edit",
         primitives: edit.blobs[0].len(),
         points: edit.points.len(),

@@ -5,13 +5,14 @@ use std::cell::RefCell;
 
 use jbt::{Compiler, Points, Query};
 use jbt_model::check::CheckedTree;
+use jbt_testkit::samples;
 use jbt_text::import;
 use serde_json::json;
 
 use super::contest::{Contest, Contestant, Standings};
-use super::options::{Options, sample};
+use super::options::Options;
 use super::oracle::{Oracle, Tolerance};
-use super::report::Row;
+use super::report::ResultRow;
 use crate::naive::Walker;
 
 /// The edge of a cell.
@@ -22,9 +23,9 @@ const SCENE: &str = "parsip/train_corrected.scene";
 /// Duprat 2012).
 const PUBLISHED: f64 = 2.6e6;
 
-/// The scene, if it is here: in the folder that `JBT_SAMPLES` names, or beside the repository.
+/// The scene, if it is here.
 fn scene() -> Result<CheckedTree, String> {
-    let bytes = sample(SCENE)?;
+    let bytes = samples::file(SCENE)?;
     let imported = import::parsip(&bytes).map_err(|_| "the scene has errors".to_owned())?;
     imported.model.check().map_err(|_| "the model has errors".to_owned())
 }
@@ -44,8 +45,8 @@ fn lattice(tree: &CheckedTree) -> Points {
 }
 
 /// The field on the lattice, unpruned, on one core.
-pub(super) fn train(options: Options) -> Vec<Row> {
-    let row = |primitives, points: usize, standings, extra| Row {
+pub(super) fn train(options: Options) -> Vec<ResultRow> {
+    let row = |primitives, points: usize, standings, extra| ResultRow {
         case: "train",
         primitives,
         points,

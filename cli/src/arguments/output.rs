@@ -7,7 +7,7 @@ use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use crate::failure::Failure;
-use crate::formats::{FileKind, Row, first, listed, named, of_path};
+use crate::formats::{FileKind, FormatRow, first, listed, named, of_path};
 use crate::output::{Destination, check_place};
 use crate::standard::is_standard;
 
@@ -18,7 +18,7 @@ pub struct OutputArguments<K: FileKind> {
     pub output: Option<PathBuf>,
     /// The kind of file, if the name does not say it
     #[arg(long, value_parser = kinds::<K>())]
-    pub format: Option<&'static Row<K>>,
+    pub format: Option<&'static FormatRow<K>>,
     /// Replace a file that is there already, also without -o
     #[arg(long)]
     pub force: bool,
@@ -96,7 +96,7 @@ fn output_help<K: FileKind>() -> String {
 }
 
 /// The words of `--format`.
-fn kinds<K: FileKind>() -> impl TypedValueParser<Value = &'static Row<K>> {
+fn kinds<K: FileKind>() -> impl TypedValueParser<Value = &'static FormatRow<K>> {
     let words = K::ROWS.iter().map(|row| PossibleValue::new(row.extension).help(row.about));
     // The parser lets the words of the table through, and no others.
     PossibleValuesParser::new(words).map(|word| named(&word).unwrap_or(first()))

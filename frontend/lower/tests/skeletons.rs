@@ -1,12 +1,8 @@
 //! Every skeleton as the program of a primitive: its gradient, its silence, and its numbers as parameters.
 
-#[path = "../../text/tests/mild/mod.rs"]
-mod mild;
-
 use fastrand::Rng;
 use jbt_ir::domain::scalar::Scalar;
-use jbt_ir::pass::{GRADIENT, PIPELINE, run_pipeline};
-use jbt_ir::{Tables, Verified, interpret, verify};
+use jbt_ir::{Tables, Verified, interpret};
 use jbt_lower::lower;
 use jbt_model::check::CheckedTree;
 use jbt_model::falloff::Falloff;
@@ -16,15 +12,8 @@ use jbt_model::query::Query;
 use jbt_model::skeleton::SkeletonKind;
 use jbt_model::tree::Tree;
 use jbt_model::walk::{walk, walk_gradient};
-use jbt_text::{Options, parse};
-
-/// The program for field and gradient, with its numbers.
-fn compiled(tree: &CheckedTree) -> (Verified, Tables) {
-    let lowered = lower(tree, Query::GRADIENT).expect("it can be lowered");
-    let passes = [&GRADIENT].into_iter().chain(PIPELINE);
-    let function = run_pipeline(lowered.function, passes, &mut |_, _| {});
-    (verify(function).expect("lowering and passes keep the rules"), lowered.tables)
-}
+use jbt_testkit::random::Random;
+use jbt_testkit::scene::{compiled, tree};
 
 /// The field and the gradient.
 fn run((program, tables): &(Verified, Tables), point: [f32; 3]) -> [f32; 4] {
@@ -32,28 +21,24 @@ fn run((program, tables): &(Verified, Tables), point: [f32; 3]) -> [f32; 4] {
     answers.try_into().expect("a field and a gradient")
 }
 
-fn text(text: &str) -> CheckedTree {
-    parse(text.as_bytes(), &Options::default()).expect("it reads").check().expect("it is a model")
-}
-
 /// A primitive of this kind.
-fn primitive(kind: SkeletonKind, rng: &mut Rng) -> CheckedTree {
+fn primitive(kind: SkeletonKind, random: &mut Random, rng: &mut Rng) -> CheckedTree {
     // Smooth ones: differences are to see the skeleton.
     let falloff = if rng.bool() { Falloff::Soft } else { Falloff::Wyvill };
-    let skeleton = mild::skeleton(rng, kind);
+    let skeleton = random.skeleton(kind);
     let leaf = Primitive { skeleton, falloff, radius: 0.5 + rng.f64(), strength: 1.0 };
-    Model::new(Tree::new(NodeKind::Primitive(leaf), Vec::new())).check().expect("its numbers are mild")
+    Model::new(Tree::new(NodeKind::Primitive(leaf), Vec::new())).check().expect("its numbers are ordinary")
 }
 
 #[test]
 fn gradients_are_those_of_plain_formulas() {
     for &kind in SkeletonKind::ALL {
-        let (mut rng, mut compared) = (Rng::with_seed(1), 0);
+        let (mut random, mut rng, mut compared) = (Random::new(1, 1), Rng::with_seed(1), 0);
         for _ in 0..60 {
-            let tree = primitive(kind, &mut rng);
-            let program = compiled(&tree);
+            let tree = primitive(kind, &mut random, &mut rng);
+            let program = compiled(&tree, Query::GRADIENT);
             for _ in 0..60 {
-                let p = mild::vector(&mut rng, 1.5).map(|x| x as f32);
+                let p = random.vector(1.5).map(|x| x as f32);
                 let [field, gradient @ ..] = run(&program, p);
                 let at = p.map(f64::from);
                 let sample = walk(&tree, at);
@@ -110,8 +95,8 @@ fn gradients_are_finite_where_a_skeleton_is_singular() {
     ];
     let ticks = [-2.0, -1.0, -0.5, -1e-20, -0.0, 0.0, 1e-38, 1e-45, 1e-7, 0.5, 1.0, 1.5];
     for model in models {
-        let tree = text(&format!("jbt 1 {model}"));
-        let program = compiled(&tree);
+        let tree = tree(&format!("jbt 1 {model}"));
+        let program = compiled(&tree, Query::GRADIENT);
         for index in 0..ticks.len().pow(3) {
             let p = [0, 1, 2].map(|axis| ticks[index / ticks.len().pow(axis) % ticks.len()]);
             let [field, gradient @ ..] = run(&program, p);
@@ -125,15 +110,15 @@ fn gradients_are_finite_where_a_skeleton_is_singular() {
 #[test]
 fn fields_are_exactly_zero_from_the_radius_on() {
     for &kind in SkeletonKind::ALL {
-        let (mut rng, mut beyond) = (Rng::with_seed(2), 0);
+        let (mut random, mut rng, mut beyond) = (Random::new(2, 2), Rng::with_seed(2), 0);
         for _ in 0..60 {
-            let tree = primitive(kind, &mut rng);
+            let tree = primitive(kind, &mut random, &mut rng);
             let NodeKind::Primitive(leaf) = &tree.node(tree.root()).kind else {
                 unreachable!("it is a leaf")
             };
-            let program = compiled(&tree);
+            let program = compiled(&tree, Query::GRADIENT);
             for _ in 0..60 {
-                let p = mild::vector(&mut rng, 4.0).map(|x| x as f32);
+                let p = random.vector(4.0).map(|x| x as f32);
                 let distance = leaf.skeleton.distance_squared(p.map(f64::from).into()).sqrt();
                 let [field, gradient @ ..] = run(&program, p);
                 if distance >= leaf.radius * (1.0 + 1e-5) {
@@ -151,7 +136,7 @@ fn fields_are_exactly_zero_from_the_radius_on() {
 
 #[test]
 fn a_half_space_is_unbounded_until_something_cuts_it() {
-    let support = |model: &str| text(&format!("jbt 1 {model}")).support();
+    let support = |model: &str| tree(&format!("jbt 1 {model}")).support();
     let half = "half_space { at (0 0 1) normal (0 0 2) radius 0.5 }";
     let alone = support(half);
     assert!(!alone.is_finite() && !alone.is_empty());
@@ -189,7 +174,7 @@ fn a_parameter_changes_numbers_and_no_code() {
         "superquadric { e1 0.25 + 0.5 * t e2 1 radius 1 }",
     ];
     for model in models {
-        let tree = text(&format!("jbt 1 param t = 1 {model}"));
+        let tree = tree(&format!("jbt 1 param t = 1 {model}"));
         let lowered = |tree: &CheckedTree| lower(tree, Query::GRADIENT).expect("it can be lowered").function;
         let before = lowered(&tree);
         for value in [0.0, 0.5, 1.0, 1.25, 2.0] {
@@ -199,7 +184,7 @@ fn a_parameter_changes_numbers_and_no_code() {
             };
             assert_eq!(lowered(&set), before, "{model} at {value}");
             let p = [0.25, -0.75, 1.25];
-            let [field, ..] = run(&compiled(&set), p);
+            let [field, ..] = run(&compiled(&set, Query::GRADIENT), p);
             let expected = walk(&set, p.map(f64::from)).field;
             assert!(
                 (f64::from(field) - expected).abs() < 1e-5,

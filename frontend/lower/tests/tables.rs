@@ -1,14 +1,11 @@
 //! The tables of a tree are the same for every query: one list of active rows serves all programs of a model.
 
-#[path = "../../text/tests/mild/mod.rs"]
-mod mild;
-mod random;
-
 use std::path::Path;
 
 use jbt_lower::lower;
 use jbt_model::check::CheckedTree;
 use jbt_model::query::Query;
+use jbt_testkit::random::{Numbers, Random, Settings};
 use jbt_text::{Options, parse};
 
 fn same_tables(tree: &CheckedTree, what: &str) -> bool {
@@ -46,14 +43,18 @@ fn of_examples() {
 
 #[test]
 fn of_random_trees() {
-    let mut rng = fastrand::Rng::with_seed(11);
     for index in 0..400 {
-        let tree = mild::model(&mut rng, 3 + index % 30, true).check().expect("its numbers are mild");
-        assert!(same_tables(&tree, &format!("mild tree {index}")), "it can be lowered");
+        let tree = Random::new(index, !index).model(1 + index as usize % 20).check().expect("a good model");
+        assert!(same_tables(&tree, &format!("ordinary tree {index}")), "it can be lowered");
     }
+    let settings = Settings { numbers: Numbers::Hostile, ..Settings::default() };
+    let mut good = 0;
     for index in 0..5000 {
-        if let Ok(tree) = random::model(&mut rng).check() {
-            same_tables(&tree, &format!("wild tree {index}"));
+        let model = Random::with_settings(index, !index, settings).model(1 + index as usize % 9);
+        if let Ok(tree) = model.check() {
+            good += 1;
+            same_tables(&tree, &format!("hostile tree {index}"));
         }
     }
+    assert!(good > 100, "{good} hostile trees are good models");
 }

@@ -1,23 +1,10 @@
 //! Warps in models: their gradients, their rows, their parameters, and what others get wrong about them.
 
-#[path = "../../text/tests/mild/mod.rs"]
-mod mild;
-
-use fastrand::Rng;
 use glam::DVec3;
 use jbt_ir::domain::scalar::Scalar;
-use jbt_ir::pass::{GRADIENT, PIPELINE, run_pipeline};
-use jbt_ir::{Tables, Verified, interpret, verify};
-use jbt_lower::{Lowered, lower};
-use jbt_model::builder::{Axis, param, point, segment};
-use jbt_model::check::CheckedTree;
-use jbt_model::kind::NodeKind;
-use jbt_model::model::Model;
-use jbt_model::query::Query;
-use jbt_model::tree::Tree;
-use jbt_model::walk::{walk, walk_gradient};
-use jbt_model::warp::WarpKind;
-use jbt_text::{Options, parse, print};
+use jbt_ir::{Tables, Verified, interpret};
+use jbt_testkit::random::Random;
+use jbt_testkit::scene;
 
 fn checked(tree: Tree) -> CheckedTree {
     Model::new(tree).check().expect("a good model")
@@ -25,9 +12,7 @@ fn checked(tree: Tree) -> CheckedTree {
 
 /// The program of the field and its gradient.
 fn compiled(tree: &CheckedTree) -> (Verified, Tables) {
-    let Lowered { function, tables } = lower(tree, Query::GRADIENT).expect("it can be lowered");
-    let passes = [&GRADIENT].into_iter().chain(PIPELINE);
-    (verify(run_pipeline(function, passes, &mut |_, _| {})).expect("passes keep the rules"), tables)
+    scene::compiled(tree, Query::GRADIENT)
 }
 
 fn gradient((program, tables): &(Verified, Tables), p: DVec3) -> DVec3 {
@@ -35,27 +20,27 @@ fn gradient((program, tables): &(Verified, Tables), p: DVec3) -> DVec3 {
     DVec3::new(answers[1].into(), answers[2].into(), answers[3].into())
 }
 
-fn blob(rng: &mut Rng) -> Tree {
-    let spot = |rng: &mut Rng| mild::vector(rng, 0.8);
-    point(spot(rng), 1.2) + segment(spot(rng), spot(rng), 0.8) + point(spot(rng), 0.9)
+fn blob(random: &mut Random) -> Tree {
+    let [a, b, c, d] = [(); 4].map(|()| random.vector(0.8));
+    point(a, 1.2) + segment(b, c, 0.8) + point(d, 0.9)
 }
 
 #[test]
 fn gradients_are_differences_of_the_oracle() {
-    let mut rng = Rng::with_seed(1);
+    let mut random = Random::new(1, 1);
     for &kind in WarpKind::ALL {
         let mut compared = 0;
         for _ in 0..2000 {
             if compared >= 1500 {
                 break;
             }
-            let warp = NodeKind::Warp(kind.from_fields(&mild::fields(&mut rng, kind.fields())));
-            let blob = Tree::new(NodeKind::Affine(mild::affine(&mut rng)), vec![blob(&mut rng)]);
-            let warped = Tree::new(warp, vec![blob]).rotate(mild::vector(&mut rng, 1.0), 50.0);
+            let warp = NodeKind::Warp(kind.from_fields(&random.fields(kind.fields())));
+            let blob = Tree::new(NodeKind::Affine(random.affine()), vec![blob(&mut random)]);
+            let warped = Tree::new(warp, vec![blob]).rotate(random.vector(1.0), 50.0);
             let tree = checked(warped);
             let program = compiled(&tree);
             for _ in 0..40 {
-                let p = DVec3::from(mild::vector(&mut rng, 1.5)).as_vec3().as_dvec3();
+                let p = DVec3::from(random.vector(1.5)).as_vec3().as_dvec3();
                 let sample = walk(&tree, p.into());
                 if sample.kink_distance < 2e-3 || sample.field < 1e-3 {
                     continue;
@@ -82,17 +67,17 @@ fn gradients_are_differences_of_the_oracle() {
 /// Any warp under the weight of another subtree, which has several leaves, and operators, of its own.
 #[test]
 fn gradients_of_weighted_warps_are_differences_of_the_oracle() {
-    let mut rng = Rng::with_seed(2);
+    let mut random = Random::new(2, 2);
     let mut compared = 0;
     for index in 0..300 {
         let kind = WarpKind::ALL[index % WarpKind::ALL.len()];
-        let warp = NodeKind::Warp(kind.from_fields(&mild::fields(&mut rng, kind.fields())));
-        let weight = Tree::new(NodeKind::Affine(mild::affine(&mut rng)), vec![blob(&mut rng)]);
-        let warped = Tree::new(warp, vec![blob(&mut rng), weight]).rotate(mild::vector(&mut rng, 1.0), 50.0);
+        let warp = NodeKind::Warp(kind.from_fields(&random.fields(kind.fields())));
+        let weight = Tree::new(NodeKind::Affine(random.affine()), vec![blob(&mut random)]);
+        let warped = Tree::new(warp, vec![blob(&mut random), weight]).rotate(random.vector(1.0), 50.0);
         let tree = checked(warped);
         let program = compiled(&tree);
         for _ in 0..40 {
-            let p = DVec3::from(mild::vector(&mut rng, 1.2)).as_vec3().as_dvec3();
+            let p = DVec3::from(random.vector(1.2)).as_vec3().as_dvec3();
             let sample = walk(&tree, p.into());
             let expected = DVec3::from(walk_gradient(&tree, p.into(), 1e-6));
             let coarse = DVec3::from(walk_gradient(&tree, p.into(), 4e-6));

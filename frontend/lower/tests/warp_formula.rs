@@ -1,31 +1,14 @@
 //! Warps that are given by formulas, in models: gradients, boxes, parameters, weights, text.
 
-#[path = "../../text/tests/mild/mod.rs"]
-mod mild;
-
-use fastrand::Rng;
 use glam::DVec3;
 use jbt_ir::domain::scalar::Scalar;
-use jbt_ir::pass::{GRADIENT, PIPELINE, run_pipeline};
-use jbt_ir::{Tables, Verified, interpret, verify};
-use jbt_lower::{Lowered, lower};
-use jbt_model::builder::{point, segment};
-use jbt_model::check::CheckedTree;
-use jbt_model::model::Model;
-use jbt_model::query::Query;
-use jbt_model::tree::Tree;
-use jbt_model::walk::{walk, walk_gradient};
-use jbt_text::{Options, parse, print};
-
-fn read(text: &str) -> Model {
-    parse(text.as_bytes(), &Options::default()).unwrap_or_else(|errors| panic!("{errors:?}"))
-}
+use jbt_ir::{Tables, Verified, interpret};
+use jbt_testkit::random::Random;
+use jbt_testkit::scene::{self, model as read};
 
 /// The program of the field and its gradient.
 fn compiled(tree: &CheckedTree) -> (Verified, Tables) {
-    let Lowered { function, tables } = lower(tree, Query::GRADIENT).expect("it can be lowered");
-    let passes = [&GRADIENT].into_iter().chain(PIPELINE);
-    (verify(run_pipeline(function, passes, &mut |_, _| {})).expect("passes keep the rules"), tables)
+    scene::compiled(tree, Query::GRADIENT)
 }
 
 fn run((program, tables): &(Verified, Tables), p: DVec3) -> (f64, DVec3) {
@@ -34,11 +17,11 @@ fn run((program, tables): &(Verified, Tables), p: DVec3) -> (f64, DVec3) {
 }
 
 /// Compares the program with differences of the oracle at some points; how many.
-fn compare(tree: &CheckedTree, rng: &mut Rng) -> usize {
+fn compare(tree: &CheckedTree, random: &mut Random) -> usize {
     let program = compiled(tree);
     let mut compared = 0;
     for _ in 0..40 {
-        let p = DVec3::from(mild::vector(rng, 1.4)).as_vec3().as_dvec3();
+        let p = DVec3::from(random.vector(1.4)).as_vec3().as_dvec3();
         let sample = walk(tree, p.into());
         let expected = DVec3::from(walk_gradient(tree, p.into(), 1e-6));
         let coarse = DVec3::from(walk_gradient(tree, p.into(), 4e-6));
@@ -56,19 +39,18 @@ fn compare(tree: &CheckedTree, rng: &mut Rng) -> usize {
 
 #[test]
 fn gradients_are_differences_of_the_oracle() {
-    let mut rng = Rng::with_seed(1);
+    let mut random = Random::new(1, 1);
     let mut compared = 0;
     for index in 0..300 {
-        let spot = |rng: &mut Rng| mild::vector(rng, 0.8);
-        let blob = point(spot(&mut rng), 1.2) + segment(spot(&mut rng), spot(&mut rng), 0.9);
+        let [a, b, c, d] = [(); 4].map(|()| random.vector(0.8));
+        let blob = point(a, 1.2) + segment(b, c, 0.9);
         let mut children = vec![blob];
         if index % 3 == 0 {
-            children.push(point(spot(&mut rng), 1.5));
+            children.push(point(d, 1.5));
         }
-        let warped =
-            Tree::new(mild::formula_warp(&mut rng), children).rotate(mild::vector(&mut rng, 1.0), 50.0);
+        let warped = Tree::new(random.formula_warp(), children).rotate(random.vector(1.0), 50.0);
         let warped = if index % 4 == 0 { warped.within([-0.9; 3], [0.8; 3]) } else { warped };
-        compared += compare(&Model::new(warped).check().expect("a good model"), &mut rng);
+        compared += compare(&Model::new(warped).check().expect("a good model"), &mut random);
     }
     assert!(compared > 3000, "{compared} points");
 }

@@ -1,17 +1,16 @@
 //! ParsIP scenes: every published sample against independently computed values, every kind of node by a scene
 //! of our own, and what strangers send.
 //!
-//! The samples are looked for in `shared/samples/parsip` beside the folders above this crate, or in the
-//! folder `parsip` of `JBT_SAMPLES`; where they are missing, their test says so.
+//! The samples are those of the folder `parsip`, see `jbt_testkit::samples`.
 
 use std::fmt::Write as _;
-use std::path::PathBuf;
 
 use glam::DVec3;
 use jbt_ir::limits;
 use jbt_model::attribute::AttributeGroup;
 use jbt_model::diagnostic::{Diagnostic, Severity};
 use jbt_model::walk::{walk, walk_gradient};
+use jbt_testkit::samples;
 use jbt_text::import::{Imported, parsip};
 use jbt_text::{Options, parse, print};
 
@@ -29,15 +28,6 @@ fn close(found: &[f64], expected: &[f64], tolerance: f64) -> bool {
     found.len() == expected.len() && found.iter().zip(expected).all(|(a, b)| (a - b).abs() < tolerance)
 }
 
-fn samples() -> Option<PathBuf> {
-    if let Some(folder) = std::env::var_os("JBT_SAMPLES") {
-        return Some(PathBuf::from(folder).join("parsip"));
-    }
-    let here = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
-    let mut folders = here.ancestors().map(|above| above.join("shared/samples/parsip"));
-    folders.find(|folder| folder.is_dir())
-}
-
 fn message(bytes: &[u8], diagnostics: &[Diagnostic]) -> String {
     let source = jbt_model::diagnostic::Source { name: "scene", text: bytes };
     diagnostics.iter().map(|diagnostic| source.render(diagnostic) + "\n").collect()
@@ -45,13 +35,7 @@ fn message(bytes: &[u8], diagnostics: &[Diagnostic]) -> String {
 
 #[test]
 fn every_sample_agrees_with_its_oracle() {
-    let Some(folder) = samples() else {
-        #[expect(clippy::print_stdout, reason = "a test that does nothing says so")]
-        {
-            println!("skipped: no folder shared/samples/parsip above this one, and JBT_SAMPLES is not set");
-        }
-        return;
-    };
+    let Some(folder) = samples::folder("parsip") else { return };
     let mut files = 0;
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();

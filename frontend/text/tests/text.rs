@@ -4,20 +4,19 @@
 //! error says so behind `#~`, with the columns; the marks are taken off before the text is read. `BLESS=1`
 //! writes what is found. What reads well is checked. A line `#! -D NAME=VALUE` sets a parameter from outside.
 
-#[path = "../../lower/tests/random/mod.rs"]
-mod random;
-
 use std::collections::HashSet;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use jbt_ir::limits;
 use jbt_model::attribute::AttributeValue;
+use jbt_model::builder::point;
 use jbt_model::diagnostic::{Diagnostic, Diagnostics, Severity, Source};
 use jbt_model::kind::NodeKind;
 use jbt_model::model::Model;
 use jbt_model::traverse::Visit;
 use jbt_model::tree::Tree;
+use jbt_testkit::random::{Numbers, Random, Settings};
 use jbt_text::{Options, parse, print};
 
 fn golden_files() -> Vec<PathBuf> {
@@ -151,8 +150,9 @@ fn root(model: &Model) -> NodeKind {
 
 #[test]
 fn random_models_survive_printing() {
+    let settings = Settings { numbers: Numbers::Hostile, ..Settings::default() };
     for seed in 0..2_000 {
-        let model = random::model(&mut fastrand::Rng::with_seed(seed));
+        let model = Random::with_settings(seed, !seed, settings).model(1 + seed as usize % 20);
         let text = print(&model);
         let again = parse(text.as_bytes(), &Options::default())
             .unwrap_or_else(|errors| panic!("seed {seed}\n{}", marked(&text, &errors)));
@@ -165,9 +165,9 @@ fn random_models_survive_printing() {
 
 #[test]
 fn a_graph_prints_as_long_as_it_is() {
-    let mut tree = random::point();
+    let mut tree = point([0.0; 3], 1.0);
     for _ in 0..30 {
-        tree = Tree::sum(vec![tree.clone(), random::point(), tree]);
+        tree = Tree::sum(vec![tree.clone(), point([0.0; 3], 1.0), tree]);
     }
     let model = Model::new(tree);
     let text = print(&model);

@@ -1,25 +1,15 @@
 //! Programs of instructions (`.vm`): published samples against an interpreter of their own, every operation
 //! by hand, and what strangers send.
 //!
-//! The samples are looked for in `shared/samples/vm` beside the folders above this crate, or where
-//! `JBT_VM_SAMPLES` says; where they are missing, their test says so.
+//! The samples are those of the folder `vm`, see `jbt_testkit::samples`.
 
 use std::collections::HashMap;
-use std::path::PathBuf;
 
 use jbt_model::diagnostic::{Diagnostic, Source};
 use jbt_model::walk::walk;
+use jbt_testkit::samples;
 use jbt_text::import::vm;
 use jbt_text::{Options, parse, print};
-
-fn samples() -> Option<PathBuf> {
-    if let Some(folder) = std::env::var_os("JBT_VM_SAMPLES") {
-        return Some(folder.into());
-    }
-    let here = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
-    let mut folders = here.ancestors().map(|above| above.join("shared/samples/vm"));
-    folders.find(|folder| folder.is_dir())
-}
 
 /// The value of a program, line by line: from the meaning of the file alone.
 fn interpret(text: &str, [x, y, z]: [f64; 3]) -> f64 {
@@ -62,13 +52,7 @@ fn message(bytes: &[u8], diagnostics: &[Diagnostic]) -> String {
 
 #[test]
 fn samples_have_the_values_of_their_instructions() {
-    let Some(folder) = samples() else {
-        #[expect(clippy::print_stdout, reason = "a test that does nothing says so")]
-        {
-            println!("skipped: no folder shared/samples/vm above this one, and JBT_VM_SAMPLES is not set");
-        }
-        return;
-    };
+    let Some(folder) = samples::folder("vm") else { return };
     let mut rng = fastrand::Rng::with_seed(11);
     for (name, size) in [("hi", 1.5), ("bear", 12.0), ("colonnade", 1.2), ("prospero", 1.0)] {
         let text = std::fs::read_to_string(folder.join(name).with_extension("vm")).unwrap();

@@ -16,7 +16,7 @@ use crate::translate::renumber;
 
 /// Where a value comes from.
 #[derive(Clone, Copy)]
-enum Source {
+enum ValueSource {
     /// The result of an instruction that is no fold.
     Inst(Inst),
     /// An accumulator, inside or after its fold: its initial value, its next value, itself inside and after.
@@ -67,14 +67,14 @@ fn needed(function: &Function) -> Vec<bool> {
             continue;
         }
         match sources[value].expect("every value is defined") {
-            Source::Inst(inst) => work.extend(function.operands(inst)),
-            Source::Accumulator(values) => work.extend(values),
+            ValueSource::Inst(inst) => work.extend(function.operands(inst)),
+            ValueSource::Accumulator(values) => work.extend(values),
         }
     }
     needed
 }
 
-fn sources(function: &Function) -> Store<Value, Option<Source>> {
+fn sources(function: &Function) -> Store<Value, Option<ValueSource>> {
     let mut sources = Store::new();
     for _ in function.values.keys() {
         sources.push(None);
@@ -85,13 +85,13 @@ fn sources(function: &Function) -> Store<Value, Option<Source>> {
             | InstKind::Constant(_)
             | InstKind::BitsConstant(_)
             | InstKind::Column { .. }
-            | InstKind::Op { .. } => sources[data.results[0]] = Some(Source::Inst(inst)),
+            | InstKind::Op { .. } => sources[data.results[0]] = Some(ValueSource::Inst(inst)),
             InstKind::Fold(fold) => {
                 let body = &function.blocks[fold.body];
                 for (index, &result) in data.results.iter().enumerate() {
                     let param = body.params[index];
                     let source =
-                        Source::Accumulator([fold.initial[index], body.results[index], param, result]);
+                        ValueSource::Accumulator([fold.initial[index], body.results[index], param, result]);
                     sources[param] = Some(source);
                     sources[result] = Some(source);
                 }

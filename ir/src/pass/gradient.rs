@@ -36,8 +36,12 @@ pub fn guarded_gradient(function: &Function) -> Function {
 }
 
 fn with_gradient(function: &Function, tangent: Tangent) -> Function {
-    let mut pass =
-        Pass { function, moves: moving(function), tangent, values: vec![None; function.values.len()] };
+    let mut pass = GradientPass {
+        function,
+        moves: moving(function),
+        tangent,
+        values: vec![None; function.values.len()],
+    };
     pass.block(function.body);
     let body = &function.blocks[function.body];
     let mut outputs = Vec::new();
@@ -140,14 +144,14 @@ fn moved(function: &Function) -> Vec<bool> {
     }
 }
 
-struct Pass<'a> {
+struct GradientPass<'a> {
     function: &'a Function,
     moves: Vec<bool>,
     tangent: Tangent,
     values: Vec<Option<Any<Tangent>>>,
 }
 
-impl Pass<'_> {
+impl GradientPass<'_> {
     fn value(&self, value: Value) -> Any<Tangent> {
         self.values[value.index()].expect("a verified function defines values before it uses them")
     }

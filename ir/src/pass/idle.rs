@@ -60,7 +60,7 @@ pub fn gates(function: &Function) -> Gates {
     for data in function.insts.values() {
         let InstKind::Fold(fold) = &data.kind else { continue };
         for (at, gate) in candidates(function, &function.blocks[fold.body].insts, &constants) {
-            let facts = facts.get_or_insert_with(|| crate::facts::facts::<Facts>(function));
+            let facts = facts.get_or_insert_with(|| crate::facts::facts::<ValueFacts>(function));
             if is_idle(function, fold, (at, &gate), facts, &mut now) {
                 gates[fold.body] = Some(gate);
                 break;
@@ -107,7 +107,7 @@ fn is_idle(
     function: &Function,
     fold: &Fold,
     (at, gate): (usize, &Gate),
-    facts: &[Facts],
+    facts: &[ValueFacts],
     now: &mut [Option<Now>],
 ) -> bool {
     let body = &function.blocks[fold.body];
@@ -160,7 +160,7 @@ fn spared(function: &Function, insts: &[Inst], at: usize) -> usize {
 
 /// What holds for a value at every point, before every row.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
-struct Facts {
+struct ValueFacts {
     /// It is more than 0, and no NaN.
     is_positive: bool,
     /// It is not less than 0.
@@ -173,7 +173,7 @@ struct Facts {
     bits: Option<u32>,
 }
 
-impl Facts {
+impl ValueFacts {
     fn constant(number: f32) -> Self {
         Self {
             is_positive: number > 0.0,
@@ -189,7 +189,7 @@ impl Facts {
     }
 }
 
-impl Fact for Facts {
+impl Fact for ValueFacts {
     fn leaf(kind: &InstKind) -> Self {
         match kind {
             InstKind::Constant(number) => Self::constant(*number),
@@ -256,7 +256,7 @@ impl Now {
     }
 
     /// What a value is that the gate does not change.
-    fn known(value: Value, facts: Facts) -> Self {
+    fn known(value: Value, facts: ValueFacts) -> Self {
         let bits = facts.bits.map(Self::Bits);
         bits.or_else(|| facts.constant.map(Self::number)).unwrap_or(Self::Same(value))
     }
@@ -272,7 +272,7 @@ impl Now {
 }
 
 /// What an op gives where the gate is +0.
-fn step(op: Op, args: &[Value], facts: &[Facts], now: &[Option<Now>], result: Value) -> Now {
+fn step(op: Op, args: &[Value], facts: &[ValueFacts], now: &[Option<Now>], result: Value) -> Now {
     use Now::{Number, Same, Truth, Zero};
     let of = |value: Value| now[value.index()].unwrap_or_else(|| Now::known(value, facts[value.index()]));
     let args: Vec<Now> = args.iter().map(|&arg| of(arg)).collect();

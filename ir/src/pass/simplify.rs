@@ -18,9 +18,9 @@ pub fn simplify(function: &Function) -> Function {
         // Each step drops an op, a negation or a division, so this ends.
         loop {
             match step(builder, current.0, &current.1) {
-                Step::Value(value) => return value,
-                Step::Op(op, args) => current = (op, args),
-                Step::Done => break,
+                Simpler::Value(value) => return value,
+                Simpler::Op(op, args) => current = (op, args),
+                Simpler::Done => break,
             }
         }
         let (op, mut args) = current;
@@ -33,7 +33,7 @@ pub fn simplify(function: &Function) -> Function {
 }
 
 /// One simplification.
-enum Step {
+enum Simpler {
     /// This value has the bits already.
     Value(Value),
     /// This op gives them.
@@ -42,7 +42,7 @@ enum Step {
     Done,
 }
 
-impl Step {
+impl Simpler {
     fn op(op: Op, args: &[Value]) -> Self {
         Self::Op(op, args.to_vec())
     }
@@ -83,7 +83,7 @@ fn bits(b: &FunctionBuilder, value: Value) -> Option<u32> {
     }
 }
 
-fn step(b: &mut FunctionBuilder, op: Op, args: &[Value]) -> Step {
+fn step(b: &mut FunctionBuilder, op: Op, args: &[Value]) -> Simpler {
     match op {
         Op::Add => add(b, args[0], args[1]),
         Op::Sub => sub(b, args[0], args[1]),
@@ -91,78 +91,78 @@ fn step(b: &mut FunctionBuilder, op: Op, args: &[Value]) -> Step {
         Op::Div => div(b, args[0], args[1]),
         Op::Fma => fma(b, args[0], args[1], args[2]),
         // Both flip the sign bit, of anything.
-        Op::Neg => operand_of(b, args[0], Op::Neg).map_or(Step::Done, Step::Value),
+        Op::Neg => operand_of(b, args[0], Op::Neg).map_or(Simpler::Done, Simpler::Value),
         Op::Abs => abs(b, args[0]),
         // Both branches are the same bits.
-        Op::Min | Op::Max | Op::Both | Op::Either if args[0] == args[1] => Step::Value(args[0]),
-        Op::Not => operand_of(b, args[0], Op::Not).map_or(Step::Done, Step::Value),
+        Op::Min | Op::Max | Op::Both | Op::Either if args[0] == args[1] => Simpler::Value(args[0]),
+        Op::Not => operand_of(b, args[0], Op::Not).map_or(Simpler::Done, Simpler::Value),
         Op::Select => select(b, args[0], args[1], args[2]),
         // A real and its encoding are the same bits.
-        Op::ToBits => operand_of(b, args[0], Op::FromBits).map_or(Step::Done, Step::Value),
-        Op::FromBits => operand_of(b, args[0], Op::ToBits).map_or(Step::Done, Step::Value),
+        Op::ToBits => operand_of(b, args[0], Op::FromBits).map_or(Simpler::Done, Simpler::Value),
+        Op::FromBits => operand_of(b, args[0], Op::ToBits).map_or(Simpler::Done, Simpler::Value),
         Op::BitAnd => bit_and(b, args[0], args[1]),
         // Equal bits stay.
-        Op::BitOr if args[0] == args[1] => Step::Value(args[0]),
+        Op::BitOr if args[0] == args[1] => Simpler::Value(args[0]),
         // Equal bits leave nothing.
-        Op::BitXor | Op::IntSub if args[0] == args[1] => Step::Value(b.bits_constant(0)),
+        Op::BitXor | Op::IntSub if args[0] == args[1] => Simpler::Value(b.bits_constant(0)),
         Op::BitOr | Op::BitXor | Op::IntAdd => zero_neutral(b, args[0], args[1]),
         // 0 changes nothing.
-        Op::IntSub if bits(b, args[1]) == Some(0) => Step::Value(args[0]),
+        Op::IntSub if bits(b, args[1]) == Some(0) => Simpler::Value(args[0]),
         // Shift amounts count modulo 32.
-        Op::Shl | Op::Shr if bits(b, args[1]).is_some_and(|by| by % 32 == 0) => Step::Value(args[0]),
+        Op::Shl | Op::Shr if bits(b, args[1]).is_some_and(|by| by % 32 == 0) => Simpler::Value(args[0]),
         Op::Pow => pow(b, args[0], args[1]),
         // What no rule knows stays: that is never wrong.
-        _ => Step::Done,
+        _ => Simpler::Done,
     }
 }
 
-fn add(b: &FunctionBuilder, x: Value, y: Value) -> Step {
+fn add(b: &FunctionBuilder, x: Value, y: Value) -> Simpler {
     // -0 is neutral: -0 + -0 = -0 and +0 + -0 = +0.
     if is(b, y, -0.0) {
-        return Step::Value(x);
+        return Simpler::Value(x);
     }
     if is(b, x, -0.0) {
-        return Step::Value(y);
+        return Simpler::Value(y);
     }
     // A difference is defined as the sum with the negation.
     if let Some(y) = operand_of(b, y, Op::Neg) {
-        return Step::op(Op::Sub, &[x, y]);
+        return Simpler::op(Op::Sub, &[x, y]);
     }
     if let Some(x) = operand_of(b, x, Op::Neg) {
-        return Step::op(Op::Sub, &[y, x]);
+        return Simpler::op(Op::Sub, &[y, x]);
     }
-    Step::Done
+    Simpler::Done
 }
 
-fn sub(b: &FunctionBuilder, x: Value, y: Value) -> Step {
+fn sub(b: &FunctionBuilder, x: Value, y: Value) -> Simpler {
     // Adding -0 is neutral.
     if is(b, y, 0.0) {
-        return Step::Value(x);
+        return Simpler::Value(x);
     }
     // -0 is neutral: -0 - y = -0 + -y.
     if is(b, x, -0.0) {
-        return Step::op(Op::Neg, &[y]);
+        return Simpler::op(Op::Neg, &[y]);
     }
     // The sum with the negation of the negation.
     if let Some(y) = operand_of(b, y, Op::Neg) {
-        return Step::op(Op::Add, &[x, y]);
+        return Simpler::op(Op::Add, &[x, y]);
     }
-    Step::Done
+    Simpler::Done
 }
 
-fn mul(b: &mut FunctionBuilder, x: Value, y: Value) -> Step {
+fn mul(b: &mut FunctionBuilder, x: Value, y: Value) -> Simpler {
     for (x, y) in [(x, y), (y, x)] {
         // 1 is neutral, and -1 only flips the sign.
         if is(b, y, 1.0) {
-            return Step::Value(x);
+            return Simpler::Value(x);
         }
         if is(b, y, -1.0) {
-            return Step::op(Op::Neg, &[x]);
+            return Simpler::op(Op::Neg, &[x]);
         }
     }
     match without_signs(b, x, y) {
-        Some((x, y)) => Step::op(Op::Mul, &[x, y]),
-        None => Step::Done,
+        Some((x, y)) => Simpler::op(Op::Mul, &[x, y]),
+        None => Simpler::Done,
     }
 }
 
@@ -177,7 +177,7 @@ fn without_signs(b: &mut FunctionBuilder, x: Value, y: Value) -> Option<(Value, 
     }
 }
 
-fn div(b: &mut FunctionBuilder, x: Value, y: Value) -> Step {
+fn div(b: &mut FunctionBuilder, x: Value, y: Value) -> Simpler {
     if let Some(divisor) = b.as_constant(y) {
         // 2^k has the exact inverse 2^-k if that is a number too: the real quotient and product are one
         // number, rounded once.
@@ -185,13 +185,13 @@ fn div(b: &mut FunctionBuilder, x: Value, y: Value) -> Step {
         let power_of_two = is_power_of_two(divisor) && is_power_of_two(inverse);
         if power_of_two {
             let inverse = b.constant(inverse);
-            return Step::op(Op::Mul, &[x, inverse]);
+            return Simpler::op(Op::Mul, &[x, inverse]);
         }
     }
     // The signs of both cancel.
     match without_signs(b, x, y) {
-        Some((x, y)) => Step::op(Op::Div, &[x, y]),
-        None => Step::Done,
+        Some((x, y)) => Simpler::op(Op::Div, &[x, y]),
+        None => Simpler::Done,
     }
 }
 
@@ -207,88 +207,88 @@ fn is_power_of_two(number: f32) -> bool {
     }
 }
 
-fn fma(b: &mut FunctionBuilder, x: Value, y: Value, z: Value) -> Step {
+fn fma(b: &mut FunctionBuilder, x: Value, y: Value, z: Value) -> Simpler {
     for (x, y) in [(x, y), (y, x)] {
         // The product is exact, so only the sum rounds.
         if is(b, y, 1.0) {
-            return Step::op(Op::Add, &[x, z]);
+            return Simpler::op(Op::Add, &[x, z]);
         }
         if is(b, y, -1.0) {
-            return Step::op(Op::Sub, &[z, x]);
+            return Simpler::op(Op::Sub, &[z, x]);
         }
     }
     // -0 is neutral; +0 is neutral for a square, which is never -0.
     if is(b, z, -0.0) || (x == y && is(b, z, 0.0)) {
-        return Step::op(Op::Mul, &[x, y]);
+        return Simpler::op(Op::Mul, &[x, y]);
     }
     match without_signs(b, x, y) {
-        Some((x, y)) => Step::op(Op::Fma, &[x, y, z]),
-        None => Step::Done,
+        Some((x, y)) => Simpler::op(Op::Fma, &[x, y, z]),
+        None => Simpler::Done,
     }
 }
 
-fn abs(b: &FunctionBuilder, x: Value) -> Step {
+fn abs(b: &FunctionBuilder, x: Value) -> Simpler {
     // The sign bit is clear already.
     if operands_of(b, x, Op::Abs).is_some() {
-        return Step::Value(x);
+        return Simpler::Value(x);
     }
     // It is cleared anyway.
     match operand_of(b, x, Op::Neg) {
-        Some(x) => Step::op(Op::Abs, &[x]),
-        None => Step::Done,
+        Some(x) => Simpler::op(Op::Abs, &[x]),
+        None => Simpler::Done,
     }
 }
 
-fn select(b: &FunctionBuilder, condition: Value, x: Value, y: Value) -> Step {
+fn select(b: &FunctionBuilder, condition: Value, x: Value, y: Value) -> Simpler {
     // Both branches are the same bits.
     if x == y {
-        return Step::Value(x);
+        return Simpler::Value(x);
     }
     if let Some(condition) = operand_of(b, condition, Op::Not) {
-        return Step::op(Op::Select, &[condition, y, x]);
+        return Simpler::op(Op::Select, &[condition, y, x]);
     }
     // A branch that asks the same question again knows the answer.
     if let Some(&[inner, kept, _]) = operands_of(b, x, Op::Select)
         && inner == condition
     {
-        return Step::op(Op::Select, &[condition, kept, y]);
+        return Simpler::op(Op::Select, &[condition, kept, y]);
     }
     if let Some(&[inner, _, kept]) = operands_of(b, y, Op::Select)
         && inner == condition
     {
-        return Step::op(Op::Select, &[condition, x, kept]);
+        return Simpler::op(Op::Select, &[condition, x, kept]);
     }
-    Step::Done
+    Simpler::Done
 }
 
-fn bit_and(b: &FunctionBuilder, x: Value, y: Value) -> Step {
+fn bit_and(b: &FunctionBuilder, x: Value, y: Value) -> Simpler {
     for (x, y) in [(x, y), (y, x)] {
         // All ones are neutral, 0 absorbs, and equal bits stay.
         match bits(b, y) {
-            Some(u32::MAX) => return Step::Value(x),
-            Some(0) => return Step::Value(y),
-            Some(_) | None if x == y => return Step::Value(x),
+            Some(u32::MAX) => return Simpler::Value(x),
+            Some(0) => return Simpler::Value(y),
+            Some(_) | None if x == y => return Simpler::Value(x),
             Some(_) | None => {}
         }
     }
-    Step::Done
+    Simpler::Done
 }
 
 /// An op on bits for which 0 is neutral on both sides.
-fn zero_neutral(b: &FunctionBuilder, x: Value, y: Value) -> Step {
+fn zero_neutral(b: &FunctionBuilder, x: Value, y: Value) -> Simpler {
     match (bits(b, x), bits(b, y)) {
-        (_, Some(0)) => Step::Value(x),
-        (Some(0), _) => Step::Value(y),
-        (Some(_) | None, Some(_) | None) => Step::Done,
+        (_, Some(0)) => Simpler::Value(x),
+        (Some(0), _) => Simpler::Value(y),
+        (Some(_) | None, Some(_) | None) => Simpler::Done,
     }
 }
 
-fn pow(b: &mut FunctionBuilder, x: Value, y: Value) -> Step {
+fn pow(b: &mut FunctionBuilder, x: Value, y: Value) -> Simpler {
     // Both hold by definition, for every other operand.
     if is(b, x, 1.0) || is(b, y, 0.0) || is(b, y, -0.0) {
-        return Step::Value(b.constant(1.0));
+        return Simpler::Value(b.constant(1.0));
     }
-    Step::Done
+    Simpler::Done
 }
 
 #[cfg(test)]

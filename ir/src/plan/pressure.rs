@@ -22,7 +22,7 @@ use crate::function::{Function, InstData, InstKind};
 /// in a block pay longer.
 pub const FIELD_CARRIES: usize = 3;
 /// The walk over all instructions in order of execution.
-struct Walk<'a> {
+struct PressureWalk<'a> {
     function: &'a Function,
     plan: &'a Plan,
     /// Pieces so far.
@@ -41,7 +41,7 @@ struct Walk<'a> {
 #[must_use]
 pub fn live_values(function: &Function, plan: &Plan) -> usize {
     let values = function.values.len();
-    let mut walk = Walk {
+    let mut walk = PressureWalk {
         function,
         plan,
         piece: 0,
@@ -74,7 +74,7 @@ pub fn carried_values(function: &Function) -> usize {
     function.insts.values().map(carried).max().unwrap_or(0)
 }
 
-impl Walk<'_> {
+impl PressureWalk<'_> {
     /// The function's body, or that of a fold that is cut.
     fn pieces(&mut self, block: Block) {
         let data = &self.function.blocks[block];

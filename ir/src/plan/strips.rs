@@ -109,7 +109,7 @@ impl Plan {
         let mut cutter = Cutter::new(function, longest);
         cutter.cut(function.body);
         let pieces = cutter.pieces;
-        let lives = Lives::new(function, &pieces);
+        let lives = PieceLives::new(function, &pieces);
         let (slots, slot_count) = lives.slots();
         let homes = lives.homes;
         Self { pieces, slots, slot_count, homes }
@@ -218,7 +218,7 @@ impl<'a> Cutter<'a> {
 }
 
 /// The walk over all pieces in order of execution: which of them define and read a value.
-struct Lives<'a> {
+struct PieceLives<'a> {
     function: &'a Function,
     pieces: &'a HashMap<Block, Vec<Piece>>,
     /// Pieces so far.
@@ -232,11 +232,11 @@ struct Lives<'a> {
     depth: Vec<usize>,
     /// For each fold that is being walked, what it reads from outside.
     captured: Vec<Vec<Value>>,
-    accumulators: Vec<Accumulator>,
+    accumulators: Vec<FoldAccumulator>,
 }
 
 /// What a fold hands from row to row.
-struct Accumulator {
+struct FoldAccumulator {
     /// As the fold is given it.
     initial: Value,
     /// As the body binds it.
@@ -245,7 +245,7 @@ struct Accumulator {
     result: Value,
 }
 
-impl<'a> Lives<'a> {
+impl<'a> PieceLives<'a> {
     fn new(function: &'a Function, pieces: &'a HashMap<Block, Vec<Piece>>) -> Self {
         let zeros = vec![0; function.values.len()];
         let mut lives = Self {
@@ -296,7 +296,7 @@ impl<'a> Lives<'a> {
         }
         for ((&initial, &param), &result) in fold.initial.iter().zip(params).zip(&data.results) {
             self.last[result.index()] = self.piece;
-            self.accumulators.push(Accumulator { initial, param, result });
+            self.accumulators.push(FoldAccumulator { initial, param, result });
         }
     }
 

@@ -17,18 +17,18 @@ use tempfile::{NamedTempFile, TempPath};
 pub struct AtomicFile {
     file: File,
     /// Where the contents go; `None` if they are there already.
-    target: Option<Target>,
+    target: Option<PendingFile>,
 }
 
 #[derive(Debug)]
-struct Target {
+struct PendingFile {
     temporary: TempPath,
     path: PathBuf,
     replace: bool,
 }
 
 /// What stands at a path, and so how it is written to.
-enum Place {
+enum PathKind {
     /// A pipe or a device.
     Direct(PathBuf),
     /// A file, or nothing as yet: its path, its folder, and the permissions that it has.
@@ -43,17 +43,17 @@ impl AtomicFile {
     ///
     /// Whatever the system refuses; a folder, a file that is read-only, and a path whose folder is not there.
     pub fn create(path: &Path, replace: bool) -> io::Result<Self> {
-        match Place::at(path)? {
-            Place::Direct(path) => {
+        match PathKind::at(path)? {
+            PathKind::Direct(path) => {
                 let file = File::options().write(true).open(path)?;
                 Ok(Self { file, target: None })
             }
-            Place::File { path, folder, old } => {
+            PathKind::File { path, folder, old } => {
                 let (file, temporary) = temporary(&folder)?.into_parts();
                 if let Some(old) = old {
                     file.set_permissions(old)?;
                 }
-                Ok(Self { file, target: Some(Target { temporary, path, replace }) })
+                Ok(Self { file, target: Some(PendingFile { temporary, path, replace }) })
             }
         }
     }
@@ -64,10 +64,10 @@ impl AtomicFile {
     ///
     /// As [`create`](Self::create).
     pub fn check(path: &Path) -> io::Result<()> {
-        match Place::at(path)? {
+        match PathKind::at(path)? {
             // To open a pipe is to wait for its reader.
-            Place::Direct(_) => Ok(()),
-            Place::File { folder, .. } => temporary(&folder).map(drop),
+            PathKind::Direct(_) => Ok(()),
+            PathKind::File { folder, .. } => temporary(&folder).map(drop),
         }
     }
 
@@ -77,7 +77,7 @@ impl AtomicFile {
     ///
     /// Whatever the system refuses; then the file is as it was.
     pub fn finish(self) -> io::Result<()> {
-        let Some(Target { temporary, path, replace }) = self.target else { return Ok(()) };
+        let Some(PendingFile { temporary, path, replace }) = self.target else { return Ok(()) };
         self.file.sync_all()?;
         let put = if replace { temporary.persist(path) } else { temporary.persist_noclobber(path) };
         put.map_err(|error| error.error)
@@ -94,7 +94,7 @@ impl Write for AtomicFile {
     }
 }
 
-impl Place {
+impl PathKind {
     fn at(path: &Path) -> io::Result<Self> {
         // Through a link it is the file behind it that is replaced; the link stays.
         let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());

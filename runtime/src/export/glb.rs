@@ -22,7 +22,7 @@ use std::io::Write;
 use serde_json::{Map, Value, json};
 
 use super::conventions::{Choices, ColorEncoding, Colors, Conventions, FarMeshes, Up};
-use super::parts::{Named, WriteError, colors, finite, others, uvs, write_reals};
+use super::parts::{NamedAttribute, WriteError, colors, finite, others, uvs, write_reals};
 use crate::mesh::Mesh;
 
 const HEADER_BYTES: u64 = 12;
@@ -88,7 +88,7 @@ fn spell(stem: &str, width: usize) -> Vec<String> {
 fn write_binary(
     mesh: &Mesh,
     choices: Choices,
-    attributes: &[Named<'_>],
+    attributes: &[NamedAttribute<'_>],
     out: &mut impl Write,
 ) -> Result<(), WriteError> {
     write_reals(out, mesh.positions.iter().flatten().copied())?;
@@ -100,7 +100,7 @@ fn write_binary(
     if let Some(uvs) = uvs(mesh) {
         write_reals(out, uvs.chunks_exact(2).flat_map(|uv| [finite(uv[0]), finite(1.0 - uv[1])]))?;
     }
-    for Named { names, attribute } in attributes {
+    for NamedAttribute { names, attribute } in attributes {
         for part in 0..names.len() {
             let reals = WIDEST * part..attribute.width.min(WIDEST * (part + 1));
             let vertices = attribute.values.chunks_exact(attribute.width);
@@ -115,13 +115,13 @@ fn write_binary(
 
 /// The accessors and buffer views, one of each for every plane of numbers, in the order of the bytes.
 #[derive(Default)]
-struct Layout {
+struct BufferLayout {
     accessors: Vec<Value>,
     views: Vec<Value>,
     bytes: u64,
 }
 
-impl Layout {
+impl BufferLayout {
     /// Adds `count` elements of `width` four-byte numbers. Returns the index of the accessor.
     fn add(&mut self, target: u32, component: u32, width: usize, count: usize) -> usize {
         let length = 4 * width as u64 * count as u64;
@@ -137,13 +137,13 @@ impl Layout {
 }
 
 /// The JSON text, and how many bytes the binary chunk has.
-fn describe(mesh: &Mesh, up: Up, attributes: &[Named<'_>]) -> (Value, u64) {
+fn describe(mesh: &Mesh, up: Up, attributes: &[NamedAttribute<'_>]) -> (Value, u64) {
     let asset = json!({ "version": "2.0", "generator": "jbt" });
     if mesh.triangles.is_empty() {
         return (json!({ "asset": asset, "scene": 0, "scenes": [{}] }), 0);
     }
     let count = mesh.positions.len();
-    let mut layout = Layout::default();
+    let mut layout = BufferLayout::default();
     let mut vertex = Map::new();
     let positions = layout.add(ARRAY_BUFFER, FLOAT, 3, count);
     let (low, high) = bounds(&mesh.positions);
@@ -157,7 +157,7 @@ fn describe(mesh: &Mesh, up: Up, attributes: &[Named<'_>]) -> (Value, u64) {
     if uvs(mesh).is_some() {
         vertex.insert("TEXCOORD_0".to_owned(), json!(layout.add(ARRAY_BUFFER, FLOAT, 2, count)));
     }
-    for Named { names, attribute } in attributes {
+    for NamedAttribute { names, attribute } in attributes {
         for (part, name) in names.iter().enumerate() {
             let width = WIDEST.min(attribute.width - WIDEST * part);
             let accessor = layout.add(ARRAY_BUFFER, FLOAT, width, count);

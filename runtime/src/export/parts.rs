@@ -49,7 +49,7 @@ pub(super) fn finite(value: f32) -> f32 {
 }
 
 /// An attribute and the names that a file has for it.
-pub(super) struct Named<'a> {
+pub(super) struct NamedAttribute<'a> {
     pub(super) names: Vec<String>,
     pub(super) attribute: &'a Attribute,
 }
@@ -61,7 +61,7 @@ pub(super) fn others<'a>(
     mesh: &'a Mesh,
     reserved: &[&str],
     spell: fn(&str, usize) -> Vec<String>,
-) -> Vec<Named<'a>> {
+) -> Vec<NamedAttribute<'a>> {
     let known = [mesh.attributes.iter().position(is_color), mesh.attributes.iter().position(is_uv)];
     let mut taken: HashSet<String> = reserved.iter().map(|&name| name.to_owned()).collect();
     let mut named = Vec::new();
@@ -81,7 +81,7 @@ pub(super) fn others<'a>(
             number += 1;
         }
         taken.extend(names.iter().cloned());
-        named.push(Named { names, attribute });
+        named.push(NamedAttribute { names, attribute });
     }
     named
 }

@@ -7,7 +7,7 @@
 use std::io::Write;
 
 use super::conventions::{Choices, ColorEncoding, Colors, Conventions, FarMeshes, Up};
-use super::parts::{Named, WriteError, colors, others, uvs, write_reals};
+use super::parts::{NamedAttribute, WriteError, colors, others, uvs, write_reals};
 use crate::mesh::Mesh;
 use crate::srgb;
 
@@ -68,7 +68,7 @@ pub(super) fn write(mesh: &Mesh, choices: Choices, out: &mut impl Write) -> Resu
         if let Some(uvs) = uvs {
             write_reals(out, uvs[2 * vertex..2 * vertex + 2].iter().copied())?;
         }
-        for Named { attribute, .. } in &attributes {
+        for NamedAttribute { attribute, .. } in &attributes {
             let start = vertex * attribute.width;
             write_reals(out, attribute.values[start..start + attribute.width].iter().copied())?;
         }

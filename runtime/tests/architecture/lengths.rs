@@ -14,7 +14,7 @@ const TABLES: [(&str, &str); 1] = [("frontend/lower/src/slopes.rs", "back")];
 const WIDEST: usize = 110;
 
 /// The lines of a file without its tests; none of a file of tests.
-fn lines<'a>(path: &Path, text: &'a str) -> Vec<&'a str> {
+pub fn lines<'a>(path: &Path, text: &'a str) -> Vec<&'a str> {
     let is_test = path.components().any(|part| part.as_os_str() == "tests")
         || path.file_name().is_some_and(|name| name == "tests.rs" || name == "testing.rs");
     let code = text.split("\n#[cfg(test)]\nmod tests {").next().unwrap_or_default();

@@ -5,12 +5,23 @@ mod imports;
 mod layers;
 mod lengths;
 mod packages;
+mod paths;
+mod types;
 
 use std::path::{Path, PathBuf};
 
 /// All crates.
-const CRATES: [&str; 8] =
-    ["frontend/model", "frontend/text", "frontend/lower", "ir", "jit", "runtime", "cli", "benches"];
+const CRATES: [&str; 9] = [
+    "frontend/model",
+    "frontend/text",
+    "frontend/lower",
+    "ir",
+    "jit",
+    "runtime",
+    "cli",
+    "benches",
+    "testkit",
+];
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")

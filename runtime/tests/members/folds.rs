@@ -7,7 +7,7 @@ use jbt_lower::lower;
 use jbt_model::kind::{NodeKind, Primitive};
 use jbt_model::skeleton::SkeletonKind;
 
-use crate::common::{Random, fit};
+use jbt_testkit::random::Random;
 
 /// A sum of so many primitives, of every kind of skeleton in turn.
 fn sum(count: usize) -> Model {
@@ -15,9 +15,7 @@ fn sum(count: usize) -> Model {
     let mut numbers = Random::new(7, count as u64);
     let leaf = |index: usize| {
         let kind = SkeletonKind::ALL[index % SkeletonKind::ALL.len()];
-        let mut fields = numbers.fields(kind.fields());
-        fit(kind, &mut fields);
-        let skeleton = kind.from_fields(&fields);
+        let skeleton = numbers.skeleton(kind);
         let radius = 0.5 + rng.f64();
         let leaf = Primitive { skeleton, falloff: Falloff::Soft, radius, strength: 1.0 };
         Tree::new(NodeKind::Primitive(leaf), Vec::new())

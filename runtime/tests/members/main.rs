@@ -21,8 +21,6 @@
 mod attributes;
 mod check;
 mod combinators;
-#[path = "../common/mod.rs"]
-mod common;
 mod defects;
 mod falloffs;
 mod folds;

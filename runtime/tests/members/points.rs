@@ -3,7 +3,7 @@
 use fastrand::Rng;
 use jbt::{Box3, Points};
 
-use crate::common::SPICE;
+use jbt_testkit::points::SPICE;
 
 /// A point of a box.
 fn inside(rng: &mut Rng, bounds: &Box3) -> [f32; 3] {

@@ -116,7 +116,7 @@ pub(super) fn step(place: [u32; 3], steps: [i32; 3]) -> Option<[u32; 3]> {
 }
 
 /// The blocks that the surface crosses, in Morton order.
-pub(super) struct Crossed<'a> {
+pub(super) struct CrossedBlocks<'a> {
     cells: &'a [Cell],
     codes: Vec<u64>,
     /// The crossed cells of each, a bit each in Morton order.
@@ -130,7 +130,7 @@ pub(super) struct Crossed<'a> {
 
 /// What the corners of a block's cells tell.
 #[derive(Clone, Copy, Default, Debug)]
-pub(super) struct Signs {
+pub(super) struct BlockSigns {
     /// Crossed edges of the lattice that begin in the block.
     pub(super) edges: u32,
     /// Edges at lone points, each counted once for each of them.
@@ -141,7 +141,7 @@ pub(super) struct Signs {
     pub(super) is_scrap: bool,
 }
 
-impl<'a> Crossed<'a> {
+impl<'a> CrossedBlocks<'a> {
     pub(super) fn new(bricks: &Bricks, crossings: &'a Crossings) -> Self {
         let mut crossed = Self {
             cells: &crossings.cells,
@@ -236,10 +236,10 @@ impl<'a> Crossed<'a> {
     }
 
     /// Looks at the corners of a block's cells.
-    pub(super) fn look(&self, block: usize) -> Signs {
+    pub(super) fn look(&self, block: usize) -> BlockSigns {
         let (origin, mask) = (self.place(block), self.masks[block]);
         let cells = &self.cells[self.cells(block)];
-        let (mut found, mut lone): (Signs, Option<(u32, usize)>) = (Signs::default(), None);
+        let (mut found, mut lone): (BlockSigns, Option<(u32, usize)>) = (BlockSigns::default(), None);
         for axis in 0..3 {
             let edges = self.edges[block][axis];
             let behind = if edges & LAST[axis] == 0 { 0 } else { self.edges_behind(block, axis) };
@@ -366,7 +366,7 @@ mod tests {
     #[test]
     fn codes_are_found_from_anywhere() {
         let codes: Vec<u64> = (0..100).map(|n| n * n).collect();
-        let crossed = Crossed {
+        let crossed = CrossedBlocks {
             cells: &[],
             masks: vec![0; 100],
             firsts: vec![0; 100],

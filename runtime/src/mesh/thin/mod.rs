@@ -26,8 +26,8 @@ use super::progress::{Phase, Progress};
 use super::report::{MAX_NEAR, ThinReport};
 
 use alarm::{ALARM, Alarm};
-use crossed::{Crossed, EDGE, morton, step};
-use search::{Found, Search};
+use crossed::{CrossedBlocks, EDGE, morton, step};
+use search::{ChunkFindings, ThinSearch};
 use shreds::{Chunks, Looked};
 
 /// Searches the bricks of a division.
@@ -39,7 +39,7 @@ pub(super) fn find<F: Field>(
     progress: &Progress<'_>,
 ) -> Result<ThinReport, MeshError<F::Error>> {
     let bricks = &division.bricks;
-    let crossed = Crossed::new(bricks, crossings);
+    let crossed = CrossedBlocks::new(bricks, crossings);
     let (edge, places, regions) = match &division.chunks {
         Some((places, regions)) => (2 * EDGE, places, regions),
         None => (bricks.edge, &bricks.places, &division.regions),
@@ -49,20 +49,20 @@ pub(super) fn find<F: Field>(
     let mut alarms = looked.shreds()?;
     let mut report = ThinReport { shredded: alarms.len() as u64, ..ThinReport::default() };
     let blocks = (bricks.edge == EDGE).then(|| (&bricks.places[..], &division.regions[..]));
-    let search = Search { field, axes: &bricks.axes, iso, crossed: &crossed, blocks };
+    let search = ThinSearch { field, axes: &bricks.axes, iso, crossed: &crossed, blocks };
     let group = 64;
     let total = places.len().div_ceil(group);
     progress.begin(Phase::Thin)?;
     let groups = places.par_chunks(group).zip(regions.par_chunks(group));
     let found = groups.map(|(places, regions)| {
-        let (mut found, mut near) = (Found::default(), 0);
+        let (mut found, mut near) = (ChunkFindings::default(), 0);
         for (&place, region) in places.iter().zip(regions) {
             search.chunk((edge, place), region, &mut near, &mut found)?;
         }
         progress.advance(Phase::Thin, total)?;
         Ok(found)
     });
-    for found in found.collect::<Result<Vec<Found>, MeshError<F::Error>>>()? {
+    for found in found.collect::<Result<Vec<ChunkFindings>, MeshError<F::Error>>>()? {
         report.missed += found.missed.len() as u64;
         report.unproven += found.unproven;
         report.boxes += found.boxes;

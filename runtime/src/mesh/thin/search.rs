@@ -14,7 +14,7 @@
 //! A chunk that the surface crosses is left out: nearly all of space beside a smooth surface is in such, and
 //! would cost more than the mesh.
 
-use super::crossed::{Crossed, EDGE, bits, morton};
+use super::crossed::{CrossedBlocks, EDGE, bits, morton};
 use crate::mesh::brick::{box_of, place};
 use crate::mesh::error::MeshError;
 use crate::mesh::field::Field;
@@ -37,7 +37,7 @@ const COSTLY: u64 = 1000;
 
 /// What became of a block.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Outcome {
+pub(super) enum BlockOutcome {
     /// Nothing is there.
     Empty,
     /// This point is on the other side.
@@ -48,7 +48,7 @@ pub(super) enum Outcome {
 
 /// What the blocks of a chunk are like.
 #[derive(Default)]
-pub(super) struct Found {
+pub(super) struct ChunkFindings {
     /// Points on the other side, each with the place of its block.
     pub(super) missed: Vec<([u32; 3], [f32; 3])>,
     pub(super) unproven: u64,
@@ -56,11 +56,11 @@ pub(super) struct Found {
 }
 
 /// What stays the same for all blocks.
-pub(super) struct Search<'a, F: Field> {
+pub(super) struct ThinSearch<'a, F: Field> {
     pub(super) field: &'a F,
     pub(super) axes: &'a [Vec<f32>; 3],
     pub(super) iso: f32,
-    pub(super) crossed: &'a Crossed<'a>,
+    pub(super) crossed: &'a CrossedBlocks<'a>,
     /// The places of the blocks that the surface may be in, in Morton order, and their regions, if the
     /// division went so far.
     pub(super) blocks: Option<Blocks<'a, F::Region>>,
@@ -70,7 +70,7 @@ type Blocks<'a, R> = (&'a [[u32; 3]], &'a [R]);
 
 /// A box that the other side may be in.
 #[derive(Clone, Copy)]
-struct Open {
+struct OpenBox {
     bounds: Box3,
     /// How far the range goes beyond iso.
     reach: f32,
@@ -79,7 +79,7 @@ struct Open {
 }
 
 /// A search in one block.
-struct Block<'a, R> {
+struct BlockSearch<'a, R> {
     region: &'a R,
     /// Whether the corners of its cells are inside.
     inside: bool,
@@ -87,18 +87,18 @@ struct Block<'a, R> {
     steps: u32,
     /// Boxes that have stayed open so far.
     opened: u32,
-    open: Vec<Open>,
+    open: Vec<OpenBox>,
     unproven: bool,
 }
 
-impl<F: Field> Search<'_, F> {
+impl<F: Field> ThinSearch<'_, F> {
     /// Searches a box of this many cells along an edge, 8 or more, and all blocks in it.
     pub(super) fn chunk(
         &self,
         (size, at): (usize, [u32; 3]),
         region: &F::Region,
         near: &mut usize,
-        found: &mut Found,
+        found: &mut ChunkFindings,
     ) -> Result<(), MeshError<F::Error>> {
         let half = size / 2;
         if half == EDGE {
@@ -146,7 +146,7 @@ impl<F: Field> Search<'_, F> {
         (places, regions): Blocks<'_, F::Region>,
         (chunk, around): ([u32; 3], &F::Region),
         near: usize,
-        found: &mut Found,
+        found: &mut ChunkFindings,
     ) -> Result<(), MeshError<F::Error>> {
         let first = places.partition_point(|&place| morton(place) >> 3 < morton(chunk));
         let inside = places[first..].iter().take_while(|place| place.map(|index| index >> 1) == chunk);
@@ -164,7 +164,7 @@ impl<F: Field> Search<'_, F> {
         at: [u32; 3],
         (bounds, region, own): (Box3, &F::Region, Option<&F::Region>),
         near: usize,
-        found: &mut Found,
+        found: &mut ChunkFindings,
     ) -> Result<(), MeshError<F::Error>> {
         let free = self.free(at, near);
         if free == 0 {
@@ -182,7 +182,7 @@ impl<F: Field> Search<'_, F> {
         let corner = bounds.low.map(|coordinate| [coordinate]);
         let mut value = [0.0];
         self.field.field(region, &corner[0], &corner[1], &corner[2], &mut value).map_err(MeshError::Field)?;
-        let mut block = Block {
+        let mut block = BlockSearch {
             region,
             inside: value[0] >= self.iso,
             credit: 1.0,
@@ -193,9 +193,9 @@ impl<F: Field> Search<'_, F> {
         };
         let outcome = self.search(&mut block, at, free, found)?;
         match outcome {
-            Outcome::Empty => {}
-            Outcome::Missed(point) => found.missed.push((at, point)),
-            Outcome::Unproven => found.unproven += 1,
+            BlockOutcome::Empty => {}
+            BlockOutcome::Missed(point) => found.missed.push((at, point)),
+            BlockOutcome::Unproven => found.unproven += 1,
         }
         Ok(())
     }
@@ -216,11 +216,11 @@ impl<F: Field> Search<'_, F> {
 
     fn search(
         &self,
-        block: &mut Block<'_, F::Region>,
+        block: &mut BlockSearch<'_, F::Region>,
         at: [u32; 3],
         free: u64,
-        found: &mut Found,
-    ) -> Result<Outcome, MeshError<F::Error>> {
+        found: &mut ChunkFindings,
+    ) -> Result<BlockOutcome, MeshError<F::Error>> {
         let first = at.map(|index| index as usize * EDGE);
         let cells = |bit: u64, size: usize| {
             let place = place(bit as u16);
@@ -237,44 +237,44 @@ impl<F: Field> Search<'_, F> {
         left.sort_by(|a, b| a.0.total_cmp(&b.0));
         while let Some((_, octant)) = left.pop() {
             if !block.may_go_on() {
-                return Ok(Outcome::Unproven);
+                return Ok(BlockOutcome::Unproven);
             }
             let boxes: Vec<Box3> =
                 bits(free >> (8 * octant) & 0xff).map(|bit| cells(8 * octant + bit, 1)).collect();
             if let Some(point) = self.divide(block, &boxes, HALVINGS, found)? {
-                return Ok(Outcome::Missed(point));
+                return Ok(BlockOutcome::Missed(point));
             }
             while let Some(open) = block.open.pop() {
                 if !block.may_go_on() {
-                    return Ok(Outcome::Unproven);
+                    return Ok(BlockOutcome::Unproven);
                 }
                 let Some(parts) = parts(&open.bounds).filter(|_| open.halvings > 0) else {
                     block.unproven = true;
                     continue;
                 };
                 if let Some(point) = self.divide(block, &parts, open.halvings - 1, found)? {
-                    return Ok(Outcome::Missed(point));
+                    return Ok(BlockOutcome::Missed(point));
                 }
             }
         }
-        Ok(if block.unproven { Outcome::Unproven } else { Outcome::Empty })
+        Ok(if block.unproven { BlockOutcome::Unproven } else { BlockOutcome::Empty })
     }
 
     /// Asks for the ranges of some boxes, and puts those that stay open on the list, the best last; or a
     /// point on the other side.
     fn divide(
         &self,
-        block: &mut Block<'_, F::Region>,
+        block: &mut BlockSearch<'_, F::Region>,
         boxes: &[Box3],
         halvings: u32,
-        found: &mut Found,
+        found: &mut ChunkFindings,
     ) -> Result<Option<[f32; 3]>, MeshError<F::Error>> {
         let ranges = self.ask(block, boxes, found)?;
-        let mut open = [Open { bounds: Box3::default(), reach: 0.0, halvings }; MAX_PARTS];
+        let mut open = [OpenBox { bounds: Box3::default(), reach: 0.0, halvings }; MAX_PARTS];
         let mut count = 0;
         for (&bounds, range) in boxes.iter().zip(ranges) {
             if let Some(reach) = self.reach(block, range) {
-                open[count] = Open { bounds, reach, halvings };
+                open[count] = OpenBox { bounds, reach, halvings };
                 count += 1;
             }
         }
@@ -298,7 +298,7 @@ impl<F: Field> Search<'_, F> {
     }
 
     /// How far a range goes beyond iso on the other side; `None` if it does not.
-    fn reach(&self, block: &Block<'_, F::Region>, [low, high]: Range) -> Option<f32> {
+    fn reach(&self, block: &BlockSearch<'_, F::Region>, [low, high]: Range) -> Option<f32> {
         let reach = if block.inside { self.iso - low } else { high - self.iso };
         let is_clear = if block.inside { low >= self.iso } else { high < self.iso };
         (!is_clear).then_some(reach)
@@ -307,9 +307,9 @@ impl<F: Field> Search<'_, F> {
     /// The ranges of some boxes, for what that costs.
     fn ask(
         &self,
-        block: &mut Block<'_, F::Region>,
+        block: &mut BlockSearch<'_, F::Region>,
         boxes: &[Box3],
-        found: &mut Found,
+        found: &mut ChunkFindings,
     ) -> Result<[Range; MAX_PARTS], MeshError<F::Error>> {
         found.boxes += boxes.len() as u64;
         let ranges = self.ranges(block.region, boxes)?;
@@ -335,7 +335,7 @@ impl<F: Field> Search<'_, F> {
     }
 }
 
-impl<R> Block<'_, R> {
+impl<R> BlockSearch<'_, R> {
     fn may_go_on(&self) -> bool {
         self.credit > 0.0 && self.steps < MAX_STEPS && self.opened < MAX_OPEN
     }

@@ -17,7 +17,7 @@
 use crate::parallel::*;
 
 use super::alarm::{ALARM, Alarm};
-use super::crossed::{Crossed, morton};
+use super::crossed::{CrossedBlocks, morton};
 use crate::mesh::brick::Bricks;
 use crate::mesh::crossing::Crossings;
 use crate::mesh::error::MeshError;
@@ -53,14 +53,14 @@ pub(super) struct Looked<'a, F: Field> {
     pub(super) iso: f32,
     pub(super) bricks: &'a Bricks,
     pub(super) crossings: &'a Crossings,
-    pub(super) crossed: &'a Crossed<'a>,
+    pub(super) crossed: &'a CrossedBlocks<'a>,
     pub(super) chunks: &'a Chunks<'a, F::Region>,
     pub(super) mesh: &'a Mesh,
 }
 
 /// A point to ask the field at, by the chunk that it is in.
 #[derive(Clone, Copy)]
-struct Probe {
+struct ShredProbe {
     chunk: usize,
     point: [f32; 3],
 }
@@ -99,9 +99,9 @@ impl<F: Field> Looked<'_, F> {
         let probe = |&vertex: &usize| {
             let against = self.mesh.normals[vertex].map(|component| -component);
             let (chunk, point) = self.place(self.mesh.positions[vertex], against)?;
-            Some(Probe { chunk, point })
+            Some(ShredProbe { chunk, point })
         };
-        let mut probes: Vec<Probe> = vertices.iter().filter_map(probe).collect();
+        let mut probes: Vec<ShredProbe> = vertices.iter().filter_map(probe).collect();
         probes.sort_by_key(|probe| probe.chunk);
         let mut votes = 0;
         for probes in probes.chunk_by(|a, b| a.chunk == b.chunk) {

@@ -5,8 +5,8 @@
 use jbt::Points;
 
 use super::Verdict;
-use crate::common::HOSTILE;
 use crate::subject::{Subject, answers};
+use jbt_testkit::points::HOSTILE;
 
 pub fn check(subject: &Subject) -> Verdict {
     let points = points(subject);
