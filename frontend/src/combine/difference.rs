@@ -26,8 +26,8 @@ impl Difference {
     }
 
     /// The child that decides. Among subtracted ones the one with the largest field, also where several are
-    /// clamped to zero. One without field is not there: it limits the field of the first, and leaves the rest to
-    /// it.
+    /// clamped to zero. One without field is not there: it limits the field of the first, and leaves the rest
+    /// to it.
     pub(super) fn winner(fields: &[f64], iso: f64) -> usize {
         let Some(largest) =
             (1..fields.len()).reduce(|best, i| if fields[i] > fields[best] { i } else { best })

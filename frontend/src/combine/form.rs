@@ -1,7 +1,7 @@
 //! What operators of one form have in common, made of what each of them states.
 //!
-//! [`Plain`] is what the oracle and the check ask any operator. Each form answers for all its members at once:
-//! the forms are its parameter, so that one type may have one of them.
+//! [`Plain`] is what the oracle and the check ask any operator. Each form answers for all its members at
+//! once: the forms are its parameter, so that one type may have one of them.
 
 use super::difference::Difference;
 use super::extent::Extent;

@@ -44,8 +44,8 @@ pub(crate) trait Operator: Member + Copy {
         None
     }
 
-    /// The operator with this value of a number that follows a parameter. Passing by a value must not exchange
-    /// one operator for another.
+    /// The operator with this value of a number that follows a parameter. Passing by a value must not
+    /// exchange one operator for another.
     fn following(self) -> Self {
         self
     }
@@ -95,7 +95,8 @@ pub(crate) trait Fold: Operator {
     /// Whether slopes of the field are not bounded by the sum of those of the operands.
     const IS_STEEP: bool = false;
 
-    /// What of it selects code; `follows`: numbers follow parameters, so that the code has to serve all values.
+    /// What of it selects code; `follows`: numbers follow parameters, so that the code has to serve all
+    /// values.
     fn code(self, follows: bool) -> Self::Code;
 
     /// The field, plainly.
@@ -236,8 +237,8 @@ pub(crate) trait Unary: Operator {
     /// How far a field is from where another formula holds.
     fn kink_distance(self, f: f64, iso: f64) -> f64;
 
-    /// Whether the field can never be negative, if that of the child can (`false`) or cannot (`true`). `fixed`:
-    /// the numbers follow no parameter; otherwise they may become anything.
+    /// Whether the field can never be negative, if that of the child can (`false`) or cannot (`true`).
+    /// `fixed`: the numbers follow no parameter; otherwise they may become anything.
     fn is_non_negative(self, child: bool, fixed: bool) -> bool;
 
     /// The field over the ops. `iso2` is twice the iso-value.

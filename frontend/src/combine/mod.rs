@@ -296,7 +296,8 @@ macro_rules! members {
                 match self { $( Self::$name(it) => Plain::<$form>::field(it, fields, iso), )+ }
             }
 
-            /// How much each child contributes, `max(0, f_i dF/df_i)` up to a common factor: what mixes attributes.
+            /// How much each child contributes, `max(0, f_i dF/df_i)` up to a common factor: what mixes
+            /// attributes.
             ///
             /// By Euler's identity these add up to F for operators that are homogeneous of degree 1. What is
             /// subtracted counts by its complement, where it is there.
@@ -311,8 +312,8 @@ macro_rules! members {
                 match self { $( Self::$name(it) => Plain::<$form>::winner(it, fields, iso), )+ }
             }
 
-            /// How far the fields are from where another child would win, or another formula hold; infinity if
-            /// nothing is decided.
+            /// How far the fields are from where another child would win, or another formula hold; infinity
+            /// if nothing is decided.
             #[must_use]
             pub fn kink_distance(self, fields: &[f64], iso: f64) -> f64 {
                 match self { $( Self::$name(it) => Plain::<$form>::kink_distance(it, fields, iso), )+ }
@@ -323,8 +324,8 @@ macro_rules! members {
                 match self { $( Self::$name(it) => Plain::<$form>::extent(it, children, iso), )+ }
             }
 
-            /// Whether the field can never be negative; of each child, whether its field can never be. `fixed`: the
-            /// numbers follow no parameter.
+            /// Whether the field can never be negative; of each child, whether its field can never be.
+            /// `fixed`: the numbers follow no parameter.
             pub(crate) fn is_non_negative(self, children: &mut dyn Iterator<Item = bool>, fixed: bool) -> bool {
                 match self { $( Self::$name(it) => Plain::<$form>::is_non_negative(it, children, fixed), )+ }
             }

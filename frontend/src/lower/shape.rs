@@ -397,8 +397,8 @@ pub(super) fn bounded(scene: &Scene<'_>, groups: &[Group]) -> bool {
     groups.iter().flat_map(|group| &group.members).all(|(member, _)| scene.occurrence(*member).bounded)
 }
 
-/// Which operators dissolve into the operator that uses them: equal ones, one use, and the same answers either
-/// way.
+/// Which operators dissolve into the operator that uses them: equal ones, one use, and the same answers
+/// either way.
 fn flattened(scene: &Scene<'_>) -> Vec<bool> {
     let mut flattened = vec![false; scene.occurrences.len()];
     for occurrence in &scene.occurrences {

@@ -44,8 +44,8 @@ impl Parser<'_> {
         self.block(start, head)
     }
 
-    /// The set operation of an operator that has one, then its numbers behind their names, which tell the kind
-    /// among those of a word. Nothing after an error.
+    /// The set operation of an operator that has one, then its numbers behind their names, which tell the
+    /// kind among those of a word. Nothing after an error.
     fn named_numbers(&mut self, word: &str) -> Option<(CombinatorKind, Vec<FieldNumber>)> {
         let mut kinds: Vec<CombinatorKind> = CombinatorKind::named(word).collect();
         let mut values: Vec<(&'static str, FieldNumber)> = Vec::new();

@@ -6,10 +6,7 @@ use fastrand::Rng;
 use glam::{DAffine3, DMat3, DVec3};
 use jbt_frontend::attribute::{AttributeGroup, AttributeValue, Mixing, Textured, UvMap};
 use jbt_frontend::builder::{Term, param, x, y, z};
-use jbt_frontend::combine::{
-    Clamp, Combinator, Complement, Difference, Intersection, Offset, Product, RFunction, RFunctionOrder,
-    RFunctionPower, Ricci, SetOperation, Shell, Sum, SymmetricDifference, Union,
-};
+use jbt_frontend::combine::{Combinator, CombinatorKind};
 use jbt_frontend::falloff::{Falloff, FalloffKind};
 use jbt_frontend::field::{Field, FieldKind, FieldValue};
 use jbt_frontend::kind::{NodeKind, Primitive};
@@ -231,24 +228,6 @@ pub fn model(rng: &mut Rng) -> Model {
 
 /// Any operator.
 fn combinator(rng: &mut Rng) -> Combinator {
-    let set = SetOperation::ALL[rng.usize(..3)];
-    match rng.u8(..14) {
-        0 => Sum {}.into(),
-        1 => Ricci { exponent: number(rng) }.into(),
-        2 => Union {}.into(),
-        3 => Intersection {}.into(),
-        4 => Difference {}.into(),
-        5 => Product {}.into(),
-        6 => SymmetricDifference {}.into(),
-        7 => Combinator::smooth(set, number(rng)),
-        8 => RFunction { set, alpha: number(rng) }.into(),
-        9 => match rng.bool() {
-            true => RFunctionPower { set, power: number(rng) }.into(),
-            false => RFunctionOrder { set, order: rng.u32(..9) }.into(),
-        },
-        10 => Complement {}.into(),
-        11 => Clamp { low: number(rng), high: number(rng) }.into(),
-        12 => Shell { thickness: number(rng) }.into(),
-        _ => Offset { by: number(rng) }.into(),
-    }
+    let kind = rng.choice(CombinatorKind::ALL).expect("there are operators");
+    kind.from_fields(&fields(rng, kind.fields()))
 }
