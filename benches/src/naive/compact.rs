@@ -215,7 +215,11 @@ fn combine(
     let write = |id: &NodeId| Task::Write(*id, map, values.clone());
     let operator = match (combinator.name(), combinator) {
         (_, Combinator::Ricci(Ricci { exponent: n })) if n != 1.0 => {
-            if n.fract() == 0.0 && n > 0.0 { Operator::Powers(n as i32) } else { Operator::Ricci(n as f32) }
+            if n.fract() == 0.0 && n > 0.0 {
+                Operator::Powers(n as i32)
+            } else {
+                Operator::Ricci(n as f32)
+            }
         }
         ("sum" | "ricci", _) => Operator::Sum,
         ("union", _) => Operator::Union,
