@@ -4,8 +4,8 @@
 use jbt_frontend::builder::{param, point, segment};
 use jbt_frontend::check::CheckedTree;
 use jbt_frontend::combine::{
-    Combinator, CombinatorKind, Difference, Intersection, Product, RFunction, RFunctionOrder, RFunctionPower,
-    Ricci, SetOperation, Sum, SymmetricDifference, Union,
+    Combinator, CombinatorKind, RFunction, RFunctionOrder, RFunctionPower, Ricci, SetOperation,
+    SymmetricDifference,
 };
 use jbt_frontend::lower::lower;
 use jbt_frontend::model::Model;
