@@ -213,32 +213,19 @@ fn combine(
     tasks: &mut Vec<Task>,
 ) {
     let write = |id: &NodeId| Task::Write(*id, map, values.clone());
-    let operator = match combinator {
-        Combinator::Sum(_) => Operator::Sum,
-        Combinator::Ricci(Ricci { exponent: n }) => {
-            if n == 1.0 {
-                Operator::Sum
-            } else if n.fract() == 0.0 && n > 0.0 {
+    let operator = match (combinator.name(), combinator) {
+        (_, Combinator::Ricci(Ricci { exponent: n })) if n != 1.0 => {
+            if n.fract() == 0.0 && n > 0.0 {
                 Operator::Powers(n as i32)
             } else {
                 Operator::Ricci(n as f32)
             }
         }
-        Combinator::Union(_) => Operator::Union,
-        Combinator::Intersection(_) => Operator::Intersection,
-        Combinator::Difference(_) => Operator::Difference,
-        Combinator::Product(_)
-        | Combinator::SymmetricDifference(_)
-        | Combinator::SmoothUnion(_)
-        | Combinator::SmoothIntersection(_)
-        | Combinator::SmoothDifference(_)
-        | Combinator::RFunction(_)
-        | Combinator::RFunctionPower(_)
-        | Combinator::RFunctionOrder(_)
-        | Combinator::Complement(_)
-        | Combinator::Clamp(_)
-        | Combinator::Shell(_)
-        | Combinator::Offset(_) => panic!("no case compares walks of `{}`", combinator.name()),
+        ("sum" | "ricci", _) => Operator::Sum,
+        ("union", _) => Operator::Union,
+        ("intersection", _) => Operator::Intersection,
+        ("difference", _) => Operator::Difference,
+        (name, _) => panic!("no case compares walks of `{name}`"),
     };
     match (operator, children) {
         // With one child there is nothing to decide.

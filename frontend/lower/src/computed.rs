@@ -17,8 +17,8 @@
 //!
 //! All this is there for queries that ask for attributes; for others, rows have no such columns.
 //!
-//! To add another kind of computed value: a variant of [`AttributeValue`], one of [`ComputedKind`] with its
-//! columns and its code here, and what the oracle makes of it.
+//! To add another kind of computed value: a variant of [`AttributeValue`], ones of [`ComputedKind`] and
+//! [`ComputedValue`], its columns and its code in `emit` and `rows`, and what the oracle makes of it.
 
 use std::sync::Arc;
 
@@ -29,9 +29,9 @@ use super::names::{ComputedId, SpaceId};
 use super::position::MapKind;
 use jbt_model::attribute::{AttributeValue, Textured, UvMap};
 use jbt_model::check::{CheckedTree, NodeId};
-use jbt_model::expression::{Form, LARGEST_FIELD, Operand};
+use jbt_model::expression::{Expression, Form, LARGEST_FIELD};
 use jbt_model::kind::NodeKind;
-use jbt_model::skeleton::SkeletonKind;
+use jbt_model::skeleton::{Skeleton, SkeletonKind};
 use jbt_model::texture::TextureKind;
 
 /// How many textures and formulas may be hoisted, because several leaves share them.
@@ -92,92 +92,47 @@ impl ComputedKind {
     }
 }
 
-/// Names of the columns of a uv's map.
-const UV_MATRIX: [&str; 6] = ["uu", "uv", "u", "vu", "vv", "v"];
+/// A computed value: what its code is made of, and its numbers.
+pub(super) enum ComputedValue<'a> {
+    Texture(TextureKind, &'a Textured),
+    /// The uv of a skeleton, mapped.
+    Uv(&'a Skeleton, &'a UvMap),
+    Formula(&'a Expression),
+}
 
-/// The value of a group over the ops, at a point of the function's space. `columns` gives the next columns of
-/// the row, and `channels` are the names of the group's.
-pub(super) fn emit(
-    d: &mut FunctionBuilder,
-    kind: &ComputedKind,
-    point: [Value; 3],
-    channels: &[String],
-    mut columns: impl FnMut(&mut FunctionBuilder, &[&str]) -> Vec<Value>,
-) -> Vec<Value> {
-    match kind {
-        ComputedKind::Texture(texture) => {
-            let row = columns(d, texture.columns());
-            let t = texture.emit(d, point, &row);
-            let one = d.constant(1.0);
-            let rest = d.sub(one, t);
-            let names: Vec<&str> = channels.iter().map(String::as_str).collect();
-            let a = columns(d, &names);
-            let b = columns(d, &names);
-            // Exact where t is 0 or 1.
-            let mix = |(&a, &b): (&Value, &Value)| {
-                let part = d.mul(rest, a);
-                d.fma(t, b, part)
-            };
-            a.iter().zip(&b).map(mix).collect()
-        }
-        ComputedKind::Uv(skeleton) => {
-            let row = columns(d, skeleton.uv_columns());
-            let [u, v] = skeleton.emit_uv(d, point, &row);
-            let row = columns(d, &UV_MATRIX);
-            let part = |row: &[Value]| {
-                let by_u = d.fma(u, row[0], row[2]);
-                d.fma(v, row[1], by_u)
-            };
-            row.chunks_exact(3).map(part).collect()
-        }
-        ComputedKind::Formula(form) => {
-            let row = columns(d, &vec!["number"; form.numbers()]);
-            let values = form.emit(d, |operand| match operand {
-                Operand::Coordinate(axis) => point[axis as usize],
-                Operand::Number(number) => row[number as usize],
-                Operand::Child(_) | Operand::Step(_) => unreachable!("an attribute asks for no fields"),
-            });
-            values.into_iter().map(|value| kept(d, value)).collect()
+impl Computed {
+    /// What the attribute node gives.
+    pub(super) fn value<'a>(&self, tree: &'a CheckedTree) -> ComputedValue<'a> {
+        match (attribute(tree, self.node), &self.kind) {
+            (AttributeValue::Textured(value), ComputedKind::Texture(kind)) => {
+                ComputedValue::Texture(*kind, value)
+            }
+            (AttributeValue::Uv(map), ComputedKind::Uv(_)) => {
+                let leaf = self.leaf.expect("a uv has its leaf");
+                ComputedValue::Uv(tree.node(leaf).kind.uv_skeleton(), map)
+            }
+            (AttributeValue::Expressed(expression), ComputedKind::Formula(_)) => {
+                ComputedValue::Formula(expression)
+            }
+            (
+                AttributeValue::Numbers(_)
+                | AttributeValue::Textured(_)
+                | AttributeValue::Uv(_)
+                | AttributeValue::Expressed(_),
+                _,
+            ) => unreachable!("the kind is that of the node"),
         }
     }
 }
 
 /// The value within bounds, and 0 instead of a NaN.
-fn kept(d: &mut FunctionBuilder, value: Value) -> Value {
+pub(super) fn kept(d: &mut FunctionBuilder, value: Value) -> Value {
     let bounds = [-LARGEST_FIELD, LARGEST_FIELD, 0.0];
     let [lowest, largest, zero] = bounds.map(|number| d.constant(number));
     let is_number = d.eq(value, value);
     let value = d.select(is_number, value, zero);
     let value = d.max(value, lowest);
     d.min(value, largest)
-}
-
-/// The numbers of a computed value in a row, in the order in which [`emit`] asks for them behind those of the
-/// map.
-pub(super) fn push_columns(tree: &CheckedTree, computed: &Computed, row: &mut Vec<f64>) {
-    computed.map_kind.push_columns(&computed.map, row);
-    match (attribute(tree, computed.node), &computed.kind) {
-        (AttributeValue::Textured(Textured { texture, a, b }), ComputedKind::Texture(kind)) => {
-            kind.push_columns(texture, row);
-            row.extend(a);
-            row.extend(b);
-        }
-        (AttributeValue::Uv(map), ComputedKind::Uv(_)) => push_uv(tree, computed, map, row),
-        (AttributeValue::Expressed(expression), ComputedKind::Formula(_)) => row.extend(expression.numbers()),
-        (
-            AttributeValue::Numbers(_)
-            | AttributeValue::Textured(_)
-            | AttributeValue::Uv(_)
-            | AttributeValue::Expressed(_),
-            _,
-        ) => unreachable!("the kind is that of the node"),
-    }
-}
-
-fn push_uv(tree: &CheckedTree, computed: &Computed, map: &UvMap, row: &mut Vec<f64>) {
-    let leaf = computed.leaf.expect("a uv has its leaf");
-    tree.node(leaf).kind.uv_skeleton().uv_columns(row);
-    row.extend(map.matrix().as_flattened());
 }
 
 /// What an attribute node gives.

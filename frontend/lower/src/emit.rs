@@ -33,6 +33,7 @@ use std::rc::Rc;
 use jbt_ir::{Domain, Function, FunctionBuilder, Rule, Table, Value, limits};
 
 use self::parts::{Guard, GuardStart, Probes, Select};
+use super::columns;
 use super::guide::{Decision, DecisionKind};
 use super::mixing::{Answer, Operator, State, difference, mapped};
 use super::names::ComputedId;
@@ -198,9 +199,9 @@ impl<'a> Emitter<'a> {
         self.points.push((SpaceId(0), point));
         let zero = self.builder.constant(0.0);
         self.open_only("scene", SpaceId(0), Rule::Never, &[zero]);
-        self.iso2 = Some(self.column("iso2"));
+        self.iso2 = Some(columns::iso2(self, self.scene)[0]);
         for group in &self.scene.tree.attributes()[..self.mixing.len()] {
-            let default = (0..group.width()).map(|i| self.column(&group.channel(i))).collect();
+            let default = columns::channels(self, group, &group.default);
             self.defaults.push(default);
         }
         self.tasks.push(Task::Use(self.scene.root));
@@ -371,7 +372,9 @@ impl<'a> Emitter<'a> {
                 self.tasks.push(Task::Operand(*left, Guard::LEFT));
             }
             OccurrenceKind::Map { code, child } => {
-                let row = self.columns(code.columns());
+                let node = self.scene.occurrence(id).node;
+                let operator = self.scene.combinator(node);
+                let row = columns::operator(self, self.scene, node, operator, code.columns());
                 self.tasks.push(Task::Map(*code, row));
                 self.tasks.push(Task::Operand(*child, Guard::ZERO));
             }
@@ -396,12 +399,12 @@ impl<'a> Emitter<'a> {
     /// The point inside a warp.
     fn point_inside(&mut self, space: SpaceId) -> [Value; 3] {
         let inside = self.scene.inside(space).expect("the world is no warp's inside");
-        let map = self.scene.position(inside.position).kind();
+        let position = self.scene.position(inside.position);
         let (_, outer) = *self.points.last().expect("a space is open");
-        let row = self.columns(map.columns());
-        let point = map.emit(&mut self.builder, outer, &row);
+        let row = columns::map(self, position.kind(), &position.map);
+        let point = position.kind().emit(&mut self.builder, outer, &row);
         let code = self.scene.warp(inside.warp).code();
-        let row = self.columns(&code.columns());
+        let row = columns::warp(self, self.scene, space);
         match inside.weight {
             None => code.emit(&mut self.builder, point, &row),
             Some(weight) => {

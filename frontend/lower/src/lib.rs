@@ -14,6 +14,7 @@
 //! * `slopes`: how a formula's value follows its children's, for the weights of their attributes.
 //! * `computed`: attribute values that are functions of the point.
 //! * `demand`: what selectors leave out has code, in folds whose rows are not active.
+//! * `columns`: what each column is called, and its number; `emit` declares them, `rows` fills them.
 //! * `rows`: walks the occurrences in the order of `emit` and writes down their numbers.
 //! * `support`: finds for each occurrence where it can be anything but zero, in the program's own arithmetic.
 //! * [`guide`]: what somebody has to know who leaves rows out: supports, rules, and a function of probes;
@@ -25,6 +26,7 @@
 //! The program's body is a fold over the one row of the table `scene`, which holds the numbers of whatever is
 //! there once.
 
+mod columns;
 mod computed;
 mod demand;
 mod emit;

@@ -238,6 +238,13 @@ impl<'a> Scene<'a> {
         self.inside(space).is_some_and(|inside| inside.uses > 1)
     }
 
+    /// The place of the attribute group that a computed value is for.
+    pub(super) fn group_of(&self, id: ComputedId) -> usize {
+        let name = self.attribute_name(self.computed(id).node);
+        let group = self.tree.attributes().iter().position(|group| &*group.name == name);
+        group.expect("the check knows all groups")
+    }
+
     /// What an operator does.
     pub(super) fn combinator(&self, node: NodeId) -> Combinator {
         match &self.tree.node(node).kind {

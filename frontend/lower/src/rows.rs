@@ -3,20 +3,20 @@
 //! This goes through the occurrences as [`super::emit`] does, but through all members of a group and not the
 //! first alone, and writes numbers where that declares columns. Numbers are derived in f64 and rounded once.
 
+use glam::DVec3;
 use jbt_ir::{Entity, Rows, Store, Table, Tables};
 
-use super::computed;
+use super::columns::{self, Scribe};
+use super::computed::{self, ComputedValue};
 use super::emit::{Code, groups};
 use super::mixing::wants_order;
 use super::names::ComputedId;
 use super::occurrence::{BindingsId, FieldId, LeafField, OccurrenceId, OccurrenceKind, Scene, SpaceId};
 use super::shape::{Hoist, Shapes};
-use jbt_model::attribute::{AttributeValue, Mixing};
+use jbt_model::attribute::{AttributeGroup, AttributeValue, Mixing, Textured};
 use jbt_model::check::NodeId;
-use jbt_model::combine::Combinator;
 use jbt_model::diagnostic::Diagnostic;
 use jbt_model::query::Query;
-use jbt_model::skeleton::BEYOND;
 
 /// The numbers, and what they belong to.
 pub(super) struct Written {
@@ -104,12 +104,40 @@ struct Writer<'a> {
     /// By table and row.
     members: Vec<Vec<Member>>,
     errors: Vec<Diagnostic>,
+    /// The table of the row in progress, and whether it is the first one there.
+    table: Table,
+    is_first: bool,
     row: Vec<f64>,
     /// The tables under the row in progress, the next one last.
     children: Vec<Table>,
     nodes: Vec<u32>,
     /// Empty between rows.
     tasks: Vec<Task>,
+}
+
+/// Numbers are pushed behind those of the row in progress.
+impl Scribe for Writer<'_> {
+    type Row = ();
+
+    fn columns<N: AsRef<str>>(
+        &mut self,
+        names: impl IntoIterator<Item = N>,
+        numbers: impl FnOnce(&mut Vec<f64>),
+    ) {
+        let before = self.row.len();
+        numbers(&mut self.row);
+        if self.is_first {
+            // The other rows of a table have the same shape.
+            let declared = &self.code.function.tables[self.table].columns[before..self.row.len()];
+            assert!(
+                declared
+                    .iter()
+                    .map(String::as_str)
+                    .eq(names.into_iter().map(|name| name.as_ref().to_owned())),
+                "code declares {declared:?} where rows have other numbers"
+            );
+        }
+    }
 }
 
 impl<'a> Writer<'a> {
@@ -135,6 +163,8 @@ impl<'a> Writer<'a> {
             tables,
             members,
             errors: Vec::new(),
+            table: Table::new(0),
+            is_first: true,
             row: Vec::new(),
             children: Vec::new(),
             nodes: Vec::new(),
@@ -147,15 +177,18 @@ impl<'a> Writer<'a> {
         let member = self.members[table.index()][index];
         let mut tasks = std::mem::take(&mut self.tasks);
         let depth = self.code.tables[table.index()].depth;
+        (self.table, self.is_first) = (table, index == 0);
         self.children.clear();
         self.children.extend(self.code.tables[table.index()].children.iter().rev());
         match member {
             Member::Operand(member, order) => {
                 tasks.push(Task::Use(member));
-                self.row.extend(order.map(f64::from));
+                if let Some(order) = order {
+                    columns::order(self, order);
+                }
             }
             Member::Hoisted(Hoist::Field(field)) => self.leaf(field),
-            Member::Hoisted(Hoist::Computed(id)) => self.computed(id),
+            Member::Hoisted(Hoist::Computed(id)) => self.hoisted(id),
             Member::Hoisted(Hoist::Space(space)) => self.warp(space),
             Member::Hoisted(Hoist::Occurrence(id)) => tasks.push(Task::Define(id)),
             Member::Piece(..) => unreachable!("pieces are written with their leaves"),
@@ -168,7 +201,7 @@ impl<'a> Writer<'a> {
                 // It is computed where it is hoisted to.
                 Task::Use(id) if self.scene.occurrence(id).uses > 1 => {}
                 Task::Use(id) | Task::Define(id) => self.define(id, &mut tasks),
-                Task::Order(order) => self.row.push(f64::from(order)),
+                Task::Order(order) => columns::order(self, order),
                 Task::Express(id) => self.express(id),
                 Task::Hoist(hoist) => self.hoist(hoist, depth, &mut tasks),
                 Task::Rows(id, group) => self.hand_out(id, group),
@@ -188,9 +221,9 @@ impl<'a> Writer<'a> {
 
     /// The numbers of the scene itself.
     fn start(&mut self, tasks: &mut Vec<Task>) {
-        self.row.push(2.0 * self.scene.tree.iso());
+        columns::iso2(self, self.scene);
         for group in &self.scene.tree.attributes()[..self.mixing.len()] {
-            self.row.extend(&group.default);
+            columns::channels(self, group, &group.default);
         }
         self.enter_space(SpaceId(0), tasks);
     }
@@ -203,15 +236,15 @@ impl<'a> Writer<'a> {
     fn warp(&mut self, space: SpaceId) {
         let inside = self.scene.inside(space).expect("the world is no warp's inside");
         let position = self.scene.position(inside.position);
-        position.kind().push_columns(&position.map, &mut self.row);
-        self.scene.warp(inside.warp).columns(&mut self.row);
+        columns::map(self, position.kind(), &position.map);
+        columns::warp(self, self.scene, space);
     }
 
     /// What is hoisted: here, or in a row of its own.
     fn hoist(&mut self, hoist: Hoist, depth: usize, tasks: &mut Vec<Task>) {
         let guarded = self.shapes.guards_hoisted(self.scene, hoist, depth);
         match hoist {
-            Hoist::Computed(id) if !self.mixing.is_empty() => self.computed(id),
+            Hoist::Computed(id) if !self.mixing.is_empty() => self.hoisted(id),
             Hoist::Computed(_) => {}
             Hoist::Field(field) if !guarded => self.leaf(field),
             Hoist::Space(space) if !guarded => self.enter_warp(space, tasks),
@@ -247,8 +280,9 @@ impl<'a> Writer<'a> {
             OccurrenceKind::Difference { left, right } => {
                 tasks.extend([Task::Operand(*right), Task::Operand(*left)]);
             }
-            OccurrenceKind::Map { child, .. } => {
-                self.operator(occurrence.node, self.scene.combinator(occurrence.node));
+            OccurrenceKind::Map { code, child } => {
+                let operator = self.scene.combinator(occurrence.node);
+                columns::operator(self, self.scene, occurrence.node, operator, code.columns());
                 tasks.push(Task::Operand(*child));
             }
             OccurrenceKind::Expression { children, .. } => {
@@ -261,7 +295,7 @@ impl<'a> Writer<'a> {
                 }
             }
             OccurrenceKind::Reduce { operator, code, .. } => {
-                self.operator(occurrence.node, *operator);
+                columns::operator(self, self.scene, occurrence.node, *operator, code.columns());
                 let groups = self.shapes.groups(id);
                 let ordered = wants_order(*code, groups.len() > 1, self.query.gradient, &self.mixing);
                 for (index, group) in groups.iter().enumerate().rev() {
@@ -278,12 +312,6 @@ impl<'a> Writer<'a> {
                 }
             }
         }
-    }
-
-    /// The numbers of an operator.
-    fn operator(&mut self, node: NodeId, operator: Combinator) {
-        let follows = self.scene.tree.written(node).is_some();
-        operator.push_columns(follows, self.scene.tree.iso(), &mut self.row);
     }
 
     /// Makes the members of a group rows of the next child table, owned by the row in progress.
@@ -315,18 +343,17 @@ impl<'a> Writer<'a> {
 
     fn leaf(&mut self, field: FieldId) {
         self.nodes.push(self.scene.field(field).node.0);
-        let primitive = self.scene.primitive(field);
-        let LeafField { map, scale, code, .. } = self.scene.field(field);
-        code.map.push_columns(map, &mut self.row);
-        primitive.skeleton.columns(*scale, &mut self.row);
+        let LeafField { map, code, .. } = self.scene.field(field);
+        columns::map(self, code.map, map);
+        columns::skeleton(self, self.scene, field);
         if let Some(pieces) = code.skeleton.pieces() {
-            self.row.push(BEYOND * scale * primitive.radius);
+            columns::beyond(self, self.scene, field);
             self.pieces(field, pieces.columns.len());
         }
-        self.row.push(-(scale * primitive.radius).powi(-2));
-        primitive.falloff.columns(code.falloff, &mut self.row);
+        columns::slope(self, self.scene, field);
+        columns::falloff(self, self.scene, field);
         if code.strong {
-            self.row.push(primitive.strength);
+            columns::strength(self, self.scene, field);
         }
     }
 
@@ -341,9 +368,9 @@ impl<'a> Writer<'a> {
         let expression = self.scene.expression(occurrence.node);
         if expression.form().asks_point() {
             let position = self.scene.position(*position);
-            position.kind().push_columns(&position.map, &mut self.row);
+            columns::map(self, position.kind(), &position.map);
         }
-        self.row.extend(expression.numbers_from(*shift));
+        columns::formula(self, expression, *shift);
         if children.is_empty() {
             self.attributes(*bindings, computed);
         }
@@ -370,20 +397,39 @@ impl<'a> Writer<'a> {
         for (index, (group, bound)) in groups.iter().zip(bindings).enumerate() {
             match (computed.get(index).copied().flatten(), bound) {
                 (Some(id), _) if self.scene.computed(id).shared => {}
-                (Some(id), _) => self.computed(id),
+                (Some(id), _) => self.computed(id, group),
                 (None, Some(bound)) => match computed::attribute(self.scene.tree, bound.node) {
-                    AttributeValue::Numbers(numbers) => self.row.extend(numbers),
+                    AttributeValue::Numbers(numbers) => columns::channels(self, group, numbers),
                     AttributeValue::Textured(_) | AttributeValue::Uv(_) | AttributeValue::Expressed(_) => {
                         unreachable!("it is computed")
                     }
                 },
-                (None, None) => self.row.extend(&group.default),
+                (None, None) => columns::channels(self, group, &group.default),
             }
         }
     }
 
-    fn computed(&mut self, id: ComputedId) {
-        computed::push_columns(self.scene.tree, self.scene.computed(id), &mut self.row);
+    fn computed(&mut self, id: ComputedId, group: &AttributeGroup) {
+        let computed = self.scene.computed(id);
+        columns::map(self, computed.map_kind, &computed.map);
+        match computed.value(self.scene.tree) {
+            ComputedValue::Texture(kind, Textured { texture, a, b }) => {
+                columns::texture(self, kind, texture);
+                columns::channels(self, group, a);
+                columns::channels(self, group, b);
+            }
+            ComputedValue::Uv(skeleton, map) => {
+                columns::uv(self, skeleton);
+                columns::uv_map(self, map);
+            }
+            ComputedValue::Formula(expression) => columns::formula(self, expression, DVec3::ZERO),
+        }
+    }
+
+    /// What is computed in front of the leaves that share it.
+    fn hoisted(&mut self, id: ComputedId) {
+        let group = self.scene.group_of(id);
+        self.computed(id, &self.scene.tree.attributes()[group]);
     }
 
     /// Rounds the row and appends it to its table.

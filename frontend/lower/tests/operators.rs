@@ -8,8 +8,8 @@ use jbt_lower::lower;
 use jbt_model::builder::{param, point, segment};
 use jbt_model::check::CheckedTree;
 use jbt_model::combine::{
-    Combinator, Difference, Intersection, Product, RFunction, RFunctionOrder, RFunctionPower, Ricci,
-    SetOperation, Sum, SymmetricDifference, Union,
+    Combinator, CombinatorKind, RFunction, RFunctionOrder, RFunctionPower, Ricci, SetOperation,
+    SymmetricDifference,
 };
 use jbt_model::model::Model;
 use jbt_model::query::Query;
@@ -71,17 +71,9 @@ const ALL_SETS: [SetOperation; 3] = SetOperation::ALL;
 
 /// One of each operator of several children.
 fn of_two() -> Vec<Combinator> {
-    let mut all: Vec<Combinator> = vec![
-        Sum {}.into(),
-        Ricci { exponent: 3.0 }.into(),
-        Ricci { exponent: -2.0 }.into(),
-        Ricci { exponent: -2.5 }.into(),
-        Product {}.into(),
-        Union {}.into(),
-        Intersection {}.into(),
-        Difference {}.into(),
-        SymmetricDifference {}.into(),
-    ];
+    let plain = CombinatorKind::ALL.iter().filter(|kind| !kind.takes_one() && kind.fields().is_empty());
+    let mut all: Vec<Combinator> = plain.map(|kind| kind.from_fields(&[])).collect();
+    all.extend([3.0, -2.0, -2.5].map(|exponent| Combinator::from(Ricci { exponent })));
     for set in ALL_SETS {
         all.push(Combinator::smooth(set, 0.2));
         for alpha in [-0.9, 0.0, 0.7, 1.0] {

@@ -3,8 +3,18 @@
 use glam::DVec3;
 use jbt_ir::domain::scalar::Scalar;
 use jbt_ir::{Tables, Verified, interpret};
+use jbt_lower::{Lowered, lower};
+use jbt_model::builder::{Axis, param, point, segment};
+use jbt_model::check::CheckedTree;
+use jbt_model::kind::NodeKind;
+use jbt_model::model::Model;
+use jbt_model::query::Query;
+use jbt_model::tree::Tree;
+use jbt_model::walk::{walk, walk_gradient};
+use jbt_model::warp::WarpKind;
 use jbt_testkit::random::Random;
 use jbt_testkit::scene;
+use jbt_text::{Options, parse, print};
 
 fn checked(tree: Tree) -> CheckedTree {
     Model::new(tree).check().expect("a good model")

@@ -3,8 +3,16 @@
 use glam::DVec3;
 use jbt_ir::domain::scalar::Scalar;
 use jbt_ir::{Tables, Verified, interpret};
+use jbt_lower::{Lowered, lower};
+use jbt_model::builder::{point, segment};
+use jbt_model::check::CheckedTree;
+use jbt_model::model::Model;
+use jbt_model::query::Query;
+use jbt_model::tree::Tree;
+use jbt_model::walk::{walk, walk_gradient};
 use jbt_testkit::random::Random;
 use jbt_testkit::scene::{self, model as read};
+use jbt_text::{Options, parse, print};
 
 /// The program of the field and its gradient.
 fn compiled(tree: &CheckedTree) -> (Verified, Tables) {

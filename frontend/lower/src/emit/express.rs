@@ -16,6 +16,7 @@ use jbt_ir::{Domain, FunctionBuilder, Origin, Value};
 use rustc_hash::FxHashSet;
 
 use super::{Emitter, Reduce, Task};
+use crate::columns;
 use crate::mixing::{Answer, GroupAnswer, weighted};
 use crate::occurrence::{OccurrenceId, OccurrenceKind};
 use crate::slopes::{Tape, slopes};
@@ -61,19 +62,19 @@ impl Emitter<'_> {
     /// The answer of a formula whose children have theirs.
     pub(super) fn express(&mut self, id: OccurrenceId) {
         let occurrence = self.scene.occurrence(id);
-        let OccurrenceKind::Expression { position, children, .. } = &occurrence.kind else {
+        let OccurrenceKind::Expression { position, shift, children, .. } = &occurrence.kind else {
             unreachable!("only formulas are expressed")
         };
         let expression = self.scene.expression(occurrence.node);
         let form = expression.form();
         let answers = self.answers.split_off(self.answers.len() - children.len());
         let point = form.asks_point().then(|| {
-            let map = self.scene.position(*position).kind();
-            let row = self.columns(map.columns());
+            let position = self.scene.position(*position);
+            let row = columns::map(self, position.kind(), &position.map);
             let (_, outer) = *self.points.last().expect("a space is open");
-            map.emit(&mut self.builder, outer, &row)
+            position.kind().emit(&mut self.builder, outer, &row)
         });
-        let numbers = (0..form.numbers()).map(|_| self.column("number")).collect();
+        let numbers = columns::formula(self, expression, *shift);
         let weighs = !self.mixing.is_empty() && answers.len() > 1;
         let fields: Vec<Value> = answers.iter().map(|answer| answer.field).collect();
         let fields = if weighs { distinct(&mut self.builder, fields) } else { fields };

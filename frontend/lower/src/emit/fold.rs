@@ -6,6 +6,7 @@ use jbt_ir::{Domain as _, Entity, FoldKind, Rule, Schema, Value};
 
 use super::parts::Guard;
 use super::{Emitter, Reduce, TableCode, Task};
+use crate::columns;
 use crate::guide::{DecidedRows, DecisionKind};
 use crate::mixing::{Operator, State, beyond};
 use crate::occurrence::{OccurrenceId, OccurrenceKind, SpaceId};
@@ -16,11 +17,11 @@ impl Emitter<'_> {
     /// An operator: its accumulators, and what is to be done for its operands.
     pub(super) fn begin_reduce(&mut self, id: OccurrenceId) {
         let occurrence = self.scene.occurrence(id);
-        let OccurrenceKind::Reduce { code, .. } = occurrence.kind else {
+        let OccurrenceKind::Reduce { operator, code, .. } = occurrence.kind else {
             unreachable!("only operators are reduced")
         };
         let groups = self.shapes.groups(id);
-        let row = self.columns(code.columns());
+        let row = columns::operator(self, self.scene, occurrence.node, operator, code.columns());
         let operator = Operator {
             code,
             row,

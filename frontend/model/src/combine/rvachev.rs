@@ -26,7 +26,8 @@
 //! with B, their value where both fields are 0, the field is
 //!
 //! ```text
-//! F = max(0, iso (1 - R / B))        0 where all fields are 0, iso where R is 0, and so that the surface stays
+//! F = max(0, iso (1 - R / B))        0 where all fields are 0, iso where R is 0, and so that the surface
+//! stays
 //! ```
 //!
 //! R and B come from the same ops, so 0 is exact. A lone field is changed too (0.3 becomes 0.22 by R_0's
