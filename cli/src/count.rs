@@ -20,7 +20,7 @@ use std::fmt::Write as _;
 
 use jbt::mesh::Lattice;
 use jbt::statistics::{PerPoint, Statistics, Supports, SupportsError, walks};
-use jbt::{Compiler, Engine, MeshCounters, ModelOrigin, Polygonize, PolygonizeError, Query};
+use jbt::{Compiled, Compiler, Engine, MeshCounters, ModelOrigin, Polygonize, PolygonizeError, Query};
 use jbt_frontend::check::CheckedTree;
 use jbt_frontend::diagnostic::Source;
 use jbt_frontend::kind::NodeKind;
@@ -49,10 +49,12 @@ pub fn run(arguments: &CountArguments, quiet: bool) -> Result<(), Failure> {
         None => Query::EVERY.to_vec(),
     };
     let statistics = Statistics::new(&tree);
-    let field = Count::new(&scene, &tree, &statistics, Query::FIELD)?;
+    // All engines run the same programs; this one needs no code.
+    let compiled = Compiler::for_engine(Engine::Scalar).compile(&tree);
+    let field = Count::new(&scene, &compiled, &statistics, Query::FIELD)?;
     let counts = queries
         .into_iter()
-        .map(|query| Count::new(&scene, &tree, &statistics, query))
+        .map(|query| Count::new(&scene, &compiled, &statistics, query))
         .collect::<Result<_, _>>()?;
     let mut warnings = Vec::new();
     let lattice = match settings.lattice(&tree) {
@@ -128,12 +130,11 @@ struct Count {
 impl Count {
     fn new(
         scene: &Scene,
-        tree: &CheckedTree,
+        compiled: &Compiled,
         statistics: &Statistics<'_>,
         query: Query,
     ) -> Result<Self, Failure> {
-        // All engines run the same program; this one needs no compilation.
-        let evaluator = scene.evaluator(tree, query, &Compiler::for_engine(Engine::Scalar))?;
+        let evaluator = scene.evaluator(compiled, query)?;
         let by_node = evaluator.evaluations_by_node().per_node;
         Ok(Self { query, evaluations: statistics.per_point(&evaluator), by_node })
     }

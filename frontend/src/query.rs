@@ -23,6 +23,12 @@ impl Query {
     /// Every set of answers.
     pub const EVERY: [Self; 4] = [Self::FIELD, Self::GRADIENT, Self::ATTRIBUTES, Self::ALL];
 
+    /// Its place in [`EVERY`](Self::EVERY).
+    #[must_use]
+    pub const fn index(self) -> usize {
+        self.gradient as usize + 2 * self.attributes as usize
+    }
+
     /// The word of the command line and of reports.
     #[must_use]
     pub const fn name(self) -> &'static str {

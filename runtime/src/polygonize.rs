@@ -1,9 +1,9 @@
 //! From a model to a mesh in one call: three kernels, a lattice over the model's support, and the mesher.
 //!
 //! ```text
-//!   CheckedTree ──Compiler──► field kernel ────► every lattice point of a brick, once
-//!                        ├──► gradient kernel ─► every vertex, a few times, to pull it onto the surface
-//!                        └──► full kernel ─────► every vertex, once: normal and attributes
+//!   Compiled ─┬─► field kernel ────► every lattice point of a brick, once
+//!             ├─► gradient kernel ─► every vertex, a few times, to pull it onto the surface
+//!             └─► full kernel ─────► every vertex, once: normal and attributes
 //! ```
 
 mod kernels;
@@ -12,6 +12,7 @@ use std::time::{Duration, Instant};
 
 use jbt_frontend::check::CheckedTree;
 
+use crate::compiled::Compiled;
 use crate::compiler::Compiler;
 use crate::counter::Counters;
 use crate::error::{CompileError, EvalError};
@@ -87,7 +88,7 @@ pub struct Polygonized {
     pub counters: MeshCounters,
     /// Distances to skeletons that were computed for the mesh, in all stages.
     pub primitive_evaluations: u64,
-    /// Time to lower and compile the three kernels.
+    /// Time to lower and compile the kernels, as far as they were not there yet.
     pub compile_time: Duration,
 }
 
@@ -209,7 +210,7 @@ impl Polygonize {
         })
     }
 
-    /// The mesh of a model.
+    /// The mesh of a model of which nothing else is asked: see [`with`](Self::with).
     ///
     /// # Errors
     /// See [`PolygonizeError`].
@@ -219,18 +220,23 @@ impl Polygonize {
         tree: &'a CheckedTree,
     ) -> Job<'a, Polygonized, PolygonizeError> {
         let settings = *self;
-        Job::new(move |hook| settings.mesh_hooked(compiler, tree, hook))
+        Job::new(move |hook| settings.mesh_hooked(&compiler.compile(tree), hook))
     }
 
-    fn mesh_hooked(
-        &self,
-        compiler: &Compiler,
-        tree: &CheckedTree,
-        hook: Hook<'_>,
-    ) -> Result<Polygonized, PolygonizeError> {
+    /// The mesh of a compiled model.
+    ///
+    /// # Errors
+    /// See [`PolygonizeError`].
+    pub fn with<'a>(&self, compiled: &'a Compiled) -> Job<'a, Polygonized, PolygonizeError> {
+        let settings = *self;
+        Job::new(move |hook| settings.mesh_hooked(compiled, hook))
+    }
+
+    fn mesh_hooked(&self, compiled: &Compiled, hook: Hook<'_>) -> Result<Polygonized, PolygonizeError> {
+        let tree = compiled.tree();
         let lattice = self.lattice(tree)?;
         let start = Instant::now();
-        let kernels = Kernels::new(compiler, tree)?;
+        let kernels = Kernels::new(compiled)?;
         let compile_time = start.elapsed();
         let options = mesh::Options {
             iso: tree.iso() as f32,

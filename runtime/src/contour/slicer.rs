@@ -6,6 +6,7 @@ use thiserror::Error;
 
 use super::grid::{Rectangle, RectangleError};
 use super::plane::{Kind, Plane, others};
+use crate::compiled::{Compiled, Need, Scope};
 use crate::compiler::Compiler;
 use crate::counter::Counters;
 use crate::debug::brief_debug;
@@ -121,37 +122,51 @@ pub enum SliceError {
 const MARGIN: f64 = 1.0 / 512.0;
 
 impl Slicer {
-    /// Compiles a model for a plane. With `attributes` in the query contours have them, and there are images
-    /// of them; the gradient is never needed.
+    /// A slicer for a model of which nothing else is asked: see [`of`](Self::of).
     ///
     /// # Errors
-    /// The model is beyond a limit, or the engine cannot be had.
+    /// Those of [`of`](Self::of).
     pub fn new(
         compiler: &Compiler,
         tree: &CheckedTree,
         plane: &Plane,
         query: Query,
     ) -> Result<Self, CompileError> {
+        Self::of(&compiler.compile(tree), plane, query)
+    }
+
+    /// A slicer for a compiled model and a plane. With `attributes` in the query contours have them, and
+    /// there are images of them; the gradient is never needed. For a plane that is not across an axis,
+    /// another model is compiled.
+    ///
+    /// # Errors
+    /// The model is beyond a limit, or the engine cannot be had.
+    pub fn of(compiled: &Compiled, plane: &Plane, query: Query) -> Result<Self, CompileError> {
         let moved;
-        let (tree, view) = match plane.0 {
-            Kind::Across { axis, at } => {
-                (tree, View { axes: others(axis), at: tree.origin().rounded([at; 3])[axis] })
-            }
+        let (compiled, axes, across, at) = match plane.0 {
+            Kind::Across { axis, at } => (compiled, others(axis), axis, at),
             Kind::Spanned { .. } => {
-                moved = tree.mapped(plane.rows());
-                (&moved, View { axes: [0, 1], at: moved.origin().rounded([0.0; 3])[2] })
+                moved = compiled.compiler().compile(&compiled.tree().mapped(plane.rows()));
+                (&moved, [0, 1], 2, 0.0)
             }
         };
-        let compiler = &compiler.clone().for_edits();
-        let full = if query.attributes { Some(compiler.evaluator(tree, Query::ATTRIBUTES)?) } else { None };
+        let tree = compiled.tree();
+        let view = View { axes, at: tree.origin().rounded([at; 3])[across] };
+        let needs = [
+            Need::Answers(Scope::Regions, Query::ATTRIBUTES),
+            Need::Ranges,
+            Need::Answers(Scope::Regions, Query::FIELD),
+        ];
+        compiled.prepare(if query.attributes { &needs } else { &needs[1..] })?;
+        let full = query.attributes.then(|| compiled.regional(Query::ATTRIBUTES)).transpose()?;
         Ok(Self {
             plane: *plane,
             origin: view.axes.map(|axis| tree.origin().point()[axis]),
             view,
             support: support(tree, &view),
             iso: tree.iso() as f32,
-            pruner: Pruner::new(compiler, tree)?,
-            field: compiler.evaluator(tree, Query::FIELD)?,
+            pruner: compiled.pruner()?,
+            field: compiled.regional(Query::FIELD)?,
             full,
         })
     }

@@ -317,7 +317,7 @@ impl Solid {
         let surfaces = sums.boxes().surface;
         sums.contents.mean = if surfaces == 0 { 0.0 } else { primitives as f64 / surfaces as f64 };
         let mass = sums.volume.estimate;
-        sums.center = (mass > 0.0).then(|| self.tree.origin().world(moment.map(|sum| sum / mass)));
+        sums.center = (mass > 0.0).then(|| self.tree().origin().world(moment.map(|sum| sum / mass)));
         sums
     }
 }
