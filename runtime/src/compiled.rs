@@ -29,8 +29,8 @@ use crate::prune::program::RangeProgram;
 /// A compiled model: programs for whatever is asked of it.
 ///
 /// It is `Send + Sync`, and a clone is another handle to the same programs. A program is compiled when it is
-/// first asked for, and then kept: a mesh, a slice and a picture of one compiled model share what they have in
-/// common, and nothing is compiled that nobody needs.
+/// first asked for, and then kept: a mesh, a slice and a picture of one compiled model share what they have
+/// in common, and nothing is compiled that nobody needs.
 ///
 /// ```
 /// use jbt::contour::{Plane, Slicer};

@@ -99,6 +99,7 @@ mod points;
 mod polygonize;
 mod probe;
 mod program;
+mod progress;
 pub mod prune;
 pub mod region;
 pub mod render;

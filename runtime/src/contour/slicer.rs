@@ -14,6 +14,7 @@ use crate::error::{CompileError, EvalError};
 use crate::evaluator::Evaluator;
 use crate::kernel::Engine;
 use crate::mesh::LatticeError;
+use crate::progress::Cancelled;
 use crate::prune::{PruneCounters, Pruner, Region};
 use crate::region::Box3;
 
@@ -116,6 +117,12 @@ pub enum SliceError {
     /// It was told to stop.
     #[error("the work was cancelled")]
     Cancelled,
+}
+
+impl From<Cancelled> for SliceError {
+    fn from(_: Cancelled) -> Self {
+        Self::Cancelled
+    }
 }
 
 /// The part of its longer side by which the default rectangle exceeds the support, as that of a mesh.

@@ -19,7 +19,6 @@ mod crossings;
 mod cut;
 mod measure;
 mod membership;
-pub(crate) mod progress;
 
 pub use bounds::{BoundsError, TightBounds};
 pub use jbt_frontend::check::NodeId;
