@@ -16,7 +16,7 @@ pub use output::OutputArguments;
 pub use query::QueryName;
 pub use render::{GroundName, RenderArguments};
 pub use scene::SceneArguments;
-pub use space::{LatticeArguments, Region};
+pub use space::LatticeArguments;
 pub use tools::{
     CheckArguments, CompletionsArguments, CountArguments, ManArguments, ShowArguments, StatsArguments,
 };
@@ -247,6 +247,7 @@ mod tests {
     use super::scene::definition;
     use super::space::region;
     use super::*;
+    use jbt::Box3;
 
     #[test]
     fn the_command_line_is_consistent() {
@@ -256,7 +257,7 @@ mod tests {
 
     #[test]
     fn regions_and_definitions() {
-        let unit = Region { low: [0.0; 3], high: [1.0; 3] };
+        let unit = Box3::new([0.0; 3], [1.0; 3]);
         assert_eq!(region("0,0,0,1,1,1"), Ok(unit));
         assert_eq!(region(" 0, 0,0, 1,1 ,1"), Ok(unit));
         for bad in

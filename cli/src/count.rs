@@ -20,7 +20,7 @@ use std::fmt::Write as _;
 
 use jbt::mesh::Lattice;
 use jbt::statistics::{PerPoint, Statistics, Supports, SupportsError, walks};
-use jbt::{Compiled, Compiler, Engine, MeshCounters, ModelOrigin, Polygonize, PolygonizeError, Query};
+use jbt::{Box3, Compiled, Compiler, Engine, MeshCounters, ModelOrigin, Polygonize, PolygonizeError, Query};
 use jbt_frontend::check::CheckedTree;
 use jbt_frontend::diagnostic::Source;
 use jbt_frontend::kind::NodeKind;
@@ -304,7 +304,7 @@ impl Report {
     /// For machines.
     fn json(&self) -> Value {
         let lattice = self.lattice.as_ref().map(|(lattice, _)| {
-            let (low, high) = lattice::corners(lattice, self.origin);
+            let Box3 { low, high } = lattice::bounds(lattice, self.origin);
             let region = [low, high].concat();
             json!({ "region": region, "cell": lattice.spacing(), "cells": lattice.cells() })
         });

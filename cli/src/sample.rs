@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use jbt::divide::DivideError;
 use jbt::mesh::Lattice;
 use jbt::sample::{SampleError, Sampler, write_npy};
-use jbt::{Counters, EvalError};
+use jbt::{Box3, Counters, EvalError};
 use serde_json::json;
 
 use crate::arguments::SampleArguments;
@@ -85,7 +85,7 @@ struct Report<'a> {
 impl Report<'_> {
     /// For machines.
     fn json(&self) -> serde_json::Value {
-        let (low, high) = lattice::corners(self.lattice, self.sampler.evaluator().origin());
+        let Box3 { low, high } = lattice::bounds(self.lattice, self.sampler.evaluator().origin());
         json!({
             "planes": self.sampler.evaluator().layout().names(),
             "points": self.lattice.points(),

@@ -108,6 +108,7 @@ mod scene;
 pub mod solid;
 mod srgb;
 pub mod statistics;
+mod support;
 pub mod trace;
 pub mod tree;
 

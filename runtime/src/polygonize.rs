@@ -20,6 +20,8 @@ use crate::job::{Hook, Job};
 use crate::kernel::Engine;
 use crate::mesh::{self, Lattice, LatticeError, Mesh, MeshError, Report};
 use crate::prune::PruneCounters;
+use crate::region::Box3;
+use crate::support::{NoBox, around};
 
 use kernels::Kernels;
 
@@ -53,9 +55,8 @@ impl Default for Fineness {
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Polygonize {
-    /// The smallest and the largest corner of the box to mesh, in the world; `None` is the model's support,
-    /// grown a little.
-    pub region: Option<([f64; 3], [f64; 3])>,
+    /// The box to mesh, in the world; `None` is the model's support, grown a little.
+    pub region: Option<Box3<f64>>,
     /// How fine.
     pub fineness: Fineness,
     /// Whether to look at every edge to say that the mesh is closed: see [`mesh::Options::verify`].
@@ -166,36 +167,25 @@ pub enum PolygonizeError {
     Mesh(#[from] MeshError<EvalError>),
 }
 
-/// The part of the support's longest side by which the default region exceeds it, so that rounded coordinates
-/// of the lattice's sides are outside.
-const MARGIN: f64 = 1.0 / 512.0;
-
 impl Polygonize {
-    /// The region to mesh: its smallest and its largest corner, in the world.
+    /// The region to mesh, in the world.
     ///
     /// # Errors
     /// No region was given, and the model's support is empty or unbounded.
-    pub fn region(&self, tree: &CheckedTree) -> Result<([f64; 3], [f64; 3]), PolygonizeError> {
-        let (low, high) = self.local_region(tree)?;
-        let origin = tree.origin();
-        Ok(self.region.unwrap_or((origin.world(low), origin.world(high))))
+    pub fn region(&self, tree: &CheckedTree) -> Result<Box3<f64>, PolygonizeError> {
+        let local = self.local_region(tree)?;
+        Ok(self.region.unwrap_or_else(|| local.map(|corner| tree.origin().world(corner))))
     }
 
     /// The region in local coordinates.
-    fn local_region(&self, tree: &CheckedTree) -> Result<([f64; 3], [f64; 3]), PolygonizeError> {
-        let origin = tree.origin();
-        if let Some((low, high)) = self.region {
-            return Ok((origin.local(low), origin.local(high)));
+    fn local_region(&self, tree: &CheckedTree) -> Result<Box3<f64>, PolygonizeError> {
+        match self.region {
+            Some(region) => Ok(region.map(|corner| tree.origin().local(corner))),
+            None => around(tree).map_err(|reason| match reason {
+                NoBox::Empty => PolygonizeError::Empty,
+                NoBox::Unbounded => PolygonizeError::Unbounded,
+            }),
         }
-        let support = tree.local_support();
-        if support.is_empty() {
-            return Err(PolygonizeError::Empty);
-        }
-        if !support.is_finite() {
-            return Err(PolygonizeError::Unbounded);
-        }
-        let grown = support.grown(support.longest_side() * MARGIN);
-        Ok((grown.low(), grown.high()))
     }
 
     /// The lattice over the region, in coordinates about the model's [origin](CheckedTree::origin).
@@ -203,7 +193,7 @@ impl Polygonize {
     /// # Errors
     /// Those of [`region`](Self::region), and a lattice that cannot be or is beyond a limit.
     pub fn lattice(&self, tree: &CheckedTree) -> Result<Lattice, PolygonizeError> {
-        let (low, high) = self.local_region(tree)?;
+        let Box3 { low, high } = self.local_region(tree)?;
         Ok(match self.fineness {
             Fineness::Cell(cell) => Lattice::covering(low, high, cell)?,
             Fineness::Resolution(cells) => Lattice::with_resolution(low, high, cells)?,
@@ -280,7 +270,7 @@ mod tests {
     #[test]
     fn the_default_region_is_the_support_and_a_little_more() {
         let tree = tree("jbt 1 translate (1 2 3) { point { radius 2 } }");
-        let (low, high) = Polygonize::default().region(&tree).unwrap();
+        let Box3 { low, high } = Polygonize::default().region(&tree).unwrap();
         for axis in 0..3 {
             let centre = [1.0, 2.0, 3.0][axis];
             assert!(low[axis] < centre - 2.0 && low[axis] > centre - 2.1, "{low:?}");
@@ -294,7 +284,7 @@ mod tests {
         let tree = tree("jbt 1 intersection { point { radius 1 } translate (5 0 0) { point { radius 1 } } }");
         assert!(matches!(Polygonize::default().region(&tree), Err(PolygonizeError::Empty)));
         let here = Polygonize {
-            region: Some(([0.0; 3], [1.0; 3])),
+            region: Some(Box3::new([0.0; 3], [1.0; 3])),
             fineness: Fineness::Resolution(4),
             verify: true,
             ..Polygonize::default()

@@ -17,6 +17,7 @@ use crate::mesh::LatticeError;
 use crate::progress::Cancelled;
 use crate::prune::{PruneCounters, Pruner, Region};
 use crate::region::Box3;
+use crate::support::MARGIN;
 
 /// A compiled model and a plane: makes contours and images, any number of them, from any thread.
 ///
@@ -124,9 +125,6 @@ impl From<Cancelled> for SliceError {
         Self::Cancelled
     }
 }
-
-/// The part of its longer side by which the default rectangle exceeds the support, as that of a mesh.
-const MARGIN: f64 = 1.0 / 512.0;
 
 impl Slicer {
     /// A slicer for a model of which nothing else is asked: see [`of`](Self::of).

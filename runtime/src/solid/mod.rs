@@ -40,6 +40,7 @@ use crate::error::{CompileError, EvalError};
 use crate::evaluator::Evaluator;
 use crate::prune::{Pruner, Region};
 use crate::region::{Box3, Divisible as _, Range};
+use crate::support::{NoBox, around_in_f32};
 
 /// A model, compiled for questions about its solid: the set where `field >= iso`.
 ///
@@ -83,10 +84,6 @@ pub enum RegionError {
     #[error("the model is unbounded: it needs a region")]
     Unbounded,
 }
-
-/// The part of the support's longest side by which the region that nobody gave exceeds it: more than f32 is
-/// off by.
-const MARGIN: f64 = 1.0 / 512.0;
 
 impl Solid {
     /// The solid of a model of which nothing else is asked: see [`of`](Self::of).
@@ -194,26 +191,12 @@ impl Solid {
     fn region(&self, given: Option<Box3>) -> Result<Box3, RegionError> {
         let bounds = match given {
             Some(bounds) => bounds,
-            None => {
-                let support = self.tree().local_support();
-                if support.is_empty() {
-                    return Err(RegionError::Empty);
-                }
-                if !support.is_finite() {
-                    return Err(RegionError::Unbounded);
-                }
-                let grown = support.grown(support.longest_side() * MARGIN);
-                let low = grown.low().map(|side| (side as f32).next_down());
-                Box3::new(low, grown.high().map(|side| (side as f32).next_up()))
-            }
+            None => around_in_f32(self.tree()).map_err(|reason| match reason {
+                NoBox::Empty => RegionError::Empty,
+                NoBox::Unbounded => RegionError::Unbounded,
+            })?,
         };
-        let full = (0..3).all(|axis| bounds.low[axis] < bounds.high[axis]);
-        // Sides whose difference is not finite cannot be halved by it.
-        if full && bounds.is_proper() && bounds.longest_side().is_finite() {
-            Ok(bounds)
-        } else {
-            Err(RegionError::Bounds { bounds })
-        }
+        if bounds.is_full() { Ok(bounds) } else { Err(RegionError::Bounds { bounds }) }
     }
 }
 
