@@ -3,7 +3,6 @@
 mod contour;
 mod engine;
 mod output;
-mod query;
 mod render;
 mod scene;
 mod space;
@@ -13,7 +12,6 @@ mod work;
 pub use contour::{ContourArguments, ModeName, PaintName};
 pub use engine::{EngineArguments, LevelName};
 pub use output::OutputArguments;
-pub use query::QueryName;
 pub use render::{GroundName, RenderArguments};
 pub use scene::SceneArguments;
 pub use space::LatticeArguments;
@@ -27,9 +25,10 @@ use std::error::Error;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::builder::{PossibleValue, PossibleValuesParser, Str, StyledStr, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 use jbt::export::{ColorEncoding, Format, Up};
+use jbt::{AnswerKind, Planes, Query};
 
 use crate::formats::{ArrayKind, TableKind};
 
@@ -191,8 +190,8 @@ pub struct SampleArguments {
     #[command(flatten)]
     pub output: OutputArguments<ArrayKind>,
     /// The answers wanted
-    #[arg(long, value_enum, default_value_t = QueryName::Field)]
-    pub query: QueryName,
+    #[arg(long, default_value_t = Query::FIELD, value_parser = queries())]
+    pub query: Query,
     /// Where they are wanted.
     #[command(flatten)]
     pub lattice: LatticeArguments,
@@ -202,13 +201,7 @@ pub struct SampleArguments {
 
 /// What `jbt eval` takes.
 #[derive(Args, Debug)]
-#[command(after_help = "\
-The points are read from the columns x, y and z, found by the header; other columns are ignored. Coordinates are finite:
-`nan`, `inf` and what is beyond 3.4e38 are errors, with their place. The answers keep the order of the points. Columns: x,y,z,field, then gx,gy,gz, then color.r,color.g,color.b and the other attributes of the scene.
-
-Examples:
-  jbt eval hero.jbt --points points.csv --query all -o answers.csv
-  jbt eval hero.jbt --points - --query field -o - < points.csv")]
+#[command(after_help = eval_help())]
 pub struct EvalArguments {
     /// What to evaluate.
     #[command(flatten)]
@@ -217,8 +210,8 @@ pub struct EvalArguments {
     #[arg(long, value_name = "FILE.csv")]
     pub points: PathBuf,
     /// The answers wanted
-    #[arg(long, value_enum, default_value_t = QueryName::Field)]
-    pub query: QueryName,
+    #[arg(long, default_value_t = Query::FIELD, value_parser = queries())]
+    pub query: Query,
     /// What computes.
     #[command(flatten)]
     pub engine: EngineArguments,
@@ -230,10 +223,36 @@ pub struct EvalArguments {
     pub output: OutputArguments<TableKind>,
 }
 
+const EVAL_HELP: &str = "\
+The points are read from the columns x, y and z, found by the header; other columns are ignored. Coordinates are finite:
+`nan`, `inf` and what is beyond 3.4e38 are errors, with their place. The answers keep the order of the points. Columns: {columns}.
+
+Examples:
+  jbt eval hero.jbt --points points.csv --query all -o answers.csv
+  jbt eval hero.jbt --points - --query field -o - < points.csv";
+
+/// A set of answers, by its word.
+fn queries() -> impl TypedValueParser<Value = Query> {
+    words(Query::EVERY, |query| (query.name(), query.title()))
+}
+
+/// The columns of `jbt eval`, from the table of answers.
+fn columns() -> String {
+    let of = |answer: AnswerKind| match answer.row().planes {
+        Planes::Named(names) => names.join(","),
+        Planes::Channels => "color.r,color.g,color.b and the other attributes of the scene".to_owned(),
+    };
+    format!("x,y,z,{}", AnswerKind::ALL.map(of).join(", then "))
+}
+
+fn eval_help() -> String {
+    EVAL_HELP.replace("{columns}", &columns())
+}
+
 /// One of the members of a list, by its word; `tell` gives the word and a line of help.
-fn words<T>(
+fn words<T, W: Into<Str>, H: Into<StyledStr>>(
     all: impl IntoIterator<Item = T>,
-    tell: fn(T) -> (&'static str, &'static str),
+    tell: fn(T) -> (W, H),
 ) -> impl TypedValueParser<Value = T>
 where
     T: FromStr<Err: Error + Send + Sync> + Clone + Send + Sync + 'static,

@@ -20,7 +20,10 @@ use std::fmt::Write as _;
 
 use jbt::mesh::Lattice;
 use jbt::statistics::{PerPoint, Statistics, Supports, SupportsError, walks};
-use jbt::{Box3, Compiled, Compiler, Engine, MeshCounters, ModelOrigin, Polygonize, PolygonizeError, Query};
+use jbt::{
+    AnswerKind, Box3, Compiled, Compiler, Engine, MeshCounters, ModelOrigin, Polygonize, PolygonizeError,
+    Query,
+};
 use jbt_frontend::check::CheckedTree;
 use jbt_frontend::diagnostic::Source;
 use jbt_frontend::kind::NodeKind;
@@ -35,8 +38,17 @@ use crate::scene::Scene;
 use crate::stages;
 
 /// How the evaluations of separate walks add up.
-const FORMULA: &str = "separate = walks x uses of leaves; walks = 1 (field) + 4 (gradient, by differences) + 1 (attributes); \
-                       cached = places x occurrences of leaves; places = 1 (the point) + 3 (the steps of the differences)";
+fn formula() -> String {
+    let sum = |terms: [(u64, &str); AnswerKind::ALL.len()]| {
+        let terms = terms.iter().filter(|(count, _)| *count > 0);
+        terms.map(|(count, what)| format!("{count} ({what})")).collect::<Vec<_>>().join(" + ")
+    };
+    format!(
+        "separate = walks x uses of leaves; walks = {}; cached = places x occurrences of leaves; places = {}",
+        sum(AnswerKind::ALL.map(|answer| answer.row().walks)),
+        sum(AnswerKind::ALL.map(|answer| answer.row().places))
+    )
+}
 
 /// Runs the command.
 pub fn run(arguments: &CountArguments, quiet: bool) -> Result<(), Failure> {
@@ -45,7 +57,7 @@ pub fn run(arguments: &CountArguments, quiet: bool) -> Result<(), Failure> {
     scene.warn(quiet);
     let tree = scene.check()?;
     let queries = match arguments.query {
-        Some(name) => vec![name.query()],
+        Some(query) => vec![query],
         None => Query::EVERY.to_vec(),
     };
     let statistics = Statistics::new(&tree);
@@ -245,7 +257,7 @@ impl Report {
             plural(self.occurrences, "occurrence", "occurrences")
         );
         self.write_queries(&mut out, 1);
-        let _ = writeln!(out, "{}\n", FORMULA.replace("; cached", "\ncached"));
+        let _ = writeln!(out, "{}\n", formula().replace("; cached", "\ncached"));
         if let Some((lattice, supports)) = &self.lattice {
             let points = plural(supports.points, "point", "points");
             let _ = writeln!(out, "lattice: {points}, {}\n", lattice::describe(lattice, self.origin));
@@ -309,7 +321,7 @@ impl Report {
             json!({ "region": region, "cell": lattice.spacing(), "cells": lattice.cells() })
         });
         json!({
-            "formula": FORMULA,
+            "formula": formula(),
             "occurrences": self.occurrences,
             "uses": self.uses,
             "queries": self.counts.iter().map(|count| self.json_query(count)).collect::<Vec<_>>(),
@@ -344,8 +356,11 @@ impl Report {
     }
 
     fn json_leaf(&self, leaf: &Leaf) -> Value {
-        let evaluations: serde_json::Map<_, _> =
-            self.counts.iter().map(|count| (count.query.name().to_owned(), count.of(leaf).into())).collect();
+        let evaluations: serde_json::Map<_, _> = self
+            .counts
+            .iter()
+            .map(|count| (count.query.name().into_owned(), count.of(leaf).into()))
+            .collect();
         json!({
             "node": leaf.node,
             "kind": leaf.kind,

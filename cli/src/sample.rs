@@ -26,7 +26,7 @@ pub fn run(arguments: &SampleArguments, quiet: bool, start: Instant) -> Result<(
     let tree = scene.check()?;
     let lattice = settings.lattice(&tree).map_err(|error| lattice::failure(&scene, error))?;
     let compiler = arguments.work.compiler()?;
-    let sampler = Sampler::new(&compiler, &tree, arguments.query.query())
+    let sampler = Sampler::new(&compiler, &tree, arguments.query)
         .map_err(|error| Failure::compile(&scene.source(), &error))?;
     let mut progress = Progress::new("sampling", quiet);
     let mut work = || sampler.dense(&lattice).on_progress(|part| progress.set(part)).run();

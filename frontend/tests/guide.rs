@@ -10,7 +10,7 @@ use jbt_frontend::kind::{NodeKind, Primitive};
 use jbt_frontend::lower::guide::{LARGEST_COORDINATE, Rule, SpaceGuide, Support};
 use jbt_frontend::lower::{Guided, lower, lower_guided};
 use jbt_frontend::model::Model;
-use jbt_frontend::query::Query;
+use jbt_frontend::query::{AnswerKind, Query};
 use jbt_frontend::skeleton::{Point, Skeleton};
 use jbt_frontend::text::{Options, parse, print};
 use jbt_frontend::tree::Tree;
@@ -26,7 +26,7 @@ fn program(function: Function, gradient: bool) -> Verified {
 /// The program of a model for a query, with its numbers.
 fn compiled(tree: &CheckedTree, query: Query) -> (Verified, Tables) {
     let lowered = lower(tree, query).expect("it can be lowered");
-    (program(lowered.function, query.gradient), lowered.tables)
+    (program(lowered.function, query.contains(AnswerKind::Gradient)), lowered.tables)
 }
 
 fn under(maps: impl IntoIterator<Item = NodeKind>, leaf: Primitive) -> Model {

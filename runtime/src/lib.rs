@@ -132,7 +132,7 @@ pub use jbt_frontend::model::Model;
 pub use jbt_frontend::number::Number;
 pub use jbt_frontend::origin::ModelOrigin;
 pub use jbt_frontend::parameter::Parameter;
-pub use jbt_frontend::query::Query;
+pub use jbt_frontend::query::{AnswerKind, Planes, Query};
 pub use jbt_frontend::text;
 pub use jbt_frontend::tree::Tree;
 pub use jbt_frontend::walk;

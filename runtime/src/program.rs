@@ -29,8 +29,7 @@ pub(crate) struct AnswerProgram {
 impl AnswerProgram {
     /// The program of a model that answers a query.
     pub(crate) fn new(tree: &CheckedTree, query: Query, bound: Bound) -> Self {
-        let attributes = if query.attributes { tree.attributes() } else { &[] };
-        let layout = Layout::new(query.gradient, attributes);
+        let layout = Layout::new(query, tree.attributes());
         debug_assert_eq!(
             layout.names(),
             bound.kernel.function.function().outputs,

@@ -42,7 +42,7 @@ use crate::attribute::Mixing;
 use crate::check::CheckedTree;
 use crate::combine::unary::UnaryKind;
 use crate::diagnostic::Diagnostic;
-use crate::query::Query;
+use crate::query::{AnswerKind, Query};
 
 /// A function, and what the rows need to know about it.
 pub(super) struct Code {
@@ -68,7 +68,7 @@ pub(super) struct TableCode {
 
 /// How many attribute groups a query asks for.
 pub(super) fn groups(tree: &CheckedTree, query: Query) -> usize {
-    if query.attributes { tree.attributes().len() } else { 0 }
+    if query.contains(AnswerKind::Attributes) { tree.attributes().len() } else { 0 }
 }
 
 /// Writes the code.

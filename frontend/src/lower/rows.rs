@@ -15,7 +15,7 @@ use super::shape::{Hoist, Shapes};
 use crate::attribute::{AttributeValue, Mixing};
 use crate::check::NodeId;
 use crate::diagnostic::Diagnostic;
-use crate::query::Query;
+use crate::query::{AnswerKind, Query};
 use crate::skeleton::BEYOND;
 
 /// The numbers, and what they belong to.
@@ -265,7 +265,12 @@ impl<'a> Writer<'a> {
                 let code = ReducerCode::of(*reducer);
                 code.push_columns(*reducer, &mut self.row);
                 let groups = self.shapes.groups(id);
-                let ordered = wants_order(code, groups.len() > 1, self.query.gradient, &self.mixing);
+                let ordered = wants_order(
+                    code,
+                    groups.len() > 1,
+                    self.query.contains(AnswerKind::Gradient),
+                    &self.mixing,
+                );
                 for (index, group) in groups.iter().enumerate().rev() {
                     if group.folded {
                         tasks.push(Task::Rows(id, index));
@@ -288,8 +293,12 @@ impl<'a> Writer<'a> {
             unreachable!("only operators have groups")
         };
         let groups = self.shapes.groups(id);
-        let ordered =
-            wants_order(ReducerCode::of(*reducer), groups.len() > 1, self.query.gradient, &self.mixing);
+        let ordered = wants_order(
+            ReducerCode::of(*reducer),
+            groups.len() > 1,
+            self.query.contains(AnswerKind::Gradient),
+            &self.mixing,
+        );
         let member = |&(occurrence, order)| Member::Operand(occurrence, ordered.then_some(order));
         let members: Vec<Member> = groups[group].members.iter().map(member).collect();
         self.own(&members, true);

@@ -1,7 +1,7 @@
 //! A model that can be looked at in a plane, again and again.
 
 use jbt_frontend::check::CheckedTree;
-use jbt_frontend::query::Query;
+use jbt_frontend::query::{AnswerKind, Query};
 use thiserror::Error;
 
 use super::grid::{Rectangle, RectangleError};
@@ -162,8 +162,9 @@ impl Slicer {
             Need::Ranges,
             Need::Answers(Scope::Regions, Query::FIELD),
         ];
-        compiled.prepare(if query.attributes { &needs } else { &needs[1..] })?;
-        let full = query.attributes.then(|| compiled.regional(Query::ATTRIBUTES)).transpose()?;
+        let has_attributes = query.contains(AnswerKind::Attributes);
+        compiled.prepare(if has_attributes { &needs } else { &needs[1..] })?;
+        let full = has_attributes.then(|| compiled.regional(Query::ATTRIBUTES)).transpose()?;
         Ok(Self {
             plane: *plane,
             origin: view.axes.map(|axis| tree.origin().point()[axis]),

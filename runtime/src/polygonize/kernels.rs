@@ -22,7 +22,7 @@ pub(super) struct Kernels {
 impl Kernels {
     /// Those of a compiled model.
     pub(super) fn new(compiled: &Compiled) -> Result<Self, CompileError> {
-        let queries = [Query::FIELD, Query::GRADIENT, Query::ALL];
+        let queries = [Query::FIELD, Query::GRADIENT, Query::SURFACE];
         let [field, gradient, all] = queries.map(|query| Need::Answers(Scope::Regions, query));
         compiled.prepare(&[Need::Ranges, field, gradient, all])?;
         let [field, gradient, all] = queries.map(|query| compiled.regional(query));

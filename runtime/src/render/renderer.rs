@@ -38,9 +38,9 @@ impl Renderer {
     /// The model is beyond a limit, or the engine cannot be had.
     pub fn of(compiled: &Compiled) -> Result<Self, CompileError> {
         Ok(Self {
-            tracer: Tracer::of(compiled, Query::ALL)?,
+            tracer: Tracer::of(compiled, Query::SURFACE)?,
             solid: Solid::of(compiled)?,
-            evaluator: compiled.regional(Query::ALL)?,
+            evaluator: compiled.regional(Query::SURFACE)?,
         })
     }
 

@@ -13,6 +13,7 @@ use crate::lower::occurrence::{OccurrenceId, OccurrenceKind, SpaceId};
 use crate::lower::reducer::{ReducerCode, RicciCode};
 use crate::lower::shape::{bounded, non_negative};
 use crate::power::Exponent;
+use crate::query::AnswerKind;
 
 impl Emitter<'_> {
     /// An operator: its accumulators, and what is to be done for its operands.
@@ -24,7 +25,8 @@ impl Emitter<'_> {
         let groups = self.shapes.groups(id);
         let code = ReducerCode::of(*reducer);
         let row = self.columns(code.columns());
-        let (non_negative, moving) = (non_negative(self.scene, groups), self.query.gradient);
+        let (non_negative, moving) =
+            (non_negative(self.scene, groups), self.query.contains(AnswerKind::Gradient));
         let blend = match code {
             ReducerCode::Ricci(RicciCode { integer, negative }) => {
                 let exponent = integer.map_or_else(|| Exponent::General(row[0], row[1]), Exponent::Integer);
