@@ -211,7 +211,7 @@ impl Compiled {
         }
     }
 
-    fn make(&self, need: Need, lowering: Option<&Lowering<'_>>) -> Result<(), CompileError> {
+    fn make<'t>(&'t self, need: Need, lowering: Option<&Lowering<'t>>) -> Result<(), CompileError> {
         match need {
             Need::Answers(scope, query) => self.answers_of(scope, query, lowering).map(drop),
             Need::Ranges => self.ranges_of(lowering).map(drop),
@@ -225,12 +225,12 @@ impl Compiled {
         }
     }
 
-    fn answers_of(
-        &self,
+    fn answers_of<'t>(
+        &'t self,
         scope: Scope,
         query: Query,
-        lowering: Option<&Lowering<'_>>,
-    ) -> Result<&Arc<AnswerProgram>, CompileError> {
+        lowering: Option<&Lowering<'t>>,
+    ) -> Result<&'t Arc<AnswerProgram>, CompileError> {
         let lowered = || self.lowered(lowering, |lowering| lowering.answers(query));
         match scope {
             Scope::Anywhere => self.slot(scope, query).get_or_make(|earlier| {
@@ -294,18 +294,21 @@ impl Compiled {
         Ok(Arc::new(AnswerProgram::new(self.tree(), *query, bound)))
     }
 
-    fn ranges_of(&self, lowering: Option<&Lowering<'_>>) -> Result<&Arc<RangeProgram>, CompileError> {
+    fn ranges_of<'t>(
+        &'t self,
+        lowering: Option<&Lowering<'t>>,
+    ) -> Result<&'t Arc<RangeProgram>, CompileError> {
         self.0.ranges.get_or_make(|earlier| {
-            let guided = self.lowered(lowering, |lowering| lowering.guided())?;
+            let guided = self.lowered(lowering, Lowering::guided)?;
             RangeProgram::new(&self.0.compiler, guided, earlier).map(Arc::new)
         })
     }
 
     /// What a lowering of the model gives: the one that is there, or a new one.
-    fn lowered<T>(
-        &self,
-        lowering: Option<&Lowering<'_>>,
-        ask: impl FnOnce(&Lowering<'_>) -> Result<T, Vec<Diagnostic>>,
+    fn lowered<'t, T>(
+        &'t self,
+        lowering: Option<&Lowering<'t>>,
+        ask: impl FnOnce(&Lowering<'t>) -> Result<T, Vec<Diagnostic>>,
     ) -> Result<T, CompileError> {
         let answer = match lowering {
             Some(lowering) => ask(lowering),
