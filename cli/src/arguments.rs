@@ -7,6 +7,7 @@ mod render;
 mod scene;
 mod space;
 mod tools;
+mod words;
 mod work;
 
 pub use contour::{ContourArguments, ModeName, PaintName};
@@ -21,16 +22,14 @@ pub use tools::{
 pub use work::WorkArguments;
 
 use std::collections::HashSet;
-use std::error::Error;
 use std::path::PathBuf;
-use std::str::FromStr;
 
-use clap::builder::{PossibleValue, PossibleValuesParser, Str, StyledStr, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 use jbt::export::{ColorEncoding, Format, Up};
 use jbt::{AnswerKind, Planes, Query};
 
 use crate::formats::{ArrayKind, TableKind};
+use words::{queries, words};
 
 /// Compiles BlobTrees to SIMD machine code, and makes meshes, pictures and values of them.
 #[derive(Parser, Debug)]
@@ -231,11 +230,6 @@ Examples:
   jbt eval hero.jbt --points points.csv --query all -o answers.csv
   jbt eval hero.jbt --points - --query field -o - < points.csv";
 
-/// A set of answers, by its word.
-fn queries() -> impl TypedValueParser<Value = Query> {
-    words(Query::EVERY, |query| (query.name(), query.title()))
-}
-
 /// The columns of `jbt eval`, from the table of answers.
 fn columns() -> String {
     let of = |answer: AnswerKind| match answer.row().planes {
@@ -247,18 +241,6 @@ fn columns() -> String {
 
 fn eval_help() -> String {
     EVAL_HELP.replace("{columns}", &columns())
-}
-
-/// One of the members of a list, by its word; `tell` gives the word and a line of help.
-fn words<T, W: Into<Str>, H: Into<StyledStr>>(
-    all: impl IntoIterator<Item = T>,
-    tell: fn(T) -> (W, H),
-) -> impl TypedValueParser<Value = T>
-where
-    T: FromStr<Err: Error + Send + Sync> + Clone + Send + Sync + 'static,
-{
-    let words = all.into_iter().map(tell).map(|(word, help)| PossibleValue::new(word).help(help));
-    PossibleValuesParser::new(words).try_map(|word| word.parse())
 }
 
 #[cfg(test)]

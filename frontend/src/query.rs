@@ -1,10 +1,10 @@
 //! Which answers there are, and which of them are wanted at a point: decided once, before anything is
 //! compiled.
 //!
-//! What an answer is to everybody is a row of one table, at the end of this file. From it derive the sets that
-//! may be asked for, their words on the command line, the pass that goes in front of the others, the planes of
-//! samples and the names of columns, and what separate walks would take. What the row cannot say is how the
-//! answer is computed: that is its pass, or a part of the lowering that asks [`Query::contains`].
+//! What an answer is to everybody is a row of one table, at the end of this file. From it derive the sets
+//! that may be asked for, their words on the command line, the pass that goes in front of the others, the
+//! planes of samples and the names of columns, and what separate walks would take. What the row cannot say is
+//! how the answer is computed: that is its pass, or a part of the lowering that asks [`Query::contains`].
 
 use std::borrow::Cow;
 use std::fmt;

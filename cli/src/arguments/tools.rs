@@ -7,7 +7,8 @@ use clap_complete::Shell;
 use jbt::Query;
 
 use super::scene::definition;
-use super::{LatticeArguments, LevelName, SceneArguments, queries};
+use super::words::queries;
+use super::{LatticeArguments, LevelName, SceneArguments};
 
 /// What `jbt show` takes.
 #[derive(Args, Debug)]
