@@ -1,6 +1,6 @@
 //! The checks that answers have to pass before anything is timed.
 
-use jbt::{Evaluator, Points, Polygonized};
+use jbt::{AnswerKind, Evaluator, Points, Polygonized};
 use jbt_model::check::CheckedTree;
 use jbt_model::walk::{walk, walk_gradient};
 
@@ -42,7 +42,7 @@ pub fn answers(tree: &CheckedTree, evaluator: &Evaluator, points: &Points) {
                 assert!(off < 1e-3 * scale, "gradient at point {index}: {}, not {expected}", plane[index]);
             }
         }
-        if !evaluator.query().attributes {
+        if !evaluator.query().contains(AnswerKind::Attributes) {
             continue;
         }
         for (group, expected) in tree.attributes().iter().zip(&expected.attributes) {

@@ -3,35 +3,33 @@
 mod contour;
 mod engine;
 mod output;
-mod query;
 mod render;
 mod scene;
 mod space;
 mod tools;
+mod words;
 mod work;
 
 pub use contour::{ContourArguments, ModeName, PaintName};
 pub use engine::{EngineArguments, LevelName};
 pub use output::OutputArguments;
-pub use query::QueryName;
 pub use render::{GroundName, RenderArguments};
 pub use scene::SceneArguments;
-pub use space::{LatticeArguments, Region};
+pub use space::LatticeArguments;
 pub use tools::{
     CheckArguments, CompletionsArguments, CountArguments, ManArguments, ShowArguments, StatsArguments,
 };
 pub use work::WorkArguments;
 
 use std::collections::HashSet;
-use std::error::Error;
 use std::path::PathBuf;
-use std::str::FromStr;
 
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 use jbt::export::{ColorEncoding, Format, Up};
+use jbt::{AnswerKind, Planes, Query};
 
 use crate::formats::{ArrayKind, TableKind};
+use words::{queries, words};
 
 /// Compiles BlobTrees to SIMD machine code, and makes meshes, pictures and values of them.
 #[derive(Parser, Debug)]
@@ -191,8 +189,8 @@ pub struct SampleArguments {
     #[command(flatten)]
     pub output: OutputArguments<ArrayKind>,
     /// The answers wanted
-    #[arg(long, value_enum, default_value_t = QueryName::Field)]
-    pub query: QueryName,
+    #[arg(long, default_value_t = Query::FIELD, value_parser = queries())]
+    pub query: Query,
     /// Where they are wanted.
     #[command(flatten)]
     pub lattice: LatticeArguments,
@@ -202,13 +200,7 @@ pub struct SampleArguments {
 
 /// What `jbt eval` takes.
 #[derive(Args, Debug)]
-#[command(after_help = "\
-The points are read from the columns x, y and z, found by the header; other columns are ignored. Coordinates are finite:
-`nan`, `inf` and what is beyond 3.4e38 are errors, with their place. The answers keep the order of the points. Columns: x,y,z,field, then gx,gy,gz, then color.r,color.g,color.b and the other attributes of the scene.
-
-Examples:
-  jbt eval hero.jbt --points points.csv --query all -o answers.csv
-  jbt eval hero.jbt --points - --query field -o - < points.csv")]
+#[command(after_help = eval_help())]
 pub struct EvalArguments {
     /// What to evaluate.
     #[command(flatten)]
@@ -217,8 +209,8 @@ pub struct EvalArguments {
     #[arg(long, value_name = "FILE.csv")]
     pub points: PathBuf,
     /// The answers wanted
-    #[arg(long, value_enum, default_value_t = QueryName::Field)]
-    pub query: QueryName,
+    #[arg(long, default_value_t = Query::FIELD, value_parser = queries())]
+    pub query: Query,
     /// What computes.
     #[command(flatten)]
     pub engine: EngineArguments,
@@ -230,16 +222,25 @@ pub struct EvalArguments {
     pub output: OutputArguments<TableKind>,
 }
 
-/// One of the members of a list, by its word; `tell` gives the word and a line of help.
-fn words<T>(
-    all: impl IntoIterator<Item = T>,
-    tell: fn(T) -> (&'static str, &'static str),
-) -> impl TypedValueParser<Value = T>
-where
-    T: FromStr<Err: Error + Send + Sync> + Clone + Send + Sync + 'static,
-{
-    let words = all.into_iter().map(tell).map(|(word, help)| PossibleValue::new(word).help(help));
-    PossibleValuesParser::new(words).try_map(|word| word.parse())
+const EVAL_HELP: &str = "\
+The points are read from the columns x, y and z, found by the header; other columns are ignored. Coordinates are finite:
+`nan`, `inf` and what is beyond 3.4e38 are errors, with their place. The answers keep the order of the points. Columns: {columns}.
+
+Examples:
+  jbt eval hero.jbt --points points.csv --query all -o answers.csv
+  jbt eval hero.jbt --points - --query field -o - < points.csv";
+
+/// The columns of `jbt eval`, from the table of answers.
+fn columns() -> String {
+    let of = |answer: AnswerKind| match answer.row().planes {
+        Planes::Named(names) => names.join(","),
+        Planes::Channels => "color.r,color.g,color.b and the other attributes of the scene".to_owned(),
+    };
+    format!("x,y,z,{}", AnswerKind::ALL.map(of).join(", then "))
+}
+
+fn eval_help() -> String {
+    EVAL_HELP.replace("{columns}", &columns())
 }
 
 #[cfg(test)]
@@ -247,6 +248,7 @@ mod tests {
     use super::scene::definition;
     use super::space::region;
     use super::*;
+    use jbt::Box3;
 
     #[test]
     fn the_command_line_is_consistent() {
@@ -256,7 +258,7 @@ mod tests {
 
     #[test]
     fn regions_and_definitions() {
-        let unit = Region { low: [0.0; 3], high: [1.0; 3] };
+        let unit = Box3::new([0.0; 3], [1.0; 3]);
         assert_eq!(region("0,0,0,1,1,1"), Ok(unit));
         assert_eq!(region(" 0, 0,0, 1,1 ,1"), Ok(unit));
         for bad in

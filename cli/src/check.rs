@@ -60,7 +60,7 @@ fn check(arguments: &SceneArguments, quiet: bool) -> Result<Checked, Failure> {
     scene.warn(quiet);
     let tree = scene.check()?;
     // Some numbers leave the range of f32, and some limits are reached, only in the program for all answers.
-    let evaluator = scene.evaluator(&tree, Query::ALL, &Compiler::for_engine(Engine::Scalar))?;
+    let evaluator = scene.evaluator(&Compiler::for_engine(Engine::Scalar).compile(&tree), Query::ALL)?;
     Ok(Checked { scene, tree, occurrences: evaluator.evaluations_per_point() })
 }
 

@@ -20,7 +20,10 @@ use std::fmt::Write as _;
 
 use jbt::mesh::Lattice;
 use jbt::statistics::{PerPoint, Statistics, Supports, SupportsError, walks};
-use jbt::{Compiler, Engine, MeshCounters, ModelOrigin, Polygonize, PolygonizeError, Query};
+use jbt::{
+    AnswerKind, Box3, Compiled, Compiler, Engine, MeshCounters, ModelOrigin, Polygonize, PolygonizeError,
+    Query,
+};
 use jbt_model::check::CheckedTree;
 use jbt_model::diagnostic::Source;
 use jbt_model::kind::NodeKind;
@@ -35,8 +38,17 @@ use crate::scene::Scene;
 use crate::stages;
 
 /// How the evaluations of separate walks add up.
-const FORMULA: &str = "separate = walks x uses of leaves; walks = 1 (field) + 4 (gradient, by differences) + 1 (attributes); \
-                       cached = places x occurrences of leaves; places = 1 (the point) + 3 (the steps of the differences)";
+fn formula() -> String {
+    let sum = |terms: [(u64, &str); AnswerKind::ALL.len()]| {
+        let terms = terms.iter().filter(|(count, _)| *count > 0);
+        terms.map(|(count, what)| format!("{count} ({what})")).collect::<Vec<_>>().join(" + ")
+    };
+    format!(
+        "separate = walks x uses of leaves; walks = {}; cached = places x occurrences of leaves; places = {}",
+        sum(AnswerKind::ALL.map(|answer| answer.row().walks)),
+        sum(AnswerKind::ALL.map(|answer| answer.row().places))
+    )
+}
 
 /// Runs the command.
 pub fn run(arguments: &CountArguments, quiet: bool) -> Result<(), Failure> {
@@ -45,14 +57,16 @@ pub fn run(arguments: &CountArguments, quiet: bool) -> Result<(), Failure> {
     scene.warn(quiet);
     let tree = scene.check()?;
     let queries = match arguments.query {
-        Some(name) => vec![name.query()],
+        Some(query) => vec![query],
         None => Query::EVERY.to_vec(),
     };
     let statistics = Statistics::new(&tree);
-    let field = QueryCount::new(&scene, &tree, &statistics, Query::FIELD)?;
+    // All engines run the same programs; this one needs no code.
+    let compiled = Compiler::for_engine(Engine::Scalar).compile(&tree);
+    let field = QueryCount::new(&scene, &compiled, &statistics, Query::FIELD)?;
     let counts = queries
         .into_iter()
-        .map(|query| QueryCount::new(&scene, &tree, &statistics, query))
+        .map(|query| QueryCount::new(&scene, &compiled, &statistics, query))
         .collect::<Result<_, _>>()?;
     let mut warnings = Vec::new();
     let lattice = match settings.lattice(&tree) {
@@ -128,12 +142,11 @@ struct QueryCount {
 impl QueryCount {
     fn new(
         scene: &Scene,
-        tree: &CheckedTree,
+        compiled: &Compiled,
         statistics: &Statistics<'_>,
         query: Query,
     ) -> Result<Self, Failure> {
-        // All engines run the same program; this one needs no compilation.
-        let evaluator = scene.evaluator(tree, query, &Compiler::for_engine(Engine::Scalar))?;
+        let evaluator = scene.evaluator(compiled, query)?;
         let by_node = evaluator.evaluations_by_node().per_node;
         Ok(Self { query, evaluations: statistics.per_point(&evaluator), by_node })
     }
@@ -244,7 +257,7 @@ impl CountReport {
             plural(self.occurrences, "occurrence", "occurrences")
         );
         self.write_queries(&mut out, 1);
-        let _ = writeln!(out, "{}\n", FORMULA.replace("; cached", "\ncached"));
+        let _ = writeln!(out, "{}\n", formula().replace("; cached", "\ncached"));
         if let Some((lattice, supports)) = &self.lattice {
             let points = plural(supports.points, "point", "points");
             let _ = writeln!(out, "lattice: {points}, {}\n", lattice::describe(lattice, self.origin));
@@ -303,12 +316,12 @@ impl CountReport {
     /// For machines.
     fn json(&self) -> Value {
         let lattice = self.lattice.as_ref().map(|(lattice, _)| {
-            let (low, high) = lattice::corners(lattice, self.origin);
+            let Box3 { low, high } = lattice::bounds(lattice, self.origin);
             let region = [low, high].concat();
             json!({ "region": region, "cell": lattice.spacing(), "cells": lattice.cells() })
         });
         json!({
-            "formula": FORMULA,
+            "formula": formula(),
             "occurrences": self.occurrences,
             "uses": self.uses,
             "queries": self.counts.iter().map(|count| self.json_query(count)).collect::<Vec<_>>(),
@@ -343,8 +356,11 @@ impl CountReport {
     }
 
     fn json_leaf(&self, leaf: &CountedLeaf) -> Value {
-        let evaluations: serde_json::Map<_, _> =
-            self.counts.iter().map(|count| (count.query.name().to_owned(), count.of(leaf).into())).collect();
+        let evaluations: serde_json::Map<_, _> = self
+            .counts
+            .iter()
+            .map(|count| (count.query.name().into_owned(), count.of(leaf).into()))
+            .collect();
         json!({
             "node": leaf.node,
             "kind": leaf.kind,

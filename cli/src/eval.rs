@@ -30,7 +30,7 @@ pub fn run(arguments: &EvalArguments, quiet: bool) -> Result<(), Failure> {
     let scene = Scene::load(&arguments.scene)?;
     scene.warn(quiet);
     let tree = scene.check()?;
-    let evaluator = scene.evaluator(&tree, arguments.query.query(), &arguments.engine.compiler()?)?;
+    let evaluator = scene.evaluator(&arguments.engine.compiler()?.compile(&tree), arguments.query)?;
     let threads = Threads::new(arguments.threads)?;
     if is_standard(&arguments.points) {
         return stream(

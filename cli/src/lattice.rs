@@ -21,8 +21,7 @@ pub fn settings(arguments: &LatticeArguments) -> Result<Polygonize, Failure> {
         (None, Some(cells)) => Fineness::Resolution(cells),
         (None, None) => Fineness::default(),
     };
-    let region = arguments.region.map(|region| (region.low, region.high));
-    Ok(Polygonize { region, fineness, verify: true, thin_parts: true })
+    Ok(Polygonize { region: arguments.region, fineness, verify: true, thin_parts: true })
 }
 
 /// Whose fault it is that there is no lattice or mesh.
@@ -55,16 +54,16 @@ pub fn failure(scene: &Scene, error: PolygonizeError) -> Failure {
     }
 }
 
-/// The first and the last corner of a lattice about the origin of a model, in the world.
-pub fn corners(lattice: &Lattice, origin: ModelOrigin) -> ([f64; 3], [f64; 3]) {
+/// The box of a lattice about the origin of a model, in the world.
+pub fn bounds(lattice: &Lattice, origin: ModelOrigin) -> Box3<f64> {
     let (low, cells) = (lattice.origin(), lattice.cells());
     let high = std::array::from_fn(|axis| low[axis] + lattice.spacing() * cells[axis] as f64);
-    (origin.world(low), origin.world(high))
+    Box3::new(low, high).map(|corner| origin.world(corner))
 }
 
 /// A region of the world as a box about the origin of a model.
-pub fn local(region: ([f64; 3], [f64; 3]), origin: ModelOrigin) -> Box3 {
-    Box3::new(origin.rounded(region.0), origin.rounded(region.1))
+pub fn local(region: Box3<f64>, origin: ModelOrigin) -> Box3 {
+    region.map(|corner| origin.rounded(corner))
 }
 
 /// Where a model has its origin, as a line of a summary; nothing for most models.
@@ -76,7 +75,7 @@ pub fn origin_line(origin: ModelOrigin) -> String {
 /// A lattice in words: `40 x 40 x 20 cells of 0.100000, from (0.0000 0.0000 0.0000) to (4.0000 4.0000
 /// 2.0000)`.
 pub fn describe(lattice: &Lattice, origin: ModelOrigin) -> String {
-    let ([x0, y0, z0], [x1, y1, z1]) = corners(lattice, origin);
+    let Box3 { low: [x0, y0, z0], high: [x1, y1, z1] } = bounds(lattice, origin);
     let ([nx, ny, nz], spacing) = (lattice.cells(), lattice.spacing());
     format!(
         "{nx} x {ny} x {nz} cells of {spacing:.6}, from ({x0:.4} {y0:.4} {z0:.4}) to ({x1:.4} {y1:.4} {z1:.4})"

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use jbt::export::{self, ColorEncoding, ExportError, ExportOptions, Format};
 use jbt::mesh::ThinReport;
-use jbt::{MeshCounters, ModelOrigin, Polygonize, Polygonized};
+use jbt::{Box3, MeshCounters, ModelOrigin, Polygonize, Polygonized};
 use jbt_model::diagnostic::escape;
 use serde_json::json;
 
@@ -128,14 +128,14 @@ impl MeshReport<'_> {
     fn json(&self) -> serde_json::Value {
         let Polygonized { mesh, report, lattice, counters, .. } = self.made;
         let origin = ModelOrigin::new(mesh.origin);
-        let (low, high) = lattice::corners(lattice, origin);
+        let Box3 { low, high } = lattice::bounds(lattice, origin);
         let world = |corner: [f32; 3]| origin.world(corner.map(f64::from));
-        let bounds = mesh.bounds().map(|bounds| [bounds.low, bounds.high].map(world));
+        let bounds = mesh.bounds().map(|bounds| bounds.map(world));
         json!({
             "triangles": mesh.triangles.len(),
             "vertices": mesh.positions.len(),
             "closed": report.closed,
-            "bounds": bounds.map(|corners| corners.concat()),
+            "bounds": bounds.map(|bounds| [bounds.low, bounds.high].concat()),
             "size": bounds.map(size),
             "volume": report.closed.then(|| mesh.volume()),
             "area": mesh.area(),
@@ -172,7 +172,7 @@ impl MeshReport<'_> {
     fn measures(&self) -> String {
         let Polygonized { mesh, report, .. } = self.made;
         let Some(bounds) = mesh.bounds() else { return "nothing".to_owned() };
-        let sides = size([bounds.low, bounds.high].map(|corner| corner.map(f64::from))).map(digits);
+        let sides = size(bounds.map(|corner| corner.map(f64::from))).map(digits);
         let volume = if report.closed { digits(mesh.volume()) } else { "none (open)".to_owned() };
         format!("{}, volume {volume}, area {}", sides.join(" x "), digits(mesh.area()))
     }
@@ -231,7 +231,7 @@ fn thin_json(thin: &ThinReport, counters: &MeshCounters) -> serde_json::Value {
 }
 
 /// The sides of a box.
-fn size([low, high]: [[f64; 3]; 2]) -> [f64; 3] {
+fn size(Box3 { low, high }: Box3<f64>) -> [f64; 3] {
     std::array::from_fn(|axis| high[axis] - low[axis])
 }
 

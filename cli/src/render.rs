@@ -25,8 +25,7 @@ pub fn run(arguments: &RenderArguments, quiet: bool, start: Instant) -> Result<(
     let scene = Scene::load(&arguments.scene)?;
     scene.warn(quiet);
     let tree = scene.check()?;
-    let region = arguments.region.map(|region| (region.low, region.high));
-    settings.region = region.map(|region| lattice::local(region, tree.origin()));
+    settings.region = arguments.region.map(|region| lattice::local(region, tree.origin()));
     let compiler = arguments.work.compiler()?;
 
     let mut progress = Progress::new("rendering", quiet);

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use jbt::divide::DivideError;
 use jbt::mesh::Lattice;
 use jbt::sample::{SampleError, Sampler, write_npy};
-use jbt::{Counters, EvalError};
+use jbt::{Box3, Counters, EvalError};
 use serde_json::json;
 
 use crate::arguments::SampleArguments;
@@ -26,7 +26,7 @@ pub fn run(arguments: &SampleArguments, quiet: bool, start: Instant) -> Result<(
     let tree = scene.check()?;
     let lattice = settings.lattice(&tree).map_err(|error| lattice::failure(&scene, error))?;
     let compiler = arguments.work.compiler()?;
-    let sampler = Sampler::new(&compiler, &tree, arguments.query.query())
+    let sampler = Sampler::new(&compiler, &tree, arguments.query)
         .map_err(|error| Failure::compile(&scene.source(), &error))?;
     let mut progress = Progress::new("sampling", quiet);
     let mut work = || sampler.dense(&lattice).on_progress(|part| progress.set(part)).run();
@@ -85,7 +85,7 @@ struct SampleReport<'a> {
 impl SampleReport<'_> {
     /// For machines.
     fn json(&self) -> serde_json::Value {
-        let (low, high) = lattice::corners(self.lattice, self.sampler.evaluator().origin());
+        let Box3 { low, high } = lattice::bounds(self.lattice, self.sampler.evaluator().origin());
         json!({
             "planes": self.sampler.evaluator().layout().names(),
             "points": self.lattice.points(),

@@ -3,7 +3,7 @@
 use std::io;
 
 use jbt::text::Options;
-use jbt::{Compiler, Evaluator, Model, Query};
+use jbt::{Compiled, Evaluator, Model, Query};
 use jbt_model::check::CheckedTree;
 use jbt_model::diagnostic::{Severity, Source, SourceText};
 
@@ -66,12 +66,7 @@ impl Scene {
     }
 
     /// An evaluator.
-    pub fn evaluator(
-        &self,
-        tree: &CheckedTree,
-        query: Query,
-        compiler: &Compiler,
-    ) -> Result<Evaluator, Failure> {
-        compiler.evaluator(tree, query).map_err(|error| Failure::compile(&self.source(), &error))
+    pub fn evaluator(&self, compiled: &Compiled, query: Query) -> Result<Evaluator, Failure> {
+        compiled.evaluator(query).map_err(|error| Failure::compile(&self.source(), &error))
     }
 }

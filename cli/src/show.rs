@@ -22,7 +22,7 @@ const NOT_STRAIGHT: &str = "the scene has no straight code: it has no formulas o
 
 /// Runs the command.
 pub fn run(arguments: &ShowArguments, quiet: bool) -> Result<(), Failure> {
-    let query = arguments.query.query();
+    let query = arguments.query;
     let stage = arguments.stage.as_str();
     if !stages(query).any(|(name, _)| name == stage) {
         return Err(Failure::Usage(unknown(stage, query)));

@@ -1,29 +1,36 @@
 //! Samples, as structures of arrays: one plane of numbers for each answer.
 
-use jbt_model::attribute::AttributeGroup;
+use std::ops::Range;
 
-/// Which plane holds what: the field first, then the gradient, then the attributes, as far as they were asked
-/// for.
+use jbt_model::attribute::AttributeGroup;
+use jbt_model::query::{AnswerKind, Planes, Query};
+
+/// Which plane holds what: the [answers](AnswerKind::ALL) in their order, as far as they were asked for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
     names: Vec<String>,
-    gradient: bool,
+    answers: Vec<(AnswerKind, Range<usize>)>,
     groups: Vec<(AttributeGroup, usize)>,
 }
 
 impl Layout {
-    /// The layout of a query's answers.
-    pub(crate) fn new(gradient: bool, attributes: &[AttributeGroup]) -> Self {
-        let mut names = vec!["field".to_owned()];
-        if gradient {
-            names.extend(["gx", "gy", "gz"].map(str::to_owned));
+    /// The layout of a query's answers about a model with these attributes.
+    pub(crate) fn new(query: Query, attributes: &[AttributeGroup]) -> Self {
+        let (mut names, mut answers, mut groups) = (Vec::new(), Vec::new(), Vec::new());
+        for answer in query.answers() {
+            let first = names.len();
+            match answer.row().planes {
+                Planes::Named(planes) => names.extend(planes.iter().map(|&name| name.to_owned())),
+                Planes::Channels => {
+                    for group in attributes {
+                        groups.push((group.clone(), names.len()));
+                        names.extend((0..group.width()).map(|channel| group.channel(channel)));
+                    }
+                }
+            }
+            answers.push((answer, first..names.len()));
         }
-        let mut groups = Vec::new();
-        for group in attributes {
-            groups.push((group.clone(), names.len()));
-            names.extend((0..group.width()).map(|channel| group.channel(channel)));
-        }
-        Self { names, gradient, groups }
+        Self { names, answers, groups }
     }
 
     /// Names of the planes: `field`, `gx`, `gy`, `gz`, `color.r`, ...
@@ -32,10 +39,15 @@ impl Layout {
         &self.names
     }
 
-    /// Whether there is a gradient.
+    /// The planes of an answer; `None` if it was not asked for.
     #[must_use]
-    pub fn has_gradient(&self) -> bool {
-        self.gradient
+    pub fn planes(&self, answer: AnswerKind) -> Option<Range<usize>> {
+        self.answers.iter().find(|(known, _)| *known == answer).map(|(_, planes)| planes.clone())
+    }
+
+    /// The gradient among numbers in the order of the planes; `None` if it was not asked for.
+    pub(crate) fn gradient<'a, T>(&self, planes: &'a [T]) -> Option<&'a [T; 3]> {
+        planes[self.planes(AnswerKind::Gradient)?].as_array()
     }
 
     /// Names of the attribute groups, their first plane and their number of planes.
@@ -129,7 +141,7 @@ impl Samples {
     /// The gradient of the field at every point, by components; `None` if it was not asked for.
     #[must_use]
     pub fn gradient(&self) -> Option<[&[f32]; 3]> {
-        self.layout.gradient.then(|| [&self.planes[1][..], &self.planes[2], &self.planes[3]])
+        self.layout.gradient(&self.planes).map(|gradient| gradient.each_ref().map(Vec::as_slice))
     }
 
     /// The channels of an attribute group at every point; `None` if there is no such group or it was not

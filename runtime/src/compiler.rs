@@ -1,16 +1,17 @@
 //! The compiler: shapes become kernels, and are remembered.
 
 use std::fmt;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 
 use jbt_ir::{Function, Level, Tables, limits};
-use jbt_lower::{Lowered, Lowering};
-use jbt_model::query::Query;
+use jbt_model::check::CheckedTree;
 
 use crate::error::CompileError;
-use crate::kernel::{Engine, Kernel, Purpose, Wish, optimise, optimise_straight, straighten};
+use crate::kernel::{Bound, Engine, Kernel, Purpose, Wish, optimise, optimise_straight, straighten};
 
-/// Makes evaluators, and remembers the code of every shape that it has met: models of one shape share it.
+/// Makes [compiled models](crate::Compiled), and remembers the code of every shape that it has met: models of
+/// one shape share it.
 ///
 /// Cloning gives another handle to the same memory.
 #[derive(Clone, Default)]
@@ -18,7 +19,25 @@ pub struct Compiler {
     wish: Wish,
     /// Whether rows stay rows: see [`for_edits`](Self::for_edits).
     by_rows: bool,
-    known: Arc<Mutex<Vec<Known>>>,
+    memory: Arc<Memory>,
+}
+
+/// What a compiler has made so far. A snapshot: see [`Compiler::counters`].
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct CompileCounters {
+    /// Programs that were compiled: one for each shape and purpose.
+    pub kernels: u64,
+    /// Programs that were given the numbers of a model.
+    pub bound: u64,
+}
+
+/// What the clones of a compiler share.
+#[derive(Default)]
+struct Memory {
+    known: Mutex<Vec<Known>>,
+    kernels: AtomicU64,
+    bound: AtomicU64,
 }
 
 /// The code of a shape, for a purpose.
@@ -48,7 +67,7 @@ impl Compiler {
     #[must_use]
     pub fn on_engine(mut self, engine: Engine) -> Self {
         self.wish.engine = Some(engine);
-        self.known = Arc::default();
+        self.memory = Arc::default();
         self
     }
 
@@ -57,7 +76,7 @@ impl Compiler {
     #[must_use]
     pub fn at_level(mut self, level: Level) -> Self {
         self.wish.level = Some(level);
-        self.known = Arc::default();
+        self.memory = Arc::default();
         self
     }
 
@@ -76,31 +95,30 @@ impl Compiler {
         self
     }
 
-    /// The kernel that answers a query for a model, and the numbers to bind to it. `present` is a kernel for
-    /// the same query, which is kept where it fits.
-    pub(crate) fn answers(
-        &self,
-        lowering: &Lowering<'_>,
-        query: Query,
-        present: Option<&Arc<Kernel>>,
-    ) -> Result<(Arc<Kernel>, Tables), CompileError> {
-        let Lowered { function, tables } =
-            lowering.answers(query).map_err(|list| lowering.tree().diagnostics(list))?;
-        let purpose = Purpose::Answers(query);
-        // No value of a parameter compiles anything.
-        let may_be_straight = !self.by_rows && lowering.tree().parameters().is_empty();
-        let straight =
-            if may_be_straight { self.straight(&function, &tables, purpose, present) } else { None };
-        let kernel = match straight {
-            Some(kernel) => kernel,
-            None => self.kernel(function, purpose, present)?,
-        };
-        Ok((kernel, tables))
+    /// What it and its clones have made so far.
+    #[must_use]
+    pub fn counters(&self) -> CompileCounters {
+        CompileCounters {
+            kernels: self.memory.kernels.load(Ordering::Relaxed),
+            bound: self.memory.bound.load(Ordering::Relaxed),
+        }
+    }
+
+    /// Whether formulas of a model may become straight code. No value of a parameter compiles anything, so
+    /// models with parameters keep their rows.
+    pub(crate) fn may_straighten(&self, tree: &CheckedTree) -> bool {
+        !self.by_rows && tree.parameters().is_empty()
+    }
+
+    /// Gives a kernel the numbers of a model.
+    pub(crate) fn bind(&self, kernel: &Arc<Kernel>, tables: impl Into<Arc<Tables>>) -> Bound {
+        self.memory.bound.fetch_add(1, Ordering::Relaxed);
+        kernel.bind(tables.into())
     }
 
     /// A kernel of straight code for a lowered function and these tables; `None` if rows are as good, or if
     /// it is beyond a limit.
-    fn straight(
+    pub(crate) fn straight(
         &self,
         function: &Function,
         tables: &Tables,
@@ -153,7 +171,8 @@ impl Compiler {
     }
 
     fn remember(&self, purpose: Purpose, kernel: &Arc<Kernel>) {
-        if let Ok(mut known) = self.known.lock() {
+        self.memory.kernels.fetch_add(1, Ordering::Relaxed);
+        if let Ok(mut known) = self.memory.known.lock() {
             if known.len() == REMEMBERED {
                 known.remove(0);
             }
@@ -162,7 +181,7 @@ impl Compiler {
     }
 
     fn find(&self, purpose: Purpose, fits: impl Fn(&Kernel) -> bool) -> Option<Arc<Kernel>> {
-        let known = self.known.lock().ok()?;
+        let known = self.memory.known.lock().ok()?;
         let found = known.iter().find(|known| known.purpose == purpose && fits(&known.kernel))?;
         Some(Arc::clone(&found.kernel))
     }

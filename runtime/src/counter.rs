@@ -8,7 +8,7 @@ use jbt_model::query::Query;
 /// differences, at the point and a step along each axis; 1 more for the attributes.
 #[must_use]
 pub fn walks(query: Query) -> u64 {
-    1 + 4 * u64::from(query.gradient) + u64::from(query.attributes)
+    query.answers().map(|answer| answer.row().walks.0).sum()
 }
 
 /// What an evaluator has done so far. A snapshot: see [`crate::Evaluator::counters`].

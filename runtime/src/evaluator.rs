@@ -2,43 +2,49 @@
 
 use std::collections::BTreeSet;
 use std::fmt;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 use crate::parallel::*;
 use jbt_ir::domain::counting::{Evaluations, evaluations, of_selection};
 use jbt_ir::{Selection, Tables, Verified};
-use jbt_lower::Lowering;
 use jbt_model::check::{CheckedTree, NodeId};
 use jbt_model::origin::ModelOrigin;
 use jbt_model::query::Query;
 
 use crate::buffer::{Layout, Samples};
+use crate::compiled::{Compiled, Scope};
 use crate::compiler::Compiler;
-use crate::counter::{Counters, Tally, walks};
+use crate::counter::{Counters, Tally};
 use crate::error::{CompileError, EvalError};
-use crate::kernel::{Bound, Engine, Purpose};
+use crate::kernel::{Bound, Engine};
 use crate::places;
 use crate::points::{AsPoints, Points};
+use crate::program::AnswerProgram;
 use crate::prune::Region;
 use crate::region::Box3;
 
 impl Compiler {
-    /// An evaluator for a model and a query.
+    /// An evaluator for a model and a query, of which nothing else is asked: see [`Compiled::evaluator`].
+    ///
+    /// # Errors
+    /// Those of [`Compiled::evaluator`].
+    pub fn evaluator(&self, tree: &CheckedTree, query: Query) -> Result<Evaluator, CompileError> {
+        self.compile(tree).evaluator(query)
+    }
+}
+
+impl Compiled {
+    /// What answers a query. It has done nothing so far.
     ///
     /// # Errors
     /// The model is beyond a limit, or the engine cannot be had.
-    pub fn evaluator(&self, tree: &CheckedTree, query: Query) -> Result<Evaluator, CompileError> {
-        self.evaluator_of(&Lowering::new(tree), query)
+    pub fn evaluator(&self, query: Query) -> Result<Evaluator, CompileError> {
+        Evaluator::of(self, Scope::Anywhere, query)
     }
 
-    /// As [`evaluator`](Self::evaluator), for a model of which several things are asked.
-    pub(crate) fn evaluator_of(
-        &self,
-        lowering: &Lowering<'_>,
-        query: Query,
-    ) -> Result<Evaluator, CompileError> {
-        let (kernel, tables) = self.answers(lowering, query, None)?;
-        Ok(Evaluator::new(self.clone(), kernel.bind(Arc::new(tables)), lowering, query))
+    /// What answers a query in regions: by rows, where [`evaluator`](Self::evaluator) may have straight code.
+    pub(crate) fn regional(&self, query: Query) -> Result<Evaluator, CompileError> {
+        Evaluator::of(self, Scope::Regions, query)
     }
 }
 
@@ -64,21 +70,13 @@ pub enum Update {
     Code,
 }
 
-/// A compiled model: answers one query at any points.
+/// Answers one query about a compiled model, at any points, and counts what that takes.
 ///
-/// It is `Send + Sync`: threads may share it and evaluate at once. The code is freed with the last evaluator
-/// of its shape.
+/// It is `Send + Sync`: threads may share it and evaluate at once. It keeps the compiled model.
 pub struct Evaluator {
-    compiler: Compiler,
-    /// What runs points anywhere.
-    bound: Bound,
-    /// What runs points of regions, if `bound` is straight code: made for the first of them.
-    by_rows: OnceLock<Box<Bound>>,
-    query: Query,
-    origin: ModelOrigin,
-    layout: Layout,
-    /// What separate walks would compute at a point.
-    separate: u64,
+    compiled: Compiled,
+    scope: Scope,
+    program: Arc<AnswerProgram>,
     tally: Tally,
 }
 
@@ -86,7 +84,7 @@ impl fmt::Debug for Evaluator {
     /// What it answers and what runs it, without code and numbers.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Evaluator")
-            .field("query", &self.query)
+            .field("query", &self.query())
             .field("engine", &self.engine())
             .field("counters", &self.counters())
             .finish_non_exhaustive()
@@ -95,7 +93,7 @@ impl fmt::Debug for Evaluator {
 
 impl Evaluator {
     /// An evaluator on the best engine that this machine has. To share code between models, use a
-    /// [`Compiler`].
+    /// [`Compiler`]; to ask more of one model, [`Compiler::compile`] it.
     ///
     /// # Errors
     /// Those of [`Compiler::evaluator`].
@@ -103,18 +101,9 @@ impl Evaluator {
         Compiler::new().evaluator(tree, query)
     }
 
-    fn new(compiler: Compiler, bound: Bound, lowering: &Lowering<'_>, query: Query) -> Self {
-        let attributes = if query.attributes { lowering.tree().attributes() } else { &[] };
-        let layout = Layout::new(query.gradient, attributes);
-        debug_assert_eq!(
-            layout.names(),
-            bound.kernel.function.function().outputs,
-            "planes are named alike everywhere"
-        );
-        let separate = walks(query).saturating_mul(lowering.tree().leaf_uses());
-        let origin = lowering.tree().origin();
-        let by_rows = OnceLock::new();
-        Self { compiler, bound, by_rows, query, origin, layout, separate, tally: Tally::default() }
+    fn of(compiled: &Compiled, scope: Scope, query: Query) -> Result<Self, CompileError> {
+        let program = Arc::clone(compiled.answers(scope, query)?);
+        Ok(Self { compiled: compiled.clone(), scope, program, tally: Tally::default() })
     }
 
     /// Takes another model, usually an edited one. If it has the shape of the present one, only numbers are
@@ -124,7 +113,7 @@ impl Evaluator {
     /// Those of [`Compiler::evaluator`]; the evaluator stays as it was.
     pub fn update(&mut self, tree: &CheckedTree) -> Result<Update, CompileError> {
         let next = self.updated(tree)?;
-        let same = Arc::ptr_eq(&next.bound.kernel, &self.bound.kernel);
+        let same = Arc::ptr_eq(&next.program.bound.kernel, &self.program.bound.kernel);
         *self = Self { tally: std::mem::take(&mut self.tally), ..next };
         Ok(if same { Update::Numbers } else { Update::Code })
     }
@@ -134,69 +123,58 @@ impl Evaluator {
     /// # Errors
     /// Those of [`Compiler::evaluator`].
     pub fn updated(&self, tree: &CheckedTree) -> Result<Self, CompileError> {
-        let tree = tree.with_origin(self.origin);
-        let lowering = Lowering::new(&tree);
-        let (kernel, tables) = self.compiler.answers(&lowering, self.query, Some(&self.bound.kernel))?;
-        Ok(Self::new(self.compiler.clone(), kernel.bind(Arc::new(tables)), &lowering, self.query))
+        Self::of(&self.compiled.updated(tree), self.scope, self.query())
     }
 
     /// What runs points of regions.
     fn rows(&self) -> &Bound {
-        if self.bound.kernel.straight.is_none() {
-            return &self.bound;
+        if self.program.is_straight() {
+            &self.compiled.rows_of(&self.program).bound
+        } else {
+            &self.program.bound
         }
-        self.by_rows.get_or_init(|| {
-            let lowered = &self.bound.kernel.lowered;
-            let purpose = Purpose::Answers(self.query);
-            let kernel = |compiler: &Compiler| compiler.kernel(lowered.clone(), purpose, None);
-            // Machine code can be had, as a rule: it was for the straight code.
-            let kernel =
-                kernel(&self.compiler).or_else(|_| kernel(&self.compiler.clone().on_engine(Engine::Lanes)));
-            let kernel = kernel.expect("a program that is small as straight code is within all limits");
-            Box::new(kernel.bind(Arc::clone(&self.bound.lowered)))
-        })
     }
 
     /// The query that it answers.
     #[must_use]
     pub fn query(&self) -> Query {
-        self.query
+        self.program.query
     }
 
     /// Where its coordinates count from: that of the model for which it was made. Points, planes, boxes and
     /// probes in f32 are about it; for most models it is the origin of the world.
     #[must_use]
     pub fn origin(&self) -> ModelOrigin {
-        self.origin
+        self.compiled.origin()
     }
 
     /// No points: those to come count from its origin.
     #[must_use]
     pub fn points(&self) -> Points {
-        Points::about(self.origin)
+        Points::about(self.origin())
     }
 
     /// What runs it.
     #[must_use]
     pub fn engine(&self) -> Engine {
-        self.bound.kernel.engine()
+        self.program.bound.kernel.engine()
     }
 
     /// Points that run together.
     pub(crate) fn block(&self) -> usize {
-        self.bound.kernel.block()
+        self.program.bound.kernel.block()
     }
 
     /// Which plane of the samples holds what.
     #[must_use]
     pub fn layout(&self) -> &Layout {
-        &self.layout
+        &self.program.layout
     }
 
     /// An empty buffer for its answers.
     #[must_use]
     pub fn samples(&self) -> Samples {
-        Samples::new(self.layout.clone())
+        Samples::new(self.layout().clone())
     }
 
     /// The answers at all points: [`Points`](crate::Points), or a slice, an array or a vector of points as
@@ -254,7 +232,7 @@ impl Evaluator {
 
     /// Room for the answers at so many points.
     fn room<'s>(&self, points: usize, samples: &'s mut Samples) -> Result<Vec<&'s mut [f32]>, EvalError> {
-        if *samples.layout() != self.layout {
+        if samples.layout() != self.layout() {
             return Err(EvalError::Layout);
         }
         samples.resize(points);
@@ -269,7 +247,7 @@ impl Evaluator {
         mut count: usize,
         mut answers: Vec<&mut [f32]>,
     ) -> Result<(), EvalError> {
-        let moves = points.origin() != self.origin;
+        let moves = points.origin() != self.origin();
         if let Some(planes) = points.planes().filter(|_| !moves) {
             return self.eval_planes(planes.map(|plane| &plane[start..][..count]), &mut answers);
         }
@@ -291,7 +269,7 @@ impl Evaluator {
 
     /// Moves coordinates that count from another origin here.
     fn bring(&self, from: ModelOrigin, planes: [&mut [f32]; 3]) {
-        let (from, to) = (from.point(), self.origin.point());
+        let (from, to) = (from.point(), self.origin().point());
         for (axis, plane) in planes.into_iter().enumerate() {
             let moved = |x: f32| (f64::from(x) + from[axis] - to[axis]) as f32;
             plane.iter_mut().for_each(|x| *x = moved(*x));
@@ -307,9 +285,9 @@ impl Evaluator {
     /// If there are too many or too few planes, or their lengths differ.
     pub fn eval_planes(&self, points: [&[f32]; 3], answers: &mut [&mut [f32]]) -> Result<(), EvalError> {
         let lanes = if places::are_places(&points) {
-            self.bound.run_finite(self.bound.all(), &points, answers)?
+            self.program.bound.run_finite(self.program.bound.all(), &points, answers)?
         } else {
-            self.run_placed(&self.bound, self.bound.all(), points, answers)?
+            self.run_placed(&self.program.bound, self.program.bound.all(), points, answers)?
         };
         self.tally.add(points[0].len(), lanes, 0);
         Ok(())
@@ -349,20 +327,20 @@ impl Evaluator {
     ) -> Result<usize, EvalError> {
         let placed = places::placed(&points);
         let lanes = bound.run_finite(selection, &placed.each_ref().map(Vec::as_slice), answers)?;
-        places::blank(&self.layout, &points, answers);
+        places::blank(self.layout(), &points, answers);
         Ok(lanes)
     }
 
     /// What it has done so far.
     #[must_use]
     pub fn counters(&self) -> Counters {
-        self.tally.snapshot(self.evaluations_per_point(), self.separate)
+        self.tally.snapshot(self.evaluations_per_point(), self.program.separate)
     }
 
     /// How many distances to skeletons one point takes.
     #[must_use]
     pub fn evaluations_per_point(&self) -> u64 {
-        of_selection(&self.bound.kernel.per_row, self.bound.all())
+        of_selection(&self.program.bound.kernel.per_row, self.program.bound.all())
     }
 
     /// How many distances to skeletons one point of a region takes.
@@ -394,18 +372,18 @@ impl Evaluator {
     /// How many distances one point takes, by tree node.
     #[must_use]
     pub fn evaluations_by_node(&self) -> Evaluations {
-        evaluations(&self.bound.kernel.function, self.bound.tables())
+        evaluations(&self.program.bound.kernel.function, self.program.bound.tables())
     }
 
     /// The program that runs points anywhere.
     #[must_use]
     pub fn program(&self) -> &Verified {
-        &self.bound.kernel.function
+        &self.program.bound.kernel.function
     }
 
     /// The numbers that it runs on.
     #[must_use]
     pub fn tables(&self) -> &Tables {
-        self.bound.tables()
+        self.program.bound.tables()
     }
 }

@@ -26,16 +26,19 @@
 //! ```
 //!
 //! ```text
-//! Model ──check──► CheckedTree ──Compiler, Query──► Evaluator ──points──► samples
-//!   ▲                                                   │
-//! text, build, import                              Polygonize ──► Mesh ──► export
+//! Model ──check──► CheckedTree ──Compiler──► Compiled ──Query──► Evaluator ──points──► samples
+//!   ▲                                           │
+//! text, build, import                           └──► Polygonize, Render, Slicer, Solid, Tracer ──► export
 //! ```
 //!
 //! * [`Scene::load`], [`build`], [`text`] and [`import`] make a [`Model`]; [`Model::check`] says everything
 //!   that is wrong with it. [`tree`] is for programs that read one.
 //! * Numbers may follow named parameters ([`build::param`], `param` in a text):
-//!   [`CheckedTree::with_parameters`] sets them, and [`Evaluator::update`] then writes numbers and compiles
-//!   nothing.
+//!   [`CheckedTree::with_parameters`] sets them, and [`Compiled::updated`] and [`Evaluator::update`] then
+//!   write numbers and compile nothing.
+//! * A [`Compiler`] makes a [`Compiled`] model, which compiles what is asked of it when it is asked, and
+//!   once: a mesh, a slice and a picture of one compiled model share their programs. For a single question
+//!   there are shorter ways, as `Solid::new` or [`Compiler::evaluator`].
 //! * An [`Evaluator`] answers one [`Query`] at any points, on the [`Engine`] that the machine has; all
 //!   engines give the same bits. A [`Probe`] asks about a single point, in any order, for one evaluation.
 //! * [`Polygonize`] meshes a model, [`Render`] makes pictures of it; [`export`] writes both.
@@ -59,7 +62,7 @@
 //! [`Evaluator::eval`] is serial. [`Evaluator::par_eval`] and all long work run on the rayon pool in which
 //! they are called; the answers have the same bits
 //! for any number of threads. Long work is a [`Job`]: `.run()` does it, `.on_progress(..)` watches it,
-//! `.cancel(&token)` stops it. Evaluators, tracers,
+//! `.cancel(&token)` stops it. Compiled models, evaluators, tracers,
 //! solids, slicers and renderers are `Send + Sync`.
 //!
 //! # Features
@@ -80,6 +83,7 @@
 //! compiler's own, and read by plain numbers.
 
 mod buffer;
+mod compiled;
 mod compiler;
 pub mod contour;
 mod counter;
@@ -99,6 +103,8 @@ mod places;
 mod points;
 mod polygonize;
 mod probe;
+mod program;
+mod progress;
 pub mod prune;
 pub mod region;
 pub mod render;
@@ -107,6 +113,7 @@ mod scene;
 pub mod solid;
 pub mod srgb;
 pub mod statistics;
+mod support;
 pub mod trace;
 pub mod tree;
 mod word;
@@ -130,14 +137,15 @@ pub use jbt_model::model::Model;
 pub use jbt_model::number::Number;
 pub use jbt_model::origin::ModelOrigin;
 pub use jbt_model::parameter::Parameter;
-pub use jbt_model::query::Query;
+pub use jbt_model::query::{AnswerKind, Planes, Query};
 pub use jbt_model::tree::Tree;
 pub use jbt_model::walk;
 pub use jbt_text as text;
 pub use jbt_text::import;
 
 pub use buffer::{Layout, Samples};
-pub use compiler::Compiler;
+pub use compiled::Compiled;
+pub use compiler::{CompileCounters, Compiler};
 pub use counter::Counters;
 pub use error::{CompileError, EvalError};
 pub use evaluator::{Evaluator, Update};

@@ -1,9 +1,9 @@
 //! From a model to a mesh in one call: three kernels, a lattice over the model's support, and the mesher.
 //!
 //! ```text
-//!   CheckedTree ──Compiler──► field kernel ────► every lattice point of a brick, once
-//!                        ├──► gradient kernel ─► every vertex, a few times, to pull it onto the surface
-//!                        └──► full kernel ─────► every vertex, once: normal and attributes
+//!   Compiled ─┬─► field kernel ────► every lattice point of a brick, once
+//!             ├─► gradient kernel ─► every vertex, a few times, to pull it onto the surface
+//!             └─► full kernel ─────► every vertex, once: normal and attributes
 //! ```
 
 mod kernels;
@@ -12,6 +12,7 @@ use std::time::{Duration, Instant};
 
 use jbt_model::check::CheckedTree;
 
+use crate::compiled::Compiled;
 use crate::compiler::Compiler;
 use crate::counter::Counters;
 use crate::error::{CompileError, EvalError};
@@ -19,6 +20,8 @@ use crate::job::{Hook, Job};
 use crate::kernel::Engine;
 use crate::mesh::{self, Lattice, LatticeError, Mesh, MeshError, Report};
 use crate::prune::PruneCounters;
+use crate::region::Box3;
+use crate::support::{NoBox, around};
 
 use kernels::Kernels;
 
@@ -52,9 +55,8 @@ impl Default for Fineness {
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Polygonize {
-    /// The smallest and the largest corner of the box to mesh, in the world; `None` is the model's support,
-    /// grown a little.
-    pub region: Option<([f64; 3], [f64; 3])>,
+    /// The box to mesh, in the world; `None` is the model's support, grown a little.
+    pub region: Option<Box3<f64>>,
     /// How fine.
     pub fineness: Fineness,
     /// Whether to look at every edge to say that the mesh is closed: see [`mesh::Options::verify`].
@@ -87,7 +89,7 @@ pub struct Polygonized {
     pub counters: MeshCounters,
     /// Distances to skeletons that were computed for the mesh, in all stages.
     pub primitive_evaluations: u64,
-    /// Time to lower and compile the three kernels.
+    /// Time to lower and compile the kernels, as far as they were not there yet.
     pub compile_time: Duration,
 }
 
@@ -165,36 +167,25 @@ pub enum PolygonizeError {
     Mesh(#[from] MeshError<EvalError>),
 }
 
-/// The part of the support's longest side by which the default region exceeds it, so that rounded coordinates
-/// of the lattice's sides are outside.
-const MARGIN: f64 = 1.0 / 512.0;
-
 impl Polygonize {
-    /// The region to mesh: its smallest and its largest corner, in the world.
+    /// The region to mesh, in the world.
     ///
     /// # Errors
     /// No region was given, and the model's support is empty or unbounded.
-    pub fn region(&self, tree: &CheckedTree) -> Result<([f64; 3], [f64; 3]), PolygonizeError> {
-        let (low, high) = self.local_region(tree)?;
-        let origin = tree.origin();
-        Ok(self.region.unwrap_or((origin.world(low), origin.world(high))))
+    pub fn region(&self, tree: &CheckedTree) -> Result<Box3<f64>, PolygonizeError> {
+        let local = self.local_region(tree)?;
+        Ok(self.region.unwrap_or_else(|| local.map(|corner| tree.origin().world(corner))))
     }
 
     /// The region in local coordinates.
-    fn local_region(&self, tree: &CheckedTree) -> Result<([f64; 3], [f64; 3]), PolygonizeError> {
-        let origin = tree.origin();
-        if let Some((low, high)) = self.region {
-            return Ok((origin.local(low), origin.local(high)));
+    fn local_region(&self, tree: &CheckedTree) -> Result<Box3<f64>, PolygonizeError> {
+        match self.region {
+            Some(region) => Ok(region.map(|corner| tree.origin().local(corner))),
+            None => around(tree).map_err(|reason| match reason {
+                NoBox::Empty => PolygonizeError::Empty,
+                NoBox::Unbounded => PolygonizeError::Unbounded,
+            }),
         }
-        let support = tree.local_support();
-        if support.is_empty() {
-            return Err(PolygonizeError::Empty);
-        }
-        if !support.is_finite() {
-            return Err(PolygonizeError::Unbounded);
-        }
-        let grown = support.grown(support.longest_side() * MARGIN);
-        Ok((grown.low(), grown.high()))
     }
 
     /// The lattice over the region, in coordinates about the model's [origin](CheckedTree::origin).
@@ -202,14 +193,14 @@ impl Polygonize {
     /// # Errors
     /// Those of [`region`](Self::region), and a lattice that cannot be or is beyond a limit.
     pub fn lattice(&self, tree: &CheckedTree) -> Result<Lattice, PolygonizeError> {
-        let (low, high) = self.local_region(tree)?;
+        let Box3 { low, high } = self.local_region(tree)?;
         Ok(match self.fineness {
             Fineness::Cell(cell) => Lattice::covering(low, high, cell)?,
             Fineness::Resolution(cells) => Lattice::with_resolution(low, high, cells)?,
         })
     }
 
-    /// The mesh of a model.
+    /// The mesh of a model of which nothing else is asked: see [`with`](Self::with).
     ///
     /// # Errors
     /// See [`PolygonizeError`].
@@ -219,18 +210,23 @@ impl Polygonize {
         tree: &'a CheckedTree,
     ) -> Job<'a, Polygonized, PolygonizeError> {
         let settings = *self;
-        Job::new(move |hook| settings.mesh_hooked(compiler, tree, hook))
+        Job::new(move |hook| settings.mesh_hooked(&compiler.compile(tree), hook))
     }
 
-    fn mesh_hooked(
-        &self,
-        compiler: &Compiler,
-        tree: &CheckedTree,
-        hook: Hook<'_>,
-    ) -> Result<Polygonized, PolygonizeError> {
+    /// The mesh of a compiled model.
+    ///
+    /// # Errors
+    /// See [`PolygonizeError`].
+    pub fn with<'a>(&self, compiled: &'a Compiled) -> Job<'a, Polygonized, PolygonizeError> {
+        let settings = *self;
+        Job::new(move |hook| settings.mesh_hooked(compiled, hook))
+    }
+
+    fn mesh_hooked(&self, compiled: &Compiled, hook: Hook<'_>) -> Result<Polygonized, PolygonizeError> {
+        let tree = compiled.tree();
         let lattice = self.lattice(tree)?;
         let start = Instant::now();
-        let kernels = Kernels::new(compiler, tree)?;
+        let kernels = Kernels::new(compiled)?;
         let compile_time = start.elapsed();
         let options = mesh::Options {
             iso: tree.iso() as f32,
@@ -274,7 +270,7 @@ mod tests {
     #[test]
     fn the_default_region_is_the_support_and_a_little_more() {
         let tree = tree("jbt 1 translate (1 2 3) { point { radius 2 } }");
-        let (low, high) = Polygonize::default().region(&tree).unwrap();
+        let Box3 { low, high } = Polygonize::default().region(&tree).unwrap();
         for axis in 0..3 {
             let centre = [1.0, 2.0, 3.0][axis];
             assert!(low[axis] < centre - 2.0 && low[axis] > centre - 2.1, "{low:?}");
@@ -288,7 +284,7 @@ mod tests {
         let tree = tree("jbt 1 intersection { point { radius 1 } translate (5 0 0) { point { radius 1 } } }");
         assert!(matches!(Polygonize::default().region(&tree), Err(PolygonizeError::Empty)));
         let here = Polygonize {
-            region: Some(([0.0; 3], [1.0; 3])),
+            region: Some(Box3::new([0.0; 3], [1.0; 3])),
             fineness: Fineness::Resolution(4),
             verify: true,
             ..Polygonize::default()

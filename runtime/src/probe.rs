@@ -59,8 +59,7 @@ impl<'a> Probe<'a> {
     /// The gradient of the field; `None` if the query has none.
     #[must_use]
     pub fn gradient(&self) -> Option<[f32; 3]> {
-        let answers = self.answers();
-        self.evaluator.layout().has_gradient().then(|| [answers[1], answers[2], answers[3]])
+        self.evaluator.layout().gradient(self.answers()).copied()
     }
 
     /// The unit normal, away from the inside; `None` if the query has no gradient or it vanishes here.

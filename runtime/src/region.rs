@@ -4,22 +4,52 @@ use std::error::Error;
 
 /// A closed axis-aligned box: its sides belong to it. Corners are finite and in order where a function says
 /// so.
+///
+/// In f32 its coordinates count from the origin of a model, as those of programs do; in f64 they may be those
+/// of the world.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Box3 {
+pub struct Box3<T = f32> {
     /// The smallest corner.
-    pub low: [f32; 3],
+    pub low: [T; 3],
     /// The largest corner.
-    pub high: [f32; 3],
+    pub high: [T; 3],
 }
 
-impl Box3 {
+impl<T: Copy> Box3<T> {
     /// The box between two corners.
     #[must_use]
-    pub const fn new(low: [f32; 3], high: [f32; 3]) -> Self {
+    pub const fn new(low: [T; 3], high: [T; 3]) -> Self {
         Self { low, high }
     }
 
+    /// The box between what becomes of the corners.
+    #[must_use]
+    pub fn map<U>(self, corner: impl Fn([T; 3]) -> [U; 3]) -> Box3<U> {
+        Box3 { low: corner(self.low), high: corner(self.high) }
+    }
+
+    /// One of its eight corners: the high side along x, y and z for the bits 0, 1 and 2.
+    pub(crate) fn corner(&self, bits: usize) -> [T; 3] {
+        [0, 1, 2].map(|axis| [self.low, self.high][bits >> axis & 1][axis])
+    }
+}
+
+impl<T: Copy + PartialOrd> Box3<T> {
+    /// Whether a point is in it, sides included.
+    #[must_use]
+    pub fn contains(&self, point: [T; 3]) -> bool {
+        (0..3).all(|axis| (self.low[axis]..=self.high[axis]).contains(&point[axis]))
+    }
+
+    /// Whether two boxes have a point in common.
+    #[must_use]
+    pub fn meets(&self, other: &Self) -> bool {
+        (0..3).all(|axis| self.low[axis] <= other.high[axis] && other.low[axis] <= self.high[axis])
+    }
+}
+
+impl Box3 {
     /// The smallest box that holds some points; `None` if there are none, or if a coordinate is not finite.
     #[must_use]
     pub(crate) fn around(points: &[[f32; 3]]) -> Option<Self> {
@@ -41,16 +71,10 @@ impl Box3 {
         })
     }
 
-    /// Whether a point is in it, sides included.
-    #[must_use]
-    pub fn contains(&self, point: [f32; 3]) -> bool {
-        (0..3).all(|axis| (self.low[axis]..=self.high[axis]).contains(&point[axis]))
-    }
-
-    /// Whether two boxes have a point in common.
-    #[must_use]
-    pub fn meets(&self, other: &Self) -> bool {
-        (0..3).all(|axis| self.low[axis] <= other.high[axis] && other.low[axis] <= self.high[axis])
+    /// Whether it can be divided: it is proper, not flat, and its sides have a length in f32.
+    pub(crate) fn is_full(&self) -> bool {
+        let full = (0..3).all(|axis| self.low[axis] < self.high[axis]);
+        full && self.is_proper() && self.longest_side().is_finite()
     }
 
     /// Its longest side.

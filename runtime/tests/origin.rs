@@ -98,7 +98,7 @@ fn moved_by_a_multiple_of_a_power_of_two_everything_has_the_bits_of_home() {
             assert_eq!(answers[0], answers[1], "{name} on {}", engine.name());
         }
         // A region, so that no rounding of the support's sides is in it.
-        let region = |by: [f64; 3]| Some((by.map(|x| x - 2.0), by.map(|x| x + 2.0)));
+        let region = |by: [f64; 3]| Some(Box3::new(by.map(|x| x - 2.0), by.map(|x| x + 2.0)));
         let mesh = |tree: &CheckedTree, by| {
             let settings = Polygonize {
                 region: region(by),

@@ -3,7 +3,8 @@
 use jbt::solid::RegionError;
 use jbt::text::{Options, parse};
 use jbt::{
-    CheckedTree, Compiler, Engine, Evaluator, Fineness, Points, Polygonize, PolygonizeError, Query, Solid,
+    Box3, CheckedTree, Compiler, Engine, Evaluator, Fineness, Points, Polygonize, PolygonizeError, Query,
+    Solid,
 };
 
 fn tree(text: &str) -> CheckedTree {
@@ -63,7 +64,7 @@ fn what_is_unbounded_needs_a_region() {
     let error = solid.tight_bounds(None, 0.01).expect_err("no region");
     assert_eq!(error.to_string(), RegionError::Unbounded.to_string());
 
-    let region = Polygonize { region: Some(([-1.0; 3], [1.0; 3])), ..polygonize };
+    let region = Polygonize { region: Some(Box3::new([-1.0; 3], [1.0; 3])), ..polygonize };
     let made = region.mesh(&Compiler::new(), &alone).run().expect("it has a surface there");
     assert!(!made.report.closed && made.mesh.triangles.len() > 500);
     for &[x, _, z] in &made.mesh.positions {

@@ -1,6 +1,6 @@
 //! Scenes of tests: models from text, their programs, how many of them to try.
 
-use jbt_ir::pass::{GRADIENT, PIPELINE, run_pipeline};
+use jbt_ir::pass::{PIPELINE, run_pipeline};
 use jbt_ir::{Tables, Verified, verify};
 use jbt_lower::{Lowered, lower};
 use jbt_model::check::CheckedTree;
@@ -24,7 +24,7 @@ pub fn tree(text: &str) -> CheckedTree {
 #[must_use]
 pub fn compiled(tree: &CheckedTree, query: Query) -> (Verified, Tables) {
     let Lowered { function, tables } = lower(tree, query).expect("it can be lowered");
-    let passes = query.gradient.then_some(&GRADIENT).into_iter().chain(PIPELINE);
+    let passes = query.passes().chain(PIPELINE);
     (verify(run_pipeline(function, passes, &mut |_, _| {})).expect("passes keep the rules"), tables)
 }
 

@@ -2,7 +2,7 @@
 //! and colours as well; the peers make positions alone. Nobody checks what was made; ours once more, with its
 //! search for parts that are thinner than a cell.
 
-use jbt::{Compiler, Polygonize, Polygonized};
+use jbt::{Box3, Compiler, Polygonize, Polygonized};
 use jbt_model::check::CheckedTree;
 use jbt_model::walk::walk;
 use serde_json::json;
@@ -47,7 +47,7 @@ impl MeshTask {
     }
 
     fn ours(&self, thin_parts: bool) -> Polygonized {
-        let region = Some(([-1.0; 3], [1.0; 3]));
+        let region = Some(Box3::new([-1.0; 3], [1.0; 3]));
         let polygonize =
             Polygonize { region, fineness: jbt::Fineness::Resolution(self.cells), verify: false, thin_parts };
         let run = || polygonize.mesh(&Compiler::new(), &self.tree).run();

@@ -1,10 +1,11 @@
 //! What `jbt render` takes, and how it is written.
 
 use clap::{Args, ValueEnum};
+use jbt::Box3;
 use jbt::render::{Background, Quality, Stance, VIEWS};
 
 use super::space::region;
-use super::{OutputArguments, Region, SceneArguments, WorkArguments};
+use super::{OutputArguments, SceneArguments, WorkArguments};
 use crate::formats::PictureKind;
 
 /// What `jbt render` takes.
@@ -61,7 +62,7 @@ pub struct RenderArguments {
     /// The box to look at: its smallest and its largest corner; it cuts the model open [default: the support
     /// of the model]
     #[arg(long, value_name = "X0,Y0,Z0,X1,Y1,Z1", value_parser = region, allow_hyphen_values = true)]
-    pub region: Option<Region>,
+    pub region: Option<Box3<f64>>,
     #[command(flatten)]
     pub work: WorkArguments,
 }

@@ -1,6 +1,7 @@
 //! Boxes and lattices of the command line.
 
 use clap::Args;
+use jbt::Box3;
 
 /// The lattice of points that a mesh asks the field at.
 #[derive(Args, Debug)]
@@ -14,7 +15,7 @@ pub struct LatticeArguments {
     /// The box that the lattice fills: its smallest and its largest corner [default: the support of the
     /// model]
     #[arg(long, value_name = "X0,Y0,Z0,X1,Y1,Z1", value_parser = region, allow_hyphen_values = true)]
-    pub region: Option<Region>,
+    pub region: Option<Box3<f64>>,
 }
 
 impl LatticeArguments {
@@ -22,15 +23,6 @@ impl LatticeArguments {
     pub fn given(&self) -> bool {
         self.cell.is_some() || self.resolution.is_some() || self.region.is_some()
     }
-}
-
-/// A box: its smallest and its largest corner.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Region {
-    /// The smallest corner.
-    pub low: [f64; 3],
-    /// The largest corner.
-    pub high: [f64; 3],
 }
 
 /// A number of cells. How many there may be, others say.
@@ -69,7 +61,7 @@ pub(super) fn corners<const N: usize>(text: &str, names: [[&str; N]; 2]) -> Resu
     Ok(numbers)
 }
 
-pub(super) fn region(text: &str) -> Result<Region, String> {
+pub(super) fn region(text: &str) -> Result<Box3<f64>, String> {
     let [low, high] = corners(text, [["X0", "Y0", "Z0"], ["X1", "Y1", "Z1"]])?;
-    Ok(Region { low, high })
+    Ok(Box3::new(low, high))
 }

@@ -4,9 +4,11 @@ use std::path::PathBuf;
 
 use clap::Args;
 use clap_complete::Shell;
+use jbt::Query;
 
 use super::scene::definition;
-use super::{LatticeArguments, LevelName, QueryName, SceneArguments};
+use super::words::queries;
+use super::{LatticeArguments, LevelName, SceneArguments};
 
 /// What `jbt show` takes.
 #[derive(Args, Debug)]
@@ -26,8 +28,8 @@ pub struct ShowArguments {
     #[arg(long, value_name = "STAGE")]
     pub stage: String,
     /// The answers that the program gives
-    #[arg(long, value_enum, default_value_t = QueryName::All)]
-    pub query: QueryName,
+    #[arg(long, default_value_t = Query::ALL, value_parser = queries())]
+    pub query: Query,
     /// Show the straight code of formulas that have much in common: what points anywhere run, while regions
     /// run rows
     #[arg(long)]
@@ -46,8 +48,8 @@ pub struct CountArguments {
     #[command(flatten)]
     pub scene: SceneArguments,
     /// Count for one query only
-    #[arg(long, value_enum)]
-    pub query: Option<QueryName>,
+    #[arg(long, value_parser = queries())]
+    pub query: Option<Query>,
     /// The points of the totals.
     #[command(flatten)]
     pub lattice: LatticeArguments,

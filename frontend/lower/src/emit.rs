@@ -43,7 +43,7 @@ use jbt_model::attribute::Mixing;
 use jbt_model::check::CheckedTree;
 use jbt_model::combine::{Extreme, MapCode};
 use jbt_model::diagnostic::Diagnostic;
-use jbt_model::query::Query;
+use jbt_model::query::{AnswerKind, Query};
 
 /// A function, and what the rows need to know about it.
 pub(super) struct Code {
@@ -69,7 +69,7 @@ pub(super) struct TableCode {
 
 /// How many attribute groups a query asks for.
 pub(super) fn groups(tree: &CheckedTree, query: Query) -> usize {
-    if query.attributes { tree.attributes().len() } else { 0 }
+    if query.contains(AnswerKind::Attributes) { tree.attributes().len() } else { 0 }
 }
 
 /// Writes the code.

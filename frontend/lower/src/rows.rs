@@ -16,7 +16,7 @@ use super::shape::{Hoist, Shapes};
 use jbt_model::attribute::{AttributeGroup, AttributeValue, Mixing, Textured};
 use jbt_model::check::NodeId;
 use jbt_model::diagnostic::Diagnostic;
-use jbt_model::query::Query;
+use jbt_model::query::{AnswerKind, Query};
 
 /// The numbers, and what they belong to.
 pub(super) struct Written {
@@ -297,7 +297,12 @@ impl<'a> Writer<'a> {
             OccurrenceKind::Reduce { operator, code, .. } => {
                 columns::operator(self, self.scene, occurrence.node, *operator, code.columns());
                 let groups = self.shapes.groups(id);
-                let ordered = wants_order(*code, groups.len() > 1, self.query.gradient, &self.mixing);
+                let ordered = wants_order(
+                    *code,
+                    groups.len() > 1,
+                    self.query.contains(AnswerKind::Gradient),
+                    &self.mixing,
+                );
                 for (index, group) in groups.iter().enumerate().rev() {
                     if group.folded {
                         tasks.push(Task::Rows(id, index));
@@ -320,7 +325,8 @@ impl<'a> Writer<'a> {
             unreachable!("only operators have groups")
         };
         let groups = self.shapes.groups(id);
-        let ordered = wants_order(*code, groups.len() > 1, self.query.gradient, &self.mixing);
+        let ordered =
+            wants_order(*code, groups.len() > 1, self.query.contains(AnswerKind::Gradient), &self.mixing);
         let member = |&(occurrence, order)| Member::Operand(occurrence, ordered.then_some(order));
         let members: Vec<Member> = groups[group].members.iter().map(member).collect();
         self.own(&members, true);

@@ -63,8 +63,8 @@ pub fn model(circles: &[Circle]) -> Model {
 /// The model is not a good one, or cannot be compiled or evaluated.
 pub fn run(compiler: &Compiler, circles: &[Circle]) -> Result<Divided, Box<dyn Error>> {
     let tree = model(circles).check()?;
-    let pruner = Pruner::new(compiler, &tree)?;
-    let evaluator = compiler.evaluator(&tree, Query::FIELD)?;
+    let compiled = compiler.compile(&tree);
+    let (pruner, evaluator) = (compiled.pruner()?, compiled.evaluator(Query::FIELD)?);
     let division = divide(&pruner, bounds(&Block::WHOLE), Block::WHOLE, &Limits::default(), &decide)?;
     let asked = pruner.counters();
     let samples = corners(&evaluator, &division)?;

@@ -20,9 +20,9 @@ use jbt_ir::limits::MAX_SQUARES;
 
 use super::SliceError;
 use crate::error::EvalError;
+use crate::progress::Progress;
 use crate::prune::{Pruner, Region};
 use crate::region::{Box3, Range};
-use crate::solid::progress::Progress;
 
 /// A square of cells, cut off where the grid ends.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -310,7 +310,7 @@ impl<W: Work> Run<'_, '_, W> {
     /// Tells that a square is done.
     fn finish(&self, square: &Square) -> Result<(), SliceError> {
         let all = f64::from(self.plan.cells[0]) * f64::from(self.plan.cells[1]);
-        if self.progress.add(square.cells() / all) { Ok(()) } else { Err(SliceError::Cancelled) }
+        Ok(self.progress.add(square.cells() / all)?)
     }
 
     /// The parts of a square that are in the grid, u fastest.

@@ -21,9 +21,9 @@ use crate::evaluator::Evaluator;
 use crate::job::{Hook, Job};
 use crate::picture::Picture;
 use crate::polygonize::Fineness;
+use crate::progress::{Progress, SOME};
 use crate::prune::Region;
 use crate::region::{Box3, Range};
-use crate::solid::progress::Progress;
 
 /// The largest [`ImageDetail::samples`].
 pub const MAX_SAMPLES: usize = 8;
@@ -305,7 +305,7 @@ impl Slicer {
         hook: Hook<'_>,
     ) -> Result<Raster<u8>, SliceError> {
         let work = Inside(Canvas::new(self, rectangle, detail)?);
-        let divided = divide(&self.pruner, &work, work.0.plan(), &Progress::new(hook))?;
+        let divided = divide(&self.pruner, &work, work.0.plan(), &Progress::new(hook, SOME))?;
         Ok(work.0.raster(&divided, 0))
     }
 
@@ -329,7 +329,7 @@ impl Slicer {
         hook: Hook<'_>,
     ) -> Result<Raster<f32>, SliceError> {
         let work = Values(Canvas::new(self, rectangle, &ImageDetail { fineness, samples: 1 })?);
-        let divided = divide(&self.pruner, &work, work.0.plan(), &Progress::new(hook))?;
+        let divided = divide(&self.pruner, &work, work.0.plan(), &Progress::new(hook, SOME))?;
         Ok(work.0.raster(&divided, 0.0))
     }
 
@@ -348,7 +348,7 @@ impl Slicer {
             _ => [0, 1, 2].map(|channel| Some(first + channel)),
         };
         let work = Painted { canvas: Canvas::new(self, rectangle, detail)?, evaluator, planes };
-        let divided = divide(&self.pruner, &work, work.canvas.plan(), &Progress::new(hook))?;
+        let divided = divide(&self.pruner, &work, work.canvas.plan(), &Progress::new(hook, SOME))?;
         Ok(work.canvas.raster(&divided, [0.0; 4]))
     }
 

@@ -70,9 +70,9 @@ use crate::error::EvalError;
 use crate::job::{Hook, Job};
 use crate::mesh::Attribute;
 use crate::polygonize::Fineness;
+use crate::progress::{Progress, SOME};
 use crate::prune::Region;
 use crate::region::{Box3, Range};
-use crate::solid::progress::Progress;
 
 /// The largest [`Detail::block`].
 pub const MAX_BLOCK: usize = 64;
@@ -226,7 +226,7 @@ impl Slicer {
             keep: detail.quadtree,
         };
         let work = Contouring { slicer: self, grid: &grid, vertices: AtomicU64::new(0) };
-        let divided = divide(&self.pruner, &work, plan, &Progress::new(hook))?;
+        let divided = divide(&self.pruner, &work, plan, &Progress::new(hook, SOME))?;
         let planes = self.attributes().map(|(_, width)| width).sum();
         let cut_sides = cut_sides(&divided.pieces, cells);
         let squares = divided.squares.iter().map(|(square, depth, fate)| {

@@ -1,11 +1,12 @@
 //! A model that can be looked at in a plane, again and again.
 
 use jbt_model::check::CheckedTree;
-use jbt_model::query::Query;
+use jbt_model::query::{AnswerKind, Query};
 use thiserror::Error;
 
 use super::grid::{Rectangle, RectangleError};
 use super::plane::{Kind, Plane, others};
+use crate::compiled::{Compiled, Need, Scope};
 use crate::compiler::Compiler;
 use crate::counter::Counters;
 use crate::debug::brief_debug;
@@ -13,8 +14,10 @@ use crate::error::{CompileError, EvalError};
 use crate::evaluator::Evaluator;
 use crate::kernel::Engine;
 use crate::mesh::LatticeError;
+use crate::progress::Cancelled;
 use crate::prune::{PruneCounters, Pruner, Region};
 use crate::region::Box3;
+use crate::support::MARGIN;
 
 /// A compiled model and a plane: makes contours and images, any number of them, from any thread.
 ///
@@ -117,41 +120,59 @@ pub enum SliceError {
     Cancelled,
 }
 
-/// The part of its longer side by which the default rectangle exceeds the support, as that of a mesh.
-const MARGIN: f64 = 1.0 / 512.0;
+impl From<Cancelled> for SliceError {
+    fn from(_: Cancelled) -> Self {
+        Self::Cancelled
+    }
+}
 
 impl Slicer {
-    /// Compiles a model for a plane. With `attributes` in the query contours have them, and there are images
-    /// of them; the gradient is never needed.
+    /// A slicer for a model of which nothing else is asked: see [`of`](Self::of).
     ///
     /// # Errors
-    /// The model is beyond a limit, or the engine cannot be had.
+    /// Those of [`of`](Self::of).
     pub fn new(
         compiler: &Compiler,
         tree: &CheckedTree,
         plane: &Plane,
         query: Query,
     ) -> Result<Self, CompileError> {
+        Self::of(&compiler.compile(tree), plane, query)
+    }
+
+    /// A slicer for a compiled model and a plane. With `attributes` in the query contours have them, and
+    /// there are images of them; the gradient is never needed. For a plane that is not across an axis,
+    /// another model is compiled.
+    ///
+    /// # Errors
+    /// The model is beyond a limit, or the engine cannot be had.
+    pub fn of(compiled: &Compiled, plane: &Plane, query: Query) -> Result<Self, CompileError> {
         let moved;
-        let (tree, view) = match plane.0 {
-            Kind::Across { axis, at } => {
-                (tree, View { axes: others(axis), at: tree.origin().rounded([at; 3])[axis] })
-            }
+        let (compiled, axes, across, at) = match plane.0 {
+            Kind::Across { axis, at } => (compiled, others(axis), axis, at),
             Kind::Spanned { .. } => {
-                moved = tree.mapped(plane.rows());
-                (&moved, View { axes: [0, 1], at: moved.origin().rounded([0.0; 3])[2] })
+                moved = compiled.compiler().compile(&compiled.tree().mapped(plane.rows()));
+                (&moved, [0, 1], 2, 0.0)
             }
         };
-        let compiler = &compiler.clone().for_edits();
-        let full = if query.attributes { Some(compiler.evaluator(tree, Query::ATTRIBUTES)?) } else { None };
+        let tree = compiled.tree();
+        let view = View { axes, at: tree.origin().rounded([at; 3])[across] };
+        let needs = [
+            Need::Answers(Scope::Regions, Query::ATTRIBUTES),
+            Need::Ranges,
+            Need::Answers(Scope::Regions, Query::FIELD),
+        ];
+        let has_attributes = query.contains(AnswerKind::Attributes);
+        compiled.prepare(if has_attributes { &needs } else { &needs[1..] })?;
+        let full = has_attributes.then(|| compiled.regional(Query::ATTRIBUTES)).transpose()?;
         Ok(Self {
             plane: *plane,
             origin: view.axes.map(|axis| tree.origin().point()[axis]),
             view,
             support: support(tree, &view),
             iso: tree.iso() as f32,
-            pruner: Pruner::new(compiler, tree)?,
-            field: compiler.evaluator(tree, Query::FIELD)?,
+            pruner: compiled.pruner()?,
+            field: compiled.regional(Query::FIELD)?,
             full,
         })
     }

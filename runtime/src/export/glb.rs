@@ -24,6 +24,7 @@ use serde_json::{Map, Value, json};
 use super::conventions::{Choices, ColorEncoding, Colors, Conventions, FarMeshes, Up};
 use super::parts::{NamedAttribute, WriteError, colors, finite, others, uvs, write_reals};
 use crate::mesh::Mesh;
+use crate::region::Box3;
 
 const HEADER_BYTES: u64 = 12;
 const CHUNK_HEADER_BYTES: u64 = 8;
@@ -146,7 +147,7 @@ fn describe(mesh: &Mesh, up: Up, attributes: &[NamedAttribute<'_>]) -> (Value, u
     let mut layout = BufferLayout::default();
     let mut vertex = Map::new();
     let positions = layout.add(ARRAY_BUFFER, FLOAT, 3, count);
-    let (low, high) = bounds(&mesh.positions);
+    let Box3 { low, high } = bounds(&mesh.positions);
     layout.accessors[positions]["min"] = json!(low);
     layout.accessors[positions]["max"] = json!(high);
     vertex.insert("POSITION".to_owned(), json!(positions));
@@ -200,12 +201,12 @@ fn node(mesh: &Mesh, up: Up) -> Value {
 
 /// The exact bounds of the positions. In f64, so that their decimals are those of the same numbers in any
 /// parser.
-fn bounds(positions: &[[f32; 3]]) -> ([f64; 3], [f64; 3]) {
-    let mut bounds = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+fn bounds(positions: &[[f32; 3]]) -> Box3<f64> {
+    let mut bounds = Box3::new([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
     for position in positions {
         for (axis, &coordinate) in position.iter().enumerate() {
-            bounds.0[axis] = bounds.0[axis].min(f64::from(coordinate));
-            bounds.1[axis] = bounds.1[axis].max(f64::from(coordinate));
+            bounds.low[axis] = bounds.low[axis].min(f64::from(coordinate));
+            bounds.high[axis] = bounds.high[axis].max(f64::from(coordinate));
         }
     }
     bounds

@@ -1,6 +1,6 @@
 //! From a lowered function to one that engines accept: the passes that a purpose asks for, and straight code.
 
-use jbt_ir::pass::{GRADIENT, GUARDED_GRADIENT, INTERVAL, PIPELINE, Pass, run_pipeline};
+use jbt_ir::pass::{GUARDED_GRADIENT, INTERVAL, PIPELINE, Pass, run_pipeline};
 use jbt_ir::{Function, Straight, Tables, Verified, limits, verify};
 use jbt_model::diagnostic::Diagnostic;
 use jbt_model::query::Query;
@@ -19,19 +19,19 @@ pub enum Purpose {
 }
 
 impl Purpose {
-    /// The pass that goes before the others, and changes what is computed.
-    fn first_pass(self) -> Option<&'static Pass> {
+    /// The passes that go before the others, and change what is computed.
+    fn first_passes(self) -> Vec<&'static Pass> {
         match self {
-            Self::Answers(query) => query.gradient.then_some(&GRADIENT),
-            Self::Guarded => Some(&GUARDED_GRADIENT),
-            Self::Ranges => Some(&INTERVAL),
+            Self::Answers(query) => query.passes().collect(),
+            Self::Guarded => vec![&GUARDED_GRADIENT],
+            Self::Ranges => vec![&INTERVAL],
         }
     }
 }
 
 /// The passes that a function goes through.
 pub fn passes(purpose: Purpose) -> impl Iterator<Item = &'static Pass> {
-    purpose.first_pass().into_iter().chain(PIPELINE)
+    purpose.first_passes().into_iter().chain(PIPELINE)
 }
 
 /// Runs the passes and verifies. The observer sees what every pass made.
@@ -48,7 +48,7 @@ pub fn optimise(
 }
 
 /// Straight code for a lowered function and its tables, if it is worth it: made of what the purpose's own
-/// pass makes of the function, so that answers have the bits that they have without it. What was told apart
+/// passes make of the function, so that answers have the bits that they have without it. What was told apart
 /// in straight code for other numbers stays apart.
 ///
 /// # Errors
@@ -60,14 +60,16 @@ pub fn straighten(
     before: Option<&Straight>,
 ) -> Result<Option<Straight>, CompileError> {
     let made;
-    let function = match purpose.first_pass() {
-        None => function,
-        // Most functions are told to be none for straight code without it.
-        Some(_) if before.is_none() && Straight::new(function, tables).is_none() => return Ok(None),
-        Some(first) => {
-            made = run(function.clone(), [first], &mut |_, _| {})?;
-            &made
+    let first = purpose.first_passes();
+    let function = if first.is_empty() {
+        function
+    } else {
+        // Most functions are told to be none for straight code without these passes.
+        if before.is_none() && Straight::new(function, tables).is_none() {
+            return Ok(None);
         }
+        made = run(function.clone(), first, &mut |_, _| {})?;
+        &made
     };
     Ok(match before {
         Some(before) => before.again(function, tables),

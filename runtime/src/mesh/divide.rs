@@ -21,8 +21,9 @@ use super::brick::{Bricks, NONE, SELF, box_of};
 use super::error::{MAX_BRICK, MeshError};
 use super::field::Field;
 use super::options::Options;
-use super::progress::{Phase, Progress};
 use super::report::Sides;
+use super::stage::Stage;
+use crate::progress::Progress;
 use crate::region::{ANYTHING, Box3, MAX_PARTS};
 
 /// What division found.
@@ -126,14 +127,14 @@ pub(crate) fn divide<F: Field>(
     // first has room for the largest brick.
     let least = if options.thin_parts { MAX_BRICK } else { edge };
     let halvings = most.next_power_of_two().max(least).ilog2() - edge.ilog2();
-    progress.begin(Phase::Divide)?;
+    Stage::Divide.begin(progress)?;
     let mut boxes = Boxes::default();
     let mut level = work.root(edge << halvings, &mut boxes)?;
     let mut chunks = None;
     for halving in (0..halvings).rev() {
         let above = (edge << halving) * 2;
         (level, chunks) = work.descend_and_keep(level, above, (options.thin_parts, chunks), &mut boxes)?;
-        progress.advance(Phase::Divide, halvings as usize)?;
+        progress.add(1.0 / f64::from(halvings))?;
     }
     if options.brick.is_none() && level.is_costly(field) {
         (level, chunks) = work.descend_and_keep(level, edge, (options.thin_parts, chunks), &mut boxes)?;
@@ -185,7 +186,7 @@ impl<F: Field> Work<'_, '_, F> {
         let found = AtomicUsize::new(0);
         let groups = level.places.par_chunks(group).zip(level.regions.par_chunks(group));
         let groups = groups.map(|(places, regions)| {
-            self.progress.check()?;
+            self.progress.ask()?;
             let children = self.children(places, regions, size)?;
             let before = found.fetch_add(children.regions.len(), Ordering::Relaxed);
             self.check(before + children.regions.len())?;
@@ -360,6 +361,7 @@ mod tests {
 
     use super::*;
     use crate::mesh::Work as FieldWork;
+    use crate::progress::EACH;
     use crate::region::Divisible;
 
     /// The ball of radius 2 about the origin, by its square, with exact ranges of boxes. Nothing is
@@ -435,7 +437,7 @@ mod tests {
     fn divided(cells: [usize; 3], limit: usize) -> Result<Division<()>, MeshError<Infallible>> {
         let axes = cells.map(|cells| (0..=cells).map(|index| -3.0 + 0.125 * index as f32).collect());
         let options = Options { iso: -4.0, brick: Some(2), ..Options::default() };
-        divide(&Ball, axes, &options, limit, &Progress::new(&mut |_| true))
+        divide(&Ball, axes, &options, limit, &Progress::new(&mut |_| true, EACH))
     }
 
     #[test]

@@ -5,6 +5,8 @@ use std::error::Error;
 use jbt_ir::limits::MAX_ATTRIBUTE_WIDTH;
 use thiserror::Error;
 
+use crate::progress::Cancelled;
+
 /// The smallest [`Options::brick`](super::Options::brick).
 pub const MIN_BRICK: usize = 2;
 /// The largest [`Options::brick`](super::Options::brick).
@@ -67,4 +69,10 @@ pub enum MeshError<E: Error + 'static> {
         /// How many there would be.
         vertices: u64,
     },
+}
+
+impl<E: Error + 'static> From<Cancelled> for MeshError<E> {
+    fn from(_: Cancelled) -> Self {
+        Self::Cancelled
+    }
 }

@@ -47,11 +47,11 @@ mod indexed;
 mod lattice;
 mod measure;
 mod options;
-mod progress;
 mod pull;
 mod report;
 mod sample;
 mod settle;
+mod stage;
 mod surface;
 mod thin;
 mod vertex;
@@ -70,10 +70,10 @@ pub use report::{MAX_NEAR, Report, Sides, ThinReport};
 pub(crate) use surface::{area_vector, unit};
 
 use crate::job::{Hook, Job};
+use crate::progress::{EACH, Progress};
 
 use crossing::Crossings;
 use divide::Division;
-use progress::Progress;
 use vertex::batch::Source;
 
 /// Meshes the surface `field = iso` over a lattice.
@@ -107,7 +107,7 @@ pub(crate) fn extract_hooked<F: Field>(
     meshed: impl FnOnce(&Report),
 ) -> Result<(Mesh, Report), MeshError<F::Error>> {
     options.check()?;
-    let progress = Progress::new(hook);
+    let progress = Progress::new(hook, EACH);
     let division = divide::divide(field, lattice.axes(), options, MAX_BRICKS, &progress)?;
     let (mesh, mut report, crossings) = polygonize(field, &division, options, &progress)?;
     meshed(&report);

@@ -1,5 +1,7 @@
 //! Newton's step along the gradient, within the cell of a vertex.
 
+use crate::region::Box3;
+
 /// Vertices that are pulled together: two registers of 128 bits, or one of 256.
 pub(super) const LANES: usize = 8;
 
@@ -51,7 +53,7 @@ pub(super) fn pull_lanes(
     if !all(&stays) {
         for i in (0..LANES).filter(|&i| stays[i] == 0) {
             let at = |planes: &[Lanes; 3]| [planes[0][i], planes[1][i], planes[2][i]];
-            let pulled = pull(iso, at(points), values[i], at(gradient), [at(low), at(high)]);
+            let pulled = pull(iso, at(points), values[i], at(gradient), Box3::new(at(low), at(high)));
             for (plane, coordinate) in aims.iter_mut().zip(pulled) {
                 plane[i] = coordinate;
             }
@@ -70,7 +72,7 @@ pub(super) fn pull(
     position: [f32; 3],
     field: f32,
     gradient: [f32; 3],
-    [low, high]: [[f32; 3]; 2],
+    Box3 { low, high }: Box3,
 ) -> [f32; 3] {
     if gradient.iter().any(|g| !g.is_finite()) {
         return position;
@@ -104,7 +106,7 @@ pub(super) fn pull(
 mod tests {
     use super::*;
 
-    const BOX: [[f32; 3]; 2] = [[-10.0; 3], [10.0; 3]];
+    const BOX: Box3 = Box3::new([-10.0; 3], [10.0; 3]);
 
     #[test]
     fn a_pull_solves_a_linear_field_at_once() {
@@ -117,7 +119,7 @@ mod tests {
     #[test]
     fn a_pull_goes_on_along_the_sides_of_its_box() {
         // The plain step towards x + 2 y + 4 z = 6 would end at z = 8 / 7.
-        let unit = [[0.0; 3], [1.0; 3]];
+        let unit = Box3::new([0.0; 3], [1.0; 3]);
         let [x, y, z] = pull(6.0, [0.0; 3], 0.0, [1.0, 2.0, 4.0], unit);
         assert_eq!(z, 1.0);
         assert!((x + 2.0 * y + 4.0 * z - 6.0).abs() < 1e-6);
@@ -134,8 +136,8 @@ mod tests {
         gradient[0][1] = f32::NAN;
         let mut values = [0.5; LANES];
         (values[2], values[3]) = (9.0, 0.25);
-        let bounds = [[0.0; 3], [1.0; 3]];
-        let [low, high] = bounds.map(|corner: [f32; 3]| corner.map(|c| [c; LANES]));
+        let bounds = Box3::new([0.0; 3], [1.0; 3]);
+        let [low, high] = [bounds.low, bounds.high].map(|corner| corner.map(|c| [c; LANES]));
         let before = points;
         pull_lanes(0.5, &mut points, &values, &gradient, &low, &high);
         for lane in 0..LANES {

@@ -23,7 +23,8 @@ use crate::parallel::*;
 use super::brick::{Bricks, NONE, SELF, direction, split, starts};
 use super::error::MeshError;
 use super::field::Field;
-use super::progress::{Phase, Progress};
+use super::stage::Stage;
+use crate::progress::Progress;
 
 /// Marks a class of points that a brick does not own.
 const FOREIGN: u16 = u16::MAX;
@@ -146,7 +147,7 @@ pub(crate) fn sample<F: Field>(
     let group = bricks.group();
     let groups = split(&mut values, &starts, group, 1);
     let total = groups.len();
-    progress.begin(Phase::Lattice)?;
+    Stage::Lattice.begin(progress)?;
     groups.into_par_iter().enumerate().try_for_each_init(Points::default, |points, (index, values)| {
         let first = index * group;
         for brick in first..bricks.len().min(first + group) {
@@ -155,7 +156,7 @@ pub(crate) fn sample<F: Field>(
             let Points { x, y, z } = &*points;
             field.field(&regions[brick], x, y, z, &mut values[mine]).map_err(MeshError::Field)?;
         }
-        progress.advance(Phase::Lattice, total)
+        progress.add(1.0 / total as f64).map_err(MeshError::from)
     })?;
     Ok(Samples { values, starts, rims })
 }

@@ -10,6 +10,7 @@
 
 use super::field::Field;
 use super::pull::{LANES, Lanes, pull};
+use crate::region::Box3;
 
 /// Pulls that a stray gets on top.
 const ROUNDS: usize = 6;
@@ -35,8 +36,8 @@ pub(super) fn is_far(iso: f32, [low, high]: [&Lanes; 2], values: &Lanes, square:
 /// Where a vertex may be.
 #[derive(Clone, Copy)]
 pub(super) struct Place {
-    /// The low and the high corner of its cell.
-    pub(super) bounds: [[f32; 3]; 2],
+    /// Its cell.
+    pub(super) bounds: Box3,
     /// The corners that its sheet separates: those outside and those inside, a bit for each corner.
     pub(super) corners: [u8; 2],
 }
@@ -46,9 +47,8 @@ impl Place {
     fn corner(&self, inside: bool, from: [f32; 3]) -> Option<[f32; 3]> {
         let mask = self.corners[usize::from(inside)];
         let corners = (0..8).filter(|corner| mask >> corner & 1 == 1);
-        let position = |corner: usize| [0, 1, 2].map(|axis| self.bounds[corner >> axis & 1][axis]);
         let distance = |p: &[f32; 3]| (0..3).map(|axis| (p[axis] - from[axis]).powi(2)).sum::<f32>();
-        corners.map(position).min_by(|a, b| distance(a).total_cmp(&distance(b)))
+        corners.map(|corner| self.bounds.corner(corner)).min_by(|a, b| distance(a).total_cmp(&distance(b)))
     }
 }
 

@@ -21,8 +21,9 @@ use super::brick::split;
 use super::error::MeshError;
 use super::field::Field;
 use super::indexed::{Attribute, Mesh};
-use super::progress::{Phase, Progress};
 use super::pull::{LANES, Lanes, pull_lanes};
+use super::stage::Stage;
+use crate::progress::Progress;
 
 use batch::{Batch, Done, Planes, Source, lane, lanes};
 use normal::normals_of;
@@ -64,14 +65,14 @@ pub(crate) fn finish<F: Field>(
     let group = source.bricks.group();
     let targets = targets(&mut mesh, &source.crossings.vertices, group);
     let total = targets.len();
-    progress.begin(Phase::Vertices)?;
+    Stage::Vertices.begin(progress)?;
     let work = targets.into_par_iter().enumerate();
     let work = work.map_init(Batch::default, |batch, (index, target)| {
         let first = index * group;
         let bricks = first..source.bricks.len().min(first + group);
         let done = finish_group(source, &widths, bricks, target, batch).map_err(MeshError::Field)?;
-        progress.advance(Phase::Vertices, total)?;
-        Ok(done)
+        progress.add(1.0 / total as f64)?;
+        Ok::<_, MeshError<F::Error>>(done)
     });
     let done = work.try_reduce(Done::default, |a, b| Ok(a.and(b)))?;
     Ok((mesh, done))

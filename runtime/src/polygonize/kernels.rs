@@ -1,10 +1,8 @@
 //! The kernels of a mesh as a field, and the pruner that says what matters where.
 
-use jbt_lower::Lowering;
-use jbt_model::check::CheckedTree;
 use jbt_model::query::Query;
 
-use crate::compiler::Compiler;
+use crate::compiled::{Compiled, Need, Scope};
 use crate::counter::Counters;
 use crate::error::{CompileError, EvalError};
 use crate::evaluator::Evaluator;
@@ -22,26 +20,13 @@ pub(super) struct Kernels {
 }
 
 impl Kernels {
-    /// Compiles them, on the threads of the rayon pool in which this is called.
-    pub(super) fn new(compiler: &Compiler, tree: &CheckedTree) -> Result<Self, CompileError> {
-        let compiler = &compiler.clone().for_edits();
-        let lowering = Lowering::new(tree);
-        let evaluator = |query| compiler.evaluator_of(&lowering, query);
-        let (all, (gradient, (pruner, field))) = crate::parallel::join(
-            || evaluator(Query::ALL),
-            || {
-                crate::parallel::join(
-                    || evaluator(Query::GRADIENT),
-                    || {
-                        crate::parallel::join(
-                            || Pruner::of(compiler, &lowering, None),
-                            || evaluator(Query::FIELD),
-                        )
-                    },
-                )
-            },
-        );
-        Ok(Self { pruner: pruner?, field: field?, gradient: gradient?, all: all? })
+    /// Those of a compiled model.
+    pub(super) fn new(compiled: &Compiled) -> Result<Self, CompileError> {
+        let queries = [Query::FIELD, Query::GRADIENT, Query::SURFACE];
+        let [field, gradient, all] = queries.map(|query| Need::Answers(Scope::Regions, query));
+        compiled.prepare(&[Need::Ranges, field, gradient, all])?;
+        let [field, gradient, all] = queries.map(|query| compiled.regional(query));
+        Ok(Self { pruner: compiled.pruner()?, field: field?, gradient: gradient?, all: all? })
     }
 
     /// What runs them.

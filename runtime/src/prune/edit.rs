@@ -58,11 +58,13 @@ impl Pruner {
     /// Cost: a comparison of all numbers.
     #[must_use]
     pub fn edit(&self, before: &Self) -> Edit {
-        if !Arc::ptr_eq(&self.kernel.kernel, &before.kernel.kernel) || self.origin != before.origin {
+        if !Arc::ptr_eq(&self.program.bound.kernel, &before.program.bound.kernel)
+            || self.origin() != before.origin()
+        {
             return Edit::Everywhere;
         }
         // Which rows are active is compared by their numbers, which are not the same where rows come and go.
-        if self.is_switched(before) && !before.kernel.all().fits(self.extent()) {
+        if self.is_switched(before) && !before.program.bound.all().fits(self.extent()) {
             return Edit::Everywhere;
         }
         let mut boxes = Vec::new();
@@ -99,7 +101,7 @@ impl Pruner {
         if !(before.has_single_rows(table) && self.has_single_rows(table)) {
             return None;
         }
-        if self.guide.tables[table].is_hoisted {
+        if self.program.guide.tables[table].is_hoisted {
             return Some(());
         }
         for row in 0..self.tables().tables[table].len() {
@@ -147,7 +149,7 @@ impl Pruner {
     /// Whether rows of a table may come and go without anything else being moved: a row that is zero makes no
     /// difference, all run, no table hangs under them, and they hang under single rows.
     fn may_shift(&self, table: Table) -> bool {
-        let function = self.kernel.kernel.function.function();
+        let function = self.program.bound.kernel.function.function();
         let tables = &self.tables().tables;
         let has_children = function.tables.values().any(|schema| schema.parent == Some(table));
         let mut above = function.tables[table].parent;
@@ -157,7 +159,7 @@ impl Pruner {
             }
             above = function.tables[parent].parent;
         }
-        let neutral = self.guide.tables[table].rule == Rule::Neutral;
+        let neutral = self.program.guide.tables[table].rule == Rule::Neutral;
         neutral && !has_children && tables[table].active.len() == tables[table].len()
     }
 
@@ -165,7 +167,7 @@ impl Pruner {
     fn reach_of(&self, mut table: Table, mut row: usize) -> Option<Box3> {
         loop {
             let above = self.above(table, row)?;
-            let guide = &self.guide.tables[table];
+            let guide = &self.program.guide.tables[table];
             let support = guide.supports[row];
             if guide.space == SpaceGuide::World && support != Support::EVERYWHERE {
                 return Some(Supports::new(&[support]).bounds(0));
@@ -176,7 +178,7 @@ impl Pruner {
 
     /// The row that owns this one; `None` for that of the scene.
     fn above(&self, table: Table, row: usize) -> Option<(Table, usize)> {
-        let parent = self.kernel.kernel.function.function().tables[table].parent?;
+        let parent = self.program.bound.kernel.function.function().tables[table].parent?;
         if self.has_single_rows(table) {
             return Some((parent, row));
         }
@@ -189,7 +191,7 @@ impl Pruner {
     /// tables, and no others have rows that are not active.
     fn has_single_rows(&self, table: Table) -> bool {
         let tables = &self.tables().tables;
-        let parent = self.kernel.kernel.function.function().tables[table].parent;
+        let parent = self.program.bound.kernel.function.function().tables[table].parent;
         tables[table].len() == parent.map_or(1, |parent| tables[parent].len())
     }
 

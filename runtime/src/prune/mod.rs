@@ -20,6 +20,7 @@
 mod cull;
 mod decide;
 mod edit;
+pub(crate) mod program;
 mod ranges;
 mod rule;
 mod survey;
@@ -30,19 +31,19 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use jbt_ir::domain::counting::of_selection;
 use jbt_ir::selection::Extent;
 use jbt_ir::{Entity as _, Selection, Tables};
-use jbt_lower::Lowering;
-use jbt_lower::guide::{Guide, Guided, Rule, SpaceGuide, TableGuide};
+use jbt_lower::guide::SpaceGuide;
 use jbt_model::check::CheckedTree;
 use jbt_model::origin::ModelOrigin;
 
+use crate::compiled::Compiled;
 use crate::compiler::Compiler;
 use crate::debug::brief_debug;
 use crate::error::{CompileError, EvalError};
-use crate::kernel::{Bound, Kernel, Purpose};
 use crate::region::{ANYTHING, Box3, Divisible, MAX_PARTS, Range};
 
-use cull::{Boxes, Supports};
+use cull::Boxes;
 use decide::Alone;
+use program::RangeProgram;
 use ranges::{Probes, Ranges};
 
 /// What matters of a model in a box: for each table, the rows that run. Every evaluator of the model takes it
@@ -84,13 +85,9 @@ impl Region {
 
 /// A model that can be asked about boxes: see the module.
 pub struct Pruner {
-    compiler: Compiler,
-    /// Boxes are in coordinates about this.
-    origin: ModelOrigin,
-    guide: Guide,
-    /// By table; `None` where rows are not left out by their supports.
-    supports: Vec<Option<Supports>>,
-    kernel: Bound,
+    /// Boxes are in coordinates about its origin.
+    compiled: Compiled,
+    program: Arc<RangeProgram>,
     counts: Counts,
 }
 
@@ -117,49 +114,38 @@ pub struct PruneCounters {
 /// nothing useful; the parts of its parts will tell.
 const MAX_RANGED_ROWS: usize = 4096;
 
-impl Pruner {
-    /// A pruner for a model.
+impl Compiled {
+    /// What can be asked about boxes of the model. It has done nothing so far.
     ///
     /// # Errors
     /// The model is beyond a limit, or the engine cannot be had.
-    pub fn new(compiler: &Compiler, tree: &CheckedTree) -> Result<Self, CompileError> {
-        Self::of(compiler, &Lowering::new(tree), None)
+    pub fn pruner(&self) -> Result<Pruner, CompileError> {
+        let program = Arc::clone(self.ranges()?);
+        Ok(Pruner { compiled: self.clone(), program, counts: Counts::default() })
     }
+}
 
-    /// As [`new`](Self::new), for a model of which more is asked. `present` is a kernel that may have its
-    /// shape.
-    pub(crate) fn of(
-        compiler: &Compiler,
-        lowering: &Lowering<'_>,
-        present: Option<&Arc<Kernel>>,
-    ) -> Result<Self, CompileError> {
-        let Guided { function, tables, guide } =
-            lowering.guided().map_err(|list| lowering.tree().diagnostics(list))?;
-        let kernel = compiler.kernel(function, Purpose::Ranges, present)?;
-        Ok(Self {
-            compiler: compiler.clone(),
-            origin: lowering.tree().origin(),
-            supports: guide.tables.values().map(supports).collect(),
-            guide,
-            kernel: kernel.bind(Arc::new(tables)),
-            counts: Counts::default(),
-        })
-    }
-
-    /// A pruner for another model, usually an edited one. If it has the shape of this one, nothing is
-    /// compiled. The origin of this one stays.
+impl Pruner {
+    /// A pruner for a model of which nothing else is asked: see [`Compiled::pruner`].
     ///
     /// # Errors
-    /// Those of [`new`](Self::new).
+    /// Those of [`Compiled::pruner`].
+    pub fn new(compiler: &Compiler, tree: &CheckedTree) -> Result<Self, CompileError> {
+        compiler.compile(tree).pruner()
+    }
+
+    /// A pruner for another model, usually an edited one: see [`Compiled::updated`].
+    ///
+    /// # Errors
+    /// Those of [`Compiled::pruner`].
     pub fn updated(&self, tree: &CheckedTree) -> Result<Self, CompileError> {
-        let tree = tree.with_origin(self.origin);
-        Self::of(&self.compiler, &Lowering::new(&tree), Some(&self.kernel.kernel))
+        self.compiled.updated(tree).pruner()
     }
 
     /// Where the coordinates of boxes count from: as for [`Evaluator::origin`](crate::Evaluator::origin).
     #[must_use]
     pub fn origin(&self) -> ModelOrigin {
-        self.origin
+        self.compiled.origin()
     }
 
     /// What it has done so far.
@@ -175,27 +161,27 @@ impl Pruner {
     #[must_use]
     pub fn everywhere(&self) -> Region {
         let bounds = Box3::new([f32::MIN; 3], [f32::MAX; 3]);
-        Region { bounds, selection: Arc::clone(self.kernel.all()) }
+        Region { bounds, selection: Arc::clone(self.program.bound.all()) }
     }
 
     fn extent(&self) -> &Arc<Extent> {
-        self.kernel.all().extent()
+        self.program.bound.all().extent()
     }
 
     fn tables(&self) -> &Tables {
-        self.kernel.tables()
+        self.program.bound.tables()
     }
 
     /// Ranges of the field and of all probes in boxes, by one run of the interval kernel, which is counted.
     fn evaluate(&self, rows: &Selection, boxes: &[Box3]) -> Result<Ranges, EvalError> {
-        let mut ranges = Ranges::new(&self.kernel, boxes);
+        let mut ranges = Ranges::new(&self.program.bound, boxes);
         self.find(&mut ranges, rows, boxes.len())?;
         Ok(ranges)
     }
 
     /// Finds ranges in so many boxes by one run of the interval kernel, which is counted.
     fn find(&self, ranges: &mut Ranges, rows: &Selection, count: usize) -> Result<(), EvalError> {
-        ranges.find(&self.kernel, rows)?;
+        ranges.find(&self.program.bound, rows)?;
         self.counts.boxes.fetch_add(count as u64, Ordering::Relaxed);
         self.counts.primitives.fetch_add(self.evaluations(rows, count), Ordering::Relaxed);
         Ok(())
@@ -203,7 +189,7 @@ impl Pruner {
 
     /// Ranges of distances to skeletons that some boxes take.
     fn evaluations(&self, rows: &Selection, boxes: usize) -> u64 {
-        of_selection(&self.kernel.kernel.per_row, rows).saturating_mul(boxes as u64)
+        of_selection(&self.program.bound.kernel.per_row, rows).saturating_mul(boxes as u64)
     }
 
     /// For each active row of the region, the boxes in which it matters: a bit each. It is told by the ranges
@@ -215,7 +201,8 @@ impl Pruner {
         let mut masks = vec![world.all(); selection.len()];
         let mut first = 0;
         for &table in selection.present() {
-            let (guide, supports) = (&self.guide.tables[table], &self.supports[table.index()]);
+            let (guide, supports) =
+                (&self.program.guide.tables[table], &self.program.supports[table.index()]);
             let active = selection.active(table);
             let mine = &mut masks[first..][..active.len()];
             first += active.len();
@@ -235,7 +222,7 @@ impl Pruner {
             rule::apply(guide.rule, selection.starts(table), mine, boxes.all());
         }
         if let Some(probes) = probes {
-            decide::leave_out(&self.guide, probes, selection, &mut masks);
+            decide::leave_out(&self.program.guide, probes, selection, &mut masks);
         }
         masks
     }
@@ -250,17 +237,17 @@ impl Pruner {
         probes: Probes<'_>,
     ) -> Result<Option<Vec<u32>>, EvalError> {
         let selection = &*region.selection;
-        let Some(alone) = Alone::new(&self.guide, selection) else { return Ok(None) };
+        let Some(alone) = Alone::new(&self.program.guide, selection) else { return Ok(None) };
         let mut spared = vec![0; selection.len()];
         let lanes: [usize; MAX_SPARED] = std::array::from_fn(|lane| lane);
         let mut parts: [Selection; MAX_PARTS] = Default::default();
-        let mut ranges = Ranges::new(&self.kernel, boxes);
+        let mut ranges = Ranges::new(&self.program.bound, boxes);
         for run in alone.runs() {
             let count = alone.selections(selection, run, &mut parts);
             for (part, rows) in parts[..count].iter().enumerate() {
                 self.find(&mut ranges, rows, boxes.len())?;
                 let both = (probes, ranges.probes(&lanes[..boxes.len()]));
-                alone.spare((selection, self.guide.iso2), run + part, both, &mut spared);
+                alone.spare((selection, self.program.guide.iso2), run + part, both, &mut spared);
             }
         }
         Ok(Some(spared))
@@ -297,14 +284,6 @@ impl Pruner {
 /// multiple of [`MAX_PARTS`].
 const MAX_SPARED: usize = 32;
 
-/// The supports of a table, if rows are left out by them.
-fn supports(guide: &TableGuide) -> Option<Supports> {
-    match guide.rule {
-        Rule::Never => None,
-        Rule::Neutral | Rule::KeepOne | Rule::OnlyZero => Some(Supports::new(&guide.supports)),
-    }
-}
-
 /// The boxes of a point inside of a warp, whose ranges are probes.
 fn inner_boxes(probes: Probes<'_>, probe: usize) -> Boxes {
     let mut boxes = [Box3::default(); MAX_PARTS];
@@ -340,7 +319,7 @@ impl Divisible for Pruner {
     }
 
     fn narrow(&self, region: &Region, boxes: &[Box3], parts: &mut Vec<Region>) -> Result<(), EvalError> {
-        let probed = self.guide.probes > 0 && region.rows() <= MAX_RANGED_ROWS;
+        let probed = self.program.guide.probes > 0 && region.rows() <= MAX_RANGED_ROWS;
         let ranges = if probed { Some(self.evaluate(&region.selection, boxes)?) } else { None };
         let lanes: [usize; MAX_PARTS] = std::array::from_fn(|lane| lane);
         self.regions(region, boxes, ranges.as_ref().map(|ranges| ranges.probes(&lanes[..boxes.len()])), parts)

@@ -5,6 +5,7 @@ use super::lights::Lights;
 use super::renderer::Renderer;
 use super::settings::Render;
 use super::vector::{Vector, along, dot};
+use crate::region::Box3;
 use crate::trace::Ray;
 
 /// A picture that can be exposed. All coordinates count from the model's origin.
@@ -14,7 +15,7 @@ pub struct Frame<'a> {
     pub view: View,
     pub camera: Camera,
     /// What is looked at: rays end at its sides.
-    pub region: [Vector; 2],
+    pub region: Box3<f64>,
     /// The side of a pixel, at the near side of the model.
     pub pixel: f64,
     /// What is thinner along a ray of the camera may be missed; where a ray hits, it does so to a small part
@@ -51,7 +52,7 @@ impl Frame<'_> {
     pub fn clip(&self, origin: Vector, direction: Vector) -> Option<Ray> {
         let mut span = [0.0, f64::MAX];
         for axis in 0..3 {
-            let [low, high] = self.region.map(|corner| corner[axis] - origin[axis]);
+            let [low, high] = [self.region.low, self.region.high].map(|corner| corner[axis] - origin[axis]);
             if direction[axis] == 0.0 {
                 if low > 0.0 || high < 0.0 {
                     return None;
@@ -68,7 +69,7 @@ impl Frame<'_> {
     pub fn side(&self, point: Vector) -> Vector {
         let mut best = (f64::INFINITY, [0.0; 3]);
         for axis in 0..3 {
-            for (corner, outwards) in [(self.region[0], -1.0), (self.region[1], 1.0)] {
+            for (corner, outwards) in [(self.region.low, -1.0), (self.region.high, 1.0)] {
                 let distance = (point[axis] - corner[axis]).abs();
                 if distance < best.0 {
                     let mut normal = [0.0; 3];

@@ -39,7 +39,7 @@ impl<'a> Frame<'a> {
             renderer,
             view,
             camera,
-            region: [region.low, region.high].map(|corner| corner.map(f64::from)),
+            region: region.map(|corner| corner.map(f64::from)),
             pixel: 0.0,
             tolerance: 0.0,
             middle: [0, 1, 2].map(|axis| 0.5 * (low[axis] + high[axis])),
@@ -125,7 +125,8 @@ impl<'a> Frame<'a> {
             (self.camera.depth(self.middle) - self.radius).max(NEAREST * self.radius / zoom.max(1.0))
         };
         self.pixel = 2.0 * self.camera.half[1] * distance / f64::from(rows);
-        let size = self.region.iter().flatten().fold(0.0, |size: f64, x| size.max(x.abs()));
+        let size =
+            [self.region.low, self.region.high].iter().flatten().fold(0.0, |size: f64, x| size.max(x.abs()));
         self.pixel = self.pixel.max(FINEST * size);
         // Rays have to tell their places apart.
         self.tolerance = (self.render.quality.fineness() * self.pixel).max(0.25 * FINEST * size);
@@ -135,8 +136,7 @@ impl<'a> Frame<'a> {
     /// Whether the camera can see the surface from outside.
     fn check_eye(&self) -> Result<(), RenderError> {
         let eye = self.camera.eye;
-        let within = (0..3).all(|axis| (self.region[0][axis]..=self.region[1][axis]).contains(&eye[axis]));
-        if within {
+        if self.region.contains(eye) {
             let value = self.renderer.evaluator.probe(eye.map(|x| x as f32)).value();
             if value >= self.renderer.tracer.iso() {
                 return Err(RenderError::Inside { eye: self.seen_from().eye });
@@ -154,6 +154,5 @@ impl Render {
 }
 
 fn corners(bounds: &Box3) -> [Vector; 8] {
-    let sides = [bounds.low, bounds.high];
-    std::array::from_fn(|corner| [0, 1, 2].map(|axis| f64::from(sides[corner >> axis & 1][axis])))
+    std::array::from_fn(|corner| bounds.corner(corner).map(f64::from))
 }

@@ -3,6 +3,7 @@
 use jbt_model::check::CheckedTree;
 use jbt_model::query::Query;
 
+use crate::compiled::Compiled;
 use crate::compiler::Compiler;
 use crate::debug::brief_debug;
 use crate::error::CompileError;
@@ -23,29 +24,32 @@ pub struct Renderer {
 brief_debug!(Renderer, "Renderer", this: evaluator = this.evaluator);
 
 impl Renderer {
-    /// Compiles a model.
+    /// A renderer of a model of which nothing else is asked: see [`of`](Self::of).
+    ///
+    /// # Errors
+    /// Those of [`of`](Self::of).
+    pub fn new(compiler: &Compiler, tree: &CheckedTree) -> Result<Self, CompileError> {
+        Self::of(&compiler.compile(tree))
+    }
+
+    /// A renderer of a compiled model.
     ///
     /// # Errors
     /// The model is beyond a limit, or the engine cannot be had.
-    pub fn new(compiler: &Compiler, tree: &CheckedTree) -> Result<Self, CompileError> {
+    pub fn of(compiled: &Compiled) -> Result<Self, CompileError> {
         Ok(Self {
-            tracer: Tracer::new(compiler, tree, Query::ALL)?,
-            solid: Solid::new(compiler, tree)?,
-            evaluator: compiler.clone().for_edits().evaluator(tree, Query::ALL)?,
+            tracer: Tracer::of(compiled, Query::SURFACE)?,
+            solid: Solid::of(compiled)?,
+            evaluator: compiled.regional(Query::SURFACE)?,
         })
     }
 
-    /// A renderer for another model, usually an edited one. If it has the shape of this one, nothing is
-    /// compiled.
+    /// A renderer of another model, usually an edited one: see [`Compiled::updated`].
     ///
     /// # Errors
-    /// Those of [`new`](Self::new).
+    /// Those of [`of`](Self::of).
     pub fn updated(&self, tree: &CheckedTree) -> Result<Self, CompileError> {
-        Ok(Self {
-            tracer: self.tracer.updated(tree)?,
-            solid: self.solid.updated(tree)?,
-            evaluator: self.evaluator.updated(tree)?,
-        })
+        Self::of(&self.tracer.compiled().updated(tree))
     }
 
     /// The model.

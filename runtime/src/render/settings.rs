@@ -8,6 +8,7 @@ use super::camera::View;
 use super::color::Rgb;
 use super::error::RenderError;
 use crate::region::Box3;
+use crate::support::{NoBox, around_in_f32};
 
 /// A picture to be made.
 ///
@@ -200,23 +201,15 @@ impl Render {
 
     /// The box that is looked at; `None` if the model is empty.
     pub(super) fn looked_at(&self, tree: &CheckedTree) -> Result<Option<Box3>, RenderError> {
-        if let Some(region) = self.region {
-            let full = (0..3).all(|axis| region.low[axis] < region.high[axis]);
-            if !(full && region.is_proper() && region.longest_side().is_finite()) {
-                return Err(RenderError::Region { region });
-            }
-            return Ok(Some(region));
+        match self.region {
+            Some(region) if region.is_full() => Ok(Some(region)),
+            Some(region) => Err(RenderError::Region { region }),
+            None => match around_in_f32(tree) {
+                Ok(region) => Ok(Some(region)),
+                Err(NoBox::Empty) => Ok(None),
+                Err(NoBox::Unbounded) => Err(RenderError::Unbounded),
+            },
         }
-        let support = tree.local_support();
-        if support.is_empty() {
-            return Ok(None);
-        }
-        if !support.is_finite() {
-            return Err(RenderError::Unbounded);
-        }
-        let grown = support.grown(support.longest_side() * MARGIN);
-        let low = grown.low().map(|side| (side as f32).next_down());
-        Ok(Some(Box3::new(low, grown.high().map(|side| (side as f32).next_up()))))
     }
 
     /// What the numbers of the film mean.
@@ -239,10 +232,6 @@ impl Render {
         })
     }
 }
-
-/// The part of the support's longest side by which the region that nobody gave exceeds it: more than f32 is
-/// off by.
-const MARGIN: f64 = 1.0 / 512.0;
 
 /// The reals of an attribute group.
 fn width_of(tree: &CheckedTree, name: &str) -> Option<usize> {

@@ -24,6 +24,7 @@ use jbt_model::kind::NodeKind;
 use jbt_model::query::Query;
 
 use crate::buffer::Layout;
+use crate::compiled::{Compiled, Need, Scope};
 use crate::compiler::Compiler;
 use crate::debug::brief_debug;
 use crate::divide::{Cell, Decision, DivideError, Limits, divide};
@@ -95,16 +96,25 @@ const STRIDE: usize = 256;
 type Indices = [[u32; 2]; 3];
 
 impl Sampler {
-    /// Prepares to sample a model.
+    /// A sampler of a model of which nothing else is asked: see [`of`](Self::of).
+    ///
+    /// # Errors
+    /// Those of [`of`](Self::of).
+    pub fn new(compiler: &Compiler, tree: &CheckedTree, query: Query) -> Result<Self, CompileError> {
+        Self::of(&compiler.compile(tree), query)
+    }
+
+    /// A sampler of a compiled model.
     ///
     /// # Errors
     /// The model is beyond a limit, or the engine cannot be had.
-    pub fn new(compiler: &Compiler, tree: &CheckedTree, query: Query) -> Result<Self, CompileError> {
-        let formulas = tree.nodes().iter().any(|node| matches!(node.kind, NodeKind::Expression(_)));
+    pub fn of(compiled: &Compiled, query: Query) -> Result<Self, CompileError> {
+        let is_formula = |kind: &NodeKind| matches!(kind, NodeKind::Expression(_));
+        compiled.prepare(&[Need::Answers(Scope::Regions, query), Need::Ranges])?;
         Ok(Self {
-            evaluator: compiler.clone().for_edits().evaluator(tree, query)?,
-            pruner: Pruner::new(compiler, tree)?,
-            formulas,
+            evaluator: compiled.regional(query)?,
+            pruner: compiled.pruner()?,
+            formulas: compiled.tree().nodes().iter().any(|node| is_formula(&node.kind)),
         })
     }
 

@@ -19,13 +19,13 @@ use jbt_ir::limits::{MAX_MEASURE_BOXES, MAX_RESOLUTION};
 
 use super::crossings::crossed;
 use super::cut::{self, Linear};
-use super::progress::Progress;
 use super::{Batch, RegionError, Solid, center};
 use crate::divide::{Cell, Decision, DivideError, Division, Limits, Node, Outcome, divide};
 use crate::error::{CompileError, EvalError};
 use crate::evaluator::Evaluator;
 use crate::job::{Hook, Job};
 use crate::polygonize::Fineness;
+use crate::progress::{Cancelled, Progress, SOME};
 use crate::prune::{Pruner, Region};
 use crate::region::Box3;
 
@@ -151,6 +151,12 @@ pub enum MeasureError {
     Cancelled,
 }
 
+impl From<Cancelled> for MeasureError {
+    fn from(_: Cancelled) -> Self {
+        Self::Cancelled
+    }
+}
+
 /// A box may be longer than a cell by this part of it: sides are rounded to f32.
 const SLACK: f64 = 1e-3;
 
@@ -181,7 +187,7 @@ impl Solid {
     fn measure_hooked(&self, settings: &Measure, hook: Hook<'_>) -> Result<Measures, MeasureError> {
         let bounds = self.region(settings.region)?;
         let cell = cell(&bounds, settings.fineness)?;
-        let progress = Progress::new(hook);
+        let progress = Progress::new(hook, SOME);
         let total = volume_of(&bounds);
         let decide = |cell_: &Cell<'_, Pruner>, &(): &()| {
             let decision = self.decide(cell_, cell * (1.0 + SLACK))?;
@@ -189,25 +195,21 @@ impl Solid {
                 Decision::Leaf | Decision::Stop => {
                     progress.add(DIVISION_SHARE * volume_of(&cell_.bounds()) / total)
                 }
-                Decision::Split { .. } | Decision::Octants { .. } => !progress.is_cancelled(),
+                Decision::Split { .. } | Decision::Octants { .. } => progress.check(),
             };
-            Ok(if go_on { decision } else { Decision::Stop })
+            Ok(if go_on.is_ok() { decision } else { Decision::Stop })
         };
         let limits = Limits { boxes: MAX_MEASURE_BOXES, ..Limits::default() };
         let division = divide(&self.pruner, bounds, (), &limits, &decide)?;
-        if progress.is_cancelled() {
-            return Err(MeasureError::Cancelled);
-        }
+        progress.check()?;
         let normals = self.normals()?;
         let leaves: Vec<(&Node<()>, &Region)> = division.leaves().collect();
         let share = (1.0 - DIVISION_SHARE) / leaves.len() as f64;
         let pieces: Vec<Piece> = leaves
             .par_iter()
             .map(|(node, region)| {
-                if !progress.add(share) {
-                    return Err(MeasureError::Cancelled);
-                }
-                Ok(self.piece(normals, &node.bounds, region)?)
+                progress.add(share)?;
+                self.piece(normals, &node.bounds, region).map_err(MeasureError::Eval)
             })
             .collect::<Result<_, _>>()?;
         let empty = Measures { region: bounds, cell, ..Measures::default() };
@@ -317,7 +319,7 @@ impl Solid {
         let surfaces = sums.boxes().surface;
         sums.contents.mean = if surfaces == 0 { 0.0 } else { primitives as f64 / surfaces as f64 };
         let mass = sums.volume.estimate;
-        sums.center = (mass > 0.0).then(|| self.tree.origin().world(moment.map(|sum| sum / mass)));
+        sums.center = (mass > 0.0).then(|| self.tree().origin().world(moment.map(|sum| sum / mass)));
         sums
     }
 }

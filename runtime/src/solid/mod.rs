@@ -19,7 +19,6 @@ mod crossings;
 mod cut;
 mod measure;
 mod membership;
-pub(crate) mod progress;
 
 pub use bounds::{BoundsError, TightBounds};
 pub use jbt_model::check::NodeId;
@@ -33,6 +32,7 @@ use jbt_model::check::CheckedTree;
 use jbt_model::owner;
 use jbt_model::query::Query;
 
+use crate::compiled::{Compiled, Need, Scope};
 use crate::compiler::Compiler;
 use crate::counter::Counters;
 use crate::debug::brief_debug;
@@ -40,6 +40,7 @@ use crate::error::{CompileError, EvalError};
 use crate::evaluator::Evaluator;
 use crate::prune::{Pruner, Region};
 use crate::region::{Box3, Divisible as _, Range};
+use crate::support::{NoBox, around_in_f32};
 
 /// A model, compiled for questions about its solid: the set where `field >= iso`.
 ///
@@ -56,12 +57,11 @@ use crate::region::{Box3, Divisible as _, Range};
 /// assert!((bounds.outer.unwrap().high[0] - 1.0).abs() <= 0.001);
 /// ```
 pub struct Solid {
-    tree: CheckedTree,
+    compiled: Compiled,
     /// The iso-value as kernels compare with it.
     iso: f32,
     pruner: Pruner,
     field: Evaluator,
-    compiler: Compiler,
     /// What answers the field and its gradient, from the first measure on.
     normals: OnceLock<Evaluator>,
 }
@@ -85,47 +85,42 @@ pub enum RegionError {
     Unbounded,
 }
 
-/// The part of the support's longest side by which the region that nobody gave exceeds it: more than f32 is
-/// off by.
-const MARGIN: f64 = 1.0 / 512.0;
-
 impl Solid {
-    /// Compiles a model for questions about its solid.
+    /// The solid of a model of which nothing else is asked: see [`of`](Self::of).
+    ///
+    /// # Errors
+    /// Those of [`of`](Self::of).
+    pub fn new(compiler: &Compiler, tree: &CheckedTree) -> Result<Self, CompileError> {
+        Self::of(&compiler.compile(tree))
+    }
+
+    /// The solid of a compiled model.
     ///
     /// # Errors
     /// The model is beyond a limit, or the engine cannot be had.
-    pub fn new(compiler: &Compiler, tree: &CheckedTree) -> Result<Self, CompileError> {
-        let compiler = compiler.clone().for_edits();
+    pub fn of(compiled: &Compiled) -> Result<Self, CompileError> {
+        compiled.prepare(&[Need::Ranges, Need::Answers(Scope::Regions, Query::FIELD)])?;
         Ok(Self {
-            tree: tree.clone(),
-            iso: tree.iso() as f32,
-            pruner: Pruner::new(&compiler, tree)?,
-            field: compiler.evaluator(tree, Query::FIELD)?,
-            compiler,
+            compiled: compiled.clone(),
+            iso: compiled.tree().iso() as f32,
+            pruner: compiled.pruner()?,
+            field: compiled.regional(Query::FIELD)?,
             normals: OnceLock::new(),
         })
     }
 
-    /// The same for another model, usually an edited one. If it has the shape of this one, nothing is
-    /// compiled. The origin of this one stays.
+    /// The solid of another model, usually an edited one: see [`Compiled::updated`].
     ///
     /// # Errors
-    /// Those of [`new`](Self::new).
+    /// Those of [`of`](Self::of).
     pub fn updated(&self, tree: &CheckedTree) -> Result<Self, CompileError> {
-        Ok(Self {
-            tree: tree.with_origin(self.tree.origin()),
-            iso: tree.iso() as f32,
-            pruner: self.pruner.updated(tree)?,
-            field: self.field.updated(tree)?,
-            compiler: self.compiler.clone(),
-            normals: OnceLock::new(),
-        })
+        Self::of(&self.compiled.updated(tree))
     }
 
     /// The model.
     #[must_use]
     pub fn tree(&self) -> &CheckedTree {
-        &self.tree
+        self.compiled.tree()
     }
 
     /// What encloses the field in boxes. Its counters tell what the questions so far took of that.
@@ -146,10 +141,10 @@ impl Solid {
         [self.field.counters(), self.normals.get().map(Evaluator::counters).unwrap_or_default()]
     }
 
-    /// What answers the field and its gradient. The code is that of the compiler, which remembers it.
+    /// What answers the field and its gradient.
     fn normals(&self) -> Result<&Evaluator, CompileError> {
         if self.normals.get().is_none() {
-            let made = self.compiler.evaluator(&self.tree, Query::GRADIENT)?;
+            let made = self.compiled.regional(Query::GRADIENT)?;
             // Another thread may have been quicker; both are the same.
             let _ = self.normals.set(made);
         }
@@ -163,7 +158,7 @@ impl Solid {
     /// Cost: all paths of the tree.
     #[must_use]
     pub fn owner(&self, point: [f64; 3]) -> Option<Owner> {
-        owner::owner(&self.tree, point)
+        owner::owner(self.tree(), point)
     }
 
     /// The leaves that may matter in a box, ascending: whatever the others are, the field in the box is the
@@ -196,26 +191,12 @@ impl Solid {
     fn region(&self, given: Option<Box3>) -> Result<Box3, RegionError> {
         let bounds = match given {
             Some(bounds) => bounds,
-            None => {
-                let support = self.tree.local_support();
-                if support.is_empty() {
-                    return Err(RegionError::Empty);
-                }
-                if !support.is_finite() {
-                    return Err(RegionError::Unbounded);
-                }
-                let grown = support.grown(support.longest_side() * MARGIN);
-                let low = grown.low().map(|side| (side as f32).next_down());
-                Box3::new(low, grown.high().map(|side| (side as f32).next_up()))
-            }
+            None => around_in_f32(self.tree()).map_err(|reason| match reason {
+                NoBox::Empty => RegionError::Empty,
+                NoBox::Unbounded => RegionError::Unbounded,
+            })?,
         };
-        let full = (0..3).all(|axis| bounds.low[axis] < bounds.high[axis]);
-        // Sides whose difference is not finite cannot be halved by it.
-        if full && bounds.is_proper() && bounds.longest_side().is_finite() {
-            Ok(bounds)
-        } else {
-            Err(RegionError::Bounds { bounds })
-        }
+        if bounds.is_full() { Ok(bounds) } else { Err(RegionError::Bounds { bounds }) }
     }
 }
 

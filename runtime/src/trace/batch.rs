@@ -1,7 +1,7 @@
 //! Points that are asked together, and what may still be asked.
 
-use super::compiled::Compiled;
 use super::error::TraceError;
+use super::target::Target;
 use crate::error::EvalError;
 use crate::prune::Region;
 
@@ -42,7 +42,7 @@ impl Batch {
     }
 
     /// Asks the field at all points, which are in the region.
-    pub(super) fn ask(&mut self, tracer: &Compiled, region: &Region) -> Result<(), EvalError> {
+    pub(super) fn ask(&mut self, tracer: &Target, region: &Region) -> Result<(), EvalError> {
         self.field.resize(self.points[0].len(), 0.0);
         tracer.field.eval_region(region, self.points.each_ref().map(Vec::as_slice), &mut [&mut self.field])
     }

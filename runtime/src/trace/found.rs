@@ -1,9 +1,9 @@
 //! What has been found of a packet so far.
 
-use super::compiled::Compiled;
 use super::hits::Hits;
 use super::polish::Bracket;
 use super::ray::Line;
+use super::target::Target;
 use crate::buffer::Samples;
 use crate::error::EvalError;
 use crate::points::Points;
@@ -59,7 +59,7 @@ impl Found {
     /// Adds hits, and asks for everything at each of them: all are in the region.
     pub(super) fn add(
         &mut self,
-        tracer: &Compiled,
+        tracer: &Target,
         region: &Region,
         lines: &[Line],
         brackets: &[Bracket],
@@ -84,7 +84,7 @@ impl Found {
     }
 
     /// The hits, ordered by ray.
-    pub(super) fn into_hits(self, tracer: &Compiled) -> Hits {
+    pub(super) fn into_hits(self, tracer: &Target) -> Hits {
         // Numbers of hits are below 2^32: that much work is not done for one packet.
         let mut starts = vec![0_u32; self.rays() + 1];
         for record in &self.records {

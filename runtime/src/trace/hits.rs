@@ -89,7 +89,7 @@ impl Hit {
     /// The gradient of the field; `None` if the query has none.
     #[must_use]
     pub fn gradient(&self) -> Option<[f32; 3]> {
-        self.layout.has_gradient().then(|| [self.answers[1], self.answers[2], self.answers[3]])
+        self.layout.gradient(&self.answers).copied()
     }
 
     /// The unit normal, outwards: against the gradient. `None` if the query has no gradient or it vanishes

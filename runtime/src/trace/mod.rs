@@ -33,7 +33,6 @@
 
 mod batch;
 mod beam;
-mod compiled;
 mod error;
 mod found;
 mod hits;
@@ -41,6 +40,7 @@ mod packet;
 mod polish;
 mod ray;
 mod refine;
+mod target;
 
 pub use error::TraceError;
 pub use hits::{Blocked, Hit, Hits};
@@ -52,23 +52,23 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use jbt_ir::limits::MAX_PACKET_RAYS;
-use jbt_lower::Lowering;
 use jbt_model::check::{CheckedTree, NodeId};
 use jbt_model::owner;
 use jbt_model::query::Query;
 
 use crate::buffer::Layout;
+use crate::compiled::{Compiled, Need, Scope};
 use crate::compiler::Compiler;
 use crate::debug::brief_debug;
 use crate::error::{CompileError, EvalError};
 use crate::evaluator::Evaluator;
-use crate::prune::{Pruner, Region};
+use crate::prune::Region;
 use crate::region::{Box3, Divisible as _};
 
-use compiled::Compiled;
 use found::Found;
 use packet::{Run, Want};
 use ray::{Line, Reach, STRIDE};
+use target::Target;
 
 /// A model, compiled for rays.
 ///
@@ -89,14 +89,13 @@ use ray::{Line, Reach, STRIDE};
 /// assert!(!tracer.any(&Ray { span: [0.0, 3.9], ..ray }, 0.01).unwrap());
 /// ```
 pub struct Tracer {
-    compiler: Compiler,
-    tree: CheckedTree,
     compiled: Compiled,
+    target: Target,
     rays: AtomicU64,
     hits: AtomicU64,
 }
 
-brief_debug!(Tracer, "Tracer", this: engine = this.compiled.field.engine(), counters = this.counters());
+brief_debug!(Tracer, "Tracer", this: engine = this.target.field.engine(), counters = this.counters());
 
 /// What a tracer has done so far. A snapshot: see [`Tracer::counters`].
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -117,68 +116,69 @@ pub struct TraceCounters {
 }
 
 impl Tracer {
-    /// Compiles a model for rays. The query is what is told about hits.
+    /// A tracer for a model of which nothing else is asked: see [`of`](Self::of).
+    ///
+    /// # Errors
+    /// Those of [`of`](Self::of).
+    pub fn new(compiler: &Compiler, tree: &CheckedTree, query: Query) -> Result<Self, CompileError> {
+        Self::of(&compiler.compile(tree), query)
+    }
+
+    /// A tracer for a compiled model. The query is what is told about hits.
     ///
     /// # Errors
     /// The model is beyond a limit, or the engine cannot be had.
-    pub fn new(compiler: &Compiler, tree: &CheckedTree, query: Query) -> Result<Self, CompileError> {
-        let compiler = &compiler.clone().for_edits();
-        let lowering = Lowering::new(tree);
-        let pruner = Pruner::of(compiler, &lowering, None)?;
-        let field = compiler.evaluator_of(&lowering, Query::FIELD)?;
-        let full = (query != Query::FIELD).then(|| compiler.evaluator_of(&lowering, query)).transpose()?;
-        Ok(Self::of(compiler.clone(), tree.clone(), pruner, field, full))
-    }
-
-    /// A tracer for another model, usually an edited one. If it has the shape of this one, nothing is
-    /// compiled. The origin of this one stays.
-    ///
-    /// # Errors
-    /// Those of [`new`](Self::new).
-    pub fn updated(&self, tree: &CheckedTree) -> Result<Self, CompileError> {
-        let pruner = self.compiled.pruner.updated(tree)?;
-        let field = self.compiled.field.updated(tree)?;
-        let full = self.compiled.full.as_ref().map(|full| full.updated(tree)).transpose()?;
-        let tree = tree.with_origin(self.tree.origin());
-        Ok(Self::of(self.compiler.clone(), tree, pruner, field, full))
-    }
-
-    fn of(
-        compiler: Compiler,
-        tree: CheckedTree,
-        pruner: Pruner,
-        field: Evaluator,
-        full: Option<Evaluator>,
-    ) -> Self {
-        let layout = Arc::new(full.as_ref().unwrap_or(&field).layout().clone());
-        let compiled = Compiled {
+    pub fn of(compiled: &Compiled, query: Query) -> Result<Self, CompileError> {
+        compiled.prepare(&[
+            Need::Ranges,
+            Need::Answers(Scope::Regions, Query::FIELD),
+            Need::Answers(Scope::Regions, query),
+        ])?;
+        let (pruner, field) = (compiled.pruner()?, compiled.regional(Query::FIELD)?);
+        let full = (query != Query::FIELD).then(|| compiled.regional(query)).transpose()?;
+        let tree = compiled.tree();
+        let target = Target {
             iso: tree.iso() as f32,
             origin: tree.origin(),
             reach: Reach::new(tree.local_support()),
+            layout: Arc::new(full.as_ref().unwrap_or(&field).layout().clone()),
             pruner,
             field,
             full,
-            layout,
         };
-        Self { compiler, tree, compiled, rays: AtomicU64::new(0), hits: AtomicU64::new(0) }
+        Ok(Self { compiled: compiled.clone(), target, rays: AtomicU64::new(0), hits: AtomicU64::new(0) })
+    }
+
+    /// A tracer for another model, usually an edited one: see [`Compiled::updated`].
+    ///
+    /// # Errors
+    /// Those of [`of`](Self::of).
+    pub fn updated(&self, tree: &CheckedTree) -> Result<Self, CompileError> {
+        Self::of(&self.compiled.updated(tree), self.target.full().query())
+    }
+
+    /// The compiled model.
+    #[must_use]
+    pub fn compiled(&self) -> &Compiled {
+        &self.compiled
     }
 
     /// The model.
     #[must_use]
     pub fn tree(&self) -> &CheckedTree {
-        &self.tree
+        self.compiled.tree()
     }
 
     /// Which plane of the samples of hits holds what.
     #[must_use]
     pub fn layout(&self) -> &Layout {
-        &self.compiled.layout
+        &self.target.layout
     }
 
     /// The iso-value, as kernels compare with it.
     #[must_use]
     pub fn iso(&self) -> f32 {
-        self.compiled.iso
+        self.target.iso
     }
 
     /// The first hit of a ray. A ray that begins inside hits the surface where it leaves.
@@ -190,7 +190,7 @@ impl Tracer {
     /// See [`TraceError`].
     pub fn first(&self, ray: &Ray, tolerance: f64) -> Result<Option<Hit>, TraceError> {
         let hits = self.first_of(std::slice::from_ref(ray), tolerance)?;
-        Ok((!hits.is_empty()).then(|| hits.get(0, &self.compiled.layout)))
+        Ok((!hits.is_empty()).then(|| hits.get(0, &self.target.layout)))
     }
 
     /// All hits of a ray, by t.
@@ -199,7 +199,7 @@ impl Tracer {
     /// See [`TraceError`].
     pub fn all(&self, ray: &Ray, tolerance: f64) -> Result<Vec<Hit>, TraceError> {
         let hits = self.all_of(std::slice::from_ref(ray), tolerance)?;
-        Ok((0..hits.len()).map(|index| hits.get(index, &self.compiled.layout)).collect())
+        Ok((0..hits.len()).map(|index| hits.get(index, &self.target.layout)).collect())
     }
 
     /// Whether a ray has a hit: which one is not found out, and nothing is asked there.
@@ -254,9 +254,9 @@ impl Tracer {
     /// What it has done so far.
     #[must_use]
     pub fn counters(&self) -> TraceCounters {
-        let boxes = self.compiled.pruner.counters();
-        let points = self.compiled.field.counters();
-        let hits = self.compiled.full.as_ref().map(Evaluator::counters).unwrap_or_default();
+        let boxes = self.target.pruner.counters();
+        let points = self.target.field.counters();
+        let hits = self.target.full.as_ref().map(Evaluator::counters).unwrap_or_default();
         TraceCounters {
             rays: self.rays.load(Ordering::Relaxed),
             hits: self.hits.load(Ordering::Relaxed),
@@ -274,7 +274,7 @@ impl Tracer {
     /// neither is so at hits. Cost: a plain walk over all paths of the tree.
     #[must_use]
     pub fn owner(&self, position: [f32; 3]) -> Option<Owner> {
-        owner::owner(&self.tree, self.tree.origin().world(position.map(f64::from)))
+        owner::owner(self.tree(), self.tree().origin().world(position.map(f64::from)))
     }
 
     /// The leaf that decides at a position: that of [`owner`](Self::owner). If no other leaf matters at the
@@ -285,7 +285,7 @@ impl Tracer {
     pub fn leaf(&self, position: [f32; 3]) -> Result<Option<NodeId>, EvalError> {
         let here = Box3::new(position, position);
         if here.is_proper() {
-            let leaves = self.compiled.field.leaves_in(&self.compiled.pruner.region(here)?);
+            let leaves = self.target.field.leaves_in(&self.target.pruner.region(here)?);
             if let [leaf] = leaves.as_slice() {
                 return Ok(Some(*leaf));
             }
@@ -297,21 +297,21 @@ impl Tracer {
     /// the box around them. `None` if there are none, or if some are no places.
     pub(crate) fn fields(&self, points: &[[f32; 3]]) -> Result<Option<(Region, Vec<f32>)>, EvalError> {
         let Some(bounds) = Box3::around(points) else { return Ok(None) };
-        let region = self.compiled.pruner.region(bounds)?;
+        let region = self.target.pruner.region(bounds)?;
         let mut field = vec![0.0; points.len()];
         let planes = [0, 1, 2].map(|axis| points.iter().map(|point| point[axis]).collect::<Vec<f32>>());
-        self.compiled.field.eval_region(&region, planes.each_ref().map(Vec::as_slice), &mut [&mut field])?;
+        self.target.field.eval_region(&region, planes.each_ref().map(Vec::as_slice), &mut [&mut field])?;
         Ok(Some((region, field)))
     }
 
     /// The distances to skeletons that the field takes at a point of a region.
     pub(crate) fn evaluations_in(&self, region: &Region) -> u64 {
-        self.compiled.field.evaluations_in(region)
+        self.target.field.evaluations_in(region)
     }
 
     /// Rays that count from the model's origin.
     fn localized<'a>(&self, rays: &'a [Ray]) -> Cow<'a, [Ray]> {
-        let origin = self.tree.origin();
+        let origin = self.tree().origin();
         if origin.is_world() {
             return Cow::Borrowed(rays);
         }
@@ -324,7 +324,7 @@ impl Tracer {
     }
 
     fn hits(&self, want: Want, stride: i64, rays: &[Ray], tolerance: f64) -> Result<Hits, TraceError> {
-        let hits = self.follow(want, stride, rays, tolerance)?.into_hits(&self.compiled);
+        let hits = self.follow(want, stride, rays, tolerance)?.into_hits(&self.target);
         self.hits.fetch_add(hits.len() as u64, Ordering::Relaxed);
         Ok(hits)
     }
@@ -339,8 +339,8 @@ impl Tracer {
         self.rays.fetch_add(rays.len() as u64, Ordering::Relaxed);
         let mut lines = Vec::with_capacity(rays.len());
         for (index, ray) in rays.iter().enumerate() {
-            lines.extend(Line::new(index, ray, tolerance, stride, self.compiled.reach.as_ref())?);
+            lines.extend(Line::new(index, ray, tolerance, stride, self.target.reach.as_ref())?);
         }
-        Run::new(&self.compiled, (want, stride), tolerance, rays.len(), lines).finish()
+        Run::new(&self.target, (want, stride), tolerance, rays.len(), lines).finish()
     }
 }

@@ -17,12 +17,12 @@ use std::ops::Range;
 
 use super::batch::{Batch, Work};
 use super::beam::Beam;
-use super::compiled::Compiled;
 use super::error::TraceError;
 use super::found::Found;
 use super::polish::{Bracket, polish};
 use super::ray::Line;
 use super::refine::{Refiner, Segment, Stretch};
+use super::target::Target;
 use crate::error::EvalError;
 use crate::prune::Region;
 use crate::region::{Box3, Divisible as _, MAX_PARTS};
@@ -62,7 +62,7 @@ struct Part {
 
 /// A packet that is being followed.
 pub(super) struct Run<'a> {
-    tracer: &'a Compiled,
+    tracer: &'a Target,
     want: Want,
     /// Steps of the lattice from one coarse place to the next one.
     stride: i64,
@@ -101,7 +101,7 @@ fn worth_asking(each: u64) -> u64 {
 
 impl<'a> Run<'a> {
     pub(super) fn new(
-        tracer: &'a Compiled,
+        tracer: &'a Target,
         (want, stride): (Want, i64),
         tolerance: f64,
         rays: usize,

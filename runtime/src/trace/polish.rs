@@ -12,8 +12,8 @@
 //! What a bracket becomes depends on the field along its ray, and on nothing else.
 
 use super::batch::Batch;
-use super::compiled::Compiled;
 use super::ray::{Line, spacing};
+use super::target::Target;
 use crate::error::EvalError;
 use crate::prune::Region;
 
@@ -141,7 +141,7 @@ fn meet(times: [f64; 2], heights: [f64; 2]) -> f64 {
 
 /// Makes brackets short. All are in the region.
 pub(super) fn polish(
-    tracer: &Compiled,
+    tracer: &Target,
     region: &Region,
     lines: &[Line],
     brackets: &mut [Bracket],

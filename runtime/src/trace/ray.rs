@@ -17,6 +17,8 @@
 use jbt_model::bounds::Bounds;
 
 use super::error::TraceError;
+use crate::region::Box3;
+use crate::support::MARGIN;
 
 /// The points `origin + t * direction` for t in the span. The direction may have any length but 0: t counts
 /// in lengths of it.
@@ -37,13 +39,8 @@ pub(super) const STRIDE: i64 = 16;
 
 /// The box outside of which the field is 0, and a little more.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub(super) struct Reach {
-    low: [f64; 3],
-    high: [f64; 3],
-}
+pub(super) struct Reach(Box3<f64>);
 
-/// The part of the support's longest side by which the box exceeds it: more than f32 is off by.
-const MARGIN: f64 = 1.0 / 512.0;
 /// The part of a coordinate by which the box exceeds it at least.
 const ROUNDING: f64 = 1.0 / (1 << 20) as f64;
 /// The steps of t that f64 can count, with all their digits.
@@ -65,7 +62,7 @@ impl Reach {
         let sides = low.iter().zip(&high).map(|(low, high)| high - low);
         let margin = MARGIN * sides.filter(|side| side.is_finite()).fold(0.0, f64::max);
         let beyond = |side: f64| margin + ROUNDING * if side.is_finite() { side.abs() } else { 0.0 };
-        Some(Self { low: low.map(|side| side - beyond(side)), high: high.map(|side| side + beyond(side)) })
+        Some(Self(Box3::new(low.map(|side| side - beyond(side)), high.map(|side| side + beyond(side)))))
     }
 
     /// The part of a ray's span that is in the box (Kay and Kajiya 1986, "Ray tracing complex scenes":
@@ -75,8 +72,8 @@ impl Reach {
         for axis in 0..3 {
             let (origin, direction) = (ray.origin[axis], ray.direction[axis]);
             let rounding = TINY * origin.abs();
-            let low = self.low[axis] - rounding - origin;
-            let high = self.high[axis] + rounding - origin;
+            let low = self.0.low[axis] - rounding - origin;
+            let high = self.0.high[axis] + rounding - origin;
             if direction == 0.0 {
                 if low > 0.0 || high < 0.0 {
                     return None;

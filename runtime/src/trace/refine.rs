@@ -15,11 +15,11 @@
 use std::ops::Range;
 
 use super::batch::{Batch, Work};
-use super::compiled::Compiled;
 use super::error::TraceError;
 use super::found::Found;
 use super::polish::Bracket;
 use super::ray::Line;
+use super::target::Target;
 use crate::prune::Region;
 use crate::region::Box3;
 
@@ -58,7 +58,7 @@ const WORTH_ASKING: usize = 140;
 
 /// What a cell is refined with.
 pub(super) struct Refiner<'a> {
-    pub(super) tracer: &'a Compiled,
+    pub(super) tracer: &'a Target,
     /// All stretches are in it.
     pub(super) region: &'a Region,
     pub(super) lines: &'a [Line],

@@ -10,7 +10,7 @@ mod scenes;
 
 use jbt::mesh::{Mesh, check_manifold};
 use jbt::text::{Options, parse};
-use jbt::{CheckedTree, Compiler, Engine, Evaluator, Fineness, Points, Polygonize, Query};
+use jbt::{Box3, CheckedTree, Compiler, Engine, Evaluator, Fineness, Points, Polygonize, Query};
 use rayon::prelude::*;
 use scenes::{HALF, RESOLUTION, Scene, scene};
 
@@ -66,7 +66,7 @@ fn judge(seed: u64) -> Found {
     let low = scene.center.map(|x| x - HALF);
     let high = scene.center.map(|x| x + HALF);
     let settings = Polygonize {
-        region: Some((low, high)),
+        region: Some(Box3::new(low, high)),
         fineness: Fineness::Resolution(RESOLUTION),
         verify: true,
         ..Polygonize::default()

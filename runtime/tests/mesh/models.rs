@@ -2,7 +2,7 @@
 
 use jbt::mesh::Mesh;
 use jbt::text::{Options, parse};
-use jbt::{CheckedTree, Compiler, Fineness, Polygonize, Polygonized};
+use jbt::{Box3, CheckedTree, Compiler, Fineness, Polygonize, Polygonized};
 
 /// A model without its first line.
 pub fn tree(text: &str) -> CheckedTree {
@@ -17,7 +17,7 @@ pub fn mesh(text: &str, resolution: usize) -> Polygonized {
 }
 
 /// The mesh of a model in a region.
-pub fn mesh_in(text: &str, region: Option<([f64; 3], [f64; 3])>, fineness: Fineness) -> Polygonized {
+pub fn mesh_in(text: &str, region: Option<Box3<f64>>, fineness: Fineness) -> Polygonized {
     let polygonize = Polygonize { region, fineness, verify: true, ..Polygonize::default() };
     polygonize.mesh(&Compiler::new(), &tree(text)).run().unwrap_or_else(|e| panic!("{e} in {text}"))
 }

@@ -1,7 +1,7 @@
 //! Where the field jumps, vertices are on the wall and have its normal, whatever the field inside does.
 
 use jbt::mesh::{Lattice, Options, Report, check_manifold, extract};
-use jbt::{Compiler, Engine, Fineness, Polygonize, Polygonized};
+use jbt::{Box3, Compiler, Engine, Fineness, Polygonize, Polygonized};
 
 use crate::fields::{Closed, Sample};
 use crate::models::{cell, dot, length, mesh, mesh_in, tree, volume};
@@ -58,7 +58,7 @@ fn the_walls_of_within_are_where_they_are() {
         assert_octants(&mesh(OCTANTS, resolution), off);
     }
     // Walls that do not lie along the lattice.
-    let region = Some(([-2.0; 3], [2.03, 2.05, 2.07]));
+    let region = Some(Box3::new([-2.0; 3], [2.03, 2.05, 2.07]));
     assert_octants(&mesh_in(OCTANTS, region, Fineness::Resolution(96)), 0.006);
 }
 

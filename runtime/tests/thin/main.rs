@@ -9,7 +9,7 @@ use fastrand::Rng;
 use fields::ModelField;
 use jbt::mesh::{Lattice, Options, ThinReport, extract};
 use jbt::text;
-use jbt::{CheckedTree, Compiler, Engine, Fineness, Polygonize, Polygonized, Scene};
+use jbt::{Box3, CheckedTree, Compiler, Engine, Fineness, Polygonize, Polygonized, Scene};
 use planted::{Made, Thin, planted};
 use rayon::prelude::*;
 
@@ -52,7 +52,7 @@ fn with_part(kind: (Thin, Made), seed: u64) -> (String, planted::Planted) {
 
 fn about_part() -> Polygonize {
     Polygonize {
-        region: Some(([-1.11; 3], [1.11; 3])),
+        region: Some(Box3::new([-1.11; 3], [1.11; 3])),
         fineness: Fineness::Cell(CELL),
         ..Polygonize::default()
     }
@@ -140,7 +140,7 @@ fn advice_is_good() {
         let cell = report(&text, about_part()).cell.expect("it is found");
         assert!(cell < CELL);
         let corner = |side: f64| part.center.map(|c| c + side * (part.reach + 4.0 * cell));
-        let region = Some((corner(-1.0), corner(1.0)));
+        let region = Some(Box3::new(corner(-1.0), corner(1.0)));
         let fineness = Fineness::Cell(cell.max(part.reach / 200.0));
         let made = mesh(&text, Polygonize { region, fineness, ..Polygonize::default() });
         assert!(made.mesh.triangles.len() > 1000, "half {}: {:?}", part.half, made.report.thin);

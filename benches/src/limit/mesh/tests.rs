@@ -1,7 +1,7 @@
 //! Meshes by hand against the oracle and against the compiler's mesher.
 
 use jbt::mesh::check_manifold;
-use jbt::{Compiler, Fineness, Polygonize};
+use jbt::{Box3, Compiler, Fineness, Polygonize};
 use jbt_model::walk::{walk, walk_gradient};
 
 use crate::model::{ISO, blobs, tree};
@@ -70,7 +70,7 @@ fn the_compiler_makes_as_many_triangles() {
     let (model, cells) = (blobs(64, 4), 64);
     let by_hand = mesh(&model, &lattice(cells), ISO);
     let settings = Polygonize {
-        region: Some(([-1.5; 3], [1.5; 3])),
+        region: Some(Box3::new([-1.5; 3], [1.5; 3])),
         fineness: Fineness::Cell(3.0 / cells as f64),
         verify: true,
         ..Polygonize::default()

@@ -12,6 +12,7 @@ use crate::mixing::{Operator, State, beyond};
 use crate::occurrence::{OccurrenceId, OccurrenceKind, SpaceId};
 use crate::shape::{bounded, non_negative};
 use jbt_model::combine::ReduceCode;
+use jbt_model::query::AnswerKind;
 
 impl Emitter<'_> {
     /// An operator: its accumulators, and what is to be done for its operands.
@@ -29,7 +30,7 @@ impl Emitter<'_> {
             non_negative: non_negative(self.scene, groups),
             bounded: bounded(self.scene, groups),
             ordered: groups.len() > 1,
-            moving: self.query.gradient,
+            moving: self.query.contains(AnswerKind::Gradient),
             mixing: Rc::clone(&self.mixing),
         };
         let state = State::new(&mut self.builder, &operator, &self.defaults);

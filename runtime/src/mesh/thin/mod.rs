@@ -22,8 +22,9 @@ use super::divide::Division;
 use super::error::MeshError;
 use super::field::Field;
 use super::indexed::Mesh;
-use super::progress::{Phase, Progress};
 use super::report::{MAX_NEAR, ThinReport};
+use super::stage::Stage;
+use crate::progress::Progress;
 
 use alarm::{ALARM, Alarm};
 use crossed::{CrossedBlocks, EDGE, morton, step};
@@ -52,14 +53,14 @@ pub(super) fn find<F: Field>(
     let search = ThinSearch { field, axes: &bricks.axes, iso, crossed: &crossed, blocks };
     let group = 64;
     let total = places.len().div_ceil(group);
-    progress.begin(Phase::Thin)?;
+    Stage::Thin.begin(progress)?;
     let groups = places.par_chunks(group).zip(regions.par_chunks(group));
     let found = groups.map(|(places, regions)| {
         let (mut found, mut near) = (ChunkFindings::default(), 0);
         for (&place, region) in places.iter().zip(regions) {
             search.chunk((edge, place), region, &mut near, &mut found)?;
         }
-        progress.advance(Phase::Thin, total)?;
+        progress.add(1.0 / total as f64)?;
         Ok(found)
     });
     for found in found.collect::<Result<Vec<ChunkFindings>, MeshError<F::Error>>>()? {

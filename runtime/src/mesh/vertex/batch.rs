@@ -7,6 +7,7 @@ use super::super::options::Options;
 use super::super::pull::{LANES, Lanes};
 use super::bracket::CrossedEdges;
 use super::seed::{Group, Seeds};
+use crate::region::Box3;
 
 /// What was done at vertices.
 #[derive(Default)]
@@ -92,10 +93,10 @@ impl Batch {
         self.groups.resize(padded / LANES, Group::default());
     }
 
-    /// The low and the high corner of the box in which a vertex stays.
-    pub(super) fn bounds(&self, vertex: usize) -> [[f32; 3]; 2] {
+    /// The box in which a vertex stays.
+    pub(super) fn bounds(&self, vertex: usize) -> Box3 {
         let group = &self.groups[vertex / LANES];
-        [&group.low, &group.high].map(|corner| [0, 1, 2].map(|axis| corner[axis][vertex % LANES]))
+        Box3::new(group.low, group.high).map(|corner| corner.map(|plane| plane[vertex % LANES]))
     }
 }
 

@@ -36,8 +36,8 @@ impl Batch {
             if is_free(start) {
                 continue;
             }
-            let [low, high] = self.bounds(vertex);
-            let middle = [0, 1, 2].map(|axis| 0.5 * low[axis] + 0.5 * high[axis]);
+            let bounds = self.bounds(vertex);
+            let middle = [0, 1, 2].map(|axis| bounds.middle(axis));
             let parts = [1.0 / 64.0, 1.0 / 16.0, 0.25, 0.5];
             let ways = [mean, middle].into_iter().flat_map(|aim| parts.map(|part| (aim, part)));
             let mut steps =

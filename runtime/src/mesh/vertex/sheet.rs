@@ -6,6 +6,7 @@ use super::super::cell::{EDGE_CORNERS, following, sheets_with_quads};
 use super::super::crossing::Cell;
 use super::bracket::{Bracket, CrossedEdge, CrossedEdges};
 use super::normal::sheet_normal;
+use crate::region::Box3;
 
 /// What a crossing may be off after the last halving, in parts of its edge.
 const ERROR: f32 = 1.0 / 8192.0;
@@ -16,7 +17,7 @@ pub(super) struct Start {
     /// Which vertex of the brick it is.
     pub(super) vertex: usize,
     /// Where it may be: the low and the high corner of a box in the cell.
-    pub(super) bounds: [[f32; 3]; 2],
+    pub(super) bounds: Box3,
 }
 
 /// One sheet of a cell.

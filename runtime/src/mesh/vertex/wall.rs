@@ -15,6 +15,7 @@
 use super::super::field::Field;
 use super::bracket::{Bracket, CrossedEdge, CrossedEdges, Points};
 use super::sheet::{Sheet, Start};
+use crate::region::Box3;
 
 /// Halvings along the normal.
 const HALVINGS: usize = 12;
@@ -31,7 +32,7 @@ pub(super) struct Wall {
     pub(super) inside: [f32; 3],
     /// Away from the inside, if anything says where that is.
     pub(super) normal: Option<[f32; 3]>,
-    bounds: [[f32; 3]; 2],
+    bounds: Box3,
     size: f32,
 }
 
@@ -63,7 +64,7 @@ impl Wall {
     }
 }
 
-fn clamp(point: [f32; 3], [low, high]: [[f32; 3]; 2]) -> [f32; 3] {
+fn clamp(point: [f32; 3], Box3 { low, high }: Box3) -> [f32; 3] {
     [0, 1, 2].map(|axis| point[axis].clamp(low[axis], high[axis]))
 }
 

@@ -1,4 +1,4 @@
-//! A model as rays ask it.
+//! A model as rays ask it: what they are aimed at.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use crate::evaluator::Evaluator;
 use crate::prune::Pruner;
 
 /// What answers on the way and at hits.
-pub(super) struct Compiled {
+pub(super) struct Target {
     /// The iso-value as kernels compare with it.
     pub(super) iso: f32,
     /// Where positions count from.
@@ -25,7 +25,7 @@ pub(super) struct Compiled {
     pub(super) layout: Arc<Layout>,
 }
 
-impl Compiled {
+impl Target {
     /// What answers at hits.
     pub(super) fn full(&self) -> &Evaluator {
         self.full.as_ref().unwrap_or(&self.field)

@@ -1,0 +1,319 @@
+//! One compiled model: its programs, each of which is made when somebody first asks for it, and once.
+//!
+//! ```text
+//!                                        ┌─ answers to a query, at points anywhere ─► Evaluator
+//!   CheckedTree ──Compiler──► Compiled ──┼─ answers to a query, in regions ─────────► meshes, rays, slices, samples
+//!                                        └─ ranges of the field in boxes ───────────► Pruner
+//! ```
+//!
+//! Whatever looks at a model borrows programs from here and counts its own work: two tracers of one model run
+//! the same code on the same numbers, and each says what its own rays took.
+
+use std::sync::{Arc, OnceLock};
+
+use crate::parallel::*;
+
+use jbt_lower::{Lowered, Lowering};
+use jbt_model::check::CheckedTree;
+use jbt_model::diagnostic::Diagnostic;
+use jbt_model::origin::ModelOrigin;
+use jbt_model::query::Query;
+
+use crate::compiler::Compiler;
+use crate::debug::brief_debug;
+use crate::error::CompileError;
+use crate::kernel::{Engine, Kernel, Purpose};
+use crate::program::{AnswerProgram, Program};
+use crate::prune::program::RangeProgram;
+
+/// A compiled model: programs for whatever is asked of it.
+///
+/// It is `Send + Sync`, and a clone is another handle to the same programs. A program is compiled when it is
+/// first asked for, and then kept: a mesh, a slice and a picture of one compiled model share what they have
+/// in common, and nothing is compiled that nobody needs.
+///
+/// ```
+/// use jbt::contour::{Plane, Slicer};
+/// use jbt::{Compiler, Polygonize, Query, Tracer};
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let tree = jbt::Model::new(jbt::build::point([0, 0, 0], 1)).check()?;
+/// let compiler = Compiler::new();
+/// let compiled = compiler.compile(&tree); // nothing yet
+/// let made = Polygonize::default().with(&compiled).run()?; // four programs
+/// let tracer = Tracer::of(&compiled, Query::ALL)?; // none
+/// let slicer = Slicer::of(&compiled, &Plane::default(), Query::FIELD)?; // none
+/// assert_eq!(compiler.counters().kernels, 4);
+///
+/// let moved = jbt::Model::new(jbt::build::point([0, 1, 0], 2)).check()?;
+/// let made = Polygonize::default().with(&compiled.updated(&moved)).run()?; // only numbers
+/// assert_eq!(compiler.counters().kernels, 4);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone)]
+pub struct Compiled(Arc<Parts>);
+
+struct Parts {
+    compiler: Compiler,
+    tree: CheckedTree,
+    /// By [`Query::index`].
+    anywhere: [Slot<AnswerProgram>; QUERIES],
+    /// By [`Query::index`].
+    in_regions: [Slot<AnswerProgram>; QUERIES],
+    ranges: Slot<RangeProgram>,
+}
+
+brief_debug!(Compiled, "Compiled", this: compiler = this.compiler());
+
+const QUERIES: usize = Query::EVERY.len();
+
+/// Where the points are that a program answers at.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Scope {
+    /// Anywhere: straight code where it is quicker.
+    Anywhere,
+    /// In regions, with the rows that matter there.
+    Regions,
+}
+
+/// A program that somebody needs.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Need {
+    /// Answers to a query at points.
+    Answers(Scope, Query),
+    /// Ranges of the field in boxes.
+    Ranges,
+}
+
+/// The place of a program.
+struct Slot<T> {
+    made: OnceLock<Result<Arc<T>, CompileError>>,
+    /// The kernel that an earlier model had here.
+    earlier: Option<Arc<Kernel>>,
+}
+
+impl<T> Default for Slot<T> {
+    fn default() -> Self {
+        Self { made: OnceLock::new(), earlier: None }
+    }
+}
+
+impl<T: Program> Slot<T> {
+    /// The program. Whoever is first makes it; the others wait.
+    fn get_or_make(
+        &self,
+        make: impl FnOnce(Option<&Arc<Kernel>>) -> Result<Arc<T>, CompileError>,
+    ) -> Result<&Arc<T>, CompileError> {
+        self.made.get_or_init(|| make(self.earlier.as_ref())).as_ref().map_err(Clone::clone)
+    }
+
+    /// The program, if it has been made and could be.
+    fn present(&self) -> Option<&Arc<T>> {
+        self.made.get()?.as_ref().ok()
+    }
+
+    /// The place of the same program of another model.
+    fn renewed(&self) -> Self {
+        let present = self.present().map(|program| program.kernel());
+        Self { made: OnceLock::new(), earlier: present.or(self.earlier.as_ref()).cloned() }
+    }
+}
+
+impl Compiler {
+    /// A compiled model. Nothing is compiled before something is asked of it.
+    #[must_use]
+    pub fn compile(&self, tree: &CheckedTree) -> Compiled {
+        Compiled(Arc::new(Parts {
+            compiler: self.clone(),
+            tree: tree.clone(),
+            anywhere: Default::default(),
+            in_regions: Default::default(),
+            ranges: Slot::default(),
+        }))
+    }
+}
+
+impl Compiled {
+    /// Another model, usually an edited one. A program of which the shape stays is given the new numbers when
+    /// it is asked for; only others are compiled. The [origin](Self::origin) stays, wherever the other model
+    /// is.
+    #[must_use]
+    pub fn updated(&self, tree: &CheckedTree) -> Self {
+        Self(Arc::new(Parts {
+            compiler: self.0.compiler.clone(),
+            tree: tree.with_origin(self.origin()),
+            anywhere: self.0.anywhere.each_ref().map(Slot::renewed),
+            in_regions: self.0.in_regions.each_ref().map(Slot::renewed),
+            ranges: self.0.ranges.renewed(),
+        }))
+    }
+
+    /// The model.
+    #[must_use]
+    pub fn tree(&self) -> &CheckedTree {
+        &self.0.tree
+    }
+
+    /// What compiles it.
+    #[must_use]
+    pub fn compiler(&self) -> &Compiler {
+        &self.0.compiler
+    }
+
+    /// Where the coordinates of its programs count from: that of the model for which it was made.
+    #[must_use]
+    pub fn origin(&self) -> ModelOrigin {
+        self.0.tree.origin()
+    }
+
+    /// Makes those of some programs that are not there yet, of one lowering of the model, on the rayon pool
+    /// in which this is called.
+    ///
+    /// # Errors
+    /// Those of the first program of the list that cannot be had.
+    pub(crate) fn prepare(&self, needs: &[Need]) -> Result<(), CompileError> {
+        let missing: Vec<Need> = needs.iter().copied().filter(|need| !self.is_made(*need)).collect();
+        if !missing.is_empty() {
+            let lowering = Lowering::new(self.tree());
+            // What went wrong is kept, and told below.
+            missing.par_iter().for_each(|need| drop(self.make(*need, Some(&lowering))));
+        }
+        needs.iter().try_for_each(|need| self.make(*need, None))
+    }
+
+    /// The program that answers a query.
+    pub(crate) fn answers(&self, scope: Scope, query: Query) -> Result<&Arc<AnswerProgram>, CompileError> {
+        self.answers_of(scope, query, None)
+    }
+
+    /// The program of ranges, and what is known about rows.
+    pub(crate) fn ranges(&self) -> Result<&Arc<RangeProgram>, CompileError> {
+        self.ranges_of(None)
+    }
+
+    /// The program row by row that answers what a program of straight code answers. If it cannot be had as
+    /// the compiler wishes, it is interpreted.
+    pub(crate) fn rows_of<'a>(&self, straight: &'a AnswerProgram) -> &'a Arc<AnswerProgram> {
+        straight.by_rows.get_or_init(|| {
+            let wished = self.answers(Scope::Regions, straight.query).cloned();
+            wished.unwrap_or_else(|_| {
+                // A program that is small as straight code is within all limits.
+                let lanes = self.0.compiler.clone().on_engine(Engine::Lanes);
+                self.by_rows(&lanes, straight, None).expect("whatever is within the limits is interpreted")
+            })
+        })
+    }
+
+    fn is_made(&self, need: Need) -> bool {
+        match need {
+            Need::Answers(scope, query) => self.slot(scope, query).made.get().is_some(),
+            Need::Ranges => self.0.ranges.made.get().is_some(),
+        }
+    }
+
+    fn make<'t>(&'t self, need: Need, lowering: Option<&Lowering<'t>>) -> Result<(), CompileError> {
+        match need {
+            Need::Answers(scope, query) => self.answers_of(scope, query, lowering).map(drop),
+            Need::Ranges => self.ranges_of(lowering).map(drop),
+        }
+    }
+
+    fn slot(&self, scope: Scope, query: Query) -> &Slot<AnswerProgram> {
+        match scope {
+            Scope::Anywhere => &self.0.anywhere[query.index()],
+            Scope::Regions => &self.0.in_regions[query.index()],
+        }
+    }
+
+    fn answers_of<'t>(
+        &'t self,
+        scope: Scope,
+        query: Query,
+        lowering: Option<&Lowering<'t>>,
+    ) -> Result<&'t Arc<AnswerProgram>, CompileError> {
+        let lowered = || self.lowered(lowering, |lowering| lowering.answers(query));
+        match scope {
+            Scope::Anywhere => self.slot(scope, query).get_or_make(|earlier| {
+                if !self.0.compiler.may_straighten(self.tree()) {
+                    return self.answers_of(Scope::Regions, query, lowering).cloned();
+                }
+                self.anywhere(query, lowered()?, earlier)
+            }),
+            Scope::Regions => self.slot(scope, query).get_or_make(|earlier| {
+                let straight = self.slot(Scope::Anywhere, query).present();
+                match straight.filter(|program| program.is_straight()) {
+                    Some(straight) => self.by_rows(&self.0.compiler, straight, earlier),
+                    None => self.program(query, lowered()?, earlier),
+                }
+            }),
+        }
+    }
+
+    /// Straight code for a lowered model, if it is worth it; else the program for regions.
+    fn anywhere(
+        &self,
+        query: Query,
+        lowered: Lowered,
+        earlier: Option<&Arc<Kernel>>,
+    ) -> Result<Arc<AnswerProgram>, CompileError> {
+        let (compiler, purpose) = (&self.0.compiler, Purpose::Answers(query));
+        match compiler.straight(&lowered.function, &lowered.tables, purpose, earlier) {
+            Some(kernel) => {
+                let bound = compiler.bind(&kernel, lowered.tables);
+                Ok(Arc::new(AnswerProgram::new(self.tree(), query, bound)))
+            }
+            None => {
+                let slot = self.slot(Scope::Regions, query);
+                slot.get_or_make(|earlier| self.program(query, lowered, earlier)).cloned()
+            }
+        }
+    }
+
+    /// A program for regions.
+    fn program(
+        &self,
+        query: Query,
+        Lowered { function, tables }: Lowered,
+        earlier: Option<&Arc<Kernel>>,
+    ) -> Result<Arc<AnswerProgram>, CompileError> {
+        let compiler = &self.0.compiler;
+        let kernel = compiler.kernel(function, Purpose::Answers(query), earlier)?;
+        Ok(Arc::new(AnswerProgram::new(self.tree(), query, compiler.bind(&kernel, tables))))
+    }
+
+    /// The program for regions, of what straight code was made of.
+    fn by_rows(
+        &self,
+        compiler: &Compiler,
+        straight: &AnswerProgram,
+        earlier: Option<&Arc<Kernel>>,
+    ) -> Result<Arc<AnswerProgram>, CompileError> {
+        let AnswerProgram { query, bound, .. } = straight;
+        let kernel = compiler.kernel(bound.kernel.lowered.clone(), Purpose::Answers(*query), earlier)?;
+        let bound = compiler.bind(&kernel, Arc::clone(&bound.lowered));
+        Ok(Arc::new(AnswerProgram::new(self.tree(), *query, bound)))
+    }
+
+    fn ranges_of<'t>(
+        &'t self,
+        lowering: Option<&Lowering<'t>>,
+    ) -> Result<&'t Arc<RangeProgram>, CompileError> {
+        self.0.ranges.get_or_make(|earlier| {
+            let guided = self.lowered(lowering, Lowering::guided)?;
+            RangeProgram::new(&self.0.compiler, guided, earlier).map(Arc::new)
+        })
+    }
+
+    /// What a lowering of the model gives: the one that is there, or a new one.
+    fn lowered<'t, T>(
+        &'t self,
+        lowering: Option<&Lowering<'t>>,
+        ask: impl FnOnce(&Lowering<'t>) -> Result<T, Vec<Diagnostic>>,
+    ) -> Result<T, CompileError> {
+        let answer = match lowering {
+            Some(lowering) => ask(lowering),
+            None => ask(&Lowering::new(self.tree())),
+        };
+        answer.map_err(|list| self.tree().diagnostics(list).into())
+    }
+}

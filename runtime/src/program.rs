@@ -1,0 +1,52 @@
+//! A program of one model: a kernel with the model's numbers, and what is said about its answers.
+
+use std::sync::{Arc, OnceLock};
+
+use jbt_model::check::CheckedTree;
+use jbt_model::query::Query;
+
+use crate::buffer::Layout;
+use crate::counter::walks;
+use crate::kernel::{Bound, Kernel};
+
+/// A program that was made for a model.
+pub(crate) trait Program {
+    /// What runs it: another model of the same shape takes it too.
+    fn kernel(&self) -> &Arc<Kernel>;
+}
+
+/// A program that answers a query at points.
+pub(crate) struct AnswerProgram {
+    pub(crate) query: Query,
+    pub(crate) bound: Bound,
+    pub(crate) layout: Layout,
+    /// Distances that separate walks compute at a point.
+    pub(crate) separate: u64,
+    /// The same program row by row, if this one is straight code: made for the first region.
+    pub(crate) by_rows: OnceLock<Arc<AnswerProgram>>,
+}
+
+impl AnswerProgram {
+    /// The program of a model that answers a query.
+    pub(crate) fn new(tree: &CheckedTree, query: Query, bound: Bound) -> Self {
+        let layout = Layout::new(query, tree.attributes());
+        debug_assert_eq!(
+            layout.names(),
+            bound.kernel.function.function().outputs,
+            "planes are named alike everywhere"
+        );
+        let separate = walks(query).saturating_mul(tree.leaf_uses());
+        Self { query, bound, layout, separate, by_rows: OnceLock::new() }
+    }
+
+    /// Whether it is straight code, which knows no rows of regions.
+    pub(crate) fn is_straight(&self) -> bool {
+        self.bound.kernel.straight.is_some()
+    }
+}
+
+impl Program for AnswerProgram {
+    fn kernel(&self) -> &Arc<Kernel> {
+        &self.bound.kernel
+    }
+}
