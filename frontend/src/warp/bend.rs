@@ -334,7 +334,7 @@ fn rigid<D: Domain>(d: &mut D, y: D::Real, z: D::Real, row: &[D::Real]) -> [D::R
     [first, second]
 }
 
-/// Nothing is known across the axis.
+/// Unbounded across the axis.
 fn all_of_space(axis: Axis, child: Bounds) -> Bounds {
     let [_, u, v] = axis.order();
     let mut all = child;

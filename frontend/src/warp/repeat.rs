@@ -44,7 +44,7 @@ impl Repeat {
         if self.count == 0.0 { [-ENDLESS, ENDLESS] } else { [0.0, self.count - 1.0] }
     }
 
-    /// Between the lower wall that the first cell does not have and the upper one of the last.
+    /// The place of the lower wall that the first cell lacks and of the upper wall that the last cell lacks.
     fn walls(&self) -> [f64; 2] {
         let [first, last] = self.ends();
         [(first - 0.5) * self.spacing, (last + 0.5) * self.spacing]
