@@ -104,7 +104,7 @@ pub(crate) struct State<'a> {
     pub(super) frame: Vec<u32>,
     pub(super) free: Vec<u32>,
     pub(crate) frame_slots: u32,
-    /// Parts that have been stored since the outermost open loop was opened.
+    /// Parts that have been stored while loops are open, in order.
     pub(super) journal: Vec<Part>,
     /// How many uses of each name the walk has passed.
     passed: Vec<u32>,

@@ -1,4 +1,4 @@
-//! How far the work is, told to a hook that may cancel it.
+//! Progress of the work, reported to a hook that may cancel it.
 
 use std::error::Error;
 use std::sync::{Mutex, PoisonError};
@@ -19,7 +19,7 @@ pub(crate) enum Phase {
 }
 
 impl Phase {
-    /// Where it begins and ends in the whole work. A guess, for a progress bar.
+    /// Its part of the whole work, an estimate for a progress bar.
     fn span(self) -> [f32; 2] {
         match self {
             Phase::Divide => [0.0, 0.1],
@@ -46,7 +46,7 @@ struct State<'a> {
 impl State<'_> {
     fn tell<E: Error + 'static>(&mut self, fraction: f32) -> Result<(), MeshError<E>> {
         self.fraction = fraction;
-        // A hook that has said to stop is not asked again.
+        // A hook that has cancelled is not called again.
         self.cancelled = self.cancelled || !(self.hook)(fraction);
         if self.cancelled { Err(MeshError::Cancelled) } else { Ok(()) }
     }
@@ -78,7 +78,7 @@ impl<'a> Progress<'a> {
         })
     }
 
-    /// Asks whether to go on, where no number of pieces is known.
+    /// Calls the hook without a step forward, where the number of pieces is unknown.
     pub(crate) fn check<E: Error + 'static>(&self) -> Result<(), MeshError<E>> {
         self.with(|state| state.tell(state.fraction))
     }

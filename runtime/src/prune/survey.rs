@@ -20,6 +20,7 @@ impl Pruner {
     /// [`narrow`](crate::region::Divisible::narrow), at lower cost: both run the interval kernel where
     /// operands may not decide, and a run of few boxes fills few of its lanes.
     ///
+    /// # Errors
     /// A region of a model with other numbers of rows.
     pub fn survey(
         &self,
