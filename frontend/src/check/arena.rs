@@ -30,11 +30,11 @@ pub struct CheckedNode {
 /// [`asked`](super::CheckedTree::asked).
 #[derive(Clone, Debug)]
 pub(super) struct Paths {
-    /// Through all children.
+    /// Paths through all children.
     pub(super) uses: Arc<[u64]>,
-    /// Through those that are asked.
+    /// Paths through children that are asked.
     pub(super) asked: Arc<[u64]>,
-    /// Those to leaves, through children that are asked.
+    /// Paths to leaves, through children that are asked.
     pub(super) leaf_uses: u64,
 }
 

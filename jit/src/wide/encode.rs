@@ -64,10 +64,10 @@ pub(crate) struct Encoder {
     shape: Shape,
     /// The position of each label.
     labels: Vec<Option<usize>>,
-    /// Jumps whose label was not known: where their displacement is, and the label.
+    /// Jumps to labels that were not known: the position of the displacement, and the label.
     jumps: Vec<(usize, Label)>,
-    /// Operands among the constants: where their displacement is, where the next instruction begins, and how
-    /// far behind the first constant.
+    /// Operands among the constants: the position of the displacement, the end of the instruction, and the
+    /// distance from the first constant.
     constants: Vec<(usize, usize, i32)>,
 }
 

@@ -133,9 +133,9 @@ pub(crate) struct Loop {
     pub(crate) open: u32,
     pub(crate) close: u32,
     pub(crate) phis: Vec<Phi>,
-    /// Of a loop over points: the input planes that it reads, a bit each, for the first [`POINTERS`] planes.
+    /// For a loop over points: the input planes that it reads, a bit each, for the first [`POINTERS`] planes.
     pub(crate) inputs: u32,
-    /// Values, and the bits that let its round end early if all of them have them; if it may.
+    /// If an iteration may end early: the condition for it, values and their bits.
     pub(crate) gate: Vec<(Name, u32)>,
 }
 

@@ -49,14 +49,14 @@ impl Count {
 /// An open loop.
 pub(super) struct Open {
     pub(super) id: LoopId,
-    /// What the registers hold at the top of each round.
+    /// The contents of the registers at the top of each iteration.
     pub(super) header: [Part; REGISTERS],
-    /// How much was in the journal.
+    /// The length of the journal when the loop opened.
     pub(super) journal: usize,
-    /// Where a round begins, and where the loop is left.
+    /// Where an iteration begins, and where the loop is left.
     pub(super) top: Label,
     pub(super) exit: Label,
-    /// Where a round ends that ends early.
+    /// The target of early ends of iterations.
     pub(super) early: Option<Label>,
 }
 
@@ -98,9 +98,9 @@ pub(crate) struct State<'a> {
     looked_up: u64,
     /// The register of each part.
     pub(super) place: Vec<Register>,
-    /// Whether the frame has it.
+    /// Whether the frame holds each part.
     pub(super) stored: Vec<bool>,
-    /// Where the frame has it, or will.
+    /// The place of each part in the frame, if it has one.
     pub(super) frame: Vec<u32>,
     pub(super) free: Vec<u32>,
     pub(crate) frame_slots: u32,

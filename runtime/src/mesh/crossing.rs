@@ -218,8 +218,8 @@ impl Signs {
             if signs == 0 || signs == u64::MAX {
                 continue;
             }
-            // In the others there is no telling: no jump, which would be guessed wrong, but what is not
-            // crossed is overwritten.
+            // In the others crossed cells are unpredictable, so there is no branch: each cell is written, and
+            // the next one overwrites it unless it is crossed.
             let first = count;
             let mut pinched = false;
             for (rest, signs) in (0..).zip(signs.to_le_bytes()) {

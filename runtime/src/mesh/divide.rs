@@ -32,8 +32,8 @@ pub(crate) struct Division<R> {
     pub(crate) regions: Vec<R>,
     /// Counts of boxes.
     pub(crate) boxes: Boxes,
-    /// The boxes of [`CHUNK`] cells along an edge that the surface may cross, and their regions, if bricks are
-    /// smaller and chunks are wanted.
+    /// The boxes of [`CHUNK`] cells along an edge that the surface may cross, and their regions, if bricks
+    /// are smaller and chunks are wanted.
     pub(crate) chunks: Option<Kept<R>>,
 }
 

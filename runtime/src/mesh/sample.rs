@@ -162,7 +162,7 @@ pub(crate) fn sample<F: Field>(
 /// A vector of zeros, or an error where the allocator would abort.
 fn allocate<T: Copy + Default, E: Error + 'static>(points: usize) -> Result<Vec<T>, MeshError<E>> {
     // Zeroed memory comes from the system page by page when the threads first touch it, which is faster than
-    // to fill it here; but only `try_reserve` can fail. So the room is asked for first.
+    // filling it here. But only `try_reserve` can fail, so the room is reserved first.
     let mut room = Vec::<T>::new();
     room.try_reserve_exact(points).map_err(|_| MeshError::Memory { points })?;
     drop(room);
