@@ -10,13 +10,13 @@ use crate::evaluator::Evaluator;
 use crate::solid::Solid;
 use crate::trace::Tracer;
 
-/// A model, compiled for pictures of it: from any side, in any mode.
+/// A model, compiled for pictures from any side, in any mode.
 ///
 /// It is `Send + Sync`: threads may share it.
 pub struct Renderer {
     pub(super) tracer: Tracer,
     pub(super) solid: Solid,
-    /// What answers where a region cuts the solid: there is no surface to hit.
+    /// Evaluates where a region cuts the solid and there is no surface to hit.
     pub(super) evaluator: Evaluator,
 }
 
@@ -26,7 +26,7 @@ impl Renderer {
     /// Compiles a model.
     ///
     /// # Errors
-    /// The model is beyond a limit, or the engine cannot be had.
+    /// The model is beyond a limit, or no engine is available.
     pub fn new(compiler: &Compiler, tree: &CheckedTree) -> Result<Self, CompileError> {
         Ok(Self {
             tracer: Tracer::new(compiler, tree, Query::ALL)?,
@@ -54,13 +54,13 @@ impl Renderer {
         self.tracer.tree()
     }
 
-    /// What finds the surface.
+    /// The tracer of the surface.
     #[must_use]
     pub fn tracer(&self) -> &Tracer {
         &self.tracer
     }
 
-    /// What evaluates at points.
+    /// The evaluator at points.
     #[must_use]
     pub fn evaluator(&self) -> &Evaluator {
         &self.evaluator
