@@ -13,8 +13,6 @@
 //! The origin belongs to the checked model. It is found once; parameters, edits, boxes and lattices keep it,
 //! because another origin changes the last digits of the field. Its coordinates are multiples of a power of
 //! two, so exact numbers stay exact.
-//! it: a field about another origin has other last digits. Multiples of a power of two keep what is exact
-//! exact.
 
 use crate::bounds::Bounds;
 use glam::DVec3;

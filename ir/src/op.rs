@@ -6,6 +6,7 @@
 //! * [`Op`], its names and its type rule (the printer, the parser and the verifier read these),
 //! * [`Domain`], the trait with one method per op and **no default**: a meaning of the ops is one `impl
 //!   Domain` in one file of [`crate::domain`] (or the machine-code lowering of the `jit` crate), and an op
+//!   that lacks a meaning somewhere does not compile,
 //! * [`apply`], which calls the method of an op that is known only at run time,
 //! * [`for_each_op!`](crate::for_each_op), which hands the rows to any macro: code that treats all ops alike
 //!   is derived from it.

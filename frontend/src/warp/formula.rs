@@ -4,6 +4,7 @@
 //! warp (x + 0.1 * sin(4 * y), y, z) { .. }                                 a wave across the x axis
 //! warp (t = 0.5 * z, x * cos(t) + y * sin(t), y * cos(t) - x * sin(t), z)   a twist, with a definition
 //! ```
+//!
 //! The form of the formulas is code, and their numbers are numbers of a row; see
 //! [`expression`](crate::expression), which also defines the results of undefined operations. A coordinate is
 //! clamped to [`LARGEST_WARPED`] in magnitude; NaN counts as the lowest.

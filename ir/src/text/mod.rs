@@ -18,8 +18,8 @@
 //! ```
 //!
 //! * A value is written with its type where the type differs from the one of its definition: the result type
-//!   of the op's row, bits for `bits`, real for everything else. Only a broken function has such values; they
-//!   let tests of the verifier write one down.
+//!   of the op's row, bits for `bits`, real for everything else. So an accumulator that is a mask
+//!   has its type, and a broken function can be written down, to test the verifier.
 //! * An input or column is written with its index where an earlier one has its name.
 //! * A block name without a colon only mentions the block. Only a broken function has such mentions.
 //! * Numbers are the shortest decimals that read back as the same f32; `nan` is the encoding 0x7fc00000, any

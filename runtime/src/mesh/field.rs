@@ -48,8 +48,8 @@ pub trait Field: Divisible {
     /// The field and its gradient at each point, to pull vertices onto the surface. The points are in the
     /// region's box.
     ///
+    /// # Errors
     /// Any error of the evaluation; the mesher stops and returns it.
-    /// Whatever the evaluation reports; the mesher stops and hands it on.
     fn gradient(
         &self,
         region: &Self::Region,

@@ -20,7 +20,7 @@ const HALVINGS: usize = 10;
 const TOLERANCE: f32 = 1e-3;
 
 /// Which vertices are far from the surface, 1 or 0 each, in cells with these low and high sides along x;
-/// `square` is the squared length of the gradient. 0 where the gradient is NaN.
+/// `square` is the squared length of the gradient. A gradient of NaN gives 0.
 #[inline(always)]
 pub(super) fn is_far(iso: f32, [low, high]: [&Lanes; 2], values: &Lanes, square: &Lanes) -> [u32; LANES] {
     let mut far = [0; LANES];

@@ -33,7 +33,7 @@ const THREE_QUARTER: Vector = [1.0, -0.62, 0.5];
 pub enum Stance {
     /// It looks at the model from this direction, of any length, from where the model fills the picture.
     From([f64; 3]),
-    /// It stands at a point and looks at another one.
+    /// It stands at a point and looks at another point.
     At {
         /// Where it stands, in units of the model.
         eye: [f64; 3],
