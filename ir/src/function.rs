@@ -29,13 +29,13 @@ use crate::entity::{Block, Entity, Inst, Store, Table, Value, Values};
 use crate::op::{Op, Type};
 use crate::origin::Origin;
 
-/// What the rows of a fold are.
+/// The meaning of the rows of a fold.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum FoldKind {
     /// Operands of one operator: any number of them.
     Rows,
-    /// One row, or none: what stands under a guard, or is chosen. The answer of the row passes through, and
-    /// without it the initial values do.
+    /// One row, or none: an operand under a guard, or the choice of a selector. With a row, the fold yields
+    /// the row's answer; without one, its initial values.
     Guard,
     /// The pieces of one leaf.
     Pieces,
@@ -56,22 +56,22 @@ impl FoldKind {
     }
 }
 
-/// What may be done with rows of a fold whose fields are zero all over a part of space: which of them may be
-/// left out there, so that no bit of an answer changes. The first accumulator is the field.
+/// Which rows of a fold may be left out in a region of space where their fields are zero, without changing a
+/// bit of an answer. The first accumulator is the field.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Rule {
-    /// They may all be left out: rows of sums, of Ricci blends, of unions without negative operands and of
-    /// selectors, guards that start at 0, and pieces whose distance counts within the support radius only.
+    /// All zero rows may be left out: rows of sums, of Ricci blends, of unions without negative operands and
+    /// of selectors, guards that start at 0, and pieces whose distance counts within the support radius only.
     Neutral,
-    /// The first of each parent row's zero rows stays, the others may be left out: rows of unions and
-    /// intersections with negative operands, and of steps that a zero limits once and for all.
+    /// The first zero row of each parent row stays, the other zero rows may be left out: rows of unions and
+    /// intersections with negative operands, and of steps whose result one zero limits for good.
     KeepOne,
-    /// If one is zero, all others of the same parent row may be left out, zero or not, and one that is zero
-    /// stays: rows of intersections without negative operands, of products and of Ricci blends with negative
+    /// If a row is zero, all other rows of the same parent row may be left out, zero or not; one zero row
+    /// stays. Rows of intersections without negative operands, of products and of Ricci blends with negative
     /// exponents.
     OnlyZero,
-    /// Zero is no reason: the scene, guards that do not start at 0, points inside of warps, R-functions, what
-    /// may answer for the whole model, and pieces that count everywhere.
+    /// A zero row may not be left out: the scene, guards that do not start at 0, points inside of warps,
+    /// R-functions, rows that may answer for the whole model, and pieces that count everywhere.
     Never,
 }
 
@@ -156,8 +156,8 @@ impl InstKind {
         }
     }
 
-    /// The type of what this defines. For a fold it is only the usual one: its accumulators have the types of
-    /// its initial values.
+    /// The type of the result. For a fold this is only the usual type: accumulators have the types of their
+    /// initial values.
     #[must_use]
     pub const fn result_type(&self) -> Type {
         match self {

@@ -8,8 +8,8 @@
 //!   Domain` in one file of [`crate::domain`] (or the machine-code lowering of the `jit` crate), and an op
 //!   that lacks a meaning somewhere does not compile,
 //! * [`apply`], which calls the method of an op that is known only at run time,
-//! * [`for_each_op!`](crate::for_each_op), which hands the rows to any macro: what does the same for every op
-//!   derives from it.
+//! * [`for_each_op!`](crate::for_each_op), which hands the rows to any macro: code that treats all ops alike
+//!   is derived from it.
 //!
 //! ```text
 //!                 op table ──► enum Op ──► text, verifier, passes
@@ -267,7 +267,7 @@ macro_rules! op_table {
 ///    $variant:ident $name:ident ( $($arg:ident : $type:ident),+ ) -> $result:ident $(, $flag:ident)*; )+
 /// ```
 ///
-/// So whatever does the same for every op is written once: a builder, a counter, a dispatch.
+/// A builder, a counter or a dispatch that treats all ops alike is written once.
 #[macro_export]
 macro_rules! for_each_op {
     ($callback:ident) => {

@@ -16,8 +16,8 @@
 //!  9. *Tables.* The table of a fold exists, and no table is folded twice. The parent of a table is declared
 //!     before it.
 //! 10. *Nesting.* The fold over a table with a parent stands inside the fold over the parent, at any depth:
-//!     the parent's current row says which rows run. A table without parent runs all its rows wherever its
-//!     fold stands, be it inside another fold.
+//!     the parent's current row says which rows run. A fold over a table without parent runs all rows of the
+//!     table, even inside another fold.
 //! 11. *Accumulators.* A fold's initial values, its body's accumulators, what its body yields, and the fold's
 //!     results agree in number and type.
 //! 12. *Outputs.* The function's body binds nothing and yields one real for each output name.
@@ -28,9 +28,9 @@
 //!
 //! ```text
 //! declare the tables and their slots
-//! enter the body;  for each instruction: check its uses, then itself, then let its results be seen
-//!   a fold:        check its accumulators, enter its body;  at the end check the yield, hide what the body defined
-//! what was never entered, and values that were never defined, are errors too
+//! enter the body;  for each instruction: check its operands, then itself, then make its results visible
+//!   a fold:        check its accumulators, enter its body;  at the end check the yield, hide the body's values
+//! blocks and instructions that were not entered, and values without a definition, are errors too
 //! ```
 
 use std::collections::HashMap;
@@ -388,7 +388,7 @@ impl<'a> Verifier<'a> {
         }
     }
 
-    /// Rule 11: `values` are as the initial ones.
+    /// Rule 11: `values` agree with the initial values in number and type.
     fn accumulators(&mut self, place: Place, fold: &Fold, what: &str, values: &[Value]) {
         if values.len() != fold.initial.len() {
             let (given, wanted) = (count(values.len(), what), count(fold.initial.len(), "initial value"));

@@ -8,7 +8,7 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 use crate::bounds::Bounds;
 
-/// The map that changes nothing.
+/// The identity map.
 pub const IDENTITY: DAffine3 = DAffine3::IDENTITY;
 
 /// The linear part of a similarity, which is a rotation (or reflection), uniform scale and translation: it

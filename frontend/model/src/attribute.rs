@@ -1,5 +1,5 @@
-//! Attribute groups: named tuples of reals that are carried by leaves and mixed by field; and what attribute
-//! nodes give to leaves.
+//! Attribute groups: named tuples of reals that leaves carry and the field mixes; and the values that
+//! attribute nodes give to leaves.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ use crate::texture::Texture;
 pub enum Mixing {
     /// The mean of the values, weighted by how much each leaf contributes to the field.
     Blend,
-    /// The value of the leaf with the largest total weight; of equals, the first in the file.
+    /// The value of the leaf with the largest total weight; of equal weights, the first leaf in the file.
     Dominant,
 }
 
@@ -37,8 +37,8 @@ impl Mixing {
 pub struct AttributeGroup {
     /// Its name: letters, digits and underscores, beginning with a letter.
     pub name: Arc<str>,
-    /// The value of leaves without the attribute, and of points without field; its length is the width of the
-    /// group.
+    /// The value of leaves without the attribute, and of points where the field is zero; its length is the
+    /// width of the group.
     pub default: Vec<f64>,
     /// How values mix.
     pub mixing: Mixing,
@@ -86,7 +86,7 @@ pub enum AttributeValue {
 }
 
 impl AttributeValue {
-    /// Whether it is a function of the place in the node's space.
+    /// Whether it depends on the place in the node's space.
     pub fn is_placed(&self) -> bool {
         match self {
             Self::Textured(_) | Self::Expressed(_) => true,
@@ -113,7 +113,7 @@ pub struct Textured {
 }
 
 impl Textured {
-    /// The value at a place of the node's space, plainly.
+    /// The value at a place of the node's space, in f64.
     #[must_use]
     pub fn value(&self, p: DVec3) -> Vec<f64> {
         let t = self.texture.value(p);
@@ -128,12 +128,12 @@ pub struct UvMap {
     pub scale: [f64; 2],
     /// The rotation in degrees, from u to v.
     pub degrees: f64,
-    /// What is added.
+    /// The shift of u and v.
     pub shift: [f64; 2],
 }
 
 impl UvMap {
-    /// The map that changes nothing.
+    /// The identity map.
     pub const IDENTITY: Self = Self { scale: [1.0; 2], degrees: 0.0, shift: [0.0; 2] };
 
     /// The rows of its 2x3 matrix: factors of u and v, and what is added.
@@ -144,7 +144,7 @@ impl UvMap {
         [[cos * su, -sin * sv, u], [sin * su, cos * sv, v]]
     }
 
-    /// The image of a uv, plainly.
+    /// The image of a uv, in f64.
     #[must_use]
     pub fn apply(&self, [u, v]: [f64; 2]) -> [f64; 2] {
         self.matrix().map(|[by_u, by_v, shift]| by_u * u + by_v * v + shift)

@@ -36,7 +36,7 @@ impl Bounds {
         self.max.to_array()
     }
 
-    /// Whether it ends in every direction.
+    /// Whether all its sides are finite.
     #[must_use]
     pub fn is_finite(self) -> bool {
         self.min.is_finite() && self.max.is_finite()
@@ -60,7 +60,7 @@ impl Bounds {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
-    /// What both have in common.
+    /// The intersection of both.
     #[must_use]
     pub fn intersection(self, other: Self) -> Self {
         Self { min: self.min.max(other.min), max: self.max.min(other.max) }
@@ -78,7 +78,7 @@ impl Bounds {
         Self { min: self.min - by, max: self.max + by }
     }
 
-    /// The box somewhere else.
+    /// The box, translated.
     #[must_use]
     pub fn moved(self, by: DVec3) -> Self {
         Self { min: self.min + by, max: self.max + by }

@@ -5,20 +5,20 @@
 //!   └── root ── every node once, children first ─┴─► every error, or a CheckedTree
 //! ```
 //!
-//! What holds of a [`CheckedTree`], so that nothing behind it has to ask again:
+//! The facts about a [`CheckedTree`] that all later code relies on:
 //!
 //! * Every number is finite and at most [`limits::MAX_NUMBER`] in magnitude; radii are at least
 //!   [`limits::MIN_LENGTH`], and each parameter is what its [`FieldKind`] says.
 //! * Leaves have no children, maps and attributes have one, warps one or two, combinators and selectors at
-//!   least one, and these choose one that is there. A Ricci exponent is in [1,
-//!   [`limits::MAX_RICCI_EXPONENT`]], or the negative of such a number; other numbers of operators are what
-//!   their files say.
-//! * Every affine map can be undone, and the numbers of its inverse are finite in f32.
+//!   least one, and a selector chooses an existing child. A Ricci exponent is in [1,
+//!   [`limits::MAX_RICCI_EXPONENT`]], or the negative of such a number; the files of other operators define
+//!   their numbers.
+//! * Every affine map is invertible, and the numbers of its inverse are finite in f32.
 //! * The origin has finite coordinates.
 //! * The first attribute group is `color` with three reals; names are unique; attribute nodes name a group
 //!   and fit its width.
 //! * There are at most [`limits::MAX_NODES`] nodes and [`limits::MAX_OCCURRENCES`] paths from the root to
-//!   leaves, those to each piece of a skeleton counted.
+//!   leaves, where a leaf counts once more for each piece of its skeleton.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -57,14 +57,14 @@ use parameters::check_iso;
 pub use tree::CheckedTree;
 
 impl Model {
-    /// The model as a tree that makes sense, or everything that is wrong with it.
+    /// The model as a valid tree, or all its errors.
     ///
     /// Cost: linear in the number of nodes, shared ones counted once.
     ///
     /// # Errors
     ///
-    /// All errors, in the order of their places in the text; after [`limits::MAX_ERRORS`] of them, one more
-    /// that counts the rest.
+    /// All errors, in the order of their places in the text; after [`limits::MAX_ERRORS`] errors, one more
+    /// with the number of the remaining errors.
     pub fn check(&self) -> Result<CheckedTree, Diagnostics> {
         let checked = self.check_within(limits::MAX_NODES, limits::MAX_OCCURRENCES);
         checked.map_err(|list| Diagnostics::new(list, self.source.clone()))
@@ -115,7 +115,7 @@ impl Model {
         let groups = widths(&self.attributes);
         let mut nodes: Vec<CheckedNode> = Vec::new();
         let mut ids: HashMap<usize, NodeId> = HashMap::new();
-        // Each entry is a node, and whether its children are done.
+        // Each entry is a node, and whether its children have been visited.
         let mut stack = vec![(&self.root, false)];
         while let Some((tree, done)) = stack.pop() {
             if ids.contains_key(&tree.identity()) {
@@ -135,7 +135,7 @@ impl Model {
             let id = NodeId(nodes.len() as u32);
             let written = node.written();
             if written.follows(&self.iso) || (self.iso.follows() && written.is_limited_by_iso()) {
-                // A limit of an operator has to be checked again when the iso-value moves.
+                // An operator's limit depends on the iso-value, so it is checked again when that changes.
                 dependence.add(id, &Arc::new(written.clone()));
             }
             if let Some(formula) = written.formula() {
@@ -148,7 +148,7 @@ impl Model {
                 }
                 Err(error) => {
                     report.add(|| error);
-                    // Nobody looks at it: the check has failed.
+                    // A placeholder: the check has failed.
                     NodeKind::Affine(DAffine3::IDENTITY)
                 }
             };

@@ -9,8 +9,8 @@
 //! assert!(radius.follows() && !Number::from(2.2).follows());
 //! ```
 //!
-//! A formula is a list of steps in postfix order, `2 bulge * 1 +`, evaluated in f64 on a list of its own. A
-//! plain number has none, and arithmetic of plain numbers gives plain numbers.
+//! A formula is a list of steps in postfix order, `2 bulge * 1 +`, evaluated in f64 on a stack. A plain
+//! number has no formula, and arithmetic of plain numbers gives plain numbers.
 
 mod binary;
 mod formula;
@@ -52,7 +52,7 @@ pub fn param(name: &str, default: f64) -> Number {
 }
 
 impl Number {
-    /// Its value, as the parameters stood when it was made.
+    /// Its value, with the parameters' values at the time when it was made.
     #[must_use]
     pub const fn value(&self) -> f64 {
         self.value
@@ -75,8 +75,8 @@ impl Number {
         self.formula.as_deref()
     }
 
-    /// The same number once the parameters have these values. An error names the place of the formula, if it
-    /// has one.
+    /// The number for these values of the parameters. An error has the place of the formula, if that is
+    /// known.
     pub(crate) fn refreshed(&self, values: &Values) -> Result<Self, Diagnostic> {
         match &self.formula {
             None => Ok(self.clone()),
@@ -113,7 +113,7 @@ impl Number {
         Self::with_formula(value, Formula::new(steps, None))
     }
 
-    /// What a step makes of numbers, which are as many as it takes. Its value may be no finite number.
+    /// The result of a step on its operands, as a number. Its value may be infinite or NaN.
     pub fn of_step(step: Step, operands: &[&Self]) -> Self {
         let values: Vec<f64> = operands.iter().map(|number| number.value).collect();
         let value = match &step {
@@ -249,7 +249,7 @@ impl NumberText for Number {
         !self.follows()
     }
 
-    /// Plain numbers, which most are, in one piece.
+    /// Plain numbers, the common case, in one piece.
     fn text(&self) -> String {
         if self.follows() { self.to_string() } else { plain(self.value) }
     }

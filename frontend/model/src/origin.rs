@@ -1,27 +1,27 @@
 //! The origin of a model: the point of the world from which its f32 coordinates count.
 //!
 //! ```text
-//! world p, in f64    p = o + q      what texts, regions, cameras and files speak of
-//! local q, in f32    q = p - o      what programs, lattices, boxes and meshes hold
+//! world p, in f64   p = o + q   texts, regions, cameras, files
+//! local q, in f32   q = p - o   programs, lattices, boxes, meshes
 //! ```
 //!
-//! An f32 has 24 binary digits wherever it is: at 1e5 they end at 0.008. A model that stands there has
-//! numbers that matter and are small, the sizes of its parts and the distances between them, and those keep
-//! their digits if its coordinates count from a point near it. The origin ends up in the rows of leaves,
-//! warps and textures: with `q = R p + t` for the map to a leaf's own space it is `t' = t + R o`, in f64,
-//! rounded once.
+//! An f32 has 24 binary digits: at 1e5 the last one is 0.008. The numbers that matter in a model there, sizes
+//! and distances of its parts, are small, and they stay precise if its coordinates count from a point near
+//! it. The origin enters the rows of leaves, warps and textures: the map `q = R p + t` to a leaf's own space
+//! gets `t' = t + R o`, in f64, rounded once.
 //!
-//! The origin belongs to the checked model. It is found once, and parameters, edits, boxes and lattices leave
-//! it: a field about another origin has other last digits. Multiples of a power of two keep what is exact
-//! exact.
+//! The origin belongs to the checked model. It is found once; parameters, edits, boxes and lattices keep it,
+//! because another origin changes the last digits of the field. Its coordinates are multiples of a power of
+//! two, so exact numbers stay exact.
 
 use crate::bounds::Bounds;
 use glam::DVec3;
 
-/// How many of its sizes a model is away from the origin of the world before it has an origin of its own.
+/// The distance of a model from the world's origin, in sizes of the model, beyond which it gets an origin of
+/// its own.
 const FAR: f64 = 64.0;
 
-/// Where the local coordinates of a model begin, in the world. See the module.
+/// The point of the world from which local coordinates of a model count. See the module.
 ///
 /// ```
 /// use jbt_model::{builder::point, model::Model};
@@ -36,7 +36,7 @@ const FAR: f64 = 64.0;
 pub struct ModelOrigin([f64; 3]);
 
 impl ModelOrigin {
-    /// That of the world: local coordinates are those of the world.
+    /// The world's origin: local coordinates are world coordinates.
     pub const WORLD: Self = Self([0.0; 3]);
 
     /// An origin at a point of the world. Its coordinates are finite.
@@ -45,9 +45,9 @@ impl ModelOrigin {
         Self(point)
     }
 
-    /// The origin of what is in a box: that of the world, unless the centre of the box is more than 64 of its
-    /// longest sides away from it; else that centre, each coordinate rounded to a multiple of the least power
-    /// of two that is not below the longest side.
+    /// The origin for a model in a box: the world's origin, unless the centre of the box is more than 64 of
+    /// its longest sides away; else that centre, with each coordinate rounded to a multiple of the least
+    /// power of two that is at least the longest side.
     #[must_use]
     pub fn of(bounds: Bounds) -> Self {
         let size = bounds.longest_side();
@@ -58,19 +58,19 @@ impl ModelOrigin {
         if center.length() <= FAR * size {
             return Self::WORLD;
         }
-        // The exponent alone, so that no logarithm decides.
+        // By the exponent bits: no logarithm, whose rounding could decide.
         let below = f64::from_bits(size.to_bits() & 0x7ff0_0000_0000_0000);
         let step = if below < size { 2.0 * below } else { below };
         Self(center.to_array().map(|x| (x / step).round() * step))
     }
 
-    /// The point of the world where it is.
+    /// Its coordinates in the world.
     #[must_use]
     pub const fn point(self) -> [f64; 3] {
         self.0
     }
 
-    /// Whether it is that of the world.
+    /// Whether it is the world's origin.
     #[must_use]
     pub fn is_world(self) -> bool {
         self.0 == [0.0; 3]
@@ -82,7 +82,7 @@ impl ModelOrigin {
         [0, 1, 2].map(|axis| world[axis] - self.0[axis])
     }
 
-    /// The local coordinates of a point of the world, rounded once: where programs are asked about it.
+    /// The local coordinates of a point of the world, rounded once to f32, as programs take them.
     #[must_use]
     pub fn rounded(self, world: [f64; 3]) -> [f32; 3] {
         self.local(world).map(|x| x as f32)

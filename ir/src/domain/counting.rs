@@ -1,8 +1,8 @@
 //! Counts instead of computing: how many ops a point takes, and how many evaluations each leaf of the model.
 //!
-//! [`Counting`] is a meaning of the ops in which a value is nothing and an op is one more of its kind. It
-//! runs every row, so it is for tests and for people. [`evaluations`] gives its sums for the distances
-//! without running anything, in a time that grows with the active rows and not with what they cost.
+//! In [`Counting`] a value is nothing, and an op adds one to the count of its kind. It runs every row, so it
+//! is for tests and for people. [`evaluations`] counts distances without running the function, in time that
+//! grows with the active rows but not with their cost.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -71,11 +71,11 @@ pub struct Evaluations {
 /// How often each leaf of a model is evaluated for one point: how often the instructions run whose origin is
 /// the [distance](Part::Distance) of a leaf slot. `tables` fit the function ([`Tables::check`]).
 ///
-/// An instruction runs as often as the block that it stands in, and it counts for the leaf that stands in its
-/// slot: for that of the current row of the slot's table. Where it was hoisted out of the fold over that
-/// table, because it depends on nothing in the row, it runs once for all the rows, and counts once, for the
-/// leaf of the first active row that it serves; if none is active, it still runs, and counts only in the
-/// total. Constants and columns cost nothing and do not count.
+/// An instruction runs as often as its block. It counts for the leaf in its slot of the current row of the
+/// slot's table. An instruction that was hoisted out of the fold over that table, because it depends on no
+/// column of the row, runs once for all rows; it counts once, for the leaf of the first active row that it
+/// serves. If no row is active, it still runs, and counts in the total only. Constants and columns cost
+/// nothing and do not count.
 ///
 /// Counts saturate at 2^64 - 1.
 #[must_use]
@@ -112,10 +112,10 @@ pub fn evaluations(function: &Verified, tables: &Tables) -> Evaluations {
     result
 }
 
-/// For each table, the distances that one run of the body of its fold computes, without those of folds
-/// inside. Times the active rows of a [`Selection`], and added up, these are the evaluations that a point
-/// takes, if each active row runs once: as in lowered functions, where the fold over a table stands in the
-/// body of the fold over its parent.
+/// For each table, the distances that one run of its fold's body computes, without the distances of folds
+/// inside. Multiplied by the active rows of a [`Selection`] and summed over the tables, they give the
+/// evaluations of a point, if each active row runs once. This holds for lowered functions: there the fold
+/// over a table stands in the body of the fold over its parent.
 #[must_use]
 pub fn evaluations_per_row(function: &Function) -> Vec<u64> {
     let mut rows = vec![0; function.tables.len()];
@@ -127,7 +127,7 @@ pub fn evaluations_per_row(function: &Function) -> Vec<u64> {
     rows
 }
 
-/// For each table, the ops that one run of the body of its fold takes, without those of folds inside.
+/// For each table, the ops of one run of its fold's body, without the ops of folds inside.
 #[must_use]
 pub fn ops_per_row(function: &Function) -> Vec<u64> {
     let mut rows = vec![0; function.tables.len()];
@@ -141,8 +141,8 @@ pub fn ops_per_row(function: &Function) -> Vec<u64> {
     rows
 }
 
-/// What a point takes with the rows of a selection, where each row takes so much: `per_row` is what
-/// [`evaluations_per_row`] or [`ops_per_row`] gives.
+/// The count for one point with the rows of a selection. `per_row` is the result of [`evaluations_per_row`]
+/// or [`ops_per_row`].
 #[must_use]
 pub fn of_selection(per_row: &[u64], selection: &Selection) -> u64 {
     let of = |&table: &Table| {
@@ -160,8 +160,8 @@ fn homes_of_slots(function: &Function) -> HashMap<u32, (Table, usize)> {
     function.tables.iter().flat_map(of_table).collect()
 }
 
-/// The blocks that compute distances: the tables of the folds around each, from the outermost, and how many
-/// instructions compute the distance of each slot.
+/// The blocks that compute distances. For each: the tables of the enclosing folds, outermost first, and the
+/// number of instructions that compute the distance of each slot.
 fn distances(function: &Function) -> Vec<(Vec<Table>, BTreeMap<u32, u64>)> {
     let mut found = Vec::new();
     let mut waiting: Vec<(Block, Vec<Table>)> = vec![(function.body, Vec::new())];
@@ -191,15 +191,14 @@ fn distances(function: &Function) -> Vec<(Vec<Table>, BTreeMap<u32, u64>)> {
     found
 }
 
-/// The folds around a block. The rows that one of them runs depend on the current row of its parent only, so
-/// that the folds are a forest, and the number of combinations of rows is a product over siblings of sums
-/// over rows.
+/// The folds around a block. Which rows a fold runs depends only on the current row of its parent, so the
+/// folds form a forest. The number of combinations of rows is then a product over siblings of sums over rows.
 struct Chain<'a> {
     function: &'a Function,
     tables: &'a Tables,
     /// The tables of the folds, from the outermost; parents come before their children.
     chain: Vec<Table>,
-    /// For each fold, by the row of its table: how often the folds below it run together.
+    /// For each fold, by the row of its table: how often the folds below run, all together.
     below: HashMap<Table, Vec<u64>>,
 }
 
@@ -231,8 +230,8 @@ impl<'a> Chain<'a> {
         path.reverse();
         let inside = path.iter().take_while(|of| self.chain.contains(of)).count();
 
-        // From the outermost: how often the folds that are no descendants of the current table run, by its
-        // row.
+        // From the outermost: how often the folds that are no descendants of the current table run, by the
+        // row of the current table.
         let mut runs = vec![1_u64];
         for (at, &of) in path[..inside].iter().enumerate() {
             let parent = at.checked_sub(1).map(|at| path[at]);
@@ -248,7 +247,8 @@ impl<'a> Chain<'a> {
         self.first_rows(&path[inside..], runs)
     }
 
-    /// How often the children of `parent`, all but one, run together while `row` is its current row.
+    /// How often the children of `parent`, without `except`, run together while `row` is the current row of
+    /// `parent`.
     fn product(&self, parent: Option<Table>, except: Option<Table>, row: usize) -> u64 {
         let children =
             self.chain.iter().filter(|&&of| self.function.tables[of].parent == parent && Some(of) != except);
@@ -272,7 +272,7 @@ impl<'a> Chain<'a> {
         result
     }
 
-    /// Gives the runs of each row to the first active row of the last table on the path that it leads to.
+    /// Adds the runs of each row to the first active row that it leads to in the last table of the path.
     fn first_rows(&self, path: &[Table], runs: Vec<u64>) -> Vec<u64> {
         let Some(&last) = path.last() else { return runs };
         let mut first: Vec<Option<u32>> = (0..self.tables.tables[last].len())

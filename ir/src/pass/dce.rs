@@ -7,8 +7,8 @@
 //!                                     the needed part of the body reads it
 //! ```
 //!
-//! So an accumulator that only feeds itself goes, and so does a fold without a needed accumulator. Tables and
-//! columns stay, used or not: the rows of numbers keep their layout.
+//! So an accumulator that only feeds itself is removed, and so is a fold without a needed accumulator. Tables
+//! and columns stay, used or not: the rows of numbers keep their layout.
 
 use crate::entity::{Entity, Inst, Store, Value, Values};
 use crate::function::{Function, InstKind};
@@ -19,11 +19,12 @@ use crate::translate::renumber;
 enum ValueSource {
     /// The result of an instruction that is no fold.
     Inst(Inst),
-    /// An accumulator, inside or after its fold: its initial value, its next value, itself inside and after.
+    /// An accumulator, inside or after its fold: initial value, next value, and the two values that it is
+    /// inside and after.
     Accumulator([Value; 4]),
 }
 
-/// The function without what is not needed.
+/// The function without values that no output needs.
 #[must_use]
 pub fn dce(function: &Function) -> Function {
     let needed = needed(function);
@@ -56,7 +57,7 @@ pub fn dce(function: &Function) -> Function {
     renumber(&pruned)
 }
 
-/// For each value, whether an output needs it. The inside and the final value of an accumulator are needed
+/// For each value, whether an output needs it. An accumulator inside its fold and its final value are needed
 /// together.
 fn needed(function: &Function) -> Vec<bool> {
     let sources = sources(function);

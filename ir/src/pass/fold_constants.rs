@@ -39,7 +39,7 @@ fn fold(builder: &mut FunctionBuilder, masks: &mut HashMap<Value, bool>, op: Op,
     }
 }
 
-/// What a value is, if it is the same for every point.
+/// The constant that a value is, if it is one.
 fn constant(builder: &FunctionBuilder, masks: &HashMap<Value, bool>, value: Value) -> Option<Any<Scalar>> {
     match builder.definition(value)? {
         InstKind::Constant(number) => Some(Any::Real(*number)),

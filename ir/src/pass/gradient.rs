@@ -2,9 +2,9 @@
 //! behind it. A zero component is +0.
 //!
 //! The function is run once in the [`Tangent`] domain. Primal instructions are shared with the derivatives,
-//! so nothing is computed twice. A fold gets three more accumulators for each accumulator that moves and that
-//! the first output depends on; which ones do is found beforehand, because an accumulator can begin to move
-//! only in the body.
+//! so nothing is computed twice. A fold gets three more accumulators for each accumulator that depends on the
+//! inputs and that the first output depends on. These are found beforehand, because an accumulator may begin
+//! to depend on the inputs only in the body.
 //!
 //! ```text
 //! (s) = fold t0 rows neutral (0) (acc): ... yield next
@@ -27,9 +27,9 @@ pub fn gradient(function: &Function) -> Function {
     with_gradient(function, Tangent::new(FunctionBuilder::like(function)))
 }
 
-/// As [`gradient`], but of the same ops with guards: every component is finite and within
+/// As [`gradient`], with guards: every component is finite and within
 /// [`LARGEST_SLOPE`](crate::domain::tangent::LARGEST_SLOPE), whatever overflows on the way. Where nothing
-/// does, the bits are the same. It costs several times as many ops.
+/// overflows, the bits are the same. It costs several times as many ops.
 #[must_use]
 pub fn guarded_gradient(function: &Function) -> Function {
     with_gradient(function, Tangent::guarded(FunctionBuilder::like(function)))
@@ -53,7 +53,7 @@ fn with_gradient(function: &Function, tangent: Tangent) -> Function {
             let zero = pass.tangent.builder.constant(0.0);
             for (name, component) in GRADIENT_OUTPUTS.iter().zip(pass.with_zeros(slope)) {
                 let component = pass.tangent.saturated(component);
-                // The sign of a zero may depend on rows that add nothing; no answer shows it.
+                // The sign of a zero may depend on rows that add nothing; adding +0 removes it.
                 let component = pass.tangent.builder.add(component, zero);
                 outputs.push(((*name).to_owned(), component));
             }
@@ -62,13 +62,12 @@ fn with_gradient(function: &Function, tangent: Tangent) -> Function {
     pass.tangent.builder.finish(&outputs)
 }
 
-/// What the first output depends on.
+/// The values that the first output depends on.
 fn wanted(function: &Function) -> Vec<bool> {
     let mut wanted = vec![false; function.values.len()];
     let mut waiting: Vec<Value> =
         function.blocks[function.body].results.first().copied().into_iter().collect();
-    // What a value is made of: its operands; for what a fold yields or binds, the accumulator's beginning and
-    // next value.
+    // The direct dependences of each value: its operands; for an accumulator, its initial and its next value.
     let mut sources: Vec<Vec<Value>> = vec![Vec::new(); function.values.len()];
     for inst in function.insts.values() {
         match &inst.kind {
@@ -95,13 +94,14 @@ fn wanted(function: &Function) -> Vec<bool> {
     wanted
 }
 
-/// Which values move with the inputs and move the first output.
+/// Which values depend on the inputs and change the first output.
 fn moving(function: &Function) -> Vec<bool> {
     let mut moves = moved(function);
     for (moves, wanted) in moves.iter_mut().zip(wanted(function)) {
         *moves &= wanted;
     }
-    // An accumulator may be wanted in the body alone, or behind the fold alone: its tangent is there in both.
+    // An accumulator may be wanted only in the body, or only behind the fold: its tangent exists in both or
+    // in neither.
     for inst in function.insts.values() {
         if let InstKind::Fold(fold) = &inst.kind {
             for (&param, &result) in function.blocks[fold.body].params.iter().zip(&inst.results) {
@@ -114,8 +114,8 @@ fn moving(function: &Function) -> Vec<bool> {
     moves
 }
 
-/// Which values move with the inputs. Accumulators need a fixed point: one that stands still at first may be
-/// moved by the body.
+/// Which values depend on the inputs. Accumulators need a fixed point: the body may make an accumulator
+/// depend on the inputs whose initial value does not.
 fn moved(function: &Function) -> Vec<bool> {
     let mut moves = vec![false; function.values.len()];
     loop {
@@ -156,7 +156,7 @@ impl GradientPass<'_> {
         self.values[value.index()].expect("a verified function defines values before it uses them")
     }
 
-    /// An operand; as one that stands still, if nobody wants to know how the result moves.
+    /// An operand; without its tangent if nothing needs the tangent of the result.
     fn operand(&self, value: Value, moves: bool) -> Any<Tangent> {
         match self.value(value) {
             Any::Real(dual) if !moves => Any::Real(Tangent::still(dual.value)),
@@ -203,7 +203,7 @@ impl GradientPass<'_> {
         self.tangent.moving(value, axis)
     }
 
-    /// The fold, with three accumulators more for each that moves.
+    /// The fold, with three more accumulators for each accumulator that has a tangent.
     fn fold(&mut self, fold: &Fold, results: &[Value]) {
         let origin = self.tangent.builder.origin();
         let body = &self.function.blocks[fold.body];
@@ -217,7 +217,7 @@ impl GradientPass<'_> {
         self.unflatten(results, &finals);
     }
 
-    /// Values, each followed by its tangent where the accumulator in its place moves.
+    /// The values, each followed by its tangent where the accumulator in its place has one.
     fn flatten(&mut self, values: &[Value], accumulators: &[Value]) -> Vec<Value> {
         let mut flat = Vec::new();
         for (&value, accumulator) in values.iter().zip(accumulators) {
@@ -246,7 +246,7 @@ impl GradientPass<'_> {
                 Type::Mask => Any::Mask(primal),
                 Type::Bits => Any::Bits(primal),
                 Type::Real if self.moves[value.index()] => {
-                    // What components gave, or a fold made of them.
+                    // Components are finite, and so are accumulators made of them.
                     let slope = [0; 3].map(|_| Some(self.tangent.note(next())));
                     Any::Real(self.tangent.moving(primal, slope))
                 }

@@ -1,4 +1,4 @@
-//! Rows that change nothing: what has to hold for that.
+//! Finds rows that change no accumulator, and the condition for that: the gate.
 //!
 //! ```text
 //! fold t ricci (m, s):                        gate: near is +0
@@ -10,11 +10,11 @@
 //!     yield next, sum           m, s          what it was given: the row may end at the gate
 //! ```
 //!
-//! Most rows of a model are out of reach of most points. An engine that finds the gate to hold at all points
-//! that it computes together may leave the rest of the row out: every bit stays. A row around folds has
-//! another gate: that their results are the numbers that they began with, because all rows inside changed
-//! nothing. Both are proven here, by following what becomes of the numbers, and by facts of the accumulators
-//! that hold before every row. (All NaNs count as one.)
+//! Most rows of a model are out of reach of most points. Where the gate holds at all points that an engine
+//! computes together, the engine may leave out the rest of the row: every bit stays. A row around folds has
+//! another gate: the results of these folds equal their initial values, because all rows inside changed
+//! nothing. Both are proven here, by constant propagation from the gate and by facts of the accumulators that
+//! hold before every row. (All NaNs count as one.)
 
 use std::collections::{HashMap, HashSet};
 
@@ -24,26 +24,24 @@ use crate::facts::Fact;
 use crate::function::{Fold, FoldKind, Function, InstKind};
 use crate::op::{Any, Op, apply};
 
-/// Steps that a gate has to spare, at least. To ask takes about four.
+/// The least number of steps that a gate has to save. The test costs about four.
 const LEAST_SPARED: usize = 12;
 /// Steps that a division or a root counts as.
 const SLOW: usize = 6;
-/// Values of a body for which a proof is tried, at most.
+/// The largest number of values of a body for which a proof is tried.
 const MOST_TRIED: usize = 4;
-/// An fma with a constant at least as large has a product that is 0 or so near to it that the sum is not
-/// tiny: it is exact where it cancels, and its zero is +0.
+/// In an fma with a constant addend at least this large, the product is 0 or too large for the sum to be
+/// tiny: the sum is exact where it cancels, and its zero is +0.
 const LARGE: f32 = 1e-12;
 
-/// What has to hold at a point for a row to change no accumulator there: that these values are these numbers,
-/// bit for bit.
+/// The condition at a point under which a row changes no accumulator: each value is this number, bit for bit.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Gate(pub Vec<(Value, f32)>);
 
 /// The gate of each fold's body, if it has one.
 pub type Gates = Store<Block, Option<Gate>>;
 
-/// For the body of each fold its gate, if it has one that spares enough to be asked for. Of several the
-/// first.
+/// For the body of each fold the first gate that saves enough to be tested, if there is one.
 #[must_use]
 pub fn gates(function: &Function) -> Gates {
     let mut gates = Store::new();
@@ -70,11 +68,12 @@ pub fn gates(function: &Function) -> Gates {
     gates
 }
 
-/// Where gates may be, and what they are. A number that is clamped at 0 is 0 at most points, as a rule; and
-/// if all rows of a fold inside change nothing, its results are what it began with.
+/// Where gates may be, and what they are: values clamped at 0, which are 0 at most points as a rule; and
+/// results of folds inside, which equal their initial values if all rows inside change nothing.
 fn candidates(function: &Function, insts: &[Inst], constants: &[Option<f32>]) -> Vec<(usize, Gate)> {
     let is_zero = |value: Value| constants[value.index()].is_some_and(|number| number.to_bits() == 0);
-    // Of each result of a fold in this block, what the first of the folds that hand it on began with.
+    // For each result of a fold in this block: the initial value of the first fold in the chain that hands it
+    // on.
     let mut began: HashMap<Value, f32> = HashMap::new();
     let (mut candidates, mut clamped, mut last_fold) = (Vec::new(), 0, None);
     for (at, &inst) in insts.iter().enumerate() {
@@ -101,8 +100,8 @@ fn candidates(function: &Function, insts: &[Inst], constants: &[Option<f32>]) ->
     candidates
 }
 
-/// Whether a row changes no accumulator where a gate holds, which is known behind an instruction. `now` has
-/// nothing in it, before and behind.
+/// Whether a row changes no accumulator where a gate holds, which is known after an instruction. `now` is
+/// empty before and after the call.
 fn is_idle(
     function: &Function,
     fold: &Fold,
@@ -125,7 +124,7 @@ fn is_idle(
     let mut all = body.params.iter().zip(&body.results).zip(&fold.initial);
     let is_idle = all.all(|((&param, &next), &initial)| {
         let begins = Now::known(initial, facts[initial.index()]);
-        // A guard has one row.
+        // A guard has one row, so its result may also equal the initial value.
         let is_first = fold.kind == FoldKind::Guard && begins.is_exact() && of(next) == begins;
         is_first || of(next) == Now::Same(param)
     });
@@ -137,8 +136,8 @@ fn is_idle(
     is_idle
 }
 
-/// What is left out of a body if its row ends where this instruction, and what it is made of, has been
-/// computed.
+/// The cost that is saved if a row ends after this instruction: of everything that the instruction does not
+/// depend on.
 fn spared(function: &Function, insts: &[Inst], at: usize) -> usize {
     let mut wanted: HashSet<Value> = function.operands(insts[at]).iter().copied().collect();
     let cost = |inst: Inst| match &function.insts[inst].kind {
@@ -158,7 +157,7 @@ fn spared(function: &Function, insts: &[Inst], at: usize) -> usize {
     spared
 }
 
-/// What holds for a value at every point, before every row.
+/// Facts of a value that hold at every point, before every row.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 struct ValueFacts {
     /// It is more than 0, and no NaN.
@@ -215,7 +214,7 @@ impl Fact for ValueFacts {
     fn of(op: Op, args: &[Self], same: bool) -> Self {
         let minus = |is_not_minus_zero| Self { is_not_minus_zero, ..Self::default() };
         match op {
-            // The second operand is the result where an operand is NaN, and where it is not exceeded.
+            // The second operand is the result where an operand is NaN or the first is not larger.
             Op::Max => Self {
                 is_positive: args[1].is_positive,
                 is_not_negative: args[1].is_not_negative,
@@ -224,7 +223,7 @@ impl Fact for ValueFacts {
             },
             Op::Select => args[1].join(args[2]),
             Op::StopGradient => args[0],
-            // Only -0 and -0 give -0: where a sum cancels it is +0, and sums are never too small to be exact.
+            // Only -0 and -0 give -0: a sum that cancels is +0, and a sum is never too small to be exact.
             Op::Add => minus(args[0].is_not_minus_zero || args[1].is_not_minus_zero),
             Op::Fma => minus(args[2].constant.is_some_and(|number| number.abs() >= LARGE)),
             Op::Abs => Self { is_not_negative: true, ..minus(true) },
@@ -234,10 +233,10 @@ impl Fact for ValueFacts {
     }
 }
 
-/// What a value is where the gate is +0.
+/// What is known of a value where the gate holds.
 #[derive(Clone, Copy, PartialEq, Debug)]
 enum Now {
-    /// What it is elsewhere: nothing is known.
+    /// The same bits as this value has without the gate; nothing else is known.
     Same(Value),
     Zero {
         /// Whether it is +0; otherwise the sign is unknown.
@@ -250,12 +249,12 @@ enum Now {
 }
 
 impl Now {
-    /// Not of a NaN.
+    /// The knowledge of a number other than NaN.
     fn number(number: f32) -> Self {
         if number == 0.0 { Self::Zero { is_plus: number.is_sign_positive() } } else { Self::Number(number) }
     }
 
-    /// What a value is that the gate does not change.
+    /// The knowledge of a value that does not depend on the gate.
     fn known(value: Value, facts: ValueFacts) -> Self {
         let bits = facts.bits.map(Self::Bits);
         bits.or_else(|| facts.constant.map(Self::number)).unwrap_or(Self::Same(value))
@@ -271,7 +270,7 @@ impl Now {
     }
 }
 
-/// What an op gives where the gate is +0.
+/// The result of an op where the gate holds.
 fn step(op: Op, args: &[Value], facts: &[ValueFacts], now: &[Option<Now>], result: Value) -> Now {
     use Now::{Number, Same, Truth, Zero};
     let of = |value: Value| now[value.index()].unwrap_or_else(|| Now::known(value, facts[value.index()]));
@@ -318,7 +317,7 @@ fn step(op: Op, args: &[Value], facts: &[ValueFacts], now: &[Option<Now>], resul
     }
 }
 
-/// What an op gives of operands that are known exactly.
+/// The result of an op on operands whose bits are all known.
 fn computed(op: Op, args: &[Now]) -> Option<Now> {
     let exact = |arg: &Now| match *arg {
         Now::Zero { is_plus: true } => Some(Any::Real(0.0)),
@@ -329,7 +328,7 @@ fn computed(op: Op, args: &[Now]) -> Option<Now> {
     };
     let args: Option<Vec<Any<Scalar>>> = args.iter().map(exact).collect();
     match apply(&mut Scalar, op, &args?) {
-        // Which NaN it is, is the engine's business.
+        // The bits of a NaN are unspecified.
         Any::Real(number) if number.is_nan() => None,
         Any::Real(number) => Some(Now::number(number)),
         Any::Mask(truth) => Some(Now::Truth(truth)),

@@ -10,11 +10,11 @@
 //! (s.low, s.high) = fold t0 rows neutral (0, 0) (acc.low, acc.high): ... yield next.low, next.high
 //! ```
 //!
-//! A mask accumulator becomes two masks: it certainly holds, it certainly does not. An accumulator that no
-//! input moves stays one value.
+//! A mask accumulator becomes two masks: certainly true, certainly false. An accumulator that does not depend
+//! on the inputs stays one value.
 //!
-//! The transcendentals have to be whole, so it goes before `legalize`; behind `gradient`, it gives the ranges
-//! of the gradient.
+//! The transcendentals have to be whole, so the pass runs before `legalize`; after `gradient` it gives the
+//! ranges of the gradient.
 
 use crate::builder::FunctionBuilder;
 use crate::domain::interval::{Ground, Walk};
@@ -50,8 +50,8 @@ struct Emitting;
 impl Ground for Emitting {
     type Bound = FunctionBuilder;
 
-    /// A distance is one value, for the counters: the high bound, which [`end`](Self::end) marks. What else
-    /// it takes goes before it.
+    /// A distance is one value for the counters: the high bound, which [`end`](Self::end) marks. The other
+    /// ops of a distance count as position.
     fn begin(&mut self, bounds: &mut FunctionBuilder, origin: Origin) {
         let part = if origin.part == Part::Distance { Part::Position } else { origin.part };
         bounds.set_origin(Origin { slot: origin.slot, part });
@@ -88,7 +88,7 @@ impl Ground for Emitting {
     }
 }
 
-/// A value, and what wraps another one of its type.
+/// A value, and the constructor of its type.
 fn split(any: Any<FunctionBuilder>) -> (fn(Value) -> Any<FunctionBuilder>, Value) {
     match any {
         Any::Real(value) => (Any::Real, value),

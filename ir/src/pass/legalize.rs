@@ -1,8 +1,8 @@
 //! Expands the ops that no machine has.
 //!
 //! The transcendentals become the steps of [`crate::math`], written through the builder, so every engine runs
-//! the very same ones. `stop_gradient` is there for the gradient only, which has been taken by now: it
-//! becomes its operand.
+//! the same steps. `stop_gradient` matters to the gradient only, which has been taken by now: it becomes its
+//! operand.
 
 use crate::builder::FunctionBuilder;
 use crate::entity::Value;

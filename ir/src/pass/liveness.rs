@@ -1,8 +1,8 @@
 //! How many values are alive at once: what decides whether registers, and then a frame, can hold a function.
 //!
 //! A value is alive from its definition to its last use in its own block. A fold uses its initial
-//! accumulators once, when it starts, and *captures* the values of the enclosing blocks that its body reads:
-//! these stay alive until it ends. So at a point inside a body, the values alive are those of the body and
+//! accumulators once, when it starts. It *captures* the values of enclosing blocks that its body reads: they
+//! stay alive until the fold ends. So the values alive at a point inside a body are those of the body and
 //! those that its fold keeps alive outside.
 //!
 //! ```text
@@ -51,8 +51,8 @@ impl Uses {
         uses
     }
 
-    /// The values that an instruction reads when it starts, and those that it reads as long as it runs: none,
-    /// but for a fold. A value may come twice, and values of enclosing blocks are among them.
+    /// The values that an instruction reads when it starts, and those that it reads until it ends: only a
+    /// fold has the latter. A value may come twice, and values of enclosing blocks are among them.
     pub fn of<'a>(&'a self, function: &'a Function, inst: Inst) -> (&'a [Value], &'a [Value]) {
         let captured = match &function.insts[inst].kind {
             InstKind::Fold(fold) => self.captured[fold.body].as_slice(),

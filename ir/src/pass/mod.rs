@@ -8,9 +8,10 @@
 //! lowered ─► (gradient) ─► (interval) ─► legalize ─► constant-folding ─► simplify ─► cse ─► dce ─► schedule ─► verify ─► engine
 //! ```
 //!
-//! The gradient and the interval change what is computed, and only for a query that asks for them; so they
-//! are not in the list but go before it: `run_pipeline(f, [&GRADIENT, &INTERVAL].into_iter().chain(PIPELINE),
-//! ..)`. They need the transcendentals whole, hence before `legalize`.
+//! `gradient` and `interval` change what is computed, and only for a query that asks for them. So they are
+//! not in the list but run before it:
+//! `run_pipeline(f, [&GRADIENT, &INTERVAL].into_iter().chain(PIPELINE), ..)`. They need the transcendentals
+//! whole, hence before `legalize`.
 
 mod dce;
 mod fold_constants;
@@ -47,22 +48,21 @@ pub struct Pass {
     pub run: fn(&Function) -> Function,
 }
 
-/// The pass that goes before the others where the gradient is asked for.
+/// Runs before the others where the gradient is asked for.
 pub const GRADIENT: Pass = Pass {
     name: "gradient",
     what: "Adds the gradient of the first output, by forward differentiation.",
     run: gradient,
 };
 
-/// The pass that goes in the place of [`GRADIENT`] for the points where that gives a gradient that is not
-/// finite.
+/// Replaces [`GRADIENT`] for points where [`GRADIENT`] gives a component that is not finite.
 pub const GUARDED_GRADIENT: Pass = Pass {
     name: "guarded-gradient",
     what: "Adds the gradient of the first output, finite whatever overflows on the way.",
     run: guarded_gradient,
 };
 
-/// The pass that goes before the others, and behind the gradient, where ranges are asked for.
+/// Runs before the others, after the gradient, where ranges are asked for.
 pub const INTERVAL: Pass = Pass {
     name: "interval",
     what: "Replaces every input and output by a low and a high bound, by interval arithmetic.",
@@ -117,10 +117,10 @@ pub fn run_pipeline<'a>(
     })
 }
 
-/// Shares equal instructions and hoists: a plain rewrite, for the builder does both.
+/// Shares equal instructions and hoists: a plain rewrite, because the builder does both.
 ///
-/// Every pass that rewrites does it too. This one stands in the list because simplification makes operands
-/// equal which the instructions written before them did not know.
+/// Every pass that rewrites does it too. This pass is in the list because simplification makes operands equal
+/// after instructions before them were written.
 #[must_use]
 pub fn share(function: &Function) -> Function {
     rewrite(function, FunctionBuilder::op)

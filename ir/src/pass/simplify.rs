@@ -1,8 +1,8 @@
 //! Replaces ops by cheaper ones that give the same bits for **every** operand: signed zeros, infinities and
 //! subnormals included; any NaN equals any NaN.
 //!
-//! What is missing is missing on purpose. `x + 0` is not x (`-0 + 0 = +0`), `x * 0` is not 0 (infinities,
-//! NaN, signs), `x - x` is not 0, and `min` and `max` do not commute.
+//! Some rules are absent on purpose: `x + 0` is not x (`-0 + 0 = +0`), `x * 0` is not 0 (infinities, NaN,
+//! signs), `x - x` is not 0, and `min` and `max` do not commute.
 
 use crate::builder::FunctionBuilder;
 use crate::entity::Value;

@@ -1,10 +1,10 @@
 //! How many values are alive at once, before any code is made.
 //!
-//! A value is alive from its definition to its last use. A use inside a fold counts until the fold ends if
-//! the value comes from outside, because the next row reads it again. Inputs, constants, columns and what
-//! another piece has computed are read anew in each block that uses them and do not count. (Columns that are
-//! broadcast for a piece are alive in it, and do not count either: where there are many of them they are
-//! spilled, and read from the frame where they are used.)
+//! A value is alive from its definition to its last use. If a value from outside is used inside a fold, it is
+//! alive until the fold ends, because the next row reads it again. Inputs, constants, columns and values of
+//! other pieces are read anew in each block that uses them and do not count. (Columns that are broadcast for
+//! a piece are alive in it, but do not count either: if there are many, they are spilled and read from the
+//! frame.)
 //!
 //! ```text
 //! v2 = sqrt v1          ┐
@@ -18,8 +18,8 @@ use super::strips::{Plan, Then};
 use crate::entity::{Block, Entity, Inst, Value};
 use crate::function::{Function, InstData, InstKind};
 
-/// Where loops carry at most this many, a function is a field, and not a gradient or attributes: more points
-/// in a block pay longer.
+/// A function whose loops carry at most this many values is a field, without gradient or attributes: larger
+/// blocks of points pay longer.
 pub const FIELD_CARRIES: usize = 3;
 /// The walk over all instructions in order of execution.
 struct PressureWalk<'a> {
@@ -64,9 +64,8 @@ pub fn live_values(function: &Function, plan: &Plan) -> usize {
     most.max().unwrap_or(0).unsigned_abs()
 }
 
-/// The largest number of values that a loop hands from row to row: few for a field, more for a gradient, and
-/// more for attributes. Where the function is one piece they compete for registers with all that the body
-/// computes.
+/// The largest number of values that a loop hands from row to row: few for a field, more for a gradient, most
+/// for attributes. In a function of one piece they compete for registers with all values of the body.
 #[must_use]
 pub fn carried_values(function: &Function) -> usize {
     let carried =
@@ -132,7 +131,7 @@ impl PressureWalk<'_> {
         self.alive[value.index()] = (self.position + 1, self.position + 1);
     }
 
-    /// Operands, one step later than whatever has been read or defined before.
+    /// Records reads, one step after the last read or definition.
     fn reads(&mut self, values: &[Value]) {
         self.position += 1;
         for &value in values {

@@ -1,9 +1,10 @@
 //! Where a long function is cut: each piece runs over a strip of points before the next piece does.
 //!
 //! Code that is longer than the nearest caches is fetched anew for every block of points, and that takes
-//! longer than running it. A piece fits, so all blocks of a strip but the first find it there. And one block
-//! need not wait for what another computes, which keeps the processor busy where a formula is one long chain.
-//! The price is memory: a value that another piece reads is kept for the whole strip, in the frame.
+//! longer than running it. A piece fits into the cache, so all blocks of a strip but the first find it there.
+//! And one block need not wait for another block's results, which keeps the processor busy where a formula is
+//! one long chain. The price is memory: a value that another piece reads is kept in the frame for the whole
+//! strip.
 //!
 //! ```text
 //! v3 = sqrt v0           ┐                     for each block of the strip
@@ -17,9 +18,9 @@
 //! yield v9               ] piece 3             for each block of the strip
 //! ```
 //!
-//! So the rows of a fold are outside and the points inside, where an uncut function has it the other way
-//! round. The accumulators of a fold live in the frame: piece 0 keeps the initial ones, the last piece of the
-//! body keeps the next ones.
+//! So a cut function has rows outside and points inside, an uncut function the other way round. The
+//! accumulators of a fold live in the frame: piece 0 writes the initial ones, the last piece of the body
+//! writes the next ones.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -32,8 +33,8 @@ use crate::function::{Function, InstData, InstKind};
 
 /// Bytes of all slots that leave room for other things in the nearest cache.
 const NEAR_BYTES: usize = 32 << 10;
-/// Points of the shortest and of the longest strip: enough that fetching the code of a piece does not count,
-/// and no more than a caller may be expected to have.
+/// Points of the shortest and of the longest strip: enough to make fetching a piece negligible, and no more
+/// than a caller may be expected to have.
 const STRIP_POINTS: [usize; 2] = [64, 1024];
 
 /// A stretch of the instructions of one block.
@@ -225,8 +226,8 @@ struct PieceLives<'a> {
     piece: usize,
     /// The piece that defines a value. For an accumulator, the one before the fold.
     homes: Vec<usize>,
-    /// The last piece in which a value is needed: one that reads it, or the last of a fold that does or whose
-    /// result it is.
+    /// The last piece that needs a value: the last that reads it, or the last piece of a fold that reads it
+    /// or has it as a result.
     last: Vec<usize>,
     /// How many folds enclose the definition of each value.
     depth: Vec<usize>,
@@ -317,11 +318,11 @@ impl<'a> PieceLives<'a> {
         }
     }
 
-    /// A slot for every value that is read away from home, and for every accumulator. And how many slots
-    /// there are.
+    /// A slot for every value that is read outside of its piece and for every accumulator, and the number of
+    /// slots.
     fn slots(&self) -> (Vec<Option<Slot>>, usize) {
         let mut slots: Vec<Option<Slot>> = vec![None; self.function.values.len()];
-        // What the body binds has the slot of the result, and leaves are read where they are.
+        // A parameter has the slot of the fold's result; leaves are read where they are.
         let (mut is_elsewhere, mut initial) = (vec![false; slots.len()], vec![None; slots.len()]);
         for accumulator in &self.accumulators {
             is_elsewhere[accumulator.param.index()] = true;
@@ -335,7 +336,7 @@ impl<'a> PieceLives<'a> {
             .filter(|&value| !is_elsewhere[value])
             .collect();
         wanted.sort_by_key(|&value| self.homes[value]);
-        // The last piece that reads what is in each slot.
+        // For each slot, the last piece that reads its value.
         let mut taken: Vec<usize> = Vec::new();
         let (mut free, mut ends) = (BinaryHeap::new(), BinaryHeap::new());
         for value in wanted {
@@ -344,12 +345,13 @@ impl<'a> PieceLives<'a> {
                 && last < home
             {
                 ends.pop();
-                // Unless it has been handed on.
+                // Unless an accumulator has taken it over.
                 if taken[slot] == last {
                     free.push(Reverse(slot));
                 }
             }
-            // An accumulator begins where its initial value is, if the fold is the last to read that.
+            // An accumulator takes over the slot of its initial value, if the fold is the last to read that
+            // value.
             let handed_on = initial[value].and_then(|initial| slots[initial]);
             let handed_on = handed_on.filter(|&Slot(slot)| taken[slot] == home).map(|Slot(slot)| slot);
             let slot = handed_on.or_else(|| free.pop().map(|Reverse(slot)| slot)).unwrap_or_else(|| {

@@ -12,19 +12,19 @@
 //!         ..                                                   ..            row 1 has no `mul` of its own
 //! ```
 //!
-//! A program of formulas, such as one that was written by a machine, becomes many tables of two or three
-//! rows. Its rows have most of their numbers in common, and so most of their work; but a loop does the work
-//! of each row again. Straight code reads equal numbers from one column, and the builder, which writes no
-//! instruction twice, does the rest. The order of all steps stays, so the bits do.
+//! A machine-written program of formulas becomes many tables of two or three rows. Its rows share most of
+//! their numbers, and so most of their work; but a loop repeats the work for each row. Straight code reads
+//! equal numbers from one column, and the builder, which writes no instruction twice, shares the work. The
+//! order of all steps stays, and so do the bits.
 //!
-//! There is a price. Straight rows are always there: nothing can leave one out. And the code knows how many
-//! rows there are and which of their numbers are equal, so it fits fewer tables than the function that it was
-//! made from: see [`Straight::tables`].
+//! Straight code has a price. Straight rows always run: none can be left out. And the code depends on the
+//! number of rows and on which of their numbers are equal, so it fits fewer tables than the original
+//! function: see [`Straight::tables`].
 //!
-//! A pass that makes other steps of a function, as the gradient, comes before: what it makes of straight code
-//! has other roundings.
+//! A pass that adds other steps, such as the gradient, runs before: on straight code its steps would round
+//! differently.
 //!
-//! Rows of primitives stay rows. They seldom have anything in common, people edit them, and a row is what is
+//! Rows of primitives stay rows. They seldom share numbers, people edit them, and rows are the unit that is
 //! counted and left out.
 
 mod choose;
@@ -49,8 +49,8 @@ const MAX_OPS: u64 = 1 << 16;
 /// Straight code is worth it if it takes at most so much of the ops of the folds.
 const WORTH: f64 = 0.95;
 
-/// A function with straight code in place of some folds, and how tables of the one become tables of the
-/// other.
+/// A function with straight code in place of some folds, and the mapping of tables of the original function
+/// to its own tables.
 #[derive(Clone, Debug)]
 pub struct Straight {
     function: Function,
@@ -74,14 +74,14 @@ impl Straight {
         Self::if_worth(function, tables, WORTH)
     }
 
-    /// As [`new`](Self::new), if it takes at most so much of the ops of the folds.
+    /// As [`new`](Self::new), with `worth` as the largest part of the folds' ops that straight code may take.
     #[must_use]
     pub fn if_worth(function: &Function, tables: &Tables, worth: f64) -> Option<Self> {
         Self::with_apart(function, tables, worth, &HashMap::default())
     }
 
-    /// Straight code for other tables of the same function. Numbers that have been told apart before stay
-    /// apart, so that a number which moves ends up in a column of its own.
+    /// Straight code for other tables of the same function. Numbers that have been separated stay separate,
+    /// so that a number which changes gets a column of its own.
     #[must_use]
     pub fn again(&self, function: &Function, tables: &Tables) -> Option<Self> {
         let mut apart = HashMap::default();
@@ -120,9 +120,8 @@ impl Straight {
         &self.function
     }
 
-    /// The tables of [`function`](Self::function) for tables of the function that it was made from; `None` if
-    /// they have other numbers of rows where there is straight code now, or if numbers that share a column
-    /// differ.
+    /// The tables of [`function`](Self::function) for tables of the original function. `None` if a table that
+    /// became straight code has another number of rows now, or if numbers that share a column differ.
     #[must_use]
     pub fn tables(&self, tables: &Tables) -> Option<Tables> {
         let rows = self.rows(tables)?;
@@ -166,7 +165,7 @@ impl Straight {
         Some(Tables { tables: made })
     }
 
-    /// The row at each place, if there are as many as there have to be.
+    /// The row at each place; `None` if a place has another number of rows.
     fn rows(&self, tables: &Tables) -> Option<Vec<usize>> {
         let root = self.places[0].table;
         let [first] = tables.tables[root].active[..] else { return None };
@@ -177,8 +176,7 @@ impl Straight {
             if index > 0 {
                 rows.push(tables.tables[place.table].range(rows[place.parent])[place.position] as usize);
             }
-            // The counts of a place stand in the order of places, before the places that they speak of are
-            // met.
+            // Counts are sorted by place, and a place's count comes before the places under it.
             while let Some(count) = next.filter(|count| count.place == index) {
                 if tables.tables[count.table].range(rows[index]).len() != count.rows {
                     return None;
@@ -190,8 +188,8 @@ impl Straight {
     }
 }
 
-/// The active rows under some rows, as a table of its own whose rows are all active; and which rows these
-/// are.
+/// The active rows under some rows of the parent, as a table of its own whose rows are all active; and the
+/// old numbers of these rows.
 fn copy(rows: &Rows, parents: &[u32], slots: usize) -> (Rows, Vec<u32>) {
     let mut starts = vec![0];
     let mut list: Vec<u32> = Vec::new();

@@ -1,8 +1,8 @@
-//! Where the numbers of straight code come from.
+//! Sources of the numbers of straight code.
 
 use crate::entity::Table;
 
-/// A row that became straight code: the n-th active one of a table under another place. The first place is
+/// A row that became straight code: the n-th active row of a table under another place. The first place is
 /// the row that stays.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) struct Place {
@@ -26,8 +26,8 @@ pub(super) struct Source {
     pub(super) column: usize,
 }
 
-/// A table whose rows are rows of another one: the active ones that hang under a place, under the rows of a
-/// new table, or under nothing.
+/// A table made of rows of an old one: its active rows under a place, under the rows of a new table, or under
+/// no row.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) struct Copied {
     pub(super) table: Table,

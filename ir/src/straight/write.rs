@@ -12,7 +12,7 @@ use crate::table::Tables;
 use super::choose::Chosen;
 use super::plan::{Copied, Count, Place, Source, Under};
 
-/// What was written, and how tables follow: as in [`Straight`](super::Straight).
+/// The new function and how its tables follow from old ones: the fields of [`Straight`](super::Straight).
 pub(super) struct Written {
     pub(super) function: Function,
     pub(super) places: Vec<Place>,
@@ -28,9 +28,9 @@ pub(super) struct Writer<'a> {
     function: &'a Function,
     tables: &'a Tables,
     chosen: Chosen,
-    /// The columns that numbers had to themselves before.
+    /// The columns of numbers that were separated before.
     apart: &'a HashMap<Source, usize>,
-    /// Whether numbers of the row that stays may share a column: it holds no primitive.
+    /// Whether numbers of the row that stays may share a column: only if the row holds no primitive.
     shares_root: bool,
     builder: FunctionBuilder,
     /// The new value of each old one.
@@ -40,10 +40,10 @@ pub(super) struct Writer<'a> {
     counts: Vec<Count>,
     columns: Vec<Vec<Source>>,
     copies: Vec<Copied>,
-    /// By old table, while its body is written: the place, or the new table.
+    /// By old table, while its fold's body is written: the place, or the new table.
     here: Vec<Option<Under>>,
     column_of: HashMap<Source, usize>,
-    /// The column that holds a number, by its bits; and by the column that it had before.
+    /// The column that holds a number, by the number's separate column, if it had one, and by its bits.
     column_with: HashMap<(Option<usize>, u32), usize>,
     /// The new slot of each old one, in the body that is written.
     slots: HashMap<u32, u32>,

@@ -1,4 +1,4 @@
-//! A line that is being read: it takes the pieces of the text form, or says what it expected in their place.
+//! A line that is being read: each method takes one piece of the text form, or says which piece it expected.
 
 use std::collections::HashMap;
 use std::fmt;
@@ -47,7 +47,7 @@ pub struct Span<'a> {
 }
 
 impl Span<'_> {
-    /// That something else could stand here. Nothing of the line that a terminal would obey is repeated.
+    /// The error that something else could stand here. It repeats no character that a terminal would obey.
     pub fn error(&self, expected: impl Into<String>) -> ParseError {
         /// Characters of the line shown before and after the place.
         const AROUND: usize = 60;
@@ -76,19 +76,19 @@ impl Span<'_> {
     }
 }
 
-/// A value at its definition: its type is written, or the usual one.
+/// A value at its definition, and its type if the type is written.
 pub type Defined = (Value, Option<Type>);
 
-/// What a part of a line gives.
+/// The result of reading a part of a line.
 pub type Parsed<T> = Result<T, ParseError>;
 
-/// A line, and the token that is looked at.
+/// A line and its current token.
 #[derive(Clone, Copy)]
 pub struct Line<'a> {
     number: usize,
     text: &'a str,
     lexer: Lexer<'a>,
-    /// The token that is looked at.
+    /// The current token.
     pub token: Token<'a>,
 }
 
@@ -105,7 +105,7 @@ impl<'a> Line<'a> {
         self.token = self.lexer.next();
     }
 
-    /// That something else could stand where this token is.
+    /// The error that something else could stand in place of the current token.
     pub fn error(&self, expected: impl Into<String>) -> ParseError {
         let (start, end) = (self.token.start, self.token.end);
         Span { line: self.number, text: self.text, start, end }.error(expected)
@@ -202,7 +202,7 @@ impl<'a> Line<'a> {
         Ok(name)
     }
 
-    /// The index that stands here, or the one of the name that does.
+    /// The index that stands here, or the index of the name that stands here.
     pub fn name_or_index(&mut self, expected: &str, names: Option<&HashMap<String, usize>>) -> Parsed<usize> {
         if matches!(self.token.kind, Kind::Number(_)) {
             return Ok(self.integer(expected)? as usize);

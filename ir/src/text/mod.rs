@@ -17,16 +17,16 @@
 //! comment  = ";" up to the end of the line
 //! ```
 //!
-//! * A value is written with its type only where that is not the one that its definition gives: the result of
-//!   the op's row, bits for `bits`, real for everything else. A broken function can so be written down, and
-//!   the verifier tested.
-//! * An input or column is written with its index where its name is taken by an earlier one.
-//! * A block that is named without a colon is a mention of it only. Only a broken function has these.
+//! * A value is written with its type where the type differs from the one of its definition: the result type
+//!   of the op's row, bits for `bits`, real for everything else. So an accumulator that is a mask
+//!   has its type, and a broken function can be written down, to test the verifier.
+//! * An input or column is written with its index where an earlier one has its name.
+//! * A block name without a colon only mentions the block. Only a broken function has such mentions.
 //! * Numbers are the shortest decimals that read back as the same f32; `nan` is the encoding 0x7fc00000, any
 //!   other NaN is written `nan:0x7fc00001`.
 //!
-//! The numbers of values, blocks and tables are kept by printing and parsing; instructions are numbered anew,
-//! in the order of the text.
+//! Printing and parsing keep the numbers of values, blocks and tables. Parsing numbers instructions anew, in
+//! the order of the text.
 
 mod lex;
 mod line;

@@ -1,8 +1,7 @@
-//! Reads the text form, line by line. An error ends its line, not the reading: the next line is tried afresh.
+//! Reads the text form, line by line. An error ends the reading of its line; the next line is read as usual.
 //!
-//! Folds that are open stand on an explicit stack, so nested text needs no nested calls. What is read has the
-//! form of a function and nothing more: whether values are defined before they are used is for
-//! [`mod@crate::verify`] to say.
+//! Open folds stand on an explicit stack, so nested text needs no nested calls. The parser checks form only:
+//! whether a value is defined before its use is a rule of [`mod@crate::verify`].
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -18,9 +17,9 @@ use super::line::{Defined, Line, ParseError, Parsed, Span};
 /// Reads one function. The text form is described at the head of [`crate::text`].
 ///
 /// # Errors
-/// Every line that is wrong, once, in order; reading stops after [`MAX_ERRORS`] of them. Numbers of values
-/// and tables and the depth of folds are held to [`crate::limits`] here already, so that no text can ask for
-/// more memory than is in proportion to it.
+/// The errors, at most one per line, in order of lines; reading stops after [`MAX_ERRORS`] of them. Value
+/// numbers, table numbers and the depth of folds are checked against [`crate::limits`] here, so that the
+/// memory of a parse is in proportion to the text.
 pub fn parse(text: &str) -> Result<Function, Vec<ParseError>> {
     let mut parser = Parser::new();
     let mut last = (1, "");
@@ -59,7 +58,7 @@ impl Stage {
     }
 }
 
-/// A block as a fold or the function names it: with a colon its parameters, otherwise nothing.
+/// A block where a fold or the function names it. The parameters are there if a colon follows the name.
 type Named = (Block, Option<Vec<Defined>>);
 
 struct Parser {
@@ -117,8 +116,7 @@ impl Parser {
         }
     }
 
-    /// After a wrong line, guesses what it was meant to be, so that the lines after it are not wrong because
-    /// of it.
+    /// After a wrong line, guesses its kind, so that the error does not spread to the next lines.
     fn recover(&mut self, stage: Stage, text: &str) {
         let text = text.split(';').next().unwrap_or_default().trim();
         match stage {
@@ -292,7 +290,7 @@ impl Parser {
         Ok((block, Some(params)))
     }
 
-    /// Makes the instructions that follow those of this block.
+    /// Makes this block the owner of the instructions that follow.
     fn enter(&mut self, (block, params): Named) {
         let Some(params) = params else { return };
         while self.function.blocks.len() <= block.index() {
@@ -305,7 +303,7 @@ impl Parser {
         self.open.push(Some(block));
     }
 
-    /// Gives a value its type. A second definition gives none: the verifier refuses it.
+    /// Gives a value its type. A second definition changes nothing: the verifier refuses it.
     fn define(&mut self, (value, type_): Defined, usual: Type) -> Value {
         while self.function.values.len() <= value.index() {
             self.function.values.push(Type::Real);
@@ -318,7 +316,7 @@ impl Parser {
     }
 }
 
-/// The index of each name, of the first where a name stands more than once.
+/// The index of each name. A name that stands more than once has the index of the first.
 fn by_name(names: &[String]) -> HashMap<String, usize> {
     let mut indices = HashMap::new();
     for (index, name) in names.iter().enumerate() {

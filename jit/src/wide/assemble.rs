@@ -1,4 +1,4 @@
-//! From instructions to a function: the frame around them, the bytes, the constants behind.
+//! From instructions to a function: prologue and epilogue, the bytes, and the constants after them.
 //!
 //! ```text
 //! push rbx, rbp, r12 .. r15

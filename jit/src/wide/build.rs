@@ -7,7 +7,7 @@ use rustc_hash::FxHashSet as HashSet;
 
 use super::linear::{Data, Home, Item, Kind, Linear, Loop, LoopId, NONE, Name, Over, POINTERS, Phi};
 
-/// The list of a function in the pieces of a plan, which was made for it as the gates were.
+/// The list of a function, cut into the pieces of a plan. Plan and gates belong to the function.
 pub(crate) fn list(function: &Function, plan: &Plan, gates: &Gates) -> Linear {
     let mut builder = Builder {
         function,
@@ -31,12 +31,13 @@ pub(crate) fn list(function: &Function, plan: &Plan, gates: &Gates) -> Linear {
     builder.linear
 }
 
-/// What an IR value is bound to.
+/// The binding of an IR value.
 #[derive(Clone, Copy)]
 enum Binding {
     Nothing,
     Name(Name),
-    /// To a leaf that is another one in each loop over points: the name of the last such loop and there.
+    /// To a leaf that has another name in each loop over points: its home, the last such loop, and its name
+    /// there.
     PerPiece(Home, LoopId, Name),
 }
 
@@ -44,17 +45,17 @@ enum Binding {
 struct Builder<'a> {
     function: &'a Function,
     plan: &'a Plan,
-    /// What has to hold for a row to change nothing.
+    /// The condition under which a row changes nothing, for each fold's body.
     gates: &'a Gates,
     linear: Linear,
     bindings: Vec<Binding>,
-    /// The loop over each table that is open.
+    /// The open loop over each table.
     rows: Vec<LoopId>,
     current: LoopId,
-    /// The loop over points that is open.
+    /// The open loop over points.
     points: LoopId,
     depth: usize,
-    /// What the current piece keeps.
+    /// The values that the current piece keeps for others.
     kept: Vec<Value>,
 }
 
@@ -103,7 +104,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// The function's body, or that of a fold that is cut.
+    /// The pieces of the function's body, or of the body of a fold that is cut.
     fn pieces(&mut self, block: Block) {
         let (function, plan) = (self.function, self.plan);
         let data = &function.blocks[block];
@@ -114,7 +115,7 @@ impl<'a> Builder<'a> {
             } else {
                 self.points = self.open(Over::Points, Vec::new());
                 match piece.then {
-                    // The accumulators are in their slots.
+                    // The accumulators stay in their slots.
                     Then::End => self.insts(block, insts),
                     Then::Next | Then::Fold(_) => insts.iter().for_each(|&inst| self.inst(inst)),
                 }
@@ -145,7 +146,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Whether a piece computes nothing, and the fold behind it finds its accumulators where they have to be.
+    /// Whether a piece computes nothing, and the fold after it finds its accumulators in their places.
     fn has_no_work(&self, insts: &[Inst], then: Then) -> bool {
         let is_ready = match then {
             Then::Next => true,
@@ -158,7 +159,7 @@ impl<'a> Builder<'a> {
         is_ready && insts.iter().all(|&inst| self.function.insts[inst].kind.is_leaf())
     }
 
-    /// A fold and its results.
+    /// A fold instruction's fold and results.
     fn folded(&self, inst: Inst) -> (&'a Fold, &'a [Value]) {
         let data = &self.function.insts[inst];
         let InstKind::Fold(fold) = &data.kind else { unreachable!("a fold is cut, and nothing else") };
@@ -171,14 +172,13 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Pairs of values of which the first is to have what the second is, without those that share a slot:
-    /// they have it.
+    /// Pairs of target and source, without pairs that share a slot: these need no move.
     fn moves(&self, targets: &[Value], values: &[Value]) -> impl Iterator<Item = (Value, Value)> {
         let pairs = targets.iter().copied().zip(values.iter().copied());
         pairs.filter(|&(target, value)| self.plan.slot(target) != self.plan.slot(value))
     }
 
-    /// Stores values into the slots of others, as if all were read before the first is written.
+    /// Stores values into the slots of targets, as if all were read before the first is written.
     fn keep_all(&mut self, targets: &[Value], values: &[Value]) {
         let moves: Vec<_> = self.moves(targets, values).collect();
         let written: Vec<Slot> = moves.iter().filter_map(|&(target, _)| self.plan.slot(target)).collect();
@@ -209,7 +209,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// The last instructions of a block, up to its end: the gate comes as early as it can.
+    /// The last instructions of a block, with the gate as early as possible.
     fn insts(&mut self, block: Block, insts: &[Inst]) {
         let function = self.function;
         let is_at_hand = |&(value, _): &(Value, f32)| {
@@ -218,7 +218,7 @@ impl<'a> Builder<'a> {
             };
             insts.iter().any(here) || function.blocks[block].results.contains(&value)
         };
-        // What an earlier piece computes, and nobody reads here, is not kept.
+        // A value that only an earlier piece computes, and that no instruction here reads, is not kept.
         let gate = self.gates[block].as_ref().filter(|Gate(gate)| gate.iter().all(is_at_hand));
         let Some(Gate(gate)) = gate else {
             return insts.iter().for_each(|&inst| self.inst(inst));
@@ -244,7 +244,7 @@ impl<'a> Builder<'a> {
         both.by_ref().filter(|&(_, &is_first)| !is_first).for_each(|(&inst, _)| self.inst(inst));
     }
 
-    /// What a block and those in it read.
+    /// Collects the values that a block and its inner blocks read.
     fn reads(&self, block: Block, read: &mut HashSet<Value>) {
         let function = self.function;
         read.extend(&function.blocks[block].results);
@@ -292,7 +292,7 @@ impl<'a> Builder<'a> {
         self.bindings[value] = Binding::Name(self.name(data));
     }
 
-    /// The name of a value that is read here.
+    /// The name of a value that an instruction here reads.
     fn read(&mut self, value: Value) -> Name {
         match self.bindings[value.index()] {
             Binding::Nothing => unreachable!("a verified function defines values before it uses them"),

@@ -1,9 +1,9 @@
-//! A second opinion on the choice of registers: replays the code and knows what each register and each place
+//! An independent check of register allocation: replays the code and tracks what each register and each place
 //! in the frame holds.
 //!
-//! The walk that chooses says of each instruction which values it reads and writes. Here nobody asks where
-//! that walk believes them to be: the places are those of the finished instructions. A loop is replayed until
-//! what its top can rely on does not shrink any more.
+//! The allocator notes which values each instruction reads and writes. The check does not use the allocator's
+//! own places: it takes the places from the finished instructions. A loop is replayed until the facts at its
+//! top reach a fixed point.
 
 use std::collections::HashMap;
 
@@ -12,7 +12,7 @@ use super::inst::{Base, Gpr, Inst, Memory, Operand};
 use super::linear::{Home, Kind, Linear, NONE};
 use super::state::MASKS;
 
-/// What is where.
+/// The part at each place.
 type Contents = HashMap<Place, Part>;
 
 /// A finished walk.
@@ -28,21 +28,22 @@ pub(crate) struct Replay<'a> {
 }
 
 impl Replay<'_> {
-    /// The first instruction that reads something else than it should, in words.
+    /// The first instruction that reads a wrong part, in words.
     pub(crate) fn check(&self) -> Result<(), String> {
         let mut contents = Contents::new();
         self.walk(0, 0, &mut contents)?;
         Ok(())
     }
 
-    /// Replays from an instruction and an event to the end of the innermost loop; where it ends.
+    /// Replays from an instruction and an event to the end of the innermost loop; returns the position of
+    /// that end.
     fn walk(
         &self,
         mut at: usize,
         mut event: usize,
         contents: &mut Contents,
     ) -> Result<(usize, usize), String> {
-        // What is where in rounds that end early.
+        // The contents at early ends of iterations.
         let mut early: Vec<Contents> = Vec::new();
         loop {
             let next = self.events.get(event);
@@ -121,7 +122,7 @@ impl Replay<'_> {
         Ok(())
     }
 
-    /// Whether a leaf is at an address.
+    /// Whether an address is the home of a leaf.
     fn is_home(&self, memory: Memory, part: Part) -> bool {
         let data = &self.linear.names[(part / self.vectors) as usize];
         let vector = (part % self.vectors) as i32 * self.vector_bytes as i32;
@@ -137,7 +138,7 @@ impl Replay<'_> {
         }
     }
 
-    /// The places that an instruction reads, in the order of its note, and the one that it writes.
+    /// The places that an instruction reads, in the order of its note, and the place that it writes.
     fn places(&self, inst: &Inst) -> ([Option<Place>; 3], Option<Place>) {
         let vector = |number: u8| Some(Place::Register(number));
         let mask = |number: u8| Some(Place::Register(MASKS + number));

@@ -1,4 +1,4 @@
-//! The integers of a kernel: what goes over strips, points and rows.
+//! The integers of a kernel: counters and addresses of loops over strips, points and rows.
 //!
 //! ```text
 //! rdi  planes      rsi  bytes of a plane, or the end of the strip      rcx  the block of points, in bytes
@@ -25,7 +25,7 @@ const BANKS: [[Gpr; 3]; 2] = [[Gpr::R9, Gpr::R10, Gpr::R11], [Gpr::Rbp, Gpr::R12
 const INPUTS: [Gpr; POINTERS] = [Gpr::R13, Gpr::R14, Gpr::R15];
 
 impl State<'_> {
-    /// Finds where a loop begins.
+    /// Computes the first address or counter of a loop.
     pub(super) fn find(&mut self, id: LoopId) {
         match self.linear.loops[id as usize].over {
             Over::Strips => {}
@@ -36,7 +36,7 @@ impl State<'_> {
         }
     }
 
-    /// Begins a loop, once registers are as they have to be at its top.
+    /// Begins a loop, once registers hold the values of its top.
     pub(super) fn begin(&mut self, id: LoopId, top: Label) {
         match self.linear.loops[id as usize].over {
             Over::Strips => self.begin_strips(top),
@@ -47,7 +47,7 @@ impl State<'_> {
         }
     }
 
-    /// Goes on with the next round of a loop, or leaves it.
+    /// Continues with the next iteration of a loop, or leaves it.
     pub(super) fn end(&mut self, id: LoopId, open: &Open) {
         match self.linear.loops[id as usize].over {
             Over::Strips => self.end_strips(open),
@@ -58,7 +58,7 @@ impl State<'_> {
         }
     }
 
-    /// Where the frame has the registers of the fold at a depth.
+    /// Where the frame holds the registers of the fold at a depth.
     fn saved(depth: usize, which: usize) -> Memory {
         let displacement = SAVED as usize + SAVED_BYTES * depth + 8 * which;
         Memory::at(Gpr::Rsp, i32::try_from(displacement).expect("limits::MAX_FOLD_DEPTH is small"))
@@ -74,7 +74,7 @@ impl State<'_> {
         Gpr::Rax
     }
 
-    /// The current block of points in an input plane, and so many bytes behind.
+    /// The current block of points in an input plane, at a displacement in bytes.
     pub(super) fn input(&mut self, plane: usize, displacement: i32) -> Memory {
         if let Some(&register) = INPUTS.get(plane) {
             return Memory::at(register, displacement);
@@ -99,7 +99,7 @@ impl State<'_> {
         self.integer(Integer::LoadPointer { to: cursor, from: view(table, TableView::ACTIVE) });
         self.integer(Integer::LoadPointer { to: Gpr::Rax, from: view(table, TableView::STARTS) });
         if let Some(parent) = self.parents[table] {
-            // A start is as long as an active row, so the bytes are the same.
+            // A start and an active row have the same size, so the byte offsets are equal.
             let above = self.rows[parent].expect("a verified fold stands inside that of its parent");
             let parent_cursor = BANKS[above % 2][0];
             self.integer(if above + 1 == depth {
@@ -119,7 +119,7 @@ impl State<'_> {
         self.depth += 1;
     }
 
-    /// Opens the loop over rows, whose registers are as they have to be.
+    /// Opens a loop over rows, once registers hold the values of its top.
     fn begin_rows(&mut self, table: usize) {
         let [cursor, end, row] = BANKS[(self.depth - 1) % 2];
         let Some(&Open { top, exit, .. }) = self.open.last() else { return };
@@ -210,7 +210,7 @@ impl State<'_> {
     }
 }
 
-/// Where the address of an input plane is.
+/// The memory with the address of an input plane.
 fn plane_pointer(plane: usize) -> Memory {
     Memory::at(Gpr::Rdi, i32::try_from(8 * plane).expect("planes are limited"))
 }

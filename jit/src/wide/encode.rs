@@ -6,22 +6,22 @@
 //! EVEX   62 RXBR'0mmm Wvvvv1pp zL'LbV'aaa       the same, but disp8 counts operands: 64, 32 or 4 bytes
 //! ```
 //!
-//! A vector instruction has the EVEX form if it needs it (512 bits, registers from 16, mask registers, one
-//! number for all lanes), and the shorter VEX form elsewhere. Instructions on mask registers and integers
-//! have no EVEX form.
+//! A vector instruction has the EVEX form if it needs it (512 bits, registers from 16, mask registers, a
+//! broadcast operand), and otherwise the shorter VEX form. Instructions on mask registers and integers have
+//! no EVEX form.
 
 use super::inst::{Base, Binary, Condition, Form, Gpr, Inst, Integer, Label, Memory, Operand};
 
-/// How wide vectors are, and what else there is.
+/// The width of vectors, and the features of the level.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) struct Shape {
     /// Bytes of a vector: 32 or 64.
     pub(crate) bytes: usize,
-    /// Whether there are mask registers, 32 vector registers, and operands of one number for all lanes.
+    /// Whether there are mask registers, 32 vector registers, and broadcast operands in memory.
     pub(crate) has_masks: bool,
 }
 
-/// The map that an opcode is in.
+/// The opcode map.
 #[derive(Clone, Copy)]
 enum Map {
     M0F = 1,
@@ -43,7 +43,7 @@ struct Code(Map, Prefix, u8);
 /// The fields of an instruction with a VEX or EVEX prefix.
 struct Vex {
     code: Code,
-    /// The register in `modrm.reg`, or the number there that belongs to the opcode.
+    /// The register in `modrm.reg`, or the extension of the opcode there.
     reg: u8,
     /// The register in `vvvv`, 0 if there is none.
     other: u8,
@@ -62,12 +62,12 @@ struct Vex {
 pub(crate) struct Encoder {
     pub(crate) bytes: Vec<u8>,
     shape: Shape,
-    /// Where each label is.
+    /// The position of each label.
     labels: Vec<Option<usize>>,
-    /// Jumps whose label was not known: where their displacement is, and the label.
+    /// Jumps to labels that were not known: the position of the displacement, and the label.
     jumps: Vec<(usize, Label)>,
-    /// Operands among the constants: where their displacement is, where the next instruction begins, and how
-    /// far behind the first constant.
+    /// Operands among the constants: the position of the displacement, the end of the instruction, and the
+    /// distance from the first constant.
     constants: Vec<(usize, usize, i32)>,
 }
 
@@ -189,8 +189,8 @@ impl Encoder {
         Vex { code, reg, other, rm, mask: 0, bytes: self.shape.bytes, is_evex, immediate: None }
     }
 
-    /// Instructions on mask registers. They look at the lower 16 lanes, of which as many count as a vector
-    /// has.
+    /// Instructions on mask registers. They operate on 16 lanes, of which the lower ones count, as many as a
+    /// vector has.
     fn mask(&mut self, inst: &Inst) {
         let none = |opcode| Code(Map::M0F, Prefix::None, opcode);
         let (code, reg, other, rm, bytes) = match *inst {
@@ -222,7 +222,7 @@ impl Encoder {
         let mut scale = 1;
         if vex.is_evex {
             let is_one = matches!(vex.rm, Operand::Memory(memory) if memory.is_one);
-            // A load of one number is an opcode of its own, and no variant of another.
+            // A broadcast load has an opcode of its own; other instructions have a broadcast bit.
             let is_variant = is_one && opcode != 0x18;
             scale = if is_one { 4 } else { vex.bytes as i32 };
             let first =
@@ -243,8 +243,8 @@ impl Encoder {
         self.bytes.extend(vex.immediate);
     }
 
-    /// The operands behind an opcode. A displacement of one byte counts `scale` bytes; `behind` bytes follow
-    /// it.
+    /// The operands after an opcode. A displacement of one byte counts units of `scale` bytes; `behind` bytes
+    /// follow the operands.
     fn operands(&mut self, reg: u8, rm: Operand, scale: i32, behind: usize) {
         let reg = (reg & 7) << 3;
         let memory = match rm {
@@ -284,7 +284,7 @@ impl Encoder {
         }
     }
 
-    /// Instructions on integers, all of 64 bits but for a word that is read.
+    /// Instructions on integers of 64 bits, except that a word is read with 32.
     fn integer(&mut self, inst: &Integer) {
         match *inst {
             Integer::LoadPointer { to, from } => self.rex(true, &[0x8B], to, Operand::Memory(from)),
@@ -332,7 +332,7 @@ impl Encoder {
         self.operands(reg as u8, rm, 1, 0);
     }
 
-    /// A jump: short if it goes back to a near label.
+    /// A jump: short if it goes back to a label within reach.
     fn jump(&mut self, condition: Condition, label: Label) {
         let code = match condition {
             Condition::Below => 2,

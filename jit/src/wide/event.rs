@@ -1,36 +1,35 @@
-//! What the walk that chooses registers tells of its work, for the replay that [checks](super::check) it.
+//! Events of register allocation, for the replay that [checks](super::check) it.
 
 use super::inst::Memory;
 
-/// One vector of a value: its name times the vectors of a value, plus which.
+/// One vector of a value: the value's name times the vectors of a value, plus the index of the vector.
 pub(crate) type Part = u32;
 
-/// What happens between two instructions.
+/// An event between two instructions.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Event {
     /// A loop begins.
     Open,
-    /// Its round may end here: what is where it is at the top has to be there now.
+    /// The iteration may end here: all values that the top relies on are in their places now.
     Skip,
-    /// Its last instruction on values is behind.
+    /// The loop's last instruction on values has passed.
     Close,
-    /// Wherever one part is, it is the other one from now on.
+    /// From now on one part stands for the other, in every place.
     Rename { from: Part, to: Part },
-    /// A part that is at a place is the next value of an accumulator there.
+    /// The part at a place is the next value of an accumulator there.
     Next { from: Part, to: Part, at: Place },
 }
 
-/// Marks an accumulator as that of the next round, until the loop closes: so it is told from that of this
-/// round.
+/// Marks an accumulator of the next iteration, until the loop closes, to tell it from the current one.
 pub(crate) const NEXT: Part = 1 << 31;
 
-/// Where a value can be.
+/// The place of a value.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub(crate) enum Place {
-    /// With masks behind vectors.
+    /// A register; masks follow vectors.
     Register(u8),
-    /// So many bytes from the stack pointer.
+    /// A displacement from the stack pointer, in bytes.
     Frame(i32),
-    /// Among numbers that the code does not write.
+    /// Memory that the code does not write.
     Elsewhere(Memory),
 }

@@ -1,4 +1,4 @@
-//! Where values are in memory: leaves in their homes, computed values in the frame.
+//! Memory of values: homes of leaves, and the frame for computed values.
 
 use jbt_ir::Entity;
 
@@ -9,7 +9,7 @@ use super::linear::{Home, Kind, NONE, Name};
 use super::state::{NOWHERE, Register, SAVED, State, load, store};
 
 impl State<'_> {
-    /// Where the frame has a part, or will.
+    /// The place of a part in the frame; the first call allocates it.
     pub(super) fn frame_memory(&mut self, part: Part) -> Memory {
         if self.frame[part as usize] == NONE {
             self.frame[part as usize] = self.fresh_slot().0;
@@ -28,13 +28,13 @@ impl State<'_> {
         self.slot_displacement(self.frame_slots) as usize
     }
 
-    /// Gives the frame's place of a part to another, which has the same number there.
+    /// Gives the frame's place of a part to another part with the same bits.
     pub(super) fn hand_over_frame(&mut self, from: Part, to: Part) {
         self.frame[to as usize] = std::mem::replace(&mut self.frame[from as usize], NONE);
         self.stored[from as usize] = false;
     }
 
-    /// Sees to it that memory has a part.
+    /// Stores a part if it is in no memory yet.
     pub(super) fn store(&mut self, part: Part) {
         if self.stored[part as usize] || self.is_leaf(self.name(part)) {
             return;
@@ -47,7 +47,7 @@ impl State<'_> {
         self.journal.push(part);
     }
 
-    /// Ends the life of a name.
+    /// Releases the registers and the memory of a name.
     pub(super) fn bury(&mut self, name: Name) {
         for part in self.parts(name) {
             self.release(part);
@@ -59,7 +59,8 @@ impl State<'_> {
         }
     }
 
-    /// Ends a life of a name at the current position: of an accumulator perhaps only that inside of its loop.
+    /// Ends a live range of a name at the current position; for an accumulator this may be only the range
+    /// inside of its loop.
     pub(crate) fn end_life(&mut self, name: Name) {
         if self.lives.last[name as usize] == self.position {
             return self.bury(name);
@@ -67,14 +68,14 @@ impl State<'_> {
         if let Kind::Phi(id) = self.linear.names[name as usize].kind
             && self.linear.loops[id as usize].close != self.position
         {
-            // It is set again at the end of the round, at the place where it was.
+            // It is set again at the end of the iteration, in the same place.
             for part in self.parts(name) {
                 self.release(part);
             }
         }
     }
 
-    /// Where memory has a part. May need `rax` until the next instruction.
+    /// The memory of a part. May need `rax` until the next instruction.
     pub(super) fn home(&mut self, part: Part) -> Memory {
         let name = self.name(part);
         let vector = (part - name * self.vectors) as i32;
@@ -101,7 +102,7 @@ impl State<'_> {
         i32::try_from(slot * self.strip_bytes).expect("a plan with so many slots is not made")
     }
 
-    /// Where a number is among the constants.
+    /// The place of a number among the constants.
     pub(super) fn number(&mut self, bits: u32) -> Memory {
         let copies = if self.shape.has_masks { 1 } else { self.shape.bytes / 4 };
         let constants = &mut self.constants;
@@ -113,7 +114,7 @@ impl State<'_> {
         Memory { base: Base::Constants, displacement, is_one: self.shape.has_masks }
     }
 
-    /// Whether an instruction that computes can read a part where memory has it.
+    /// Whether an arithmetic instruction can read a part from its memory.
     pub(super) fn can_be_operand(&self, name: Name) -> bool {
         let is_column = matches!(self.linear.names[name as usize].kind, Kind::Leaf(Home::Column(..)));
         self.class(name) == 0 && (self.shape.has_masks || !is_column)
@@ -128,17 +129,17 @@ impl State<'_> {
         (slot, Memory::at(Gpr::Rsp, self.slot_displacement(slot)))
     }
 
-    /// Ends the use of places that belonged to no part.
+    /// Releases such places.
     pub(super) fn give_back(&mut self, slots: Vec<u32>) {
         self.free.extend(slots);
     }
 
-    /// Puts what memory has of a part into a register.
+    /// Loads a part into a register.
     pub(super) fn load_into(&mut self, register: Register, part: Part) {
         self.load_as(register, part, part);
     }
 
-    /// The same, where it becomes another part.
+    /// Loads a part into a register, as another part.
     pub(super) fn load_as(&mut self, register: Register, part: Part, to: Part) {
         let is_zero = matches!(self.linear.names[self.name(part) as usize].kind, Kind::Leaf(Home::Number(0)));
         if is_zero {
@@ -149,7 +150,7 @@ impl State<'_> {
         self.emit(load(register, from), &[part], to);
     }
 
-    /// The register of a part, which may be loaded for that.
+    /// The register of a part, which is loaded if necessary.
     pub(super) fn fetch(&mut self, part: Part) -> Register {
         let name = self.name(part);
         let register = self.register_of(part).unwrap_or_else(|| {

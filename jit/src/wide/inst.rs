@@ -1,4 +1,4 @@
-//! The machine instructions that kernels are made of, with registers chosen.
+//! Machine instructions, with registers assigned.
 //!
 //! A vector register is a number from 0 to 31, a mask register one from 1 to 7, an integer register a
 //! [`Gpr`]. Where the level has no mask registers a mask is a vector, all ones or all zeros in each lane.
@@ -25,14 +25,14 @@ pub(crate) enum Gpr {
     R15,
 }
 
-/// Where an operand begins in memory.
+/// The base of an address.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub(crate) enum Base {
     /// At an address in a register.
     Register(Gpr),
-    /// At the sum of two registers, of which the second, that is not `rsp`, is multiplied by 1, 2, 4 or 8.
+    /// The sum of two registers. The second one, which is not `rsp`, is multiplied by 1, 2, 4 or 8.
     Sum(Gpr, Gpr, u8),
-    /// In the constants behind the code: so many bytes from the first one.
+    /// The first constant after the code.
     Constants,
 }
 
@@ -40,15 +40,15 @@ pub(crate) enum Base {
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub(crate) struct Memory {
     pub(crate) base: Base,
-    /// Bytes that are added.
+    /// Added to the base, in bytes.
     pub(crate) displacement: i32,
-    /// Whether it is one number for all lanes. An instruction that computes takes such an operand where the
-    /// level has mask registers.
+    /// Whether it is one number, broadcast to all lanes. Arithmetic instructions accept such an operand only
+    /// where the level has mask registers.
     pub(crate) is_one: bool,
 }
 
 impl Memory {
-    /// All lanes, so many bytes behind an address in a register.
+    /// A whole vector at a displacement from an address in a register.
     pub(crate) const fn at(base: Gpr, displacement: i32) -> Self {
         Self { base: Base::Register(base), displacement, is_one: false }
     }
@@ -95,7 +95,7 @@ impl Binary {
         Self::IntSub,
     ];
 
-    /// Whether the operands may change places. (The payload of a NaN may change, and is nobody's.)
+    /// Whether the operands may be swapped. (This may change the payload of a NaN, which is unspecified.)
     pub(crate) const fn commutes(self) -> bool {
         match self {
             Self::Add | Self::Mul | Self::And | Self::Or | Self::Xor | Self::IntAdd => true,
@@ -131,7 +131,7 @@ impl Predicate {
     pub(crate) const ALL: [Self; 5] =
         [Self::Equal, Self::Less, Self::LessOrEqual, Self::GreaterOrEqual, Self::Greater];
 
-    /// The comparison of b and a that says the same.
+    /// The comparison of b and a with the same meaning.
     pub(crate) const fn swapped(self) -> Self {
         match self {
             Self::Equal => Self::Equal,
@@ -143,8 +143,8 @@ impl Predicate {
     }
 }
 
-/// When a jump is taken, after a comparison of unsigned integers; [`Equal`](Self::Equal) after a test that
-/// found zeros alone.
+/// The condition of a jump, after a comparison of unsigned integers; [`Equal`](Self::Equal) also means that a
+/// test found only zeros.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Condition {
     Below,
@@ -156,7 +156,7 @@ pub(crate) enum Condition {
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) struct Label(pub(crate) u32);
 
-/// An instruction. `to` is what it writes.
+/// An instruction. It writes `to`.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) enum Inst {
     Binary {
@@ -183,24 +183,24 @@ pub(crate) enum Inst {
         a: u8,
         amount: u8,
     },
-    /// To a mask register, or to a vector where there are none.
+    /// Writes a mask register, or a vector at levels without mask registers.
     Compare {
         predicate: Predicate,
         to: u8,
         a: u8,
         b: Operand,
     },
-    /// Whether all bits of a vector are 0, for the next jump. Where there are mask registers, this is done by
-    /// way of one of them: the next two.
+    /// Tests whether all bits of a vector are 0, for the next jump. At levels with mask registers the next
+    /// two instructions do this.
     Test {
         a: u8,
     },
-    /// Which lanes are not 0.
+    /// Finds the lanes that are not 0.
     TestToMask {
         to: u8,
         a: u8,
     },
-    /// Whether no lane is true, for the next jump.
+    /// Tests whether no lane is true, for the next jump.
     TestMask {
         a: u8,
     },
@@ -219,7 +219,7 @@ pub(crate) enum Inst {
         to: u8,
         from: u8,
     },
-    /// One number for all lanes, or all of them.
+    /// Loads a vector, or broadcasts one number.
     Load {
         to: u8,
         from: Memory,
@@ -270,7 +270,7 @@ impl From<Integer> for Inst {
     }
 }
 
-/// An instruction on integer registers, of 64 bits but for a word that is read.
+/// An instruction on integer registers of 64 bits, except that a word is read with 32.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Integer {
     /// Reads an address.
@@ -315,7 +315,7 @@ pub(crate) enum Integer {
     ClearRegister {
         to: Gpr,
     },
-    /// Takes the number in memory if the comparison before has found the register above it.
+    /// Takes the number in memory if the preceding comparison found the register above it.
     TakeIfAbove {
         to: Gpr,
         from: Memory,

@@ -11,9 +11,9 @@
 //! close points
 //! ```
 //!
-//! *Leaves* (constants, columns, inputs, what other pieces have kept) are not in the list. They have a home
-//! in memory, and whoever reads them finds them there. Ops that change no bit (`stop_gradient`, `to_bits`,
-//! `from_bits`) are not there either: their result has the name of their operand.
+//! *Leaves* (constants, columns, inputs, values kept by other pieces) are not in the list. They have a home
+//! in memory, where instructions read them. Ops that change no bit (`stop_gradient`, `to_bits`, `from_bits`)
+//! are not in the list either: their result has the name of their operand.
 
 use jbt_ir::plan::Slot;
 use jbt_ir::{Op, Table};
@@ -24,10 +24,10 @@ pub(crate) type Name = u32;
 /// A loop of the list.
 pub(crate) type LoopId = u32;
 
-/// Nothing of its kind.
+/// No name, loop or position.
 pub(crate) const NONE: u32 = u32::MAX;
 
-/// Where a leaf is.
+/// Where memory holds a leaf.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Home {
     /// Among the constants.
@@ -40,13 +40,13 @@ pub(crate) enum Home {
     Slot(Slot),
 }
 
-/// What a name stands for.
+/// The definition of a name.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Kind {
     Leaf(Home),
     /// Computed by one item.
     Computed,
-    /// An accumulator: bound by a loop, set again at its end, and its result.
+    /// An accumulator: defined by a loop, set again at the end of each iteration, and the loop's result.
     Phi(LoopId),
 }
 
@@ -57,12 +57,12 @@ pub(crate) struct Data {
     /// Whether all lanes have the same number.
     pub(crate) is_uniform: bool,
     pub(crate) is_mask: bool,
-    /// The innermost loop that changes it: outside of this loop there is nothing to read. For a phi, the loop
-    /// around its own.
+    /// The innermost loop that changes it: outside of this loop it is undefined. For a phi, the loop around
+    /// its own loop.
     pub(crate) scope: LoopId,
 }
 
-/// One thing to do.
+/// An item of the list.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Item {
     Op {
@@ -70,7 +70,7 @@ pub(crate) enum Item {
         to: Name,
         args: [Name; 3],
     },
-    /// Reads a leaf now, because its home will be written.
+    /// Copies a leaf now, because its home will be overwritten.
     Read {
         to: Name,
         from: Name,
@@ -83,8 +83,8 @@ pub(crate) enum Item {
         plane: usize,
         value: Name,
     },
-    /// Goes on with the next round of the innermost loop if the values of its gate have their bits in all
-    /// lanes.
+    /// Continues with the next iteration of the innermost loop if the values of the loop's gate have the
+    /// gate's bits in all lanes.
     Skip(LoopId),
     Open(LoopId),
     Close(LoopId),
@@ -98,7 +98,7 @@ pub(crate) struct Phi {
     pub(crate) next: Name,
 }
 
-/// What a loop goes over.
+/// What a loop iterates over.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Over {
     /// Strips of points.
@@ -109,12 +109,12 @@ pub(crate) enum Over {
     RowsOfStrip(Table),
     /// Rows of a table, for one block of points.
     Rows(Table),
-    /// The same, where there is one row or none as a rule.
+    /// Rows of a table, usually one or none.
     Guard(Table),
 }
 
 impl Over {
-    /// The table, if it goes over rows.
+    /// The table of a loop over rows.
     pub(crate) fn table(self) -> Option<Table> {
         match self {
             Self::Strips | Self::Points => None,
@@ -133,13 +133,13 @@ pub(crate) struct Loop {
     pub(crate) open: u32,
     pub(crate) close: u32,
     pub(crate) phis: Vec<Phi>,
-    /// Of a loop over points: the input planes that it reads, a bit each, for the first [`POINTERS`] planes.
+    /// For a loop over points: the input planes that it reads, a bit each, for the first [`POINTERS`] planes.
     pub(crate) inputs: u32,
-    /// Values, and the bits that let its round end early if all of them have them; if it may.
+    /// If an iteration may end early: the condition for it, values and their bits.
     pub(crate) gate: Vec<(Name, u32)>,
 }
 
-/// Input planes whose place in the current block of points has a register.
+/// The number of input planes whose address in the current block of points has a register.
 pub(crate) const POINTERS: usize = 3;
 
 /// The list.
@@ -148,12 +148,12 @@ pub(crate) struct Linear {
     pub(crate) items: Vec<Item>,
     pub(crate) loops: Vec<Loop>,
     pub(crate) names: Vec<Data>,
-    /// Folds in each other.
+    /// The depth of nested folds.
     pub(crate) depth: usize,
 }
 
 impl Linear {
-    /// The loops around a position, from one to the loop that is not among them.
+    /// The loops from `from` outwards, up to but without `to`.
     pub(crate) fn outwards(&self, from: LoopId, to: LoopId) -> impl Iterator<Item = LoopId> {
         let mut next = from;
         std::iter::from_fn(move || {

@@ -1,4 +1,4 @@
-//! Wide code as text, by a decoder of other people's.
+//! Wide code as text, with the decoder iced-x86.
 
 use std::fmt::Write as _;
 
@@ -15,7 +15,7 @@ pub(crate) fn listing(Emitted { blocks, rest }: &Emitted) -> String {
     functions.map(|blob| format!("{} points at once:\n{}", blob.lanes, function(blob))).collect()
 }
 
-/// Instructions with their places, then the constants.
+/// Instructions with their addresses, then the constants.
 fn function(blob: &Blob) -> String {
     let mut formatter = IntelFormatter::new();
     formatter.options_mut().set_rip_relative_addresses(true);

@@ -1,40 +1,40 @@
-//! Where values are used, how long they live, and what loops need of the registers.
+//! Uses of values, their live ranges, and the register needs of loops.
 //!
-//! A value lives from the item that defines it to its last use. A use inside a loop counts until the loop
-//! ends if the value comes from outside, because the next round reads it again. An accumulator has two lives:
-//! in a round of its loop from the top to its last use there (then it is set again), and from the end of the
-//! loop to its last use behind it.
+//! A value is alive from the item that defines it to its last use. If a value from outside is used inside a
+//! loop, it is alive until the loop ends, because the next iteration reads it again. An accumulator has two
+//! live ranges: in an iteration of its loop, from the top to its last use there (then it is set again), and
+//! from the end of the loop to its last use after the loop.
 
 use super::linear::{Item, Kind, Linear, LoopId, NONE, Name, Over};
 
-/// What a loop reads that it does not compute.
+/// A value that a loop reads but does not compute.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Captured {
     pub(crate) name: Name,
-    /// How often in a round, more in loops inside of it.
+    /// The number of reads in an iteration; reads in inner loops weigh more.
     pub(crate) weight: f32,
 }
 
-/// How many rows the compiler thinks that a loop has.
+/// The assumed number of rows of a loop.
 const ROWS: f32 = 8.0;
 
 /// See the module.
 pub(crate) struct Lives {
-    /// Where the positions of each name's uses begin, and the end.
+    /// Where the positions of each name's uses begin; one more entry for the end.
     starts: Vec<u32>,
     positions: Vec<u32>,
     /// The last position of each name, loops counted as a whole.
     pub(crate) last: Vec<u32>,
     /// The last position of an accumulator inside of its loop.
     pub(crate) last_in_body: Vec<u32>,
-    /// Names whose life, or whose life inside of their loop, ends at each position.
+    /// The names whose live range ends at each position, the range inside of a loop included.
     death_starts: Vec<u32>,
     deaths: Vec<Name>,
-    /// What each loop reads from outside, each name once. Accumulators of the loop are among them.
+    /// The names that each loop reads from outside, once each. The loop's own accumulators are among them.
     pub(crate) captured: Vec<Vec<Captured>>,
 }
 
-/// The operands of an item, without those of loops.
+/// The operands of an item that is no loop.
 fn operands(item: &Item) -> ([Name; 3], usize) {
     match *item {
         Item::Op { op, args, .. } => (args, op.operands().len()),
@@ -44,7 +44,7 @@ fn operands(item: &Item) -> ([Name; 3], usize) {
     }
 }
 
-/// What an item computes.
+/// The name that an item computes.
 pub(crate) fn computed(item: &Item) -> Option<Name> {
     match *item {
         Item::Op { to, .. } | Item::Read { to, .. } => Some(to),
@@ -75,7 +75,7 @@ fn for_each_use(linear: &Linear, mut each: impl FnMut(Name, u32, LoopId)) {
                 }
                 current = linear.loops[id as usize].parent;
             }
-            // A round that ends here hands them on as they are.
+            // An iteration that ends here passes the accumulators on unchanged.
             Item::Skip(id) => {
                 let data = &linear.loops[id as usize];
                 let phis = data.phis.iter().map(|phi| phi.value);
@@ -89,7 +89,7 @@ fn for_each_use(linear: &Linear, mut each: impl FnMut(Name, u32, LoopId)) {
     }
 }
 
-/// Lists of items by key: where each key's begin, and the items.
+/// Lists of items by key: where each key's list begins, and the items.
 fn by_key(keys: usize, pairs: impl Iterator<Item = (u32, u32)> + Clone) -> (Vec<u32>, Vec<u32>) {
     let mut starts = vec![0; keys + 1];
     for (key, _) in pairs.clone() {
@@ -149,7 +149,8 @@ impl Lives {
         &self.positions[start..end]
     }
 
-    /// The names whose life, or life inside of their loop, ends at a position.
+    /// The range of deaths at a position: names whose live range ends there, the range inside of a loop
+    /// included.
     pub(crate) fn deaths(&self, position: u32) -> std::ops::Range<usize> {
         let [start, end] = [0, 1].map(|side| self.death_starts[position as usize + side] as usize);
         start..end
@@ -159,15 +160,15 @@ impl Lives {
         self.deaths[index]
     }
 
-    /// The position behind which nobody reads what a name is at a position.
+    /// The last position that reads the value that a name has at `position`.
     pub(crate) fn end(&self, linear: &Linear, name: Name, position: u32) -> u32 {
         let (_, is_in_body) = scope_at(linear, name, position);
         if is_in_body { self.last_in_body[name as usize] } else { self.last[name as usize] }
     }
 }
 
-/// The loop whose rounds change a name, as seen from a position; and whether it is an accumulator inside of
-/// its loop.
+/// The loop whose iterations change a name, as seen from a position; and whether the name is an accumulator
+/// inside of its loop.
 fn scope_at(linear: &Linear, name: Name, position: u32) -> (LoopId, bool) {
     let data = &linear.names[name as usize];
     if let Kind::Phi(id) = data.kind {
@@ -179,7 +180,7 @@ fn scope_at(linear: &Linear, name: Name, position: u32) -> (LoopId, bool) {
     (data.scope, false)
 }
 
-/// All positions at which lives end, with the names.
+/// The ends of all live ranges: positions and names.
 fn ends(linear: &Linear, last: &[u32], last_in_body: &[u32]) -> Vec<(u32, Name)> {
     let mut ends = Vec::with_capacity(linear.names.len());
     for (name, data) in (0..).zip(&linear.names) {
@@ -191,9 +192,9 @@ fn ends(linear: &Linear, last: &[u32], last_in_body: &[u32]) -> Vec<(u32, Name)>
     ends
 }
 
-/// What each loop reads from outside, from what stands directly in each.
+/// The values that each loop reads from outside, from the reads directly in each loop.
 fn captured(linear: &Linear, mut raw: Vec<Vec<Captured>>) -> Vec<Vec<Captured>> {
-    // A loop is behind the loops around it.
+    // Inner loops have larger ids than the loops around them.
     for id in (0..linear.loops.len()).rev() {
         let mut list = std::mem::take(&mut raw[id]);
         list.sort_unstable_by_key(|captured| captured.name);
@@ -224,16 +225,16 @@ fn captured(linear: &Linear, mut raw: Vec<Vec<Captured>>) -> Vec<Vec<Captured>> 
     raw
 }
 
-/// How much it is worth to have an accumulator in a register: it is read and written in each round.
+/// The weight of an accumulator in a register: each iteration reads and writes it.
 const fn linear_weight(is_constant: bool) -> f32 {
     if is_constant { 0.5 } else { 3.0 }
 }
 
-/// The most registers that are needed at once, for what each loop computes itself: vectors and masks, for so
-/// many vectors a value.
+/// For each loop, the largest number of registers, vectors and masks, for the values that it computes itself;
+/// `vectors` is the number of vectors of a value.
 pub(crate) fn pressure(linear: &Linear, lives: &Lives, vectors: usize, has_masks: bool) -> Vec<[usize; 2]> {
     let mut most = vec![[0; 2]; linear.loops.len()];
-    // For each open loop, what is alive of what it computes directly.
+    // For each open loop, the live values that it computes directly.
     let mut alive: Vec<(LoopId, [isize; 2])> = vec![(NONE, [0; 2])];
     let size = |name: Name| {
         let data = &linear.names[name as usize];
@@ -268,7 +269,7 @@ pub(crate) fn pressure(linear: &Linear, lives: &Lives, vectors: usize, has_masks
             Item::Op { to, .. } | Item::Read { to, .. } => {
                 let level = alive.len() - 1;
                 let level = add(&mut alive, level, to);
-                // Nobody reads it: gone at once.
+                // Nobody reads it: it dies at once.
                 if lives.last[to as usize] == position {
                     let (count, class) = size(to);
                     alive[level as usize].1[class] -= count;

@@ -1,4 +1,4 @@
-//! What is in registers at the top of each round of a loop: decided and put there when the loop opens.
+//! The contents of registers at the top of a loop: decided and loaded when the loop opens.
 
 use super::event::{Event, Part};
 use super::inst::{Binary, Condition, Inst, Operand};
@@ -29,7 +29,7 @@ impl State<'_> {
     pub(super) fn open_loop(&mut self, id: LoopId) {
         self.find(id);
         match self.linear.loops[id as usize].over {
-            // Between loops over points there is nothing in registers.
+            // Between loops over points all registers are empty.
             Over::Strips | Over::RowsOfStrip(_) => self.clear(),
             Over::Points | Over::Rows(_) | Over::Guard(_) => self.fill(id),
         }
@@ -44,7 +44,8 @@ impl State<'_> {
         self.begin(id, top);
     }
 
-    /// Ends the round of the innermost loop here if the values of its gate have their bits in all lanes.
+    /// Ends the iteration of the innermost loop here if the values of its gate have the gate's bits in all
+    /// lanes.
     pub(super) fn skip(&mut self, id: LoopId) {
         self.put_header_back();
         let linear = self.linear;
@@ -67,14 +68,15 @@ impl State<'_> {
         self.integer(Inst::Jump { condition: Condition::Equal, to });
     }
 
-    /// A register with the bits in which any of some parts is not as wanted. Nobody relies on what was in it.
+    /// A register with all differences between some parts and their wanted bits. Its old contents must be
+    /// unused.
     fn different_bits(&mut self, parts: &[(Part, u32)]) -> Register {
         let header = self.open.last().expect("a loop is open").header;
         let is_empty = |&register: &Register| self.occupant[register as usize] == NONE;
         let is_free = |&register: &Register| header[register as usize] == NONE;
         let (mut free, rest): (Vec<_>, Vec<_>) = self.registers(0).filter(is_free).partition(is_empty);
         free.extend(rest);
-        // They are empty at the top, where not all are given away ([`choose`](Self::choose)).
+        // They are empty at the top, where [`choose`](Self::choose) leaves some free.
         let [all, one] = [free[0], free[1]];
         self.vacate(all);
         self.vacate(one);
@@ -104,8 +106,7 @@ impl State<'_> {
         so_far.expect("a gate asks for something")
     }
 
-    /// Puts what the top of a round relies on where it is there, and leaves what else there is in registers
-    /// or takes it to the frame.
+    /// Restores the values that the top of an iteration relies on, and keeps or spills the other values.
     fn put_header_back(&mut self) {
         let header = self.open.last().expect("a loop is open").header;
         for (register, &part) in (0..).zip(&header) {
@@ -124,7 +125,7 @@ impl State<'_> {
         }
     }
 
-    /// Notes which registers accumulators of the innermost loop begin a round in.
+    /// Records the registers in which accumulators of the innermost loop begin an iteration.
     fn reserve(&mut self) {
         self.reserved = 0;
         let Some(open) = self.open.last() else { return };
@@ -142,7 +143,7 @@ impl State<'_> {
         }
     }
 
-    /// Decides what is in registers at the top of each round, and puts it there.
+    /// Decides the contents of registers at the top of each iteration, and loads them.
     fn fill(&mut self, id: LoopId) {
         let chosen = self.choose(id);
         let linear = self.linear;
@@ -189,7 +190,7 @@ impl State<'_> {
         }
     }
 
-    /// Takes a part out of its register, into memory if somebody reads it behind.
+    /// Takes a part out of its register; stores it if it has a later use.
     fn leave_register(&mut self, part: Part) {
         if !self.dies(self.name(part)) {
             self.store(part);
@@ -197,7 +198,7 @@ impl State<'_> {
         self.release(part);
     }
 
-    /// Loads what has been chosen and is in no register, as far as registers are free.
+    /// Loads chosen values that are in no register, as far as registers are free.
     fn load_chosen(&mut self, chosen: &[Name], phis: &[Phi]) {
         for &name in chosen {
             if phis.iter().any(|phi| phi.value == name) {
@@ -214,7 +215,7 @@ impl State<'_> {
         }
     }
 
-    /// Lets an accumulator begin where its initial value is, if nobody else needs that.
+    /// Lets an accumulator begin in the place of its initial value, if nothing else needs that value.
     fn take_over(&mut self, from: Part, to: Part, is_alone: bool, is_chosen: bool) -> bool {
         let name = self.name(from);
         let is_mine = is_alone && self.dies(name) && !self.is_leaf(name);
@@ -226,7 +227,7 @@ impl State<'_> {
                 self.release(from);
                 self.bind(to, register);
             }
-            // The place of an accumulator inside of its loop is needed again at the end of the round.
+            // The place of an accumulator inside of its loop is needed again at the end of the iteration.
             (false, _) if self.stored[from as usize] && self.lives.last[name as usize] == self.position => {
                 self.release(from);
                 self.hand_over_frame(from, to);
@@ -270,7 +271,7 @@ impl State<'_> {
         self.locked = 0;
     }
 
-    /// What is to be in registers at the top of each round, the most valuable first.
+    /// The values to hold in registers at the top of each iteration, the most valuable first.
     fn choose(&mut self, id: LoopId) -> Vec<Name> {
         let data = &self.linear.loops[id as usize];
         let is_guard = matches!(data.over, Over::Guard(_));
@@ -283,7 +284,7 @@ impl State<'_> {
                 candidates.push((self.value_of(name, captured.weight, is_mine), name));
             }
         }
-        // What is not read here may stay where it is, if there is room.
+        // A value that the loop does not read may stay in its register, if there is room.
         for register in 0..REGISTERS {
             let part = self.occupant[register];
             if part != NONE && !self.dies(self.name(part)) {
@@ -308,7 +309,7 @@ impl State<'_> {
         chosen
     }
 
-    /// What it is worth to have a value in a register, for each register that it takes.
+    /// The value of holding a name in registers, for each register that it takes.
     fn value_of(&self, name: Name, weight: f32, is_accumulator: bool) -> f32 {
         let data = &self.linear.names[name as usize];
         let reads = if data.is_uniform { self.vectors as f32 } else { 1.0 };

@@ -6,17 +6,17 @@
 //!                                 are used          and instructions
 //! ```
 //!
-//! The code keeps to the same ABI as that of Cranelift, see [`crate::entry`], and every op gives the same
-//! bits. It differs in how it is made: one walk over a list, in time that grows with its length alone.
+//! The code has the same ABI as Cranelift's code, see [`crate::entry`], and every op gives the same bits. It
+//! is made in another way: one walk over a list, in time linear in the length of the list.
 //!
-//! * A *leaf* (a constant, a column, an input, a slot of a strip) is read from where it is, as an operand of
-//!   the instruction that wants it. With AVX-512 that may be one number for all lanes. It is loaded if it is
-//!   wanted again soon and a register is free.
-//! * A value that is the same in all lanes is one vector; any other is as many as the block has.
-//! * Registers are given as the walk goes. What a loop needs inside is counted before, and what is worth most
-//!   outside of it gets the rest.
+//! * A *leaf* (a constant, a column, an input, a slot of a strip) is read from memory, as an operand of an
+//!   instruction. With AVX-512 the operand may be a broadcast number. A leaf is loaded if it has another use
+//!   soon and a register is free.
+//! * A value that is the same in all lanes is one vector; any other value has as many vectors as the block.
+//! * Registers are assigned during the walk. A loop's own need is counted beforehand, and the most valuable
+//!   values from outside get the remaining registers.
 //!
-//! Emitting needs no CPU that can run it.
+//! Emitting code needs no CPU that can run it.
 
 mod assemble;
 mod backend;
@@ -97,7 +97,7 @@ fn emit(function: &Function, (plan, gates): (&Plan, &Gates), wish: &Wish) -> Res
         count = Count([FEW.0[0], if shape.has_masks { FEW.0[1] } else { 0 }]);
     }
     let mut vectors = match wish.vectors {
-        // Whoever wishes so many has blocks of [`crate::Kernel::MAX_LANES`] points, at most.
+        // With this many vectors blocks have [`crate::Kernel::MAX_LANES`] points, at most.
         Some(VectorCount::Four) if shape.bytes == 64 => VectorCount::Two,
         Some(vectors) => vectors,
         None => unrolling(function, shape, plan),
@@ -157,7 +157,7 @@ fn walk(state: &mut State<'_>) {
     }
 }
 
-/// Replays the code, if notes have been taken.
+/// Replays the code, if notes were taken.
 fn check(state: &State<'_>, linear: &Linear, vectors: usize, shape: Shape) -> Result<(), CompileError> {
     let Some(notes) = &state.notes else { return Ok(()) };
     let replay = Replay {
@@ -173,9 +173,9 @@ fn check(state: &State<'_>, linear: &Linear, vectors: usize, shape: Shape) -> Re
     replay.check().map_err(CompileError::Registers)
 }
 
-/// Vectors of a value. Two hide the latency of most instructions, and share what is loaded for a row. Where
-/// loops carry few accumulators, four share more, and what does not fit the registers then is read from
-/// memory, which costs less than the shares save.
+/// The number of vectors of a value. Two hide the latency of most instructions, and share the loads for a
+/// row. Where loops carry few accumulators, four share more; the spills that this causes cost less than the
+/// shared loads save.
 fn unrolling(function: &Function, shape: Shape, plan: &Plan) -> VectorCount {
     let carried = pressure::carried_values(function);
     if carried <= FIELD_CARRIES {

@@ -1,7 +1,8 @@
-//! Op by op: operands in registers or memory, the register of the result, the instruction.
+//! Instruction selection, op by op: operands in registers or memory, the register of the result, the
+//! instruction.
 //!
-//! An op is emitted for each vector of its value before the next op, so that an instruction rarely waits for
-//! the one before it.
+//! An op is emitted for all vectors of its value before the next op, so that an instruction rarely waits for
+//! the one before.
 
 use jbt_ir::Op;
 
@@ -10,10 +11,11 @@ use super::inst::{Base, Binary, Form, Gpr, Inst, Integer, Memory, Operand, Predi
 use super::linear::{Home, Kind, NONE, Name};
 use super::state::{MASKS, NOWHERE, Register, SPARE_MASK, State, copy, load, store};
 
-/// How far ahead a use may be for which a number is loaded: beyond, it is read from memory again.
+/// The distance of the next use up to which a number is loaded into a register: beyond, it is read from
+/// memory again.
 const NEAR: u32 = 64;
 
-/// An operand that is read once by the current instruction.
+/// An operand of the current instruction.
 #[derive(Clone, Copy)]
 enum Source {
     Register(Register),
@@ -71,8 +73,8 @@ impl State<'_> {
 
     // ── operands ─────────────────────────────────────────────────────────────────────────────────
 
-    /// Whether a part is in no register, and may be read from memory by an instruction, and that is better
-    /// than to load it.
+    /// Whether a part is in no register, an instruction may read it from memory, and that is better than
+    /// loading it.
     fn stays_in_memory(&mut self, part: Part, is_last: bool) -> bool {
         let name = self.name(part);
         if self.register_of(part).is_some() || !self.can_be_operand(name) {
@@ -81,7 +83,7 @@ impl State<'_> {
         if self.free_register(self.class(name)).is_none() {
             return true;
         }
-        // One load for all that read it soon.
+        // One load serves all uses that come soon.
         let data = self.linear.names[name as usize];
         let soon = self.later_use(name).is_some_and(|at| at - self.position <= NEAR);
         let again = if data.is_uniform { !is_last && self.vectors > 2 } else { false };
@@ -97,7 +99,7 @@ impl State<'_> {
         }
     }
 
-    /// The operand, just before the instruction that reads it.
+    /// The operand, just before its instruction.
     fn operand(&mut self, source: Source) -> Operand {
         match source {
             Source::Register(register) => Operand::Register(register),
@@ -105,13 +107,14 @@ impl State<'_> {
         }
     }
 
-    /// Whether a part is read for the last time by the instruction of one vector.
+    /// Whether the instruction of one vector is the last use of a part.
     fn ends(&self, part: Part, is_last: bool) -> bool {
         let name = self.name(part);
         (is_last || !self.linear.names[name as usize].is_uniform) && self.dies(name)
     }
 
-    /// The register that an accumulator begins a round in, if the part is its next value and may be there.
+    /// The register in which an accumulator begins an iteration, if the part is its next value and the
+    /// register is available.
     fn wish(&self, to: Part) -> Option<Register> {
         let name = self.name(to);
         let phi = self.becomes[name as usize];
@@ -124,8 +127,8 @@ impl State<'_> {
         self.registers(class).find(|&register| header[register as usize] == phi)
     }
 
-    /// A register for a result: that of an operand which nobody needs any more, if there is one, but not
-    /// `taboo`. Operands that end here are released.
+    /// A register for a result: if possible the register of an operand that dies, but not `taboo`. Operands
+    /// that die are released.
     fn target(&mut self, to: Part, args: &[Part], is_last: bool, taboo: Option<Register>) -> Register {
         let class = self.class(self.name(to));
         let mut ending = [NOWHERE; 3];
@@ -159,8 +162,8 @@ impl State<'_> {
         register
     }
 
-    /// A register that holds nothing any more. If the instruction needs all others, that of an operand, which
-    /// is stored: an instruction reads before it writes.
+    /// An empty register. If the instruction needs all others, the register of an operand, which is stored:
+    /// an instruction reads before it writes.
     fn take_or_overwrite(&mut self, class: usize, args: &[Part], taboo: Option<Register>) -> Register {
         let mut registers = self.registers(class);
         if registers.any(|register| self.locked >> register & 1 == 0) {
@@ -191,7 +194,7 @@ impl State<'_> {
             return self.emit(inst, &[a, a], to);
         }
         if self.stays_in_memory(a, is_last) {
-            // Straight into the register of the result, which has to be another one than that of b.
+            // Loads a directly into the register of the result, which must differ from the register of b.
             let source = self.source(b, is_last);
             let taboo = if let Source::Register(register) = source { Some(register) } else { None };
             let target = self.target(to, &[], is_last, taboo);
@@ -249,7 +252,7 @@ impl State<'_> {
         self.emit(Inst::Compare { predicate, to: number, a: register, b: b_operand }, &[a, b], to);
     }
 
-    /// The register of a mask: the spare one, if it has none.
+    /// The mask register of a mask: the spare one, if the mask is in none.
     fn mask_register(&mut self, part: Part) -> u8 {
         if let Some(register) = self.register_of(part) {
             self.lock(register);
@@ -269,7 +272,8 @@ impl State<'_> {
         if yes != no && self.stays_in_memory(no, is_last) {
             let source = self.source(yes, is_last);
             let yes_register = if let Source::Register(register) = source { Some(register) } else { None };
-            // The mask is a vector where it could be in the way; it stays locked.
+            // Without mask registers the mask is a vector, and stays locked so that the result cannot
+            // overwrite it.
             let target = self.target(to, &[], is_last, yes_register);
             self.load_into(target, no);
             let operand = self.operand(source);
@@ -291,7 +295,7 @@ impl State<'_> {
             let target = self.target(to, &[a], is_last, None) - MASKS;
             return self.emit(Inst::MaskNot { to: target, a: register }, &[a], to);
         }
-        // One of them may pass through the spare register, so the other one has a register of its own.
+        // One of them may need the spare register, so the other one gets a register of its own.
         let first = self.fetch(a) - MASKS;
         let second = if a == b { first } else { self.mask_register(b) };
         let target = self.target(to, &[a, b], is_last, None) - MASKS;
@@ -305,10 +309,10 @@ impl State<'_> {
 
     // ── fma ──────────────────────────────────────────────────────────────────────────────────────
 
-    /// `a * b + c`. The result takes the place of one operand: of one that ends, of one that is loaded for
+    /// `a * b + c`. The result takes the register of one operand: of one that dies, of one that is loaded for
     /// it, or of a copy.
     fn fma(&mut self, to: Part, [mut a, mut b, c]: [Part; 3], is_last: bool) {
-        // Of the operands in memory one may stay there: the last of these.
+        // One operand in memory may stay there: the last one in this order.
         let mut in_memory = NONE;
         for part in [c, b, a] {
             if part == in_memory {
@@ -324,7 +328,7 @@ impl State<'_> {
         if a == in_memory {
             (a, b) = (b, a);
         }
-        // Now a is in a register, and at most one of b and c is not.
+        // Now a is in a register, and at most one of b and c is in memory.
         let register = |state: &Self, part| state.register_of(part).unwrap_or(NOWHERE);
         let [ra, rb, rc] = [a, b, c].map(|part| register(self, part));
         let any_ends = [a, b, c].iter().any(|&part| part != in_memory && self.ends(part, is_last));
@@ -362,7 +366,7 @@ impl State<'_> {
         self.emit(inst.0, &inst.1, to);
     }
 
-    /// The register of an fma's result: that of an operand that ends, or one that a copy goes to.
+    /// The register of an fma's result: the register of an operand that dies, or the target of a copy.
     fn fma_target(&mut self, to: Part, args: [Part; 3], in_memory: Part, is_last: bool) -> Register {
         let ending = args
             .into_iter()
@@ -385,7 +389,7 @@ impl State<'_> {
 
     // ── stores ───────────────────────────────────────────────────────────────────────────────────
 
-    /// Makes a computed value of a leaf.
+    /// Copies a leaf into a computed value.
     pub(super) fn read(&mut self, to: Name, from: Name) {
         for vector in 0..self.parts(to).len() as u32 {
             let [to, from] = [to, from].map(|name| self.part(name, vector));

@@ -1,12 +1,12 @@
-//! Which value is in which register, and what is done when registers run out.
+//! Register allocation: which value is in which register, and what to spill.
 //!
-//! The list is walked once. At each item the registers hold what they hold; a value that is read has a
-//! register, or is read from memory if the instruction can do that; a result takes the register of an operand
-//! that nobody needs any more, a free one, or that of the value which is needed last. A value is stored once,
-//! when it has to leave its register for the first time, and a leaf never.
+//! The list is walked once. An item's operand is read from its register, or from memory if the instruction
+//! can do that. The result takes the register of an operand that dies, a free register, or the register of
+//! the value whose next use is farthest. A value is stored at most once, when it is spilled for the first
+//! time; a leaf is never stored.
 //!
-//! What a loop begins with is decided when it opens ([`super::loops`]), and is put back at its end. So a
-//! register holds the same thing at the top of each round.
+//! The contents of registers at the top of a loop are decided when the loop opens ([`super::loops`]), and
+//! restored at the end of each iteration. So a register holds the same value at the top of each iteration.
 
 use rustc_hash::FxHashMap as HashMap;
 
@@ -16,23 +16,23 @@ use super::inst::{Inst, Label, Memory};
 use super::linear::{Kind, Linear, LoopId, NONE, Name};
 use super::lives::Lives;
 
-/// A register: 0 to 31 are vectors, from 32 on masks, of which the first is none.
+/// A register: 0 to 31 are vectors, from 32 on masks. The first mask register is unused.
 pub(crate) type Register = u8;
 
-/// The first mask register's number, less the number that it has in an instruction.
+/// The difference between a mask register's number here and in an instruction.
 pub(crate) const MASKS: Register = 32;
 /// All registers.
 pub(crate) const REGISTERS: usize = 40;
 /// No register.
 pub(crate) const NOWHERE: Register = u8::MAX;
-/// The mask register that operands pass through which have none.
+/// The mask register for operands that are in no register.
 pub(crate) const SPARE_MASK: u8 = 7;
 
-/// Words at the start of the frame. The first one is where the caller's stack is; then come a strip's start,
-/// and the planes' bytes.
+/// Words at the start of the frame: first the caller's stack pointer, then a strip's start and the bytes of
+/// the planes.
 pub(crate) const STRIP_START: i32 = 8;
 pub(crate) const ALL_BYTES: i32 = 16;
-/// Where the registers of outer loops are kept.
+/// Where the integer registers of outer loops are saved.
 pub(crate) const SAVED: i32 = 24;
 
 /// How many registers may be used: vectors and masks.
@@ -49,14 +49,14 @@ impl Count {
 /// An open loop.
 pub(super) struct Open {
     pub(super) id: LoopId,
-    /// What the registers hold at the top of each round.
+    /// The contents of the registers at the top of each iteration.
     pub(super) header: [Part; REGISTERS],
-    /// How much was in the journal.
+    /// The length of the journal when the loop opened.
     pub(super) journal: usize,
-    /// Where a round begins, and where the loop is left.
+    /// Where an iteration begins, and where the loop is left.
     pub(super) top: Label,
     pub(super) exit: Label,
-    /// Where a round ends that ends early.
+    /// The target of early ends of iterations.
     pub(super) early: Option<Label>,
 }
 
@@ -64,66 +64,65 @@ pub(super) struct Open {
 pub(crate) struct State<'a> {
     pub(super) linear: &'a Linear,
     pub(super) lives: &'a Lives,
-    /// Registers that each loop needs for what it computes.
+    /// The number of registers that each loop needs for the values that it computes.
     pub(super) pressure: Vec<[usize; 2]>,
-    /// Vectors of a value.
+    /// The number of vectors of a value.
     pub(super) vectors: u32,
     pub(super) shape: Shape,
     pub(super) count: Count,
-    /// Input planes of the function: outputs come behind them.
+    /// The number of input planes of the function: output planes follow them.
     pub(super) planes: usize,
     pub(super) strip_bytes: usize,
     pub(super) strides: Vec<usize>,
     pub(super) parents: Vec<Option<usize>>,
 
     pub(crate) code: Vec<Inst>,
-    /// The parts that each instruction reads and writes, if somebody wants to check them.
+    /// The parts that each instruction reads and writes, if the code is to be checked.
     pub(crate) notes: Option<Vec<([Part; 3], Part)>>,
-    /// What happens between instructions, for the same purpose.
+    /// Events between instructions, for the same purpose.
     pub(crate) events: Vec<(usize, Event)>,
     pub(crate) labels: u32,
     pub(crate) constants: Vec<u8>,
     pub(super) numbers: HashMap<u32, i32>,
-    /// Instructions that take the address of the first slot of a strip, which is known in the end.
+    /// Instructions that take the address of the first slot of a strip, which is known at the end.
     pub(crate) slot_addresses: Vec<usize>,
 
     /// What each register holds.
     pub(super) occupant: [Part; REGISTERS],
-    /// Registers that hold something, a bit each.
+    /// A bit for each register that holds a part.
     full: u64,
-    /// The registers of each class, a bit each.
+    /// The registers of each class, as bits.
     classes: [u64; 2],
-    /// Until where each register can do without its part, where that has been looked up; and where it has, a
-    /// bit each.
+    /// The next use of each register's part, and a bit for each register whose entry is valid.
     wanted: [u32; REGISTERS],
     looked_up: u64,
-    /// Where each part is.
+    /// The register of each part.
     pub(super) place: Vec<Register>,
-    /// Whether the frame has it.
+    /// Whether the frame holds each part.
     pub(super) stored: Vec<bool>,
-    /// Where the frame has it, or will.
+    /// The place of each part in the frame, if it has one.
     pub(super) frame: Vec<u32>,
     pub(super) free: Vec<u32>,
     pub(crate) frame_slots: u32,
-    /// Parts that have been stored since loops were opened.
+    /// Parts that have been stored while loops are open, in order.
     pub(super) journal: Vec<Part>,
-    /// How many uses of each name are behind.
+    /// How many uses of each name the walk has passed.
     passed: Vec<u32>,
-    /// Registers that the current instruction needs, a bit each.
+    /// The registers that the current instruction needs, as bits.
     pub(super) locked: u64,
     pub(super) position: u32,
     pub(super) open: Vec<Open>,
-    /// Registers that accumulators of the innermost loop begin a round in.
+    /// The registers in which accumulators of the innermost loop begin an iteration.
     pub(super) reserved: u64,
-    /// The accumulator that a name becomes in the end of a round.
+    /// The accumulator whose next value a name is.
     pub(super) becomes: Vec<Name>,
     /// The loop over each table.
     pub(super) rows: Vec<Option<usize>>,
-    /// Folds that are open.
+    /// The number of open folds.
     pub(super) depth: usize,
 }
 
-/// What a walk begins with.
+/// The input of a walk.
 pub(crate) struct Task<'a> {
     pub(crate) linear: &'a Linear,
     pub(crate) lives: &'a Lives,
@@ -132,7 +131,7 @@ pub(crate) struct Task<'a> {
     pub(crate) count: Count,
     pub(crate) planes: usize,
     pub(crate) strip_bytes: usize,
-    /// Of each table, the bytes of a row and the parent.
+    /// For each table, the bytes of a row and the parent.
     pub(crate) tables: Vec<(usize, Option<usize>)>,
     pub(crate) is_checked: bool,
 }
@@ -188,7 +187,8 @@ impl<'a> State<'a> {
 
     // ── code ─────────────────────────────────────────────────────────────────────────────────────
 
-    /// Appends an instruction on values: what it reads, in the order of its fields, and what it writes.
+    /// Appends an instruction on values, with the parts that it reads, in the order of its fields, and the
+    /// part that it writes.
     pub(super) fn emit(&mut self, inst: Inst, reads: &[Part], write: Part) {
         self.code.push(inst);
         if let Some(notes) = &mut self.notes {
@@ -246,7 +246,7 @@ impl<'a> State<'a> {
         (register != NOWHERE).then_some(register)
     }
 
-    /// The next position, this one or a later one, where somebody wants the name.
+    /// The next use of the name, at this position or later.
     pub(super) fn next_use(&mut self, name: Name) -> u32 {
         let (uses, passed) = (self.lives.uses(name), &mut self.passed[name as usize]);
         while uses.get(*passed as usize).is_some_and(|&at| at < self.position) {
@@ -255,12 +255,12 @@ impl<'a> State<'a> {
         let end = self.lives.end(self.linear, name, self.position);
         match uses.get(*passed as usize) {
             Some(&at) if at <= end => at,
-            // Alive for the next round, or for nobody.
+            // Alive for the next iteration, or dead.
             Some(_) | None => end.max(self.position),
         }
     }
 
-    /// Whether the name is read behind the current position, and how soon.
+    /// The next use of the name after the current position, if it has one.
     pub(super) fn later_use(&mut self, name: Name) -> Option<u32> {
         self.next_use(name);
         let uses = self.lives.uses(name);
@@ -272,7 +272,7 @@ impl<'a> State<'a> {
         uses.get(index).copied().filter(|&at| at <= end)
     }
 
-    /// Whether nobody reads the name behind the current position.
+    /// Whether the name has no use after the current position.
     pub(super) fn dies(&self, name: Name) -> bool {
         self.lives.end(self.linear, name, self.position) <= self.position
     }
@@ -288,7 +288,7 @@ impl<'a> State<'a> {
         self.locked |= 1 << register;
     }
 
-    /// A register that holds nothing: one that no accumulator waits for, if there is one.
+    /// An empty register, if possible one that no accumulator is to begin an iteration in.
     pub(super) fn free_register(&self, class: usize) -> Option<Register> {
         let free = self.classes[class] & !self.full & !self.locked;
         let best = free & !self.reserved;
@@ -296,7 +296,7 @@ impl<'a> State<'a> {
         (free != 0).then_some(first as Register)
     }
 
-    /// A register that holds nothing, or nothing any more.
+    /// An empty register; if there is none, one is spilled.
     pub(super) fn take(&mut self, class: usize) -> Register {
         if let Some(register) = self.free_register(class) {
             return register;
@@ -317,11 +317,12 @@ impl<'a> State<'a> {
         best
     }
 
-    /// How long a register may do without its part: more if nothing has to be stored.
+    /// The priority of a register for spilling: the distance of the next use of its part, more if nothing has
+    /// to be stored.
     fn reluctance(&mut self, register: Register, part: Part) -> u64 {
         let name = self.name(part);
         let index = register as usize;
-        // Nothing comes nearer until it is behind.
+        // The next use stays the same until the walk passes it.
         if self.looked_up >> register & 1 == 0 || self.wanted[index] < self.position {
             let mut next = self.next_use(name);
             if let Some(open) = self.open.last()
@@ -336,12 +337,12 @@ impl<'a> State<'a> {
         if self.stored[part as usize] || self.is_leaf(name) { 3 * distance } else { 2 * distance }
     }
 
-    /// Forgets until where registers can do without their parts: another loop is the innermost one now.
+    /// Forgets the next uses: another loop is the innermost one now.
     pub(super) fn look_up_again(&mut self) {
         self.looked_up = 0;
     }
 
-    /// Makes a register empty; the frame has what was in it, if somebody needs that.
+    /// Empties a register; its part is stored first, if it is still needed.
     pub(super) fn vacate(&mut self, register: Register) {
         let part = self.occupant[register as usize];
         if part == NONE {
@@ -351,7 +352,7 @@ impl<'a> State<'a> {
         self.release(part);
     }
 
-    /// Forgets that a part is in a register.
+    /// Records that a part is in no register.
     pub(super) fn release(&mut self, part: Part) {
         let register = std::mem::replace(&mut self.place[part as usize], NOWHERE);
         if register != NOWHERE {
@@ -360,7 +361,7 @@ impl<'a> State<'a> {
         }
     }
 
-    /// Says that a part is in a register, which is empty.
+    /// Records that a part is in a register, which was empty.
     pub(super) fn bind(&mut self, part: Part, register: Register) {
         debug_assert_eq!(self.occupant[register as usize], NONE, "a register holds one thing");
         self.occupant[register as usize] = part;

@@ -1,6 +1,6 @@
-//! What has to move at the end of a round, so that everything is where it was at the top: next values of
-//! accumulators, and what had to leave its register in between. All is read before anything is written, in an
-//! order that needs few places besides.
+//! Moves at the end of an iteration that restore the contents of registers at its top: next values of
+//! accumulators, and values that were spilled in between. The moves are parallel: all sources are read before
+//! any target is written, in an order that needs few extra places.
 
 use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 
@@ -9,7 +9,7 @@ use super::inst::Memory;
 use super::linear::{Kind, LoopId, NONE};
 use super::state::{MASKS, REGISTERS, Register, SPARE_MASK, State, copy, load, store};
 
-/// Where a value is that a transfer reads.
+/// The place of a value that a transfer reads.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 enum Source {
     Register(Register),
@@ -17,23 +17,23 @@ enum Source {
     Leaf,
 }
 
-/// A value that has to be at another place when a round begins.
+/// A value that has to be at another place when an iteration begins.
 #[derive(Clone, Copy)]
 struct Transfer {
     from: Part,
     source: Source,
-    /// What it is there.
+    /// The part that it becomes there.
     to: Part,
     /// [`Source::Register`] or [`Source::Memory`].
     target: Source,
 }
 
 impl State<'_> {
-    /// Puts everything where it is at the top of a round.
+    /// Restores all values that the top of an iteration relies on.
     pub(super) fn put_back(&mut self, id: LoopId) {
         let header = self.open.last().expect("the loop is open").header;
         let (mut transfers, mut renames) = self.transfers(id, &header);
-        // From memory to memory, or perhaps by way of memory, because somebody else reads what is there.
+        // A move from memory to memory, or a move through memory because its target is also a source.
         let sources: HashSet<Source> = transfers.iter().map(|transfer| transfer.source).collect();
         let needs_register = transfers.iter().any(|transfer| {
             matches!(transfer.target, Source::Memory(_))
@@ -42,8 +42,8 @@ impl State<'_> {
         });
         let mut spare = MASKS;
         if needs_register {
-            // One that is empty at the top: there is one, since not all are given away
-            // ([`choose`](Self::choose)).
+            // A register that is empty at the top. There is one, since [`choose`](Self::choose) does not give
+            // away all.
             let mut registers = self.registers(0);
             spare = registers.find(|&register| header[register as usize] == NONE).unwrap_or(0);
             self.vacate(spare);
@@ -66,15 +66,14 @@ impl State<'_> {
         }
     }
 
-    /// Transfers as if all were read before the first is written.
+    /// Transfers as if all sources were read before the first target is written.
     fn transfer_all(&mut self, mut transfers: Vec<Transfer>, spare: Register) {
         if transfers.is_empty() {
             return;
         }
-        // Registers first: where all that is left goes round in circles, one in a register goes out of the
-        // way.
+        // Registers first: where only cycles are left, a cycle is broken at a register.
         transfers.sort_by_key(|transfer| !matches!(transfer.source, Source::Register(_)));
-        // Who reads a place, how many of them have not done so yet, and who writes it.
+        // The readers of a place, how many of them are still pending, and the writer of the place.
         let mut readers: HashMap<Source, (Vec<usize>, usize)> = HashMap::default();
         let mut writer: HashMap<Source, usize> = HashMap::default();
         for (index, transfer) in transfers.iter().enumerate() {
@@ -115,7 +114,7 @@ impl State<'_> {
         self.give_back(fresh);
     }
 
-    /// All that is not where it has to be, and all accumulators that are.
+    /// All values that are not in their places, and all accumulators that are.
     fn transfers(
         &mut self,
         id: LoopId,
@@ -189,7 +188,7 @@ impl State<'_> {
         }
     }
 
-    /// Copies the source of a transfer to a place that nobody writes to.
+    /// Copies the source of a transfer to a fresh place.
     fn set_aside(&mut self, transfer: Transfer, spare: Register, fresh: &mut Vec<u32>) -> Memory {
         let (slot, memory) = self.fresh_slot();
         fresh.push(slot);

@@ -12,9 +12,8 @@
 //!      o---o---o---o---x
 //! ```
 //!
-//! Bricks are aligned to multiples of their edge, which is a power of two, and stand in Morton order as well.
-//! So bricks and their cells, one after the other, run through all cells in Morton order, whatever the edge
-//! is.
+//! Bricks are aligned to multiples of their edge, which is a power of two, and are in Morton order as well.
+//! So bricks and their cells, one after the other, run through all cells in Morton order for any edge.
 
 use crate::region::Box3;
 
@@ -22,8 +21,8 @@ use crate::region::Box3;
 pub(crate) const NONE: u32 = u32::MAX;
 /// The neighbour of a brick in no direction: itself.
 pub(crate) const SELF: usize = direction([0, 0, 0]);
-/// Cells of bricks that a thread does at a time: small enough to share small meshes among threads, and large
-/// enough for the cost of sharing not to count.
+/// The number of cells that a thread takes at a time: small enough to divide small meshes among threads,
+/// large enough to make the overhead negligible.
 const CELLS_AT_A_TIME: usize = 1 << 13;
 
 /// The number of a direction, from steps of -1, 0 or 1 along the axes: 0 to 26.
@@ -56,7 +55,7 @@ pub(crate) struct Bricks {
     pub(crate) places: Vec<[u32; 3]>,
     /// The bricks around each one by [`direction`], or [`NONE`].
     pub(crate) neighbours: Vec<[u32; 27]>,
-    /// For each cell of a brick, in Morton order, where it is.
+    /// The place of each cell of a brick, in Morton order.
     cells: Vec<At>,
 }
 
@@ -101,18 +100,17 @@ impl Bricks {
         Self { edge, axes, places, neighbours, cells }
     }
 
-    /// How many there are.
+    /// The number of bricks.
     pub(crate) fn len(&self) -> usize {
         self.places.len()
     }
 
-    /// How many a thread does at a time.
+    /// The number of bricks that a thread takes at a time.
     pub(crate) fn group(&self) -> usize {
         (CELLS_AT_A_TIME / self.edge.pow(3)).max(1)
     }
 
-    /// Points along an edge, and the distance of rows in a table of a brick's points (x fastest, then y, then
-    /// z).
+    /// Points along an edge: the stride of rows in a table of a brick's points (x fastest, then y, then z).
     pub(crate) fn stride(&self) -> usize {
         self.edge + 1
     }
@@ -122,7 +120,7 @@ impl Bricks {
         self.stride().pow(3)
     }
 
-    /// For each eight cells in Morton order, where the first is.
+    /// The place of the first of each eight cells in Morton order.
     pub(crate) fn octets(&self) -> impl Iterator<Item = At> {
         self.cells.iter().step_by(8).copied()
     }
@@ -191,7 +189,7 @@ pub(crate) fn split<'a, T>(
     (0..bricks).step_by(group).map(part).collect()
 }
 
-/// The sums of all numbers before each, and of all.
+/// The prefix sums of the numbers: the sum before each, then the sum of all.
 pub(crate) fn starts(counts: impl ExactSizeIterator<Item = usize>) -> Vec<usize> {
     let mut starts = Vec::with_capacity(counts.len() + 1);
     let mut sum = 0;

@@ -10,11 +10,11 @@
 //! ```
 //!
 //! A face of the cell is crossed on none, two or all four of its edges. Two crossings are joined by a
-//! segment. Four are an *ambiguous* face, the corners of which alternate: two segments join them in one of
-//! two ways, each of which cuts off a pair of opposite corners. The default cuts off the corners inside (so
-//! it keeps their neighbourhoods separate); a *flipped* face cuts off those outside. Every crossed edge lies
-//! on two faces and so has two segments: the segments make cycles, and each cycle bounds one *sheet* of the
-//! surface in this cell (Nielson 2004, "Dual marching cubes").
+//! segment. A face with four crossings is *ambiguous*: its corners alternate. Two segments join its crossings
+//! in one of two ways, each of which cuts off a pair of opposite corners. The default cuts off the corners
+//! inside, which separates their neighbourhoods; a *flipped* face cuts off the corners outside. Every crossed
+//! edge lies on two faces and so has two segments: the segments form cycles, and each cycle bounds one
+//! *sheet* of the surface in this cell (Nielson 2004, "Dual marching cubes").
 //!
 //! All 256 cases follow from these sentences and are computed when this crate is compiled.
 
@@ -83,14 +83,14 @@ const fn ambiguous(signs: u8, face: usize) -> bool {
 pub(crate) struct Sheets {
     /// The sheet that each edge belongs to, or [`NO_SHEET`].
     of_edge: [u8; 12],
-    /// How many sheets: from 0 to 4. They are numbered in the order of their first edges.
+    /// The number of sheets, from 0 to 4, in the order of their first edges.
     count: u8,
-    /// Ambiguous faces (a bit each) both segments of which lie on one sheet.
+    /// A bit for each ambiguous face with both segments on one sheet.
     pinched: u8,
 }
 
 impl Sheets {
-    /// How many sheets.
+    /// The number of sheets.
     pub(crate) const fn count(&self) -> u32 {
         self.count as u32
     }
@@ -112,13 +112,13 @@ impl Sheets {
         SheetNumbers(numbers)
     }
 
-    /// Whether a face is ambiguous and both of its segments lie on one sheet. If that is so on both of its
-    /// sides, the two sheets would meet in one edge of the mesh twice, which would then have four triangles.
+    /// Whether a face is ambiguous and both of its segments lie on one sheet. If this holds in both cells of
+    /// the face, their two sheets share an edge of the mesh twice, and that edge has four triangles.
     pub(crate) fn pinched(&self, face: usize) -> bool {
         self.pinched >> face & 1 == 1
     }
 
-    /// Whether any low face is so.
+    /// Whether any low face is pinched.
     pub(crate) fn pinched_low(&self) -> bool {
         self.pinched & 0b01_0101 != 0
     }
@@ -133,8 +133,8 @@ impl Sheets {
         edges
     }
 
-    /// The sheets that have quads, where the cell touches these sides of the lattice (a bit for each face):
-    /// an edge on a side has no cells all around it.
+    /// The sheets that have quads in a cell that touches these sides of the lattice (a bit for each face): an
+    /// edge on a side lacks some of its four cells.
     fn with_quads(self, sides: u8) -> Sheets {
         let mut names = [NO_SHEET; 4];
         let mut count = 0;
@@ -148,8 +148,8 @@ impl Sheets {
         Sheets { of_edge: self.of_edge.map(name), count, ..self }
     }
 
-    /// From the corners that are inside (a bit each) and the faces that are flipped (a bit each; it matters
-    /// on ambiguous faces).
+    /// From the corners that are inside and the faces that are flipped, a bit each; flips of faces that are
+    /// not ambiguous have no effect.
     const fn new(signs: u8, flips: u8) -> Sheets {
         // Every crossed edge starts alone, and each segment joins the groups of its ends under the smaller
         // number.
@@ -222,7 +222,7 @@ const fn join(group: [u8; 12], a: usize, b: usize) -> [u8; 12] {
     group
 }
 
-/// Numbers the groups from 0. A group is called by its first edge, which is met first.
+/// Numbers the groups from 0. A group is named by its first edge, which comes first in the walk.
 const fn number(group: [u8; 12], pinched: u8) -> Sheets {
     let mut of_edge = [NO_SHEET; 12];
     let mut count = 0;
@@ -239,24 +239,24 @@ const fn number(group: [u8; 12], pinched: u8) -> Sheets {
     Sheets { of_edge, count, pinched }
 }
 
-/// The way around the sheets of a cell, from its corners inside and its flipped faces, a bit each: for each
-/// crossed edge the next one of its sheet, counter-clockwise as seen from outside of the surface. An edge
-/// that is not crossed has itself.
+/// The cycles around the sheets of a cell, from its corners inside and its flipped faces, a bit each: for
+/// each crossed edge the next edge of its sheet, counter-clockwise as seen from outside of the surface. For
+/// any other edge the edge itself.
 pub(crate) fn following(signs: u8, flips: u8) -> [u8; 12] {
     let mut next: [u8; 12] = std::array::from_fn(|edge| edge as u8);
     for face in 0..6 {
         let (corners, edges) = (ring(face), ring_edges(face));
         let is_inside = |i: usize| inside(signs, corners[i % 4]);
-        // A segment joins where the walk around the face comes in to where it then goes out; on a flipped
-        // face, to where it went out before.
+        // A segment joins the edge where the walk around the face enters the inside to the edge where it
+        // leaves next; on a flipped face, to the edge where it left before.
         let back = flips >> face & 1 == 1 && ambiguous(signs, face);
         for enter in (0..4).filter(|&i| !is_inside(i) && is_inside(i + 1)) {
             let goes_out = |&i: &usize| is_inside(i) && !is_inside(i + 1);
             let leave = (1..4).map(|step| if back { enter + 4 - step } else { enter + step }).find(goes_out);
             let Some(leave) = leave else { continue };
             let (enter, leave) = (edges[enter], edges[leave % 4]);
-            // A ring goes counter-clockwise as seen from the high side of its axis: from outside of the cell
-            // for high faces alone.
+            // A ring goes counter-clockwise as seen from the high side of its axis. That is outside of the
+            // cell only for high faces.
             let [from, to] = if face & 1 == 1 { [enter, leave] } else { [leave, enter] };
             next[from] = to as u8;
         }
@@ -275,20 +275,19 @@ static DEFAULT: [Sheets; 256] = {
     sheets
 };
 
-/// For each edge of a cell that the surface crosses, and that has a quad, which sheet it belongs to: two bits
-/// each.
+/// For each crossed edge of a cell that has a quad, the number of its sheet: two bits each.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct SheetNumbers(u32);
 
 impl SheetNumbers {
-    /// The sheet of an edge; the place of its bits is twice its number.
+    /// The sheet of an edge; `place` is twice the edge's number.
     #[inline(always)]
     pub(crate) fn at(self, place: u32) -> u32 {
         self.0 >> place & 3
     }
 }
 
-/// Those of every case without flipped faces.
+/// The sheet numbers of every case without flipped faces.
 static DEFAULT_NUMBERS: [SheetNumbers; 256] = {
     let mut numbers = [SheetNumbers(0); 256];
     let mut signs = 0;
@@ -308,7 +307,7 @@ pub(crate) fn default_numbers(signs: u8) -> SheetNumbers {
 /// The sheets of a cell, from its corners inside and its flipped faces, a bit each.
 #[inline]
 pub(crate) fn sheets(signs: u8, flips: u8) -> Sheets {
-    // Flipped faces are rare, and a table of them would be 64 times as large as this one.
+    // Flipped faces are rare, and a table of them would be 64 times as large as the default one.
     if flips == 0 { DEFAULT[usize::from(signs)] } else { Sheets::new(signs, flips) }
 }
 
@@ -324,16 +323,16 @@ pub(crate) fn sheets_with_quads(signs: u8, flips: u8, sides: u8) -> Sheets {
     if sides == 0 { sheets } else { sheets.with_quads(sides) }
 }
 
-/// Some crossed edges of a cell, all of one sheet, in one number: a bit for each edge; then, in three bits
-/// for each axis, how many of the edges along the others lie on the high side of the cell; then how many
-/// edges there are.
+/// A set of crossed edges of a cell, all on one sheet, in one number: a bit for each edge; then, in three
+/// bits for each axis, the number of edges along other axes that lie on the high side of the cell; then the
+/// number of edges.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Edges(u32);
 
 impl Edges {
-    /// The place of the first bit behind those of the edges.
+    /// The first bit after the bits of the edges.
     const HIGH: u32 = 12;
-    /// The place of the number of edges.
+    /// The first bit of the number of edges.
     const COUNT: u32 = Self::HIGH + 9;
 
     /// From the edges, a bit each.
@@ -357,25 +356,25 @@ impl Edges {
         (self.0 & 0xfff) as u16
     }
 
-    /// All ones if an edge is among them, and zero otherwise.
+    /// All ones if an edge is in the set, zero otherwise.
     #[inline(always)]
     pub(crate) fn chosen(self, edge: usize) -> u32 {
         (self.0 >> edge & 1).wrapping_neg()
     }
 
-    /// How many of the edges along other axes lie on the high side of the cell: at most 4.
+    /// The number of edges along other axes that lie on the high side of the cell: at most 4.
     #[inline(always)]
     pub(crate) fn high(self, axis: usize) -> f32 {
         (self.0 >> (Self::HIGH + 3 * axis as u32) & 7) as i32 as f32
     }
 
-    /// How many they are.
+    /// The number of edges.
     #[inline(always)]
     pub(crate) fn count(self) -> f32 {
         (self.0 >> Self::COUNT) as i32 as f32
     }
 
-    /// The sum of the unit vectors along the edges, from outside to inside, in a cell with these corners
+    /// The sum of the unit vectors along the edges, from outside to inside, where `signs` are the corners
     /// inside.
     pub(crate) fn rise(self, signs: u8) -> [f32; 3] {
         let mut rise = [0.0; 3];
@@ -385,8 +384,8 @@ impl Edges {
         rise
     }
 
-    /// Whether any of them has a quad, where the cell touches these sides of the lattice (a bit for each
-    /// face): an edge on a side has no cells all around it.
+    /// Whether any edge of the set has a quad in a cell that touches these sides of the lattice (a bit for
+    /// each face): an edge on a side lacks some of its four cells.
     #[inline(always)]
     pub(crate) fn have_quad(self, sides: u8) -> bool {
         self.mask() & inner_edges(sides) != 0
@@ -420,8 +419,8 @@ pub(crate) fn edges(signs: u8, flips: u8) -> Vec<Edges> {
     (0..sheets.count()).map(|sheet| Edges::new(sheets.edges(sheet))).collect()
 }
 
-/// The edges of a cell that have cells all around them, a bit each, where it touches these sides of the
-/// lattice (a bit for each face).
+/// The edges with all four cells around them, a bit each, of a cell that touches these sides of the lattice
+/// (a bit for each face).
 #[inline(always)]
 fn inner_edges(sides: u8) -> u16 {
     /// For each set of sides.
@@ -498,7 +497,7 @@ mod tests {
                     let after = sheets(signs, flips ^ 1 << face);
                     assert_eq!(after.count(), before.count() + 1);
                     assert!(!after.pinched(face));
-                    // Nothing merges: edges together afterwards were together before.
+                    // Flips never merge sheets: edges of one sheet were on one sheet before.
                     for a in 0..12 {
                         for b in 0..12 {
                             assert!(
@@ -553,7 +552,7 @@ mod tests {
         assert_eq!((left.count(), left.of_edge(0), left.of_edge(3)), (1, None, Some(0)));
     }
 
-    /// For all signs and all flips, each cycle is a sheet; where one corner is cut off it goes the right way.
+    /// For all signs and all flips, each cycle is a sheet; around a single corner the direction is right.
     #[test]
     fn the_way_around_a_sheet_meets_all_its_edges() {
         for signs in 0..=255_u8 {

@@ -36,14 +36,14 @@ pub enum Defect {
 
 /// The edges that leave each vertex, directed as their triangles go around.
 struct Edges {
-    /// Where those of each vertex begin in `ends`, and where the last ones end.
+    /// Where the edges of each vertex begin in `ends`, and the end.
     starts: Vec<usize>,
-    /// For each edge its end, ascending within a vertex, and the third corner of its triangle.
+    /// For each edge its end vertex, ascending within a start vertex, and the third corner of its triangle.
     ends: Vec<(u32, u32)>,
 }
 
 impl Edges {
-    /// Sorts the edges by where they begin, by counting. Fails with the first triangle that names a missing
+    /// Sorts the edges by start vertex, by counting. Fails with the first triangle that names a missing
     /// vertex.
     fn new(vertices: usize, triangles: &[[u32; 3]]) -> Result<Self, usize> {
         let mut starts = vec![0_usize; vertices + 1];
@@ -76,11 +76,11 @@ impl Edges {
     }
 
     fn vertices(&self) -> u32 {
-        // A vertex that has an edge is named by a u32; those beyond have none and need no check.
+        // A vertex with an edge is named by a u32; vertices beyond have no edges and need no check.
         u32::try_from(self.starts.len() - 1).unwrap_or(u32::MAX)
     }
 
-    /// How many triangles go around with the edge.
+    /// The number of triangles that go around with the edge.
     fn count(&self, from: u32, to: u32) -> usize {
         let edges = self.of(from);
         edges.partition_point(|&(end, _)| end <= to) - edges.partition_point(|&(end, _)| end < to)
@@ -100,8 +100,7 @@ impl Edges {
         let edges = self.of(vertex);
         let &(first, mut at) = edges.first()?;
         let mut triangles = 1;
-        // Every edge out of this vertex has a triangle on both sides, so the walk comes back to where it
-        // began.
+        // Every edge out of this vertex has a triangle on both sides, so the walk returns to its start.
         while at != first {
             let place = edges.partition_point(|&(end, _)| end < at);
             at = edges[place].1;
@@ -111,14 +110,14 @@ impl Edges {
     }
 }
 
-/// Whether every edge of these triangles has exactly two of them, in opposite directions. `vertices` is how
-/// many vertices the triangles may name. No triangles are closed; a triangle with an index out of range or a
-/// repeated vertex is not.
+/// Whether every edge of these triangles has exactly two triangles, in opposite directions. The triangles may
+/// name `vertices` vertices. An empty list is closed; a triangle with an index out of range or a repeated
+/// vertex is not.
 ///
 /// Linear in triangles and vertices, as long as few vertices have very many triangles.
 pub fn is_closed(vertices: usize, triangles: &[[u32; 3]]) -> bool {
     let mut slots = vec![[NO_END; SLOTS]; vertices];
-    // For each vertex and direction, the slots whose edges have been met in it, a bit each.
+    // For each vertex and direction, the slots whose edges have been seen in that direction, a bit each.
     let mut met = vec![[0_u8; 2]; vertices];
     let mut rest = Vec::new();
     for &[p, q, r] in triangles {
@@ -139,7 +138,7 @@ pub fn is_closed(vertices: usize, triangles: &[[u32; 3]]) -> bool {
             *met |= 1 << slot;
         }
     }
-    // Sorted, the two directions of each edge stand side by side, and nothing else does.
+    // Sorted, the two directions of each edge are neighbours.
     rest.sort_unstable();
     let (pairs, odd) = rest.as_chunks::<2>();
     let is_pair = |&[(a, b, up), (c, d, down)]: &[(u32, u32, bool); 2]| (a, b, up) == (c, d, !down) && !up;
@@ -149,16 +148,17 @@ pub fn is_closed(vertices: usize, triangles: &[[u32; 3]]) -> bool {
         && rest.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).all(|edge| edge.len() == 2)
 }
 
-/// Edges to larger numbers that are kept with each vertex. Most have three, and few have more than this.
+/// The edges to larger vertex numbers that are kept with each vertex. Most vertices have three, few have more
+/// than eight.
 const SLOTS: usize = 8;
-/// No edge. A vertex with this number is taken for missing; 32 bits would not number the one after it.
+/// No edge. A vertex with this number counts as missing, because 32 bits cannot number the next one.
 const NO_END: u32 = u32::MAX;
 
-/// The slot of an edge's end, which is put there if it is new; or nothing if all slots have others.
+/// The slot of an edge's end, which is entered if it is new; `None` if all slots hold others.
 #[inline(always)]
 fn find(ends: &mut [u32; SLOTS], end: u32) -> Option<usize> {
-    // It is looked for first where few others are: multiplication by this (2^32 / the golden ratio) scatters
-    // numbers that are near each other.
+    // Multiplication by 2^32 / the golden ratio scatters neighbouring numbers, so the first slot of the
+    // search is rarely taken.
     let first = (end.wrapping_mul(0x9e37_79b9) >> 29) as usize;
     for step in 0..SLOTS {
         let slot = (first + step) % SLOTS;
@@ -213,8 +213,8 @@ mod tests {
         assert!(!is_closed(4, &twice));
     }
 
-    /// Two cones on a ring of vertices, which are more than there are slots: the first vertex is a tip, and
-    /// has edges up to all others.
+    /// Two cones on a ring of vertices, more than there are slots: the first vertex is a tip, with edges to
+    /// all others.
     fn cones(ring: u32) -> Vec<[u32; 3]> {
         let at = |n: u32| 1 + n % ring;
         (0..ring).flat_map(|n| [[0, at(n), at(n + 1)], [ring + 1, at(n + 1), at(n)]]).collect()
@@ -244,7 +244,7 @@ mod tests {
         triangles.iter().flat_map(|&[p, q, r]| [[p, q], [q, r], [r, p]])
     }
 
-    /// Against the count of every edge.
+    /// Compared with a count of every edge.
     #[test]
     fn random_triangles_are_closed_if_their_edges_pair() {
         let mut random = fastrand::Rng::with_seed(7);

@@ -1,10 +1,10 @@
 //! The cells that the surface crosses, and the faces that are flipped to keep the mesh manifold.
 //!
-//! An ambiguous face on which, in both of its cells, both segments lie on one sheet would give an edge of the
-//! mesh with four triangles. Flipping that face re-pairs two segments of one oriented cycle, which always
-//! splits the cycle, in both cells. A flip never joins two sheets, so a face that is good stays good, and one
-//! pass over the faces that are bad by default ends with all faces good. The pass is sequential and in the
-//! order of the cells; such faces are rare.
+//! If on an ambiguous face both segments lie on one sheet, in both of its cells, an edge of the mesh would
+//! have four triangles. Flipping that face re-pairs two segments of one oriented cycle, which always splits
+//! the cycle, in both cells. A flip never joins two sheets, so a good face stays good, and one pass over the
+//! faces that are bad by default ends with all faces good. The pass is sequential, in the order of the cells;
+//! such faces are rare.
 
 use crate::parallel::*;
 
@@ -16,7 +16,8 @@ use super::sample::Samples;
 /// A cell that the surface crosses.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Cell {
-    /// The vertex of its first sheet, counted from the first one of its brick; those of the others follow.
+    /// The vertex of its first sheet, counted from the first vertex of its brick; the vertices of the other
+    /// sheets follow.
     pub(crate) vertex: u32,
     /// Its number in its brick, in Morton order.
     pub(crate) number: u16,
@@ -31,13 +32,13 @@ pub(crate) struct Crossings {
     pub(crate) cells: Vec<Cell>,
     /// The field at their corners, by groups of bricks.
     pub(crate) corners: Vec<Vec<[f32; 8]>>,
-    /// Where the cells of each brick begin, and where the last ones end.
+    /// Where the cells of each brick begin, and the end.
     pub(crate) starts: Vec<usize>,
-    /// The same for vertices.
+    /// Where the vertices of each brick begin, and the end.
     pub(crate) vertices: Vec<usize>,
-    /// The same for quads.
+    /// Where the quads of each brick begin, and the end.
     pub(crate) quads: Vec<usize>,
-    /// How many faces are flipped.
+    /// The number of flipped faces.
     pub(crate) flipped_faces: u64,
     /// The sides of the lattice with a point inside.
     pub(crate) cut: Sides,
@@ -56,12 +57,12 @@ impl Crossings {
         &self.corners[group][self.starts[brick] - before..self.starts[brick + 1] - before]
     }
 
-    /// How many vertices there are.
+    /// The number of vertices.
     pub(crate) fn vertex_count(&self) -> usize {
         self.vertices[self.vertices.len() - 1]
     }
 
-    /// How many quads there are.
+    /// The number of quads.
     pub(crate) fn quad_count(&self) -> usize {
         self.quads[self.quads.len() - 1]
     }
@@ -108,15 +109,15 @@ struct Found {
     cells: Vec<Cell>,
     /// The field at their corners.
     corners: Vec<[f32; 8]>,
-    /// How many each brick has.
+    /// The number of cells of each brick.
     counts: Vec<usize>,
-    /// Cells with a low face that is pinched by default: their bricks, and which of the cells found they are.
+    /// Cells with a low face that is pinched by default: the brick, and the index among the found cells.
     suspects: Vec<(u32, u32)>,
     cut: Sides,
 }
 
 impl Found {
-    /// Room for so many cells: more than a smooth surface has.
+    /// Room for this many cells.
     fn with_room(cells: usize) -> Self {
         Self { cells: Vec::with_capacity(cells), corners: Vec::with_capacity(cells), ..Self::default() }
     }
@@ -126,10 +127,10 @@ impl Found {
 struct Signs {
     /// The field at the points of its closed box.
     values: Vec<f32>,
-    /// For each of them a bit: whether it is inside. Then, step by step, those of the points beside it.
+    /// A bit for each point: whether it is inside. Then, step by step, the bits of points beside it, too.
     points: Vec<u8>,
     pairs: Vec<u8>,
-    /// For each point the signs of the cell above it.
+    /// For each point, the signs of the cell whose low corner it is.
     cells: Vec<u8>,
     /// Room for the crossed cells of a brick, and one more.
     crossed: Vec<Cell>,
@@ -169,7 +170,7 @@ impl Signs {
         any != all
     }
 
-    /// The signs of all cells, from those of the points: first pairs along x, then squares, then cubes.
+    /// The signs of all cells, from the signs of points: first pairs along x, then squares, then cubes.
     fn join(&mut self, stride: usize) {
         let count = self.values.len();
         join::<1>(&self.points, 1, &mut self.cells[..count]);
@@ -177,7 +178,7 @@ impl Signs {
         join::<4>(&self.pairs, stride * stride, &mut self.cells[..count]);
     }
 
-    /// Where the lattice ends there are no cells.
+    /// Clears the signs of points at the lattice's end, which have no cells.
     fn clear_beyond(&mut self, stride: usize, extent: [usize; 3]) {
         for (index, signs) in self.cells.iter_mut().enumerate() {
             let place = [index % stride, index / stride % stride, index / (stride * stride)];
@@ -213,12 +214,12 @@ impl Signs {
             let pairs = [0, stride, layer, layer + stride]
                 .map(|at| u64::from(u16::from_le_bytes([cells[at], cells[at + 1]])));
             let signs = pairs[0] | pairs[1] << 16 | pairs[2] << 32 | pairs[3] << 48;
-            // Most cells are on one side of the surface, and so are the seven beside them.
+            // Most cells are on one side of the surface, and usually so are the next seven.
             if signs == 0 || signs == u64::MAX {
                 continue;
             }
-            // In the others there is no telling: no jump, which would be guessed wrong, but what is not
-            // crossed is overwritten.
+            // In the others crossed cells are unpredictable, so there is no branch: each cell is written, and
+            // the next one overwrites it unless it is crossed.
             let first = count;
             let mut pinched = false;
             for (rest, signs) in (0..).zip(signs.to_le_bytes()) {
@@ -256,14 +257,14 @@ fn corners(table: &[f32], at: usize, stride: usize) -> [f32; 8] {
     [front[0], front[1], front[stride], front[stride + 1], back[0], back[1], back[stride], back[stride + 1]]
 }
 
-/// Joins to the bits at each place, of which there are `WIDTH`, those at the place a step further on.
+/// Combines the bits at each place with the bits `step` places further, shifted by `WIDTH`.
 fn join<const WIDTH: usize>(bits: &[u8], step: usize, joined: &mut [u8]) {
     for ((joined, near), far) in joined.iter_mut().zip(bits).zip(&bits[step..]) {
         *joined = near | far << WIDTH;
     }
 }
 
-/// Flips faces until none is bad. Returns how many were flipped.
+/// Flips faces until none is pinched in both of its cells. Returns the number of flips.
 fn flip(bricks: &Bricks, starts: &[usize], cells: &mut [Cell], suspects: &[(usize, usize)]) -> u64 {
     let mut count = 0;
     for &(brick, upper) in suspects {
@@ -287,8 +288,8 @@ fn flip(bricks: &Bricks, starts: &[usize], cells: &mut [Cell], suspects: &[(usiz
     count
 }
 
-/// The crossing cell below a crossing cell of a brick, if the lattice goes on there and the surface crosses
-/// it.
+/// The crossed cell below a crossed cell of a brick along an axis; `None` at the lattice's end, or if the
+/// cell there is not crossed.
 fn below(
     bricks: &Bricks,
     starts: &[usize],
@@ -315,7 +316,7 @@ fn below(
 }
 
 /// Numbers the vertices of each brick in the order of its cells. Returns where the vertices and the quads of
-/// bricks begin.
+/// each brick begin.
 fn number_vertices(
     bricks: &Bricks,
     starts_of_cells: &[usize],
@@ -336,7 +337,8 @@ fn number_vertices(
     (starts(vertices.into_iter()), starts(quads.into_iter()))
 }
 
-/// What a cell without flipped faces inside the lattice has: sheets, and crossed edges at its low corner.
+/// The counts of a cell without flipped faces inside the lattice: sheets, and crossed edges at its low
+/// corner.
 #[derive(Clone, Copy)]
 struct Counts {
     sheets: u8,

@@ -1,5 +1,4 @@
-//! The recursive division of the lattice into bricks: boxes without surface are dropped, and nothing in them
-//! is ever asked again.
+//! The recursive division of the lattice into bricks: boxes without surface are dropped and never evaluated.
 //!
 //! ```text
 //! boxes = [the whole lattice]
@@ -10,8 +9,8 @@
 //!     boxes = all children, in Morton order           their neighbours: children of their parents' neighbours
 //! ```
 //!
-//! A box is judged closed, far sides included: so a point that it shares with another box is on the same side
-//! of the surface for both, and a cell that the surface crosses is always in a brick.
+//! Boxes are closed, with their high sides: a point that two boxes share is on the same side of the surface
+//! in both, and a crossed cell is always in a brick.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -26,34 +25,34 @@ use super::stage::Stage;
 use crate::progress::Progress;
 use crate::region::{ANYTHING, Box3, MAX_PARTS};
 
-/// What division found.
+/// The result of the division.
 pub(crate) struct Division<R> {
-    /// The bricks that the surface may be in.
+    /// The bricks that the surface may cross.
     pub(crate) bricks: Bricks,
-    /// What the field knows of each.
+    /// The region of each brick.
     pub(crate) regions: Vec<R>,
-    /// What became of the boxes.
+    /// Counts of boxes.
     pub(crate) boxes: Boxes,
-    /// The boxes of [`CHUNK`] cells along an edge that the surface may be in, and what the field knows of
-    /// them, if bricks are smaller and these are wanted.
+    /// The boxes of [`CHUNK`] cells along an edge that the surface may cross, and their regions, if bricks
+    /// are smaller and chunks are wanted.
     pub(crate) chunks: Option<Kept<R>>,
 }
 
 /// The places of some boxes, in units of their size and in Morton order, and their regions.
 pub(crate) type Kept<R> = (Vec<[u32; 3]>, Vec<R>);
 
-/// What became of boxes.
+/// Counts of boxes.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Boxes {
-    /// Whose range was asked.
+    /// Boxes whose range was computed.
     pub(crate) examined: u64,
-    /// That were dropped as all inside.
+    /// Boxes that were dropped as all inside.
     pub(crate) inside: u64,
-    /// That were dropped as all outside.
+    /// Boxes that were dropped as all outside.
     pub(crate) outside: u64,
-    /// Evaluations of primitives that their points would have taken.
+    /// Evaluations of primitives that the points of dropped boxes would have taken.
     pub(crate) spared: u64,
-    /// The sides of the lattice that those inside touch.
+    /// The sides of the lattice that the boxes inside touch.
     pub(crate) cut: Sides,
 }
 
@@ -67,7 +66,7 @@ impl Boxes {
     }
 }
 
-/// The boxes of one size that are left, in Morton order.
+/// The remaining boxes of one size, in Morton order.
 struct Level<R> {
     /// Where they are, in units of their size.
     places: Vec<[u32; 3]>,
@@ -75,19 +74,18 @@ struct Level<R> {
     neighbours: Vec<[u32; 27]>,
 }
 
-/// The boxes of the next size, and the chunks if they have been met.
+/// The boxes of the next size, and the chunks if that is their size.
 type Descended<R> = (Level<R>, Option<Kept<R>>);
 
-/// The edge of boxes that are kept for the search for thin parts, whatever the edge of bricks is.
+/// The edge in cells of the boxes that the search for thin parts uses, for any edge of bricks.
 pub(crate) const CHUNK: usize = 8;
 /// The edge of bricks, if the points are cheap.
 const DEFAULT_BRICK: usize = 8;
-/// The ops of a point, on average, from which on it pays to halve bricks: to have fewer points and more
-/// bricks.
+/// The mean ops of a point from which on bricks are halved: fewer points for more bricks.
 const COSTLY: u64 = 200;
 
 impl<R> Level<R> {
-    /// Whether a point takes long, on average.
+    /// Whether a point is costly, on average.
     fn is_costly<F: Field<Region = R>>(&self, field: &F) -> bool {
         let ops = self.regions.iter().map(|region| field.work(region).ops).fold(0, u64::saturating_add);
         ops >= COSTLY.saturating_mul(self.regions.len() as u64) && ops > 0
@@ -96,14 +94,14 @@ impl<R> Level<R> {
 
 /// The children of some boxes.
 struct Children<R> {
-    /// For each box which of its children are left, a bit each.
+    /// For each box, its remaining children, a bit each.
     masks: Vec<u8>,
-    /// The regions of those.
+    /// The regions of these children.
     regions: Vec<R>,
     boxes: Boxes,
 }
 
-/// What stays the same all the way down.
+/// The constant inputs of the division.
 struct Work<'a, 'hook, F: Field> {
     field: &'a F,
     axes: &'a [Vec<f32>; 3],
@@ -145,7 +143,7 @@ pub(crate) fn divide<F: Field>(
 }
 
 impl<F: Field> Work<'_, '_, F> {
-    /// The whole lattice as one box of this size; or nothing, if it has no surface.
+    /// The whole lattice as one box of this size; no box if it has no surface.
     fn root(&self, size: usize, boxes: &mut Boxes) -> Result<Level<F::Region>, MeshError<F::Error>> {
         let bounds = box_of(self.axes, [0; 3], [size; 3]);
         let region = self.field.region(bounds).map_err(MeshError::Field)?;
@@ -160,8 +158,8 @@ impl<F: Field> Work<'_, '_, F> {
         Ok(Level { places: vec![[0; 3]], regions: vec![region], neighbours: vec![neighbours] })
     }
 
-    /// The children of all boxes, which have this size. The boxes themselves stay if they are wanted: they
-    /// are chunks.
+    /// The children of all boxes, with the new size. The boxes themselves are kept if they are wanted as
+    /// chunks.
     fn descend_and_keep(
         &self,
         level: Level<F::Region>,
@@ -181,7 +179,7 @@ impl<F: Field> Work<'_, '_, F> {
         size: usize,
         boxes: &mut Boxes,
     ) -> Result<Level<F::Region>, MeshError<F::Error>> {
-        // Near the top there are few boxes, and each takes long.
+        // Near the top there are few boxes, and each is costly.
         let group = if level.places.len() < 256 { 1 } else { 16 };
         let found = AtomicUsize::new(0);
         let groups = level.places.par_chunks(group).zip(level.regions.par_chunks(group));
@@ -274,7 +272,7 @@ impl<F: Field> Work<'_, '_, F> {
         Ok(ranges)
     }
 
-    /// Whether the surface may be in a box, by the range of the field in it. A NaN says nothing.
+    /// Whether the surface may cross a box, by the range of the field there. A NaN bound excludes nothing.
     fn may_cross(
         &self,
         around: &F::Region,
@@ -303,7 +301,7 @@ impl<F: Field> Work<'_, '_, F> {
     }
 }
 
-/// The places of the children that are left, and their neighbours.
+/// The places of the remaining children, and their neighbours.
 fn link(places: &[[u32; 3]], neighbours: &[[u32; 27]], masks: &[u8]) -> (Vec<[u32; 3]>, Vec<[u32; 27]>) {
     let mut firsts = Vec::with_capacity(masks.len());
     let mut count = 0;
@@ -329,8 +327,8 @@ fn link(places: &[[u32; 3]], neighbours: &[[u32; 27]], masks: &[u8]) -> (Vec<[u3
     (0..masks.len()).into_par_iter().with_min_len(64).flat_map_iter(of_parent).unzip()
 }
 
-/// For each child and each direction: the direction in which the parent of the neighbour is, and which child
-/// of it that is.
+/// For each child and each direction: the direction of the neighbour's parent, and which child of that parent
+/// the neighbour is.
 static KIN: [[(u8, u8); 27]; 8] = {
     let mut kin = [[(0, 0); 27]; 8];
     let mut child = 0;

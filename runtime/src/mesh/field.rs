@@ -1,17 +1,17 @@
-//! What the mesher asks of a field.
+//! The interface of a field to the mesher.
 
 use crate::region::Divisible;
 
-/// What the field at a point takes: for counters, and to choose the size of bricks.
+/// The cost of the field at a point: for counters, and to choose the size of bricks.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub struct Work {
-    /// Distances to skeletons, or whatever else is worth counting.
+    /// Evaluations of distances to skeletons, or another count of the field's choice.
     pub evaluations: u64,
     /// Ops: a measure of the time.
     pub ops: u64,
 }
 
-/// A field over space, and what it knows of boxes.
+/// A field over space, with ranges and regions of boxes.
 ///
 /// ```text
 ///     region(lattice)                              what matters in the whole lattice
@@ -28,14 +28,14 @@ pub trait Field: Divisible {
     /// The names and widths (1 to 4 reals) of the attributes that [`Field::all`] answers, in its order.
     fn attributes(&self) -> Vec<(String, usize)>;
 
-    /// What the field at a point of a region takes.
+    /// The cost of the field at a point of a region.
     fn work(&self, region: &Self::Region) -> Work;
 
     /// The field at each point, all of which are in the region's box. Inside is `field >= iso`; NaN is
     /// outside.
     ///
     /// # Errors
-    /// Whatever the evaluation reports; the mesher stops and hands it on.
+    /// Any error of the evaluation; the mesher stops and returns it.
     fn field(
         &self,
         region: &Self::Region,
@@ -49,7 +49,7 @@ pub trait Field: Divisible {
     /// region's box.
     ///
     /// # Errors
-    /// Whatever the evaluation reports; the mesher stops and hands it on.
+    /// Any error of the evaluation; the mesher stops and returns it.
     fn gradient(
         &self,
         region: &Self::Region,
@@ -64,7 +64,7 @@ pub trait Field: Divisible {
     /// is one plane for each real of each attribute, in the order of [`Field::attributes`].
     ///
     /// # Errors
-    /// Whatever the evaluation reports; the mesher stops and hands it on.
+    /// Any error of the evaluation; the mesher stops and returns it.
     // Three coordinates and three kinds of answers, each a plane.
     #[allow(clippy::too_many_arguments)]
     fn all(

@@ -1,4 +1,4 @@
-//! An indexed triangle mesh: what meshing makes.
+//! An indexed triangle mesh: the result of meshing.
 
 use jbt_model::origin::ModelOrigin;
 
@@ -20,8 +20,8 @@ pub struct Attribute {
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Mesh {
-    /// Where positions count from, in the world: the origin of the model, 0 for most. A mesh of a field that
-    /// is not a model's counts from 0.
+    /// The origin of positions, in the world: the model's origin, 0 for most models. A mesh of a field that
+    /// is no model has the origin 0.
     pub origin: [f64; 3],
     /// One for each vertex, from the origin.
     pub positions: Vec<[f32; 3]>,
@@ -72,13 +72,13 @@ impl Mesh {
         points
     }
 
-    /// Whether positions are those of the world.
+    /// Whether positions are world coordinates.
     #[must_use]
     pub fn is_about_world(&self) -> bool {
         ModelOrigin::new(self.origin).is_world()
     }
 
-    /// Where a vertex is in the world. Panics if there are not as many.
+    /// The position of a vertex in the world. Panics if there is no such vertex.
     #[must_use]
     pub fn world(&self, vertex: usize) -> [f64; 3] {
         ModelOrigin::new(self.origin).world(self.positions[vertex].map(f64::from))

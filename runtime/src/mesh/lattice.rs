@@ -1,15 +1,14 @@
-//! The lattice: which points a mesh asks the field at.
+//! The lattice: the points at which a mesh evaluates the field.
 //!
-//! A coordinate is a function of a *global* integer index and of nothing else, `origin + spacing * index` in
-//! f64 (a product, then a sum, not fused) rounded once to f32. Whoever computes a corner, in whatever brick
-//! and on whatever thread, gets the same bits, so a corner that several cells share is one point and is
-//! evaluated once.
+//! A coordinate is a function of a *global* integer index alone: `origin + spacing * index` in f64 (a
+//! product, then a sum, not fused), rounded once to f32. Every brick and every thread computes the same bits
+//! for a corner, so a corner that several cells share is one point and is evaluated once.
 
 use jbt_ir::limits::{MAX_LATTICE_POINTS, MAX_RESOLUTION};
 use thiserror::Error;
 
 /// The part of a cell that [`Lattice::covering`] may leave uncovered, so that a region of 1.3 at a spacing of
-/// 0.13 has ten cells and not, by the rounding of the quotient, eleven.
+/// 0.13 has ten cells instead of, by the rounding of the quotient, eleven.
 const UNCOVERED: f64 = 1e-6;
 
 /// Why a lattice cannot be.
@@ -178,8 +177,7 @@ impl Lattice {
         if !last.is_finite() || !self.coordinate(axis, self.cells[axis]).is_finite() {
             return Err(LatticeError::NotFinite);
         }
-        // Neighbours that are at least two steps of f32 apart, where its steps are widest, are still apart
-        // when both are rounded.
+        // Neighbours at least two steps of f32 apart, by the widest steps, still differ after rounding.
         let farthest = last.abs().max(self.coordinate(axis, self.cells[axis]).abs());
         if self.spacing >= 2.0 * f64::from(farthest.next_up() - farthest) {
             return Ok(());

@@ -1,4 +1,4 @@
-//! How large a mesh is: its bounds, its area and what it encloses.
+//! Measures of a mesh: its bounds, its area and its volume.
 
 use crate::region::Box3;
 
@@ -6,8 +6,8 @@ use super::indexed::Mesh;
 use super::surface::area_vector;
 
 impl Mesh {
-    /// The smallest box that holds all positions, counted from the origin as they are, in units of the model.
-    /// `None` if there are none.
+    /// The smallest box that holds all positions, relative to the mesh's origin, in units of the model.
+    /// `None` without positions.
     #[must_use]
     pub fn bounds(&self) -> Option<Box3> {
         let (&first, rest) = self.positions.split_first()?;
@@ -32,16 +32,16 @@ impl Mesh {
         0.5 * self.triangles.iter().map(twice).sum::<f64>()
     }
 
-    /// The volume that the mesh encloses, in cubed units of the model: by the divergence theorem, of the
-    /// signed tetrahedra between each triangle and the middle of the bounds, in f64. Where the mesh is inside
-    /// out it is negative.
+    /// The volume that the mesh encloses, in cubed units of the model: by the divergence theorem, the sum of
+    /// the signed tetrahedra between each triangle and the middle of the bounds, in f64. It is negative for a
+    /// mesh that is inside out.
     ///
-    /// Only a closed mesh encloses anything: for others this number depends on where they stand, and means
+    /// Only a closed mesh encloses a volume: for other meshes this number depends on their position and means
     /// nothing.
     #[must_use]
     pub fn volume(&self) -> f64 {
         let bounds = self.bounds().unwrap_or_default();
-        // Far from the origin, tetrahedra to it would be so large that the digits of the volume were lost.
+        // Far from the origin, tetrahedra to the origin would be so large that the volume's digits were lost.
         let middle: [f64; 3] =
             std::array::from_fn(|axis| 0.5 * (f64::from(bounds.low[axis]) + f64::from(bounds.high[axis])));
         let six = |&triangle: &[u32; 3]| {

@@ -25,16 +25,16 @@
 //!     search for parts that are too thin for the lattice, and report them                   (thin)
 //! ```
 //!
-//! No point is evaluated twice, and nothing is asked about a box without surface but its range. So time and
-//! memory grow with the surface, and not with the lattice: one of 4096^3 cells takes about 16 times as long
-//! as one of 1024^3.
+//! No point is evaluated twice, and of a box without surface only the range is computed. So time and memory
+//! grow with the surface, not with the lattice: a lattice of 4096^3 cells takes about 16 times as long as one
+//! of 1024^3.
 //!
-//! A cell that two sheets pass through has two vertices (Nielson 2004), so they do not touch there. What
-//! remains is a face that both neighbours see twice from one sheet; such a face is resolved the other way,
-//! which splits both sheets (after the rule of Wenger 2013, "Isosurfaces", for manifold dual contours). The
-//! mesh is closed and manifold wherever the surface stays inside the lattice, for any field, also for one
-//! that is noise. The result is the same to the bit for every thread count and every brick size: cells are in
-//! Morton order, in which bricks of any power of two stand one after the other.
+//! A cell that two sheets pass through has two vertices (Nielson 2004), so the sheets do not touch there. One
+//! case remains: a face that is pinched in both of its cells. Such a face is flipped, which splits both
+//! sheets (after the rule of Wenger 2013, "Isosurfaces", for manifold dual contours). The mesh is closed and
+//! manifold wherever the surface stays inside the lattice, for any field, even noise. The result is the same
+//! to the bit for every thread count and every brick size: cells are in Morton order, in which bricks of any
+//! power of two follow one after the other.
 
 mod brick;
 mod cell;
@@ -78,16 +78,15 @@ use vertex::batch::Source;
 
 /// Meshes the surface `field = iso` over a lattice.
 ///
-/// Vertices are in the order of their cells, which is Morton order (the bits of z, y and x interleaved, that
-/// of x lowest); triangles are in the order of the last cell that they touch. A vertex stays within its cell,
-/// off its sides; so positions differ, unless [`Report::crowded`] says otherwise.
+/// Vertices are in the order of their cells, which is Morton order (the bits of z, y and x interleaved, x
+/// lowest); triangles are in the order of the last cell that they touch. A vertex stays within its cell, off
+/// its sides; so positions differ, unless [`Report::crowded`] is set.
 ///
 /// # Errors
 /// See [`MeshError`].
 ///
 /// # Panics
-/// If the field does not keep its promises: that it gives each box a region, and that it is within its
-/// ranges.
+/// If the field breaks a promise: a region for each box, or a value within its range.
 pub fn extract<'a, F: Field>(
     field: &'a F,
     lattice: &'a Lattice,
@@ -97,8 +96,8 @@ pub fn extract<'a, F: Field>(
     Job::new(move |hook| extract_hooked(field, lattice, &options, hook, |_| ()))
 }
 
-/// As [`extract`], told to a hook. The report is shown before the search for thin parts, when all that the
-/// mesh takes has been evaluated.
+/// As [`extract`], with a hook. The hook gets the report before the search for thin parts, when the mesh is
+/// complete.
 pub(crate) fn extract_hooked<F: Field>(
     field: &F,
     lattice: &Lattice,

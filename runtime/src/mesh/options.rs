@@ -18,11 +18,11 @@ pub struct Options {
     /// [`MAX_BRICK`]. Small ones waste fewer points far from the surface, large ones fewer calls. It changes
     /// what is evaluated, but no bit of the mesh. `None`: 8, or 4 where a point takes long.
     pub brick: Option<usize>,
-    /// Whether to look at every edge of the mesh to say that it is closed. Where no side of the lattice cuts
-    /// the body it is, by construction.
+    /// Whether to check every edge of the mesh to find out whether it is closed. Where no side of the lattice
+    /// cuts the body, the mesh is closed by construction.
     pub verify: bool,
     /// Whether to search for parts that are thinner than a cell: see [`Report::thin`](super::Report::thin).
-    /// It takes a field that knows ranges of boxes, and changes nothing of the mesh.
+    /// The search needs a field that knows ranges of boxes, and does not change the mesh.
     pub thin_parts: bool,
 }
 
@@ -34,7 +34,7 @@ impl Default for Options {
 }
 
 impl Options {
-    /// Whether they are what they may be.
+    /// Checks the options.
     pub(super) fn check<E: Error + 'static>(&self) -> Result<(), MeshError<E>> {
         let &Options { iso, pulls, brick, verify: _, thin_parts: _ } = self;
         if !iso.is_finite() {

@@ -5,7 +5,7 @@ use crate::region::Box3;
 /// Vertices that are pulled together: two registers of 128 bits, or one of 256.
 pub(super) const LANES: usize = 8;
 
-/// A number for each of some vertices. Loops over them have no jumps and are compiled to vector instructions.
+/// A number for each of some vertices. Loops over lanes have no branches and compile to vector instructions.
 pub(super) type Lanes = [f32; LANES];
 
 /// Sums of squares by lanes.
@@ -27,8 +27,7 @@ pub(super) fn all(conditions: &[u32; LANES]) -> bool {
 /// Pulls vertices, each from its position with the field and the gradient there, within the boxes from `low`
 /// to `high`.
 ///
-/// A plain step that stays in its box is taken by all lanes at once; those that would leave it go on one by
-/// one.
+/// All lanes take the plain step at once; vertices whose step would leave the box are then pulled one by one.
 #[inline(always)]
 pub(super) fn pull_lanes(
     iso: f32,
@@ -64,9 +63,9 @@ pub(super) fn pull_lanes(
 
 /// Newton's step along the gradient of one vertex, within a box.
 ///
-/// A step that would leave the box goes as far as its sides and spends what is left along them, so that a
-/// surface which leaves the box beside the vertex is still met. Where the gradient vanishes or is no number,
-/// the position stays.
+/// A step that would leave the box goes as far as its sides, and its rest goes along them, so that a surface
+/// which leaves the box beside the vertex is still met. Where the gradient vanishes or is not finite, the
+/// position stays.
 pub(super) fn pull(
     iso: f32,
     position: [f32; 3],

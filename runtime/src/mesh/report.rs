@@ -1,4 +1,4 @@
-//! What was done to make a mesh, and what it is like.
+//! How a mesh was made, and its properties.
 
 use std::fmt;
 
@@ -44,22 +44,22 @@ impl fmt::Display for Sides {
     }
 }
 
-/// What was done to make a mesh, and what it is like.
+/// How a mesh was made, and its properties.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Report {
     /// Whether every edge has exactly two triangles, in opposite directions. A mesh without triangles is
-    /// closed. It has been looked at if [`Options::verify`](super::Options::verify) said so, and follows from
-    /// `cut_sides` otherwise.
+    /// closed. Checked if [`Options::verify`](super::Options::verify) is set, otherwise derived from
+    /// `cut_sides`.
     pub closed: bool,
     /// The sides of the lattice that cut the body: some lattice point on that side is inside. Without any,
     /// the mesh is closed.
     pub cut_sides: Sides,
-    /// Boxes whose range was asked, to find the bricks.
+    /// Boxes whose range was computed, to find the bricks.
     pub boxes: u64,
-    /// Those that were dropped because they are inside as a whole.
+    /// Boxes that were dropped because they are inside as a whole.
     pub boxes_inside: u64,
-    /// Those that were dropped because they are outside as a whole.
+    /// Boxes that were dropped because they are outside as a whole.
     pub boxes_outside: u64,
     /// Evaluations of primitives that the points of these boxes would have taken, with the rows that matter
     /// in the box around each.
@@ -68,14 +68,14 @@ pub struct Report {
     pub bricks: u64,
     /// Points at which the field alone was evaluated: the lattice points of the bricks, once each.
     pub field_evaluations: u64,
-    /// Points at which field and gradient were evaluated: at each vertex once for each pull, and some more
-    /// for those that a crease keeps off the surface.
+    /// Points at which field and gradient were evaluated: once per vertex and pull, and some more for
+    /// vertices that a crease keeps off the surface.
     pub gradient_evaluations: u64,
-    /// Points at which everything was evaluated: once for each vertex, and once more for those that a crease
-    /// has kept off the surface, or that are at a jump.
+    /// Points at which everything was evaluated: once per vertex, and once more for vertices at a jump or
+    /// that a crease kept off the surface.
     pub full_evaluations: u64,
-    /// Points at which the field alone was evaluated to find out where it jumps: on crossed edges of cells
-    /// that raise suspicion, and at walls.
+    /// Points at which the field alone was evaluated to find out where it jumps: on crossed edges of suspect
+    /// cells, and at walls.
     pub jump_evaluations: u64,
     /// Vertices at which the field jumps, as at the walls of `within`.
     pub jump_vertices: u64,
@@ -84,35 +84,34 @@ pub struct Report {
     pub crowded: bool,
     /// Cells that the surface crosses.
     pub crossing_cells: u64,
-    /// Ambiguous faces that were resolved the other way, to keep the mesh manifold.
+    /// Ambiguous faces that were flipped to keep the mesh manifold.
     pub flipped_faces: u64,
-    /// Parts that are thinner than a cell, if [`Options::thin_parts`](super::Options::thin_parts) said to
-    /// search for them.
+    /// Parts that are thinner than a cell, if [`Options::thin_parts`](super::Options::thin_parts) is set.
     pub thin: Option<ThinReport>,
 }
 
 /// The most points of [`ThinReport::near`].
 pub const MAX_NEAR: usize = 8;
 
-/// Parts that are thinner than a cell: what was found of them.
+/// Results of the search for parts that are thinner than a cell.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ThinReport {
-    /// Blocks of 4^3 cells that the surface seems to stay out of, in which a point on the other side of it
-    /// was found.
+    /// Blocks of 4^3 cells that the surface does not cross, but with a point on the other side of the
+    /// surface.
     pub missed: u64,
-    /// Blocks in which the surface is in shreds: its sides pass between neighbouring points of the lattice.
+    /// Blocks in which the surface is in shreds: neighbouring points of the lattice are on both of its sides.
     pub shredded: u64,
-    /// Blocks that the search left before it knew: neither was a point found, nor could ranges exclude one. A
-    /// field with wide ranges has many, and a thin part may be in any of them.
+    /// Blocks whose search ended undecided: no point was found, and ranges could not exclude one. A field
+    /// with wide ranges has many, and any of them may hold a thin part.
     pub unproven: u64,
-    /// Blocks that were missed or are in shreds, those that touch counted as one place.
+    /// Places with missed or shredded blocks; blocks that touch count as one place.
     pub places: u64,
-    /// A point of each place, [`MAX_NEAR`] at most. Those of a [`Polygonized`](crate::Polygonized) are in the
-    /// world.
+    /// A point of each place, at most [`MAX_NEAR`]. The points of a [`Polygonized`](crate::Polygonized) are
+    /// in world coordinates.
     pub near: Vec<[f64; 3]>,
-    /// The edge of cells that would show the thinnest of the parts at these points: half of its thickness.
+    /// The edge of cells that would show the thinnest part at these points: half of its thickness.
     pub cell: Option<f64>,
-    /// Boxes whose range was asked within blocks.
+    /// Boxes whose range was computed within blocks.
     pub boxes: u64,
 }

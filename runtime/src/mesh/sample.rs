@@ -1,5 +1,5 @@
-//! The field at the points of bricks, each once: who owns a point that bricks share, and how the others get
-//! it.
+//! The field at the points of bricks, once per point: the owner of a point that bricks share, and how the
+//! other bricks get it.
 //!
 //! ```text
 //!     +-------+-------+          A point on the sides of bricks touches up to eight of them. Its owner is the first that
@@ -13,8 +13,7 @@
 //! ```
 //!
 //! On each axis a point of a brick is low (the first), in the middle, or high (the first of the next brick).
-//! That makes 27 *classes* of points, for each of which the order of preference is known when this crate is
-//! compiled.
+//! That makes 27 *classes* of points; the order of preference of each class is computed at compile time.
 
 use std::error::Error;
 
@@ -35,7 +34,7 @@ const LOW: u8 = 0;
 const MIDDLE: u8 = 1;
 const HIGH: u8 = 2;
 
-/// A brick that may own the points of a class: where it is, and what the points are for it.
+/// A brick that may own the points of a class: its direction, and the class of the points in it.
 #[derive(Clone, Copy)]
 struct Candidate {
     direction: u8,
@@ -102,8 +101,8 @@ const fn class_number(kinds: Kinds) -> usize {
     kinds[0] as usize + 3 * kinds[1] as usize + 9 * kinds[2] as usize
 }
 
-/// For each set of axes: the classes that are high on just those, which the brick in that direction owns if
-/// it is there.
+/// For each set of axes: the classes that are high on exactly these axes. The brick in that direction owns
+/// them, if it exists.
 static SIDES: [(usize, &[usize]); 7] = [
     (direction([1, 0, 0]), &[2, 5, 11, 14]),
     (direction([0, 1, 0]), &[6, 7, 15, 16]),
@@ -114,7 +113,7 @@ static SIDES: [(usize, &[usize]); 7] = [
     (direction([1, 1, 1]), &[26]),
 ];
 
-/// The first index of a kind in a brick with this many cells along the axis, and how many indices there are.
+/// The first index of a kind in a brick with this many cells along the axis, and the number of indices.
 fn span(kind: u8, cells: usize) -> (usize, usize) {
     match kind {
         LOW => (0, 1),
@@ -127,9 +126,9 @@ fn span(kind: u8, cells: usize) -> (usize, usize) {
 pub(crate) struct Samples {
     /// Brick by brick: its half-open box, x fastest, then y, then z; then the classes of its rim.
     values: Vec<f32>,
-    /// Where the values of each brick begin, and where the last ones end.
+    /// Where the values of each brick begin, and the end.
     starts: Vec<usize>,
-    /// For each brick where the classes of its rim begin, counted from its start.
+    /// For each brick, where the classes of its rim begin, relative to its first value.
     rims: Vec<[u16; 27]>,
 }
 
@@ -161,17 +160,18 @@ pub(crate) fn sample<F: Field>(
     Ok(Samples { values, starts, rims })
 }
 
-/// Zeros, or an error where the allocator would have aborted.
+/// A vector of zeros, or an error where the allocator would abort.
 fn allocate<T: Copy + Default, E: Error + 'static>(points: usize) -> Result<Vec<T>, MeshError<E>> {
     // Zeroed memory comes from the system page by page when the threads first touch it, which is faster than
-    // to fill it here; but only `try_reserve` can fail. So the room is asked for first.
+    // filling it here. But only `try_reserve` can fail, so the room is reserved first.
     let mut room = Vec::<T>::new();
     room.try_reserve_exact(points).map_err(|_| MeshError::Memory { points })?;
     drop(room);
     Ok(vec![T::default(); points])
 }
 
-/// Where the classes that a brick owns on its rim begin among its values, and how many points it owns.
+/// Where the classes on the rim that a brick owns begin among its values, and the number of points that it
+/// owns.
 fn rim(bricks: &Bricks, brick: usize) -> ([u16; 27], usize) {
     let neighbours = &bricks.neighbours[brick];
     let there = neighbours.iter().rev().fold(0_u32, |mask, &other| mask << 1 | u32::from(other != NONE));
@@ -236,7 +236,7 @@ impl Points {
     }
 }
 
-/// Repeats the last `length` numbers, so that they stand there `times` times.
+/// Repeats the last `length` numbers until they are there `times` times.
 fn repeat(numbers: &mut Vec<f32>, length: usize, times: usize) {
     if length == 0 || times == 0 {
         numbers.truncate(numbers.len() - length);
@@ -250,7 +250,7 @@ fn repeat(numbers: &mut Vec<f32>, length: usize, times: usize) {
     }
 }
 
-/// Where a box of points is in a list of numbers: its first one, and the distances of rows and of layers.
+/// The place of a box of points in a list of numbers: its first number, and the strides of rows and layers.
 #[derive(Clone, Copy)]
 struct Block {
     start: usize,
@@ -264,8 +264,9 @@ impl Samples {
         self.values.len()
     }
 
-    /// The field at all points of a brick's closed box, into a table (x fastest, then y, then z, in rows and
-    /// layers of [`Bricks::stride`]). Where the lattice cuts the brick, the rest of the table stays as it is.
+    /// The field at all points of a brick's closed box, written to a table (x fastest, then y, then z, in
+    /// rows and layers of [`Bricks::stride`]). Where the lattice cuts the brick, the rest of the table is
+    /// unchanged.
     pub(crate) fn gather(&self, bricks: &Bricks, brick: usize, table: &mut [f32]) {
         let source = &self.values[..];
         let (extent, stride) = (bricks.extent(brick), bricks.stride());
@@ -299,7 +300,7 @@ impl Samples {
         Block { start: self.starts[brick], row: extent[0], layer: extent[0] * extent[1] }.at(first)
     }
 
-    /// Where the values of a class of a brick's points are.
+    /// The place of the values of a class of a brick's points.
     fn class(&self, bricks: &Bricks, brick: usize, class: usize) -> Block {
         let Class { candidates, count, .. } = &CLASSES[class];
         let neighbours = &bricks.neighbours[brick];
@@ -319,7 +320,7 @@ impl Samples {
 }
 
 impl Block {
-    /// The same, from another point on.
+    /// The same box from another point on.
     fn at(self, first: [usize; 3]) -> Self {
         Self { start: self.start + first[0] + self.row * first[1] + self.layer * first[2], ..self }
     }

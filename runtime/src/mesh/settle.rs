@@ -1,4 +1,4 @@
-//! Vertices that Newton's steps left off the surface: at a crease two surfaces take turns in pulling.
+//! Vertices that Newton's steps left off the surface: at a crease two surfaces alternate in pulling.
 //!
 //! ```text
 //! a stray goes on being pulled; what it passes on the way is remembered:
@@ -12,16 +12,16 @@ use super::field::Field;
 use super::pull::{LANES, Lanes, pull};
 use crate::region::Box3;
 
-/// Pulls that a stray gets on top.
+/// The number of further pulls of a stray.
 const ROUNDS: usize = 6;
-/// Halvings of the way between a position inside and one outside.
+/// The number of halvings of the segment from a position inside to a position outside.
 const HALVINGS: usize = 10;
-/// A vertex strays when its distance to the surface, by its own gradient, is more than this part of its cell.
+/// A vertex is a stray if its distance to the surface, estimated by its own gradient, is more than this part
+/// of its cell.
 const TOLERANCE: f32 = 1e-3;
 
 /// Which vertices are far from the surface, 1 or 0 each, in cells with these low and high sides along x;
-/// `square` is that of the length of their gradient. Where the gradient is no number nothing can be said, and
-/// a vertex is not.
+/// `square` is the squared length of the gradient. A gradient of NaN gives 0.
 #[inline(always)]
 pub(super) fn is_far(iso: f32, [low, high]: [&Lanes; 2], values: &Lanes, square: &Lanes) -> [u32; LANES] {
     let mut far = [0; LANES];
@@ -54,7 +54,7 @@ impl Place {
 
 /// A vertex off the surface.
 pub(super) struct Stray {
-    /// Its place in the batch.
+    /// Its index in the batch.
     pub(super) index: usize,
     place: Place,
     position: [f32; 3],
@@ -67,7 +67,7 @@ pub(super) struct Stray {
 }
 
 impl Stray {
-    /// A vertex with its field and gradient as a stray.
+    /// A stray from a vertex with its field and gradient.
     pub(super) fn new(
         iso: f32,
         index: usize,
@@ -92,12 +92,12 @@ impl Stray {
         stray
     }
 
-    /// Where it is best put.
+    /// The best position found.
     pub(super) fn best(&self) -> [f32; 3] {
         self.best
     }
 
-    /// Remembers the present position.
+    /// Records the current position.
     fn note(&mut self, iso: f32) {
         let error = (self.value - iso).abs();
         if error < self.error {
@@ -108,7 +108,7 @@ impl Stray {
     }
 }
 
-/// Brings strays nearer to the surface. Returns at how many points the gradient was asked.
+/// Moves strays nearer to the surface. Returns the number of points at which the gradient was evaluated.
 pub(super) fn settle<F: Field>(
     field: &F,
     region: &F::Region,

@@ -1,7 +1,7 @@
 //! The triangles: a quad around each crossed edge of the lattice, split along its shorter diagonal.
 //!
-//! A quad belongs to the last of the four cells around its edge, the one that has the edge at its low corner.
-//! The other three may be in bricks below; so each brick sees its cells in a table with one more layer on
+//! A quad belongs to the last of the four cells around its edge, which has the edge at its low corner. The
+//! other three cells may be in bricks below. So each brick sees its cells in a table with one more layer on
 //! each low side, filled from those bricks.
 
 use crate::parallel::*;
@@ -44,26 +44,26 @@ struct Entry {
     sheets: SheetNumbers,
 }
 
-/// One of the four cells around an edge, as seen from the last one.
+/// One of the four cells around an edge, relative to the last one.
 #[derive(Clone, Copy, Default)]
 struct Corner {
-    /// How far it is before that one in the table.
+    /// The distance in the table back from the last cell.
     back: u32,
-    /// Where its sheet on the edge is in [`SheetNumbers`].
+    /// The place of the edge's sheet in [`SheetNumbers`].
     place: u32,
 }
 
-/// The cells of a brick and those just below it. A cell that the surface does not cross has anything.
+/// The cells of a brick and the cells just below it. Entries of cells that are not crossed are arbitrary.
 struct Around {
-    /// x fastest, then y, then z; each from the layer below the brick on.
+    /// x fastest, then y, then z; each begins with the layer below the brick.
     table: Vec<Entry>,
-    /// Room for the places of some cells of a brick among all of its crossed ones.
+    /// Room for the indices of some crossed cells of a brick.
     chosen: Vec<u16>,
-    /// The quads of the brick: eight times the place of the last cell around the edge, and the number of its
+    /// The quads of the brick: eight times the place of the last cell around the edge, plus the number of its
     /// turn.
     quads: Vec<u32>,
-    /// The four cells around an edge along an axis, counter-clockwise as seen from its end or, where the
-    /// inside is there, from its beginning: for `2 axis` and `2 axis + 1`.
+    /// The four cells around an edge along an axis, counter-clockwise as seen from the edge's high end or, if
+    /// the inside is there, from its low end: for `2 axis` and `2 axis + 1`.
     turns: [[Corner; 4]; 8],
     /// The place of the brick's first cell.
     first: usize,
@@ -89,8 +89,8 @@ impl Around {
         Self { table, chosen: Vec::new(), quads: Vec::new(), turns, first, steps }
     }
 
-    /// Fills the table as far as it is looked at: `lows` are the sets of axes along which cells of the brick
-    /// are its first ones.
+    /// Fills the part of the table that is read. `lows` are the sets of axes along which cells with quads are
+    /// the brick's first ones.
     fn fill(&mut self, bricks: &Bricks, crossings: &Crossings, brick: usize, lows: u8) {
         self.push(bricks, crossings, brick, 0, self.first);
         // The cells around an edge are back along two axes at most.
@@ -110,13 +110,13 @@ impl Around {
         }
     }
 
-    /// Puts those cells of a brick into the table that have all bits of a number in theirs, as seen from its
+    /// Enters into the table the cells of a brick whose number has all of these bits, relative to the brick's
     /// first cell.
     fn push(&mut self, bricks: &Bricks, crossings: &Crossings, brick: usize, bits: u16, first: usize) {
         let vertex = crossings.vertices[brick] as u32;
         let sides = bricks.sides(brick);
         let cells = crossings.of(brick);
-        // First which ones, without a jump that would be guessed wrong at every third of them.
+        // First their indices, without a branch, which would be mispredicted for every third cell.
         let mut count = 0;
         self.chosen.resize(self.chosen.len().max(cells.len()), 0);
         for (index, cell) in (0..).zip(cells) {
@@ -137,14 +137,15 @@ impl Around {
         }
     }
 
-    /// Finds the quads of a brick: the crossed edges at the low corners of its cells that have cells all
-    /// around. Returns on which low sides of the brick such cells are, as a set of sets of axes.
+    /// Finds the quads of a brick: crossed edges at the low corners of its cells with all four cells around
+    /// them. Returns the low sides of the brick that these cells touch, as a set of sets of axes.
     fn find_quads(&mut self, bricks: &Bricks, crossings: &Crossings, brick: usize) -> u8 {
         let sides = bricks.sides(brick);
         let cut = sides & 1 | sides >> 1 & 2 | sides >> 2 & 4;
         let cells = crossings.of(brick);
         self.quads.resize(self.quads.len().max(3 * cells.len() + 1), 0);
-        // Without a jump that would be guessed wrong at every third edge: what is not to stay is overwritten.
+        // Without a branch, which would be mispredicted for every third edge: an entry that is not to stay is
+        // overwritten.
         let (mut count, mut lows) = (0, 0);
         for cell in cells {
             let code = 8 * (bricks.at(cell.number).in_table() + self.first) as u32;
@@ -170,7 +171,7 @@ impl Around {
     }
 }
 
-/// The bits of z in the number of a cell; those of y and x are one and two places below.
+/// The bits of z in the number of a cell; the bits of y and x are one and two places below.
 const LAST: u16 = 0b100_1001_0010_0100;
 
 /// The two triangles of each quad of a brick.
@@ -190,22 +191,22 @@ fn halves([p, q, r, s]: [u32; 4], positions: &[[f32; 3]]) -> [[u32; 3]; 2] {
         let [x, y, z] = [0, 1, 2].map(|axis| f64::from(p[axis]) - f64::from(q[axis]));
         x * x + y * y + z * z
     };
-    // Both ways, q r s or p q r comes first: a choice of numbers, and no jump that would be guessed wrong
+    // In both ways q r s or p q r comes first: a selection instead of a branch, which would be mispredicted
     // half of the time.
     let (d, e) = if distance(p, r) <= distance(q, s) { (p, r) } else { (s, q) };
     [[q, r, d], [e, s, p]]
 }
 
-/// Looks at some vertices, ascending, with their triangles. One without a normal (the gradient vanishes
-/// there, or is no number) gets that of its triangles, weighted by area; or up, if they have no area either.
-/// One whose normal is more than 90 degrees off that gets it too: where two surfaces are closer than a cell
-/// the gradient may be that of the other one.
+/// Repairs the normals of some vertices, given in ascending order, by their triangles. A vertex without a
+/// normal (its gradient vanishes or is NaN) gets the area-weighted mean of its triangles' normals; or up, if
+/// they have no area. So does a vertex whose normal is more than 90 degrees off: where two surfaces are
+/// closer than a cell, the gradient may be the other surface's.
 pub(crate) fn repair_normals(mesh: &mut Mesh, bricks: &Bricks, crossings: &Crossings, vertices: &[u32]) {
     if vertices.is_empty() {
         return;
     }
     let Mesh { positions, normals, triangles, .. } = mesh;
-    // The place of each of them in the list, and one; 0 for all others.
+    // For each vertex, its index in the list plus one; 0 for all others.
     let mut places = vec![0_u32; normals.len()];
     for (place, &vertex) in (1..).zip(vertices) {
         places[vertex as usize] = place;
@@ -234,8 +235,8 @@ pub(crate) fn repair_normals(mesh: &mut Mesh, bricks: &Bricks, crossings: &Cross
     }
 }
 
-/// The bricks that have triangles of some vertices, which ascend: a quad belongs to the last cell around its
-/// edge, so these are the vertices' own and those above. They ascend too, so that sums are the same for
+/// The bricks that have triangles of some vertices, both ascending. A quad belongs to the last cell around
+/// its edge, so these are the vertices' own bricks and the bricks above. The order makes sums the same for
 /// bricks of any size.
 fn bricks_around(bricks: &Bricks, crossings: &Crossings, vertices: &[u32]) -> Vec<usize> {
     let (mut own, mut around) = (0, Vec::new());
@@ -259,7 +260,7 @@ fn bricks_around(bricks: &Bricks, crossings: &Crossings, vertices: &[u32]) -> Ve
     around
 }
 
-/// The vector along the normal of a triangle, as long as twice its area.
+/// The area vector of a triangle, along its normal and as long as twice its area.
 pub(crate) fn area_vector(corners: [[f32; 3]; 3]) -> [f64; 3] {
     let [p, q, r] = corners;
     let from = |end: [f32; 3], axis: usize| f64::from(end[axis]) - f64::from(p[axis]);
@@ -267,7 +268,7 @@ pub(crate) fn area_vector(corners: [[f32; 3]; 3]) -> [f64; 3] {
     [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
 }
 
-/// A vector divided by its length, if it has one.
+/// A vector divided by its length; `None` if the length is 0 or not finite.
 pub(crate) fn unit(vector: [f64; 3]) -> Option<[f32; 3]> {
     let length = vector.iter().map(|c| c * c).sum::<f64>().sqrt();
     (length > 0.0 && length.is_finite()).then(|| vector.map(|c| (c / length) as f32))

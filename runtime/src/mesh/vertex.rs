@@ -1,5 +1,5 @@
-//! Vertices: where they start, how they are pulled onto the surface, and what they carry. Brick by brick:
-//! everything stays at hand, and each evaluation is of all vertices of a brick, in the brick's region.
+//! Vertices: their start, their pull onto the surface, and their attributes. Brick by brick: the data stays
+//! in the cache, and each evaluation takes all vertices of a brick, in the brick's region.
 
 pub(super) mod batch;
 mod bracket;
@@ -31,7 +31,7 @@ use seed::Group;
 
 pub(super) use room::is_crowded;
 
-/// Where the answers for some bricks go.
+/// The parts of the mesh that some bricks write.
 struct Target<'a> {
     positions: &'a mut [[f32; 3]],
     normals: &'a mut [[f32; 3]],
@@ -39,8 +39,8 @@ struct Target<'a> {
     attributes: Vec<&'a mut [f32]>,
 }
 
-/// Makes one vertex for each sheet of each crossing cell that has quads. A vertex at which the gradient
-/// vanishes or is no number has the normal zero.
+/// Makes one vertex for each sheet of each crossed cell that has quads. A vertex whose gradient vanishes or
+/// is NaN has the normal zero.
 pub(crate) fn finish<F: Field>(
     source: &Source<'_, F>,
     progress: &Progress<'_>,
@@ -118,7 +118,7 @@ fn finish_group<F: Field>(
 }
 
 impl Batch {
-    /// Pulls the vertices and evaluates everything at them, `width` attributes among it.
+    /// Pulls the vertices and evaluates everything at them, with `width` channels of attributes.
     fn evaluate<F: Field>(
         &mut self,
         source: &Source<'_, F>,
@@ -148,7 +148,7 @@ impl Batch {
         Ok(done.and(again))
     }
 
-    /// Writes the vertices to their range of the target, and notes those that have no normal.
+    /// Writes the vertices to their range of the target, and records vertices without a normal.
     fn write(&mut self, target: &mut Target<'_>, range: Range<usize>, widths: &[usize]) {
         let normals = &mut target.normals[range.clone()];
         let positions = &mut target.positions[range.clone()];
@@ -180,7 +180,7 @@ impl Batch {
     }
 }
 
-/// Writes positions, and normals against gradients. Returns whether a normal is missing.
+/// Writes positions, and normals opposite to the gradients. Returns whether a normal is missing.
 #[cfg_attr(feature = "levels", multiversion::multiversion(targets("x86_64+avx2")))]
 fn write_places(
     (points, positions): (&Planes, &mut [[f32; 3]]),
@@ -198,7 +198,7 @@ fn write_places(
     is_missing
 }
 
-/// Writes vectors that are given by lanes: all of them, or the first ones.
+/// Writes vectors from lanes, as many as `vectors` has room for.
 #[inline(always)]
 fn weave([x, y, z]: &[Lanes; 3], vectors: &mut [[f32; 3]]) {
     if let Some(vectors) = vectors.as_mut_array::<LANES>() {
@@ -212,7 +212,7 @@ fn weave([x, y, z]: &[Lanes; 3], vectors: &mut [[f32; 3]]) {
     }
 }
 
-/// Writes planes that stand one after the other as vectors.
+/// Interleaves consecutive planes into vectors.
 #[cfg_attr(feature = "levels", multiversion::multiversion(targets("x86_64+avx2")))]
 fn interleave<const WIDTH: usize>(planes: &[f32], vectors: &mut [f32]) {
     let (vectors, count) = (vectors.as_chunks_mut::<WIDTH>().0, planes.len() / WIDTH);

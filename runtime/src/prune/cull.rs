@@ -1,4 +1,4 @@
-//! Which rows reach which boxes: one row against up to eight boxes at a time, a lane each.
+//! The boxes that a row reaches: one row against up to eight boxes at a time, a lane each.
 //!
 //! ```text
 //!         +-----+          gap_x = max(core.low_x - box.high_x, box.low_x - core.high_x, 0), and so on
@@ -7,14 +7,14 @@
 //!   `-'   +-----+          c: the core, rounded by the radius; a support without a radius is its core
 //! ```
 //!
-//! A support is wider than what it stands for by more than these few roundings are off (see
-//! `jbt_lower::guide::Support`).
+//! A support exceeds the true support by more than the error of these few roundings (see
+//! `jbt_frontend::lower::guide::Support`).
 
 use jbt_lower::guide::{LARGEST_COORDINATE, Support};
 
 use crate::region::{Box3, MAX_PARTS};
 
-/// The supports of a table's rows, each in one half of a cache line: rows are met in any order.
+/// The supports of a table's rows, each in half a cache line, because rows are accessed in any order.
 pub(super) struct Supports {
     rows: Vec<Row>,
 }
@@ -33,7 +33,7 @@ pub(super) struct Boxes {
     high: [[f32; MAX_PARTS]; 3],
     /// A bit for each box.
     all: u8,
-    /// The boxes about which supports say nothing, because they are so far out: a bit each.
+    /// The boxes so far out that supports say nothing about them, a bit each.
     far: u8,
 }
 
@@ -57,7 +57,7 @@ impl Boxes {
         result
     }
 
-    /// A bit for each box.
+    /// One set bit for each box.
     pub(super) fn all(&self) -> u8 {
         self.all
     }
@@ -87,7 +87,7 @@ impl Supports {
                 *square += gap * gap;
             }
         }
-        // Not `<=`: a distance that is no number (infinite less infinite) reaches.
+        // Not `<=`: a distance that is NaN (inf - inf) counts as reached.
         let misses = square.map(|square| square > row.radius_squared);
         let misses =
             misses.iter().enumerate().fold(0_u8, |bits, (lane, &miss)| bits | u8::from(miss) << lane);

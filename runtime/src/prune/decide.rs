@@ -1,5 +1,5 @@
-//! Operands that do not decide: in a box where another operand of a union is larger everywhere, this one need
-//! not be known.
+//! Operands that do not decide: where another operand of a union is larger in the whole box, this operand can
+//! be left out.
 
 use jbt_ir::{Entity, Selection, Table};
 use jbt_lower::guide::{DecidedRows, Decision, Guide};
@@ -7,7 +7,7 @@ use jbt_lower::guide::{DecidedRows, Decision, Guide};
 use super::ranges::Probes;
 use crate::region::MAX_PARTS;
 
-/// Where the rows of each table that is present begin among all active rows of a selection.
+/// For each table, the index of its first row among all active rows of a selection.
 pub(super) fn firsts(selection: &Selection) -> Vec<usize> {
     let mut firsts = vec![0; selection.tables()];
     let mut end = 0;
@@ -18,8 +18,8 @@ pub(super) fn firsts(selection: &Selection) -> Vec<usize> {
     firsts
 }
 
-/// Takes the rows of operands that do not decide out of the masks, for each box where that is so. `probes`
-/// are what the interval kernel gave for the boxes with the rows of the selection.
+/// Clears the masks of rows of operands that do not decide, for each such box. `probes` are the ranges that
+/// the interval kernel gave for the boxes, with the rows of the selection.
 pub(super) fn leave_out(guide: &Guide, probes: Probes<'_>, selection: &Selection, masks: &mut [u8]) {
     let decisions = || guide.decisions.iter().filter(|decision| decision.rows == DecidedRows::All);
     if decisions().next().is_none() {
@@ -32,7 +32,7 @@ pub(super) fn leave_out(guide: &Guide, probes: Probes<'_>, selection: &Selection
             continue;
         }
         for box_index in 0..probes.count() {
-            // Comparisons with what is no number are false, so whatever is not known decides.
+            // Comparisons with NaN are false, so an operand with an unknown range decides.
             let [operand, node] =
                 [decision.operand, decision.node].map(|probe| probes.range(probe, box_index));
             if decision.kind.spares(operand, node, guide.iso2) {
@@ -43,26 +43,27 @@ pub(super) fn leave_out(guide: &Guide, probes: Probes<'_>, selection: &Selection
     }
 }
 
-/// Fewer operands than this run together faster than one by one.
+/// With fewer operands than this, one run with all of them is faster than one run for each.
 const FEWEST: usize = 64;
 /// The most rows of a table that are run one by one.
 const MOST_ALONE: usize = 64;
-/// How many rows more than there are may run in all, because those that are no operands run every time.
+/// The most additional row runs that are allowed: rows that are no operands run in every selection.
 const MOST_REPEATED: usize = 512;
 
-/// Operands that are rows of tables, as selections that run each of them without the others of its table.
+/// Operands that are rows of tables, as selections that run one row of each table without the table's other
+/// rows.
 pub(super) struct Alone<'a> {
     decisions: Vec<&'a Decision>,
-    /// Where the rows of each table begin among all active rows of the selection.
+    /// For each table, the index of its first row among all active rows of the selection.
     firsts: Vec<usize>,
-    /// Of each active row of the selection, [`u8::MAX`] if it runs every time, 0 if not.
+    /// For each active row of the selection, [`u8::MAX`] if it runs in every selection, else 0.
     always: Vec<u8>,
-    /// The most rows of a table.
+    /// The largest number of rows of a table.
     most: usize,
 }
 
 impl<'a> Alone<'a> {
-    /// Those of a selection, if running them is worth it.
+    /// The selections for an outer selection, if running them is worth it.
     pub(super) fn new(guide: &'a Guide, selection: &Selection) -> Option<Self> {
         let rows = |decision: &Decision| selection.active(decision.table).len();
         let (mut decisions, mut free) = (Vec::new(), true);
@@ -100,12 +101,12 @@ impl<'a> Alone<'a> {
         worth.then_some(Self { decisions, firsts, always, most })
     }
 
-    /// Numbers of the rows that begin a run of [`MAX_PARTS`] selections.
+    /// The first row numbers of runs of [`MAX_PARTS`] selections.
     pub(super) fn runs(&self) -> impl Iterator<Item = usize> + use<> {
         (0..self.most).step_by(MAX_PARTS)
     }
 
-    /// Selections in which of each table one row runs: of the selection at `part`, the one at `run + part`.
+    /// Selections in which one row of each table runs: row `run + part` in the selection at `part`.
     pub(super) fn selections(
         &self,
         selection: &Selection,
@@ -127,8 +128,8 @@ impl<'a> Alone<'a> {
         count
     }
 
-    /// Notes the boxes in which the rows at this number do not decide, a bit each. `probes` are what the
-    /// interval kernel gave for the whole selection, and `alone` for these rows alone.
+    /// Records the boxes in which the rows with this number do not decide, a bit each. `probes` are the
+    /// ranges for the whole selection, `alone` the ranges with these rows alone.
     pub(super) fn spare(
         &self,
         (selection, iso2): (&Selection, f32),
@@ -152,17 +153,17 @@ impl<'a> Alone<'a> {
     }
 }
 
-/// What the rows of a table are to the operands.
+/// The place of a table's rows relative to the operands.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Place {
-    /// Operands, or rows under one: they run with it.
+    /// Operands, or rows below one: they run with the operand.
     Operand,
-    /// What operands hang under.
+    /// Rows above operands.
     Above,
     Elsewhere,
 }
 
-/// That of each table.
+/// The place of each table.
 fn places(decisions: &[&Decision], selection: &Selection) -> Vec<Place> {
     let mut places = vec![Place::Elsewhere; selection.tables()];
     for decision in decisions {
@@ -175,7 +176,7 @@ fn places(decisions: &[&Decision], selection: &Selection) -> Vec<Place> {
             above = selection.parent(table);
         }
     }
-    // Tables come after those that own them.
+    // Tables come after their parents.
     for table in 0..places.len() {
         let above = selection.parent(Table::new(table));
         if above.is_some_and(|above| places[above.index()] == Place::Operand) {

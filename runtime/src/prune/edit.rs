@@ -1,4 +1,4 @@
-//! Where two models of one shape differ: in the supports of the rows that changed.
+//! Where two models of one shape may differ: in the supports of the changed rows.
 //!
 //! ```text
 //! row changed           its support, before and now
@@ -20,11 +20,11 @@ use super::{Pruner, Region};
 use crate::divide::Edit;
 use crate::region::{Box3, Divisible};
 
-/// What became of the rows of a table.
+/// The changed rows of a table.
 struct Change {
-    /// Rows that are not as they were, or are not there any more.
+    /// Old rows that were changed or removed.
     before: Range<usize>,
-    /// Rows that are not as they were, or were not there.
+    /// New rows that were changed or inserted.
     now: Range<usize>,
 }
 
@@ -45,7 +45,7 @@ impl Change {
         Self { before: first..before.len() - last, now: first..now.len() - last }
     }
 
-    /// The shift of the rows behind.
+    /// The shift of the unchanged rows after the change.
     fn shift(&self) -> Shift {
         // Row numbers are below 2^31: limits::MAX_OCCURRENCES.
         Shift { from: self.before.end as u32, by: self.now.end as i32 - self.before.end as i32 }
@@ -63,7 +63,7 @@ impl Pruner {
         {
             return Edit::Everywhere;
         }
-        // Which rows are active is compared by their numbers, which are not the same where rows come and go.
+        // Active rows are compared by number, and numbers change where rows are inserted or removed.
         if self.is_switched(before) && !before.program.bound.all().fits(self.extent()) {
             return Edit::Everywhere;
         }
@@ -72,7 +72,7 @@ impl Pruner {
         if self.tables().tables.keys().all(bounded) { Edit::Boxes(boxes) } else { Edit::Everywhere }
     }
 
-    /// Adds the boxes in which rows of a table may make a difference; `None` if there are no such boxes.
+    /// Adds the boxes in which rows of a table may change the field; `None` if these boxes are unknown.
     fn edit_table(&self, before: &Self, table: Table, boxes: &mut Vec<Box3>) -> Option<()> {
         let [old, new] = [before, self].map(|pruner| &pruner.tables().tables[table]);
         if old.active != new.active || old.starts != new.starts {
@@ -83,7 +83,7 @@ impl Pruner {
             }
         }
         let change = Change::new(old, new);
-        // Where as many rows are as before, those between the first and the last change may be as they were.
+        // If the number of rows is the same, rows between the first and the last change may be unchanged.
         let in_place = change.before == change.now;
         let changed = |row: &usize| !in_place || !same_numbers(old, new, *row);
         for (pruner, rows) in [(before, change.before.clone()), (self, change.now)] {
@@ -94,9 +94,8 @@ impl Pruner {
         Some(())
     }
 
-    /// Adds the boxes in which it makes a difference which rows of a table are active. What is hoisted makes
-    /// none: some selector has chosen another child as well, or nobody would begin to ask for it, or cease
-    /// to.
+    /// Adds the boxes in which the choice of active rows of a table changes the field. Hoisted instructions
+    /// need none: they begin or cease to matter only if some selector has chosen another child as well.
     fn edit_choice(&self, before: &Self, table: Table, boxes: &mut Vec<Box3>) -> Option<()> {
         if !(before.has_single_rows(table) && self.has_single_rows(table)) {
             return None;
@@ -114,14 +113,14 @@ impl Pruner {
         Some(())
     }
 
-    /// Whether other rows of the same tables are active.
+    /// Whether the active rows of any table differ.
     fn is_switched(&self, before: &Self) -> bool {
         let tables = before.tables().tables.values().zip(self.tables().tables.values());
         let mut same_length = tables.filter(|(old, new)| old.len() == new.len());
         same_length.any(|(old, new)| old.active != new.active)
     }
 
-    /// A region of an earlier model as it is now: for a box that [`edit`](Self::edit) does not touch.
+    /// An earlier model's region for this model: for a box that [`edit`](Self::edit) does not touch.
     #[must_use]
     pub fn renewed(&self, before: &Self, region: &Region) -> Region {
         if region.selection.fits(self.extent()) {
@@ -134,11 +133,12 @@ impl Pruner {
         Region { bounds: region.bounds, selection }
     }
 
-    /// A region of an earlier model with other active rows.
+    /// An earlier model's region with this model's active rows.
     fn switched(&self, before: &Self, region: &Region) -> Region {
         let selection = Arc::new(region.selection.switched(before.tables(), self.tables()));
         let switched = Region { bounds: region.bounds, selection };
-        // What has come brings all its rows; most do not matter here. If that cannot be asked, they stay.
+        // A newly chosen child brings all its rows; most do not matter here. If the ranges cannot be
+        // computed, all of them stay.
         let mut parts = Vec::with_capacity(1);
         match self.narrow(&switched, &[region.bounds], &mut parts) {
             Ok(()) => parts.pop().unwrap_or(switched),
@@ -146,8 +146,8 @@ impl Pruner {
         }
     }
 
-    /// Whether rows of a table may come and go without anything else being moved: a row that is zero makes no
-    /// difference, all run, no table hangs under them, and they hang under single rows.
+    /// Whether rows of a table may be inserted and removed without a change elsewhere: zero rows may be left
+    /// out, all rows are active, the table has no child tables, and its parents have single rows.
     fn may_shift(&self, table: Table) -> bool {
         let function = self.program.bound.kernel.function.function();
         let tables = &self.tables().tables;
@@ -163,7 +163,7 @@ impl Pruner {
         neutral && !has_children && tables[table].active.len() == tables[table].len()
     }
 
-    /// A box of the world outside of which a row adds nothing; `None` if there is none.
+    /// A box of the world outside of which a row adds nothing; `None` if no such box is known.
     fn reach_of(&self, mut table: Table, mut row: usize) -> Option<Box3> {
         loop {
             let above = self.above(table, row)?;
@@ -176,19 +176,20 @@ impl Pruner {
         }
     }
 
-    /// The row that owns this one; `None` for that of the scene.
+    /// The row that owns this row; `None` for the row of the scene.
     fn above(&self, table: Table, row: usize) -> Option<(Table, usize)> {
         let parent = self.program.bound.kernel.function.function().tables[table].parent?;
         if self.has_single_rows(table) {
             return Some((parent, row));
         }
-        // In tables of several rows all are active. Rows are owned in order.
+        // In tables with several rows for one owner all rows are active. Owned rows are in the order of their
+        // owners.
         let starts = &self.tables().tables[table].starts;
         Some((parent, starts.partition_point(|&start| start as usize <= row) - 1))
     }
 
-    /// Whether each row of the table above owns one row of this: those of guards and selectors are such
-    /// tables, and no others have rows that are not active.
+    /// Whether each row of the parent table owns one row of this table. This holds for tables of guards and
+    /// selectors, and only they have inactive rows.
     fn has_single_rows(&self, table: Table) -> bool {
         let tables = &self.tables().tables;
         let parent = self.program.bound.kernel.function.function().tables[table].parent;

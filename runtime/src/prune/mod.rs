@@ -1,4 +1,4 @@
-//! Pruning: which rows matter in a box, and between which bounds the field is there.
+//! Pruning: the rows that matter in a box, and bounds of the field there.
 //!
 //! ```text
 //! ranges:  one call of the interval kernel, boxes as lanes, with the rows of the region around them
@@ -8,13 +8,14 @@
 //!          leave the others out, by the rule of the operator                                  (rule)
 //! ```
 //!
-//! A selection is right if evaluating with it gives, at every point of its box, the bits that evaluating with
-//! all rows gives: field, gradient, attributes. Three things make it so:
+//! A selection is right if evaluation with it gives, at every point of its box, the same bits as evaluation
+//! with all rows: field, gradient, attributes. Three facts ensure this:
 //!
 //! * Outside of its support a row's field and gradient are exactly zero in the arithmetic of the kernels;
-//!   each operator's rule says what leaving zeros out does ([`jbt_lower::guide::Rule`]).
+//!   each operator's rule says which zero rows may be left out ([`jbt_frontend::lower::guide::Rule`]).
 //! * The interval kernel runs the kernel's own ops on bounds, so a range encloses every f32 value that the
-//!   kernel gives in the box. An operand is left out only if it is strictly beaten by such ranges.
+//!   kernel gives in the box. An operand is left out only if such ranges prove it strictly smaller (or
+//!   larger).
 //! * Rows stay in their order.
 
 mod cull;
@@ -46,7 +47,7 @@ use decide::Alone;
 use program::RangeProgram;
 use ranges::{Probes, Ranges};
 
-/// What matters of a model in a box: for each table, the rows that run. Every evaluator of the model takes it
+/// The rows of a model that run in a box, for each table. Every evaluator of the model takes a region
 /// ([`Evaluator::eval_region`](crate::Evaluator::eval_region)).
 #[derive(Clone, Debug)]
 pub struct Region {
@@ -67,8 +68,8 @@ impl Region {
         &self.selection
     }
 
-    /// Appends the regions of parts: `masks` has a byte for each row that runs, a bit for each part in which
-    /// it matters.
+    /// Appends the regions of the parts in `boxes`: `masks` has a byte for each row that runs, with a bit for
+    /// each part in which the row matters.
     fn narrow_by(&self, boxes: &[Box3], mut masks: Vec<u8>, parts: &mut Vec<Self>) {
         let mut selections: [Selection; MAX_PARTS] = Default::default();
         self.selection.narrow(&mut masks, &mut selections[..boxes.len()]);
@@ -76,14 +77,14 @@ impl Region {
         parts.extend(regions.map(|(&bounds, selection)| Self { bounds, selection: Arc::new(selection) }));
     }
 
-    /// Rows that run, of all tables.
+    /// The number of rows that run, over all tables.
     #[must_use]
     pub fn rows(&self) -> usize {
         self.selection.len()
     }
 }
 
-/// A model that can be asked about boxes: see the module.
+/// A model, compiled for questions about boxes: see the module.
 pub struct Pruner {
     /// Boxes are in coordinates about its origin.
     compiled: Compiled,
@@ -93,25 +94,25 @@ pub struct Pruner {
 
 brief_debug!(Pruner, "Pruner", this: counters = this.counters());
 
-/// What a pruner has done so far.
+/// The work of a pruner so far.
 #[derive(Debug, Default)]
 struct Counts {
     boxes: AtomicU64,
     primitives: AtomicU64,
 }
 
-/// What a pruner has done so far. A snapshot: see [`Pruner::counters`].
+/// The work of a pruner so far. A snapshot: see [`Pruner::counters`].
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PruneCounters {
     /// Boxes for which a range was computed.
     pub boxes: u64,
-    /// Ranges of distances to skeletons that were computed for them.
+    /// Interval evaluations of distances to skeletons for these boxes.
     pub interval_evaluations: u64,
 }
 
-/// The most rows in a region for which ranges of its parts are computed. The field of so many is bounded by
-/// nothing useful; the parts of its parts will tell.
+/// The most rows in a region for which ranges of its parts are computed. With more rows the ranges are too
+/// wide to be useful; smaller parts will have better ones.
 const MAX_RANGED_ROWS: usize = 4096;
 
 impl Compiled {
@@ -142,13 +143,13 @@ impl Pruner {
         self.compiled.updated(tree).pruner()
     }
 
-    /// Where the coordinates of boxes count from: as for [`Evaluator::origin`](crate::Evaluator::origin).
+    /// The origin of the coordinates of boxes: the same as [`Evaluator::origin`](crate::Evaluator::origin).
     #[must_use]
     pub fn origin(&self) -> ModelOrigin {
         self.compiled.origin()
     }
 
-    /// What it has done so far.
+    /// The work so far.
     #[must_use]
     pub fn counters(&self) -> PruneCounters {
         PruneCounters {
@@ -172,14 +173,14 @@ impl Pruner {
         self.program.bound.tables()
     }
 
-    /// Ranges of the field and of all probes in boxes, by one run of the interval kernel, which is counted.
+    /// Ranges of the field and of all probes in boxes, by one counted run of the interval kernel.
     fn evaluate(&self, rows: &Selection, boxes: &[Box3]) -> Result<Ranges, EvalError> {
         let mut ranges = Ranges::new(&self.program.bound, boxes);
         self.find(&mut ranges, rows, boxes.len())?;
         Ok(ranges)
     }
 
-    /// Finds ranges in so many boxes by one run of the interval kernel, which is counted.
+    /// Computes the ranges of `count` boxes by one counted run of the interval kernel.
     fn find(&self, ranges: &mut Ranges, rows: &Selection, count: usize) -> Result<(), EvalError> {
         ranges.find(&self.program.bound, rows)?;
         self.counts.boxes.fetch_add(count as u64, Ordering::Relaxed);
@@ -187,14 +188,14 @@ impl Pruner {
         Ok(())
     }
 
-    /// Ranges of distances to skeletons that some boxes take.
+    /// The interval evaluations of distances to skeletons for some boxes.
     fn evaluations(&self, rows: &Selection, boxes: usize) -> u64 {
         of_selection(&self.program.bound.kernel.per_row, rows).saturating_mul(boxes as u64)
     }
 
-    /// For each active row of the region, the boxes in which it matters: a bit each. It is told by the ranges
-    /// of the field and of all probes in these boxes, if they are known. Operands that are rows are for
-    /// [`spared`](Self::spared).
+    /// For each active row of the region, the boxes in which it matters, a bit each. `probes` are the ranges
+    /// of the field and of all probes in these boxes, if they are known. Operands that are rows are handled
+    /// by [`spared`](Self::spared).
     fn masks(&self, region: &Region, boxes: &[Box3], probes: Option<Probes<'_>>) -> Vec<u8> {
         let world = Boxes::new(boxes);
         let selection = &*region.selection;
@@ -227,9 +228,8 @@ impl Pruner {
         masks
     }
 
-    /// For each active row of the region, the boxes in which it need not be known because it is an operand
-    /// that does not decide there: a bit each, of at most [`MAX_SPARED`] boxes. Nothing where to find out
-    /// costs more than it saves.
+    /// For each active row of the region, the boxes in which it is an operand that does not decide, a bit
+    /// each, for at most [`MAX_SPARED`] boxes. Empty where the test would cost more than it saves.
     fn spared(
         &self,
         region: &Region,
@@ -253,7 +253,7 @@ impl Pruner {
         Ok(Some(spared))
     }
 
-    /// Appends the regions of some parts of a region, in which the probes have these ranges.
+    /// Appends the regions of some parts of a region; the probes have these ranges there.
     fn regions(
         &self,
         region: &Region,
@@ -280,8 +280,8 @@ impl Pruner {
     }
 }
 
-/// The most boxes of which is found out together which operands do not decide: a bit of a word each, and a
-/// multiple of [`MAX_PARTS`].
+/// The most boxes in one test of operands that do not decide: one bit of a word each, and a multiple of
+/// [`MAX_PARTS`].
 const MAX_SPARED: usize = 32;
 
 /// The boxes of a point inside of a warp, whose ranges are probes.

@@ -1,4 +1,4 @@
-//! What a run of the interval kernel gives: ranges of the field and of all probes in some boxes.
+//! Results of a run of the interval kernel: ranges of the field and of all probes in some boxes.
 
 use jbt_ir::Selection;
 
@@ -6,20 +6,20 @@ use crate::error::EvalError;
 use crate::kernel::Bound;
 use crate::region::{Box3, Range};
 
-/// Boxes, a lane each, and ranges in them.
+/// Boxes, a lane each, and the ranges in them.
 pub(super) struct Ranges {
     /// The low and the high ends of the boxes along each axis, plane by plane.
     boxes: Vec<f32>,
-    /// The low and the high ends of the field, and those of each probe, plane by plane.
+    /// The low and the high ends of the field and of each probe, plane by plane.
     numbers: Vec<f32>,
-    /// Numbers of a plane: as many as there are boxes, or as fill a block of the kernel.
+    /// Numbers of a plane: the number of boxes, or a whole block of the kernel if that is more.
     stride: usize,
 }
 
 impl Ranges {
-    /// Some boxes, in which nothing is known yet.
+    /// Boxes without ranges.
     pub(super) fn new(kernel: &Bound, boxes: &[Box3]) -> Self {
-        // Fewer boxes than a block would be copied to a block and back: whole blocks run in place.
+        // A run of fewer boxes than a block would copy them to a block and back: whole blocks run in place.
         let stride = boxes.len().max(kernel.kernel.block());
         let mut ends = vec![0.0; 6 * stride];
         for lane in 0..stride {
@@ -33,7 +33,7 @@ impl Ranges {
         Self { boxes: ends, numbers: vec![0.0; planes * stride], stride }
     }
 
-    /// Finds the ranges with the rows of a selection.
+    /// Computes the ranges with the rows of a selection.
     pub(super) fn find(&mut self, kernel: &Bound, rows: &Selection) -> Result<(), EvalError> {
         let boxes: [&[f32]; 6] =
             std::array::from_fn(|plane| &self.boxes[plane * self.stride..][..self.stride]);
@@ -62,21 +62,21 @@ pub(super) struct Probes<'a> {
 }
 
 impl<'a> Probes<'a> {
-    /// How many boxes.
+    /// The number of boxes.
     pub(super) fn count(self) -> usize {
         self.lanes.len()
     }
 
-    /// Those in so many of the boxes, in all but the last chunk.
+    /// The probes of chunk `index` of the boxes: `size` boxes, fewer in the last chunk.
     pub(super) fn chunk(self, index: usize, size: usize) -> Probes<'a> {
         let start = index * size;
         Probes { lanes: &self.lanes[start..self.lanes.len().min(start + size)], ..self }
     }
 
-    /// The range of a probe in a box, by the place of the box.
+    /// The range of a probe in a box, by the box's index.
     pub(super) fn range(self, probe: usize, place: usize) -> Range {
         let Ranges { numbers, stride, .. } = self.ranges;
-        // The field's own range comes before those of the probes.
+        // The field's range comes before the ranges of the probes.
         let low = 2 * (1 + probe) * stride + self.lanes[place];
         [numbers[low], numbers[low + stride]]
     }

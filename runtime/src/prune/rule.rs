@@ -1,9 +1,9 @@
-//! What leaving zero rows out does to an operator.
+//! The rows that an operator's rule keeps.
 
 use jbt_lower::guide::Rule;
 
-/// Makes of what rows reach what they keep: `masks` has a byte for each active row of a table, a bit for each
-/// box that the row reaches; `starts` are those of the selection.
+/// Turns the rows that reach boxes into the rows to keep. `masks` has a byte for each active row of a table,
+/// with a bit for each box that the row reaches; `starts` are the starts of the selection.
 pub(super) fn apply(rule: Rule, starts: &[u32], masks: &mut [u8], all: u8) {
     match rule {
         // A zero adds nothing.

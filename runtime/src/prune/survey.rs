@@ -1,5 +1,4 @@
-//! Ranges of many parts of a box, and the regions of those that are worth it, from one run of the interval
-//! kernel.
+//! Ranges of many parts of a box, and the regions of the wanted parts, from one run of the interval kernel.
 //!
 //! ```text
 //! survey(region, boxes):   ranges of the field and of all probes in all boxes         one run, any number of lanes
@@ -14,12 +13,12 @@ use crate::region::MAX_PARTS;
 use crate::region::{ANYTHING, Box3, Range};
 
 impl Pruner {
-    /// The ranges of the field in any number of proper boxes inside a region, and the regions of those whose
-    /// range is wanted.
+    /// The ranges of the field in any number of proper boxes inside a region, and the regions of the boxes
+    /// whose range is wanted.
     ///
-    /// It is what [`ranges`](crate::region::Divisible::ranges) and
-    /// [`narrow`](crate::region::Divisible::narrow) give, and costs less: where operands that do not decide
-    /// are to be found, both run the interval kernel, and a run of few boxes fills few of its lanes.
+    /// The result equals that of [`ranges`](crate::region::Divisible::ranges) and
+    /// [`narrow`](crate::region::Divisible::narrow), at lower cost: both run the interval kernel where
+    /// operands may not decide, and a run of few boxes fills few of its lanes.
     ///
     /// # Errors
     /// A region of a model with other numbers of rows.
@@ -45,9 +44,9 @@ impl Pruner {
         Ok(found)
     }
 
-    /// Up to [`MAX_PARTS`] boxes inside a region whose ranges are wanted, each by its place among them and
-    /// with its region; and how many ranges of distances to skeletons that took. It is
-    /// [`ranges`](Divisible::ranges) and [`narrow`](Divisible::narrow) at the cost of one.
+    /// The boxes, at most [`MAX_PARTS`] inside a region, whose ranges are wanted, each with its index and its
+    /// region; and the number of interval evaluations of distances. The result equals that of
+    /// [`ranges`](Divisible::ranges) and [`narrow`](Divisible::narrow), at the cost of one of them.
     pub(crate) fn split(
         &self,
         region: &Region,
@@ -70,8 +69,8 @@ impl Pruner {
         Ok((kept.into_iter().zip(regions).collect(), evaluations))
     }
 
-    /// The ranges of the field in any number of proper boxes inside a region, and how many ranges of
-    /// distances to skeletons each of them took.
+    /// The ranges of the field in any number of proper boxes inside a region, and the number of interval
+    /// evaluations of distances for each box.
     pub(crate) fn many_ranges(
         &self,
         region: &Region,

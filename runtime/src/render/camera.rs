@@ -1,4 +1,4 @@
-//! The camera: from where a model is looked at, and the ray of each place of the picture.
+//! The camera: its place, and the ray of each point of the picture.
 //!
 //! ```text
 //!        z  up                    names of directions, from where one looks:
@@ -13,7 +13,7 @@ use jbt_model::origin::ModelOrigin;
 
 use super::vector::{Vector, add, along, cross, dot, is_finite, length, scale, sub, unit};
 
-/// The views that have names, and from where they look. A model looks along x, and z is up.
+/// The views with names, and the directions that they look from. A model faces along x, and z is up.
 pub const VIEWS: [(&str, Vector); 8] = [
     ("three-quarter", THREE_QUARTER),
     ("iso", [1.0, -1.0, 1.0]),
@@ -27,14 +27,13 @@ pub const VIEWS: [(&str, Vector); 8] = [
 
 const THREE_QUARTER: Vector = [1.0, -0.62, 0.5];
 
-/// Where the camera stands, in the world.
+/// The place of the camera, in the world.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Stance {
-    /// It looks at the model from this direction, of any length, and stands where the model fills the
-    /// picture.
+    /// It looks at the model from this direction, of any length, from where the model fills the picture.
     From([f64; 3]),
-    /// It stands at a point and looks at another one.
+    /// It stands at a point and looks at another point.
     At {
         /// Where it stands, in units of the model.
         eye: [f64; 3],
@@ -43,19 +42,20 @@ pub enum Stance {
     },
 }
 
-/// How the model is looked at.
+/// A view of the model.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct View {
-    /// Where the camera stands.
+    /// The place of the camera.
     pub stance: Stance,
-    /// What is up in the picture, of any length; without one it is z, or y where one looks along z.
+    /// The direction that is up in the picture, of any length. By default z, or y for a camera that looks
+    /// along z.
     pub up: Option<[f64; 3]>,
     /// The angle from the bottom to the top of the picture, in degrees: greater than 0, less than 180.
-    /// Without perspective it matters only for how much a camera that stands at a point sees: at its target,
-    /// what it would see with perspective.
+    /// Without perspective it matters only for a camera that stands at a point: at its target, it sees as
+    /// much as with perspective.
     pub lens: f64,
-    /// How much larger everything is than it would be. Greater than 0.
+    /// The factor of all sizes in the picture. Greater than 0.
     pub zoom: f64,
     /// Without perspective: all rays are parallel, and equal lengths look equal at any distance.
     pub orthographic: bool,
@@ -77,7 +77,7 @@ impl View {
     }
 }
 
-/// Why there is no camera.
+/// Why a view gives no camera.
 #[derive(Clone, Copy, PartialEq, Debug, thiserror::Error)]
 pub enum CameraError {
     /// A number of the view is infinite or not a number.
@@ -88,25 +88,25 @@ pub enum CameraError {
         /// What was given.
         value: f64,
     },
-    /// The direction from where one looks, or what is up, is no direction.
+    /// The direction of the camera or of up has no length.
     #[error("the camera's {what} is no direction: its length is 0")]
     Zero {
         /// Which one.
         what: &'static str,
     },
-    /// The camera stands at what it looks at.
+    /// The camera stands at its target.
     #[error("the camera's eye and target are both at ({}, {}, {}): it looks nowhere", eye[0], eye[1], eye[2])]
     Coincident {
         /// Where.
         eye: [f64; 3],
     },
-    /// What is up in the picture is where one looks.
+    /// The up direction is the viewing direction.
     #[error("the camera looks along its up direction ({}, {}, {}): nothing is up in the picture", up[0], up[1], up[2])]
     Up {
         /// What was given.
         up: [f64; 3],
     },
-    /// The angle of the lens is no angle of a lens.
+    /// The angle of the lens is out of range.
     #[error("the camera's lens must be greater than 0 and less than 180 degrees, and it is {degrees}")]
     Lens {
         /// What was given.
@@ -120,24 +120,24 @@ pub enum CameraError {
     },
 }
 
-/// The part of the picture that a framed model fills, along the axis that it fills more of.
+/// The part of the picture that a framed model fills, along the axis that it fills more.
 const FILLED: f64 = 0.86;
-/// The sine of the angle between two directions below which they count as one.
+/// The sine of the angle below which two directions count as one.
 const PARALLEL: f64 = 1e-9;
 
-/// Where the rays of a picture begin and go.
+/// The rays of a picture.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Camera {
-    /// Where it stands, in the world.
+    /// Its place, in the world.
     pub eye: [f64; 3],
     /// To the right in the picture; a unit vector, like the others.
     pub right: [f64; 3],
     /// Upwards in the picture.
     pub up: [f64; 3],
-    /// From what it sees to the eye.
+    /// From the model to the eye.
     pub back: [f64; 3],
-    /// Half the width and half the height of what it sees: at the distance 1, or, without perspective, at any
+    /// Half the width and half the height of the view: at the distance 1, or, without perspective, at any
     /// distance.
     pub half: [f64; 2],
     /// Whether there is no perspective.
@@ -145,7 +145,7 @@ pub struct Camera {
 }
 
 impl View {
-    /// Checks the numbers, all of them.
+    /// Checks all numbers.
     ///
     /// # Errors
     /// See [`CameraError`].
@@ -163,7 +163,7 @@ impl View {
         Ok(())
     }
 
-    /// The same view where coordinates count from an origin.
+    /// The same view in coordinates relative to an origin.
     pub(super) fn about(&self, origin: ModelOrigin) -> Self {
         let stance = match self.stance {
             Stance::From(_) => self.stance,
@@ -172,7 +172,7 @@ impl View {
         Self { stance, ..*self }
     }
 
-    /// What is up in space: the picture's up, if it was given, or z.
+    /// The direction that is up in space: the picture's up, if it was given, or z.
     pub(super) fn upwards(&self) -> Vector {
         self.up.and_then(unit).unwrap_or([0.0, 0.0, 1.0])
     }
@@ -187,7 +187,7 @@ impl View {
             Stance::At { eye, target } => {
                 finite("eye", &eye)?;
                 finite("target", &target)?;
-                // Halves, because the difference of the largest numbers is not finite.
+                // Halves, because the difference of the largest numbers would overflow.
                 unit(sub(scale(eye, 0.5), scale(target, 0.5))).ok_or(CameraError::Coincident { eye })?
             }
         };
@@ -204,8 +204,8 @@ impl View {
         Ok([right, cross(back, right), back])
     }
 
-    /// The camera for a picture that is `aspect` times as wide as high. One that frames itself shows all of
-    /// these points, of which there is one at least.
+    /// The camera for a picture whose width is `aspect` times its height. If it stands at no point, it frames
+    /// these points, of which there is at least one.
     ///
     /// # Errors
     /// See [`CameraError`].
@@ -219,7 +219,7 @@ impl View {
             (Stance::At { eye, .. }, false) => (eye, lens),
             (Stance::At { eye, target }, true) => {
                 let distance = length(sub(eye, target));
-                // No plane cuts anything off: it stands back until everything is in front of it.
+                // There is no near plane: the camera moves back until everything is in front of it.
                 let nearest = seen.high[2] + seen.radius - dot(eye, back);
                 (along(eye, nearest.max(0.0), back), lens.map(|half| half * distance))
             }
@@ -232,8 +232,8 @@ impl View {
 }
 
 impl Camera {
-    /// The ray of a place of the picture: where it begins, and its unit direction. x goes from 0 at the left
-    /// side to 1 at the right one, y from 0 at the top to 1 at the bottom.
+    /// The ray of a point of the picture: its origin and its unit direction. x goes from 0 at the left side
+    /// to 1 at the right side, y from 0 at the top to 1 at the bottom.
     #[must_use]
     pub fn ray(&self, x: f64, y: f64) -> ([f64; 3], [f64; 3]) {
         let aside = add(
@@ -247,14 +247,14 @@ impl Camera {
         (self.eye, scale(direction, 1.0 / length(direction)))
     }
 
-    /// How far a point is in front of the eye, along the middle of the picture.
+    /// The distance of a point in front of the eye, along the middle of the picture.
     #[must_use]
     pub fn depth(&self, point: [f64; 3]) -> f64 {
         dot(sub(self.eye, point), self.back)
     }
 }
 
-/// Points as a camera sees them: along its axes.
+/// Points in the axes of a camera.
 struct Seen {
     points: Vec<Vector>,
     axes: [Vector; 3],
@@ -284,10 +284,10 @@ impl Seen {
         add(scale(right, at[0]), add(scale(up, at[1]), scale(back, at[2])))
     }
 
-    /// The nearest place of an eye from where all points are within these tangents of the middle.
+    /// The nearest place of an eye that sees all points within these tangents of the middle.
     ///
-    /// A point is if `|x - cx| <= (d - z) t` for the eye (cx, cy, d): so `x + z t <= cx + d t` and `x - z
-    /// t >= cx - d t`.
+    /// For the eye (cx, cy, d) this is `|x - cx| <= (d - z) t`, so `x + z t <= cx + d t` and
+    /// `x - z t >= cx - d t`.
     fn perspective(&self, tangents: [f64; 2]) -> Vector {
         let mut eye = [0.0, 0.0, self.high[2] + 1e-3 * self.radius];
         for axis in 0..2 {
@@ -302,7 +302,7 @@ impl Seen {
         self.place(eye)
     }
 
-    /// An eye without perspective, and half the sides of what it has to see.
+    /// An eye without perspective, and half the sides of its view.
     fn parallel(&self, aspect: f64) -> (Vector, [f64; 2]) {
         let middle = |axis: usize| 0.5 * (self.low[axis] + self.high[axis]);
         let reach = |axis: usize| 0.5 * (self.high[axis] - self.low[axis]) / FILLED;
@@ -312,7 +312,7 @@ impl Seen {
     }
 }
 
-/// The unit vector to the right, if up is another direction than back.
+/// The unit vector to the right; `None` if up and back are parallel.
 fn right_of(up: Vector, back: Vector) -> Option<Vector> {
     let right = cross(up, back);
     (length(right) > PARALLEL).then(|| unit(right)).flatten()
@@ -325,7 +325,7 @@ fn finite(what: &'static str, numbers: &[f64]) -> Result<(), CameraError> {
     }
 }
 
-/// Whether a camera's own numbers are usable: they are not if the view's were far beyond those of any model.
+/// Whether a camera's numbers are usable: numbers far beyond those of any model overflow.
 pub(super) fn is_usable(camera: &Camera) -> bool {
     is_finite(camera.eye) && camera.half.iter().all(|half| half.is_finite() && *half > 0.0)
 }
@@ -338,7 +338,7 @@ mod tests {
         (0..8).map(|corner| [0, 1, 2].map(|axis| if corner >> axis & 1 == 0 { -1.0 } else { 1.0 })).collect()
     }
 
-    /// Where a point is in the picture: 0 .. 1 across and down.
+    /// The place of a point in the picture: 0 .. 1 across and down.
     fn seen(camera: &Camera, point: Vector) -> [f64; 2] {
         let offset = sub(point, camera.eye);
         let distance = if camera.orthographic { 1.0 } else { camera.depth(point) };

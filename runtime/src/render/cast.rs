@@ -1,4 +1,4 @@
-//! Rays of the camera: what each of them meets.
+//! Rays of the camera, and their hits.
 
 use super::color::Rgb;
 use super::error::RenderError;
@@ -10,39 +10,39 @@ use crate::trace::Ray;
 use jbt_model::check::CheckedTree;
 use jbt_model::kind::NodeKind;
 
-/// What a ray meets.
+/// A hit of a ray.
 pub struct Met {
-    /// Which of the rays.
+    /// The index of the ray.
     pub cast: usize,
-    /// Counted from the model's origin.
+    /// Relative to the model's origin.
     pub position: Vector,
     /// The unit normal, away from the inside.
     pub normal: Vector,
-    /// What the mode shows of it: the colour, or the attribute. Finite.
+    /// The mode's value at the hit: the colour, or the attribute. Finite.
     pub paint: Rgb,
 }
 
-/// What rays meet, and what each of them took.
+/// The hits of rays, and the cost of each ray.
 pub struct Meetings {
-    /// In the order of the rays; those that meet nothing are left out.
+    /// In the order of the rays, without the rays that hit nothing.
     pub met: Vec<Met>,
-    /// For each ray, the distances to skeletons that were evaluated.
+    /// For each ray, the number of distances to skeletons that were evaluated.
     pub evaluations: Vec<f32>,
 }
 
-/// What the surface is painted with.
+/// The source of the surface's colour.
 pub enum Paint {
     /// The same everywhere.
     Plain(Rgb),
-    /// Up to three planes of the samples, from this one on.
+    /// Planes of the samples: the first one, and how many, at most three.
     Planes(usize, usize),
 }
 
-/// The colour of models that have none: clay, as linear light.
+/// The colour of models without colours: clay, as linear light.
 const CLAY: Rgb = [0.60, 0.55, 0.50];
 
 impl Paint {
-    /// What a mode paints a model with.
+    /// The paint of a model in a mode.
     fn new(frame: &Frame<'_>) -> Self {
         let group = match &frame.render.mode {
             Mode::Shaded if is_colored(frame.renderer.tree()) => "color",
@@ -66,14 +66,14 @@ impl Paint {
     }
 }
 
-/// Whether anything in a model gives it a colour.
+/// Whether any part of a model has a colour.
 fn is_colored(tree: &CheckedTree) -> bool {
     let is_white = tree.attributes()[0].default.iter().all(|&channel| channel == 1.0);
     let gives = |kind: &NodeKind| matches!(kind, NodeKind::Attribute { name, .. } if &**name == "color");
     !is_white || tree.nodes().iter().any(|node| gives(&node.kind))
 }
 
-/// Finds what rays meet first.
+/// Finds the first hits of rays.
 pub fn cast(frame: &Frame<'_>, casts: &[Ray]) -> Result<Meetings, RenderError> {
     let paint = Paint::new(frame);
     let mut evaluations = vec![0.0; casts.len()];
@@ -104,7 +104,7 @@ pub fn cast(frame: &Frame<'_>, casts: &[Ray]) -> Result<Meetings, RenderError> {
     Ok(Meetings { met, evaluations })
 }
 
-/// The rays that begin inside of the solid: they meet the cut that the region makes.
+/// The rays that begin inside of the solid: they hit the cut that the region makes.
 fn cuts(
     frame: &Frame<'_>,
     casts: &[Ray],
@@ -134,12 +134,12 @@ fn cuts(
     Ok(inside.iter().enumerate().map(meet).collect())
 }
 
-/// Where a ray begins.
+/// The start of a ray.
 pub fn start(ray: &Ray) -> [f32; 3] {
     along(ray.origin, ray.span[0], ray.direction).map(|x| x as f32)
 }
 
-/// The unit normal of a hit; where the gradient vanishes, it is towards where the ray comes from.
+/// The unit normal of a hit; where the gradient vanishes, it is opposite to the ray.
 fn normal(samples: &Samples, hit: usize, direction: Vector) -> Vector {
     let gradient = samples.gradient().map(|gradient| gradient.map(|plane| -f64::from(plane[hit])));
     gradient.and_then(unit).unwrap_or_else(|| scale(direction, -1.0))

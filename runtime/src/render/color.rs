@@ -1,12 +1,12 @@
-//! Colours: what a screen shows, and how numbers become colours.
+//! Colours: encoding for screens, and colour maps.
 
 pub(super) use crate::srgb::{byte, decode, encode, unit};
 
 /// Red, green and blue.
 pub type Rgb = [f32; 3];
 
-/// Light of any strength as light that a screen has: as it is up to 0.6, then ever less, up to 1. Continuous
-/// with its derivative.
+/// Maps light of any strength to light that a screen has: unchanged up to 0.6, then compressed, up to 1.
+/// Continuous with its derivative.
 pub fn shoulder(light: f32) -> f32 {
     const KNEE: f32 = 0.6;
     const ROOM: f32 = 1.0 - KNEE;
@@ -17,10 +17,10 @@ pub fn shoulder(light: f32) -> f32 {
     KNEE + ROOM * over / (1.0 + over)
 }
 
-/// The colour of a number from 0 to 1 on the map *viridis* (Smith and van der Walt, 2015), as numbers for a
-/// screen: dark blue, green, yellow. Equal steps look equally large.
+/// The colour of a number from 0 to 1 on the map *viridis* (Smith and van der Walt, 2015), as screen values:
+/// dark blue, green, yellow. Equal steps look equally large.
 ///
-/// A polynomial that Zucker fitted to it (2019), off by less than 0.02.
+/// A polynomial fitted by Zucker (2019), with an error below 0.02.
 pub fn viridis(t: f32) -> Rgb {
     polynomial(&VIRIDIS, t)
 }
@@ -74,7 +74,7 @@ mod tests {
         }
     }
 
-    /// Entries 0, 128 and 255 of the published tables.
+    /// Compared with entries 0, 128 and 255 of the published tables.
     #[test]
     fn the_maps_are_those_that_were_published() {
         let near = |found: Rgb, expected: Rgb| {

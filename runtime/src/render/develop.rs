@@ -1,14 +1,14 @@
-//! How what was gathered for each pixel becomes colours.
+//! Developing: from the sums of each pixel to colours.
 
 use super::color::{Rgb, byte, decode, encode, inferno, viridis};
 use super::settings::{Background, Meaning};
 use crate::picture::Picture;
 
-/// What was gathered for a pixel, as means over its rays: three numbers, multiplied by the share of the rays
-/// that have any, and this share.
+/// The mean over the rays of a pixel: three numbers, multiplied by the share of the rays that have values,
+/// and this share.
 pub type Gathered = [f32; 4];
 
-/// Develops a film into a picture. Also the range of its numbers, where a colour stands for one.
+/// Develops a film into a picture. Also returns the range of its numbers, if colours stand for numbers.
 pub fn develop(
     film: &[Gathered],
     [width, height]: [u32; 2],
@@ -47,13 +47,13 @@ fn range(film: &[Gathered], counts: impl Fn(f32) -> bool) -> Option<[f32; 2]> {
     ends.reduce(|[low, high], [number, _]| [low.min(number), high.max(number)])
 }
 
-/// Where a number is in a range, from 0 to 1.
+/// The place of a number in a range, from 0 to 1.
 fn part(number: f32, [low, high]: [f32; 2]) -> f32 {
     if high > low { (number - low) / (high - low) } else { 0.0 }
 }
 
-/// A pixel in front of a background, as bytes. The front is multiplied by its opacity; light is mixed as
-/// light.
+/// A pixel in front of a background, as bytes. The front is premultiplied by its opacity; light is mixed
+/// linearly.
 fn over(front: Rgb, opacity: f32, behind: Option<Rgb>, is_light: bool) -> [u8; 4] {
     let show = |x: f32| byte(if is_light { encode(x) } else { x });
     match behind {
@@ -100,7 +100,7 @@ mod tests {
         assert_eq!(picture.pixel(1, 0), [38, 38, 38, 128]);
         assert_eq!(picture.pixel(2, 0), [0; 4]);
         assert_eq!(develop(&[[0.0; 4]], [1, 1], Meaning::Number, Background::Transparent).1, None);
-        // One number alone: no division by zero.
+        // A single number gives no division by zero.
         assert_eq!(pixel([2.0, 0.0, 0.0, 1.0], Meaning::Number, Background::Studio)[3], 255);
         assert_eq!(pixel([0.0, 0.0, 0.0, 1.0], Meaning::Cost, Background::Studio)[3], 255);
     }

@@ -1,4 +1,4 @@
-//! What all tiles of a picture share: the camera, what is looked at, the ground, and how exact rays are.
+//! Data that all tiles of a picture share: the camera, the region, the ground, and the tolerances.
 
 use super::camera::{Camera, View};
 use super::lights::Lights;
@@ -8,25 +8,24 @@ use super::vector::{Vector, along, dot};
 use crate::region::Box3;
 use crate::trace::Ray;
 
-/// A picture that can be exposed. All coordinates count from the model's origin.
+/// A picture that can be exposed. All coordinates are relative to the model's origin.
 pub struct Frame<'a> {
     pub render: &'a Render,
     pub renderer: &'a Renderer,
     pub view: View,
     pub camera: Camera,
-    /// What is looked at: rays end at its sides.
+    /// The region of the picture: rays end at its sides.
     pub region: Box3<f64>,
     /// The side of a pixel, at the near side of the model.
     pub pixel: f64,
-    /// What is thinner along a ray of the camera may be missed; where a ray hits, it does so to a small part
-    /// of this.
+    /// Parts thinner than this along a camera ray may be missed; hits are accurate to a small fraction of it.
     pub tolerance: f64,
     /// The middle of the model, and half the diagonal of its bounds.
     pub middle: Vector,
     pub radius: f64,
-    /// What is up in space.
+    /// The direction that is up in space.
     pub up: Vector,
-    /// How high the ground is along `up`, if there is one.
+    /// The height of the ground along `up`, if there is ground.
     pub ground: Option<f64>,
     pub lights: Lights,
 }
@@ -42,13 +41,13 @@ impl Frame<'_> {
         Camera { eye: self.renderer.tree().origin().world(self.camera.eye), ..self.camera }
     }
 
-    /// The ray of a place of the picture, as far as it is in the region, `None` if it misses that.
+    /// The part of a picture point's ray inside the region; `None` if there is none.
     pub fn cast(&self, x: f64, y: f64) -> Option<Ray> {
         let (origin, direction) = self.camera.ray(x, y);
         self.clip(origin, direction)
     }
 
-    /// The part in the region of what a unit direction leads to; `None` if there is none.
+    /// The part of a ray with a unit direction inside the region; `None` if there is none.
     pub fn clip(&self, origin: Vector, direction: Vector) -> Option<Ray> {
         let mut span = [0.0, f64::MAX];
         for axis in 0..3 {
@@ -65,7 +64,7 @@ impl Frame<'_> {
         (span[0] < span[1]).then_some(Ray { origin, direction, span })
     }
 
-    /// The outward normal of the region's side that a point is on, or nearest to.
+    /// The outward normal of the region's side that is nearest to a point.
     pub fn side(&self, point: Vector) -> Vector {
         let mut best = (f64::INFINITY, [0.0; 3]);
         for axis in 0..3 {
@@ -81,7 +80,7 @@ impl Frame<'_> {
         best.1
     }
 
-    /// Where a ray of the camera meets the ground.
+    /// The intersection of a camera ray with the ground.
     pub fn on_ground(&self, x: f64, y: f64) -> Option<Vector> {
         let height = self.ground?;
         let (origin, direction) = self.camera.ray(x, y);

@@ -1,4 +1,4 @@
-//! Framing: where the camera stands, how exact rays are, and where the ground is.
+//! Framing: the place of the camera, the tolerances, and the height of the ground.
 
 use crate::parallel::*;
 
@@ -13,17 +13,17 @@ use super::vector::{Vector, add, dot, length, scale, sub, tangents};
 use crate::region::Box3;
 use crate::trace::Ray;
 
-/// The tolerance of the bounds, as a part of the region's longest side: rays find out the rest.
+/// The tolerance of the bounds, as a part of the region's longest side: rays refine them.
 const COARSE: f32 = 1.0 / 8.0;
-/// Rays along the longer side of the coarse picture that finds out how the model fills a view.
+/// The number of rays along the longer side of the coarse picture that shows how the model fills a view.
 const SCOUTS: u32 = 96;
-/// The share of the model's radius that is the nearest distance a pixel's size is measured at.
+/// The nearest distance at which a pixel's size is measured, as a part of the model's radius.
 const NEAREST: f64 = 0.02;
-/// What f32 can tell, as a part of the size of coordinates.
+/// The resolution of f32, as a part of the size of coordinates.
 const FINEST: f64 = 1e-6;
 
 impl<'a> Frame<'a> {
-    /// Frames the model. `None` if there is nothing to look at.
+    /// Frames the model. `None` if the model is empty.
     pub fn new(render: &'a Render, renderer: &'a Renderer) -> Result<Option<Self>, RenderError> {
         let Some(region) = render.looked_at(renderer.tree())? else { return Ok(None) };
         let tight = renderer.solid.tight_bounds(Some(region), COARSE * region.longest_side())?;
@@ -53,14 +53,14 @@ impl<'a> Frame<'a> {
         }
         frame.set_tolerance(render.size[1], render.view.zoom)?;
         if with_ground {
-            // The plane of the ground is seen from above alone.
+            // The ground is visible only from above.
             frame.ground = Some(frame.lowest(&corners)?).filter(|&height| dot(frame.camera.eye, up) > height);
         }
         frame.check_eye()?;
         Ok(Some(frame))
     }
 
-    /// How low the model reaches, found out by a coarse picture from below.
+    /// The lowest height of the model, found by a coarse picture from below.
     fn lowest(&self, corners: &[Vector]) -> Result<f64, RenderError> {
         let up = self.up;
         let [right, ahead] = tangents(up);
@@ -88,8 +88,8 @@ impl<'a> Frame<'a> {
         Ok(if lowest.is_finite() { lowest } else { bottom })
     }
 
-    /// Moves the camera so that what is seen of the model fills the picture, found out by a coarse picture of
-    /// all of it.
+    /// Moves the camera so that the visible part of the model fills the picture, found by a coarse picture of
+    /// the whole model.
     fn fit(&mut self, corners: &[Vector]) -> Result<(), RenderError> {
         let view = View { zoom: 1.0, ..self.view };
         self.camera = view.camera(self.render.aspect(), corners)?;
@@ -114,7 +114,7 @@ impl<'a> Frame<'a> {
         Ok(())
     }
 
-    /// A pixel at the near side of the model, and what is fine enough for it.
+    /// Sets the size of a pixel at the near side of the model, and the tolerance for it.
     fn set_tolerance(&mut self, rows: u32, zoom: f64) -> Result<(), RenderError> {
         if !is_usable(&self.camera) {
             return Err(RenderError::Unusable);
@@ -128,7 +128,7 @@ impl<'a> Frame<'a> {
         let size =
             [self.region.low, self.region.high].iter().flatten().fold(0.0, |size: f64, x| size.max(x.abs()));
         self.pixel = self.pixel.max(FINEST * size);
-        // Rays have to tell their places apart.
+        // The places on rays must differ in f32.
         self.tolerance = (self.render.quality.fineness() * self.pixel).max(0.25 * FINEST * size);
         if self.tolerance.is_finite() { Ok(()) } else { Err(RenderError::Unusable) }
     }
@@ -147,7 +147,7 @@ impl<'a> Frame<'a> {
 }
 
 impl Render {
-    /// How many times as wide as high it is.
+    /// The ratio of width to height.
     fn aspect(&self) -> f64 {
         f64::from(self.size[0]) / f64::from(self.size[1])
     }

@@ -1,4 +1,4 @@
-//! The light that reaches a place: of the key light, and of the sky.
+//! The light that reaches a place, from the key light and from the sky.
 //!
 //! ```text
 //!      key light, a disc          each place sends some rays to the disc of the key light,
@@ -17,7 +17,7 @@ use super::report::Rays;
 use super::vector::{Vector, along, dot};
 use crate::trace::Ray;
 
-/// A place that light may reach.
+/// A place to be lit.
 pub struct Spot {
     /// A little above the surface.
     pub position: Vector,
@@ -25,34 +25,34 @@ pub struct Spot {
     pub normal: Vector,
     /// The pixel that sees it: its column and row.
     pub pixel: [u32; 2],
-    /// Which of the pixel's rays sees it.
+    /// The index of the pixel's ray that sees it.
     pub sample: u32,
 }
 
 /// The light that reaches a spot.
 #[derive(Clone, Copy)]
 pub struct Light {
-    /// The share of the key light's disc that it sees, from 0 to 1.
+    /// The visible share of the key light's disc, from 0 to 1.
     pub key: f32,
-    /// The same, each part weighted with the cosine to the normal.
+    /// The same share, weighted with the cosine to the normal.
     pub facing: f32,
-    /// Of the sky: the mean over the hemisphere, weighted with the cosine.
+    /// The light of the sky: the mean over the hemisphere, weighted with the cosine.
     pub sky: Rgb,
-    /// The share of the sky that it sees, from 0 to 1, weighted alike.
+    /// The visible share of the sky, from 0 to 1, weighted with the cosine.
     pub open: f32,
 }
 
-/// What gathering took.
+/// The cost of gathering.
 #[derive(Default)]
 pub struct Cost {
     pub rays: Rays,
     pub evaluations: f64,
 }
 
-/// How far things darken others, as a part of the model's radius.
+/// The distance up to which things block the sky, as a part of the model's radius.
 const REACH: f64 = 0.7;
 
-/// The light that reaches spots, each of which stands for so many rays of its pixel.
+/// The light that reaches spots; each spot stands for `rays` rays of its pixel.
 pub fn gather(frame: &Frame<'_>, spots: &[Spot], rays: u32) -> Result<(Vec<Light>, Cost), RenderError> {
     let [key_rays, sky_rays] = frame.render.quality.rays().map(|count| count * rays);
     let mut cost = Cost::default();
@@ -66,13 +66,13 @@ pub fn gather(frame: &Frame<'_>, spots: &[Spot], rays: u32) -> Result<(Vec<Light
     Ok((lights, cost))
 }
 
-/// How many rays a pixel sends to the key light, and to the sky.
+/// The numbers of rays of a pixel to the key light and to the sky.
 fn rays_of_a_pixel(frame: &Frame<'_>) -> [u32; 2] {
     let rays = frame.render.antialias * frame.render.antialias;
     frame.render.quality.rays().map(|count| count * rays)
 }
 
-/// The light of a place that nothing is in front of.
+/// The light of a place without shadows.
 pub fn unshadowed(frame: &Frame<'_>, spot: &Spot) -> Light {
     Light {
         key: 1.0,
@@ -82,10 +82,11 @@ pub fn unshadowed(frame: &Frame<'_>, spot: &Spot) -> Light {
     }
 }
 
-/// What a spot sends out: where to, and the ray, if anything can be in its way that matters.
+/// A ray of a spot: its direction, and the ray, if anything that matters can block it.
 type Sent = (Vector, Option<Ray>);
 
-/// Sends `count` rays from each spot, and lets those arrive that meet nothing. Counts them by `number`.
+/// Sends `count` rays from each spot. The light of those that hit nothing arrives. Counts the rays by
+/// `number`.
 fn send(
     frame: &Frame<'_>,
     (spots, lights): (&[Spot], &mut [Light]),
@@ -94,7 +95,7 @@ fn send(
     mut arrive: impl FnMut(&mut Light, &Spot, Vector),
     (evaluations, number): (&mut f64, &mut u64),
 ) -> Result<(), RenderError> {
-    // All together: the more rays there are, the more of them go one way.
+    // All together: the more rays there are, the more of them are nearly parallel.
     let sent: Vec<Sent> = (0..count)
         .flat_map(|index| spots.iter().map(move |spot| (spot, index)))
         .map(|(spot, index)| aim(spot, spot.sample * count + index))
@@ -163,7 +164,7 @@ fn add_sky(
     send(frame, (spots, lights), count, aim, arrive, (&mut cost.evaluations, &mut cost.rays.sky))
 }
 
-/// How much light comes from a direction that the ground may be in: the less, the nearer it is.
+/// The part of the light from a direction that the ground may block: the nearer the ground, the less.
 fn open_ground(frame: &Frame<'_>, position: Vector, direction: Vector) -> f64 {
     let (Some(ground), falls) = (frame.ground, -dot(direction, frame.up)) else { return 1.0 };
     if falls <= 0.0 {
@@ -174,16 +175,16 @@ fn open_ground(frame: &Frame<'_>, position: Vector, direction: Vector) -> f64 {
     0.25 + 0.75 * part * (2.0 - part)
 }
 
-/// Parts of a direction's coordinates by which rays are told apart that go different ways.
+/// Directions are sorted by coordinates in steps of 1 / WAYS.
 const WAYS: f64 = 4.0;
 
-/// Which way a ray goes, roughly: rays of one way stay close to each other, which is what makes packets
+/// The approximate direction of a ray: rays of one direction stay close to each other, which makes packets
 /// cheap.
 fn way(ray: &Ray) -> [i8; 3] {
     ray.direction.map(|coordinate| (coordinate * WAYS).floor() as i8)
 }
 
-/// Whether something is in the way of rays. Those that are none meet nothing.
+/// Which rays are blocked. A missing ray is not.
 fn blocked(
     frame: &Frame<'_>,
     rays: &[Option<Ray>],
@@ -205,8 +206,7 @@ fn blocked(
     Ok(answers)
 }
 
-/// Whether rays come into the region where it cuts the solid: inside of it from the beginning, they may meet
-/// no surface.
+/// Which rays begin inside the solid, where the region cuts it: they may hit no surface.
 fn cut(frame: &Frame<'_>, rays: &[Ray], evaluations: &mut f64) -> Result<Vec<bool>, RenderError> {
     let mut cut = vec![false; rays.len()];
     if frame.render.region.is_none() {
@@ -223,7 +223,7 @@ fn cut(frame: &Frame<'_>, rays: &[Ray], evaluations: &mut f64) -> Result<Vec<boo
     Ok(cut)
 }
 
-/// A spot a little above a place of the surface, so that its rays do not meet where they come from.
+/// A spot a little above a place of the surface, so that its rays do not hit that place.
 pub fn spot(frame: &Frame<'_>, position: Vector, normal: Vector, pixel: [u32; 2], sample: u32) -> Spot {
     Spot { position: along(position, frame.pixel, normal), normal, pixel, sample }
 }

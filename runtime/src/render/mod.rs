@@ -8,8 +8,8 @@
 //! develop: means over the rays of each pixel ── colours, over the background                   (picture)
 //! ```
 //!
-//! A picture is the same to the byte on any number of threads: tiles are always the same, and directions come
-//! from sequences that each pixel shifts by a number that depends on its place alone.
+//! A picture is the same to the byte on any number of threads: tiles do not depend on threads, and directions
+//! come from sequences that each pixel shifts by a function of its place alone.
 
 mod camera;
 mod cast;
@@ -47,11 +47,11 @@ use develop::{Gathered, develop};
 use frame::Frame;
 use tile::{Place, Tile};
 
-/// Tiles between two reports of progress.
+/// The number of tiles between two reports of progress.
 const STRIDE: usize = 32;
 
 impl Render {
-    /// A picture of a model. To make several, of a model that is edited or from other sides, keep a
+    /// A picture of a model. For several pictures, of an edited model or from several sides, keep a
     /// [`Renderer`] and use [`with`](Self::with).
     ///
     /// Memory: 16 bytes a pixel.
@@ -67,7 +67,7 @@ impl Render {
         Job::new(move |hook| render.picture_hooked(compiler, tree, hook))
     }
 
-    /// As [`picture`](Self::picture), of a model that has been compiled: nothing is compiled here.
+    /// As [`picture`](Self::picture), of a model that is already compiled.
     ///
     /// # Errors
     /// See [`RenderError`].
@@ -139,7 +139,7 @@ impl Render {
     }
 }
 
-/// Exposes all tiles of a film. Returns what they took together.
+/// Exposes all tiles of a film. Returns their total cost.
 fn expose(frame: &Frame<'_>, film: &mut [Gathered], hook: Hook<'_>) -> Result<Tile, RenderError> {
     let width = frame.render.size[0] as usize;
     let places = Place::all(frame.render.size, frame.render.antialias);

@@ -1,34 +1,34 @@
-//! Directions that fill a cone or a hemisphere evenly: the same for a pixel in every run, others for the next
-//! pixel.
+//! Directions that fill a cone or a hemisphere evenly: the same for a pixel in every run, different for the
+//! next pixel.
 
 use super::vector::{Vector, add, scale, tangents};
 
 /// Evenly spread points of the unit square for one pixel.
 ///
-/// All pixels share one sequence, a Sobol' sequence of two dimensions: any 2^k points of it that begin at a
-/// multiple of 2^k are spread evenly in every way of dividing the square into 2^k equal boxes. Pixels take
-/// their points from it in Morton order, so those of a pixel are spread evenly, and those of its block of 2 x
-/// 2, 4 x 4, ... pixels as well: what one pixel has too much of its neighbours have too little of, and noise
-/// is fine and without a pattern (Ahmed and Wonka, Screen-space blue-noise diffusion, 2020).
+/// All pixels share one sequence, a two-dimensional Sobol' sequence: any 2^k points of it that begin at a
+/// multiple of 2^k are spread evenly over every division of the square into 2^k equal boxes. Pixels take
+/// their points from it in Morton order, so the points of a pixel are spread evenly, and so are those of its
+/// block of 2 x 2, 4 x 4, ... pixels. An error of one pixel is compensated by its neighbours, and noise is
+/// fine and without a pattern (Ahmed and Wonka, Screen-space blue-noise diffusion, 2020).
 #[derive(Clone, Copy)]
 pub struct Sequence {
-    /// The number of the pixel's first point in the sequence.
+    /// The index of the pixel's first point in the sequence.
     first: u32,
-    /// The order of the points, and the bits of both coordinates, are scrambled by these.
+    /// Seeds of the scrambling of the points' order and of both coordinates.
     seeds: [u32; 3],
 }
 
 impl Sequence {
-    /// The points of a pixel that takes `length` of them; `stream` tells apart what they are used for.
+    /// The points of a pixel that takes `length` of them; `stream` distinguishes their uses.
     pub fn new(pixel: [u32; 2], stream: u32, length: u32) -> Self {
-        // Morton order, for 2^13 columns and rows; behind them it begins again.
+        // Morton order for 2^13 columns and rows; beyond, it repeats.
         let spread = |at: u32| (0..13).fold(0, |bits, bit| bits | (at >> bit & 1) << (2 * bit));
         let place = spread(pixel[0]) | spread(pixel[1]) << 1;
         let seed = |use_of: u32| hashed(3 * stream + use_of);
         Self { first: place.wrapping_mul(length.next_power_of_two()), seeds: [seed(0), seed(1), seed(2)] }
     }
 
-    /// A point of the unit square; its sides 1 do not belong to it.
+    /// A point of the unit square, without its sides at 1.
     pub fn point(self, index: u32) -> [f64; 2] {
         let [order, first, second] = self.seeds;
         let index = scrambled(self.first.wrapping_add(index), order);
@@ -37,8 +37,8 @@ impl Sequence {
     }
 }
 
-/// A point's second coordinate in Sobol' sequence, as 32 bits behind the point; the first is its number with
-/// the bits reversed.
+/// The second coordinate of a point in the Sobol' sequence, as the 32 bits after the binary point; the first
+/// coordinate is the index with its bits reversed.
 fn sobol(index: u32) -> u32 {
     let (mut sum, mut direction, mut rest) = (0, 1 << 31, index);
     while rest != 0 {
@@ -61,7 +61,7 @@ fn scrambled(bits: u32, seed: u32) -> u32 {
     low_first.reverse_bits()
 }
 
-/// A number of which every bit depends on all bits of another one (Wellons, lowbias32).
+/// A hash: every bit depends on all bits of the number (Wellons, lowbias32).
 fn hashed(number: u32) -> u32 {
     let mut bits = number.wrapping_add(0x9e37_79b9);
     bits = (bits ^ bits >> 16).wrapping_mul(0x7feb_352d);
@@ -69,19 +69,20 @@ fn hashed(number: u32) -> u32 {
     bits ^ bits >> 16
 }
 
-/// A unit vector above a surface with this unit normal, as likely as the cosine of the angle to the normal,
-/// from a point of the unit square.
+/// A unit vector above a surface with this unit normal, with a density in proportion to the cosine to the
+/// normal, from a point of the unit square.
 pub fn above(normal: Vector, [u, v]: [f64; 2]) -> Vector {
     let (radius, height) = (u.sqrt(), (1.0 - u).sqrt());
     add(across(normal, radius, v), scale(normal, height))
 }
 
-/// A vector about as long as this unit axis, within an angle of it whose tangent is `spread`, evenly spread.
+/// A vector about as long as this unit axis, evenly spread in a cone around it; `spread` is the tangent of
+/// the cone's angle.
 pub fn around(axis: Vector, spread: f64, [u, v]: [f64; 2]) -> Vector {
     add(across(axis, spread * u.sqrt(), v), axis)
 }
 
-/// A vector of this length at a right angle to an axis; `turn` is the part of a full turn.
+/// A vector of this length at a right angle to an axis; `turn` is its angle as a part of a turn.
 fn across(axis: Vector, length: f64, turn: f64) -> Vector {
     let [s, t] = tangents(axis);
     let (sine, cosine) = (std::f64::consts::TAU * turn).sin_cos();
@@ -93,8 +94,8 @@ mod tests {
     use super::super::vector::{dot, length};
     use super::*;
 
-    /// Points of a block of 2 x 2 pixels, and of each pixel, are one in each part of the square, whatever its
-    /// shape.
+    /// The points of a pixel, and of a block of 2 x 2 pixels, are one in each part of the square, for parts
+    /// of any shape.
     #[test]
     fn points_of_a_pixel_and_of_its_neighbours_are_spread_evenly() {
         for (stream, corner) in [(0, [0, 0]), (1, [6, 2]), (2, [8190, 4])] {

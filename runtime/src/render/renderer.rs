@@ -11,13 +11,13 @@ use crate::evaluator::Evaluator;
 use crate::solid::Solid;
 use crate::trace::Tracer;
 
-/// A model, compiled for pictures of it: from any side, in any mode.
+/// A model, compiled for pictures from any side, in any mode.
 ///
 /// It is `Send + Sync`: threads may share it.
 pub struct Renderer {
     pub(super) tracer: Tracer,
     pub(super) solid: Solid,
-    /// What answers where a region cuts the solid: there is no surface to hit.
+    /// Evaluates where a region cuts the solid and there is no surface to hit.
     pub(super) evaluator: Evaluator,
 }
 
@@ -35,7 +35,7 @@ impl Renderer {
     /// A renderer of a compiled model.
     ///
     /// # Errors
-    /// The model is beyond a limit, or the engine cannot be had.
+    /// The model is beyond a limit, or no engine is available.
     pub fn of(compiled: &Compiled) -> Result<Self, CompileError> {
         Ok(Self {
             tracer: Tracer::of(compiled, Query::SURFACE)?,
@@ -58,13 +58,13 @@ impl Renderer {
         self.tracer.tree()
     }
 
-    /// What finds the surface.
+    /// The tracer of the surface.
     #[must_use]
     pub fn tracer(&self) -> &Tracer {
         &self.tracer
     }
 
-    /// What evaluates at points.
+    /// The evaluator at points.
     #[must_use]
     pub fn evaluator(&self) -> &Evaluator {
         &self.evaluator

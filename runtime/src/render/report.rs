@@ -1,4 +1,4 @@
-//! What a picture took.
+//! How a picture was made.
 
 use std::time::Duration;
 
@@ -6,37 +6,37 @@ use super::camera::Camera;
 use crate::kernel::Engine;
 use crate::picture::Picture;
 
-/// A picture, and what it took.
+/// A picture and its report.
 #[derive(Clone, Debug)]
 pub struct Rendered {
     /// The picture.
     pub picture: Picture,
-    /// What it took.
+    /// How it was made.
     pub report: Report,
 }
 
-/// What a picture took.
+/// How a picture was made.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Report {
-    /// Where the camera stood; `None` if there was nothing to look at.
+    /// The camera; `None` if the model was empty.
     pub camera: Option<Camera>,
     /// The pixels in which a ray met the surface.
     pub pixels_hit: u64,
-    /// What is thinner along a ray of the camera may be missed, in units of the model: a part of a pixel
-    /// where the model is nearest, by the quality (an eighth for the best one, a quarter, half for a draft).
-    /// 0 if there was nothing to look at.
+    /// Parts thinner than this along a camera ray may be missed, in units of the model: an eighth (best
+    /// quality), a quarter (good) or half (draft) of a pixel where the model is nearest. 0 if the model was
+    /// empty.
     pub tolerance: f64,
     /// Rays, by kind.
     pub rays: Rays,
-    /// Distances to skeletons that were evaluated for all rays.
+    /// The number of distances to skeletons that were evaluated for all rays.
     pub evaluations: u64,
-    /// What the ends of the scale of colours or greys stand for: distances from the eye, an attribute,
-    /// evaluations of a pixel that takes any. `None` where colours are colours, and if nothing is seen.
+    /// The numbers at the ends of the scale of colours or greys: distances from the eye, an attribute, or
+    /// evaluations of a pixel with any. `None` where colours are colours, and if nothing is visible.
     pub range: Option<[f32; 2]>,
-    /// What ran the kernels.
+    /// The engine that ran the kernels.
     pub engine: Engine,
-    /// Why the picture is only background, if it is.
+    /// The reason why the picture is only background, if it is.
     pub notice: Option<Notice>,
     /// Time to lower and compile the model.
     pub compile_time: Duration,
@@ -44,7 +44,7 @@ pub struct Report {
     pub frame_time: Duration,
     /// Time to trace the rays from the camera.
     pub trace_time: Duration,
-    /// Time to shade what they hit: further rays and light.
+    /// Time to shade the hits: further rays and light.
     pub shade_time: Duration,
 }
 
@@ -52,7 +52,7 @@ pub struct Report {
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Rays {
-    /// From the camera into the region; those that frame the model are not counted.
+    /// From the camera into the region, without rays that frame the model.
     pub camera: u64,
     /// To the key light.
     pub shadow: u64,
@@ -61,7 +61,7 @@ pub struct Rays {
 }
 
 impl Rays {
-    /// All of them.
+    /// The number of all rays.
     #[must_use]
     pub fn total(&self) -> u64 {
         self.camera + self.shadow + self.sky
@@ -74,12 +74,12 @@ impl Rays {
 pub enum Notice {
     /// The model has no inside in the region.
     Empty,
-    /// The camera sees none of it.
+    /// The camera sees no part of the model.
     OutOfView,
 }
 
 impl Notice {
-    /// In words.
+    /// The reason in words.
     #[must_use]
     pub const fn text(self) -> &'static str {
         match self {

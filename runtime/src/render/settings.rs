@@ -1,4 +1,4 @@
-//! What a picture is asked to be.
+//! Settings of a picture.
 
 use jbt_ir::limits::{MAX_ANTIALIAS, MAX_PICTURE_PIXELS, MAX_PICTURE_SIDE};
 use jbt_model::attribute::AttributeGroup;
@@ -10,7 +10,7 @@ use super::error::RenderError;
 use crate::region::Box3;
 use crate::support::{NoBox, around_in_f32};
 
-/// A picture to be made.
+/// The settings of a picture.
 ///
 /// ```
 /// use jbt::render::{Render, View};
@@ -25,27 +25,27 @@ use crate::support::{NoBox, around_in_f32};
 pub struct Render {
     /// Pixels of a row, and rows: 1 to [`MAX_PICTURE_SIDE`] each, and [`MAX_PICTURE_PIXELS`] in all.
     pub size: [u32; 2],
-    /// From where, and how.
+    /// The view.
     pub view: View,
-    /// What is shown of the surface.
+    /// The values that the picture shows.
     pub mode: Mode,
-    /// How much trouble light takes; it matters only where the surface is shaded.
+    /// The effort for light; it matters only for a shaded surface.
     pub quality: Quality,
-    /// A pixel takes so many rays along each of its sides: 1 to [`MAX_ANTIALIAS`].
+    /// The number of rays along each side of a pixel: 1 to [`MAX_ANTIALIAS`].
     pub antialias: u32,
-    /// What is seen where nothing is. `None` is the studio for a shaded surface, and nothing for the other
-    /// modes.
+    /// The picture where the model is not. `None` is the studio for a shaded surface, and transparency for
+    /// other modes.
     pub background: Option<Background>,
-    /// Whether the model stands on something that catches its shadow. It is seen from above alone, and only
-    /// of a shaded surface; a draft has none.
+    /// Whether the model stands on a ground that catches its shadow. The ground is visible only from above
+    /// and for a shaded surface, not in a draft.
     pub ground: bool,
-    /// The box that is looked at, about the origin of the model; it cuts the model open, and the cut is
-    /// shown. `None` is the model's support.
+    /// The box of the picture, relative to the model's origin. It cuts the model open, and the cut is shown.
+    /// `None` is the model's support.
     pub region: Option<Box3>,
 }
 
 impl Default for Render {
-    /// 800 x 600 pixels, four rays each, of the shaded surface in the studio, in good quality.
+    /// 800 x 600 pixels with four rays each, of the shaded surface in the studio, in good quality.
     fn default() -> Self {
         Self {
             size: [800, 600],
@@ -60,30 +60,30 @@ impl Default for Render {
     }
 }
 
-/// What is shown of the surface.
+/// The values that a picture shows.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Mode {
-    /// The surface in light: in the colour of the model, or in that of clay if it has none.
+    /// The surface in light: in the colour of the model, or of clay if it has none.
     #[default]
     Shaded,
     /// The unit normal: x, y and z from -1 to 1 as red, green and blue from 0 to 255.
     Normal,
-    /// How far the surface is in front of the eye: the nearest place is white, the farthest is dark.
+    /// The distance of the surface in front of the eye: the nearest place is white, the farthest is dark.
     Depth,
-    /// An attribute group: one real as its place between the smallest and the largest one that are seen, on
-    /// the map viridis; more reals as red, green and blue of linear light, clamped to 0 .. 1.
+    /// An attribute group. One real is shown by its place between the smallest and the largest visible one,
+    /// on the map viridis; more reals as red, green and blue of linear light, clamped to 0 .. 1.
     Attribute(String),
-    /// The distances to skeletons that the rays of each pixel took: their logarithm, on the map inferno. What
-    /// takes the fewest is black, like what takes none.
+    /// The number of distances to skeletons for the rays of each pixel: its logarithm, on the map inferno.
+    /// The smallest number is black, and so is 0.
     Evaluations,
 }
 
-/// How much trouble light takes.
+/// The effort for light.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Quality {
-    /// No rays but those of the camera: no shadows, no dark corners. For interaction.
+    /// Camera rays only: no shadows, no dark corners. For interaction.
     Draft,
     /// Soft shadows and a sky, for looking.
     #[default]
@@ -102,7 +102,7 @@ impl Quality {
         }
     }
 
-    /// Tolerances from one place where rays ask at once to the next one. Only time depends on it.
+    /// The number of tolerances from one coarse place of a ray to the next. Only time depends on it.
     pub(super) fn stride(self) -> i64 {
         match self {
             Self::Draft => 8,
@@ -110,8 +110,8 @@ impl Quality {
         }
     }
 
-    /// The tolerance of rays to the light and the sky, in pixels: a shadow is softer than a rim, so what is
-    /// thinner may cast none.
+    /// The tolerance of rays to the light and the sky, in pixels: shadows are soft, so thinner parts may cast
+    /// none.
     pub(super) fn softness(self) -> f64 {
         match self {
             Self::Draft => 16.0,
@@ -120,7 +120,7 @@ impl Quality {
         }
     }
 
-    /// Rays to the key light and rays to the sky, from each hit.
+    /// The numbers of rays to the key light and to the sky, for each hit.
     pub(super) fn rays(self) -> [u32; 2] {
         match self {
             Self::Draft => [0, 0],
@@ -130,24 +130,24 @@ impl Quality {
     }
 }
 
-/// What is seen where nothing is.
+/// The picture where the model is not.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Background {
     /// A bright wall, a little darker towards the ground.
     Studio,
-    /// One colour: red, green and blue as screens take them.
+    /// One colour: red, green and blue as screen values.
     Color([u8; 3]),
-    /// Nothing: the picture is not opaque there.
+    /// Nothing: the picture is transparent.
     Transparent,
 }
 
-/// The wall of the studio at the top and at the bottom of the picture, as screens take it.
+/// The wall of the studio at the top and at the bottom of the picture, as screen values.
 const STUDIO: [Rgb; 2] = [[0.965, 0.972, 0.98], [0.845, 0.862, 0.885]];
 
 impl Background {
-    /// Its colour at a height of the picture, 0 at the top and 1 at the bottom, as screens take it; `None`
-    /// where there is nothing.
+    /// Its colour at a height of the picture, 0 at the top and 1 at the bottom, as screen values; `None` if
+    /// it is transparent.
     pub(super) fn at(self, y: f32) -> Option<Rgb> {
         match self {
             Self::Studio => {
@@ -159,12 +159,12 @@ impl Background {
     }
 }
 
-/// What the numbers of a film mean.
+/// The meaning of a film's numbers.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Meaning {
     /// Linear light.
     Light,
-    /// Numbers for the screen.
+    /// Screen values.
     Screen,
     /// One number, on the map viridis.
     Number,
@@ -175,7 +175,7 @@ pub enum Meaning {
 }
 
 impl Render {
-    /// Checks what can be checked before anything is compiled.
+    /// The checks that need no compiled model.
     pub(super) fn check(&self, tree: &CheckedTree) -> Result<(), RenderError> {
         let [width, height] = self.size;
         if width == 0 || height == 0 {
@@ -199,7 +199,7 @@ impl Render {
         Ok(())
     }
 
-    /// The box that is looked at; `None` if the model is empty.
+    /// The box of the picture; `None` if the model is empty.
     pub(super) fn looked_at(&self, tree: &CheckedTree) -> Result<Option<Box3>, RenderError> {
         match self.region {
             Some(region) if region.is_full() => Ok(Some(region)),
@@ -212,7 +212,7 @@ impl Render {
         }
     }
 
-    /// What the numbers of the film mean.
+    /// The meaning of the film's numbers.
     pub(super) fn meaning(&self, tree: &CheckedTree) -> Meaning {
         match &self.mode {
             Mode::Shaded => Meaning::Light,
@@ -224,7 +224,7 @@ impl Render {
         }
     }
 
-    /// The background that was asked for, or that of the mode.
+    /// The given background, or the mode's default.
     pub(super) fn background(&self) -> Background {
         self.background.unwrap_or(match self.mode {
             Mode::Shaded => Background::Studio,

@@ -1,7 +1,7 @@
-//! Light: where it comes from, and what surfaces and the ground make of it.
+//! Shading: the lights, and the reflection by surfaces and the ground.
 //!
-//! All of it is linear. The key light is warm and comes over the left shoulder of whoever looks, a weak one
-//! from the right fills its shadows, and the sky is brighter and bluer the higher it is.
+//! All of it is linear. The key light is warm and comes over the viewer's left shoulder, a weak light from
+//! the right fills its shadows, and the sky is brighter and bluer the higher it is.
 
 use super::cast::Met;
 use super::color::{Rgb, shoulder};
@@ -11,23 +11,23 @@ use super::gather::{Cost, Light, Spot, gather, spot, unshadowed};
 use super::lights::{sky, sky_above};
 use super::vector::{Vector, add, along, dot, length, scale, sub, unit};
 
-/// Light of the key light on a surface that faces it.
+/// The key light on a surface that faces it.
 const KEY: Rgb = [0.92, 0.87, 0.79];
-/// Light of the filling one.
+/// The fill light.
 const FILL: Rgb = [0.06, 0.072, 0.095];
-/// How much of the light that is kept from a place comes to it by way of what keeps it.
+/// The part of the blocked light that reaches a place by reflection from the blocking surface.
 const AGAIN: f32 = 0.35;
-/// The shine of the key light: how sharp, and how bright.
+/// The highlight of the key light: exponent and brightness.
 const SHINE: (f64, f32) = (56.0, 0.16);
-/// How much of what is straight ahead a surface mirrors, and how much more at a flat angle (Schlick, 1994).
+/// The reflectance at normal incidence, and its increase towards grazing angles (Schlick, 1994).
 const MIRROR: [f32; 2] = [0.03, 0.42];
-/// The colour that shadows on the ground have, and how deep they are at most.
+/// The colour of shadows on the ground, and their largest opacity.
 const SHADE: Rgb = [0.035, 0.04, 0.055];
 const DEEPEST: f32 = 0.88;
-/// Between these distances from the model's middle shadows on the ground fade, in radii.
+/// The distances from the model's middle between which shadows on the ground fade, in radii.
 const FADE: [f64; 2] = [1.3, 3.4];
 
-/// What a screen shows of the hits of a tile: opaque colours. `pixel` and `sample` tell who sees a hit.
+/// The screen values of the hits of a tile: opaque colours. `pixel` and `sample` tell which ray sees a hit.
 pub fn surfaces(
     frame: &Frame<'_>,
     met: &[Met],
@@ -45,7 +45,7 @@ pub fn surfaces(
     Ok((colors.collect(), cost))
 }
 
-/// What a screen shows of a surface, looked at along a unit vector.
+/// The screen values of a surface, seen along a unit vector.
 fn surface(frame: &Frame<'_>, met: &Met, light: Light, looking: Vector) -> Rgb {
     let view = scale(looking, -1.0);
     let facing = dot(met.normal, view).clamp(0.0, 1.0);
@@ -71,8 +71,7 @@ pub struct Ground {
     pub sample: u32,
 }
 
-/// How deep the shadow on the ground is: red, green and blue of it, multiplied by the opacity that comes
-/// last.
+/// The shadows on the ground: red, green and blue, premultiplied by the opacity, which comes last.
 pub fn shadows(frame: &Frame<'_>, places: &[Ground]) -> Result<(Vec<[f32; 4]>, Cost), RenderError> {
     let spots: Vec<Spot> =
         places.iter().map(|place| spot(frame, place.position, frame.up, place.pixel, place.sample)).collect();
@@ -90,7 +89,7 @@ pub fn shadows(frame: &Frame<'_>, places: &[Ground]) -> Result<(Vec<[f32; 4]>, C
     Ok((spots.iter().zip(&lights).map(shadow).collect(), cost))
 }
 
-/// How much of a shadow is left at a place: 1 near the model, 0 far away.
+/// The remaining part of a shadow at a place: 1 near the model, 0 far away.
 pub fn fade(frame: &Frame<'_>, position: Vector) -> f32 {
     let distance = length(sub(position, frame.middle)) / frame.radius;
     let part = ((FADE[1] - distance) / (FADE[1] - FADE[0])).clamp(0.0, 1.0);

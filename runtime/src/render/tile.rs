@@ -11,7 +11,7 @@ use super::settings::{Mode, Quality};
 use super::shade::{Ground, fade, shadows, surfaces};
 use crate::trace::Ray;
 
-/// Rays of a full tile, about.
+/// The approximate number of rays of a full tile.
 const PACKET: u32 = 1024;
 
 /// A part of a picture: its first column and row, and its size.
@@ -36,13 +36,13 @@ impl Place {
         places
     }
 
-    /// A pixel of the picture by its number in the tile.
+    /// A pixel of the picture, by its index in the tile.
     fn pixel(&self, index: usize) -> [u32; 2] {
         [self.x + index as u32 % self.width, self.y + index as u32 / self.width]
     }
 }
 
-/// A tile that has been exposed, or several: what was gathered, and what it took.
+/// An exposed tile, or the sum of several: sums of pixels, and costs.
 #[derive(Default)]
 pub struct Tile {
     pub pixels: Vec<Gathered>,
@@ -54,7 +54,7 @@ pub struct Tile {
 }
 
 impl Tile {
-    /// Adds what another tile took.
+    /// Adds the costs of another tile.
     pub fn add(&mut self, other: &Self) {
         self.pixels_hit += other.pixels_hit;
         self.rays.camera += other.rays.camera;
@@ -65,7 +65,7 @@ impl Tile {
         self.shade += other.shade;
     }
 
-    /// The parts of a time that tracing and shading took, by the times that all threads spent.
+    /// Divides a time between tracing and shading, by the times of all threads.
     pub fn shares(&self, time: Duration) -> [Duration; 2] {
         let sum = (self.trace + self.shade).as_secs_f64();
         let trace = if sum > 0.0 { time.mul_f64(self.trace.as_secs_f64() / sum) } else { time };
@@ -73,18 +73,18 @@ impl Tile {
     }
 }
 
-/// A ray of the camera that goes somewhere: the number of its pixel in the tile, of the ray in the pixel, and
-/// its place in the picture, 0 .. 1.
+/// A camera ray: the index of its pixel in the tile, its index in the pixel, and its place in the picture, 0
+/// .. 1.
 #[derive(Clone, Copy)]
 struct Aim {
     pixel: usize,
     sample: u32,
     place: [f64; 2],
-    /// Its number among the rays into the region.
+    /// The index of its ray into the region, if it has one.
     cast: Option<usize>,
 }
 
-/// A tile at work.
+/// A tile that is being exposed.
 struct Exposure<'a> {
     frame: &'a Frame<'a>,
     place: Place,
@@ -151,14 +151,14 @@ impl Exposure<'_> {
         self.aims[self.aim_of[cast]]
     }
 
-    /// Adds what one of its rays sees to a pixel.
+    /// Adds the value of one ray to a pixel.
     fn add(&mut self, pixel: usize, seen: Gathered) {
         for (sum, seen) in self.tile.pixels[pixel].iter_mut().zip(seen) {
             *sum += seen;
         }
     }
 
-    /// The surface in light, and its shadow on the ground.
+    /// Adds the lit surface, and its shadow on the ground.
     fn light(&mut self, meetings: &Meetings, casts: &[Ray]) -> Result<(), RenderError> {
         let (place, frame) = (self.place, self.frame);
         let (colors, cost) = surfaces(frame, &meetings.met, |met| {
@@ -177,11 +177,11 @@ impl Exposure<'_> {
         Ok(())
     }
 
-    /// Shadows where no surface is.
+    /// Adds shadows where there is no surface.
     fn ground(&mut self, meetings: &Meetings) -> Result<(), RenderError> {
         let mut is_met = vec![false; self.aim_of.len()];
         meetings.met.iter().for_each(|met| is_met[met.cast] = true);
-        // One place of a pixel stands for all of them: shadows on the ground have no rims.
+        // One place stands for all rays of a pixel: shadows on the ground have no sharp rims.
         let (mut places, mut pixels): (Vec<Ground>, Vec<(usize, f32)>) = (Vec::new(), Vec::new());
         for aim in self.aims.iter().filter(|aim| !aim.cast.is_some_and(|cast| is_met[cast])) {
             let Some(position) = self.frame.on_ground(aim.place[0], aim.place[1]) else { continue };
@@ -202,7 +202,7 @@ impl Exposure<'_> {
         Ok(())
     }
 
-    /// A number or colour of the surface as it is.
+    /// Adds a number or colour of the surface, without light.
     fn show(&mut self, meetings: &Meetings) {
         for met in &meetings.met {
             let [a, b, c] = match &self.frame.render.mode {
@@ -214,7 +214,7 @@ impl Exposure<'_> {
         }
     }
 
-    /// What the rays took: the sum of a pixel, whatever the number of its rays.
+    /// Adds the evaluations of the rays: the sum of a pixel, for any number of rays.
     fn charge(&mut self, meetings: &Meetings) {
         let rays = (self.frame.render.antialias * self.frame.render.antialias) as f32;
         for aim in self.aims.clone() {

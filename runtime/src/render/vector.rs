@@ -28,7 +28,7 @@ pub fn cross(a: Vector, b: Vector) -> Vector {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// The length, also of vectors whose squares are beyond the range of f64.
+/// The length, also for vectors whose squares overflow f64.
 pub fn length(a: Vector) -> f64 {
     let largest = a.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
     if largest == 0.0 || !largest.is_finite() {

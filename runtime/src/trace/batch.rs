@@ -1,11 +1,11 @@
-//! Points that are asked together, and what may still be asked.
+//! Points that are evaluated together, and the limit of the work.
 
 use super::error::TraceError;
 use super::target::Target;
 use crate::error::EvalError;
 use crate::prune::Region;
 
-/// Points and boxes that may still be asked, for so many rays.
+/// The limit of points and boxes that may still be evaluated for some rays.
 pub(super) struct Work {
     pub(super) left: u64,
     pub(super) rays: usize,
@@ -18,7 +18,7 @@ impl Work {
     }
 }
 
-/// Points by coordinates and their fields.
+/// Points by coordinates, and the field there.
 #[derive(Default)]
 pub(super) struct Batch {
     pub(super) points: [Vec<f32>; 3],
@@ -41,7 +41,7 @@ impl Batch {
         }
     }
 
-    /// Asks the field at all points, which are in the region.
+    /// Evaluates the field at all points, which are in the region.
     pub(super) fn ask(&mut self, tracer: &Target, region: &Region) -> Result<(), EvalError> {
         self.field.resize(self.points[0].len(), 0.0);
         tracer.field.eval_region(region, self.points.each_ref().map(Vec::as_slice), &mut [&mut self.field])

@@ -1,9 +1,8 @@
-//! A run of rays seen as one: between which bounds their origins and directions are, and boxes around parts
-//! of them.
+//! A beam: bounds of the origins and directions of some rays, and boxes around parts of these rays.
 //!
-//! A position is `f32(origin + t * direction)` with each operation rounded in f64. Rounding is monotone, so
-//! for t between two ends and for origins and directions between two bounds every coordinate is between those
-//! that the same operations give for the ends and bounds: boxes need no margin.
+//! A position is `f32(origin + t * direction)` with each operation rounded in f64. Rounding is monotone. So
+//! for t between two ends, and origins and directions between two bounds, every coordinate is between the
+//! results of the same operations for ends and bounds: boxes need no margin.
 
 use super::ray::Line;
 use crate::region::Box3;
@@ -13,11 +12,11 @@ use crate::region::Box3;
 pub(super) struct Beam {
     origin: [[f64; 2]; 3],
     direction: [[f64; 2]; 3],
-    /// The step that all have.
+    /// The common step.
     pub(super) step: f64,
-    /// The places that some ray has: from the first to the last.
+    /// The first and the last place of any ray.
     pub(super) places: [i64; 2],
-    /// How many rays.
+    /// The number of rays.
     pub(super) rays: usize,
 }
 
@@ -46,21 +45,21 @@ impl Beam {
         Some(beam)
     }
 
-    /// A box that holds the positions of all rays from one place to another, and all between.
+    /// A box that holds the positions of all rays between two places, both included.
     pub(super) fn bounds(&self, places: [i64; 2]) -> Box3 {
         let times = places.map(|place| place as f64 * self.step);
         let mut bounds = Box3::default();
         for axis in 0..3 {
             let [low, high] = self.sides(axis, times);
-            // The corner of a box is that of no ray, and may be beyond f32 where no ray is.
+            // A corner of the box is the corner of no ray, and may be beyond f32 though no ray is.
             let near = |side: f64| (side as f32).clamp(f32::MIN, f32::MAX);
             (bounds.low[axis], bounds.high[axis]) = (near(low), near(high));
         }
         bounds
     }
 
-    /// How long the rays are between two places, and how far they are from each other in the middle: as boxes
-    /// see it, along the longest side.
+    /// The length of the rays between two places, and their distance from each other in the middle, both
+    /// along the longest side of a box.
     pub(super) fn proportions(&self, places: [i64; 2]) -> [f64; 2] {
         let length = |axis: usize| {
             let [low, high] = self.direction[axis];
@@ -89,7 +88,7 @@ impl Beam {
 }
 
 fn widen([low, high]: &mut [f64; 2], number: f64) {
-    // One instruction each, as no number is NaN.
+    // One instruction each, because no number is NaN.
     *low = if number < *low { number } else { *low };
     *high = if number > *high { number } else { *high };
 }

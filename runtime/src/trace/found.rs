@@ -1,4 +1,4 @@
-//! What has been found of a packet so far.
+//! The results of a packet so far.
 
 use super::hits::Hits;
 use super::polish::Bracket;
@@ -9,7 +9,7 @@ use crate::error::EvalError;
 use crate::points::Points;
 use crate::prune::Region;
 
-/// A hit, but for its samples.
+/// A hit without its samples.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) struct Record {
     pub(super) ray: u32,
@@ -17,21 +17,21 @@ pub(super) struct Record {
     pub(super) entering: bool,
 }
 
-/// Hits in the order in which they were found: those of one ray rise with t.
+/// Hits in the order of discovery: the hits of one ray ascend with t.
 pub(super) struct Found {
     pub(super) records: Vec<Record>,
-    /// Their positions by coordinates.
+    /// The positions of the hits, by coordinates.
     pub(super) positions: [Vec<f32>; 3],
-    /// Their answers, plane by plane.
+    /// The samples of the hits, plane by plane.
     pub(super) answers: Vec<Vec<f32>>,
-    /// For each ray, whether anything is in its way.
+    /// For each ray, whether it is blocked.
     pub(super) blocked: Vec<bool>,
-    /// For each ray, its distances.
+    /// For each ray, the number of distances that were evaluated.
     pub(super) evaluations: Vec<f32>,
 }
 
 impl Found {
-    /// Nothing, for so many rays and answers.
+    /// Empty results for this number of rays and planes.
     pub(super) fn new(rays: usize, planes: usize) -> Self {
         Self {
             records: Vec::new(),
@@ -51,12 +51,12 @@ impl Found {
         self.evaluations[ray as usize] += evaluations;
     }
 
-    /// Something is in the way of a ray.
+    /// Records that a ray is blocked.
     pub(super) fn block(&mut self, ray: u32) {
         self.blocked[ray as usize] = true;
     }
 
-    /// Adds hits, and asks for everything at each of them: all are in the region.
+    /// Adds hits, and evaluates everything there: all are in the region.
     pub(super) fn add(
         &mut self,
         tracer: &Target,
@@ -85,7 +85,7 @@ impl Found {
 
     /// The hits, ordered by ray.
     pub(super) fn into_hits(self, tracer: &Target) -> Hits {
-        // Numbers of hits are below 2^32: that much work is not done for one packet.
+        // The number of hits is below 2^32: the limit of work ensures it.
         let mut starts = vec![0_u32; self.rays() + 1];
         for record in &self.records {
             starts[record.ray as usize + 1] += 1;

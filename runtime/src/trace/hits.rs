@@ -8,19 +8,19 @@ use crate::points::Points;
 /// The hits of a packet of rays, ordered by ray, then by t.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Hits {
-    /// For each ray where its hits begin, and the end: those of ray r are `starts[r]..starts[r + 1]`.
+    /// For each ray where its hits begin, and the end: the hits of ray r are `starts[r]..starts[r + 1]`.
     pub starts: Vec<u32>,
-    /// Where each hit is on its ray.
+    /// The t of each hit on its ray.
     pub t: Vec<f64>,
-    /// Whether the ray comes in there: from `field < iso` to `field >= iso`.
+    /// Whether the ray enters there: from `field < iso` to `field >= iso`.
     pub entering: Vec<bool>,
-    /// Where each hit is, as the samples were taken: origin + t * direction, counted from the model's origin
-    /// and rounded to f32. It is on the inner side: the field is at least the iso-value.
+    /// The position of each hit, where the samples were taken: origin + t * direction, relative to the
+    /// model's origin and rounded to f32. It is on the inner side: the field is at least the iso-value.
     pub positions: Points,
     /// The answers to the tracer's query at these positions.
     pub samples: Samples,
-    /// For each ray, the distances to skeletons that were evaluated for it: at points, and its share of those
-    /// for boxes.
+    /// For each ray, the number of distances to skeletons that were evaluated for it: at points, and its
+    /// share of the boxes' distances.
     pub evaluations: Vec<f32>,
 }
 
@@ -37,13 +37,13 @@ impl Hits {
         self.t.is_empty()
     }
 
-    /// Which hits are those of a ray. Panics if there are not as many rays.
+    /// The indices of a ray's hits. Panics if there is no such ray.
     #[must_use]
     pub fn of(&self, ray: usize) -> std::ops::Range<usize> {
         self.starts[ray] as usize..self.starts[ray + 1] as usize
     }
 
-    /// One hit by itself. Panics if there are not as many.
+    /// One hit. Panics if there is no such hit.
     pub(super) fn get(&self, index: usize, layout: &Arc<Layout>) -> Hit {
         Hit {
             t: self.t[index],
@@ -55,25 +55,25 @@ impl Hits {
     }
 }
 
-/// Which rays of a packet have something in their way.
+/// The rays of a packet that are blocked.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Blocked {
-    /// For each ray, whether the side changes along it.
+    /// For each ray, whether it changes its side of the surface.
     pub blocked: Vec<bool>,
-    /// For each ray, the distances to skeletons that were evaluated for it: at points, and its share of those
-    /// for boxes.
+    /// For each ray, the number of distances to skeletons that were evaluated for it: at points, and its
+    /// share of the boxes' distances.
     pub evaluations: Vec<f32>,
 }
 
 /// Where a ray hits the surface.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Hit {
-    /// Where on the ray.
+    /// The parameter on the ray.
     pub t: f64,
-    /// Where in space, counted from the model's origin, as the samples were taken: on the inner side, so the
+    /// The position, relative to the model's origin, where the samples were taken: on the inner side, so the
     /// field is at least the iso-value.
     pub position: [f32; 3],
-    /// Whether the ray comes in: from `field < iso` to `field >= iso`.
+    /// Whether the ray enters: from `field < iso` to `field >= iso`.
     pub entering: bool,
     layout: Arc<Layout>,
     answers: Vec<f32>,
@@ -92,8 +92,8 @@ impl Hit {
         self.layout.gradient(&self.answers).copied()
     }
 
-    /// The unit normal, outwards: against the gradient. `None` if the query has no gradient or it vanishes
-    /// here.
+    /// The unit normal, outwards: opposite to the gradient. `None` if the query has no gradient, or if the
+    /// gradient vanishes.
     #[must_use]
     pub fn normal(&self) -> Option<[f32; 3]> {
         crate::probe::normal(self.gradient()?)

@@ -1,8 +1,8 @@
-//! Rays: where they hit the surface of a model, with nothing missed that is longer than a tolerance.
+//! Rays: their hits with the surface of a model. No stretch that is longer than a tolerance is missed.
 //!
-//! A *hit* is where the side changes along a ray, from `field < iso` to `field >= iso` or back. The side is
-//! known at places of the ray that are no farther apart than the tolerance, so a stretch inside or outside
-//! that is longer holds one of them, and its ends are found:
+//! A *hit* is a change of side along a ray, from `field < iso` to `field >= iso` or back. The side is
+//! computed at places of the ray that are no farther apart than the tolerance. So a longer stretch inside or
+//! outside holds one of them, and its ends are found:
 //!
 //! ```text
 //! outside  ------+            +------------------+    +------          shorter than the tolerance: this dent may be missed
@@ -11,25 +11,26 @@
 //!                ^            ^
 //! ```
 //!
-//! Only every 16th place, a coarse one, is asked at once. What is between two coarse places on one side is
-//! shorter than 16 tolerances, or it is not there: ranges of short boxes prove that, and where these do not,
-//! the places between are asked. So a tolerance that is much finer than what is seen of a model costs little
-//! more, and a sheet, a rod or a speck is found if it is as thick along the ray as the tolerance.
+//! Only every 16th place, a coarse place, is evaluated at first. A stretch between two coarse places on one
+//! side is shorter than 16 tolerances, if it exists at all: ranges of short boxes prove that there is none,
+//! and where they cannot, the places between are evaluated. So a tolerance much finer than the model's
+//! details costs little more, and a sheet, a rod or a speck is found if it is as thick along the ray as the
+//! tolerance.
 //!
-//! Most places are never asked: ranges of the field ([`Divisible`](crate::region::Divisible)) prove of whole
-//! boxes that all of them are on one side. What is found is what asking all of them would find, to the bit.
-//! Everything is about the field that the kernels compute in f32, at positions rounded to f32: between the
-//! ends of a part of a ray each coordinate stays between those at the ends, rounding included, so the box of
-//! the ends holds all that is asked between them.
+//! Most places are never evaluated: ranges of the field ([`Divisible`](crate::region::Divisible)) prove for
+//! whole boxes that all places are on one side. The result is, to the bit, the result of evaluating all
+//! places. All of this is about the field that the kernels compute in f32, at positions rounded to f32:
+//! between the ends of a part of a ray each coordinate stays between the coordinates of the ends, rounding
+//! included, so the box of the ends holds all positions between them.
 //!
 //! * Between two places on different sides the change is found by false position, to 1/1024 of the tolerance
-//!   or the next f32. If there are three changes there, one of them is found.
-//! * Packets are quicker than single rays: rays side by side share boxes, rows and calls. Whatever the
-//!   packet, each ray is answered as if it were alone, to the bit. Rays that are neighbours should follow
-//!   each other, as in the tiles of a picture.
+//!   or the next f32. If there are three changes, one of them is found.
+//! * Packets are faster than single rays: neighbouring rays share boxes, rows and calls. In any packet, each
+//!   ray gets the same bits as alone. Neighbouring rays should be adjacent in the packet, as in the tiles of
+//!   a picture.
 //! * All answers about a hit come from one evaluation at its position.
-//! * Rays are in the world, in f64; the f32 positions of hits count from the model's origin
-//!   ([`jbt_model::origin`]), which is 0 for most models.
+//! * Rays are in the world, in f64; the f32 positions of hits are relative to the model's origin
+//!   ([`jbt_frontend::origin`]), which is 0 for most models.
 
 mod batch;
 mod beam;
@@ -97,21 +98,21 @@ pub struct Tracer {
 
 brief_debug!(Tracer, "Tracer", this: engine = this.target.field.engine(), counters = this.counters());
 
-/// What a tracer has done so far. A snapshot: see [`Tracer::counters`].
+/// The work of a tracer so far. A snapshot: see [`Tracer::counters`].
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TraceCounters {
     /// Rays that were given.
     pub rays: u64,
-    /// Hits that were told.
+    /// Hits that were returned.
     pub hits: u64,
     /// Boxes for which a range was computed.
     pub boxes: u64,
-    /// Ranges of distances to skeletons that were computed for them.
+    /// Interval evaluations of distances to skeletons for these boxes.
     pub interval_evaluations: u64,
-    /// Points at which something was asked: the field on the way, everything at hits.
+    /// Points that were evaluated: the field along rays, everything at hits.
     pub points: u64,
-    /// Distances to skeletons that were computed at them.
+    /// Evaluations of distances to skeletons at these points.
     pub primitive_evaluations: u64,
 }
 
@@ -169,13 +170,13 @@ impl Tracer {
         self.compiled.tree()
     }
 
-    /// Which plane of the samples of hits holds what.
+    /// The layout of the samples of hits.
     #[must_use]
     pub fn layout(&self) -> &Layout {
         &self.target.layout
     }
 
-    /// The iso-value, as kernels compare with it.
+    /// The iso-value in f32, as kernels compare with it.
     #[must_use]
     pub fn iso(&self) -> f32 {
         self.target.iso
@@ -183,8 +184,8 @@ impl Tracer {
 
     /// The first hit of a ray. A ray that begins inside hits the surface where it leaves.
     ///
-    /// The tolerance is a length in space: no stretch that is longer is missed. Cost: grows with the
-    /// logarithm of length by tolerance, away from the surface.
+    /// The tolerance is a length in space: no longer stretch is missed. Cost: away from the surface it grows
+    /// with the logarithm of length by tolerance.
     ///
     /// # Errors
     /// See [`TraceError`].
@@ -202,7 +203,7 @@ impl Tracer {
         Ok((0..hits.len()).map(|index| hits.get(index, &self.target.layout)).collect())
     }
 
-    /// Whether a ray has a hit: which one is not found out, and nothing is asked there.
+    /// Whether a ray has a hit. The hit itself is neither located nor evaluated.
     ///
     /// # Errors
     /// See [`TraceError`].
@@ -218,8 +219,8 @@ impl Tracer {
         self.hits(Want::First, STRIDE, &self.localized(rays), tolerance)
     }
 
-    /// As [`first_of`](Self::first_of), of rays that count from the model's origin, with so many tolerances,
-    /// 1 to [`STRIDE`], from one coarse place to the next one.
+    /// As [`first_of`](Self::first_of), for rays relative to the model's origin, with `stride` tolerances, 1
+    /// to [`STRIDE`], from one coarse place to the next.
     pub(crate) fn first_of_local(
         &self,
         rays: &[Ray],
@@ -245,13 +246,13 @@ impl Tracer {
         self.blocked(STRIDE, &self.localized(rays), tolerance)
     }
 
-    /// As [`any_of`](Self::any_of), of rays that count from the model's origin, with a tolerance that is
-    /// about as long as what is to be found.
+    /// As [`any_of`](Self::any_of), for rays relative to the model's origin, with a tolerance about as long
+    /// as the shortest stretch that matters.
     pub(crate) fn any_of_local(&self, rays: &[Ray], tolerance: f64) -> Result<Blocked, TraceError> {
         self.blocked(1, rays, tolerance)
     }
 
-    /// What it has done so far.
+    /// The work so far.
     #[must_use]
     pub fn counters(&self) -> TraceCounters {
         let boxes = self.target.pruner.counters();
@@ -267,18 +268,18 @@ impl Tracer {
         }
     }
 
-    /// The leaf that decides at a position, which counts from the model's origin as those of hits do, and the
-    /// way down to it: see [`jbt_model::owner`].
+    /// The leaf that decides at a position, and the path to it: see [`jbt_frontend::owner`]. The position is
+    /// relative to the model's origin, as the positions of hits are.
     ///
-    /// `None` where the field is 0, or where it is negative because nothing with a positive field is left:
-    /// neither is so at hits. Cost: a plain walk over all paths of the tree.
+    /// `None` where the field is 0, or negative because no positive field is left: never at hits. Cost: a
+    /// plain walk over all paths of the tree.
     #[must_use]
     pub fn owner(&self, position: [f32; 3]) -> Option<Owner> {
         owner::owner(self.tree(), self.tree().origin().world(position.map(f64::from)))
     }
 
-    /// The leaf that decides at a position: that of [`owner`](Self::owner). If no other leaf matters at the
-    /// position, no walk is needed to know it.
+    /// The leaf that decides at a position: the leaf of [`owner`](Self::owner). If only one leaf matters at
+    /// the position, no walk is needed.
     ///
     /// # Errors
     /// Those of the evaluation.
@@ -293,8 +294,8 @@ impl Tracer {
         Ok(self.owner(position).map(|owner| owner.node))
     }
 
-    /// The field at points that are near each other and count from the model's origin, and what matters in
-    /// the box around them. `None` if there are none, or if some are no places.
+    /// The field at points near each other, relative to the model's origin, and the region around them.
+    /// `None` without points, or if a point is not finite.
     pub(crate) fn fields(&self, points: &[[f32; 3]]) -> Result<Option<(Region, Vec<f32>)>, EvalError> {
         let Some(bounds) = Box3::around(points) else { return Ok(None) };
         let region = self.target.pruner.region(bounds)?;
@@ -304,12 +305,12 @@ impl Tracer {
         Ok(Some((region, field)))
     }
 
-    /// The distances to skeletons that the field takes at a point of a region.
+    /// The number of distances to skeletons for the field at a point of a region.
     pub(crate) fn evaluations_in(&self, region: &Region) -> u64 {
         self.target.field.evaluations_in(region)
     }
 
-    /// Rays that count from the model's origin.
+    /// The rays relative to the model's origin.
     fn localized<'a>(&self, rays: &'a [Ray]) -> Cow<'a, [Ray]> {
         let origin = self.tree().origin();
         if origin.is_world() {

@@ -1,4 +1,4 @@
-//! Following a packet of rays: cells, from the nearest to the farthest.
+//! Tracing a packet of rays: cells, from the nearest to the farthest.
 //!
 //! ```text
 //! cell = a run of rays, from one coarse place of their lattice to another, and the rows that matter there
@@ -9,9 +9,9 @@
 //!                                  else: its rows, and onto the list, the nearest part on top
 //! ```
 //!
-//! Cells are closed: both sides of a cut ask the place of the cut, and get the same bits, because leaving
-//! rows out changes none. So every pair of neighbouring coarse places belongs to one cell, and what is found
-//! is what asking all places would find.
+//! Cells are closed: both parts at a cut evaluate the place of the cut, and get the same bits, because
+//! leaving rows out changes none. So every pair of neighbouring coarse places belongs to one cell, and the
+//! result equals that of evaluating all places.
 
 use std::ops::Range;
 
@@ -29,30 +29,30 @@ use crate::region::{Box3, Divisible as _, MAX_PARTS};
 
 use jbt_ir::limits::MAX_RAY_WORK;
 
-/// What is asked of rays.
+/// The question about rays.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Want {
     /// The first hit of each.
     First,
     /// All hits.
     All,
-    /// Whether there is one.
+    /// Whether there is a hit.
     Any,
 }
 
-/// A part of a packet that is still to be looked at.
+/// A part of a packet that is still to be examined.
 struct Cell {
-    /// The lines, of which some may be done.
+    /// The lines; some of them may be done.
     lines: Range<usize>,
-    /// Around those that were not done when it was made, or more.
+    /// The beam around the lines that were not done when the cell was made.
     beam: Beam,
     places: [i64; 2],
     region: Region,
-    /// How many divisions in a row have dropped nothing.
+    /// The number of consecutive divisions that dropped nothing.
     fruitless: u32,
 }
 
-/// A part of a cell, before it is known whether it matters.
+/// A part of a cell, before its ranges are known.
 #[derive(Clone)]
 struct Part {
     lines: Range<usize>,
@@ -60,14 +60,14 @@ struct Part {
     places: [i64; 2],
 }
 
-/// A packet that is being followed.
+/// The state of tracing a packet.
 pub(super) struct Run<'a> {
     tracer: &'a Target,
     want: Want,
-    /// Steps of the lattice from one coarse place to the next one.
+    /// Steps of the lattice from one coarse place to the next.
     stride: i64,
     tolerance: f64,
-    /// The rays that may hit something; those with the same step are neighbours.
+    /// The rays that may hit the model; rays with the same step are neighbours.
     lines: Vec<Line>,
     /// For each line, whether its answer is complete.
     done: Vec<bool>,
@@ -76,25 +76,25 @@ pub(super) struct Run<'a> {
     /// The times of the places of a cell.
     lattice: Vec<f64>,
     brackets: Vec<Bracket>,
-    /// What of a cell is on one side, as far as coarse places tell.
+    /// The stretches of a cell: neighbouring coarse places on one side.
     stretches: Vec<Stretch>,
-    /// What of a cell is not.
+    /// The segments of a cell whose ends are on different sides.
     segments: Vec<Segment>,
     found: Found,
     work: Work,
 }
 
-/// What dividing a cell costs beside its distances, in distances at points: finding boxes, rows, calls.
+/// The cost of dividing a cell without its distances, in distances at points: boxes, rows, calls.
 const DIVISION: u64 = 2500;
-/// What the ranges of eight boxes and their rows cost for each distance, in distances at points.
+/// The cost of the ranges of eight boxes, with their rows, for each distance, in distances at points.
 const RANGES: u64 = 34;
-/// What a point costs beside its distances, in distances at points.
+/// The cost of a point without its distances, in distances at points.
 const POINT: u64 = 6;
-/// Divisions that drop nothing, after which not more points are asked at once.
+/// The number of consecutive divisions that drop nothing after which a cell is sampled.
 const MOST_FRUITLESS: u32 = 3;
 
-/// The points of a cell up to which asking them is quicker than dividing it, where a point takes so many
-/// distances. The counts are of instructions, roughly; only time depends on them.
+/// The number of points up to which sampling a cell is faster than dividing it, where a point takes `each`
+/// distances. Based on rough counts of instructions; only time depends on it.
 fn worth_asking(each: u64) -> u64 {
     RANGES.saturating_mul(each).saturating_add(DIVISION) / each.saturating_add(POINT)
 }
@@ -124,12 +124,12 @@ impl<'a> Run<'a> {
             stretches: Vec::new(),
             segments: Vec::new(),
             found: Found::new(rays, tracer.layout.names().len()),
-            // Hits are counted by 32 bits, and each takes a point.
+            // Hits are counted in 32 bits, and each hit takes a point.
             work: Work { left: MAX_RAY_WORK.saturating_mul(rays as u64).min(u32::MAX.into()), rays },
         }
     }
 
-    /// Follows all rays to their ends.
+    /// Traces all rays to their ends.
     pub(super) fn finish(mut self) -> Result<Found, TraceError> {
         self.start()?;
         while let Some(cell) = self.cells.pop() {
@@ -192,7 +192,7 @@ impl<'a> Run<'a> {
         Ok(())
     }
 
-    /// Cuts a cell across if that makes it shorter, else along its rays, of which so many are open.
+    /// Cuts a cell across if that makes it shorter, otherwise along its rays, of which `open` are not done.
     fn divide(&mut self, cell: &Cell, open: usize) -> Result<(), EvalError> {
         let steps = cell.places[1] - cell.places[0];
         let [length, width] = cell.beam.proportions(cell.places);
@@ -208,7 +208,7 @@ impl<'a> Run<'a> {
                 }
             }
         } else {
-            // A part shorter than the beam is wide has no smaller a box.
+            // A part shorter than the beam's width has no smaller box.
             let count = ((length / width).clamp(2.0, MAX_PARTS as f64) as i64).max(2).min(steps);
             let (most, rest) = (steps / count, steps % count);
             let cut = |part: i64| cell.places[0] + most * part + rest.min(part);
@@ -219,7 +219,7 @@ impl<'a> Run<'a> {
         if parts.is_empty() { Ok(()) } else { self.push_parts(cell, open, &parts) }
     }
 
-    /// Puts the parts in which the surface may be onto the list.
+    /// Puts the parts that may hold the surface onto the list.
     fn push_parts(&mut self, cell: &Cell, open: usize, parts: &[Part]) -> Result<(), EvalError> {
         let mut boxes = [Box3::default(); MAX_PARTS];
         for (bounds, part) in boxes.iter_mut().zip(parts) {
@@ -241,11 +241,11 @@ impl<'a> Run<'a> {
         Ok(())
     }
 
-    /// Asks the field at all places of a cell, and finds what is between them.
+    /// Evaluates the field at all places of a cell, and finds the hits between them.
     fn sample(&mut self, cell: &Cell, each: u64) -> Result<(), TraceError> {
         let mut batch = std::mem::take(&mut self.batch);
         batch.clear();
-        // Most rays have all places of the cell: their times are made once.
+        // Most rays have all places of the cell, so the times of these are computed once.
         let [start, end] = cell.places;
         self.lattice.clear();
         self.lattice.extend(
@@ -273,8 +273,8 @@ impl<'a> Run<'a> {
         Ok(())
     }
 
-    /// Finds neighbouring coarse places of one ray that are on different sides, and the stretches between
-    /// them: of the fields, some are those from some place on.
+    /// Finds neighbouring coarse places of one ray on different sides, and the stretches between such places.
+    /// `of` is the range of the ray's fields, `first` the place of the first of them.
     fn find_changes(&mut self, line: usize, first: i64, fields: &[f32], of: Range<usize>) {
         let iso = self.tracer.iso;
         let here = &self.lines[line];
@@ -313,7 +313,7 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Finds what is between coarse places; the batch holds the fields at these.
+    /// Finds the hits between coarse places; the batch holds the fields at these.
     fn refine(&mut self, region: &Region, batch: &mut Batch) -> Result<(), TraceError> {
         if self.stretches.is_empty() && self.segments.is_empty() {
             return Ok(());
@@ -361,13 +361,13 @@ impl<'a> Run<'a> {
     }
 }
 
-/// The places that two ranges have in common.
+/// The intersection of two ranges of places.
 fn common(a: [i64; 2], b: [i64; 2]) -> [i64; 2] {
     [a[0].max(b[0]), a[1].min(b[1])]
 }
 
-/// Adds the points of a ray from one place to another, both included, whose times are those of the lattice
-/// but for the ray's ends.
+/// Adds the points of a ray from one place to another, both included. Times are the lattice's, except for the
+/// ray's ends.
 fn push_places(batch: &mut Batch, line: &Line, places: [i64; 2], times: &[f64]) {
     let ends = [0, 1].map(|end| (places[end] == line.places[end]).then(|| line.position(line.span[end])));
     for (axis, plane) in batch.points.iter_mut().enumerate() {

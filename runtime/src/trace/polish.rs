@@ -1,5 +1,5 @@
-//! From two places on different sides to where the side changes: false position with its guards, all brackets
-//! of a cell at once.
+//! From two places on different sides to the change of side: guarded false position, for all brackets of a
+//! cell at once.
 //!
 //! ```text
 //! while a bracket is too long:
@@ -9,7 +9,7 @@
 //!     the half in which the side changes is the new bracket
 //! ```
 //!
-//! What a bracket becomes depends on the field along its ray, and on nothing else.
+//! The final bracket depends only on the field along its ray.
 
 use super::batch::Batch;
 use super::ray::{Line, spacing};
@@ -19,7 +19,7 @@ use crate::prune::Region;
 
 /// The wanted length of a bracket, as a part of the tolerance.
 const PRECISION: f64 = 1.0 / 1024.0;
-/// Tries after which a bracket has to be at most half as long.
+/// The number of tries after which a bracket must be at most half as long.
 const CHECKED: u32 = 3;
 
 /// A stretch of a ray whose ends are on different sides.
@@ -27,16 +27,16 @@ const CHECKED: u32 = 3;
 pub(super) struct Bracket {
     line: usize,
     times: [f64; 2],
-    /// What the fields at the ends exceed the iso-value by, as false position sees them: that of an end that
+    /// The fields at the ends minus the iso-value, as weights of false position: the weight of an end that
     /// stays is halved.
     weighed: [f64; 2],
-    /// Which end stayed.
+    /// The end that stayed last.
     stayed: Option<usize>,
     entering: bool,
-    /// The length, in t, that is short enough.
+    /// The length, in t, at which the bracket is short enough.
     wanted: f64,
     rounds: u32,
-    /// The length that it has to halve.
+    /// The length to be halved by the next check.
     checked: f64,
 }
 
@@ -65,28 +65,27 @@ impl Bracket {
         }
     }
 
-    /// Which line.
+    /// The line.
     pub(super) fn line(&self) -> usize {
         self.line
     }
 
-    /// Where it starts.
+    /// Its first t.
     pub(super) fn start(&self) -> f64 {
         self.times[0]
     }
 
-    /// Whether the ray comes in.
+    /// Whether the ray enters.
     pub(super) fn entering(&self) -> bool {
         self.entering
     }
 
-    /// How often the field was asked.
+    /// The number of evaluations of the field.
     pub(super) fn rounds(&self) -> u32 {
         self.rounds
     }
 
-    /// Where the ray hits: the end that is inside. Where a field jumps, the other one sees nothing of what is
-    /// hit.
+    /// The hit: the inner end. Where a field jumps, the outer end would not see the solid.
     pub(super) fn best(&self) -> f64 {
         self.times[usize::from(self.entering)]
     }
@@ -99,7 +98,7 @@ impl Bracket {
         self.times[0] + 0.5 * self.width()
     }
 
-    /// Where to ask next; `None` if it is short enough, or f64 has no t between its ends.
+    /// The next t to evaluate; `None` if the bracket is short enough, or f64 has no t between its ends.
     fn next(&mut self) -> Option<f64> {
         let [low, high] = self.times;
         let (width, middle) = (self.width(), self.middle());
@@ -121,7 +120,7 @@ impl Bracket {
         Some(if low < guess && guess < high { guess } else { middle })
     }
 
-    /// Takes the field at the last place.
+    /// Replaces an end by a t with this field.
     fn take(&mut self, time: f64, field: f32, iso: f32) {
         let replaced = usize::from((field >= iso) == self.entering);
         let stays = 1 - replaced;
@@ -134,12 +133,12 @@ impl Bracket {
     }
 }
 
-/// Where the line through two points is 0. No number if they are not at different heights.
+/// The zero of the line through two points. Not finite if their heights are equal.
 fn meet(times: [f64; 2], heights: [f64; 2]) -> f64 {
     times[0] + (times[1] - times[0]) * (heights[0] / (heights[0] - heights[1]))
 }
 
-/// Makes brackets short. All are in the region.
+/// Shortens brackets. All are in the region.
 pub(super) fn polish(
     tracer: &Target,
     region: &Region,

@@ -1,4 +1,4 @@
-//! Rays, and the places on them where the field is asked.
+//! Rays, and the places on them where the field is evaluated.
 //!
 //! ```text
 //! span     [------------------------------------------------]          what was given
@@ -6,13 +6,13 @@
 //! lattice     |  *--+-----+-----+-----+-----+-*   |     |     |        multiples of the step; the ends of the span close it
 //! ```
 //!
-//! A place of the lattice is asked only if it matters; one of each `stride` of them is a *coarse place*, and
-//! cells are made of these. Answers do not depend on the stride.
+//! A place of the lattice is evaluated only if it matters. One of each `stride` places is a *coarse place*;
+//! cells consist of coarse places. Answers do not depend on the stride.
 //!
-//! The step is the tolerance divided by the length of the direction, cut to four binary digits: so rays of
-//! about the same length of direction have the same step, and one lattice of t. A number of a place times the
-//! step is exact. The lattice is counted from t = 0, and so a ray's places are those of the ray alone,
-//! whatever packet it is in and wherever its span begins.
+//! The step is the tolerance divided by the length of the direction, cut to four binary digits. So rays with
+//! directions of about the same length have the same step, and one lattice of t. The product of a place's
+//! number and the step is exact. The lattice begins at t = 0, so a ray's places depend on the ray alone, not
+//! on its packet or its span.
 
 use jbt_model::bounds::Bounds;
 
@@ -20,36 +20,36 @@ use super::error::TraceError;
 use crate::region::Box3;
 use crate::support::MARGIN;
 
-/// The points `origin + t * direction` for t in the span. The direction may have any length but 0: t counts
-/// in lengths of it.
+/// The points `origin + t * direction` for t in the span. The direction may have any length but 0; t counts
+/// in units of that length.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Ray {
-    /// Where t is 0.
+    /// The point at t = 0.
     pub origin: [f64; 3],
-    /// The way from t = 0 to t = 1.
+    /// The vector from t = 0 to t = 1.
     pub direction: [f64; 3],
-    /// The smallest and the largest t. Both are finite and belong to it.
+    /// The smallest and the largest t, both finite and included.
     pub span: [f64; 2],
 }
 
-/// Steps of the lattice from one coarse place to the next one, where the tolerance is much finer than the
-/// model. Only time depends on it.
+/// Steps of the lattice from one coarse place to the next, where the tolerance is much finer than the model.
+/// Only time depends on it.
 pub(super) const STRIDE: i64 = 16;
 
-/// The box outside of which the field is 0, and a little more.
+/// A box outside of which the field is 0, with a margin.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) struct Reach(Box3<f64>);
 
 /// The part of a coordinate by which the box exceeds it at least.
 const ROUNDING: f64 = 1.0 / (1 << 20) as f64;
-/// The steps of t that f64 can count, with all their digits.
+/// The shortest step whose multiples have all digits of f64.
 const SHORTEST: f64 = 1e-300;
-/// The longest step: any multiple that is asked for is finite.
+/// The longest step: every multiple in use is finite.
 const LONGEST: f64 = 1e300;
-/// Squares of lengths that have all their digits.
+/// The range of squared lengths with all digits.
 const SQUARES: [f64; 2] = [1e-200, 1e200];
-/// What f64 may be off by in a product and a sum, as a part of the terms; some times that.
+/// A bound of the error of a product and a sum in f64, as a part of the terms.
 const TINY: f64 = 1.0 / (1_u64 << 48) as f64;
 
 impl Reach {
@@ -91,17 +91,17 @@ impl Reach {
 /// A ray that may hit something, with its lattice.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) struct Line {
-    /// Which ray of the packet.
+    /// The index of the ray in the packet.
     pub(super) ray: u32,
     pub(super) origin: [f64; 3],
     pub(super) direction: [f64; 3],
     /// The clipped span.
     pub(super) span: [f64; 2],
-    /// From one coarse place to the next one.
+    /// The difference of t between coarse places.
     pub(super) step: f64,
     /// The coarse places at the ends of the span, which stand for the ends.
     pub(super) places: [i64; 2],
-    /// How many steps of the lattice that is.
+    /// The number of lattice steps between coarse places.
     stride: i64,
     /// The length of the direction.
     pub(super) length: f64,
@@ -138,7 +138,7 @@ impl Line {
         Ok(Some(Self { ray: index as u32, origin, direction, span, step, places, stride, length }))
     }
 
-    /// The t of a coarse place: that of the lattice, or an end of the span.
+    /// The t of a coarse place: its lattice t, or an end of the span.
     pub(super) fn time(&self, place: i64) -> f64 {
         match self.places.iter().position(|&end| end == place) {
             Some(end) => self.span[end],
@@ -146,15 +146,15 @@ impl Line {
         }
     }
 
-    /// The t of a place of the lattice, counted in single steps: those beyond the span stand for its ends. It
-    /// rises with the place.
+    /// The t of a place of the lattice, numbered in single steps. Places beyond the span have the t of its
+    /// ends. Monotone in the place.
     pub(super) fn time_between(&self, place: i64) -> f64 {
         self.within(place as f64 * (self.step / self.stride as f64))
     }
 
-    /// The positions of two coarse places, as the field is asked there.
+    /// The positions of two coarse places, where the field is evaluated.
     pub(super) fn ends(&self, places: [i64; 2]) -> [[f32; 3]; 2] {
-        // Those at the ends of the span are not inside of it: this is `time`.
+        // Places at the ends are clamped to the span, so this is `time`.
         places.map(|place| self.position(self.within(place as f64 * self.step)))
     }
 
@@ -175,24 +175,24 @@ impl Line {
         }
     }
 
-    /// The nearest t of the span.
+    /// The t clamped to the span.
     fn within(&self, t: f64) -> f64 {
         let t = if t < self.span[0] { self.span[0] } else { t };
         if t > self.span[1] { self.span[1] } else { t }
     }
 
-    /// The position at t, as the field is asked there: each coordinate rises with t, or falls.
+    /// The position at t, where the field is evaluated: each coordinate is monotone in t.
     pub(super) fn position(&self, t: f64) -> [f32; 3] {
         let at = |axis: usize| (self.origin[axis] + t * self.direction[axis]) as f32;
         [at(0), at(1), at(2)]
     }
 }
 
-/// The last place of the lattice that is not after t. Places between the first and the last one of a ray are
-/// inside of its span.
+/// The last place of the lattice that is not after t. Places strictly between the first and the last place of
+/// a ray are inside of its span.
 fn last_before(t: f64, step: f64) -> i64 {
-    // Below 2^50, because the tolerance is above the resolution; times the step it has no rounding, but the
-    // quotient has.
+    // Below 2^50, because the tolerance is above the resolution. The product with the step is exact, but the
+    // quotient is rounded.
     let quotient = t / step;
     let whole = quotient as i64 as f64;
     let near = if whole > quotient { whole - 1.0 } else { whole };
@@ -220,7 +220,7 @@ fn four_digits(number: f64) -> f64 {
     f64::from_bits(number.to_bits() & !((1 << 49) - 1))
 }
 
-/// The smallest tolerance that positions on a clipped ray allow.
+/// The smallest tolerance that the positions of a clipped ray allow.
 fn resolution(index: usize, ray: &Ray, span: [f64; 2]) -> Result<f64, TraceError> {
     let (mut farthest, mut terms): (f64, f64) = (0.0, 0.0);
     let larger = |a: f64, b: f64| if b > a { b } else { a };

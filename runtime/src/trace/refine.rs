@@ -1,4 +1,4 @@
-//! What is between neighbouring coarse places of rays.
+//! Refinement: hits between neighbouring coarse places of rays.
 //!
 //! ```text
 //! coarse places  |-------------------------------|-------------------------------|     all on one side: a stretch of two segments
@@ -9,8 +9,8 @@
 //! a segment                                  all of its places are asked, and neighbours on different sides hold a hit
 //! ```
 //!
-//! A segment of which the ends are on different sides is asked without further ado. What is found is what
-//! asking all places finds: ranges only spare questions whose answers they prove.
+//! A segment whose ends are on different sides is evaluated without a range. The result equals that of
+//! evaluating all places: ranges only save evaluations whose results they prove.
 
 use std::ops::Range;
 
@@ -27,17 +27,17 @@ use crate::region::Box3;
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) struct Stretch {
     pub(super) line: usize,
-    /// The first and the last one.
+    /// The first and the last place.
     pub(super) places: [i64; 2],
-    /// Which of the fields is that of the first place; those of the others follow.
+    /// The index of the field at the first place; the fields at the other places follow.
     pub(super) field: usize,
 }
 
-/// Stretches of rays side by side, as far as they are between two coarse places.
+/// Stretches of neighbouring rays, clipped to two coarse places.
 struct Group {
     stretches: Range<usize>,
     places: [i64; 2],
-    /// Segments in it, once it is tight.
+    /// The number of its segments, once it is tight.
     segments: usize,
 }
 
@@ -45,35 +45,36 @@ struct Group {
 pub(super) struct Segment {
     pub(super) line: usize,
     pub(super) place: i64,
-    /// The fields at both.
+    /// The fields at both ends.
     pub(super) fields: [f32; 2],
 }
 
-/// Stretches that begin as one group: about the rays of a pixel.
+/// The number of stretches that begin as one group: about the rays of a pixel.
 const TOGETHER: usize = 4;
-/// Boxes whose ranges cost as much as that of one of them.
+/// The number of boxes whose ranges cost as much as one.
 const LANES: usize = 16;
-/// The places up to which asking them is quicker than one more run of ranges. Only time depends on it.
+/// The number of places up to which evaluating them is faster than one more run of ranges. Only time depends
+/// on it.
 const WORTH_ASKING: usize = 140;
 
-/// What a cell is refined with.
+/// The inputs of the refinement of a cell.
 pub(super) struct Refiner<'a> {
     pub(super) tracer: &'a Target,
-    /// All stretches are in it.
+    /// The region of all stretches.
     pub(super) region: &'a Region,
     pub(super) lines: &'a [Line],
-    /// Steps of the lattice from one coarse place to the next one, on all lines.
+    /// Steps of the lattice from one coarse place to the next, on all lines.
     pub(super) stride: i64,
     pub(super) tolerance: f64,
-    /// Whether all changes are wanted, and not the first one of a ray alone.
+    /// Whether all changes of a ray are wanted, or only the first.
     pub(super) all: bool,
     pub(super) found: &'a mut Found,
     pub(super) work: &'a mut Work,
 }
 
 impl Refiner<'_> {
-    /// Finds the changes of side in segments, and in stretches, whose fields are among those given; in no
-    /// order.
+    /// Finds the changes of side in segments and in stretches, in no particular order. The fields of the
+    /// stretches are among those in the batch.
     pub(super) fn refine(
         &mut self,
         stretches: &[Stretch],
@@ -102,7 +103,7 @@ impl Refiner<'_> {
         Ok(())
     }
 
-    /// Adds the segments of stretches whose ranges are not all on one side.
+    /// Adds the segments of stretches whose ranges do not prove one side.
     fn undecided(
         &mut self,
         stretches: &[Stretch],
@@ -157,7 +158,7 @@ impl Refiner<'_> {
         }
     }
 
-    /// The changes of side in a segment, between the fields at places in it.
+    /// The changes of side in a segment, from the fields at the places in it.
     fn find(&self, segment: &Segment, asked: &[f32], brackets: &mut Vec<Bracket>) {
         let iso = self.tracer.iso;
         let line = &self.lines[segment.line];
@@ -177,7 +178,7 @@ impl Refiner<'_> {
 }
 
 impl Group {
-    /// Leaves out what of it is empty; `None` if nothing is left, else the box around it.
+    /// Shrinks the group to its segments; `None` if it has none, else the box around them.
     fn tighten(&mut self, stretches: &[Stretch], lines: &[Line]) -> Option<Box3> {
         let mut bounds: Option<Box3> = None;
         let (mut members, mut places) = (self.stretches.end..self.stretches.start, [i64::MAX, i64::MIN]);
@@ -216,8 +217,8 @@ impl Group {
         self.stretches.len() == 1 && self.places[1] - self.places[0] == 1
     }
 
-    /// Adds its quarters, or what there is of them: it is cut along its rays where it is longer than wide,
-    /// counted in segments and rays.
+    /// Adds its quarters, as far as they exist: it is cut across if it is longer than wide, counted in
+    /// segments and rays.
     fn cut(&self, parts: &mut Vec<Self>) {
         for half in self.halves() {
             parts.extend(half.halves());

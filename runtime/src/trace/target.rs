@@ -1,4 +1,4 @@
-//! A model as rays ask it: what they are aimed at.
+//! A model, compiled for rays.
 
 use std::sync::Arc;
 
@@ -9,24 +9,24 @@ use crate::buffer::Layout;
 use crate::evaluator::Evaluator;
 use crate::prune::Pruner;
 
-/// What answers on the way and at hits.
+/// The kernels of a tracer.
 pub(super) struct Target {
-    /// The iso-value as kernels compare with it.
+    /// The iso-value in f32, as kernels compare with it.
     pub(super) iso: f32,
-    /// Where positions count from.
+    /// The origin of positions.
     pub(super) origin: ModelOrigin,
-    /// Where the field may differ from 0.
+    /// The box outside of which the field is 0; `None` if it is 0 everywhere.
     pub(super) reach: Option<Reach>,
     pub(super) pruner: Pruner,
     pub(super) field: Evaluator,
-    /// What is told about hits; `None` if it is the field alone.
+    /// The evaluator for hits; `None` if it is the evaluator of the field.
     pub(super) full: Option<Evaluator>,
-    /// Which plane of the samples of hits holds what.
+    /// The layout of the samples of hits.
     pub(super) layout: Arc<Layout>,
 }
 
 impl Target {
-    /// What answers at hits.
+    /// The evaluator for hits.
     pub(super) fn full(&self) -> &Evaluator {
         self.full.as_ref().unwrap_or(&self.field)
     }

@@ -1,4 +1,4 @@
-//! Nodes of a checked tree, and how many paths lead to them.
+//! Nodes of a checked tree, and the numbers of paths to them.
 
 use std::sync::Arc;
 
@@ -8,7 +8,7 @@ use crate::diagnostic::{Diagnostic, Span};
 use crate::kind::NodeKind;
 use crate::report::Report;
 
-/// The name of a node of a checked tree: its place in [`CheckedTree::nodes`](super::CheckedTree::nodes).
+/// The name of a node of a checked tree: its index in [`CheckedTree::nodes`](super::CheckedTree::nodes).
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
 pub struct NodeId(pub u32);
 
@@ -30,16 +30,16 @@ pub struct CheckedNode {
 /// [`asked`](super::CheckedTree::asked).
 #[derive(Clone, Debug)]
 pub(super) struct Paths {
-    /// Through all children.
+    /// Paths through all children.
     pub(super) uses: Arc<[u64]>,
-    /// Through those that are asked.
+    /// Paths through children that are asked.
     pub(super) asked: Arc<[u64]>,
-    /// Those to leaves, through children that are asked.
+    /// Paths to leaves, through children that are asked.
     pub(super) leaf_uses: u64,
 }
 
 impl Paths {
-    /// Those of an arena.
+    /// The numbers of paths in an arena.
     pub(super) fn new(nodes: &[CheckedNode]) -> Self {
         let uses: Arc<[u64]> = paths(nodes, |node| &node.children).into();
         let selects = nodes.iter().any(|node| matches!(node.kind, NodeKind::Select(_)));
@@ -54,8 +54,8 @@ impl Paths {
     }
 }
 
-/// The number of paths from the root to each node, through these children of each. Children come before their
-/// parents.
+/// The number of paths from the root to each node, over the children that `below` gives. Children come before
+/// their parents.
 fn paths(nodes: &[CheckedNode], below: impl Fn(&CheckedNode) -> &[NodeId]) -> Vec<u64> {
     let mut paths = vec![0_u64; nodes.len()];
     if let Some(root) = paths.last_mut() {
@@ -70,7 +70,7 @@ fn paths(nodes: &[CheckedNode], below: impl Fn(&CheckedNode) -> &[NodeId]) -> Ve
     paths
 }
 
-/// Counts the paths from the root to all nodes: what lowering may have to go through, and rows in the end.
+/// Checks the number of paths from the root to all nodes: a bound of the work of lowering, and of its rows.
 pub(super) fn check_occurrences(report: &mut Report, nodes: &[CheckedNode], most: usize) {
     let weights = nodes.iter().map(|node| match &node.kind {
         // Each piece is a row as well.

@@ -8,23 +8,23 @@ use crate::number::{Formula, Number};
 use crate::parameter::Parameter;
 use crate::written::Written;
 
-/// What follows the parameters of a tree, whatever their values.
+/// The parts of a tree that depend on its parameters, for any values of these.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub(super) struct Dependence {
-    /// The iso-value, if it does.
+    /// The iso-value, if it depends on a parameter.
     pub(super) iso: Option<Number>,
-    /// The nodes with a number that does, ascending.
+    /// The nodes with a number that depends on a parameter, ascending.
     pub(super) nodes: Vec<(NodeId, Arc<Written>)>,
-    /// The place of each parameter in the list.
+    /// The index of each parameter in the list.
     pub(super) names: HashMap<Arc<str>, usize>,
     /// For each parameter, the nodes whose own numbers mention it, ascending.
     mentions: Vec<Vec<NodeId>>,
-    /// The nodes that depend on the iso-value, ascending, if that follows a parameter.
+    /// The nodes that depend on the iso-value, ascending, if the iso-value depends on a parameter.
     surfaces: Vec<NodeId>,
 }
 
 impl Dependence {
-    /// Nothing yet but the iso-value.
+    /// The dependence of the iso-value, without nodes.
     pub(super) fn new(parameters: &[Parameter], iso: &Number) -> Self {
         let names = parameters.iter().enumerate().map(|(index, p)| (Arc::clone(&p.name), index)).collect();
         Self {
@@ -35,7 +35,7 @@ impl Dependence {
         }
     }
 
-    /// Adds a node, which comes after those so far.
+    /// Adds a node, which comes after all nodes added before.
     pub(super) fn add(&mut self, id: NodeId, written: &Arc<Written>) {
         for formula in written.following().filter_map(Number::formula) {
             for (name, _) in formula.parameters() {
@@ -54,12 +54,12 @@ impl Dependence {
     }
 
     pub(super) fn written(&self, id: NodeId) -> Option<&Arc<Written>> {
-        // Nothing to search is by far the commonest case.
+        // Usually the list is empty.
         let found = self.nodes.binary_search_by_key(&id, |&(node, _)| node).ok()?;
         Some(&self.nodes[found].1)
     }
 
-    /// Which nodes can change with these parameters, ascending.
+    /// The nodes that can change with these parameters, ascending.
     pub(super) fn affected(&self, parameters: &[Parameter], moved: &mut [bool]) -> Vec<NodeId> {
         let mentions = |number: &Number, moved: &[bool]| {
             let mut names = number.formula().into_iter().flat_map(Formula::parameters);

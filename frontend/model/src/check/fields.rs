@@ -1,4 +1,4 @@
-//! The check of members' parameters, and of what formulas call.
+//! The check of members' parameters, and of the functions that formulas call.
 
 use jbt_ir::limits;
 
@@ -14,7 +14,7 @@ pub(super) fn check_falloff(report: &mut Report, span: Option<Span>, falloff: &F
     check_fields(report, span, &owner, falloff.kind().fields(), &falloff.to_fields());
 }
 
-/// The parameters of a skeleton, a falloff or a warp, each by its kind: whether all are well.
+/// Checks the parameters of a skeleton, a falloff or a warp, each by its kind. Returns whether all are valid.
 pub(super) fn check_fields(
     report: &mut Report,
     span: Option<Span>,
@@ -75,7 +75,7 @@ pub(super) fn check_fields(
     report.len() == before
 }
 
-/// A formula with so many values and children, and the falloffs in it.
+/// Checks a formula with this number of values and children, and its falloffs.
 pub(super) fn check_expressed(
     report: &mut Report,
     span: Option<Span>,

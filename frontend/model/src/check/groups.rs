@@ -1,4 +1,4 @@
-//! The check of attribute groups, and of what attribute nodes give to leaves.
+//! The check of attribute groups, and of the values of attribute nodes.
 
 use std::collections::{BTreeMap, HashSet};
 use std::sync::Arc;
@@ -54,7 +54,7 @@ pub(super) fn check_groups(report: &mut Report, groups: &[AttributeGroup]) {
     }
 }
 
-/// What tables of samples call the other answers.
+/// The names of the other answers in tables of samples.
 const RESERVED: [&str; 7] = ["x", "y", "z", "field", "gx", "gy", "gz"];
 
 /// The widths of attribute groups, by name.
@@ -62,7 +62,7 @@ pub(super) fn widths(groups: &[AttributeGroup]) -> BTreeMap<&str, usize> {
     groups.iter().map(|group| (&*group.name, group.width())).collect()
 }
 
-/// Lets an attribute node have the name of its group: whoever looks for the group compares pointers then.
+/// Lets an attribute node share the name of its group, so that a search for the group compares pointers.
 pub(super) fn share_name(kind: &mut NodeKind, groups: &[AttributeGroup]) {
     if let NodeKind::Attribute { name, .. } = kind
         && let Some(group) = groups.iter().find(|group| group.name == *name)
@@ -71,7 +71,7 @@ pub(super) fn share_name(kind: &mut NodeKind, groups: &[AttributeGroup]) {
     }
 }
 
-/// An attribute node: a group that is there, and a value that fits it.
+/// An attribute node: its group exists, and its value fits the group.
 pub(super) fn check_attribute(
     report: &mut Report,
     span: Option<Span>,

@@ -16,8 +16,8 @@ use crate::warp::Warp;
 /// The smallest reciprocal condition number of an affine map's linear part: below it, the map counts as
 /// singular.
 ///
-/// It is `1 / (|A| |A^-1|)` in the largest column sum norm, computed in f64: 1 for a rotation at best, 0 for
-/// a singular map, and unchanged by uniform scale. At 1e-12, an f64 inverse is still right to about four
+/// It is `1 / (|A| |A^-1|)` in the largest column sum norm, computed in f64: at best 1 for a rotation, 0 for
+/// a singular map, and independent of uniform scale. At 1e-12, an f64 inverse is still right to about four
 /// digits.
 pub const MIN_RECIPROCAL_CONDITION: f64 = 1e-12;
 

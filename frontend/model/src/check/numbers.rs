@@ -1,4 +1,4 @@
-//! The check of numbers: of single ones, of several, of exponents and choices.
+//! The check of numbers: single numbers, several numbers, exponents and choices.
 
 use std::ops::RangeInclusive;
 
@@ -87,7 +87,7 @@ pub(super) fn check_count(report: &mut Report, span: Option<Span>, what: &str, v
     }
 }
 
-/// The elements of a list; an error about the first that is not good.
+/// Checks the elements of a list; the error names the first bad element.
 pub(super) fn check_list<const N: usize>(
     report: &mut Report,
     span: Option<Span>,
@@ -106,7 +106,7 @@ pub(super) fn check_list<const N: usize>(
     }
 }
 
-/// The number of a selector has to be near the place of a child.
+/// The number of a selector, rounded, has to be the index of a child.
 pub(super) fn check_choice(report: &mut Report, span: Option<Span>, which: f64, count: usize) {
     // Written so that a NaN is refused as well.
     let fits = (0.0..count as f64).contains(&which.round());
@@ -149,7 +149,7 @@ pub(super) fn check_expression(
     }
 }
 
-/// The numbers of a formula, its divisors and its length. Whether its numbers are good.
+/// Checks the numbers of a formula, its divisors and its length. Returns whether the numbers are valid.
 pub(super) fn check_formula(
     report: &mut Report,
     span: Option<Span>,
@@ -183,7 +183,7 @@ pub(super) fn check_formula(
     bad.is_none()
 }
 
-/// In a formula of a field some words mean something else than parameters of these names.
+/// In a formula of a field some words are reserved, so parameters may not have these names.
 pub(super) fn check_words(report: &mut Report, formula: &Formula, span: Option<Span>) {
     let numbers = formula.numbers.iter().filter_map(Number::formula);
     let mut names = numbers.flat_map(NumberFormula::parameters).map(|(name, _)| name);

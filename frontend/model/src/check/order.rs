@@ -4,7 +4,7 @@ use super::arena::NodeId;
 use super::tree::CheckedTree;
 use crate::traverse::{Nodes, Order, Visit, Walk};
 
-/// What has passed the check.
+/// The nodes of a checked tree.
 impl Nodes for &CheckedTree {
     type Node = NodeId;
 
@@ -17,8 +17,8 @@ impl Nodes for &CheckedTree {
     }
 }
 
-/// A checked tree is an arena in postfix order, [`CheckedTree::nodes`]; these are for paths, and for other
-/// orders.
+/// A checked tree is an arena in postfix order, [`CheckedTree::nodes`]; these walks are for paths and for
+/// other orders.
 impl CheckedTree {
     /// Parents before children, children in order.
     pub fn prefix(&self, visit: Visit) -> impl Iterator<Item = NodeId> {

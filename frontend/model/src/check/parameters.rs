@@ -1,4 +1,4 @@
-//! Parameters of a checked tree: what follows them, and setting them again without the text.
+//! Parameters of a checked tree: the parts that depend on them, and new values without the text.
 
 use std::sync::Arc;
 
@@ -16,7 +16,7 @@ use crate::parameter::{Parameter, is_name, not_finite, refresh, unknown};
 use crate::report::{Report, clip};
 use crate::written::Written;
 
-/// What a node means with these values of parameters.
+/// The kind of a node for these values of parameters.
 pub(super) fn evaluate(
     written: &Written,
     values: &Values,
@@ -49,7 +49,7 @@ pub(super) fn check_iso(report: &mut Report, iso: &Number, values: &Values) -> f
     iso
 }
 
-/// Names that can stand in formulas, each once, with finite values.
+/// Names have to be identifiers and unique, values finite.
 pub(super) fn check_names(report: &mut Report, parameters: &[Parameter]) {
     let mut seen = std::collections::HashSet::new();
     for parameter in parameters {
@@ -81,8 +81,8 @@ impl CheckedTree {
         &self.parameters
     }
 
-    /// The same tree with other values of some parameters: what evaluators of this one take without compiling
-    /// (`Evaluator::update`). Parameters that are not named keep theirs.
+    /// The same tree with other values of some parameters. Evaluators of this tree take it without compiling
+    /// (`Evaluator::update`). Parameters that are not named keep their values.
     ///
     /// ```
     /// use jbt_text::{Options, parse};
@@ -95,13 +95,13 @@ impl CheckedTree {
     /// assert_eq!(tree.with_parameters(&[("bulge", -1.0)]).unwrap_err()[0].message, "the radius is -2");
     /// ```
     ///
-    /// Only numbers that follow these parameters are evaluated and checked again. Cost: that, and a copy of
-    /// the nodes.
+    /// Only numbers that depend on these parameters are evaluated and checked again. Cost: that work, and a
+    /// copy of the nodes.
     ///
     /// # Errors
     ///
-    /// Parameters that are not there, formulas without a value, and numbers that the [check](crate::check)
-    /// refuses; located where the tree came from a text.
+    /// Unknown parameters, formulas without a value, and numbers that the [check](crate::check) refuses;
+    /// located if the tree came from a text.
     pub fn with_parameters(&self, settings: &[(&str, f64)]) -> Result<Self, Diagnostics> {
         self.with_settings(settings).map_err(|list| self.diagnostics(list))
     }
@@ -144,7 +144,7 @@ impl CheckedTree {
         Ok(Self { iso, attributes, paths: Paths::new(&nodes), nodes, parameters, dependence, origin, source })
     }
 
-    /// The nodes, those that follow parameters that have moved made and checked again.
+    /// The nodes, with those that depend on moved parameters evaluated and checked again.
     fn evaluated_again(
         &self,
         moved: &mut [bool],
@@ -177,8 +177,8 @@ impl CheckedTree {
         nodes.into()
     }
 
-    /// The nodes that a parameter can change, ascending: those with a number that follows it, through other
-    /// parameters and the iso-value too. None, if there is no such parameter.
+    /// The nodes that a parameter can change, ascending: directly, through other parameters or through the
+    /// iso-value. None for an unknown name.
     #[must_use]
     pub fn affected_by(&self, name: &str) -> Vec<NodeId> {
         let Some(&index) = self.dependence.names.get(name) else { return Vec::new() };
@@ -187,20 +187,20 @@ impl CheckedTree {
         self.dependence.affected(&self.parameters, &mut moved)
     }
 
-    /// What a node was written as, if one of its numbers follows a parameter.
+    /// The unevaluated form of a node, if one of its numbers depends on a parameter.
     #[must_use]
     pub fn written(&self, id: NodeId) -> Option<&Written> {
         self.dependence.written(id).map(|written| &**written)
     }
 
-    /// Whether any number follows a parameter.
+    /// Whether any number depends on a parameter.
     #[must_use]
     pub fn follows(&self) -> bool {
         !self.dependence.nodes.is_empty()
     }
 }
 
-/// Whether it is a leaf whose skeleton has any number of pieces.
+/// Whether a node is a leaf whose skeleton has any number of pieces.
 fn is_in_pieces(kind: &NodeKind) -> bool {
     match kind {
         NodeKind::Primitive(leaf) => leaf.skeleton.kind().pieces().is_some(),

@@ -1,4 +1,4 @@
-//! What has passed the check: an arena of nodes.
+//! The result of the check: an arena of nodes.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -16,7 +16,7 @@ use crate::kind::{NodeKind, Primitive};
 use crate::origin::ModelOrigin;
 use crate::parameter::Parameter;
 
-/// A model that makes sense, as an arena: children before parents, shared nodes once, the root last.
+/// A valid model as an arena: children before parents, shared nodes once, the root last.
 #[derive(Clone, Debug)]
 pub struct CheckedTree {
     pub(super) iso: f64,
@@ -27,12 +27,12 @@ pub struct CheckedTree {
     pub(super) parameters: Vec<Parameter>,
     pub(super) dependence: Arc<Dependence>,
     pub(super) origin: ModelOrigin,
-    /// The text that places are in.
+    /// The text that spans refer to.
     pub(super) source: Option<SourceText>,
 }
 
 impl PartialEq for CheckedTree {
-    /// The same nodes, attributes and parameters; the text that they came from does not matter.
+    /// Equal nodes, attributes and parameters; the source text does not count.
     fn eq(&self, other: &Self) -> bool {
         let Self { iso, attributes, nodes, parameters, dependence, origin, paths: _, source: _ } = self;
         *iso == other.iso
@@ -63,18 +63,17 @@ impl CheckedTree {
         &self.attributes
     }
 
-    /// Where its local coordinates begin: programs, lattices, boxes and meshes of it are about them. The tree
-    /// itself, its [support](Self::support) and the oracle are about the world.
+    /// The point from which its local coordinates count, in programs, lattices, boxes and meshes. The tree
+    /// itself, its [support](Self::support) and the oracle use world coordinates.
     ///
-    /// It is the one that the model sets, or else one that was found at the check; other values of parameters
-    /// leave it.
+    /// The model sets it, or the check finds it; other values of parameters keep it.
     #[must_use]
     pub fn origin(&self) -> ModelOrigin {
         self.origin
     }
 
-    /// The same tree with another origin, as that of a model of which it is an edit. Its coordinates are
-    /// finite.
+    /// The same tree with another origin, for example the origin of the model that it is an edit of. The
+    /// origin's coordinates are finite.
     #[must_use]
     pub fn with_origin(&self, origin: ModelOrigin) -> Self {
         Self { origin, ..self.clone() }
@@ -98,29 +97,29 @@ impl CheckedTree {
         NodeId(self.nodes.len() as u32 - 1)
     }
 
-    /// How often each node is met from the root, along every path: 1 for the root, more below shared
-    /// subtrees. In the order of [`nodes`](Self::nodes).
+    /// The number of paths from the root to each node: 1 for the root, more below shared subtrees. In the
+    /// order of [`nodes`](Self::nodes).
     #[must_use]
     pub fn uses(&self) -> &[u64] {
         &self.paths.uses
     }
 
-    /// How often each node is asked from the root, along every path: as [`uses`](Self::uses), but through the
-    /// chosen child of a selector alone.
+    /// The number of paths from the root to each node, as [`uses`](Self::uses), but only through the chosen
+    /// child of each selector.
     #[must_use]
     pub fn asked(&self) -> &[u64] {
         &self.paths.asked
     }
 
-    /// Uses of leaves: paths from the root to a leaf, through the chosen child of a selector alone.
+    /// The number of paths from the root to leaves, only through the chosen child of each selector.
     #[must_use]
     pub fn leaf_uses(&self) -> u64 {
         self.paths.leaf_uses
     }
 
     /// A leaf under maps, the nearest first, each with the node of this tree that gives its weight, if it has
-    /// one. They are those of a checked tree, or products of them, so they are not checked again. Its origin
-    /// is that of the world.
+    /// one. The maps come from a checked tree, or are products of such maps, so they are not checked again.
+    /// The origin is the world's.
     pub fn leaf_under(
         &self,
         leaf: Primitive,
@@ -136,8 +135,8 @@ impl CheckedTree {
         self.of_nodes(nodes)
     }
 
-    /// A subtree as a tree of its own, with the iso-value of this one, no parameters, and an origin that is
-    /// found for it.
+    /// A subtree as a tree of its own, with the iso-value of this tree, no parameters, and an origin found
+    /// for the subtree.
     #[must_use]
     pub fn subtree(&self, root: NodeId) -> Self {
         let mut nodes = Vec::new();
@@ -146,10 +145,10 @@ impl CheckedTree {
         Self { origin: ModelOrigin::of(tree.support()), ..tree }
     }
 
-    /// The tree in other coordinates, with the iso-value and the attributes of this one and no parameters:
-    /// under one more affine node, whose map takes points of this tree's space to the new ones. It is given
-    /// by rows, the last column is the shift; it can be undone. An origin that is not that of the world is
-    /// mapped too.
+    /// The tree in other coordinates, with the iso-value and the attributes of this tree and no parameters.
+    /// It is this tree under one more affine node, whose map takes points of this tree's space to the new
+    /// space: an invertible map given by rows, with the shift as last column. An origin other than the
+    /// world's is mapped too.
     #[must_use]
     pub fn mapped(&self, rows: [[f64; 4]; 3]) -> Self {
         let column = |place: usize| rows.map(|row| row[place]);
@@ -163,10 +162,11 @@ impl CheckedTree {
         Self { origin, ..self.of_nodes(nodes) }
     }
 
-    /// Copies a subtree behind other nodes; gives the place of its root.
+    /// Appends a copy of a subtree to `nodes`; returns the index of its root.
     fn copy_below(&self, root: NodeId, nodes: &mut Vec<CheckedNode>) -> NodeId {
         let mut copies: BTreeMap<NodeId, NodeId> = BTreeMap::new();
-        // Children come before their parents: whatever is below, from the last to the first.
+        // Children come before their parents, so the walk over the descendants goes from the last to the
+        // first.
         let mut below = std::collections::BTreeSet::from([root]);
         let mut order = Vec::new();
         while let Some(id) = below.pop_last() {
@@ -200,8 +200,8 @@ impl CheckedTree {
     /// A box that holds the support of the field: outside of it the field is exactly zero. Empty if the field
     /// is zero everywhere.
     ///
-    /// Its sides may be infinite, as those of a half space are. Cost: linear in the number of nodes, shared
-    /// ones counted once.
+    /// Its sides may be infinite, for example for a half space. Cost: linear in the number of nodes, shared
+    /// nodes counted once.
     #[must_use]
     pub fn support(&self) -> Bounds {
         let mut done: Vec<Extent> = Vec::with_capacity(self.nodes.len());
@@ -219,7 +219,7 @@ impl CheckedTree {
     }
 }
 
-/// The extent of a node, from those of its children.
+/// The extent of a node, from the extents of its children.
 fn node_extent(kind: &NodeKind, children: &[Extent], iso: f64) -> Extent {
     match kind {
         NodeKind::Primitive(leaf) => {

@@ -1,4 +1,4 @@
-//! Forms: formulas without their numbers, as lists of steps in which each comes after those that it uses.
+//! Forms: formulas without their numbers, as lists of steps in which each step comes after its operands.
 //!
 //! ```text
 //! 2 * x + sin(2 * x)      step 0  multiply  number 0, x          a step that several others use is there once
@@ -8,8 +8,8 @@
 //! ```
 //!
 //! A form is canonical: steps stand in the order in which a walk from the result, operands from left to
-//! right, finishes them, and numbers and children are numbered in the order of the steps. However a formula
-//! was written, equal graphs give equal forms. A form may have several values: they are walked from in turn.
+//! right, finishes them; numbers and children are numbered in the order of the steps. However a formula was
+//! written, equal graphs give equal forms. A form may have several values: the walk visits them in turn.
 
 use glam::DVec3;
 use jbt_ir::Domain;
@@ -23,10 +23,10 @@ use crate::number::{Formula as NumberFormula, Number, Step, Variable};
 /// A formula without its numbers: what selects code.
 #[derive(Clone, PartialEq, Eq, Hash, Debug)]
 pub struct Form {
-    /// Each operation, and where its operands end in the list.
+    /// Each operation, and the end of its operands in the list.
     steps: Vec<(Operation, u32)>,
     operands: Vec<Operand>,
-    /// What the values are: one of a field, three of a point.
+    /// The values: one for a field, three for a point.
     pub results: Vec<Operand>,
     children: u32,
     numbers: u32,
@@ -35,13 +35,13 @@ pub struct Form {
 }
 
 impl Form {
-    /// How many children it asks.
+    /// The number of children that it reads.
     #[must_use]
     pub fn children(&self) -> usize {
         self.children as usize
     }
 
-    /// How many numbers it has, those of its box included.
+    /// The number of numbers, with the numbers of its box.
     #[must_use]
     pub fn numbers(&self) -> usize {
         self.numbers as usize + if self.bounded { 6 } else { 0 }
@@ -68,18 +68,18 @@ impl Form {
         self.steps.iter().filter_map(|(operation, _)| operation.falloff())
     }
 
-    /// Whether anything depends on where the point is, apart from the children.
+    /// Whether the value depends on the point other than through the children.
     pub fn asks_point(&self) -> bool {
         self.bounded || self.asks_coordinates()
     }
 
-    /// Whether the formula itself is about coordinates.
+    /// Whether the formula itself reads coordinates.
     pub fn asks_coordinates(&self) -> bool {
         let coordinate = |operand: &Operand| matches!(operand, Operand::Coordinate(_));
         self.results.iter().any(coordinate) || self.operands.iter().any(coordinate)
     }
 
-    /// Of all numbers, those of the box.
+    /// The numbers of the box, from all numbers.
     pub fn box_numbers<'a, T>(&self, numbers: &'a [T]) -> Option<&'a [T]> {
         self.bounded.then(|| &numbers[self.numbers as usize..])
     }
@@ -106,7 +106,7 @@ impl Form {
         uses
     }
 
-    /// Something about the value, from the same about each step, which follows from its operands'.
+    /// A property of the value, computed for each step from the same property of its operands.
     pub(crate) fn fold<T: Copy>(
         &self,
         leaf: impl FnMut(Operand) -> T,
@@ -115,7 +115,7 @@ impl Form {
         self.fold_all(leaf, step)[0]
     }
 
-    /// The same about all values.
+    /// The same property for all values.
     pub(crate) fn fold_all<T: Copy>(
         &self,
         mut leaf: impl FnMut(Operand) -> T,
@@ -136,17 +136,17 @@ impl Form {
         self.results.iter().map(|&result| of(&done, result)).collect()
     }
 
-    /// The first value, plainly.
+    /// The first value, in f64.
     pub(super) fn value(&self, numbers: &[f64], p: DVec3, children: &[f64]) -> f64 {
         self.values(numbers, p, children)[0]
     }
 
-    /// All values, plainly.
+    /// All values, in f64.
     pub(crate) fn values(&self, numbers: &[f64], p: DVec3, children: &[f64]) -> Vec<f64> {
         self.fold_all(|operand| leaf(operand, numbers, p, children), |operation, _, x| operation.value(x))
     }
 
-    /// All values over the ops, from those of coordinates, children and numbers.
+    /// All values over the ops; `leaf` gives the values of coordinates, children and numbers.
     pub fn emit<D: Domain>(&self, d: &mut D, leaf: impl Fn(Operand) -> D::Real) -> Vec<D::Real> {
         // Each with whether it is known not to be negative, and whether it is a number of the row.
         let leaf = |operand| (leaf(operand), false, matches!(operand, Operand::Number(_)));
@@ -160,7 +160,7 @@ impl Form {
         all.into_iter().map(|(value, ..)| value).collect()
     }
 
-    /// How far the nearest jump or kink of an operation is.
+    /// The distance to the nearest jump or kink of an operation.
     pub(crate) fn kink_distance(&self, numbers: &[f64], p: DVec3, children: &[f64]) -> f64 {
         let mut nearest = f64::INFINITY;
         self.fold(
@@ -173,8 +173,8 @@ impl Form {
         nearest
     }
 
-    /// Whether it is 0 where all children are, whatever the coordinates and the numbers that `known` does not
-    /// know.
+    /// Whether it is 0 where all children are 0, for any coordinates and for any value of the numbers that
+    /// `known` does not give.
     pub fn vanishes(&self, known: impl Fn(usize) -> Option<f64>) -> bool {
         let range = |operand| match operand {
             Operand::Child(_) => [0.0; 2],
@@ -184,7 +184,7 @@ impl Form {
         self.children > 0 && self.fold(range, |operation, _, ranges| operation.range(ranges)) == [0.0; 2]
     }
 
-    /// Whether it is never negative, from the signs of children and numbers.
+    /// Whether it is never negative, derived from the signs of children and numbers.
     pub fn non_negative(&self, children: &[bool], number: impl Fn(usize) -> bool) -> bool {
         let sign = |operand| match operand {
             Operand::Child(child) => children[child as usize],
@@ -204,7 +204,7 @@ fn leaf(operand: Operand, numbers: &[f64], p: DVec3, children: &[f64]) -> f64 {
     }
 }
 
-/// A part of a formula in the making.
+/// A part of a formula under construction.
 #[derive(Clone, Debug)]
 pub enum Draft {
     /// 0, 1, 2: x, y, z.
@@ -239,8 +239,7 @@ impl Assembler {
         self.steps.len()
     }
 
-    /// What a step of postfix makes of operands, which are as many as it takes. What is made of constants is
-    /// one.
+    /// The result of a postfix step on its operands. Constants give a constant.
     pub fn apply(&mut self, step: &Step, operands: Vec<Draft>) -> Draft {
         let constants: Option<Vec<&Number>> = operands
             .iter()
@@ -267,10 +266,9 @@ impl Assembler {
         Draft::Step(self.steps.len() as u32 - 1)
     }
 
-    /// What a list of steps in postfix order stands for; `definition` are the values of definitions before
-    /// it.
+    /// The value of a list of steps in postfix order; `definition` holds the values of earlier definitions.
     ///
-    /// Steps that depend on no variable become one number, in time that is linear in the list.
+    /// Steps that depend on no variable become one number, in time linear in the list.
     pub fn postfix(&mut self, steps: &[Step], definitions: &[Draft]) -> Draft {
         /// An operand: a number, whose steps begin here, or something else.
         enum Entry {
@@ -333,7 +331,7 @@ impl Assembler {
         Assembled { form, numbers: finish.numbers, children: finish.children }
     }
 
-    /// Where the operands of a step are.
+    /// The range of a step's operands in the list.
     fn range(&self, step: u32) -> std::ops::Range<usize> {
         let first = (step as usize).checked_sub(1).map_or(0, |before| self.steps[before].1);
         first as usize..self.steps[step as usize].1 as usize
@@ -351,7 +349,7 @@ fn number(steps: &[Step]) -> Number {
     Number::with_formula(value, formula)
 }
 
-/// The canonical order in the making.
+/// The canonical order under construction.
 struct Finish<'a> {
     source: &'a Assembler,
     names: Vec<Option<u32>>,
@@ -365,7 +363,7 @@ struct Finish<'a> {
 impl Finish<'_> {
     fn run(&mut self, result: &Draft) {
         let Draft::Step(root) = *result else { return };
-        // Each with whether its operands were put above it.
+        // Each step, and whether its operands were pushed above it.
         let mut stack = vec![(root, false)];
         while let Some((step, opened)) = stack.pop() {
             if self.names[step as usize].is_some() {

@@ -1,5 +1,4 @@
-//! How large the values of a formula may become, and how fast they change, where coordinates are bounded:
-//! what excludes overflow.
+//! Bounds of the values and slopes of a formula where coordinates are bounded: they exclude overflow.
 //!
 //! See [`Growth`].
 
@@ -10,10 +9,10 @@ use crate::function::Growth;
 
 /// Beyond this nothing is promised: 2^60.
 const LARGEST: f64 = (1u64 << 60) as f64;
-/// More than an operation takes in rounding, relative to its result.
+/// A bound of the rounding of an operation, as a factor of its result.
 const ROUNDING: f64 = 1.0 + 1.0 / (1 << 20) as f64;
 
-/// The same with rounding, if it is within the limits.
+/// The growth with rounding, if it is within the limits.
 fn within_limits(growth: Growth) -> Growth {
     let grown = Growth { value: growth.value * ROUNDING, slope: growth.slope * ROUNDING };
     // Written so that a NaN is no bound either.
@@ -21,7 +20,7 @@ fn within_limits(growth: Growth) -> Growth {
 }
 
 impl Form {
-    /// Bounds of its values, which ask for no children, at coordinates up to `largest` in magnitude.
+    /// Bounds of the values of a form without children, at coordinates up to `largest` in magnitude.
     pub(crate) fn growth(&self, numbers: &[f64], largest: f64) -> Vec<Growth> {
         let leaf = |operand| match operand {
             Operand::Coordinate(_) => Growth { value: largest, slope: 1.0 },

@@ -9,31 +9,31 @@
 //! color expression { (0.5 + 0.5 * sin(x), y, 0.2) } { .. }               an attribute of the leaves below
 //! ```
 //!
-//! The shape of the formula ([`Form`]) is code; its numbers are numbers of a row. `x y z` are those of the
-//! node's own space: maps above it reach them as they reach a skeleton.
+//! The shape of the formula ([`Form`]) is code; its numbers are numbers of a row. `x y z` are coordinates of
+//! the node's own space: maps above the node act on them as on a skeleton.
 //!
-//! # What cannot be computed
+//! # Undefined operations
 //!
 //! All formulas have a value everywhere, because engines have to agree and rows that add nothing must not
 //! show:
 //!
-//! * a quotient by 0 is 0, and so is 0 to a negative power, and a remainder by 0;
-//! * a root, and a power with an exponent that is no whole literal, take what is negative as 0;
-//! * `ln` takes what is below the smallest normal f32 as that, 2^-126; `asin` and `acos` take what is outside
-//!   of [-1, 1] as the nearer end;
+//! * a quotient by 0 is 0, and so are 0 to a negative power and a remainder by 0;
+//! * a root, and a power whose exponent is no whole literal, take negative operands as 0;
+//! * `ln` takes operands below the smallest normal f32, 2^-126, as that number; `asin` and `acos` clamp to
+//!   [-1, 1];
 //! * rounding functions take numbers beyond 2^22 as whole;
-//! * the field itself is kept within [`LARGEST_FIELD`]; overflow ends there, and what is no number counts as
-//!   the lowest field: 0, if the form of the formula shows that it is never negative, else `-LARGEST_FIELD`.
+//! * the field is clamped to [`LARGEST_FIELD`] in magnitude, overflow included; NaN counts as the lowest
+//!   field: 0, if the form of the formula shows that it is never negative, else `-LARGEST_FIELD`.
 //!
 //! # Where the field is zero
 //!
-//! A formula is 0 outside of its box, if it has one. It is 0 where all its children are, if it is so for
-//! whatever coordinates ([`Expression::vanishes`]): then it reaches no further than they do. Any other
-//! expression reaches everywhere.
+//! A formula is 0 outside of its box, if it has one. If it is 0 where all its children are 0, for all
+//! coordinates ([`Expression::vanishes`]), it reaches no further than its children. Any other expression
+//! reaches everywhere.
 //!
 //! # Falloffs
 //!
-//! The falloff `linear` is 1 - r, where r is the distance over the radius. So a formula of r is one over a
+//! The falloff `linear` is 1 - r, where r is the distance over the radius. So a formula of r reads a
 //! primitive with that falloff:
 //!
 //! ```text
@@ -41,16 +41,17 @@
 //! expression { r = 1 - field(cone), (1 - r)^2 * (1 + 2 * r) }            in Rust `point(..).falloff_by(|r| ..)`
 //! ```
 //!
-//! Beyond the radius r stays 1. If the formula is 0 there, exactly, the field is exactly 0 and is pruned like
-//! others; it need not fall everywhere.
+//! Beyond the radius r stays 1. If the formula is exactly 0 at r = 1, the field is exactly 0 there and is
+//! pruned like others; it need not be monotone.
 //!
 //! # Attributes
 //!
-//! Without children an expression is a leaf: it has the attributes of the way down. With one child it hands
-//! on the child's, where that has a field. With several it mixes them by `max(0, f_i dF/df_i)`.
+//! An expression without children is a leaf: it has the attributes of the nodes above it. With one child it
+//! passes on the child's attributes, where the child has a field. With several children it mixes theirs with
+//! the weights `max(0, f_i dF/df_i)`.
 //!
-//! An attribute may be an expression itself: one value for each channel, of the coordinates and of numbers,
-//! but of no fields. What is no number counts as 0 there, and overflow ends at [`LARGEST_FIELD`] too.
+//! An attribute may be an expression itself: one value for each channel, of coordinates and numbers, but
+//! without fields. There NaN counts as 0, and overflow ends at [`LARGEST_FIELD`] too.
 
 mod form;
 mod growth;
@@ -72,16 +73,15 @@ pub use form::{Assembled, Assembler, Draft};
 pub use operand::Operand;
 pub use write::write;
 
-/// What the field of an expression, and the value of an attribute, is kept within, in magnitude: 2^100. Sums
-/// and products with ordinary fields stay finite.
+/// The largest magnitude of the field of an expression and of an attribute value: 2^100. Sums and products
+/// with ordinary fields stay finite.
 pub const LARGEST_FIELD: f32 = 1.267_650_6e30;
 
 /// A formula with its numbers, of a field or of the values of an attribute group.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Expression {
     pub(crate) form: Arc<Form>,
-    /// The numbers of the formula, in the order in which it asks for them; then the corners of the box, if
-    /// there is one.
+    /// The numbers of the formula, in the order of its steps; then the corners of the box, if there is one.
     pub(crate) numbers: Vec<f64>,
 }
 
@@ -104,7 +104,7 @@ impl Expression {
         &self.numbers
     }
 
-    /// Its [numbers](Self::numbers), the corners of its box counted from a point.
+    /// Its [numbers](Self::numbers), with the corners of its box relative to a point.
     pub fn numbers_from(&self, point: DVec3) -> impl Iterator<Item = f64> {
         let first = self.numbers.len() - self.form.box_numbers(&self.numbers).map_or(0, <[f64]>::len);
         let from = move |place: usize| if place < first { 0.0 } else { point[(place - first) % 3] };
@@ -119,24 +119,24 @@ impl Expression {
         Some(Bounds::new(corner(&sides[..3]), corner(&sides[3..])))
     }
 
-    /// Whether it is 0 wherever all its children are, whatever the coordinates. Never, without children.
+    /// Whether it is 0 wherever all its children are 0, for all coordinates. False without children.
     #[must_use]
     pub fn vanishes(&self) -> bool {
         self.form.vanishes(|number| Some(self.numbers[number]))
     }
 
-    /// Whether its field is never negative, from what is known of its children.
+    /// Whether its field is never negative, derived from the same facts about its children.
     #[must_use]
     pub fn non_negative(&self, children: &[bool]) -> bool {
         self.form.non_negative(children, |number| self.numbers[number] >= 0.0)
     }
 
-    /// Whether all points of the box are asked for the formula.
+    /// Whether a point is in the box; true without a box.
     fn contains(&self, p: DVec3) -> bool {
         self.bounds().is_none_or(|bounds| p.cmpge(bounds.min).all() && p.cmple(bounds.max).all())
     }
 
-    /// The field at a point of its own space, where the children have these fields, plainly.
+    /// The field at a point of its own space, where the children have these fields, in f64.
     #[must_use]
     pub fn field(&self, p: DVec3, children: &[f64]) -> f64 {
         if !self.contains(p) || (children.iter().all(|field| *field == 0.0) && self.vanishes()) {
@@ -144,11 +144,11 @@ impl Expression {
         }
         let largest = f64::from(LARGEST_FIELD);
         let value = self.form.value(&self.numbers, p, children);
-        // The oracle has no opinion about what is no number; this is as good as any.
+        // The oracle does not define NaN; any number in the range will do.
         if value.is_nan() { -largest } else { value.clamp(-largest, largest) }
     }
 
-    /// How much each of several children contributes: `max(0, f_i dF/df_i)`, by central differences.
+    /// The weight of each of several children: `max(0, f_i dF/df_i)`, by central differences.
     #[must_use]
     pub fn weights(&self, p: DVec3, children: &[f64]) -> Vec<f64> {
         if !self.contains(p) {
@@ -168,7 +168,7 @@ impl Expression {
         (0..children.len()).map(&mut weight).collect()
     }
 
-    /// The values of an attribute group at a point of the attribute node's space, plainly.
+    /// The values of an attribute group at a point of the attribute node's space, in f64.
     #[must_use]
     pub fn values(&self, p: DVec3) -> Vec<f64> {
         let largest = f64::from(LARGEST_FIELD);
@@ -176,8 +176,8 @@ impl Expression {
         self.form.values(&self.numbers, p, &[]).into_iter().map(kept).collect()
     }
 
-    /// How far the point is from where the formula has a jump or a kink, in the units of what is compared
-    /// there.
+    /// The distance of the point from the nearest jump or kink of the formula, in the units of the operands
+    /// that are compared there.
     #[must_use]
     pub fn kink_distance(&self, p: DVec3, children: &[f64]) -> f64 {
         let rim = self.bounds().map_or(f64::INFINITY, |bounds| {
@@ -212,7 +212,7 @@ impl Formula {
         Self { form: Arc::new(form), numbers }
     }
 
-    /// The falloff of the only child's field as a distance.
+    /// The falloff of a distance, where the field of the only child is the distance.
     pub fn fading(falloff: Falloff, radius: Number) -> Self {
         let mut assembler = Assembler::default();
         let divide = Step::Binary(Binary::Divide);
@@ -226,7 +226,7 @@ impl Formula {
         self.form.box_numbers(&self.numbers).unwrap_or_default()
     }
 
-    /// With the present values of its numbers.
+    /// The expression with the current values of the numbers.
     pub(crate) fn expression(&self) -> Expression {
         Expression { form: Arc::clone(&self.form), numbers: self.numbers.iter().map(Number::value).collect() }
     }

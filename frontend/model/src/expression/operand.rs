@@ -1,4 +1,4 @@
-//! What the operations of a formula work on.
+//! Operands of the operations of a formula.
 
 /// What an operation works on.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]

@@ -1,10 +1,9 @@
-//! The operations of formulas: what each does, plainly in f64 and over the ops, and what is known of its
-//! value.
+//! The operations of formulas: their value in f64 and over the ops, and facts about the value.
 //!
-//! A rounding error over the ops is that of the ops it is made of, in units in the last place (ULP) of the
-//! result: half a unit for arithmetic and roots, those of [`jbt_ir::math`] for `sin`, `cos`, `exp`, `ln` and
-//! powers, at most 4 for `atan`, `atan2`, `asin` and `acos` (see `angle`), 3.5 for `tan`; a whole power is a
-//! chain of products, `x^n` in at most `2 log2 n` of them.
+//! The rounding error over the ops, in units in the last place (ULP) of the result, is half a unit for
+//! arithmetic and roots, the error of [`jbt_ir::math`] for `sin`, `cos`, `exp`, `ln` and powers, at most 4
+//! for `atan`, `atan2`, `asin` and `acos` (see `angle`), 3.5 for `tan`. A whole power `x^n` is a chain of at
+//! most `2 log2 n` products.
 
 use jbt_ir::Domain;
 
@@ -13,7 +12,7 @@ use crate::falloff::Falloff;
 use crate::function::{ANY, Function, power, quotient};
 use crate::number::{Binary, Number, Step};
 
-/// What is done with one to any number of operands.
+/// An operation on one to any number of operands.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub(crate) enum Operation {
     Negate,
@@ -21,9 +20,9 @@ pub(crate) enum Operation {
     Subtract,
     Multiply,
     Divide,
-    /// To a power that is no whole literal.
+    /// A power whose exponent is no whole literal.
     Power,
-    /// To a whole power, which is code.
+    /// A power with a whole literal as exponent: the exponent is code.
     Raise(i32),
     /// Any function but `pow` and `square`.
     Call(Function),
@@ -60,7 +59,7 @@ impl Operation {
         })
     }
 
-    /// The value, plainly.
+    /// The value, in f64.
     pub(crate) fn value(self, x: &[f64]) -> f64 {
         let quotient = |a: f64, b: f64| if b == 0.0 { 0.0 } else { a / b };
         match self {
@@ -77,7 +76,7 @@ impl Operation {
         }
     }
 
-    /// How far the operands are from a jump, a kink or a pole.
+    /// The distance of the operands from the nearest jump, kink or pole.
     pub(super) fn kink_distance(self, x: &[f64]) -> f64 {
         match self {
             Self::Negate | Self::Add | Self::Subtract | Self::Multiply => f64::INFINITY,
@@ -94,8 +93,7 @@ impl Operation {
         }
     }
 
-    /// The sign of the value, rounding included: whether it is never negative, from the signs of the
-    /// operands.
+    /// Whether the value, with rounding, is never negative, derived from the same facts about the operands.
     pub(crate) fn non_negative(self, operands: &[Operand], x: &[bool]) -> bool {
         let all = x.iter().all(|&sign| sign);
         match self {
@@ -114,7 +112,7 @@ impl Operation {
         if x.iter().all(|[low, high]| low == high) {
             let points: Vec<f64> = x.iter().map(|[low, _]| *low).collect();
             let value = self.value(&points);
-            // Zeros of both signs are one number; a NaN is anything.
+            // Zeros of both signs are one number; NaN gives the range of all numbers.
             return if value.is_nan() { ANY } else { [value + 0.0; 2] };
         }
         match self {
@@ -127,7 +125,7 @@ impl Operation {
         }
     }
 
-    /// The value over the ops. `positive` says of each operand whether it is known not to be negative,
+    /// The value over the ops. For each operand, `positive` says whether it is known not to be negative,
     /// `number` whether it is a number of the row.
     pub(crate) fn emit<D: Domain>(
         self,
@@ -141,7 +139,7 @@ impl Operation {
             Self::Add => d.add(x[0], x[1]),
             Self::Subtract => d.sub(x[0], x[1]),
             Self::Multiply => d.mul(x[0], x[1]),
-            // The check has seen to it that no number that divides is zero.
+            // The check has excluded a zero among numbers that divide.
             Self::Divide if number[1] => d.div(x[0], x[1]),
             Self::Divide => quotient(d, x[0], x[1]),
             Self::Power => power(d, x[0], x[1], positive[0]),

@@ -1,5 +1,5 @@
-//! Formulas as text: definitions first, for what is used more than once, then the value, or several in
-//! parentheses.
+//! Formulas as text: first definitions of parts that are used more than once, then the value, or several
+//! values in parentheses.
 
 use std::fmt;
 
@@ -42,7 +42,7 @@ pub fn write<W: fmt::Write>(
     out.write_str(if tuple { ")" } else { "" })
 }
 
-/// The steps of a part, in postfix order, without what has a definition.
+/// The steps of a part, in postfix order; parts with a definition become its name.
 fn postfix(
     all: &[(Operation, &[Operand])],
     part: Operand,

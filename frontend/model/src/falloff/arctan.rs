@@ -45,8 +45,8 @@ member! {
     }
 }
 
-/// Nearer to the rim than this, as a part of the radius, the field is proportional to the distance from the
-/// rim: so no number gets large.
+/// Nearer to the rim than this part of the radius, the field is proportional to the distance from the rim, so
+/// that no number gets large.
 const THIN: f32 = 1.0 / (1 << 14) as f32;
 
 impl ArcTan {
@@ -69,7 +69,7 @@ impl FalloffMember for ArcTan {
     }
 
     fn steepness(&self) -> f64 {
-        // What the cotangent grows with, before the angle takes it back.
+        // The growth of the cotangent, before the angle's derivative cancels it.
         4.0 * self.spread() / f64::from(THIN).powi(2)
     }
 
@@ -86,7 +86,7 @@ impl FalloffMember for ArcTan {
     }
 
     fn columns(&self, _variant: u8, row: &mut Vec<f64>) {
-        // The angle is 8 * 45 over a sum, and its largest value 2 atan p.
+        // The angle is 8 * 45 over a sum, divided by its largest value, 2 atan p.
         row.extend([self.stiffness, self.spread(), 180.0 / self.stiffness.atan()]);
     }
 
@@ -102,7 +102,7 @@ impl FalloffMember for ArcTan {
         let value = d.div(scale, sum);
 
         let part = d.mul(depth, thick);
-        // Where both are equal, the part moves and the quotient does not.
+        // The order of operands chooses `part` and its slope where both are equal.
         let part = d.min(one, part);
         let value = d.mul(value, part);
         match Edge::of_bit(variant) {
@@ -115,8 +115,8 @@ impl FalloffMember for ArcTan {
 
 /// `45 / (A / 8)` from the cotangent of an angle A in (0, pi).
 fn emit_inverse_angle<D: Domain>(d: &mut D, cot: D::Real) -> D::Real {
-    // Where the cotangent is negative, cot + csc would be a difference: one of these two is 1.
-    // At 0 only the first one moves.
+    // Where the cotangent is negative, cot + csc would cancel. One of `above` and `below` is 0; at 0 only
+    // `above` has a slope.
     let (opposite, zero) = (d.neg(cot), d.constant(0.0));
     let (above, below) = (d.max(zero, cot), positive_part(d, opposite));
     let (above, below) = (emit_halved(d, above), emit_halved(d, below));
@@ -157,8 +157,7 @@ mod tests {
             let exact = ArcTan { stiffness, edge: Edge::Exact };
             let steepest = Some((0.5, stiffness / stiffness.atan()));
             Published { half: Some(0.5), steepest }.check(exact.into());
-            // s = 1/4 is far inside of where a smooth edge begins, but the fall of a soft one is steeper
-            // there.
+            // s = 1/4 is far inside of the smooth edge, but a small stiffness falls fastest within the edge.
             let steepest = steepest.filter(|_| stiffness > 1.0);
             let smooth = ArcTan { edge: Edge::Smooth, ..exact };
             Published { half: Some(0.5), steepest }.check(smooth.into());

@@ -9,7 +9,8 @@
 //! the rim. The larger p, the nearer it is to a step; p = 0 makes the inner piece `1 - 2s`. Both fall for
 //! every p >= 0.
 //!
-//! Over the ops it is the sum of the outer piece, as far as the seam, and of what the inner one adds:
+//! Over the ops it is the sum of two terms: the outer piece up to the seam, and the increase by the inner
+//! piece:
 //!
 //! ```text
 //! x^2 / (9/8 + (3/2 + 4p) (3/4 - x))  +  1/2 - 9 y / (9/2 + p (1/y - 4)),      x = min(u, 3/4),  y = min(s, 1/4)
@@ -29,7 +30,7 @@ member! {
     }
 }
 
-/// What y counts as at least, where it is a divisor: the least difference between 1 and another u.
+/// The smallest y that is a divisor: the least difference between 1 and another u.
 const LEAST: f32 = 1.0 / (1 << 24) as f32;
 
 impl FalloffMember for Blanc {
@@ -40,7 +41,7 @@ impl FalloffMember for Blanc {
         if s >= 1.0 {
             0.0
         } else if s == 0.0 {
-            // Also for p = 0, where the quotient has no value.
+            // Also for p = 0, where the quotient below is 0 / 0.
             1.0
         } else if s <= 0.25 {
             1.0 - 9.0 * s * s / (p + (4.5 - 4.0 * p) * s)
@@ -79,8 +80,8 @@ impl FalloffMember for Blanc {
         let [one, half, four, nine] = [1.0, 0.5, 4.0, 9.0].map(|number| d.constant(number));
         let [outer_seam, inner_seam] = [1.125, 4.5].map(|number| d.constant(number));
 
-        // At the seam itself x moves with u, and y does not move: one of them has to, or the gradient would
-        // be 0 there.
+        // At the seam itself x has a slope in u and y has none: without any slope the gradient would be 0
+        // there.
         let x = d.min(seam_u, u);
         let square = d.mul(x, x);
         let before = d.sub(seam_u, x);
@@ -95,7 +96,7 @@ impl FalloffMember for Blanc {
         let divisor = d.fma(row[0], before, inner_seam);
         let numerator = d.mul(nine, y);
         let fallen = d.div(numerator, divisor);
-        // Exactly 0 outside of the seam, where y is 1/4 and all these numbers are exact.
+        // Exactly 0 outside of the seam, where y is 1/4 and both numbers are exact.
         let inner = d.sub(half, fallen);
         d.add(outer, inner)
     }

@@ -1,8 +1,9 @@
 //! The family `(1 - s)^n`, of degree 2n in the distance: Stolte's (n = 8 and others),
 //! [`Quartic`](super::Quartic) for n = 2, [`Wyvill`](super::Wyvill) for n = 3.
 //!
-//! A whole exponent up to [`MOST_WHOLE`] is code, a chain of products; others are powers. Below n = 1 the
-//! slope grows without bounds towards the rim: gradients are finite still, because u is 0 or at least 2^-48.
+//! A whole exponent up to [`MOST_WHOLE`] is code, a chain of products; other exponents are powers. Below n =
+//! 1 the slope grows without bounds towards the rim, but gradients stay finite, because u is 0 or at least
+//! 2^-48.
 
 use jbt_ir::Domain;
 
@@ -34,7 +35,7 @@ impl FalloffMember for Degree {
     }
 
     fn steepness(&self) -> f64 {
-        // The tangent of a power is 0 where its base is.
+        // The tangent of `pow` is 0 where the base is 0.
         self.exponent.max(1.0)
     }
 
@@ -62,7 +63,7 @@ impl FalloffMember for Degree {
             return power(d, u, Exponent::Integer(u32::from(variant)));
         }
         let power = d.pow(u, row[0]);
-        // It is 0 at 0 anyway, but ranges of powers are a little too wide.
+        // The power is 0 at 0, but ranges of powers are a little too wide.
         emit_inside(d, u, power)
     }
 }

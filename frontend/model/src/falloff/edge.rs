@@ -25,7 +25,7 @@ impl Edge {
     /// The words of the text format, in the order of the edges.
     pub const WORDS: &'static [&'static str] = &["exact", "smooth"];
 
-    /// It as the value of a parameter: its place among the [words](Self::WORDS).
+    /// The edge as the value of a parameter: its index among the [words](Self::WORDS).
     pub(crate) const fn to_field(self) -> FieldValue {
         FieldValue::Real(match self {
             Self::Exact => 0.0,
@@ -46,7 +46,7 @@ impl Edge {
         if variant & 1 == 0 { Self::Exact } else { Self::Smooth }
     }
 
-    /// The factor of the function at `s`, plainly.
+    /// The factor of the function at `s`, in f64.
     pub(super) fn factor(self, s: f64) -> f64 {
         if s >= 1.0 {
             return 0.0;
@@ -65,7 +65,8 @@ impl Edge {
         match self {
             Self::Exact => super::emit_inside(d, u, value),
             Self::Smooth => {
-                // In this form, and not as z^2 (2 - z^2), every step falls or rises with u.
+                // In this form every step is monotone in u; the form z^2 (2 - z^2) has a rising and a falling
+                // factor.
                 let (one, twice) = (d.constant(1.0), d.add(u, u));
                 let z = d.min(twice, one);
                 let square = d.mul(z, z);

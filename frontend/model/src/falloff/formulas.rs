@@ -1,4 +1,4 @@
-//! What several falloffs compute with.
+//! Small formulas that several falloffs share.
 
 use jbt_ir::Domain;
 
@@ -17,7 +17,7 @@ pub(super) fn bisect(value: impl Fn(f64) -> f64, level: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// The exponent as a whole number, if it is one in [1, `most`]: then it is code.
+/// The exponent as a whole number, if it is whole and in [1, `most`]: then it is code.
 pub(super) fn whole(exponent: f64, most: u8) -> Option<u8> {
     let n = exponent as u8;
     (f64::from(n) == exponent && (1..=most).contains(&n)).then_some(n)

@@ -1,7 +1,7 @@
 //! The cubic Hermite falloff `1 - 3 r^2 + 2 r^3`, whose slope bounds Hart's sphere tracing of blobs (1996).
 //!
-//! `1 - 3 r^2 + 2 r^3 = (1 - r)^2 (1 + 2r)`, of which one factor falls with r and the other rises. With `1 -
-//! r = u / (1 + r)` both fall:
+//! In `1 - 3 r^2 + 2 r^3 = (1 - r)^2 (1 + 2r)` one factor falls with r and the other rises. With
+//! `1 - r = u / (1 + r)` both factors fall:
 //!
 //! ```text
 //! u^2 (1 + 2r) / (1 + r)^2  =  u^2 (1 - n^2),   n = r / (1 + r) = 1 - 1 / (1 + r)

@@ -4,10 +4,10 @@
 //! 1 / (1 + (c r)^n)        c the cutoff, n the exponent
 //! ```
 //!
-//! The potential `1 / d^n` of a charge is infinite at the charge; with the 1 in the divisor the field is 1
-//! there, 1/2 at r = 1 / c, and near the inverse power from some two times that distance outwards. So the
-//! cutoff is the support radius in units of the distance at which the field has fallen to 1/2. n = 2 is
-//! Cauchy's (and Lorentz's) curve.
+//! The potential `1 / d^n` of a charge is infinite at the charge. With the 1 in the divisor the field is 1
+//! there, 1/2 at r = 1 / c, and close to the inverse power from about twice that distance on. So the cutoff
+//! is the support radius in units of the distance at which the field is 1/2. n = 2 is Cauchy's (and
+//! Lorentz's) curve.
 //!
 //! It never reaches zero. With an exact [`Edge`] the field jumps from `1 / (1 + c^n)` to zero at the rim, by
 //! 1/17 for the defaults.
@@ -57,7 +57,7 @@ impl FalloffMember for InversePower {
         self.exponent <= 1.0
     }
 
-    /// The edge, and above it a whole exponent.
+    /// The edge in the lowest bit; above it the exponent, if it is whole.
     fn variant(&self, follows: bool) -> u8 {
         let exponent = if follows { 0 } else { whole(self.exponent, MOST).unwrap_or(0) };
         self.edge.bit() | exponent << 1

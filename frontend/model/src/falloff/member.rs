@@ -1,13 +1,13 @@
-//! What every falloff states about itself, and what it is a function of.
+//! What every falloff implements, and the argument of its formula.
 
 use jbt_ir::Domain;
 
 use crate::member::Member;
 
-/// How near a point is to the skeleton, over the ops: what falloffs are functions of.
+/// How near a point is to the skeleton, over the ops: the argument of falloffs.
 #[derive(Clone, Copy, Debug)]
 pub struct Nearness<R> {
-    /// `max(1 - s, 0)`: exactly 0 from the support radius outwards, with all its digits in front of it.
+    /// `max(1 - s, 0)`: exactly 0 from the support radius outwards, precise near the support radius.
     pub u: R,
     /// Two factors of `-s`.
     square: R,
@@ -15,21 +15,21 @@ pub struct Nearness<R> {
 }
 
 impl<R: Copy> Nearness<R> {
-    /// From two factors of `-s`: the squared distance and `-1 / R^2`. NaN is outside.
+    /// From two factors of `-s`: the squared distance and `-1 / R^2`. NaN counts as outside.
     pub fn emit<D: Domain<Real = R>>(d: &mut D, square: R, slope: R) -> Self {
         let (zero, one) = (d.constant(0.0), d.constant(1.0));
         let left = d.fma(square, slope, one);
         Self { u: d.max(left, zero), square, slope }
     }
 
-    /// `min(s, 1)`, with all its digits near the skeleton. Where it moves, u is above 0.
+    /// `min(s, 1)`, precise near the skeleton. Where it has a slope, u is above 0.
     pub(super) fn square<D: Domain<Real = R>>(self, d: &mut D) -> R {
         let (one, back) = (d.constant(1.0), d.mul(self.square, self.slope));
         let s = d.neg(back);
         d.min(s, one)
     }
 
-    /// `r`, the root of that.
+    /// `r`, the root of [`square`](Self::square).
     pub(super) fn distance<D: Domain<Real = R>>(self, d: &mut D) -> R {
         let s = self.square(d);
         d.sqrt(s)
@@ -40,14 +40,14 @@ impl<R: Copy> Nearness<R> {
 pub trait PlainFalloff {
     /// The word of the text format.
     const NAME: &'static str;
-    /// Other words that are read as this one.
+    /// Synonyms of the word.
     const ALIASES: &'static [&'static str];
     /// See [`FalloffMember::steepness`].
     const STEEPNESS: f64;
     /// See [`FalloffMember::is_pointed`].
     const IS_POINTED: bool = false;
 
-    /// The field at `s = d^2 / R^2 >= 0`, plainly.
+    /// The field at `s = d^2 / R^2 >= 0`, in f64.
     fn value(s: f64) -> f64;
 
     /// The `s` at which the field is `level`, for `0 < level < 1`.
@@ -59,26 +59,26 @@ pub trait PlainFalloff {
 
 /// What a falloff with parameters states about itself.
 pub trait FalloffMember: Member {
-    /// Other words that are read as its name.
+    /// Synonyms of its name.
     const ALIASES: &'static [&'static str];
 
-    /// The field at `s = d^2 / R^2 >= 0`, plainly.
+    /// The field at `s = d^2 / R^2 >= 0`, in f64.
     fn value(&self, s: f64) -> f64;
 
-    /// The `s` at which the field is `level`, for `0 < level < 1`. Where the field jumps over the level:
-    /// where it jumps.
+    /// The `s` at which the field is `level`, for `0 < level < 1`; the place of the jump where the field
+    /// jumps over the level.
     fn inverse(&self, level: f64) -> f64;
 
-    /// A bound of the factors that the derivative by u multiplies where u is 0, and of their products:
-    /// supports rest on it.
+    /// A bound of the factors, and of their products, that the chain rule multiplies for the derivative by u
+    /// at u = 0. Supports rest on it.
     fn steepness(&self) -> f64;
 
     /// Whether the field has a tip at the skeleton: its slope in r is not 0 there, so that the gradient
     /// jumps.
     fn is_pointed(&self) -> bool;
 
-    /// The part of the parameters that selects code. If a parameter follows one of the model, `follows`, code
-    /// serves all its values.
+    /// The part of the parameters that selects code. With `follows`, a parameter of the model changes the
+    /// numbers, so the code must serve all values.
     fn variant(&self, follows: bool) -> u8;
 
     /// The names of the columns of a row, for this variant.

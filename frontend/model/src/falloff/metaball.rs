@@ -5,9 +5,9 @@
 //! 3/2 (1 - r)^2        1/3 <= r <= 1
 //! ```
 //!
-//! They touch at r = 1/3 and one is never below the other, so it takes a sum to follow the one and then the
-//! other: the second as far as `u = 1 - r^2 = 8/9`, and what the first one adds to it from there. With the
-//! depth `v(u) = 1 - r = u / (1 + sqrt(1 - u))`:
+//! The pieces touch at r = 1/3 and the second is never below the first, so the field is a sum: the second
+//! piece up to `u = 1 - r^2 = 8/9`, and beyond that the increase of the first. With the depth
+//! `v(u) = 1 - r = u / (1 + sqrt(1 - u))`:
 //!
 //! ```text
 //! 3/2 v(min(u, 8/9))^2 + 3 max(u - 8/9, 0)
@@ -43,7 +43,7 @@ impl PlainFalloff for Metaball {
 
     fn emit<D: Domain>(d: &mut D, Nearness { u, .. }: Nearness<D::Real>) -> D::Real {
         let [seam, three, three_halves] = [8.0 / 9.0, 3.0, 1.5].map(|number| d.constant(number));
-        // At the seam itself this is u, with its slope, and the other term is 0 without one.
+        // At the seam itself `before` has the slope of u, and the other term is 0 without a slope.
         let before = d.min(seam, u);
         let r = emit_distance(d, before);
         let depth = emit_depth(d, before, r);

@@ -22,23 +22,22 @@
 //!
 //! # The compiler's form
 //!
-//! It is written in `u = max(1 - s, 0)`, and in s itself, as a chain of steps of which each one rises or
-//! falls with the distance, so that
+//! The form is written in `u = max(1 - s, 0)`, and in s, as a chain of steps that are each monotone in the
+//! distance, so that
 //!
-//! * it is exactly +0 at u = 0, never negative, and monotone in f32 too, because rounding is (but for
-//!   [`Degree`] and [`InversePower`] with powers that are not whole, and [`Blinn`]: an approximated power may
-//!   step back by a unit in the last place);
-//! * a range of distances gives the exact image of it, the same values as at its ends: no difference of two
-//!   terms that move together makes it wider (where there are powers or exponentials, it is wider by their 4
-//!   units in the last place);
+//! * it is exactly +0 at u = 0, never negative, and monotone in f32 too, because rounding is monotone (except
+//!   for [`Degree`] and [`InversePower`] with powers that are not whole, and [`Blinn`]: an approximated power
+//!   may step back by a unit in the last place);
+//! * a range of distances gives its exact image, between the values at its ends: no difference of two terms
+//!   that move together widens it (powers and exponentials widen it by 4 units in the last place);
 //! * its derivative is finite everywhere: r is a root, whose tangent at 0 is 0.
 //!
-//! The root of `1 - u` is off by 2^-25 / r, because u has lost the last digits of a small s: at most 2^-13.
-//! Falloffs with a tip would show it, in the field and much more in its gradient, so [`Linear`], [`ArcTan`]
-//! and [`InversePower`] take the root of s. Others, which are flat at the skeleton, have all that follows
-//! from u alone, so that pieces of them meet.
+//! The root of `1 - u` is off by 2^-25 / r, at most 2^-13, because u has lost the last digits of a small s.
+//! Falloffs with a tip would show it, in the field and much more in the gradient, so [`Linear`], [`ArcTan`]
+//! and [`InversePower`] take the root of s. The other falloffs are flat at the skeleton and compute
+//! everything from u, so that their pieces meet.
 //!
-//! Polynomials in r are not such chains as they are published. Their files say by what they are replaced.
+//! Polynomials in r are no such chains as published. Each file says what replaces its polynomial.
 
 use jbt_ir::Domain;
 
@@ -135,12 +134,12 @@ macro_rules! falloffs {
         }
 
         impl Falloff {
-            /// The kind, and the variant for these very numbers.
+            /// The kind, and the variant for exactly these numbers.
             #[must_use]
             pub fn kind(&self) -> FalloffKind { self.code(false) }
 
-            /// The kind, and the variant whose code serves these numbers or, if they follow a parameter, all
-            /// numbers.
+            /// The kind, and the variant whose code serves these numbers or, if the numbers follow a
+            /// parameter, all numbers.
             #[must_use]
             pub fn code(&self, follows: bool) -> FalloffKind {
                 match self {
@@ -216,14 +215,14 @@ falloffs! {
 }
 
 impl Falloff {
-    /// It as it is written, with the parameters that do not have their defaults in braces.
+    /// The falloff as text, with parameters that differ from their defaults in braces.
     pub(crate) fn text(&self) -> String {
         self.kind().text(&self.to_fields())
     }
 }
 
 impl FalloffKind {
-    /// A falloff of this kind as it is written: in braces the parameters that do not have their defaults.
+    /// A falloff of this kind as text, with parameters that differ from their defaults in braces.
     pub fn text<T: NumberText>(self, fields: &[FieldOf<T>]) -> String {
         let mut text = String::new();
         for (described, value) in self.fields().iter().zip(fields) {
@@ -232,7 +231,7 @@ impl FalloffKind {
         if text.is_empty() { self.name().to_owned() } else { format!("{} {{{text} }}", self.name()) }
     }
 
-    /// The kind that this word of the text format names, by its name or by another one.
+    /// The kind whose name or synonym this word of the text format is.
     #[must_use]
     pub fn named(word: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|kind| kind.name() == word || kind.aliases().contains(&word))

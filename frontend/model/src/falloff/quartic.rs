@@ -1,4 +1,4 @@
-//! The quartic falloff `(1 - s)^2`, of degree 4 in the distance: that of POV-Ray's blobs, and of Murakami and
+//! The quartic falloff `(1 - s)^2`, of degree 4 in the distance, used by POV-Ray's blobs and by Murakami and
 //! Ichihara (1987).
 
 use jbt_ir::Domain;

@@ -1,15 +1,15 @@
 //! The quintic falloff `1 - 10 r^3 + 15 r^4 - 6 r^5`: curvature is continuous at both ends (C2). Perlin's
 //! fade function of 2002, reversed.
 //!
-//! `(1 - r)^3 (1 + 3r + 6r^2)` has factors that move against each other. With `1 - r^3 = (1 - r)(1 + r +
-//! r^2)` it becomes
+//! The factors of `(1 - r)^3 (1 + 3r + 6r^2)` move in opposite directions. With
+//! `1 - r^3 = (1 - r)(1 + r + r^2)` the falloff becomes
 //!
 //! ```text
 //! (1 - r^3)^3 / k,   k = (1 + r + r^2)^3 / (1 + 3r + 6r^2) = 1 + r^3 (7 + 6r + 3r^2 + r^3) / (1 + 3r + 6r^2)
 //! ```
 //!
-//! and k rises with r step by step, if its last fraction is `r (7 + 6r + 3r^2 + r^3) / (t^2 + 3t + 6)` with
-//! `t = 1 / r`.
+//! and each step of k rises with r, if the last fraction is written
+//! `r (7 + 6r + 3r^2 + r^3) / (t^2 + 3t + 6)` with `t = 1 / r`.
 
 use jbt_ir::Domain;
 
@@ -19,8 +19,7 @@ use super::{Nearness, PlainFalloff, emit_square};
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Quintic;
 
-/// What r counts as at least, where it is a divisor: 2^-12, the root of the least difference between 1 and
-/// another u.
+/// The smallest r that is a divisor: 2^-12, the root of the least difference between 1 and another u.
 const LEAST: f32 = 1.0 / (1 << 12) as f32;
 
 impl PlainFalloff for Quintic {

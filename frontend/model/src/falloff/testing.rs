@@ -1,5 +1,5 @@
-//! What the tests of all falloffs have in common: published figures of the plain form, and what is promised
-//! of the compiled one.
+//! Checks for the tests of all falloffs: published figures of the plain form, and the promises of the
+//! compiled form.
 
 use jbt_ir::domain::interval::Interval;
 use jbt_ir::domain::scalar::Scalar;
@@ -75,7 +75,7 @@ impl Compiled {
         Self { kind, row: row.into_iter().map(|number| number as f32).collect() }
     }
 
-    /// The field at s in f32, as lowering asks for it.
+    /// The field at s in f32, as lowering computes it.
     fn at(&self, s: f32) -> f32 {
         let near = Nearness::emit(&mut Scalar, s, -1.0);
         self.kind.emit(&mut Scalar, near, &self.row)
@@ -90,7 +90,7 @@ impl Compiled {
         domain.output(range)
     }
 
-    /// How much an approximated power or exponential may be off by.
+    /// The largest relative error of an approximated power or exponential.
     fn slack(&self) -> f32 {
         match self.kind {
             FalloffKind::Degree(0) | FalloffKind::Blinn(_) | FalloffKind::InversePower(0 | 1) => 2e-6,
@@ -119,7 +119,7 @@ impl Compiled {
 
     /// It falls from 1 to 0 in every step, and is near the plain form.
     fn falls(&self, falloff: Falloff) {
-        // u may be off by 2^-25, so the field by that times its slope in s.
+        // u may be off by 2^-25, so the field may be off by that times its slope in s.
         let steepest = (1..2000).map(|step| {
             let s = f64::from(step) / 2000.0;
             (falloff.value(s - 1e-6) - falloff.value(s + 1e-6)) / 2e-6
@@ -140,7 +140,7 @@ impl Compiled {
         assert_eq!(last.to_bits(), 0);
     }
 
-    /// A range of s has the image that its ends have, and nothing more.
+    /// The image of a range of s is exactly between the values at its ends.
     fn has_exact_images(&self, falloff: Falloff) {
         let mut rng = fastrand::Rng::with_seed(3);
         for i in 0..5000 {

@@ -1,4 +1,4 @@
-//! What several functions of formulas compute with.
+//! Small formulas that several functions share.
 
 use jbt_ir::Domain;
 
@@ -23,7 +23,7 @@ pub(crate) fn quotient<D: Domain>(d: &mut D, a: D::Real, b: D::Real) -> D::Real 
     d.select(pole, zero, quotient)
 }
 
-/// `max(a, 0)^b`, and 0 where that would be a pole.
+/// `max(a, 0)^b`, and 0 at poles.
 pub(crate) fn power<D: Domain>(d: &mut D, a: D::Real, b: D::Real, positive: bool) -> D::Real {
     let zero = d.constant(0.0);
     let base = if positive { a } else { d.max(a, zero) };
@@ -33,7 +33,7 @@ pub(crate) fn power<D: Domain>(d: &mut D, a: D::Real, b: D::Real, positive: bool
     d.select(pole, zero, power)
 }
 
-/// The nearest whole number, which stands still.
+/// The nearest whole number, with zero derivative.
 pub(super) fn nearest<D: Domain>(d: &mut D, x: D::Real) -> D::Real {
     let (round, whole) = (d.constant(ROUND), d.constant(WHOLE));
     let shifted = d.add(x, round);
@@ -53,7 +53,7 @@ pub(super) fn floor<D: Domain>(d: &mut D, x: D::Real) -> D::Real {
     d.stop_gradient(floor)
 }
 
-/// What is left of `x` after whole multiples of `by`.
+/// The remainder of `x` by `by`.
 pub(super) fn remainder<D: Domain>(d: &mut D, x: D::Real, by: D::Real) -> D::Real {
     let zero = d.constant(0.0);
     let by = d.abs(by);
@@ -61,7 +61,7 @@ pub(super) fn remainder<D: Domain>(d: &mut D, x: D::Real, by: D::Real) -> D::Rea
     let whole = floor(d, quotient);
     let minus = d.neg(whole);
     let rest = d.fma(minus, by, x);
-    // Rounding of the quotient may have gone one too far.
+    // Rounding of the quotient may have subtracted one multiple too many.
     let rest = d.max(rest, zero);
     let pole = d.eq(by, zero);
     d.select(pole, zero, rest)
@@ -77,7 +77,7 @@ pub(super) fn arc_sides<D: Domain>(d: &mut D, x: D::Real) -> (D::Real, D::Real) 
     (x, d.sqrt(square))
 }
 
-/// How far a number is from the nearest whole one.
+/// The distance of a number from the nearest whole number.
 pub(super) fn to_whole(x: f64) -> f64 {
     (x - x.round()).abs()
 }

@@ -1,15 +1,15 @@
 //! Functions of formulas: of parameters, and of a point. One row a member.
 //!
-//! A member states its word and operands, its value in f64 (the oracle), what is known of it without a point,
-//! and the same value over [`Domain`] (the compiler). To add one: write it into a file of this folder, add
-//! its line to the list.
+//! A member states its word and operands, its value in f64 (the oracle), facts about the value that hold at
+//! every point, and the value over [`Domain`] (the compiler). To add one: write it into a file of this
+//! folder, add its line to the list.
 //!
-//! Formulas of a point have functions besides that no list names: falloffs of a distance. See
+//! Formulas of a point also have functions outside of the list: falloffs of a distance. See
 //! [`Function::Falloff`].
 //!
-//! A rounding error over the ops is that of the ops it is made of, in units in the last place (ULP) of the
-//! result: half a unit for arithmetic and roots, those of [`jbt_ir::math`] for `sin`, `cos`, `exp`, `ln` and
-//! powers, at most 4 for `atan`, `atan2`, `asin` and `acos` (see `angle`), 3.5 for `tan`.
+//! The rounding error over the ops, in units in the last place (ULP) of the result, is half a unit for
+//! arithmetic and roots, the error of [`jbt_ir::math`] for `sin`, `cos`, `exp`, `ln` and powers, at most 4
+//! for `atan`, `atan2`, `asin` and `acos` (see `angle`), 3.5 for `tan`.
 
 use std::hash::{Hash, Hasher};
 
@@ -31,7 +31,7 @@ pub(crate) use growth::Growth;
 pub(crate) use member::ANY;
 use member::FunctionMember as _;
 
-/// A falloff whose numbers are plain: formulas with different ones have different code.
+/// A falloff with plain numbers: formulas with different numbers have different code.
 #[derive(Clone, Copy, Debug)]
 pub struct FixedFalloff(pub(crate) Falloff);
 
@@ -41,7 +41,7 @@ impl FixedFalloff {
         self.0.to_fields().into_iter().flat_map(|field| field.numbers().to_vec()).map(f64::to_bits)
     }
 
-    /// The field at a distance, of which 1 is the support radius.
+    /// The field at a distance; distance 1 is the support radius.
     fn value(&self, x: &[f64]) -> f64 {
         self.0.value(x[0].max(0.0).powi(2))
     }
@@ -84,8 +84,8 @@ macro_rules! functions {
         #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
         pub enum Function {
             $( #[doc = concat!("See [`", stringify!($module), "`](", stringify!($module), ").")] $name, )+
-            /// A falloff of the distance, 1 being where it ends; what is below 0 counts as 0. Known in
-            /// formulas of a point alone.
+            /// A falloff of a distance, where 1 is the support radius and negative numbers count as 0. Only
+            /// formulas of a point have it.
             Falloff(FixedFalloff),
         }
 
@@ -98,8 +98,7 @@ macro_rules! functions {
                 match self { $( Self::$name => $module::$name::NAME, )+ Self::Falloff(falloff) => falloff.0.name() }
             }
 
-            /// Whether its word means nothing else, also where it is not called: no parameter has such a
-            /// name.
+            /// Whether its word is reserved, even where it is not called: no parameter may have the name.
             pub const fn is_reserved(self) -> bool {
                 match self { $( Self::$name => $module::$name::RESERVED, )+ Self::Falloff(_) => false }
             }
@@ -117,17 +116,18 @@ macro_rules! functions {
                 }
             }
 
-            /// The value in formulas of a point, plainly: it is there everywhere.
+            /// The value in formulas of a point, in f64, defined for all operands.
             pub fn total(self, x: &[f64]) -> f64 {
                 match self { $( Self::$name => $module::$name::total(x), )+ Self::Falloff(falloff) => falloff.value(x) }
             }
 
-            /// How far the operands are from a jump, a kink or a pole.
+            /// The distance of the operands from the nearest jump, kink or pole.
             pub(crate) fn kink_distance(self, x: &[f64]) -> f64 {
                 match self { $( Self::$name => $module::$name::kink_distance(x), )+ Self::Falloff(falloff) => falloff.kink_distance(x) }
             }
 
-            /// Whether the value is never negative, rounding included, from the same about the operands.
+            /// Whether the value, with rounding, is never negative, derived from the same facts about the
+            /// operands.
             pub(crate) fn non_negative(self, x: &[bool]) -> bool {
                 match self { $( Self::$name => $module::$name::non_negative(x), )+ Self::Falloff(_) => true }
             }
@@ -137,14 +137,14 @@ macro_rules! functions {
                 match self { $( Self::$name => $module::$name::range(x), )+ Self::Falloff(_) => [0.0, 1.0] }
             }
 
-            /// Bounds of the value from bounds of the operands. `divisor`: the magnitude of the second
+            /// Bounds of the value from bounds of the operands. `divisor` is the magnitude of the second
             /// operand, if that is a number other than 0.
             pub(crate) fn growth(self, x: &[Growth], divisor: Option<f64>) -> Growth {
                 match self { $( Self::$name => $module::$name::growth(x, divisor), )+ Self::Falloff(_) => Growth::UNKNOWN }
             }
 
-            /// The value in formulas of a point, over the ops. `positive`: the first operand is known not to
-            /// be negative.
+            /// The value in formulas of a point, over the ops. `positive` means that the first operand is
+            /// known not to be negative.
             pub(crate) fn emit<D: Domain>(self, d: &mut D, x: &[D::Real], positive: bool) -> D::Real {
                 match self {
                     $( Self::$name => $module::$name::emit(d, x, positive), )+
@@ -193,7 +193,7 @@ impl Function {
         Self::Falloff(FixedFalloff(falloff))
     }
 
-    /// The value, or why there is none.
+    /// The value, or the reason why it is undefined.
     pub fn compute(self, arguments: &[f64]) -> Result<f64, String> {
         let value = self.apply(arguments);
         if value.is_finite() {

@@ -1,12 +1,12 @@
-//! What every affine map states about itself.
+//! What every affine map implements.
 
 use glam::DAffine3;
 
 use crate::member::Member;
 use crate::report::Fault;
 
-/// How much the linear part of an affine map can change, from least to most: what its code has to be ready
-/// for.
+/// How much the linear part of an affine map can change, from least to most. The code of the map must serve
+/// all these changes.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
 pub enum Freedom {
     /// Not at all.
@@ -19,9 +19,10 @@ pub enum Freedom {
     Full,
 }
 
-/// What an affine map states about itself. Maps may share a word, if what stands behind it differs.
+/// What an affine map implements. Maps may share a word if their parameters tell them apart.
 pub(super) trait MapMember: Member {
-    /// Whether its parameters are written by name. Otherwise it has one, whose value stands behind the word.
+    /// Whether its parameters are written by name. Otherwise it has one parameter, whose value follows the
+    /// word.
     const NAMED: bool = true;
     /// How much its linear part can change, where its numbers follow parameters.
     const FREEDOM: Freedom;

@@ -27,7 +27,7 @@ macro_rules! maps {
             /// Every kind, in the order of the list.
             pub const ALL: &'static [Self] = &[$( Self::$name ),+];
 
-            /// The word of the text format. Kinds of one word differ in what stands behind it.
+            /// The word of the text format. Kinds may share a word; their parameters tell them apart.
             #[must_use]
             pub const fn name(self) -> &'static str { match self { $( Self::$name => $name::NAME, )+ } }
 

@@ -12,18 +12,18 @@ use crate::field::plain;
 use crate::function::Function;
 use crate::report::clip;
 
-/// What the formula of a field is about, besides numbers.
+/// A variable of a field's formula.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Variable {
     /// 0, 1, 2: x, y, z.
     Coordinate(u8),
-    /// The field of a child, by its place.
+    /// The field of a child, by its index.
     Child(u32),
-    /// A definition that stands before, by its place.
+    /// An earlier definition, by its index.
     Definition(u32),
 }
 
-/// A step of a formula: takes its operands from the end of a list, and puts its value there.
+/// A step of a formula: takes its operands from the end of a stack and pushes its value there.
 #[derive(Clone, Debug)]
 pub enum Step {
     /// A number as it is written.
@@ -35,7 +35,7 @@ pub enum Step {
         /// Its value when the formula was written; in Rust, its default.
         default: f64,
     },
-    /// What is not a number before there is a point; in formulas of fields alone.
+    /// A value that depends on the point; in formulas of fields only.
     Variable(Variable),
     /// One operand, with the other sign.
     Negate,
@@ -101,7 +101,7 @@ impl Step {
 #[derive(Clone, Debug)]
 pub struct Formula {
     steps: Box<[Step]>,
-    /// Where it stands in its text.
+    /// Its place in the text.
     span: Option<Span>,
 }
 
@@ -127,7 +127,7 @@ impl Formula {
         self.span
     }
 
-    /// The names of its parameters, as often as they stand in it, each with its default.
+    /// Its parameters, one entry for each occurrence: name and default.
     pub fn parameters(&self) -> impl Iterator<Item = (&Arc<str>, f64)> {
         self.steps.iter().filter_map(|step| match step {
             Step::Parameter { name, default } => Some((name, *default)),
@@ -135,7 +135,7 @@ impl Formula {
         })
     }
 
-    /// Its value once the parameters have these values.
+    /// The value for these values of the parameters.
     pub(crate) fn evaluate(&self, values: &Values) -> Result<f64, Diagnostic> {
         let error = |message: String| Diagnostic::error(self.span, message);
         let mut stack: Vec<f64> = Vec::new();
@@ -159,7 +159,8 @@ impl Formula {
     }
 }
 
-/// Of each step, the steps that give its operands, in order: all in one list, and where each step's begin.
+/// For each step, the steps of its operands, in order: one list of all operands, and where each step's
+/// operands begin.
 fn operands(steps: &[Step]) -> (Vec<u32>, Vec<u32>) {
     let (mut all, mut starts, mut stack) = (Vec::new(), Vec::new(), Vec::new());
     for (index, step) in steps.iter().enumerate() {
@@ -175,7 +176,7 @@ const SIGN: u8 = 3;
 /// How strongly a number, a name, or anything in parentheses holds together.
 const ATOM: u8 = 5;
 
-/// What is left to print.
+/// Output that is still to be printed.
 enum Piece {
     Text(&'static str),
     /// A step, in parentheses if it binds less strongly than this.
@@ -251,7 +252,7 @@ pub fn show<W: fmt::Write>(
     Ok(())
 }
 
-/// How strongly a step holds together what it is made of.
+/// The binding strength of a step's outermost operator.
 fn strength(step: &Step) -> u8 {
     match step {
         Step::Literal(value) if value.is_sign_negative() => SIGN,

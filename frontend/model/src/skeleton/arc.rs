@@ -1,7 +1,7 @@
 //! The arc: a part of a circle, up to all of it.
 //!
-//! In the pose its middle is on the x axis, so that the two halves are alike and `|y|` will do. With a the
-//! angle from the middle to an end, and phi that of the point,
+//! In the pose its middle is on the x axis, so that the two halves are mirror images and `|y|` is enough.
+//! With a the angle from the middle to an end, and phi the angle of the point,
 //!
 //! ```text
 //!       end                     phi <= a:   (rho - radius)^2 + z^2
@@ -10,10 +10,9 @@
 //!    ·────────●── x             phi <= a:   x sin a - |y| cos a >= 0,   for 0 < a <= pi
 //! ```
 //!
-//! The two distances are the same where phi = a, so that rounding may decide as it likes there. Their
-//! difference is largest on the other side, at a - phi = +-pi, where the condition is just as near to 0: but
-//! there, with a near 0 or pi, both its terms have one sign. A sine that is kept above 0 makes that so for a
-//! = 0 and a = pi, too.
+//! The two distances are equal where phi = a, so rounding may decide freely there. They differ most on the
+//! other side, at a - phi = +-pi, where the condition is just as near to 0. But there, with a near 0 or pi,
+//! both terms of the condition have one sign. A sine kept above 0 ensures this for a = 0 and a = pi, too.
 
 use glam::{DAffine3, DVec2, DVec3};
 use jbt_ir::Domain;
@@ -43,8 +42,7 @@ member! {
     }
 }
 
-/// What the sine in the condition is at least. It is far above what underflow takes from products with
-/// lengths.
+/// The smallest sine in the condition: far above the underflow of products with lengths.
 const SMALLEST_SINE: f64 = 1e-20;
 
 impl Arc {
@@ -63,7 +61,7 @@ impl Arc {
         DVec3::new(v.dot(middle), v.dot(n.cross(middle)), v.dot(n))
     }
 
-    /// Whether there is only one point of it.
+    /// Whether it is a single point.
     fn is_point(&self) -> bool {
         self.radius == 0.0 || self.degrees == 0.0
     }
@@ -110,7 +108,7 @@ impl SkeletonMember for Arc {
     }
 
     /// The gradient jumps on the axis, from which all points of the circle are equally far, and where both
-    /// ends are.
+    /// ends are equally far.
     fn kink_distance(&self, p: DVec3) -> f64 {
         if self.is_point() {
             return f64::INFINITY;
@@ -199,8 +197,8 @@ mod tests {
         }
     }
 
-    /// Both sides of pi, and of 0 and a whole turn; in its plane and in line with its middle, where the
-    /// condition is decided by rounding.
+    /// Both sides of pi, of 0 and of a whole turn; points in the arc's plane and in line with its middle,
+    /// where rounding decides the condition.
     #[test]
     fn angles_next_to_special_ones() {
         for around in [0.0, 90.0, 180.0, 270.0, 360.0] {

@@ -37,10 +37,10 @@ impl CatmullRom {
         }
     }
 
-    /// A third of how point and radius change at a point, for one step of the parameter.
+    /// A third of the derivatives of point and radius at a point, by the parameter.
     fn third(&self, point: usize) -> (DVec3, f64) {
         let [before, behind] = self.neighbours(point);
-        // At an open end the neighbours are the point itself and the only one that it has.
+        // At an open end one neighbour is the point itself.
         let steps = if before == point || behind == point { 1.0 } else { 2.0 };
         let radius = |index| self.path().radius_at(index);
         let change = (radius(behind) - radius(before)) / (3.0 * steps);

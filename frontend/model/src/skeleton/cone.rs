@@ -49,7 +49,7 @@ impl Cone {
         0.5 * self.from.distance(self.to)
     }
 
-    /// The way from the end of the profile's side at `from` to that at `to`.
+    /// The vector of the profile's side from its end at `from` to its end at `to`.
     fn side(&self) -> DVec2 {
         DVec2::new(self.to_radius - self.from_radius, 2.0 * self.half())
     }
@@ -98,7 +98,7 @@ impl SkeletonMember for Cone {
     fn columns(&self, scale: f64, row: &mut Vec<f64>) {
         let side = self.side();
         let length = side.length();
-        // A side without length has no direction; any will do, since only its ends count.
+        // A side without length has no direction; any direction will do, because only the ends count.
         let normal = if length > 0.0 { DVec2::new(side.y, -side.x) / length } else { DVec2::X };
         let [from, to] = [scale * self.from_radius, scale * self.to_radius];
         row.extend([scale * self.half(), from, to, from.max(to), 0.5 * (from + to)]);

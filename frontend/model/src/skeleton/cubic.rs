@@ -3,32 +3,33 @@
 //!
 //! # The nearest ball
 //!
-//! With centre c(t) and radius r(t), the tube's distance from p is the minimum over t of `g(t) = |p - c(t)| -
-//! r(t)`. There is no closed form. On the host the curve is halved until each piece is nearly a [`Cone`]: its
-//! second differences say how far its balls are from those of the cone over its chord, at the same parameter,
+//! With centre c(t) and radius r(t), the tube's distance from p is the minimum over t of
+//! `g(t) = |p - c(t)| - r(t)`. There is no closed form. On the host the curve is halved until each piece is
+//! nearly a [`Cone`]: the piece's second differences bound how far its balls are from the balls of the cone
+//! over its chord, at the same parameter,
 //!
 //! ```text
 //! |c(t) - chord(t)| + |r(t) - taper(t)| <= deviation = 3/4 max over i of |c_i - 2 c_(i+1) + c_(i+2)| + |r_i - 2 r_(i+1) + r_(i+2)|
 //! ```
 //!
-//! The program starts at the ball that is nearest among those of the cone, takes [`STEPS`] of Newton's steps
-//! along g', clamped to the piece, and answers for the best ball that it has met (to within 2^-20 of its
-//! distance for each step).
+//! The program starts at the nearest ball of the cone, takes [`STEPS`] of Newton's steps along g', clamped to
+//! the piece, and answers with the best ball on the way (to within 2^-20 of its distance for each step).
 //!
-//! **How wrong that can be.** The answer is the distance of a ball of the tube, so it is never too small, and
-//! the start alone is too large by at most twice the deviation: `g(start) <= cone(start) + deviation <=
-//! cone(best) + deviation <= g(best) + 2 deviation`. A piece is accepted with a deviation of at most
-//! [`COARSE`] support radii, so the distance is wrong by at most `2 COARSE` of the radius at worst, or by
-//! 2^-23 of the whole cubic's deviation where [`MAX_CURVE_HALVINGS`] end the division. The steps do far
-//! better where the curve turns little: accepted pieces turn by at most [`TURN`] (or deviate by less than
-//! [`FINE`]), and at a point that is nearer than the centre of curvature the error of a step is the square of
-//! the last one. At 10^5 random points within reach of random curves and tubes the error is below 1e-5 of the
+//! **Error.** The answer is the distance of a ball of the tube, so it is never too small. The start alone is
+//! too large by at most twice the deviation:
+//! `g(start) <= cone(start) + deviation <= cone(best) + deviation <= g(best) + 2 deviation`. A piece is
+//! accepted with a deviation of at most [`COARSE`] support radii, so the distance is wrong by at most
+//! `2 COARSE` of the radius, or by 2^-23 of the whole cubic's deviation where [`MAX_CURVE_HALVINGS`] end the
+//! division. The steps do far better where the curve turns little: accepted pieces turn by at most [`TURN`]
+//! (or deviate by less than [`FINE`]), and at a point nearer than the centre of curvature each step squares
+//! the error. At 10^5 random points within reach of random curves and tubes the error is below 1e-5 of the
 //! support radius (and rounding) for all but a few, which are near a centre of curvature, and 6e-5 at worst.
-//! The place is held, so the gradient is the unit vector from the ball's centre: off from the normal by as
-//! much as the place is. That is rounding, but for points whose nearest place is within the root of a
-//! rounding, half a thousandth of the distance, of where two pieces meet: there their distances are alike,
-//! and either piece may answer. So gradients are off by half a milliradian at worst, where the minimum is
-//! firm.
+//!
+//! The place is held constant, so the gradient is the unit vector from the ball's centre: it is off from the
+//! normal by as much as the place is off. That is rounding, except where the nearest place is close to the
+//! end of a piece: within the root of a rounding, half a thousandth of the distance. There the distances of
+//! both pieces are alike, and either piece may answer. So gradients are off by half a milliradian at worst,
+//! where the minimum is firm.
 
 use glam::{DAffine3, DVec3};
 use jbt_ir::Domain;
@@ -47,11 +48,11 @@ pub(super) const COARSE: f64 = 1.0 / 32.0;
 const TURN: f64 = 0.5;
 /// ... unless it deviates by less than this part of the support radius: at cusps.
 const FINE: f64 = 1.0 / (1 << 14) as f64;
-/// The least part of the squared speed that a step divides by: where the minimum is flat or a maximum is
-/// near, it has to be short.
+/// The least part of the squared speed that a step divides by: where the minimum is flat or near a maximum, a
+/// step must be short.
 const DAMPING: f32 = 0.25;
 
-/// Distances of places that differ by less than this part are alike.
+/// Distances of places that differ by less than this part count as equal.
 const SLACK: f32 = 1.0 / (1 << 20) as f32;
 
 /// The balls along a cubic Bezier curve.
@@ -67,7 +68,7 @@ impl Cubic {
         Cone { centers: [self.centers[0], self.centers[3]], radii: [self.radii[0], self.radii[3]] }
     }
 
-    /// How far it is from its chord at most: see the module.
+    /// A bound of the distance from its chord: see the module.
     pub(super) fn deviation(&self) -> f64 {
         let second = |i: usize| {
             let center = self.centers[i] - 2.0 * self.centers[i + 1] + self.centers[i + 2];
@@ -100,7 +101,7 @@ impl Cubic {
         ]
     }
 
-    /// The coefficients of its powers, of centres and of radii.
+    /// The coefficients of the powers of t, for centres and for radii.
     fn powers(&self) -> ([DVec3; 4], [f64; 4]) {
         let [c0, c1, c2, c3] = self.centers;
         let [r0, r1, r2, r3] = self.radii;
@@ -124,8 +125,8 @@ impl Cubic {
         p.distance(center) - radius
     }
 
-    /// How firmly a nearest ball is held at its place: the second derivative of the distance there, over what
-    /// it is on a straight line. It is 0 at a centre of curvature.
+    /// How firmly a nearest ball is held at its place: the second derivative of the distance, divided by its
+    /// value on a straight line. It is 0 at a centre of curvature.
     pub(super) fn firmness(&self, p: DVec3, t: f64) -> f64 {
         let ([_, c1, c2, c3], [_, _, r2, r3]) = self.powers();
         let e = self.at(t).0 - p;
@@ -146,7 +147,7 @@ impl Part for Cubic {
         let image = self.centers.map(|center| map.transform_point3(center));
         let side = |axis: usize, sign: f64| {
             let reach = map.matrix3.row(axis).length();
-            // How far a ball reaches is a cubic too.
+            // The reach of a ball is a cubic too.
             let values = [0, 1, 2, 3].map(|i| sign * image[i][axis] + reach * self.radii[i]);
             sign * largest(values)
         };
@@ -157,7 +158,7 @@ impl Part for Cubic {
     fn columns(&self, to_pose: &DAffine3, scale: f64, row: &mut Vec<f64>) {
         let mut own = *self;
         if self.chord().taper() == Err(1) {
-            // The start is at the larger end: at 0.
+            // The start of the piece is its larger end.
             own.centers.reverse();
             own.radii.reverse();
         }
@@ -166,8 +167,8 @@ impl Part for Cubic {
         let (centers, radii) = own.powers();
         row.extend(centers.iter().flat_map(DVec3::to_array));
         row.extend(radii);
-        // What takes a point to its place along the chord, and its distance from the chord to what the taper
-        // adds.
+        // The map from a point to its place along the chord, and from its distance from the chord to the
+        // shift by the taper.
         let chord = own.centers[3] - own.centers[0];
         let (along, lean) = match own.chord().taper() {
             Ok((_, lean)) => (super::unit(chord) / chord.length(), lean / chord.length()),
@@ -230,8 +231,8 @@ impl Part for Cubic {
 }
 
 /// The distance and the place of the nearer ball, the later one if they are alike: where the distance is
-/// flat, its rounding must not choose a place that is farther from the minimum, in which the gradient has
-/// another direction.
+/// flat, its rounding must not choose the place farther from the minimum, where the gradient has another
+/// direction.
 fn nearer<D: Domain>(
     d: &mut D,
     (later, t): (&Ball<D>, D::Real),
@@ -261,7 +262,7 @@ fn largest([a, b, c, d]: [f64; 4]) -> f64 {
     })
 }
 
-/// A piece as the program sees it from a point.
+/// A piece, as seen from a point.
 struct Curve<D: Domain> {
     /// From the first end to the point.
     from_start: [D::Real; 3],
@@ -275,7 +276,7 @@ struct Curve<D: Domain> {
 struct Ball<D: Domain> {
     /// From the point to the centre.
     center: [D::Real; 3],
-    /// How far that is.
+    /// The length of `center`.
     length: D::Real,
     /// The distance of the ball.
     distance: D::Real,
@@ -329,8 +330,8 @@ impl<D: Domain> Curve<D> {
         [once, d.fma(t, thrice, half_more)]
     }
 
-    /// Newton's step for `|p - c| g' = (c - p) c' - r' |p - c| = 0`, whose derivative is, where it is 0,
-    /// `c'^2 - r'^2 + (c - p) c'' - r'' |p - c|`.
+    /// Newton's step for `|p - c| g' = (c - p) c' - r' |p - c| = 0`. At a root, the derivative of the left
+    /// side is `c'^2 - r'^2 + (c - p) c'' - r'' |p - c|`.
     fn step(&self, d: &mut D, t: D::Real, at: &Ball<D>) -> D::Real {
         let of_axis: [[D::Real; 2]; 3] = std::array::from_fn(|axis| {
             let powers = self.powers.map(|power| power[axis]);
@@ -364,7 +365,7 @@ fn unit_interval<D: Domain>(d: &mut D, t: D::Real) -> D::Real {
     d.min(t, one)
 }
 
-/// Places in which a cubic is looked at before its minima are bracketed.
+/// The number of samples of a cubic before its minima are bracketed.
 const SAMPLES: usize = 64;
 
 /// The minimum of a function between two places, by golden sections.
@@ -384,7 +385,7 @@ mod tests {
     use super::*;
     use crate::skeleton::testing::{direction, position};
 
-    /// The smallest distance that the program finds in f32, of the pieces for a support radius.
+    /// The smallest distance that the program finds in f32, over the pieces for a support radius.
     fn found(cubic: Cubic, reach: f64, p: DVec3) -> f64 {
         let nearest = Cubic::divided([cubic].into_iter(), reach).map(|piece| {
             let mut row = Vec::new();
@@ -396,7 +397,7 @@ mod tests {
         nearest.fold(f64::INFINITY, f64::min)
     }
 
-    /// The smallest distance from many balls: not below that of the tube.
+    /// The smallest distance from many balls of the tube: an upper bound of the tube's distance.
     fn brute_force(cubic: &Cubic, p: DVec3, balls: u32) -> f64 {
         let at = |i| cubic.distance_at(p, f64::from(i) / f64::from(balls));
         (0..=balls).map(at).fold(f64::INFINITY, f64::min)
@@ -410,7 +411,7 @@ mod tests {
         }
     }
 
-    /// What the module says of the error, at 10^5 points within reach.
+    /// The module's statement of the error, at 10^5 points within reach.
     #[test]
     fn the_error_is_as_stated() {
         let mut rng = fastrand::Rng::with_seed(7);

@@ -50,9 +50,9 @@ impl SkeletonMember for Cuboid {
 
     const UV_COLUMNS: &'static [&'static str] = &["half_x", "half_y", "half_z", "inv_x", "inv_y", "inv_z"];
 
-    /// Every face shows all of [0, 1]^2, seen from outside with u to the right and v up: up is z on the four
-    /// sides, and y on top and bottom. A place belongs to the face beyond whose plane it is farthest (or
-    /// behind which it is least). A side without length counts as 1/2.
+    /// Every face covers [0, 1]^2, seen from outside with u to the right and v up: up is z on the four sides,
+    /// and y on top and bottom. A place belongs to the face whose plane it is farthest beyond (or, inside,
+    /// least behind). A side without length counts as 1/2.
     fn uv(&self, p: DVec3) -> [f64; 2] {
         let q = p - self.center;
         let part = |axis: usize, sign: f64| {

@@ -4,8 +4,8 @@
 //! d^2 = (x / a)^2 + (y / b)^2 + (z / c)^2
 //! ```
 //!
-//! So the field is that of a ball which is scaled by (a, b, c), as it would be under a map: it reaches zero
-//! on the ellipsoid with the half axes `radius * (a, b, c)`.
+//! So the field is the field of a ball under the scaling (a, b, c): it reaches zero on the ellipsoid with the
+//! half axes `radius * (a, b, c)`.
 
 use glam::{DAffine3, DVec3};
 use jbt_ir::Domain;

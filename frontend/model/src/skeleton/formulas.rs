@@ -8,7 +8,7 @@ pub(super) fn emit_off_axis<D: Domain>(d: &mut D, p: [D::Real; 3]) -> D::Real {
     d.sqrt(square)
 }
 
-/// The squared distance from all points within `radius` of something, from the squared distance from that:
+/// The squared distance from all points within `radius` of a set, from the squared distance from the set:
 /// `max(sqrt(square) - radius, 0)^2`.
 pub(super) fn outside_squared<D: Domain>(d: &mut D, square: D::Real, radius: D::Real) -> D::Real {
     let distance = d.sqrt(square);

@@ -1,4 +1,4 @@
-//! Directions, frames and reaches, on the host: what skeletons pose themselves and bound themselves with.
+//! Directions, frames and reaches in f64, for poses and bounds of skeletons.
 
 use glam::{DAffine3, DMat3, DVec3};
 
@@ -25,12 +25,12 @@ pub(super) fn cylindrical(v: DVec3, n: DVec3) -> (f64, f64) {
 
 /// How far the image of a circle about the unit vector `n` reaches along each axis.
 pub(super) fn circle_reach(map: &DAffine3, n: DVec3, radius: f64) -> DVec3 {
-    // Along a row of the matrix the circle reaches as far as that row is long in the circle's plane.
+    // Along an axis the circle reaches as far as the matrix row is long in the circle's plane.
     radius * DVec3::from_array([0, 1, 2].map(|axis| map.matrix3.row(axis).cross(n).length()))
 }
 
-/// The rotation that takes the z axis to the direction of `v`, or against it: the identity if it need not
-/// move, or if `v` is zero.
+/// The rotation that takes the z axis to the direction of `v`, or against it; the identity if the z axis is
+/// already there, or if `v` is zero.
 pub(super) fn along(v: DVec3) -> DMat3 {
     let z = unit(v);
     if z == DVec3::ZERO || z.z.abs() == 1.0 {
@@ -40,8 +40,8 @@ pub(super) fn along(v: DVec3) -> DMat3 {
     DMat3::from_cols(x, y, z)
 }
 
-/// What takes the z axis to the direction of `v`: a rotation, or the reflection in the origin where that will
-/// do; the identity if `v` is zero.
+/// Takes the z axis to the direction of `v`: a rotation, or the reflection in the origin if that is enough;
+/// the identity if `v` is zero.
 pub(super) fn towards(v: DVec3) -> DMat3 {
     let z = unit(v);
     if z == DVec3::ZERO || z.z == 1.0 {
@@ -54,26 +54,24 @@ pub(super) fn towards(v: DVec3) -> DMat3 {
     DMat3::from_cols(x, y, z)
 }
 
-/// The rotation that takes the z axis to the direction of `normal`, and the x axis as near to that of `first`
-/// as it can be.
+/// The rotation that takes the z axis to the direction of `normal`, and the x axis as near as possible to the
+/// direction of `first`.
 pub(super) fn frame(normal: DVec3, first: DVec3) -> DMat3 {
     let (z, first) = (unit(normal), unit(first));
     let across = |v: DVec3| v - v.dot(z) * z;
-    // Twice, because what is left of a direction near the normal is mostly rounding.
+    // Twice, because the first difference of a direction near the normal is mostly rounding.
     let x = unit(across(across(first)));
     let x = if x == DVec3::ZERO { z.any_orthonormal_vector() } else { x };
     DMat3::from_cols(x, z.cross(x), z)
 }
 
-/// Whether two directions lie along one line, as nearly as f32 can tell. A direction that is zero lies along
-/// none.
+/// Whether two directions lie along one line, within f32. A zero direction lies along none.
 fn are_along(a: DVec3, b: DVec3) -> bool {
     let (a, b) = (unit(a), unit(b));
     a != DVec3::ZERO && b != DVec3::ZERO && a.cross(b).length() < 1e-7
 }
 
-/// What is wrong with a direction that has to be across another one, if it lies along that; `what` is its
-/// name.
+/// The fault of a direction along the normal that has to be across it; `what` is its name.
 pub(super) fn along_normal(owner: &str, what: &str, normal: DVec3, direction: DVec3) -> Option<Diagnostic> {
     let error = || Diagnostic::error(None, format!("the `{what}` of the {owner} lies along its normal"));
     are_along(normal, direction).then(|| error().expected("expected a direction across it"))

@@ -1,7 +1,8 @@
-//! The half space: all that is on one side of a plane. It is unbounded, and so is what is made of it alone.
+//! The half space: all points on one side of a plane. It is unbounded, and so is a model of half spaces
+//! alone.
 //!
-//! Cut with something bounded it is bounded: `intersection { half_space .. sphere .. }` has a support, a half
-//! space by itself needs a region wherever a mesh or a volume is asked for.
+//! Cut with a bounded shape it is bounded: `intersection { half_space .. sphere .. }` has a support. A half
+//! space alone needs a region where a mesh or a volume is asked for.
 
 use glam::{DAffine3, DVec3};
 use jbt_ir::Domain;
@@ -25,7 +26,7 @@ impl SkeletonMember for HalfSpace {
     const COLUMNS: &'static [&'static str] = &[];
     const SYMMETRY: Symmetry = Symmetry::Arrow;
 
-    /// Unbounded but for one side, if the plane is exactly across an axis.
+    /// Unbounded, except for one side if the plane is exactly across an axis.
     fn bounds_under(&self, map: &DAffine3) -> Bounds {
         // Normals go the other way than points.
         let normal = map.matrix3.inverse().transpose() * super::unit(self.normal);

@@ -16,15 +16,15 @@
 //! g(s) = A sin s + s - sigma = 0                                             (Kepler's equation, if A were below 0)
 //! ```
 //!
-//! *Which turn.* On an endless helix it is the one with |sigma| <= pi: by the mirror images of s in 0 and in
-//! pi the nearest place has an s in [0, sigma]. (Signs are taken off: sigma >= 0 from here on.) If that place
-//! is beyond an end, the end is nearer than all turns behind it, unless the end cuts off the place s = 0 as
-//! well, before its turn has come nearest: then the first whole turn is next. So n is rounded, and clamped to
-//! turns whose s = 0 is on the helix; a turn that is cut off before that is let in if the helix begins (or
-//! ends) towards the point, and not beyond its height, and not where it is farthest (A cos s < -1). That
-//! turn, clamped, and the two ends are all candidates.
+//! *Which turn.* On an endless helix it is the turn with |sigma| <= pi: by the mirror images of s in 0 and in
+//! pi, the nearest place has an s in [0, sigma]. (Signs are taken off: sigma >= 0 from here on.) If that
+//! place is beyond an end, the end is nearer than all turns behind it, with one exception: if the end cuts
+//! off the place s = 0 as well, before its turn comes nearest, the first whole turn is next. So n is rounded,
+//! and clamped to turns whose s = 0 is on the helix. A turn that is cut off before s = 0 is allowed if the
+//! helix begins (or ends) towards the point, not beyond the point's height, and not at a farthest place (A
+//! cos s < -1). The candidates are that turn, clamped, and the two ends.
 //!
-//! *Which place.* Up to the first root, g is below 0, and it is concave in [0, pi]: Newton's steps from the
+//! *Which place.* Up to the first root, g is below 0, and g is concave in [0, pi]: Newton's steps from the
 //! left of the root stay there, and each is nearer. They start at the larger of two places that are never
 //! beyond the root, since `sin s <= s` and `sin s <= 4 s (pi - s) / pi^2`:
 //!
@@ -32,15 +32,15 @@
 //! sigma / (1 + A)     and     2 sigma / (q + sqrt(q^2 - 4 k sigma)),   k = 4 A / pi^2,   q = 1 + pi k
 //! ```
 //!
-//! **How wrong that can be.** What is answered is the distance of a place of the curve, so it is never too
-//! small, but for rounding. After [`STEPS`] steps it is too large by at most 2^-19 of the larger of R and b:
-//! that is at the centres of curvature, where A = 1, sigma = pi and the root is threefold. Elsewhere steps
-//! converge quadratically, and rounding is all. The tests measure both.
+//! **Error.** The answer is the distance of a place of the curve, so except for rounding it is never too
+//! small. After [`STEPS`] steps it is too large by at most 2^-19 of the larger of R and b: at the centres of
+//! curvature, where A = 1, sigma = pi and the root is threefold. Elsewhere steps converge quadratically, down
+//! to rounding. The tests measure both.
 //!
-//! The place is made of the small angle phi + s and of the whole number n, so that its rounding does not grow
-//! with the number of turns: it is less than 8 units of R and of the height. (With less than one turn n is 0,
-//! since a turn is higher than all of the helix.) The angle is held: with the place fixed, the gradient is
-//! that of the distance from it.
+//! The place is computed from the small angle phi + s and the whole number n, so that its rounding does not
+//! grow with the number of turns: it is less than 8 units of R and of the height. (With less than one turn n
+//! is 0, because the helix is lower than a turn.) The angle is held constant: with a fixed place, the
+//! gradient is the gradient of the distance from that place.
 
 use std::f64::consts::{PI, TAU};
 
@@ -59,9 +59,9 @@ use crate::member::{Member as _, member};
 const STEPS: usize = 5;
 /// The largest number of turns.
 const MAX_TURNS: f64 = 4096.0;
-/// A is at most this: above it, s is too small to matter.
+/// The largest A: above it, s is too small to matter.
 const MOST: f32 = 1e18;
-/// The height in turns is at most this.
+/// The largest height, in turns.
 const HIGHEST: f32 = 1e9;
 /// The least slope that a step divides by.
 const LEAST_SLOPE: f32 = 1e-6;
@@ -109,8 +109,8 @@ impl Helix {
         self.radius * (q.x * t.sin() - q.y * t.cos()) + self.rise() * (self.rise() * t - q.z)
     }
 
-    /// The nearest places of turns that may have the nearest of all, and the ends; `q` is in the pose. Of the
-    /// ends, `all`, or those that are nearer than what is next to them.
+    /// The nearest places of all turns that may hold the nearest of all, and ends; `q` is in the pose. With
+    /// `all`, both ends; otherwise only ends that are nearer than the curve next to them.
     fn places(&self, q: DVec3, all: bool) -> Vec<Place> {
         let (rho, phi, b) = (q.x.hypot(q.y), q.y.atan2(q.x), self.rise());
         let stretch = rho * self.radius / (b * b);
@@ -152,12 +152,12 @@ impl Helix {
     }
 }
 
-/// The first root of `a sin s + s - sigma`, for `sigma >= 0`, if that is in [0, pi]: plainly, by halving.
+/// The first root of `a sin s + s - sigma`, for `sigma >= 0`, if it is in [0, pi]: in f64, by bisection.
 fn root(a: f64, sigma: f64) -> Option<f64> {
     let value = |s: f64| a * s.sin() + s - sigma;
     // Where g is largest.
     let mut high = if a > 1.0 { (-1.0 / a).acos() } else { PI };
-    // At the end of [0, pi] rounding must not lose the root.
+    // Rounding must not lose a root at the end of [0, pi].
     if value(high) < -1e-14 * (a + sigma) {
         return None;
     }
@@ -170,8 +170,8 @@ fn root(a: f64, sigma: f64) -> Option<f64> {
 }
 
 impl SkeletonMember for Helix {
-    // The end; the height of a turn and of a radian, the turns for each height and R / b; all turns, the
-    // nearest whole number of them, and the angle that is left of them, from -pi to pi.
+    // The end; the height of a turn and of a radian, the turns for each height and R / b; the number of
+    // turns, the nearest whole number, and the rest as an angle from -pi to pi.
     const COLUMNS: &'static [&'static str] = &[
         "radius", "end_x", "end_y", "end_z", "pitch", "rise", "inv_pitch", "lead", "turns", "whole", "rest",
     ];
@@ -322,7 +322,7 @@ struct Curve<D: Domain> {
 }
 
 impl<D: Domain> Curve<D> {
-    /// The number of the turn that may have the nearest place; `height` is in turns.
+    /// The number of the turn that may hold the nearest place; `height` is in turns.
     fn turn(&self, d: &mut D, p: [D::Real; 3], phi: D::Real, height: D::Real) -> D::Real {
         let (zero, one) = (d.constant(0.0), d.constant(1.0));
         // Half the derivatives of the squared distance at both ends.
@@ -333,7 +333,7 @@ impl<D: Domain> Curve<D> {
         let above = d.sub(self.end[2], p[2]);
         let ends = d.fma(self.rise, above, across);
 
-        // What there is of the second derivatives: below 0, it is a place that is farthest.
+        // The part of the second derivatives that decides: below 0, the place is farthest.
         let square = d.mul(self.rise, self.rise);
         let begin_bends = d.fma(p[0], self.radius, square);
         let end_bends = d.fma(p[0], self.end[0], square);
@@ -364,10 +364,10 @@ impl<D: Domain> Curve<D> {
         d.max(turn, first)
     }
 
-    /// The place at an angle in a turn, clamped to the ends, with no derivative.
+    /// The place at an angle in a turn, clamped to the ends, with zero derivative.
     fn place(&self, d: &mut D, turn: D::Real, angle: D::Real) -> [D::Real; 3] {
         let (zero, one, tau) = (d.constant(0.0), d.constant(1.0), d.constant(TAU as f32));
-        // With less than a turn, roundings of a whole one would be too large.
+        // With less than a turn, the roundings of a whole turn would be too large.
         let is_part = d.lt(self.turns, one);
         let shift = d.select(is_part, turn, zero);
         let (turn, angle) = (d.sub(turn, shift), d.fma(shift, tau, angle));

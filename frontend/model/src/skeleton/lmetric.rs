@@ -5,18 +5,19 @@
 //! d^l = |x / a|^l + |y / b|^l + |z / c|^l,   l >= 1
 //! ```
 //!
-//! **Powers of large and small numbers.** With m the largest of the three terms, `d = m (sum (|x_i| /
-//! m)^l)^(1/l)`: no quotient is above 1, and the sum is from 1 to
-//! 3. The scale m cancels, so `stop_gradient` keeps it out of the derivative, and limits that hold anyway (1
-//!    for a quotient, 1 for the sum) tell intervals so.
+//! **Powers of large and small numbers.** With m the largest of the three terms,
+//! `d = m (sum (|x_i| / m)^l)^(1/l)`: no quotient is above 1, and the sum is in `[1, 3]`. The scale m
+//! cancels, so `stop_gradient` keeps it out of the derivative. Limits that change no number (1 for a
+//! quotient, 1 for the sum) make these bounds known to intervals.
 //!
 //! **Kinks.** Where a coordinate is 0 and l < 2, the gradient jumps (l = 1) or turns as fast as `|x|^(l-1)`:
 //! `kink_distance` is the distance from these planes. It is finite everywhere, and 0 at the centre.
 //!
-//! **Rounding.** In units of u = 2^-24: a term is off by 2 of itself, and m is one of them. A quotient takes
-//! 1 more, which a power makes l, and the power its own 2.5; exponent and power together take one for a
-//! rounded l. The root brings l back to 1, the others to at most 4.5 and its own rounding of `1 / l`, and has
-//! another 2.5. So less than 13 in all; powers that underflow are below any of this.
+//! **Rounding**, in units of u = 2^-24 relative to the result. A term is off by 2, and so is m, which is a
+//! term. A quotient adds 1; the power multiplies the sum by l and adds 2.5 of its own; a rounded l adds 1 for
+//! exponent and power together. The root brings errors times l back to 1 each, all others to at most 4.5 with
+//! its own rounding of `1 / l`, and adds 2.5. In all that is less than 13; powers that underflow are smaller
+//! than any of this.
 
 use glam::{DAffine3, DVec3};
 use jbt_ir::Domain;
@@ -77,7 +78,7 @@ impl SkeletonMember for LMetric {
     }
 }
 
-/// The norm with this exponent, plainly.
+/// The norm with this exponent, in f64.
 pub(super) fn norm(v: &[f64], exponent: f64) -> f64 {
     let largest = v.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
     if largest == 0.0 {
@@ -95,7 +96,7 @@ pub(super) fn emit_term<D: Domain>(d: &mut D, x: D::Real, inverse: D::Real) -> D
 
 /// The norm of terms that are not negative, with the exponent and its inverse.
 pub(super) fn emit_norm<D: Domain>(d: &mut D, terms: &[D::Real], [l, inv_l]: [D::Real; 2]) -> D::Real {
-    // Below this there is nothing left of a term: 2^-80.
+    // A smaller term than 2^-80 contributes nothing.
     let (one, smallest) = (d.constant(1.0), d.constant(8.271_806e-25));
     let mut largest = terms[0];
     for &term in &terms[1..] {
@@ -106,8 +107,8 @@ pub(super) fn emit_norm<D: Domain>(d: &mut D, terms: &[D::Real], [l, inv_l]: [D:
     let mut sum = None;
     for &term in terms {
         let part = d.div(term, divisor);
-        // These limits change no number. The order of operands says whose slope counts where they are equal:
-        // not that of 1.
+        // These limits change no number. Where both operands are equal, their order decides whose slope
+        // counts: never the slope of 1.
         let part = d.min(one, part);
         let power = d.pow(part, l);
         sum = Some(sum.map_or(power, |sum| d.add(sum, power)));
@@ -163,7 +164,7 @@ mod tests {
             let exponent = [1.0, 1.0 + rng.f64(), 2.0, 2.0 + 8.0 * rng.f64(), 1024f64.powf(rng.f64())][rng.usize(..5)];
             let stretch = DVec3::from_array(std::array::from_fn(|_| 0.2 + 2.0 * rng.f64()));
             let l = LMetric { center: testing::position(rng), exponent, stretch };
-            // A direction, as long as the formula of the norm has it.
+            // A direction, scaled to length 1 in the norm.
             let onto = |v: DVec3| {
                 let top = v.abs().max_element();
                 let sum: f64 = v.to_array().iter().map(|x| (x.abs() / top).powf(exponent)).sum();

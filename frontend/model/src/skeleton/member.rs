@@ -1,4 +1,4 @@
-//! What every skeleton states about itself.
+//! What every skeleton implements.
 
 use glam::{DAffine3, DVec3};
 use jbt_ir::Domain;
@@ -21,11 +21,11 @@ pub trait SkeletonMember: Member {
     /// Its symmetry in its pose.
     const SYMMETRY: Symmetry;
 
-    /// How many distances that may be zero, as that from an axis, divide its derivative one after the other.
-    /// All but the first of them are at least the distance from the skeleton.
+    /// How many distances that may be zero, such as the distance from an axis, divide the derivative one
+    /// after the other. All but the first are at least the distance from the skeleton.
     const DIVISORS: i32 = 1;
 
-    /// What its distance is.
+    /// How its distance is measured.
     fn metric(&self) -> Metric {
         Metric::EUCLIDEAN
     }
@@ -34,32 +34,33 @@ pub trait SkeletonMember: Member {
     /// map. Its sides may be infinite.
     fn bounds_under(&self, map: &DAffine3) -> Bounds;
 
-    /// The squared distance from `p`, plainly.
+    /// The squared distance from `p`, in f64.
     fn distance_squared(&self, p: DVec3) -> f64;
 
-    /// How far `p` is from where the gradient of the squared distance jumps; infinity if it never does.
+    /// The distance of `p` from the nearest jump of the gradient of the squared distance; infinity if it
+    /// never jumps.
     fn kink_distance(&self, p: DVec3) -> f64;
 
     /// The rigid motion from the pose to where the skeleton is.
     fn pose(&self) -> DAffine3;
 
     /// The numbers of a row, derived from the parameters in f64: one for each of [`COLUMNS`](Self::COLUMNS).
-    /// They are lengths, of a skeleton that is `scale` times as large.
+    /// They describe the skeleton scaled by `scale`.
     fn columns(&self, scale: f64, row: &mut Vec<f64>);
 
-    /// The squared distance from `p`, over the ops, of the skeleton in its pose; `row` holds the columns.
+    /// The squared distance from `p`, over the ops, for the skeleton in its pose; `row` holds the columns.
     ///
-    /// In f32, with columns rounded once, its square root is off by at most [`ROUNDING`] of the distance and
-    /// the largest coordinate of the skeleton together (and by 2^-73, where squares fall below the smallest
-    /// numbers): supports rest on it.
+    /// In f32, with columns rounded once, its square root is off by at most [`ROUNDING`] of the distance plus
+    /// the largest coordinate of the skeleton (and by 2^-73, where squares underflow). Supports rest on this
+    /// bound.
     fn emit<D: Domain>(d: &mut D, p: [D::Real; 3], row: &[D::Real]) -> D::Real;
 
-    /// What is folded over its pieces, if it is made of any number of them. Then the row that
-    /// [`emit`](Self::emit) is given goes on behind the columns with what the accumulators have come to.
+    /// The fold over its pieces, if it is made of any number of them. Then the row for [`emit`](Self::emit)
+    /// holds the columns followed by the final accumulators.
     const PIECES: Option<Pieces> = None;
 
-    /// The numbers of its pieces, those of one behind those of the other, in the pose and `scale` times as
-    /// large; `reach` is the support radius, of the skeleton as it was written. There is at least one piece.
+    /// The numbers of its pieces, one piece after the other, in the pose and scaled by `scale`; `reach` is
+    /// the support radius of the unscaled skeleton. There is at least one piece.
     fn pieces(&self, _scale: f64, _reach: f64, _rows: &mut Vec<f64>) {}
 
     /// The smallest boxes that hold the images of its pieces under a map, in their order.
@@ -67,7 +68,7 @@ pub trait SkeletonMember: Member {
         Vec::new()
     }
 
-    /// How many pieces there are; counting may end at `most`. Cost: that of the count.
+    /// How many pieces there are; counting may end at `most`. Costs as much as counting.
     fn piece_count(&self, _reach: f64, _most: usize) -> usize {
         0
     }
@@ -78,8 +79,8 @@ pub trait SkeletonMember: Member {
         Vec::new()
     }
 
-    /// The accumulators behind a piece, from those before it; `p` is a point in the pose, `piece` has the
-    /// numbers of the piece.
+    /// The accumulators after a piece, from the accumulators before it; `p` is a point in the pose, `piece`
+    /// holds the numbers of the piece.
     fn step<D: Domain>(
         _d: &mut D,
         _p: [D::Real; 3],
@@ -89,8 +90,7 @@ pub trait SkeletonMember: Member {
         Vec::new()
     }
 
-    /// What is wrong with parameters that do not go together, each of which by itself is what its kind says;
-    /// without a place.
+    /// The fault of parameters that are valid one by one but do not go together; without a place in the text.
     fn fault(&self) -> Option<Diagnostic> {
         None
     }
@@ -98,19 +98,19 @@ pub trait SkeletonMember: Member {
     /// Names of the columns that [`uv_columns`](Self::uv_columns) fills, in order.
     const UV_COLUMNS: &'static [&'static str] = &[];
 
-    /// Where `p` is on the skeleton, plainly: two numbers from 0 to 1, finite everywhere. What they mean
-    /// stands at each skeleton; without more, they are longitude and latitude about the middle of the pose.
+    /// The place of `p` on the skeleton, in f64: two numbers from 0 to 1, finite everywhere. Each skeleton
+    /// says what they mean; by default they are longitude and latitude about the middle of the pose.
     fn uv(&self, p: DVec3) -> [f64; 2] {
         uv::sphere(p - self.pose().translation)
     }
 
-    /// How far `p` is from where [`uv`](Self::uv) jumps; infinity if it never does.
+    /// The distance of `p` from the nearest jump of [`uv`](Self::uv); infinity if it never jumps.
     fn uv_kink_distance(&self, p: DVec3) -> f64 {
         uv::sphere_kink_distance(p - self.pose().translation)
     }
 
-    /// The rigid motion from the frame in which [`emit_uv`](Self::emit_uv) sees the skeleton to where it is.
-    /// Unlike the pose it is not up to symmetry.
+    /// The rigid motion from the frame of [`emit_uv`](Self::emit_uv) to the skeleton's place. Unlike the pose
+    /// it is unique, not up to symmetry.
     fn uv_frame(&self) -> DAffine3 {
         DAffine3::from_translation(self.pose().translation)
     }
@@ -130,21 +130,21 @@ pub trait SkeletonMember: Member {
 
 /// The rounding that [`SkeletonMember::emit`] may have: 64 units in the last place.
 ///
-/// A column is off by half a unit of what it holds. A difference of a coordinate and a length adds half a
-/// unit of both, a sum of two squares and its root less than two of the result: a cylinder, with two such
-/// terms, stays below 8 units, a box below 8. The sides of a triangle take two products and a sum, of numbers
-/// that are off themselves, so both its terms are off by up to 12 units of coordinates that are up to 1.5
-/// times as large; and near a corner the test of what is inside may be off by three times as much. A cone's
-/// profile is a figure of such sides.
+/// A column is off by half a unit of its value. A difference of a coordinate and a length adds half a unit of
+/// each, a sum of two squares and its root less than two units of the result: a cylinder, with two such
+/// terms, stays below 8 units, and so does a box. The sides of a triangle take two products and a sum of
+/// rounded numbers: both terms are off by up to 12 units of coordinates that are up to 1.5 times as large,
+/// and near a corner the inside test may be off by three times as much. A cone's profile is a figure of such
+/// sides.
 ///
-/// Of solids around something (a sphere, a torus, a round cone), the distance from that is at most the
-/// distance from the solid and a coordinate of it: it is off by less than 8 units, and a radius takes one
-/// more. A round cone finds the nearest point of its axis with an error of its own, which matters in the
-/// second order alone; see there. An arc adds to a ring the choice between its ends and the circle, which are
-/// equally far away where rounding may take the one for the other. A helix answers for a place of its own
-/// that is off by less than 8 units, and for one that is farther away than the nearest by at most 32.
+/// For solids around a smaller set (a sphere, a torus, a round cone), the distance from that set is at most
+/// the distance from the solid plus a coordinate of the solid: it is off by less than 8 units, and a radius
+/// adds one. A round cone finds the nearest point of its axis with an error that matters in the second order
+/// only; see there. An arc adds to a ring the choice between its ends and the circle, which are equally far
+/// away where rounding may confuse them. A helix answers with the distance of a place that is off by less
+/// than 8 units, and farther away than the nearest place by at most 32.
 ///
-/// Norms have no coordinates and are off by parts of themselves: an ellipsoid, with a product in each square,
-/// by less than 6 units, and those with powers by less than 13 for each norm in the other; see
+/// Norms have no coordinates, and their errors are relative: an ellipsoid, with a product in each square, is
+/// off by less than 6 units, norms with powers by less than 13 for each nested norm; see
 /// [`LMetric`](struct@super::LMetric).
 pub const ROUNDING: f64 = 64.0 / (1 << 24) as f64;

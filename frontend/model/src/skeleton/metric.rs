@@ -1,7 +1,7 @@
-//! Metrics: what the distance from a skeleton is measured in, as far as supports ask.
+//! Metrics: how the distance from a skeleton is measured, as far as supports need to know.
 //!
-//! A metric is a norm N of the way from the nearest point of the skeleton. What has to be known of it is
-//! where its unit ball `N(v) <= 1` is, and how steep it is: with h the half sizes of a box around the ball,
+//! A metric is a norm N of the vector from the nearest point of the skeleton. Supports need a box around its
+//! unit ball `N(v) <= 1` and its steepness: with h the half sizes of the box,
 //!
 //! ```text
 //! |v_k| <= h_k N(v)        N(v) <= steepness |v|
@@ -9,7 +9,7 @@
 
 use glam::{DMat3, DVec3};
 
-/// What a distance is.
+/// How a distance is measured.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Metric {
     half: DVec3,
@@ -18,7 +18,7 @@ pub struct Metric {
 }
 
 impl Metric {
-    /// The length of the way.
+    /// The Euclidean norm.
     pub const EUCLIDEAN: Self = Self { half: DVec3::ONE, steepness: 1.0, round: true };
 
     /// The norm whose unit ball is the ellipsoid with these half axes.
@@ -29,8 +29,8 @@ impl Metric {
     /// A norm whose unit ball lies in the box with these half sizes and touches its six sides in their
     /// middles.
     pub(super) fn touching(half: DVec3) -> Self {
-        // The ball is convex, so that it holds the hull of the six middles: N is at most |x / a| + |y /
-        // b| + |z / c|.
+        // The ball is convex, so it holds the hull of the six middles: N is at most |x / a| + |y / b| + |z /
+        // c|.
         Self { half, steepness: 3f64.sqrt() / half.min_element(), round: false }
     }
 
@@ -40,7 +40,7 @@ impl Metric {
         self.half
     }
 
-    /// The most by which the distance changes for each unit of length.
+    /// The largest change of the distance for each unit of length.
     #[must_use]
     pub fn steepness(&self) -> f64 {
         self.steepness

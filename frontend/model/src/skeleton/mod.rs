@@ -4,9 +4,9 @@
 //! bounds, the plain formula in f64 (the oracle), its pose and the same formula over [`Domain`] (the
 //! compiler), tests. To add one: write its file, add its line to the list below.
 //!
-//! The plain formula sees the skeleton where it is. The compiler's form sees it in its **pose**: about the
-//! origin, along the z axis. A row brings the point there, by the one matrix that it often needs anyway, and
-//! the formula has no directions left: a cylinder's distance is made of `|z|` and `sqrt(x^2 + y^2)`.
+//! The plain formula sees the skeleton in place. The compiler's form sees it in its **pose**: about the
+//! origin, along the z axis. A row brings the point there with one matrix, which most rows need anyway, and
+//! the formula needs no directions: a cylinder's distance uses only `|z|` and `sqrt(x^2 + y^2)`.
 
 use glam::{DAffine3, DVec3};
 use jbt_ir::Domain;

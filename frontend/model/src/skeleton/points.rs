@@ -1,11 +1,11 @@
-//! What skeletons of any number of points have in common: their lists, and what can be wrong with these.
+//! Lists of points and radii, shared by skeletons of any number of points, and their faults.
 
 use glam::{DAffine3, DVec3};
 
 use crate::bounds::Bounds;
 use crate::diagnostic::Diagnostic;
 
-/// Points in order, and what leads along them: thin, or a tube of all balls with middles there.
+/// Points in order, and a path along them: thin, or a tube of all balls with middles on the path.
 #[derive(Clone, Copy)]
 pub(super) struct Path<'a> {
     /// The points, at least two.
@@ -26,26 +26,26 @@ impl Path<'_> {
         }
     }
 
-    /// The first and the last point of each step from one to the next.
+    /// The indices of the first and the last point of each step.
     pub(super) fn steps(&self) -> impl Iterator<Item = [usize; 2]> + use<> {
         let count = self.points.len();
         let steps = if self.closed { count } else { count.saturating_sub(1) };
         (0..steps).map(move |first| [first, (first + 1) % count])
     }
 
-    /// What is wrong with it, if there have to be at least so many points.
+    /// The fault of the path, if it has one; it needs at least `least` points.
     pub(super) fn fault(&self, owner: &str, least: usize) -> Option<Diagnostic> {
         fault(owner, self.points, self.radii, least)
     }
 }
 
-/// The middle of the points: where their pose has its origin.
+/// The translation to the middle of the points, the origin of their pose.
 pub(super) fn middle(points: &[DVec3]) -> DAffine3 {
     let bounds = Bounds::around(points.iter().copied());
     DAffine3::from_translation(if bounds.is_empty() { DVec3::ZERO } else { bounds.min.midpoint(bounds.max) })
 }
 
-/// What is wrong with the numbers of points and radii, or with points that are all equal.
+/// The fault of the numbers of points and radii, or of points that are all equal.
 pub(super) fn fault(owner: &str, points: &[DVec3], radii: &[f64], least: usize) -> Option<Diagnostic> {
     let count = points.len();
     if count < least {
@@ -70,7 +70,7 @@ pub(super) fn fault(owner: &str, points: &[DVec3], radii: &[f64], least: usize) 
 pub(super) struct Place {
     /// The distance from it, below zero inside.
     pub(super) distance: f64,
-    /// Where the direction to the skeleton leads.
+    /// The point of the skeleton that the direction leads to.
     pub(super) foot: DVec3,
     /// Below about 1/2, the foot moves much faster than the point: the gradient turns quickly.
     pub(super) firmness: f64,
@@ -82,8 +82,7 @@ pub(super) fn distance_squared(places: impl IntoIterator<Item = Place>) -> f64 {
     nearest.max(0.0).powi(2)
 }
 
-/// By how much the nearest place is nearer than another one in another direction, whose turn it would be
-/// next.
+/// How much nearer the nearest place is than the next one in another direction.
 pub(super) fn kink_distance(places: &[Place]) -> f64 {
     let Some(best) = places.iter().min_by(|a, b| a.distance.total_cmp(&b.distance)) else {
         return f64::INFINITY;
@@ -94,7 +93,7 @@ pub(super) fn kink_distance(places: &[Place]) -> f64 {
     if best.firmness < 0.5 {
         return 0.0;
     }
-    // The search has the distance to all digits, and the place, where the distance is flat, to half of them.
+    // Where the distance is flat, the search finds the distance to all digits but the place to half of them.
     let other = |place: &&Place| place.foot.distance(best.foot) > 1e-5 * (best.distance + best.foot.length());
     places.iter().filter(other).map(|place| place.distance - best.distance).fold(f64::INFINITY, f64::min)
 }

@@ -9,10 +9,9 @@
 //!        \/
 //! ```
 //!
-//! An edge is crossed if one of its ends is above the ray and the other is not. Both of its rows that have a
-//! corner hold the same f32 for it, so this is decided without error; where along the ray the crossing is, is
-//! off by no more than rounding, and decides only points that are as near to the edge. Crossings are counted
-//! of all edges, so none may be left out.
+//! An edge is crossed if one end is above the ray and the other is not. Both rows of a corner hold the same
+//! f32, so this decision is exact. The place of a crossing along the ray is off by rounding only, and decides
+//! only for points as near to the edge. Crossings of all edges are counted, so none may be left out.
 
 use glam::{DAffine3, DMat3, DVec2, DVec3};
 use jbt_ir::Domain;
@@ -42,14 +41,14 @@ member! {
 }
 
 impl Polygon {
-    /// Twice its area along each axis (Newell's sums), about its middle.
+    /// Twice the area vector (Newell's sums), about the middle.
     fn area(&self) -> DVec3 {
         let middle = points::middle(&self.points).translation;
         let next = self.points.iter().cycle().skip(1);
         self.points.iter().zip(next).map(|(a, b)| (*a - middle).cross(*b - middle)).sum()
     }
 
-    /// The corners in the pose: x, y, and how far each is off the plane.
+    /// The corners in the pose: x, y, and the distance off the plane.
     fn corners(&self) -> Vec<DVec3> {
         let to_pose = self.pose().inverse();
         self.points.iter().map(|point| to_pose.transform_point3(*point)).collect()
@@ -62,7 +61,8 @@ impl Polygon {
         corners.iter().zip(next).map(|(a, b)| [a.truncate(), b.truncate()]).collect()
     }
 
-    /// The nearest places of all edges to a point of the pose, nothing where it is above or below the inside.
+    /// The nearest place of each edge to a point of the pose; no places for a point above or below the
+    /// inside.
     fn places(&self, q: DVec3) -> Vec<Place> {
         let edges = self.edges();
         let crossed = |[a, b]: &&[DVec2; 2]| {
@@ -129,7 +129,8 @@ impl SkeletonMember for Polygon {
         for edge in self.edges() {
             let [a, b] = edge.map(|corner| scale * corner);
             let u = super::unit((b - a).extend(0.0));
-            // Made of the corners as the rows have them: so an edge never crosses the ray far from itself.
+            // Made of the corners as rows hold them, in f32: so a crossing of the ray is never far from its
+            // edge.
             let [near, far] = [a, b].map(|corner| corner.as_vec2().as_dvec2());
             let rise = far.y - near.y;
             let lean = if rise == 0.0 { 0.0 } else { (far.x - near.x) / rise };
@@ -190,7 +191,7 @@ impl SkeletonMember for Polygon {
         let corners = self.corners();
         let size = corners.iter().map(|corner| corner.truncate().length()).fold(0.0, f64::max);
         let off = corners.iter().map(|corner| corner.z.abs()).fold(0.0, f64::max);
-        // A NaN is a fault too.
+        // Written to make NaN a fault too.
         let (has_area, is_flat) = (self.area().length() >= LEAST_AREA * size * size, off <= FLATNESS * size);
         if !has_area {
             let error = Diagnostic::error(None, "the polygon has no area");

@@ -1,19 +1,18 @@
 //! The round cone: a capsule with two radii, also called cone-sphere or tapered capsule; the hull of two
 //! balls.
 //!
-//! It is the union of balls along its axis, and the nearest of them decides. With the axis along z, balls of
-//! radius `r + k tau` at the heights `tau`, and y the distance from the axis, `sqrt(y^2 + (z - tau)^2) - k
-//! tau` is smallest at
+//! It is the union of balls along its axis, and the nearest ball decides. With the axis along z, balls of
+//! radius `r + k tau` at the heights `tau`, and y the distance from the axis,
+//! `sqrt(y^2 + (z - tau)^2) - k tau` is smallest at
 //!
 //! ```text
 //! tau = clamp(z + lean y, -half, half)        lean = k / sqrt(1 - k^2),   k = (r2 - r1) / length
 //! ```
 //!
-//! A slope k of magnitude 1 or more says that one ball holds the other: it is the skeleton alone. At its
-//! minimum a function does not move with its argument, so the gradient is that of the distance from the ball
-//! at a fixed tau (`stop_gradient`). For the same reason an error of tau counts in the second order: with
-//! rounding u, that of `lean y` is below `3 u y / sqrt(1 - k^2)`, and what it adds to the distance below `5
-//! u^2 y`.
+//! If k has magnitude 1 or more, one ball holds the other and is the skeleton. At the minimum the derivative
+//! by tau is 0, so the gradient is the gradient of the distance from the ball at a fixed tau
+//! (`stop_gradient`). For the same reason an error of tau counts in the second order only: with rounding u,
+//! the error of `lean y` is below `3 u y / sqrt(1 - k^2)`, and adds less than `5 u^2 y` to the distance.
 
 use glam::{DAffine3, DVec3};
 use jbt_ir::Domain;
@@ -38,7 +37,7 @@ member! {
     }
 }
 
-/// A round cone as the formula sees it.
+/// A round cone in the terms of the formula.
 struct Profile {
     /// The middle of the axis.
     middle: DVec3,
@@ -146,7 +145,7 @@ mod tests {
     }
 
     /// The foot of the perpendicular, moved by the slope of the radius, `tau = x - y (r1 - r2) / L`, is near
-    /// the nearest ball and is not it.
+    /// the nearest ball but not on it.
     #[test]
     fn the_nearest_ball_and_not_one_near_it() {
         let round = cone(5.0, 0.5, 2.0);

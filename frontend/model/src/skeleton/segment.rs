@@ -19,8 +19,8 @@ member! {
 }
 
 impl SkeletonMember for Segment {
-    // A unit direction and a length: no division, and nothing special where the ends are equal (then both are
-    // zero). Measured from the middle, both ends are one comparison.
+    // A unit direction and a length: this needs no division and no special case for equal ends, where both
+    // are zero. Measured from the middle, both ends are one comparison.
     const COLUMNS: &'static [&'static str] = &["half"];
     const SYMMETRY: Symmetry = Symmetry::Axis;
 
@@ -77,7 +77,7 @@ impl SkeletonMember for Segment {
     }
 }
 
-/// The squared distance of `p` from the segment between `from` and `to`, plainly.
+/// The squared distance of `p` from the segment between `from` and `to`, in f64.
 pub(super) fn segment_distance_squared(p: DVec3, from: DVec3, to: DVec3) -> f64 {
     let (v, along) = (p - from, to - from);
     let square = along.length_squared();

@@ -5,10 +5,10 @@
 //! d^(2/e1) = (|x / a|^(2/e2) + |y / b|^(2/e2))^(e2/e1) + |z / c|^(2/e1)
 //! ```
 //!
-//! e1 shapes the profile along z, e2 the slices across it: 1 is round, towards 0 square, 2 has flat facets,
-//! as an octahedron. It is a norm of exponent 2/e1 over one of exponent 2/e2, so that everything said of
-//! [`LMetric`](super::LMetric) holds of each. Pinched shapes, with exponents above 2, are none: their
-//! distance is infinitely steep at the planes where a coordinate is 0, so they are refused.
+//! e1 shapes the profile along z, e2 the slices across it: 1 is round, towards 0 square, 2 has flat facets
+//! like an octahedron. It is a norm of exponent 2/e1 over a norm of exponent 2/e2, so that all statements of
+//! [`LMetric`](super::LMetric) hold for each. Pinched shapes, with exponents above 2, are refused: their
+//! distance is no norm and infinitely steep at the planes where a coordinate is 0.
 
 use glam::{DAffine3, DVec3};
 use jbt_ir::Domain;
@@ -20,7 +20,7 @@ use crate::bounds::Bounds;
 use crate::field::FieldKind;
 use crate::member::member;
 
-/// Exponents of Barr's: two by an exponent of a norm.
+/// Barr's exponents: 2 over the exponent of a norm.
 const BARR: FieldKind = FieldKind::Within { least: 2.0 / MAX_METRIC_EXPONENT, most: 2.0 };
 
 member! {
@@ -41,7 +41,7 @@ member! {
 }
 
 impl SkeletonMember for Superquadric {
-    // The exponents of the norms: that of the slices, then that of the profile.
+    // The exponents of the norms: first of the slices, then of the profile.
     const COLUMNS: &'static [&'static str] = &["inv_x", "inv_y", "inv_z", "l2", "inv_l2", "l1", "inv_l1"];
     const SYMMETRY: Symmetry = Symmetry::None;
 
@@ -59,8 +59,8 @@ impl SkeletonMember for Superquadric {
         norm(&[across, z], 2.0 / self.e1).powi(2)
     }
 
-    /// The planes on which a coordinate with a norm of exponent below 2 is 0, and the z axis, where both of
-    /// one norm are.
+    /// The gradient jumps on planes where a coordinate is 0 in a norm of exponent below 2, and on the z axis,
+    /// where both coordinates of one norm are 0.
     fn kink_distance(&self, p: DVec3) -> f64 {
         let [x, y, z] = (p - self.center).abs().to_array();
         let across = if self.e2 > 1.0 { x.min(y) } else { f64::INFINITY };

@@ -1,25 +1,25 @@
-//! Rotations that a skeleton in its pose does not feel.
+//! Rotations that leave a skeleton in its pose unchanged.
 
 use glam::{DMat3, DVec3};
 
 use super::{along, towards};
 
-/// Which rotations a skeleton in its pose does not feel: they need not be done.
+/// The rotations that leave a skeleton in its pose unchanged: a row leaves them out.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Symmetry {
     /// All.
     Ball,
-    /// Those about the z axis, and turning it round.
+    /// Rotations about the z axis, and half turns that reverse it.
     Axis,
-    /// Those about the z axis.
+    /// Rotations about the z axis.
     Arrow,
     /// None.
     None,
 }
 
 impl Symmetry {
-    /// A rotation (or reflection) that does the same to such a skeleton as `turn`; the identity, if that will
-    /// do.
+    /// A rotation (or reflection) with the same effect on such a skeleton as `turn`; the identity, if
+    /// possible.
     #[must_use]
     pub fn simplest(self, turn: DMat3) -> DMat3 {
         let simplest = match self {

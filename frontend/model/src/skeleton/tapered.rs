@@ -9,7 +9,7 @@
 //! ```
 //!
 //! Where `|k| >= 1`, one end's ball holds all the others. The distance has its minimum at tau, so its
-//! gradient is that for a tau which is held: the direction from the ball's centre.
+//! gradient is the gradient for a constant tau: the direction from the ball's centre.
 
 use glam::{DAffine3, DVec3};
 use jbt_ir::Domain;
@@ -18,7 +18,7 @@ use super::points::Place;
 use super::tube::Part;
 use crate::bounds::Bounds;
 
-/// The balls between two, those included.
+/// The balls between two end balls, with the end balls.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) struct Cone {
     pub(super) centers: [DVec3; 2],
@@ -26,13 +26,13 @@ pub(super) struct Cone {
 }
 
 impl Cone {
-    /// How fast the radius grows along the line, and how far that shifts the nearest ball for a distance from
-    /// the line. Where one end holds all: the place of that end in the list.
+    /// The slope k of the radius along the line, and the shift of the nearest ball for each unit of distance
+    /// from the line. If one end's ball holds all others: the index of that end.
     pub(super) fn taper(&self) -> Result<(f64, f64), usize> {
         let k = (self.radii[1] - self.radii[0]) / self.centers[0].distance(self.centers[1]);
         let square = 1.0 - k * k;
-        // Equal centres give a NaN or an infinity. The other balls stick out by less than 1e-12 of the
-        // length.
+        // Equal centres give a NaN or an infinity. Below 1e-12, the other balls stick out by less than 1e-12
+        // of the length.
         if square > 1e-12 {
             Ok((k, k / square.sqrt()))
         } else {

@@ -1,4 +1,4 @@
-//! What the tests of all skeletons have in common: every skeleton is judged by points of the set that it is.
+//! Checks for the tests of all skeletons: every skeleton is compared with points of its set.
 
 use std::fmt::Debug;
 
@@ -47,12 +47,12 @@ pub fn ball(shells: u32) -> impl Iterator<Item = DVec3> {
 }
 
 /// The compiler's form in f32: numbers are derived in f64 and rounded once. The point is brought to the pose
-/// in f64, so that it is the form alone that is judged.
+/// in f64, so that only the form is judged.
 pub fn emitted<S: SkeletonMember>(skeleton: &S, p: DVec3) -> f32 {
     emitted_scaled(skeleton, 1.0, p)
 }
 
-/// The same of a skeleton that is `scale` times as large, asked at `scale * p`.
+/// The compiler's form of the skeleton scaled by `scale`, at the point `scale * p`.
 fn emitted_scaled<S: SkeletonMember>(skeleton: &S, scale: f64, p: DVec3) -> f32 {
     let mut row = Vec::new();
     skeleton.columns(scale, &mut row);
@@ -67,7 +67,7 @@ fn emitted_scaled<S: SkeletonMember>(skeleton: &S, scale: f64, p: DVec3) -> f32 
 /// The support radius of skeletons with pieces: no point is farther away.
 const REACH: f64 = 40.0;
 
-/// What the accumulators come to, if the skeleton has pieces; `p` is in the pose and scaled.
+/// The final accumulators, if the skeleton has pieces; `p` is in the pose and scaled.
 fn folded<S: SkeletonMember>(skeleton: &S, scale: f64, p: [f32; 3]) -> Vec<f32> {
     let Some(pieces) = S::PIECES else { return Vec::new() };
     let mut numbers = Vec::new();
@@ -164,7 +164,7 @@ where
             );
             let size = skeleton.bounds_under(&skeleton.pose().inverse());
             let size = size.min.abs().max(size.max.abs()).max_element();
-            // The point that it was given is off by half a unit along each axis.
+            // The input point is off by half a unit along each axis.
             let allowed = (ROUNDING + 2f64.powi(-24)) * (size + distance) + 2f64.powi(-73);
             assert!(
                 (got - distance).abs() <= allowed,
@@ -178,8 +178,8 @@ where
     }
 }
 
-/// Judges random points with a norm as their distance: `make` gives a skeleton, its point, and ways from
-/// there at which the norm is 1.
+/// Judges random points with a norm as their distance: `make` gives a skeleton, its point, and vectors of
+/// norm 1.
 pub fn judge_norm<S>(mut make: impl FnMut(&mut fastrand::Rng) -> (S, DVec3, Vec<DVec3>))
 where
     S: SkeletonMember + PartialEq + Debug,
@@ -249,7 +249,7 @@ fn bounds_hold<S: SkeletonMember + Debug>(
     }
 }
 
-/// A skeleton in its pose may be scaled, and be turned as its symmetry says.
+/// Checks that a skeleton in its pose may be scaled, and turned by its symmetry.
 pub fn scales<S: SkeletonMember + Debug>(skeleton: &S, p: DVec3, rng: &mut fastrand::Rng) {
     let pose = skeleton.pose();
     assert!(
@@ -267,7 +267,7 @@ pub fn scales<S: SkeletonMember + Debug>(skeleton: &S, p: DVec3, rng: &mut fastr
     let mirror = DMat3::from_diagonal(DVec3::new(if rng.bool() { 1.0 } else { -1.0 }, 1.0, 1.0));
     let turn = turn * mirror;
     let simplest = S::SYMMETRY.simplest(turn);
-    // What is p's place in the skeleton's own pose, if it was turned in the one way or in the other?
+    // The place of p in the pose after either turn.
     let there = pose.inverse().transform_point3(p);
     let other = (turn.transpose() * simplest) * there;
     let same = skeleton.distance_squared(pose.transform_point3(other));
@@ -300,8 +300,8 @@ pub fn same_uv<S: SkeletonMember + Debug>(skeleton: &S, p: DVec3, expected: [f64
     }
 }
 
-/// Both forms of the uv agree away from seams and are in [0, 1] everywhere; the frame is rigid, and what
-/// jumps says so.
+/// Both forms of the uv agree away from seams and are in [0, 1] everywhere; the frame is rigid; jumps are
+/// where the kink distance is 0.
 pub fn judge_uv<S: SkeletonMember + Debug>(mut make: impl FnMut(&mut fastrand::Rng) -> S) {
     let mut rng = fastrand::Rng::with_seed(4);
     for _ in 0..40 {

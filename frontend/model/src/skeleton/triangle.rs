@@ -51,7 +51,7 @@ impl Triangle {
         turns.into_iter().reduce(|best, next| if side(&next) > side(&best) { next } else { best }).unwrap_or(turns[0])
     }
 
-    /// How the barycentric weights of b and c change in space; nothing if the triangle is flat.
+    /// The gradients of the barycentric weights of b and c; zero if the triangle is flat.
     fn weights(&self) -> [DVec3; 2] {
         let (to_b, to_c) = (self.b - self.a, self.c - self.a);
         let n = to_b.cross(to_c);
@@ -59,7 +59,7 @@ impl Triangle {
         if n.length() <= FLATTEST * longest * longest || longest < limits::MIN_LENGTH {
             return [DVec3::ZERO; 2];
         }
-        // Divided one after the other: the square of an area may be out of reach of f64.
+        // Two divisions in a row: the square of an area may overflow f64.
         let (unit, area) = (n.normalize(), n.length());
         [to_c.cross(unit) / area, unit.cross(to_b) / area]
     }
@@ -80,7 +80,7 @@ impl SkeletonMember for Triangle {
         let sides = [(self.a, self.b), (self.b, self.c), (self.c, self.a)];
         let n = (self.b - self.a).cross(self.c - self.a);
         let longest = sides.iter().map(|(from, to)| from.distance_squared(*to)).fold(0.0, f64::max);
-        // A triangle flatter than rounding has no plane; its sides are all there is of it.
+        // A triangle flatter than rounding has no plane: only its sides count.
         let flat = n.length() <= 1e-12 * longest;
         let inside = !flat && sides.iter().all(|(from, to)| (to - from).cross(p - from).dot(n) >= 0.0);
         if inside {
@@ -97,8 +97,8 @@ impl SkeletonMember for Triangle {
         let [a, b, c] = self.longest_first();
         let e1 = super::unit(b - a);
         let e1 = if e1 == DVec3::ZERO { DVec3::X } else { e1 };
-        // Up is away from the third corner; in a flat triangle, any way off the line.
-        // Twice, because what is left of a flat one is mostly rounding.
+        // Up is away from the third corner; in a flat triangle, any direction off the line. Twice, because
+        // the first difference in a flat triangle is mostly rounding.
         let off_line = |v: DVec3| v - v.dot(e1) * e1;
         let down = off_line(off_line(c - a));
         let flat = down.length() <= 1e-12 * b.distance(a);
@@ -115,7 +115,7 @@ impl SkeletonMember for Triangle {
         for (from, to) in [(b, c), (c, a)] {
             let along = DVec3::new(to.x - from.x, to.y - from.y, 0.0);
             let u = super::unit(along);
-            // A side without length has no direction; any will do, since only its ends count.
+            // A side without length has no direction; any direction will do, because only the ends count.
             let u = if u == DVec3::ZERO { DVec3::NEG_X } else { u };
             let middle = DVec3::new(0.5 * (from.x + to.x), 0.5 * (from.y + to.y), 0.0);
             let n = DVec3::new(-u.y, u.x, 0.0);
@@ -175,7 +175,7 @@ impl SkeletonMember for Triangle {
     }
 }
 
-/// The squared distance of (x, y) from a side, and how far out it is from the side's line.
+/// The squared distance of (x, y) from a side, and the signed distance outwards from the side's line.
 fn emit_side<D: Domain>(d: &mut D, [x, y]: [D::Real; 2], side: &[D::Real]) -> (D::Real, D::Real) {
     let &[nx, ny, s_offset, q_offset, half] = side else { panic!("a side has {SIDE} columns") };
     // The side's direction is (ny, -nx).

@@ -1,9 +1,8 @@
-//! Tubes along paths: what lines and curves through points have in common. Each says of which [`Part`]s it
-//! consists; the rest stands here.
+//! Tubes along paths: the shared code of lines and curves through points. Each skeleton lists its [`Part`]s.
 //!
 //! A tube is the solid of all balls with middles on the path, whose radii may differ: its distance is the
-//! smallest one of its parts, and 0 inside. A thin one has radii of 0. The parts, or what they are divided
-//! into, are pieces, so that a path of any length is the same code.
+//! smallest distance of its parts, and 0 inside. A thin tube has radii of 0. The parts, or divisions of them,
+//! are pieces, so that a path of any length is the same code.
 
 use glam::{DAffine3, DVec3};
 use jbt_ir::Domain;
@@ -19,14 +18,13 @@ pub(super) trait Part: Sized {
     /// Names of the columns that [`columns`](Self::columns) fills, in order.
     const COLUMNS: &'static [&'static str];
 
-    /// The box around its image under a map.
+    /// The box around the part's image under a map.
     fn bounds_under(&self, map: &DAffine3) -> Bounds;
 
-    /// The nearest places of all parts, plainly: at each part, every place that is nearer than those around
-    /// it.
+    /// The nearest places of all parts, in f64: for each part, every local minimum of the distance.
     fn places(parts: impl Iterator<Item = Self>, p: DVec3) -> Vec<Place>;
 
-    /// What the program sees of all parts, for this support radius.
+    /// The pieces of all parts that the program sees, for this support radius.
     fn divided(parts: impl Iterator<Item = Self>, reach: f64) -> impl Iterator<Item = Self>;
 
     /// The numbers of a row, in the pose and scaled.

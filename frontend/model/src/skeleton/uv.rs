@@ -1,15 +1,16 @@
-//! What the uv of skeletons is made of: angles as parts of a turn, and frames.
+//! Building blocks of the uv of skeletons: angles as parts of a turn, and frames.
 //!
-//! Every skeleton gives each place of space two numbers in [0, 1]: where the place is *on the skeleton*, by
-//! the skeleton's own parameters. They are finite everywhere. Where they jump (at seams, poles and axes) is
-//! said by [`SkeletonMember::uv_kink_distance`](super::SkeletonMember::uv_kink_distance).
+//! Every skeleton gives each place of space two numbers in [0, 1]: the coordinates of the place *on the
+//! skeleton*, by the skeleton's own parameters. They are finite everywhere.
+//! [`SkeletonMember::uv_kink_distance`](super::SkeletonMember::uv_kink_distance) says where they jump: at
+//! seams, poles and axes.
 //!
 //! Angles about an axis n start at the *zero direction*: the x axis without its part along n, or the y axis
-//! where n is closer than about 26 degrees to x (|n.x| > 0.9); they go right-handed about n. So a picture
-//! stays where it is when other numbers of the skeleton change. One whose z axis is n, and whose x axis is
-//! the zero direction, is the frame of the skeleton.
+//! where n is closer than about 26 degrees to x (|n.x| > 0.9). They go right-handed about n. So a picture
+//! stays in place when other numbers of the skeleton change. The frame of the skeleton has n as its z axis
+//! and the zero direction as its x axis.
 //!
-//! uv feels rotations that distances do not, so it has a frame of its own beside the pose.
+//! Rotations that leave distances unchanged change the uv, so the uv has a frame of its own beside the pose.
 
 use std::f64::consts::TAU;
 
@@ -25,12 +26,12 @@ pub(super) fn frame(n: DVec3, origin: DVec3) -> DAffine3 {
     DAffine3::from_mat3_translation(DMat3::from_cols(x, n.cross(x), n), origin)
 }
 
-/// A place in a frame, which is rigid.
+/// A place in the coordinates of a rigid frame.
 pub(super) fn within(frame: &DAffine3, p: DVec3) -> DVec3 {
     frame.matrix3.transpose() * (p - frame.translation)
 }
 
-/// `1 / length`, and 0 for a length that is too small to divide anything.
+/// `1 / length`, and 0 for a length below [`limits::MIN_LENGTH`].
 pub(super) fn inverse(length: f64) -> f64 {
     if length < limits::MIN_LENGTH { 0.0 } else { 1.0 / length }
 }
@@ -41,7 +42,7 @@ pub(super) fn turn(x: f64, y: f64) -> f64 {
     if part < 0.0 { part + 1.0 } else { part }
 }
 
-/// How far (x, y) is from where [`turn`] jumps: the x axis on its positive side.
+/// The distance of (x, y) from the jump of [`turn`]: the positive x axis.
 pub(super) fn turn_kink_distance(x: f64, y: f64) -> f64 {
     if x > 0.0 { y.abs() } else { x.hypot(y) }
 }
@@ -52,7 +53,7 @@ pub(super) fn sphere(p: DVec3) -> [f64; 2] {
     [turn(p.x, p.y), 0.5 + 2.0 * p.z.atan2(p.x.hypot(p.y)) / TAU]
 }
 
-/// How far `p` is from where [`sphere`] jumps.
+/// The distance of `p` from the jumps of [`sphere`].
 pub(super) fn sphere_kink_distance(p: DVec3) -> f64 {
     turn_kink_distance(p.x, p.y)
 }
@@ -88,7 +89,7 @@ fn emit_first_quarter<D: Domain>(d: &mut D, x: D::Real, y: D::Real) -> D::Real {
     let (small, large) = (d.min(x, y), d.max(x, y));
     let (zero, quarter) = (d.constant(0.0), d.constant(0.25));
     let ratio = d.div(small, large);
-    // 0 / 0 and, at points that are infinitely far away, inf / inf.
+    // False for NaN: 0 / 0 and, at infinitely far points, inf / inf.
     let sound = d.le(ratio, ratio);
     let q = d.select(sound, ratio, zero);
     let square = d.mul(q, q);

@@ -1,13 +1,13 @@
-//! Cells, waves and smooth steps: what several textures compute with.
+//! Cells, waves and smooth steps, shared by several textures.
 
 use jbt_ir::Domain;
 
-/// How many cells from the origin a pattern goes on along an axis: 2^21. Beyond that f32 has no places left
-/// to tell cells apart.
+/// The number of cells from the origin along an axis in which a pattern goes on: 2^21. Beyond, f32 is too
+/// coarse to tell cells apart.
 pub const LARGEST_CELL: f32 = 2_097_152.0;
 
-/// 1.5 * 2^23: for |x| < 2^22 the sum `x + ROUND` is `ROUND` plus the integer nearest to x, and so are its
-/// bits.
+/// 1.5 * 2^23. For |x| < 2^22 the sum `x + ROUND` is `ROUND` plus the integer nearest to x, and its bits are
+/// the bits of `ROUND` plus that integer.
 pub(super) const ROUND: f32 = 12_582_912.0;
 
 /// The cell of a coordinate: its number, as the low bits, and how far into the cell it is, from 0 to 1.
@@ -34,14 +34,14 @@ pub(super) fn emit_cell<D: Domain>(d: &mut D, x: D::Real) -> Cell<D> {
     Cell { number: d.int_sub(bits, offset), rest: d.sub(x, floor) }
 }
 
-/// Divides a coordinate, in cells, into the number of its cell and the rest, plainly.
+/// Divides a coordinate, in cells, into the number of its cell and the rest, in f64.
 pub(super) fn cell(x: f64) -> (i32, f64) {
     let largest = f64::from(LARGEST_CELL);
     let x = x.clamp(-largest, largest);
     (x.floor() as i32, x - x.floor())
 }
 
-/// How far a coordinate is from where its cell ends.
+/// The distance of a coordinate from the nearest end of a cell.
 pub(super) fn cell_kink_distance(x: f64) -> f64 {
     (x - x.round()).abs()
 }

@@ -1,8 +1,7 @@
 //! The checker: cubes of two kinds in turn, like a chessboard in space.
 //!
-//! `t = (floor(x / size) + floor(y / size) + floor(z / size)) mod 2`. A face of a solid that lies exactly
-//! between two layers of cubes belongs to none: shift the pattern, by a map above the node and its inverse
-//! below.
+//! `t = (floor(x / size) + floor(y / size) + floor(z / size)) mod 2`. On a face exactly between two layers of
+//! cubes, rounding chooses the layer: shift the pattern, by a map above the node and its inverse below.
 
 use glam::DVec3;
 use jbt_ir::Domain;

@@ -21,7 +21,7 @@ member! {
 }
 
 impl Gradient {
-    /// How t changes along each axis.
+    /// The derivatives of t along the axes.
     fn slope(&self) -> DVec3 {
         let way = self.to - self.from;
         if way.length() < limits::MIN_LENGTH { DVec3::ZERO } else { way / way.length_squared() }

@@ -1,4 +1,4 @@
-//! What every texture states about itself.
+//! What every texture implements.
 
 use glam::DVec3;
 use jbt_ir::Domain;
@@ -12,14 +12,14 @@ pub trait TextureMember: Member {
         None
     }
 
-    /// The number at `p`, plainly: from 0 to 1.
+    /// The number at `p`, in f64: from 0 to 1.
     fn value(&self, p: DVec3) -> f64;
 
-    /// How far `p` is from where the number jumps; infinity if it never does.
+    /// The distance of `p` from the nearest jump of the number; infinity if it never jumps.
     fn kink_distance(&self, p: DVec3) -> f64;
 
-    /// The part of the parameters that selects code. `follows`: they follow those of the model, so the code
-    /// has to serve all their values.
+    /// The part of the parameters that selects code. With `follows`, the numbers follow parameters of the
+    /// model, so the code must serve all values.
     fn variant(&self, follows: bool) -> u8 {
         let _ = follows;
         0

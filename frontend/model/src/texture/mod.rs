@@ -1,14 +1,14 @@
 //! Textures: patterns in space that mix two values of an attribute group. One file per member, one list.
 //!
-//! A texture gives every place a number t from 0 to 1, and an attribute node makes the values `(1 - t) a + t
-//! b` of it, for a group of any width. The place is that of the node's own space, so maps and warps above the
-//! node move the pattern and those below do not.
+//! A texture gives every place a number t from 0 to 1, and an attribute node mixes two values with it,
+//! `(1 - t) a + t b`, for a group of any width. The place is in the node's own space, so maps and warps above
+//! the node move the pattern, and maps and warps below the node do not.
 //!
 //! A file has the same parts in the same order: what the texture is, its parameters, the plain formula in f64
 //! (the oracle), the same formula over [`Domain`] (the compiler), tests. To add one: write its file, add its
 //! line to the list below.
 //!
-//! A texture is not differentiated, and takes any coordinates: those beyond [`LARGEST_CELL`] cells,
+//! A texture is not differentiated, and takes any coordinates: coordinates beyond [`LARGEST_CELL`] cells,
 //! infinities and NaN count as the ends of that range, so t is always a number in [0, 1].
 
 use glam::DVec3;

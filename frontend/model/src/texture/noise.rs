@@ -1,9 +1,9 @@
 //! Noise: a smooth random number at every place (value noise: Perlin 1985 calls such a sum of octaves
 //! turbulence).
 //!
-//! Every corner of a lattice of cubes has a random number, the hash of its whole coordinates; in a cube,
-//! numbers are mixed by `3 t^2 - 2 t^3` along each axis. Octave k has cubes of `size / 2^k` and half the
-//! weight of the one before; the weights add up to 1. A fractional number of octaves gives the last one a
+//! Every corner of a lattice of cubes has a random number, the hash of its integer coordinates; in a cube,
+//! the numbers are mixed by `3 t^2 - 2 t^3` along each axis. Octave k has cubes of `size / 2^k` and half the
+//! weight of octave k - 1; the weights add up to 1. With a fractional number of octaves the last octave has a
 //! part of its weight.
 //!
 //! ```text
@@ -99,12 +99,12 @@ pub(super) fn whole_seed(seed: f64) -> f64 {
     seed.round().clamp(-largest, largest)
 }
 
-/// What the hash begins with.
+/// The initial value of the hash.
 pub(super) fn seed_bits(seed: f64) -> u32 {
     whole_seed(seed) as i32 as u32
 }
 
-/// What the hash begins with, from the number that [`whole_seed`] gives.
+/// The initial value of the hash, from the number that [`whole_seed`] gives.
 pub(super) fn emit_seed<D: Domain>(d: &mut D, seed: D::Real) -> D::Bits {
     let (round, offset) = (d.constant(ROUND), d.bits_constant(ROUND.to_bits()));
     let shifted = d.add(seed, round);
@@ -135,7 +135,7 @@ pub(super) fn emit_octaves<D: Domain>(
     emit_unit(d, sum)
 }
 
-/// One octave with cubes of side 1, plainly.
+/// One octave with cubes of side 1, in f64.
 pub(super) fn lattice_noise(p: DVec3, seed: u32) -> f64 {
     let [(x, u), (y, v), (z, w)] = p.to_array().map(cell);
     let corner = |i: i32| {
@@ -159,7 +159,7 @@ fn emit_lattice_noise<D: Domain>(d: &mut D, p: [D::Real; 3], seed: D::Bits) -> D
         let both = [cell.number, next];
         hashes = hashes.iter().flat_map(|&hash| both.map(|number| emit_absorb(d, hash, number))).collect();
     }
-    // The last axis is that of neighbours in the list.
+    // Neighbours in the list differ along the last axis.
     let mut values: Vec<D::Real> = hashes.into_iter().map(|hash| emit_random(d, hash)).collect();
     for cell in cells.iter().rev() {
         let t = emit_smooth(d, cell.rest);
@@ -185,7 +185,7 @@ fn emit_absorb<D: Domain>(d: &mut D, hash: D::Bits, word: D::Bits) -> D::Bits {
     emit_xor_shifted(d, hash, 6)
 }
 
-/// Spreads what was taken in over all bits.
+/// Spreads the absorbed words over all bits.
 fn finish(hash: u32) -> u32 {
     let hash = hash.wrapping_add(hash << 3);
     let hash = hash ^ hash >> 11;
@@ -197,7 +197,7 @@ fn random(hash: u32) -> f64 {
     f64::from(hash >> 9) / f64::from(1 << 23)
 }
 
-/// [`finish`] and [`random`]. The bits go behind those of 1, which is taken away again: exactly.
+/// [`finish`] and [`random`]. The bits become the mantissa of a number in [1, 2); subtracting 1 is exact.
 fn emit_random<D: Domain>(d: &mut D, hash: D::Bits) -> D::Real {
     let hash = emit_add_shifted(d, hash, 3);
     let hash = emit_xor_shifted(d, hash, 11);
@@ -250,7 +250,7 @@ mod tests {
             }
         }
         assert!(bins.iter().all(|&count| (5800..7000).contains(&count)), "{bins:?}");
-        // Neighbours have nothing to do with each other.
+        // Neighbours are uncorrelated.
         let value = |x: i32| random(finish(absorb(absorb(absorb(0, x), 0), 0))) - 0.5;
         let correlation: f64 = (0..10_000).map(|x| value(x) * value(x + 1)).sum::<f64>() / 10_000.0;
         assert!(correlation.abs() < 0.005, "{correlation}");

@@ -1,5 +1,4 @@
-//! What the tests of all textures have in common: both forms are compared, at ordinary places and at hostile
-//! ones.
+//! Checks for the tests of all textures: both forms are compared, at ordinary places and at hostile ones.
 
 use std::fmt::Debug;
 
@@ -21,8 +20,8 @@ fn emitted_variant<T: TextureMember>(texture: &T, variant: u8, p: [f32; 3]) -> f
     T::emit(&mut Scalar, variant, p, &row)
 }
 
-/// Both forms agree wherever nothing is decided, for every variant, and stay within 0 and 1 wherever they are
-/// asked. Returns the least, the mean and the largest number that came up.
+/// Both forms agree away from jumps, for every variant, and stay within 0 and 1 everywhere. Returns the
+/// least, the mean and the largest number.
 pub fn judge<T: TextureMember + PartialEq + Debug>(
     mut make: impl FnMut(&mut fastrand::Rng) -> T,
 ) -> [f64; 3] {

@@ -1,8 +1,7 @@
-//! Veins: waves across space that noise shakes (Perlin 1985), of which marble and the rings of trees are
-//! made.
+//! Veins: waves across space that noise shakes (Perlin 1985), the common part of marble and tree rings.
 //!
 //! `t = wave(distance / width + turbulence * noise(p / size))`, where the wave goes from 0 to 1 and back in
-//! each width, and the noise has three octaves. What the distance is measured from makes the texture.
+//! each width, and the noise has three octaves. Each texture defines its own distance.
 
 use glam::DVec3;
 use jbt_ir::Domain;
@@ -37,7 +36,7 @@ impl Veins {
         crate::skeleton::unit(self.along)
     }
 
-    /// The number at `p`, where the waves have come this far.
+    /// The number at `p`, where the wave's distance is `distance`.
     pub(super) fn value(&self, p: DVec3, distance: f64) -> f64 {
         let octave = |k: usize| {
             let seed = seed_bits(self.seed).wrapping_add((k as u32).wrapping_mul(NEXT_OCTAVE));
@@ -58,7 +57,7 @@ pub(super) fn direction<R: Copy>(row: &[R]) -> [R; 3] {
     first_three(row)
 }
 
-/// The number at `p`, where the waves have come this far; `row` holds the columns.
+/// The number at `p`, where the wave's distance is `distance`; `row` holds the columns.
 pub(super) fn emit<D: Domain>(d: &mut D, p: [D::Real; 3], distance: D::Real, row: &[D::Real]) -> D::Real {
     let &[_, _, _, inv_width, turbulence, inv_size, seed] = row else { panic!("veins have seven columns") };
     let seed = emit_seed(d, seed);

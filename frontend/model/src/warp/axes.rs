@@ -1,9 +1,10 @@
-//! Axes, and boxes about them: what several warps compute with.
+//! Axes, and boxes about them: shared by several warps.
 
 use crate::axis::Axis;
 use crate::bounds::Bounds;
 
-/// A box, turned by every angle about an axis, and `stretch` times as far from it.
+/// The box around a box that is turned by every angle about an axis and scaled by `stretch` away from the
+/// axis.
 pub(super) fn turned(axis: Axis, child: Bounds, stretch: f64) -> Bounds {
     let [_, u, v] = axis.order();
     let reach = |axis: usize| child.min[axis].abs().max(child.max[axis].abs());
@@ -21,8 +22,8 @@ pub(super) fn farthest(child: Bounds) -> f64 {
     if child.is_empty() { 0.0 } else { child.min.abs().max(child.max.abs()).max_element() }
 }
 
-/// More than a few roundings of f32 take, relative to the numbers that are rounded: 2^-19.
+/// A bound of a few roundings in f32, relative to the rounded numbers: 2^-19.
 pub(super) const ROUNDINGS: f64 = 1.0 / (1 << 19) as f64;
 
-/// More than underflow takes from products of numbers in f32 and coordinates: 2^-80.
+/// A bound of the underflow of products of f32 numbers and coordinates: 2^-80.
 pub(super) const UNDERFLOW: f64 = 1.0 / (1_u128 << 80) as f64;

@@ -17,15 +17,14 @@
 //! beyond:   with t = k e at the end e    y = center + e + Y cos t + (Z - 1/k) sin t          z = 1/k - Y sin t + (Z - 1/k) cos t
 //! ```
 //!
-//! Nothing is divided by k: the right form of z, and an arctangent by the half angle (`angle`), keep their
-//! digits however small k is, and a rate of 0 is the identity. (The form that is usually printed, `z = 1/k +
-//! h / |k|`, takes the other one of two roots.)
+//! Nothing is divided by k: this form of z, and an arctangent by the half angle (`angle`), stay precise for
+//! any small k, and a rate of 0 is the identity. (The form that is usually printed, `z = 1/k + h / |k|`,
+//! takes the other one of two roots.)
 //!
-//! **Limits.** What the child has beyond 1/k, behind the centre of curvature, is not seen inside the bend:
-//! its material would have to be there a second time. A bend of more than half a turn to one side ends at
-//! half a turn, and so does a straight part where it crosses the side opposite of the middle. At the centre
-//! of curvature all of the spine meets; within [`SMALLEST_DISTANCE`] of it, in radii, s fades to 0, so that
-//! everything is finite.
+//! **Limits.** The part of the child beyond 1/k, behind the centre of curvature, is not seen inside the bend:
+//! its material would be there twice. A bend of more than half a turn to one side ends at half a turn, and a
+//! straight part ends where it crosses the side opposite of the middle. The whole spine meets at the centre
+//! of curvature; within [`SMALLEST_DISTANCE`] of it, in radii, s fades to 0, so that everything is finite.
 
 use std::f64::consts::PI;
 
@@ -39,14 +38,14 @@ use crate::axis::Axis;
 use crate::bounds::Bounds;
 use crate::member::member;
 
-/// Where the spine fades at the centre of curvature, in radii: 2^-16.
+/// The distance from the centre of curvature below which the spine fades, in radii: 2^-16.
 pub const SMALLEST_DISTANCE: f64 = 1.0 / 65_536.0;
 /// The largest rate, in magnitude.
 pub const LARGEST_RATE: f64 = 1e6;
-/// Products of rate and coordinates up to this have finite squares.
+/// Products of rate and coordinates up to this limit have finite squares.
 const LARGEST_PRODUCT: f64 = (1_u64 << 60) as f64;
-/// Two squares of coordinates up to this, and of products of them with a rate up to 1, have a finite sum in
-/// f32: 2^63.
+/// Two squares of coordinates up to this limit, or of such coordinates times a rate up to 1, have a finite
+/// sum in f32: 2^63.
 const FARTHEST: f32 = (1_u64 << 63) as f32;
 
 member! {
@@ -98,7 +97,7 @@ impl Bend {
         })
     }
 
-    /// Half a turn, in lengths of the spine; 0 if there is none.
+    /// Half a turn as a length of the spine; 0 if the rate is 0.
     fn half_turn(&self) -> f64 {
         if self.rate == 0.0 { 0.0 } else { PI / self.rate.abs() }
     }
@@ -111,22 +110,23 @@ impl Bend {
         angle::plain(point, y, self.half_turn(), SMALLEST_DISTANCE)
     }
 
-    /// Where the bend brings the place s of the spine, at height z, in (Y, Z).
+    /// The image (Y, Z) of the place s of the spine at height z.
     fn arc(&self, s: f64, z: f64) -> [f64; 2] {
         let (sin, cos) = (self.rate * s).sin_cos();
         let [along, across] = per_angle(self.rate * s);
         [self.center + s * along - z * sin, z * cos + s * across]
     }
 
-    /// A box around what the bend makes of a child, where it is bent and where it is not, both `slack`
-    /// farther than they should be.
+    /// A box around the image of a child, in the bent part and in the straight parts, with each part `slack`
+    /// longer than it is.
     fn bent(&self, child: Bounds, slack: f64) -> Bounds {
         let [a, u, v] = self.axis.order();
         let [lower, upper] = self.ends();
         let mut all = Bounds::EMPTY;
         for (end, side) in [(&lower, -1.0), (&upper, 1.0)] {
             let mut beyond = child;
-            // If the centre is not beyond this end, what is seen there is beyond it in the child as well.
+            // If the centre is not beyond this end, points beyond the end come from beyond it in the child as
+            // well.
             let place = self.center + end.at;
             if side > 0.0 && end.at >= 0.0 {
                 beyond.min[u] = beyond.min[u].max(place - slack);
@@ -154,7 +154,7 @@ impl Bend {
         all
     }
 
-    /// What stands rigidly beyond an end.
+    /// The image of the rigid part beyond an end.
     fn rigid(&self, end: &End, beyond: Bounds) -> Bounds {
         if beyond.is_empty() {
             return Bounds::EMPTY;
@@ -207,7 +207,7 @@ impl WarpMember for Bend {
         let [_, u, v] = self.axis.order();
         let spine = self.spine(p);
         let [lower, upper] = self.ends().map(|end| (spine.angle - end.at).abs() * spine.distance.min(1.0));
-        // Opposite of the middle, the two sides meet.
+        // Opposite of the middle, the two straight parts meet.
         let cut = if self.rate * p[v] > 1.0 { (p[u] - self.center).abs() } else { f64::INFINITY };
         lower.min(upper).min(cut).min(spine.distance / self.rate.abs())
     }
@@ -230,14 +230,14 @@ impl WarpMember for Bend {
         if child.is_finite() { self.bent(child, 0.0) } else { all_of_space(self.axis, child) }
     }
 
-    /// Let L be how far the point is from the place that stays; from there to the child's point it is as far
-    /// along the spine and then up.
+    /// Let L be the distance of the point from the place that stays. The child's point is no farther from
+    /// that place, along the spine and then up.
     ///
-    /// Away from the centre of curvature (h > 1/2) the products of k are off by 4 units of 2^-24 of `1 + |k|
-    /// L <= 2 + h`, which moves s and z by less than 64 units of L. Nearer, `1 / |k| <= 2 L`, and what is off
-    /// is as if the point was: by less than 16 units of L; the arctangent adds 2^-21 of the angle, on a
-    /// radius below L. Beyond the ends a rotation is off by 6 units of what it adds up. Which of the three it
-    /// is may be decided wrongly only within what s is off by, times h where it is a length.
+    /// Away from the centre of curvature (h > 1/2) the products of k are off by 4 units of 2^-24 of
+    /// `1 + |k| L <= 2 + h`, which moves s and z by less than 64 units of L. Nearer, `1 / |k| <= 2 L`, and
+    /// the error equals a shift of the point by less than 16 units of L; the arctangent adds 2^-21 of the
+    /// angle, on a radius below L. Beyond the ends a rotation is off by 6 units of its sum. The choice
+    /// between the three parts may be wrong only within the error of s, times h for a length.
     fn reach(&self, child: Bounds) -> Bounds {
         if child.is_empty() {
             return child;
@@ -250,7 +250,7 @@ impl WarpMember for Bend {
         let turn = self.rate.abs() * size;
         let mut slack = 4.0 * ROUNDINGS * size * (2.0 + turn) + UNDERFLOW;
         if turn > 0.25 {
-            // The centre of curvature may be in the box: there s fades.
+            // The box may hold the centre of curvature, where s fades.
             slack += 4.0 * SMALLEST_DISTANCE / self.rate.abs();
         }
         self.bent(child.grown(slack), slack).grown(slack)
@@ -283,8 +283,8 @@ impl WarpMember for Bend {
         let (far_y, far_z) = (d.sub(p[u], center), p[v]);
         let one = d.constant(1.0);
         let back = d.neg(rate);
-        // Where squares of coordinates in radii would overflow, the bend sees a nearer place: far away from
-        // all of its spine, too.
+        // Where squares of coordinates in radii would overflow, the point is replaced by a nearer one, which
+        // is still far from the whole spine.
         let (steep, farthest) = (d.abs(rate), d.constant(FARTHEST));
         let steep = d.max(steep, one);
         let farthest = d.div(farthest, steep);
@@ -304,7 +304,7 @@ impl WarpMember for Bend {
         let height = d.fma(back, square, twice);
         let divisor = d.add(spine.distance, one);
         let height = d.div(height, divisor);
-        // Where it counts, this is s itself; elsewhere it keeps ranges small.
+        // Inside the bend the limits do not change s; elsewhere they keep ranges small.
         let inside = d.max(row[3], spine.angle);
         let inside = d.min(row[8], inside);
         let inside = d.add(inside, center);
@@ -334,7 +334,7 @@ fn rigid<D: Domain>(d: &mut D, y: D::Real, z: D::Real, row: &[D::Real]) -> [D::R
     [first, second]
 }
 
-/// Nothing is known across the axis.
+/// Unbounded across the axis.
 fn all_of_space(axis: Axis, child: Bounds) -> Bounds {
     let [_, u, v] = axis.order();
     let mut all = child;
@@ -353,7 +353,7 @@ mod tests {
 
     const BEND: Bend = Bend { axis: Axis::X, rate: 0.5, from: -1.0, to: 2.0, center: 0.25 };
 
-    /// Barr's forward map, as it is published, with the place that stays in the middle.
+    /// Barr's forward map as published, with the place that stays in the middle.
     fn forward(bend: &Bend, q: DVec3) -> DVec3 {
         let (k, clamped) = (bend.rate, q.y.clamp(bend.from, bend.to));
         let (sin, cos) = (k * (clamped - bend.center)).sin_cos();
@@ -377,7 +377,7 @@ mod tests {
             let q = DVec3::from_array([(); 3].map(|()| testing::real(&mut rng)));
             let turn = (bend.rate * (q.y.clamp(bend.from, bend.to) - bend.center)).abs();
             let straight = q.y < bend.from || q.y > bend.to;
-            // What is straight crosses the far side only after a quarter turn.
+            // A straight part crosses the far side only after a quarter turn.
             let most = if straight { 0.5 * PI } else { 3.1 };
             if 1.0 - bend.rate * q.z < 1e-3 || turn > most || bend.rate.abs() < 1e-3 {
                 continue;
@@ -410,8 +410,8 @@ mod tests {
         }
     }
 
-    /// The published form takes the root with the other sign: it brings the point (0, 0, 0), which stays, to
-    /// the height 2/k.
+    /// The published form takes the root with the other sign: it moves the point (0, 0, 0), which has to
+    /// stay, to the height 2/k.
     #[test]
     fn the_root_has_the_right_sign() {
         for rate in [0.5, -0.5] {

@@ -1,5 +1,5 @@
-//! The deformation: scaled, turned and moved. By itself it is an affine map that costs more than one; it is
-//! there to be *weighted*, so that another subtree's field says where it happens and how much.
+//! The deformation: scaling, rotation and translation. Unweighted it is an affine map that costs more than
+//! one. It exists to be *weighted*, so that another subtree's field says where and how much it acts.
 //!
 //! ```text
 //! deform by (0 0 0.5) degrees 40 weighted { CHILD WEIGHT }
@@ -16,9 +16,9 @@ use crate::affine::{map_bounds, rotation, sin_cos_degrees};
 use crate::bounds::Bounds;
 use crate::member::member;
 
-/// Factors up to this, and down to its inverse, are good ones.
+/// Factors between the inverse of this and this are accepted.
 const LARGEST_FACTOR: f64 = 1e6;
-/// Where rounding may take more than this part of a length, nothing is promised.
+/// Nothing is promised where rounding may exceed this part of a length.
 const LARGEST_PART: f64 = 0.25;
 
 member! {
@@ -77,8 +77,8 @@ impl WarpMember for Deform {
         map_bounds(&self.map(), child)
     }
 
-    /// A coordinate takes three fused steps and numbers that are rounded once: it is off by less than 5 units
-    /// of 2^-24 of what it adds up.
+    /// A coordinate takes three fused steps with numbers that are rounded once: it is off by less than 5
+    /// units of 2^-24 of the sum's terms.
     fn reach(&self, child: Bounds) -> Bounds {
         if child.is_empty() {
             return child;

@@ -1,4 +1,4 @@
-//! A warp that is given by three formulas of the point: where the child is asked.
+//! A warp that is given by three formulas of the point. They give the point where the child is evaluated.
 //!
 //! ```text
 //! warp (x + 0.1 * sin(4 * y), y, z) { .. }                                 a wave across the x axis
@@ -6,12 +6,11 @@
 //! ```
 //!
 //! The form of the formulas is code, and their numbers are numbers of a row; see
-//! [`expression`](crate::expression), which also says what becomes of what cannot be computed. A coordinate
-//! is kept within [`LARGEST_WARPED`]; what is no number counts as the lowest.
+//! [`expression`](crate::expression), which also defines the results of undefined operations. A coordinate is
+//! clamped to [`LARGEST_WARPED`] in magnitude; NaN counts as the lowest.
 //!
-//! Formulas say where points are asked and not where the child comes out, so nothing is known of the box of
-//! what is not empty: it may be anywhere. Who knows better says so with a box, `warp (..) within (..) to
-//! (..)`, which is the node `within` around the warp.
+//! Formulas are an inverse map, so the box of a child that is not empty is unknown: it may be anywhere. A
+//! model can state it, `warp (..) within (..) to (..)`, which is the node `within` around the warp.
 
 use std::sync::Arc;
 
@@ -22,7 +21,7 @@ use super::{Growth, WarpFault};
 use crate::bounds::Bounds;
 use crate::expression::{Form, Formula, Operand};
 
-/// What a coordinate behind a formula is kept within, in magnitude: 2^40.
+/// The largest magnitude of a coordinate behind a formula: 2^40.
 pub const LARGEST_WARPED: f32 = 1_099_511_627_776.0;
 
 /// A warp that is given by three formulas of the point.
@@ -71,7 +70,7 @@ impl FormulaWarp {
         })
     }
 
-    /// Everywhere, unless nothing is there.
+    /// All of space, unless the child is empty.
     pub(super) fn reach(child: Bounds) -> Bounds {
         if child.is_empty() { Bounds::EMPTY } else { Bounds::EVERYWHERE }
     }
@@ -95,14 +94,14 @@ pub(super) fn emit<D: Domain>(form: &Form, d: &mut D, p: [D::Real; 3], row: &[D:
     });
     let (lowest, largest) = (d.constant(-LARGEST_WARPED), d.constant(LARGEST_WARPED));
     std::array::from_fn(|axis| {
-        // In this order a NaN gives the lowest.
+        // In this operand order a NaN gives the lowest.
         let kept = d.max(values[axis], lowest);
         d.min(kept, largest)
     })
 }
 
 impl From<&Formula> for FormulaWarp {
-    /// With the present values of its numbers.
+    /// The formula with the current values of its numbers.
     fn from(formula: &Formula) -> Self {
         let numbers = formula.numbers.iter().map(crate::number::Number::value).collect();
         Self { form: Arc::clone(&formula.form), numbers }
@@ -165,7 +164,7 @@ mod tests {
         let wave = warp([x() + 0.5 * (3.0 * y()).sin(), y(), z() / 4.0]);
         let growth = wave.growth(100.0);
         assert!((100.5..101.0).contains(&growth.coordinates), "{growth:?}");
-        // The derivative along y of the first, with no factor below 1.
+        // The derivative of the first along y, with factors below 1 raised to 1.
         assert!((4.0..4.001).contains(&growth.derivatives), "{growth:?}");
         let root = warp([(x() * x() + y() * y()).sqrt(), y(), z()]).growth(100.0);
         assert!(root.coordinates <= LARGEST_WARPED.into() && root.derivatives == f64::INFINITY, "{root:?}");

@@ -1,4 +1,4 @@
-//! What every warp states about itself.
+//! What every warp implements.
 
 use glam::DVec3;
 use jbt_ir::Domain;
@@ -13,14 +13,14 @@ pub trait WarpMember: Member {
     /// Names of the columns that [`columns`](Self::columns) fills, in order.
     const COLUMNS: &'static [&'static str];
 
-    /// Where the child is asked when the node is asked at `p`, plainly.
+    /// The point of the child's space for the point `p` of the warped space, in f64.
     fn inverse(&self, p: DVec3) -> DVec3;
 
-    /// How far a point is, about, from where the map has a crease or a jump: gradients of the warped child
-    /// may jump there, too. Infinity if it has none.
+    /// About the distance of a point from a crease or a jump of the map, where gradients of the warped child
+    /// may jump, too; infinity if there is none.
     fn kink_distance(&self, p: DVec3) -> f64;
 
-    /// What is wrong with parameters of which each is what its [`FieldKind`] says.
+    /// The fault of parameters that are valid one by one by their [`FieldKind`].
     fn fault(&self) -> Option<WarpFault>;
 
     /// A box around the warped child, from a box around the child.
@@ -30,7 +30,7 @@ pub trait WarpMember: Member {
     /// rounding: no point outside of it is taken into the child's box. Supports rest on it.
     fn reach(&self, child: Bounds) -> Bounds;
 
-    /// What the inverse map makes of coordinates up to `largest` in magnitude.
+    /// Bounds of the inverse map for coordinates up to `largest` in magnitude.
     fn growth(&self, largest: f64) -> Growth;
 
     /// The numbers of a row: one for each of [`COLUMNS`](Self::COLUMNS).
@@ -39,11 +39,11 @@ pub trait WarpMember: Member {
     /// The part of the parameters that selects code, below 256.
     fn variant(&self) -> u8;
 
-    /// Where the child is asked, over the ops; `row` holds the columns of a warp with this variant.
+    /// The inverse map over the ops; `row` holds the columns of a warp with this variant.
     fn emit<D: Domain>(d: &mut D, variant: u8, p: [D::Real; 3], row: &[D::Real]) -> [D::Real; 3];
 }
 
-/// Why a warp is none.
+/// Why parameters make no warp.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct WarpFault {
     /// What is wrong.
@@ -62,6 +62,6 @@ pub struct Growth {
 }
 
 impl Growth {
-    /// Nothing is known: what is behind such a warp may be anywhere.
+    /// Nothing is known: the image of such a warp may be anywhere.
     pub(crate) const UNKNOWN: Self = Self { coordinates: f64::INFINITY, derivatives: f64::INFINITY };
 }

@@ -1,8 +1,8 @@
-//! The mirror: what the child has on the positive side of a coordinate plane stands on both sides.
+//! The mirror: the child's part on the positive side of a coordinate plane appears on both sides.
 //!
-//! The inverse map takes the magnitude of the coordinate across the plane, so whatever the child has on the
-//! negative side is not seen. Where the child meets the plane at an angle, there is a crease. An image
-//! instead of a second half is `reflect`, an affine map.
+//! The inverse map takes the magnitude of the coordinate across the plane, so the child's part on the
+//! negative side is not seen. Where the child meets the plane at an angle, there is a crease. For the mirror
+//! image of the whole child use `reflect`, an affine map.
 
 use glam::DVec3;
 use jbt_ir::Domain;

@@ -1,13 +1,12 @@
-//! Warps: deformations of space. One file per member, one list; and one that is given by formulas
+//! Warps: deformations of space. One file per member, one list, and the warp that is given by formulas
 //! ([`FormulaWarp`](struct@FormulaWarp)).
 //!
-//! A warp states the *inverse* map, from the warped space (where points are asked) to the child's space
-//! (where it answers).
+//! A warp is an *inverse* map, from the warped space (where points are asked) to the child's space.
 //!
-//! Any warp can be *weighted* by the field of a second child, which stands where the warp stands and gives
-//! nothing but that number: a point p is taken to `p + w (inverse(p) - p)`, where w is the field at p,
+//! Any warp can be *weighted* by the field of a second child, which stands in the warp's space and
+//! contributes only that number: a point p is taken to `p + w (inverse(p) - p)`, where w is the field at p,
 //! between 0 and 1 (de Groot and Wyvill's deformation by a second BlobTree). So outside of the second child's
-//! support, the first one is as it was.
+//! support the first child is unchanged.
 
 use std::sync::Arc;
 
@@ -146,9 +145,9 @@ warps! {
 /// What selects the code of a warp.
 #[derive(Clone, PartialEq, Eq, Hash, Debug)]
 pub enum WarpCode {
-    /// That of a member of the list.
+    /// The code of a member of the list.
     Member(WarpKind),
-    /// That of formulas.
+    /// The code of formulas.
     Formula(Arc<Form>),
 }
 
@@ -170,8 +169,8 @@ impl WarpCode {
         }
     }
 
-    /// The inverse map over the ops, with a weight: see the module. Where the weight is 0, a point stays to
-    /// the bit.
+    /// The inverse map over the ops, with a weight: see the module. Where the weight is 0, a point keeps its
+    /// bits.
     pub fn emit_weighted<D: Domain>(
         &self,
         d: &mut D,

@@ -5,11 +5,11 @@
 //!                       0         1         2             walls halfway between
 //! ```
 //!
-//! The child itself is the first copy. Each point belongs to the cell of the copy that is nearest along the
-//! axis, so copies cost nothing; but what reaches out of its cell ends at the wall, so the child should be no
-//! longer along the axis than `spacing`, and centred at the origin. The first cell has no lower wall and the
-//! last one no upper wall. Without a count, or with 0, copies go on without end to both sides; such a model
-//! has no bounds, and whoever looks at it has to say where. A lattice is a repetition of a repetition.
+//! The child is the first copy. Each point belongs to the cell of the copy that is nearest along the axis, so
+//! copies cost nothing. A child that leaves its cell is cut at the wall, so it should be no longer along the
+//! axis than `spacing`, and centred at the origin. The first cell has no lower wall and the last cell no
+//! upper wall. Without a count, or with 0, there are copies without end to both sides; such a model has no
+//! bounds, so a mesh or picture of it needs a region. A lattice is a repetition of a repetition.
 
 use glam::DVec3;
 use jbt_ir::Domain;
@@ -21,8 +21,8 @@ use crate::member::member;
 
 /// 1.5 * 2^23: adding and subtracting it rounds a number below 2^22 to a whole one.
 pub(super) const ROUND: f32 = 12_582_912.0;
-/// Copies without end end here, to both sides: beyond, f32 has three bits left for the place of a point in
-/// its cell.
+/// The last copy, to both sides, of a repetition without end: beyond, f32 has three bits left for the place
+/// of a point in its cell.
 const ENDLESS: f64 = (1 << 21) as f64;
 
 member! {
@@ -44,7 +44,7 @@ impl Repeat {
         if self.count == 0.0 { [-ENDLESS, ENDLESS] } else { [0.0, self.count - 1.0] }
     }
 
-    /// Between the lower wall that the first cell does not have and the upper one of the last.
+    /// The place of the lower wall that the first cell lacks and of the upper wall that the last cell lacks.
     fn walls(&self) -> [f64; 2] {
         let [first, last] = self.ends();
         [(first - 0.5) * self.spacing, (last + 0.5) * self.spacing]
@@ -68,7 +68,7 @@ impl WarpMember for Repeat {
         let cell = (x - lower) / self.spacing;
         let wall = (cell - cell.round()).abs() * self.spacing;
         let half = 0.5 * self.spacing;
-        // The first and the last cell have one wall each.
+        // The first and the last cell have one wall each; a single cell has none.
         if self.count == 1.0 {
             f64::INFINITY
         } else if x < lower + half {
@@ -98,8 +98,8 @@ impl WarpMember for Repeat {
         all
     }
 
-    /// The number of a copy is exact, whichever is nearest; a step of so many spacings, and what is beyond
-    /// the walls, are off by a few units of the farthest copy.
+    /// The number of the nearest copy is exact; its distance, and the part beyond the walls, are off by a few
+    /// units of the farthest copy.
     fn reach(&self, child: Bounds) -> Bounds {
         let axis = self.axis.index();
         let mut reach = self.forward_bounds(child);
@@ -129,8 +129,8 @@ impl WarpMember for Repeat {
             unreachable!("a repetition has seven columns")
         };
         let axis = variant as usize;
-        // What is beyond the walls is put back in the end, so that the rest is known to lie in a cell: ranges
-        // are never wider.
+        // The part beyond the walls is added again at the end, so that the rest is known to lie in a cell and
+        // ranges stay narrow.
         let between = d.max(lower, p[axis]);
         let between = d.min(upper, between);
         let beyond = d.sub(p[axis], between);

@@ -1,9 +1,9 @@
 //! The repetition about an axis: copies of the child at equal angles, like spokes.
 //!
 //! The child stands about the first of the two directions across the axis (x for axis z, y for x, z for y),
-//! and is the first copy; the others are turned by whole multiples of a turn over `count`. Each point belongs
-//! to the sector of the copy whose direction is nearest, so copies cost nothing; what reaches out of its
-//! sector ends at the wall. Copies that meet at the axis meet without a jump.
+//! and is the first copy; the other copies are turned by multiples of a turn over `count`. Each point belongs
+//! to the sector of the nearest copy, so copies cost nothing; a child that leaves its sector is cut at the
+//! wall. Copies that meet at the axis meet without a jump.
 
 use std::f64::consts::{PI, TAU};
 
@@ -72,8 +72,7 @@ impl WarpMember for RepeatAround {
         turned(self.axis, child, 1.0)
     }
 
-    /// Whichever copy it is, the computed sine and cosine are those of one angle but for rounding: see the
-    /// twist.
+    /// For every copy, the computed sine and cosine belong to one angle, except for rounding: see the twist.
     fn reach(&self, child: Bounds) -> Bounds {
         if child.is_empty() {
             return child;
@@ -96,7 +95,7 @@ impl WarpMember for RepeatAround {
     fn emit<D: Domain>(d: &mut D, variant: u8, p: [D::Real; 3], row: &[D::Real]) -> [D::Real; 3] {
         let [_, u, v] = Axis::ALL[usize::from(variant)].order();
         let half_turn = d.constant(PI as f32);
-        // The copy does not move with the point, so neither do angle and turn.
+        // The number of the copy is constant near the point, so the angle has no slope.
         let still = [d.stop_gradient(p[u]), d.stop_gradient(p[v])];
         let polar = angle::emit(d, still, still[1], half_turn, f32::MIN_POSITIVE);
         let sectors = d.mul(polar.angle, row[0]);

@@ -1,14 +1,14 @@
-//! The space map: pulls what is at one point to another, within a ball (HyperFun's `hfSpaceMapCubic`).
+//! The space map: pulls the child at one point to another point, within a ball (HyperFun's
+//! `hfSpaceMapCubic`).
 //!
 //! ```text
 //! inverse:   p - f(t) (to - from),     t = |p - to| / radius,     f(t) = (1 - t)^3 / (1 + t) for t < 1, 0 beyond
 //! ```
 //!
-//! f falls from 1 to 0, so what appears at `to` is what the child has at `from`, and outside of the ball
-//! around `to` nothing moves. There are two derivatives at the rim; at `to` itself the map has a cone's tip.
-//! Several control points are maps inside each other. With a radius below four times the distance of the two,
-//! space folds: some of the child is seen more than once. HyperFun gives the radius as `ratio * (1 + |to -
-//! from|)`.
+//! f falls from 1 to 0, so the child's point `from` appears at `to`, and outside of the ball around `to`
+//! nothing moves. The map is C2 at the rim; at `to` it has the tip of a cone. Several control points are
+//! nested maps. With a radius below four times the distance from `from` to `to`, space folds: parts of the
+//! child are seen more than once. HyperFun gives the radius as `ratio * (1 + |to - from|)`.
 
 use glam::DVec3;
 use jbt_ir::Domain;
@@ -35,7 +35,7 @@ impl SpaceMap {
         self.to - self.from
     }
 
-    /// A box around the child and around what is pulled, where the ball has this radius.
+    /// A box around the child and its pulled parts, where the ball has this radius.
     fn pulled(&self, child: Bounds, radius: f64) -> Bounds {
         let shift = self.shift();
         let swept = Bounds::new(child.min + shift.min(DVec3::ZERO), child.max + shift.max(DVec3::ZERO));
@@ -65,8 +65,8 @@ impl WarpMember for SpaceMap {
         if child.is_empty() { child } else { self.pulled(child, self.radius) }
     }
 
-    /// Where t is computed as 1 or more, nothing moves, to the bit; it is off by 4 units of itself and those
-    /// of `to`. Elsewhere the point is off by a few units of the shift and of itself.
+    /// Where the computed t is 1 or more, points keep their bits; t is off by 4 units of itself and of `to`.
+    /// Elsewhere the point is off by a few units of the shift and of itself.
     fn reach(&self, child: Bounds) -> Bounds {
         if child.is_empty() {
             return child;
@@ -95,7 +95,7 @@ impl WarpMember for SpaceMap {
     fn emit<D: Domain>(d: &mut D, _: u8, p: [D::Real; 3], row: &[D::Real]) -> [D::Real; 3] {
         let [x, y, z] = std::array::from_fn(|axis| {
             let off = d.sub(p[axis], row[axis]);
-            // In radii, so that no square overflows that matters.
+            // In units of the radius, so that squares within the ball do not overflow.
             d.mul(off, row[3])
         });
         let square = d.mul(x, x);
@@ -107,7 +107,7 @@ impl WarpMember for SpaceMap {
         let rest = d.max(rest, zero);
         let square = d.mul(rest, rest);
         let cube = d.mul(square, rest);
-        // Beyond the rim the divisor does not count, and must not overflow.
+        // Beyond the rim the divisor is irrelevant, but must not overflow.
         let within = d.min(t, one);
         let divisor = d.add(within, one);
         let part = d.div(cube, divisor);

@@ -8,8 +8,8 @@
 //!    from  _|     |_                Below and above, the scale stays what it is at the end.
 //! ```
 //!
-//! A scale of zero makes a tip. Scales below [`SMALLEST_SCALE`] count as that, so that everything is finite:
-//! what is beyond a tip is a needle with 1/65,536 of the child's width.
+//! A scale of zero makes a tip. Scales below [`SMALLEST_SCALE`] are raised to it, so that everything is
+//! finite: beyond a tip there is a needle with 1/65,536 of the child's width.
 
 use glam::DVec3;
 use jbt_ir::Domain;
@@ -49,7 +49,7 @@ impl Taper {
         self.start.max(self.end).max(SMALLEST_SCALE)
     }
 
-    /// A box around a child whose scales are between those at heights in [low, high], each off by up to
+    /// A box around the image of a child, with the scales between heights low and high, each off by up to
     /// `slack`.
     fn scaled(&self, child: Bounds, low: f64, high: f64, slack: f64) -> Bounds {
         let [_, u, v] = self.axis.order();
@@ -85,7 +85,7 @@ impl WarpMember for Taper {
         let t = (height - self.from) / (self.to - self.from);
         let scale = self.start + (self.end - self.start) * t;
         let ends = (height - self.from).abs().min((height - self.to).abs());
-        // The crease of the smallest scale is next to the tip.
+        // The crease where the scale reaches the smallest one is next to the tip.
         if self.start.min(self.end) < SMALLEST_SCALE { ends.min((scale - SMALLEST_SCALE).abs()) } else { ends }
     }
 
@@ -105,9 +105,9 @@ impl WarpMember for Taper {
         self.scaled(child, child.min[h], child.max[h], 0.0)
     }
 
-    /// The height is kept to the bit, and `q r` is p but for 3 units of 2^-24. The scale is computed at a
-    /// height that is off by 3 units of itself, of `from` and of the distance of the two, and is off by 4
-    /// units of the largest one.
+    /// The height is exact, and `q r` is p with an error of 3 units of 2^-24. The scale is computed at a
+    /// height whose error is 3 units of itself, of `from` and of the distance between the two, and is off by
+    /// 4 units of the largest scale.
     fn reach(&self, child: Bounds) -> Bounds {
         if child.is_empty() {
             return child;
@@ -144,7 +144,7 @@ impl WarpMember for Taper {
         let (zero, one) = (d.constant(0.0), d.constant(1.0));
         let above = d.sub(p[h], from);
         let t = d.mul(above, inverse_height);
-        // At the ends t itself is taken, with its slope.
+        // At the ends the operand order chooses t, with its slope.
         let t = d.max(zero, t);
         let t = d.min(one, t);
         let scale = d.fma(change, t, start);

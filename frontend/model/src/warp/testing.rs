@@ -1,4 +1,4 @@
-//! What the tests of all warps have in common: every warp is judged by the laws that it states.
+//! Checks for the tests of all warps: every warp is compared with its own statements.
 
 use std::fmt::Debug;
 
@@ -75,7 +75,7 @@ pub fn finite(warp: &Warp, p: DVec3) {
     assert!(jacobian.is_finite(), "{warp:?} at {p}: {jacobian}");
 }
 
-/// Judges random warps by what they state.
+/// Judges random warps by their own statements.
 pub fn judge<W>(mut make: impl FnMut(&mut fastrand::Rng) -> W)
 where
     W: WarpMember + PartialEq + Debug + Clone + Into<Warp>,
@@ -97,7 +97,8 @@ where
     assert!(compared > 2500, "{compared} of 5,100 points are away from decisions");
 }
 
-/// What [`judge`] asks of any warp, of one that is no member. How many points were compared.
+/// The checks of [`judge`] that suit a formula warp, which is no member. Returns how many points were
+/// compared.
 pub fn judge_formulas(warp: &Warp, rng: &mut fastrand::Rng) -> usize {
     assert_eq!(warp.fault(), None, "{warp:?}");
     boxes_hold(warp, rng);
@@ -106,8 +107,8 @@ pub fn judge_formulas(warp: &Warp, rng: &mut fastrand::Rng) -> usize {
     (0..34).filter(|_| forms_agree(warp, vector(rng, 2.0).as_vec3())).count()
 }
 
-/// The two forms agree, and so do differences of the one with the derivative of the other. Whether it was
-/// compared.
+/// The two forms agree, and finite differences of the one agree with the derivative of the other. Returns
+/// whether the point was compared.
 fn forms_agree(warp: &Warp, p: Vec3) -> bool {
     let step = 1e-6;
     let at = p.as_dvec3();
@@ -136,7 +137,7 @@ fn forms_agree(warp: &Warp, p: Vec3) -> bool {
     true
 }
 
-/// No point outside of the boxes is taken into the child's, by either form.
+/// Neither form takes a point outside of the boxes into the child's box.
 fn boxes_hold(warp: &Warp, rng: &mut fastrand::Rng) {
     for size in [1.0, 0.1, 100.0] {
         let (a, b) = (vector(rng, size), vector(rng, size));
@@ -159,8 +160,8 @@ fn boxes_hold(warp: &Warp, rng: &mut fastrand::Rng) {
     }
 }
 
-/// Coordinates whose squares overflow, and some that are small, are taken to numbers, and into no box that
-/// does not reach there.
+/// Coordinates whose squares overflow, mixed with small ones, are taken to numbers, and only into boxes that
+/// reach that far.
 fn far_is_far(warp: &Warp, rng: &mut fastrand::Rng) {
     const COORDINATES: [f32; 12] =
         [0.0, -0.0, 1e-45, 1.0, -7.0, 1e6, -1e10, 1e19, -2e19, 1e30, -3e38, f32::MAX];
@@ -182,7 +183,7 @@ fn far_is_far(warp: &Warp, rng: &mut fastrand::Rng) {
     }
 }
 
-/// Coordinates and derivatives are within what is said of them.
+/// Coordinates and derivatives are within the stated growth.
 fn growth_bounds(warp: &Warp, rng: &mut fastrand::Rng) {
     for size in [0.5, 3.0, 1e6] {
         let growth = warp.growth(size);

@@ -50,10 +50,10 @@ impl WarpMember for Twist {
         turned(self.axis, child, 1.0)
     }
 
-    /// Whatever the angle, and whatever rounding made of it, the computed sine and cosine are those of one
-    /// angle, each off by less than 2 units of 2^-24; a product, and a fused step over it, add a unit each.
-    /// So the distance to the axis is off by less than 2^-20 of itself (and the underflow of a product, below
-    /// 2^-140), while the height is kept to the bit. A twist whose rate is zero in f32 keeps everything.
+    /// Whatever the angle and its rounding, the computed sine and cosine belong to one angle, each off by
+    /// less than 2 units of 2^-24; a product, and a fused step over it, add a unit each. So the distance to
+    /// the axis is off by less than 2^-20 of itself (and the underflow of a product, below 2^-140). The
+    /// height is exact. A twist whose rate is zero in f32 changes nothing.
     fn reach(&self, child: Bounds) -> Bounds {
         if child.is_empty() || self.rate == 0.0 {
             return child;
@@ -62,8 +62,8 @@ impl WarpMember for Twist {
     }
 
     fn growth(&self, largest: f64) -> Growth {
-        // A coordinate is at most sqrt(2) times as large; it moves with the two that turn, and with the
-        // height.
+        // A coordinate is at most sqrt(2) times as large; it depends on the two coordinates that turn, and on
+        // the height.
         let coordinates = 1.5 * largest;
         Growth { coordinates, derivatives: 2.0 + 2.0 * self.rate.abs() * coordinates }
     }
@@ -79,7 +79,7 @@ impl WarpMember for Twist {
     fn emit<D: Domain>(d: &mut D, variant: u8, p: [D::Real; 3], row: &[D::Real]) -> [D::Real; 3] {
         let [h, u, v] = Axis::ALL[usize::from(variant)].order();
         let angle = d.mul(row[0], p[h]);
-        // An infinite angle has no sine; so large a one turns nothing.
+        // An infinite angle has no sine; an angle of f32::MAX counts as 0.
         let (largest, smallest) = (d.constant(f32::MAX), d.constant(f32::MIN));
         let angle = d.min(angle, largest);
         let angle = d.max(angle, smallest);
@@ -111,9 +111,9 @@ mod tests {
         testing::judge(|rng| Twist { axis: Axis::ALL[rng.usize(..3)], rate: testing::real(rng) });
     }
 
-    /// The gradient of a twisted field, of a formula that was worked by hand: `J^T g` with `J = d inverse /
-    /// dp`. A published system turns the child's gradient back and leaves out how the angle moves with the
-    /// height.
+    /// The gradient of a twisted field, of a formula that was worked by hand: `J^T g` with
+    /// `J = d inverse / dp`. A published system turns the child's gradient back but omits the derivative of
+    /// the angle by the height.
     #[test]
     fn the_gradient_knows_that_the_angle_moves_with_the_height() {
         let twist = Twist { axis: Axis::Z, rate: 0.7 };
@@ -129,8 +129,8 @@ mod tests {
         }
     }
 
-    /// A published system reuses the box of the child: a bar across the axis, turned by 90 degrees, reaches
-    /// out of it and is clipped.
+    /// A published system reuses the box of the child: a bar across the axis, turned by 90 degrees, leaves
+    /// that box and is clipped.
     #[test]
     fn the_box_of_the_child_would_clip() {
         let bar = Bounds::new(DVec3::new(-3.0, -0.1, 0.9), DVec3::new(3.0, 0.1, 1.1));

@@ -1,4 +1,4 @@
-//! What an importer gives back: a model, and what was odd about the file.
+//! The result of an importer: a model, and warnings about the file.
 
 use jbt_model::diagnostic::{Diagnostic, Diagnostics, SourceText};
 use jbt_model::model::Model;
@@ -8,12 +8,12 @@ use jbt_model::model::Model;
 pub struct Imported {
     /// The model.
     pub model: Model,
-    /// What in the file is odd, and was read as best it could be.
+    /// Oddities of the file that were read in the most plausible way.
     pub warnings: Diagnostics,
 }
 
 impl Imported {
-    /// What was read from these bytes.
+    /// The result of reading these bytes.
     pub(super) fn from(
         bytes: &[u8],
         read: Result<(Model, Vec<Diagnostic>), Vec<Diagnostic>>,

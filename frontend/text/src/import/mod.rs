@@ -1,7 +1,7 @@
 //! Importers: scene files of other systems become models.
 //!
-//! An importer reads bytes, never files, and reports every error with its place in those bytes. What the
-//! format of this project cannot say is an error that names it, never a silent approximation.
+//! An importer reads bytes, never files, and reports every error with its place in those bytes. A feature
+//! that this project lacks is an error that names it, never a silent approximation.
 
 mod imported;
 mod parsip;

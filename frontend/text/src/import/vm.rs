@@ -9,17 +9,17 @@
 //! _3 sub _1 _2            the last line is the value: negative inside
 //! ```
 //!
-//! The model has the usual iso-value, 1/2, and its field is `1/2 - value`: so `field >= iso` where `value <=
-//! 0`, and the surface is the same.
+//! The model has the usual iso-value, 1/2, and its field is `1/2 - value`. So `field >= iso` exactly where
+//! `value <= 0`, and the surface is the same.
 //!
 //! Minima and maxima on the way from the value down, through minus signs, become unions and intersections of
-//! formulas, `1/2 - min(a, b) = max(1/2 - a, 1/2 - b)`, so that what does not decide in a box can be left out
-//! there, and formulas that are alike are rows of one table. Of each of these formulas what it shares with
-//! others is written again; if that would make the program more than [`LONGEST`] times as long, all of it
-//! becomes one formula instead.
+//! formulas, `1/2 - min(a, b) = max(1/2 - a, 1/2 - b)`. So operands that do not decide in a box can be left
+//! out there, and formulas of one form are rows of one table. Parts that several formulas share are written
+//! again in each; if that would make the program more than [`LONGEST`] times as long, all of it becomes one
+//! formula instead.
 //!
-//! What cannot be computed has the values of [`expression`](jbt_model::expression): a quotient by 0 is 0, the
-//! root of a negative number is 0.
+//! Undefined operations have the values of [`expression`](crate::expression): a quotient by 0 is 0, the root
+//! of a negative number is 0.
 
 use std::collections::HashMap;
 
@@ -50,9 +50,9 @@ enum Code {
     Binary(Binary),
     Call(Function),
     Reciprocal,
-    /// -1, 0 or 1, as the first is below, at or above the second.
+    /// -1, 0 or 1, if the first is below, at or above the second.
     Compare,
-    /// 1 if it is 0, else 0.
+    /// 1 if the operand is 0, else 0.
     Not,
     /// The second if the first is not 0, else 0.
     And,
@@ -97,7 +97,7 @@ const CODES: &[(&str, Code, usize)] = &[
 /// The operations without operands.
 const LEAVES: [&str; 4] = ["const", "var-x", "var-y", "var-z"];
 
-/// A line that does something.
+/// A line with an instruction.
 #[derive(Clone, Copy, Debug)]
 struct Instruction {
     code: Code,
@@ -116,9 +116,8 @@ impl Instruction {
 ///
 /// # Errors
 ///
-/// Everything that is wrong with the file, with its place: operations and names that are not there, operands
-/// that are missing, numbers that cannot be read, a name that is given twice, and a file without
-/// instructions.
+/// All errors of the file, with their places: unknown operations and names, missing operands, unreadable
+/// numbers, names that are defined twice, and a file without instructions.
 pub fn vm(bytes: &[u8]) -> Result<Imported, Diagnostics> {
     Imported::from(bytes, read(bytes))
 }
@@ -158,7 +157,7 @@ impl<'a> Reader<'a> {
         let line = line.split(|&byte| byte == b'#').next().unwrap_or_default();
         let mut words = Vec::new();
         let mut at = 0;
-        // One word more than any instruction has is enough to say that there are too many.
+        // One word more than any instruction takes is enough to report too many.
         for word in line.split(u8::is_ascii_whitespace) {
             if !word.is_empty() && words.len() < 5 {
                 words.push((word, Span::new(start + at, start + at + word.len())));
@@ -168,7 +167,7 @@ impl<'a> Reader<'a> {
         let Some(&(name, span)) = words.first() else { return };
         let end = words[words.len() - 1].1.end;
         let instruction = self.instruction(&words, Span { start: span.start, end });
-        // What has an error has a name all the same, so that its uses are none.
+        // A line with an error still defines its name, so that uses of the name are no further errors.
         let instruction = instruction.unwrap_or(Instruction {
             code: Code::Constant(0.0),
             operands: [0; 2],
@@ -271,14 +270,14 @@ struct Program {
     iso: Number,
 }
 
-/// A field that is asked for: the iso-value and the value of this line, or less it.
+/// A field to build: the iso-value plus or minus the value of this line.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 struct Wanted {
     line: u32,
     negative: bool,
 }
 
-/// What a wanted field is made of.
+/// How a wanted field is built.
 enum Split {
     Same(Wanted),
     Combine(Combinator, [Wanted; 2]),
@@ -314,7 +313,7 @@ impl Program {
         }
     }
 
-    /// A tree of unions and intersections of formulas; nothing, if these are too long together.
+    /// A tree of unions and intersections of formulas; `None` if these are too long together.
     fn split(&self, root: Wanted) -> Option<Tree> {
         let mut left = LONGEST * self.instructions.len();
         let sizes = self.sizes();
@@ -351,7 +350,7 @@ impl Program {
         done.remove(&root)
     }
 
-    /// At least the operations behind each line: what several ask for counts for each.
+    /// A lower bound of the operations behind each line: shared parts count for each use.
     fn sizes(&self) -> Vec<u32> {
         let mut sizes: Vec<u32> = Vec::with_capacity(self.instructions.len());
         for instruction in &self.instructions {
@@ -361,7 +360,7 @@ impl Program {
         sizes
     }
 
-    /// One formula, and how many operations it has; it may stop beyond `most`.
+    /// One formula, and its number of operations; the count may stop beyond `most`.
     fn leaf(&self, wanted: Wanted, most: usize) -> (Tree, usize) {
         let mut assembler = Assembler::default();
         let value = self.draft(&mut assembler, wanted.line, most);
@@ -397,7 +396,7 @@ impl Program {
     }
 }
 
-/// What an instruction makes of its operands.
+/// The result of an instruction on its operands.
 fn step(assembler: &mut Assembler, code: Code, operands: Vec<Draft>) -> Draft {
     let one = || Draft::Constant(1.0.into());
     let binary = |assembler: &mut Assembler, binary, a: Draft, b: Draft| {

@@ -1,7 +1,7 @@
 //! Products, quotients, roots and magnitudes of ranges.
 //!
-//! A product of ranges has its ends at products of ends. Which ones is known from signs, at the latest from
-//! four candidates:
+//! The ends of a product of ranges are products of ends. Signs tell which ones; without known signs, four
+//! candidates are compared:
 //!
 //! ```text
 //!                    low        high
@@ -24,11 +24,12 @@ use super::value::{Interval, Range, of_both, of_one, same};
 /// Two factors.
 type Pair<D> = (<D as Domain>::Real, <D as Domain>::Real);
 
-/// Where a product has its ends.
+/// Where the ends of a product are.
 enum Ends<D: Domain> {
     /// The low one and the high one.
     At(Pair<D>, Pair<D>),
-    /// At one of four; NaN times anything where a bound is not finite.
+    /// Each is one of four. The range becomes NaN where the number, times anything, says that a bound is not
+    /// finite.
     Among([Pair<D>; 4], D::Real),
 }
 
@@ -59,7 +60,7 @@ impl<D: Domain> Interval<D> {
         }
     }
 
-    /// From the least of the lows to the greatest of the highs; anything where `guard` is not finite.
+    /// From the least of the lows to the greatest of the highs; unbounded where `guard` is not finite.
     fn between(&mut self, facts: Facts, lows: [D::Real; 4], highs: [D::Real; 4], guard: D::Real) -> Range<D> {
         let low = least(&mut self.domain, lows);
         let high = greatest(&mut self.domain, highs);
@@ -90,8 +91,8 @@ impl<D: Domain> Interval<D> {
             (Sign::NonNegative | Sign::NonPositive, Sign::Unknown) => self.signed(a, b),
             (Sign::Unknown, Sign::NonNegative | Sign::NonPositive) => self.signed(b, a),
             (Sign::Unknown, Sign::Unknown) => {
-                // Widths are not finite where a bound is not, and then neither is their product with
-                // anything.
+                // A width is not finite where a bound is not finite, and then neither is the product of the
+                // widths.
                 let width = self.domain.sub(a.high, a.low);
                 let other = self.domain.sub(b.high, b.low);
                 let guard = self.domain.mul(width, other);
@@ -131,8 +132,8 @@ impl<D: Domain> Interval<D> {
         Ends::At((at_low, low), (at_high, high))
     }
 
-    /// A number of the range that is nearest to 0, and one whose magnitude is the largest. The latter is not
-    /// finite where a bound is not.
+    /// The number of the range nearest to 0, and one of the largest magnitude. The latter is not finite where
+    /// a bound is not finite.
     fn near_and_far(&mut self, a: Range<D>) -> Pair<D> {
         match a.facts.sign {
             Sign::NonNegative => (a.low, a.high),
@@ -144,7 +145,7 @@ impl<D: Domain> Interval<D> {
                 let near = d.max(a.low, near);
                 let mut below = d.neg(a.low);
                 if !a.facts.paired {
-                    // There may be nothing below, though the high bound is finite.
+                    // The low bound may bound nothing, though the high bound is finite.
                     let infinity = d.constant(f32::INFINITY);
                     below = d.min(below, infinity);
                 }
@@ -174,7 +175,7 @@ impl<D: Domain> Interval<D> {
         if facts.point || a.facts.sign == Sign::NonNegative {
             return root;
         }
-        // Below zero the low bound has become NaN, as it should.
+        // A negative low bound has become NaN: the root of the range may be NaN.
         let high = self.guarded(root.high, root.low);
         Range { high, ..root }
     }
@@ -205,7 +206,7 @@ impl<D: Domain> Interval<D> {
             Some(number) if number > 0.0 => (a.low, a.high),
             Some(number) if number < 0.0 => (a.high, a.low),
             Some(_) | None => {
-                // The inverse has the sign of a zero, too.
+                // The inverse of a zero has the sign of the zero, too.
                 let one = self.domain.constant(1.0);
                 let inverse = self.domain.div(one, b.low);
                 self.turned(a, inverse)
@@ -214,7 +215,7 @@ impl<D: Domain> Interval<D> {
         self.bounds(facts, |d| d.div(low, b.low), |d| d.div(high, b.low))
     }
 
-    /// The bounds of `a / b` for b > 0, and whether b is that and finite.
+    /// The bounds of `a / b` for b > 0, and whether b > 0 and b is finite.
     fn over_positive(&mut self, a: Range<D>, b: Range<D>) -> (D::Real, D::Real, D::Mask) {
         let d = &mut self.domain;
         let (zero, infinity) = (d.constant(0.0), d.constant(f32::INFINITY));
@@ -234,7 +235,7 @@ impl<D: Domain> Interval<D> {
         (low, high, d.both(positive, finite))
     }
 
-    /// The bounds of `a / b` for b without 0, and whether b is that and all is finite.
+    /// The bounds of `a / b` for b without 0, and whether b is without 0 and all bounds are finite.
     fn over_any(&mut self, a: Range<D>, b: Range<D>) -> (D::Real, D::Real, D::Mask) {
         let pairs = [(a.low, b.low), (a.low, b.high), (a.high, b.low), (a.high, b.high)];
         let quotients = pairs.map(|(x, y)| self.domain.div(x, y));

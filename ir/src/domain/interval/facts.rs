@@ -1,10 +1,10 @@
-//! What is known of a range before there are any numbers: from the op that made it, and from what is known of
-//! its operands.
+//! What is known of a range before there are any numbers: from the op that made it, and from the facts of its
+//! operands.
 //!
-//! Facts make programs small: an end of a product of ranges that are not negative takes one op, not four
-//! products and their smallest. They are found in one place, from ops alone, so that an emitted program and
-//! the scalar meaning take the same forms and give the same bounds. Those of accumulators are found by
-//! [`crate::facts`].
+//! Facts make programs small: an end of a product of ranges that are not negative takes one op instead of
+//! four products and their minimum. Facts are derived here alone, and from ops alone, so that an emitted
+//! program and the scalar meaning choose the same forms and give the same bounds. The facts of accumulators
+//! are found by [`crate::facts`].
 
 use crate::facts::Fact;
 use crate::function::InstKind;
@@ -31,7 +31,7 @@ impl Sign {
         }
     }
 
-    /// Of a sum, or of either of two.
+    /// The sign of a sum, or of a choice between two.
     const fn and(self, other: Self) -> Self {
         match (self, other) {
             (Self::NonNegative, Self::NonNegative) => Self::NonNegative,
@@ -52,8 +52,8 @@ impl Sign {
 /// What is known of a value of any type.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub(super) struct Facts {
-    /// The value itself is there, bit for bit: both bounds of a real are that value, a mask is decided, bits
-    /// are known.
+    /// The range is one known value, bit for bit: both bounds of a real are that value, a mask is decided,
+    /// bits are known.
     pub(super) point: bool,
     /// The number, where the program has it; never NaN.
     pub(super) constant: Option<f32>,
@@ -65,7 +65,7 @@ pub(super) struct Facts {
 }
 
 impl Facts {
-    /// The value itself, of which nothing else is known.
+    /// A known value with no other facts.
     pub(super) const POINT: Self = Self { point: true, constant: None, sign: Sign::Unknown, paired: true };
 
     /// A constant.
@@ -131,7 +131,7 @@ fn sign(op: Op, args: &[Facts], same: bool) -> Sign {
         Op::Sub => of(0).and(of(1).opposite()),
         Op::Mul => product(args, same),
         Op::Fma => product(args, same).and(of(2)),
-        // A divisor that is the value itself may be -0, and then the quotient has the other sign.
+        // A divisor that is a point may be -0, and then the quotient has the other sign.
         Op::Div if args[1].point && !args[1].is_nonzero() => Sign::Unknown,
         Op::Div => of(0).times(of(1)),
         Op::Neg => of(0).opposite(),
@@ -151,10 +151,11 @@ fn product(args: &[Facts], same: bool) -> Sign {
     if same { Sign::NonNegative } else { args[0].sign.times(args[1].sign) }
 }
 
-/// The sign of `max`, where `beyond` is [`Sign::NonNegative`], or of `min`, where it is the other one.
+/// The sign of `max`, where `beyond` is [`Sign::NonNegative`], or of `min`, where `beyond` is
+/// [`Sign::NonPositive`].
 ///
-/// The second operand alone brings it, because it is the result where an operand is NaN. As a point it might
-/// be NaN itself.
+/// The second operand alone decides it, because it is the result where an operand is NaN. A point may be NaN
+/// itself.
 fn extreme(args: &[Facts], beyond: Sign) -> Sign {
     if args[1].sign != beyond {
         return args[0].sign.and(args[1].sign);

@@ -1,7 +1,7 @@
 //! Comparisons of ranges, and choices between them.
 //!
 //! `max(a, b)` is b where either is NaN. So where a may be NaN, the result may be b alone, and the low bound
-//! is that of b; and where b may be NaN, the result may be NaN, and a bound has to say so. `min` is its
+//! is the low bound of b. Where b may be NaN, the result may be NaN, and a bound has to show it. `min` is the
 //! mirror image.
 
 use crate::facts::Fact as _;
@@ -10,7 +10,7 @@ use crate::op::{Domain, Op};
 use super::facts::{Facts, Sign};
 use super::value::{Certainty, Interval, Range, of_both, same};
 
-/// Of two numbers.
+/// One side of two numbers.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Side {
     /// The smaller one.
@@ -61,13 +61,13 @@ impl<D: Domain> Interval<D> {
             let value = side.of(&mut self.domain, a.low, b.low);
             return self.range(value, value, facts);
         }
-        // Where a may be NaN this is NaN, and then only b counts.
+        // NaN where a may be NaN: then only b counts.
         let limit = if a.facts.point { a_inner } else { self.guarded(a_inner, a_outer) };
         let mut inner = side.of(&mut self.domain, limit, b_inner);
         let outer = if b.facts.point {
             side.of(&mut self.domain, b_outer, a_outer)
         } else {
-            // The op gives its second operand where either is NaN, so both have to be asked.
+            // The op gives its second operand where either operand is NaN, so both bounds of b are guarded.
             let reach = self.guarded(b_outer, b_inner);
             if a.facts.point {
                 side.of(&mut self.domain, a_outer, reach)
@@ -77,7 +77,8 @@ impl<D: Domain> Interval<D> {
             }
         };
         if facts.sign == side.beyond().opposite() {
-            // The fact wants a NaN of the outer bound, which is nearer to 0, to show in the other one.
+            // By the sign's fact, a NaN of the outer bound, which is nearer to 0, has to show in the other
+            // bound.
             inner = self.guarded(inner, outer);
         }
         match side {
@@ -95,8 +96,8 @@ impl<D: Domain> Interval<D> {
         if a.facts.point { a.high } else { self.guarded(a.high, a.low) }
     }
 
-    /// As [`sure_low`](Self::sure_low), and NaN where it is infinite: so that infinities do not seem to be
-    /// equal where one may be NaN.
+    /// As [`sure_low`](Self::sure_low), and NaN where the bound is infinite: infinities must not compare as
+    /// equal where one value may be NaN.
     fn finite_low(&mut self, a: Range<D>) -> D::Real {
         let low = self.sure_low(a);
         if a.facts.point { low } else { self.guarded(low, low) }
@@ -114,7 +115,7 @@ impl<D: Domain> Interval<D> {
         }
         let (high, low) = (self.sure_high(a), self.sure_low(b));
         let yes = self.domain.lt(high, low);
-        // With a NaN it does not hold, so this is certain whether the values are numbers or not.
+        // A comparison with a NaN does not hold, so this is certain even where a value is NaN.
         let no = self.domain.le(b.high, a.low);
         Certainty { yes, no, decided: false }
     }
@@ -145,7 +146,7 @@ impl<D: Domain> Interval<D> {
         Certainty { yes, no: d.either(below, above), decided: false }
     }
 
-    /// One of two, or what encloses both.
+    /// One of two ranges, or a range that encloses both.
     pub(super) fn choice(&mut self, condition: Certainty<D>, a: Range<D>, b: Range<D>) -> Range<D> {
         if same(a, b) {
             return a;
@@ -161,12 +162,12 @@ impl<D: Domain> Interval<D> {
         self.range(low, high, facts)
     }
 
-    /// The bound of what may be chosen: that of a, that of b, or the one further out.
+    /// The bound of a choice: of a, of b, or of the one that is further out.
     fn either_bound(&mut self, side: Side, condition: Certainty<D>, a: D::Real, b: D::Real) -> D::Real {
         let first = self.domain.select(condition.no, b, a);
         let second = self.domain.select(condition.yes, a, b);
         let bound = side.of(&mut self.domain, first, second);
-        // A NaN of the second shows by itself.
+        // A NaN in `second` reaches the bound by itself.
         self.guarded(bound, first)
     }
 }

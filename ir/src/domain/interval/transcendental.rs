@@ -11,14 +11,14 @@
 //! 2^-149. Bounds are widened by [`RELATIVE`] of themselves and [`ABSOLUTE`], which is more than that by
 //! enough for the roundings of the widening itself.
 //!
-//! **Sine and cosine** have a peak or a trough between the ends if a whole number lies between the ends in
-//! turns, shifted by where it stands in a turn. The turns are computed with an error below 2^-23 of the angle
-//! and 2^-21; the ends are moved apart by more than that, so a peak is never missed, and one that is nearly
-//! there may be seen. Then the bound is 1 or -1, which the ops never leave.
+//! **Sine and cosine** have a peak or a trough between the ends if a whole number lies between the ends,
+//! measured in turns and shifted by the phase of the peak. The error of the turns is below 2^-23 of the angle
+//! and 2^-21. The ends are moved apart by more than that, so a peak is never missed, and one just outside may
+//! be seen. A bound at a peak is 1 or -1, which the ops never exceed.
 //!
-//! **Powers** of positive bases are monotone in both operands for a given sign of the other one's distance
-//! from 1 or 0. So the extremes are at corners: where the sign of the exponent is known at one corner each,
-//! otherwise at one of four.
+//! **Powers** of positive bases are monotone in each operand: the sign of the exponent gives the direction in
+//! the base, the sign of the base minus 1 the direction in the exponent. So the extremes are at corners: each
+//! at one known corner if the sign of the exponent is known, otherwise at one of four.
 
 use super::arithmetic::{greatest, least};
 use super::facts::{Facts, Sign};
@@ -35,7 +35,7 @@ const ROUND: f32 = 12_582_912.0;
 /// 1 / (2 pi).
 const TURNS: f32 = 0.159_154_94;
 
-/// A sine or a cosine: where its whole turns begin and what to add to get to its peak and its trough.
+/// A sine or a cosine: the phases of its peak and its trough.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Wave {
     op: Op,
@@ -74,7 +74,7 @@ impl<D: Domain> Interval<D> {
         d.fma(magnitude, relative, absolute)
     }
 
-    /// Below a low bound of what is never negative. A NaN gives 0.
+    /// A little less than a low bound that is never negative, at least 0. A NaN gives 0.
     fn below_but_not_negative(&mut self, bound: D::Real) -> D::Real {
         let low = self.below(bound);
         let zero = self.domain.constant(0.0);
@@ -90,7 +90,7 @@ impl<D: Domain> Interval<D> {
         let low = self.below_but_not_negative(low);
         let high = self.domain.exp(a.high);
         let high = self.above(high);
-        // exp(-inf) is finite, but -inf says that there may be a NaN.
+        // exp(-inf) is finite, but a bound of -inf means that the value may be NaN.
         let high = self.guarded(high, a.low);
         self.range(low, high, facts)
     }
@@ -101,7 +101,7 @@ impl<D: Domain> Interval<D> {
         if facts.point {
             return self.range(low, low, facts);
         }
-        // The logarithm of a negative bound is NaN, and that of 0 is -inf: as it should be.
+        // The logarithm of a negative bound is NaN, of 0 it is -inf: neither bounds anything.
         let low = self.below(low);
         let high = self.domain.ln(a.high);
         let high = self.above(high);
@@ -145,7 +145,7 @@ impl<D: Domain> Interval<D> {
         d.both(above, below)
     }
 
-    /// Whether a whole number may lie among the angles in turns, plus `phase`. Means nothing where the angles
+    /// Whether a whole number may lie among the angles in turns plus `phase`. Meaningless where the angles
     /// are not known.
     fn has_whole_turn(&mut self, a: Range<D>, phase: f32) -> D::Mask {
         let d = &mut self.domain;
@@ -197,7 +197,7 @@ impl<D: Domain> Interval<D> {
         if b.facts.point {
             return (d.pow(base_low, b.low), d.pow(base_high, b.low));
         }
-        // Powers of what is below 1 fall with the exponent.
+        // Powers of a base below 1 fall with the exponent.
         let one = d.constant(1.0);
         let falls_low = d.lt(base_low, one);
         let falls_high = d.lt(base_high, one);
@@ -206,8 +206,8 @@ impl<D: Domain> Interval<D> {
         (d.pow(base_low, exponent_low), d.pow(base_high, exponent_high))
     }
 
-    /// The bounds where no base is negative and everything is finite; elsewhere anything, for a power may be
-    /// 1 whatever the base is.
+    /// The bounds where no base is negative and all bounds are finite; elsewhere unbounded, for a power may
+    /// be 1 whatever the base is.
     fn where_powers_are_numbers(
         &mut self,
         facts: Facts,

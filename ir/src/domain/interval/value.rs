@@ -4,7 +4,7 @@ use super::facts::Facts;
 use crate::facts::Fact as _;
 use crate::op::{Domain, Op};
 
-/// A real: two bounds, what is known of them, and which value they belong to.
+/// A real: two bounds, their facts, and the identity of the value.
 #[derive(Debug)]
 pub struct Range<D: Domain> {
     /// No number that the value can be is below this.
@@ -15,7 +15,7 @@ pub struct Range<D: Domain> {
     pub(super) identity: usize,
 }
 
-/// A mask: at most one of both holds.
+/// A mask: at most one of the two fields holds.
 #[derive(Debug)]
 pub struct Certainty<D: Domain> {
     /// It certainly holds.

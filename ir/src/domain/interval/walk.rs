@@ -1,5 +1,5 @@
-//! Goes through a function in the interval domain, on the ground that the bounds stand on: on rows, which are
-//! run ([`enclose`]), or on a builder, into which folds are written (the pass).
+//! Walks through a function in the interval domain. The *ground* of a walk is either rows, which are run
+//! ([`enclose`]), or a builder, into which folds are written (the pass).
 //!
 //! Both grounds get the same values with the same facts and identities, hence the same bounds:
 //!
@@ -8,8 +8,8 @@
 //! columns         are points of which nothing is known, whatever number the row has
 //! ```
 //!
-//! A fold has for each accumulator what is left of it: two bounds of a real, two masks for what is certain of
-//! a mask; one value of a point, and nothing for bits that are not known.
+//! A fold keeps for each accumulator only what is not known: two bounds of a real, two masks for a mask, one
+//! value for a point, nothing for unknown bits.
 
 use super::facts::Facts;
 use super::value::{Certainty, Interval, Known};
@@ -69,7 +69,7 @@ pub(crate) trait Ground: Sized {
 /// A walk through one function.
 pub(crate) struct Walk<'a, G: Ground> {
     function: &'a Function,
-    /// The facts of values, of which those of accumulators are asked for.
+    /// The facts of values; the walk reads those of accumulators.
     facts: Vec<Facts>,
     pub(crate) interval: Interval<G::Bound>,
     pub(crate) ground: G,
@@ -131,7 +131,7 @@ impl<'a, G: Ground> Walk<'a, G> {
                     Any::Real(self.interval.point(value))
                 }
                 InstKind::Op { op, args } => {
-                    // At most three operands, by the table; the places that are left repeat the first.
+                    // The op table has at most three operands; unused places repeat the first.
                     let mut operands = [self.value(args[0]); 3];
                     for (place, &arg) in operands.iter_mut().zip(args) {
                         *place = self.value(arg);
@@ -154,7 +154,7 @@ impl<'a, G: Ground> Walk<'a, G> {
         }
     }
 
-    /// What is left of values that go into these accumulators.
+    /// The bounds of these values, in the layout of the accumulators that take them.
     fn flatten(&self, values: &[Value], accumulators: &[Value]) -> Vec<Any<G::Bound>> {
         let mut flat = Vec::new();
         for (&value, accumulator) in values.iter().zip(accumulators) {
@@ -170,7 +170,7 @@ impl<'a, G: Ground> Walk<'a, G> {
         flat
     }
 
-    /// Gives `values` what [`flatten`](Self::flatten) has left of these accumulators.
+    /// Binds `values` to what [`flatten`](Self::flatten) made, in the layout of these accumulators.
     fn bind(&mut self, values: &[Value], accumulators: &[Value], flat: Vec<Any<G::Bound>>) {
         let mut flat = flat.into_iter();
         let mut next = || flat.next().expect("the layout is that of flatten");

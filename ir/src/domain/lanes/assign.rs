@@ -1,10 +1,10 @@
 //! Gives every value a place: a register for a block, a slot for a splat.
 //!
-//! First, values that a copy would connect are put into one *class*, where their lives do not overlap: a
-//! fold's parameter and its result always, its next value and its initial value where possible. So `acc' =
-//! fma(a, b, acc)` writes where it read, and a sum of sums carries one register through all its folds. Then
-//! classes get registers in order of their first definition, a free one with the lowest number each (Poletto
-//! and Sarkar 1999, "Linear scan register allocation").
+//! First, values that a copy would connect join one *class*, where their live ranges do not overlap: a fold's
+//! parameter and its result always, its next value and its initial value where possible. So
+//! `acc' = fma(a, b, acc)` writes the register that it reads, and a sum of sums keeps one register through
+//! all its folds. Then classes get registers in order of their first definition: each the free register with
+//! the lowest number (Poletto and Sarkar 1999, "Linear scan register allocation").
 
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashMap};
@@ -17,7 +17,7 @@ use super::schedule::{Event, Range, Schedule};
 
 /// The places of all values.
 pub(super) struct Places {
-    /// By value; those that only rename another one share its place.
+    /// By value. A value that only renames another one shares its place.
     pub places: Vec<Place>,
     /// Number of registers.
     pub registers: usize,
@@ -43,7 +43,8 @@ pub(super) fn assign(schedule: &Schedule<'_>) -> Places {
     places
 }
 
-/// Constants first, then one slot for every other splat; a fold's result stays where its parameter is.
+/// Constants get the first slots, then every other splat gets one. A fold's result has the slot of its
+/// parameter.
 fn assign_splats(schedule: &Schedule<'_>, places: &mut Places) {
     let function = schedule.function;
     for data in function.insts.values() {
@@ -76,7 +77,7 @@ fn assign_splats(schedule: &Schedule<'_>, places: &mut Places) {
     }
 }
 
-/// Gives values that share their bits a new slot, if they are splats.
+/// Gives values that share their bits one new slot, if they are splats.
 fn assign_slot(schedule: &Schedule<'_>, places: &mut Places, values: &[Value]) {
     if values.iter().all(|value| schedule.splat[value.index()] && schedule.holder[value.index()] == *value) {
         for value in values {
@@ -135,8 +136,8 @@ struct Classes {
     parent: Vec<Value>,
     /// Number of values in the class of a root.
     size: Vec<u32>,
-    /// When the class of a root is alive: ascending, never touching. A root that is not here is alone in its
-    /// class.
+    /// The live ranges of the class of a root, ascending, never touching. A root without an entry is alone in
+    /// its class.
     ranges: HashMap<Value, Vec<Range>>,
 }
 
@@ -162,13 +163,13 @@ impl Classes {
         };
         for &fold in &folds {
             for accumulator in schedule.accumulators(fold) {
-                // These never overlap: the parameter dies where the fold ends, at the latest, and there the
-                // result is born.
+                // Their live ranges never overlap: the parameter dies at the fold's end at the latest, where
+                // the result is defined.
                 join(&mut classes, accumulator.param, accumulator.result);
             }
         }
-        // Copies at the end of a body run once per row, those at its beginning once per fold: the former are
-        // saved first.
+        // Copies at the end of a body run once per row, copies at its beginning once per fold. So the copies
+        // at the end are removed first.
         for &fold in &folds {
             for accumulator in schedule.accumulators(fold) {
                 join(&mut classes, accumulator.param, accumulator.next);
@@ -189,7 +190,7 @@ impl Classes {
         value
     }
 
-    /// Puts two values into one class, unless they are alive at the same time.
+    /// Joins the classes of two values, unless their live ranges overlap.
     fn join(&mut self, schedule: &Schedule<'_>, a: Value, b: Value) {
         let (a, b) = (self.root(a), self.root(b));
         if a == b {
@@ -198,7 +199,7 @@ impl Classes {
         let mut take =
             |root: Value| self.ranges.remove(&root).unwrap_or_else(|| vec![schedule.live[root.index()]]);
         let (a_ranges, b_ranges) = (take(a), take(b));
-        // The shorter list goes into the longer one, so that a long chain of folds stays cheap.
+        // The shorter list is merged into the longer one, so that a long chain of folds stays cheap.
         let (mut ranges, others, swapped) = if a_ranges.len() >= b_ranges.len() {
             (a_ranges, b_ranges, false)
         } else {
@@ -224,7 +225,7 @@ impl Classes {
     }
 }
 
-/// Adds a range that overlaps none of them; ranges that touch become one.
+/// Adds a range that overlaps no range of the list. Ranges that touch are merged.
 fn insert(ranges: &mut Vec<Range>, new: Range) {
     let at = ranges.partition_point(|range| range.end <= new.start);
     let joins_before = at > 0 && ranges[at - 1].end == new.start;

@@ -42,7 +42,7 @@ struct Compiler<'a> {
     tape: Tape,
     /// The folds whose end has not come yet, by their number.
     open: Vec<usize>,
-    /// Where a value waits while others rotate: a register and a splat, made when first needed.
+    /// Where a value waits while a cycle of moves is broken: a register and a splat, made when first needed.
     waiting: [Option<Place>; 2],
     /// By place, for [`moves`](Self::moves): how many pending moves read it. All zero between calls.
     readers: [Vec<u32>; 2],
@@ -74,7 +74,7 @@ impl<'a> Compiler<'a> {
         self.places.places[value.index()]
     }
 
-    /// Writes an instruction, or the pair of which it is the second.
+    /// Writes an instruction, or the pair whose second instruction it is.
     fn inst(&mut self, inst: Inst, pair: Option<&Paired>) {
         let data = &self.function.insts[inst];
         let result = self.place(data.results[0]);
@@ -109,7 +109,7 @@ impl<'a> Compiler<'a> {
         self.tape.ops.push(op);
         let end = narrow(self.tape.ops.len());
         match self.tape.steps.last_mut() {
-            // Ops only follow ops directly: a fold's first step has a Begin before it.
+            // Only ops directly before join this step; a fold's first step has a Begin before it.
             Some(Step::Ops { end: last, .. }) => *last = end,
             Some(Step::Input { .. } | Step::Move { .. } | Step::Begin { .. } | Step::End { .. }) | None => {
                 self.tape.steps.push(Step::Ops { first: end - 1, end });
@@ -132,8 +132,8 @@ impl<'a> Compiler<'a> {
         self.tape.folds[fold].after = self.tape.steps.len();
     }
 
-    /// Copies values as if all at once: a place is written only when nobody waits to read it any more. Where
-    /// all wait for each other, one of them steps aside.
+    /// Copies values as if all at once: a place is written after all pending reads of it. In a cycle of
+    /// moves, one value is first moved aside.
     fn moves(&mut self, moves: impl Iterator<Item = (Value, Value)>) {
         let mut pending: Vec<(Place, Place)> = moves
             .map(|(from, to)| (self.place(from), self.place(to)))
@@ -142,7 +142,7 @@ impl<'a> Compiler<'a> {
         for &(from, _) in &pending {
             *self.readers_of(from) += 1;
         }
-        // Which move writes a place, so that the last read of the place can release it.
+        // Which move writes a place: the last read of the place releases that move.
         let mut ready: Vec<usize> = Vec::new();
         let mut writer: Vec<(Place, usize)> =
             pending.iter().enumerate().map(|(index, &(_, to))| (to, index)).collect();
@@ -166,8 +166,8 @@ impl<'a> Compiler<'a> {
                 }
             }
             if !done[start] {
-                // Only cycles are left, and in a cycle each place has one reader: the one that is about to
-                // lose `to`.
+                // Only cycles are left. In a cycle each place has one reader; the reader of `to` reads the
+                // copy instead.
                 let (_, to) = pending[start];
                 let aside = self.aside(to);
                 self.tape.steps.push(Step::Move { from: to, to: aside });
@@ -185,7 +185,7 @@ impl<'a> Compiler<'a> {
         &mut self.readers[usize::from(place.is_splat())][place.index()]
     }
 
-    /// A place of the same kind that no value has.
+    /// A place of the same kind that holds no value.
     fn aside(&mut self, place: Place) -> Place {
         let kind = usize::from(place.is_splat());
         let tape = &mut self.tape;

@@ -1,7 +1,6 @@
 //! Runs a tape: for each block of points, step after step.
 //!
-//! Everything here is inlined into one function per [`Level`](super::level::Level), and so is every op's
-//! loop.
+//! Everything here is inlined into one function per [`Level`](super::level::Level), each op's loop included.
 
 use crate::entity::Entity;
 use crate::op::{Domain, Op};
@@ -146,8 +145,8 @@ impl Block<'_> {
         }
     }
 
-    /// The method of an op. What [`apply`](crate::op::apply) does, without looking at types that the verifier
-    /// has checked.
+    /// The method of an op. Like [`apply`](crate::op::apply), but without a check of types: the verifier has
+    /// checked them.
     #[inline(always)]
     fn op(&mut self, op: Op, step: &OpStep) {
         let [a, b, c, ..] = step.args;

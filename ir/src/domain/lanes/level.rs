@@ -1,6 +1,6 @@
 //! Runs a tape at a [`Level`] of the instruction set. The `unsafe` here has one contract: a function that is
-//! compiled for an instruction set is called on a CPU that has it. So a level that this CPU lacks is never
-//! run: the largest one that it has takes its place.
+//! compiled for an instruction set is called only on a CPU that has it. A level that this CPU lacks is
+//! replaced by the largest level that it has.
 
 use crate::environment::Standard;
 use crate::level::Level;
@@ -25,7 +25,7 @@ pub(super) fn run(level: Level, job: Job<'_, '_>) {
     }
 }
 
-// None of these is inlined: no arithmetic of theirs may move out to where the environment is the caller's.
+// None of these is inlined: their arithmetic must not move out to code that runs in the caller's environment.
 
 #[inline(never)]
 fn run_baseline(job: Job<'_, '_>) {

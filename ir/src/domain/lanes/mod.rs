@@ -1,8 +1,8 @@
 //! The SIMD interpreter: each op runs over a block of points before the next op starts.
 //!
-//! A [`Tape`] is compiled once from a function, and then run on planes of points of any length. Two things
-//! make it fast: the cost of finding out *what* to do is paid once per op and block instead of once per op
-//! and point, and what is the same for all points is never spread out.
+//! A [`Tape`] is compiled once from a function, then run on planes of points of any length. Two things make
+//! it fast: *what* to do is decided once per op and block instead of once per op and point, and values that
+//! are the same for all points are never spread out.
 //!
 //! ```text
 //!    Function ──schedule──► events in order, live ranges, which values are splats
@@ -17,9 +17,9 @@
 //!      ...                                                        as many rows as fit the first-level cache
 //! ```
 //!
-//! A value is a *block* (a register: one number per point) or a *splat* (one number for all points:
-//! constants, columns of the current row, and whatever is computed from these alone). Every op takes either
-//! in each operand, through a loop made for that combination.
+//! A value is a *block* (a register: one number per point) or a *splat* (one number for all points: a
+//! constant, a column of the current row, or a value computed from splats alone). Every op takes either in
+//! each operand, through a loop made for that combination.
 //!
 //! **The bits are those of [`Scalar`](super::scalar::Scalar)**, because each lane loop calls its methods. The
 //! loops are plain Rust that is inlined into one function per [`Level`] of the instruction set, chosen when

@@ -20,7 +20,7 @@ impl Chunk {
     pub const ZERO: Self = Self([0; WIDTH]);
 }
 
-/// A real, a mask or bits of this domain: where the lanes are, or what all of them are.
+/// A real, a mask or bits of this domain: a register of lanes, or the bits that all lanes share.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Handle {
     /// The register with this number.
@@ -31,7 +31,8 @@ pub(super) enum Handle {
 
 use Handle::{Block, Splat};
 
-/// The lanes domain. An op on splats only gives a splat; every other one writes the result register.
+/// The lanes domain. An op whose operands are all splats gives a splat; any other op writes the result
+/// register.
 pub(super) struct Lanes<'a> {
     /// The register file: row after row of chunks, one chunk per register and row, for `WIDTH` points.
     pub file: &'a mut [Chunk],
@@ -47,7 +48,7 @@ const fn mask(truth: bool) -> u32 {
     if truth { !0 } else { 0 }
 }
 
-/// The truth of a mask. Looking at one bit only makes this the sign test of a vector blend.
+/// The truth of a mask. It reads the sign bit only, which makes it the sign test of a vector blend.
 #[inline(always)]
 const fn truth(mask: u32) -> bool {
     mask.cast_signed() < 0
@@ -92,7 +93,7 @@ impl Lanes<'_> {
     #[inline(always)]
     pub(super) fn each(&mut self, f: impl Fn(&[Chunk], usize) -> u32) -> Handle {
         let mut file = &mut *self.file;
-        // Not `chunks_exact_mut`: that divides first, which takes as long as a short loop.
+        // Not `chunks_exact_mut`: its division takes as long as a short loop.
         while let Some((row, rest)) = file.split_at_mut_checked(self.stride) {
             let mut lanes = [0; WIDTH];
             for (index, lane) in lanes.iter_mut().enumerate() {
@@ -152,7 +153,7 @@ impl Lanes<'_> {
     }
 }
 
-/// The transcendental ops of the scalar domain, out of line: they are long, and no tape runs them.
+/// The transcendental ops of the scalar domain, out of line: they are long, and no tape contains them.
 mod whole {
     use crate::domain::scalar::Scalar;
     use crate::op::Domain;

@@ -1,16 +1,15 @@
-//! Pairs: two ops in one loop, where the second one is all that reads what the first one computes.
+//! Pairs: two ops in one loop, where the second op is the only reader of the first op's result.
 //!
-//! An op that runs alone reads its operands from registers in memory and writes its result there, and that
-//! takes longer than to compute it. In a pair the first result stays in the CPU. About two of five ops go
-//! away this way.
+//! An op that runs alone reads its operands from registers in memory and writes its result there, which takes
+//! longer than its arithmetic. In a pair the first result stays in the CPU. Pairs save about two of five ops.
 //!
 //! ```text
 //!     r3 = sub r0, s4                                              r3 = SubSquareAdd r0, s4, r2
 //!     r3 = fma r3, r3, r2        becomes                           t = sub(a, s), fma(t, t, b)
 //! ```
 //!
-//! Each row of the table is a loop of its own. The rows are those pairs that programs of examples and of
-//! other people's models have most often; a pair that is not here runs as two ops, and gives the same bits.
+//! Each row of the table is a loop of its own. The rows are the most frequent pairs in programs of examples
+//! and of other people's models; any other pair runs as two ops and gives the same bits.
 
 use crate::domain::scalar::Scalar;
 use crate::entity::Value;
@@ -110,7 +109,7 @@ impl Result for bool {
 /// A row of the table as data.
 struct Pattern {
     pair: Pair,
-    /// Of each operand, whether it is a splat.
+    /// For each operand, whether it is a splat.
     splats: &'static [bool],
     first: Op,
     /// The operands of the first op, as positions in those of the pair.
@@ -287,7 +286,7 @@ pairs! {
     ScaleMinOf(a: Real, s: Number, b: Real) t = mul(a, s), min(b, t);
 }
 
-/// The pair that two ops are, and its operands; `t` is the first result, which the second op alone reads.
+/// The pair that two ops form, and its operands. `t` is the first result, which only the second op reads.
 pub(super) fn find(
     first: Single<'_>,
     t: Value,
@@ -312,7 +311,7 @@ pub(super) fn find(
             found[position] = Some(value);
             is_new && pattern.splats[position] == is_splat(value)
         });
-        // A row may have fewer operands than the most; the others are never looked at.
+        // A pair may have fewer operands than the array has places; the other places are never read.
         matches.then(|| (pattern.pair, found.map(|value| value.unwrap_or(t))))
     })
 }
@@ -366,7 +365,7 @@ mod tests {
         let (one, two) = (b.constant(1.0), b.constant(2.0));
         let mut real = |value, is_mask| if is_mask { b.select(value, one, two) } else { value };
         let mut outputs = vec![("out".to_owned(), real(result, pattern.second.result() == Type::Mask))];
-        // A mask that is read elsewhere as well is not the first of a pair.
+        // A mask with another reader is not the first of a pair.
         for (at, &mask) in args.iter().enumerate().filter(|&(at, _)| is_mask[at]) {
             outputs.push((format!("m{at}"), real(mask, true)));
         }

@@ -41,15 +41,16 @@ impl Tape {
         Ok(compile(function))
     }
 
-    /// Runs the function: output planes from input planes, point by point the same bits as the scalar domain.
+    /// Runs the function: computes output planes from input planes, point by point with the bits of the
+    /// scalar domain.
     ///
     /// All planes have one length, any length. `tables` fit the function: call [`Tables::check`] when they
-    /// change; `selection` says which of their rows run. (What does not fit gives wrong numbers or a panic,
-    /// nothing worse.) The floating-point environment of the caller does not matter: the run has its own,
-    /// with subnormals and round to nearest, and restores the caller's.
+    /// change. `selection` says which of their rows run. (Tables that do not fit give wrong numbers or a
+    /// panic, nothing worse.) The run has its own floating-point environment, with subnormals and round to
+    /// nearest, and restores the caller's.
     ///
     /// # Errors
-    /// When the planes are not as many as the function's, or differ in length.
+    /// Another number of planes than the function has, or planes of different lengths.
     pub fn run(
         &self,
         (tables, selection): (&Tables, &Selection),

@@ -27,7 +27,8 @@ pub(super) enum Event {
     Inst(Inst),
     /// A fold starts: the initial accumulators go to its parameters.
     Begin(Inst),
-    /// The body of a fold ends: what it yields goes to its parameters, which are in the end the results.
+    /// The body of a fold ends: what it yields goes to its parameters, which after the last row are the
+    /// results.
     End(Inst),
 }
 
@@ -49,7 +50,7 @@ pub(super) struct Schedule<'a> {
     pub splat: Vec<bool>,
     /// For each holder, when it is alive.
     pub live: Vec<Range>,
-    /// By instruction, whether it runs in the loop of the one behind it.
+    /// By instruction, whether it is the first of a pair, and runs in the loop of the next instruction.
     pub is_first: Vec<bool>,
     /// The pairs, by their second instruction, in order.
     pairs: Vec<Paired>,
@@ -78,18 +79,17 @@ impl<'a> Schedule<'a> {
         Self { function, events, holder, splat, live, is_first, pairs }
     }
 
-    /// The pair of which an instruction is the second.
+    /// The pair whose second instruction this is.
     pub fn pair_of(&self, inst: Inst) -> Option<&Paired> {
         self.pairs.binary_search_by_key(&inst, |pair| pair.second).ok().map(|at| &self.pairs[at])
     }
 
-    /// The fold of an instruction that the events call one.
+    /// The fold of an instruction in a `Begin` or `End` event.
     pub fn fold(&self, inst: Inst) -> &'a Fold {
         fold(self.function, inst)
     }
 
-    /// The fold's parameters, each with the value that it begins with, the next one and the result: all as
-    /// holders.
+    /// The accumulators of a fold: parameter, initial value, next value and result, all as holders.
     pub fn accumulators(&self, inst: Inst) -> impl Iterator<Item = Accumulator> + use<'_, 'a> {
         let fold = self.fold(inst);
         let body = &self.function.blocks[fold.body];
@@ -157,7 +157,8 @@ struct Pairing<'a> {
     splat: &'a [bool],
     /// By holder: how often it is read.
     reads: Vec<u32>,
-    /// By holder: the instruction of the present run that computes it, where that may be the first of a pair.
+    /// By holder: the instruction of the current run of ops that computes it, if it may be the first of a
+    /// pair.
     writer: Vec<Option<Inst>>,
     is_first: Vec<bool>,
     pairs: Vec<Paired>,
@@ -223,7 +224,7 @@ impl<'a> Pairing<'a> {
         }
     }
 
-    /// The instruction that forms a pair with this one and comes before it.
+    /// The earlier instruction that forms a pair with this one.
     fn pair(&mut self, inst: Inst) -> Option<Inst> {
         let data = &self.function.insts[inst];
         let InstKind::Op { op, .. } = data.kind else { return None };
@@ -270,7 +271,7 @@ fn holders(function: &Function, events: &[Event]) -> Vec<Value> {
     holder
 }
 
-/// Follows the inputs to everything that they reach. What they do not reach is the same in all lanes.
+/// Follows the inputs to every value that depends on them. All other values are splats.
 fn splats(function: &Function, holder: &[Value]) -> Vec<bool> {
     let mut reaches: Vec<(Value, Value)> = Vec::new();
     let mut found: Vec<Value> = Vec::new();
@@ -319,7 +320,7 @@ fn ranges(function: &Function, events: &[Event], holder: &[Value]) -> Vec<Range>
                 for &operand in function.operands(inst) {
                     walk.read(operand, position);
                 }
-                // A value that only renames another one has no life of its own.
+                // A value that only renames another one has no live range.
                 if walk.holder[data.results[0].index()] == data.results[0] {
                     walk.write(data.results[0], position);
                 }
@@ -384,7 +385,7 @@ impl Walk<'_> {
 
     fn read(&mut self, value: Value, position: usize) {
         let value = self.holder[value.index()].index();
-        // A value from outside of a fold is needed again in its next round: it lives to the end of the fold.
+        // The next iteration reads a value from outside of the fold again: it lives to the end of the fold.
         let last = self.open.get(self.depth[value]).copied().unwrap_or(position);
         let range = &mut self.live[value];
         range.end = range.end.max(2 * last + 1);

@@ -29,7 +29,7 @@ use super::place::Place;
 pub struct Tape {
     /// Number of input planes.
     pub(super) inputs: usize,
-    /// What each output plane is a copy of.
+    /// The place that each output plane is copied from.
     pub(super) outputs: Vec<Place>,
     /// The program.
     pub(super) steps: Vec<Step>,
@@ -52,11 +52,11 @@ pub struct Tape {
 pub(super) enum Step {
     /// Reads the block's points of an input plane into a register.
     Input { plane: u32, register: u32 },
-    /// Copies, or spreads a splat out.
+    /// Copies a value, or spreads a splat into a register.
     Move { from: Place, to: Place },
     /// Runs these ops, one after the other.
     Ops { first: u32, end: u32 },
-    /// Makes the first active row the current one, or steps behind the end of the fold if there is none.
+    /// Makes the first active row the current one; without active rows, jumps behind the end of the fold.
     Begin { fold: u32 },
     /// Makes the next active row the current one and steps back to the beginning of the body, if there is
     /// one.
@@ -67,7 +67,7 @@ pub(super) enum Step {
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) struct OpStep {
     pub code: Code,
-    /// As many as it has operands, then anything.
+    /// The operands, then unused places.
     pub args: [Place; MOST_OPERANDS],
     pub result: Place,
 }
@@ -93,8 +93,7 @@ pub(super) struct FoldStep {
     pub columns: Vec<(u32, u32)>,
 }
 
-/// The memory of a run: registers and splats. It grows to what the largest tape needs, and then is used again
-/// and again.
+/// The memory of a run: registers and splats. It grows to the need of the largest tape and is then reused.
 #[derive(Clone, Default, Debug)]
 pub struct Scratch {
     pub(super) file: Vec<Chunk>,
@@ -112,7 +111,7 @@ pub(super) struct OpenFold {
 }
 
 impl Scratch {
-    /// Nothing yet: the first run makes room.
+    /// No memory yet: the first run allocates it.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
@@ -142,8 +141,8 @@ impl Tape {
         (FILE_BYTES / (self.stride() * size_of::<Chunk>())).clamp(MIN_CHUNKS, MAX_CHUNKS) * WIDTH
     }
 
-    /// Chunks from one register's points to its next ones. It is odd, so that the chunks of one register are
-    /// spread over all sets of the cache.
+    /// The distance in chunks between a register's consecutive chunks. It is odd, so that the chunks of one
+    /// register are spread over all sets of the cache.
     pub(super) const fn stride(&self) -> usize {
         self.registers | 1
     }

@@ -2,12 +2,12 @@
 //!
 //! The factors stay a list until somebody needs a number, for three reasons:
 //!
-//! * What two tangents along one base have in common is taken out of their sum: the derivative of `u^2 (4u +
-//!   5)` becomes `u` times a fused step, and not two products.
-//! * Constants and columns are multiplied with each other first. That happens once for a row and not for each
+//! * The common factors of two tangents along one base are taken out of their sum: the derivative of
+//!   `u^2 (4u + 5)` becomes `u` times a fused step instead of two products.
+//! * Constants and columns are multiplied with each other first: once for a row instead of once for each
 //!   point.
-//! * A condition, from `max` or `select`, is a factor too. Where another factor is zero anyway outside of it,
-//!   as `max(t, 0)` is outside of `0 < t`, nobody has to ask.
+//! * A condition, from `max` or `select`, is a factor too. It is dropped where another factor is zero
+//!   wherever the condition does not hold: `max(t, 0)` is zero outside of `0 < t`.
 
 use crate::entity::Value;
 use crate::function::InstKind;
@@ -75,7 +75,7 @@ impl Tangent {
         self.builder.as_constant(max[1]) == Some(0.0) && lt[..] == [max[1], max[0]]
     }
 
-    /// The value as a power of another one: `a` and `n`, if it is `a^n`, made by `n - 1` products with `a`.
+    /// `a` and `n` if the value is `a^n`, made by `n - 1` products with `a`; else the value itself and 1.
     fn power(&self, value: Value) -> (Value, usize) {
         let mut product = value;
         for exponent in 2..=MAX_POWER {
@@ -96,14 +96,14 @@ impl Tangent {
         Some([args[0], args[1]])
     }
 
-    /// `constant * product of list` as one value: what is the same for all points of a row first, conditions
-    /// last.
+    /// `constant * product of list` as one value. Factors that are the same for all points of a row are
+    /// multiplied first, conditions last.
     fn product_of(&mut self, constant: f32, list: &[Factor]) -> Value {
         let one = self.builder.constant(1.0);
         let (mut row, mut lanes) = (self.builder.constant(constant), one);
         let mut left = list;
         while let Some(&factor) = left.first() {
-            // Equal factors are neighbours; their power is there already as a rule.
+            // Equal factors are neighbours. As a rule the function already computes their power.
             let count = left.iter().take_while(|&&other| other == factor).count();
             left = &left[count..];
             let Factor::Value(value) = factor else { continue };
@@ -230,7 +230,7 @@ impl Tangent {
             let vector = self.sum_of_vectors(None, ba, None, bb);
             return self.vector(ca, fa, vector);
         }
-        // One constant for both leaves the factors to the components, where one fused step each adds them.
+        // With one constant for both, the components add the factors, with one fused step each.
         let common = if ca.abs() == cb.abs() { ca } else { 1.0 };
         let mut factor = |constant: f32, factors: Factors| {
             (constant != 1.0 || factors != Factors::default()).then(|| self.scale(constant, factors))

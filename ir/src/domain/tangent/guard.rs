@@ -5,9 +5,9 @@
 //! products and sums         of finite numbers are no NaN; infinities count as the largest numbers
 //! ```
 //!
-//! So 0 times anything is 0: outside of a support, and where a field is held by a bound, the slope is exactly
-//! 0 however far squares have overflowed. Where nothing overflows every op gives the bits that it gives
-//! without guards: the ops are the same, in the same order.
+//! So 0 times anything is 0. Outside of a support, and where a bound limits a field, the slope is exactly 0,
+//! however far squares have overflowed. Where nothing overflows, every op gives the same bits as without
+//! guards: the ops are the same, in the same order.
 
 use rustc_hash::FxHashSet as HashSet;
 
@@ -42,7 +42,7 @@ impl Tangent {
         self.note(tame)
     }
 
-    /// What finite numbers gave: no NaN.
+    /// The result of an op on finite numbers, as a number that is not NaN.
     pub(super) fn tame_result(&mut self, value: Value) -> Value {
         if !self.is_wild(value) {
             return value;
@@ -60,7 +60,7 @@ impl Tangent {
         self.hold_within(component, LARGEST_SLOPE)
     }
 
-    /// Whether a value may be something else than a finite number, where that matters.
+    /// Whether a value may be NaN or infinite, in a guarded domain. Without guards always false.
     fn is_wild(&self, value: Value) -> bool {
         let Some(tame) = &self.tame else { return false };
         self.builder.as_constant(value).map_or_else(|| !tame.contains(&value), |number| !number.is_finite())
@@ -81,8 +81,8 @@ impl Tangent {
         self.builder.max(held, smallest)
     }
 
-    /// The derivative `b a^(b-1)` of a power along its base, given as `b * (a^b / a)`; if the domain is
-    /// guarded, as `(b a^b) / a` where that quotient has overflowed, as it does for subnormal bases.
+    /// The derivative `b a^(b-1)` of a power along its base, given as `slope` = `b * (a^b / a)`. In a guarded
+    /// domain, `(b a^b) / a` where the quotient `a^b / a` has overflowed, as it does for subnormal bases.
     pub(super) fn power_slope(&mut self, slope: Value, [a, b, value]: [Value; 3], positive: Value) -> Value {
         if self.tame.is_none() {
             return slope;

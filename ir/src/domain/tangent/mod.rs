@@ -1,20 +1,20 @@
 //! Forward-mode differentiation as a meaning of the ops: every real carries its tangent along x, y and z.
 //!
 //! Running a function in this domain *emits* another function: the primal instructions, shared by
-//! hash-consing with whatever is there already, and the tangents after them. A tangent is kept as a product,
+//! hash-consing with existing ones, and the tangents after them. A tangent is kept as a product,
 //!
 //! ```text
 //! constant * factors * (bx, by, bz)
 //! ```
 //!
 //! because along a chain of one variable (a squared distance, its falloff, a strength) only the scalar
-//! factors change: the derivative of a falloff is computed once and not three times. Components that are zero
-//! are not there at all, and squares keep their 2 in the constant, so that the gradient of `|p - c|^2` is
-//! `2 * (dx, dy, dz)` and costs nothing.
+//! factors change: the derivative of a falloff is computed once instead of three times. Zero components are
+//! absent. Squares keep their 2 in the constant, so that the gradient of `|p - c|^2` is `2 * (dx, dy, dz)`
+//! and costs nothing.
 //!
-//! A factor of 0 and a base that has overflowed make a NaN of a slope that is 0. A *guarded* domain
-//! ([`Tangent::guarded`]) emits the same products and sums, and keeps what goes into them and what comes out
-//! finite (`guard.rs`).
+//! A factor of 0 times a base that has overflowed is NaN, where the slope is 0. A *guarded* domain
+//! ([`Tangent::guarded`]) emits the same products and sums, and keeps their operands and results finite
+//! (`guard.rs`).
 
 use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 
@@ -36,11 +36,11 @@ use slope::Factor;
 pub struct Dual {
     /// The value, as it was.
     pub value: Value,
-    /// How it moves with x, y and z.
+    /// Its tangent: the derivatives along x, y and z.
     pub slope: Slope,
 }
 
-/// The tangent domain, emitting into a builder. Masks and bits do not move.
+/// The tangent domain, emitting into a builder. Masks and bits have no tangent.
 #[derive(Debug)]
 pub struct Tangent {
     /// Where the instructions go.
@@ -67,7 +67,7 @@ impl Tangent {
         }
     }
 
-    /// A value that does not move.
+    /// A value with zero tangent.
     #[must_use]
     pub const fn still(value: Value) -> Dual {
         Dual { value, slope: Slope::Zero }
@@ -101,7 +101,7 @@ impl Tangent {
         if a.slope == Slope::Zero {
             return Self::still(value);
         }
-        // The value keeps the origin of its instruction; what follows is a derivative.
+        // The value keeps the origin of its instruction; the ops below have the origin of a derivative.
         let derivative = self.derivative(derivative);
         let slope = self.derivative(|d| d.scaled(a.slope, derivative));
         Dual { value, slope }
@@ -254,7 +254,7 @@ impl Domain for Tangent {
         self.builder.to_bits(a.value)
     }
 
-    /// Bits do not move, so neither does what is made of them.
+    /// Bits have no tangent, so neither has a real made of bits.
     fn from_bits(&mut self, a: Value) -> Dual {
         Self::still(self.builder.from_bits(a))
     }

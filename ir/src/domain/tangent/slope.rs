@@ -1,4 +1,5 @@
-//! What the tangent of a real is: `constant * factors * base vector`, of which the latter two have names.
+//! The tangent of a real: `constant * factors * base vector`. The domain names lists of factors and base
+//! vectors.
 
 use crate::entity::Value;
 
@@ -8,7 +9,7 @@ pub type Vector = [Option<Value>; 3];
 /// The tangent of a real.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum Slope {
-    /// It does not move.
+    /// Zero.
     Zero,
     /// `constant * product of factors * base`.
     Scaled {
@@ -25,7 +26,7 @@ pub enum Slope {
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
 pub struct Factors(pub(super) usize);
 
-/// What a tangent is multiplied by.
+/// A factor of a tangent.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
 pub(super) enum Factor {
     /// A number.

@@ -1,16 +1,16 @@
-//! An order written from the last instruction to the first: of those whose readers all have their place, the
-//! next one is the one that leaves the fewest values alive before it.
+//! Writes an order from the last instruction to the first: among the instructions whose readers are all
+//! placed, it takes the one that leaves the fewest values alive before it.
 //!
-//! Where several results share their work, as a field and its gradient do, going depth-first from one of them
-//! computes and keeps everything that the others share with it. Backwards, the instructions that read the
-//! same values attract each other.
+//! Where several results share their work, as a field and its gradient do, a depth-first order from one
+//! result computes and keeps everything that the other results share with it. Backwards, instructions that
+//! read the same values attract each other.
 //!
 //! ```text
 //! growth(node) = the operands that nothing placed so far reads - the values of the node that something placed so far reads
 //! ```
 //!
-//! An operand that reads nothing itself and has no other reader left does not count: it will come directly
-//! before its reader. [`Tie`] says which of several nodes with equal growth comes first.
+//! An operand that reads nothing in the block and has no other reader left does not count: it will come
+//! directly before its reader. [`Tie`] says which of several nodes with equal growth comes first.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -36,7 +36,7 @@ struct Backward<'a> {
     /// For each node, whether something placed reads it, or it is a result of the block.
     alive: Vec<bool>,
     placed: Vec<bool>,
-    /// For each node, what decides ties before the time does.
+    /// For each node, the tie-break before the time of the offer.
     depth: Vec<usize>,
     heap: Heap,
     /// How often something was offered.
@@ -82,7 +82,7 @@ fn depths(graph: &Graph) -> Vec<usize> {
 }
 
 impl Backward<'_> {
-    /// Puts a node on the heap if it can be placed. An older entry for it stays and is passed over later:
+    /// Puts a node on the heap if it can be placed. An older entry of the node stays and is skipped later:
     /// growth only falls.
     fn offer(&mut self, node: usize) {
         if node < self.graph.insts.len() && self.waiting[node] == 0 && !self.placed[node] {
@@ -103,7 +103,7 @@ impl Backward<'_> {
         if self.alive[node] { growth - graph.weight[node].cast_signed() } else { growth }
     }
 
-    /// Places a node before everything that has its place, and offers what that makes possible or cheaper.
+    /// Places a node before all placed nodes, and offers the nodes that this makes possible or cheaper.
     fn place(&mut self, node: usize) {
         let graph = self.graph;
         self.placed[node] = true;

@@ -1,6 +1,6 @@
-//! An order that goes depth-first from the block's results, and of several operands to the one with the
-//! largest need first (Sethi and Ullman, 1970): while it is computed nothing else waits, and only one value
-//! of it remains.
+//! An order that goes depth-first from the block's results, into the operand with the largest need first
+//! (Sethi and Ullman, 1970): while an operand is computed, as few values as possible wait, and it leaves one
+//! value.
 //!
 //! ```text
 //! need(node) = the largest, over its operands in descending order of need, of need(operand) + how many come before it
@@ -39,7 +39,7 @@ pub(super) fn depth_first(graph: &Graph) -> Vec<usize> {
     for root in this.by_need(&graph.results) {
         this.place(root);
     }
-    // What no result needs stays behind the rest, in the order that it had.
+    // Instructions that no result needs come last, in their old order.
     for node in 0..nodes {
         if !this.placed[node] {
             this.order.push(node);

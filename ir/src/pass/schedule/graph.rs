@@ -1,4 +1,4 @@
-//! Who reads whom in one block.
+//! The reads in one block, as a graph.
 
 use crate::entity::{Block, Entity, Inst, Value};
 use crate::function::{Function, InstKind};
@@ -17,7 +17,7 @@ impl Lists {
 }
 
 /// The dependences in a block. A node is the position of an instruction in the block; after the instructions
-/// come the block's parameters. What enclosing blocks define is no node: it is alive all the time.
+/// come the block's parameters. Values of enclosing blocks are no nodes: they are alive all the time.
 pub(super) struct Graph {
     /// The instructions, by node.
     pub insts: Vec<Inst>,
@@ -25,7 +25,7 @@ pub(super) struct Graph {
     pub results: Vec<usize>,
     /// How many values each node defines.
     pub weight: Vec<usize>,
-    /// How many values are alive inside of each node while it runs: those of a fold's body.
+    /// How many values are alive inside each node while it runs: for a fold, the peak of its body.
     pub inside: Vec<usize>,
     operands: Lists,
     readers: Lists,

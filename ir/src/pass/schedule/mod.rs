@@ -1,5 +1,5 @@
-//! Orders the instructions of each block so that few values are alive at once. Everything is pure, so only
-//! uses decide.
+//! Orders the instructions of each block so that few values are alive at once. Instructions are pure, so uses
+//! are the only constraint.
 //!
 //! No order is best for every graph, and counting is cheap: heuristics propose orders, and the block takes
 //! the one with the smallest peak of values, or stays as it is if none is better.

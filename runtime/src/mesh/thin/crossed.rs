@@ -1,5 +1,5 @@
-//! The cells that the surface crosses, by blocks of 4^3 cells of the lattice, and what their corners tell of
-//! parts that are too thin for it.
+//! The crossed cells by blocks of 4^3 cells of the lattice, and the evidence of their corners for parts that
+//! are too thin for the lattice.
 //!
 //! ```text
 //!     .   .   .   .   .        A *lone* point is on the other side of both of its neighbours along an axis:
@@ -10,7 +10,7 @@
 //! of the lattice touches it.
 //! ```
 //!
-//! All of this is made of the signs of lattice points, so it is the same whatever the bricks are.
+//! All of this depends only on the signs of lattice points, so it is the same for bricks of any size.
 
 use crate::mesh::brick::{Bricks, place};
 use crate::mesh::crossing::{Cell, Crossings};
@@ -35,7 +35,7 @@ const fn layer(axis: usize, index: u64) -> u64 {
     cells
 }
 
-/// Where each cell of a block, by its place in Morton order, is in rows: x fastest, then y, then z.
+/// The place of each cell of a block, numbered in Morton order, in rows: x fastest, then y, then z.
 const ROW: [u8; 64] = {
     let (mut rows, mut cell) = ([0; 64], 0_u8);
     while cell < 64 {
@@ -49,14 +49,13 @@ const ROW: [u8; 64] = {
     }
     rows
 };
-/// Along each axis the distance of neighbours in rows, and the cells at the low and at the high end, a bit
+/// For each axis the distance of neighbours in rows, and the cells at the low and at the high end, a bit
 /// each.
 const STEPS: [u32; 3] = [1, 4, 16];
 const FIRST: [u64; 3] = [0x1111_1111_1111_1111, 0x000f_000f_000f_000f, 0x0000_0000_0000_ffff];
 const LAST: [u64; 3] = [FIRST[0] << 3, FIRST[1] << 12, FIRST[2] << 48];
 
-/// For the corners of a cell that are inside, which edges at its first corner are crossed, a bit for each
-/// axis.
+/// For the corners of a cell that are inside, the crossed edges at its first corner, a bit for each axis.
 const CROSSED: [u8; 256] = {
     let (mut crossed, mut signs) = ([0; 256], 0);
     while signs < 256 {
@@ -70,7 +69,7 @@ const CROSSED: [u8; 256] = {
     crossed
 };
 
-/// The bits of x, y and z interleaved, that of x lowest.
+/// The bits of x, y and z interleaved, x lowest.
 pub(super) fn morton(place: [u32; 3]) -> u64 {
     let spread = |index: u32| {
         let mut bits = u64::from(index);
@@ -106,7 +105,7 @@ fn unwoven(code: u64) -> [u32; 3] {
     [gather(code), gather(code >> 1), gather(code >> 2)]
 }
 
-/// A place a step further, unless that is below 0.
+/// A place some steps away, unless it is below 0.
 pub(super) fn step(place: [u32; 3], steps: [i32; 3]) -> Option<[u32; 3]> {
     let mut other = place;
     for (index, step) in other.iter_mut().zip(steps) {
@@ -119,23 +118,23 @@ pub(super) fn step(place: [u32; 3], steps: [i32; 3]) -> Option<[u32; 3]> {
 pub(super) struct CrossedBlocks<'a> {
     cells: &'a [Cell],
     codes: Vec<u64>,
-    /// The crossed cells of each, a bit each in Morton order.
+    /// The crossed cells of each block, a bit each in Morton order.
     masks: Vec<u64>,
-    /// Where the cells of each begin.
+    /// The index of the first cell of each block.
     firsts: Vec<usize>,
     /// The edges along each axis that are crossed and begin at the first corner of a cell: a bit for each
     /// cell, in rows.
     edges: Vec<[u64; 3]>,
 }
 
-/// What the corners of a block's cells tell.
+/// The evidence of the corners of a block's cells.
 #[derive(Clone, Copy, Default, Debug)]
 pub(super) struct BlockSigns {
     /// Crossed edges of the lattice that begin in the block.
     pub(super) edges: u32,
-    /// Edges at lone points, each counted once for each of them.
+    /// Edges at lone points, counted once for each lone end.
     pub(super) lone: u32,
-    /// A lone point, or one that is a scrap, by its place in the lattice.
+    /// A lone point or a scrap, by its place in the lattice.
     pub(super) first: Option<[u32; 3]>,
     /// Whether `first` is a scrap.
     pub(super) is_scrap: bool,
@@ -180,17 +179,17 @@ impl<'a> CrossedBlocks<'a> {
         crossed
     }
 
-    /// How many blocks there are.
+    /// The number of blocks.
     pub(super) fn len(&self) -> usize {
         self.codes.len()
     }
 
-    /// Where a block is, in units of blocks.
+    /// The place of a block, in units of blocks.
     pub(super) fn place(&self, block: usize) -> [u32; 3] {
         unwoven(self.codes[block])
     }
 
-    /// The crossed cells of a block, by their numbers among all.
+    /// The crossed cells of a block, by their indices among all.
     pub(super) fn cells(&self, block: usize) -> std::ops::Range<usize> {
         self.firsts[block]..self.firsts[block] + self.masks[block].count_ones() as usize
     }
@@ -235,7 +234,7 @@ impl<'a> CrossedBlocks<'a> {
         (mask >> bit & 1 == 1).then(|| self.cells[self.firsts[block] + before].signs)
     }
 
-    /// Looks at the corners of a block's cells.
+    /// Examines the corners of a block's cells.
     pub(super) fn look(&self, block: usize) -> BlockSigns {
         let (origin, mask) = (self.place(block), self.masks[block]);
         let cells = &self.cells[self.cells(block)];
@@ -267,7 +266,7 @@ impl<'a> CrossedBlocks<'a> {
         found
     }
 
-    /// The crossed edges along an axis of the block behind the high side of another.
+    /// The crossed edges along an axis in the block behind another block's high side.
     fn edges_behind(&self, block: usize, axis: usize) -> u64 {
         let mut steps = [0; 3];
         steps[axis] = 1;
@@ -275,12 +274,12 @@ impl<'a> CrossedBlocks<'a> {
         other.map_or(0, |other| self.edges[other][axis])
     }
 
-    /// The cells beside which none is crossed, a bit each, of a block whose chunk has no crossed cell.
+    /// The cells without crossed neighbours, a bit each, in a block whose chunk has no crossed cell.
     pub(super) fn free(&self, at: [u32; 3], near: usize) -> u64 {
         // Layers of 6 x 6 cells, a bit each in rows of 8: the block, and one cell more on each side.
         let mut layers = [0_u64; EDGE + 2];
         for direction in 1..8_u32 {
-            // Of the chunks around, those that the block touches.
+            // The neighbouring chunks that the block touches.
             let outwards =
                 [0, 1, 2].map(|axis| (direction >> axis & 1) as i32 * (2 * (at[axis] & 1) as i32 - 1));
             let Some(chunk) = step(at.map(|index| index >> 1), outwards) else { continue };
@@ -308,7 +307,7 @@ impl<'a> CrossedBlocks<'a> {
         (0..64).filter(is_free).fold(0, |free, bit| free | 1 << bit)
     }
 
-    /// Marks the crossed cells of a block beside another, so many steps away from it, that touch that.
+    /// Marks the crossed cells of a neighbouring block, `steps` away, that touch this block.
     fn mark(&self, block: usize, steps: [i32; 3], layers: &mut [u64; EDGE + 2]) {
         let mut mask = self.masks[block];
         for axis in 0..3 {
@@ -327,7 +326,7 @@ impl<'a> CrossedBlocks<'a> {
         [0, 1, 2].map(|axis| origin[axis] * EDGE as u32 + place[axis] as u32)
     }
 
-    /// Whether the last corner of a cell is alone in all eight cells around it, as it is in this one.
+    /// Whether the last corner of a cell is alone on its side in all eight cells around it.
     fn is_scrap(&self, cell: [u32; 3], signs: u8, near: usize) -> bool {
         (1..8_u8).all(|other| {
             let cell = [0, 1, 2].map(|axis| cell[axis] + u32::from(other >> axis & 1));

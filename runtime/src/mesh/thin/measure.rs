@@ -1,15 +1,16 @@
-//! How thick the parts are at some points, and so how fine cells have to be to show them.
+//! The thickness of parts at some points, and so the cells that would show them.
 
 use crate::mesh::error::MeshError;
 use crate::mesh::field::Field;
 use crate::region::Box3;
 
-/// Distances along a ray: a cell, and each a little shorter than the one before, down to a 64th.
+/// Distances along a ray: the first is a cell, each is a little shorter than the one before, the last is a
+/// 64th.
 const RUNGS: usize = 13;
 /// Both ways along x, y, z and the gradient.
 const RAYS: usize = 8;
 
-/// Half of the smallest thickness at some points, or of what is certainly not thicker; `None` without points.
+/// Half of the smallest thickness at some points, or of an upper bound of it; `None` without points.
 pub(super) fn cell<F: Field>(
     field: &F,
     axes: &[Vec<f32>; 3],
@@ -24,7 +25,7 @@ pub(super) fn cell<F: Field>(
     Ok(thinnest.map(|thickness| rounded(0.5 * f64::from(thickness))))
 }
 
-/// The shortest way through a part at a point of it.
+/// The shortest chord of a part through a point in it.
 fn thickness<F: Field>(
     field: &F,
     axes: &[Vec<f32>; 3],
@@ -56,8 +57,8 @@ fn thickness<F: Field>(
     }
     let mut values = vec![0.0; RUNGS * RAYS];
     field.field(&region, &places[0], &places[1], &places[2], &mut values).map_err(MeshError::Field)?;
-    // The longest distance before the first one that is outside of the part; half of the shortest, if that is
-    // outside.
+    // The longest distance before the first one outside of the part; half of the shortest distance, if that
+    // is outside.
     let free = |ray: usize| {
         let stays = |rung: &usize| (values[rung * RAYS + ray] >= iso) == inside;
         let reached = (0..RUNGS).rev().take_while(stays).last();
@@ -76,7 +77,7 @@ fn directions(gradient: [f32; 3]) -> [[f32; 3]; RAYS] {
     std::array::from_fn(|ray| axes[ray / 2].map(|c| if ray % 2 == 0 { c } else { -c }))
 }
 
-/// Two digits of a positive number, rounded down.
+/// A positive number, rounded down to two digits.
 fn rounded(number: f64) -> f64 {
     let scale = 10_f64.powi(1 - number.log10().floor() as i32);
     (number * scale).floor() / scale

@@ -7,7 +7,7 @@
 //!          (measure)
 //! ```
 //!
-//! What is found is a function of the field and the lattice: neither bricks nor threads change it.
+//! The findings are a function of the field and the lattice: bricks and threads do not change them.
 
 mod alarm;
 mod crossed;

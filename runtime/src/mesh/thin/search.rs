@@ -1,5 +1,5 @@
-//! The search for what no cell shows: blocks of 4^3 cells that the surface does not cross, whose range does
-//! not exclude it.
+//! The search for parts that no cell shows: in blocks of 4^3 cells that the surface does not cross, whose
+//! range does not exclude it.
 //!
 //! ```text
 //! chunk of 8^3 cells, not crossed ─ ranges of its blocks ─► a block is *open* if the other side may be in it
@@ -7,12 +7,12 @@
 //!                 8 boxes a step, the best first; a point on the other side in the middle of one ends it
 //! ```
 //!
-//! A step costs one, and what it proves to be empty pays for others: the search goes on while it gets
-//! somewhere, and no further than [`MAX_STEPS`]. Chunks are boxes of the division, whose regions are found by
-//! halving the lattice again and again; so all of this is a function of the lattice, whatever the bricks are.
+//! A step costs one credit, and boxes that it proves empty pay for further steps: the search goes on while it
+//! makes progress, and takes at most [`MAX_STEPS`]. Chunks are boxes of the division, whose regions are found
+//! by repeated halving of the lattice; so the search is a function of the lattice, for bricks of any size.
 //!
-//! A chunk that the surface crosses is left out: nearly all of space beside a smooth surface is in such, and
-//! would cost more than the mesh.
+//! A chunk that the surface crosses is left out: nearly all of space beside a smooth surface is in such
+//! chunks, and searching them would cost more than the mesh.
 
 use super::crossed::{CrossedBlocks, EDGE, bits, morton};
 use crate::mesh::brick::{box_of, place};
@@ -20,33 +20,34 @@ use crate::mesh::error::MeshError;
 use crate::mesh::field::Field;
 use crate::region::{ANYTHING, Box3, MAX_PARTS, Range};
 
-/// The steps of eight boxes that a block may take. A speck is found after nine as a rule: two down to its
-/// cell, and one for each halving.
+/// The most steps of eight boxes for a block. A speck usually takes nine: two down to its cell, and one for
+/// each halving.
 pub(super) const MAX_STEPS: u32 = 32;
-/// The boxes that may stay open in a block, all together. A speck leaves one or two of eight open; where
-/// ranges are wide, or the field is near iso all over, half of them stay, and the search ends soon.
+/// The most boxes that may stay open in a block, over all steps. A speck leaves one or two of eight open.
+/// Where ranges are wide, or the field is near iso everywhere, half of them stay open, and the search ends
+/// soon.
 const MAX_OPEN: u32 = 40;
-/// How often a cell is halved: parts of a fiftieth of a cell are found.
+/// The number of halvings of a cell: parts of a fiftieth of a cell are found.
 const HALVINGS: u32 = 6;
-/// What a step pays in, if it proves that all of its boxes are empty. A sheet passes through six of eight
-/// boxes at most, so the search for one pays for itself; where ranges say nothing it ends with its first
-/// step.
+/// The credit of a step that proves all of its boxes empty. A sheet passes through at most six of eight
+/// boxes, so the search for a sheet pays for itself. Where ranges prove nothing the search ends with its
+/// first step.
 const GAIN: f32 = 4.0;
-/// Ops of a point from which on a block has a region of its own.
+/// The ops of a point from which on a block gets a region of its own.
 const COSTLY: u64 = 1000;
 
-/// What became of a block.
+/// The result for a block.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum BlockOutcome {
     /// Nothing is there.
     Empty,
     /// This point is on the other side.
     Missed([f32; 3]),
-    /// The search ended before it knew.
+    /// The search ended undecided.
     Unproven,
 }
 
-/// What the blocks of a chunk are like.
+/// The results for the blocks of a chunk.
 #[derive(Default)]
 pub(super) struct ChunkFindings {
     /// Points on the other side, each with the place of its block.
@@ -55,26 +56,26 @@ pub(super) struct ChunkFindings {
     pub(super) boxes: u64,
 }
 
-/// What stays the same for all blocks.
+/// The inputs that are the same for all blocks.
 pub(super) struct ThinSearch<'a, F: Field> {
     pub(super) field: &'a F,
     pub(super) axes: &'a [Vec<f32>; 3],
     pub(super) iso: f32,
     pub(super) crossed: &'a CrossedBlocks<'a>,
-    /// The places of the blocks that the surface may be in, in Morton order, and their regions, if the
-    /// division went so far.
+    /// The places of the blocks that the surface may cross, in Morton order, and their regions, if the
+    /// division reached their size.
     pub(super) blocks: Option<Blocks<'a, F::Region>>,
 }
 
 type Blocks<'a, R> = (&'a [[u32; 3]], &'a [R]);
 
-/// A box that the other side may be in.
+/// A box that may hold a point of the other side.
 #[derive(Clone, Copy)]
 struct OpenBox {
     bounds: Box3,
-    /// How far the range goes beyond iso.
+    /// How far the range extends beyond iso.
     reach: f32,
-    /// Halvings that are left.
+    /// The remaining halvings.
     halvings: u32,
 }
 
@@ -85,14 +86,14 @@ struct BlockSearch<'a, R> {
     inside: bool,
     credit: f32,
     steps: u32,
-    /// Boxes that have stayed open so far.
+    /// The number of boxes that stayed open so far.
     opened: u32,
     open: Vec<OpenBox>,
     unproven: bool,
 }
 
 impl<F: Field> ThinSearch<'_, F> {
-    /// Searches a box of this many cells along an edge, 8 or more, and all blocks in it.
+    /// Searches all blocks in a box of this many cells along an edge, 8 or more.
     pub(super) fn chunk(
         &self,
         (size, at): (usize, [u32; 3]),
@@ -140,7 +141,7 @@ impl<F: Field> ThinSearch<'_, F> {
         Ok(())
     }
 
-    /// Searches the blocks of a chunk that the division has kept: those whose ranges reach iso.
+    /// Searches the blocks of a chunk that the division has kept: those whose ranges contain iso.
     fn divided(
         &self,
         (places, regions): Blocks<'_, F::Region>,
@@ -200,7 +201,7 @@ impl<F: Field> ThinSearch<'_, F> {
         Ok(())
     }
 
-    /// The cells of a block that are in the lattice, and beside which none is crossed, a bit each.
+    /// The cells of a block that are in the lattice and have no crossed neighbours, a bit each.
     fn free(&self, at: [u32; 3], near: usize) -> u64 {
         let is_cut = |axis: usize| (at[axis] as usize + 1) * EDGE + 1 > self.axes[axis].len();
         let free = self.crossed.free(at, near);
@@ -260,8 +261,8 @@ impl<F: Field> ThinSearch<'_, F> {
         Ok(if block.unproven { BlockOutcome::Unproven } else { BlockOutcome::Empty })
     }
 
-    /// Asks for the ranges of some boxes, and puts those that stay open on the list, the best last; or a
-    /// point on the other side.
+    /// Computes the ranges of some boxes and puts those that stay open on the list, the best last; or returns
+    /// a point on the other side.
     fn divide(
         &self,
         block: &mut BlockSearch<'_, F::Region>,
@@ -297,14 +298,14 @@ impl<F: Field> ThinSearch<'_, F> {
         Ok(None)
     }
 
-    /// How far a range goes beyond iso on the other side; `None` if it does not.
+    /// How far a range extends beyond iso on the other side; `None` if it does not.
     fn reach(&self, block: &BlockSearch<'_, F::Region>, [low, high]: Range) -> Option<f32> {
         let reach = if block.inside { self.iso - low } else { high - self.iso };
         let is_clear = if block.inside { low >= self.iso } else { high < self.iso };
         (!is_clear).then_some(reach)
     }
 
-    /// The ranges of some boxes, for what that costs.
+    /// The ranges of some boxes; counts the cost.
     fn ask(
         &self,
         block: &mut BlockSearch<'_, F::Region>,
@@ -341,7 +342,7 @@ impl<R> BlockSearch<'_, R> {
     }
 }
 
-/// The halves of a box along all three axes; `None` if f32 has no middle for it.
+/// The eight parts of a box that is halved along all axes; `None` if f32 has no middle for it.
 fn parts(bounds: &Box3) -> Option<[Box3; 8]> {
     let middle = [0, 1, 2].map(|axis| bounds.middle(axis));
     let splits = |axis: usize| bounds.low[axis] < middle[axis] && middle[axis] < bounds.high[axis];

@@ -1,5 +1,4 @@
-//! Blocks in which the surface is in shreds: it is crossed, and there is no room for a cell between its
-//! sides.
+//! Blocks in which the surface is in shreds: it is crossed, but its sides are closer than a cell.
 //!
 //! ```text
 //! scrap:  one point of the lattice alone is on its side of the surface, among all 26 around it        an
@@ -10,9 +9,9 @@
 //!               x
 //! ```
 //!
-//! Vertices are asked only where lone points raise suspicion, so a smooth body pays nothing. Bodies are thin
-//! at sharp edges and tips, so it takes many votes, and half of a block's. Narrow gaps do not count, unless
-//! they are scraps: bodies that touch have one between them.
+//! Vertices are tested only where lone points raise suspicion, so a smooth body costs nothing. Bodies are
+//! thin at sharp edges and tips, so many votes are needed, at least half of a block's. Narrow gaps do not
+//! count, unless they are scraps: bodies that touch have one between them.
 
 use crate::parallel::*;
 
@@ -25,21 +24,21 @@ use crate::mesh::field::Field;
 use crate::mesh::indexed::Mesh;
 use crate::region::Box3;
 
-/// Of so many crossed edges in a block one is lone, where vertices are asked. A sheet of nine tenths of a
-/// cell across a diagonal of the lattice has twice as many.
+/// Vertices are tested where at least one of this many crossed edges in a block is lone. A sheet of nine
+/// tenths of a cell, across a diagonal of the lattice, has twice as many lone edges.
 const CROSSED_PER_LONE: u32 = 3;
 
-/// Vertices of a block that are asked first, at most.
+/// The most vertices of a block in the first test.
 const ASKED_FIRST: usize = 8;
-/// One of so many of them has to vote before all are asked.
+/// The part of them that has to vote before all are tested.
 const CALLED_FIRST: usize = 4;
 
-/// Whether a field is inside. A NaN is not.
+/// Whether a field value is inside; false for NaN.
 fn is_inside(field: f32, iso: f32) -> bool {
     field >= iso
 }
 
-/// Boxes of the division, in Morton order, by which the field is asked.
+/// Boxes of the division, in Morton order, as regions for evaluation.
 pub(super) struct Chunks<'a, R> {
     /// Cells along an edge.
     pub(super) edge: usize,
@@ -47,7 +46,7 @@ pub(super) struct Chunks<'a, R> {
     pub(super) regions: &'a [R],
 }
 
-/// What is looked at.
+/// The inputs of the test.
 pub(super) struct Looked<'a, F: Field> {
     pub(super) field: &'a F,
     pub(super) iso: f32,
@@ -58,7 +57,7 @@ pub(super) struct Looked<'a, F: Field> {
     pub(super) mesh: &'a Mesh,
 }
 
-/// A point to ask the field at, by the chunk that it is in.
+/// A point to evaluate, and the index of its chunk.
 #[derive(Clone, Copy)]
 struct ShredProbe {
     chunk: usize,
@@ -94,7 +93,7 @@ impl<F: Field> Looked<'_, F> {
         Ok((2 * votes >= vertices.len()).then_some(Alarm { place, point, weight: votes as u32 }))
     }
 
-    /// How many of some vertices say that there is no room for a cell.
+    /// The number of vertices at which the part is thinner than a cell.
     fn votes(&self, vertices: &[usize]) -> Result<usize, MeshError<F::Error>> {
         let probe = |&vertex: &usize| {
             let against = self.mesh.normals[vertex].map(|component| -component);
@@ -124,8 +123,8 @@ impl<F: Field> Looked<'_, F> {
         first..if is_last { vertices[brick + 1] } else { vertices[brick] + cells[cell + 1].vertex as usize }
     }
 
-    /// A cell further in a direction, and the chunk there. A chunk that is not there has no surface: then the
-    /// place where it begins answers for it.
+    /// The point a cell further in a direction, and its chunk. Where no chunk was kept there is no surface:
+    /// then the starting point is used instead.
     fn place(&self, from: [f32; 3], direction: [f32; 3]) -> Option<(usize, [f32; 3])> {
         let axes = &self.bricks.axes;
         let cell = axes[0][1] - axes[0][0];
@@ -140,7 +139,7 @@ impl<F: Field> Looked<'_, F> {
         Some((chunk, [0, 1, 2].map(|axis| point[axis].clamp(low[axis], high[axis]))))
     }
 
-    /// The chunk that a point is in.
+    /// The chunk of a point.
     fn chunk(&self, point: [f32; 3]) -> Option<usize> {
         let axes = &self.bricks.axes;
         let place = [0, 1, 2].map(|axis| {

@@ -1,4 +1,4 @@
-//! The vertices of one brick, what they are made from, and what was done at them.
+//! The vertices of one brick, the data that they are made from, and counts of the work.
 
 use super::super::brick::Bricks;
 use super::super::crossing::Crossings;
@@ -9,19 +9,18 @@ use super::bracket::CrossedEdges;
 use super::seed::{Group, Seeds};
 use crate::region::Box3;
 
-/// What was done at vertices.
+/// Counts of the work at vertices.
 #[derive(Default)]
 pub(in super::super) struct Done {
     /// Points at which the gradient was evaluated.
     pub(in super::super) gradient_evaluations: u64,
     /// Points at which everything was evaluated.
     pub(in super::super) full_evaluations: u64,
-    /// Points at which the field was evaluated to look for jumps and to follow walls.
+    /// Points at which the field was evaluated to find jumps and to follow walls.
     pub(in super::super) jump_evaluations: u64,
     /// Vertices at jumps.
     pub(in super::super) jump_vertices: u64,
-    /// Vertices the normals of which are to be compared with their triangles, ascending. A normal that is not
-    /// known is zero.
+    /// Vertices whose normals are to be compared with their triangles, ascending. An unknown normal is zero.
     pub(in super::super) doubtful: Vec<u32>,
 }
 
@@ -38,7 +37,7 @@ impl Done {
     }
 }
 
-/// What the vertices of all bricks are made from.
+/// The data that the vertices of all bricks are made from.
 pub(in super::super) struct Source<'a, F: Field> {
     pub(in super::super) field: &'a F,
     pub(in super::super) options: &'a Options,
@@ -50,35 +49,35 @@ pub(in super::super) struct Source<'a, F: Field> {
 /// A vertex of a cell with more than one sheet.
 pub(super) struct Shared {
     pub(super) vertex: usize,
-    /// How many of the cell's vertices are before it.
+    /// The number of the cell's vertices before it.
     pub(super) earlier: usize,
-    /// Where it starts.
+    /// Its start.
     pub(super) start: [f32; 3],
-    /// How the field rises along the edges of its sheet.
+    /// The rise of the field along the edges of its sheet.
     pub(super) rise: [f32; 3],
 }
 
 /// Three planes of numbers.
 pub(super) type Planes = [Vec<f32>; 3];
 
-/// The vertices of one brick, in planes that are filled up to whole [`LANES`].
+/// The vertices of one brick, in planes padded to whole [`LANES`].
 #[derive(Default)]
 pub(super) struct Batch {
-    /// How many there are.
+    /// The number of vertices.
     pub(super) count: usize,
     pub(super) points: Planes,
-    /// The cells of each [`LANES`] of them, and what is known from these.
+    /// For each [`LANES`] of vertices: their cells, and the values derived from these.
     pub(super) seeds: Vec<Seeds>,
     pub(super) groups: Vec<Group>,
     pub(super) values: Vec<f32>,
     pub(super) gradient: Planes,
     /// One plane after the other, each for `count` vertices.
     pub(super) attributes: Vec<f32>,
-    /// Those that share their cell with others.
+    /// Vertices that share their cell with others.
     pub(super) shared: Vec<Shared>,
-    /// Those whose normals are doubtful, ascending.
+    /// Vertices whose normals are doubtful, ascending.
     pub(super) doubtful: Vec<usize>,
-    /// Edges at vertices that were looked at twice.
+    /// Crossed edges at vertices that get a second look.
     pub(super) crossed: CrossedEdges,
 }
 

@@ -1,5 +1,5 @@
-//! Brackets: two points on a segment, one inside and one outside, between which the surface is; and the
-//! crossed edges of the lattice as such.
+//! Brackets: segments with one end inside and one outside, so that the surface is between them; and the
+//! crossed edges of the lattice as brackets.
 //!
 //! ```text
 //!     outside o-----------------------------------o inside     halved again and again,
@@ -7,10 +7,10 @@
 //!                               o--------o
 //! ```
 //!
-//! How the values at the ends come together tells a *jump* from everything else: where the field is
-//! continuous, their difference becomes about half as large with each halving; at a jump it stays. The ends
-//! of edges are points of the lattice, and a middle is made of two ends and of nothing else, so all cells
-//! around an edge, in whatever bricks, find the same.
+//! The difference of the values at the ends tells a *jump* from a continuous field: where the field is
+//! continuous, each halving about halves the difference; at a jump it stays. The ends of edges are points of
+//! the lattice, and a middle depends on its two ends alone, so all cells around an edge, in any brick, find
+//! the same.
 
 use super::super::field::Field;
 
@@ -22,24 +22,24 @@ pub(super) struct Bracket {
 }
 
 impl Bracket {
-    /// The middle of its ends. A coordinate that the ends share is that of the middle.
+    /// The middle of its ends. A coordinate that both ends share is kept exactly.
     pub(super) fn middle(&self) -> [f32; 3] {
         let [outside, inside] = self.ends;
         [0, 1, 2].map(|axis| 0.5 * outside[axis] + 0.5 * inside[axis])
     }
 
-    /// By how much the field rises. NaN where an end has no number.
+    /// The rise of the field from outside to inside. NaN where the field at an end is not finite.
     fn rise(&self) -> f32 {
         self.values[1] - self.values[0]
     }
 
-    /// How far apart the ends are, along the axis where they are farthest apart.
+    /// The largest distance of the ends along an axis.
     fn width(&self) -> f32 {
         let [outside, inside] = self.ends;
         (0..3).fold(0.0, |width, axis| (outside[axis] - inside[axis]).abs().max(width))
     }
 
-    /// Goes on with the half that holds the surface.
+    /// Keeps the half that holds the surface.
     fn cut(&mut self, iso: f32, middle: [f32; 3], value: f32) {
         let end = usize::from(value >= iso);
         (self.ends[end], self.values[end]) = (middle, value);
@@ -54,7 +54,7 @@ pub(super) struct Points {
 }
 
 impl Points {
-    /// The field at some points.
+    /// Evaluates the field at the points.
     pub(super) fn ask<F: Field>(
         &mut self,
         field: &F,
@@ -73,7 +73,7 @@ impl Points {
         Ok(&self.values)
     }
 
-    /// Halves brackets so many times. Returns at how many points the field was asked.
+    /// Halves brackets a number of times. Returns the number of points evaluated.
     pub(super) fn halve<F: Field>(
         &mut self,
         field: &F,
@@ -92,16 +92,17 @@ impl Points {
     }
 }
 
-/// How often an edge is halved when its ends are looked at: the last is as fine as a bracket of an edge gets.
+/// The numbers of halvings after which an edge is examined; after the last one the bracket has its final
+/// length.
 const LOOKS: [usize; 4] = [0, 3, 6, 12];
 
 /// A crossed edge of the lattice.
 pub(super) struct CrossedEdge {
     bracket: Bracket,
-    /// The rises and the widths at [`LOOKS`], as far as it has come.
+    /// The rises and the widths at [`LOOKS`], up to the current look.
     rises: [f32; LOOKS.len()],
     widths: [f32; LOOKS.len()],
-    /// The last look.
+    /// The current look.
     look: usize,
 }
 
@@ -118,12 +119,12 @@ impl CrossedEdge {
         self.look = look;
     }
 
-    /// By how much the field rises along the whole of it; infinite where an end has no number.
+    /// The rise of the field along the whole edge; infinite where the field at an end is not finite.
     fn whole_rise(&self) -> f32 {
         if self.rises[0].is_nan() { f32::INFINITY } else { self.rises[0] }
     }
 
-    /// Where the surface crosses: after the last look within 2^-13 of the edge.
+    /// The crossing of the surface: after the last look within 2^-13 of the edge.
     pub(super) fn crossing(&self) -> [f32; 3] {
         self.bracket.middle()
     }
@@ -133,8 +134,8 @@ impl CrossedEdge {
         self.bracket.ends[1]
     }
 
-    /// Whether the rise has not come down to a quarter since the look before, where an eighth is usual; at
-    /// the last look, whether it jumps.
+    /// Whether the rise is still more than a quarter of the rise at the previous look, where an eighth is
+    /// usual; at the last look, whether it is a jump.
     fn may_jump(&self, look: usize) -> bool {
         if look + 1 == LOOKS.len() {
             return self.is_jump();
@@ -143,11 +144,11 @@ impl CrossedEdge {
         !rise.is_finite() || rise > 0.25 * before
     }
 
-    /// Whether the field jumps at the crossing: in the last six halvings the rise has not come down to a
-    /// quarter, where 1/64 is usual. So a rise within 2^-12 of an edge is a jump for all purposes.
+    /// Whether the field jumps at the crossing: the last six halvings left more than a quarter of the rise,
+    /// where 1/64 is usual. So a rise within 2^-12 of an edge counts as a jump.
     ///
-    /// Far from the origin there may be no f32 between the ends any more. Then all halvings count, and if
-    /// they were few, more is asked of the rise. Where they were fewer than four, nobody can say.
+    /// Far from the origin there may be no f32 left between the ends. Then all halvings count, with a
+    /// stricter limit if they were few. With fewer than four halvings it is no jump.
     pub(super) fn is_jump(&self) -> bool {
         let [first, _, middle, last] = [0, 1, 2, 3].map(|look| (self.rises[look], self.widths[look]));
         if !last.0.is_finite() {
@@ -163,20 +164,20 @@ impl CrossedEdge {
     }
 }
 
-/// The crossed edges of a brick that somebody has asked about, each once.
+/// The crossed edges of a brick that were requested, each once.
 #[derive(Default)]
 pub(super) struct CrossedEdges {
     edges: Vec<CrossedEdge>,
     /// By the place of the low end in the table of the brick's points, and the axis: the number of the edge
-    /// and one, or 0.
+    /// plus one, or 0.
     numbers: Vec<u32>,
-    /// What is not 0 there.
+    /// The entries that are not 0.
     used: Vec<usize>,
     points: Points,
 }
 
 impl CrossedEdges {
-    /// Forgets all edges. The next ones are of a brick with so many points.
+    /// Removes all edges. The next edges are of a brick with this many points.
     pub(super) fn clear(&mut self, points: usize) {
         self.edges.clear();
         for key in self.used.drain(..) {
@@ -202,10 +203,10 @@ impl CrossedEdges {
     }
 
     /// Halves the edges of sheets until it is known which sheets have no edge that may jump. Of a sheet that
-    /// is hardly suspect, as a `true` beside its edges says, the steepest edge goes first. Returns which
-    /// sheets are left, the edges of which have gone to the end, and at how many points the field was asked.
+    /// is hardly suspect (`true` beside its edges), the steepest edge is tested first. Returns the remaining
+    /// sheets, whose edges have been halved to the end, and the number of points evaluated.
     ///
-    /// Whether a sheet is left depends on its own edges alone, and not on how far others have brought these.
+    /// Whether a sheet remains depends on its own edges alone, not on how far other sheets have halved them.
     pub(super) fn bracket<F: Field>(
         &mut self,
         field: &F,
@@ -231,7 +232,7 @@ impl CrossedEdges {
         Ok((is_left, asked))
     }
 
-    /// The edge of a sheet along which the field differs most; the first of equal ones.
+    /// The edge of a sheet with the largest rise of the field; the first of equal ones.
     fn steepest<'a>(&self, edges: &'a [u32]) -> &'a [u32] {
         let rise = |edge: u32| self.get(edge).whole_rise();
         let steepest =
@@ -239,7 +240,7 @@ impl CrossedEdges {
         &edges[steepest..=steepest]
     }
 
-    /// Halves some edges up to a look. Returns at how many points the field was asked.
+    /// Halves some edges up to a look. Returns the number of points evaluated.
     fn halve<'a, F: Field>(
         &mut self,
         field: &F,

@@ -1,24 +1,23 @@
-//! What vertices keep from the sides of their cells: so much that rounding takes them across none.
+//! The margin of vertices to the sides of their cells: so large that rounding takes no vertex across a side.
 
-/// What vertices keep from the sides of their cells, in parts of a quarter of the cell's edge.
+/// The margin, in quarters of the cell's edge.
 const MARGIN: f32 = 1.0 / 1024.0;
 
-/// Four steps of f32 between two coordinates: that many times the distance of neighbouring numbers, where it
-/// is largest.
+/// Four steps of f32 between two coordinates: four times the largest distance of neighbouring numbers there.
 pub(super) fn four_steps(low: f32, high: f32) -> f32 {
-    /// The bits of the exponent; what is left with the others cleared is a power of two, 2^23 steps long.
+    /// The exponent bits: a number with only these bits is a power of two, 2^23 steps long.
     const EXPONENT: u32 = 0x7f80_0000;
     let largest = low.abs().max(high.abs());
     f32::from_bits(largest.to_bits() & EXPONENT) * (4.0 * f32::EPSILON)
 }
 
-/// A quarter of the way between two coordinates. Nothing overflows.
+/// A quarter of the way between two coordinates, without overflow.
 pub(super) fn quarter(low: f32, high: f32) -> f32 {
     0.25 * high - 0.25 * low
 }
 
-/// Between which coordinates a vertex stays in a cell from `low` to `high`: off these by 2^-12 of the cell,
-/// and by four steps of f32 where that is more, but never by more than a quarter.
+/// The range of a vertex in a cell from `low` to `high`: the cell without a margin of 2^-12 of the cell, or
+/// of four steps of f32 if that is more, but of at most a quarter.
 #[inline(always)]
 pub(super) fn room([low, high]: [f32; 2]) -> [f32; 2] {
     let quarter = quarter(low, high);

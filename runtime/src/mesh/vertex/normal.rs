@@ -1,16 +1,16 @@
-//! Normals: away from the inside. Where the field is smooth they are against its gradient; at a jump the
-//! gradient is that of the inner field, which knows nothing of the wall, and the normal comes from where the
-//! surface crosses the edges of the cell.
+//! Normals point away from the inside. Where the field is smooth they are opposite to its gradient. At a jump
+//! the gradient is the inner field's, which does not depend on the wall, so the normal comes from the
+//! crossings of the surface with the cell's edges.
 
 use std::ops::RangeInclusive;
 
 use super::super::pull::{LANES, Lanes, all, squares};
 use super::super::surface::unit;
 
-/// The directions away from the inside, or zero where the gradient vanishes or is no number.
+/// Unit vectors away from the inside, or zero where the gradient vanishes or is NaN.
 #[inline(always)]
 pub(super) fn normals_of(gradient: &[Lanes; 3]) -> [Lanes; 3] {
-    /// Squares of lengths whose terms neither overflow nor lose digits.
+    /// Squared lengths whose terms neither overflow nor lose digits.
     const TAME: RangeInclusive<f32> = 1e-24..=1e30;
     let square = squares(gradient);
     let (mut normals, mut is_tame) = (*gradient, [0_u32; LANES]);
@@ -29,15 +29,15 @@ pub(super) fn normals_of(gradient: &[Lanes; 3]) -> [Lanes; 3] {
     normals
 }
 
-/// The normal of a sheet that no gradient says. `crossings` are where it crosses the edges of the cell, in
-/// the order of the way around it, counter-clockwise as seen from outside, each known within `error`;
-/// `outward` is the sum of the unit vectors along these edges from inside to outside.
+/// The normal of a sheet without a usable gradient. `crossings` are its crossings with the edges of the cell,
+/// in order, counter-clockwise as seen from outside, each known within `error`; `outward` is the sum of the
+/// unit vectors along these edges from inside to outside.
 ///
-/// It is that of the polygon of crossings (Newell's sum), which is exact for a plane. Where the polygon is
-/// about as narrow as the crossings are uncertain, as where an edge of the solid lies along one of the
-/// lattice, it is along `outward`. `None` if that is zero.
+/// It is the normal of the polygon of crossings (Newell's sum), which is exact for a plane. Where the polygon
+/// is about as narrow as the error of the crossings, for example where an edge of the solid lies along an
+/// edge of the lattice, it is along `outward`. `None` if that is zero.
 pub(super) fn sheet_normal(crossings: &[[f32; 3]], outward: [f32; 3], error: f32) -> Option<[f32; 3]> {
-    /// How many times as long the area vector is as it may be off.
+    /// The least ratio of the area vector's length to its error.
     const CERTAINTY: f64 = 8.0;
     let from = |point: [f32; 3]| [0, 1, 2].map(|axis| f64::from(point[axis]) - f64::from(crossings[0][axis]));
     let (mut area, mut around) = ([0.0; 3], 0.0);

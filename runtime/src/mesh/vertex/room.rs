@@ -1,5 +1,5 @@
-//! Where vertices may be: in their cells, a little off the sides, so that vertices of different cells never
-//! coincide; and not where another vertex of their own cell is.
+//! The room of vertices: their cells, a little off the sides, so that vertices of different cells never
+//! coincide; and off other vertices of their own cell.
 //!
 //! ```text
 //!     +-----------+-----------+
@@ -14,19 +14,20 @@ use super::batch::{Batch, Shared};
 use super::margin::{four_steps, quarter};
 
 /// Whether four steps of f32 are more than a quarter of a cell, somewhere between the first and the last
-/// coordinate along an axis: then vertices lie on a coarse grid, and those of different cells may coincide.
+/// coordinate along an axis: then vertices lie on a coarse grid, and vertices of different cells may
+/// coincide.
 pub(in super::super) fn is_crowded(axes: &[Vec<f32>; 3]) -> bool {
     axes.iter().any(|axis| {
         let (first, last) = (axis[0], axis[axis.len() - 1]);
-        // Cells are equal but for rounding.
+        // Cells are equal, except for rounding.
         let quarter = quarter(first, last) / (axis.len() - 1) as f32;
         four_steps(first, last) > quarter
     })
 }
 
 impl Batch {
-    /// Moves vertices off others of their cells: step by step towards the mean of their sheet's crossings,
-    /// where they have started and others have not, and then towards the middle of the cell.
+    /// Separates vertices of one cell: step by step towards the mean of their sheet's crossings, where they
+    /// started at different places, and then towards the middle of the cell.
     pub(super) fn separate(&mut self) {
         for &Shared { vertex, earlier, start: mean, .. } in &self.shared {
             let earlier = vertex - earlier;

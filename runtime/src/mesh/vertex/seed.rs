@@ -1,5 +1,5 @@
-//! What vertices grow from: the cells of some of them side by side, so that all is computed for [`LANES`] of
-//! them at a time.
+//! Seeds of vertices: the data of their cells side by side, so that [`LANES`] vertices are computed at a
+//! time.
 //!
 //! ```text
 //! mean  = sum of the crossings of the sheet / how many they are, in units of the cell
@@ -10,7 +10,7 @@ use super::super::cell::{EDGE_CORNERS, Edges};
 use super::super::pull::{LANES, Lanes, all};
 use super::margin::room;
 
-/// What is known of [`LANES`] vertices from their cells.
+/// The data of the cells of [`LANES`] vertices.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Seeds {
     /// The field at the corners.
@@ -21,16 +21,16 @@ pub(super) struct Seeds {
     edges: [Edges; LANES],
 }
 
-/// What follows from that.
+/// Values derived from [`Seeds`].
 #[derive(Clone, Copy, Default)]
 pub(super) struct Group {
-    /// The low and the high corners of the boxes in which they stay.
+    /// The low and the high corners of the vertices' rooms.
     pub(super) low: [Lanes; 3],
     pub(super) high: [Lanes; 3],
-    /// By how much the field rises along the axes, roughly: from the low corners of their cells to the high
-    /// ones, or along the edges that their sheets cross.
+    /// The approximate rise of the field along the axes: from the low corners of the cells to the high ones,
+    /// or along the edges that the sheets cross.
     pub(super) rise: [Lanes; 3],
-    /// By how much the field differs at most among the corners of their cells.
+    /// The largest difference of the field among the corners of each cell.
     pub(super) spread: Lanes,
 }
 
@@ -47,7 +47,8 @@ impl Seeds {
         self.edges[lane] = edges;
     }
 
-    /// Where the vertices start, and what is known of them; `rise` as if each had a cell of its own.
+    /// The starts of the vertices, and their group; `rise` is computed as if each vertex had a cell of its
+    /// own.
     #[inline(always)]
     fn grow(&self, iso: f32, group: &mut Group) -> [Lanes; 3] {
         let (means, is_tame) = self.tame_means(iso, group);
@@ -64,7 +65,7 @@ impl Seeds {
             for i in 0..LANES {
                 let [low, high] = room([first[i], last[i]]);
                 (group.low[axis][i], group.high[axis][i]) = (low, high);
-                // Nothing overflows on the way, however large the cell.
+                // This form does not overflow, however large the cell.
                 let start = first[i] * (1.0 - means[axis][i]) + last[i] * means[axis][i];
                 let start = if start < low { low } else { start };
                 points[axis][i] = if start > high { high } else { start };
@@ -73,14 +74,14 @@ impl Seeds {
         points
     }
 
-    /// The means of the crossings, in units of the cells, if no difference overflows, and whether that is so,
-    /// 1 or 0 each. On the way notes what the corners say. (One loop for all of it is one that the compiler
-    /// makes vectors of.)
+    /// The means of the crossings, in units of the cells, and whether no difference of the field overflows, 1
+    /// or 0 each. Also computes what the corners give. (One loop for all of it is a loop that the compiler
+    /// vectorises.)
     // Plain indices become vectors.
     #[allow(clippy::needless_range_loop)]
     #[inline(always)]
     fn tame_means(&self, iso: f32, group: &mut Group) -> ([Lanes; 3], [u32; LANES]) {
-        /// Differences of numbers up to this do not overflow.
+        /// Numbers up to this limit have differences that do not overflow.
         const LARGE: f32 = 1e38;
         let (mut means, mut is_tame) = ([[0.0; LANES]; 3], [0; LANES]);
         for i in 0..LANES {
@@ -115,7 +116,7 @@ impl Seeds {
 }
 
 /// The mean of the crossings of a sheet, in units of the cell: each coordinate is from 0 to 1, or a little
-/// more by rounding. All edges are looked at: that is quicker than to ask.
+/// more by rounding. All edges are computed, which is faster than a branch.
 // Plain indices become vectors.
 #[allow(clippy::needless_range_loop)]
 #[inline(always)]
@@ -126,7 +127,7 @@ fn tame_mean(iso: f32, corners: &[f32; 8], edges: Edges) -> [f32; 3] {
         for n in 0..4 {
             let edge = 4 * axis + n;
             let (low, high) = (corners[EDGE_CORNERS[edge][0]], corners[EDGE_CORNERS[edge][1]]);
-            // On a crossed edge this is from 0 to 1; on another one it is anything, and is left out.
+            // On a crossed edge this is from 0 to 1; on other edges it is arbitrary and masked out.
             let crossing = (iso - low) / (high - low);
             t[n] = f32::from_bits(crossing.to_bits() & edges.chosen(edge));
         }
@@ -135,7 +136,7 @@ fn tame_mean(iso: f32, corners: &[f32; 8], edges: Edges) -> [f32; 3] {
     mean
 }
 
-/// Puts vertices where they start, and says what is known of them.
+/// Computes the starts and the groups of vertices.
 #[cfg_attr(feature = "levels", multiversion::multiversion(targets("x86_64+avx2")))]
 pub(super) fn grow(iso: f32, seeds: &[Seeds], groups: &mut [Group], points: [&mut [f32]; 3]) {
     let [x, y, z] = points.map(|plane| plane.as_chunks_mut::<LANES>().0);
@@ -144,27 +145,26 @@ pub(super) fn grow(iso: f32, seeds: &[Seeds], groups: &mut [Group], points: [&mu
     }
 }
 
-/// Where along a crossed edge the surface crosses, from 0 to 1, if the field is linear there; the middle if
-/// that is no number.
+/// The crossing along a crossed edge, from 0 to 1, for a linear field; the middle if that is NaN.
 fn crossing(iso: f32, low: f32, high: f32) -> f32 {
     let rise = high - low;
     let t = (iso - low) / rise;
     if (0.0..=1.0).contains(&t) && rise.is_finite() { t } else { 0.5 }
 }
 
-/// By how much the field differs among the corners of a cell; infinite if one has no number.
+/// The largest difference of the field among the corners of a cell; infinite if a corner is NaN.
 #[inline(always)]
 fn spread([a, b, c, d, e, f, g, h]: &[f32; 8]) -> f32 {
     let least = |a: f32, b: f32| if a < b { a } else { b };
     let most = |a: f32, b: f32| if a > b { a } else { b };
     let high = most(most(most(*a, *e), most(*b, *f)), most(most(*c, *g), most(*d, *h)));
     let low = least(least(least(*a, *e), least(*b, *f)), least(least(*c, *g), least(*d, *h)));
-    // An infinite sum is no number if another one of the other sign comes to it.
+    // Infinities of both signs give a NaN sum.
     let sum = ((a + e) + (b + f)) + ((c + g) + (d + h));
     if sum.is_nan() { f32::INFINITY } else { high - low }
 }
 
-/// By how much the field rises along the axes, from the low corners of a cell to the high ones.
+/// The rise of the field along the axes, from the low corners of a cell to the high ones.
 #[inline(always)]
 fn rise([a, b, c, d, e, f, g, h]: &[f32; 8]) -> [f32; 3] {
     [

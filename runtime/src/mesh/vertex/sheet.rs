@@ -1,5 +1,5 @@
-//! A sheet of a cell with its crossings in order: all that is known of the surface there. Where its vertex is
-//! put, and what its normal is, is decided from this by others.
+//! A sheet of a cell with its crossings in order. The position and the normal of its vertex are computed from
+//! it elsewhere.
 
 use super::super::brick::{Bricks, cell_sides, place};
 use super::super::cell::{EDGE_CORNERS, following, sheets_with_quads};
@@ -8,15 +8,15 @@ use super::bracket::{Bracket, CrossedEdge, CrossedEdges};
 use super::normal::sheet_normal;
 use crate::region::Box3;
 
-/// What a crossing may be off after the last halving, in parts of its edge.
+/// The error of a crossing after the last halving, in parts of its edge.
 const ERROR: f32 = 1.0 / 8192.0;
 
-/// What a vertex knows of its sheet from the start.
+/// The initial data of a vertex.
 #[derive(Clone, Copy)]
 pub(super) struct Start {
-    /// Which vertex of the brick it is.
+    /// The index of the vertex in the brick.
     pub(super) vertex: usize,
-    /// Where it may be: the low and the high corner of a box in the cell.
+    /// The box in the cell in which the vertex stays: low and high corner.
     pub(super) bounds: Box3,
 }
 
@@ -29,17 +29,17 @@ pub(super) struct Sheet {
     /// The edges that the sheet crosses, counter-clockwise as seen from outside: their numbers among the
     /// [`CrossedEdges`] of the brick.
     numbers: [u32; 12],
-    /// How many they are.
+    /// The number of these edges.
     count: usize,
-    /// The sum of the unit vectors along them, from inside to outside.
+    /// The sum of the unit vectors along the edges, from inside to outside.
     outward: [f32; 3],
     /// The edge of the cell.
     pub(super) size: f32,
 }
 
 impl Sheet {
-    /// The sheet with a number in a cell of a brick, its edges put among the others of the brick. `values`
-    /// are those of the field at the corners.
+    /// A sheet of a cell in a brick; its edges are added to the brick's edges. `values` are the field at the
+    /// corners.
     pub(super) fn new(
         bricks: &Bricks,
         brick: usize,
@@ -92,7 +92,7 @@ impl Sheet {
         self.numbers().iter().map(|&number| crossed.get(number))
     }
 
-    /// Its normal, from where it crosses edges: see [`sheet_normal`].
+    /// Its normal, from its crossings: see [`sheet_normal`].
     pub(super) fn normal(&self, crossed: &CrossedEdges) -> Option<[f32; 3]> {
         let mut crossings = [[0.0; 3]; 12];
         for (place, edge) in crossings.iter_mut().zip(self.crossed(crossed)) {

@@ -1,4 +1,4 @@
-//! Where the vertices of a brick start: at the means of their sheets' crossings.
+//! The starts of the vertices of a brick: the means of their sheets' crossings.
 
 use super::super::brick::cell_sides;
 use super::super::cell::{default_edges, edges};
@@ -9,7 +9,7 @@ use super::batch::{Batch, Shared, Source};
 use super::seed::grow;
 
 impl Batch {
-    /// Puts the vertices of a brick where they start.
+    /// Puts the vertices of a brick at their starts.
     pub(super) fn start<F: Field>(&mut self, source: &Source<'_, F>, brick: usize, count: usize) {
         self.resize(count);
         self.shared.clear();
@@ -24,7 +24,7 @@ impl Batch {
         }
     }
 
-    /// Collects what the vertices of a brick start from. Behind the last one is what other bricks have left.
+    /// Collects the seeds of the vertices of a brick. Lanes behind the last vertex keep data of other bricks.
     fn sow<F: Field>(&mut self, source: &Source<'_, F>, brick: usize) {
         let Source { bricks, crossings, .. } = source;
         let (origin, extent, lattice_sides) =

@@ -1,4 +1,4 @@
-//! A second look at vertices that Newton's steps may not have put onto the surface.
+//! A second look at vertices that Newton's steps may have left off the surface.
 //!
 //! ```text
 //! suspects = vertices off the surface by their own gradient (strays),
@@ -8,8 +8,8 @@
 //! strays without: a crease keeps them off; they are brought onto the surface                (settle)
 //! ```
 //!
-//! The normals of all these are doubtful, and so are those that are far from how the field rises in the cell:
-//! they are compared with the triangles later. For a smooth surface all this costs a few multiplications a
+//! The normals of all suspects are doubtful, and so are normals far from the rise of the field in the cell:
+//! they are compared with the triangles later. For a smooth surface the tests cost a few multiplications per
 //! vertex.
 
 use super::super::field::Field;
@@ -20,25 +20,25 @@ use super::seed::Group;
 use super::sheet::{Sheet, Start};
 use super::wall::{Wall, follow};
 
-/// How many times as much as its gradient says the field may differ within a cell without raising suspicion.
-/// A linear field differs by just what its gradient says.
+/// The limit of the field's spread within a cell, as a multiple of the spread that its gradient predicts. For
+/// a linear field the multiple is 1.
 const EXCESS: f32 = 1.5;
 
-/// The cosine of the angle from which on a gradient is far from how the field rises in its cell: about 30
-/// degrees.
+/// The cosine of the angle, about 30 degrees, from which on a gradient is far from the rise of the field in
+/// its cell.
 const ASTRAY: f32 = 0.85;
 
-/// What there is to say about vertices, as 1 or 0 each.
+/// The results of the tests of vertices, as 1 or 0 each.
 struct Verdict {
     /// Far from the surface.
     far: [u32; LANES],
-    /// With a gradient that does not explain how the field differs in the cell, or none that is a number.
+    /// The gradient does not explain the spread of the field in the cell, or is NaN.
     odd: [u32; LANES],
-    /// With a gradient that is far from how the field rises in the cell.
+    /// The gradient is far from the rise of the field in the cell.
     turned: [u32; LANES],
 }
 
-/// What raises suspicion.
+/// The tests of vertices.
 #[inline(always)]
 fn judge(iso: f32, group: &Group, values: &Lanes, gradient: &[Lanes; 3]) -> Verdict {
     let Group { low: [low, ..], high: [high, ..], rise, spread } = group;
@@ -57,7 +57,7 @@ fn judge(iso: f32, group: &Group, values: &Lanes, gradient: &[Lanes; 3]) -> Verd
     Verdict { far, odd, turned }
 }
 
-/// The groups about which there is something to say.
+/// The groups with a vertex that fails a test.
 #[cfg_attr(feature = "levels", multiversion::multiversion(targets("x86_64+avx2")))]
 fn judge_all(
     iso: f32,
@@ -76,7 +76,7 @@ fn judge_all(
     }
 }
 
-/// What is evaluated again: a vertex, where it is, and where it is asked.
+/// A second evaluation: the vertex, its position, and the point to evaluate.
 struct Again {
     vertex: usize,
     position: [f32; 3],
@@ -85,7 +85,7 @@ struct Again {
 }
 
 impl Batch {
-    /// Puts suspects where they belong, and evaluates everything at them again.
+    /// Moves suspects to their places, and evaluates everything there again.
     pub(super) fn look_again<F: Field>(
         &mut self,
         source: &Source<'_, F>,
@@ -132,7 +132,7 @@ impl Batch {
         })
     }
 
-    /// The suspects, and whether each is far from the surface. Notes those whose normal is doubtful.
+    /// The suspects, each with whether it is far from the surface. Records vertices with doubtful normals.
     fn suspects(&mut self, iso: f32) -> Vec<(usize, bool)> {
         let mut found = Vec::new();
         let mut verdicts = Vec::new();
@@ -153,7 +153,7 @@ impl Batch {
 
     fn sheet<F: Field>(&mut self, source: &Source<'_, F>, brick: usize, vertex: usize) -> Sheet {
         let cells = source.crossings.of(brick);
-        // Cells without a vertex have the number of the next one.
+        // A cell without a vertex has the number of the next vertex.
         let index = cells.partition_point(|cell| cell.vertex as usize <= vertex) - 1;
         let (cell, corners) = (&cells[index], &source.crossings.corners_of(source.bricks, brick)[index]);
         let sheet = vertex as u32 - cell.vertex;
@@ -188,7 +188,7 @@ impl Batch {
             let vertex = one.vertex;
             for (axis, slope) in gradient.iter().enumerate() {
                 self.points[axis][vertex] = one.position[axis];
-                // A wall has the gradient of a field that falls along its normal.
+                // A wall gets the gradient of a field that falls along the wall's normal.
                 self.gradient[axis][vertex] = one.normal.map_or(slope[n], |normal| -normal[axis]);
             }
             self.values[vertex] = values[n];

@@ -1,4 +1,5 @@
-//! Vertices where the field jumps: at the walls of `within`, of predicates, of whatever ends without a slope.
+//! Vertices where the field jumps: at the walls of `within`, of predicates, of any field that ends without a
+//! slope.
 //!
 //! ```text
 //!                  wall
@@ -8,9 +9,9 @@
 //!     o---------------x        a wall that is curved is followed along n, by half a cell to both sides of m
 //! ```
 //!
-//! The value at a point says nothing about how far the wall is, so nobody asks whether it is near the
-//! iso-value: a point inside and one outside decide. A sheet that is crossed at a jump here and smoothly
-//! there bends around an edge of the solid; its vertex is found in the same way.
+//! The value at a point does not tell the distance to the wall, so closeness to the iso-value is no
+//! criterion: a point inside and a point outside bracket the wall. The vertex of a sheet with jumps on some
+//! edges and smooth crossings on others bends around an edge of the solid, and is found in the same way.
 
 use super::super::field::Field;
 use super::bracket::{Bracket, CrossedEdge, CrossedEdges, Points};
@@ -19,18 +20,18 @@ use crate::region::Box3;
 
 /// Halvings along the normal.
 const HALVINGS: usize = 12;
-/// The mean of the crossings is on the wall if the wall passes within this part of a cell.
+/// The mean of the crossings counts as on the wall if the wall is within this part of a cell.
 const NEAR: f32 = 1.0 / 2048.0;
 
 /// A vertex at a jump.
 pub(super) struct Wall {
-    /// Which vertex of the brick it is.
+    /// The index of the vertex in the brick.
     pub(super) vertex: usize,
-    /// Where it is.
+    /// Its position.
     pub(super) position: [f32; 3],
-    /// A point inside next to it, where attributes are asked.
+    /// A point inside next to it, where attributes are evaluated.
     pub(super) inside: [f32; 3],
-    /// Away from the inside, if anything says where that is.
+    /// The unit normal away from the inside, if one is known.
     pub(super) normal: Option<[f32; 3]>,
     bounds: Box3,
     size: f32,
@@ -53,8 +54,8 @@ impl Wall {
         Self { vertex, position, inside, normal, bounds, size: sheet.size }
     }
 
-    /// The two points so many cells from its place along its normal, but not out of its bounds: the one
-    /// outside first. Without a normal both are where it is.
+    /// The two points `way` cells from its position along its normal, clamped to its bounds: the outer point
+    /// first. Without a normal both are its position.
     fn across(&self, way: f32) -> [[f32; 3]; 2] {
         let normal = self.normal.unwrap_or([0.0; 3]);
         let end = |way: f32| {
@@ -68,8 +69,8 @@ fn clamp(point: [f32; 3], Box3 { low, high }: Box3) -> [f32; 3] {
     [0, 1, 2].map(|axis| point[axis].clamp(low[axis], high[axis]))
 }
 
-/// Puts vertices from the means of their crossings onto walls that are curved. Returns at how many points the
-/// field was asked.
+/// Moves vertices from the means of their crossings onto curved walls. Returns the number of points
+/// evaluated.
 pub(super) fn follow<F: Field>(
     field: &F,
     region: &F::Region,
@@ -100,7 +101,7 @@ pub(super) fn follow<F: Field>(
     Ok(asked)
 }
 
-/// The points so many cells from vertices along their normals, with the field there.
+/// The points `way` cells from vertices along their normals, with the field there.
 fn across<'a, F: Field>(
     field: &F,
     region: &F::Region,

@@ -1,4 +1,4 @@
-//! ParsIP scenes: numbered nodes in the clothes of an INI file.
+//! ParsIP scenes: numbered nodes in the syntax of an INI file.
 //!
 //! ```text
 //! [BLOBNODE 0]                       an operator over its children
@@ -18,12 +18,11 @@
 //! ```
 //!
 //! Every leaf has the cubic falloff of radius 1 in its own space, before its map. Its diffuse colour becomes
-//! `color`. An instance is another use of a node, with that node's map below its own.
+//! `color`. An instance is another use of a node, whose map comes below the instance's own map.
 //!
-//! The reader follows the mathematics of the format where ParsIP's own evaluators differ from each other:
-//! names are read in any case, operators do what they are called also where their children are given as a
-//! range, quaternions are normalised, lines end at their ends. Its NUL bytes and CRs are dropped wherever
-//! they are.
+//! ParsIP's own evaluators disagree in places; the reader follows the mathematics of the format: names are
+//! read in any case, operators do what their names say even if their children are given as a range,
+//! quaternions are normalised, line segments end at their ends. NUL bytes and CRs are dropped anywhere.
 
 mod node;
 mod scan;
@@ -49,9 +48,8 @@ use jbt_model::warp::Warp;
 ///
 /// # Errors
 ///
-/// Everything that is wrong with the file, with its place: numbers and names that cannot be read, nodes that
-/// are missing or contain themselves, zero scales, a root that is missing or not alone, operators that have
-/// no counterpart here.
+/// All errors of the file, with their places: unreadable numbers and names, nodes that are missing or contain
+/// themselves, zero scales, a root that is missing or not alone, operators without a counterpart here.
 pub fn parsip(bytes: &[u8]) -> Result<Imported, Diagnostics> {
     Imported::from(bytes, read(bytes))
 }
@@ -76,7 +74,7 @@ fn read(bytes: &[u8]) -> Result<(Model, Vec<Diagnostic>), Vec<Diagnostic>> {
 }
 
 impl Importer<'_> {
-    /// The root, and where it is named.
+    /// The root, and the place of its name.
     fn root(&mut self) -> Option<(u32, Span)> {
         let named = self.sections.global.as_ref().and_then(|global| global.get(Key::RootIds));
         let Some(span) = named else {
@@ -98,7 +96,7 @@ impl Importer<'_> {
         self.find(root, span).map(|root| (root, span))
     }
 
-    /// The place of a node in the list; a message if no node has this number.
+    /// The index of a node in the list; a message if no node has this number.
     fn find(&mut self, id: i64, reference: Span) -> Option<u32> {
         let found = self.sections.by_id.get(&id).copied();
         if found.is_none() {
@@ -119,7 +117,7 @@ impl Importer<'_> {
             return;
         };
         if key == Key::Range {
-            // A range longer than the file has nodes names at least one that is missing, however long it is.
+            // A range longer than the number of nodes names at least one missing node.
             let nodes = self.sections.nodes.len() as i64;
             match *ids.as_slice() {
                 [first, last] if first <= last && last.saturating_sub(first) < nodes => {
@@ -161,7 +159,7 @@ impl Importer<'_> {
         }
     }
 
-    /// The tree below a node: depth first, with a list of what is left to do in place of recursion.
+    /// The tree below a node: depth first, with an explicit stack.
     fn build(&mut self, root: u32, reference: Span) -> Tree {
         enum Task {
             Enter(u32, Span),
@@ -228,7 +226,7 @@ impl Importer<'_> {
         }
     }
 
-    /// Compares what the file says about itself with what it has.
+    /// Compares the counts that the file states with its contents.
     fn count(&mut self) {
         let Some(global) = self.sections.global.clone() else {
             return;
@@ -253,7 +251,7 @@ impl Importer<'_> {
     }
 }
 
-/// The tree of a node. Nothing if a child is missing, after a message about it.
+/// The tree of a node. `None` if a child is missing, which has a message.
 fn assemble(span: Span, meaning: Meaning, map: Option<DAffine3>, children: Vec<Tree>) -> Option<Tree> {
     let tree = match meaning {
         Meaning::Combine(combinator) => Tree::at(span, combinator, children),

@@ -1,4 +1,4 @@
-//! What one node means: its map, its leaf, its operator.
+//! The meaning of one node: its map, its leaf, its operator.
 
 use std::fmt::Write as _;
 
@@ -16,7 +16,7 @@ use jbt_model::report::{clip, nearest};
 use jbt_model::skeleton::{self, Cylinder, Disc, Point, Ring, Segment, Skeleton, Triangle};
 use jbt_model::warp::Twist;
 
-/// What an operator's name says.
+/// The meaning of an operator's name.
 #[derive(Clone, Copy, PartialEq, Debug)]
 enum Operator {
     /// A combinator without parameters.
@@ -25,7 +25,7 @@ enum Operator {
     /// The child as it is.
     Pass,
     Twist,
-    /// No member of this project: what it does.
+    /// An operator that this project lacks: its effect.
     Foreign(&'static str),
 }
 
@@ -51,7 +51,7 @@ const OPERATORS: &[(&str, Operator)] = &[
     ("BEND", Operator::Foreign("the bend of an axis about a circle")),
 ];
 
-/// What a leaf's name says.
+/// The meaning of a leaf's name.
 #[derive(Clone, Copy, PartialEq, Debug)]
 enum Leaf {
     Point,
@@ -63,7 +63,7 @@ enum Leaf {
     Triangle,
     Null,
     Instance,
-    /// No member of this project: what it is.
+    /// A leaf that this project lacks: its name in words.
     Foreign(&'static str),
 }
 
@@ -80,11 +80,11 @@ const LEAVES: &[(&str, Leaf)] = &[
     ("INSTANCE", Leaf::Instance),
 ];
 
-/// A node as far as it can be told without its children.
+/// A node, without its children.
 pub(super) struct Reading {
-    /// What it is; nothing after a message.
+    /// Its meaning; `None` after a message.
     pub(super) meaning: Option<Meaning>,
-    /// The nodes below it, and where they are named.
+    /// The nodes below it, and the place where they are named.
     pub(super) children: Vec<u32>,
     pub(super) reference: Span,
     /// The map to the parent's space, unless it is the identity.
@@ -140,7 +140,7 @@ impl Importer<'_> {
         Some((self.shown(span), span))
     }
 
-    /// Looks a name up. A name that nobody knows is an error.
+    /// Looks a name up. An unknown name is an error.
     fn look_up<T: Copy>(&mut self, what: &str, name: &str, span: Span, table: &[(&str, T)]) -> Option<T> {
         let found = table.iter().find(|(known, _)| known.eq_ignore_ascii_case(name));
         if found.is_none() {
@@ -199,9 +199,9 @@ impl Importer<'_> {
         };
     }
 
-    /// ParsIP turns the point by `factor * height` from the first to the second of the other axes, in the
-    /// order x, y, z. Our inverse map turns it the other way about the axis, right-handed, where y has its
-    /// others in the order z, x.
+    /// ParsIP turns the point by `factor * height` from the first to the second of the other two axes, in the
+    /// order x, y, z. Our inverse map turns it the opposite way, right-handed about the axis; for y the other
+    /// axes are in the order z, x.
     fn twist(&mut self, section: &Section) -> Option<Twist> {
         let factor =
             if section.get(Key::Factor).is_some() { self.number(section, Key::Factor)? } else { 1.0 };
@@ -254,7 +254,7 @@ impl Importer<'_> {
         });
     }
 
-    /// The skeleton of a leaf that has one. Nothing after a message.
+    /// The skeleton of a leaf that has one. `None` after a message.
     fn skeleton(&mut self, section: &Section, leaf: Leaf) -> Option<Skeleton> {
         let position = match section.get(Key::Position) {
             Some(_) => self.tuple::<3>(section, Key::Position, 0)?.into(),
@@ -270,7 +270,7 @@ impl Importer<'_> {
                 let direction = self.direction(section);
                 let (radius, height) = (self.length(section, Key::Radius), self.length(section, Key::Height));
                 let (direction, radius, height) = (direction?, radius?, height?);
-                // Without height the axis would lose its direction.
+                // A cylinder without height would lose the direction of its axis.
                 if height == 0.0 {
                     Disc { center: position, normal: direction, radius }.into()
                 } else {

@@ -1,7 +1,7 @@
 //! Bytes to sections: nodes and the places of their values.
 //!
-//! Nothing of the text is copied. An entry is the range of bytes behind its `=`; what has to be dropped from
-//! it (NUL and CR) is dropped when it is read, so that every place stays one of the file.
+//! No text is copied. An entry is the range of bytes after its `=`; NUL and CR are dropped when the entry is
+//! read, so that every place is a place in the file.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -13,7 +13,7 @@ use jbt_model::report::{Report, clip};
 
 macro_rules! keys {
     ($($key:ident = $name:literal),+ $(,)?) => {
-        /// A key that means something here; others are ignored.
+        /// A key with a meaning here; other keys are ignored.
         #[derive(Clone, Copy, PartialEq, Eq, Debug)]
         pub(super) enum Key { $($key,)+ }
 
@@ -59,7 +59,7 @@ keys! {
     Axis = "axis",
 }
 
-/// A value: where it stands.
+/// The place of a value.
 #[derive(Clone, Copy, Debug)]
 struct Entry {
     key: Key,
@@ -77,7 +77,7 @@ pub(super) struct Section {
 }
 
 impl Section {
-    /// Where the value of a key stands.
+    /// The place of the value of a key.
     pub(super) fn get(&self, key: Key) -> Option<Span> {
         self.entries.iter().find(|entry| entry.key == key).map(|entry| entry.span)
     }
@@ -87,11 +87,11 @@ impl Section {
 pub(super) struct Sections {
     pub(super) global: Option<Section>,
     pub(super) nodes: Vec<Section>,
-    /// The place in `nodes` of each number.
+    /// The index in `nodes` of each number.
     pub(super) by_id: HashMap<i64, u32>,
 }
 
-/// Where lines belong.
+/// The section that lines belong to.
 enum Current {
     Nowhere,
     Global,
@@ -127,7 +127,7 @@ fn shrunk(bytes: &[u8], mut start: usize, mut end: usize) -> Span {
     Span::new(start, end)
 }
 
-/// The sections of a file, with messages about lines that are none of it.
+/// The sections of a file, with messages about lines that belong to none.
 pub(super) fn sections(bytes: &[u8], errors: &mut Report, warnings: &mut Report) -> Sections {
     let mut all = Sections { global: None, nodes: Vec::new(), by_id: HashMap::new() };
     let mut current = Current::Nowhere;
@@ -158,7 +158,7 @@ pub(super) fn sections(bytes: &[u8], errors: &mut Report, warnings: &mut Report)
     all
 }
 
-/// What a line `[..]` opens. A section that was there before takes nothing more: the first one counts.
+/// The section that a line `[..]` opens. A repeated section is ignored: the first one counts.
 fn heading(
     bytes: &[u8],
     line: Span,

@@ -1,4 +1,4 @@
-//! The state of reading one ParsIP file, and what its nodes mean.
+//! The state of reading one ParsIP file, and the meanings of its nodes.
 
 use super::scan::Sections;
 use jbt_model::combine::Combinator;
@@ -7,7 +7,7 @@ use jbt_model::report::Report;
 use jbt_model::tree::Tree;
 use jbt_model::warp::Twist;
 
-/// What a node is, apart from its children and its map.
+/// The meaning of a node, without its children and its map.
 pub(super) enum Meaning {
     Combine(Combinator),
     Warp(Twist),
@@ -19,11 +19,11 @@ pub(super) enum Meaning {
     },
 }
 
-/// Where the reading of a node is.
+/// The progress of reading a node.
 #[derive(Clone)]
 pub(super) enum State {
     New,
-    /// Its children are being read: to meet it now is a cycle.
+    /// Its children are being read: a reference to it now is a cycle.
     Open,
     Done(Tree),
 }

@@ -11,7 +11,7 @@ impl Importer<'_> {
         text(self.bytes, span).into_owned()
     }
 
-    /// A finite number. Nothing if the key is missing, or after a message.
+    /// A finite number. `None` if the key is missing, or after a message.
     pub(super) fn number(&mut self, section: &Section, key: Key) -> Option<f64> {
         let span = section.get(key)?;
         let shown = self.shown(span);
@@ -42,7 +42,7 @@ impl Importer<'_> {
         Some(value)
     }
 
-    /// An integer. Nothing if the key is missing, or after a message.
+    /// An integer. `None` if the key is missing, or after a message.
     pub(super) fn integer(&mut self, section: &Section, key: Key) -> Option<i64> {
         let span = section.get(key)?;
         let shown = self.shown(span);
@@ -68,8 +68,8 @@ impl Importer<'_> {
         }
     }
 
-    /// A tuple of `N` finite numbers, of which `extra` more are ignored. Nothing if the key is missing, or
-    /// after a message.
+    /// A tuple of `N` finite numbers; `extra` more may follow and are ignored. `None` if the key is missing,
+    /// or after a message.
     pub(super) fn tuple<const N: usize>(
         &mut self,
         section: &Section,
@@ -102,7 +102,7 @@ impl Importer<'_> {
         self.tuple(section, key, 0)
     }
 
-    /// Where the value of a key stands; a message if it is missing.
+    /// The place of the value of a key; a message if the key is missing.
     pub(super) fn need(&mut self, section: &Section, key: Key) -> Option<Span> {
         let found = section.get(key);
         if found.is_none() {
@@ -112,7 +112,7 @@ impl Importer<'_> {
         found
     }
 
-    /// A list of at most `most` integers. Nothing after a message.
+    /// A list of at most `most` integers. `None` after a message.
     pub(super) fn list(&mut self, span: Span, key: Key, most: usize) -> Option<Vec<i64>> {
         let shown = self.shown(span);
         let mut all = Vec::new();
@@ -131,7 +131,7 @@ impl Importer<'_> {
         Some(all)
     }
 
-    /// A value that is not what it should be.
+    /// Reports an invalid value.
     pub(super) fn bad(&mut self, span: Span, key: Key, shown: &str, expected: &str) {
         self.errors.add(|| {
             Diagnostic::error(Some(span), format!("`{}` is {}", key.name(), clip(shown)))
@@ -140,7 +140,7 @@ impl Importer<'_> {
     }
 }
 
-/// What stands between parentheses.
+/// The text between parentheses.
 fn parenthesised(text: &str) -> Option<&str> {
     text.strip_prefix('(')?.strip_suffix(')')
 }
