@@ -219,3 +219,24 @@ fn steps_weigh_two_sides_at_a_time() {
         }
     }
 }
+
+/// A formula may have a field where nothing that it is made of has: there the default is all of its answer, and
+/// dominates with all of its field.
+#[test]
+fn a_default_dominates_with_all_of_its_field() {
+    let far = "union { point { at (9 0 0) radius 1 } point { at (9 1 0) radius 1 } }";
+    for far in [far, "point { at (9 0 0) radius 1 }", &format!("complement {{ complement {{ {far} }} }}")] {
+        let text = format!(
+            "jbt 1 attribute tag 1 default 5 dominant let far = {far}
+            sum {{ expression {{ 0.3 + field(far) }} with tag 1 {{ point {{ radius 1 strength 0.2 }} }} }}"
+        );
+        let tree = jbt::text::model(&text).expect("it reads").check().expect("a good model");
+        for engine in Engine::ALL {
+            let evaluator =
+                Compiler::for_engine(engine).evaluator(&tree, Query::ATTRIBUTES).expect("it compiles");
+            let mut samples = evaluator.samples();
+            evaluator.eval(&[[0.0f32; 3]], &mut samples).expect("the buffers fit");
+            assert_eq!(samples.attribute("tag").expect("asked for")[0][0], 5.0, "{engine}: {far}");
+        }
+    }
+}

@@ -270,7 +270,7 @@ impl State {
                 state.normalised(d, (total, seen), default)
             } else {
                 let channels = where_positive(d, seen, &state.channels, default);
-                GroupAnswer { channels, share: state.best, numbers: false }
+                GroupAnswer { channels, share: share_where_positive(d, seen, state.best), numbers: false }
             }
         });
         Answer { field, groups: groups.collect() }
@@ -356,6 +356,16 @@ fn where_positive(
     channels.iter().zip(default).map(|(&channel, &default)| d.select(weighs, channel, default)).collect()
 }
 
+/// The share of the leaf behind the channels; all where the field that was decided on has no weight, because
+/// the default is all of the answer there.
+fn share_where_positive(d: &mut FunctionBuilder, field: Value, share: Option<Value>) -> Option<Value> {
+    share.map(|share| {
+        let (zero, one) = (d.constant(0.0), d.constant(1.0));
+        let weighs = d.lt(zero, field);
+        d.select(weighs, share, one)
+    })
+}
+
 /// The answer of a map: the child's attributes where both fields are positive.
 pub(super) fn mapped(
     d: &mut FunctionBuilder,
@@ -365,11 +375,7 @@ pub(super) fn mapped(
 ) -> Answer {
     let groups = child.groups.iter().zip(defaults).map(|(group, default)| {
         let channels = where_positive(d, child.field, &group.channels, default);
-        let share = group.share.map(|share| {
-            let (zero, one) = (d.constant(0.0), d.constant(1.0));
-            let there = d.lt(zero, child.field);
-            d.select(there, share, one)
-        });
+        let share = share_where_positive(d, child.field, group.share);
         GroupAnswer { channels: where_positive(d, field, &channels, default), share, numbers: false }
     });
     let groups = groups.collect();

@@ -271,8 +271,8 @@ fn with_active(tables: &Tables, active: &Tables) -> Tables {
 fn leaving_out_what_the_guide_allows_changes_no_bit() {
     let mut rng = Rng::with_seed(5);
     let mut tally = Tally::default();
-    // Of tree 544, a dominant attribute changes from its default to that of a leaf: an open question.
-    for index in (0..1000).filter(|&index| index != 544) {
+
+    for index in 0..1000 {
         let model = model(index, 2 + index as usize % 24, index % 3 == 0);
         let tree = model.check().expect("its numbers are ordinary");
         let guided = lower_guided(&tree).expect("it can be lowered");

@@ -5,7 +5,8 @@
 //! ```
 //!
 //! This crate knows no text format, no lanes and no machine code; members write their formulas over
-//! [`jbt_ir::Domain`]. Much here is public for `jbt_text` and `jbt_lower` alone: `jbt` exports what users need.
+//! [`jbt_ir::Domain`]. Much here is public for `jbt_text` and `jbt_lower` alone: `jbt` exports what users
+//! need.
 
 pub mod affine;
 mod angle;

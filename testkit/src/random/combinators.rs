@@ -38,8 +38,8 @@ impl Random {
         NodeKind::Combine(self.combinator(true))
     }
 
-    /// An operator of the list that takes one child, or any number of children. One that is not named here has
-    /// the numbers that its description allows.
+    /// An operator of the list that takes one child, or any number of children. One that is not named here
+    /// has the numbers that its description allows.
     fn combinator(&mut self, takes_one: bool) -> Combinator {
         let kinds: Vec<CombinatorKind> =
             CombinatorKind::ALL.iter().copied().filter(|kind| kind.takes_one() == takes_one).collect();

@@ -164,7 +164,12 @@ impl Emitter<'_> {
         let groups = child.groups.iter().zip(&self.defaults).map(|(group, default)| {
             let channels = group.channels.iter().zip(default);
             let channels = channels.map(|(&channel, &default)| d.select(silent, default, channel));
-            GroupAnswer { channels: channels.collect(), share: group.share, numbers: false }
+            let channels = channels.collect();
+            let share = group.share.map(|share| {
+                let one = d.constant(1.0);
+                d.select(silent, one, share)
+            });
+            GroupAnswer { channels, share, numbers: false }
         });
         groups.collect()
     }

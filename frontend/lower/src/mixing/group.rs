@@ -90,7 +90,11 @@ impl GroupState {
             d.select(any, mixed, default)
         });
         let channels = channels.collect();
-        let share = self.best.map(|best| d.div(best, total));
+        // Where nothing has weight, the default is all of the answer.
+        let share = self.best.map(|best| {
+            let (part, one) = (d.div(best, total), d.constant(1.0));
+            d.select(any, part, one)
+        });
         GroupAnswer { channels, share, numbers: false }
     }
 }
