@@ -47,7 +47,8 @@ fn pruned_answers_have_the_bits_of_all_rows() {
     let Tally { points, all, selected, bounded, .. } = tally;
     let [points, all, selected, bounded] = [points, all, selected, bounded].map(AtomicU64::into_inner);
     println!("{points} points, {all} evaluations became {selected}; {bounded} in ranges that end somewhere");
-    assert!(selected * 2 < all, "most rows do not matter");
+    // Half of them: random models have every operator, and of many all rows matter everywhere.
+    assert!(selected * 5 < all * 3, "many rows do not matter");
     assert!(bounded * 2 > points, "most ranges say something");
 }
 

@@ -8,7 +8,7 @@
 //! ```
 //!
 //! A support exceeds the true support by more than the error of these few roundings (see
-//! `jbt_frontend::lower::guide::Support`).
+//! `jbt_lower::guide::Support`).
 
 use jbt_lower::guide::{LARGEST_COORDINATE, Support};
 

@@ -12,7 +12,7 @@
 //! with all rows: field, gradient, attributes. Three facts ensure this:
 //!
 //! * Outside of its support a row's field and gradient are exactly zero in the arithmetic of the kernels;
-//!   each operator's rule says which zero rows may be left out ([`jbt_frontend::lower::guide::Rule`]).
+//!   each operator's rule says which zero rows may be left out ([`jbt_ir::Rule`]).
 //! * The interval kernel runs the kernel's own ops on bounds, so a range encloses every f32 value that the
 //!   kernel gives in the box. An operand is left out only if such ranges prove it strictly smaller (or
 //!   larger).

@@ -30,7 +30,7 @@
 //!   a picture.
 //! * All answers about a hit come from one evaluation at its position.
 //! * Rays are in the world, in f64; the f32 positions of hits are relative to the model's origin
-//!   ([`jbt_frontend::origin`]), which is 0 for most models.
+//!   ([`jbt_model::origin`]), which is 0 for most models.
 
 mod batch;
 mod beam;
@@ -268,7 +268,7 @@ impl Tracer {
         }
     }
 
-    /// The leaf that decides at a position, and the path to it: see [`jbt_frontend::owner`]. The position is
+    /// The leaf that decides at a position, and the path to it: see [`jbt_model::owner`]. The position is
     /// relative to the model's origin, as the positions of hits are.
     ///
     /// `None` where the field is 0, or negative because no positive field is left: never at hits. Cost: a

@@ -116,7 +116,7 @@ macro_rules! operators {
         pub enum FoldCode { $( #[doc = concat!("Of [`", stringify!($fold), "`].")] $fold(<$fold as Fold>::Code), )+ }
 
         impl FoldCode {
-            /// See [`Fold::IS_STEEP`].
+            /// Whether slopes of the field are not bounded by the sum of those of the operands.
             pub const fn is_steep(self) -> bool { match self { $( Self::$fold(_) => <$fold as Fold>::IS_STEEP, )+ } }
 
             /// See [`Fold::absorbs`].
@@ -125,17 +125,17 @@ macro_rules! operators {
             /// See [`Fold::columns`].
             fn columns(self) -> &'static [&'static str] { match self { $( Self::$fold(code) => <$fold as Fold>::columns(code), )+ } }
 
-            /// See [`Fold::has_total`].
+            /// Whether the sum of weights is an accumulator of its own.
             pub fn has_total(self, non_negative: bool) -> bool {
                 match self { $( Self::$fold(code) => <$fold as Fold>::has_total(code, non_negative), )+ }
             }
 
-            /// See [`Fold::start`].
+            /// The accumulators before the first operand.
             pub fn start<D: Domain>(self, d: &mut D, setting: Setting<'_, D::Real>) -> Vec<D::Real> {
                 match self { $( Self::$fold(code) => <$fold as Fold>::start(code, d, setting), )+ }
             }
 
-            /// See [`Fold::meet`].
+            /// One operand more; `weighs`: somebody asks for its weight.
             pub fn meet<D: Domain>(
                 self,
                 d: &mut D,
@@ -147,7 +147,7 @@ macro_rules! operators {
                 match self { $( Self::$fold(code) => <$fold as Fold>::meet(code, d, so_far, operand, setting, weighs), )+ }
             }
 
-            /// See [`Fold::finish`].
+            /// The field and what shares are; `total` is the sum of weights, where that is an accumulator of its own.
             pub fn finish<D: Domain>(
                 self,
                 d: &mut D,
@@ -170,7 +170,7 @@ macro_rules! operators {
             /// See [`Step::rule`].
             fn rule(self, non_negative: bool) -> Rule { match self { $( Self::$step(code) => <$step as Step>::rule(code, non_negative), )+ } }
 
-            /// See [`Step::emit`].
+            /// The field of two sides and the weight of either, from a row of numbers and twice the iso-value.
             pub fn emit<D: Domain>(
                 self,
                 d: &mut D,
@@ -187,10 +187,10 @@ macro_rules! operators {
         pub enum MapCode { $( #[doc = concat!("Of [`", stringify!($map), "`].")] $map, )+ }
 
         impl MapCode {
-            /// See [`Unary::COLUMNS`].
+            /// Names of the numbers that a row keeps for it.
             pub const fn columns(self) -> &'static [&'static str] { match self { $( Self::$map => <$map as Unary>::COLUMNS, )+ } }
 
-            /// See [`Unary::emit`].
+            /// The field of a child with the field `f`, from a row of numbers and twice the iso-value.
             pub fn emit<D: Domain>(self, d: &mut D, f: D::Real, row: &[D::Real], iso2: D::Real) -> D::Real {
                 match self { $( Self::$map => <$map as Unary>::emit(d, f, row, iso2), )+ }
             }
@@ -208,7 +208,8 @@ macro_rules! operators {
                 }
             }
 
-            /// See [`Fold::flattens`]; choices always do.
+            /// Whether operands of one that is the operand of an equal one may be that one's, where no such operand
+            /// can be negative, or some can.
             pub fn flattens(self, non_negative: bool) -> bool {
                 match self {
                     $( Self::$fold(it) => it.flattens(non_negative), )+

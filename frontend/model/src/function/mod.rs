@@ -83,7 +83,7 @@ macro_rules! functions {
         /// A function of the text format: one of the list, or a falloff.
         #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
         pub enum Function {
-            $( #[doc = concat!("See [`", stringify!($module), "`](", stringify!($module), ").")] $name, )+
+            $( #[doc = concat!("One of `function/", stringify!($module), ".rs`.")] $name, )+
             /// A falloff of a distance, where 1 is the support radius and negative numbers count as 0. Only
             /// formulas of a point have it.
             Falloff(FixedFalloff),
