@@ -7,17 +7,17 @@ use std::time::Duration;
 
 use criterion::measurement::WallTime;
 use criterion::{BatchSize, BenchmarkGroup, BenchmarkId, Criterion, criterion_group, criterion_main};
-use jbt::ir::domain::lanes::Tape;
-use jbt::ir::engine::choose;
-use jbt::ir::pass::run_pipeline;
-use jbt::ir::verify;
-use jbt::kernel::Purpose;
+use jbt::import::vm;
+use jbt::internals::ir::domain::lanes::Tape;
+use jbt::internals::ir::engine::choose;
+use jbt::internals::ir::pass::run_pipeline;
+use jbt::internals::ir::verify;
+use jbt::internals::kernel::Purpose;
+use jbt::internals::lower::lower;
 use jbt::{CheckedTree, Compiler, Engine, Level, Query, Update};
 use jbt_benches::check;
 use jbt_benches::model::{cube, varied};
-use jbt_lower::lower;
 use jbt_testkit::samples;
-use jbt_text::import::vm;
 
 fn compile(c: &mut Criterion) {
     let mut group = c.benchmark_group("compile");
@@ -51,8 +51,9 @@ fn stages(group: &mut BenchmarkGroup<'_, WallTime>, name: &str, tree: &CheckedTr
         b.iter(|| lower(black_box(tree), Query::ALL).expect("the model lowers"));
     });
     let lowered = lower(tree, Query::ALL).expect("the model lowers").function;
-    let passes =
-        |function| run_pipeline(function, jbt::kernel::passes(Purpose::Answers(Query::ALL)), &mut |_, _| {});
+    let passes = |function| {
+        run_pipeline(function, jbt::internals::kernel::passes(Purpose::Answers(Query::ALL)), &mut |_, _| {})
+    };
     group.bench_function(BenchmarkId::new("passes", name), |b| {
         b.iter_batched(|| lowered.clone(), passes, BatchSize::SmallInput);
     });

@@ -1,11 +1,11 @@
 //! Models and points that benches ask about.
 
+use jbt::CheckedTree;
+use jbt::Falloff;
+use jbt::Tree;
+use jbt::internals::model::skeleton::{Cuboid, Cylinder, Disc, Point, Ring, Segment, Skeleton, Triangle};
+use jbt::tree::{NodeKind, Primitive};
 use jbt::{Model, Points, text};
-use jbt_model::check::CheckedTree;
-use jbt_model::falloff::Falloff;
-use jbt_model::kind::{NodeKind, Primitive};
-use jbt_model::skeleton::{Cuboid, Cylinder, Disc, Point, Ring, Segment, Skeleton, Triangle};
-use jbt_model::tree::Tree;
 
 /// A soft-object point (Wyvill, McPheeters and Wyvill 1986) with a colour. Its numbers are f32, so that every
 /// contestant is given the same.

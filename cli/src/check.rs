@@ -3,12 +3,12 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
+use jbt::AttributeGroup;
+use jbt::CheckedTree;
+use jbt::diagnostic::escape;
+use jbt::tree::Bounds;
+use jbt::tree::NodeKind;
 use jbt::{Compiler, Engine, Query};
-use jbt_model::attribute::AttributeGroup;
-use jbt_model::bounds::Bounds;
-use jbt_model::check::CheckedTree;
-use jbt_model::diagnostic::escape;
-use jbt_model::kind::NodeKind;
 use serde_json::{Map, Value, json};
 
 use crate::arguments::{CheckArguments, SceneArguments};

@@ -4,11 +4,11 @@ use std::time::{Duration, Instant};
 
 use jbt::Picture;
 use jbt::contour::{Contour, Detail, ImageDetail, Level, Mode, Rectangle, SliceError, Slicer, circles};
+use jbt::diagnostic::{Diagnostic, escape};
 use jbt::export::svg::{Paint, Style, write_svg};
 use jbt::export::write_png;
 use jbt::mesh::LatticeError;
 use jbt::{CheckedTree, Fineness, ModelOrigin, Query};
-use jbt_model::diagnostic::{Diagnostic, escape};
 use serde_json::{Value, json};
 
 use crate::arguments::{ContourArguments, ModeName, PaintName};

@@ -18,15 +18,15 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
+use jbt::CheckedTree;
+use jbt::diagnostic::Source;
 use jbt::mesh::Lattice;
 use jbt::statistics::{PerPoint, Statistics, Supports, SupportsError, walks};
+use jbt::tree::NodeKind;
 use jbt::{
     AnswerKind, Box3, Compiled, Compiler, Engine, MeshCounters, ModelOrigin, Polygonize, PolygonizeError,
     Query,
 };
-use jbt_model::check::CheckedTree;
-use jbt_model::diagnostic::Source;
-use jbt_model::kind::NodeKind;
 use serde_json::{Value, json};
 
 use crate::arguments::CountArguments;
@@ -168,7 +168,7 @@ struct CountedLeaf {
 fn leaves(scene: &Scene, tree: &CheckedTree) -> Vec<CountedLeaf> {
     let uses = tree.asked();
     let lines = Lines::new(scene.source());
-    let leaf = |(index, node): (usize, &jbt_model::check::CheckedNode)| match &node.kind {
+    let leaf = |(index, node): (usize, &jbt::tree::CheckedNode)| match &node.kind {
         NodeKind::Primitive(primitive) => Some(CountedLeaf {
             node: index as u32,
             kind: primitive.skeleton.kind().name(),

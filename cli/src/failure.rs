@@ -12,7 +12,7 @@ use std::fmt;
 use std::io;
 
 use jbt::CompileError;
-use jbt_model::diagnostic::{Diagnostic, Diagnostics, Severity, Source, escape};
+use jbt::diagnostic::{Diagnostic, Diagnostics, Severity, Source, escape};
 
 use crate::message::Message;
 

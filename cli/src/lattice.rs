@@ -1,8 +1,8 @@
 //! The lattice of the command line: what its options mean, and whose fault it is when there is none.
 
+use jbt::diagnostic::Diagnostic;
 use jbt::mesh::{Lattice, LatticeError, MeshError};
 use jbt::{Box3, Fineness, ModelOrigin, Polygonize, PolygonizeError};
-use jbt_model::diagnostic::Diagnostic;
 
 use crate::arguments::LatticeArguments;
 use crate::failure::Failure;

@@ -86,7 +86,7 @@ fn scene_without_command(error: &clap::Error) -> Option<String> {
 /// Help, the version, or what is wrong with the command line.
 fn usage(error: &clap::Error) -> ExitCode {
     if let Some(scene) = scene_without_command(error) {
-        let scene = jbt_model::diagnostic::escape(&scene);
+        let scene = jbt::diagnostic::escape(&scene);
         output::tell(&format!(
             "jbt: error: a command stands before the scene, as `jbt render {scene}`; see jbt --help"
         ));
@@ -96,7 +96,7 @@ fn usage(error: &clap::Error) -> ExitCode {
     if error.use_stderr() && hostile {
         // The message repeats words of the command line, which a script may have taken from anywhere.
         let text = error.render().to_string();
-        let lines: Vec<String> = text.trim_end().lines().map(jbt_model::diagnostic::escape).collect();
+        let lines: Vec<String> = text.trim_end().lines().map(jbt::diagnostic::escape).collect();
         output::tell(&lines.join("\n"));
     } else {
         // A reader of the help may go away before its end.

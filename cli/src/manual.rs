@@ -43,6 +43,6 @@ pub fn man(arguments: &ManArguments, quiet: bool) -> Result<(), Failure> {
     if quiet {
         return Ok(());
     }
-    let folder = jbt_model::diagnostic::escape(&arguments.folder.display().to_string());
+    let folder = jbt::diagnostic::escape(&arguments.folder.display().to_string());
     print(&format!("{folder}: {}", plural(pages.len() as u64, "page", "pages")))
 }

@@ -2,10 +2,10 @@
 
 use std::time::{Duration, Instant};
 
+use jbt::diagnostic::escape;
 use jbt::export::{self, ColorEncoding, ExportError, ExportOptions, Format};
 use jbt::mesh::ThinReport;
 use jbt::{Box3, MeshCounters, ModelOrigin, Polygonize, Polygonized};
-use jbt_model::diagnostic::escape;
 use serde_json::json;
 
 use crate::arguments::MeshArguments;

@@ -1,6 +1,6 @@
 //! A message about a file, for people and for machines.
 
-use jbt_model::diagnostic::{Diagnostic, Severity, Source};
+use jbt::diagnostic::{Diagnostic, Severity, Source};
 use serde_json::{Value, json};
 
 /// A message about a file.

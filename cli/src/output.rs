@@ -5,8 +5,8 @@ use std::io::{self, BufWriter, IsTerminal as _, Stdout, Write};
 use std::path::{Path, PathBuf};
 
 use clap::builder::styling::{AnsiColor, Style};
+use jbt::diagnostic::{Severity, escape};
 use jbt::export::AtomicFile;
-use jbt_model::diagnostic::{Severity, escape};
 
 use crate::failure::Failure;
 use crate::standard::is_standard;

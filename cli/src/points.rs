@@ -7,7 +7,7 @@
 
 use std::io::{self, BufRead};
 
-use jbt_model::diagnostic::{Diagnostic, Severity, Source, Span, escape};
+use jbt::diagnostic::{Diagnostic, Severity, Source, Span, escape};
 
 use crate::failure::Failure;
 use crate::message::Message;

@@ -3,10 +3,10 @@
 use std::time::{Duration, Instant};
 
 use jbt::ModelOrigin;
+use jbt::diagnostic::escape;
 use jbt::export::write_png;
 use jbt::render::{Camera, Mode, Render, RenderError, Rendered, Report as Taken, Stance, View};
 use jbt::solid::{BoundsError, RegionError};
-use jbt_model::diagnostic::escape;
 use serde_json::json;
 
 use crate::arguments::{GroundName, RenderArguments};

@@ -109,7 +109,7 @@ impl SampleReport<'_> {
              \x20 lattice      {}{}\n\
              \x20 primitives   {} evaluated at {} points, {} left out there, by engine {}\n\
              \x20 time         {:.1} ms in total",
-            jbt_model::diagnostic::escape(name),
+            jbt::diagnostic::escape(name),
             self.sampler.evaluator().layout().names().join(", "),
             lattice::describe(self.lattice, self.sampler.evaluator().origin()),
             lattice::origin_line(self.sampler.evaluator().origin()),

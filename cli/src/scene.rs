@@ -2,10 +2,10 @@
 
 use std::io;
 
+use jbt::CheckedTree;
+use jbt::diagnostic::{Severity, Source, SourceText};
 use jbt::text::Options;
 use jbt::{Compiled, Evaluator, Model, Query};
-use jbt_model::check::CheckedTree;
-use jbt_model::diagnostic::{Severity, Source, SourceText};
 
 use crate::arguments::SceneArguments;
 use crate::failure::Failure;

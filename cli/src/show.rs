@@ -1,12 +1,12 @@
 //! `jbt show`: a scene as one of the stages on its way to machine code.
 
-use jbt::ir::pass::GRADIENT;
-use jbt::ir::{Function, Straight, Verified};
-use jbt::kernel::{Purpose, form, forms, optimise, optimise_straight, passes, straighten};
+use jbt::diagnostic::escape;
+use jbt::internals::ir::pass::GRADIENT;
+use jbt::internals::ir::{Function, Straight, Verified};
+use jbt::internals::kernel::{Purpose, form, forms, optimise, optimise_straight, passes, straighten};
+use jbt::internals::lower::{Lowered, lower};
+use jbt::text;
 use jbt::{CompileError, Level, Query};
-use jbt_lower::{Lowered, lower};
-use jbt_model::diagnostic::escape;
-use jbt_text as text;
 
 use crate::arguments::{LevelName, ShowArguments};
 use crate::failure::Failure;

@@ -10,11 +10,11 @@
 use std::fmt::Write as _;
 use std::time::{Duration, Instant};
 
+use jbt::diagnostic::{Diagnostic, escape};
 use jbt::divide::DivideError;
 use jbt::solid::{BoundsError, Level, Measure, MeasureError, Measures, RegionError, Solid, TightBounds};
+use jbt::tree::Bounds;
 use jbt::{Box3, Compiler, Fineness, ModelOrigin, Polygonize};
-use jbt_model::bounds::Bounds;
-use jbt_model::diagnostic::{Diagnostic, escape};
 use serde_json::{Value, json};
 
 use crate::arguments::StatsArguments;

@@ -94,8 +94,9 @@ mod evaluator;
 #[cfg(feature = "export")]
 pub mod export;
 mod finite;
+pub mod internals;
 mod job;
-pub mod kernel;
+mod kernel;
 pub mod mesh;
 mod parallel;
 mod picture;
@@ -123,14 +124,12 @@ mod word;
 #[doc = include_str!("../../README.md")]
 mod readme {}
 
-pub use jbt_ir as ir;
-
 pub use jbt_ir::level::{self, Level};
 pub use jbt_ir::limits;
 pub use jbt_model::attribute::{AttributeGroup, Mixing};
 pub use jbt_model::builder as build;
 pub use jbt_model::check::{CheckedTree, NodeId};
-pub use jbt_model::combine::{self, Combinator, SetOperation};
+pub use jbt_model::combine::{Combinator, SetOperation};
 pub use jbt_model::diagnostic::{self, Diagnostic, Diagnostics};
 pub use jbt_model::falloff::Falloff;
 pub use jbt_model::model::Model;

@@ -37,8 +37,9 @@
 //! structures in their variants are those of the compiler, in vectors of its own glam.
 
 pub use jbt_model::attribute::{AttributeValue, Textured, UvMap};
+pub use jbt_model::bounds::Bounds;
 pub use jbt_model::check::CheckedNode;
-pub use jbt_model::combine::{Combinator, CombinatorKind, SetOperation, Syntax};
+pub use jbt_model::combine::{Combinator, CombinatorKind, SetOperation, Syntax, operators};
 pub use jbt_model::expression::Expression;
 pub use jbt_model::falloff::{Falloff, FalloffKind};
 pub use jbt_model::field::{Field, FieldKind, FieldValue};

@@ -1,8 +1,8 @@
 //! Leaving a row out gives the bits that running it gives, where the row adds nothing: what pruning will rest
 //! on.
 
-use jbt::ir::domain::scalar::Scalar;
-use jbt::ir::{Entity, FoldKind, Rule, Tables, interpret};
+use jbt::internals::ir::domain::scalar::Scalar;
+use jbt::internals::ir::{Entity, FoldKind, Rule, Tables, interpret};
 use jbt::{Compiler, Engine, Evaluator, Query};
 use jbt_text::{Options, parse};
 
@@ -45,7 +45,7 @@ fn reduced(evaluator: &Evaluator, point: [f32; 3]) -> (Tables, usize) {
     let mut dropped = 0;
     for (table, fold) in function.tables.keys().zip(function.folds()) {
         let Some(fold) = fold else { continue };
-        let jbt::ir::InstKind::Fold(fold) = &function.insts[fold].kind else { continue };
+        let jbt::internals::ir::InstKind::Fold(fold) = &function.insts[fold].kind else { continue };
         if (fold.kind, fold.rule) != (FoldKind::Rows, Rule::Neutral) {
             continue;
         }

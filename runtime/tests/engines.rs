@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use jbt::ir::engine::{Backend, BoundProgram, RunError, choose};
-use jbt::ir::{
+use jbt::internals::ir::engine::{Backend, BoundProgram, RunError, choose};
+use jbt::internals::ir::{
     Domain, FoldKind, FunctionBuilder, Level, Rows, Rule, Schema, Selection, Store, Tables, Verified, verify,
 };
 use jbt::{CompileError, Compiler, Engine, EvalError, Model, Query, build};

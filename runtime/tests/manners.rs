@@ -5,7 +5,6 @@ use std::error::Error;
 use std::path::Path;
 
 use jbt::build::{Axis, param, point, segment, x};
-use jbt::combine::{Difference, Intersection, Sum, SymmetricDifference, Union};
 use jbt::contour::{Detail, ImageDetail, Plane, SliceError, Slicer};
 use jbt::diagnostic::Severity;
 use jbt::render::RenderError;
@@ -14,6 +13,7 @@ use jbt::solid::{Measure, MeasureError};
 use jbt::statistics::{Statistics, SupportsError};
 use jbt::text::{Options, parse};
 use jbt::tree::SetOperation;
+use jbt::tree::operators::{Difference, Intersection, Sum, SymmetricDifference, Union};
 use jbt::{
     CancelToken, CheckedTree, Combinator, CompileError, Compiler, Diagnostics, Engine, Evaluator, Fineness,
     Model, Points, Polygonize, PolygonizeError, Query, Render, Samples, Scene, SceneFormat, Solid, Tree,

@@ -142,10 +142,10 @@ fn each_occurrence_is_evaluated_once_for_any_query() {
 /// What the test is worth: a program that computes a leaf twice is seen.
 #[test]
 fn a_leaf_that_is_computed_twice_is_counted_twice() {
-    use jbt::ir::domain::counting::evaluations;
+    use jbt::internals::ir::domain::counting::evaluations;
     let (_, tree) = examples().swap_remove(0);
     let lowered = jbt_lower::lower(&tree, Query::FIELD).expect("examples compile");
-    let function = jbt::ir::verify(lowered.function).expect("lowering keeps the rules");
+    let function = jbt::internals::ir::verify(lowered.function).expect("lowering keeps the rules");
     let before = evaluations(&function, &lowered.tables).total;
     // Running a row twice is what a lowering that forgets about sharing does.
     let mut tables = lowered.tables.clone();

@@ -193,7 +193,7 @@ fn compare(what: &str, model: &Model, evaluator: &Evaluator, region: &Region, po
                 all.to_bits() == selected.to_bits() || (all.is_nan() && selected.is_nan()),
                 "{what}: {name} is {all:e}, and {selected:e} with {} of {} rows, at {:?} in {:?}\n{}",
                 region.rows(),
-                evaluator.tables().tables.values().map(jbt::ir::Rows::len).sum::<usize>(),
+                evaluator.tables().tables.values().map(jbt::internals::ir::Rows::len).sum::<usize>(),
                 points.get(index),
                 region.bounds(),
                 print(model)

@@ -1,7 +1,7 @@
 //! Straight code gives the bits of rows, for every query, engine and level; regions, counters and edits do
 //! not notice it, but for what an edit compiles.
 
-use jbt::ir::Level;
+use jbt::internals::ir::Level;
 use jbt::region::Divisible;
 use jbt::{Box3, Compiler, Engine, Evaluator, Points, Pruner, Query, Update};
 use jbt_model::check::CheckedTree;

@@ -2,8 +2,8 @@
 
 use fidget::eval::MathFunction;
 use fidget::render::RenderHints;
+use jbt::CheckedTree;
 use jbt::{Compiler, Engine, Points, Query};
-use jbt_model::check::CheckedTree;
 use serde_json::json;
 
 use super::contest::{Contest, Contestant};

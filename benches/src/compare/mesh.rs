@@ -2,9 +2,9 @@
 //! and colours as well; the peers make positions alone. Nobody checks what was made; ours once more, with its
 //! search for parts that are thinner than a cell.
 
+use jbt::CheckedTree;
+use jbt::walk::walk;
 use jbt::{Box3, Compiler, Polygonize, Polygonized};
-use jbt_model::check::CheckedTree;
-use jbt_model::walk::walk;
 use serde_json::json;
 
 use super::contest::{Contest, Contestant};

@@ -1,8 +1,8 @@
 //! What the answers of all contestants have to be near to: the f64 oracle at some of the points.
 
+use jbt::CheckedTree;
 use jbt::Points;
-use jbt_model::check::CheckedTree;
-use jbt_model::walk::{walk, walk_gradient};
+use jbt::walk::{walk, walk_gradient};
 
 use crate::check::agree;
 

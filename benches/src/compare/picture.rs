@@ -3,13 +3,13 @@
 use std::cell::{Cell, RefCell};
 use std::time::Instant;
 
+use jbt::CheckedTree;
 use jbt::contour::{ImageDetail, Plane, Rectangle, Slicer};
+use jbt::import;
 use jbt::render::{Mode, Render, Renderer, View};
+use jbt::walk::walk;
 use jbt::{Box3, Compiler, Fineness, Query};
-use jbt_model::check::CheckedTree;
-use jbt_model::walk::walk;
 use jbt_testkit::samples;
-use jbt_text::import;
 use serde_json::json;
 
 use super::contest::{Contest, Contestant, Standings};

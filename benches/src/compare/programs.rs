@@ -3,11 +3,11 @@
 
 use fidget::eval::MathFunction;
 use fidget::render::RenderHints;
+use jbt::CheckedTree;
+use jbt::import;
+use jbt::walk::walk;
 use jbt::{Compiler, Engine, Points, Query};
-use jbt_model::check::CheckedTree;
-use jbt_model::walk::walk;
 use jbt_testkit::samples;
-use jbt_text::import;
 use serde_json::json;
 
 use super::contest::{Contest, Contestant, Standings};

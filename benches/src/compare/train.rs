@@ -3,10 +3,10 @@
 
 use std::cell::RefCell;
 
+use jbt::CheckedTree;
+use jbt::import;
 use jbt::{Compiler, Points, Query};
-use jbt_model::check::CheckedTree;
 use jbt_testkit::samples;
-use jbt_text::import;
 use serde_json::json;
 
 use super::contest::{Contest, Contestant, Standings};

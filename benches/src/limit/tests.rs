@@ -1,6 +1,6 @@
 //! The hand-written loops against the f64 oracle.
 
-use jbt_model::walk::{walk, walk_gradient};
+use jbt::walk::{walk, walk_gradient};
 
 use crate::model::{blobs, cube, tree};
 

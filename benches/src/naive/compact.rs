@@ -11,12 +11,12 @@
 use std::rc::Rc;
 
 use glam::{DAffine3, Mat3, Vec3};
-use jbt_model::attribute::AttributeValue;
-use jbt_model::check::{CheckedTree, NodeId};
-use jbt_model::combine::{Combinator, Ricci};
-use jbt_model::falloff::Falloff;
-use jbt_model::kind::{NodeKind, Primitive};
-use jbt_model::warp::Warp;
+use jbt::Falloff;
+use jbt::tree::AttributeValue;
+use jbt::tree::Warp;
+use jbt::tree::{Combinator, operators::Ricci};
+use jbt::tree::{NodeKind, Primitive};
+use jbt::{CheckedTree, NodeId};
 
 use super::skeleton::Skeleton;
 

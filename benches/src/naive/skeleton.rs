@@ -4,7 +4,7 @@
 //! The gradient of a squared distance is twice the way from the nearest point, whatever the skeleton.
 
 use glam::{DVec3, Vec3};
-use jbt_model::skeleton;
+use jbt::internals::model::skeleton;
 
 /// The straight line between two points.
 #[derive(Clone, Copy, Debug)]

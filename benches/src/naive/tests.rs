@@ -2,14 +2,15 @@
 
 use std::path::Path;
 
+use jbt::CheckedTree;
+use jbt::Falloff;
+use jbt::Tree;
+use jbt::build::{Axis, cuboid, cylinder, disc, point, ring, segment, triangle};
+use jbt::text::{Options, parse};
+use jbt::tree::Combinator;
+use jbt::tree::operators::{Difference, Intersection, Ricci, Sum, Union};
+use jbt::walk::{walk, walk_gradient};
 use jbt::{Model, Points};
-use jbt_model::builder::{Axis, cuboid, cylinder, disc, point, ring, segment, triangle};
-use jbt_model::check::CheckedTree;
-use jbt_model::combine::{Combinator, Difference, Intersection, Ricci, Sum, Union};
-use jbt_model::falloff::Falloff;
-use jbt_model::tree::Tree;
-use jbt_model::walk::{walk, walk_gradient};
-use jbt_text::{Options, parse};
 
 use super::{STEP, Walker, separate};
 use crate::model;

@@ -14,9 +14,9 @@
 //! There is no culling: each leaf is evaluated at each point, but leaves out of reach stop at their distance.
 
 use glam::{DVec3, Mat3, Vec3};
-use jbt_model::attribute::Mixing;
-use jbt_model::check::CheckedTree;
-use jbt_model::falloff::Falloff;
+use jbt::CheckedTree;
+use jbt::Falloff;
+use jbt::Mixing;
 
 use super::compact::{self, Compact, Leaf, Map, Operator, Step, Twist, Warped};
 use super::mixing::{Answer, Frame, Values, root};
@@ -36,9 +36,7 @@ impl Walker {
     /// The walker of a tree. Cost: linear in the number of paths to nodes.
     #[must_use]
     pub fn new(tree: &CheckedTree) -> Self {
-        let follow = |group: &jbt_model::attribute::AttributeGroup| {
-            vec![group.mixing == Mixing::Dominant; group.width()]
-        };
+        let follow = |group: &jbt::AttributeGroup| vec![group.mixing == Mixing::Dominant; group.width()];
         Self {
             compact: Compact::new(tree),
             iso2: (2.0 * tree.iso()) as f32,
@@ -235,7 +233,7 @@ impl Walker {
     fn warped(&self, warped: &Warped, p: DVec3) -> DVec3 {
         match &self.compact.warps[warped.warp as usize] {
             (warp, None) => warp.inverse(p),
-            (warp, Some(weight)) => warp.weighted(p, jbt_model::walk::walk(weight, p.to_array()).field),
+            (warp, Some(weight)) => warp.weighted(p, jbt::walk::walk(weight, p.to_array()).field),
         }
     }
 

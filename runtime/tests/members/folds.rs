@@ -1,7 +1,7 @@
 //! What code a sum has: a fold for each shape, whatever the number of its primitives.
 
 use fastrand::Rng;
-use jbt::ir::{Function, Rows, Schema};
+use jbt::internals::ir::{Function, Rows, Schema};
 use jbt::{Compiler, Engine, Falloff, Model, Query, Tree};
 use jbt_lower::lower;
 use jbt_model::kind::{NodeKind, Primitive};

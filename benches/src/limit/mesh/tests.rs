@@ -1,8 +1,8 @@
 //! Meshes by hand against the oracle and against the compiler's mesher.
 
 use jbt::mesh::check_manifold;
+use jbt::walk::{walk, walk_gradient};
 use jbt::{Box3, Compiler, Fineness, Polygonize};
-use jbt_model::walk::{walk, walk_gradient};
 
 use crate::model::{ISO, blobs, tree};
 

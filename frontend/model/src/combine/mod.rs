@@ -227,7 +227,13 @@ macro_rules! operators {
 /// What any operator answers, from the list of all with their forms.
 macro_rules! members {
     ($($module:ident $name:ident $form:ident),+ $(,)?) => {
-        $( pub use $module::$name; pub(crate) use $module::describe as $module; )+
+        /// What a [`Combinator`] holds: each operator by itself, with its numbers.
+        pub mod operators {
+            $( pub use super::$module::$name; )+
+        }
+
+        pub use operators::*;
+        $( pub(crate) use $module::describe as $module; )+
 
         /// An operator of any kind.
         #[derive(Clone, Copy, PartialEq, Debug)]
