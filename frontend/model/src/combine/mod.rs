@@ -147,7 +147,8 @@ macro_rules! operators {
                 match self { $( Self::$fold(code) => <$fold as Fold>::meet(code, d, so_far, operand, setting, weighs), )+ }
             }
 
-            /// The field and what shares are; `total` is the sum of weights, where that is an accumulator of its own.
+            /// The field and what shares are; `total` is the sum of weights, where that is an accumulator of
+            /// its own.
             pub fn finish<D: Domain>(
                 self,
                 d: &mut D,
