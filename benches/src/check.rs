@@ -1,8 +1,7 @@
 //! The checks that answers have to pass before anything is timed.
 
-use jbt::CheckedTree;
 use jbt::walk::{walk, walk_gradient};
-use jbt::{AnswerKind, Evaluator, Points, Polygonized};
+use jbt::{AnswerKind, CheckedTree, Evaluator, Points, Polygonized};
 
 /// Compares the field with the f64 oracle at some of the points. Panics where it is off.
 pub fn field(tree: &CheckedTree, evaluator: &Evaluator, points: &Points) {

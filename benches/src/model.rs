@@ -1,11 +1,8 @@
 //! Models and points that benches ask about.
 
-use jbt::CheckedTree;
-use jbt::Falloff;
-use jbt::Tree;
 use jbt::internals::model::skeleton::{Cuboid, Cylinder, Disc, Point, Ring, Segment, Skeleton, Triangle};
 use jbt::tree::{NodeKind, Primitive};
-use jbt::{Model, Points, text};
+use jbt::{CheckedTree, Falloff, Model, Points, Tree, text};
 
 /// A soft-object point (Wyvill, McPheeters and Wyvill 1986) with a colour. Its numbers are f32, so that every
 /// contestant is given the same.

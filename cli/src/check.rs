@@ -3,12 +3,10 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use jbt::AttributeGroup;
-use jbt::CheckedTree;
 use jbt::diagnostic::escape;
 use jbt::tree::Bounds;
 use jbt::tree::NodeKind;
-use jbt::{Compiler, Engine, Query};
+use jbt::{AttributeGroup, CheckedTree, Compiler, Engine, Query};
 use serde_json::{Map, Value, json};
 
 use crate::arguments::{CheckArguments, SceneArguments};

@@ -2,13 +2,11 @@
 
 use std::time::{Duration, Instant};
 
-use jbt::Picture;
 use jbt::contour::{Contour, Detail, ImageDetail, Level, Mode, Rectangle, SliceError, Slicer, circles};
-use jbt::diagnostic::{Diagnostic, escape};
+use jbt::diagnostic::escape;
 use jbt::export::svg::{Paint, Style, write_svg};
 use jbt::export::write_png;
-use jbt::mesh::LatticeError;
-use jbt::{CheckedTree, Fineness, ModelOrigin, Query};
+use jbt::{CheckedTree, Fineness, ModelOrigin, Picture, Query};
 use serde_json::{Value, json};
 
 use crate::arguments::{ContourArguments, ModeName, PaintName};
@@ -32,15 +30,15 @@ pub fn run(arguments: &ContourArguments, quiet: bool, start: Instant) -> Result<
     check_attributes(arguments, drawing, &tree)?;
     let compiler = arguments.work.compiler()?;
     let query = if drawing == SliceKind::Svg || mode(arguments).1 { Query::ATTRIBUTES } else { Query::FIELD };
-    let slicer = Slicer::new(&compiler, &tree, &arguments.plane, query)
-        .map_err(|error| Failure::compile(&scene.source(), &error))?;
+    let slicer =
+        Slicer::new(&compiler, &tree, &arguments.plane, query).map_err(|error| scene.failure(&error))?;
     let rectangle = match arguments.region {
         Some(rectangle) => rectangle,
-        None => slicer.rectangle().map_err(|error| failure(&scene, &error))?,
+        None => slicer.rectangle().map_err(|error| scene.failure(&error))?,
     };
     let mut progress = Progress::new("slicing", quiet);
     let mut work = || make(arguments, drawing, &slicer, &rectangle, fineness, &mut progress);
-    let made = arguments.work.run(&mut work)?.map_err(|error| failure(&scene, &error))?;
+    let made = arguments.work.run(&mut work)?.map_err(|error| scene.failure(&error))?;
     drop(progress);
 
     let mut output = Output::open(&destination)?;
@@ -194,31 +192,6 @@ fn style(arguments: &ContourArguments, tree: &CheckedTree) -> Style {
         quadtree: arguments.quadtree,
         circles: if arguments.quadtree { circles(tree, &arguments.plane) } else { Vec::new() },
         ..plain
-    }
-}
-
-/// Whose fault it is that there is no slice.
-fn failure(scene: &Scene, error: &SliceError) -> Failure {
-    match error {
-        SliceError::Empty => {
-            Failure::diagnostics(&scene.source(), &[Diagnostic::error(None, error.to_string())])
-        }
-        SliceError::Unbounded => Failure::Usage(format!("{error}; --region gives it one")),
-        SliceError::Rectangle(_)
-        | SliceError::Samples { .. }
-        | SliceError::Attribute { .. }
-        | SliceError::Lattice(
-            LatticeError::NotFinite | LatticeError::Spacing { .. } | LatticeError::EmptyRegion { .. },
-        ) => Failure::Usage(error.to_string()),
-        SliceError::TooManyPixels { .. }
-        | SliceError::TooManySquares { .. }
-        | SliceError::TooManyVertices { .. }
-        | SliceError::Lattice(
-            LatticeError::Cells { .. } | LatticeError::TooManyPoints { .. } | LatticeError::TooFine { .. },
-        ) => Failure::Limit(error.to_string()),
-        SliceError::Block { .. } | SliceError::Eval(_) | SliceError::Cancelled => {
-            Failure::Defect(error.to_string())
-        }
     }
 }
 

@@ -18,14 +18,13 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use jbt::CheckedTree;
 use jbt::diagnostic::Source;
 use jbt::mesh::Lattice;
-use jbt::statistics::{PerPoint, Statistics, Supports, SupportsError, walks};
+use jbt::statistics::{PerPoint, Statistics, Supports, walks};
 use jbt::tree::NodeKind;
 use jbt::{
-    AnswerKind, Box3, Compiled, Compiler, Engine, MeshCounters, ModelOrigin, Polygonize, PolygonizeError,
-    Query,
+    AnswerKind, Box3, CheckedTree, Compiled, Compiler, Engine, MeshCounters, ModelOrigin, Polygonize,
+    PolygonizeError, Query,
 };
 use serde_json::{Value, json};
 
@@ -76,7 +75,7 @@ pub fn run(arguments: &CountArguments, quiet: bool) -> Result<(), Failure> {
             warnings.push(without_lattice(&error));
             None
         }
-        Err(error) => return Err(lattice::failure(&scene, error)),
+        Err(error) => return Err(scene.failure(&error)),
     };
     let supports =
         lattice.as_ref().map(|lattice| supports(&scene, &statistics, lattice, quiet)).transpose()?;
@@ -113,11 +112,7 @@ fn supports(
 ) -> Result<Supports, Failure> {
     let mut progress = Progress::new("counting", quiet);
     let counted = statistics.supports(&Compiler::new(), lattice).on_progress(|part| progress.set(part)).run();
-    counted.map_err(|error| match error {
-        SupportsError::Compile(error) => Failure::compile(&scene.source(), &error),
-        SupportsError::Lattice(error) => Failure::Limit(error.to_string()),
-        SupportsError::Cancelled => Failure::Defect(error.to_string()),
-    })
+    counted.map_err(|error| scene.failure(&error))
 }
 
 /// Makes the mesh, to count what that takes.
@@ -129,7 +124,7 @@ fn mesh(
 ) -> Result<MeshCounters, Failure> {
     let mut progress = Progress::new("meshing", quiet);
     let made = settings.mesh(&Compiler::new(), tree).on_progress(|part| progress.set(part)).run();
-    made.map(|made| made.counters).map_err(|error| lattice::failure(scene, error))
+    made.map(|made| made.counters).map_err(|error| scene.failure(&error))
 }
 
 /// The evaluations for one query.

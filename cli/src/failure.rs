@@ -11,8 +11,8 @@
 use std::fmt;
 use std::io;
 
-use jbt::CompileError;
 use jbt::diagnostic::{Diagnostic, Diagnostics, Severity, Source, escape};
+use jbt::{Classified, ErrorKind};
 
 use crate::message::Message;
 
@@ -85,12 +85,19 @@ impl Failure {
         if is_limit { Self::Limit(message) } else { Self::Usage(message) }
     }
 
-    /// A model that could not be compiled.
-    pub fn compile(source: &Source<'_>, error: &CompileError) -> Self {
-        match error {
-            CompileError::Model(diagnostics) => Self::diagnostics(source, diagnostics),
-            CompileError::Engine { .. } => Self::Limit(error.to_string()),
-            CompileError::Internal(_) => Self::Defect(error.to_string()),
+    /// A task that was not done for a scene.
+    pub fn task(source: &Source<'_>, error: &impl Classified) -> Self {
+        if let Some(diagnostics) = error.diagnostics() {
+            return Self::diagnostics(source, diagnostics);
+        }
+        let message = error.to_string();
+        match error.kind() {
+            ErrorKind::Model => Self::diagnostics(source, &[Diagnostic::error(None, message)]),
+            ErrorKind::Argument => Self::Usage(message),
+            ErrorKind::Unbounded => Self::Usage(format!("{message}; --region gives it one")),
+            ErrorKind::Limit => Self::Limit(message),
+            // Files are opened and written elsewhere, and no command cancels its work.
+            ErrorKind::System | ErrorKind::Cancelled | ErrorKind::Internal => Self::Defect(message),
         }
     }
 

@@ -1,12 +1,10 @@
 //! The lattice of the command line: what its options mean, and whose fault it is when there is none.
 
-use jbt::diagnostic::Diagnostic;
-use jbt::mesh::{Lattice, LatticeError, MeshError};
-use jbt::{Box3, Fineness, ModelOrigin, Polygonize, PolygonizeError};
+use jbt::mesh::Lattice;
+use jbt::{Box3, Fineness, ModelOrigin, Polygonize};
 
 use crate::arguments::LatticeArguments;
 use crate::failure::Failure;
-use crate::scene::Scene;
 
 /// What the options say.
 pub fn settings(arguments: &LatticeArguments) -> Result<Polygonize, Failure> {
@@ -22,36 +20,6 @@ pub fn settings(arguments: &LatticeArguments) -> Result<Polygonize, Failure> {
         (None, None) => Fineness::default(),
     };
     Ok(Polygonize { region: arguments.region, fineness, verify: true, thin_parts: true })
-}
-
-/// Whose fault it is that there is no lattice or mesh.
-pub fn failure(scene: &Scene, error: PolygonizeError) -> Failure {
-    match error {
-        PolygonizeError::Empty => {
-            Failure::diagnostics(&scene.source(), &[Diagnostic::error(None, error.to_string())])
-        }
-        PolygonizeError::Unbounded => Failure::Usage(format!("{error}; --region gives it one")),
-        PolygonizeError::Compile(error) => Failure::compile(&scene.source(), &error),
-        PolygonizeError::Lattice(error) => match error {
-            LatticeError::NotFinite | LatticeError::Spacing { .. } | LatticeError::EmptyRegion { .. } => {
-                Failure::Usage(error.to_string())
-            }
-            LatticeError::Cells { .. }
-            | LatticeError::TooManyPoints { .. }
-            | LatticeError::TooFine { .. } => Failure::Limit(error.to_string()),
-        },
-        PolygonizeError::Mesh(error) => match error {
-            MeshError::TooManyBricks { .. }
-            | MeshError::Memory { .. }
-            | MeshError::TooManyVertices { .. } => Failure::Limit(error.to_string()),
-            MeshError::Field(_)
-            | MeshError::Cancelled
-            | MeshError::Iso { .. }
-            | MeshError::Brick { .. }
-            | MeshError::Pulls { .. }
-            | MeshError::Width { .. } => Failure::Defect(error.to_string()),
-        },
-    }
 }
 
 /// The box of a lattice about the origin of a model, in the world.

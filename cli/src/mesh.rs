@@ -29,16 +29,13 @@ pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(),
 
     let mut progress = Progress::new("meshing", quiet);
     let mut work = || settings.mesh(&compiler, &tree).on_progress(|part| progress.set(part)).run();
-    let made = arguments.work.run(&mut work)?.map_err(|error| lattice::failure(&scene, error))?;
+    let made = arguments.work.run(&mut work)?.map_err(|error| scene.failure(&error))?;
     drop(progress);
 
     let mut output = Output::open(&destination)?;
     export::write_with(&made.mesh, destination.kind, &options, &mut output).map_err(|error| match error {
         ExportError::Write(error) => output.failure(error),
-        ExportError::TooLarge { .. } => Failure::Limit(error.to_string()),
-        ExportError::Extension { .. } | ExportError::File { .. } | ExportError::Malformed(_) => {
-            Failure::Defect(error.to_string())
-        }
+        error => scene.failure(&error),
     })?;
     output.finish()?;
 

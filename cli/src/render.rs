@@ -5,8 +5,7 @@ use std::time::{Duration, Instant};
 use jbt::ModelOrigin;
 use jbt::diagnostic::escape;
 use jbt::export::write_png;
-use jbt::render::{Camera, Mode, Render, RenderError, Rendered, Report as Taken, Stance, View};
-use jbt::solid::{BoundsError, RegionError};
+use jbt::render::{Camera, Mode, Render, Rendered, Report as Taken, Stance, View};
 use serde_json::json;
 
 use crate::arguments::{GroundName, RenderArguments};
@@ -30,7 +29,7 @@ pub fn run(arguments: &RenderArguments, quiet: bool, start: Instant) -> Result<(
 
     let mut progress = Progress::new("rendering", quiet);
     let mut work = || settings.picture(&compiler, &tree).on_progress(|part| progress.set(part)).run();
-    let made = arguments.work.run(&mut work)?.map_err(|error| failure(&scene, error))?;
+    let made = arguments.work.run(&mut work)?.map_err(|error| scene.failure(&error))?;
     drop(progress);
 
     let mut output = Output::open(&destination)?;
@@ -98,30 +97,6 @@ fn mode(words: &[String]) -> Result<Mode, Failure> {
             "there is no mode `{}`; there are shaded, normal, depth, attribute NAME and evaluations",
             words.join(" ")
         ))),
-    }
-}
-
-/// Whose fault it is that there is no picture.
-fn failure(scene: &Scene, error: RenderError) -> Failure {
-    match error {
-        RenderError::Compile(error) => Failure::compile(&scene.source(), &error),
-        RenderError::Unbounded => Failure::Usage(format!("{error}; --region gives it one")),
-        RenderError::Empty { .. }
-        | RenderError::Camera(_)
-        | RenderError::Unusable
-        | RenderError::Inside { .. }
-        | RenderError::Region { .. }
-        | RenderError::Attribute { .. }
-        | RenderError::Bounds(BoundsError::Region(
-            RegionError::Bounds { .. } | RegionError::Empty | RegionError::Unbounded,
-        )) => Failure::Usage(error.to_string()),
-        RenderError::TooLarge { .. } | RenderError::Antialias { .. } | RenderError::Memory { .. } => {
-            Failure::Limit(error.to_string())
-        }
-        RenderError::Bounds(BoundsError::Tolerance { .. } | BoundsError::Eval(_))
-        | RenderError::Trace(_)
-        | RenderError::Eval(_)
-        | RenderError::Cancelled => Failure::Defect(error.to_string()),
     }
 }
 

@@ -2,10 +2,9 @@
 
 use std::time::{Duration, Instant};
 
-use jbt::divide::DivideError;
 use jbt::mesh::Lattice;
-use jbt::sample::{SampleError, Sampler, write_npy};
-use jbt::{Box3, Counters, EvalError};
+use jbt::sample::{Sampler, write_npy};
+use jbt::{Box3, Counters};
 use serde_json::json;
 
 use crate::arguments::SampleArguments;
@@ -24,13 +23,12 @@ pub fn run(arguments: &SampleArguments, quiet: bool, start: Instant) -> Result<(
     let scene = Scene::load(&arguments.scene)?;
     scene.warn(quiet);
     let tree = scene.check()?;
-    let lattice = settings.lattice(&tree).map_err(|error| lattice::failure(&scene, error))?;
+    let lattice = settings.lattice(&tree).map_err(|error| scene.failure(&error))?;
     let compiler = arguments.work.compiler()?;
-    let sampler = Sampler::new(&compiler, &tree, arguments.query)
-        .map_err(|error| Failure::compile(&scene.source(), &error))?;
+    let sampler = Sampler::new(&compiler, &tree, arguments.query).map_err(|error| scene.failure(&error))?;
     let mut progress = Progress::new("sampling", quiet);
     let mut work = || sampler.dense(&lattice).on_progress(|part| progress.set(part)).run();
-    let planes = arguments.work.run(&mut work)?.map_err(|error| failure(&scene, error))?;
+    let planes = arguments.work.run(&mut work)?.map_err(|error| scene.failure(&error))?;
     drop(progress);
 
     let mut output = Output::open(&destination)?;
@@ -48,29 +46,6 @@ pub fn run(arguments: &SampleArguments, quiet: bool, start: Instant) -> Result<(
     };
     let told = arguments.work.told(quiet);
     told.report(&destination.path, || report.json().to_string(), |name| report.text(name))
-}
-
-/// Whose fault it is that there are no samples.
-fn failure(scene: &Scene, error: SampleError) -> Failure {
-    match error {
-        SampleError::Compile(error) => Failure::compile(&scene.source(), &error),
-        SampleError::TooMany { .. }
-        | SampleError::Memory { .. }
-        | SampleError::Divide(DivideError::Depth { .. } | DivideError::Boxes { .. }) => {
-            Failure::Limit(error.to_string())
-        }
-        SampleError::Divide(
-            DivideError::Bounds { .. }
-            | DivideError::Place { .. }
-            | DivideError::Field(
-                EvalError::Length { .. }
-                | EvalError::Planes { .. }
-                | EvalError::Selection
-                | EvalError::Layout,
-            ),
-        )
-        | SampleError::Cancelled => Failure::Defect(error.to_string()),
-    }
 }
 
 /// What is told about samples.

@@ -2,10 +2,9 @@
 
 use std::io;
 
-use jbt::CheckedTree;
 use jbt::diagnostic::{Severity, Source, SourceText};
 use jbt::text::Options;
-use jbt::{Compiled, Evaluator, Model, Query};
+use jbt::{CheckedTree, Classified, Compiled, Evaluator, Model, Query};
 
 use crate::arguments::SceneArguments;
 use crate::failure::Failure;
@@ -60,6 +59,11 @@ impl Scene {
         self.text.name()
     }
 
+    /// Why a task was not done for it.
+    pub fn failure(&self, error: &impl Classified) -> Failure {
+        Failure::task(&self.source(), error)
+    }
+
     /// The checked model, or all that is wrong with it.
     pub fn check(&self) -> Result<CheckedTree, Failure> {
         self.model.check().map_err(|error| Failure::diagnostics(&self.source(), &error))
@@ -67,6 +71,6 @@ impl Scene {
 
     /// An evaluator.
     pub fn evaluator(&self, compiled: &Compiled, query: Query) -> Result<Evaluator, Failure> {
-        compiled.evaluator(query).map_err(|error| Failure::compile(&self.source(), &error))
+        compiled.evaluator(query).map_err(|error| self.failure(&error))
     }
 }

@@ -33,7 +33,7 @@ pub fn run(arguments: &ShowArguments, quiet: bool) -> Result<(), Failure> {
     if stage == TREE {
         return print(text::print(&scene.model).trim_end());
     }
-    let fail = |error: &CompileError| Failure::compile(&scene.source(), error);
+    let fail = |error: &CompileError| scene.failure(error);
     let purpose = Purpose::Answers(query);
     let Lowered { function, tables } =
         lower(&tree, query).map_err(|diagnostics| Failure::diagnostics(&scene.source(), &diagnostics))?;

@@ -10,9 +10,8 @@
 use std::fmt::Write as _;
 use std::time::{Duration, Instant};
 
-use jbt::diagnostic::{Diagnostic, escape};
-use jbt::divide::DivideError;
-use jbt::solid::{BoundsError, Level, Measure, MeasureError, Measures, RegionError, Solid, TightBounds};
+use jbt::diagnostic::escape;
+use jbt::solid::{Level, Measure, Measures, Solid, TightBounds};
 use jbt::tree::Bounds;
 use jbt::{Box3, Compiler, Fineness, ModelOrigin, Polygonize};
 use serde_json::{Value, json};
@@ -34,14 +33,13 @@ pub fn run(arguments: &StatsArguments, quiet: bool, start: Instant) -> Result<()
     scene.warn(quiet);
     let tree = scene.check()?;
     let settings = settings(arguments, &asked, tree.origin());
-    let solid =
-        Solid::new(&Compiler::new(), &tree).map_err(|error| Failure::compile(&scene.source(), &error))?;
+    let solid = Solid::new(&Compiler::new(), &tree).map_err(|error| scene.failure(&error))?;
     let mut progress = Progress::new("measuring", quiet);
     let measured = solid.measure(&settings).on_progress(|part| progress.set(part)).run();
-    let measures = measured.map_err(|error| not_measured(&scene, error))?;
+    let measures = measured.map_err(|error| scene.failure(&error))?;
     drop(progress);
     let tolerance = arguments.tolerance.unwrap_or(TOLERANCE * measures.region.longest_side());
-    let tight = solid.tight_bounds(settings.region, tolerance).map_err(|error| not_bounded(&scene, error))?;
+    let tight = solid.tight_bounds(settings.region, tolerance).map_err(|error| scene.failure(&error))?;
     let mut warnings = warnings(&tight, tolerance);
     if !quiet {
         warnings.iter().for_each(|warning| warn(warning));
@@ -67,44 +65,6 @@ fn settings(arguments: &StatsArguments, asked: &Polygonize, origin: ModelOrigin)
         None => asked.fineness,
     };
     Measure { region: asked.region.map(|region| lattice::local(region, origin)), fineness }
-}
-
-/// Whose fault it is that there is no region.
-fn no_region(scene: &Scene, error: RegionError) -> Failure {
-    match error {
-        RegionError::Empty => {
-            Failure::diagnostics(&scene.source(), &[Diagnostic::error(None, error.to_string())])
-        }
-        RegionError::Unbounded => Failure::Usage(format!("{error}; --region gives it one")),
-        RegionError::Bounds { .. } => Failure::Usage(error.to_string()),
-    }
-}
-
-/// Whose fault it is that nothing was measured.
-fn not_measured(scene: &Scene, error: MeasureError) -> Failure {
-    match error {
-        MeasureError::Region(error) => no_region(scene, error),
-        MeasureError::Cell { .. } => Failure::Usage(error.to_string()),
-        MeasureError::Resolution { .. }
-        | MeasureError::Divide(DivideError::Boxes { .. } | DivideError::Depth { .. }) => {
-            Failure::Limit(error.to_string())
-        }
-        MeasureError::Divide(
-            DivideError::Bounds { .. } | DivideError::Place { .. } | DivideError::Field(_),
-        )
-        | MeasureError::Compile(_)
-        | MeasureError::Eval(_)
-        | MeasureError::Cancelled => Failure::Defect(error.to_string()),
-    }
-}
-
-/// Whose fault it is that there are no bounds.
-fn not_bounded(scene: &Scene, error: BoundsError) -> Failure {
-    match error {
-        BoundsError::Region(error) => no_region(scene, error),
-        BoundsError::Tolerance { .. } => Failure::Usage(error.to_string()),
-        BoundsError::Eval(_) => Failure::Defect(error.to_string()),
-    }
 }
 
 /// What may not be as people expect.

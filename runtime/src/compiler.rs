@@ -25,6 +25,7 @@ pub struct Compiler {
 /// What a compiler has made so far. A snapshot: see [`Compiler::counters`].
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct CompileCounters {
     /// Programs that were compiled: one for each shape and purpose.
     pub kernels: u64,

@@ -14,6 +14,7 @@ pub fn walks(query: Query) -> u64 {
 /// What an evaluator has done so far. A snapshot: see [`crate::Evaluator::counters`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Counters {
     /// Calls of the kernel.
     pub calls: u64,

@@ -1,11 +1,71 @@
-//! Why a model has no evaluator.
+//! What an error says about whose fault it is, and why a model has no evaluator.
+
+use std::error::Error;
 
 use jbt_ir::VerifyError;
 use jbt_ir::engine::RunError;
-use jbt_model::diagnostic::Diagnostics;
+use jbt_model::diagnostic::{Diagnostics, Severity};
+
+/// What has to change so that an error goes away. Programs map it to what their users know: an exit code, an
+/// exception, a status. There will be no other kinds, so a `match` needs no wildcard.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum ErrorKind {
+    /// The model, by its author.
+    Model,
+    /// An argument or a setting, by the caller.
+    Argument,
+    /// The model is unbounded: a region has to be stated.
+    Unbounded,
+    /// The size of the task: it is more than a limit allows or than this machine has.
+    Limit,
+    /// The file or whatever else the operating system refused.
+    System,
+    /// Nothing: a token of the caller's stopped the work.
+    Cancelled,
+    /// jbt: it has a defect.
+    Internal,
+}
+
+/// What every error of jbt's can say of itself besides its message.
+///
+/// ```
+/// use jbt::build::point;
+/// use jbt::{Classified, Compiler, ErrorKind, Model, Polygonize};
+/// let tree = Model::new(!point([0, 0, 0], 1)).check().unwrap();
+/// let error = Polygonize::default().mesh(&Compiler::new(), &tree).run().unwrap_err();
+/// assert_eq!(error.kind(), ErrorKind::Unbounded);
+/// ```
+pub trait Classified: Error + Send + Sync + 'static {
+    /// What has to change.
+    fn kind(&self) -> ErrorKind;
+
+    /// Located messages for the author of the model, if there are any.
+    fn diagnostics(&self) -> Option<&Diagnostics> {
+        None
+    }
+}
+
+impl Classified for Diagnostics {
+    fn kind(&self) -> ErrorKind {
+        let any = |severity| self.iter().any(|one| one.severity == severity);
+        if self.io().is_some() {
+            ErrorKind::System
+        } else if any(Severity::Limit) && !any(Severity::Error) {
+            ErrorKind::Limit
+        } else {
+            // A model with both is wrong first and large second.
+            ErrorKind::Model
+        }
+    }
+
+    fn diagnostics(&self) -> Option<&Diagnostics> {
+        Some(self)
+    }
+}
 
 /// Why a model could not be compiled.
 #[derive(Clone, Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum CompileError {
     /// The model is beyond a limit, or its numbers leave the range of f32: located messages for its author.
     #[error(transparent)]
@@ -23,8 +83,23 @@ pub enum CompileError {
     Internal(Vec<VerifyError>),
 }
 
+impl Classified for CompileError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Model(diagnostics) => diagnostics.kind(),
+            Self::Engine { .. } => ErrorKind::Limit,
+            Self::Internal(_) => ErrorKind::Internal,
+        }
+    }
+
+    fn diagnostics(&self) -> Option<&Diagnostics> {
+        if let Self::Model(diagnostics) = self { Some(diagnostics) } else { None }
+    }
+}
+
 /// Why points were not evaluated.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum EvalError {
     /// The planes of x, y and z differ in length, or from a plane of answers.
     #[error("the first plane has {expected} points, another one has {given}")]
@@ -48,6 +123,14 @@ pub enum EvalError {
     /// The buffer was made for another query or model.
     #[error("the samples were made for another query or model")]
     Layout,
+}
+
+impl Classified for EvalError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Length { .. } | Self::Planes { .. } | Self::Selection | Self::Layout => ErrorKind::Argument,
+        }
+    }
 }
 
 impl From<RunError> for EvalError {

@@ -50,21 +50,6 @@
 //! * [`Counters`] say what was done, and what separate walks would have done; [`statistics`] foretell it, and
 //!   say how much of it matters.
 //!
-//! # Errors
-//!
-//! Reading, checking and setting parameters have one error, [`Diagnostics`]: a list of all that is wrong,
-//! which shows each place with its line and a caret.
-//! Every other door has a small error of its own. All are `Send + Sync + 'static` and go into `Box<dyn
-//! Error>`; none is a panic, whatever a file says.
-//!
-//! # Threads
-//!
-//! [`Evaluator::eval`] is serial. [`Evaluator::par_eval`] and all long work run on the rayon pool in which
-//! they are called; the answers have the same bits
-//! for any number of threads. Long work is a [`Job`]: `.run()` does it, `.on_progress(..)` watches it,
-//! `.cancel(&token)` stops it. Compiled models, evaluators, tracers,
-//! solids, slicers and renderers are `Send + Sync`.
-//!
 //! # Features
 //!
 //! | feature | what for |
@@ -73,14 +58,55 @@
 //! | `parallel` (default) | long work on the threads of the rayon pool in which it is called; without it on one |
 //! | `levels` (default) | loops of the mesher in AVX2 where the CPU has it, with the same bits |
 //! | `export` (default) | files: meshes, contours, pictures, atomic replacement |
+//! | `listing` | machine code as text |
 //! | `glam` | vectors and affine maps of glam 0.34 wherever numbers and points go |
 //! | `mint` | the same for mint 0.5, for any other library of vectors |
 //! | `serde` | meshes, points, samples, settings and reports can be written, and read where nothing can be wrong with them |
 //!
-//! glam's major version is a matter of that feature alone: nothing else here has its types. A new major of
-//! glam is a change for those who have
-//! turned it on, and for nobody else; `mint` stays as it is. What the nodes of a [`tree`] hold is the
-//! compiler's own, and read by plain numbers.
+//! Without default features ten packages of others are built, with `jit` forty. glam's major version is a
+//! matter of its feature alone: nothing else here has its types.
+//!
+//! # Targets
+//!
+//! | target | what runs |
+//! |---|---|
+//! | x86-64 with AVX-512 or AVX2 and FMA | wide machine code of 512 or 256 bits; the interpreter in the same widths |
+//! | other x86-64, aarch64, riscv64, s390x | Cranelift's machine code of 128 bits, where its generator takes the CPU |
+//! | anything else that has `std` | the SIMD interpreter, without the feature `jit` |
+//!
+//! The bits are the same on all of them, since every op is defined by IEEE 754 arithmetic and its own
+//! polynomials. The tests run on x86-64. [`Level`] bounds the instruction set by hand.
+//!
+//! The least version of Rust is 1.95. A newer one is needed only by a new minor version of this crate.
+//!
+//! # Threads
+//!
+//! | what | threads |
+//! |---|---|
+//! | [`Evaluator::eval`], [`Probe`], the check, the compiler | the one that calls |
+//! | [`Evaluator::par_eval`], every [`Job`] | the rayon pool in which they are called |
+//! | compiled models, evaluators, pruners, tracers, solids, slicers, renderers | `Send + Sync`: threads share them |
+//! | [`Samples`], [`Probe`] | `Send`: each thread has its own |
+//!
+//! Answers have the same bits for any number of threads. Long work is a [`Job`]: `.run()` does it,
+//! `.on_progress(..)` watches it, `.cancel(&token)` stops it.
+//!
+//! # Errors
+//!
+//! Reading, checking and setting parameters have one error, [`Diagnostics`]: a list of all that is wrong,
+//! which shows each place with its line and a caret. Every other door has a small error of its own. All of
+//! them are [`Classified`]: an [`ErrorKind`] says what has to change so that the error goes away. All are
+//! `Send + Sync + 'static` and go into `Box<dyn Error>`; none is a panic, whatever a file says.
+//!
+//! # What later versions may add
+//!
+//! * Errors, reports and counters are `#[non_exhaustive]`: they get variants and fields.
+//! * Structs of settings, as [`Polygonize`], are written with `..Default::default()`. They get fields too,
+//!   which breaks nobody who writes them so; `#[non_exhaustive]` would forbid this form.
+//! * Enums of the language, as [`NodeKind`] and [`Combinator`], have no `#[non_exhaustive]`: a program that
+//!   reads trees wants to hear from its compiler what it does not handle yet. A new member is a new minor
+//!   version.
+//! * Of [`internals`] nothing is promised.
 
 mod buffer;
 mod compiled;
@@ -146,7 +172,7 @@ pub use buffer::{Layout, Samples};
 pub use compiled::Compiled;
 pub use compiler::{CompileCounters, Compiler};
 pub use counter::Counters;
-pub use error::{CompileError, EvalError};
+pub use error::{Classified, CompileError, ErrorKind, EvalError};
 pub use evaluator::{Evaluator, Update};
 pub use job::{CancelToken, Job};
 pub use kernel::Engine;

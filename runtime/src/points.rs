@@ -377,6 +377,7 @@ impl ExactSizeIterator for PointsIter<'_> {}
 /// Planes of different lengths were given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the planes of x, y and z have {}, {} and {} points", lengths[0], lengths[1], lengths[2])]
+#[non_exhaustive]
 pub struct LengthError {
     /// The lengths of x, y and z.
     pub lengths: [usize; 3],

@@ -8,6 +8,7 @@
 
 mod kernels;
 
+use jbt_model::diagnostic::Diagnostics;
 use std::time::{Duration, Instant};
 
 use jbt_model::check::CheckedTree;
@@ -15,7 +16,7 @@ use jbt_model::check::CheckedTree;
 use crate::compiled::Compiled;
 use crate::compiler::Compiler;
 use crate::counter::Counters;
-use crate::error::{CompileError, EvalError};
+use crate::error::{Classified, CompileError, ErrorKind, EvalError};
 use crate::job::{Hook, Job};
 use crate::kernel::Engine;
 use crate::mesh::{self, Lattice, LatticeError, Mesh, MeshError, Report};
@@ -76,6 +77,7 @@ impl Default for Polygonize {
 /// A mesh, and what it took.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Polygonized {
     /// The mesh.
     pub mesh: Mesh,
@@ -96,6 +98,7 @@ pub struct Polygonized {
 /// What the stages of a mesh evaluated, and what they did not have to.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct MeshCounters {
     /// Dividing: boxes, and ranges of distances to skeletons over them.
     pub division: PruneCounters,
@@ -149,6 +152,7 @@ impl MeshCounters {
 
 /// Why there is no mesh.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum PolygonizeError {
     /// The model's field is zero everywhere.
     #[error("the model is empty: its field is zero everywhere")]
@@ -165,6 +169,22 @@ pub enum PolygonizeError {
     /// The mesher stopped.
     #[error(transparent)]
     Mesh(#[from] MeshError<EvalError>),
+}
+
+impl Classified for PolygonizeError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Empty => ErrorKind::Model,
+            Self::Unbounded => ErrorKind::Unbounded,
+            Self::Lattice(error) => error.kind(),
+            Self::Compile(error) => error.kind(),
+            Self::Mesh(error) => error.kind(),
+        }
+    }
+
+    fn diagnostics(&self) -> Option<&Diagnostics> {
+        if let Self::Compile(error) = self { error.diagnostics() } else { None }
+    }
 }
 
 impl Polygonize {

@@ -37,6 +37,7 @@ pub struct Scene {
 
 /// How a scene is written.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[non_exhaustive]
 pub enum SceneFormat {
     /// The [text format](crate::text) of jbt.
     Jbt,

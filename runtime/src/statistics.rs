@@ -11,6 +11,7 @@
 //! An *evaluation* is one distance to one skeleton at one place. A *use* of a leaf is a path from the root to
 //! it; an *occurrence* is a leaf at a position, whatever the number of paths that lead there.
 
+use jbt_model::diagnostic::Diagnostics;
 use std::collections::BTreeMap;
 
 use crate::parallel::*;
@@ -21,7 +22,7 @@ use jbt_model::query::Query;
 use crate::compiler::Compiler;
 pub use crate::counter::walks;
 use crate::debug::brief_debug;
-use crate::error::CompileError;
+use crate::error::{Classified, CompileError, ErrorKind};
 use crate::evaluator::Evaluator;
 use crate::job::{Hook, Job};
 use crate::mesh::{Lattice, LatticeError};
@@ -147,6 +148,7 @@ impl<'a> Statistics<'a> {
 /// What matters on a lattice: how many points are inside of supports.
 #[derive(Clone, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Supports {
     /// Points of the lattice.
     pub points: u64,
@@ -167,6 +169,7 @@ impl Supports {
 
 /// Why supports were not counted.
 #[derive(Clone, Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum SupportsError {
     /// A leaf could not be compiled.
     #[error(transparent)]
@@ -177,6 +180,20 @@ pub enum SupportsError {
     /// It was told to stop.
     #[error("cancelled")]
     Cancelled,
+}
+
+impl Classified for SupportsError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Compile(error) => error.kind(),
+            Self::Lattice(error) => error.kind(),
+            Self::Cancelled => ErrorKind::Cancelled,
+        }
+    }
+
+    fn diagnostics(&self) -> Option<&Diagnostics> {
+        if let Self::Compile(error) = self { error.diagnostics() } else { None }
+    }
 }
 
 /// Lattice points inside of the support of a model of one leaf.

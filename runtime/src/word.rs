@@ -7,6 +7,7 @@ use thiserror::Error;
 /// A word that stands for no member of a list.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{word:?} is none of: {known}")]
+#[non_exhaustive]
 pub struct UnknownWord {
     /// The word.
     pub word: String,

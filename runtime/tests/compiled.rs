@@ -16,7 +16,7 @@ fn balls(count: usize, radius: f64) -> CheckedTree {
 }
 
 fn made(compiled: &Compiled) -> [u64; 2] {
-    let CompileCounters { kernels, bound } = compiled.compiler().counters();
+    let CompileCounters { kernels, bound, .. } = compiled.compiler().counters();
     [kernels, bound]
 }
 

@@ -2,8 +2,7 @@
 
 use fidget::eval::MathFunction;
 use fidget::render::RenderHints;
-use jbt::CheckedTree;
-use jbt::{Compiler, Engine, Points, Query};
+use jbt::{CheckedTree, Compiler, Engine, Points, Query};
 use serde_json::json;
 
 use super::contest::{Contest, Contestant};

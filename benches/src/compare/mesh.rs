@@ -2,9 +2,8 @@
 //! and colours as well; the peers make positions alone. Nobody checks what was made; ours once more, with its
 //! search for parts that are thinner than a cell.
 
-use jbt::CheckedTree;
 use jbt::walk::walk;
-use jbt::{Box3, Compiler, Polygonize, Polygonized};
+use jbt::{Box3, CheckedTree, Compiler, Polygonize, Polygonized};
 use serde_json::json;
 
 use super::contest::{Contest, Contestant};

@@ -1,8 +1,7 @@
 //! What the answers of all contestants have to be near to: the f64 oracle at some of the points.
 
-use jbt::CheckedTree;
-use jbt::Points;
 use jbt::walk::{walk, walk_gradient};
+use jbt::{CheckedTree, Points};
 
 use crate::check::agree;
 

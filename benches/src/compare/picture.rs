@@ -3,12 +3,11 @@
 use std::cell::{Cell, RefCell};
 use std::time::Instant;
 
-use jbt::CheckedTree;
 use jbt::contour::{ImageDetail, Plane, Rectangle, Slicer};
 use jbt::import;
 use jbt::render::{Mode, Render, Renderer, View};
 use jbt::walk::walk;
-use jbt::{Box3, Compiler, Fineness, Query};
+use jbt::{Box3, CheckedTree, Compiler, Fineness, Query};
 use jbt_testkit::samples;
 use serde_json::json;
 

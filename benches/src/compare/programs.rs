@@ -3,10 +3,9 @@
 
 use fidget::eval::MathFunction;
 use fidget::render::RenderHints;
-use jbt::CheckedTree;
 use jbt::import;
 use jbt::walk::walk;
-use jbt::{Compiler, Engine, Points, Query};
+use jbt::{CheckedTree, Compiler, Engine, Points, Query};
 use jbt_testkit::samples;
 use serde_json::json;
 

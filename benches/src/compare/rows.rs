@@ -1,7 +1,6 @@
 //! Numbers become rows: what it takes to get from a model to its kernel, and to change a number.
 
-use jbt::CheckedTree;
-use jbt::{Compiler, Points, Query, Update};
+use jbt::{CheckedTree, Compiler, Points, Query, Update};
 use serde_json::json;
 
 use super::contest::{Contest, Contestant};

@@ -3,9 +3,8 @@
 
 use std::cell::RefCell;
 
-use jbt::CheckedTree;
 use jbt::import;
-use jbt::{Compiler, Points, Query};
+use jbt::{CheckedTree, Compiler, Points, Query};
 use jbt_testkit::samples;
 use serde_json::json;
 

@@ -11,12 +11,11 @@
 use std::rc::Rc;
 
 use glam::{DAffine3, Mat3, Vec3};
-use jbt::Falloff;
 use jbt::tree::AttributeValue;
 use jbt::tree::Warp;
 use jbt::tree::{Combinator, operators::Ricci};
 use jbt::tree::{NodeKind, Primitive};
-use jbt::{CheckedTree, NodeId};
+use jbt::{CheckedTree, Falloff, NodeId};
 
 use super::skeleton::Skeleton;
 

@@ -2,15 +2,12 @@
 
 use std::path::Path;
 
-use jbt::CheckedTree;
-use jbt::Falloff;
-use jbt::Tree;
 use jbt::build::{Axis, cuboid, cylinder, disc, point, ring, segment, triangle};
 use jbt::text::{Options, parse};
 use jbt::tree::Combinator;
 use jbt::tree::operators::{Difference, Intersection, Ricci, Sum, Union};
 use jbt::walk::{walk, walk_gradient};
-use jbt::{Model, Points};
+use jbt::{CheckedTree, Falloff, Model, Points, Tree};
 
 use super::{STEP, Walker, separate};
 use crate::model;

@@ -14,9 +14,7 @@
 //! There is no culling: each leaf is evaluated at each point, but leaves out of reach stop at their distance.
 
 use glam::{DVec3, Mat3, Vec3};
-use jbt::CheckedTree;
-use jbt::Falloff;
-use jbt::Mixing;
+use jbt::{CheckedTree, Falloff, Mixing};
 
 use super::compact::{self, Compact, Leaf, Map, Operator, Step, Twist, Warped};
 use super::mixing::{Answer, Frame, Values, root};

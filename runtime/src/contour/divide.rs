@@ -93,6 +93,7 @@ pub struct DividedSquare {
 /// How many squares of one size have which fate.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Level {
     /// How often the side of the whole was halved to get theirs.
     pub depth: u8,

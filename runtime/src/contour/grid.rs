@@ -3,6 +3,7 @@
 use jbt_ir::limits::MAX_PIXELS;
 use thiserror::Error;
 
+use crate::error::{Classified, ErrorKind};
 use crate::mesh::{Lattice, LatticeError};
 use crate::polygonize::Fineness;
 
@@ -17,6 +18,7 @@ pub struct Rectangle {
 
 /// Why there is no such rectangle, or no lattice over it.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum RectangleError {
     /// A corner is not finite.
     #[error("the corners of a rectangle must be finite")]
@@ -31,6 +33,14 @@ pub enum RectangleError {
         /// What was given.
         high: [f64; 2],
     },
+}
+
+impl Classified for RectangleError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::NotFinite | Self::Order { .. } => ErrorKind::Argument,
+        }
+    }
 }
 
 impl Rectangle {

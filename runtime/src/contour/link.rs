@@ -18,6 +18,7 @@ use super::cells::{Key, Segment, Segments};
 /// A closed loop of the contour, with the inside on its left.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Loop {
     /// Its first vertex; the others follow, up to before `end`. The last one is joined to the first.
     pub start: usize,

@@ -95,6 +95,7 @@ pub struct Detail {
 /// The contour of a model in a rectangle of a plane: see the module.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Contour {
     /// Where the coordinates of vertices and squares count from, in coordinates of the plane: see
     /// [`Slicer::origin`].

@@ -3,6 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
+use crate::error::{Classified, ErrorKind};
 use jbt_model::builder::Axis;
 use thiserror::Error;
 
@@ -34,6 +35,7 @@ pub(super) enum Kind {
 
 /// Why there is no such plane.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum PlaneError {
     /// It is written in no known way.
     #[error("`{text}` is no plane: expected one as z=0.3, or nine numbers: a point, u and v")]
@@ -47,6 +49,14 @@ pub enum PlaneError {
     /// The two axes span no plane.
     #[error("the axes u and v of a plane must point in different directions, and not be 0")]
     Parallel,
+}
+
+impl Classified for PlaneError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Text { .. } | Self::NotFinite | Self::Parallel => ErrorKind::Argument,
+        }
+    }
 }
 
 impl Default for Plane {

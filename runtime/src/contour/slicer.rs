@@ -10,7 +10,7 @@ use crate::compiled::{Compiled, Need, Scope};
 use crate::compiler::Compiler;
 use crate::counter::Counters;
 use crate::debug::brief_debug;
-use crate::error::{CompileError, EvalError};
+use crate::error::{Classified, CompileError, ErrorKind, EvalError};
 use crate::evaluator::Evaluator;
 use crate::kernel::Engine;
 use crate::mesh::LatticeError;
@@ -58,6 +58,7 @@ struct View {
 
 /// Why there is no contour or image.
 #[derive(Clone, Debug, Error)]
+#[non_exhaustive]
 pub enum SliceError {
     /// The model's field is zero everywhere, and no rectangle was given.
     #[error("the model is empty: its field is zero everywhere")]
@@ -118,6 +119,23 @@ pub enum SliceError {
     /// It was told to stop.
     #[error("the work was cancelled")]
     Cancelled,
+}
+
+impl Classified for SliceError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Empty => ErrorKind::Model,
+            Self::Unbounded => ErrorKind::Unbounded,
+            Self::Block { .. } | Self::Samples { .. } | Self::Attribute { .. } => ErrorKind::Argument,
+            Self::TooManyPixels { .. } | Self::TooManySquares { .. } | Self::TooManyVertices { .. } => {
+                ErrorKind::Limit
+            }
+            Self::Rectangle(error) => error.kind(),
+            Self::Lattice(error) => error.kind(),
+            Self::Eval(error) => error.kind(),
+            Self::Cancelled => ErrorKind::Cancelled,
+        }
+    }
 }
 
 impl From<Cancelled> for SliceError {

@@ -41,6 +41,7 @@ pub struct Division<R, D> {
 
 /// How many boxes of which outcome.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+#[non_exhaustive]
 pub struct Tally {
     /// Boxes that were split.
     pub splits: u64,

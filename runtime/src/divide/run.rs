@@ -9,6 +9,7 @@ use thiserror::Error;
 use super::cell::{Cell, Group};
 use super::decide::{Decide, Decision};
 use super::node::{Division, Node, Outcome};
+use crate::error::{Classified, ErrorKind, EvalError};
 use crate::limits;
 use crate::region::{Box3, Divisible, MAX_PARTS};
 
@@ -39,6 +40,7 @@ impl Default for Limits {
 
 /// Why a box was not divided. `E` is the error of the field.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum DivideError<E: Error + 'static> {
     /// The box is infinite, not a number, or not in order.
     #[error("a box to divide has finite corners in order, and this one goes from {:?} to {:?}", bounds.low, bounds.high)]
@@ -73,6 +75,16 @@ pub enum DivideError<E: Error + 'static> {
     /// The field could not be evaluated, or the decider gave up.
     #[error("the field cannot be evaluated")]
     Field(#[source] E),
+}
+
+impl Classified for DivideError<EvalError> {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Bounds { .. } | Self::Place { .. } => ErrorKind::Argument,
+            Self::Depth { .. } | Self::Boxes { .. } => ErrorKind::Limit,
+            Self::Field(error) => error.kind(),
+        }
+    }
 }
 
 pub(super) type Failure<F> = DivideError<<F as Divisible>::Error>;

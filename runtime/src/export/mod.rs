@@ -36,6 +36,7 @@ use std::path::{Path, PathBuf};
 use jbt_ir::limits::MAX_ATTRIBUTE_WIDTH;
 use thiserror::Error;
 
+use crate::error::{Classified, ErrorKind};
 use crate::mesh::{Attribute, Mesh};
 use conventions::Choices;
 use parts::WriteError;
@@ -45,6 +46,7 @@ const BUFFER: usize = 1 << 18;
 
 /// Why a mesh was not written.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum ExportError {
     /// The extension of the path names no format.
     #[error("the name of a mesh file ends in {}, and not like {path:?}", Format::extensions())]
@@ -74,6 +76,16 @@ pub enum ExportError {
         /// Bytes of a GLB, triangles of an STL.
         size: u64,
     },
+}
+
+impl Classified for ExportError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Extension { .. } | Self::Malformed(_) => ErrorKind::Argument,
+            Self::File { .. } | Self::Write(_) => ErrorKind::System,
+            Self::TooLarge { .. } => ErrorKind::Limit,
+        }
+    }
 }
 
 /// Whether a mesh loses digits in a format: an STL has room for the world in f32 alone, whatever the origin

@@ -15,6 +15,7 @@ use crate::word::{UnknownWord, find};
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
+#[non_exhaustive]
 pub enum Engine {
     /// The reference: one point after the other.
     Scalar,

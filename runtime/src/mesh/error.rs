@@ -5,6 +5,7 @@ use std::error::Error;
 use jbt_ir::limits::MAX_ATTRIBUTE_WIDTH;
 use thiserror::Error;
 
+use crate::error::{Classified, ErrorKind, EvalError};
 use crate::progress::Cancelled;
 
 /// The smallest [`Options::brick`](super::Options::brick).
@@ -16,6 +17,7 @@ pub const MAX_PULLS: usize = 64;
 
 /// Why there is no mesh. `E` is the error of the field.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum MeshError<E: Error + 'static> {
     /// The field could not be evaluated.
     #[error("the field cannot be evaluated")]
@@ -69,6 +71,21 @@ pub enum MeshError<E: Error + 'static> {
         /// How many there would be.
         vertices: u64,
     },
+}
+
+impl Classified for MeshError<EvalError> {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Iso { .. } | Self::Brick { .. } | Self::Pulls { .. } | Self::Width { .. } => {
+                ErrorKind::Argument
+            }
+            Self::TooManyBricks { .. } | Self::Memory { .. } | Self::TooManyVertices { .. } => {
+                ErrorKind::Limit
+            }
+            Self::Field(error) => error.kind(),
+            Self::Cancelled => ErrorKind::Cancelled,
+        }
+    }
 }
 
 impl<E: Error + 'static> From<Cancelled> for MeshError<E> {

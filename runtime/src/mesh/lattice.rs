@@ -4,6 +4,7 @@
 //! product, then a sum, not fused), rounded once to f32. Every brick and every thread computes the same bits
 //! for a corner, so a corner that several cells share is one point and is evaluated once.
 
+use crate::error::{Classified, ErrorKind};
 use jbt_ir::limits::{MAX_LATTICE_POINTS, MAX_RESOLUTION};
 use thiserror::Error;
 
@@ -13,6 +14,7 @@ const UNCOVERED: f64 = 1e-6;
 
 /// Why a lattice cannot be.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum LatticeError {
     /// An origin, a region or a spacing is infinite or NaN, or becomes infinite in f32.
     #[error("the lattice reaches a coordinate that is not a finite number")]
@@ -57,6 +59,15 @@ pub enum LatticeError {
         /// The coordinate that two corners share.
         coordinate: f32,
     },
+}
+
+impl Classified for LatticeError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::NotFinite | Self::Spacing { .. } | Self::EmptyRegion { .. } => ErrorKind::Argument,
+            Self::Cells { .. } | Self::TooManyPoints { .. } | Self::TooFine { .. } => ErrorKind::Limit,
+        }
+    }
 }
 
 fn axis_name(axis: usize) -> &'static str {

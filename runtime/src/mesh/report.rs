@@ -47,6 +47,7 @@ impl fmt::Display for Sides {
 /// How a mesh was made, and its properties.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Report {
     /// Whether every edge has exactly two triangles, in opposite directions. A mesh without triangles is
     /// closed. Checked if [`Options::verify`](super::Options::verify) is set, otherwise derived from
@@ -96,6 +97,7 @@ pub const MAX_NEAR: usize = 8;
 /// Results of the search for parts that are thinner than a cell.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct ThinReport {
     /// Blocks of 4^3 cells that the surface does not cross, but with a point on the other side of the
     /// surface.

@@ -104,6 +104,7 @@ struct Counts {
 /// The work of a pruner so far. A snapshot: see [`Pruner::counters`].
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct PruneCounters {
     /// Boxes for which a range was computed.
     pub boxes: u64,

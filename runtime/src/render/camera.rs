@@ -12,6 +12,7 @@
 use jbt_model::origin::ModelOrigin;
 
 use super::vector::{Vector, add, along, cross, dot, is_finite, length, scale, sub, unit};
+use crate::error::{Classified, ErrorKind};
 
 /// The views with names, and the directions that they look from. A model faces along x, and z is up.
 pub const VIEWS: [(&str, Vector); 8] = [
@@ -79,6 +80,7 @@ impl View {
 
 /// Why a view gives no camera.
 #[derive(Clone, Copy, PartialEq, Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum CameraError {
     /// A number of the view is infinite or not a number.
     #[error("the camera's {what} must be a finite number, and it is {value}")]
@@ -118,6 +120,19 @@ pub enum CameraError {
         /// What was given.
         zoom: f64,
     },
+}
+
+impl Classified for CameraError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::NotFinite { .. }
+            | Self::Zero { .. }
+            | Self::Coincident { .. }
+            | Self::Up { .. }
+            | Self::Lens { .. }
+            | Self::Zoom { .. } => ErrorKind::Argument,
+        }
+    }
 }
 
 /// The part of the picture that a framed model fills, along the axis that it fills more.

@@ -1,15 +1,17 @@
 //! Why there is no picture.
 
 use jbt_ir::limits::{MAX_ANTIALIAS, MAX_PICTURE_PIXELS, MAX_PICTURE_SIDE};
+use jbt_model::diagnostic::Diagnostics;
 
 use super::camera::CameraError;
-use crate::error::{CompileError, EvalError};
+use crate::error::{Classified, CompileError, ErrorKind, EvalError};
 use crate::region::Box3;
 use crate::solid::BoundsError;
 use crate::trace::TraceError;
 
 /// Why there is no picture.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum RenderError {
     /// The picture has no pixels.
     #[error("a picture needs at least one pixel along each side, and this one is {width} x {height}")]
@@ -93,4 +95,28 @@ pub enum RenderError {
     /// It was told to stop.
     #[error("the picture was cancelled")]
     Cancelled,
+}
+
+impl Classified for RenderError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Empty { .. }
+            | Self::Unusable
+            | Self::Inside { .. }
+            | Self::Region { .. }
+            | Self::Attribute { .. } => ErrorKind::Argument,
+            Self::Unbounded => ErrorKind::Unbounded,
+            Self::TooLarge { .. } | Self::Antialias { .. } | Self::Memory { .. } => ErrorKind::Limit,
+            Self::Camera(error) => error.kind(),
+            Self::Compile(error) => error.kind(),
+            Self::Bounds(error) => error.kind(),
+            Self::Trace(error) => error.kind(),
+            Self::Eval(error) => error.kind(),
+            Self::Cancelled => ErrorKind::Cancelled,
+        }
+    }
+
+    fn diagnostics(&self) -> Option<&Diagnostics> {
+        if let Self::Compile(error) = self { error.diagnostics() } else { None }
+    }
 }

@@ -8,6 +8,7 @@ use crate::picture::Picture;
 
 /// A picture and its report.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Rendered {
     /// The picture.
     pub picture: Picture,
@@ -18,6 +19,7 @@ pub struct Rendered {
 /// How a picture was made.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Report {
     /// The camera; `None` if the model was empty.
     pub camera: Option<Camera>,
@@ -51,6 +53,7 @@ pub struct Report {
 /// Numbers of rays.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Rays {
     /// From the camera into the region, without rays that frame the model.
     pub camera: u64,
@@ -71,6 +74,7 @@ impl Rays {
 /// Why a picture is only background.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub enum Notice {
     /// The model has no inside in the region.
     Empty,

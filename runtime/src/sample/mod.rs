@@ -17,6 +17,7 @@ pub use block::Block;
 pub use npy::write_npy;
 
 use crate::parallel::*;
+use jbt_model::diagnostic::Diagnostics;
 
 use jbt_ir::limits::MAX_LATTICE_POINTS;
 use jbt_model::check::CheckedTree;
@@ -28,7 +29,7 @@ use crate::compiled::{Compiled, Need, Scope};
 use crate::compiler::Compiler;
 use crate::debug::brief_debug;
 use crate::divide::{Cell, Decision, DivideError, Limits, divide};
-use crate::error::{CompileError, EvalError};
+use crate::error::{Classified, CompileError, ErrorKind, EvalError};
 use crate::evaluator::Evaluator;
 use crate::job::{Hook, Job};
 use crate::mesh::Lattice;
@@ -58,6 +59,7 @@ brief_debug!(Sampler, "Sampler", this: evaluator = this.evaluator);
 
 /// Why a lattice was not sampled.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum SampleError {
     /// The model could not be compiled.
     #[error(transparent)]
@@ -85,6 +87,21 @@ pub enum SampleError {
     /// It was told to stop.
     #[error("sampling was cancelled")]
     Cancelled,
+}
+
+impl Classified for SampleError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Compile(error) => error.kind(),
+            Self::TooMany { .. } | Self::Memory { .. } => ErrorKind::Limit,
+            Self::Divide(error) => error.kind(),
+            Self::Cancelled => ErrorKind::Cancelled,
+        }
+    }
+
+    fn diagnostics(&self) -> Option<&Diagnostics> {
+        if let Self::Compile(error) = self { error.diagnostics() } else { None }
+    }
 }
 
 /// Points along the edge of a block.

@@ -16,13 +16,14 @@ use std::collections::BinaryHeap;
 use jbt_ir::limits::MAX_SEARCH_BOXES;
 
 use super::{Batch, RegionError, Solid, center, cut};
-use crate::error::EvalError;
+use crate::error::{Classified, ErrorKind, EvalError};
 use crate::prune::Region;
 use crate::region::{ANYTHING, Box3, Divisible as _, MAX_PARTS};
 
 /// A box around a solid, and one that the solid fills up to its sides.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct TightBounds {
     /// Every point of the region that is inside is in this box: proven. `None`: the region holds no inside
     /// point.
@@ -37,6 +38,7 @@ pub struct TightBounds {
 
 /// Why a solid has no tight bounds.
 #[derive(Clone, PartialEq, Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum BoundsError {
     /// There is no region to search.
     #[error(transparent)]
@@ -50,6 +52,16 @@ pub enum BoundsError {
     /// The field could not be evaluated.
     #[error(transparent)]
     Eval(#[from] EvalError),
+}
+
+impl Classified for BoundsError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Region(error) => error.kind(),
+            Self::Tolerance { .. } => ErrorKind::Argument,
+            Self::Eval(error) => error.kind(),
+        }
+    }
 }
 
 impl Solid {

@@ -14,6 +14,7 @@
 //! same lines.
 
 use crate::parallel::*;
+use jbt_model::diagnostic::Diagnostics;
 
 use jbt_ir::limits::{MAX_MEASURE_BOXES, MAX_RESOLUTION};
 
@@ -21,7 +22,7 @@ use super::crossings::crossed;
 use super::cut::{self, Linear};
 use super::{Batch, RegionError, Solid, center};
 use crate::divide::{Cell, Decision, DivideError, Division, Limits, Node, Outcome, divide};
-use crate::error::{CompileError, EvalError};
+use crate::error::{Classified, CompileError, ErrorKind, EvalError};
 use crate::evaluator::Evaluator;
 use crate::job::{Hook, Job};
 use crate::polygonize::Fineness;
@@ -42,6 +43,7 @@ pub struct Measure {
 /// Bounds and an estimate of a volume, in units of the model, cubed.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Volume {
     /// It is at least this much: the boxes that are all inside.
     pub low: f64,
@@ -54,6 +56,7 @@ pub struct Volume {
 /// The boxes that were split equally often.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Level {
     /// Boxes that were split.
     pub splits: u64,
@@ -68,6 +71,7 @@ pub struct Level {
 /// How much of a model matters in boxes that may hold surface: primitives that a point there takes.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Contents {
     /// On average; 0 without such boxes.
     pub mean: f64,
@@ -78,6 +82,7 @@ pub struct Contents {
 /// What was measured.
 #[derive(Clone, PartialEq, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Measures {
     /// Where, about the origin of the model.
     pub region: Box3,
@@ -121,6 +126,7 @@ impl Measures {
 
 /// Why a solid was not measured.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum MeasureError {
     /// There is no region to measure in.
     #[error(transparent)]
@@ -149,6 +155,24 @@ pub enum MeasureError {
     /// It was told to stop.
     #[error("measuring was cancelled")]
     Cancelled,
+}
+
+impl Classified for MeasureError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Region(error) => error.kind(),
+            Self::Cell { .. } => ErrorKind::Argument,
+            Self::Resolution { .. } => ErrorKind::Limit,
+            Self::Divide(error) => error.kind(),
+            Self::Eval(error) => error.kind(),
+            Self::Compile(error) => error.kind(),
+            Self::Cancelled => ErrorKind::Cancelled,
+        }
+    }
+
+    fn diagnostics(&self) -> Option<&Diagnostics> {
+        if let Self::Compile(error) = self { error.diagnostics() } else { None }
+    }
 }
 
 impl From<Cancelled> for MeasureError {

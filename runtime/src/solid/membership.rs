@@ -15,7 +15,7 @@ use std::collections::VecDeque;
 use jbt_ir::limits::MAX_MEMBERSHIP_BOXES;
 
 use super::{Batch, Solid, center, cut};
-use crate::error::EvalError;
+use crate::error::{Classified, ErrorKind, EvalError};
 use crate::points::Points;
 use crate::prune::Region;
 use crate::region::{ANYTHING, Box3, Divisible as _, MAX_PARTS};
@@ -51,6 +51,7 @@ impl Membership {
 
 /// Why a membership is not known.
 #[derive(Clone, PartialEq, Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum MembershipError {
     /// The distance is negative, infinite or not a number.
     #[error("the distance to the surface must be a finite number of at least 0, and it is {eps}")]
@@ -69,6 +70,15 @@ pub enum MembershipError {
     /// The field could not be evaluated.
     #[error(transparent)]
     Eval(#[from] EvalError),
+}
+
+impl Classified for MembershipError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Distance { .. } | Self::Point { .. } => ErrorKind::Argument,
+            Self::Eval(error) => error.kind(),
+        }
+    }
 }
 
 impl Solid {

@@ -36,7 +36,7 @@ use crate::compiled::{Compiled, Need, Scope};
 use crate::compiler::Compiler;
 use crate::counter::Counters;
 use crate::debug::brief_debug;
-use crate::error::{CompileError, EvalError};
+use crate::error::{Classified, CompileError, ErrorKind, EvalError};
 use crate::evaluator::Evaluator;
 use crate::prune::{Pruner, Region};
 use crate::region::{Box3, Divisible as _, Range};
@@ -70,6 +70,7 @@ brief_debug!(Solid, "Solid", this: iso = this.iso, engine = this.field.engine())
 
 /// Why a question has no region.
 #[derive(Clone, Copy, PartialEq, Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum RegionError {
     /// The region is infinite, not a number, flat, or not in order.
     #[error("a region has finite corners, each number of the first below that of the second, and this one goes from {:?} to {:?}", bounds.low, bounds.high)]
@@ -83,6 +84,16 @@ pub enum RegionError {
     /// The model's field may differ from zero arbitrarily far away, and no region was given.
     #[error("the model is unbounded: it needs a region")]
     Unbounded,
+}
+
+impl Classified for RegionError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Bounds { .. } => ErrorKind::Argument,
+            Self::Empty => ErrorKind::Model,
+            Self::Unbounded => ErrorKind::Unbounded,
+        }
+    }
 }
 
 impl Solid {
@@ -202,6 +213,7 @@ impl Solid {
 
 /// Why the leaves in a box are not known.
 #[derive(Clone, PartialEq, Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum OwnersError {
     /// The box is infinite, not a number, or not in order.
     #[error("a box has finite corners in order, and this one goes from {:?} to {:?}", bounds.low, bounds.high)]
@@ -212,6 +224,15 @@ pub enum OwnersError {
     /// The field could not be evaluated.
     #[error(transparent)]
     Eval(#[from] EvalError),
+}
+
+impl Classified for OwnersError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::Bounds { .. } => ErrorKind::Argument,
+            Self::Eval(error) => error.kind(),
+        }
+    }
 }
 
 /// Points by coordinates, as kernels read them, and their fields.

@@ -2,10 +2,11 @@
 
 use jbt_ir::limits::{MAX_PACKET_RAYS, MAX_RAY_WORK};
 
-use crate::error::EvalError;
+use crate::error::{Classified, ErrorKind, EvalError};
 
 /// Why rays were not followed. Rays are counted from 0, in the packet in which they were given.
 #[derive(Clone, PartialEq, Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum TraceError {
     /// A number of a ray is infinite or no number.
     #[error(
@@ -80,4 +81,19 @@ pub enum TraceError {
     /// The field could not be evaluated.
     #[error(transparent)]
     Eval(#[from] EvalError),
+}
+
+impl Classified for TraceError {
+    fn kind(&self) -> ErrorKind {
+        match self {
+            Self::NotFinite { .. }
+            | Self::Direction { .. }
+            | Self::Span { .. }
+            | Self::Far { .. }
+            | Self::Tolerance { .. }
+            | Self::Resolution { .. } => ErrorKind::Argument,
+            Self::Rays { .. } | Self::Work { .. } => ErrorKind::Limit,
+            Self::Eval(error) => error.kind(),
+        }
+    }
 }

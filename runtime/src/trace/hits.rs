@@ -7,6 +7,7 @@ use crate::points::Points;
 
 /// The hits of a packet of rays, ordered by ray, then by t.
 #[derive(Clone, PartialEq, Debug)]
+#[non_exhaustive]
 pub struct Hits {
     /// For each ray where its hits begin, and the end: the hits of ray r are `starts[r]..starts[r + 1]`.
     pub starts: Vec<u32>,
@@ -57,6 +58,7 @@ impl Hits {
 
 /// The rays of a packet that are blocked.
 #[derive(Clone, PartialEq, Debug)]
+#[non_exhaustive]
 pub struct Blocked {
     /// For each ray, whether it changes its side of the surface.
     pub blocked: Vec<bool>,

@@ -101,6 +101,7 @@ brief_debug!(Tracer, "Tracer", this: engine = this.target.field.engine(), counte
 /// The work of a tracer so far. A snapshot: see [`Tracer::counters`].
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct TraceCounters {
     /// Rays that were given.
     pub rays: u64,

@@ -61,6 +61,8 @@ fn crates_depend_downwards() {
         ("frontend/lower", &["jbt-text", "jbt-jit", "cranelift", "rayon"]),
         ("jit", &["jbt-model", "jbt-text", "jbt-lower", "glam", "rayon"]),
         ("runtime", &["cranelift"]),
+        ("cli", &["jbt-"]),
+        ("benches", &["jbt-model", "jbt-text", "jbt-lower", "jbt-ir", "jbt-jit"]),
     ] {
         let dependencies = dependencies(name);
         for word in absent {
