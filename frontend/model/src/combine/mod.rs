@@ -45,6 +45,7 @@ mod limit;
 mod member;
 mod rvachev;
 mod set;
+mod set_step;
 mod smooth;
 
 pub use extreme::Extreme;

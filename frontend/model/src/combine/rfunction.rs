@@ -1,10 +1,9 @@
 //! R-functions by R_alpha: see [`rvachev`](super::rvachev).
 
-use jbt_ir::{Domain, Rule};
-
-use super::member::{Operator, Pair, Reach, Step};
-use super::rvachev::{Family, Operation};
+use super::member::Operator;
+use super::rvachev::{Family, Rvachev};
 use super::set::SetOperation;
+use super::set_step::SetStep;
 use crate::member::member;
 
 member! {
@@ -20,51 +19,15 @@ member! {
 
 impl Operator for RFunction {}
 
-impl RFunction {
-    const fn operation(self) -> Operation {
-        Operation(self.set, Family::Alpha)
-    }
-}
-
-impl Step for RFunction {
-    type Code = SetOperation;
+impl SetStep for RFunction {
+    type Formula = Rvachev;
     const COLUMNS: &'static [&'static str] = &["alpha", "rest"];
 
-    fn code(self) -> SetOperation {
-        self.set
+    fn formula(self) -> Rvachev {
+        Rvachev(self.set, Family::Alpha)
     }
 
-    fn push_columns(self, row: &mut Vec<f64>) {
-        self.operation().columns(self.alpha, row);
-    }
-
-    fn pair(self, sides: [f64; 2], iso: f64) -> Pair<f64> {
-        self.operation().pair(sides, self.alpha, iso)
-    }
-
-    fn kink_distance(self, sides: [f64; 2], iso: f64) -> f64 {
-        self.operation().kink_distance(sides, self.alpha, iso)
-    }
-
-    fn reach(self) -> Reach {
-        Reach::Any
-    }
-
-    fn is_non_negative(self, _: [bool; 2]) -> bool {
-        true
-    }
-
-    fn rule(_: SetOperation, _: bool) -> Rule {
-        Rule::Never
-    }
-
-    fn emit<D: Domain>(
-        set: SetOperation,
-        d: &mut D,
-        sides: [D::Real; 2],
-        row: &[D::Real],
-        iso2: D::Real,
-    ) -> Pair<D::Real> {
-        Operation(set, Family::Alpha).emit(d, sides, row, iso2)
+    fn number(self) -> f64 {
+        self.alpha
     }
 }

@@ -1,10 +1,9 @@
 //! R-functions by R_0^m: see [`rvachev`](super::rvachev).
 
-use jbt_ir::{Domain, Rule};
-
-use super::member::{Operator, Pair, Reach, Step};
-use super::rvachev::{Family, Operation};
+use super::member::Operator;
+use super::rvachev::{Family, Rvachev};
 use super::set::SetOperation;
+use super::set_step::SetStep;
 use crate::member::member;
 
 member! {
@@ -20,46 +19,15 @@ member! {
 
 impl Operator for RFunctionOrder {}
 
-impl RFunctionOrder {
-    const fn operation(self) -> Operation {
-        Operation(self.set, Family::Order(self.order))
-    }
-}
+impl SetStep for RFunctionOrder {
+    type Formula = Rvachev;
 
-impl Step for RFunctionOrder {
-    type Code = (SetOperation, u32);
-
-    fn code(self) -> (SetOperation, u32) {
-        (self.set, self.order)
+    fn formula(self) -> Rvachev {
+        Rvachev(self.set, Family::Order(self.order))
     }
 
-    fn pair(self, sides: [f64; 2], iso: f64) -> Pair<f64> {
-        self.operation().pair(sides, 0.0, iso)
-    }
-
-    fn kink_distance(self, sides: [f64; 2], iso: f64) -> f64 {
-        self.operation().kink_distance(sides, 0.0, iso)
-    }
-
-    fn reach(self) -> Reach {
-        Reach::Any
-    }
-
-    fn is_non_negative(self, _: [bool; 2]) -> bool {
-        true
-    }
-
-    fn rule(_: (SetOperation, u32), _: bool) -> Rule {
-        Rule::Never
-    }
-
-    fn emit<D: Domain>(
-        (set, order): (SetOperation, u32),
-        d: &mut D,
-        sides: [D::Real; 2],
-        row: &[D::Real],
-        iso2: D::Real,
-    ) -> Pair<D::Real> {
-        Operation(set, Family::Order(order)).emit(d, sides, row, iso2)
+    fn number(self) -> f64 {
+        // The order is code.
+        0.0
     }
 }

@@ -1,10 +1,9 @@
 //! R-functions by R_p: see [`rvachev`](super::rvachev).
 
-use jbt_ir::{Domain, Rule};
-
-use super::member::{Operator, Pair, Reach, Step};
-use super::rvachev::{Family, Operation};
+use super::member::Operator;
+use super::rvachev::{Family, Rvachev};
 use super::set::SetOperation;
+use super::set_step::SetStep;
 use crate::member::member;
 
 member! {
@@ -20,51 +19,15 @@ member! {
 
 impl Operator for RFunctionPower {}
 
-impl RFunctionPower {
-    const fn operation(self) -> Operation {
-        Operation(self.set, Family::Power)
-    }
-}
-
-impl Step for RFunctionPower {
-    type Code = SetOperation;
+impl SetStep for RFunctionPower {
+    type Formula = Rvachev;
     const COLUMNS: &'static [&'static str] = &["power", "inverse_power", "rest"];
 
-    fn code(self) -> SetOperation {
-        self.set
+    fn formula(self) -> Rvachev {
+        Rvachev(self.set, Family::Power)
     }
 
-    fn push_columns(self, row: &mut Vec<f64>) {
-        self.operation().columns(self.power, row);
-    }
-
-    fn pair(self, sides: [f64; 2], iso: f64) -> Pair<f64> {
-        self.operation().pair(sides, self.power, iso)
-    }
-
-    fn kink_distance(self, sides: [f64; 2], iso: f64) -> f64 {
-        self.operation().kink_distance(sides, self.power, iso)
-    }
-
-    fn reach(self) -> Reach {
-        Reach::Any
-    }
-
-    fn is_non_negative(self, _: [bool; 2]) -> bool {
-        true
-    }
-
-    fn rule(_: SetOperation, _: bool) -> Rule {
-        Rule::Never
-    }
-
-    fn emit<D: Domain>(
-        set: SetOperation,
-        d: &mut D,
-        sides: [D::Real; 2],
-        row: &[D::Real],
-        iso2: D::Real,
-    ) -> Pair<D::Real> {
-        Operation(set, Family::Power).emit(d, sides, row, iso2)
+    fn number(self) -> f64 {
+        self.power
     }
 }

@@ -38,16 +38,17 @@
 //! but for the corner `x = y = 0` (and the tie of alpha = 1); there the root has the tangent 0. R_0^m is not
 //! monotone. Weights are `f dF/df`, those of what is subtracted by its complement, where it is there.
 
-use jbt_ir::Domain;
+use jbt_ir::{Domain, Rule};
 
-use super::member::Pair;
+use super::member::{Pair, Reach};
 use super::ricci::FLOOR;
 use super::set::SetOperation;
+use super::set_step::SetFormula;
 use crate::skeleton::positive_part;
 
 /// A family of R-functions, with what of it selects code.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Family {
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum Family {
     /// R_alpha.
     Alpha,
     /// R_0^m.
@@ -57,36 +58,32 @@ pub(super) enum Family {
 }
 
 /// A set operation by a family.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Operation(pub(super) SetOperation, pub(super) Family);
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub struct Rvachev(pub(super) SetOperation, pub(super) Family);
 
 /// R, and its derivatives up to a common factor.
 #[derive(Clone, Copy)]
-struct Rvachev<R> {
+struct RValue<R> {
     value: R,
     slopes: [R; 2],
     /// The root: 0 where gradients are not continuous.
     root: R,
 }
 
-impl Operation {
-    fn rvachev(self, [x, y]: [f64; 2], number: f64) -> Rvachev<f64> {
+impl Rvachev {
+    fn rvachev(self, [x, y]: [f64; 2], number: f64) -> RValue<f64> {
         let over = |x: f64, root: f64| if root == 0.0 { 0.0 } else { x / root };
         match self.1 {
             Family::Alpha => {
                 let root = ((x - number * y).powi(2) + (1.0 - number * number) * y * y).sqrt();
                 let slopes = [1.0 + over(x - number * y, root), 1.0 + over(y - number * x, root)];
-                Rvachev { value: x + y + root, slopes, root }
+                RValue { value: x + y + root, slopes, root }
             }
             Family::Order(order) => {
                 let root = x.hypot(y);
                 let lean = f64::from(order) * over(x + y + root, root);
                 let slope = |x: f64| 1.0 + over(x, root) * (1.0 + lean);
-                Rvachev {
-                    value: (x + y + root) * root.powi(order as i32),
-                    slopes: [slope(x), slope(y)],
-                    root,
-                }
+                RValue { value: (x + y + root) * root.powi(order as i32), slopes: [slope(x), slope(y)], root }
             }
             Family::Power => {
                 let (larger, smaller) = (x.abs().max(y.abs()), x.abs().min(y.abs()));
@@ -102,7 +99,7 @@ impl Operation {
                     (false, _) => 1.0 + (lean * ratio.powf(number - 1.0)).copysign(x),
                 };
                 let x_larger = x.abs() >= y.abs();
-                Rvachev {
+                RValue {
                     value: x.max(y) + (x + y).max(0.0) + beyond,
                     slopes: [slope(x, x_larger), slope(y, !x_larger)],
                     root: larger + beyond,
@@ -121,16 +118,15 @@ impl Operation {
     }
 
     /// `1 - R / B`, and R.
-    fn relative(self, [a, b]: [f64; 2], number: f64, iso: f64) -> (f64, Rvachev<f64>) {
+    fn relative(self, [a, b]: [f64; 2], number: f64, iso: f64) -> (f64, RValue<f64>) {
         let here = self.rvachev(self.arguments([a / iso, b / iso]), number);
         let background = self.rvachev(self.arguments([0.0, 0.0]), number);
         (1.0 - here.value / background.value, here)
     }
 }
 
-impl Operation {
-    /// Pushes the numbers of a row.
-    pub(super) fn columns(self, number: f64, row: &mut Vec<f64>) {
+impl SetFormula for Rvachev {
+    fn push_columns(self, number: f64, row: &mut Vec<f64>) {
         match self.1 {
             Family::Alpha => row.extend([number, 1.0 - number * number]),
             Family::Order(_) => {}
@@ -138,8 +134,7 @@ impl Operation {
         }
     }
 
-    /// The operation on two fields, plainly.
-    pub(super) fn pair(self, [a, b]: [f64; 2], number: f64, iso: f64) -> Pair<f64> {
+    fn pair(self, [a, b]: [f64; 2], number: f64, iso: f64) -> Pair<f64> {
         let (relative, here) = self.relative([a, b], number, iso);
         let right = match self.0 {
             SetOperation::Union | SetOperation::Intersection => b,
@@ -150,8 +145,7 @@ impl Operation {
         Pair { field: iso * relative.max(0.0), weights }
     }
 
-    /// How far two fields are from where gradients jump.
-    pub(super) fn kink_distance(self, [a, b]: [f64; 2], number: f64, iso: f64) -> f64 {
+    fn kink_distance(self, [a, b]: [f64; 2], number: f64, iso: f64) -> f64 {
         let (relative, here) = self.relative([a, b], number, iso);
         let appears = match self.0 {
             SetOperation::Difference if b != 0.0 => b.abs(),
@@ -160,8 +154,19 @@ impl Operation {
         iso * here.root.min(relative.abs()).min(appears / iso)
     }
 
-    /// The operation over the ops. `iso2` is twice the iso-value.
-    pub(super) fn emit<D: Domain>(
+    fn reach(self) -> Reach {
+        Reach::Any
+    }
+
+    fn is_non_negative(self, _: [bool; 2]) -> bool {
+        true
+    }
+
+    fn rule(self, _: bool) -> Rule {
+        Rule::Never
+    }
+
+    fn emit<D: Domain>(
         self,
         d: &mut D,
         [a, b]: [D::Real; 2],
@@ -195,7 +200,7 @@ impl Operation {
 }
 
 /// Over the ops.
-impl Operation {
+impl Rvachev {
     fn emit_arguments<D: Domain>(self, d: &mut D, [a, b]: [D::Real; 2]) -> [D::Real; 2] {
         let one = d.constant(1.0);
         match self.0 {
@@ -205,7 +210,7 @@ impl Operation {
         }
     }
 
-    fn emit_rvachev<D: Domain>(self, d: &mut D, [x, y]: [D::Real; 2], row: &[D::Real]) -> Rvachev<D::Real> {
+    fn emit_rvachev<D: Domain>(self, d: &mut D, [x, y]: [D::Real; 2], row: &[D::Real]) -> RValue<D::Real> {
         let sum = d.add(x, y);
         match self.1 {
             Family::Alpha => {
@@ -216,7 +221,7 @@ impl Operation {
                 let square = d.fma(row[1], y_square, square);
                 let root = d.sqrt(square);
                 let slopes = [along_x, along_y].map(|along| slope(d, along, root));
-                Rvachev { value: d.add(sum, root), slopes, root }
+                RValue { value: d.add(sum, root), slopes, root }
             }
             Family::Order(order) => {
                 let square = d.mul(x, x);
@@ -233,7 +238,7 @@ impl Operation {
                 for _ in 0..order {
                     value = d.mul(value, root);
                 }
-                Rvachev { value, slopes, root }
+                RValue { value, slopes, root }
             }
             Family::Power => emit_power(d, [x, y], row),
         }
@@ -241,7 +246,7 @@ impl Operation {
 }
 
 /// R_p: see the module.
-fn emit_power<D: Domain>(d: &mut D, [x, y]: [D::Real; 2], row: &[D::Real]) -> Rvachev<D::Real> {
+fn emit_power<D: Domain>(d: &mut D, [x, y]: [D::Real; 2], row: &[D::Real]) -> RValue<D::Real> {
     let [power, inverse, rest] = row[..] else { unreachable!("a power has three columns") };
     let (zero, one) = (d.constant(0.0), d.constant(1.0));
     let sum = d.add(x, y);
@@ -282,7 +287,7 @@ fn emit_power<D: Domain>(d: &mut D, [x, y]: [D::Real; 2], row: &[D::Real]) -> Rv
         d.select(is_larger, large, small)
     };
     let slopes = [slope(x, x_is_larger), slope(y, y_is_larger)];
-    Rvachev { value, slopes, root }
+    RValue { value, slopes, root }
 }
 
 /// `artanh(t) / t` in t^2, for t up to 1/3: what is left out is below 2^-29.
@@ -353,13 +358,13 @@ mod tests {
 
     const POWERS: [f64; 6] = [1.1, 1.5, 2.0, 3.5, 16.0, 64.0];
 
-    fn power(set: SetOperation) -> Operation {
-        Operation(set, Family::Power)
+    fn power(set: SetOperation) -> Rvachev {
+        Rvachev(set, Family::Power)
     }
 
     fn row(number: f64) -> Vec<f32> {
         let mut row = Vec::new();
-        power(SetOperation::Union).columns(number, &mut row);
+        power(SetOperation::Union).push_columns(number, &mut row);
         row.into_iter().map(|x| x as f32).collect()
     }
 

@@ -18,10 +18,11 @@
 //! min^2 / (a + b)`, `a b / (a + b)`. Fields that are negative are not rounded. Weights are `f dF/df`; what
 //! is subtracted counts by its complement, where it is there.
 
-use jbt_ir::Domain;
+use jbt_ir::{Domain, Rule};
 
-use super::member::Pair;
+use super::member::{Pair, Reach};
 use super::set::SetOperation;
+use super::set_step::SetFormula;
 use crate::skeleton::positive_part;
 
 /// Widths below this count as this where they divide: the squares of quotients, which derivatives are made
@@ -30,11 +31,6 @@ const SMALLEST: f32 = 1.0 / (1u64 << 50) as f32;
 
 /// Names of the numbers that a row keeps.
 pub(super) const COLUMNS: &[&str] = &["width", "quarter"];
-
-/// Pushes these numbers.
-pub(super) fn push_columns(width: f64, row: &mut Vec<f64>) {
-    row.extend([width, 0.25 / width]);
-}
 
 /// The width at a sum of two fields, and its derivative by the sum.
 fn limited(width: f64, sum: f64) -> (f64, f64) {
@@ -78,70 +74,102 @@ fn corner(is_union: bool, [a, b]: [f64; 2]) -> f64 {
     if reach <= 0.0 { (a - b).abs().min(reach.abs()) } else { reach }
 }
 
-/// The operation on two fields, plainly.
-pub(super) fn pair(set: SetOperation, [a, b]: [f64; 2], width: f64, iso: f64) -> Pair<f64> {
-    let is_union = set == SetOperation::Union;
-    match set {
-        SetOperation::Union | SetOperation::Intersection => {
-            let (field, slopes) = rounded(is_union, [a, b], width);
-            Pair { field, weights: [(a * slopes[0]).max(0.0), (b * slopes[1]).max(0.0)] }
-        }
-        SetOperation::Difference => {
-            let (width, complement) = (limited(width, b).0, (2.0 * iso - b).max(0.0));
-            let (field, slopes) = rounded(false, [a, complement], width);
-            // What is not there may limit the field, but takes nothing from the attributes.
-            let slopes = if b > 0.0 { slopes } else { [1.0, 0.0] };
-            Pair { field, weights: [(a * slopes[0]).max(0.0), (complement * slopes[1]).max(0.0)] }
+/// A set operation that rounds.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub struct Smooth(pub(super) SetOperation);
+
+impl SetFormula for Smooth {
+    fn push_columns(self, width: f64, row: &mut Vec<f64>) {
+        row.extend([width, 0.25 / width]);
+    }
+
+    fn pair(self, [a, b]: [f64; 2], width: f64, iso: f64) -> Pair<f64> {
+        let is_union = self.0 == SetOperation::Union;
+        match self.0 {
+            SetOperation::Union | SetOperation::Intersection => {
+                let (field, slopes) = rounded(is_union, [a, b], width);
+                Pair { field, weights: [(a * slopes[0]).max(0.0), (b * slopes[1]).max(0.0)] }
+            }
+            SetOperation::Difference => {
+                let (width, complement) = (limited(width, b).0, (2.0 * iso - b).max(0.0));
+                let (field, slopes) = rounded(false, [a, complement], width);
+                // What is not there may limit the field, but takes nothing from the attributes.
+                let slopes = if b > 0.0 { slopes } else { [1.0, 0.0] };
+                Pair { field, weights: [(a * slopes[0]).max(0.0), (complement * slopes[1]).max(0.0)] }
+            }
         }
     }
-}
 
-/// How far two fields are from where gradients jump.
-pub(super) fn kink_distance(set: SetOperation, [a, b]: [f64; 2], iso: f64) -> f64 {
-    match set {
-        SetOperation::Union => corner(true, [a, b]),
-        SetOperation::Intersection => corner(false, [a, b]),
-        SetOperation::Difference => {
-            let cut = 2.0 * iso - b;
-            let appears = if b == 0.0 { (a - cut).abs() } else { b.abs() };
-            let sharp = if b <= 0.0 { (a - cut).abs() } else { f64::INFINITY };
-            cut.abs().min(corner(false, [a, cut])).min(appears).min(sharp)
+    fn kink_distance(self, [a, b]: [f64; 2], _width: f64, iso: f64) -> f64 {
+        match self.0 {
+            SetOperation::Union => corner(true, [a, b]),
+            SetOperation::Intersection => corner(false, [a, b]),
+            SetOperation::Difference => {
+                let cut = 2.0 * iso - b;
+                let appears = if b == 0.0 { (a - cut).abs() } else { b.abs() };
+                let sharp = if b <= 0.0 { (a - cut).abs() } else { f64::INFINITY };
+                cut.abs().min(corner(false, [a, cut])).min(appears).min(sharp)
+            }
         }
     }
-}
 
-/// The operation over the ops. `iso2` is twice the iso-value.
-pub(super) fn emit<D: Domain>(
-    set: SetOperation,
-    d: &mut D,
-    [a, b]: [D::Real; 2],
-    row: &[D::Real],
-    iso2: D::Real,
-) -> Pair<D::Real> {
-    let width = Width { width: row[0], quarter: row[1] };
-    match set {
-        SetOperation::Union => {
-            let (field, [left, right]) = emit_rounded(d, true, [a, b], width);
-            Pair { field, weights: [weight(d, a, left), weight(d, b, right)] }
+    fn reach(self) -> Reach {
+        match self.0 {
+            SetOperation::Union => Reach::Any,
+            SetOperation::Intersection => Reach::Both,
+            SetOperation::Difference => Reach::Left,
         }
-        SetOperation::Intersection => {
-            let (field, [left, right]) = emit_rounded(d, false, [a, b], width);
-            Pair { field, weights: [weight(d, a, left), weight(d, b, right)] }
+    }
+
+    fn is_non_negative(self, [left, right]: [bool; 2]) -> bool {
+        match self.0 {
+            SetOperation::Union => left || right,
+            SetOperation::Intersection => left && right,
+            SetOperation::Difference => left,
         }
-        SetOperation::Difference => {
-            let (here, _) = emit_limited(d, width, b);
-            let (quarter, floor) = (d.constant(0.25), d.constant(SMALLEST));
-            let divisor = d.max(here, floor);
-            let width = Width { width: here, quarter: d.div(quarter, divisor) };
-            let cut = d.sub(iso2, b);
-            let cut = positive_part(d, cut);
-            let (field, [left, right]) = emit_rounded(d, false, [a, cut], width);
-            let zero = d.constant(0.0);
-            let one = d.constant(1.0);
-            // What is not there may limit the field, but takes nothing from the attributes.
-            let there = d.lt(zero, b);
-            let (left, right) = (d.select(there, left, one), d.select(there, right, zero));
-            Pair { field, weights: [weight(d, a, left), weight(d, cut, right)] }
+    }
+
+    fn rule(self, non_negative: bool) -> Rule {
+        match self.0 {
+            SetOperation::Union if non_negative => Rule::Neutral,
+            SetOperation::Intersection if non_negative => Rule::OnlyZero,
+            // One zero limits the others to 0, or to 2 iso, and then the next changes nothing.
+            SetOperation::Union | SetOperation::Intersection | SetOperation::Difference => Rule::KeepOne,
+        }
+    }
+
+    fn emit<D: Domain>(
+        self,
+        d: &mut D,
+        [a, b]: [D::Real; 2],
+        row: &[D::Real],
+        iso2: D::Real,
+    ) -> Pair<D::Real> {
+        let width = Width { width: row[0], quarter: row[1] };
+        match self.0 {
+            SetOperation::Union => {
+                let (field, [left, right]) = emit_rounded(d, true, [a, b], width);
+                Pair { field, weights: [weight(d, a, left), weight(d, b, right)] }
+            }
+            SetOperation::Intersection => {
+                let (field, [left, right]) = emit_rounded(d, false, [a, b], width);
+                Pair { field, weights: [weight(d, a, left), weight(d, b, right)] }
+            }
+            SetOperation::Difference => {
+                let (here, _) = emit_limited(d, width, b);
+                let (quarter, floor) = (d.constant(0.25), d.constant(SMALLEST));
+                let divisor = d.max(here, floor);
+                let width = Width { width: here, quarter: d.div(quarter, divisor) };
+                let cut = d.sub(iso2, b);
+                let cut = positive_part(d, cut);
+                let (field, [left, right]) = emit_rounded(d, false, [a, cut], width);
+                let zero = d.constant(0.0);
+                let one = d.constant(1.0);
+                // What is not there may limit the field, but takes nothing from the attributes.
+                let there = d.lt(zero, b);
+                let (left, right) = (d.select(there, left, one), d.select(there, right, zero));
+                Pair { field, weights: [weight(d, a, left), weight(d, cut, right)] }
+            }
         }
     }
 }
@@ -219,7 +247,7 @@ mod tests {
 
     /// Sides on the surface, by bisection of the left one.
     fn on_surface(set: SetOperation, b: f64, width: f64, iso: f64) -> Option<[f64; 2]> {
-        let field = |a: f64| pair(set, [a, b], width, iso).field - iso;
+        let field = |a: f64| Smooth(set).pair([a, b], width, iso).field - iso;
         let (mut low, mut high) = (0.0, 4.0 * iso);
         if field(low) > 0.0 || field(high) < 0.0 {
             return None;
@@ -233,7 +261,7 @@ mod tests {
 
     /// How much the surface is rounded, and how much it were with all of the width.
     fn roundings(set: SetOperation, [a, b]: [f64; 2], width: f64, iso: f64) -> [f64; 2] {
-        let field = pair(set, [a, b], width, iso).field;
+        let field = Smooth(set).pair([a, b], width, iso).field;
         let [b, sharp] = match set {
             SetOperation::Union => [b, a.max(b)],
             SetOperation::Intersection => [b, a.min(b)],
@@ -275,7 +303,7 @@ mod tests {
             let k = limited(limited(width, b), a + other);
             let apart = f64::abs(a - other);
             let by = if apart < k { (k - apart).powi(2) / (4.0 * k) } else { 0.0 };
-            let found = pair(SetOperation::Difference, [a, b], width, iso).field;
+            let found = Smooth(SetOperation::Difference).pair([a, b], width, iso).field;
             assert!((found - (a.min(other) - by)).abs() < 1e-12, "{a} {b}: {found}");
         }
     }

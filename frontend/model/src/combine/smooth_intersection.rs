@@ -1,10 +1,9 @@
 //! The smooth intersection: see [`smooth`](super::smooth).
 
-use jbt_ir::{Domain, Rule};
-
-use super::member::{Operator, Pair, Reach, Step, Syntax};
+use super::member::{Operator, Syntax};
 use super::set::SetOperation;
-use super::smooth;
+use super::set_step::SetStep;
+use super::smooth::{self, Smooth};
 use crate::member::member;
 
 member! {
@@ -20,44 +19,15 @@ impl Operator for SmoothIntersection {
     const SYNTAX: Syntax = Syntax::Labelled;
 }
 
-impl Step for SmoothIntersection {
-    type Code = ();
+impl SetStep for SmoothIntersection {
+    type Formula = Smooth;
     const COLUMNS: &'static [&'static str] = smooth::COLUMNS;
 
-    fn code(self) {}
-
-    fn push_columns(self, row: &mut Vec<f64>) {
-        smooth::push_columns(self.width, row);
+    fn formula(self) -> Smooth {
+        Smooth(SetOperation::Intersection)
     }
 
-    fn pair(self, sides: [f64; 2], iso: f64) -> Pair<f64> {
-        smooth::pair(SetOperation::Intersection, sides, self.width, iso)
-    }
-
-    fn kink_distance(self, sides: [f64; 2], iso: f64) -> f64 {
-        smooth::kink_distance(SetOperation::Intersection, sides, iso)
-    }
-
-    fn reach(self) -> Reach {
-        Reach::Both
-    }
-
-    fn is_non_negative(self, [left, right]: [bool; 2]) -> bool {
-        left && right
-    }
-
-    /// One zero limits the others to 0, or to 2 iso, and then the next changes nothing.
-    fn rule((): (), non_negative: bool) -> Rule {
-        if non_negative { Rule::OnlyZero } else { Rule::KeepOne }
-    }
-
-    fn emit<D: Domain>(
-        (): (),
-        d: &mut D,
-        sides: [D::Real; 2],
-        row: &[D::Real],
-        iso2: D::Real,
-    ) -> Pair<D::Real> {
-        smooth::emit(SetOperation::Intersection, d, sides, row, iso2)
+    fn number(self) -> f64 {
+        self.width
     }
 }
