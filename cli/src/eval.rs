@@ -1,4 +1,7 @@
 //! `jbt eval`: points of a CSV file in, answers out, in the same order.
+//!
+//! Threads take whole batches, by [`Evaluator::eval`] and not by `par_eval`: so the text of the answers is
+//! made in parallel too, and memory stays at one batch a thread.
 
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Write as _};

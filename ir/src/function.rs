@@ -2,13 +2,13 @@
 //!
 //! ```text
 //! function "sum" (x, y, z) -> (field) {
-//!     table t0 "point" (x, y, z, neg_inv_r2) slots (0)
+//!     table t0 "point" (tx, ty, tz, neg_inv_r2) slots (0)
 //! block0:
 //!     v0 = input x
 //!     ...
 //!     v3 = const 0.0
 //!     v4 = fold t0 rows neutral (v3) block1(v5):
-//!         v6 = column t0.x @0.position
+//!         v6 = column t0.tx @0.position
 //!         v7 = sub v0, v6 @0.position
 //!         ...
 //!         yield v20
@@ -57,7 +57,7 @@ impl FoldKind {
 }
 
 /// Which rows of a fold may be left out in a region of space where their fields are zero, without changing a
-/// bit of an answer. The first accumulator is the field.
+/// bit of an answer.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Rule {
     /// All zero rows may be left out: rows of sums, of Ricci blends, of unions without negative operands and
@@ -100,7 +100,8 @@ pub struct Schema {
     pub columns: Vec<String>,
     /// The table whose rows own ranges of this one.
     pub parent: Option<Table>,
-    /// The leaf slots that one row fills, in the order of [`crate::table::Rows::nodes`].
+    /// The leaf slots (see [`crate::origin`]) that one row fills, in the order of
+    /// [`crate::table::Rows::nodes`].
     pub slots: Vec<u32>,
 }
 

@@ -16,7 +16,7 @@
 //!
 //! Engines follow these lists blindly. So a selection is made in few ways only: from tables
 //! ([`Selection::new`]), and from another selection by leaving rows out ([`Selection::narrow`]), by giving
-//! them other numbers ([`Selection::shifted`]) or by following tables whose active rows have changed
+//! them other indices ([`Selection::shifted`]) or by following tables whose active rows have changed
 //! ([`Selection::switched`]). All keep this:
 //!
 //! * active rows exist in their table, and ascend in the range of one row of the parent;
@@ -77,7 +77,7 @@ pub struct Selection {
     present: Vec<Table>,
 }
 
-/// Which rows of a table have other numbers now.
+/// Rows of a table whose indices have moved; what stands in their columns stays.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub struct Shift {
     /// The first one.
@@ -256,7 +256,7 @@ impl Selection {
         }
     }
 
-    /// The same rows in other tables of the same family, where some rows have other numbers: for each table,
+    /// The same rows in other tables of the same family, where some rows have other indices: for each table,
     /// where they begin to, and by how much. Panics if a row is not there.
     #[must_use]
     pub fn shifted(&self, extent: &Arc<Extent>, shifts: &[Shift]) -> Self {

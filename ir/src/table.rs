@@ -1,7 +1,7 @@
 //! The numbers of a program: rows of tables, which of them are active, and which tree nodes they stand for.
 //!
-//! A function is the *shape* of a model, [`Tables`] are its *numbers*. Changing a number is a write here; no
-//! code changes.
+//! A function is the *shape* of a model, [`Tables`] are its *numbers*. Nobody writes into bound tables: an
+//! edited model is lowered again, and if its function is equal, the present code gets the new tables.
 //!
 //! ```text
 //!    starts of t1 (one per row of its parent, and the end)     active rows of t1      numbers of t1

@@ -5,6 +5,7 @@
 //!   planes  one pointer for each input plane, then one for each output plane
 //!   bytes   of one plane; a multiple of the block, and not 0
 //!   tables  one view for each table:  numbers | active | starts   (three pointers)
+//!           numbers are those of the tables; active and starts are lists of the selection, by position
 //! ```
 //!
 //! The code follows every pointer and index blindly. So a [`Kernel`] takes [`Run`]s alone, which the door of

@@ -20,7 +20,7 @@
 //! for offset in (0 .. points).step_by(4 * K):
 //!     x = inputs[0][offset..], y = ..., z = ...                 K vectors each
 //!     acc = initial                                             K vectors each
-//!     for row in active[starts[parent row] .. starts[parent row + 1]]:
+//!     for row in active[starts[p] .. starts[p + 1]]:            p: the place of the parent's row among its active rows
 //!         column = broadcast(numbers[row * stride + index])     one vector, read where it is needed
 //!         acc = body(row, acc)
 //!     outputs[0][offset..] = acc

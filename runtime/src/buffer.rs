@@ -152,7 +152,8 @@ impl Samples {
         Some(&self.planes[plane..plane + width])
     }
 
-    /// Linear red, green and blue at every point; `None` if attributes were not asked for.
+    /// Linear red, green and blue at every point; `None` if attributes were not asked for. Every model has
+    /// the group `color`, white by default.
     #[must_use]
     pub fn colors(&self) -> Option<[&[f32]; 3]> {
         let [red, green, blue] = self.attribute("color")? else { return None };

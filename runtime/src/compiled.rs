@@ -134,9 +134,9 @@ impl Compiler {
 }
 
 impl Compiled {
-    /// Another model, usually an edited one. A program of which the shape stays is given the new numbers when
-    /// it is asked for; only others are compiled. The [origin](Self::origin) stays, wherever the other model
-    /// is.
+    /// Another model, usually an edited one. It is lowered when something is asked of it. A program whose
+    /// function is equal takes the new numbers; only others are compiled. The [origin](Self::origin) stays,
+    /// wherever the other model is.
     #[must_use]
     pub fn updated(&self, tree: &CheckedTree) -> Self {
         Self(Arc::new(Parts {
@@ -191,8 +191,8 @@ impl Compiled {
         self.ranges_of(None)
     }
 
-    /// The program row by row that answers what a program of straight code answers. If it cannot be had as
-    /// the compiler wishes, it is interpreted.
+    /// The program for regions that belongs to one of straight code, which cannot leave rows out. If the
+    /// wished engine declines it, the interpreter runs it.
     pub(crate) fn rows_of<'a>(&self, straight: &'a AnswerProgram) -> &'a Arc<AnswerProgram> {
         straight.by_rows.get_or_init(|| {
             let wished = self.answers(Scope::Regions, straight.query).cloned();

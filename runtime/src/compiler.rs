@@ -58,7 +58,8 @@ impl Compiler {
         Self::default()
     }
 
-    /// A compiler for one engine.
+    /// A compiler for one engine and no other: where it cannot be had, compiling is an error.
+    /// ([`new`](Self::new) takes the interpreter instead, and so does `jbt --engine jit`.)
     #[must_use]
     pub fn for_engine(engine: Engine) -> Self {
         Self::default().on_engine(engine)
@@ -136,7 +137,7 @@ impl Compiler {
         }
         let before = match present {
             None => None,
-            // An edit of numbers compiles nothing if that can be helped.
+            // The model had rows before: it keeps them, since straight code would compile.
             Some(present) => Some(present.straight.as_ref()?),
         };
         if let Some(kernel) = self.find(purpose, fits) {

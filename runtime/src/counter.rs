@@ -1,4 +1,7 @@
 //! Counters: how much work was done.
+//!
+//! Points, calls and lanes are counted. Distances are not: they are points times the distances of a point,
+//! which the code's origins tell ([`jbt_ir::domain::counting`]), less what regions left out.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -16,13 +19,16 @@ pub fn walks(query: Query) -> u64 {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Counters {
-    /// Calls of the kernel.
+    /// Calls of the kernel. A slice of points makes one for each 512 points; [`Points`](crate::Points) make
+    /// one for each call of `eval`, or for each 4,096 points of `par_eval`.
     pub calls: u64,
     /// Points that were asked for.
     pub points: u64,
-    /// Points that were computed: the last block of a call is filled up.
+    /// Points that were computed: the last block of a call is filled up, and points where the gradient was
+    /// not finite are computed twice.
     pub lanes: u64,
-    /// Distances to skeletons that were computed, for the points asked for.
+    /// Distances to skeletons that were computed, once for each point asked for. After an
+    /// [update](crate::Evaluator::update), earlier points count at the price of the new model.
     pub primitive_evaluations: u64,
     /// Distances that would have been computed on top of these if nothing had been left out at the points
     /// asked for: rows that do not reach a region, operands that do not decide there.

@@ -1,4 +1,6 @@
 //! The evaluator: a model and a query become a kernel once; points become samples many times.
+//!
+//! `par_eval` cuts points into parts of [`PART`], one for a thread at a time. A part goes on as in `eval`.
 
 use std::collections::BTreeSet;
 use std::fmt;
@@ -294,7 +296,9 @@ impl Evaluator {
     }
 
     /// As [`eval_planes`](Self::eval_planes), with the rows that matter in a region. The answers have the
-    /// same bits, at points of the region's box; elsewhere they mean nothing.
+    /// same bits, at points of the region's box; elsewhere they mean nothing. The region is one of a
+    /// [`Pruner`](crate::Pruner) of the same model: one of another model with as many rows is not noticed,
+    /// and gives wrong answers.
     ///
     /// # Errors
     /// Those of [`eval_planes`](Self::eval_planes), and a region of a model with other numbers of rows.
@@ -304,7 +308,8 @@ impl Evaluator {
         points: [&[f32]; 3],
         answers: &mut [&mut [f32]],
     ) -> Result<(), EvalError> {
-        // Points of a box that ends are places; the box of everything is one for any points.
+        // In a box with finite ends all points are finite. The box of all space takes any point, so points
+        // are looked at.
         let ends = |x: &f32| x.abs() < f32::MAX;
         let Box3 { low, high } = region.bounds();
         let lanes = if low.iter().chain(&high).all(ends) || places::are_places(&points) {
@@ -375,7 +380,7 @@ impl Evaluator {
         evaluations(&self.program.bound.kernel.function, self.program.bound.tables())
     }
 
-    /// The program that runs points anywhere.
+    /// The verified function behind the code that runs points anywhere.
     #[must_use]
     pub fn program(&self) -> &Verified {
         &self.program.bound.kernel.function

@@ -28,7 +28,7 @@
 //! ```text
 //! Model ──check──► CheckedTree ──Compiler──► Compiled ──Query──► Evaluator ──points──► samples
 //!   ▲                                           │
-//! text, build, import                           └──► Polygonize, Render, Slicer, Solid, Tracer ──► export
+//! text, build, import                           └──► Pruner, Polygonize, Render, Slicer, Sampler, .. ──► export
 //! ```
 //!
 //! * [`Scene::load`], [`build`], [`text`] and [`import`] make a [`Model`]; [`Model::check`] says everything
@@ -40,15 +40,19 @@
 //!   once: a mesh, a slice and a picture of one compiled model share their programs. For a single question
 //!   there are shorter ways, as `Solid::new` or [`Compiler::evaluator`].
 //! * An [`Evaluator`] answers one [`Query`] at any points, on the [`Engine`] that the machine has; all
-//!   engines give the same bits. A [`Probe`] asks about a single point, in any order, for one evaluation.
+//!   engines give the same bits. A [`Probe`] is a single point: its answers may be read in any order, and
+//!   together cost one evaluation.
+//! * A [`Pruner`] makes a [`Region`] of a box: the rows that matter there. [`Evaluator::eval_region`] runs
+//!   these alone, with the same bits; [`divide`], [`sample`] and meshes do so by themselves.
 //! * [`Polygonize`] meshes a model, [`Render`] makes pictures of it; [`export`] writes both.
 //! * A [`contour::Slicer`] looks at a model in a plane: contours as closed loops, and images.
 //! * A [`Solid`] answers questions about the set that a model encloses: which side a point is on, which leaf
 //!   decides there, how far it reaches, how large it is.
 //! * A [`Tracer`] follows rays to where they hit the surface, singly or in packets, and misses nothing that
 //!   is longer than a tolerance.
-//! * [`Counters`] say what was done, and what separate walks would have done; [`statistics`] foretell it, and
-//!   say how much of it matters.
+//! * [`Counters`] say how much was evaluated, and how much more one walk of the tree for each answer would
+//!   have been; [`statistics`] tell both beforehand, and how many evaluations are inside of a primitive's
+//!   support.
 //!
 //! # Features
 //!

@@ -1,4 +1,4 @@
-//! Points that are no places: coordinates that are not finite, as a caller's own arithmetic may leave them.
+//! Points with a coordinate that is not finite, as a caller's own arithmetic may leave them.
 //!
 //! ```text
 //! an infinity     counts as the largest finite number of its sign

@@ -1,7 +1,8 @@
-//! From a model to a mesh in one call: three kernels, a lattice over the model's support, and the mesher.
+//! From a model to a mesh in one call: four programs, a lattice over the model's support, and the mesher.
 //!
 //! ```text
-//!   Compiled ─┬─► field kernel ────► every lattice point of a brick, once
+//!   Compiled ─┬─► ranges ──────────► every box of the division: which rows matter, is there surface
+//!             ├─► field kernel ────► every lattice point of a brick, once
 //!             ├─► gradient kernel ─► every vertex, a few times, to pull it onto the surface
 //!             └─► full kernel ─────► every vertex, once: normal and attributes
 //! ```
@@ -56,7 +57,8 @@ impl Default for Fineness {
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Polygonize {
-    /// The box to mesh, in the world; `None` is the model's support, grown a little.
+    /// The box to mesh, in the world (a plain box, not a [`Region`](crate::Region)); `None` is the model's
+    /// support, grown a little.
     pub region: Option<Box3<f64>>,
     /// How fine.
     pub fineness: Fineness,

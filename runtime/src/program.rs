@@ -1,4 +1,4 @@
-//! A program of one model: a kernel with the model's numbers, and what is said about its answers.
+//! What a slot of a compiled model holds: a bound kernel, and what is said about its answers.
 
 use std::sync::{Arc, OnceLock};
 

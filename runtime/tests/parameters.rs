@@ -7,7 +7,7 @@ use jbt_model::walk::walk;
 use jbt_text::{Options, parse, print};
 
 /// Models with the parameter `p`, each in another place that numbers can have.
-const SWEPT: [(&str, f64, f64, &str); 26] = [
+const SWEPT: [(&str, f64, f64, &str); 27] = [
     ("radius", 0.1, 3.0, "point { at (0.1 0 0) radius p }"),
     ("place", -2.0, 2.0, "sum { point { at (p 0 p * p) radius 1 } point { radius 1 } }"),
     ("strength", -2.0, 2.0, "sum { point { radius 1 strength p } point { at (0.4 0 0) radius 1 } }"),
@@ -43,6 +43,12 @@ const SWEPT: [(&str, f64, f64, &str); 26] = [
         1.0,
         9.0,
         "blend ricci p { blend ricci 4 { point { radius 1 } point { at (0.5 0 0) radius 1 } } blend ricci 10 - p { point { at (0 0.5 0) radius 1 } } }",
+    ),
+    (
+        "an exponent inside a plain one",
+        1.0,
+        9.0,
+        "blend ricci 4 { blend ricci p { point { radius 1 } point { at (0.5 0 0) radius 1 } } point { at (0 0.5 0) radius 1 } }",
     ),
     (
         "shift",

@@ -53,7 +53,8 @@ pub(super) struct LeafField {
     pub(super) position: PositionId,
     /// How many instances, with different attributes, have this field.
     pub(super) uses: u32,
-    /// The map from the skeleton's pose, scaled, to the space in which it is asked.
+    /// The map from the pose to the space in which the leaf is asked; rows hold its inverse. In the pose the
+    /// skeleton is [`scale`](Self::scale) times as large as it was written.
     pub(super) map: DAffine3,
     /// How many times as large as it was written the skeleton is in its pose. A similarity ends up here;
     /// other maps leave it at 1.

@@ -8,17 +8,19 @@
 //!
 //! * `instance`: affine and attribute nodes dissolve into the position and the attribute bindings of the
 //!   leaves below them; a node that is met twice at one position is one instance.
-//! * `shape`: nested operators of a kind flatten; instances that differ in numbers alone have one shape.
+//! * `shape`: an operator inside an equal one dissolves into it; instances that differ in numbers alone have
+//!   one shape.
 //! * `emit`: children of one operator that have one shape are the rows of one table, under one fold. Field
-//!   and attribute weights come out of the same traversal; the gradient is the business of a later pass.
+//!   and attribute weights come out of the same traversal. The gradient is added by a later pass; lowering
+//!   only asks whether there will be one, because then ties have to be decided.
 //! * `slopes`: how a formula's value follows its children's, for the weights of their attributes.
 //! * `computed`: attribute values that are functions of the point.
 //! * `demand`: what selectors leave out has code, in folds whose rows are not active.
 //! * `columns`: what each column is called, and its number; `emit` declares them, `rows` fills them.
 //! * `rows`: walks the instances in the order of `emit` and writes down their numbers.
 //! * `support`: finds for each instance where it can be anything but zero, in the program's own arithmetic.
-//! * [`prune_info`]: what somebody has to know who leaves rows out: supports, rules, and a function of
-//!   probes; `ranges` makes it.
+//! * [`prune_info`]: what pruning has to know: supports, rules, and the range function; `ranges` makes
+//!   it.
 //! * `names`: the names that all of them use.
 //!
 //! The tables, their rows and the order of these are the same for every query; only columns differ.
@@ -56,7 +58,8 @@ pub use prune_info::{PruneInfo, RangeFunction};
 /// A program, before any pass, and its numbers.
 #[derive(Clone, Debug)]
 pub struct Lowered {
-    /// The shape of the model as code. Outputs: `field`, then the channels of every attribute group in order.
+    /// The shape of the model as code. Outputs: `field`; then, if the query has attributes, the channels of
+    /// every group in order. The gradient pass puts `gx`, `gy`, `gz` right behind `field`.
     pub function: Function,
     /// The numbers of the model. Nodes of rows are [`jbt_model::check::NodeId`]s.
     pub tables: Tables,

@@ -1,5 +1,5 @@
-//! Where an instance stands: in which space its points are asked, and the affine map from there to its own
-//! space.
+//! Where an instance stands: the space in which its points are asked, and the affine map from its own space
+//! to that space. Rows hold the inverse, which takes an asked point to the instance.
 //!
 //! Affine runs collapse into one matrix. What a row has to do to the point depends on the matrix:
 //!

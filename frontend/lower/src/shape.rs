@@ -1,9 +1,10 @@
 //! Which instances are alike: same node kinds, different numbers.
 //!
-//! A shape is what selects code. Nested operators of a kind flatten into one; an instance with several uses
-//! is *hoisted*: computed once, where its space begins, and seen by the others as a value. The children of an
-//! operator form groups, one for each shape; a group is the rows of one table, unless its shape holds tables
-//! of its own and there is one such child: that one is written out.
+//! A shape is what selects code. An operator whose only user is an equal one (numbers too, none of which
+//! depends on a parameter) dissolves into that, if its member allows it (`flattens`). An instance with
+//! several uses is *hoisted*: computed once, where its space begins, and seen by the others as a value. The
+//! children of an operator form groups, one for each shape; a group is the rows of one table, unless its
+//! shape holds tables of its own and there is one such child: that one is written out.
 //!
 //! What is written out, and is worth it, gets a *guard*: it is the one row of a table, so that it can be left
 //! out where it does not matter.
@@ -401,12 +402,13 @@ fn flattened(scene: &Scene<'_>) -> Vec<bool> {
     let mut flattened = vec![false; scene.instances.len()];
     for instance in &scene.instances {
         let InstanceKind::Reduce { operator, children, .. } = &instance.kind else { continue };
-        // Numbers that are equal now may differ later.
-        let fixed = scene.tree.written(instance.node).is_none();
+        let fixed = |node| scene.tree.written(node).is_none();
         for child in children {
             let inner = scene.instance(*child);
             if let InstanceKind::Reduce { operator: nested, children: operands, .. } = &inner.kind {
                 let non_negative = || operands.iter().all(|id| scene.instance(*id).non_negative);
+                // Neither may depend on a parameter: exponents that are equal now may differ later.
+                let fixed = fixed(instance.node) && fixed(inner.node);
                 let like = fixed && nested == operator && inner.uses == 1;
                 flattened[child.0 as usize] = like && operator.flattens(non_negative());
             }

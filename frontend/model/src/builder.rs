@@ -34,6 +34,10 @@
 //! | `Tree::select(which, [a, b, c])` | one of them |
 //! | `Tree::expression(0.7 * a.field() * b.field() + x())` | a formula of fields and coordinates |
 //!
+//! No line here defines `Tree::union`, `Tree::product` and so on: `constructor.rs` makes them of the
+//! descriptions (`member!`). `Tree::blend` and `Tree::smooth` are in `operator.rs`, for any number of
+//! children.
+//!
 //! Numbers may be `f64`, `f32` or integers: `point([0, 1, 0], 1)`. Wherever a number is asked for, one that
 //! depends on a parameter will do; it can be set again without compiling anything:
 //!

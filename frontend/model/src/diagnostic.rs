@@ -1,9 +1,9 @@
 //! Messages about a model, with the place in the text that earns them.
 //!
 //! ```text
-//! hero.jbt:7:12: error: the radius is 0
-//!   7 |     radius 0
-//!     |            ^ expected a number of at least 1e-15
+//! hero.jbt:6:5: error: the radius is -1
+//!   6 |     point { radius -1 }
+//!     |     ^^^^^^^^^^^^^^^^^^^ expected a number of at least 1e-15
 //! ```
 
 mod list;

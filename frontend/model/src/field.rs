@@ -1,5 +1,6 @@
-//! Named parameters of the members of the open sets: one description serves the text parser, the printer, the
-//! check and the documentation. See [`member`](crate::member).
+//! Parameters of members (the `at` of a point), which code calls fields: one description serves the text
+//! parser, the printer, the check and the documentation. See [`member`](crate::member). A scene's `param` is
+//! a [`parameter`](crate::parameter). The scalar field of a model is another thing.
 
 /// What a parameter may be.
 #[derive(Clone, Copy, PartialEq, Debug)]

@@ -1,4 +1,4 @@
-//! What a node does.
+//! What a node does, with plain values. (Other `..Kind`s, as `SkeletonKind`, have no values.)
 
 use std::sync::Arc;
 

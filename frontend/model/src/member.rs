@@ -1,4 +1,5 @@
-//! One description of a member of an open set: its struct, its parameters, and all that follows from them.
+//! One description of a member: its struct, its parameters, and all that follows from them. Members are
+//! skeletons, falloffs, operators, warps, textures and maps; their lists are *open sets*: one may add.
 //!
 //! ```text
 //! member! {

@@ -6,7 +6,7 @@
 //! let radius: Number = 2.0 * &bulge + 1.0;
 //! assert_eq!(radius.value(), 2.2);
 //! assert_eq!(radius.to_string(), "2 * bulge + 1");
-//! assert!(radius.follows() && !Number::from(2.2).follows());
+//! assert!(radius.depends_on_parameters() && !Number::from(2.2).depends_on_parameters());
 //! ```
 //!
 //! A formula is a list of steps in postfix order, `2 bulge * 1 +`, evaluated in f64 on a stack. A plain

@@ -21,9 +21,11 @@ pub struct AnswerRow {
     pub planes: Planes,
     /// The pass that adds it to a lowered program; `None` if lowering does.
     pub pass: Option<&'static Pass>,
-    /// The walks of the tree that it takes by itself, and how.
+    /// How often a program without a compiler, which asks one question after the other, walks the whole tree
+    /// for it; and the words for that. For comparison alone: see `jbt::statistics`.
     pub walks: (u64, &'static str),
-    /// The places that those walks ask about and no other answer's do, and what they are.
+    /// Of the points at which these walks evaluate, those that no other answer's walks need; and what they
+    /// are.
     pub places: (u64, &'static str),
 }
 
@@ -53,7 +55,8 @@ impl Query {
     pub const GRADIENT: Self = Self::FIELD.and(AnswerKind::Gradient);
     /// Field and attributes.
     pub const ATTRIBUTES: Self = Self::FIELD.and(AnswerKind::Attributes);
-    /// Field, gradient and attributes: what a surface is shown by.
+    /// Field, gradient and attributes: what a surface is shown by. Today this is [`ALL`](Self::ALL), and so
+    /// one program; an answer that is added later will be in `ALL` alone.
     pub const SURFACE: Self = Self::GRADIENT.and(AnswerKind::Attributes);
     /// Every answer.
     pub const ALL: Self = Self::EVERY[QUERIES - 1];
@@ -173,7 +176,8 @@ impl<'de> serde::Deserialize<'de> for Query {
     }
 }
 
-/// Makes the enumeration of answers, in the order of their planes, of their rows.
+/// Makes the enumeration of answers, in the order of their planes, of their rows. Programs have their outputs
+/// in this order too, by lowering and by the gradient pass: `AnswerProgram::new` of `jbt` asserts it.
 macro_rules! answers {
     ($($(#[doc = $doc:literal])+ $answer:ident => $row:expr;)+) => {
         /// Something that may be asked for at a point.

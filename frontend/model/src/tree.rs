@@ -54,7 +54,8 @@ impl Node {
         &self.children
     }
 
-    /// Where it stands in its source text.
+    /// Where it stands in its source text: a primitive from its name to `}`, a node with children its words
+    /// before the block. Errors of the check about any of its numbers have this place.
     #[must_use]
     pub fn span(&self) -> Option<Span> {
         self.span

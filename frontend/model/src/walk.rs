@@ -9,8 +9,9 @@
 //!                  attribute    walk the child, its leaves having this attribute: numbers, what a texture is at p, or their uv
 //! ```
 //!
-//! It judges the compiler, so it shares no code with it. It is too simple to be fast: every primitive is
-//! evaluated once for each path that leads to it, for each question again.
+//! It judges the compiler, so it shares no arithmetic with it: fields and weights are the plain formulas in
+//! f64. Of what the compiler knows it asks the form of an operator alone, to find kinks. It is too simple to
+//! be fast: every primitive is evaluated once for each path that leads to it, for each question again.
 
 use std::rc::Rc;
 
@@ -297,6 +298,7 @@ fn decide(
     }
     let heard_fields =
         || children.iter().filter(|child| !child.silent).map(|child| child.field).collect::<Vec<_>>();
+    // To the form it does not matter here whether numbers depend on parameters.
     match combinator.form(false) {
         Form::Reduce(ReduceCode::Fold(code)) if code.absorbs() => {
             let silent = children.iter().any(|child| child.silent);

@@ -357,8 +357,8 @@ impl Written {
     }
 }
 
-/// The support radius of a primitive whose surface alone has this radius: `r / sqrt(s)` with `falloff(s) =
-/// iso / strength`.
+/// The support radius of a primitive whose surface alone has this radius: `r / sqrt(s)`. Here s, the squared
+/// distance over the squared support radius, solves `falloff(s) = iso / strength`.
 fn support_radius(radius: f64, falloff: Falloff, strength: f64, iso: f64) -> Result<f64, Fault> {
     let level = iso / strength;
     if radius.is_nan() || level.is_nan() {

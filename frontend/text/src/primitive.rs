@@ -176,6 +176,7 @@ impl Parser<'_> {
             }
             return;
         }
+        // A plain number keeps no place: an error of the check underlines the whole primitive.
         let value = self.expression(Place::Alone);
         match word {
             "radius" => self.once(&mut own.radius, value.number, token),
@@ -196,7 +197,10 @@ impl Parser<'_> {
                 format!("`{}` has no parameter `{}`", kind.name(), clip(word)),
             );
             let known = || words.iter().map(|word| &**word).chain(OWN_FIELDS);
-            error.expected(match nearest(word, known()) {
+            // Figures with a size have a `center`, and a point is `at` a place.
+            let other = [("center", "at"), ("at", "center")].into_iter().find(|(from, _)| *from == word);
+            let other = other.map(|(_, to)| to).filter(|to| known().any(|word| word == *to));
+            error.expected(match other.or_else(|| nearest(word, known())) {
                 Some(near) => format!("perhaps `{near}`"),
                 None => format!("it has {}", known().collect::<Vec<_>>().join(", ")),
             })

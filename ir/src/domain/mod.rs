@@ -7,6 +7,9 @@
 //! | [`lanes`] | a block of `f32`, or one for all points | the interpreter |
 //! | [`interval`] | two bounds, computed or emitted | what a box can hold |
 //! | [`tangent`] | a value and its tangent, emitted | the gradient |
+//!
+//! Elsewhere, `FunctionBuilder` (`builder.rs`) writes instructions, `Vectors` (`jit/src/cranelift/`) machine
+//! code.
 
 pub mod counting;
 pub mod interval;

@@ -8,10 +8,12 @@
 //! lowered ─► (gradient) ─► (interval) ─► legalize ─► constant-folding ─► simplify ─► cse ─► dce ─► schedule ─► verify ─► engine
 //! ```
 //!
-//! `gradient` and `interval` change what is computed, and only for a query that asks for them. So they are
-//! not in the list but run before it:
-//! `run_pipeline(f, [&GRADIENT, &INTERVAL].into_iter().chain(PIPELINE), ..)`. They need the transcendentals
-//! whole, hence before `legalize`.
+//! `gradient`, `guarded-gradient` and `interval` change what is computed. So they are not in the list: the
+//! caller puts one of them in front, by what the program is for: `run_pipeline(f,
+//! [&GRADIENT].into_iter().chain(PIPELINE), ..)`. They need the transcendentals whole, hence before
+//! `legalize`. Straight code is made behind them.
+//!
+//! `idle` and `liveness` are no passes: they look at a function, for engines.
 
 mod dce;
 mod fold_constants;

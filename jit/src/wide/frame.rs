@@ -75,7 +75,9 @@ impl State<'_> {
         }
     }
 
-    /// The memory of a part. May need `rax` until the next instruction.
+    /// Where memory has a part. A column is one f32 at the row's address (see `counters`) plus 4 times its
+    /// index: `vbroadcastss` loads it, or with AVX-512 the arithmetic instruction broadcasts it. The address
+    /// may be in `rax`, so it holds until the next instruction only.
     pub(super) fn home(&mut self, part: Part) -> Memory {
         let name = self.name(part);
         let vector = (part - name * self.vectors) as i32;
@@ -114,7 +116,8 @@ impl State<'_> {
         Memory { base: Base::Constants, displacement, is_one: self.shape.has_masks }
     }
 
-    /// Whether an arithmetic instruction can read a part from its memory.
+    /// Whether an arithmetic instruction can read a part from its memory. AVX2 has no operands that
+    /// broadcast, so there columns are loaded first.
     pub(super) fn can_be_operand(&self, name: Name) -> bool {
         let is_column = matches!(self.linear.names[name as usize].kind, Kind::Leaf(Home::Column(..)));
         self.class(name) == 0 && (self.shape.has_masks || !is_column)

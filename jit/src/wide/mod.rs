@@ -1,8 +1,8 @@
 //! Machine code for x86-64 in vectors of 256 and 512 bits, by an emitter of our own.
 //!
 //! ```text
-//! Function, Plan ──► linear ────► lives ──────────► state, ops, loops ────► encode ──► bytes
-//!                    one list     where values      one walk: registers     VEX, EVEX
+//! Function, Plan ──► build ─────► lives ──────────► state, ops, loops ────► encode ──► bytes
+//!                    a `Linear`   where values      one walk: registers     VEX, EVEX
 //!                                 are used          and instructions
 //! ```
 //!

@@ -46,8 +46,7 @@ impl Engine {
         ENGINES.iter().find(|row| row.engine == self).map_or(&[], |row| row.backends)
     }
 
-    /// What runs the few points at which another program is asked than at all others: it is made in an
-    /// instant.
+    /// The engine for the few points that need a second program: one that compiles at once.
     pub(super) const fn for_few(self) -> Self {
         match self {
             Self::Scalar => Self::Scalar,
@@ -127,7 +126,8 @@ pub(super) struct Compiled {
     pub(super) program: Arc<dyn Program>,
 }
 
-/// Compiles a function. Without an engine in mind, machine code is tried first and the interpreter then.
+/// Compiles a function. Without an engine in mind, machine code is tried first and the interpreter then: for
+/// each kernel by itself.
 pub(super) fn compile(function: &Arc<Verified>, wish: Wish) -> Result<Compiled, CompileError> {
     let level = wish.level.unwrap_or_else(best_level);
     let declined = |engine: Engine, reason| CompileError::Engine { engine: engine.name(), reason };

@@ -1,4 +1,12 @@
-//! A program on an engine: verified instructions, and whatever runs them.
+//! Kernels: code for one shape and one purpose, without a model's numbers; and bound kernels, with them.
+//!
+//! ```text
+//! Function ─optimise─► Verified ─Backend─► dyn engine::Program     code, on an engine
+//! + the lowered function, what a row costs               = Kernel         one shape; models share it
+//! + Tables, in a BoundProgram                            = Bound          one model's numbers
+//! + a query and a layout | what pruning has to know      = AnswerProgram | RangeProgram
+//! + counters                                             = Evaluator | Pruner
+//! ```
 //!
 //! | engine | what it is |
 //! |---|---|

@@ -12,7 +12,7 @@ use crate::error::CompileError;
 pub enum Purpose {
     /// To answer a query at points.
     Answers(Query),
-    /// To answer with field and gradient where the gradient is not finite otherwise.
+    /// To answer again at those points where the gradient of the usual program is not finite.
     Guarded,
     /// To enclose the field in boxes.
     Ranges,
@@ -47,9 +47,9 @@ pub fn optimise(
     finish(run(function, passes(purpose), observer)?)
 }
 
-/// Straight code for a lowered function and its tables, if it is worth it: made of what the purpose's own
-/// passes make of the function, so that answers have the bits that they have without it. What was told apart
-/// in straight code for other numbers stays apart.
+/// Straight code for a lowered function and its tables, if it is worth it. The purpose's first passes run
+/// before, so that the bits are those of the program by rows. With `before`, numbers that differed there keep
+/// columns of their own, so that an edit back and forth fits.
 ///
 /// # Errors
 /// Those of [`optimise`].
@@ -64,7 +64,7 @@ pub fn straighten(
     let function = if first.is_empty() {
         function
     } else {
-        // Most functions are told to be none for straight code without these passes.
+        // Asked once before these passes too: that rules out most functions, and saves the passes.
         if before.is_none() && Straight::new(function, tables).is_none() {
             return Ok(None);
         }

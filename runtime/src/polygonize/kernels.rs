@@ -11,7 +11,7 @@ use crate::mesh::{Field, Work};
 use crate::prune::{PruneCounters, Pruner, Region};
 use crate::region::{Box3, Divisible, Range};
 
-/// The four kernels of a mesh.
+/// What a mesh asks: a pruner, and three evaluators for regions.
 pub(super) struct Kernels {
     pruner: Pruner,
     field: Evaluator,
@@ -29,7 +29,7 @@ impl Kernels {
         Ok(Self { pruner: compiled.pruner()?, field: field?, gradient: gradient?, all: all? })
     }
 
-    /// What runs them.
+    /// What runs the field; the others may have fallen back to the interpreter.
     pub(super) fn engine(&self) -> Engine {
         self.field.engine()
     }

@@ -3,9 +3,9 @@
 //! ```text
 //! ranges:  one call of the interval kernel, boxes as lanes, with the rows of the region around them
 //! narrow:  for each table, row by row: the boxes that the row's support reaches              (cull)
-//!          operands that do not decide: the larger of a union wins wherever the other is      (decide)
-//!          smaller in the whole box; formulas that are rows are run one by one for that
-//!          leave the others out, by the rule of the operator                                  (rule)
+//!          operands of a union below its field in the whole box cannot win: left out (an intersection: above);
+//!          formulas that are rows are run one by one to find that out                         (decide)
+//!          the rule of the operator says which of the zero rows may go                        (rule)
 //! ```
 //!
 //! A selection is right if evaluation with it gives, at every point of its box, the same bits as evaluation
@@ -47,7 +47,8 @@ use decide::Alone;
 use program::RangeProgram;
 use ranges::{Probes, Ranges};
 
-/// The rows of a model that run in a box, for each table. Every evaluator of the model takes a region
+/// A box, and the rows of a model that run in it, for each table. A [`Pruner`] makes it
+/// ([`Divisible::region`]). Every evaluator of the model takes a region
 /// ([`Evaluator::eval_region`](crate::Evaluator::eval_region)).
 #[derive(Clone, Debug)]
 pub struct Region {

@@ -10,7 +10,7 @@ use crate::error::CompileError;
 use crate::kernel::{Bound, Kernel, Purpose};
 use crate::program::Program;
 
-/// A program of ranges, and what there is to know about who leaves rows out.
+/// The range program of a model, and what one has to know to leave its rows out.
 pub(crate) struct RangeProgram {
     pub(super) bound: Bound,
     pub(super) info: PruneInfo,

@@ -3,7 +3,8 @@
 use jbt_lower::prune_info::Rule;
 
 /// Turns the rows that reach boxes into the rows to keep. `masks` has a byte for each active row of a table,
-/// with a bit for each box that the row reaches; `starts` are the starts of the selection.
+/// with a bit for each box that the row reaches (a row without the bit is zero in the box); `starts` are the
+/// starts of the selection.
 pub(super) fn apply(rule: Rule, starts: &[u32], masks: &mut [u8], all: u8) {
     match rule {
         // A zero adds nothing.

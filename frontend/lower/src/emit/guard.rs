@@ -5,9 +5,10 @@
 //!                                                                                               else: the field is `start`
 //! ```
 //!
-//! What a guard starts with never decides: 0 is neutral for sums, blends and unions without negative
-//! operands, the lowest or the highest number for the others. It is finite, because a range with an infinite
-//! end says nothing.
+//! What a guard starts with is what the operand counts as without its row. For folds, steps and unions
+//! without negative operands it is 0: the operand is 0 there, or loses (a product and a blend below zero
+//! become 0, as with the row). For other choices and the left side of a difference it is the lowest or
+//! highest number, which never wins. It is finite, because a range with an infinite end says nothing.
 
 use jbt_ir::{Domain, FoldKind, Rule, Value};
 

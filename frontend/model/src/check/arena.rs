@@ -22,7 +22,8 @@ pub struct CheckedNode {
     pub kind: NodeKind,
     /// Its children, in order. They come before it in the arena.
     pub children: Children,
-    /// Where it stands in its source text.
+    /// Where it stands in its source text: a primitive from its name to `}`, a node with children its words
+    /// before the block. Errors of the check about any of its numbers have this place.
     pub span: Option<Span>,
 }
 

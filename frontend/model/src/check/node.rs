@@ -98,6 +98,7 @@ fn check_primitive(report: &mut Report, span: Option<Span>, leaf: &Primitive) {
         report.add(|| Diagnostic { span, ..fault });
     }
     check_falloff(report, span, &leaf.falloff);
+    // The support radius. Of a `surface_radius` it is derived, and the message has the derived number.
     check_number(report, span, "the radius", leaf.radius, limits::MIN_LENGTH);
     check_number(report, span, "the strength", leaf.strength, f64::NEG_INFINITY);
 }

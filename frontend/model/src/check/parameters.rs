@@ -187,7 +187,8 @@ impl CheckedTree {
         self.dependence.affected(&self.parameters, &mut moved)
     }
 
-    /// The unevaluated form of a node, if one of its numbers depends on a parameter.
+    /// What a node was written as, if it can change: a number of it depends on a parameter, or it asks for an
+    /// iso-value that does. `None`: no parameter changes the node.
     #[must_use]
     pub fn written(&self, id: NodeId) -> Option<&Written> {
         self.dependence.written(id).map(|written| &**written)

@@ -60,6 +60,7 @@ impl<T: Fold> Plain<Folds> for T {
     fn extent(self, children: &[Extent], _: f64) -> Extent {
         let any = Extent::any(children);
         let signed = !any.negative.is_empty() && !Fold::is_non_negative(self, false);
+        // To `absorbs` it does not matter whether numbers depend on parameters.
         if T::absorbs(self.code(true)) {
             // One that is negative is enough, wherever all are.
             let support = Extent::all(children).support;
@@ -149,7 +150,7 @@ impl Plain<Differences> for Difference {
 
 /// The field of a step's children, and how much of the attributes comes from each: nothing at all where the
 /// field is not positive. A side without weight is not there, nor is one whose own sides had none.
-fn fold<T: Step>(step: T, fields: &[f64], iso: f64) -> (f64, Vec<f64>) {
+fn steps<T: Step>(step: T, fields: &[f64], iso: f64) -> (f64, Vec<f64>) {
     let mut field = fields[0];
     let mut weights = vec![1.0];
     for &right in &fields[1..] {
@@ -174,11 +175,11 @@ fn fold<T: Step>(step: T, fields: &[f64], iso: f64) -> (f64, Vec<f64>) {
 
 impl<T: Step> Plain<Steps> for T {
     fn field(self, fields: &[f64], iso: f64) -> f64 {
-        fold(self, fields, iso).0
+        steps(self, fields, iso).0
     }
 
     fn weights(self, fields: &[f64], iso: f64) -> Vec<f64> {
-        fold(self, fields, iso).1
+        steps(self, fields, iso).1
     }
 
     fn kink_distance(self, fields: &[f64], iso: f64) -> f64 {

@@ -8,6 +8,9 @@
 //! | map | one | [`Unary`] |
 //!
 //! What operators of one form have in common is made of these, in [`form`](super::form).
+//!
+//! *Over the ops* means: written with the methods of [`Domain`]. Lowering runs such a formula on a
+//! `jbt_ir::FunctionBuilder`, where each method writes an instruction; nothing is computed yet.
 
 use std::fmt::Debug;
 use std::hash::Hash;
@@ -44,8 +47,8 @@ pub trait Operator: Member + Copy {
         None
     }
 
-    /// The operator with this value of a number that depends on a parameter. Passing by a value must not
-    /// exchange one operator for another.
+    /// The operator, where a number of it depends on a parameter. No value of the parameter may turn it into
+    /// another operator (`ricci` at 1 into `sum`).
     fn general(self) -> Self {
         self
     }
@@ -54,9 +57,10 @@ pub trait Operator: Member + Copy {
 /// What the operands of an operator have in common, over the ops, and its numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct Setting<'a, R> {
-    /// The columns.
+    /// Its numbers: columns of the row in which the operator stands, not of the rows of its operands.
     pub row: &'a [R],
-    /// Twice the iso-value.
+    /// Twice the iso-value: a complement is `2 iso - field`, the same surface with inside and outside
+    /// exchanged.
     pub iso2: R,
     /// Whether no operand can be negative.
     pub non_negative: bool,
@@ -90,7 +94,8 @@ pub struct Finished<R> {
 pub trait Fold: Operator {
     /// What of it selects code.
     type Code: Copy + Eq + Hash + Debug;
-    /// Whether a single child answers as if the operator were not there.
+    /// Whether a single child answers as if the operator were not there. Not by default, as for sums and
+    /// blends: where the field is 0 they give default attributes.
     const PASSES_SINGLE: bool = false;
     /// Whether slopes of the field are not bounded by the sum of those of the operands.
     const IS_STEEP: bool = false;
@@ -105,7 +110,8 @@ pub trait Fold: Operator {
     /// How much each child contributes, `max(0, f_i dF/df_i)` up to a common factor.
     fn weights(self, fields: &[f64], iso: f64) -> Vec<f64>;
 
-    /// How far the fields are from where another formula holds; infinity if nothing is decided.
+    /// How far the fields are from where another formula holds; infinity if nothing is decided. For tests:
+    /// the oracle has a measure of its own for folds (`decide` in `walk.rs`).
     fn kink_distance(self, _fields: &[f64]) -> f64 {
         f64::INFINITY
     }
@@ -113,8 +119,8 @@ pub trait Fold: Operator {
     /// Whether the field can never be negative, if those of some children can (`false`) or of none (`true`).
     fn is_non_negative(self, children: bool) -> bool;
 
-    /// Whether operands of one that is the operand of an equal one may be that one's, where no such operand
-    /// can be negative, or some can.
+    /// Whether an operator that is an operand of an equal one may hand its own operands on to that one.
+    /// `non_negative`: none of the operands handed on can be negative.
     fn flattens(self, _non_negative: bool) -> bool {
         false
     }

@@ -60,7 +60,7 @@ use member::{Choice, Fold, Operator, Step, Unary};
 /// What an operator is to the compiler: whatever selects code, without numbers.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Form {
-    /// Any number of operands, which may be rows.
+    /// A fold, a choice or a step: any number of operands, which may be rows of a fold of the IR.
     Reduce(ReduceCode),
     /// The first child without the others.
     Difference,
@@ -211,8 +211,8 @@ macro_rules! operators {
                 }
             }
 
-            /// Whether operands of one that is the operand of an equal one may be that one's, where no such
-            /// operand can be negative, or some can.
+            /// Whether an operator that is an operand of an equal one may hand its own operands on to that
+            /// one. `non_negative`: none of the operands handed on can be negative.
             pub fn flattens(self, non_negative: bool) -> bool {
                 match self {
                     $( Self::$fold(it) => it.flattens(non_negative), )+

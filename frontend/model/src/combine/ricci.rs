@@ -15,12 +15,12 @@
 //! ```
 //!
 //! m begins at a number so small that an operand below it counts for nothing; so it is never 0, and no
-//! quotient needs a guard. F does not depend on m, so m is held: its tangent would cancel. The 1 is `(f /
-//! f)^n` and has the tangent `n f' / f`.
+//! quotient needs a guard. F does not depend on m, so m is held (`stop_gradient`): it has no tangent. Where f
+//! takes over, m = f, and the 1 that is added is `(f / m)^n`: it needs the tangent `n f' / m` ([`unit`]).
 //!
-//! A negative exponent exchanges larger and smaller: with p = -n, m is the smallest so far, which begins at a
-//! number above all fields, a *smaller* operand rescales, and `F = m / S^(1/p)`. Quotients are those of the
-//! smaller by the larger again; where that is 0, so is F.
+//! A negative exponent exchanges larger and smaller. With its magnitude `e = -n`, m is the smallest so far,
+//! which begins above all fields. A *smaller* operand rescales, `p = (smaller / larger)^e`, and in the end
+//! `F = m / S^(1/e)`. Where the smallest is 0, so is F.
 
 use jbt_ir::{Domain, limits};
 
@@ -52,7 +52,8 @@ const MOST_SQUARE_ROOTS: u32 = 16;
 /// What an exponent is as code.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct RicciCode {
-    /// An integer exponent is code: a chain of products. Any other is a number of the row.
+    /// An integer exponent is code: a chain of products. Any other is a number of the row in which the blend
+    /// stands.
     integer: Option<u32>,
     /// Whether the exponent is negative; otherwise these are magnitudes.
     negative: bool,
@@ -66,7 +67,9 @@ impl RicciCode {
 }
 
 impl Ricci {
-    /// Whether it is the plain sum.
+    /// Whether it is the plain sum. Lowering puts `Sum` in its place
+    /// ([`Combinator::simplest`](super::Combinator::simplest)), so `meet` never has this exponent; the plain
+    /// formulas here do.
     pub(super) const fn is_sum(self) -> bool {
         self.exponent == 1.0
     }
@@ -143,6 +146,7 @@ impl Fold for Ricci {
         children || !self.is_sum()
     }
 
+    /// f^n of an inner blend is the sum of f_i^n of its operands, so field and shares stay.
     fn flattens(self, _: bool) -> bool {
         true
     }
@@ -180,11 +184,13 @@ impl Fold for Ricci {
         let (extreme, sum) = (so_far[0], so_far[1]);
         let (zero, one) = (d.constant(0.0), d.constant(1.0));
         let field = if setting.non_negative { operand } else { d.max(operand, zero) };
+        // Whether the operand is the new extreme, that extreme, and the smaller by the larger.
         let (takes, scale, ratio) = if negative {
             let takes = d.lt(field, extreme);
             let scale = d.min(field, extreme);
             let scale = d.stop_gradient(scale);
-            // In this order: of equals the operand, whose tangent counts. Two zeros have the quotient 0.
+            // max and min give their second operand if both are equal: the field, for the extreme has no
+            // tangent. Two zeros have the quotient 0.
             let (larger, floor) = (d.max(extreme, field), d.constant(FLOOR));
             let larger = d.max(larger, floor);
             (takes, scale, d.div(scale, larger))
@@ -192,7 +198,7 @@ impl Fold for Ricci {
             let takes = d.lt(extreme, field);
             let scale = d.max(field, extreme);
             let scale = d.stop_gradient(scale);
-            // In this order: of equals the operand, whose tangent counts.
+            // The field if both are equal, as above.
             let smaller = d.min(extreme, field);
             (takes, scale, d.div(smaller, scale))
         };
@@ -201,6 +207,7 @@ impl Fold for Ricci {
         let rescaled = d.fma(sum, power, first);
         let added = d.add(sum, power);
         let sum = d.select(takes, rescaled, added);
+        // An operand weighs what it adds to S; where it takes over, older weights shrink by p, as S does.
         let (rescale, weight) = (d.select(takes, power, one), d.select(takes, one, power));
         Met { so_far: vec![scale, sum], weight: Some(weight), rescale: Some(rescale) }
     }
@@ -229,6 +236,7 @@ impl Fold for Ricci {
             Exponent::General(_, inverse) => d.pow(sum, inverse),
         };
         let field = if code.negative { d.div(extreme, root) } else { d.mul(extreme, root) };
+        // Below zero, S is positive even where an operand is 0 and F is 0: then there are no attributes.
         Finished { field, total: sum, seen: if code.negative { field } else { sum } }
     }
 }
@@ -250,10 +258,11 @@ fn unit<D: Domain>(
     let inverse = d.div(one, divisor);
     let quotient = d.mul(field, inverse);
     let held = d.stop_gradient(quotient);
-    let still = if negative { d.sub(held, quotient) } else { d.sub(quotient, held) };
+    // 0, with the tangent f' / m: the quotient moves and what is held does not.
+    let nothing = if negative { d.sub(held, quotient) } else { d.sub(quotient, held) };
     let n = match exponent {
         Exponent::Integer(n) => d.constant(n as f32),
         Exponent::General(n, _) => n,
     };
-    d.fma(n, still, one)
+    d.fma(n, nothing, one)
 }

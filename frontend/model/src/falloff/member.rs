@@ -4,7 +4,8 @@ use jbt_ir::Domain;
 
 use crate::member::Member;
 
-/// How near a point is to the skeleton, over the ops: the argument of falloffs.
+/// How near a point is to the skeleton, over the ops: the argument of falloffs. `s = d^2 / R^2`, with the
+/// distance d and the support radius R.
 #[derive(Clone, Copy, Debug)]
 pub struct Nearness<R> {
     /// `max(1 - s, 0)`: exactly 0 from the support radius outwards, precise near the support radius.
@@ -22,7 +23,7 @@ impl<R: Copy> Nearness<R> {
         Self { u: d.max(left, zero), square, slope }
     }
 
-    /// `min(s, 1)`, precise near the skeleton. Where it has a slope, u is above 0.
+    /// `min(s, 1)`, precise near the skeleton. Its derivative is not 0 only where u is above 0.
     pub(super) fn square<D: Domain<Real = R>>(self, d: &mut D) -> R {
         let (one, back) = (d.constant(1.0), d.mul(self.square, self.slope));
         let s = d.neg(back);

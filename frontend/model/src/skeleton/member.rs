@@ -11,6 +11,9 @@ use crate::member::Member;
 
 /// What a skeleton states about itself.
 ///
+/// *Over the ops* means for any [`Domain`]: the formula is written once, and lowering runs it on a
+/// `FunctionBuilder`, which makes an instruction of each op.
+///
 /// Coordinates are those of the primitive's own space. The distance is Euclidean unless
 /// [`metric`](Self::metric) says otherwise. Scaling the skeleton and the point by a factor scales the
 /// distance by the same factor.

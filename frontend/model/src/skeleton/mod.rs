@@ -1,8 +1,8 @@
 //! Skeletons: the sets that primitives measure their distance to. One file per member, one list.
 //!
-//! A file has the same parts in the same order: what the skeleton is, its parameters, its text fields, its
-//! bounds, the plain formula in f64 (the oracle), its pose and the same formula over [`Domain`] (the
-//! compiler), tests. To add one: write its file, add its line to the list below.
+//! A file has the same parts in the same order: what the skeleton is, its parameters, its bounds, the plain
+//! formula in f64 (the oracle), its pose, its columns, the same formula over [`Domain`] (the compiler),
+//! tests. To add one: write its file, add its line to the list below.
 //!
 //! The plain formula sees the skeleton in place. The compiler's form sees it in its **pose**: about the
 //! origin, along the z axis. A row brings the point there with one matrix, which most rows need anyway, and

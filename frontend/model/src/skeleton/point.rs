@@ -11,7 +11,7 @@ member! {
     /// A point. Its uv is longitude about the z axis, from x, and latitude, from -z to z.
     #[derive(Clone, Copy, PartialEq, Debug)]
     pub struct Point = "point" {
-        /// Where it is.
+        /// Where it is: `at`, and not `center` as of figures that have a size.
         pub at: DVec3 [Position] = Vector([0.0; 3]),
     }
 }
