@@ -193,13 +193,14 @@ impl Compiled {
 
     /// The program for regions that belongs to one of straight code, which cannot leave rows out. If the
     /// wished engine declines it, the interpreter runs it.
-    pub(crate) fn rows_of<'a>(&self, straight: &'a AnswerProgram) -> &'a Arc<AnswerProgram> {
-        straight.by_rows.get_or_init(|| {
+    pub(crate) fn regional_twin<'a>(&self, straight: &'a AnswerProgram) -> &'a Arc<AnswerProgram> {
+        straight.for_regions.get_or_init(|| {
             let wished = self.answers(Scope::Regions, straight.query).cloned();
             wished.unwrap_or_else(|_| {
                 // A program that is small as straight code is within all limits.
                 let lanes = self.0.compiler.clone().on_engine(Engine::Lanes);
-                self.by_rows(&lanes, straight, None).expect("whatever is within the limits is interpreted")
+                self.unstraightened(&lanes, straight, None)
+                    .expect("whatever is within the limits is interpreted")
             })
         })
     }
@@ -242,7 +243,7 @@ impl Compiled {
             Scope::Regions => self.slot(scope, query).get_or_make(|earlier| {
                 let straight = self.slot(Scope::Anywhere, query).present();
                 match straight.filter(|program| program.is_straight()) {
-                    Some(straight) => self.by_rows(&self.0.compiler, straight, earlier),
+                    Some(straight) => self.unstraightened(&self.0.compiler, straight, earlier),
                     None => self.program(query, lowered()?, earlier),
                 }
             }),
@@ -282,7 +283,7 @@ impl Compiled {
     }
 
     /// The program for regions, of what straight code was made of.
-    fn by_rows(
+    fn unstraightened(
         &self,
         compiler: &Compiler,
         straight: &AnswerProgram,
