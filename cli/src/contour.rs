@@ -2,7 +2,9 @@
 
 use std::time::{Duration, Instant};
 
-use jbt::contour::{Contour, Detail, ImageDetail, Level, Mode, Rectangle, SliceError, Slicer, circles};
+use jbt::contour::{
+    Contour, ContourLevel, Detail, ImageDetail, ImageMode, Rectangle, SliceError, Slicer, circles,
+};
 use jbt::diagnostic::escape;
 use jbt::export::svg::{Paint, Style, write_svg};
 use jbt::export::write_png;
@@ -110,13 +112,13 @@ fn attribute(arguments: &ContourArguments) -> &str {
 }
 
 /// The mode of an image, and whether it needs attributes.
-fn mode(arguments: &ContourArguments) -> (Mode, bool) {
+fn mode(arguments: &ContourArguments) -> (ImageMode, bool) {
     match arguments.mode.unwrap_or(ModeName::Field) {
-        ModeName::Inside => (Mode::Inside, false),
-        ModeName::Field => (Mode::Field, false),
-        ModeName::Grey => (Mode::Grey, false),
-        ModeName::Height => (Mode::Height, false),
-        ModeName::Attribute => (Mode::Attribute(attribute(arguments).to_owned()), true),
+        ModeName::Inside => (ImageMode::Inside, false),
+        ModeName::Field => (ImageMode::Field, false),
+        ModeName::Grey => (ImageMode::Grey, false),
+        ModeName::Height => (ImageMode::Height, false),
+        ModeName::Attribute => (ImageMode::Attribute(attribute(arguments).to_owned()), true),
     }
 }
 
@@ -302,7 +304,7 @@ fn region_text(rectangle: &Rectangle) -> String {
 }
 
 fn contour_json(contour: &Contour) -> Value {
-    let level = |level: &Level| {
+    let level = |level: &ContourLevel| {
         json!({
             "depth": level.depth,
             "cells": level.cells,

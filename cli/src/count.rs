@@ -20,7 +20,7 @@ use std::fmt::Write as _;
 
 use jbt::diagnostic::Source;
 use jbt::mesh::Lattice;
-use jbt::statistics::{PerPoint, Statistics, Supports, walks};
+use jbt::statistics::{PerPoint, Statistics, SupportCounts, walks};
 use jbt::tree::NodeKind;
 use jbt::{
     AnswerKind, Box3, CheckedTree, Compiled, Compiler, Engine, MeshCounters, ModelOrigin, Polygonize,
@@ -109,7 +109,7 @@ fn supports(
     statistics: &Statistics<'_>,
     lattice: &Lattice,
     quiet: bool,
-) -> Result<Supports, Failure> {
+) -> Result<SupportCounts, Failure> {
     let mut progress = Progress::new("counting", quiet);
     let counted = statistics.supports(&Compiler::new(), lattice).on_progress(|part| progress.set(part)).run();
     counted.map_err(|error| scene.failure(&error))
@@ -212,7 +212,7 @@ struct CountReport {
     instances: u64,
     /// Evaluations that the field of one point takes.
     evaluations: u64,
-    lattice: Option<(Lattice, Supports)>,
+    lattice: Option<(Lattice, SupportCounts)>,
     /// What a mesh over the lattice takes.
     mesh: Option<MeshCounters>,
     warnings: Vec<String>,

@@ -44,7 +44,7 @@ pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(),
         warnings.iter().for_each(|warning| warn(warning));
     }
     warnings.splice(0..0, scene.warnings);
-    let report = MeshReport {
+    let report = MeshSummary {
         made: &made,
         format: destination.kind,
         options,
@@ -112,7 +112,7 @@ fn thin_warning(thin: &ThinReport) -> Option<String> {
 }
 
 /// What is told about a mesh.
-struct MeshReport<'a> {
+struct MeshSummary<'a> {
     made: &'a Polygonized,
     format: Format,
     options: ExportOptions,
@@ -120,7 +120,7 @@ struct MeshReport<'a> {
     total: Duration,
 }
 
-impl MeshReport<'_> {
+impl MeshSummary<'_> {
     /// For machines.
     fn json(&self) -> serde_json::Value {
         let Polygonized { mesh, report, lattice, counters, .. } = self.made;

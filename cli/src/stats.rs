@@ -11,7 +11,7 @@ use std::fmt::Write as _;
 use std::time::{Duration, Instant};
 
 use jbt::diagnostic::escape;
-use jbt::solid::{Level, Measure, Measures, Solid, TightBounds};
+use jbt::solid::{Measure, MeasureLevel, Measures, Solid, TightBounds};
 use jbt::tree::Bounds;
 use jbt::{Box3, Compiler, Fineness, ModelOrigin, Polygonize};
 use serde_json::{Value, json};
@@ -177,7 +177,7 @@ impl StatsReport<'_> {
         let boxes = self.measures.boxes();
         let [solid, air, surface] = self.shares();
         let [points, evaluations, ranges, interval_evaluations] = self.evaluations();
-        let level = |(depth, level): (usize, &Level)| {
+        let level = |(depth, level): (usize, &MeasureLevel)| {
             json!({
                 "depth": depth,
                 "splits": level.splits, "solid": level.solid, "air": level.air, "surface": level.surface,
@@ -214,7 +214,7 @@ impl StatsReport<'_> {
     }
 }
 
-fn write_level(out: &mut String, depth: &str, level: &Level) {
+fn write_level(out: &mut String, depth: &str, level: &MeasureLevel) {
     let [splits, solid, air, surface] = [level.splits, level.solid, level.air, level.surface].map(grouped);
     let _ = write!(out, "\n{depth:<8}{splits:>12}{solid:>12}{air:>12}{surface:>12}");
 }

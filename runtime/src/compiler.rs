@@ -19,7 +19,7 @@ pub struct Compiler {
     wish: Wish,
     /// Whether rows stay rows: see [`for_edits`](Self::for_edits).
     by_rows: bool,
-    memory: Arc<Memory>,
+    memory: Arc<CompilerMemory>,
 }
 
 /// What a compiler has made so far. A snapshot: see [`Compiler::counters`].
@@ -35,7 +35,7 @@ pub struct CompileCounters {
 
 /// What the clones of a compiler share.
 #[derive(Default)]
-struct Memory {
+struct CompilerMemory {
     known: Mutex<Vec<Known>>,
     kernels: AtomicU64,
     bound: AtomicU64,

@@ -10,7 +10,7 @@ use crate::counter::walks;
 use crate::kernel::{Bound, Kernel};
 
 /// A program that was made for a model.
-pub(crate) trait Program {
+pub(crate) trait ModelProgram {
     /// What runs it: another model of the same shape takes it too.
     fn kernel(&self) -> &Arc<Kernel>;
 }
@@ -45,7 +45,7 @@ impl AnswerProgram {
     }
 }
 
-impl Program for AnswerProgram {
+impl ModelProgram for AnswerProgram {
     fn kernel(&self) -> &Arc<Kernel> {
         &self.bound.kernel
     }

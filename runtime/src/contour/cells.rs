@@ -22,12 +22,12 @@ use crate::prune::Region;
 /// at its upper end. One that leads to the lattice from beyond it has 0 along its axis, and one that leads
 /// out of it has one more than the last point.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
-pub(super) struct Key(u64);
+pub(super) struct EdgeKey(u64);
 
 /// Bits of a row or a column: from 0 to 2^20 + 1.
 const BITS: u32 = 21;
 
-impl Key {
+impl EdgeKey {
     fn new(axis: usize, column: u32, row: u32) -> Self {
         Self((axis as u64) << (2 * BITS) | u64::from(row) << BITS | u64::from(column))
     }
@@ -50,8 +50,8 @@ impl Key {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Segment {
     /// The edges that it begins and ends at.
-    pub(super) from: Key,
-    pub(super) to: Key,
+    pub(super) from: EdgeKey,
+    pub(super) to: EdgeKey,
     /// The vertex where it begins.
     pub(super) place: [f32; 2],
     /// Whether the point at the lower end of the edge where it begins is inside.
@@ -68,7 +68,7 @@ pub(super) struct Segments {
 }
 
 /// A block of cells with the field at its points.
-pub(super) struct Block<'a> {
+pub(super) struct CellBlock<'a> {
     slicer: &'a Slicer,
     grid: &'a Grid,
     /// The first and the last point.
@@ -78,12 +78,12 @@ pub(super) struct Block<'a> {
 }
 
 /// A segment before its vertex is known.
-struct Draft {
+struct SegmentDraft {
     segment: Segment,
     edge: Option<Edge>,
 }
 
-impl<'a> Block<'a> {
+impl<'a> CellBlock<'a> {
     /// Evaluates the points of a square.
     pub(super) fn new(
         slicer: &'a Slicer,
@@ -172,16 +172,16 @@ impl<'a> Block<'a> {
     }
 
     /// The segments of a cell.
-    fn draft(&self, cell: [u32; 2], inside: [bool; 4], join: bool, drafts: &mut Vec<Draft>) {
+    fn draft(&self, cell: [u32; 2], inside: [bool; 4], join: bool, drafts: &mut Vec<SegmentDraft>) {
         let corners = Self::corners(cell);
         let [i, j] = cell;
         // An edge at which a segment begins or ends has a point of the lattice, so nothing wraps here that is
         // used.
         let key = |edge: usize| match edge {
-            0 => Key::new(0, i, j.wrapping_sub(1)),
-            1 => Key::new(1, i, j),
-            2 => Key::new(0, i, j),
-            _ => Key::new(1, i.wrapping_sub(1), j),
+            0 => EdgeKey::new(0, i, j.wrapping_sub(1)),
+            1 => EdgeKey::new(1, i, j),
+            2 => EdgeKey::new(0, i, j),
+            _ => EdgeKey::new(1, i.wrapping_sub(1), j),
         };
         let ends = |edge: usize| inside[edge] != inside[(edge + 1) % 4] && !inside[edge];
         for edge in (0..4).filter(|&edge| inside[edge] && !inside[(edge + 1) % 4]) {
@@ -194,7 +194,7 @@ impl<'a> Block<'a> {
             }
             let (near, far) = (corners[edge], corners[(edge + 1) % 4]);
             let (crossing, place) = self.crossing(edge % 2, near, far);
-            drafts.push(Draft {
+            drafts.push(SegmentDraft {
                 segment: Segment {
                     from: key(edge),
                     to: key(to),
@@ -226,7 +226,7 @@ impl<'a> Block<'a> {
     }
 
     /// Finds the vertices, and what they have.
-    fn finish(&self, region: &Region, drafts: &[Draft]) -> Result<Segments, EvalError> {
+    fn finish(&self, region: &Region, drafts: &[SegmentDraft]) -> Result<Segments, EvalError> {
         let edges: Vec<Edge> = drafts.iter().filter_map(|draft| draft.edge).collect();
         let mut field =
             |points: [&[f32]; 2], values: &mut Vec<f32>| self.slicer.values(region, points, values);
@@ -250,15 +250,15 @@ pub(super) fn border(
     let [last_u, last_v] = grid.points().map(|points| points as u32 - 1);
     let ([a, b], [c, d]) = (square.first, square.end);
     let mut list = Vec::new();
-    let mut push = |from: Key, to: Key, [i, j]: [u32; 2], low_inside: bool| {
+    let mut push = |from: EdgeKey, to: EdgeKey, [i, j]: [u32; 2], low_inside: bool| {
         let place = [grid.axes[0][i as usize], grid.axes[1][j as usize]];
         list.push(Segment { from, to, place, low_inside, border: true });
     };
     // Edges that lead out of the lattice: to the left, below, to the right, above.
-    let left = |j: u32| Key::new(0, 0, j);
-    let below = |i: u32| Key::new(1, i, 0);
-    let right = |j: u32| Key::new(0, last_u + 1, j);
-    let above = |i: u32| Key::new(1, i, last_v + 1);
+    let left = |j: u32| EdgeKey::new(0, 0, j);
+    let below = |i: u32| EdgeKey::new(1, i, 0);
+    let right = |j: u32| EdgeKey::new(0, last_u + 1, j);
+    let above = |i: u32| EdgeKey::new(1, i, last_v + 1);
     let sides = [a == 0, b == 0, c == last_u, d == last_v];
     if sides[1] {
         push(below(a), below(c), [a, b], false);

@@ -94,7 +94,7 @@ pub struct DividedSquare {
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
-pub struct Level {
+pub struct ContourLevel {
     /// How often the side of the whole was halved to get theirs.
     pub depth: u8,
     /// Cells along their sides.
@@ -111,7 +111,7 @@ pub struct Level {
     pub evaluated: u64,
 }
 
-impl Level {
+impl ContourLevel {
     /// All squares of this size.
     #[must_use]
     pub fn squares(&self) -> u64 {
@@ -120,7 +120,7 @@ impl Level {
 }
 
 /// What is made of squares.
-pub(super) trait Work: Sync {
+pub(super) trait SquareWork: Sync {
     /// What a square leaves.
     type Piece: Send;
 
@@ -163,7 +163,7 @@ pub(super) struct Plan {
 pub(super) struct Divided<P> {
     pub(super) pieces: Vec<P>,
     /// The squares by size, largest first, without sizes of which there are none.
-    pub(super) levels: Vec<Level>,
+    pub(super) levels: Vec<ContourLevel>,
     pub(super) squares: Vec<(Square, u8, Fate)>,
 }
 
@@ -183,9 +183,9 @@ impl<P> Divided<P> {
 
 /// Counts of squares of one size, by fate.
 #[derive(Default)]
-struct Tally([AtomicU64; 5]);
+struct FateCounts([AtomicU64; 5]);
 
-impl Tally {
+impl FateCounts {
     fn of(&self, fate: Fate) -> &AtomicU64 {
         &self.0[match fate {
             Fate::Divided => 0,
@@ -196,9 +196,9 @@ impl Tally {
         }]
     }
 
-    fn level(&self, depth: usize, cells: u32) -> Level {
+    fn level(&self, depth: usize, cells: u32) -> ContourLevel {
         let count = |fate| self.of(fate).load(Ordering::Relaxed);
-        Level {
+        ContourLevel {
             depth: depth as u8,
             cells,
             divided: count(Fate::Divided),
@@ -210,7 +210,7 @@ impl Tally {
     }
 }
 
-struct Run<'a, 'hook, W> {
+struct SquareDivider<'a, 'hook, W> {
     pruner: &'a Pruner,
     work: &'a W,
     plan: Plan,
@@ -218,14 +218,14 @@ struct Run<'a, 'hook, W> {
     depth: u32,
     progress: &'a Progress<'hook>,
     leaves: AtomicU64,
-    tallies: [Tally; LEVELS],
+    tallies: [FateCounts; LEVELS],
 }
 
 /// The side, in leaves, of the smallest squares whose parts are visited in parallel.
 const PARALLEL: u32 = 2;
 
 /// Divides all cells, on the threads of the rayon pool in which this is called.
-pub(super) fn divide<W: Work>(
+pub(super) fn divide<W: SquareWork>(
     pruner: &Pruner,
     work: &W,
     plan: Plan,
@@ -235,7 +235,7 @@ pub(super) fn divide<W: Work>(
     let size = most.next_power_of_two().max(plan.leaf);
     let depth = size.ilog2();
     let (leaves, tallies) = (AtomicU64::new(0), Default::default());
-    let run = Run { pruner, work, plan, depth, progress, leaves, tallies };
+    let run = SquareDivider { pruner, work, plan, depth, progress, leaves, tallies };
     let whole = Square { first: [0; 2], end: plan.cells, size };
     let mut divided = run.parts(&pruner.everywhere(), &[whole])?;
     let levels = run.tallies.iter().enumerate().take(1 + depth as usize);
@@ -244,7 +244,7 @@ pub(super) fn divide<W: Work>(
     Ok(divided)
 }
 
-impl<W: Work> Run<'_, '_, W> {
+impl<W: SquareWork> SquareDivider<'_, '_, W> {
     fn depth(&self, square: &Square) -> usize {
         (self.depth - square.size.ilog2()) as usize
     }

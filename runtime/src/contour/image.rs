@@ -11,9 +11,9 @@
 
 use jbt_ir::limits::MAX_PIXELS;
 
-use super::divide::{Divided, Plan, Square, Verdict, Work, divide};
+use super::divide::{Divided, Plan, Square, SquareWork, Verdict, divide};
 use super::grid::{Grid, Rectangle};
-use super::raster::{Raster, Tile};
+use super::raster::{Raster, RasterTile};
 use super::shade;
 use super::slicer::{SliceError, Slicer};
 use crate::error::EvalError;
@@ -71,7 +71,7 @@ impl Default for ImageDetail {
 /// What an image shows.
 #[derive(Clone, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Mode {
+pub enum ImageMode {
     /// White inside, black outside.
     Inside,
     /// The field, from blue outside over white at the iso-value to red inside, each as far as the field goes
@@ -144,7 +144,7 @@ impl<'a> Canvas<'a> {
         })
     }
 
-    fn raster<T: Copy>(&self, divided: &Divided<Tile<T>>, value: T) -> Raster<T> {
+    fn raster<T: Copy>(&self, divided: &Divided<RasterTile<T>>, value: T) -> Raster<T> {
         let [width, height] = self.pixels();
         let mut raster = Raster::new(width, height, value);
         divided.pieces.iter().for_each(|tile| raster.put(tile));
@@ -152,15 +152,15 @@ impl<'a> Canvas<'a> {
     }
 }
 
-fn tile<T>(square: &Square, values: Vec<T>) -> Option<Tile<T>> {
-    Some(Tile { square: *square, values })
+fn tile<T>(square: &Square, values: Vec<T>) -> Option<RasterTile<T>> {
+    Some(RasterTile { square: *square, values })
 }
 
 /// Which part of each pixel is inside, of 255.
 struct Inside<'a>(Canvas<'a>);
 
-impl Work for Inside<'_> {
-    type Piece = Tile<u8>;
+impl SquareWork for Inside<'_> {
+    type Piece = RasterTile<u8>;
 
     fn bounds(&self, square: &Square) -> Box3 {
         self.0.bounds(square)
@@ -170,7 +170,12 @@ impl Work for Inside<'_> {
         Verdict::of(range, self.0.slicer.iso)
     }
 
-    fn dropped(&self, square: &Square, inside: bool, _: &Region) -> Result<Option<Tile<u8>>, EvalError> {
+    fn dropped(
+        &self,
+        square: &Square,
+        inside: bool,
+        _: &Region,
+    ) -> Result<Option<RasterTile<u8>>, EvalError> {
         Ok(if inside { tile(square, vec![u8::MAX]) } else { None })
     }
 
@@ -178,7 +183,7 @@ impl Work for Inside<'_> {
         self.0.is_cheap(square, region)
     }
 
-    fn leaf(&self, square: &Square, region: &Region) -> Result<(Option<Tile<u8>>, bool), SliceError> {
+    fn leaf(&self, square: &Square, region: &Region) -> Result<(Option<RasterTile<u8>>, bool), SliceError> {
         let [u, v] = self.0.block(square);
         let mut values = Vec::new();
         self.0.slicer.values(region, [&u, &v], &mut values)?;
@@ -198,10 +203,10 @@ impl Work for Inside<'_> {
 }
 
 /// The field in the middle of each pixel.
-struct Values<'a>(Canvas<'a>);
+struct PixelFields<'a>(Canvas<'a>);
 
-impl Work for Values<'_> {
-    type Piece = Tile<f32>;
+impl SquareWork for PixelFields<'_> {
+    type Piece = RasterTile<f32>;
 
     fn bounds(&self, square: &Square) -> Box3 {
         self.0.bounds(square)
@@ -213,7 +218,12 @@ impl Work for Values<'_> {
         if low == high { Verdict::Outside } else { Verdict::Open }
     }
 
-    fn dropped(&self, square: &Square, _: bool, around: &Region) -> Result<Option<Tile<f32>>, EvalError> {
+    fn dropped(
+        &self,
+        square: &Square,
+        _: bool,
+        around: &Region,
+    ) -> Result<Option<RasterTile<f32>>, EvalError> {
         let [u, v] = self.0.block(&Square { end: square.first.map(|pixel| pixel + 1), ..*square });
         let mut values = Vec::new();
         self.0.slicer.values(around, [&u, &v], &mut values)?;
@@ -224,7 +234,7 @@ impl Work for Values<'_> {
         self.0.is_cheap(square, region)
     }
 
-    fn leaf(&self, square: &Square, region: &Region) -> Result<(Option<Tile<f32>>, bool), SliceError> {
+    fn leaf(&self, square: &Square, region: &Region) -> Result<(Option<RasterTile<f32>>, bool), SliceError> {
         let [u, v] = self.0.block(square);
         let mut values = Vec::new();
         self.0.slicer.values(region, [&u, &v], &mut values)?;
@@ -240,8 +250,8 @@ struct Painted<'a> {
     planes: [Option<usize>; 3],
 }
 
-impl Work for Painted<'_> {
-    type Piece = Tile<[f32; 4]>;
+impl SquareWork for Painted<'_> {
+    type Piece = RasterTile<[f32; 4]>;
 
     fn bounds(&self, square: &Square) -> Box3 {
         self.canvas.bounds(square)
@@ -254,7 +264,7 @@ impl Work for Painted<'_> {
         }
     }
 
-    fn dropped(&self, _: &Square, _: bool, _: &Region) -> Result<Option<Tile<[f32; 4]>>, EvalError> {
+    fn dropped(&self, _: &Square, _: bool, _: &Region) -> Result<Option<RasterTile<[f32; 4]>>, EvalError> {
         Ok(None)
     }
 
@@ -262,7 +272,11 @@ impl Work for Painted<'_> {
         self.canvas.is_cheap(square, region)
     }
 
-    fn leaf(&self, square: &Square, region: &Region) -> Result<(Option<Tile<[f32; 4]>>, bool), SliceError> {
+    fn leaf(
+        &self,
+        square: &Square,
+        region: &Region,
+    ) -> Result<(Option<RasterTile<[f32; 4]>>, bool), SliceError> {
         let [u, v] = self.canvas.block(square);
         let mut planes = vec![vec![0.0; u.len()]; self.evaluator.layout().names().len()];
         let mut answers: Vec<&mut [f32]> = planes.iter_mut().map(Vec::as_mut_slice).collect();
@@ -328,7 +342,7 @@ impl Slicer {
         fineness: Fineness,
         hook: Hook<'_>,
     ) -> Result<Raster<f32>, SliceError> {
-        let work = Values(Canvas::new(self, rectangle, &ImageDetail { fineness, samples: 1 })?);
+        let work = PixelFields(Canvas::new(self, rectangle, &ImageDetail { fineness, samples: 1 })?);
         let divided = divide(&self.pruner, &work, work.0.plan(), &Progress::new(hook, SOME))?;
         Ok(work.0.raster(&divided, 0.0))
     }
@@ -359,7 +373,7 @@ impl Slicer {
     pub fn picture(
         &self,
         rectangle: &Rectangle,
-        mode: &Mode,
+        mode: &ImageMode,
         detail: &ImageDetail,
     ) -> Job<'_, Picture, SliceError> {
         let (rectangle, mode, detail) = (*rectangle, mode.clone(), *detail);
@@ -369,16 +383,18 @@ impl Slicer {
     fn picture_hooked(
         &self,
         rectangle: &Rectangle,
-        mode: &Mode,
+        mode: &ImageMode,
         detail: &ImageDetail,
         hook: Hook<'_>,
     ) -> Result<Picture, SliceError> {
         let shade = match mode {
-            Mode::Inside => return Ok(shade::mask(&self.inside_hooked(rectangle, detail, hook)?)),
-            Mode::Attribute(name) => return Ok(shade::paint(&self.painted(rectangle, name, detail, hook)?)),
-            Mode::Field => shade::diverging,
-            Mode::Grey => shade::grey,
-            Mode::Height => shade::relief,
+            ImageMode::Inside => return Ok(shade::mask(&self.inside_hooked(rectangle, detail, hook)?)),
+            ImageMode::Attribute(name) => {
+                return Ok(shade::paint(&self.painted(rectangle, name, detail, hook)?));
+            }
+            ImageMode::Field => shade::diverging,
+            ImageMode::Grey => shade::grey,
+            ImageMode::Height => shade::relief,
         };
         Ok(shade(&self.values_hooked(rectangle, detail.fineness, hook)?, self.iso))
     }

@@ -54,16 +54,16 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use jbt_ir::limits::MAX_CONTOUR_VERTICES;
 
 pub use circles::circles;
-pub use divide::{DividedSquare, Fate, Level};
+pub use divide::{ContourLevel, DividedSquare, Fate};
 pub use grid::{Rectangle, RectangleError};
-pub use image::{ImageDetail, MAX_SAMPLES, Mode};
+pub use image::{ImageDetail, ImageMode, MAX_SAMPLES};
 pub use link::Loop;
 pub use plane::{Plane, PlaneError};
 pub use raster::Raster;
 pub use slicer::{SliceError, Slicer};
 
-use cells::{Block, Segments, border};
-use divide::{Plan, Square, Verdict, Work, divide};
+use cells::{CellBlock, Segments, border};
+use divide::{Plan, Square, SquareWork, Verdict, divide};
 use grid::Grid;
 
 use crate::error::EvalError;
@@ -115,7 +115,7 @@ pub struct Contour {
     /// The sides of the rectangle that cut the solid: left, below, right, above.
     pub cut_sides: [bool; 4],
     /// How many squares there are of each size, and what became of them.
-    pub levels: Vec<Level>,
+    pub levels: Vec<ContourLevel>,
     /// The squares, if they were to be kept: those that were divided before their parts.
     pub squares: Vec<DividedSquare>,
 }
@@ -169,7 +169,7 @@ impl Contouring<'_> {
     }
 }
 
-impl Work for Contouring<'_> {
+impl SquareWork for Contouring<'_> {
     type Piece = Segments;
 
     fn bounds(&self, square: &Square) -> Box3 {
@@ -189,7 +189,7 @@ impl Work for Contouring<'_> {
     }
 
     fn leaf(&self, square: &Square, region: &Region) -> Result<(Option<Segments>, bool), SliceError> {
-        let segments = Block::new(self.slicer, self.grid, square, region)?.segments(region)?;
+        let segments = CellBlock::new(self.slicer, self.grid, square, region)?.segments(region)?;
         let crossed = !segments.list.is_empty();
         Ok((crossed.then(|| self.counted(segments)).transpose()?, crossed))
     }

@@ -37,7 +37,7 @@ pub(super) struct Edge {
 }
 
 /// An edge on its way to its root.
-struct Search {
+struct RootSearch {
     edge: Edge,
     /// The ends that the root is between: inside, outside.
     ends: [f64; 2],
@@ -57,7 +57,7 @@ fn near(error: f64, scale: f64) -> bool {
     error <= TOLERANCE * scale && scale.is_finite()
 }
 
-impl Search {
+impl RootSearch {
     fn new(edge: Edge, iso: f32) -> Self {
         let values = edge.values.map(|value| f64::from(value) - f64::from(iso));
         let ends = edge.ends.map(f64::from);
@@ -112,7 +112,7 @@ pub(super) type FieldAt<'a> = dyn FnMut([&[f32]; 2], &mut Vec<f32>) -> Result<()
 
 /// The places of the vertices on some edges.
 pub(super) fn solve(edges: &[Edge], iso: f32, field: &mut FieldAt<'_>) -> Result<Vec<[f32; 2]>, EvalError> {
-    let mut searches: Vec<Search> = edges.iter().map(|&edge| Search::new(edge, iso)).collect();
+    let mut searches: Vec<RootSearch> = edges.iter().map(|&edge| RootSearch::new(edge, iso)).collect();
     let (mut points, mut values) = ([Vec::new(), Vec::new()], Vec::new());
     for _ in 0..ROUNDS {
         points.iter_mut().for_each(Vec::clear);
@@ -128,7 +128,7 @@ pub(super) fn solve(edges: &[Edge], iso: f32, field: &mut FieldAt<'_>) -> Result
             search.take(value, iso);
         }
     }
-    Ok(searches.iter().map(Search::place).collect())
+    Ok(searches.iter().map(RootSearch::place).collect())
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use super::grid::{Rectangle, RectangleError};
 use super::plane::{Kind, Plane, others};
-use crate::compiled::{Compiled, Need, Scope};
+use crate::compiled::{Compiled, Need, PointScope};
 use crate::compiler::Compiler;
 use crate::counter::Counters;
 use crate::debug::brief_debug;
@@ -27,7 +27,7 @@ pub struct Slicer {
     plane: Plane,
     /// Where coordinates of points of the plane count from, in coordinates of the plane.
     origin: [f64; 2],
-    view: View,
+    view: PlaneView,
     /// Where the field may differ from zero, in coordinates of the plane from the origin.
     support: Support,
     pub(super) iso: f32,
@@ -49,7 +49,7 @@ enum Support {
 
 /// Which coordinates of the compiled model are those of the plane.
 #[derive(Clone, Copy, Debug)]
-struct View {
+struct PlaneView {
     /// Along u and v.
     axes: [usize; 2],
     /// The value of the third one.
@@ -174,11 +174,11 @@ impl Slicer {
             }
         };
         let tree = compiled.tree();
-        let view = View { axes, at: tree.origin().rounded([at; 3])[across] };
+        let view = PlaneView { axes, at: tree.origin().rounded([at; 3])[across] };
         let needs = [
-            Need::Answers(Scope::Regions, Query::ATTRIBUTES),
+            Need::Answers(PointScope::Regions, Query::ATTRIBUTES),
             Need::Ranges,
-            Need::Answers(Scope::Regions, Query::FIELD),
+            Need::Answers(PointScope::Regions, Query::FIELD),
         ];
         let has_attributes = query.contains(AnswerKind::Attributes);
         compiled.prepare(if has_attributes { &needs } else { &needs[1..] })?;
@@ -297,7 +297,7 @@ impl Slicer {
 
 /// The support in coordinates of the plane. Where the plane misses it, the field is zero, and the rectangle
 /// is where the support would be seen.
-fn support(tree: &CheckedTree, view: &View) -> Support {
+fn support(tree: &CheckedTree, view: &PlaneView) -> Support {
     let support = tree.local_support();
     if support.is_empty() {
         return Support::Empty;

@@ -7,7 +7,7 @@ use jbt_ir::engine::BoundProgram;
 use jbt_ir::pass::dce;
 use jbt_ir::{Function, Selection, Straight, Tables, Verified};
 
-use super::engine::{Compiled, Engine, Wish, compile};
+use super::engine::{CompiledFunction, Engine, Wish, compile};
 use super::optimise::{Purpose, optimise};
 use crate::error::{CompileError, EvalError};
 
@@ -22,7 +22,7 @@ pub(crate) struct Kernel {
     pub(crate) per_row: Vec<u64>,
     /// For each table, the ops that an active row takes.
     pub(crate) ops_per_row: Vec<u64>,
-    compiled: Compiled,
+    compiled: CompiledFunction,
     /// What runs where the gradient is not finite, once that has been met; see [`guarded`](Self::guarded).
     guarded: OnceLock<Option<Arc<Kernel>>>,
 }
@@ -63,7 +63,7 @@ impl Kernel {
             field.blocks[body].results.truncate(1);
             let field = dce(&field);
             let verified = optimise(field.clone(), Purpose::Guarded, &mut |_, _| {}).ok()?;
-            let Compiled { engine, level, .. } = self.compiled;
+            let CompiledFunction { engine, level, .. } = self.compiled;
             let wish = Wish { engine: Some(engine.for_few()), level: Some(level) };
             Self::new(field, None, verified, wish).ok().map(Arc::new)
         };

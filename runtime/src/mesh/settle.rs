@@ -35,14 +35,14 @@ pub(super) fn is_far(iso: f32, [low, high]: [&Lanes; 2], values: &Lanes, square:
 
 /// Where a vertex may be.
 #[derive(Clone, Copy)]
-pub(super) struct Place {
+pub(super) struct VertexPlace {
     /// Its cell.
     pub(super) bounds: Box3,
     /// The corners that its sheet separates: those outside and those inside, a bit for each corner.
     pub(super) corners: [u8; 2],
 }
 
-impl Place {
+impl VertexPlace {
     /// The nearest of the corners on one side of the sheet.
     fn corner(&self, inside: bool, from: [f32; 3]) -> Option<[f32; 3]> {
         let mask = self.corners[usize::from(inside)];
@@ -56,7 +56,7 @@ impl Place {
 pub(super) struct Stray {
     /// Its index in the batch.
     pub(super) index: usize,
-    place: Place,
+    place: VertexPlace,
     position: [f32; 3],
     value: f32,
     gradient: [f32; 3],
@@ -71,7 +71,7 @@ impl Stray {
     pub(super) fn new(
         iso: f32,
         index: usize,
-        place: Place,
+        place: VertexPlace,
         position: [f32; 3],
         value: f32,
         gradient: [f32; 3],

@@ -15,7 +15,7 @@ use jbt_lower::prune_info::{LARGEST_COORDINATE, Support};
 use crate::region::{Box3, MAX_PARTS};
 
 /// The supports of a table's rows, each in half a cache line, because rows are accessed in any order.
-pub(super) struct Supports {
+pub(super) struct RowSupports {
     rows: Vec<Row>,
 }
 
@@ -63,7 +63,7 @@ impl Boxes {
     }
 }
 
-impl Supports {
+impl RowSupports {
     pub(super) fn new(supports: &[Support]) -> Self {
         let row = |support: &Support| Row {
             low: support.low,
@@ -109,13 +109,13 @@ impl Supports {
 mod tests {
     use super::*;
 
-    fn supports(rows: &[([f32; 3], [f32; 3], f32)]) -> Supports {
+    fn supports(rows: &[([f32; 3], [f32; 3], f32)]) -> RowSupports {
         let support = |&(low, high, radius): &([f32; 3], [f32; 3], f32)| Support {
             low,
             high,
             radius_squared: radius * radius,
         };
-        Supports::new(&rows.iter().map(support).collect::<Vec<_>>())
+        RowSupports::new(&rows.iter().map(support).collect::<Vec<_>>())
     }
 
     #[test]

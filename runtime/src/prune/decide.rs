@@ -85,12 +85,12 @@ impl<'a> Alone<'a> {
         for (table, place) in places.into_iter().enumerate() {
             let rows = selection.active(Table::new(table)).len();
             let runs = match place {
-                Place::Operand => true,
-                Place::Above => {
+                TablePlace::Operand => true,
+                TablePlace::Above => {
                     repeated += rows;
                     true
                 }
-                Place::Elsewhere => {
+                TablePlace::Elsewhere => {
                     repeated += if free { 0 } else { rows };
                     !free
                 }
@@ -155,7 +155,7 @@ impl<'a> Alone<'a> {
 
 /// The place of a table's rows relative to the operands.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Place {
+enum TablePlace {
     /// Operands, or rows below one: they run with the operand.
     Operand,
     /// Rows above operands.
@@ -164,23 +164,23 @@ enum Place {
 }
 
 /// The place of each table.
-fn places(decisions: &[&Decision], selection: &Selection) -> Vec<Place> {
-    let mut places = vec![Place::Elsewhere; selection.tables()];
+fn places(decisions: &[&Decision], selection: &Selection) -> Vec<TablePlace> {
+    let mut places = vec![TablePlace::Elsewhere; selection.tables()];
     for decision in decisions {
-        places[decision.table.index()] = Place::Operand;
+        places[decision.table.index()] = TablePlace::Operand;
     }
     for decision in decisions {
         let mut above = selection.parent(decision.table);
-        while let Some(table) = above.filter(|table| places[table.index()] == Place::Elsewhere) {
-            places[table.index()] = Place::Above;
+        while let Some(table) = above.filter(|table| places[table.index()] == TablePlace::Elsewhere) {
+            places[table.index()] = TablePlace::Above;
             above = selection.parent(table);
         }
     }
     // Tables come after their parents.
     for table in 0..places.len() {
         let above = selection.parent(Table::new(table));
-        if above.is_some_and(|above| places[above.index()] == Place::Operand) {
-            places[table] = Place::Operand;
+        if above.is_some_and(|above| places[above.index()] == TablePlace::Operand) {
+            places[table] = TablePlace::Operand;
         }
     }
     places

@@ -3,7 +3,7 @@
 use super::color::Rgb;
 use super::error::RenderError;
 use super::frame::Frame;
-use super::settings::Mode;
+use super::settings::RenderMode;
 use super::vector::{Vector, along, scale, unit};
 use crate::buffer::Samples;
 use crate::trace::Ray;
@@ -31,7 +31,7 @@ pub struct Meetings {
 }
 
 /// The source of the surface's colour.
-pub enum Paint {
+pub enum SurfacePaint {
     /// The same everywhere.
     Plain(Rgb),
     /// Planes of the samples: the first one, and how many, at most three.
@@ -41,13 +41,15 @@ pub enum Paint {
 /// The colour of models without colours: clay, as linear light.
 const CLAY: Rgb = [0.60, 0.55, 0.50];
 
-impl Paint {
+impl SurfacePaint {
     /// The paint of a model in a mode.
     fn new(frame: &Frame<'_>) -> Self {
         let group = match &frame.render.mode {
-            Mode::Shaded if is_colored(frame.renderer.tree()) => "color",
-            Mode::Shaded | Mode::Normal | Mode::Depth | Mode::Evaluations => return Self::Plain(CLAY),
-            Mode::Attribute(name) => name,
+            RenderMode::Shaded if is_colored(frame.renderer.tree()) => "color",
+            RenderMode::Shaded | RenderMode::Normal | RenderMode::Depth | RenderMode::Evaluations => {
+                return Self::Plain(CLAY);
+            }
+            RenderMode::Attribute(name) => name,
         };
         match frame.renderer.evaluator.layout().attribute(group) {
             Some((plane, width)) => Self::Planes(plane, width.min(3)),
@@ -75,7 +77,7 @@ fn is_colored(tree: &CheckedTree) -> bool {
 
 /// Finds the first hits of rays.
 pub fn cast(frame: &Frame<'_>, casts: &[Ray]) -> Result<Meetings, RenderError> {
-    let paint = Paint::new(frame);
+    let paint = SurfacePaint::new(frame);
     let mut evaluations = vec![0.0; casts.len()];
     let mut met = if frame.render.region.is_some() {
         cuts(frame, casts, &paint, &mut evaluations)?
@@ -108,7 +110,7 @@ pub fn cast(frame: &Frame<'_>, casts: &[Ray]) -> Result<Meetings, RenderError> {
 fn cuts(
     frame: &Frame<'_>,
     casts: &[Ray],
-    paint: &Paint,
+    paint: &SurfacePaint,
     evaluations: &mut [f32],
 ) -> Result<Vec<Met>, RenderError> {
     let tracer = &frame.renderer.tracer;

@@ -20,8 +20,8 @@ use jbt_ir::limits::{MAX_MEASURE_BOXES, MAX_RESOLUTION};
 
 use super::crossings::crossed;
 use super::cut::{self, Linear};
-use super::{Batch, RegionError, Solid, center};
-use crate::divide::{Cell, Decision, DivideError, Division, Limits, Node, Outcome, divide};
+use super::{RegionError, Solid, SolidBatch, center};
+use crate::divide::{Cell, Decision, DivideError, Division, DivisionNode, Limits, Outcome, divide};
 use crate::error::{Classified, CompileError, ErrorKind, EvalError};
 use crate::evaluator::Evaluator;
 use crate::job::{Hook, Job};
@@ -57,7 +57,7 @@ pub struct Volume {
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
-pub struct Level {
+pub struct MeasureLevel {
     /// Boxes that were split.
     pub splits: u64,
     /// Boxes that are all inside.
@@ -96,7 +96,7 @@ pub struct Measures {
     /// is 0.
     pub center: Option<[f64; 3]>,
     /// Boxes by how often they were split and what became of them.
-    pub levels: Vec<Level>,
+    pub levels: Vec<MeasureLevel>,
     /// The volume of the boxes that are all outside.
     pub air: f64,
     /// The volume of the boxes that may hold surface.
@@ -114,8 +114,8 @@ impl Measures {
 
     /// All boxes.
     #[must_use]
-    pub fn boxes(&self) -> Level {
-        self.levels.iter().fold(Level::default(), |all, level| Level {
+    pub fn boxes(&self) -> MeasureLevel {
+        self.levels.iter().fold(MeasureLevel::default(), |all, level| MeasureLevel {
             splits: all.splits + level.splits,
             solid: all.solid + level.solid,
             air: all.air + level.air,
@@ -227,7 +227,7 @@ impl Solid {
         let division = divide(&self.pruner, bounds, (), &limits, &decide)?;
         progress.check()?;
         let normals = self.normals()?;
-        let leaves: Vec<(&Node<()>, &Region)> = division.leaves().collect();
+        let leaves: Vec<(&DivisionNode<()>, &Region)> = division.leaves().collect();
         let share = (1.0 - DIVISION_SHARE) / leaves.len() as f64;
         let pieces: Vec<Piece> = leaves
             .par_iter()
@@ -273,7 +273,7 @@ impl Solid {
     /// that fits best is zero; where none fits well, as at creases, its parts are asked.
     fn linear_volume(&self, bounds: &Box3, region: &Region) -> Result<f64, EvalError> {
         let mut volume = 0.0;
-        let mut batch = Batch::default();
+        let mut batch = SolidBatch::default();
         let mut parts = vec![(*bounds, 0)];
         while let Some((bounds, depth)) = parts.pop() {
             let places = [0, 1, 2].map(|axis| cut::gauss(bounds.low[axis], bounds.high[axis]));
@@ -304,7 +304,7 @@ impl Solid {
         for node in division.nodes() {
             let depth = usize::from(node.depth);
             if sums.levels.len() <= depth {
-                sums.levels.resize(depth + 1, Level::default());
+                sums.levels.resize(depth + 1, MeasureLevel::default());
             }
             let level = &mut sums.levels[depth];
             let volume = volume_of(&node.bounds);

@@ -11,7 +11,7 @@
 //!
 //! The final bracket depends only on the field along its ray.
 
-use super::batch::Batch;
+use super::batch::TraceBatch;
 use super::ray::{Line, spacing};
 use super::target::Target;
 use crate::error::EvalError;
@@ -24,7 +24,7 @@ const CHECKED: u32 = 3;
 
 /// A stretch of a ray whose ends are on different sides.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub(super) struct Bracket {
+pub(super) struct RayBracket {
     line: usize,
     times: [f64; 2],
     /// The fields at the ends minus the iso-value, as weights of false position: the weight of an end that
@@ -40,7 +40,7 @@ pub(super) struct Bracket {
     checked: f64,
 }
 
-impl Bracket {
+impl RayBracket {
     pub(super) fn new(
         index: usize,
         line: &Line,
@@ -143,8 +143,8 @@ pub(super) fn polish(
     tracer: &Target,
     region: &Region,
     lines: &[Line],
-    brackets: &mut [Bracket],
-    batch: &mut Batch,
+    brackets: &mut [RayBracket],
+    batch: &mut TraceBatch,
 ) -> Result<(), EvalError> {
     let mut open: Vec<usize> = (0..brackets.len()).collect();
     let mut times = Vec::with_capacity(open.len());

@@ -39,7 +39,7 @@ pub(super) const STRIDE: i64 = 16;
 
 /// A box outside of which the field is 0, with a margin.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub(super) struct Reach(Box3<f64>);
+pub(super) struct RayReach(Box3<f64>);
 
 /// The part of a coordinate by which the box exceeds it at least.
 const ROUNDING: f64 = 1.0 / (1 << 20) as f64;
@@ -52,7 +52,7 @@ const SQUARES: [f64; 2] = [1e-200, 1e200];
 /// A bound of the error of a product and a sum in f64, as a part of the terms.
 const TINY: f64 = 1.0 / (1_u64 << 48) as f64;
 
-impl Reach {
+impl RayReach {
     /// `None` if the field is 0 everywhere.
     pub(super) fn new(support: Bounds) -> Option<Self> {
         if support.is_empty() {
@@ -114,7 +114,7 @@ impl Line {
         ray: &Ray,
         tolerance: f64,
         stride: i64,
-        reach: Option<&Reach>,
+        reach: Option<&RayReach>,
     ) -> Result<Option<Self>, TraceError> {
         let Ray { origin, direction, span } = *ray;
         if !origin.iter().chain(&direction).chain(&span).all(|number| number.is_finite()) {

@@ -14,10 +14,10 @@
 
 use std::ops::Range;
 
-use super::batch::{Batch, Work};
+use super::batch::{TraceBatch, WorkLimit};
 use super::error::TraceError;
-use super::found::Found;
-use super::polish::Bracket;
+use super::found::FoundHits;
+use super::polish::RayBracket;
 use super::ray::Line;
 use super::target::Target;
 use crate::prune::Region;
@@ -34,7 +34,7 @@ pub(super) struct Stretch {
 }
 
 /// Stretches of neighbouring rays, clipped to two coarse places.
-struct Group {
+struct StretchGroup {
     stretches: Range<usize>,
     places: [i64; 2],
     /// The number of its segments, once it is tight.
@@ -68,8 +68,8 @@ pub(super) struct Refiner<'a> {
     pub(super) tolerance: f64,
     /// Whether all changes of a ray are wanted, or only the first.
     pub(super) all: bool,
-    pub(super) found: &'a mut Found,
-    pub(super) work: &'a mut Work,
+    pub(super) found: &'a mut FoundHits,
+    pub(super) work: &'a mut WorkLimit,
 }
 
 impl Refiner<'_> {
@@ -79,8 +79,8 @@ impl Refiner<'_> {
         &mut self,
         stretches: &[Stretch],
         segments: &mut Vec<Segment>,
-        batch: &mut Batch,
-        brackets: &mut Vec<Bracket>,
+        batch: &mut TraceBatch,
+        brackets: &mut Vec<RayBracket>,
     ) -> Result<(), TraceError> {
         let fields = std::mem::take(&mut batch.field);
         self.undecided(stretches, &fields, segments)?;
@@ -112,8 +112,8 @@ impl Refiner<'_> {
     ) -> Result<(), TraceError> {
         let iso = self.tracer.iso;
         let starts = (0..stretches.len()).step_by(TOGETHER);
-        let mut groups: Vec<Group> = starts
-            .map(|start| Group {
+        let mut groups: Vec<StretchGroup> = starts
+            .map(|start| StretchGroup {
                 stretches: start..(start + TOGETHER).min(stretches.len()),
                 places: [i64::MIN, i64::MAX],
                 segments: 0,
@@ -159,7 +159,7 @@ impl Refiner<'_> {
     }
 
     /// The changes of side in a segment, from the fields at the places in it.
-    fn find(&self, segment: &Segment, asked: &[f32], brackets: &mut Vec<Bracket>) {
+    fn find(&self, segment: &Segment, asked: &[f32], brackets: &mut Vec<RayBracket>) {
         let iso = self.tracer.iso;
         let line = &self.lines[segment.line];
         let [start, end] = segment.fields;
@@ -167,7 +167,14 @@ impl Refiner<'_> {
         for (place, &field) in (segment.place * self.stride..).zip(asked.iter().chain([&end])) {
             if (before >= iso) != (field >= iso) {
                 let times = [place, place + 1].map(|place| line.time_between(place));
-                brackets.push(Bracket::new(segment.line, line, self.tolerance, iso, times, [before, field]));
+                brackets.push(RayBracket::new(
+                    segment.line,
+                    line,
+                    self.tolerance,
+                    iso,
+                    times,
+                    [before, field],
+                ));
                 if !self.all {
                     return;
                 }
@@ -177,7 +184,7 @@ impl Refiner<'_> {
     }
 }
 
-impl Group {
+impl StretchGroup {
     /// Shrinks the group to its segments; `None` if it has none, else the box around them.
     fn tighten(&mut self, stretches: &[Stretch], lines: &[Line]) -> Option<Box3> {
         let mut bounds: Option<Box3> = None;

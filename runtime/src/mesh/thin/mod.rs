@@ -18,7 +18,7 @@ mod shreds;
 use crate::parallel::*;
 
 use super::crossing::Crossings;
-use super::divide::Division;
+use super::divide::BrickDivision;
 use super::error::MeshError;
 use super::field::Field;
 use super::indexed::Mesh;
@@ -34,7 +34,7 @@ use shreds::{Chunks, Looked};
 /// Searches the bricks of a division.
 pub(super) fn find<F: Field>(
     field: &F,
-    division: &Division<F::Region>,
+    division: &BrickDivision<F::Region>,
     (crossings, mesh): (&Crossings, &Mesh),
     iso: f32,
     progress: &Progress<'_>,
