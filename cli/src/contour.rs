@@ -16,7 +16,7 @@ use crate::failure::Failure;
 use crate::formats::SliceKind;
 use crate::lattice;
 use crate::output::{Output, grouped, plural, warn};
-use crate::progress::Progress;
+use crate::progress::ProgressLine;
 use crate::scene::Scene;
 
 /// Runs the command. `start` is when the process began, for the total time.
@@ -38,7 +38,7 @@ pub fn run(arguments: &ContourArguments, quiet: bool, start: Instant) -> Result<
         Some(rectangle) => rectangle,
         None => slicer.rectangle().map_err(|error| scene.failure(&error))?,
     };
-    let mut progress = Progress::new("slicing", quiet);
+    let mut progress = ProgressLine::new("slicing", quiet);
     let mut work = || make(arguments, drawing, &slicer, &rectangle, fineness, &mut progress);
     let made = arguments.work.run(&mut work)?.map_err(|error| scene.failure(&error))?;
     drop(progress);
@@ -153,7 +153,7 @@ fn make(
     slicer: &Slicer,
     rectangle: &Rectangle,
     fineness: Fineness,
-    progress: &mut Progress,
+    progress: &mut ProgressLine,
 ) -> Result<Made, SliceError> {
     let watch = |part| progress.set(part);
     match drawing {

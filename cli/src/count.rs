@@ -32,7 +32,7 @@ use crate::arguments::CountArguments;
 use crate::failure::Failure;
 use crate::lattice;
 use crate::output::{grouped, plural, print, warn};
-use crate::progress::Progress;
+use crate::progress::ProgressLine;
 use crate::scene::Scene;
 use crate::stages;
 
@@ -110,7 +110,7 @@ fn supports(
     lattice: &Lattice,
     quiet: bool,
 ) -> Result<SupportCounts, Failure> {
-    let mut progress = Progress::new("counting", quiet);
+    let mut progress = ProgressLine::new("counting", quiet);
     let counted = statistics.supports(&Compiler::new(), lattice).on_progress(|part| progress.set(part)).run();
     counted.map_err(|error| scene.failure(&error))
 }
@@ -122,7 +122,7 @@ fn mesh(
     settings: &Polygonize,
     quiet: bool,
 ) -> Result<MeshCounters, Failure> {
-    let mut progress = Progress::new("meshing", quiet);
+    let mut progress = ProgressLine::new("meshing", quiet);
     let made = settings.mesh(&Compiler::new(), tree).on_progress(|part| progress.set(part)).run();
     made.map(|made| made.counters).map_err(|error| scene.failure(&error))
 }

@@ -11,7 +11,7 @@ use crate::failure::Failure;
 use crate::formats::TableKind;
 use crate::output::{Destination, Output};
 use crate::points::PointReader;
-use crate::progress::Progress;
+use crate::progress::ProgressLine;
 use crate::scene::Scene;
 use crate::standard::is_standard;
 use crate::threads::Threads;
@@ -60,7 +60,7 @@ fn stream(
     quiet: bool,
 ) -> Result<(), Failure> {
     let mut output = Output::open(destination)?;
-    let mut progress = Progress::new("evaluating", quiet);
+    let mut progress = ProgressLine::new("evaluating", quiet);
     let names = evaluator.layout().names().join(",");
     writeln!(output, "x,y,z,{names}").map_err(|error| output.failure(error))?;
     loop {

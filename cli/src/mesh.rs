@@ -12,7 +12,7 @@ use crate::arguments::MeshArguments;
 use crate::failure::Failure;
 use crate::lattice;
 use crate::output::{Output, grouped, plural, warn};
-use crate::progress::Progress;
+use crate::progress::ProgressLine;
 use crate::scene::Scene;
 use crate::stages;
 
@@ -27,7 +27,7 @@ pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(),
     let tree = scene.check()?;
     let compiler = arguments.work.compiler()?;
 
-    let mut progress = Progress::new("meshing", quiet);
+    let mut progress = ProgressLine::new("meshing", quiet);
     let mut work = || settings.mesh(&compiler, &tree).on_progress(|part| progress.set(part)).run();
     let made = arguments.work.run(&mut work)?.map_err(|error| scene.failure(&error))?;
     drop(progress);

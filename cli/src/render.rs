@@ -13,7 +13,7 @@ use crate::failure::Failure;
 use crate::formats::PictureKind;
 use crate::lattice;
 use crate::output::{Output, grouped, plural, warn};
-use crate::progress::Progress;
+use crate::progress::ProgressLine;
 use crate::scene::Scene;
 
 /// Runs the command. `start` is when the process began, for the total time.
@@ -27,7 +27,7 @@ pub fn run(arguments: &RenderArguments, quiet: bool, start: Instant) -> Result<(
     settings.region = arguments.region.map(|region| lattice::local(region, tree.origin()));
     let compiler = arguments.work.compiler()?;
 
-    let mut progress = Progress::new("rendering", quiet);
+    let mut progress = ProgressLine::new("rendering", quiet);
     let mut work = || settings.picture(&compiler, &tree).on_progress(|part| progress.set(part)).run();
     let made = arguments.work.run(&mut work)?.map_err(|error| scene.failure(&error))?;
     drop(progress);

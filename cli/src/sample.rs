@@ -12,7 +12,7 @@ use crate::failure::Failure;
 use crate::formats::ArrayKind;
 use crate::lattice;
 use crate::output::{Output, grouped};
-use crate::progress::Progress;
+use crate::progress::ProgressLine;
 use crate::scene::Scene;
 
 /// Runs the command. `start` is when the process began, for the total time.
@@ -26,7 +26,7 @@ pub fn run(arguments: &SampleArguments, quiet: bool, start: Instant) -> Result<(
     let lattice = settings.lattice(&tree).map_err(|error| scene.failure(&error))?;
     let compiler = arguments.work.compiler()?;
     let sampler = Sampler::new(&compiler, &tree, arguments.query).map_err(|error| scene.failure(&error))?;
-    let mut progress = Progress::new("sampling", quiet);
+    let mut progress = ProgressLine::new("sampling", quiet);
     let mut work = || sampler.dense(&lattice).on_progress(|part| progress.set(part)).run();
     let planes = arguments.work.run(&mut work)?.map_err(|error| scene.failure(&error))?;
     drop(progress);

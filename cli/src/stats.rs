@@ -20,7 +20,7 @@ use crate::arguments::StatsArguments;
 use crate::failure::Failure;
 use crate::lattice;
 use crate::output::{grouped, plural, print, warn};
-use crate::progress::Progress;
+use crate::progress::ProgressLine;
 use crate::scene::Scene;
 
 /// The tolerance of the bounds when nothing else is said, as a part of the region's longest side.
@@ -34,7 +34,7 @@ pub fn run(arguments: &StatsArguments, quiet: bool, start: Instant) -> Result<()
     let tree = scene.check()?;
     let settings = settings(arguments, &asked, tree.origin());
     let solid = Solid::new(&Compiler::new(), &tree).map_err(|error| scene.failure(&error))?;
-    let mut progress = Progress::new("measuring", quiet);
+    let mut progress = ProgressLine::new("measuring", quiet);
     let measured = solid.measure(&settings).on_progress(|part| progress.set(part)).run();
     let measures = measured.map_err(|error| scene.failure(&error))?;
     drop(progress);

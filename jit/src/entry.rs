@@ -18,11 +18,11 @@ use jbt_ir::engine::{Interface, Planes, Program, Run};
 use jbt_ir::{Function, Selection, Tables};
 
 use crate::abi::{Arguments, TableView};
-use crate::memory::Code;
+use crate::memory::MachineCode;
 
 /// Machine code for one function.
 pub struct Kernel {
-    code: Code,
+    code: MachineCode,
     interface: Arc<Interface>,
 }
 
@@ -31,7 +31,7 @@ impl Kernel {
     pub const MAX_LANES: usize = 32;
 
     /// A kernel of code that was made for a function.
-    pub(crate) fn new(code: Code, function: &Function) -> Self {
+    pub(crate) fn new(code: MachineCode, function: &Function) -> Self {
         Self { code, interface: Arc::new(Interface::new(function)) }
     }
 

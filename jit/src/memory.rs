@@ -29,8 +29,8 @@ struct Pages(Option<JITModule>);
 impl Drop for Pages {
     fn drop(&mut self) {
         if let Some(module) = self.0.take() {
-            // SAFETY: the address of the code is kept in `Code` alone, beside these pages, and is used in
-            // `Code::call` alone, which borrows the `Code`. So nothing runs in these pages now, and nothing
+            // SAFETY: the address of the code is kept in `MachineCode` alone, beside these pages, and is used in
+            // `MachineCode::call` alone, which borrows the `MachineCode`. So nothing runs in these pages now, and nothing
             // will.
             unsafe { module.free_memory() };
         }
@@ -39,7 +39,7 @@ impl Drop for Pages {
 
 /// A function of finished code.
 #[derive(Clone, Copy)]
-struct Entry {
+struct EntryPoint {
     address: *const u8,
     /// Points in a block.
     lanes: usize,
@@ -49,11 +49,11 @@ struct Entry {
 ///
 /// Contract: `blocks` and `rest` are functions in `pages` which were compiled from a [`Lowered`] or emitted
 /// as an [`Emitted`], so they keep to the ABI of [`crate::entry`], with blocks of so many points; the pages
-/// are executable, are not writable, and stay until the `Code` is dropped.
-pub(crate) struct Code {
-    blocks: Entry,
+/// are executable, are not writable, and stay until the `MachineCode` is dropped.
+pub(crate) struct MachineCode {
+    blocks: EntryPoint,
     /// For what is left behind whole blocks, in smaller blocks of which they are multiples.
-    rest: Option<Entry>,
+    rest: Option<EntryPoint>,
     bytes: usize,
     frame_bytes: usize,
     /// Never looked at again: kept so that the code stays where it is.
@@ -61,13 +61,13 @@ pub(crate) struct Code {
 }
 
 // SAFETY: the module is `Send`, and the addresses are those of memory which belongs to it.
-unsafe impl Send for Code {}
+unsafe impl Send for MachineCode {}
 // SAFETY: through a shared reference one can only read the numbers and call the code, which changes no memory
 // but what its arguments name and the stack of the thread that calls it. The module, which is not `Sync`,
 // cannot be reached.
-unsafe impl Sync for Code {}
+unsafe impl Sync for MachineCode {}
 
-impl Code {
+impl MachineCode {
     /// Compiles a function with blocks of so many points, and makes it executable.
     pub(crate) fn new(lowered: Lowered, lanes: usize, isa: OwnedTargetIsa) -> Result<Self, CompileError> {
         let builder = JITBuilder::with_isa(isa, default_libcall_names());
@@ -83,7 +83,7 @@ impl Code {
             return Err(CompileError::Frame { bytes: frame_bytes, limit: limits::MAX_JIT_FRAME_BYTES });
         }
         module.finalize_definitions()?;
-        let blocks = Entry { address: module.get_finalized_function(function), lanes };
+        let blocks = EntryPoint { address: module.get_finalized_function(function), lanes };
         Ok(Self { blocks, rest: None, bytes, frame_bytes, _pages: pages })
     }
 
@@ -104,7 +104,8 @@ impl Code {
         let blocks_function = define("kernel", blocks)?;
         let rest_function = rest.as_ref().map(|rest| define("kernel_of_few", rest)).transpose()?;
         module.finalize_definitions()?;
-        let entry = |(function, lanes)| Entry { address: module.get_finalized_function(function), lanes };
+        let entry =
+            |(function, lanes)| EntryPoint { address: module.get_finalized_function(function), lanes };
         let both = || std::iter::once(blocks).chain(rest);
         Ok(Self {
             blocks: entry(blocks_function),
@@ -143,7 +144,7 @@ impl Code {
         let whole = if self.rest.is_some() { bytes - bytes % block } else { bytes };
         for (entry, bytes) in [(Some(self.blocks), whole), (self.rest, bytes - whole)] {
             let Some(entry) = entry.filter(|_| bytes > 0) else { continue };
-            // SAFETY: the contract of `Code` says that this is a function of the ABI that `enter` expects.
+            // SAFETY: the contract of `MachineCode` says that this is a function of the ABI that `enter` expects.
             // `Arguments` come from `Kernel::call`: there is a plane of this many bytes for each
             // input and output, at least one block long and whole blocks; outputs come from exclusive
             // borrows, so that no other plane overlaps them; the tables have been checked against the

@@ -30,7 +30,7 @@ use crate::written::{Written, WrittenAttribute};
 
 /// A part of the formula of a field. Cloning one is cheap, and what is used several times is computed once.
 #[derive(Clone)]
-pub struct Term(Arc<Node>);
+pub struct Term(Arc<TermNode>);
 
 enum Kind {
     Coordinate(u8),
@@ -39,12 +39,12 @@ enum Kind {
     Step(Step),
 }
 
-struct Node {
+struct TermNode {
     kind: Kind,
     operands: Vec<Term>,
 }
 
-impl Drop for Node {
+impl Drop for TermNode {
     /// Without recursion, as trees are dropped.
     fn drop(&mut self) {
         let mut list = std::mem::take(&mut self.operands);
@@ -86,11 +86,11 @@ macro_rules! unary {
 
 impl Term {
     fn leaf(kind: Kind) -> Self {
-        Self(Arc::new(Node { kind, operands: Vec::new() }))
+        Self(Arc::new(TermNode { kind, operands: Vec::new() }))
     }
 
     fn step(step: Step, operands: impl IntoIterator<Item = Self>) -> Self {
-        Self(Arc::new(Node { kind: Kind::Step(step), operands: operands.into_iter().collect() }))
+        Self(Arc::new(TermNode { kind: Kind::Step(step), operands: operands.into_iter().collect() }))
     }
 
     fn call<const N: usize>(function: Function, operands: [Self; N]) -> Self {
@@ -195,7 +195,7 @@ impl Term {
     fn assemble(values: &[&Self]) -> (Assembled, Vec<Tree>) {
         let (mut assembler, mut children) = (Assembler::default(), Vec::new());
         let mut places: HashMap<usize, u32> = HashMap::new();
-        let mut done: HashMap<*const Node, Draft> = HashMap::new();
+        let mut done: HashMap<*const TermNode, Draft> = HashMap::new();
         let mut stack: Vec<_> = values.iter().rev().map(|&term| (term, false)).collect();
         while let Some((term, opened)) = stack.pop() {
             let node = &*term.0;

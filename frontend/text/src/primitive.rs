@@ -1,6 +1,6 @@
 //! Named parameters in a text, and the block of a primitive.
 
-use super::expression::Place;
+use super::expression::ExpressionPlace;
 use super::hints::{in_braces, radii};
 use super::lex::{Token, TokenKind};
 use super::state::Parser;
@@ -176,7 +176,7 @@ impl Parser<'_> {
             }
             return;
         }
-        let value = self.expression(Place::Alone);
+        let value = self.expression(ExpressionPlace::Alone);
         match word {
             "radius" => self.once(&mut own.radius, value.number, token),
             "surface_radius" => {

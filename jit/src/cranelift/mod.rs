@@ -22,7 +22,7 @@ use jbt_ir::{Function, Level, Verified};
 
 use crate::entry::Kernel;
 use crate::error::CompileError;
-use crate::memory::Code;
+use crate::memory::MachineCode;
 use crate::options::{Allocator, OptLevel, Pieces, VectorCount, asm};
 use crate::{isa, prepare};
 
@@ -81,7 +81,7 @@ impl Cranelift {
         let Choice { plan, vectors, allocator } = self.choose(outside)?;
         let isa = isa::host(self.opt_level, allocator)?;
         let lanes = vectors.count() * LANES;
-        let code = guard(|| Code::new(lower::lower(outside, &plan, vectors), lanes, isa))??;
+        let code = guard(|| MachineCode::new(lower::lower(outside, &plan, vectors), lanes, isa))??;
         Ok(Kernel::new(code, outside))
     }
 

@@ -11,7 +11,7 @@ use super::{Wish, emit, lanes};
 use crate::blob::{Blob, Emitted};
 use crate::entry::Kernel;
 use crate::error::CompileError;
-use crate::memory::Code;
+use crate::memory::MachineCode;
 use crate::options::{Check, Pieces, VectorCount, asm};
 use crate::prepare;
 
@@ -49,7 +49,7 @@ impl Wide {
     /// When the processor, a limit or the system forbids it.
     pub fn kernel(&self, function: &Verified, level: Level) -> Result<Kernel, CompileError> {
         require(level)?;
-        let code = Code::from_emitted(&self.emit(function, level)?)?;
+        let code = MachineCode::from_emitted(&self.emit(function, level)?)?;
         Ok(Kernel::new(code, function.function()))
     }
 

@@ -3,14 +3,14 @@
 use jbt_ir::Entity;
 
 use super::counters::SAVED_BYTES;
-use super::event::Part;
+use super::event::ValuePart;
 use super::inst::{Base, Gpr, Inst, Memory};
 use super::linear::{Home, Kind, NONE, Name};
-use super::state::{NOWHERE, Register, SAVED, State, load, store};
+use super::state::{NOWHERE, Register, SAVED, WalkState, load, store};
 
-impl State<'_> {
+impl WalkState<'_> {
     /// The place of a part in the frame; the first call allocates it.
-    pub(super) fn frame_memory(&mut self, part: Part) -> Memory {
+    pub(super) fn frame_memory(&mut self, part: ValuePart) -> Memory {
         if self.frame[part as usize] == NONE {
             self.frame[part as usize] = self.fresh_slot().0;
         }
@@ -29,13 +29,13 @@ impl State<'_> {
     }
 
     /// Gives the frame's place of a part to another part with the same bits.
-    pub(super) fn hand_over_frame(&mut self, from: Part, to: Part) {
+    pub(super) fn hand_over_frame(&mut self, from: ValuePart, to: ValuePart) {
         self.frame[to as usize] = std::mem::replace(&mut self.frame[from as usize], NONE);
         self.stored[from as usize] = false;
     }
 
     /// Stores a part if it is in no memory yet.
-    pub(super) fn store(&mut self, part: Part) {
+    pub(super) fn store(&mut self, part: ValuePart) {
         if self.stored[part as usize] || self.is_leaf(self.name(part)) {
             return;
         }
@@ -76,7 +76,7 @@ impl State<'_> {
     }
 
     /// The memory of a part. May need `rax` until the next instruction.
-    pub(super) fn home(&mut self, part: Part) -> Memory {
+    pub(super) fn home(&mut self, part: ValuePart) -> Memory {
         let name = self.name(part);
         let vector = (part - name * self.vectors) as i32;
         let displacement = vector * self.shape.bytes as i32;
@@ -135,12 +135,12 @@ impl State<'_> {
     }
 
     /// Loads a part into a register.
-    pub(super) fn load_into(&mut self, register: Register, part: Part) {
+    pub(super) fn load_into(&mut self, register: Register, part: ValuePart) {
         self.load_as(register, part, part);
     }
 
     /// Loads a part into a register, as another part.
-    pub(super) fn load_as(&mut self, register: Register, part: Part, to: Part) {
+    pub(super) fn load_as(&mut self, register: Register, part: ValuePart, to: ValuePart) {
         let is_zero = matches!(self.linear.names[self.name(part) as usize].kind, Kind::Leaf(Home::Number(0)));
         if is_zero {
             self.emit(Inst::Zero { to: register }, &[], to);
@@ -151,7 +151,7 @@ impl State<'_> {
     }
 
     /// The register of a part, which is loaded if necessary.
-    pub(super) fn fetch(&mut self, part: Part) -> Register {
+    pub(super) fn fetch(&mut self, part: ValuePart) -> Register {
         let name = self.name(part);
         let register = self.register_of(part).unwrap_or_else(|| {
             let register = self.take(self.class(name));

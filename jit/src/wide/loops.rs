@@ -1,11 +1,11 @@
 //! The contents of registers at the top of a loop: decided and loaded when the loop opens.
 
-use super::event::{Event, Part};
+use super::event::{Event, ValuePart};
 use super::inst::{Binary, Condition, Inst, Operand};
 use super::linear::{Kind, LoopId, NONE, Name, Over, Phi};
-use super::state::{MASKS, Open, REGISTERS, Register, SPARE_MASK, State, copy, store};
+use super::state::{MASKS, OpenLoop, REGISTERS, Register, SPARE_MASK, WalkState, copy, store};
 
-impl State<'_> {
+impl WalkState<'_> {
     /// Closes a loop.
     pub(super) fn close_loop(&mut self, id: LoopId) {
         match self.linear.loops[id as usize].over {
@@ -37,7 +37,7 @@ impl State<'_> {
         let has_gate = !self.linear.loops[id as usize].gate.is_empty();
         let early = has_gate.then(|| self.label());
         let header = self.occupant;
-        self.open.push(Open { id, header, journal: self.journal.len(), top, exit, early });
+        self.open.push(OpenLoop { id, header, journal: self.journal.len(), top, exit, early });
         self.reserve();
         self.look_up_again();
         self.event(Event::Open);
@@ -51,7 +51,7 @@ impl State<'_> {
         let linear = self.linear;
         let gate = &linear.loops[id as usize].gate;
         let wanted = |&(name, bits): &(Name, u32)| self.parts(name).map(move |part| (part, bits));
-        let parts: Vec<(Part, u32)> = gate.iter().flat_map(wanted).collect();
+        let parts: Vec<(ValuePart, u32)> = gate.iter().flat_map(wanted).collect();
         let tested = match (&parts[..], self.register_of(parts[0].0)) {
             ([(_, 0)], Some(register)) => register,
             (_, _) => self.different_bits(&parts),
@@ -70,7 +70,7 @@ impl State<'_> {
 
     /// A register with all differences between some parts and their wanted bits. Its old contents must be
     /// unused.
-    fn different_bits(&mut self, parts: &[(Part, u32)]) -> Register {
+    fn different_bits(&mut self, parts: &[(ValuePart, u32)]) -> Register {
         let header = self.open.last().expect("a loop is open").header;
         let is_empty = |&register: &Register| self.occupant[register as usize] == NONE;
         let is_free = |&register: &Register| header[register as usize] == NONE;
@@ -165,7 +165,8 @@ impl State<'_> {
         for &(from, to, _) in copies.iter().filter(|&&(_, _, is_chosen)| !is_chosen) {
             self.begin_in_frame(from, to);
         }
-        let is_source = |part: Part| copies.iter().any(|&(from, _, is_chosen)| is_chosen && from == part);
+        let is_source =
+            |part: ValuePart| copies.iter().any(|&(from, _, is_chosen)| is_chosen && from == part);
         for register in 0..REGISTERS as Register {
             let part = self.occupant[register as usize];
             if part != NONE && !chosen.contains(&self.name(part)) && !is_source(part) {
@@ -191,7 +192,7 @@ impl State<'_> {
     }
 
     /// Takes a part out of its register; stores it if it has a later use.
-    fn leave_register(&mut self, part: Part) {
+    fn leave_register(&mut self, part: ValuePart) {
         if !self.dies(self.name(part)) {
             self.store(part);
         }
@@ -216,7 +217,7 @@ impl State<'_> {
     }
 
     /// Lets an accumulator begin in the place of its initial value, if nothing else needs that value.
-    fn take_over(&mut self, from: Part, to: Part, is_alone: bool, is_chosen: bool) -> bool {
+    fn take_over(&mut self, from: ValuePart, to: ValuePart, is_alone: bool, is_chosen: bool) -> bool {
         let name = self.name(from);
         let is_mine = is_alone && self.dies(name) && !self.is_leaf(name);
         if !is_mine || self.linear.names[name as usize].is_uniform {
@@ -240,7 +241,7 @@ impl State<'_> {
     }
 
     /// Stores the initial value of an accumulator that lives in the frame.
-    fn begin_in_frame(&mut self, from: Part, to: Part) {
+    fn begin_in_frame(&mut self, from: ValuePart, to: ValuePart) {
         let class = self.class(self.name(from));
         let register = match self.register_of(from) {
             Some(register) => register,
@@ -256,7 +257,7 @@ impl State<'_> {
     }
 
     /// Copies the initial value of an accumulator that lives in a register.
-    fn begin_in_register(&mut self, from: Part, to: Part) {
+    fn begin_in_register(&mut self, from: ValuePart, to: ValuePart) {
         let class = self.class(self.name(to));
         let source = self.register_of(from);
         if let Some(source) = source {

@@ -50,7 +50,7 @@ use self::check::Replay;
 use self::encode::Shape;
 use self::linear::{Item, Linear};
 use self::lives::Lives;
-use self::state::{Count, State, Task};
+use self::state::{Count, WalkInput, WalkState};
 use crate::blob::Blob;
 use crate::error::CompileError;
 use crate::options::VectorCount;
@@ -106,7 +106,7 @@ fn emit(function: &Function, (plan, gates): (&Plan, &Gates), wish: &Wish) -> Res
         let (count_of, is_checked) = (vectors.count(), wish.is_checked);
         let tables = function.tables.values();
         let tables = tables.map(|schema| (4 * schema.columns.len(), schema.parent.map(Entity::index)));
-        let mut state = State::new(Task {
+        let mut state = WalkState::new(WalkInput {
             linear: &linear,
             lives: &lives,
             vectors: count_of,
@@ -138,7 +138,7 @@ fn emit(function: &Function, (plan, gates): (&Plan, &Gates), wish: &Wish) -> Res
 }
 
 /// Emits all items.
-fn walk(state: &mut State<'_>) {
+fn walk(state: &mut WalkState<'_>) {
     let (linear, lives) = (state.linear, state.lives);
     for (position, item) in (0..).zip(&linear.items) {
         state.position = position;
@@ -158,7 +158,7 @@ fn walk(state: &mut State<'_>) {
 }
 
 /// Replays the code, if notes were taken.
-fn check(state: &State<'_>, linear: &Linear, vectors: usize, shape: Shape) -> Result<(), CompileError> {
+fn check(state: &WalkState<'_>, linear: &Linear, vectors: usize, shape: Shape) -> Result<(), CompileError> {
     let Some(notes) = &state.notes else { return Ok(()) };
     let replay = Replay {
         linear,

@@ -2,8 +2,8 @@
 
 use jbt_ir::{Domain, Rule};
 
-use super::member::{Operator, Pair, Reach, Step};
-use super::rvachev::{Family, Operation};
+use super::member::{Operator, PairResult, OperatorReach, Step};
+use super::rvachev::{Family, RvachevOperation};
 use super::set::SetOperation;
 use crate::member::member;
 
@@ -21,8 +21,8 @@ member! {
 impl Operator for RFunction {}
 
 impl RFunction {
-    const fn operation(self) -> Operation {
-        Operation(self.set, Family::Alpha)
+    const fn operation(self) -> RvachevOperation {
+        RvachevOperation(self.set, Family::Alpha)
     }
 }
 
@@ -38,7 +38,7 @@ impl Step for RFunction {
         self.operation().columns(self.alpha, row);
     }
 
-    fn pair(self, sides: [f64; 2], iso: f64) -> Pair<f64> {
+    fn pair(self, sides: [f64; 2], iso: f64) -> PairResult<f64> {
         self.operation().pair(sides, self.alpha, iso)
     }
 
@@ -46,8 +46,8 @@ impl Step for RFunction {
         self.operation().kink_distance(sides, self.alpha, iso)
     }
 
-    fn reach(self) -> Reach {
-        Reach::Any
+    fn reach(self) -> OperatorReach {
+        OperatorReach::Any
     }
 
     fn is_non_negative(self, _: [bool; 2]) -> bool {
@@ -64,7 +64,7 @@ impl Step for RFunction {
         sides: [D::Real; 2],
         row: &[D::Real],
         iso2: D::Real,
-    ) -> Pair<D::Real> {
-        Operation(set, Family::Alpha).emit(d, sides, row, iso2)
+    ) -> PairResult<D::Real> {
+        RvachevOperation(set, Family::Alpha).emit(d, sides, row, iso2)
     }
 }

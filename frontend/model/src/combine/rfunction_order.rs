@@ -2,8 +2,8 @@
 
 use jbt_ir::{Domain, Rule};
 
-use super::member::{Operator, Pair, Reach, Step};
-use super::rvachev::{Family, Operation};
+use super::member::{Operator, PairResult, OperatorReach, Step};
+use super::rvachev::{Family, RvachevOperation};
 use super::set::SetOperation;
 use crate::member::member;
 
@@ -21,8 +21,8 @@ member! {
 impl Operator for RFunctionOrder {}
 
 impl RFunctionOrder {
-    const fn operation(self) -> Operation {
-        Operation(self.set, Family::Order(self.order))
+    const fn operation(self) -> RvachevOperation {
+        RvachevOperation(self.set, Family::Order(self.order))
     }
 }
 
@@ -33,7 +33,7 @@ impl Step for RFunctionOrder {
         (self.set, self.order)
     }
 
-    fn pair(self, sides: [f64; 2], iso: f64) -> Pair<f64> {
+    fn pair(self, sides: [f64; 2], iso: f64) -> PairResult<f64> {
         self.operation().pair(sides, 0.0, iso)
     }
 
@@ -41,8 +41,8 @@ impl Step for RFunctionOrder {
         self.operation().kink_distance(sides, 0.0, iso)
     }
 
-    fn reach(self) -> Reach {
-        Reach::Any
+    fn reach(self) -> OperatorReach {
+        OperatorReach::Any
     }
 
     fn is_non_negative(self, _: [bool; 2]) -> bool {
@@ -59,7 +59,7 @@ impl Step for RFunctionOrder {
         sides: [D::Real; 2],
         row: &[D::Real],
         iso2: D::Real,
-    ) -> Pair<D::Real> {
-        Operation(set, Family::Order(order)).emit(d, sides, row, iso2)
+    ) -> PairResult<D::Real> {
+        RvachevOperation(set, Family::Order(order)).emit(d, sides, row, iso2)
     }
 }

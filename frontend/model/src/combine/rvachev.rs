@@ -40,7 +40,7 @@
 
 use jbt_ir::Domain;
 
-use super::member::Pair;
+use super::member::PairResult;
 use super::ricci::FLOOR;
 use super::set::SetOperation;
 use crate::skeleton::positive_part;
@@ -58,7 +58,7 @@ pub(super) enum Family {
 
 /// A set operation by a family.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Operation(pub(super) SetOperation, pub(super) Family);
+pub(super) struct RvachevOperation(pub(super) SetOperation, pub(super) Family);
 
 /// R, and its derivatives up to a common factor.
 #[derive(Clone, Copy)]
@@ -69,7 +69,7 @@ struct Rvachev<R> {
     root: R,
 }
 
-impl Operation {
+impl RvachevOperation {
     fn rvachev(self, [x, y]: [f64; 2], number: f64) -> Rvachev<f64> {
         let over = |x: f64, root: f64| if root == 0.0 { 0.0 } else { x / root };
         match self.1 {
@@ -128,7 +128,7 @@ impl Operation {
     }
 }
 
-impl Operation {
+impl RvachevOperation {
     /// Pushes the numbers of a row.
     pub(super) fn columns(self, number: f64, row: &mut Vec<f64>) {
         match self.1 {
@@ -139,7 +139,7 @@ impl Operation {
     }
 
     /// The operation on two fields, plainly.
-    pub(super) fn pair(self, [a, b]: [f64; 2], number: f64, iso: f64) -> Pair<f64> {
+    pub(super) fn pair(self, [a, b]: [f64; 2], number: f64, iso: f64) -> PairResult<f64> {
         let (relative, here) = self.relative([a, b], number, iso);
         let right = match self.0 {
             SetOperation::Union | SetOperation::Intersection => b,
@@ -147,7 +147,7 @@ impl Operation {
             SetOperation::Difference => 0.0,
         };
         let weights = [a.max(0.0) * here.slopes[0].max(0.0), right.max(0.0) * here.slopes[1].max(0.0)];
-        Pair { field: iso * relative.max(0.0), weights }
+        PairResult { field: iso * relative.max(0.0), weights }
     }
 
     /// How far two fields are from where gradients jump.
@@ -167,7 +167,7 @@ impl Operation {
         [a, b]: [D::Real; 2],
         row: &[D::Real],
         iso2: D::Real,
-    ) -> Pair<D::Real> {
+    ) -> PairResult<D::Real> {
         let (zero, one, half, two) = (d.constant(0.0), d.constant(1.0), d.constant(0.5), d.constant(2.0));
         let (iso, inverse) = (d.mul(iso2, half), d.div(two, iso2));
         let in_units = [d.mul(a, inverse), d.mul(b, inverse)];
@@ -190,12 +190,12 @@ impl Operation {
             let (field, slope) = (positive_part(d, field), positive_part(d, slope));
             d.mul(field, slope)
         };
-        Pair { field, weights: [weight(a, here.slopes[0]), weight(right, here.slopes[1])] }
+        PairResult { field, weights: [weight(a, here.slopes[0]), weight(right, here.slopes[1])] }
     }
 }
 
 /// Over the ops.
-impl Operation {
+impl RvachevOperation {
     fn emit_arguments<D: Domain>(self, d: &mut D, [a, b]: [D::Real; 2]) -> [D::Real; 2] {
         let one = d.constant(1.0);
         match self.0 {
@@ -353,8 +353,8 @@ mod tests {
 
     const POWERS: [f64; 6] = [1.1, 1.5, 2.0, 3.5, 16.0, 64.0];
 
-    fn power(set: SetOperation) -> Operation {
-        Operation(set, Family::Power)
+    fn power(set: SetOperation) -> RvachevOperation {
+        RvachevOperation(set, Family::Power)
     }
 
     fn row(number: f64) -> Vec<f32> {

@@ -20,7 +20,7 @@
 
 use jbt_ir::Domain;
 
-use super::member::Pair;
+use super::member::PairResult;
 use super::set::SetOperation;
 use crate::skeleton::positive_part;
 
@@ -79,19 +79,19 @@ fn corner(is_union: bool, [a, b]: [f64; 2]) -> f64 {
 }
 
 /// The operation on two fields, plainly.
-pub(super) fn pair(set: SetOperation, [a, b]: [f64; 2], width: f64, iso: f64) -> Pair<f64> {
+pub(super) fn pair(set: SetOperation, [a, b]: [f64; 2], width: f64, iso: f64) -> PairResult<f64> {
     let is_union = set == SetOperation::Union;
     match set {
         SetOperation::Union | SetOperation::Intersection => {
             let (field, slopes) = rounded(is_union, [a, b], width);
-            Pair { field, weights: [(a * slopes[0]).max(0.0), (b * slopes[1]).max(0.0)] }
+            PairResult { field, weights: [(a * slopes[0]).max(0.0), (b * slopes[1]).max(0.0)] }
         }
         SetOperation::Difference => {
             let (width, complement) = (limited(width, b).0, (2.0 * iso - b).max(0.0));
             let (field, slopes) = rounded(false, [a, complement], width);
             // What is not there may limit the field, but takes nothing from the attributes.
             let slopes = if b > 0.0 { slopes } else { [1.0, 0.0] };
-            Pair { field, weights: [(a * slopes[0]).max(0.0), (complement * slopes[1]).max(0.0)] }
+            PairResult { field, weights: [(a * slopes[0]).max(0.0), (complement * slopes[1]).max(0.0)] }
         }
     }
 }
@@ -117,16 +117,16 @@ pub(super) fn emit<D: Domain>(
     [a, b]: [D::Real; 2],
     row: &[D::Real],
     iso2: D::Real,
-) -> Pair<D::Real> {
+) -> PairResult<D::Real> {
     let width = Width { width: row[0], quarter: row[1] };
     match set {
         SetOperation::Union => {
             let (field, [left, right]) = emit_rounded(d, true, [a, b], width);
-            Pair { field, weights: [weight(d, a, left), weight(d, b, right)] }
+            PairResult { field, weights: [weight(d, a, left), weight(d, b, right)] }
         }
         SetOperation::Intersection => {
             let (field, [left, right]) = emit_rounded(d, false, [a, b], width);
-            Pair { field, weights: [weight(d, a, left), weight(d, b, right)] }
+            PairResult { field, weights: [weight(d, a, left), weight(d, b, right)] }
         }
         SetOperation::Difference => {
             let (here, _) = emit_limited(d, width, b);
@@ -141,7 +141,7 @@ pub(super) fn emit<D: Domain>(
             // What is not there may limit the field, but takes nothing from the attributes.
             let there = d.lt(zero, b);
             let (left, right) = (d.select(there, left, one), d.select(there, right, zero));
-            Pair { field, weights: [weight(d, a, left), weight(d, cut, right)] }
+            PairResult { field, weights: [weight(d, a, left), weight(d, cut, right)] }
         }
     }
 }

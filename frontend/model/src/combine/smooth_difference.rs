@@ -2,7 +2,7 @@
 
 use jbt_ir::{Domain, Rule};
 
-use super::member::{Operator, Pair, Reach, Step, Syntax};
+use super::member::{Operator, PairResult, OperatorReach, Step, Syntax};
 use super::set::SetOperation;
 use super::smooth;
 use crate::member::member;
@@ -30,7 +30,7 @@ impl Step for SmoothDifference {
         smooth::push_columns(self.width, row);
     }
 
-    fn pair(self, sides: [f64; 2], iso: f64) -> Pair<f64> {
+    fn pair(self, sides: [f64; 2], iso: f64) -> PairResult<f64> {
         smooth::pair(SetOperation::Difference, sides, self.width, iso)
     }
 
@@ -38,8 +38,8 @@ impl Step for SmoothDifference {
         smooth::kink_distance(SetOperation::Difference, sides, iso)
     }
 
-    fn reach(self) -> Reach {
-        Reach::Left
+    fn reach(self) -> OperatorReach {
+        OperatorReach::Left
     }
 
     fn is_non_negative(self, [left, _]: [bool; 2]) -> bool {
@@ -57,7 +57,7 @@ impl Step for SmoothDifference {
         sides: [D::Real; 2],
         row: &[D::Real],
         iso2: D::Real,
-    ) -> Pair<D::Real> {
+    ) -> PairResult<D::Real> {
         smooth::emit(SetOperation::Difference, d, sides, row, iso2)
     }
 }

@@ -2,7 +2,7 @@
 
 use jbt_ir::{Domain, Rule};
 
-use super::member::{Operator, Pair, Reach, Step, Syntax};
+use super::member::{Operator, PairResult, OperatorReach, Step, Syntax};
 use super::set::SetOperation;
 use super::smooth;
 use crate::member::member;
@@ -30,7 +30,7 @@ impl Step for SmoothIntersection {
         smooth::push_columns(self.width, row);
     }
 
-    fn pair(self, sides: [f64; 2], iso: f64) -> Pair<f64> {
+    fn pair(self, sides: [f64; 2], iso: f64) -> PairResult<f64> {
         smooth::pair(SetOperation::Intersection, sides, self.width, iso)
     }
 
@@ -38,8 +38,8 @@ impl Step for SmoothIntersection {
         smooth::kink_distance(SetOperation::Intersection, sides, iso)
     }
 
-    fn reach(self) -> Reach {
-        Reach::Both
+    fn reach(self) -> OperatorReach {
+        OperatorReach::Both
     }
 
     fn is_non_negative(self, [left, right]: [bool; 2]) -> bool {
@@ -57,7 +57,7 @@ impl Step for SmoothIntersection {
         sides: [D::Real; 2],
         row: &[D::Real],
         iso2: D::Real,
-    ) -> Pair<D::Real> {
+    ) -> PairResult<D::Real> {
         smooth::emit(SetOperation::Intersection, d, sides, row, iso2)
     }
 }

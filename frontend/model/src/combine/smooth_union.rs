@@ -2,7 +2,7 @@
 
 use jbt_ir::{Domain, Rule};
 
-use super::member::{Operator, Pair, Reach, Step, Syntax};
+use super::member::{Operator, PairResult, OperatorReach, Step, Syntax};
 use super::set::SetOperation;
 use super::smooth;
 use crate::member::member;
@@ -30,7 +30,7 @@ impl Step for SmoothUnion {
         smooth::push_columns(self.width, row);
     }
 
-    fn pair(self, sides: [f64; 2], iso: f64) -> Pair<f64> {
+    fn pair(self, sides: [f64; 2], iso: f64) -> PairResult<f64> {
         smooth::pair(SetOperation::Union, sides, self.width, iso)
     }
 
@@ -38,8 +38,8 @@ impl Step for SmoothUnion {
         smooth::kink_distance(SetOperation::Union, sides, iso)
     }
 
-    fn reach(self) -> Reach {
-        Reach::Any
+    fn reach(self) -> OperatorReach {
+        OperatorReach::Any
     }
 
     fn is_non_negative(self, [left, right]: [bool; 2]) -> bool {
@@ -56,7 +56,7 @@ impl Step for SmoothUnion {
         sides: [D::Real; 2],
         row: &[D::Real],
         iso2: D::Real,
-    ) -> Pair<D::Real> {
+    ) -> PairResult<D::Real> {
         smooth::emit(SetOperation::Union, d, sides, row, iso2)
     }
 }

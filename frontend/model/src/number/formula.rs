@@ -6,7 +6,7 @@ use std::mem;
 use std::sync::Arc;
 
 use super::binary::Binary;
-use super::value::Values;
+use super::value::ParameterValues;
 use crate::diagnostic::{Diagnostic, Span};
 use crate::field::plain;
 use crate::function::Function;
@@ -99,19 +99,19 @@ impl Step {
 
 /// A number as steps, at least one of which is a parameter.
 #[derive(Clone, Debug)]
-pub struct Formula {
+pub struct NumberFormula {
     steps: Box<[Step]>,
     /// Its place in the text.
     span: Option<Span>,
 }
 
-impl PartialEq for Formula {
+impl PartialEq for NumberFormula {
     fn eq(&self, other: &Self) -> bool {
         self.steps == other.steps
     }
 }
 
-impl Formula {
+impl NumberFormula {
     /// A formula of steps that leave one value.
     pub fn new(steps: Vec<Step>, span: Option<Span>) -> Self {
         Self { steps: steps.into(), span }
@@ -136,7 +136,7 @@ impl Formula {
     }
 
     /// The value for these values of the parameters.
-    pub(crate) fn evaluate(&self, values: &Values) -> Result<f64, Diagnostic> {
+    pub(crate) fn evaluate(&self, values: &ParameterValues) -> Result<f64, Diagnostic> {
         let error = |message: String| Diagnostic::error(self.span, message);
         let mut stack: Vec<f64> = Vec::new();
         for step in &self.steps {
@@ -183,7 +183,7 @@ enum Piece {
     Step(u32, u8),
 }
 
-impl fmt::Display for Formula {
+impl fmt::Display for NumberFormula {
     /// In the text format, with no more parentheses than it needs.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         show(&self.steps, f, |_, _| Ok(()))

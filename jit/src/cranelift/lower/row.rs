@@ -6,7 +6,7 @@ use cranelift_codegen::ir::{self, BlockArg, InstBuilder};
 use cranelift_frontend::FunctionBuilder;
 use jbt_ir::{Any, Entity, Fold, Table};
 
-use super::{Lowering, Place, READ, Row, offset};
+use super::{Lowering, READ, Row, ValuePlace, offset};
 use crate::abi::TableView;
 use crate::cranelift::vectors::Vectors;
 
@@ -30,7 +30,7 @@ impl<'f, const K: usize> Lowering<'f, K> {
         self.each_row(fold.table, &initial, |lowering, accumulators| {
             for (&param, &accumulator) in lowering.function.blocks[fold.body].params.iter().zip(accumulators)
             {
-                lowering.places[param.index()] = Some(Place::Computed(accumulator));
+                lowering.places[param.index()] = Some(ValuePlace::Computed(accumulator));
             }
             lowering.block(fold.body)
         })

@@ -5,7 +5,7 @@ use std::fmt;
 
 use iced_x86::{Decoder, DecoderOptions, Instruction, Mnemonic, Register};
 
-use super::memory::{CALLER, CODE, Memory, Step};
+use super::memory::{CALLER, CODE, SimulatedMemory, Step};
 
 /// What went wrong, and where.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -37,13 +37,13 @@ pub(super) struct Machine {
     /// Of the last comparison: equal, and below as unsigned numbers.
     pub(super) equal: bool,
     pub(super) below: bool,
-    pub(super) memory: Memory,
+    pub(super) memory: SimulatedMemory,
 }
 
 impl Machine {
     /// As a function finds it: registers hold nothing, but for the upper halves of vectors that the caller
     /// has cleared, see [`crate::memory`].
-    pub(super) fn new(memory: Memory) -> Self {
+    pub(super) fn new(memory: SimulatedMemory) -> Self {
         let mut vectors = [[POISON; 16]; 32];
         vectors[..16].iter_mut().for_each(|lanes| lanes[4..].fill(0));
         let integers = [0x5EED_5EED_5EED_5EED; 16];

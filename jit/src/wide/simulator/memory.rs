@@ -28,7 +28,7 @@ struct Region {
 }
 
 /// Regions in the order of their addresses.
-pub(super) struct Memory {
+pub(super) struct SimulatedMemory {
     regions: Vec<Region>,
 }
 
@@ -54,7 +54,7 @@ fn bytes_of<T: Copy, const N: usize>(items: &[T], to_bytes: impl Fn(T) -> [u8; N
     items.iter().flat_map(|&item| to_bytes(item)).collect()
 }
 
-impl Memory {
+impl SimulatedMemory {
     /// Lays out what a call of a function gets.
     pub(super) fn new(blob: &Blob, call: &Call<'_>) -> (Self, Layout) {
         let code = Region { first: CODE, bytes: blob.bytes.clone(), is_writable: false };
