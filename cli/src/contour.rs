@@ -17,7 +17,7 @@ use crate::formats::SliceKind;
 use crate::lattice;
 use crate::output::{Output, grouped, plural, warn};
 use crate::progress::ProgressLine;
-use crate::scene::Scene;
+use crate::scene::LoadedScene;
 
 /// Runs the command. `start` is when the process began, for the total time.
 pub fn run(arguments: &ContourArguments, quiet: bool, start: Instant) -> Result<(), Failure> {
@@ -26,7 +26,7 @@ pub fn run(arguments: &ContourArguments, quiet: bool, start: Instant) -> Result<
     let drawing = destination.kind;
     check_options(arguments, drawing)?;
     let fineness = fineness(arguments, drawing)?;
-    let scene = Scene::load(&arguments.scene)?;
+    let scene = LoadedScene::load(&arguments.scene)?;
     scene.warn(quiet);
     let tree = scene.check()?;
     check_attributes(arguments, drawing, &tree)?;

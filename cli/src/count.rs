@@ -33,7 +33,7 @@ use crate::failure::Failure;
 use crate::lattice;
 use crate::output::{grouped, plural, print, warn};
 use crate::progress::ProgressLine;
-use crate::scene::Scene;
+use crate::scene::LoadedScene;
 use crate::stages;
 
 /// How the evaluations of separate walks add up.
@@ -52,7 +52,7 @@ fn formula() -> String {
 /// Runs the command.
 pub fn run(arguments: &CountArguments, quiet: bool) -> Result<(), Failure> {
     let settings = lattice::settings(&arguments.lattice)?;
-    let scene = Scene::load(&arguments.scene)?;
+    let scene = LoadedScene::load(&arguments.scene)?;
     scene.warn(quiet);
     let tree = scene.check()?;
     let queries = match arguments.query {
@@ -105,7 +105,7 @@ fn without_lattice(error: &PolygonizeError) -> String {
 
 /// Counts what matters on a lattice.
 fn supports(
-    scene: &Scene,
+    scene: &LoadedScene,
     statistics: &Statistics<'_>,
     lattice: &Lattice,
     quiet: bool,
@@ -117,7 +117,7 @@ fn supports(
 
 /// Makes the mesh, to count what that takes.
 fn mesh(
-    scene: &Scene,
+    scene: &LoadedScene,
     tree: &CheckedTree,
     settings: &Polygonize,
     quiet: bool,
@@ -136,7 +136,7 @@ struct QueryCount {
 
 impl QueryCount {
     fn new(
-        scene: &Scene,
+        scene: &LoadedScene,
         compiled: &Compiled,
         statistics: &Statistics<'_>,
         query: Query,
@@ -160,7 +160,7 @@ struct CountedLeaf {
     uses: u64,
 }
 
-fn leaves(scene: &Scene, tree: &CheckedTree) -> Vec<CountedLeaf> {
+fn leaves(scene: &LoadedScene, tree: &CheckedTree) -> Vec<CountedLeaf> {
     let uses = tree.asked();
     let lines = Lines::new(scene.source());
     let leaf = |(index, node): (usize, &jbt::tree::CheckedNode)| match &node.kind {

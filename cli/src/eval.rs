@@ -12,7 +12,7 @@ use crate::formats::TableKind;
 use crate::output::{Destination, Output};
 use crate::points::PointReader;
 use crate::progress::ProgressLine;
-use crate::scene::Scene;
+use crate::scene::LoadedScene;
 use crate::standard::is_standard;
 use crate::threads::Threads;
 
@@ -27,7 +27,7 @@ pub fn run(arguments: &EvalArguments, quiet: bool) -> Result<(), Failure> {
         ));
     }
     let destination = arguments.output.destination(&arguments.scene.path)?;
-    let scene = Scene::load(&arguments.scene)?;
+    let scene = LoadedScene::load(&arguments.scene)?;
     scene.warn(quiet);
     let tree = scene.check()?;
     let evaluator = scene.evaluator(&arguments.engine.compiler()?.compile(&tree), arguments.query)?;

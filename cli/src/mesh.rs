@@ -13,7 +13,7 @@ use crate::failure::Failure;
 use crate::lattice;
 use crate::output::{Output, grouped, plural, warn};
 use crate::progress::ProgressLine;
-use crate::scene::Scene;
+use crate::scene::LoadedScene;
 use crate::stages;
 
 /// Runs the command. `start` is when the process began, for the total time.
@@ -22,7 +22,7 @@ pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(),
     arguments.work.check_output(&destination.path, "mesh")?;
     let options = options(arguments, destination.kind)?;
     let settings = Polygonize { thin_parts: !arguments.no_thin, ..lattice::settings(&arguments.lattice)? };
-    let scene = Scene::load(&arguments.scene)?;
+    let scene = LoadedScene::load(&arguments.scene)?;
     scene.warn(quiet);
     let tree = scene.check()?;
     let compiler = arguments.work.compiler()?;

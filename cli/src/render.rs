@@ -14,14 +14,14 @@ use crate::formats::PictureKind;
 use crate::lattice;
 use crate::output::{Output, grouped, plural, warn};
 use crate::progress::ProgressLine;
-use crate::scene::Scene;
+use crate::scene::LoadedScene;
 
 /// Runs the command. `start` is when the process began, for the total time.
 pub fn run(arguments: &RenderArguments, quiet: bool, start: Instant) -> Result<(), Failure> {
     let destination = arguments.output.destination(&arguments.scene.path)?;
     arguments.work.check_output(&destination.path, "picture")?;
     let mut settings = settings(arguments)?;
-    let scene = Scene::load(&arguments.scene)?;
+    let scene = LoadedScene::load(&arguments.scene)?;
     scene.warn(quiet);
     let tree = scene.check()?;
     settings.region = arguments.region.map(|region| lattice::local(region, tree.origin()));

@@ -21,7 +21,7 @@ use crate::failure::Failure;
 use crate::lattice;
 use crate::output::{grouped, plural, print, warn};
 use crate::progress::ProgressLine;
-use crate::scene::Scene;
+use crate::scene::LoadedScene;
 
 /// The tolerance of the bounds when nothing else is said, as a part of the region's longest side.
 const TOLERANCE: f32 = 1.0 / 1024.0;
@@ -29,7 +29,7 @@ const TOLERANCE: f32 = 1.0 / 1024.0;
 /// Runs the command. `start` is when the process began, for the total time.
 pub fn run(arguments: &StatsArguments, quiet: bool, start: Instant) -> Result<(), Failure> {
     let asked = lattice::settings(&arguments.lattice)?;
-    let scene = Scene::load(&arguments.scene)?;
+    let scene = LoadedScene::load(&arguments.scene)?;
     scene.warn(quiet);
     let tree = scene.check()?;
     let settings = settings(arguments, &asked, tree.origin());

@@ -17,7 +17,7 @@ use std::sync::Arc;
 use jbt_ir::engine::{Interface, Planes, Program, Run};
 use jbt_ir::{Function, Selection, Tables};
 
-use crate::abi::{Arguments, TableView};
+use crate::abi::{KernelArguments, TableView};
 use crate::memory::MachineCode;
 
 /// Machine code for one function.
@@ -158,10 +158,10 @@ impl Kernel {
         }
         let (block, bytes) = (self.block() * size_of::<f32>(), points * size_of::<f32>());
         let rest = bytes % block;
-        self.code.call(Arguments { planes: &mut *pointers, bytes: bytes - rest, tables: views });
+        self.code.call(KernelArguments { planes: &mut *pointers, bytes: bytes - rest, tables: views });
         if rest > 0 {
             pointers.iter_mut().for_each(|plane| *plane = plane.wrapping_byte_sub(block - rest));
-            self.code.call(Arguments { planes: pointers, bytes: block, tables: views });
+            self.code.call(KernelArguments { planes: pointers, bytes: block, tables: views });
         }
     }
 }

@@ -16,8 +16,8 @@ use cranelift_module::{Linkage, Module, ModuleError, default_libcall_names};
 
 use jbt_ir::limits;
 
-use crate::abi::{Arguments, TableView};
-use crate::blob::{Blob, Emitted};
+use crate::abi::{KernelArguments, TableView};
+use crate::blob::{CodeBlob, Emitted};
 use crate::cranelift::lower::Lowered;
 use crate::error::CompileError;
 use crate::isa;
@@ -29,9 +29,9 @@ struct Pages(Option<JITModule>);
 impl Drop for Pages {
     fn drop(&mut self) {
         if let Some(module) = self.0.take() {
-            // SAFETY: the address of the code is kept in `MachineCode` alone, beside these pages, and is used in
-            // `MachineCode::call` alone, which borrows the `MachineCode`. So nothing runs in these pages now, and nothing
-            // will.
+            // SAFETY: the address of the code is kept in `MachineCode` alone, beside these pages, and is used
+            // in `MachineCode::call` alone, which borrows the `MachineCode`. So nothing runs in these pages
+            // now, and nothing will.
             unsafe { module.free_memory() };
         }
     }
@@ -95,7 +95,7 @@ impl MachineCode {
         let mut pages = Pages(Some(JITModule::new(JITBuilder::with_isa(isa, default_libcall_names()))));
         let module = pages.0.as_mut().expect("the module stays until the pages are dropped");
         let signature = module.make_signature();
-        let mut define = |name, blob: &Blob| {
+        let mut define = |name, blob: &CodeBlob| {
             let function = module.declare_function(name, Linkage::Export, &signature)?;
             // Constants are read by whole vectors.
             module.define_function_bytes(function, 64, &blob.bytes, &[])?;
@@ -138,15 +138,15 @@ impl MachineCode {
     }
 
     /// Runs the code: whole blocks first, then what is left. The arguments were made for the function that
-    /// this is compiled from, see [`Arguments`].
-    pub(crate) fn call(&self, Arguments { planes, bytes, tables }: Arguments<'_>) {
+    /// this is compiled from, see [`KernelArguments`].
+    pub(crate) fn call(&self, KernelArguments { planes, bytes, tables }: KernelArguments<'_>) {
         let block = self.blocks.lanes * size_of::<f32>();
         let whole = if self.rest.is_some() { bytes - bytes % block } else { bytes };
         for (entry, bytes) in [(Some(self.blocks), whole), (self.rest, bytes - whole)] {
             let Some(entry) = entry.filter(|_| bytes > 0) else { continue };
-            // SAFETY: the contract of `MachineCode` says that this is a function of the ABI that `enter` expects.
-            // `Arguments` come from `Kernel::call`: there is a plane of this many bytes for each
-            // input and output, at least one block long and whole blocks; outputs come from exclusive
+            // SAFETY: the contract of `MachineCode` says that this is a function of the ABI that `enter`
+            // expects. `KernelArguments` come from `Kernel::call`: there is a plane of this many bytes for
+            // each input and output, at least one block long and whole blocks; outputs come from exclusive
             // borrows, so that no other plane overlaps them; the tables have been checked against the
             // function, the selection fits them, and both are borrowed by the caller. What else the code
             // writes is its frame, which is no larger than `limits::MAX_JIT_FRAME_BYTES` and is touched page

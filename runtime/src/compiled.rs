@@ -57,10 +57,10 @@ struct CompiledParts {
     compiler: Compiler,
     tree: CheckedTree,
     /// By [`Query::index`].
-    anywhere: [Slot<AnswerProgram>; QUERIES],
+    anywhere: [ProgramSlot<AnswerProgram>; QUERIES],
     /// By [`Query::index`].
-    in_regions: [Slot<AnswerProgram>; QUERIES],
-    ranges: Slot<RangeProgram>,
+    in_regions: [ProgramSlot<AnswerProgram>; QUERIES],
+    ranges: ProgramSlot<RangeProgram>,
 }
 
 brief_debug!(Compiled, "Compiled", this: compiler = this.compiler());
@@ -86,19 +86,19 @@ pub(crate) enum Need {
 }
 
 /// The place of a program.
-struct Slot<T> {
+struct ProgramSlot<T> {
     made: OnceLock<Result<Arc<T>, CompileError>>,
     /// The kernel that an earlier model had here.
     earlier: Option<Arc<Kernel>>,
 }
 
-impl<T> Default for Slot<T> {
+impl<T> Default for ProgramSlot<T> {
     fn default() -> Self {
         Self { made: OnceLock::new(), earlier: None }
     }
 }
 
-impl<T: ModelProgram> Slot<T> {
+impl<T: ModelProgram> ProgramSlot<T> {
     /// The program. Whoever is first makes it; the others wait.
     fn get_or_make(
         &self,
@@ -128,7 +128,7 @@ impl Compiler {
             tree: tree.clone(),
             anywhere: Default::default(),
             in_regions: Default::default(),
-            ranges: Slot::default(),
+            ranges: ProgramSlot::default(),
         }))
     }
 }
@@ -142,8 +142,8 @@ impl Compiled {
         Self(Arc::new(CompiledParts {
             compiler: self.0.compiler.clone(),
             tree: tree.with_origin(self.origin()),
-            anywhere: self.0.anywhere.each_ref().map(Slot::renewed),
-            in_regions: self.0.in_regions.each_ref().map(Slot::renewed),
+            anywhere: self.0.anywhere.each_ref().map(ProgramSlot::renewed),
+            in_regions: self.0.in_regions.each_ref().map(ProgramSlot::renewed),
             ranges: self.0.ranges.renewed(),
         }))
     }
@@ -222,7 +222,7 @@ impl Compiled {
         }
     }
 
-    fn slot(&self, scope: PointScope, query: Query) -> &Slot<AnswerProgram> {
+    fn slot(&self, scope: PointScope, query: Query) -> &ProgramSlot<AnswerProgram> {
         match scope {
             PointScope::Anywhere => &self.0.anywhere[query.index()],
             PointScope::Regions => &self.0.in_regions[query.index()],

@@ -16,7 +16,7 @@ use crate::compiled::{Compiled, PointScope};
 use crate::compiler::Compiler;
 use crate::counter::{Counters, SharedCounters};
 use crate::error::{CompileError, EvalError};
-use crate::kernel::{Bound, Engine};
+use crate::kernel::{BoundKernel, Engine};
 use crate::places;
 use crate::points::{AsPoints, Points};
 use crate::program::AnswerProgram;
@@ -127,7 +127,7 @@ impl Evaluator {
     }
 
     /// What runs points of regions.
-    fn rows(&self) -> &Bound {
+    fn rows(&self) -> &BoundKernel {
         if self.program.is_straight() {
             &self.compiled.rows_of(&self.program).bound
         } else {
@@ -320,7 +320,7 @@ impl Evaluator {
     /// Runs points of which some are no places; returns how many lanes were computed.
     fn run_placed(
         &self,
-        bound: &Bound,
+        bound: &BoundKernel,
         selection: &Selection,
         points: [&[f32]; 3],
         answers: &mut [&mut [f32]],

@@ -62,7 +62,7 @@ fn name(kind: &NodeKind) -> &str {
 }
 
 /// A node at the end of a path from the root.
-struct Step {
+struct PathStep {
     node: NodeId,
     /// The step above, and which of its children this is; the root is its own.
     above: u32,
@@ -93,7 +93,7 @@ pub fn owner(tree: &CheckedTree, p: [f64; 3]) -> Option<Owner> {
 /// The question for the leaf that decides.
 struct Owners {
     iso: f64,
-    steps: Vec<Step>,
+    steps: Vec<PathStep>,
 }
 
 /// On the way to a node: the step above, and which of its children this is. At the node: its own step.
@@ -111,7 +111,7 @@ impl Question for Owners {
     fn enter(&mut self, node: NodeId, way: OwnerWay) -> OwnerWay {
         // At most limits::MAX_INSTANCES.
         let step = self.steps.len() as u32;
-        self.steps.push(Step { node, above: way.step, child: way.child });
+        self.steps.push(PathStep { node, above: way.step, child: way.child });
         OwnerWay { step, child: 0 }
     }
 
@@ -199,7 +199,7 @@ fn heaviest(children: &[OwnerAnswer], weights: &[f64]) -> Option<(u32, f64)> {
 }
 
 /// The way up from a leaf.
-fn describe(tree: &CheckedTree, steps: &[Step], leaf: u32, share: f64) -> Owner {
+fn describe(tree: &CheckedTree, steps: &[PathStep], leaf: u32, share: f64) -> Owner {
     let node = steps[leaf as usize].node;
     let mut above = Vec::new();
     let mut at = leaf;

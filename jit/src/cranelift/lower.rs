@@ -122,7 +122,7 @@ enum ValuePlace<'f, const K: usize> {
 
 /// The current row of a table, inside its fold.
 #[derive(Clone, Copy)]
-struct Row {
+struct CurrentRow {
     /// Bytes from the table's first active row to it: what leads to the rows that it owns.
     position: ir::Value,
     /// The address of its first number.
@@ -171,7 +171,7 @@ struct Lowering<'f, const K: usize> {
     /// What the current piece has put into slots, for the pieces after it.
     kept: Vec<Value>,
     /// The current row of each table whose fold is open.
-    rows: Vec<Option<Row>>,
+    rows: Vec<Option<CurrentRow>>,
     /// `None` outside of a piece.
     points: Option<PointBlock>,
 }
@@ -343,7 +343,7 @@ impl<'f, const K: usize> Lowering<'f, K> {
     }
 
     /// The current row of a table whose fold is open.
-    fn row(&self, table: Table) -> Row {
+    fn row(&self, table: Table) -> CurrentRow {
         self.rows[table.index()].expect("a verified function names a row inside the fold over its table")
     }
 }

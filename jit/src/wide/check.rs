@@ -9,15 +9,15 @@ use std::collections::HashMap;
 
 use super::event::{Event, NEXT, PartPlace, ValuePart};
 use super::inst::{Base, Gpr, Inst, Memory, Operand};
-use super::linear::{Home, Kind, Linear, NONE};
+use super::linear::{Definition, Home, LinearCode, NONE};
 use super::state::MASKS;
 
 /// The part at each place.
-type Contents = HashMap<PartPlace, ValuePart>;
+type PlaceContents = HashMap<PartPlace, ValuePart>;
 
 /// A finished walk.
 pub(crate) struct Replay<'a> {
-    pub(crate) linear: &'a Linear,
+    pub(crate) linear: &'a LinearCode,
     pub(crate) vectors: u32,
     pub(crate) vector_bytes: usize,
     pub(crate) has_masks: bool,
@@ -30,7 +30,7 @@ pub(crate) struct Replay<'a> {
 impl Replay<'_> {
     /// The first instruction that reads a wrong part, in words.
     pub(crate) fn check(&self) -> Result<(), String> {
-        let mut contents = Contents::new();
+        let mut contents = PlaceContents::new();
         self.walk(0, 0, &mut contents)?;
         Ok(())
     }
@@ -41,10 +41,10 @@ impl Replay<'_> {
         &self,
         mut at: usize,
         mut event: usize,
-        contents: &mut Contents,
+        contents: &mut PlaceContents,
     ) -> Result<(usize, usize), String> {
         // The contents at early ends of iterations.
-        let mut early: Vec<Contents> = Vec::new();
+        let mut early: Vec<PlaceContents> = Vec::new();
         loop {
             let next = self.events.get(event);
             match next {
@@ -98,7 +98,7 @@ impl Replay<'_> {
     }
 
     /// Replays one instruction.
-    fn step(&self, at: usize, contents: &mut Contents) -> Result<(), String> {
+    fn step(&self, at: usize, contents: &mut PlaceContents) -> Result<(), String> {
         let inst = &self.code[at];
         let (reads, write) = self.places(inst);
         let (read_parts, written) = &self.notes[at];
@@ -127,14 +127,16 @@ impl Replay<'_> {
         let data = &self.linear.names[(part / self.vectors) as usize];
         let vector = (part % self.vectors) as i32 * self.vector_bytes as i32;
         match data.kind {
-            Kind::Computed | Kind::Phi(_) => false,
-            Kind::Leaf(Home::Number(bits)) => {
+            Definition::Computed | Definition::Phi(_) => false,
+            Definition::Leaf(Home::Number(bits)) => {
                 let at = memory.displacement as usize;
                 memory.base == Base::Constants && self.constants[at..at + 4] == bits.to_le_bytes()
             }
-            Kind::Leaf(Home::Column(_, column)) => memory.is_one && memory.displacement == 4 * column as i32,
-            Kind::Leaf(Home::Input(_)) => !memory.is_one && memory.displacement == vector,
-            Kind::Leaf(Home::Slot(_)) => memory.base == Base::Register(Gpr::R8),
+            Definition::Leaf(Home::Column(_, column)) => {
+                memory.is_one && memory.displacement == 4 * column as i32
+            }
+            Definition::Leaf(Home::Input(_)) => !memory.is_one && memory.displacement == vector,
+            Definition::Leaf(Home::Slot(_)) => memory.base == Base::Register(Gpr::R8),
         }
     }
 

@@ -5,7 +5,7 @@ use jbt_ir::Entity;
 use super::counters::SAVED_BYTES;
 use super::event::ValuePart;
 use super::inst::{Base, Gpr, Inst, Memory};
-use super::linear::{Home, Kind, NONE, Name};
+use super::linear::{Definition, Home, NONE, ValueName};
 use super::state::{NOWHERE, Register, SAVED, WalkState, load, store};
 
 impl WalkState<'_> {
@@ -48,7 +48,7 @@ impl WalkState<'_> {
     }
 
     /// Releases the registers and the memory of a name.
-    pub(super) fn bury(&mut self, name: Name) {
+    pub(super) fn bury(&mut self, name: ValueName) {
         for part in self.parts(name) {
             self.release(part);
             let slot = std::mem::replace(&mut self.frame[part as usize], NONE);
@@ -61,11 +61,11 @@ impl WalkState<'_> {
 
     /// Ends a live range of a name at the current position; for an accumulator this may be only the range
     /// inside of its loop.
-    pub(crate) fn end_life(&mut self, name: Name) {
+    pub(crate) fn end_life(&mut self, name: ValueName) {
         if self.lives.last[name as usize] == self.position {
             return self.bury(name);
         }
-        if let Kind::Phi(id) = self.linear.names[name as usize].kind
+        if let Definition::Phi(id) = self.linear.names[name as usize].kind
             && self.linear.loops[id as usize].close != self.position
         {
             // It is set again at the end of the iteration, in the same place.
@@ -81,18 +81,18 @@ impl WalkState<'_> {
         let vector = (part - name * self.vectors) as i32;
         let displacement = vector * self.shape.bytes as i32;
         match self.linear.names[name as usize].kind {
-            Kind::Computed | Kind::Phi(_) => {
+            Definition::Computed | Definition::Phi(_) => {
                 debug_assert!(self.stored[part as usize], "a value is somewhere");
                 self.frame_memory(part)
             }
-            Kind::Leaf(Home::Number(bits)) => self.number(bits),
-            Kind::Leaf(Home::Column(table, column)) => {
+            Definition::Leaf(Home::Number(bits)) => self.number(bits),
+            Definition::Leaf(Home::Column(table, column)) => {
                 let base = Base::Register(self.row(table.index()));
                 let displacement = i32::try_from(4 * column).expect("a row has fewer bytes");
                 Memory { base, displacement, is_one: true }
             }
-            Kind::Leaf(Home::Input(plane)) => self.input(plane, displacement),
-            Kind::Leaf(Home::Slot(slot)) => {
+            Definition::Leaf(Home::Input(plane)) => self.input(plane, displacement),
+            Definition::Leaf(Home::Slot(slot)) => {
                 Memory::at(Gpr::R8, self.strip_displacement(slot.0) + displacement)
             }
         }
@@ -115,8 +115,8 @@ impl WalkState<'_> {
     }
 
     /// Whether an arithmetic instruction can read a part from its memory.
-    pub(super) fn can_be_operand(&self, name: Name) -> bool {
-        let is_column = matches!(self.linear.names[name as usize].kind, Kind::Leaf(Home::Column(..)));
+    pub(super) fn can_be_operand(&self, name: ValueName) -> bool {
+        let is_column = matches!(self.linear.names[name as usize].kind, Definition::Leaf(Home::Column(..)));
         self.class(name) == 0 && (self.shape.has_masks || !is_column)
     }
 
@@ -141,7 +141,8 @@ impl WalkState<'_> {
 
     /// Loads a part into a register, as another part.
     pub(super) fn load_as(&mut self, register: Register, part: ValuePart, to: ValuePart) {
-        let is_zero = matches!(self.linear.names[self.name(part) as usize].kind, Kind::Leaf(Home::Number(0)));
+        let is_zero =
+            matches!(self.linear.names[self.name(part) as usize].kind, Definition::Leaf(Home::Number(0)));
         if is_zero {
             self.emit(Inst::Zero { to: register }, &[], to);
             return;

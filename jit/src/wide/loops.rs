@@ -2,7 +2,7 @@
 
 use super::event::{Event, ValuePart};
 use super::inst::{Binary, Condition, Inst, Operand};
-use super::linear::{Kind, LoopId, NONE, Name, Over, Phi};
+use super::linear::{Definition, LoopId, NONE, Over, Phi, ValueName};
 use super::state::{MASKS, OpenLoop, REGISTERS, Register, SPARE_MASK, WalkState, copy, store};
 
 impl WalkState<'_> {
@@ -50,7 +50,7 @@ impl WalkState<'_> {
         self.put_header_back();
         let linear = self.linear;
         let gate = &linear.loops[id as usize].gate;
-        let wanted = |&(name, bits): &(Name, u32)| self.parts(name).map(move |part| (part, bits));
+        let wanted = |&(name, bits): &(ValueName, u32)| self.parts(name).map(move |part| (part, bits));
         let parts: Vec<(ValuePart, u32)> = gate.iter().flat_map(wanted).collect();
         let tested = match (&parts[..], self.register_of(parts[0].0)) {
             ([(_, 0)], Some(register)) => register,
@@ -130,7 +130,7 @@ impl WalkState<'_> {
         self.reserved = 0;
         let Some(open) = self.open.last() else { return };
         for (register, &part) in open.header.iter().enumerate() {
-            if part != NONE && self.linear.names[self.name(part) as usize].kind == Kind::Phi(open.id) {
+            if part != NONE && self.linear.names[self.name(part) as usize].kind == Definition::Phi(open.id) {
                 self.reserved |= 1 << register;
             }
         }
@@ -148,7 +148,7 @@ impl WalkState<'_> {
         let chosen = self.choose(id);
         let linear = self.linear;
         let phis = &linear.loops[id as usize].phis;
-        let mut initials: Vec<Name> = phis.iter().map(|phi| phi.initial).collect();
+        let mut initials: Vec<ValueName> = phis.iter().map(|phi| phi.initial).collect();
         initials.sort_unstable();
         let mut copies = Vec::new();
         for phi in phis {
@@ -200,7 +200,7 @@ impl WalkState<'_> {
     }
 
     /// Loads chosen values that are in no register, as far as registers are free.
-    fn load_chosen(&mut self, chosen: &[Name], phis: &[Phi]) {
+    fn load_chosen(&mut self, chosen: &[ValueName], phis: &[Phi]) {
         for &name in chosen {
             if phis.iter().any(|phi| phi.value == name) {
                 continue;
@@ -273,13 +273,13 @@ impl WalkState<'_> {
     }
 
     /// The values to hold in registers at the top of each iteration, the most valuable first.
-    fn choose(&mut self, id: LoopId) -> Vec<Name> {
+    fn choose(&mut self, id: LoopId) -> Vec<ValueName> {
         let data = &self.linear.loops[id as usize];
         let is_guard = matches!(data.over, Over::Guard(_));
-        let mut candidates: Vec<(f32, Name)> = Vec::new();
+        let mut candidates: Vec<(f32, ValueName)> = Vec::new();
         for captured in &self.lives.captured[id as usize] {
             let name = captured.name;
-            let is_mine = self.linear.names[name as usize].kind == Kind::Phi(id);
+            let is_mine = self.linear.names[name as usize].kind == Definition::Phi(id);
             let is_there = self.parts(name).all(|part| self.register_of(part).is_some());
             if is_mine || is_there || !is_guard {
                 candidates.push((self.value_of(name, captured.weight, is_mine), name));
@@ -311,7 +311,7 @@ impl WalkState<'_> {
     }
 
     /// The value of holding a name in registers, for each register that it takes.
-    fn value_of(&self, name: Name, weight: f32, is_accumulator: bool) -> f32 {
+    fn value_of(&self, name: ValueName, weight: f32, is_accumulator: bool) -> f32 {
         let data = &self.linear.names[name as usize];
         let reads = if data.is_uniform { self.vectors as f32 } else { 1.0 };
         let loads = if self.can_be_operand(name) { 1.0 } else { 2.0 };

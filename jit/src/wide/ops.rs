@@ -8,7 +8,7 @@ use jbt_ir::Op;
 
 use super::event::ValuePart;
 use super::inst::{Base, Binary, FmaForm, Gpr, Inst, Integer, Memory, Operand, Predicate};
-use super::linear::{Home, Kind, NONE, Name};
+use super::linear::{Definition, Home, NONE, ValueName};
 use super::state::{MASKS, NOWHERE, Register, SPARE_MASK, WalkState, copy, load, store};
 
 /// The distance of the next use up to which a number is loaded into a register: beyond, it is read from
@@ -25,7 +25,7 @@ enum OperandSource {
 
 impl WalkState<'_> {
     /// Emits an op for all vectors.
-    pub(super) fn op(&mut self, op: Op, to: Name, args: [Name; 3]) {
+    pub(super) fn op(&mut self, op: Op, to: ValueName, args: [ValueName; 3]) {
         let count = self.parts(to).len() as u32;
         for vector in 0..count {
             let is_last = vector + 1 == count;
@@ -237,7 +237,7 @@ impl WalkState<'_> {
     }
 
     fn shift(&mut self, left: bool, to: ValuePart, [a, by]: [ValuePart; 2], is_last: bool) {
-        let Kind::Leaf(Home::Number(amount)) = self.linear.names[self.name(by) as usize].kind else {
+        let Definition::Leaf(Home::Number(amount)) = self.linear.names[self.name(by) as usize].kind else {
             unreachable!("a verified function shifts by constants")
         };
         let register = self.fetch(a);
@@ -409,7 +409,7 @@ impl WalkState<'_> {
     // ── stores ───────────────────────────────────────────────────────────────────────────────────
 
     /// Copies a leaf into a computed value.
-    pub(super) fn read(&mut self, to: Name, from: Name) {
+    pub(super) fn read(&mut self, to: ValueName, from: ValueName) {
         for vector in 0..self.parts(to).len() as u32 {
             let [to, from] = [to, from].map(|name| self.part(name, vector));
             let class = self.class(self.name(to));
@@ -431,7 +431,7 @@ impl WalkState<'_> {
     }
 
     /// Stores all vectors of a value at consecutive addresses.
-    fn store_at(&mut self, value: Name, first: impl Fn(&mut Self) -> Memory) {
+    fn store_at(&mut self, value: ValueName, first: impl Fn(&mut Self) -> Memory) {
         let class = self.class(value);
         for vector in 0..self.vectors {
             let part = self.part(value, vector);
@@ -443,12 +443,12 @@ impl WalkState<'_> {
         }
     }
 
-    pub(super) fn keep(&mut self, slot: usize, value: Name) {
+    pub(super) fn keep(&mut self, slot: usize, value: ValueName) {
         let displacement = self.strip_displacement(slot);
         self.store_at(value, |_| Memory::at(Gpr::R8, displacement));
     }
 
-    pub(super) fn output(&mut self, plane: usize, value: Name) {
+    pub(super) fn output(&mut self, plane: usize, value: ValueName) {
         let plane = i32::try_from(8 * (self.planes + plane)).expect("planes are limited");
         self.store_at(value, |state| {
             state.integer(Integer::LoadPointer { to: Gpr::Rax, from: Memory::at(Gpr::Rdi, plane) });

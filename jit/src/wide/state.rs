@@ -13,7 +13,7 @@ use rustc_hash::FxHashMap as HashMap;
 use super::encode::Shape;
 use super::event::{Event, ValuePart};
 use super::inst::{Inst, Label, Memory};
-use super::linear::{Kind, Linear, LoopId, NONE, Name};
+use super::linear::{Definition, LinearCode, LoopId, NONE, ValueName};
 use super::lives::Lives;
 
 /// A register: 0 to 31 are vectors, from 32 on masks. The first mask register is unused.
@@ -37,9 +37,9 @@ pub(crate) const SAVED: i32 = 24;
 
 /// How many registers may be used: vectors and masks.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(crate) struct Count(pub(crate) [u8; 2]);
+pub(crate) struct RegisterCount(pub(crate) [u8; 2]);
 
-impl Count {
+impl RegisterCount {
     /// The registers of a class.
     fn registers(self, class: usize) -> std::ops::Range<Register> {
         if class == 0 { 0..self.0[0] } else { MASKS + 1..MASKS + 1 + self.0[1] }
@@ -62,14 +62,14 @@ pub(super) struct OpenLoop {
 
 /// The walk over a list.
 pub(crate) struct WalkState<'a> {
-    pub(super) linear: &'a Linear,
+    pub(super) linear: &'a LinearCode,
     pub(super) lives: &'a Lives,
     /// The number of registers that each loop needs for the values that it computes.
     pub(super) pressure: Vec<[usize; 2]>,
     /// The number of vectors of a value.
     pub(super) vectors: u32,
     pub(super) shape: Shape,
-    pub(super) count: Count,
+    pub(super) count: RegisterCount,
     /// The number of input planes of the function: output planes follow them.
     pub(super) planes: usize,
     pub(super) strip_bytes: usize,
@@ -115,7 +115,7 @@ pub(crate) struct WalkState<'a> {
     /// The registers in which accumulators of the innermost loop begin an iteration.
     pub(super) reserved: u64,
     /// The accumulator whose next value a name is.
-    pub(super) becomes: Vec<Name>,
+    pub(super) becomes: Vec<ValueName>,
     /// The loop over each table.
     pub(super) rows: Vec<Option<usize>>,
     /// The number of open folds.
@@ -124,11 +124,11 @@ pub(crate) struct WalkState<'a> {
 
 /// The input of a walk.
 pub(crate) struct WalkInput<'a> {
-    pub(crate) linear: &'a Linear,
+    pub(crate) linear: &'a LinearCode,
     pub(crate) lives: &'a Lives,
     pub(crate) vectors: usize,
     pub(crate) shape: Shape,
-    pub(crate) count: Count,
+    pub(crate) count: RegisterCount,
     pub(crate) planes: usize,
     pub(crate) strip_bytes: usize,
     /// For each table, the bytes of a row and the parent.
@@ -217,28 +217,28 @@ impl<'a> WalkState<'a> {
 
     // ── values ───────────────────────────────────────────────────────────────────────────────────
 
-    pub(super) fn name(&self, part: ValuePart) -> Name {
+    pub(super) fn name(&self, part: ValuePart) -> ValueName {
         part / self.vectors
     }
 
-    pub(super) fn part(&self, name: Name, vector: u32) -> ValuePart {
+    pub(super) fn part(&self, name: ValueName, vector: u32) -> ValuePart {
         let is_uniform = self.linear.names[name as usize].is_uniform;
         name * self.vectors + if is_uniform { 0 } else { vector }
     }
 
     /// The parts of a name.
-    pub(super) fn parts(&self, name: Name) -> std::ops::Range<ValuePart> {
+    pub(super) fn parts(&self, name: ValueName) -> std::ops::Range<ValuePart> {
         let count = if self.linear.names[name as usize].is_uniform { 1 } else { self.vectors };
         name * self.vectors..name * self.vectors + count
     }
 
     /// 0 for a value in vectors, 1 for one in mask registers.
-    pub(super) fn class(&self, name: Name) -> usize {
+    pub(super) fn class(&self, name: ValueName) -> usize {
         usize::from(self.linear.names[name as usize].is_mask && self.shape.has_masks)
     }
 
-    pub(super) fn is_leaf(&self, name: Name) -> bool {
-        matches!(self.linear.names[name as usize].kind, Kind::Leaf(_))
+    pub(super) fn is_leaf(&self, name: ValueName) -> bool {
+        matches!(self.linear.names[name as usize].kind, Definition::Leaf(_))
     }
 
     /// The register that a part is in.
@@ -248,7 +248,7 @@ impl<'a> WalkState<'a> {
     }
 
     /// The next use of the name, at this position or later.
-    pub(super) fn next_use(&mut self, name: Name) -> u32 {
+    pub(super) fn next_use(&mut self, name: ValueName) -> u32 {
         let (uses, passed) = (self.lives.uses(name), &mut self.passed[name as usize]);
         while uses.get(*passed as usize).is_some_and(|&at| at < self.position) {
             *passed += 1;
@@ -262,7 +262,7 @@ impl<'a> WalkState<'a> {
     }
 
     /// The next use of the name after the current position, if it has one.
-    pub(super) fn later_use(&mut self, name: Name) -> Option<u32> {
+    pub(super) fn later_use(&mut self, name: ValueName) -> Option<u32> {
         self.next_use(name);
         let uses = self.lives.uses(name);
         let mut index = self.passed[name as usize] as usize;
@@ -274,7 +274,7 @@ impl<'a> WalkState<'a> {
     }
 
     /// Whether the name has no use after the current position.
-    pub(super) fn dies(&self, name: Name) -> bool {
+    pub(super) fn dies(&self, name: ValueName) -> bool {
         self.lives.end(self.linear, name, self.position) <= self.position
     }
 

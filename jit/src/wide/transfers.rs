@@ -6,7 +6,7 @@ use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 
 use super::event::{Event, NEXT, PartPlace, ValuePart};
 use super::inst::Memory;
-use super::linear::{Kind, LoopId, NONE};
+use super::linear::{Definition, LoopId, NONE};
 use super::state::{MASKS, REGISTERS, Register, SPARE_MASK, WalkState, copy, load, store};
 
 /// The place of a value that a transfer reads.
@@ -144,7 +144,7 @@ impl WalkState<'_> {
             }
         }
         for (register, &part) in header.iter().enumerate() {
-            let is_phi = part != NONE && linear.names[self.name(part) as usize].kind == Kind::Phi(id);
+            let is_phi = part != NONE && linear.names[self.name(part) as usize].kind == Definition::Phi(id);
             if part == NONE || is_phi || usize::from(self.place[part as usize]) == register {
                 continue;
             }

@@ -11,9 +11,9 @@
 //! Beyond the rectangle everything is outside: there is one more row of cells around it, of no width, in
 //! which the contour follows the border.
 
-use super::divide::Square;
+use super::divide::CellSquare;
 use super::grid::Grid;
-use super::roots::{Edge, solve};
+use super::roots::{CutEdge, solve};
 use super::slicer::Slicer;
 use crate::error::EvalError;
 use crate::prune::Region;
@@ -48,7 +48,7 @@ impl EdgeKey {
 
 /// A piece of the contour, with the inside on its left.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Segment {
+pub(super) struct ContourSegment {
     /// The edges that it begins and ends at.
     pub(super) from: EdgeKey,
     pub(super) to: EdgeKey,
@@ -62,7 +62,7 @@ pub(super) struct Segment {
 
 /// The segments of a square, and the attributes of their vertices.
 pub(super) struct Segments {
-    pub(super) list: Vec<Segment>,
+    pub(super) list: Vec<ContourSegment>,
     /// Plane by plane.
     pub(super) attributes: Vec<Vec<f32>>,
 }
@@ -79,8 +79,8 @@ pub(super) struct CellBlock<'a> {
 
 /// A segment before its vertex is known.
 struct SegmentDraft {
-    segment: Segment,
-    edge: Option<Edge>,
+    segment: ContourSegment,
+    edge: Option<CutEdge>,
 }
 
 impl<'a> CellBlock<'a> {
@@ -88,7 +88,7 @@ impl<'a> CellBlock<'a> {
     pub(super) fn new(
         slicer: &'a Slicer,
         grid: &'a Grid,
-        square: &Square,
+        square: &CellSquare,
         region: &Region,
     ) -> Result<Self, EvalError> {
         let [u, v] = grid.block(square.first, square.end.map(|end| end + 1));
@@ -195,7 +195,7 @@ impl<'a> CellBlock<'a> {
             let (near, far) = (corners[edge], corners[(edge + 1) % 4]);
             let (crossing, place) = self.crossing(edge % 2, near, far);
             drafts.push(SegmentDraft {
-                segment: Segment {
+                segment: ContourSegment {
                     from: key(edge),
                     to: key(to),
                     place,
@@ -209,14 +209,14 @@ impl<'a> CellBlock<'a> {
 
     /// The edge from an inside point to an outside one; on the border there is none, and the vertex is the
     /// inside point.
-    fn crossing(&self, axis: usize, near: [u32; 2], far: [u32; 2]) -> (Option<Edge>, [f32; 2]) {
+    fn crossing(&self, axis: usize, near: [u32; 2], far: [u32; 2]) -> (Option<CutEdge>, [f32; 2]) {
         let coordinate = |axis: usize, point: [u32; 2]| self.grid.axes[axis][point[axis] as usize];
         let place = [coordinate(0, near), coordinate(1, near)];
         let points = self.grid.points();
         if (far[axis] as usize) >= points[axis] {
             return (None, place);
         }
-        let edge = Edge {
+        let edge = CutEdge {
             axis,
             beside: place[1 - axis],
             ends: [place[axis], coordinate(axis, far)],
@@ -227,13 +227,13 @@ impl<'a> CellBlock<'a> {
 
     /// Finds the vertices, and what they have.
     fn finish(&self, region: &Region, drafts: &[SegmentDraft]) -> Result<Segments, EvalError> {
-        let edges: Vec<Edge> = drafts.iter().filter_map(|draft| draft.edge).collect();
+        let edges: Vec<CutEdge> = drafts.iter().filter_map(|draft| draft.edge).collect();
         let mut field =
             |points: [&[f32]; 2], values: &mut Vec<f32>| self.slicer.values(region, points, values);
         let mut places = solve(&edges, self.slicer.iso, &mut field)?.into_iter();
         let list = drafts.iter().map(|draft| {
             let place = draft.edge.and_then(|_| places.next()).unwrap_or(draft.segment.place);
-            Segment { place, ..draft.segment }
+            ContourSegment { place, ..draft.segment }
         });
         with_attributes(self.slicer, region, list.collect())
     }
@@ -244,7 +244,7 @@ impl<'a> CellBlock<'a> {
 pub(super) fn border(
     slicer: &Slicer,
     grid: &Grid,
-    square: &Square,
+    square: &CellSquare,
     region: &Region,
 ) -> Result<Option<Segments>, EvalError> {
     let [last_u, last_v] = grid.points().map(|points| points as u32 - 1);
@@ -252,7 +252,7 @@ pub(super) fn border(
     let mut list = Vec::new();
     let mut push = |from: EdgeKey, to: EdgeKey, [i, j]: [u32; 2], low_inside: bool| {
         let place = [grid.axes[0][i as usize], grid.axes[1][j as usize]];
-        list.push(Segment { from, to, place, low_inside, border: true });
+        list.push(ContourSegment { from, to, place, low_inside, border: true });
     };
     // Edges that lead out of the lattice: to the left, below, to the right, above.
     let left = |j: u32| EdgeKey::new(0, 0, j);
@@ -287,7 +287,11 @@ pub(super) fn border(
     if list.is_empty() { Ok(None) } else { with_attributes(slicer, region, list).map(Some) }
 }
 
-fn with_attributes(slicer: &Slicer, region: &Region, list: Vec<Segment>) -> Result<Segments, EvalError> {
+fn with_attributes(
+    slicer: &Slicer,
+    region: &Region,
+    list: Vec<ContourSegment>,
+) -> Result<Segments, EvalError> {
     let Some(full) = slicer.full.as_ref().filter(|_| !list.is_empty()) else {
         return Ok(Segments { list, attributes: Vec::new() });
     };

@@ -11,7 +11,7 @@
 
 use jbt_ir::limits::MAX_PIXELS;
 
-use super::divide::{Divided, Plan, Square, SquareWork, Verdict, divide};
+use super::divide::{CellSquare, Divided, DivisionPlan, SquareWork, Verdict, divide};
 use super::grid::{Grid, Rectangle};
 use super::raster::{Raster, RasterTile};
 use super::shade;
@@ -108,35 +108,35 @@ impl<'a> Canvas<'a> {
         self.grid.points().map(|points| points / self.samples)
     }
 
-    fn plan(&self) -> Plan {
+    fn plan(&self) -> DivisionPlan {
         let leaf = smallest(self.slicer.field.block());
-        Plan { cells: self.pixels().map(|pixels| pixels as u32), leaf, step: STEP, keep: false }
+        DivisionPlan { cells: self.pixels().map(|pixels| pixels as u32), leaf, step: STEP, keep: false }
     }
 
     /// The points of a square: the first one, and those behind the last one.
-    fn points(&self, square: &Square) -> [[u32; 2]; 2] {
+    fn points(&self, square: &CellSquare) -> [[u32; 2]; 2] {
         [square.first, square.end].map(|pixel| pixel.map(|index| index * self.samples as u32))
     }
 
-    fn bounds(&self, square: &Square) -> Box3 {
+    fn bounds(&self, square: &CellSquare) -> Box3 {
         let [first, end] = self.points(square);
         self.slicer.bounds(self.grid.bounds(first, end.map(|end| end - 1)))
     }
 
-    fn block(&self, square: &Square) -> [Vec<f32>; 2] {
+    fn block(&self, square: &CellSquare) -> [Vec<f32>; 2] {
         let [first, end] = self.points(square);
         self.grid.block(first, end)
     }
 
     /// Whether the points of a square are evaluated sooner than it is divided.
-    fn is_cheap(&self, square: &Square, region: &Region) -> bool {
+    fn is_cheap(&self, square: &CellSquare, region: &Region) -> bool {
         let points = (self.samples * self.samples) as u64 * u64::from(square.size) * u64::from(square.size);
         let tables = self.slicer.field.program().function().tables.len() as u64;
         points.saturating_mul(self.slicer.field.ops_in(region)) <= CHEAP + CHEAP_FOR_A_TABLE * tables
     }
 
     /// The pixel (in its square) of each of the points of a square, in their order.
-    fn pixel_of_points(&self, square: &Square) -> impl Iterator<Item = usize> {
+    fn pixel_of_points(&self, square: &CellSquare) -> impl Iterator<Item = usize> {
         let [width, height] = [0, 1].map(|axis| (square.end[axis] - square.first[axis]) as usize);
         let samples = self.samples;
         (0..height * samples).flat_map(move |row| {
@@ -152,17 +152,17 @@ impl<'a> Canvas<'a> {
     }
 }
 
-fn tile<T>(square: &Square, values: Vec<T>) -> Option<RasterTile<T>> {
+fn tile<T>(square: &CellSquare, values: Vec<T>) -> Option<RasterTile<T>> {
     Some(RasterTile { square: *square, values })
 }
 
 /// Which part of each pixel is inside, of 255.
-struct Inside<'a>(Canvas<'a>);
+struct PixelCoverage<'a>(Canvas<'a>);
 
-impl SquareWork for Inside<'_> {
+impl SquareWork for PixelCoverage<'_> {
     type Piece = RasterTile<u8>;
 
-    fn bounds(&self, square: &Square) -> Box3 {
+    fn bounds(&self, square: &CellSquare) -> Box3 {
         self.0.bounds(square)
     }
 
@@ -172,18 +172,22 @@ impl SquareWork for Inside<'_> {
 
     fn dropped(
         &self,
-        square: &Square,
+        square: &CellSquare,
         inside: bool,
         _: &Region,
     ) -> Result<Option<RasterTile<u8>>, EvalError> {
         Ok(if inside { tile(square, vec![u8::MAX]) } else { None })
     }
 
-    fn is_told(&self, square: &Square, region: &Region) -> bool {
+    fn is_told(&self, square: &CellSquare, region: &Region) -> bool {
         self.0.is_cheap(square, region)
     }
 
-    fn leaf(&self, square: &Square, region: &Region) -> Result<(Option<RasterTile<u8>>, bool), SliceError> {
+    fn leaf(
+        &self,
+        square: &CellSquare,
+        region: &Region,
+    ) -> Result<(Option<RasterTile<u8>>, bool), SliceError> {
         let [u, v] = self.0.block(square);
         let mut values = Vec::new();
         self.0.slicer.values(region, [&u, &v], &mut values)?;
@@ -208,7 +212,7 @@ struct PixelFields<'a>(Canvas<'a>);
 impl SquareWork for PixelFields<'_> {
     type Piece = RasterTile<f32>;
 
-    fn bounds(&self, square: &Square) -> Box3 {
+    fn bounds(&self, square: &CellSquare) -> Box3 {
         self.0.bounds(square)
     }
 
@@ -220,21 +224,25 @@ impl SquareWork for PixelFields<'_> {
 
     fn dropped(
         &self,
-        square: &Square,
+        square: &CellSquare,
         _: bool,
         around: &Region,
     ) -> Result<Option<RasterTile<f32>>, EvalError> {
-        let [u, v] = self.0.block(&Square { end: square.first.map(|pixel| pixel + 1), ..*square });
+        let [u, v] = self.0.block(&CellSquare { end: square.first.map(|pixel| pixel + 1), ..*square });
         let mut values = Vec::new();
         self.0.slicer.values(around, [&u, &v], &mut values)?;
         Ok(tile(square, values))
     }
 
-    fn is_told(&self, square: &Square, region: &Region) -> bool {
+    fn is_told(&self, square: &CellSquare, region: &Region) -> bool {
         self.0.is_cheap(square, region)
     }
 
-    fn leaf(&self, square: &Square, region: &Region) -> Result<(Option<RasterTile<f32>>, bool), SliceError> {
+    fn leaf(
+        &self,
+        square: &CellSquare,
+        region: &Region,
+    ) -> Result<(Option<RasterTile<f32>>, bool), SliceError> {
         let [u, v] = self.0.block(square);
         let mut values = Vec::new();
         self.0.slicer.values(region, [&u, &v], &mut values)?;
@@ -253,7 +261,7 @@ struct Painted<'a> {
 impl SquareWork for Painted<'_> {
     type Piece = RasterTile<[f32; 4]>;
 
-    fn bounds(&self, square: &Square) -> Box3 {
+    fn bounds(&self, square: &CellSquare) -> Box3 {
         self.canvas.bounds(square)
     }
 
@@ -264,17 +272,22 @@ impl SquareWork for Painted<'_> {
         }
     }
 
-    fn dropped(&self, _: &Square, _: bool, _: &Region) -> Result<Option<RasterTile<[f32; 4]>>, EvalError> {
+    fn dropped(
+        &self,
+        _: &CellSquare,
+        _: bool,
+        _: &Region,
+    ) -> Result<Option<RasterTile<[f32; 4]>>, EvalError> {
         Ok(None)
     }
 
-    fn is_told(&self, square: &Square, region: &Region) -> bool {
+    fn is_told(&self, square: &CellSquare, region: &Region) -> bool {
         self.canvas.is_cheap(square, region)
     }
 
     fn leaf(
         &self,
-        square: &Square,
+        square: &CellSquare,
         region: &Region,
     ) -> Result<(Option<RasterTile<[f32; 4]>>, bool), SliceError> {
         let [u, v] = self.canvas.block(square);
@@ -318,7 +331,7 @@ impl Slicer {
         detail: &ImageDetail,
         hook: Hook<'_>,
     ) -> Result<Raster<u8>, SliceError> {
-        let work = Inside(Canvas::new(self, rectangle, detail)?);
+        let work = PixelCoverage(Canvas::new(self, rectangle, detail)?);
         let divided = divide(&self.pruner, &work, work.0.plan(), &Progress::new(hook, SOME))?;
         Ok(work.0.raster(&divided, 0))
     }

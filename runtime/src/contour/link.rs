@@ -13,7 +13,7 @@
 
 use crate::parallel::*;
 
-use super::cells::{EdgeKey, Segment, Segments};
+use super::cells::{ContourSegment, EdgeKey, Segments};
 
 /// A closed loop of the contour, with the inside on its left.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -58,7 +58,8 @@ pub(super) struct Linked {
 /// Links all segments. Panics if they are no closed loops: the field was on both sides of the iso-value at
 /// one point.
 pub(super) fn link(pieces: Vec<Segments>, planes: usize) -> Linked {
-    let mut segments: Vec<Segment> = Vec::with_capacity(pieces.iter().map(|piece| piece.list.len()).sum());
+    let mut segments: Vec<ContourSegment> =
+        Vec::with_capacity(pieces.iter().map(|piece| piece.list.len()).sum());
     let mut attributes = vec![Vec::with_capacity(segments.capacity()); planes];
     for mut piece in pieces {
         segments.append(&mut piece.list);
@@ -85,8 +86,8 @@ pub(super) fn link(pieces: Vec<Segments>, planes: usize) -> Linked {
 }
 
 /// For each segment the one that begins where it ends.
-fn following(segments: &[Segment]) -> Vec<usize> {
-    let sorted = |key: fn(&Segment) -> EdgeKey| {
+fn following(segments: &[ContourSegment]) -> Vec<usize> {
+    let sorted = |key: fn(&ContourSegment) -> EdgeKey| {
         let mut order: Vec<usize> = (0..segments.len()).collect();
         order.par_sort_unstable_by_key(|&segment| key(&segments[segment]));
         order
@@ -102,14 +103,19 @@ fn following(segments: &[Segment]) -> Vec<usize> {
 }
 
 /// The loop of a segment, if it encloses anything.
-fn follow(first: usize, segments: &[Segment], next: &[usize], of_segment: &mut [usize]) -> Option<LoopDraft> {
+fn follow(
+    first: usize,
+    segments: &[ContourSegment],
+    next: &[usize],
+    of_segment: &mut [usize],
+) -> Option<LoopDraft> {
     let mut around = Vec::new();
     let mut segment = first;
     let mut leftmost: Option<(EdgeKey, bool)> = None;
     while of_segment[segment] == usize::MAX {
         of_segment[segment] = first;
         around.push(segment);
-        let Segment { from, low_inside, .. } = segments[segment];
+        let ContourSegment { from, low_inside, .. } = segments[segment];
         let column = |key: EdgeKey| (key.column(), key.row());
         if from.axis() == 0 && leftmost.is_none_or(|(best, _)| column(from) < column(best)) {
             leftmost = Some((from, low_inside));
@@ -122,7 +128,7 @@ fn follow(first: usize, segments: &[Segment], next: &[usize], of_segment: &mut [
 }
 
 /// The vertices of a loop without those that say nothing, from its lowest one on.
-fn tidied(mut around: Vec<usize>, segments: &[Segment]) -> Vec<usize> {
+fn tidied(mut around: Vec<usize>, segments: &[ContourSegment]) -> Vec<usize> {
     let place = |segment: usize| segments[segment].place;
     around.dedup_by_key(|segment| place(*segment));
     while around.len() > 1 && place(around[0]) == place(around[around.len() - 1]) {
@@ -146,7 +152,7 @@ fn by_place(a: [f32; 2], b: [f32; 2]) -> std::cmp::Ordering {
 }
 
 /// For each loop the one around it.
-fn nest(drafts: &[LoopDraft], segments: &[Segment], of_segment: &[usize]) -> Vec<Option<usize>> {
+fn nest(drafts: &[LoopDraft], segments: &[ContourSegment], of_segment: &[usize]) -> Vec<Option<usize>> {
     // Loops by their first segments, as `of_segment` names them.
     let mut named: Vec<(usize, usize)> =
         drafts.iter().enumerate().map(|(index, draft)| (of_segment[draft.vertices[0]], index)).collect();

@@ -63,7 +63,7 @@ pub use raster::Raster;
 pub use slicer::{SliceError, Slicer};
 
 use cells::{CellBlock, Segments, border};
-use divide::{Plan, Square, SquareWork, Verdict, divide};
+use divide::{CellSquare, DivisionPlan, SquareWork, Verdict, divide};
 use grid::Grid;
 
 use crate::error::EvalError;
@@ -172,7 +172,7 @@ impl Contouring<'_> {
 impl SquareWork for Contouring<'_> {
     type Piece = Segments;
 
-    fn bounds(&self, square: &Square) -> Box3 {
+    fn bounds(&self, square: &CellSquare) -> Box3 {
         self.slicer.bounds(self.grid.bounds(square.first, square.end))
     }
 
@@ -180,15 +180,20 @@ impl SquareWork for Contouring<'_> {
         Verdict::of(range, self.slicer.iso)
     }
 
-    fn dropped(&self, square: &Square, inside: bool, around: &Region) -> Result<Option<Segments>, EvalError> {
+    fn dropped(
+        &self,
+        square: &CellSquare,
+        inside: bool,
+        around: &Region,
+    ) -> Result<Option<Segments>, EvalError> {
         if inside { border(self.slicer, self.grid, square, around) } else { Ok(None) }
     }
 
-    fn is_told(&self, _: &Square, _: &Region) -> bool {
+    fn is_told(&self, _: &CellSquare, _: &Region) -> bool {
         false
     }
 
-    fn leaf(&self, square: &Square, region: &Region) -> Result<(Option<Segments>, bool), SliceError> {
+    fn leaf(&self, square: &CellSquare, region: &Region) -> Result<(Option<Segments>, bool), SliceError> {
         let segments = CellBlock::new(self.slicer, self.grid, square, region)?.segments(region)?;
         let crossed = !segments.list.is_empty();
         Ok((crossed.then(|| self.counted(segments)).transpose()?, crossed))
@@ -220,7 +225,7 @@ impl Slicer {
         }
         let grid = Grid::corners(&self.local(rectangle)?, detail.fineness)?;
         let cells = grid.points().map(|points| points - 1);
-        let plan = Plan {
+        let plan = DivisionPlan {
             cells: cells.map(|cells| cells as u32),
             leaf: block as u32,
             step: if detail.quadtree { 1 } else { 2 },

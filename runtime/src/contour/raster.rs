@@ -1,6 +1,6 @@
 //! Numbers for pixels, which tiles of squares fill.
 
-use super::divide::Square;
+use super::divide::CellSquare;
 
 /// Numbers for the pixels of a rectangle: row by row, from above.
 #[derive(Clone, PartialEq, Debug)]
@@ -36,6 +36,6 @@ impl<T: Copy> Raster<T> {
 
 /// A square of pixels: one number for each, or one for all.
 pub(super) struct RasterTile<T> {
-    pub(super) square: Square,
+    pub(super) square: CellSquare,
     pub(super) values: Vec<T>,
 }

@@ -87,7 +87,7 @@ impl Classified for DivideError<EvalError> {
     }
 }
 
-pub(super) type Failure<F> = DivideError<<F as Divisible>::Error>;
+pub(super) type DivisionFailure<F> = DivideError<<F as Divisible>::Error>;
 
 /// A subtree, to be appended to what comes before it.
 pub(super) struct Subtree<R, D> {
@@ -144,7 +144,7 @@ enum Decided<R, D> {
 
 impl<F: Divisible, D: Send + Sync> DivisionRun<'_, F, D> {
     /// Divides the whole box.
-    pub(super) fn start(&self, bounds: Box3, data: D) -> Result<Division<F::Region, D>, Failure<F>> {
+    pub(super) fn start(&self, bounds: Box3, data: D) -> Result<Division<F::Region, D>, DivisionFailure<F>> {
         if !bounds.is_proper() {
             return Err(DivideError::Bounds { bounds });
         }
@@ -156,7 +156,11 @@ impl<F: Divisible, D: Send + Sync> DivisionRun<'_, F, D> {
     }
 
     /// The subtrees of all parts, one after the other.
-    fn parts(&self, around: &F::Region, parts: Parts<D>) -> Result<Subtree<F::Region, D>, Failure<F>> {
+    fn parts(
+        &self,
+        around: &F::Region,
+        parts: Parts<D>,
+    ) -> Result<Subtree<F::Region, D>, DivisionFailure<F>> {
         let depth = parts.depth;
         let decided = self.decide(around, parts)?;
         let subtrees: Vec<_> = if depth < PARALLEL_DEPTH {
@@ -171,7 +175,7 @@ impl<F: Divisible, D: Send + Sync> DivisionRun<'_, F, D> {
         Ok(all)
     }
 
-    fn subtree(&self, decided: Decided<F::Region, D>) -> Result<Subtree<F::Region, D>, Failure<F>> {
+    fn subtree(&self, decided: Decided<F::Region, D>) -> Result<Subtree<F::Region, D>, DivisionFailure<F>> {
         match decided {
             Decided::Untouched(subtree) => Ok(subtree),
             Decided::Node { node, region, split: None } => {
@@ -193,7 +197,11 @@ impl<F: Divisible, D: Send + Sync> DivisionRun<'_, F, D> {
     }
 
     /// Asks about every part that an edit touches, and finds the regions of those that go on.
-    fn decide(&self, around: &F::Region, parts: Parts<D>) -> Result<Vec<Decided<F::Region, D>>, Failure<F>> {
+    fn decide(
+        &self,
+        around: &F::Region,
+        parts: Parts<D>,
+    ) -> Result<Vec<Decided<F::Region, D>>, DivisionFailure<F>> {
         let Parts { boxes, data, depth, old } = parts;
         let siblings = Siblings::new(self.field, around, &boxes);
         let mut wanted = [false; MAX_PARTS];
@@ -247,7 +255,7 @@ impl<F: Divisible, D: Send + Sync> DivisionRun<'_, F, D> {
         depth: usize,
         decision: Decision<D>,
         old: Option<usize>,
-    ) -> Result<Parts<D>, Failure<F>> {
+    ) -> Result<Parts<D>, DivisionFailure<F>> {
         if depth >= self.limits.depth {
             return Err(DivideError::Depth { depth: self.limits.depth });
         }

@@ -77,7 +77,7 @@ impl Kernel {
 
     /// Gives the kernel its numbers: those of the lowered function, which fit its straight code if it has
     /// one.
-    pub(crate) fn bind(self: &Arc<Self>, lowered: Arc<Tables>) -> Bound {
+    pub(crate) fn bind(self: &Arc<Self>, lowered: Arc<Tables>) -> BoundKernel {
         let tables = match &self.straight {
             None => Arc::clone(&lowered),
             Some(straight) => Arc::new(straight.tables(&lowered).expect("whoever binds has seen to that")),
@@ -86,21 +86,21 @@ impl Kernel {
         // it.
         let program = Arc::clone(&self.compiled.program);
         let program = BoundProgram::new(program, tables).expect("lowering gives tables that fit");
-        Bound { kernel: Arc::clone(self), program, lowered, guarded: OnceLock::new() }
+        BoundKernel { kernel: Arc::clone(self), program, lowered, guarded: OnceLock::new() }
     }
 }
 
 /// A kernel with its numbers: the thing that runs.
-pub(crate) struct Bound {
+pub(crate) struct BoundKernel {
     pub(crate) kernel: Arc<Kernel>,
     program: BoundProgram,
     /// Those of the lowered function: others than its own only if the kernel is straight code.
     pub(crate) lowered: Arc<Tables>,
     /// The guarded kernel with the same numbers.
-    pub(crate) guarded: OnceLock<Option<Box<Bound>>>,
+    pub(crate) guarded: OnceLock<Option<Box<BoundKernel>>>,
 }
 
-impl Bound {
+impl BoundKernel {
     /// Its numbers.
     pub(crate) fn tables(&self) -> &Arc<Tables> {
         self.program.tables()

@@ -64,17 +64,17 @@ impl Engine {
 }
 
 /// An engine of this build.
-struct Row {
+struct EngineRow {
     engine: Engine,
     backends: &'static [&'static dyn Backend],
 }
 
 /// The engines of this build: the one place that knows them.
-static ENGINES: &[Row] = &[
-    Row { engine: Engine::Scalar, backends: &[&Reference] },
-    Row { engine: Engine::Lanes, backends: &[&Interpreter] },
+static ENGINES: &[EngineRow] = &[
+    EngineRow { engine: Engine::Scalar, backends: &[&Reference] },
+    EngineRow { engine: Engine::Lanes, backends: &[&Interpreter] },
     #[cfg(feature = "jit")]
-    Row { engine: Engine::Jit, backends: jbt_jit::BACKENDS },
+    EngineRow { engine: Engine::Jit, backends: jbt_jit::BACKENDS },
 ];
 
 /// The texts that the engines of this build make of functions, each once.

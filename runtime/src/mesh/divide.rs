@@ -21,7 +21,7 @@ use super::error::{MAX_BRICK, MeshError};
 use super::field::Field;
 use super::options::Options;
 use super::report::Sides;
-use super::stage::Stage;
+use super::stage::MeshStage;
 use crate::progress::Progress;
 use crate::region::{ANYTHING, Box3, MAX_PARTS};
 
@@ -93,7 +93,7 @@ impl<R> BoxLevel<R> {
 }
 
 /// The children of some boxes.
-struct Children<R> {
+struct BoxChildren<R> {
     /// For each box, its remaining children, a bit each.
     masks: Vec<u8>,
     /// The regions of these children.
@@ -125,7 +125,7 @@ pub(crate) fn divide<F: Field>(
     // first has room for the largest brick.
     let least = if options.thin_parts { MAX_BRICK } else { edge };
     let halvings = most.next_power_of_two().max(least).ilog2() - edge.ilog2();
-    Stage::Divide.begin(progress)?;
+    MeshStage::Divide.begin(progress)?;
     let mut boxes = BoxCounts::default();
     let mut level = divider.root(edge << halvings, &mut boxes)?;
     let mut chunks = None;
@@ -190,7 +190,7 @@ impl<F: Field> BrickDivider<'_, '_, F> {
             self.check(before + children.regions.len())?;
             Ok(children)
         });
-        let groups = groups.collect::<Result<Vec<Children<F::Region>>, MeshError<F::Error>>>()?;
+        let groups = groups.collect::<Result<Vec<BoxChildren<F::Region>>, MeshError<F::Error>>>()?;
         let mut masks = Vec::with_capacity(level.places.len());
         let mut regions = Vec::with_capacity(found.into_inner());
         for mut children in groups {
@@ -213,8 +213,8 @@ impl<F: Field> BrickDivider<'_, '_, F> {
         places: &[[u32; 3]],
         regions: &[F::Region],
         size: usize,
-    ) -> Result<Children<F::Region>, MeshError<F::Error>> {
-        let mut children = Children {
+    ) -> Result<BoxChildren<F::Region>, MeshError<F::Error>> {
+        let mut children = BoxChildren {
             masks: Vec::with_capacity(places.len()),
             regions: Vec::with_capacity(4 * places.len()),
             boxes: BoxCounts::default(),
@@ -230,7 +230,7 @@ impl<F: Field> BrickDivider<'_, '_, F> {
         place: [u32; 3],
         region: &F::Region,
         size: usize,
-        children: &mut Children<F::Region>,
+        children: &mut BoxChildren<F::Region>,
     ) -> Result<(), MeshError<F::Error>> {
         let first =
             |child: usize| [0, 1, 2].map(|axis| (2 * place[axis] as usize + (child >> axis & 1)) * size);

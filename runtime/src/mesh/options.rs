@@ -22,8 +22,8 @@ pub struct Options {
     /// cuts the body, the mesh is closed by construction.
     pub verify: bool,
     /// Whether to search for parts that are thinner than a cell: see
-    /// [`MeshReport::thin`](super::MeshReport::thin). The search needs a field that knows ranges of boxes, and
-    /// does not change the mesh.
+    /// [`MeshReport::thin`](super::MeshReport::thin). The search needs a field that knows ranges of boxes,
+    /// and does not change the mesh.
     pub thin_parts: bool,
 }
 

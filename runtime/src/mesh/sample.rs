@@ -22,7 +22,7 @@ use crate::parallel::*;
 use super::brick::{Bricks, NONE, SELF, direction, split, starts};
 use super::error::MeshError;
 use super::field::Field;
-use super::stage::Stage;
+use super::stage::MeshStage;
 use crate::progress::Progress;
 
 /// Marks a class of points that a brick does not own.
@@ -146,7 +146,7 @@ pub(crate) fn sample<F: Field>(
     let group = bricks.group();
     let groups = split(&mut values, &starts, group, 1);
     let total = groups.len();
-    Stage::Lattice.begin(progress)?;
+    MeshStage::Lattice.begin(progress)?;
     groups.into_par_iter().enumerate().try_for_each_init(
         BrickPoints::default,
         |points, (index, values)| {

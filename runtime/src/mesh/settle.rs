@@ -9,7 +9,7 @@
 //! ```
 
 use super::field::Field;
-use super::pull::{LANES, Lanes, pull};
+use super::pull::{LANES, VertexLanes, pull};
 use crate::region::Box3;
 
 /// The number of further pulls of a stray.
@@ -23,7 +23,12 @@ const TOLERANCE: f32 = 1e-3;
 /// Which vertices are far from the surface, 1 or 0 each, in cells with these low and high sides along x;
 /// `square` is the squared length of the gradient. A gradient of NaN gives 0.
 #[inline(always)]
-pub(super) fn is_far(iso: f32, [low, high]: [&Lanes; 2], values: &Lanes, square: &Lanes) -> [u32; LANES] {
+pub(super) fn is_far(
+    iso: f32,
+    [low, high]: [&VertexLanes; 2],
+    values: &VertexLanes,
+    square: &VertexLanes,
+) -> [u32; LANES] {
     let mut far = [0; LANES];
     for i in 0..LANES {
         let error = (values[i] - iso).abs();

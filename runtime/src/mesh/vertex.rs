@@ -21,8 +21,8 @@ use super::brick::split;
 use super::error::MeshError;
 use super::field::Field;
 use super::indexed::{Attribute, Mesh};
-use super::pull::{LANES, Lanes, pull_lanes};
-use super::stage::Stage;
+use super::pull::{LANES, VertexLanes, pull_lanes};
+use super::stage::MeshStage;
 use crate::progress::Progress;
 
 use batch::{Done, VertexBatch, VertexPlanes, VertexSource, lane, lanes};
@@ -65,7 +65,7 @@ pub(crate) fn finish<F: Field>(
     let group = source.bricks.group();
     let targets = targets(&mut mesh, &source.crossings.vertices, group);
     let total = targets.len();
-    Stage::Vertices.begin(progress)?;
+    MeshStage::Vertices.begin(progress)?;
     let work = targets.into_par_iter().enumerate();
     let work = work.map_init(VertexBatch::default, |batch, (index, target)| {
         let first = index * group;
@@ -200,7 +200,7 @@ fn write_places(
 
 /// Writes vectors from lanes, as many as `vectors` has room for.
 #[inline(always)]
-fn weave([x, y, z]: &[Lanes; 3], vectors: &mut [[f32; 3]]) {
+fn weave([x, y, z]: &[VertexLanes; 3], vectors: &mut [[f32; 3]]) {
     if let Some(vectors) = vectors.as_mut_array::<LANES>() {
         for i in 0..LANES {
             vectors[i] = [x[i], y[i], z[i]];

@@ -4,7 +4,7 @@
 use jbt_ir::{Entity, Selection, Table};
 use jbt_lower::prune_info::{DecidedRows, Decision, PruneInfo};
 
-use super::ranges::Probes;
+use super::ranges::ProbeRanges;
 use crate::region::MAX_PARTS;
 
 /// For each table, the index of its first row among all active rows of a selection.
@@ -20,7 +20,7 @@ pub(super) fn firsts(selection: &Selection) -> Vec<usize> {
 
 /// Clears the masks of rows of operands that do not decide, for each such box. `probes` are the ranges that
 /// the interval kernel gave for the boxes, with the rows of the selection.
-pub(super) fn leave_out(info: &PruneInfo, probes: Probes<'_>, selection: &Selection, masks: &mut [u8]) {
+pub(super) fn leave_out(info: &PruneInfo, probes: ProbeRanges<'_>, selection: &Selection, masks: &mut [u8]) {
     let decisions = || info.decisions.iter().filter(|decision| decision.rows == DecidedRows::All);
     if decisions().next().is_none() {
         return;
@@ -134,7 +134,7 @@ impl<'a> Alone<'a> {
         &self,
         (selection, iso2): (&Selection, f32),
         row: usize,
-        (probes, alone): (Probes<'_>, Probes<'_>),
+        (probes, alone): (ProbeRanges<'_>, ProbeRanges<'_>),
         spared: &mut [u32],
     ) {
         for decision in &self.decisions {

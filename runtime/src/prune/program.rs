@@ -7,12 +7,12 @@ use jbt_lower::prune_info::{PruneInfo, RangeFunction, Rule, TablePruneInfo};
 use super::cull::RowSupports;
 use crate::compiler::Compiler;
 use crate::error::CompileError;
-use crate::kernel::{Bound, Kernel, Purpose};
+use crate::kernel::{BoundKernel, Kernel, Purpose};
 use crate::program::ModelProgram;
 
 /// A program of ranges, and what there is to know about who leaves rows out.
 pub(crate) struct RangeProgram {
-    pub(super) bound: Bound,
+    pub(super) bound: BoundKernel,
     pub(super) info: PruneInfo,
     /// By table; `None` where rows are not left out by their supports.
     pub(super) supports: Vec<Option<RowSupports>>,

@@ -11,7 +11,7 @@ use jbt_model::check::CheckedTree;
 use jbt_model::kind::NodeKind;
 
 /// A hit of a ray.
-pub struct Met {
+pub struct CastHit {
     /// The index of the ray.
     pub cast: usize,
     /// Relative to the model's origin.
@@ -25,7 +25,7 @@ pub struct Met {
 /// The hits of rays, and the cost of each ray.
 pub struct Meetings {
     /// In the order of the rays, without the rays that hit nothing.
-    pub met: Vec<Met>,
+    pub met: Vec<CastHit>,
     /// For each ray, the number of distances to skeletons that were evaluated.
     pub evaluations: Vec<f32>,
 }
@@ -94,7 +94,7 @@ pub fn cast(frame: &Frame<'_>, casts: &[Ray]) -> Result<Meetings, RenderError> {
         evaluations[cast] += hits.evaluations[ray];
         let hit = hits.starts[ray] as usize;
         if hit < hits.starts[ray + 1] as usize {
-            met.push(Met {
+            met.push(CastHit {
                 cast,
                 position: hits.positions.get(hit).map(f64::from),
                 normal: normal(&hits.samples, hit, casts[cast].direction),
@@ -112,7 +112,7 @@ fn cuts(
     casts: &[Ray],
     paint: &SurfacePaint,
     evaluations: &mut [f32],
-) -> Result<Vec<Met>, RenderError> {
+) -> Result<Vec<CastHit>, RenderError> {
     let tracer = &frame.renderer.tracer;
     let starts: Vec<[f32; 3]> = casts.iter().map(start).collect();
     let Some((region, field)) = tracer.fields(&starts)? else { return Ok(Vec::new()) };
@@ -131,7 +131,7 @@ fn cuts(
     let samples = Samples::from_planes(evaluator.layout().clone(), answers);
     let meet = |(index, &cast): (usize, &usize)| {
         let position = starts[cast].map(f64::from);
-        Met { cast, position, normal: frame.side(position), paint: paint.at(&samples, index) }
+        CastHit { cast, position, normal: frame.side(position), paint: paint.at(&samples, index) }
     };
     Ok(inside.iter().enumerate().map(meet).collect())
 }

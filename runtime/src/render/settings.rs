@@ -161,7 +161,7 @@ impl Background {
 
 /// The meaning of a film's numbers.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Meaning {
+pub enum FilmMeaning {
     /// Linear light.
     Light,
     /// Screen values.
@@ -213,14 +213,14 @@ impl Render {
     }
 
     /// The meaning of the film's numbers.
-    pub(super) fn meaning(&self, tree: &CheckedTree) -> Meaning {
+    pub(super) fn meaning(&self, tree: &CheckedTree) -> FilmMeaning {
         match &self.mode {
-            RenderMode::Shaded => Meaning::Light,
-            RenderMode::Normal => Meaning::Screen,
-            RenderMode::Depth => Meaning::Distance,
-            RenderMode::Attribute(name) if width_of(tree, name) == Some(1) => Meaning::Number,
-            RenderMode::Attribute(_) => Meaning::Light,
-            RenderMode::Evaluations => Meaning::Cost,
+            RenderMode::Shaded => FilmMeaning::Light,
+            RenderMode::Normal => FilmMeaning::Screen,
+            RenderMode::Depth => FilmMeaning::Distance,
+            RenderMode::Attribute(name) if width_of(tree, name) == Some(1) => FilmMeaning::Number,
+            RenderMode::Attribute(_) => FilmMeaning::Light,
+            RenderMode::Evaluations => FilmMeaning::Cost,
         }
     }
 

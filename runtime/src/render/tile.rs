@@ -8,7 +8,7 @@ use super::error::RenderError;
 use super::frame::Frame;
 use super::report::Rays;
 use super::settings::{Quality, RenderMode};
-use super::shade::{Ground, fade, shadows, surfaces};
+use super::shade::{GroundSpot, fade, shadows, surfaces};
 use crate::trace::Ray;
 
 /// The approximate number of rays of a full tile.
@@ -182,13 +182,13 @@ impl Exposure<'_> {
         let mut is_met = vec![false; self.aim_of.len()];
         meetings.met.iter().for_each(|met| is_met[met.cast] = true);
         // One place stands for all rays of a pixel: shadows on the ground have no sharp rims.
-        let (mut places, mut pixels): (Vec<Ground>, Vec<(usize, f32)>) = (Vec::new(), Vec::new());
+        let (mut places, mut pixels): (Vec<GroundSpot>, Vec<(usize, f32)>) = (Vec::new(), Vec::new());
         for aim in self.aims.iter().filter(|aim| !aim.cast.is_some_and(|cast| is_met[cast])) {
             let Some(position) = self.frame.on_ground(aim.place[0], aim.place[1]) else { continue };
             if let Some((_, rays)) = pixels.last_mut().filter(|(pixel, _)| *pixel == aim.pixel) {
                 *rays += 1.0;
             } else if fade(self.frame, position) > 0.0 {
-                places.push(Ground { position, pixel: self.place.pixel(aim.pixel), sample: 0 });
+                places.push(GroundSpot { position, pixel: self.place.pixel(aim.pixel), sample: 0 });
                 pixels.push((aim.pixel, 1.0));
             }
         }

@@ -82,7 +82,7 @@ impl Solid {
             Err(RegionError::Empty) => return Ok(found),
             Err(error @ (RegionError::Bounds { .. } | RegionError::Unbounded)) => return Err(error.into()),
         };
-        for side in Side::ALL {
+        for side in BoxSide::ALL {
             let mut search = SideSearch::new(self, side, tolerance, outer, found.inner);
             // What was found of a side narrows the search for the next one.
             let Some(reach) = search.run()? else {
@@ -93,7 +93,7 @@ impl Solid {
         }
         if let Some(inner) = &mut found.inner {
             found.converged =
-                Side::ALL.iter().all(|side| side.reach(&outer) <= side.reach(inner) + tolerance);
+                BoxSide::ALL.iter().all(|side| side.reach(&outer) <= side.reach(inner) + tolerance);
         } else {
             found.converged = false;
         }
@@ -107,12 +107,12 @@ const MAX_CLIMB: usize = 256;
 
 /// One of the six sides of a box.
 #[derive(Clone, Copy)]
-struct Side {
+struct BoxSide {
     axis: usize,
     upper: bool,
 }
 
-impl Side {
+impl BoxSide {
     const ALL: [Self; 6] = [
         Self { axis: 0, upper: false },
         Self { axis: 0, upper: true },
@@ -169,7 +169,7 @@ impl Eq for FartherBox {}
 /// The search for one side.
 struct SideSearch<'a> {
     solid: &'a Solid,
-    side: Side,
+    side: BoxSide,
     tolerance: f32,
     whole: Box3,
     /// The smallest box around all points that are known to be inside.
@@ -183,7 +183,7 @@ struct SideSearch<'a> {
 }
 
 impl<'a> SideSearch<'a> {
-    fn new(solid: &'a Solid, side: Side, tolerance: f32, whole: Box3, inner: Option<Box3>) -> Self {
+    fn new(solid: &'a Solid, side: BoxSide, tolerance: f32, whole: Box3, inner: Option<Box3>) -> Self {
         let (open, batch) = (BinaryHeap::new(), SolidBatch::default());
         Self { solid, side, tolerance, whole, inner, open, opened: 0, asked: 0, batch }
     }

@@ -19,7 +19,7 @@ use jbt_model::diagnostic::Diagnostics;
 use jbt_ir::limits::{MAX_MEASURE_BOXES, MAX_RESOLUTION};
 
 use super::crossings::crossed;
-use super::cut::{self, Linear};
+use super::cut::{self, LinearField};
 use super::{RegionError, Solid, SolidBatch, center};
 use crate::divide::{Cell, Decision, DivideError, Division, DivisionNode, Limits, Outcome, divide};
 use crate::error::{Classified, CompileError, ErrorKind, EvalError};
@@ -229,7 +229,7 @@ impl Solid {
         let normals = self.normals()?;
         let leaves: Vec<(&DivisionNode<()>, &Region)> = division.leaves().collect();
         let share = (1.0 - DIVISION_SHARE) / leaves.len() as f64;
-        let pieces: Vec<Piece> = leaves
+        let pieces: Vec<MeasurePiece> = leaves
             .par_iter()
             .map(|(node, region)| {
                 progress.add(share)?;
@@ -260,13 +260,13 @@ impl Solid {
     }
 
     /// What a box that may hold surface holds, about.
-    fn piece(&self, normals: &Evaluator, bounds: &Box3, region: &Region) -> Result<Piece, EvalError> {
+    fn piece(&self, normals: &Evaluator, bounds: &Box3, region: &Region) -> Result<MeasurePiece, EvalError> {
         let crossed = crossed(self, normals, bounds, region)?;
         let volume = match crossed.walled_part {
             Some(part) => part * volume_of(bounds),
             None => self.linear_volume(bounds, region)?,
         };
-        Ok(Piece { volume, area: crossed.area, primitives: self.field.evaluations_in(region) })
+        Ok(MeasurePiece { volume, area: crossed.area, primitives: self.field.evaluations_in(region) })
     }
 
     /// The volume of the solid in a box that may hold surface, about. The box is cut where the linear field
@@ -281,7 +281,7 @@ impl Solid {
             for point in 0..8 {
                 batch.push([0, 1, 2].map(|axis| places[axis][point >> axis & 1]));
             }
-            let linear = Linear::fit(&places, batch.values(self, region)?);
+            let linear = LinearField::fit(&places, batch.values(self, region)?);
             let sides = [0, 1, 2].map(|axis| f64::from(bounds.high[axis]) - f64::from(bounds.low[axis]));
             let middle = linear.middle - f64::from(self.iso);
             let rises = [0, 1, 2].map(|axis| sides[axis] * linear.gradient[axis].abs());
@@ -297,7 +297,7 @@ impl Solid {
     }
 
     /// Adds everything up, in the order of the division.
-    fn sum(&self, mut sums: Measures, division: &Division<Region, ()>, pieces: &[Piece]) -> Measures {
+    fn sum(&self, mut sums: Measures, division: &Division<Region, ()>, pieces: &[MeasurePiece]) -> Measures {
         let mut pieces = pieces.iter();
         let mut moment = [0.0; 3];
         let mut primitives = 0_u64;
@@ -349,7 +349,7 @@ impl Solid {
 }
 
 /// What a box that may hold surface holds, about.
-struct Piece {
+struct MeasurePiece {
     volume: f64,
     area: f64,
     primitives: u64,

@@ -113,7 +113,7 @@ impl Solid {
         if let Some(index) = (0..points.len()).find(|&index| point(index).iter().any(|x| !x.is_finite())) {
             return Err(MembershipError::Point { index, point: point(index) });
         }
-        let question = Question { solid: self, planes, eps };
+        let question = MembershipQuestion { solid: self, planes, eps };
         let mut order: Vec<usize> = (0..points.len()).collect();
         let mut found = vec![Membership::Outside; points.len()];
         if !order.is_empty() {
@@ -128,13 +128,13 @@ impl Solid {
 }
 
 /// What is asked.
-struct Question<'a> {
+struct MembershipQuestion<'a> {
     solid: &'a Solid,
     planes: [&'a [f32]; 3],
     eps: f32,
 }
 
-impl Question<'_> {
+impl MembershipQuestion<'_> {
     fn point(&self, index: usize) -> [f32; 3] {
         self.planes.map(|plane| plane[index])
     }

@@ -2,7 +2,7 @@
 
 use super::hits::Hits;
 use super::polish::RayBracket;
-use super::ray::Line;
+use super::ray::RayLine;
 use super::target::Target;
 use crate::buffer::Samples;
 use crate::error::EvalError;
@@ -61,7 +61,7 @@ impl FoundHits {
         &mut self,
         tracer: &Target,
         region: &Region,
-        lines: &[Line],
+        lines: &[RayLine],
         brackets: &[RayBracket],
     ) -> Result<(), EvalError> {
         let start = self.records.len();

@@ -68,7 +68,7 @@ use crate::region::{Box3, Divisible as _};
 
 use found::FoundHits;
 use packet::{PacketTrace, Want};
-use ray::{Line, RayReach, STRIDE};
+use ray::{RayLine, RayReach, STRIDE};
 use target::Target;
 
 /// A model, compiled for rays.
@@ -341,7 +341,7 @@ impl Tracer {
         self.rays.fetch_add(rays.len() as u64, Ordering::Relaxed);
         let mut lines = Vec::with_capacity(rays.len());
         for (index, ray) in rays.iter().enumerate() {
-            lines.extend(Line::new(index, ray, tolerance, stride, self.target.reach.as_ref())?);
+            lines.extend(RayLine::new(index, ray, tolerance, stride, self.target.reach.as_ref())?);
         }
         PacketTrace::new(&self.target, (want, stride), tolerance, rays.len(), lines).finish()
     }

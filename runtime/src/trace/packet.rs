@@ -20,8 +20,8 @@ use super::beam::Beam;
 use super::error::TraceError;
 use super::found::FoundHits;
 use super::polish::{RayBracket, polish};
-use super::ray::Line;
-use super::refine::{Refiner, Segment, Stretch};
+use super::ray::RayLine;
+use super::refine::{RaySegment, RayStretch, Refiner};
 use super::target::Target;
 use crate::error::EvalError;
 use crate::prune::Region;
@@ -68,7 +68,7 @@ pub(super) struct PacketTrace<'a> {
     stride: i64,
     tolerance: f64,
     /// The rays that may hit the model; rays with the same step are neighbours.
-    lines: Vec<Line>,
+    lines: Vec<RayLine>,
     /// For each line, whether its answer is complete.
     done: Vec<bool>,
     cells: Vec<PacketCell>,
@@ -77,9 +77,9 @@ pub(super) struct PacketTrace<'a> {
     lattice: Vec<f64>,
     brackets: Vec<RayBracket>,
     /// The stretches of a cell: neighbouring coarse places on one side.
-    stretches: Vec<Stretch>,
+    stretches: Vec<RayStretch>,
     /// The segments of a cell whose ends are on different sides.
-    segments: Vec<Segment>,
+    segments: Vec<RaySegment>,
     found: FoundHits,
     work: WorkLimit,
 }
@@ -105,7 +105,7 @@ impl<'a> PacketTrace<'a> {
         (want, stride): (Want, i64),
         tolerance: f64,
         rays: usize,
-        mut lines: Vec<Line>,
+        mut lines: Vec<RayLine>,
     ) -> Self {
         if lines.windows(2).any(|pair| pair[0].step != pair[1].step) {
             lines.sort_by(|a, b| a.step.total_cmp(&b.step));
@@ -298,9 +298,9 @@ impl<'a> PacketTrace<'a> {
             } else {
                 if start < at {
                     let places = [place(start), place(at)];
-                    self.stretches.push(Stretch { line, places, field: start });
+                    self.stretches.push(RayStretch { line, places, field: start });
                 }
-                self.segments.push(Segment { line, place: place(at), fields: ends });
+                self.segments.push(RaySegment { line, place: place(at), fields: ends });
             }
             start = at + 1;
             if self.want == Want::First {
@@ -309,7 +309,7 @@ impl<'a> PacketTrace<'a> {
         }
         if self.stride > 1 && start + 1 < of.end {
             let places = [place(start), place(of.end - 1)];
-            self.stretches.push(Stretch { line, places, field: start });
+            self.stretches.push(RayStretch { line, places, field: start });
         }
     }
 
@@ -369,7 +369,7 @@ fn common(a: [i64; 2], b: [i64; 2]) -> [i64; 2] {
 
 /// Adds the points of a ray from one place to another, both included. Times are the lattice's, except for the
 /// ray's ends.
-fn push_places(batch: &mut TraceBatch, line: &Line, places: [i64; 2], times: &[f64]) {
+fn push_places(batch: &mut TraceBatch, line: &RayLine, places: [i64; 2], times: &[f64]) {
     let ends = [0, 1].map(|end| (places[end] == line.places[end]).then(|| line.position(line.span[end])));
     for (axis, plane) in batch.points.iter_mut().enumerate() {
         let (origin, direction) = (line.origin[axis], line.direction[axis]);

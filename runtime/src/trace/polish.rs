@@ -12,7 +12,7 @@
 //! The final bracket depends only on the field along its ray.
 
 use super::batch::TraceBatch;
-use super::ray::{Line, spacing};
+use super::ray::{RayLine, spacing};
 use super::target::Target;
 use crate::error::EvalError;
 use crate::prune::Region;
@@ -43,7 +43,7 @@ pub(super) struct RayBracket {
 impl RayBracket {
     pub(super) fn new(
         index: usize,
-        line: &Line,
+        line: &RayLine,
         tolerance: f64,
         iso: f32,
         times: [f64; 2],
@@ -142,7 +142,7 @@ fn meet(times: [f64; 2], heights: [f64; 2]) -> f64 {
 pub(super) fn polish(
     tracer: &Target,
     region: &Region,
-    lines: &[Line],
+    lines: &[RayLine],
     brackets: &mut [RayBracket],
     batch: &mut TraceBatch,
 ) -> Result<(), EvalError> {

@@ -90,7 +90,7 @@ impl RayReach {
 
 /// A ray that may hit something, with its lattice.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub(super) struct Line {
+pub(super) struct RayLine {
     /// The index of the ray in the packet.
     pub(super) ray: u32,
     pub(super) origin: [f64; 3],
@@ -107,7 +107,7 @@ pub(super) struct Line {
     pub(super) length: f64,
 }
 
-impl Line {
+impl RayLine {
     /// Checks a ray; `None` if it does not come near the model.
     pub(super) fn new(
         index: usize,

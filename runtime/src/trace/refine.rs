@@ -18,14 +18,14 @@ use super::batch::{TraceBatch, WorkLimit};
 use super::error::TraceError;
 use super::found::FoundHits;
 use super::polish::RayBracket;
-use super::ray::Line;
+use super::ray::RayLine;
 use super::target::Target;
 use crate::prune::Region;
 use crate::region::Box3;
 
 /// Neighbouring coarse places of a ray that are on one side.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub(super) struct Stretch {
+pub(super) struct RayStretch {
     pub(super) line: usize,
     /// The first and the last place.
     pub(super) places: [i64; 2],
@@ -42,7 +42,7 @@ struct StretchGroup {
 }
 
 /// From a coarse place of a ray to the next one.
-pub(super) struct Segment {
+pub(super) struct RaySegment {
     pub(super) line: usize,
     pub(super) place: i64,
     /// The fields at both ends.
@@ -62,7 +62,7 @@ pub(super) struct Refiner<'a> {
     pub(super) tracer: &'a Target,
     /// The region of all stretches.
     pub(super) region: &'a Region,
-    pub(super) lines: &'a [Line],
+    pub(super) lines: &'a [RayLine],
     /// Steps of the lattice from one coarse place to the next, on all lines.
     pub(super) stride: i64,
     pub(super) tolerance: f64,
@@ -77,8 +77,8 @@ impl Refiner<'_> {
     /// stretches are among those in the batch.
     pub(super) fn refine(
         &mut self,
-        stretches: &[Stretch],
-        segments: &mut Vec<Segment>,
+        stretches: &[RayStretch],
+        segments: &mut Vec<RaySegment>,
         batch: &mut TraceBatch,
         brackets: &mut Vec<RayBracket>,
     ) -> Result<(), TraceError> {
@@ -89,7 +89,7 @@ impl Refiner<'_> {
             return Ok(());
         }
         batch.clear();
-        for &Segment { line, place, .. } in &*segments {
+        for &RaySegment { line, place, .. } in &*segments {
             self.lines[line].push_between(place, batch.planes());
         }
         let inner = self.stride as usize - 1;
@@ -106,9 +106,9 @@ impl Refiner<'_> {
     /// Adds the segments of stretches whose ranges do not prove one side.
     fn undecided(
         &mut self,
-        stretches: &[Stretch],
+        stretches: &[RayStretch],
         fields: &[f32],
-        segments: &mut Vec<Segment>,
+        segments: &mut Vec<RaySegment>,
     ) -> Result<(), TraceError> {
         let iso = self.tracer.iso;
         let starts = (0..stretches.len()).step_by(TOGETHER);
@@ -119,9 +119,9 @@ impl Refiner<'_> {
                 segments: 0,
             })
             .collect();
-        let known = |(stretch, place): (&Stretch, i64)| {
+        let known = |(stretch, place): (&RayStretch, i64)| {
             let field = stretch.field + (place - stretch.places[0]) as usize;
-            Segment { line: stretch.line, place, fields: [fields[field], fields[field + 1]] }
+            RaySegment { line: stretch.line, place, fields: [fields[field], fields[field + 1]] }
         };
         let worth_asking = WORTH_ASKING / (self.stride as usize - 1);
         let mut boxes = Vec::with_capacity(groups.len());
@@ -159,7 +159,7 @@ impl Refiner<'_> {
     }
 
     /// The changes of side in a segment, from the fields at the places in it.
-    fn find(&self, segment: &Segment, asked: &[f32], brackets: &mut Vec<RayBracket>) {
+    fn find(&self, segment: &RaySegment, asked: &[f32], brackets: &mut Vec<RayBracket>) {
         let iso = self.tracer.iso;
         let line = &self.lines[segment.line];
         let [start, end] = segment.fields;
@@ -186,12 +186,12 @@ impl Refiner<'_> {
 
 impl StretchGroup {
     /// Shrinks the group to its segments; `None` if it has none, else the box around them.
-    fn tighten(&mut self, stretches: &[Stretch], lines: &[Line]) -> Option<Box3> {
+    fn tighten(&mut self, stretches: &[RayStretch], lines: &[RayLine]) -> Option<Box3> {
         let mut bounds: Option<Box3> = None;
         let (mut members, mut places) = (self.stretches.end..self.stretches.start, [i64::MAX, i64::MIN]);
         self.segments = 0;
         for index in self.stretches.clone() {
-            let Stretch { line, places: mine, .. } = stretches[index];
+            let RayStretch { line, places: mine, .. } = stretches[index];
             let [first, last] = [mine[0].max(self.places[0]), mine[1].min(self.places[1])];
             if first >= last {
                 continue;
@@ -212,7 +212,10 @@ impl StretchGroup {
     }
 
     /// Its segments, each with its stretch.
-    fn segments<'a>(&self, stretches: &'a [Stretch]) -> impl Iterator<Item = (&'a Stretch, i64)> + use<'a> {
+    fn segments<'a>(
+        &self,
+        stretches: &'a [RayStretch],
+    ) -> impl Iterator<Item = (&'a RayStretch, i64)> + use<'a> {
         let [first, last] = self.places;
         stretches[self.stretches.clone()].iter().flat_map(move |stretch| {
             let [from, to] = [stretch.places[0].max(first), stretch.places[1].min(last)];

@@ -1,4 +1,5 @@
-//! Tubes along paths: the shared code of lines and curves through points. Each skeleton lists its [`TubePart`]s.
+//! Tubes along paths: the shared code of lines and curves through points. Each skeleton lists its
+//! [`TubePart`]s.
 //!
 //! A tube is the solid of all balls with middles on the path, whose radii may differ: its distance is the
 //! smallest distance of its parts, and 0 inside. A thin tube has radii of 0. The parts, or divisions of them,

@@ -272,35 +272,35 @@ struct VmProgram {
 
 /// A field to build: the iso-value plus or minus the value of this line.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-struct Wanted {
+struct WantedField {
     line: u32,
     negative: bool,
 }
 
 /// How a wanted field is built.
-enum Split {
-    Same(Wanted),
-    Combine(Combinator, [Wanted; 2]),
+enum FieldSplit {
+    Same(WantedField),
+    Combine(Combinator, [WantedField; 2]),
     Leaf,
 }
 
 impl VmProgram {
     /// The tree of `iso - value`.
     fn tree(&self) -> Tree {
-        let root = Wanted { line: self.instructions.len() as u32 - 1, negative: true };
+        let root = WantedField { line: self.instructions.len() as u32 - 1, negative: true };
         self.split(root).unwrap_or_else(|| self.leaf(root, usize::MAX).0)
     }
 
-    fn parts(&self, Wanted { line, negative }: Wanted) -> Split {
+    fn parts(&self, WantedField { line, negative }: WantedField) -> FieldSplit {
         let instruction = &self.instructions[line as usize];
         let [a, b] = instruction.operands;
-        let both = [a, b].map(|line| Wanted { line, negative });
+        let both = [a, b].map(|line| WantedField { line, negative });
         match instruction.code {
-            VmOp::Negate => Split::Same(Wanted { line: a, negative: !negative }),
-            VmOp::Call(Function::Min) if negative => Split::Combine(Union {}.into(), both),
-            VmOp::Call(Function::Min) => Split::Combine(Intersection {}.into(), both),
-            VmOp::Call(Function::Max) if negative => Split::Combine(Intersection {}.into(), both),
-            VmOp::Call(Function::Max) => Split::Combine(Union {}.into(), both),
+            VmOp::Negate => FieldSplit::Same(WantedField { line: a, negative: !negative }),
+            VmOp::Call(Function::Min) if negative => FieldSplit::Combine(Union {}.into(), both),
+            VmOp::Call(Function::Min) => FieldSplit::Combine(Intersection {}.into(), both),
+            VmOp::Call(Function::Max) if negative => FieldSplit::Combine(Intersection {}.into(), both),
+            VmOp::Call(Function::Max) => FieldSplit::Combine(Union {}.into(), both),
             VmOp::Coordinate(_)
             | VmOp::Constant(_)
             | VmOp::Binary(_)
@@ -309,38 +309,39 @@ impl VmProgram {
             | VmOp::Compare
             | VmOp::Not
             | VmOp::And
-            | VmOp::Or => Split::Leaf,
+            | VmOp::Or => FieldSplit::Leaf,
         }
     }
 
     /// A tree of unions and intersections of formulas; `None` if these are too long together.
-    fn split(&self, root: Wanted) -> Option<Tree> {
+    fn split(&self, root: WantedField) -> Option<Tree> {
         let mut left = LONGEST * self.instructions.len();
         let sizes = self.sizes();
-        let mut done: HashMap<Wanted, Tree> = HashMap::new();
+        let mut done: HashMap<WantedField, Tree> = HashMap::new();
         let mut stack = vec![(root, false)];
         while let Some((wanted, opened)) = stack.pop() {
             if done.contains_key(&wanted) {
                 continue;
             }
-            let parts = if sizes[wanted.line as usize] < SMALLEST { Split::Leaf } else { self.parts(wanted) };
+            let parts =
+                if sizes[wanted.line as usize] < SMALLEST { FieldSplit::Leaf } else { self.parts(wanted) };
             let tree = match parts {
-                Split::Leaf => {
+                FieldSplit::Leaf => {
                     let (tree, steps) = self.leaf(wanted, left);
                     left = left.checked_sub(steps)?;
                     tree
                 }
-                Split::Same(other) if opened => done[&other].clone(),
-                Split::Combine(combinator, parts) if opened => {
+                FieldSplit::Same(other) if opened => done[&other].clone(),
+                FieldSplit::Combine(combinator, parts) if opened => {
                     let children = parts.iter().map(|part| done[part].clone()).collect();
                     let span = self.instructions[wanted.line as usize].span;
                     Tree::at(span, combinator, children)
                 }
-                Split::Same(other) => {
+                FieldSplit::Same(other) => {
                     stack.extend([(wanted, true), (other, false)]);
                     continue;
                 }
-                Split::Combine(_, [a, b]) => {
+                FieldSplit::Combine(_, [a, b]) => {
                     stack.extend([(wanted, true), (b, false), (a, false)]);
                     continue;
                 }
@@ -361,7 +362,7 @@ impl VmProgram {
     }
 
     /// One formula, and its number of operations; the count may stop beyond `most`.
-    fn leaf(&self, wanted: Wanted, most: usize) -> (Tree, usize) {
+    fn leaf(&self, wanted: WantedField, most: usize) -> (Tree, usize) {
         let mut assembler = Assembler::default();
         let value = self.draft(&mut assembler, wanted.line, most);
         let sign = if wanted.negative { Binary::Subtract } else { Binary::Add };

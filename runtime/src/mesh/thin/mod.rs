@@ -23,7 +23,7 @@ use super::error::MeshError;
 use super::field::Field;
 use super::indexed::Mesh;
 use super::report::{MAX_NEAR, ThinReport};
-use super::stage::Stage;
+use super::stage::MeshStage;
 use crate::progress::Progress;
 
 use alarm::{ALARM, Alarm};
@@ -53,7 +53,7 @@ pub(super) fn find<F: Field>(
     let search = ThinSearch { field, axes: &bricks.axes, iso, crossed: &crossed, blocks };
     let group = 64;
     let total = places.len().div_ceil(group);
-    Stage::Thin.begin(progress)?;
+    MeshStage::Thin.begin(progress)?;
     let groups = places.par_chunks(group).zip(regions.par_chunks(group));
     let found = groups.map(|(places, regions)| {
         let (mut found, mut near) = (ChunkFindings::default(), 0);

@@ -4,7 +4,7 @@ use super::super::brick::Bricks;
 use super::super::crossing::Crossings;
 use super::super::field::Field;
 use super::super::options::Options;
-use super::super::pull::{LANES, Lanes};
+use super::super::pull::{LANES, VertexLanes};
 use super::bracket::CrossedEdges;
 use super::seed::{SeedGroup, Seeds};
 use crate::region::Box3;
@@ -100,11 +100,11 @@ impl VertexBatch {
 }
 
 #[inline(always)]
-pub(super) fn lane(plane: &[f32], chunk: usize) -> Lanes {
+pub(super) fn lane(plane: &[f32], chunk: usize) -> VertexLanes {
     *plane[chunk * LANES..].first_chunk().expect("planes are filled up")
 }
 
 #[inline(always)]
-pub(super) fn lanes(planes: &VertexPlanes, chunk: usize) -> [Lanes; 3] {
+pub(super) fn lanes(planes: &VertexPlanes, chunk: usize) -> [VertexLanes; 3] {
     planes.each_ref().map(|plane| lane(plane, chunk))
 }

@@ -7,16 +7,16 @@
 //! ```
 
 use super::super::cell::{EDGE_CORNERS, SheetEdges};
-use super::super::pull::{LANES, Lanes, all};
+use super::super::pull::{LANES, VertexLanes, all};
 use super::margin::room;
 
 /// The data of the cells of [`LANES`] vertices.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Seeds {
     /// The field at the corners.
-    corners: [Lanes; 8],
+    corners: [VertexLanes; 8],
     /// The low and the high side along each axis.
-    sides: [[Lanes; 2]; 3],
+    sides: [[VertexLanes; 2]; 3],
     /// The edges of their sheets.
     edges: [SheetEdges; LANES],
 }
@@ -25,13 +25,13 @@ pub(super) struct Seeds {
 #[derive(Clone, Copy, Default)]
 pub(super) struct SeedGroup {
     /// The low and the high corners of the vertices' rooms.
-    pub(super) low: [Lanes; 3],
-    pub(super) high: [Lanes; 3],
+    pub(super) low: [VertexLanes; 3],
+    pub(super) high: [VertexLanes; 3],
     /// The approximate rise of the field along the axes: from the low corners of the cells to the high ones,
     /// or along the edges that the sheets cross.
-    pub(super) rise: [Lanes; 3],
+    pub(super) rise: [VertexLanes; 3],
     /// The largest difference of the field among the corners of each cell.
-    pub(super) spread: Lanes,
+    pub(super) spread: VertexLanes,
 }
 
 impl Seeds {
@@ -50,7 +50,7 @@ impl Seeds {
     /// The starts of the vertices, and their group; `rise` is computed as if each vertex had a cell of its
     /// own.
     #[inline(always)]
-    fn grow(&self, iso: f32, group: &mut SeedGroup) -> [Lanes; 3] {
+    fn grow(&self, iso: f32, group: &mut SeedGroup) -> [VertexLanes; 3] {
         let (means, is_tame) = self.tame_means(iso, group);
         let mut means = means;
         if !all(&is_tame) {
@@ -80,7 +80,7 @@ impl Seeds {
     // Plain indices become vectors.
     #[allow(clippy::needless_range_loop)]
     #[inline(always)]
-    fn tame_means(&self, iso: f32, group: &mut SeedGroup) -> ([Lanes; 3], [u32; LANES]) {
+    fn tame_means(&self, iso: f32, group: &mut SeedGroup) -> ([VertexLanes; 3], [u32; LANES]) {
         /// Numbers up to this limit have differences that do not overflow.
         const LARGE: f32 = 1e38;
         let (mut means, mut is_tame) = ([[0.0; LANES]; 3], [0; LANES]);

@@ -13,7 +13,7 @@
 //! vertex.
 
 use super::super::field::Field;
-use super::super::pull::{LANES, Lanes, squares};
+use super::super::pull::{LANES, VertexLanes, squares};
 use super::super::settle::{Stray, VertexPlace, is_far, settle};
 use super::batch::{Done, VertexBatch, VertexPlanes, VertexSource, lane, lanes};
 use super::seed::SeedGroup;
@@ -40,7 +40,7 @@ struct VertexTests {
 
 /// The tests of vertices.
 #[inline(always)]
-fn judge(iso: f32, group: &SeedGroup, values: &Lanes, gradient: &[Lanes; 3]) -> VertexTests {
+fn judge(iso: f32, group: &SeedGroup, values: &VertexLanes, gradient: &[VertexLanes; 3]) -> VertexTests {
     let SeedGroup { low: [low, ..], high: [high, ..], rise, spread } = group;
     let (square, rises) = (squares(gradient), squares(rise));
     let far = is_far(iso, [low, high], values, &square);
