@@ -125,7 +125,7 @@ impl Encoder {
                 self.vex(&Vex { immediate: Some(predicate as u8), is_evex, ..vex });
             }
             Inst::Test { a } => {
-                self.vector(Opcode(Map::M0F38, Prefix::P66, 0x17), a, 0, Operand::Register(a))
+                self.vector(Opcode(Map::M0F38, Prefix::P66, 0x17), a, 0, Operand::Register(a));
             }
             Inst::TestToMask { to, a } => {
                 let vex = self.plain(Opcode(Map::M0F38, Prefix::P66, 0x27), to, a, Operand::Register(a));
