@@ -1,8 +1,8 @@
 //! Executable memory: this crate's one home of `unsafe`.
 //!
 //! ```text
-//! Pages   owns a Cranelift module: its memory is freed when it goes, on every path
-//! Code    Pages with finished code, and the addresses of its functions
+//! Pages         owns a Cranelift module: its memory is freed when it goes, on every path
+//! MachineCode   Pages with finished code, and the addresses of its functions
 //! ```
 //!
 //! No page is writable and executable at once: the module writes the code, then finalizing takes the right to
