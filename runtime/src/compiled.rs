@@ -197,13 +197,14 @@ impl Compiled {
 
     /// The program row by row that answers what a program of straight code answers. If it cannot be had as
     /// the compiler wishes, it is interpreted.
-    pub(crate) fn rows_of<'a>(&self, straight: &'a AnswerProgram) -> &'a Arc<AnswerProgram> {
-        straight.by_rows.get_or_init(|| {
+    pub(crate) fn regional_twin<'a>(&self, straight: &'a AnswerProgram) -> &'a Arc<AnswerProgram> {
+        straight.for_regions.get_or_init(|| {
             let wished = self.answers(PointScope::Regions, straight.query).cloned();
             wished.unwrap_or_else(|_| {
                 // A program that is small as straight code is within all limits.
                 let lanes = self.0.compiler.clone().on_engine(Engine::Lanes);
-                self.by_rows(&lanes, straight, None).expect("whatever is within the limits is interpreted")
+                self.unstraightened(&lanes, straight, None)
+                    .expect("whatever is within the limits is interpreted")
             })
         })
     }
@@ -246,7 +247,7 @@ impl Compiled {
             PointScope::Regions => self.slot(scope, query).get_or_make(|earlier| {
                 let straight = self.slot(PointScope::Anywhere, query).present();
                 match straight.filter(|program| program.is_straight()) {
-                    Some(straight) => self.by_rows(&self.0.compiler, straight, earlier),
+                    Some(straight) => self.unstraightened(&self.0.compiler, straight, earlier),
                     None => self.program(query, lowered()?, earlier),
                 }
             }),
@@ -286,7 +287,7 @@ impl Compiled {
     }
 
     /// The program for regions, of what straight code was made of.
-    fn by_rows(
+    fn unstraightened(
         &self,
         compiler: &Compiler,
         straight: &AnswerProgram,

@@ -18,7 +18,7 @@ use crate::kernel::{BoundKernel, Engine, Kernel, Purpose, Wish, optimise, optimi
 pub struct Compiler {
     wish: Wish,
     /// Whether rows stay rows: see [`for_edits`](Self::for_edits).
-    by_rows: bool,
+    keeps_rows: bool,
     memory: Arc<CompilerMemory>,
 }
 
@@ -92,7 +92,7 @@ impl Compiler {
     /// Rows of primitives, and models with parameters, stay as they are in any case.
     #[must_use]
     pub fn for_edits(mut self) -> Self {
-        self.by_rows = true;
+        self.keeps_rows = true;
         self
     }
 
@@ -108,7 +108,7 @@ impl Compiler {
     /// Whether formulas of a model may become straight code. No value of a parameter compiles anything, so
     /// models with parameters keep their rows.
     pub(crate) fn may_straighten(&self, tree: &CheckedTree) -> bool {
-        !self.by_rows && tree.parameters().is_empty()
+        !self.keeps_rows && tree.parameters().is_empty()
     }
 
     /// Gives a kernel the numbers of a model.

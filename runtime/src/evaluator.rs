@@ -16,8 +16,8 @@ use crate::compiled::{Compiled, PointScope};
 use crate::compiler::Compiler;
 use crate::counter::{Counters, SharedCounters};
 use crate::error::{CompileError, EvalError};
+use crate::finite_points;
 use crate::kernel::{BoundKernel, Engine};
-use crate::places;
 use crate::points::{AsPoints, Points};
 use crate::program::AnswerProgram;
 use crate::prune::Region;
@@ -50,7 +50,7 @@ impl Compiled {
 
 /// Points that are brought into planes at once: a multiple of every kernel's width, small enough for the
 /// nearest cache.
-const BLOCK: usize = 512;
+const TRANSPOSED: usize = 512;
 /// Points that one thread evaluates at once.
 const PART: usize = 4096;
 
@@ -127,9 +127,9 @@ impl Evaluator {
     }
 
     /// What runs points of regions.
-    fn rows(&self) -> &BoundKernel {
+    fn regional(&self) -> &BoundKernel {
         if self.program.is_straight() {
-            &self.compiled.rows_of(&self.program).bound
+            &self.compiled.regional_twin(&self.program).bound
         } else {
             &self.program.bound
         }
@@ -251,10 +251,10 @@ impl Evaluator {
         if let Some(planes) = points.planes().filter(|_| !moves) {
             return self.eval_planes(planes.map(|plane| &plane[start..][..count]), &mut answers);
         }
-        let mut scratch = [[0.0; BLOCK]; 3];
+        let mut scratch = [[0.0; TRANSPOSED]; 3];
         let mut block = Vec::with_capacity(answers.len());
         while count > 0 {
-            let some = count.min(BLOCK);
+            let some = count.min(TRANSPOSED);
             points.copy_to(start, scratch.each_mut().map(|plane| &mut plane[..some]));
             if moves {
                 self.bring(points.origin(), scratch.each_mut().map(|plane| &mut plane[..some]));
@@ -284,10 +284,10 @@ impl Evaluator {
     /// # Errors
     /// If there are too many or too few planes, or their lengths differ.
     pub fn eval_planes(&self, points: [&[f32]; 3], answers: &mut [&mut [f32]]) -> Result<(), EvalError> {
-        let lanes = if places::are_places(&points) {
-            self.program.bound.run_finite(self.program.bound.all(), &points, answers)?
+        let lanes = if finite_points::are_finite(&points) {
+            self.program.bound.run_with_finite_gradient(self.program.bound.all(), &points, answers)?
         } else {
-            self.run_placed(&self.program.bound, self.program.bound.all(), points, answers)?
+            self.run_made_finite(&self.program.bound, self.program.bound.all(), points, answers)?
         };
         self.counters.add(points[0].len(), lanes, 0);
         Ok(())
@@ -307,10 +307,10 @@ impl Evaluator {
         // Points of a box that ends are places; the box of everything is one for any points.
         let ends = |x: &f32| x.abs() < f32::MAX;
         let Box3 { low, high } = region.bounds();
-        let lanes = if low.iter().chain(&high).all(ends) || places::are_places(&points) {
-            self.rows().run_finite(region.selection(), &points, answers)?
+        let lanes = if low.iter().chain(&high).all(ends) || finite_points::are_finite(&points) {
+            self.regional().run_with_finite_gradient(region.selection(), &points, answers)?
         } else {
-            self.run_placed(self.rows(), region.selection(), points, answers)?
+            self.run_made_finite(self.regional(), region.selection(), points, answers)?
         };
         let left_out = self.evaluations_per_point().saturating_sub(self.evaluations_in(region));
         self.counters.add(points[0].len(), lanes, left_out);
@@ -318,16 +318,17 @@ impl Evaluator {
     }
 
     /// Runs points of which some are no places; returns how many lanes were computed.
-    fn run_placed(
+    fn run_made_finite(
         &self,
         bound: &BoundKernel,
         selection: &Selection,
         points: [&[f32]; 3],
         answers: &mut [&mut [f32]],
     ) -> Result<usize, EvalError> {
-        let placed = places::placed(&points);
-        let lanes = bound.run_finite(selection, &placed.each_ref().map(Vec::as_slice), answers)?;
-        places::blank(self.layout(), &points, answers);
+        let placed = finite_points::made_finite(&points);
+        let lanes =
+            bound.run_with_finite_gradient(selection, &placed.each_ref().map(Vec::as_slice), answers)?;
+        finite_points::blank(self.layout(), &points, answers);
         Ok(lanes)
     }
 
@@ -346,13 +347,13 @@ impl Evaluator {
     /// How many distances to skeletons one point of a region takes.
     #[must_use]
     pub fn evaluations_in(&self, region: &Region) -> u64 {
-        of_selection(&self.rows().kernel.per_row, region.selection())
+        of_selection(&self.regional().kernel.per_row, region.selection())
     }
 
     /// The leaves behind the rows of a region, ascending.
     pub(crate) fn leaves_in(&self, region: &Region) -> Vec<NodeId> {
         let mut leaves = BTreeSet::new();
-        let bound = self.rows();
+        let bound = self.regional();
         let schemas = &bound.kernel.function.function().tables;
         for (table, rows) in bound.tables().tables.iter() {
             let slots = schemas[table].slots.len();
@@ -366,7 +367,7 @@ impl Evaluator {
     /// How many ops one point of a region takes: a measure of the time.
     #[must_use]
     pub fn ops_in(&self, region: &Region) -> u64 {
-        of_selection(&self.rows().kernel.ops_per_row, region.selection())
+        of_selection(&self.regional().kernel.ops_per_row, region.selection())
     }
 
     /// How many distances one point takes, by tree node.

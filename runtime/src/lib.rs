@@ -119,14 +119,14 @@ mod error;
 mod evaluator;
 #[cfg(feature = "export")]
 pub mod export;
-mod finite;
+mod finite_gradient;
+mod finite_points;
 pub mod internals;
 mod job;
 mod kernel;
 pub mod mesh;
 mod parallel;
 mod picture;
-mod places;
 mod points;
 mod polygonize;
 mod probe;

@@ -23,7 +23,7 @@ pub(crate) struct AnswerProgram {
     /// Distances that separate walks compute at a point.
     pub(crate) separate: u64,
     /// The same program row by row, if this one is straight code: made for the first region.
-    pub(crate) by_rows: OnceLock<Arc<AnswerProgram>>,
+    pub(crate) for_regions: OnceLock<Arc<AnswerProgram>>,
 }
 
 impl AnswerProgram {
@@ -36,7 +36,7 @@ impl AnswerProgram {
             "planes are named alike everywhere"
         );
         let separate = walks(query).saturating_mul(tree.leaf_uses());
-        Self { query, bound, layout, separate, by_rows: OnceLock::new() }
+        Self { query, bound, layout, separate, for_regions: OnceLock::new() }
     }
 
     /// Whether it is straight code, which knows no rows of regions.

@@ -80,7 +80,7 @@ impl Parser<'_> {
                 ),
             })
         });
-        self.stay_lost();
+        self.mute();
         self.skip_arguments();
         if self.peek().is(b'{') {
             self.skip_block();
@@ -111,7 +111,7 @@ impl Parser<'_> {
                     self.once(&mut shift, numbers, token);
                 }
             }
-            if self.is_lost() {
+            if self.is_muted() {
                 break;
             }
         }
@@ -149,7 +149,7 @@ impl Parser<'_> {
             let token = self.peek();
             match token.kind {
                 TokenKind::Mark(b'}') => {
-                    self.find_place();
+                    self.report_again();
                     self.next();
                     break;
                 }
@@ -159,7 +159,7 @@ impl Parser<'_> {
                 }
                 TokenKind::Word | TokenKind::End => {
                     self.unclosed(open.start as u32, token);
-                    self.stay_lost();
+                    self.mute();
                     return None;
                 }
                 TokenKind::Mark(_) | TokenKind::Number | TokenKind::Quoted | TokenKind::Unknown => {
@@ -195,12 +195,12 @@ impl Parser<'_> {
         let index = kind.fields().iter().position(|field| field.name == word);
         match (end, index) {
             (Some(end), _) => {
-                self.find_place();
+                self.report_again();
                 let numbers = self.group_values(Some(width));
                 self.once(&mut ends[end], numbers, token);
             }
             (None, Some(index)) => {
-                self.find_place();
+                self.report_again();
                 self.slot(slots, index, token);
             }
             (None, None) => self.unknown_texture_field(kind, token),
@@ -209,7 +209,7 @@ impl Parser<'_> {
 
     fn unknown_texture_field(&mut self, kind: TextureKind, token: Token) {
         let word = self.text(token);
-        self.lose_place(|| {
+        self.report_and_mute(|| {
             let message = format!("`{}` has no parameter `{}`", kind.name(), clip(word));
             let known = || ENDS.into_iter().chain(kind.fields().iter().map(|field| field.name));
             Diagnostic::error(Some(token.span()), message).expected(match nearest(word, known()) {

@@ -224,7 +224,7 @@ impl Parser<'_> {
         }
         if let Some(&(_, at)) = stacks.waiting.iter().rev().find(|(waiting, _)| waiting.is_open()) {
             let found = self.describe(self.peek());
-            self.lose_place(|| {
+            self.report_and_mute(|| {
                 Diagnostic::error(Some(Span::new(at as usize, at as usize + 1)), "this `(` is not closed")
                     .expected(format!("expected `)` before {found}"))
             });
@@ -262,7 +262,7 @@ impl Parser<'_> {
                 let function = Function::named(word).filter(|_| !parameter);
                 if let Some(function) = function.or_else(|| self.falloff_function(word, token)) {
                     if !self.peek().is(b'(') {
-                        self.lose_place(|| {
+                        self.report_and_mute(|| {
                             Diagnostic::error(Some(token.span()), format!("`{word}` is a function"))
                                 .expected(format!("expected its arguments: {word}(...)"))
                         });

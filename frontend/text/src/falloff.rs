@@ -58,7 +58,7 @@ impl Parser<'_> {
             let token = self.peek();
             match token.kind {
                 TokenKind::Mark(b'}') => {
-                    self.find_place();
+                    self.report_again();
                     self.next();
                     return true;
                 }
@@ -67,10 +67,10 @@ impl Parser<'_> {
                     let word = self.text(token);
                     match kind.fields().iter().position(|field| field.name == word) {
                         Some(index) => {
-                            self.find_place();
+                            self.report_again();
                             self.slot(slots, index, token);
                         }
-                        None if self.is_lost() => {}
+                        None if self.is_muted() => {}
                         None => self.unknown_falloff_field(kind, word, token.span()),
                     }
                 }
@@ -87,7 +87,7 @@ impl Parser<'_> {
     }
 
     fn unknown_falloff_field(&mut self, kind: FalloffKind, word: &str, span: Span) {
-        self.lose_place(|| {
+        self.report_and_mute(|| {
             let known = || kind.fields().iter().map(|field| field.name);
             let message = format!("`{}` has no parameter `{}`", kind.name(), clip(word));
             let error = Diagnostic::error(Some(span), message);

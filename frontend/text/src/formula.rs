@@ -58,7 +58,7 @@ impl<'a> Parser<'a> {
     }
 
     fn no_field(&mut self, token: Token) -> Result<Variable, ()> {
-        self.lose_place(|| {
+        self.report_and_mute(|| {
             Diagnostic::error(Some(token.span()), "the formula of an attribute asks for no field")
                 .expected("expected coordinates and numbers")
         });
@@ -68,7 +68,7 @@ impl<'a> Parser<'a> {
     /// `( NAME )` behind the word `field`.
     fn field_of(&mut self, token: Token) -> Result<Variable, ()> {
         if self.scope.as_ref().is_some_and(|scope| scope.pointwise) {
-            self.lose_place(|| {
+            self.report_and_mute(|| {
                 Diagnostic::error(Some(token.span()), "a warp asks for no fields").expected(
                     "expected formulas of x, y and z; `weighted` gives a warp the weight of a field",
                 )
@@ -76,7 +76,7 @@ impl<'a> Parser<'a> {
             return Err(());
         }
         if self.accept(b'(').is_none() {
-            self.lose_place(|| {
+            self.report_and_mute(|| {
                 Diagnostic::error(Some(token.span()), "`field` names no subtree")
                     .expected("expected the name of a `let`: field(name)")
             });
@@ -181,7 +181,7 @@ impl<'a> Parser<'a> {
             };
             let drafts = numbers.iter().map(|number| assembler.postfix(&number.steps(), &values));
             let mut drafts: Vec<Draft> = drafts.collect();
-            let Some(name) = name.filter(|_| !self.is_lost()) else {
+            let Some(name) = name.filter(|_| !self.is_muted()) else {
                 return drafts;
             };
             let value = drafts.remove(0);
@@ -208,7 +208,7 @@ impl<'a> Parser<'a> {
             }
             let number = self.expression(ExpressionPlace::Alone).number;
             let value = assembler.postfix(&number.steps(), &definitions);
-            match name.filter(|_| !self.is_lost()) {
+            match name.filter(|_| !self.is_muted()) {
                 Some(name) => {
                     self.define(name, token.span(), definitions.len() as u32);
                     definitions.push(value);
@@ -259,7 +259,7 @@ impl<'a> Parser<'a> {
         if self.accept(b')').is_none() {
             self.expected_at(self.peek(), "expected an operator, or `)`: a point has three coordinates");
         }
-        (!self.is_lost()).then(|| Written::FormulaWarp(Formula::new(assembler.finish(&values), None)))
+        (!self.is_muted()).then(|| Written::FormulaWarp(Formula::new(assembler.finish(&values), None)))
     }
 
     fn define(&mut self, name: &'a str, span: Span, place: u32) {
@@ -284,7 +284,7 @@ impl<'a> Parser<'a> {
             let token = self.peek();
             match token.kind {
                 TokenKind::Mark(b'}') => {
-                    self.find_place();
+                    self.report_again();
                     self.next();
                     return true;
                 }
@@ -313,7 +313,7 @@ impl<'a> Parser<'a> {
         if !self.accept_word("to") {
             self.expected_at(self.peek(), "expected `to` and the largest corner");
         }
-        let high = if self.is_lost() { low.clone() } else { self.vector() };
+        let high = if self.is_muted() { low.clone() } else { self.vector() };
         [low, high]
     }
 

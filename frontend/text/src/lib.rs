@@ -133,7 +133,7 @@ use jbt_model::model::Model;
 
 pub use print::print;
 pub use state::Options;
-pub use words::OWN_FIELDS;
+pub use words::COMMON_FIELDS;
 
 /// The model of a text.
 ///

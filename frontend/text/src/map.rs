@@ -69,14 +69,14 @@ impl Parser<'_> {
         let span = Span::new(start.start, self.previous_end());
         let (Some((kind, angle)), None) = (angle, other) else {
             let names: Vec<String> = units.map(|unit| format!("`{}`", unit.name)).collect();
-            self.lose_place(|| {
+            self.report_and_mute(|| {
                 Diagnostic::error(Some(span), format!("`{word}` has no angle, or two"))
                     .expected(format!("expected one of {}", names.join(" and ")))
             });
             return None;
         };
         let Some(axis) = axis else {
-            self.lose_place(|| {
+            self.report_and_mute(|| {
                 Diagnostic::error(Some(span), format!("`{word}` has no axis"))
                     .expected("expected `axis x`, `axis y`, `axis z` or `axis (a b c)`")
             });

@@ -47,7 +47,7 @@ impl<'a> Parser<'a> {
                     Begun::Nothing => {}
                 },
                 TokenKind::Mark(b'}') if let Some(frame) = frames.pop() => {
-                    self.find_place();
+                    self.report_again();
                     self.next();
                     let children = finished.drain(frame.first as usize..).collect();
                     let tree = self.close(frame, children);
@@ -95,7 +95,7 @@ impl<'a> Parser<'a> {
                 TokenKind::Mark(b'{') => depth += 1,
                 TokenKind::Mark(b'}') => depth -= 1,
                 TokenKind::End => {
-                    self.find_place();
+                    self.report_again();
                     self.unclosed(open.start as u32, token);
                     return;
                 }
@@ -162,11 +162,11 @@ impl<'a> Parser<'a> {
     fn begin(&mut self) -> Begun {
         let start = self.next();
         let word = self.text(start);
-        if self.is_lost() {
+        if self.is_muted() {
             if !self.begins_node(word) {
                 return Begun::Nothing;
             }
-            self.find_place();
+            self.report_again();
         }
         if let Some(kind) = SkeletonKind::ALL.iter().copied().find(|kind| kind.name() == word) {
             self.count_node(start.span());
@@ -247,7 +247,7 @@ impl<'a> Parser<'a> {
                 self.next();
             }
         }
-        self.find_place();
+        self.report_again();
         self.accept(b'{')
     }
 
@@ -380,11 +380,11 @@ impl<'a> Parser<'a> {
             self.number_or_elements();
             return self.block(start, Head::Broken);
         }
-        self.stay_lost();
+        self.mute();
         self.skip_arguments();
         if self.peek().is(b'{') {
             self.skip_block();
-            self.find_place();
+            self.report_again();
         }
         Begun::Leaf(self.broken.clone())
     }

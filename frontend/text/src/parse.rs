@@ -57,13 +57,13 @@ impl<'a> Parser<'a> {
                 TokenKind::Word => {
                     let word = self.text(token);
                     if is_statement(word) {
-                        self.find_place();
+                        self.report_again();
                         self.next();
                         self.statement(word, token.span());
-                    } else if self.is_lost() && !self.begins_node(word) {
+                    } else if self.is_muted() && !self.begins_node(word) {
                         self.next();
                     } else {
-                        self.find_place();
+                        self.report_again();
                         self.root(token);
                     }
                 }
@@ -177,7 +177,7 @@ impl<'a> Parser<'a> {
             return;
         };
         self.equals();
-        let lost = self.is_lost();
+        let lost = self.is_muted();
         let default = if lost { f64::NAN.into() } else { self.expression(ExpressionPlace::Alone).number };
         if is_builtin(name) {
             self.report(|| Diagnostic::error(Some(span), format!("`{name}` means something else already")));
@@ -212,7 +212,7 @@ impl<'a> Parser<'a> {
         }
         let width = right.then_some(width as usize);
         let mut default = None;
-        if !self.is_lost() && self.accept_word("default") {
+        if !self.is_muted() && self.accept_word("default") {
             let from = self.peek().start;
             let values = self.group_values(width);
             for number in &values {
@@ -221,7 +221,7 @@ impl<'a> Parser<'a> {
             default = Some(values.iter().map(Number::value).collect());
         }
         let mixing = Mixing::ALL.into_iter().find(|mixing| self.accept_word(mixing.name()));
-        if self.is_lost() || width_at.kind == TokenKind::End {
+        if self.is_muted() || width_at.kind == TokenKind::End {
             return;
         }
         let width = width.unwrap_or(1);
@@ -274,9 +274,9 @@ impl<'a> Parser<'a> {
         };
         self.equals();
         if self.peek_word().is_some_and(|word| self.begins_node(word)) {
-            self.find_place();
+            self.report_again();
         }
-        if self.is_lost() {
+        if self.is_muted() {
             self.lets.entry(name).or_insert_with(|| self.broken.clone());
             return;
         }

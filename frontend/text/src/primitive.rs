@@ -4,7 +4,7 @@ use super::expression::ExpressionPlace;
 use super::hints::{in_braces, radii};
 use super::lex::{Token, TokenKind};
 use super::state::Parser;
-use super::words::{OWN_FIELDS, WEIGHTED, field_word};
+use super::words::{COMMON_FIELDS, WEIGHTED, field_word};
 use jbt_model::diagnostic::{Diagnostic, Span};
 use jbt_model::falloff::Falloff;
 use jbt_model::field::Field;
@@ -53,7 +53,7 @@ impl<'a> Slots<'a> {
     ) -> Option<Vec<FieldNumber>> {
         let span = Span::new(start.start, parser.previous_end());
         let missing = self.missing();
-        if !missing.is_empty() && !parser.is_lost() {
+        if !missing.is_empty() && !parser.is_muted() {
             parser.report(|| missing_error(span, name, &missing));
         }
         self.values()
@@ -72,7 +72,7 @@ pub(super) fn missing_error(span: Span, name: &str, missing: &[Field]) -> Diagno
 
 /// The parameters that every primitive has, as far as they have been read.
 #[derive(Default)]
-struct Own {
+struct Common {
     radius: Option<Number>,
     surface_radius: Option<(Number, Span)>,
     falloff: Option<WrittenFalloff>,
@@ -92,7 +92,7 @@ impl Parser<'_> {
             };
             let token = self.next();
             self.slot(&mut slots, index, token);
-            if self.is_lost() {
+            if self.is_muted() {
                 break;
             }
         }
@@ -116,12 +116,12 @@ impl Parser<'_> {
     /// A primitive whose name, `start`, has just been taken.
     pub(super) fn primitive(&mut self, kind: SkeletonKind, start: Token) -> Tree {
         let mut slots = Slots::new(kind.fields());
-        let mut own = Own::default();
+        let mut common = Common::default();
         if self.peek().is(b'(') {
             self.expected_at(self.peek(), &in_braces(kind));
             self.skip_arguments();
             if !self.peek().is(b'{') {
-                self.find_place();
+                self.report_again();
                 return self.broken.clone();
             }
         }
@@ -132,13 +132,13 @@ impl Parser<'_> {
             let token = self.peek();
             match token.kind {
                 TokenKind::Mark(b'}') => {
-                    self.find_place();
+                    self.report_again();
                     self.next();
                     break;
                 }
                 TokenKind::Word if !is_statement(self.text(token)) => {
                     self.next();
-                    self.primitive_field(kind, token, &mut slots, &mut own);
+                    self.primitive_field(kind, token, &mut slots, &mut common);
                 }
                 TokenKind::Word | TokenKind::End => {
                     self.unclosed(open.start as u32, token);
@@ -151,51 +151,57 @@ impl Parser<'_> {
             }
         }
         let span = Span::new(start.start, self.previous_end());
-        self.finished_primitive(kind, span, slots, own)
+        self.finished_primitive(kind, span, slots, common)
     }
 
     /// A parameter of a primitive whose word, `token`, has just been taken.
-    fn primitive_field(&mut self, kind: SkeletonKind, token: Token, slots: &mut Slots<'_>, own: &mut Own) {
+    fn primitive_field(
+        &mut self,
+        kind: SkeletonKind,
+        token: Token,
+        slots: &mut Slots<'_>,
+        common: &mut Common,
+    ) {
         let word = self.text(token);
-        let own_field = OWN_FIELDS.contains(&word);
+        let common_field = COMMON_FIELDS.contains(&word);
         let index = kind.fields().iter().position(|field| field_word(kind, field) == word);
-        if !own_field && index.is_none() {
-            if self.is_lost() {
+        if !common_field && index.is_none() {
+            if self.is_muted() {
                 return;
             }
             return self.unknown_field(kind, token);
         }
-        self.find_place();
+        self.report_again();
         if let Some(index) = index {
             return self.slot(slots, index, token);
         }
         if word == "falloff" {
             let falloff = self.falloff(false);
             if let Some(falloff) = falloff {
-                self.once(&mut own.falloff, falloff, token);
+                self.once(&mut common.falloff, falloff, token);
             }
             return;
         }
         let value = self.expression(ExpressionPlace::Alone);
         match word {
-            "radius" => self.once(&mut own.radius, value.number, token),
+            "radius" => self.once(&mut common.radius, value.number, token),
             "surface_radius" => {
                 let span = Span { start: token.start as u32, end: value.span.end };
-                self.once(&mut own.surface_radius, (value.number, span), token);
+                self.once(&mut common.surface_radius, (value.number, span), token);
             }
-            _ => self.once(&mut own.strength, value.number, token),
+            _ => self.once(&mut common.strength, value.number, token),
         }
     }
 
     fn unknown_field(&mut self, kind: SkeletonKind, token: Token) {
         let word = self.text(token);
-        self.lose_place(|| {
+        self.report_and_mute(|| {
             let words: Vec<_> = kind.fields().iter().map(|field| field_word(kind, field)).collect();
             let error = Diagnostic::error(
                 Some(token.span()),
                 format!("`{}` has no parameter `{}`", kind.name(), clip(word)),
             );
-            let known = || words.iter().map(|word| &**word).chain(OWN_FIELDS);
+            let known = || words.iter().map(|word| &**word).chain(COMMON_FIELDS);
             error.expected(match nearest(word, known()) {
                 Some(near) => format!("perhaps `{near}`"),
                 None => format!("it has {}", known().collect::<Vec<_>>().join(", ")),
@@ -203,22 +209,28 @@ impl Parser<'_> {
         });
     }
 
-    fn finished_primitive(&mut self, kind: SkeletonKind, span: Span, slots: Slots<'_>, own: Own) -> Tree {
+    fn finished_primitive(
+        &mut self,
+        kind: SkeletonKind,
+        span: Span,
+        slots: Slots<'_>,
+        common: Common,
+    ) -> Tree {
         let mut missing: Vec<String> =
             slots.missing().iter().map(|field| format!("`{}`", field_word(kind, field))).collect();
-        if own.radius.is_none() && own.surface_radius.is_none() {
+        if common.radius.is_none() && common.surface_radius.is_none() {
             missing.push("`radius`".to_owned());
         }
         if !missing.is_empty() {
             self.report(|| {
                 let needs = format!("`{}` needs {}", kind.name(), missing.join(" and "));
-                let help = radii(kind, own.radius.is_some() || own.surface_radius.is_some());
+                let help = radii(kind, common.radius.is_some() || common.surface_radius.is_some());
                 Diagnostic { help, ..Diagnostic::error(Some(span), needs) }
             });
         }
-        let falloff = own.falloff.unwrap_or_else(|| Falloff::Soft.into());
-        let strength = own.strength.unwrap_or_else(|| 1.0.into());
-        let radius = match (own.radius, own.surface_radius) {
+        let falloff = common.falloff.unwrap_or_else(|| Falloff::Soft.into());
+        let strength = common.strength.unwrap_or_else(|| 1.0.into());
+        let radius = match (common.radius, common.surface_radius) {
             (radius, None) => radius.map(Radius::Support),
             (None, Some((radius, _))) => Some(Radius::Surface(radius)),
             (Some(_), Some((_, at))) => {

@@ -30,8 +30,8 @@ pub(super) struct Parser<'a> {
     pub(super) lexer: Lexer<'a>,
     pub(super) whole: &'a str,
     pub(super) report: Report,
-    /// The place is lost: messages are withheld until it is found again.
-    pub(super) lost: bool,
+    /// The place is muted: messages are withheld until it is found again.
+    pub(super) muted: bool,
     /// Reading has stopped for good.
     pub(super) stopped: bool,
     pub(super) options: &'a Options,
@@ -60,7 +60,7 @@ impl<'a> Parser<'a> {
             lexer: Lexer::new(whole),
             whole,
             report: Report::default(),
-            lost: false,
+            muted: false,
             stopped: false,
             options,
             parameters: Vec::new(),
@@ -149,33 +149,33 @@ impl<'a> Parser<'a> {
         self.report(|| made.unwrap_or_else(|| Diagnostic::error(None, "")));
     }
 
-    /// Reports, unless the place is lost already, and loses it.
-    pub(super) fn lose_place(&mut self, make: impl FnOnce() -> Diagnostic) {
-        if !self.lost {
+    /// Reports, unless it is mute, and is mute from then on.
+    pub(super) fn report_and_mute(&mut self, make: impl FnOnce() -> Diagnostic) {
+        if !self.muted {
             self.report(make);
         }
-        self.lost = true;
+        self.muted = true;
     }
 
-    /// Loses the place after an error that has been reported.
-    pub(super) fn stay_lost(&mut self) {
-        self.lost = true;
+    /// Mute after an error that has been reported.
+    pub(super) fn mute(&mut self) {
+        self.muted = true;
     }
 
-    /// We know again where we are.
-    pub(super) fn find_place(&mut self) {
-        self.lost = false;
+    /// Reports errors again: we know where we are in the text.
+    pub(super) fn report_again(&mut self) {
+        self.muted = false;
     }
 
-    pub(super) fn is_lost(&self) -> bool {
-        self.lost
+    pub(super) fn is_muted(&self) -> bool {
+        self.muted
     }
 
     /// Loses the place at a token that is not what was expected.
     pub(super) fn expected_at(&mut self, token: Token, expected: &str) {
-        let found = if self.lost { String::new() } else { self.describe(token) };
+        let found = if self.muted { String::new() } else { self.describe(token) };
         let hint = if token.kind == TokenKind::End { None } else { foreign_mark(self.text(token)) };
-        self.lose_place(|| {
+        self.report_and_mute(|| {
             let error = Diagnostic::error(Some(token.span()), format!("unexpected {found}"));
             match hint {
                 Some(hint) => error.expected(format!("{expected}; {hint}")),
@@ -204,7 +204,7 @@ impl<'a> Parser<'a> {
             self.report.add_last(limit);
         }
         self.stopped = true;
-        self.lost = true;
+        self.muted = true;
         self.lexer.finish();
     }
 

@@ -7,7 +7,7 @@ use jbt_ir::limits::MAX_ATTRIBUTE_WIDTH;
 use super::expression::{ExpressionPlace, ParsedOperand};
 use super::lex::TokenKind;
 use super::state::Parser;
-use super::words::OWN_FIELDS;
+use super::words::COMMON_FIELDS;
 use jbt_model::diagnostic::{Diagnostic, Span};
 use jbt_model::field::{FieldKind, FieldValue};
 use jbt_model::number::Number;
@@ -43,14 +43,14 @@ impl Parser<'_> {
         let mut all = Elements { numbers: Vec::new(), count: 0, span: open.span() };
         while !self.peek().is(b')') {
             if self.vector_is_cut_off() {
-                self.lose_place(|| Diagnostic::error(Some(open.span()), "this `(` is not closed"));
+                self.report_and_mute(|| Diagnostic::error(Some(open.span()), "this `(` is not closed"));
                 return None;
             }
             if all.count > 0 {
                 self.accept(b',');
             }
             let element = self.expression(ExpressionPlace::Element);
-            if self.is_lost() {
+            if self.is_muted() {
                 self.skip_to_close();
                 return None;
             }
@@ -68,7 +68,7 @@ impl Parser<'_> {
     pub(super) fn number_or_elements(&mut self) -> Option<Elements> {
         if !self.peek().is(b'(') {
             let operand = self.expression(ExpressionPlace::Alone);
-            return (!self.is_lost()).then(|| Elements::one(operand));
+            return (!self.is_muted()).then(|| Elements::one(operand));
         }
         let all = self.elements()?;
         let [number] = all.numbers.as_slice() else {
@@ -76,15 +76,16 @@ impl Parser<'_> {
         };
         let first = ParsedOperand { number: number.clone(), span: all.span };
         let operand = self.expression_from(ExpressionPlace::Alone, &first);
-        (!self.is_lost()).then(|| Elements::one(operand))
+        (!self.is_muted()).then(|| Elements::one(operand))
     }
 
     /// Whether what is next belongs to what stands around a vector, so that its `)` must be missing.
     fn vector_is_cut_off(&self) -> bool {
         let token = self.peek();
         let brace = token.is(b'{') || token.is(b'}');
-        let field =
-            self.peek_word().is_some_and(|word| OWN_FIELDS.contains(&word) && self.parameter(word).is_none());
+        let field = self
+            .peek_word()
+            .is_some_and(|word| COMMON_FIELDS.contains(&word) && self.parameter(word).is_none());
         brace || field || token.kind == TokenKind::End
     }
 
@@ -96,7 +97,7 @@ impl Parser<'_> {
                 TokenKind::Mark(b'(') => depth += 1,
                 TokenKind::Mark(b')') if depth == 0 => {
                     self.next();
-                    self.find_place();
+                    self.report_again();
                     return;
                 }
                 TokenKind::Mark(b')') => depth -= 1,
@@ -224,14 +225,14 @@ impl Parser<'_> {
         let mut count = 0;
         while !self.peek().is(b')') {
             if self.vector_is_cut_off() {
-                self.lose_place(|| Diagnostic::error(Some(open.span()), "this `(` is not closed"));
+                self.report_and_mute(|| Diagnostic::error(Some(open.span()), "this `(` is not closed"));
                 return all;
             }
             if count > 0 {
                 self.accept(b',');
             }
             let next = element(self);
-            if self.is_lost() {
+            if self.is_muted() {
                 self.skip_to_close();
                 return all;
             }

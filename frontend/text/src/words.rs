@@ -16,7 +16,7 @@ use jbt_model::word::is_statement;
 pub(super) const GROUP_NODE: &str = "with";
 
 /// The parameters that every primitive has.
-pub const OWN_FIELDS: [&str; 4] = ["radius", "surface_radius", "falloff", "strength"];
+pub const COMMON_FIELDS: [&str; 4] = ["radius", "surface_radius", "falloff", "strength"];
 
 /// The word before the block of a warp that a second child weighs.
 pub(super) const WEIGHTED: &str = "weighted";
@@ -24,7 +24,7 @@ pub(super) const WEIGHTED: &str = "weighted";
 /// The word for a parameter of a skeleton: its name, after the skeleton's where every primitive has one of
 /// that name.
 pub(super) fn field_word(kind: SkeletonKind, field: &Field) -> Cow<'static, str> {
-    if OWN_FIELDS.contains(&field.name) {
+    if COMMON_FIELDS.contains(&field.name) {
         Cow::Owned(format!("{}_{}", kind.name(), field.name))
     } else {
         Cow::Borrowed(field.name)

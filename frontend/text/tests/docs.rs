@@ -13,7 +13,7 @@ use jbt_model::map::MapKind;
 use jbt_model::skeleton::SkeletonKind;
 use jbt_model::texture::TextureKind;
 use jbt_model::warp::WarpKind;
-use jbt_text::{OWN_FIELDS, Options, functions, parse};
+use jbt_text::{COMMON_FIELDS, Options, functions, parse};
 
 /// What stands before a scene that does not begin with its format: the group and the subtrees that examples
 /// use.
@@ -133,12 +133,12 @@ fn all_textures() {
 fn all_skeletons() {
     for kind in SkeletonKind::ALL {
         has_member("skeletons", kind.name(), kind.fields(), |field| match field.name {
-            name if OWN_FIELDS.contains(&name) => format!("{}_{name}", kind.name()),
+            name if COMMON_FIELDS.contains(&name) => format!("{}_{name}", kind.name()),
             name => name.to_owned(),
         });
     }
     let page = page("skeletons.md");
-    for name in OWN_FIELDS {
+    for name in COMMON_FIELDS {
         assert!(page.contains(&format!("| `{name}` |")), "{name}");
     }
 }

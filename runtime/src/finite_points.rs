@@ -11,14 +11,14 @@
 use crate::buffer::Layout;
 
 /// Whether all points are places: each coordinate is finite.
-pub fn are_places(points: &[&[f32]; 3]) -> bool {
+pub fn are_finite(points: &[&[f32]; 3]) -> bool {
     // In chunks, so that a long plane is left at the first of them that has something else.
     let finite = |plane: &[f32]| plane.iter().fold(true, |all, x| all & (x.abs() < f32::INFINITY));
     points.iter().all(|plane| plane.chunks(1 << 12).all(finite))
 }
 
 /// Points with a place for each: infinities are the largest numbers, NaNs are 0.
-pub fn placed(points: &[&[f32]; 3]) -> [Vec<f32>; 3] {
+pub fn made_finite(points: &[&[f32]; 3]) -> [Vec<f32>; 3] {
     let place = |&x: &f32| if x.is_nan() { 0.0 } else { x.clamp(f32::MIN, f32::MAX) };
     points.map(|plane| plane.iter().map(place).collect())
 }

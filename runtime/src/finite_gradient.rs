@@ -33,7 +33,7 @@ fn are_tame(plane: &[f32]) -> bool {
 impl BoundKernel {
     /// As [`run`](Self::run), for a kernel that answers at points: its gradients are finite, and within
     /// [`LARGEST_SLOPE`].
-    pub(crate) fn run_finite(
+    pub(crate) fn run_with_finite_gradient(
         &self,
         selection: &Selection,
         points: &[&[f32]; 3],
