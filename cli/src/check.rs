@@ -14,7 +14,7 @@ use crate::failure::Failure;
 use crate::lattice;
 use crate::message::Message;
 use crate::output::{grouped, print, report};
-use crate::scene::Scene;
+use crate::scene::LoadedScene;
 use crate::standard::is_standard;
 
 /// Runs the command.
@@ -48,13 +48,13 @@ pub fn run(arguments: &CheckArguments, quiet: bool) -> Result<(), Failure> {
 
 /// A scene that nothing is wrong with.
 struct Checked {
-    scene: Scene,
+    scene: LoadedScene,
     tree: CheckedTree,
     instances: u64,
 }
 
 fn check(arguments: &SceneArguments, quiet: bool) -> Result<Checked, Failure> {
-    let scene = Scene::load(arguments)?;
+    let scene = LoadedScene::load(arguments)?;
     scene.warn(quiet);
     let tree = scene.check()?;
     // Some numbers leave the range of f32, and some limits are reached, only in the program for all answers.

@@ -2,7 +2,9 @@
 
 use std::time::{Duration, Instant};
 
-use jbt::contour::{Contour, Detail, ImageDetail, Level, Mode, Rectangle, SliceError, Slicer, circles};
+use jbt::contour::{
+    Contour, ContourLevel, Detail, ImageDetail, ImageMode, Rectangle, SliceError, Slicer, circles,
+};
 use jbt::diagnostic::escape;
 use jbt::export::svg::{Paint, Style, write_svg};
 use jbt::export::write_png;
@@ -14,8 +16,8 @@ use crate::failure::Failure;
 use crate::formats::SliceKind;
 use crate::lattice;
 use crate::output::{Output, grouped, plural, warn};
-use crate::progress::Progress;
-use crate::scene::Scene;
+use crate::progress::ProgressLine;
+use crate::scene::LoadedScene;
 
 /// Runs the command. `start` is when the process began, for the total time.
 pub fn run(arguments: &ContourArguments, quiet: bool, start: Instant) -> Result<(), Failure> {
@@ -24,7 +26,7 @@ pub fn run(arguments: &ContourArguments, quiet: bool, start: Instant) -> Result<
     let drawing = destination.kind;
     check_options(arguments, drawing)?;
     let fineness = fineness(arguments, drawing)?;
-    let scene = Scene::load(&arguments.scene)?;
+    let scene = LoadedScene::load(&arguments.scene)?;
     scene.warn(quiet);
     let tree = scene.check()?;
     check_attributes(arguments, drawing, &tree)?;
@@ -36,7 +38,7 @@ pub fn run(arguments: &ContourArguments, quiet: bool, start: Instant) -> Result<
         Some(rectangle) => rectangle,
         None => slicer.rectangle().map_err(|error| scene.failure(&error))?,
     };
-    let mut progress = Progress::new("slicing", quiet);
+    let mut progress = ProgressLine::new("slicing", quiet);
     let mut work = || make(arguments, drawing, &slicer, &rectangle, fineness, &mut progress);
     let made = arguments.work.run(&mut work)?.map_err(|error| scene.failure(&error))?;
     drop(progress);
@@ -110,13 +112,13 @@ fn attribute(arguments: &ContourArguments) -> &str {
 }
 
 /// The mode of an image, and whether it needs attributes.
-fn mode(arguments: &ContourArguments) -> (Mode, bool) {
+fn mode(arguments: &ContourArguments) -> (ImageMode, bool) {
     match arguments.mode.unwrap_or(ModeName::Field) {
-        ModeName::Inside => (Mode::Inside, false),
-        ModeName::Field => (Mode::Field, false),
-        ModeName::Grey => (Mode::Grey, false),
-        ModeName::Height => (Mode::Height, false),
-        ModeName::Attribute => (Mode::Attribute(attribute(arguments).to_owned()), true),
+        ModeName::Inside => (ImageMode::Inside, false),
+        ModeName::Field => (ImageMode::Field, false),
+        ModeName::Grey => (ImageMode::Grey, false),
+        ModeName::Height => (ImageMode::Height, false),
+        ModeName::Attribute => (ImageMode::Attribute(attribute(arguments).to_owned()), true),
     }
 }
 
@@ -151,7 +153,7 @@ fn make(
     slicer: &Slicer,
     rectangle: &Rectangle,
     fineness: Fineness,
-    progress: &mut Progress,
+    progress: &mut ProgressLine,
 ) -> Result<Made, SliceError> {
     let watch = |part| progress.set(part);
     match drawing {
@@ -302,7 +304,7 @@ fn region_text(rectangle: &Rectangle) -> String {
 }
 
 fn contour_json(contour: &Contour) -> Value {
-    let level = |level: &Level| {
+    let level = |level: &ContourLevel| {
         json!({
             "depth": level.depth,
             "cells": level.cells,

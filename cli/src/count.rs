@@ -20,7 +20,7 @@ use std::fmt::Write as _;
 
 use jbt::diagnostic::Source;
 use jbt::mesh::Lattice;
-use jbt::statistics::{PerPoint, Statistics, Supports, walks};
+use jbt::statistics::{PerPoint, Statistics, SupportCounts, walks};
 use jbt::tree::NodeKind;
 use jbt::{
     AnswerKind, Box3, CheckedTree, Compiled, Compiler, Engine, MeshCounters, ModelOrigin, Polygonize,
@@ -32,8 +32,8 @@ use crate::arguments::CountArguments;
 use crate::failure::Failure;
 use crate::lattice;
 use crate::output::{grouped, plural, print, warn};
-use crate::progress::Progress;
-use crate::scene::Scene;
+use crate::progress::ProgressLine;
+use crate::scene::LoadedScene;
 use crate::stages;
 
 /// How the evaluations of separate walks add up.
@@ -52,7 +52,7 @@ fn formula() -> String {
 /// Runs the command.
 pub fn run(arguments: &CountArguments, quiet: bool) -> Result<(), Failure> {
     let settings = lattice::settings(&arguments.lattice)?;
-    let scene = Scene::load(&arguments.scene)?;
+    let scene = LoadedScene::load(&arguments.scene)?;
     scene.warn(quiet);
     let tree = scene.check()?;
     let queries = match arguments.query {
@@ -105,24 +105,24 @@ fn without_lattice(error: &PolygonizeError) -> String {
 
 /// Counts what matters on a lattice.
 fn supports(
-    scene: &Scene,
+    scene: &LoadedScene,
     statistics: &Statistics<'_>,
     lattice: &Lattice,
     quiet: bool,
-) -> Result<Supports, Failure> {
-    let mut progress = Progress::new("counting", quiet);
+) -> Result<SupportCounts, Failure> {
+    let mut progress = ProgressLine::new("counting", quiet);
     let counted = statistics.supports(&Compiler::new(), lattice).on_progress(|part| progress.set(part)).run();
     counted.map_err(|error| scene.failure(&error))
 }
 
 /// Makes the mesh, to count what that takes.
 fn mesh(
-    scene: &Scene,
+    scene: &LoadedScene,
     tree: &CheckedTree,
     settings: &Polygonize,
     quiet: bool,
 ) -> Result<MeshCounters, Failure> {
-    let mut progress = Progress::new("meshing", quiet);
+    let mut progress = ProgressLine::new("meshing", quiet);
     let made = settings.mesh(&Compiler::new(), tree).on_progress(|part| progress.set(part)).run();
     made.map(|made| made.counters).map_err(|error| scene.failure(&error))
 }
@@ -136,7 +136,7 @@ struct QueryCount {
 
 impl QueryCount {
     fn new(
-        scene: &Scene,
+        scene: &LoadedScene,
         compiled: &Compiled,
         statistics: &Statistics<'_>,
         query: Query,
@@ -160,7 +160,7 @@ struct CountedLeaf {
     uses: u64,
 }
 
-fn leaves(scene: &Scene, tree: &CheckedTree) -> Vec<CountedLeaf> {
+fn leaves(scene: &LoadedScene, tree: &CheckedTree) -> Vec<CountedLeaf> {
     let uses = tree.asked();
     let lines = Lines::new(scene.source());
     let leaf = |(index, node): (usize, &jbt::tree::CheckedNode)| match &node.kind {
@@ -212,7 +212,7 @@ struct CountReport {
     instances: u64,
     /// Evaluations that the field of one point takes.
     evaluations: u64,
-    lattice: Option<(Lattice, Supports)>,
+    lattice: Option<(Lattice, SupportCounts)>,
     /// What a mesh over the lattice takes.
     mesh: Option<MeshCounters>,
     warnings: Vec<String>,

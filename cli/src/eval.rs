@@ -14,8 +14,8 @@ use crate::failure::Failure;
 use crate::formats::TableKind;
 use crate::output::{Destination, Output};
 use crate::points::PointReader;
-use crate::progress::Progress;
-use crate::scene::Scene;
+use crate::progress::ProgressLine;
+use crate::scene::LoadedScene;
 use crate::standard::is_standard;
 use crate::threads::Threads;
 
@@ -30,7 +30,7 @@ pub fn run(arguments: &EvalArguments, quiet: bool) -> Result<(), Failure> {
         ));
     }
     let destination = arguments.output.destination(&arguments.scene.path)?;
-    let scene = Scene::load(&arguments.scene)?;
+    let scene = LoadedScene::load(&arguments.scene)?;
     scene.warn(quiet);
     let tree = scene.check()?;
     let evaluator = scene.evaluator(&arguments.engine.compiler()?.compile(&tree), arguments.query)?;
@@ -63,7 +63,7 @@ fn stream(
     quiet: bool,
 ) -> Result<(), Failure> {
     let mut output = Output::open(destination)?;
-    let mut progress = Progress::new("evaluating", quiet);
+    let mut progress = ProgressLine::new("evaluating", quiet);
     let names = evaluator.layout().names().join(",");
     writeln!(output, "x,y,z,{names}").map_err(|error| output.failure(error))?;
     loop {

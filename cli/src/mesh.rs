@@ -12,8 +12,8 @@ use crate::arguments::MeshArguments;
 use crate::failure::Failure;
 use crate::lattice;
 use crate::output::{Output, grouped, plural, warn};
-use crate::progress::Progress;
-use crate::scene::Scene;
+use crate::progress::ProgressLine;
+use crate::scene::LoadedScene;
 use crate::stages;
 
 /// Runs the command. `start` is when the process began, for the total time.
@@ -22,12 +22,12 @@ pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(),
     arguments.work.check_output(&destination.path, "mesh")?;
     let options = options(arguments, destination.kind)?;
     let settings = Polygonize { thin_parts: !arguments.no_thin, ..lattice::settings(&arguments.lattice)? };
-    let scene = Scene::load(&arguments.scene)?;
+    let scene = LoadedScene::load(&arguments.scene)?;
     scene.warn(quiet);
     let tree = scene.check()?;
     let compiler = arguments.work.compiler()?;
 
-    let mut progress = Progress::new("meshing", quiet);
+    let mut progress = ProgressLine::new("meshing", quiet);
     let mut work = || settings.mesh(&compiler, &tree).on_progress(|part| progress.set(part)).run();
     let made = arguments.work.run(&mut work)?.map_err(|error| scene.failure(&error))?;
     drop(progress);
@@ -44,7 +44,7 @@ pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(),
         warnings.iter().for_each(|warning| warn(warning));
     }
     warnings.splice(0..0, scene.warnings);
-    let report = MeshReport {
+    let report = MeshSummary {
         made: &made,
         format: destination.kind,
         options,
@@ -112,7 +112,7 @@ fn thin_warning(thin: &ThinReport) -> Option<String> {
 }
 
 /// What is told about a mesh.
-struct MeshReport<'a> {
+struct MeshSummary<'a> {
     made: &'a Polygonized,
     format: Format,
     options: ExportOptions,
@@ -120,7 +120,7 @@ struct MeshReport<'a> {
     total: Duration,
 }
 
-impl MeshReport<'_> {
+impl MeshSummary<'_> {
     /// For machines.
     fn json(&self) -> serde_json::Value {
         let Polygonized { mesh, report, lattice, counters, .. } = self.made;

@@ -12,14 +12,14 @@ const STEPS: f32 = 1000.0;
 
 /// How far the work is. It is shown on the standard error if that is a terminal, and removed when this is
 /// dropped.
-pub struct Progress {
+pub struct ProgressLine {
     start: Instant,
     what: &'static str,
     shown: bool,
     bar: Option<ProgressBar>,
 }
 
-impl Progress {
+impl ProgressLine {
     /// The beginning of some work.
     pub fn new(what: &'static str, quiet: bool) -> Self {
         Self { start: Instant::now(), what, shown: !quiet && io::stderr().is_terminal(), bar: None }
@@ -42,7 +42,7 @@ impl Progress {
     }
 }
 
-impl Drop for Progress {
+impl Drop for ProgressLine {
     fn drop(&mut self) {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();

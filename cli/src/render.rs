@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use jbt::ModelOrigin;
 use jbt::diagnostic::escape;
 use jbt::export::write_png;
-use jbt::render::{Camera, Mode, Render, Rendered, Report as Taken, Stance, View};
+use jbt::render::{Camera, Render, RenderMode, RenderReport, Rendered, Stance, View};
 use serde_json::json;
 
 use crate::arguments::{GroundName, RenderArguments};
@@ -13,21 +13,21 @@ use crate::failure::Failure;
 use crate::formats::PictureKind;
 use crate::lattice;
 use crate::output::{Output, grouped, plural, warn};
-use crate::progress::Progress;
-use crate::scene::Scene;
+use crate::progress::ProgressLine;
+use crate::scene::LoadedScene;
 
 /// Runs the command. `start` is when the process began, for the total time.
 pub fn run(arguments: &RenderArguments, quiet: bool, start: Instant) -> Result<(), Failure> {
     let destination = arguments.output.destination(&arguments.scene.path)?;
     arguments.work.check_output(&destination.path, "picture")?;
     let mut settings = settings(arguments)?;
-    let scene = Scene::load(&arguments.scene)?;
+    let scene = LoadedScene::load(&arguments.scene)?;
     scene.warn(quiet);
     let tree = scene.check()?;
     settings.region = arguments.region.map(|region| lattice::local(region, tree.origin()));
     let compiler = arguments.work.compiler()?;
 
-    let mut progress = Progress::new("rendering", quiet);
+    let mut progress = ProgressLine::new("rendering", quiet);
     let mut work = || settings.picture(&compiler, &tree).on_progress(|part| progress.set(part)).run();
     let made = arguments.work.run(&mut work)?.map_err(|error| scene.failure(&error))?;
     drop(progress);
@@ -45,7 +45,7 @@ pub fn run(arguments: &RenderArguments, quiet: bool, start: Instant) -> Result<(
         warnings.iter().for_each(|warning| warn(warning));
     }
     warnings.splice(0..0, scene.warnings.iter().cloned());
-    let report = RenderReport {
+    let report = RenderSummary {
         made: &made,
         mode: &settings.mode,
         origin: tree.origin(),
@@ -84,14 +84,14 @@ fn settings(arguments: &RenderArguments) -> Result<Render, Failure> {
 }
 
 /// The mode that some words name.
-fn mode(words: &[String]) -> Result<Mode, Failure> {
+fn mode(words: &[String]) -> Result<RenderMode, Failure> {
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
     match words[..] {
-        ["shaded"] => Ok(Mode::Shaded),
-        ["normal"] => Ok(Mode::Normal),
-        ["depth"] => Ok(Mode::Depth),
-        ["evaluations"] => Ok(Mode::Evaluations),
-        ["attribute", name] => Ok(Mode::Attribute(name.to_owned())),
+        ["shaded"] => Ok(RenderMode::Shaded),
+        ["normal"] => Ok(RenderMode::Normal),
+        ["depth"] => Ok(RenderMode::Depth),
+        ["evaluations"] => Ok(RenderMode::Evaluations),
+        ["attribute", name] => Ok(RenderMode::Attribute(name.to_owned())),
         ["attribute"] => Err(Failure::Usage("--mode attribute needs the name of an attribute".to_owned())),
         _ => Err(Failure::Usage(format!(
             "there is no mode `{}`; there are shaded, normal, depth, attribute NAME and evaluations",
@@ -101,15 +101,15 @@ fn mode(words: &[String]) -> Result<Mode, Failure> {
 }
 
 /// What is told about a picture.
-struct RenderReport<'a> {
+struct RenderSummary<'a> {
     made: &'a Rendered,
-    mode: &'a Mode,
+    mode: &'a RenderMode,
     origin: ModelOrigin,
     warnings: &'a [String],
     total: Duration,
 }
 
-impl RenderReport<'_> {
+impl RenderSummary<'_> {
     fn pixels(&self) -> u64 {
         u64::from(self.made.picture.width()) * u64::from(self.made.picture.height())
     }
@@ -121,7 +121,7 @@ impl RenderReport<'_> {
 
     /// For machines.
     fn json(&self) -> serde_json::Value {
-        let Taken { pixels_hit, rays, evaluations, range, tolerance, camera, .. } = &self.made.report;
+        let RenderReport { pixels_hit, rays, evaluations, range, tolerance, camera, .. } = &self.made.report;
         let camera = camera.map(|Camera { eye, right, up, back, half, orthographic }| {
             json!({
                 "eye": eye, "right": right, "up": up, "back": back, "half": half, "orthographic": orthographic,
@@ -152,7 +152,8 @@ impl RenderReport<'_> {
 
     /// For people.
     fn text(&self, name: &str) -> String {
-        let Taken { pixels_hit, rays, evaluations, range, tolerance, camera, engine, .. } = &self.made.report;
+        let RenderReport { pixels_hit, rays, evaluations, range, tolerance, camera, engine, .. } =
+            &self.made.report;
         let (width, height) = (self.made.picture.width(), self.made.picture.height());
         let mut out =
             format!("{}: {width} x {height} pixels, {} of them hit\n", escape(name), grouped(*pixels_hit));
@@ -185,16 +186,16 @@ impl RenderReport<'_> {
     /// What the range is one of.
     fn what(&self) -> String {
         match self.mode {
-            Mode::Shaded | Mode::Normal => "colours".to_owned(),
-            Mode::Depth => "distances from white to dark:".to_owned(),
-            Mode::Attribute(name) => format!("`{}` from blue to yellow:", escape(name)),
-            Mode::Evaluations => "evaluations of a pixel, from black to yellow:".to_owned(),
+            RenderMode::Shaded | RenderMode::Normal => "colours".to_owned(),
+            RenderMode::Depth => "distances from white to dark:".to_owned(),
+            RenderMode::Attribute(name) => format!("`{}` from blue to yellow:", escape(name)),
+            RenderMode::Evaluations => "evaluations of a pixel, from black to yellow:".to_owned(),
         }
     }
 
     /// Milliseconds to compile, frame, trace and shade.
     fn times(&self) -> [f64; 4] {
-        let Taken { compile_time, frame_time, trace_time, shade_time, .. } = &self.made.report;
+        let RenderReport { compile_time, frame_time, trace_time, shade_time, .. } = &self.made.report;
         [compile_time, frame_time, trace_time, shade_time].map(|time| milliseconds(*time))
     }
 }

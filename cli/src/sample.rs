@@ -12,21 +12,21 @@ use crate::failure::Failure;
 use crate::formats::ArrayKind;
 use crate::lattice;
 use crate::output::{Output, grouped};
-use crate::progress::Progress;
-use crate::scene::Scene;
+use crate::progress::ProgressLine;
+use crate::scene::LoadedScene;
 
 /// Runs the command. `start` is when the process began, for the total time.
 pub fn run(arguments: &SampleArguments, quiet: bool, start: Instant) -> Result<(), Failure> {
     let destination = arguments.output.destination(&arguments.scene.path)?;
     arguments.work.check_output(&destination.path, "samples")?;
     let settings = lattice::settings(&arguments.lattice)?;
-    let scene = Scene::load(&arguments.scene)?;
+    let scene = LoadedScene::load(&arguments.scene)?;
     scene.warn(quiet);
     let tree = scene.check()?;
     let lattice = settings.lattice(&tree).map_err(|error| scene.failure(&error))?;
     let compiler = arguments.work.compiler()?;
     let sampler = Sampler::new(&compiler, &tree, arguments.query).map_err(|error| scene.failure(&error))?;
-    let mut progress = Progress::new("sampling", quiet);
+    let mut progress = ProgressLine::new("sampling", quiet);
     let mut work = || sampler.dense(&lattice).on_progress(|part| progress.set(part)).run();
     let planes = arguments.work.run(&mut work)?.map_err(|error| scene.failure(&error))?;
     drop(progress);

@@ -13,7 +13,7 @@ use crate::output::{highlight, tell};
 use crate::standard::is_standard;
 
 /// A scene: its text for messages, and its model.
-pub struct Scene {
+pub struct LoadedScene {
     text: SourceText,
     /// What the text says.
     pub model: Model,
@@ -23,7 +23,7 @@ pub struct Scene {
     pub notices: Vec<Message>,
 }
 
-impl Scene {
+impl LoadedScene {
     /// Reads and parses a scene.
     pub fn load(arguments: &SceneArguments) -> Result<Self, Failure> {
         let path = &arguments.path;

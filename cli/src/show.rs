@@ -11,7 +11,7 @@ use jbt::{CompileError, Level, Query};
 use crate::arguments::{LevelName, ShowArguments};
 use crate::failure::Failure;
 use crate::output::print;
-use crate::scene::Scene;
+use crate::scene::LoadedScene;
 
 /// The stages that are neither passes nor forms of engines.
 const TREE: &str = "tree";
@@ -27,7 +27,7 @@ pub fn run(arguments: &ShowArguments, quiet: bool) -> Result<(), Failure> {
     if !stages(query).any(|(name, _)| name == stage) {
         return Err(Failure::Usage(unknown(stage, query)));
     }
-    let scene = Scene::load(&arguments.scene)?;
+    let scene = LoadedScene::load(&arguments.scene)?;
     scene.warn(quiet);
     let tree = scene.check()?;
     if stage == TREE {

@@ -11,7 +11,7 @@ use std::fmt::Write as _;
 use std::time::{Duration, Instant};
 
 use jbt::diagnostic::escape;
-use jbt::solid::{Level, Measure, Measures, Solid, TightBounds};
+use jbt::solid::{Measure, MeasureLevel, Measures, Solid, TightBounds};
 use jbt::tree::Bounds;
 use jbt::{Box3, Compiler, Fineness, ModelOrigin, Polygonize};
 use serde_json::{Value, json};
@@ -20,8 +20,8 @@ use crate::arguments::StatsArguments;
 use crate::failure::Failure;
 use crate::lattice;
 use crate::output::{grouped, plural, print, warn};
-use crate::progress::Progress;
-use crate::scene::Scene;
+use crate::progress::ProgressLine;
+use crate::scene::LoadedScene;
 
 /// The tolerance of the bounds when nothing else is said, as a part of the region's longest side.
 const TOLERANCE: f32 = 1.0 / 1024.0;
@@ -29,12 +29,12 @@ const TOLERANCE: f32 = 1.0 / 1024.0;
 /// Runs the command. `start` is when the process began, for the total time.
 pub fn run(arguments: &StatsArguments, quiet: bool, start: Instant) -> Result<(), Failure> {
     let asked = lattice::settings(&arguments.lattice)?;
-    let scene = Scene::load(&arguments.scene)?;
+    let scene = LoadedScene::load(&arguments.scene)?;
     scene.warn(quiet);
     let tree = scene.check()?;
     let settings = settings(arguments, &asked, tree.origin());
     let solid = Solid::new(&Compiler::new(), &tree).map_err(|error| scene.failure(&error))?;
-    let mut progress = Progress::new("measuring", quiet);
+    let mut progress = ProgressLine::new("measuring", quiet);
     let measured = solid.measure(&settings).on_progress(|part| progress.set(part)).run();
     let measures = measured.map_err(|error| scene.failure(&error))?;
     drop(progress);
@@ -177,7 +177,7 @@ impl StatsReport<'_> {
         let boxes = self.measures.boxes();
         let [solid, air, surface] = self.shares();
         let [points, evaluations, ranges, interval_evaluations] = self.evaluations();
-        let level = |(depth, level): (usize, &Level)| {
+        let level = |(depth, level): (usize, &MeasureLevel)| {
             json!({
                 "depth": depth,
                 "splits": level.splits, "solid": level.solid, "air": level.air, "surface": level.surface,
@@ -214,7 +214,7 @@ impl StatsReport<'_> {
     }
 }
 
-fn write_level(out: &mut String, depth: &str, level: &Level) {
+fn write_level(out: &mut String, depth: &str, level: &MeasureLevel) {
     let [splits, solid, air, surface] = [level.splits, level.solid, level.air, level.surface].map(grouped);
     let _ = write!(out, "\n{depth:<8}{splits:>12}{solid:>12}{air:>12}{surface:>12}");
 }

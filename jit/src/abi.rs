@@ -25,7 +25,7 @@ impl TableView {
 
 /// Everything that one call of a kernel is given. Made by [`crate::Kernel`] alone, from what its
 /// door has checked.
-pub(crate) struct Arguments<'a> {
+pub(crate) struct KernelArguments<'a> {
     /// Input planes, then output planes. They are moved on to their ends.
     pub(crate) planes: &'a mut [*const f32],
     /// Bytes of each plane.

@@ -3,7 +3,7 @@
 /// A function of [`crate::entry`]'s ABI, with its constants, that runs at any address which is a multiple of
 /// 64.
 #[derive(Clone, Debug)]
-pub(crate) struct Blob {
+pub(crate) struct CodeBlob {
     pub(crate) bytes: Vec<u8>,
     /// Bytes of `bytes` that are instructions, at its start.
     #[cfg_attr(not(any(feature = "listing", test)), expect(dead_code, reason = "for listings"))]
@@ -21,7 +21,7 @@ pub(crate) struct Blob {
 #[derive(Clone, Debug)]
 pub(crate) struct Emitted {
     /// For whole blocks of points, as large as suits the function.
-    pub(crate) blocks: Blob,
+    pub(crate) blocks: CodeBlob,
     /// For the points that are left, in blocks of one vector.
-    pub(crate) rest: Option<Blob>,
+    pub(crate) rest: Option<CodeBlob>,
 }

@@ -18,12 +18,12 @@ use std::sync::Arc;
 use jbt_ir::engine::{Interface, Planes, Program, Run};
 use jbt_ir::{Function, Selection, Tables};
 
-use crate::abi::{Arguments, TableView};
-use crate::memory::Code;
+use crate::abi::{KernelArguments, TableView};
+use crate::memory::MachineCode;
 
 /// Machine code for one function.
 pub struct Kernel {
-    code: Code,
+    code: MachineCode,
     interface: Arc<Interface>,
 }
 
@@ -32,7 +32,7 @@ impl Kernel {
     pub const MAX_LANES: usize = 32;
 
     /// A kernel of code that was made for a function.
-    pub(crate) fn new(code: Code, function: &Function) -> Self {
+    pub(crate) fn new(code: MachineCode, function: &Function) -> Self {
         Self { code, interface: Arc::new(Interface::new(function)) }
     }
 
@@ -159,10 +159,10 @@ impl Kernel {
         }
         let (block, bytes) = (self.block() * size_of::<f32>(), points * size_of::<f32>());
         let rest = bytes % block;
-        self.code.call(Arguments { planes: &mut *pointers, bytes: bytes - rest, tables: views });
+        self.code.call(KernelArguments { planes: &mut *pointers, bytes: bytes - rest, tables: views });
         if rest > 0 {
             pointers.iter_mut().for_each(|plane| *plane = plane.wrapping_byte_sub(block - rest));
-            self.code.call(Arguments { planes: pointers, bytes: block, tables: views });
+            self.code.call(KernelArguments { planes: pointers, bytes: block, tables: views });
         }
     }
 }

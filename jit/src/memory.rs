@@ -1,8 +1,8 @@
 //! Executable memory: this crate's one home of `unsafe`.
 //!
 //! ```text
-//! Pages   owns a Cranelift module: its memory is freed when it goes, on every path
-//! Code    Pages with finished code, and the addresses of its functions
+//! Pages         owns a Cranelift module: its memory is freed when it goes, on every path
+//! MachineCode   Pages with finished code, and the addresses of its functions
 //! ```
 //!
 //! No page is writable and executable at once: the module writes the code, then finalizing takes the right to
@@ -16,8 +16,8 @@ use cranelift_module::{Linkage, Module, ModuleError, default_libcall_names};
 
 use jbt_ir::limits;
 
-use crate::abi::{Arguments, TableView};
-use crate::blob::{Blob, Emitted};
+use crate::abi::{KernelArguments, TableView};
+use crate::blob::{CodeBlob, Emitted};
 use crate::cranelift::lower::Lowered;
 use crate::error::CompileError;
 use crate::isa;
@@ -29,9 +29,9 @@ struct Pages(Option<JITModule>);
 impl Drop for Pages {
     fn drop(&mut self) {
         if let Some(module) = self.0.take() {
-            // SAFETY: the address of the code is kept in `Code` alone, beside these pages, and is used in
-            // `Code::call` alone, which borrows the `Code`. So nothing runs in these pages now, and nothing
-            // will.
+            // SAFETY: the address of the code is kept in `MachineCode` alone, beside these pages, and is used
+            // in `MachineCode::call` alone, which borrows the `MachineCode`. So nothing runs in these pages
+            // now, and nothing will.
             unsafe { module.free_memory() };
         }
     }
@@ -39,7 +39,7 @@ impl Drop for Pages {
 
 /// A function of finished code.
 #[derive(Clone, Copy)]
-struct Entry {
+struct EntryPoint {
     address: *const u8,
     /// Points in a block.
     lanes: usize,
@@ -49,11 +49,11 @@ struct Entry {
 ///
 /// Contract: `blocks` and `rest` are functions in `pages` which were compiled from a [`Lowered`] or emitted
 /// as an [`Emitted`], so they keep to the ABI of [`crate::entry`], with blocks of so many points; the pages
-/// are executable, are not writable, and stay until the `Code` is dropped.
-pub(crate) struct Code {
-    blocks: Entry,
+/// are executable, are not writable, and stay until the `MachineCode` is dropped.
+pub(crate) struct MachineCode {
+    blocks: EntryPoint,
     /// For what is left behind whole blocks, in smaller blocks of which they are multiples.
-    rest: Option<Entry>,
+    rest: Option<EntryPoint>,
     bytes: usize,
     frame_bytes: usize,
     /// Never looked at again: kept so that the code stays where it is.
@@ -61,13 +61,13 @@ pub(crate) struct Code {
 }
 
 // SAFETY: the module is `Send`, and the addresses are those of memory which belongs to it.
-unsafe impl Send for Code {}
+unsafe impl Send for MachineCode {}
 // SAFETY: through a shared reference one can only read the numbers and call the code, which changes no memory
 // but what its arguments name and the stack of the thread that calls it. The module, which is not `Sync`,
 // cannot be reached.
-unsafe impl Sync for Code {}
+unsafe impl Sync for MachineCode {}
 
-impl Code {
+impl MachineCode {
     /// Compiles a function with blocks of so many points, and makes it executable.
     pub(crate) fn new(lowered: Lowered, lanes: usize, isa: OwnedTargetIsa) -> Result<Self, CompileError> {
         let builder = JITBuilder::with_isa(isa, default_libcall_names());
@@ -83,7 +83,7 @@ impl Code {
             return Err(CompileError::Frame { bytes: frame_bytes, limit: limits::MAX_JIT_FRAME_BYTES });
         }
         module.finalize_definitions()?;
-        let blocks = Entry { address: module.get_finalized_function(function), lanes };
+        let blocks = EntryPoint { address: module.get_finalized_function(function), lanes };
         Ok(Self { blocks, rest: None, bytes, frame_bytes, _pages: pages })
     }
 
@@ -95,7 +95,7 @@ impl Code {
         let mut pages = Pages(Some(JITModule::new(JITBuilder::with_isa(isa, default_libcall_names()))));
         let module = pages.0.as_mut().expect("the module stays until the pages are dropped");
         let signature = module.make_signature();
-        let mut define = |name, blob: &Blob| {
+        let mut define = |name, blob: &CodeBlob| {
             let function = module.declare_function(name, Linkage::Export, &signature)?;
             // Constants are read by whole vectors.
             module.define_function_bytes(function, 64, &blob.bytes, &[])?;
@@ -104,7 +104,8 @@ impl Code {
         let blocks_function = define("kernel", blocks)?;
         let rest_function = rest.as_ref().map(|rest| define("kernel_of_few", rest)).transpose()?;
         module.finalize_definitions()?;
-        let entry = |(function, lanes)| Entry { address: module.get_finalized_function(function), lanes };
+        let entry =
+            |(function, lanes)| EntryPoint { address: module.get_finalized_function(function), lanes };
         let both = || std::iter::once(blocks).chain(rest);
         Ok(Self {
             blocks: entry(blocks_function),
@@ -137,15 +138,15 @@ impl Code {
     }
 
     /// Runs the code: whole blocks first, then what is left. The arguments were made for the function that
-    /// this is compiled from, see [`Arguments`].
-    pub(crate) fn call(&self, Arguments { planes, bytes, tables }: Arguments<'_>) {
+    /// this is compiled from, see [`KernelArguments`].
+    pub(crate) fn call(&self, KernelArguments { planes, bytes, tables }: KernelArguments<'_>) {
         let block = self.blocks.lanes * size_of::<f32>();
         let whole = if self.rest.is_some() { bytes - bytes % block } else { bytes };
         for (entry, bytes) in [(Some(self.blocks), whole), (self.rest, bytes - whole)] {
             let Some(entry) = entry.filter(|_| bytes > 0) else { continue };
-            // SAFETY: the contract of `Code` says that this is a function of the ABI that `enter` expects.
-            // `Arguments` come from `Kernel::call`: there is a plane of this many bytes for each
-            // input and output, at least one block long and whole blocks; outputs come from exclusive
+            // SAFETY: the contract of `MachineCode` says that this is a function of the ABI that `enter`
+            // expects. `KernelArguments` come from `Kernel::call`: there is a plane of this many bytes for
+            // each input and output, at least one block long and whole blocks; outputs come from exclusive
             // borrows, so that no other plane overlaps them; the tables have been checked against the
             // function, the selection fits them, and both are borrowed by the caller. What else the code
             // writes is its frame, which is no larger than `limits::MAX_JIT_FRAME_BYTES` and is touched page

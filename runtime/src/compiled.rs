@@ -23,7 +23,7 @@ use crate::compiler::Compiler;
 use crate::debug::brief_debug;
 use crate::error::CompileError;
 use crate::kernel::{Engine, Kernel, Purpose};
-use crate::program::{AnswerProgram, Program};
+use crate::program::{AnswerProgram, ModelProgram};
 use crate::prune::program::RangeProgram;
 
 /// A compiled model: programs for whatever is asked of it.
@@ -51,16 +51,16 @@ use crate::prune::program::RangeProgram;
 /// # }
 /// ```
 #[derive(Clone)]
-pub struct Compiled(Arc<Parts>);
+pub struct Compiled(Arc<CompiledParts>);
 
-struct Parts {
+struct CompiledParts {
     compiler: Compiler,
     tree: CheckedTree,
     /// By [`Query::index`].
-    anywhere: [Slot<AnswerProgram>; QUERIES],
+    anywhere: [ProgramSlot<AnswerProgram>; QUERIES],
     /// By [`Query::index`].
-    in_regions: [Slot<AnswerProgram>; QUERIES],
-    ranges: Slot<RangeProgram>,
+    in_regions: [ProgramSlot<AnswerProgram>; QUERIES],
+    ranges: ProgramSlot<RangeProgram>,
 }
 
 brief_debug!(Compiled, "Compiled", this: compiler = this.compiler());
@@ -69,7 +69,7 @@ const QUERIES: usize = Query::EVERY.len();
 
 /// Where the points are that a program answers at.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(crate) enum Scope {
+pub(crate) enum PointScope {
     /// Anywhere: straight code where it is quicker.
     Anywhere,
     /// In regions, with the rows that matter there.
@@ -80,25 +80,25 @@ pub(crate) enum Scope {
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Need {
     /// Answers to a query at points.
-    Answers(Scope, Query),
+    Answers(PointScope, Query),
     /// Ranges of the field in boxes.
     Ranges,
 }
 
 /// The place of a program.
-struct Slot<T> {
+struct ProgramSlot<T> {
     made: OnceLock<Result<Arc<T>, CompileError>>,
     /// The kernel that an earlier model had here.
     earlier: Option<Arc<Kernel>>,
 }
 
-impl<T> Default for Slot<T> {
+impl<T> Default for ProgramSlot<T> {
     fn default() -> Self {
         Self { made: OnceLock::new(), earlier: None }
     }
 }
 
-impl<T: Program> Slot<T> {
+impl<T: ModelProgram> ProgramSlot<T> {
     /// The program. Whoever is first makes it; the others wait.
     fn get_or_make(
         &self,
@@ -123,12 +123,12 @@ impl Compiler {
     /// A compiled model. Nothing is compiled before something is asked of it.
     #[must_use]
     pub fn compile(&self, tree: &CheckedTree) -> Compiled {
-        Compiled(Arc::new(Parts {
+        Compiled(Arc::new(CompiledParts {
             compiler: self.clone(),
             tree: tree.clone(),
             anywhere: Default::default(),
             in_regions: Default::default(),
-            ranges: Slot::default(),
+            ranges: ProgramSlot::default(),
         }))
     }
 }
@@ -139,11 +139,11 @@ impl Compiled {
     /// wherever the other model is.
     #[must_use]
     pub fn updated(&self, tree: &CheckedTree) -> Self {
-        Self(Arc::new(Parts {
+        Self(Arc::new(CompiledParts {
             compiler: self.0.compiler.clone(),
             tree: tree.with_origin(self.origin()),
-            anywhere: self.0.anywhere.each_ref().map(Slot::renewed),
-            in_regions: self.0.in_regions.each_ref().map(Slot::renewed),
+            anywhere: self.0.anywhere.each_ref().map(ProgramSlot::renewed),
+            in_regions: self.0.in_regions.each_ref().map(ProgramSlot::renewed),
             ranges: self.0.ranges.renewed(),
         }))
     }
@@ -182,7 +182,11 @@ impl Compiled {
     }
 
     /// The program that answers a query.
-    pub(crate) fn answers(&self, scope: Scope, query: Query) -> Result<&Arc<AnswerProgram>, CompileError> {
+    pub(crate) fn answers(
+        &self,
+        scope: PointScope,
+        query: Query,
+    ) -> Result<&Arc<AnswerProgram>, CompileError> {
         self.answers_of(scope, query, None)
     }
 
@@ -195,7 +199,7 @@ impl Compiled {
     /// wished engine declines it, the interpreter runs it.
     pub(crate) fn regional_twin<'a>(&self, straight: &'a AnswerProgram) -> &'a Arc<AnswerProgram> {
         straight.for_regions.get_or_init(|| {
-            let wished = self.answers(Scope::Regions, straight.query).cloned();
+            let wished = self.answers(PointScope::Regions, straight.query).cloned();
             wished.unwrap_or_else(|_| {
                 // A program that is small as straight code is within all limits.
                 let lanes = self.0.compiler.clone().on_engine(Engine::Lanes);
@@ -219,29 +223,29 @@ impl Compiled {
         }
     }
 
-    fn slot(&self, scope: Scope, query: Query) -> &Slot<AnswerProgram> {
+    fn slot(&self, scope: PointScope, query: Query) -> &ProgramSlot<AnswerProgram> {
         match scope {
-            Scope::Anywhere => &self.0.anywhere[query.index()],
-            Scope::Regions => &self.0.in_regions[query.index()],
+            PointScope::Anywhere => &self.0.anywhere[query.index()],
+            PointScope::Regions => &self.0.in_regions[query.index()],
         }
     }
 
     fn answers_of<'t>(
         &'t self,
-        scope: Scope,
+        scope: PointScope,
         query: Query,
         lowering: Option<&Lowering<'t>>,
     ) -> Result<&'t Arc<AnswerProgram>, CompileError> {
         let lowered = || self.lowered(lowering, |lowering| lowering.answers(query));
         match scope {
-            Scope::Anywhere => self.slot(scope, query).get_or_make(|earlier| {
+            PointScope::Anywhere => self.slot(scope, query).get_or_make(|earlier| {
                 if !self.0.compiler.may_straighten(self.tree()) {
-                    return self.answers_of(Scope::Regions, query, lowering).cloned();
+                    return self.answers_of(PointScope::Regions, query, lowering).cloned();
                 }
                 self.anywhere(query, lowered()?, earlier)
             }),
-            Scope::Regions => self.slot(scope, query).get_or_make(|earlier| {
-                let straight = self.slot(Scope::Anywhere, query).present();
+            PointScope::Regions => self.slot(scope, query).get_or_make(|earlier| {
+                let straight = self.slot(PointScope::Anywhere, query).present();
                 match straight.filter(|program| program.is_straight()) {
                     Some(straight) => self.unstraightened(&self.0.compiler, straight, earlier),
                     None => self.program(query, lowered()?, earlier),
@@ -264,7 +268,7 @@ impl Compiled {
                 Ok(Arc::new(AnswerProgram::new(self.tree(), query, bound)))
             }
             None => {
-                let slot = self.slot(Scope::Regions, query);
+                let slot = self.slot(PointScope::Regions, query);
                 slot.get_or_make(|earlier| self.program(query, lowered, earlier)).cloned()
             }
         }

@@ -8,7 +8,7 @@ use jbt_ir::{Function, Level, Tables, limits};
 use jbt_model::check::CheckedTree;
 
 use crate::error::CompileError;
-use crate::kernel::{Bound, Engine, Kernel, Purpose, Wish, optimise, optimise_straight, straighten};
+use crate::kernel::{BoundKernel, Engine, Kernel, Purpose, Wish, optimise, optimise_straight, straighten};
 
 /// Makes [compiled models](crate::Compiled), and remembers the code of every shape that it has met: models of
 /// one shape share it.
@@ -19,7 +19,7 @@ pub struct Compiler {
     wish: Wish,
     /// Whether rows stay rows: see [`for_edits`](Self::for_edits).
     keeps_rows: bool,
-    memory: Arc<Memory>,
+    memory: Arc<CompilerMemory>,
 }
 
 /// What a compiler has made so far. A snapshot: see [`Compiler::counters`].
@@ -35,14 +35,14 @@ pub struct CompileCounters {
 
 /// What the clones of a compiler share.
 #[derive(Default)]
-struct Memory {
-    known: Mutex<Vec<Known>>,
+struct CompilerMemory {
+    known: Mutex<Vec<KnownKernel>>,
     kernels: AtomicU64,
     bound: AtomicU64,
 }
 
 /// The code of a shape, for a purpose.
-struct Known {
+struct KnownKernel {
     purpose: Purpose,
     kernel: Arc<Kernel>,
 }
@@ -113,7 +113,7 @@ impl Compiler {
     }
 
     /// Gives a kernel the numbers of a model.
-    pub(crate) fn bind(&self, kernel: &Arc<Kernel>, tables: impl Into<Arc<Tables>>) -> Bound {
+    pub(crate) fn bind(&self, kernel: &Arc<Kernel>, tables: impl Into<Arc<Tables>>) -> BoundKernel {
         self.memory.bound.fetch_add(1, Ordering::Relaxed);
         kernel.bind(tables.into())
     }
@@ -178,7 +178,7 @@ impl Compiler {
             if known.len() == REMEMBERED {
                 known.remove(0);
             }
-            known.push(Known { purpose, kernel: Arc::clone(kernel) });
+            known.push(KnownKernel { purpose, kernel: Arc::clone(kernel) });
         }
     }
 

@@ -41,14 +41,14 @@ pub struct Counters {
 
 /// The counters of an evaluator, shared by threads.
 #[derive(Debug, Default)]
-pub(crate) struct Tally {
+pub(crate) struct SharedCounters {
     calls: AtomicU64,
     points: AtomicU64,
     lanes: AtomicU64,
     pruned: AtomicU64,
 }
 
-impl Tally {
+impl SharedCounters {
     /// Counts a call that left `pruned` distances out at each point.
     pub(crate) fn add(&self, points: usize, lanes: usize, pruned: u64) {
         self.pruned.fetch_add(pruned.saturating_mul(points as u64), Ordering::Relaxed);

@@ -14,12 +14,12 @@ use jbt_model::origin::ModelOrigin;
 use jbt_model::query::Query;
 
 use crate::buffer::{Layout, Samples};
-use crate::compiled::{Compiled, Scope};
+use crate::compiled::{Compiled, PointScope};
 use crate::compiler::Compiler;
-use crate::counter::{Counters, Tally};
+use crate::counter::{Counters, SharedCounters};
 use crate::error::{CompileError, EvalError};
 use crate::finite_points;
-use crate::kernel::{Bound, Engine};
+use crate::kernel::{BoundKernel, Engine};
 use crate::points::{AsPoints, Points};
 use crate::program::AnswerProgram;
 use crate::prune::Region;
@@ -41,12 +41,12 @@ impl Compiled {
     /// # Errors
     /// The model is beyond a limit, or the engine cannot be had.
     pub fn evaluator(&self, query: Query) -> Result<Evaluator, CompileError> {
-        Evaluator::of(self, Scope::Anywhere, query)
+        Evaluator::of(self, PointScope::Anywhere, query)
     }
 
     /// What answers a query in regions: by rows, where [`evaluator`](Self::evaluator) may have straight code.
     pub(crate) fn regional(&self, query: Query) -> Result<Evaluator, CompileError> {
-        Evaluator::of(self, Scope::Regions, query)
+        Evaluator::of(self, PointScope::Regions, query)
     }
 }
 
@@ -77,9 +77,9 @@ pub enum Update {
 /// It is `Send + Sync`: threads may share it and evaluate at once. It keeps the compiled model.
 pub struct Evaluator {
     compiled: Compiled,
-    scope: Scope,
+    scope: PointScope,
     program: Arc<AnswerProgram>,
-    tally: Tally,
+    counters: SharedCounters,
 }
 
 impl fmt::Debug for Evaluator {
@@ -103,9 +103,9 @@ impl Evaluator {
         Compiler::new().evaluator(tree, query)
     }
 
-    fn of(compiled: &Compiled, scope: Scope, query: Query) -> Result<Self, CompileError> {
+    fn of(compiled: &Compiled, scope: PointScope, query: Query) -> Result<Self, CompileError> {
         let program = Arc::clone(compiled.answers(scope, query)?);
-        Ok(Self { compiled: compiled.clone(), scope, program, tally: Tally::default() })
+        Ok(Self { compiled: compiled.clone(), scope, program, counters: SharedCounters::default() })
     }
 
     /// Takes another model, usually an edited one. If it has the shape of the present one, only numbers are
@@ -116,7 +116,7 @@ impl Evaluator {
     pub fn update(&mut self, tree: &CheckedTree) -> Result<Update, CompileError> {
         let next = self.updated(tree)?;
         let same = Arc::ptr_eq(&next.program.bound.kernel, &self.program.bound.kernel);
-        *self = Self { tally: std::mem::take(&mut self.tally), ..next };
+        *self = Self { counters: std::mem::take(&mut self.counters), ..next };
         Ok(if same { Update::Numbers } else { Update::Code })
     }
 
@@ -129,7 +129,7 @@ impl Evaluator {
     }
 
     /// What runs points of regions.
-    fn regional(&self) -> &Bound {
+    fn regional(&self) -> &BoundKernel {
         if self.program.is_straight() {
             &self.compiled.regional_twin(&self.program).bound
         } else {
@@ -291,7 +291,7 @@ impl Evaluator {
         } else {
             self.run_made_finite(&self.program.bound, self.program.bound.all(), points, answers)?
         };
-        self.tally.add(points[0].len(), lanes, 0);
+        self.counters.add(points[0].len(), lanes, 0);
         Ok(())
     }
 
@@ -318,14 +318,14 @@ impl Evaluator {
             self.run_made_finite(self.regional(), region.selection(), points, answers)?
         };
         let left_out = self.evaluations_per_point().saturating_sub(self.evaluations_in(region));
-        self.tally.add(points[0].len(), lanes, left_out);
+        self.counters.add(points[0].len(), lanes, left_out);
         Ok(())
     }
 
     /// Runs points of which some are no places; returns how many lanes were computed.
     fn run_made_finite(
         &self,
-        bound: &Bound,
+        bound: &BoundKernel,
         selection: &Selection,
         points: [&[f32]; 3],
         answers: &mut [&mut [f32]],
@@ -340,7 +340,7 @@ impl Evaluator {
     /// What it has done so far.
     #[must_use]
     pub fn counters(&self) -> Counters {
-        self.tally.snapshot(self.evaluations_per_point(), self.program.separate)
+        self.counters.snapshot(self.evaluations_per_point(), self.program.separate)
     }
 
     /// How many distances to skeletons one point takes.

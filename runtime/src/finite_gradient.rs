@@ -22,7 +22,7 @@ use jbt_ir::domain::tangent::LARGEST_SLOPE;
 use jbt_ir::pass::GRADIENT_OUTPUTS;
 
 use crate::error::EvalError;
-use crate::kernel::Bound;
+use crate::kernel::BoundKernel;
 
 /// Whether components of gradients need no second look.
 #[cfg_attr(feature = "levels", multiversion::multiversion(targets("x86_64+avx2")))]
@@ -30,7 +30,7 @@ fn are_tame(plane: &[f32]) -> bool {
     plane.chunks(1 << 12).all(|chunk| chunk.iter().fold(true, |all, g| all & (g.abs() <= LARGEST_SLOPE)))
 }
 
-impl Bound {
+impl BoundKernel {
     /// As [`run`](Self::run), for a kernel that answers at points: its gradients are finite, and within
     /// [`LARGEST_SLOPE`].
     pub(crate) fn run_with_finite_gradient(

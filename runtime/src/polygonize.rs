@@ -20,7 +20,7 @@ use crate::counter::Counters;
 use crate::error::{Classified, CompileError, ErrorKind, EvalError};
 use crate::job::{Hook, Job};
 use crate::kernel::Engine;
-use crate::mesh::{self, Lattice, LatticeError, Mesh, MeshError, Report};
+use crate::mesh::{self, Lattice, LatticeError, Mesh, MeshError, MeshReport};
 use crate::prune::PruneCounters;
 use crate::region::Box3;
 use crate::support::{NoBox, around};
@@ -84,7 +84,7 @@ pub struct Polygonized {
     /// The mesh.
     pub mesh: Mesh,
     /// Whether it is closed, and the evaluations by kind.
-    pub report: Report,
+    pub report: MeshReport,
     /// Where the field was asked, in coordinates about the [origin](Mesh::origin) of the mesh.
     pub lattice: Lattice,
     /// What ran the kernels.
@@ -130,7 +130,7 @@ impl MeshCounters {
         [self.lattice, self.pulls, self.vertices].iter().map(|stage| stage.primitive_evaluations).sum()
     }
 
-    fn new(kernels: &Kernels, report: &Report, lattice: &Lattice) -> Self {
+    fn new(kernels: &Kernels, report: &MeshReport, lattice: &Lattice) -> Self {
         let [field, pulls, vertices] = kernels.counters();
         let points = lattice.points().iter().fold(1_u64, |all, &points| all.saturating_mul(points as u64));
         let dense = points.saturating_mul(kernels.evaluations_per_point());
@@ -257,7 +257,7 @@ impl Polygonize {
             ..mesh::Options::default()
         };
         let mut counters = MeshCounters::default();
-        let meshed = |report: &Report| counters = MeshCounters::new(&kernels, report, &lattice);
+        let meshed = |report: &MeshReport| counters = MeshCounters::new(&kernels, report, &lattice);
         let (mut mesh, mut report) = mesh::extract_hooked(&kernels, &lattice, &options, hook, meshed)?;
         counters.thin = kernels.counters().into_iter().map(|done| done.primitive_evaluations).sum::<u64>()
             - counters.primitive_evaluations();

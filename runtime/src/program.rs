@@ -7,10 +7,10 @@ use jbt_model::query::Query;
 
 use crate::buffer::Layout;
 use crate::counter::walks;
-use crate::kernel::{Bound, Kernel};
+use crate::kernel::{BoundKernel, Kernel};
 
 /// A program that was made for a model.
-pub(crate) trait Program {
+pub(crate) trait ModelProgram {
     /// What runs it: another model of the same shape takes it too.
     fn kernel(&self) -> &Arc<Kernel>;
 }
@@ -18,7 +18,7 @@ pub(crate) trait Program {
 /// A program that answers a query at points.
 pub(crate) struct AnswerProgram {
     pub(crate) query: Query,
-    pub(crate) bound: Bound,
+    pub(crate) bound: BoundKernel,
     pub(crate) layout: Layout,
     /// Distances that separate walks compute at a point.
     pub(crate) separate: u64,
@@ -28,7 +28,7 @@ pub(crate) struct AnswerProgram {
 
 impl AnswerProgram {
     /// The program of a model that answers a query.
-    pub(crate) fn new(tree: &CheckedTree, query: Query, bound: Bound) -> Self {
+    pub(crate) fn new(tree: &CheckedTree, query: Query, bound: BoundKernel) -> Self {
         let layout = Layout::new(query, tree.attributes());
         debug_assert_eq!(
             layout.names(),
@@ -45,7 +45,7 @@ impl AnswerProgram {
     }
 }
 
-impl Program for AnswerProgram {
+impl ModelProgram for AnswerProgram {
     fn kernel(&self) -> &Arc<Kernel> {
         &self.bound.kernel
     }

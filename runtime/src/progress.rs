@@ -11,7 +11,7 @@ pub(crate) struct Cancelled;
 /// Adds up finished shares of the work and tells the hook. Threads may share it.
 pub(crate) struct Progress<'h> {
     // Behind one lock, so that the hook need not be thread-safe and sees ascending parts.
-    state: Mutex<State<'h>>,
+    state: Mutex<ProgressState<'h>>,
     /// The part of the work between two calls of the hook.
     step: f64,
 }
@@ -21,7 +21,7 @@ pub(crate) const EACH: f64 = 0.0;
 /// For many small pieces: a call of the hook takes longer than some of them.
 pub(crate) const SOME: f64 = 1.0 / 256.0;
 
-struct State<'h> {
+struct ProgressState<'h> {
     hook: Hook<'h>,
     /// Where the present stage begins and ends in the whole work.
     span: [f64; 2],
@@ -31,7 +31,7 @@ struct State<'h> {
     cancelled: bool,
 }
 
-impl State<'_> {
+impl ProgressState<'_> {
     /// How much of the whole work is done.
     fn part(&self) -> f64 {
         let [start, end] = self.span;
@@ -48,7 +48,7 @@ impl State<'_> {
 impl<'h> Progress<'h> {
     /// Work of one stage. The hook is told that it begins, and then of every step.
     pub(crate) fn new(hook: Hook<'h>, step: f64) -> Self {
-        let mut state = State { hook, span: [0.0, 1.0], done: 0.0, told: 0.0, cancelled: false };
+        let mut state = ProgressState { hook, span: [0.0, 1.0], done: 0.0, told: 0.0, cancelled: false };
         state.tell();
         Self { state: Mutex::new(state), step }
     }
@@ -73,7 +73,7 @@ impl<'h> Progress<'h> {
 
     /// Asks the hook whether to go on, where nobody knows how much is done.
     pub(crate) fn ask(&self) -> Result<(), Cancelled> {
-        self.with(State::tell)
+        self.with(ProgressState::tell)
     }
 
     /// Whether nobody has said to stop so far; the hook is not asked.
@@ -86,7 +86,7 @@ impl<'h> Progress<'h> {
         self.begin([1.0; 2])
     }
 
-    fn with(&self, act: impl FnOnce(&mut State<'h>)) -> Result<(), Cancelled> {
+    fn with(&self, act: impl FnOnce(&mut ProgressState<'h>)) -> Result<(), Cancelled> {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
         act(&mut state);
         if state.cancelled { Err(Cancelled) } else { Ok(()) }

@@ -112,7 +112,7 @@ impl<'a> Statistics<'a> {
         &'b self,
         compiler: &'b Compiler,
         lattice: &'b Lattice,
-    ) -> Job<'b, Supports, SupportsError> {
+    ) -> Job<'b, SupportCounts, SupportsError> {
         Job::new(move |hook| self.supports_hooked(compiler, lattice, hook))
     }
 
@@ -121,10 +121,11 @@ impl<'a> Statistics<'a> {
         compiler: &Compiler,
         lattice: &Lattice,
         hook: Hook<'_>,
-    ) -> Result<Supports, SupportsError> {
+    ) -> Result<SupportCounts, SupportsError> {
         lattice.check_points()?;
         let axes = lattice.axes();
-        let mut supports = Supports { points: lattice.point_count(), pairs: 0, by_node: BTreeMap::new() };
+        let mut supports =
+            SupportCounts { points: lattice.point_count(), pairs: 0, by_node: BTreeMap::new() };
         let count = self.instances.len();
         for start in (0..count).step_by(STRIDE) {
             if !hook(start as f32 / count as f32) {
@@ -149,7 +150,7 @@ impl<'a> Statistics<'a> {
 #[derive(Clone, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
-pub struct Supports {
+pub struct SupportCounts {
     /// Points of the lattice.
     pub points: u64,
     /// Pairs of a point and an instance whose support it is inside of.
@@ -158,7 +159,7 @@ pub struct Supports {
     pub by_node: BTreeMap<u32, u64>,
 }
 
-impl Supports {
+impl SupportCounts {
     /// The waste: the evaluations that were done for each one that matters, 1 at best; `None` if none
     /// matters.
     #[must_use]
@@ -218,20 +219,20 @@ fn inside(
         return Ok(0);
     }
     let evaluator = compiler.evaluator(leaf, Query::FIELD)?;
-    let slabs = zs.par_iter().map_init(Planes::default, |planes, &z| planes.count(&evaluator, xs, ys, z));
+    let slabs = zs.par_iter().map_init(Slab::default, |slab, &z| slab.count(&evaluator, xs, ys, z));
     Ok(slabs.sum())
 }
 
 /// Points and their fields.
 #[derive(Default)]
-struct Planes {
+struct Slab {
     x: Vec<f32>,
     y: Vec<f32>,
     z: Vec<f32>,
     field: Vec<f32>,
 }
 
-impl Planes {
+impl Slab {
     /// The points with a positive field among `xs` x `ys` x {z}.
     fn count(&mut self, evaluator: &Evaluator, xs: &[f32], ys: &[f32], z: f32) -> u64 {
         let mut found = 0;

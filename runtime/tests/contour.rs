@@ -8,7 +8,9 @@ use std::f64::consts::PI;
 
 use fastrand::Rng;
 use jbt::build::{Axis, cuboid, point, segment, x, y, z};
-use jbt::contour::{Contour, Detail, Fate, ImageDetail, Mode, Plane, Rectangle, SliceError, Slicer, circles};
+use jbt::contour::{
+    Contour, Detail, Fate, ImageDetail, ImageMode, Plane, Rectangle, SliceError, Slicer, circles,
+};
 use jbt::export::svg::{Paint, Style, write_svg};
 use jbt::{CancelToken, Compiler, Engine, Evaluator, Fineness, Model, Points, Query, Tree};
 use jbt_testkit::samples;
@@ -396,7 +398,7 @@ fn images_have_the_bits_of_the_field() {
         let iso = tree.iso() as f32;
         let expected: Vec<u8> = samples.field().iter().map(|&f| if f >= iso { 255 } else { 0 }).collect();
         assert_eq!(inside.values, expected, "model {seed}");
-        let color = slicer.picture(&rectangle, &Mode::Attribute("color".to_owned()), &detail).run();
+        let color = slicer.picture(&rectangle, &ImageMode::Attribute("color".to_owned()), &detail).run();
         let alpha: Vec<u8> = color.unwrap().pixels().iter().map(|pixel| pixel[3]).collect();
         assert_eq!(alpha, expected, "model {seed}");
         let pool = rayon::ThreadPoolBuilder::new().num_threads(5).build().unwrap();
@@ -430,16 +432,17 @@ fn errors_say_what_is_wrong() {
     }
     assert!(matches!(fails(&detail(0)), SliceError::Lattice(_)));
     assert!(matches!(fails(&detail(1 << 21)), SliceError::Lattice(_)));
-    let image =
-        |detail: ImageDetail, mode: Mode| unbounded.picture(&square(1.0), &mode, &detail).run().unwrap_err();
+    let image = |detail: ImageDetail, mode: ImageMode| {
+        unbounded.picture(&square(1.0), &mode, &detail).run().unwrap_err()
+    };
     let plain = ImageDetail::default();
     for samples in [0, 9] {
-        let error = image(ImageDetail { samples, ..plain }, Mode::Inside);
+        let error = image(ImageDetail { samples, ..plain }, ImageMode::Inside);
         assert!(matches!(error, SliceError::Samples { .. }), "{error}");
     }
     let many = ImageDetail { fineness: Fineness::Resolution(1 << 20), samples: 1 };
-    assert!(matches!(image(many, Mode::Inside), SliceError::TooManyPixels { .. }));
-    let error = image(plain, Mode::Attribute("color".to_owned())).to_string();
+    assert!(matches!(image(many, ImageMode::Inside), SliceError::TooManyPixels { .. }));
+    let error = image(plain, ImageMode::Attribute("color".to_owned())).to_string();
     assert!(error.contains("no attribute `color`"), "{error}");
     let token = CancelToken::new();
     token.cancel();

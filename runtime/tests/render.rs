@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use jbt::Picture;
 use jbt::export::write_png;
 use jbt::limits::{MAX_ANTIALIAS, MAX_PICTURE_SIDE};
-use jbt::render::{Background, Mode, Notice, Quality, RenderError, Rendered, Stance, VIEWS, View};
+use jbt::render::{Background, Notice, Quality, RenderError, RenderMode, Rendered, Stance, VIEWS, View};
 use jbt::{Box3, CancelToken, CheckedTree, Compiler, Render, Renderer};
 use jbt_text::{Options, parse};
 
@@ -42,7 +42,7 @@ fn make(render: &Render, tree: &CheckedTree) -> Rendered {
 }
 
 /// A small picture with one ray for each pixel.
-fn plain(size: [u32; 2], mode: Mode, view: View) -> Render {
+fn plain(size: [u32; 2], mode: RenderMode, view: View) -> Render {
     Render { size, mode, view, antialias: 1, ..Render::default() }
 }
 
@@ -62,7 +62,8 @@ fn the_silhouette_of_a_ball_is_a_disc() {
     let (distance, half) = (4.0_f64, 1.5);
     let touching = (1.0 / distance).asin().tan() * distance;
     for (orthographic, radius) in [(true, 1.0), (false, touching)] {
-        let made = make(&plain([160, 120], Mode::Depth, on_axis(distance, half, orthographic)), &ball());
+        let made =
+            make(&plain([160, 120], RenderMode::Depth, on_axis(distance, half, orthographic)), &ball());
         let expected = PI * (radius / half * 60.0).powi(2);
         let found = made.report.pixels_hit as f64;
         assert!((found / expected - 1.0).abs() < 0.01, "{orthographic}: {found} of {expected}");
@@ -75,7 +76,7 @@ fn the_silhouette_of_a_ball_is_a_disc() {
 #[test]
 fn depths_and_normals_are_those_of_the_ball() {
     let view = on_axis(4.0, 1.5, true);
-    let depth = make(&plain([61, 61], Mode::Depth, view), &ball());
+    let depth = make(&plain([61, 61], RenderMode::Depth, view), &ball());
     let [near, far] = depth.report.range.unwrap().map(f64::from);
     // The eye steps back from a model that it has no perspective of; the camera tells where it is.
     let nearest = depth.report.camera.unwrap().eye[0] - 1.0;
@@ -84,7 +85,7 @@ fn depths_and_normals_are_those_of_the_ball() {
     assert_eq!(depth.picture.pixel(30, 30), [255; 4]);
     assert_eq!(depth.picture.pixel(0, 0), [0; 4]);
 
-    let shown = make(&plain([61, 61], Mode::Normal, view), &ball());
+    let shown = make(&plain([61, 61], RenderMode::Normal, view), &ball());
     assert_eq!(shown.report.range, None);
     for [x, y] in opaque(&shown.picture) {
         let across = [x, 60 - y].map(|at| (f64::from(at) - 30.0) / 30.5 * 1.5);
@@ -101,17 +102,17 @@ fn depths_and_normals_are_those_of_the_ball() {
 #[test]
 fn attributes_are_shown_as_they_are() {
     let view = View { orthographic: true, ..View::named("front").unwrap() };
-    let color = make(&plain([80, 40], Mode::Attribute("color".to_owned()), view), &two());
+    let color = make(&plain([80, 40], RenderMode::Attribute("color".to_owned()), view), &two());
     // Linear 0.5 is 188 on a screen.
     assert_eq!(color.picture.pixel(20, 20), [255, 0, 0, 255]);
     assert_eq!(color.picture.pixel(60, 20), [0, 188, 255, 255]);
-    let weight = make(&plain([80, 40], Mode::Attribute("weight".to_owned()), view), &two());
+    let weight = make(&plain([80, 40], RenderMode::Attribute("weight".to_owned()), view), &two());
     assert_eq!(weight.report.range, Some([-1.0, 3.0]));
     // The ends of viridis: yellow is much, dark blue is little.
     let (much, little) = (weight.picture.pixel(20, 20), weight.picture.pixel(60, 20));
     assert!(much[0] > 240 && much[2] < 50, "{much:?}");
     assert!(little[0] < 80 && little[1] < 10, "{little:?}");
-    let unknown = plain([8, 8], Mode::Attribute("colour".to_owned()), view);
+    let unknown = plain([8, 8], RenderMode::Attribute("colour".to_owned()), view);
     let error = unknown.picture(&Compiler::new(), &two()).run().unwrap_err();
     assert_eq!(error.to_string(), "the model has no attribute `colour`; it has color, weight");
 }
@@ -120,7 +121,7 @@ fn attributes_are_shown_as_they_are() {
 fn the_bytes_do_not_depend_on_threads() {
     let tree = two();
     let renderer = Renderer::new(&Compiler::new(), &tree).unwrap();
-    for mode in [Mode::Shaded, Mode::Evaluations] {
+    for mode in [RenderMode::Shaded, RenderMode::Evaluations] {
         let render = Render { size: [90, 50], mode, ..Render::default() };
         let on = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -143,7 +144,7 @@ fn a_model_fills_the_picture_from_every_side() {
         for size in [[96, 64], [48, 96]] {
             for orthographic in [false, true] {
                 let view = View { orthographic, ..View::named(name).unwrap() };
-                let made = plain(size, Mode::Depth, view).with(&renderer).run().unwrap();
+                let made = plain(size, RenderMode::Depth, view).with(&renderer).run().unwrap();
                 let hit = opaque(&made.picture);
                 let part = |axis: usize| {
                     let low = hit.iter().map(|pixel| pixel[axis]).min().unwrap();
@@ -183,18 +184,23 @@ fn a_shadow_falls_on_the_ground() {
 fn a_region_cuts_the_model_open() {
     let region = Some(Box3::new([-2.0; 3], [0.25, 2.0, 2.0]));
     let view = View { orthographic: true, ..View::named("front").unwrap() };
-    let cut = Render { region, ..plain([61, 61], Mode::Normal, view) };
+    let cut = Render { region, ..plain([61, 61], RenderMode::Normal, view) };
     let made = make(&cut, &ball());
     // The cut is a disc that looks along x, in the middle; around it there is the ball.
     assert_eq!(made.picture.pixel(30, 30), [255, 128, 128, 255]);
     assert_eq!(made.picture.pixel(40, 40), [255, 128, 128, 255]);
-    let color = Render { mode: Mode::Attribute("color".to_owned()), ..cut.clone() };
+    let color = Render { mode: RenderMode::Attribute("color".to_owned()), ..cut.clone() };
     assert_eq!(make(&color, &ball()).picture.pixel(30, 30), [255; 4]);
     // A half space fills all of its region; without one it has no picture.
     let half_space = tree("jbt 1 half_space { normal (0 0 1) radius 1 }");
-    let shaded = Render { mode: Mode::Shaded, ground: false, region, ..plain([16, 16], Mode::Shaded, view) };
+    let shaded = Render {
+        mode: RenderMode::Shaded,
+        ground: false,
+        region,
+        ..plain([16, 16], RenderMode::Shaded, view)
+    };
     assert!(make(&shaded, &half_space).report.pixels_hit > 60);
-    let error = plain([16, 16], Mode::Shaded, view).picture(&Compiler::new(), &half_space).run();
+    let error = plain([16, 16], RenderMode::Shaded, view).picture(&Compiler::new(), &half_space).run();
     assert!(matches!(error, Err(RenderError::Unbounded)));
 }
 
@@ -203,14 +209,14 @@ fn pictures_of_nothing() {
     let background = Some(Background::Color([10, 20, 30]));
     let away =
         View { stance: Stance::At { eye: [5.0, 0.0, 0.0], target: [6.0, 0.0, 0.0] }, ..View::default() };
-    let render = Render { background, ..plain([9, 7], Mode::Shaded, away) };
+    let render = Render { background, ..plain([9, 7], RenderMode::Shaded, away) };
     let empty = tree("jbt 1 intersection { point { radius 1 } translate (5 0 0) { point { radius 1 } } }");
     let faint = tree("jbt 1 point { radius 1 strength 0.25 }");
     for (tree, notice) in [(ball(), Notice::OutOfView), (empty, Notice::Empty), (faint, Notice::Empty)] {
         let made = make(&Render { ground: false, ..render.clone() }, &tree);
         assert_eq!((made.report.notice, made.report.pixels_hit), (Some(notice), 0));
         assert!(made.picture.pixels().iter().all(|pixel| *pixel == [10, 20, 30, 255]));
-        for mode in [Mode::Depth, Mode::Normal, Mode::Evaluations] {
+        for mode in [RenderMode::Depth, RenderMode::Normal, RenderMode::Evaluations] {
             assert_eq!(make(&Render { mode, ..render.clone() }, &tree).report.notice, Some(notice));
         }
     }
@@ -221,12 +227,12 @@ fn pictures_of_nothing() {
 fn no_gradient_is_no_defect() {
     let flat = tree("jbt 1 clamp low 0 high 0.5 { color (1 1 1) { point { radius 2 } } }");
     let view = on_axis(4.0, 1.5, true);
-    let made = make(&plain([21, 21], Mode::Shaded, view), &flat);
+    let made = make(&plain([21, 21], RenderMode::Shaded, view), &flat);
     assert!(made.report.pixels_hit > 100);
     for [x, y] in opaque(&made.picture) {
         assert!(made.picture.pixel(x, y)[..3].iter().all(|&channel| channel > 20), "{x} {y}");
     }
-    let shown = make(&plain([21, 21], Mode::Normal, view), &flat);
+    let shown = make(&plain([21, 21], RenderMode::Normal, view), &flat);
     let found = normal(shown.picture.pixel(10, 10));
     assert!(found[0] > 0.98, "{found:?}");
 }
@@ -236,7 +242,7 @@ fn an_edited_model_is_that_of_a_new_renderer() {
     let model = parse(b"jbt 1 param r = 0.5 point { surface_radius r }", &Options::default()).unwrap();
     let small = model.check().unwrap();
     let large = small.with_parameters(&[("r", 0.8)]).unwrap();
-    let render = plain([40, 30], Mode::Shaded, on_axis(4.0, 1.5, false));
+    let render = plain([40, 30], RenderMode::Shaded, on_axis(4.0, 1.5, false));
     let renderer = Renderer::new(&Compiler::new(), &small).unwrap();
     let edited = render.with(&renderer.updated(&large).unwrap()).run().unwrap();
     assert!(edited.picture == make(&render, &large).picture);
@@ -263,7 +269,7 @@ fn a_png_is_the_picture() {
 
 #[test]
 fn what_is_no_picture_says_why() {
-    let good = plain([8, 8], Mode::Shaded, View::default());
+    let good = plain([8, 8], RenderMode::Shaded, View::default());
     let at = |eye: [f64; 3]| View { stance: Stance::At { eye, target: [9.0; 3] }, ..View::default() };
     let flat = Box3::new([0.0; 3], [1.0, 0.0, 1.0]);
     let side = MAX_PICTURE_SIDE as u32;

@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DVec3};
 use jbt::mesh::Lattice;
-use jbt::statistics::{PerPoint, Statistics, Supports, SupportsError};
+use jbt::statistics::{PerPoint, Statistics, SupportCounts, SupportsError};
 use jbt::{CancelToken, Compiler, Fineness, Polygonize, Query};
 use jbt_model::check::{CheckedTree, NodeId};
 use jbt_model::kind::NodeKind;
@@ -15,7 +15,7 @@ fn tree(text: &str) -> CheckedTree {
     model.check().expect("it is a good model")
 }
 
-fn supports(tree: &CheckedTree, lattice: &Lattice) -> Supports {
+fn supports(tree: &CheckedTree, lattice: &Lattice) -> SupportCounts {
     Statistics::new(tree).supports(&Compiler::new(), lattice).run().expect("it compiles")
 }
 

@@ -2,7 +2,7 @@
 //! central rays of pixels meet.
 #![allow(clippy::print_stdout, reason = "a test may show its figures")]
 
-use jbt::render::{Mode, Render, Stance, View};
+use jbt::render::{Render, RenderMode, Stance, View};
 use jbt::text::{Options, parse};
 use jbt::{CheckedTree, Compiler};
 
@@ -38,7 +38,7 @@ fn look(model: &CheckedTree, eye: Vector, chord: impl Fn(Vector, Vector) -> f64)
     let stance = Stance::At { eye, target: [0.0; 3] };
     let lens = 2.0 * (1.2 / dot(eye, eye).sqrt()).atan().to_degrees();
     let view = View { stance, lens, orthographic: true, ..View::default() };
-    let render = Render { mode: Mode::Depth, view, antialias: 1, ..Render::default() };
+    let render = Render { mode: RenderMode::Depth, view, antialias: 1, ..Render::default() };
     let made = render.picture(&Compiler::new(), model).run().expect("the model is seen");
     let camera = made.report.camera.expect("there is a model");
     let mut seen = Seen { tolerance: made.report.tolerance, ..Seen::default() };

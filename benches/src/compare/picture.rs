@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use jbt::contour::{ImageDetail, Plane, Rectangle, Slicer};
 use jbt::import;
-use jbt::render::{Mode, Render, Renderer, View};
+use jbt::render::{Render, RenderMode, Renderer, View};
 use jbt::walk::walk;
 use jbt::{Box3, CheckedTree, Compiler, Fineness, Query};
 use jbt_testkit::samples;
@@ -120,7 +120,7 @@ pub(super) fn blobs(options: Options) -> Vec<ResultRow> {
     let render = Render {
         size: [PICTURE; 2],
         view,
-        mode: Mode::Normal,
+        mode: RenderMode::Normal,
         quality: jbt::render::Quality::Draft,
         antialias: 1,
         region: Some(Box3::new([-1.0; 3], [1.0; 3])),

@@ -31,7 +31,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::field::FieldKind;
 use crate::kind::NodeKind;
 use crate::model::Model;
-use crate::number::Values;
+use crate::number::ParameterValues;
 use crate::origin::ModelOrigin;
 use crate::parameter::{collect, refresh};
 use crate::report::Report;
@@ -77,7 +77,7 @@ impl Model {
         parameters::check_names(&mut report, &parameters);
         let values = refresh(&mut parameters).unwrap_or_else(|errors| {
             report.extend(errors);
-            Values::new()
+            ParameterValues::new()
         });
         if !report.is_empty() {
             return Err(report.finish());
@@ -109,7 +109,7 @@ impl Model {
         &self,
         max_nodes: usize,
         report: &mut Report,
-        (iso, values): (f64, &Values),
+        (iso, values): (f64, &ParameterValues),
         dependence: &mut Dependence,
     ) -> Vec<CheckedNode> {
         let groups = widths(&self.attributes);

@@ -62,7 +62,7 @@ pub(crate) trait Question {
 }
 
 /// The work that is left. Points are those of a node's parent.
-enum Task<Q: Question> {
+enum DescentTask<Q: Question> {
     /// Ask a node.
     Ask(NodeId, DVec3, Q::Way),
     /// Ask the child of a weighted warp, whose weight has answered.
@@ -75,31 +75,31 @@ enum Task<Q: Question> {
 
 /// The answer of the root at `p`. Cost: all paths of the tree.
 pub(crate) fn ask<Q: Question>(tree: &CheckedTree, question: &mut Q, way: Q::Way, p: DVec3) -> Q::Answer {
-    let mut tasks: Vec<Task<Q>> = vec![Task::Ask(tree.root(), p, way)];
+    let mut tasks: Vec<DescentTask<Q>> = vec![DescentTask::Ask(tree.root(), p, way)];
     let mut answers: Vec<Q::Answer> = Vec::new();
     while let Some(task) = tasks.pop() {
         match task {
-            Task::Ask(id, p, way) => {
+            DescentTask::Ask(id, p, way) => {
                 let way = question.enter(id, way);
                 let node = tree.node(id);
                 let child = |index: usize, p: DVec3, way: &Q::Way| {
-                    Task::Ask(node.children[index], p, question.below(way, index))
+                    DescentTask::Ask(node.children[index], p, question.below(way, index))
                 };
                 match &node.kind {
                     NodeKind::Primitive(leaf) => answers.push(question.primitive(leaf, p, &way)),
                     NodeKind::Combine(_) | NodeKind::Expression(_) => {
-                        tasks.push(Task::Answer(id, p, way.clone()));
+                        tasks.push(DescentTask::Answer(id, p, way.clone()));
                         tasks.extend((0..node.children.len()).rev().map(|index| child(index, p, &way)));
                     }
                     NodeKind::Select(which) => tasks.push(child(chosen(*which), p, &way)),
                     NodeKind::Affine(map) => tasks.push(child(0, map.inverse().transform_point3(p), &way)),
                     NodeKind::Warp(_) if node.children.len() > 1 => {
                         let weight = child(1, p, &way);
-                        tasks.push(Task::Enter(id, p, way));
+                        tasks.push(DescentTask::Enter(id, p, way));
                         tasks.push(weight);
                     }
                     NodeKind::Warp(warp) => {
-                        tasks.push(Task::Mark(question.mark(warp, p, None)));
+                        tasks.push(DescentTask::Mark(question.mark(warp, p, None)));
                         tasks.push(child(0, warp.inverse(p), &way));
                     }
                     NodeKind::Attribute { name, value } => {
@@ -108,20 +108,20 @@ pub(crate) fn ask<Q: Question>(tree: &CheckedTree, question: &mut Q, way: Q::Way
                     }
                 }
             }
-            Task::Enter(id, p, way) => {
+            DescentTask::Enter(id, p, way) => {
                 let weight = answers.pop().expect("the weight has been asked");
                 let node = tree.node(id);
                 if let NodeKind::Warp(warp) = &node.kind {
-                    tasks.push(Task::Mark(question.mark(warp, p, Some(&weight))));
+                    tasks.push(DescentTask::Mark(question.mark(warp, p, Some(&weight))));
                     let at = warp.weighted(p, Q::field(&weight));
-                    tasks.push(Task::Ask(node.children[0], at, question.below(&way, 0)));
+                    tasks.push(DescentTask::Ask(node.children[0], at, question.below(&way, 0)));
                 }
             }
-            Task::Mark(mark) => {
+            DescentTask::Mark(mark) => {
                 let answer = answers.last_mut().expect("the child has been asked");
                 question.marked(answer, mark);
             }
-            Task::Answer(id, p, way) => {
+            DescentTask::Answer(id, p, way) => {
                 let node = tree.node(id);
                 let children = answers.split_off(answers.len() - node.children.len());
                 answers.push(match &node.kind {

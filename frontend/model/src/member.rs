@@ -17,7 +17,7 @@
 //! | part | what it is |
 //! |---|---|
 //! | `"disc"` | the word of the text format |
-//! | `center: DVec3` | a field of the struct: its name is that of the text format, its type is one that implements `Parameter` |
+//! | `center: DVec3` | a field of the struct: its name is that of the text format, its type is one that implements `ParameterType` |
 //! | `[Position]` | the [`FieldKind`](crate::field::FieldKind): what the value may be |
 //! | `= Vector([0.0; 3])` | the [`FieldValue`] that counts where the parameter is not written; without one, it has to be |
 //!
@@ -57,7 +57,7 @@ pub type Lengths = Arc<[f64]>;
 pub type Matrix = [[f64; 4]; 3];
 
 /// A type that a field of a member may have.
-pub(crate) trait Parameter {
+pub(crate) trait ParameterType {
     /// The parameter from its value. Panics if that is of another shape: the kind of the field has excluded
     /// it.
     fn read(value: &FieldValue) -> Self;
@@ -66,7 +66,7 @@ pub(crate) trait Parameter {
     fn write(&self) -> FieldValue;
 }
 
-impl Parameter for f64 {
+impl ParameterType for f64 {
     fn read(value: &FieldValue) -> Self {
         value.real()
     }
@@ -76,7 +76,7 @@ impl Parameter for f64 {
     }
 }
 
-impl Parameter for u32 {
+impl ParameterType for u32 {
     fn read(value: &FieldValue) -> Self {
         value.real() as Self
     }
@@ -86,7 +86,7 @@ impl Parameter for u32 {
     }
 }
 
-impl Parameter for bool {
+impl ParameterType for bool {
     fn read(value: &FieldValue) -> Self {
         value.real() != 0.0
     }
@@ -96,7 +96,7 @@ impl Parameter for bool {
     }
 }
 
-impl Parameter for DVec3 {
+impl ParameterType for DVec3 {
     fn read(value: &FieldValue) -> Self {
         value.vector().into()
     }
@@ -106,7 +106,7 @@ impl Parameter for DVec3 {
     }
 }
 
-impl Parameter for Axis {
+impl ParameterType for Axis {
     fn read(value: &FieldValue) -> Self {
         Self::along(value.vector())
     }
@@ -116,7 +116,7 @@ impl Parameter for Axis {
     }
 }
 
-impl Parameter for Positions {
+impl ParameterType for Positions {
     fn read(value: &FieldValue) -> Self {
         value.vectors().iter().map(|&point| point.into()).collect()
     }
@@ -126,7 +126,7 @@ impl Parameter for Positions {
     }
 }
 
-impl Parameter for Lengths {
+impl ParameterType for Lengths {
     fn read(value: &FieldValue) -> Self {
         value.reals().into()
     }
@@ -136,7 +136,7 @@ impl Parameter for Lengths {
     }
 }
 
-impl Parameter for Matrix {
+impl ParameterType for Matrix {
     fn read(value: &FieldValue) -> Self {
         let (rows, _) = value.reals().as_chunks::<4>();
         std::array::from_fn(|row| rows[row])
@@ -177,11 +177,11 @@ macro_rules! member {
 
             fn from_fields(values: &[$crate::field::FieldValue]) -> Self {
                 let [$($field),*] = values else { panic!("a value for each parameter") };
-                Self { $( $field: $crate::member::Parameter::read($field) ),* }
+                Self { $( $field: $crate::member::ParameterType::read($field) ),* }
             }
 
             fn to_fields(&self) -> Vec<$crate::field::FieldValue> {
-                vec![$( $crate::member::Parameter::write(&self.$field) ),*]
+                vec![$( $crate::member::ParameterType::write(&self.$field) ),*]
             }
         }
 

@@ -25,9 +25,9 @@ use crate::field::{NumberText, plain};
 use crate::function::Function;
 
 pub use binary::Binary;
-pub use formula::{Formula, Step, Variable, show};
+pub use formula::{NumberFormula, Step, Variable, show};
 
-pub(crate) use value::Values;
+pub(crate) use value::ParameterValues;
 
 /// A number of a model: a plain one, or one that depends on parameters.
 ///
@@ -37,7 +37,7 @@ pub(crate) use value::Values;
 #[derive(Clone)]
 pub struct Number {
     value: f64,
-    formula: Option<Arc<Formula>>,
+    formula: Option<Arc<NumberFormula>>,
 }
 
 /// A parameter: a number with a name that can be set at run time, see
@@ -48,7 +48,7 @@ pub struct Number {
 #[must_use]
 pub fn param(name: &str, default: f64) -> Number {
     let steps = vec![Step::Parameter { name: name.into(), default }];
-    Number { value: default, formula: Some(Arc::new(Formula::new(steps, None))) }
+    Number { value: default, formula: Some(Arc::new(NumberFormula::new(steps, None))) }
 }
 
 impl Number {
@@ -65,19 +65,19 @@ impl Number {
     }
 
     /// A number with a formula, whose value is known.
-    pub fn with_formula(value: f64, formula: Formula) -> Self {
+    pub fn with_formula(value: f64, formula: NumberFormula) -> Self {
         Self { value, formula: Some(Arc::new(formula)) }
     }
 
     /// What the number comes from, unless it is plain.
     #[must_use]
-    pub fn formula(&self) -> Option<&Formula> {
+    pub fn formula(&self) -> Option<&NumberFormula> {
         self.formula.as_deref()
     }
 
     /// The number for these values of the parameters. An error has the place of the formula, if that is
     /// known.
-    pub(crate) fn refreshed(&self, values: &Values) -> Result<Self, Diagnostic> {
+    pub(crate) fn refreshed(&self, values: &ParameterValues) -> Result<Self, Diagnostic> {
         match &self.formula {
             None => Ok(self.clone()),
             Some(formula) => {
@@ -100,7 +100,7 @@ impl Number {
         }
         let mut steps = self.steps();
         steps.push(step);
-        Self::with_formula(value, Formula::new(steps, None))
+        Self::with_formula(value, NumberFormula::new(steps, None))
     }
 
     fn binary(&self, other: &Self, step: Step, value: f64) -> Self {
@@ -110,7 +110,7 @@ impl Number {
         let mut steps = self.steps();
         steps.extend(other.steps());
         steps.push(step);
-        Self::with_formula(value, Formula::new(steps, None))
+        Self::with_formula(value, NumberFormula::new(steps, None))
     }
 
     /// The result of a step on its operands, as a number. Its value may be infinite or NaN.
@@ -128,7 +128,7 @@ impl Number {
         }
         let mut steps: Vec<Step> = operands.iter().flat_map(|number| number.steps()).collect();
         steps.push(step);
-        Self::with_formula(value, Formula::new(steps, None))
+        Self::with_formula(value, NumberFormula::new(steps, None))
     }
 
     fn call(&self, function: Function) -> Self {
@@ -359,7 +359,7 @@ mod tests {
     use super::*;
 
     fn at(number: &Number, p: f64) -> f64 {
-        number.refreshed(&Values::from([("p".into(), p)])).unwrap().value()
+        number.refreshed(&ParameterValues::from([("p".into(), p)])).unwrap().value()
     }
 
     #[test]
@@ -408,8 +408,9 @@ mod tests {
     #[test]
     fn what_cannot_be_computed_is_an_error() {
         let p = param("p", 1.0);
-        let message =
-            |number: Number, p: f64| number.refreshed(&Values::from([("p".into(), p)])).unwrap_err().message;
+        let message = |number: Number, p: f64| {
+            number.refreshed(&ParameterValues::from([("p".into(), p)])).unwrap_err().message
+        };
         assert_eq!(message(1.0 / &p, 0.0), "division by zero");
         assert_eq!(message(p.sqrt(), -1.0), "sqrt(-1) is not a finite number");
         assert_eq!(message(p.exp(), 1e9), "exp(1000000000) is not a finite number");

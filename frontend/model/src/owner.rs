@@ -62,7 +62,7 @@ fn name(kind: &NodeKind) -> &str {
 }
 
 /// A node at the end of a path from the root.
-struct Step {
+struct PathStep {
     node: NodeId,
     /// The step above, and which of its children this is; the root is its own.
     above: u32,
@@ -71,7 +71,7 @@ struct Step {
 
 /// What is known at a node.
 #[derive(Clone, Copy)]
-struct Answer {
+struct OwnerAnswer {
     field: f64,
     /// The step of the leaf that decides, and its share of the weight here. Nobody decides where nothing has
     /// weight.
@@ -85,7 +85,7 @@ struct Answer {
 #[must_use]
 pub fn owner(tree: &CheckedTree, p: [f64; 3]) -> Option<Owner> {
     let mut found = Owners { iso: tree.iso(), steps: Vec::new() };
-    let root = ask(tree, &mut found, Place::default(), p.into());
+    let root = ask(tree, &mut found, OwnerWay::default(), p.into());
     let (leaf, share) = root.leaf.filter(|_| root.field != 0.0)?;
     Some(describe(tree, &found.steps, leaf, share))
 }
@@ -93,90 +93,96 @@ pub fn owner(tree: &CheckedTree, p: [f64; 3]) -> Option<Owner> {
 /// The question for the leaf that decides.
 struct Owners {
     iso: f64,
-    steps: Vec<Step>,
+    steps: Vec<PathStep>,
 }
 
 /// On the way to a node: the step above, and which of its children this is. At the node: its own step.
 #[derive(Clone, Copy, Default)]
-struct Place {
+struct OwnerWay {
     step: u32,
     child: u32,
 }
 
 impl Question for Owners {
-    type Way = Place;
-    type Answer = Answer;
+    type Way = OwnerWay;
+    type Answer = OwnerAnswer;
     type Mark = ();
 
-    fn enter(&mut self, node: NodeId, way: Place) -> Place {
+    fn enter(&mut self, node: NodeId, way: OwnerWay) -> OwnerWay {
         // At most limits::MAX_INSTANCES.
         let step = self.steps.len() as u32;
-        self.steps.push(Step { node, above: way.step, child: way.child });
-        Place { step, child: 0 }
+        self.steps.push(PathStep { node, above: way.step, child: way.child });
+        OwnerWay { step, child: 0 }
     }
 
-    fn below(&self, way: &Place, child: usize) -> Place {
-        Place { child: child as u32, ..*way }
+    fn below(&self, way: &OwnerWay, child: usize) -> OwnerWay {
+        OwnerWay { child: child as u32, ..*way }
     }
 
-    fn given(&self, way: Place, _name: &str, _value: &AttributeValue, _p: DVec3) -> Place {
+    fn given(&self, way: OwnerWay, _name: &str, _value: &AttributeValue, _p: DVec3) -> OwnerWay {
         way
     }
 
-    fn primitive(&self, leaf: &Primitive, p: DVec3, way: &Place) -> Answer {
+    fn primitive(&self, leaf: &Primitive, p: DVec3, way: &OwnerWay) -> OwnerAnswer {
         let s = leaf.skeleton.distance_squared(p) / (leaf.radius * leaf.radius);
-        Answer::of_leaf(leaf.strength * leaf.falloff.value(s), way.step)
+        OwnerAnswer::of_leaf(leaf.strength * leaf.falloff.value(s), way.step)
     }
 
-    fn combine(&self, combinator: Combinator, children: &[Answer]) -> Answer {
+    fn combine(&self, combinator: Combinator, children: &[OwnerAnswer]) -> OwnerAnswer {
         combine(combinator, self.iso, children)
     }
 
-    fn express(&self, formula: &Expression, p: DVec3, way: &Place, children: &[Answer]) -> Answer {
+    fn express(
+        &self,
+        formula: &Expression,
+        p: DVec3,
+        way: &OwnerWay,
+        children: &[OwnerAnswer],
+    ) -> OwnerAnswer {
         if children.is_empty() {
-            Answer::of_leaf(formula.field(p, &[]), way.step)
+            OwnerAnswer::of_leaf(formula.field(p, &[]), way.step)
         } else {
             express(formula, p, children)
         }
     }
 
-    fn field(answer: &Answer) -> f64 {
+    fn field(answer: &OwnerAnswer) -> f64 {
         answer.field
     }
 
-    fn mark(&self, _warp: &Warp, _p: DVec3, _weight: Option<&Answer>) {}
+    fn mark(&self, _warp: &Warp, _p: DVec3, _weight: Option<&OwnerAnswer>) {}
 
-    fn marked(&self, _answer: &mut Answer, (): ()) {}
+    fn marked(&self, _answer: &mut OwnerAnswer, (): ()) {}
 }
 
-impl Answer {
+impl OwnerAnswer {
     fn of_leaf(field: f64, step: u32) -> Self {
         Self { field, leaf: (field != 0.0).then_some((step, 1.0)) }
     }
 }
 
-fn combine(combinator: Combinator, iso: f64, children: &[Answer]) -> Answer {
+fn combine(combinator: Combinator, iso: f64, children: &[OwnerAnswer]) -> OwnerAnswer {
     if children.len() == 1 && combinator.passes_single() {
         // There is nothing to decide.
         return children[0];
     }
     let fields: Vec<f64> = children.iter().map(|child| child.field).collect();
     let weights = combinator.weights(&fields, iso);
-    Answer { field: combinator.field(&fields, iso), leaf: heaviest(children, &weights) }
+    OwnerAnswer { field: combinator.field(&fields, iso), leaf: heaviest(children, &weights) }
 }
 
 /// A formula of one child is that child's; of several, of the leaf with the largest share.
-fn express(expression: &Expression, p: DVec3, children: &[Answer]) -> Answer {
+fn express(expression: &Expression, p: DVec3, children: &[OwnerAnswer]) -> OwnerAnswer {
     let fields: Vec<f64> = children.iter().map(|child| child.field).collect();
     let field = expression.field(p, &fields);
     if let [child] = children {
-        return Answer { field, leaf: child.leaf };
+        return OwnerAnswer { field, leaf: child.leaf };
     }
-    Answer { field, leaf: heaviest(children, &expression.weights(p, &fields)) }
+    OwnerAnswer { field, leaf: heaviest(children, &expression.weights(p, &fields)) }
 }
 
 /// The leaf with the largest share of the weight.
-fn heaviest(children: &[Answer], weights: &[f64]) -> Option<(u32, f64)> {
+fn heaviest(children: &[OwnerAnswer], weights: &[f64]) -> Option<(u32, f64)> {
     let total: f64 = weights.iter().sum();
     let mut best = None;
     let mut most = 0.0;
@@ -193,7 +199,7 @@ fn heaviest(children: &[Answer], weights: &[f64]) -> Option<(u32, f64)> {
 }
 
 /// The way up from a leaf.
-fn describe(tree: &CheckedTree, steps: &[Step], leaf: u32, share: f64) -> Owner {
+fn describe(tree: &CheckedTree, steps: &[PathStep], leaf: u32, share: f64) -> Owner {
     let node = steps[leaf as usize].node;
     let mut above = Vec::new();
     let mut at = leaf;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::diagnostic::{Diagnostic, Span};
 use crate::function::Function;
-use crate::number::{Formula, Number, Step, Values};
+use crate::number::{Number, NumberFormula, ParameterValues, Step};
 use crate::report::{clip, nearest};
 use crate::tree::Tree;
 use crate::word::{is_identifier, is_statement};
@@ -41,7 +41,7 @@ impl Parameter {
     #[must_use]
     pub fn reference(&self) -> Number {
         let step = Step::Parameter { name: Arc::clone(&self.name), default: self.value() };
-        Number::with_formula(self.value(), Formula::new(vec![step], None))
+        Number::with_formula(self.value(), NumberFormula::new(vec![step], None))
     }
 
     /// Notes a declaration of attributes or of the origin that depends on the parameter: no setting reaches
@@ -89,8 +89,8 @@ impl PartialEq for Parameter {
 }
 
 /// Evaluates all parameters, in order. An error names the place of a formula, if it has one.
-pub(crate) fn refresh(parameters: &mut [Parameter]) -> Result<Values, Vec<Diagnostic>> {
-    let (mut known, mut errors) = (Values::new(), Vec::new());
+pub(crate) fn refresh(parameters: &mut [Parameter]) -> Result<ParameterValues, Vec<Diagnostic>> {
+    let (mut known, mut errors) = (ParameterValues::new(), Vec::new());
     for parameter in parameters {
         match parameter.default.refreshed(&known) {
             Ok(default) => parameter.default = default,
@@ -149,8 +149,8 @@ struct Collector {
 }
 
 impl Collector {
-    fn take(&mut self, formula: Option<&Formula>, span: Option<Span>) {
-        for (name, default) in formula.into_iter().flat_map(Formula::parameters) {
+    fn take(&mut self, formula: Option<&NumberFormula>, span: Option<Span>) {
+        for (name, default) in formula.into_iter().flat_map(NumberFormula::parameters) {
             let first = *self.defaults.entry(Arc::clone(name)).or_insert_with(|| {
                 self.parameters.push(Parameter { name: Arc::clone(name), ..Parameter::new("", default) });
                 Some(default)

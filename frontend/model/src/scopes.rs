@@ -29,13 +29,13 @@ use crate::written::{FieldNumber, Written, WrittenAttribute};
 /// first, as if written further inside; of attributes with one name the later one counts.
 #[derive(Debug)]
 pub struct Scopes {
-    root: Scope,
-    open: Vec<Scope>,
+    root: BegunScope,
+    open: Vec<BegunScope>,
 }
 
 /// One `begin`: its children so far, and what holds for the next one.
 #[derive(Debug)]
-struct Scope {
+struct BegunScope {
     combinator: Combinator,
     children: Vec<Tree>,
     around: Vec<Written>,
@@ -52,7 +52,7 @@ pub enum ScopeError {
     StillOpen(usize),
 }
 
-impl Scope {
+impl BegunScope {
     fn new(combinator: Combinator) -> Self {
         Self { combinator, children: Vec::new(), around: Vec::new() }
     }
@@ -71,16 +71,16 @@ impl Scopes {
     /// An empty scene, whose parts will be combined so.
     #[must_use]
     pub fn new(combinator: impl Into<Combinator>) -> Self {
-        Self { root: Scope::new(combinator.into()), open: Vec::new() }
+        Self { root: BegunScope::new(combinator.into()), open: Vec::new() }
     }
 
-    fn scope(&mut self) -> &mut Scope {
+    fn scope(&mut self) -> &mut BegunScope {
         self.open.last_mut().unwrap_or(&mut self.root)
     }
 
     /// Opens a scope: what follows is combined so.
     pub fn begin(&mut self, combinator: impl Into<Combinator>) -> &mut Self {
-        self.open.push(Scope::new(combinator.into()));
+        self.open.push(BegunScope::new(combinator.into()));
         self
     }
 

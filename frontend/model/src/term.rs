@@ -30,21 +30,21 @@ use crate::written::{Written, WrittenAttribute};
 
 /// A part of the formula of a field. Cloning one is cheap, and what is used several times is computed once.
 #[derive(Clone)]
-pub struct Term(Arc<Node>);
+pub struct Term(Arc<TermNode>);
 
-enum Kind {
+enum TermKind {
     Coordinate(u8),
     Field(Tree),
     Constant(Number),
     Step(Step),
 }
 
-struct Node {
-    kind: Kind,
+struct TermNode {
+    kind: TermKind,
     operands: Vec<Term>,
 }
 
-impl Drop for Node {
+impl Drop for TermNode {
     /// Without recursion, as trees are dropped.
     fn drop(&mut self) {
         let mut list = std::mem::take(&mut self.operands);
@@ -59,19 +59,19 @@ impl Drop for Node {
 /// The first coordinate of the point, in the expression's own space.
 #[must_use]
 pub fn x() -> Term {
-    Term::leaf(Kind::Coordinate(0))
+    Term::leaf(TermKind::Coordinate(0))
 }
 
 /// The second coordinate.
 #[must_use]
 pub fn y() -> Term {
-    Term::leaf(Kind::Coordinate(1))
+    Term::leaf(TermKind::Coordinate(1))
 }
 
 /// The third coordinate.
 #[must_use]
 pub fn z() -> Term {
-    Term::leaf(Kind::Coordinate(2))
+    Term::leaf(TermKind::Coordinate(2))
 }
 
 macro_rules! unary {
@@ -85,12 +85,12 @@ macro_rules! unary {
 }
 
 impl Term {
-    fn leaf(kind: Kind) -> Self {
-        Self(Arc::new(Node { kind, operands: Vec::new() }))
+    fn leaf(kind: TermKind) -> Self {
+        Self(Arc::new(TermNode { kind, operands: Vec::new() }))
     }
 
     fn step(step: Step, operands: impl IntoIterator<Item = Self>) -> Self {
-        Self(Arc::new(Node { kind: Kind::Step(step), operands: operands.into_iter().collect() }))
+        Self(Arc::new(TermNode { kind: TermKind::Step(step), operands: operands.into_iter().collect() }))
     }
 
     fn call<const N: usize>(function: Function, operands: [Self; N]) -> Self {
@@ -195,7 +195,7 @@ impl Term {
     fn assemble(values: &[&Self]) -> (Assembled, Vec<Tree>) {
         let (mut assembler, mut children) = (Assembler::default(), Vec::new());
         let mut places: HashMap<usize, u32> = HashMap::new();
-        let mut done: HashMap<*const Node, Draft> = HashMap::new();
+        let mut done: HashMap<*const TermNode, Draft> = HashMap::new();
         let mut stack: Vec<_> = values.iter().rev().map(|&term| (term, false)).collect();
         while let Some((term, opened)) = stack.pop() {
             let node = &*term.0;
@@ -208,9 +208,9 @@ impl Term {
                 continue;
             }
             let draft = match &node.kind {
-                Kind::Coordinate(axis) => Draft::Coordinate(*axis),
-                Kind::Constant(number) => Draft::Constant(number.clone()),
-                Kind::Field(tree) => {
+                TermKind::Coordinate(axis) => Draft::Coordinate(*axis),
+                TermKind::Constant(number) => Draft::Constant(number.clone()),
+                TermKind::Field(tree) => {
                     let next = children.len() as u32;
                     let place = *places.entry(tree.identity()).or_insert(next);
                     if place == next {
@@ -218,7 +218,7 @@ impl Term {
                     }
                     Draft::Child(place)
                 }
-                Kind::Step(step) => {
+                TermKind::Step(step) => {
                     let operands = node.operands.iter().map(|operand| done[&Arc::as_ptr(&operand.0)].clone());
                     let operands = operands.collect();
                     assembler.apply(step, operands)
@@ -327,7 +327,7 @@ impl Tree {
     /// Its field as a part of a formula, where `+ - * /` are arithmetic.
     #[must_use]
     pub fn field(&self) -> Term {
-        Term::leaf(Kind::Field(self.clone()))
+        Term::leaf(TermKind::Field(self.clone()))
     }
 
     /// Its field, and 0 outside of the box between two corners.
@@ -346,7 +346,7 @@ impl Tree {
 
 impl From<f64> for Term {
     fn from(number: f64) -> Self {
-        Self::leaf(Kind::Constant(number.into()))
+        Self::leaf(TermKind::Constant(number.into()))
     }
 }
 
@@ -365,7 +365,7 @@ constants! { f32 i8 i16 i32 u8 u16 u32 }
 
 impl From<Number> for Term {
     fn from(number: Number) -> Self {
-        Self::leaf(Kind::Constant(number))
+        Self::leaf(TermKind::Constant(number))
     }
 }
 

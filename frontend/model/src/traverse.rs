@@ -42,7 +42,7 @@ pub(crate) trait Nodes: Copy {
 }
 
 /// A walk that is under way.
-pub(crate) struct Walk<N: Nodes> {
+pub(crate) struct Traversal<N: Nodes> {
     nodes: N,
     order: Order,
     stack: Vec<Todo<N::Node>>,
@@ -57,7 +57,7 @@ enum Todo<N> {
     Visit(N),
 }
 
-impl<N: Nodes> Walk<N> {
+impl<N: Nodes> Traversal<N> {
     pub(crate) fn new(nodes: N, root: N::Node, order: Order, visit: Visit) -> Self {
         let seen = match visit {
             Visit::Nodes => Some(HashSet::new()),
@@ -94,7 +94,7 @@ impl<N: Nodes> Walk<N> {
     }
 }
 
-impl<N: Nodes> Iterator for Walk<N> {
+impl<N: Nodes> Iterator for Traversal<N> {
     type Item = N::Node;
 
     fn next(&mut self) -> Option<N::Node> {

@@ -19,7 +19,7 @@ use glam::DVec3;
 
 use crate::attribute::{AttributeGroup, AttributeValue, Mixing, UvMap};
 use crate::check::{CheckedTree, NodeId};
-use crate::combine::{Combinator, Form, ReduceCode};
+use crate::combine::{Combinator, OperatorForm, ReduceCode};
 use crate::descent::{Question, ask};
 use crate::expression::Expression;
 use crate::kind::{NodeKind, Primitive};
@@ -43,7 +43,7 @@ pub struct Sample {
 }
 
 /// The values of all attribute groups at a leaf.
-type Values = Rc<[Vec<f64>]>;
+type GroupValues = Rc<[Vec<f64>]>;
 
 /// What the way down has found of an attribute group.
 #[derive(Clone)]
@@ -59,15 +59,15 @@ type Way = Rc<[Given]>;
 
 /// What is known at a node.
 #[derive(Clone)]
-struct Answer {
+struct SampleAnswer {
     field: f64,
     kink_distance: f64,
     /// The field is zero around the point, not only at it: all leaves that matter are out of reach.
     silent: bool,
     /// The mean of the leaves' values, for each group.
-    mean: Values,
+    mean: GroupValues,
     /// The values of the leaf with the largest share of the weight.
-    dominant: Values,
+    dominant: GroupValues,
     /// The share of that leaf.
     share: f64,
     /// The second largest share of a leaf.
@@ -77,21 +77,21 @@ struct Answer {
 /// The answers at `p`. Cost: all paths of the tree.
 #[must_use]
 pub fn walk(tree: &CheckedTree, p: [f64; 3]) -> Sample {
-    let defaults: Values = tree.attributes().iter().map(|group| group.default.clone()).collect();
+    let defaults: GroupValues = tree.attributes().iter().map(|group| group.default.clone()).collect();
     let unbound: Way = defaults.iter().map(|value| Given::Value(value.clone(), f64::INFINITY)).collect();
-    let root = ask(tree, &mut Samples { tree, defaults }, unbound, p.into());
+    let root = ask(tree, &mut SampleQuestion { tree, defaults }, unbound, p.into());
     finish(tree, &root)
 }
 
 /// The question for the field and the attributes.
-struct Samples<'a> {
+struct SampleQuestion<'a> {
     tree: &'a CheckedTree,
-    defaults: Values,
+    defaults: GroupValues,
 }
 
-impl Question for Samples<'_> {
+impl Question for SampleQuestion<'_> {
     type Way = Way;
-    type Answer = Answer;
+    type Answer = SampleAnswer;
     /// How far the point is from a crease.
     type Mark = f64;
 
@@ -114,24 +114,24 @@ impl Question for Samples<'_> {
         way.into()
     }
 
-    fn primitive(&self, leaf: &Primitive, p: DVec3, way: &Way) -> Answer {
+    fn primitive(&self, leaf: &Primitive, p: DVec3, way: &Way) -> SampleAnswer {
         primitive(leaf, p, way)
     }
 
-    fn combine(&self, combinator: Combinator, children: &[Answer]) -> Answer {
+    fn combine(&self, combinator: Combinator, children: &[SampleAnswer]) -> SampleAnswer {
         combine(combinator, self.tree.iso(), children, &self.defaults)
     }
 
-    fn express(&self, formula: &Expression, p: DVec3, way: &Way, children: &[Answer]) -> Answer {
+    fn express(&self, formula: &Expression, p: DVec3, way: &Way, children: &[SampleAnswer]) -> SampleAnswer {
         let values = values_at(way, NodeKind::origin(), p);
         express(formula, p, children, values, &self.defaults)
     }
 
-    fn field(answer: &Answer) -> f64 {
+    fn field(answer: &SampleAnswer) -> f64 {
         answer.field
     }
 
-    fn mark(&self, warp: &Warp, p: DVec3, weight: Option<&Answer>) -> f64 {
+    fn mark(&self, warp: &Warp, p: DVec3, weight: Option<&SampleAnswer>) -> f64 {
         let Some(weight) = weight else { return warp.kink_distance(p) };
         // Where the weight is clamped, there is a crease.
         let clamp = if weight.silent { f64::INFINITY } else { weight.field.abs() };
@@ -139,7 +139,7 @@ impl Question for Samples<'_> {
         warp.kink_distance(p).min(weight.kink_distance).min(clamp)
     }
 
-    fn marked(&self, answer: &mut Answer, crease: f64) {
+    fn marked(&self, answer: &mut SampleAnswer, crease: f64) {
         answer.kink_distance = answer.kink_distance.min(crease);
     }
 }
@@ -172,7 +172,7 @@ fn given(value: &AttributeValue, p: DVec3) -> Given {
 }
 
 /// The values of all attribute groups at a leaf with this skeleton's uv, and how far they are from a jump.
-fn values_at(way: &Way, skeleton: &Skeleton, p: DVec3) -> (Values, f64) {
+fn values_at(way: &Way, skeleton: &Skeleton, p: DVec3) -> (GroupValues, f64) {
     let value = |given: &Given| match given {
         Given::Value(value, _) => value.clone(),
         Given::Uv(map) => map.apply(skeleton.uv(p)).to_vec(),
@@ -184,7 +184,7 @@ fn values_at(way: &Way, skeleton: &Skeleton, p: DVec3) -> (Values, f64) {
     (way.iter().map(value).collect(), way.iter().map(jump).fold(f64::INFINITY, f64::min))
 }
 
-fn primitive(leaf: &Primitive, p: DVec3, way: &Way) -> Answer {
+fn primitive(leaf: &Primitive, p: DVec3, way: &Way) -> SampleAnswer {
     let s = leaf.skeleton.distance_squared(p) / (leaf.radius * leaf.radius);
     let field = leaf.strength * leaf.falloff.value(s);
     let silent = s >= 1.0 || leaf.strength == 0.0;
@@ -193,10 +193,23 @@ fn primitive(leaf: &Primitive, p: DVec3, way: &Way) -> Answer {
     let tip = if leaf.falloff.is_pointed() { s.sqrt() * leaf.radius } else { f64::INFINITY };
     let (values, jump) = values_at(way, &leaf.skeleton, p);
     let kink_distance = if silent { rim } else { rim.min(tip).min(jump).min(leaf.skeleton.kink_distance(p)) };
-    Answer { field, kink_distance, silent, mean: values.clone(), dominant: values, share: 1.0, second: 0.0 }
+    SampleAnswer {
+        field,
+        kink_distance,
+        silent,
+        mean: values.clone(),
+        dominant: values,
+        share: 1.0,
+        second: 0.0,
+    }
 }
 
-fn combine(combinator: Combinator, iso: f64, children: &[Answer], defaults: &Values) -> Answer {
+fn combine(
+    combinator: Combinator,
+    iso: f64,
+    children: &[SampleAnswer],
+    defaults: &GroupValues,
+) -> SampleAnswer {
     if children.len() == 1 && combinator.passes_single() {
         // There is nothing to decide.
         return children[0].clone();
@@ -213,10 +226,10 @@ fn combine(combinator: Combinator, iso: f64, children: &[Answer], defaults: &Val
 fn express(
     expression: &Expression,
     p: DVec3,
-    children: &[Answer],
-    (values, jump): (Values, f64),
-    defaults: &Values,
-) -> Answer {
+    children: &[SampleAnswer],
+    (values, jump): (GroupValues, f64),
+    defaults: &GroupValues,
+) -> SampleAnswer {
     let fields: Vec<f64> = children.iter().map(|child| child.field).collect();
     let field = expression.field(p, &fields);
     let heard = expression.kink_distance(p, &fields);
@@ -225,7 +238,7 @@ fn express(
     match children {
         [] => {
             let (mean, dominant, kink_distance) = (values.clone(), values, kink_distance.min(jump));
-            Answer { field, kink_distance, silent, mean, dominant, share: 1.0, second: 0.0 }
+            SampleAnswer { field, kink_distance, silent, mean, dominant, share: 1.0, second: 0.0 }
         }
         [child] => {
             let kink_distance =
@@ -250,15 +263,15 @@ fn express(
 /// The answer of a node with this field and distance to a kink, whose attributes are those of its children by
 /// weight.
 fn mixed(
-    children: &[Answer],
+    children: &[SampleAnswer],
     weights: &[f64],
-    defaults: &Values,
+    defaults: &GroupValues,
     (field, kink_distance, silent): (f64, f64, bool),
-) -> Answer {
+) -> SampleAnswer {
     let total: f64 = weights.iter().sum();
     if total <= 0.0 {
         let (mean, dominant) = (defaults.clone(), defaults.clone());
-        return Answer { field, kink_distance, silent, mean, dominant, share: 1.0, second: 0.0 };
+        return SampleAnswer { field, kink_distance, silent, mean, dominant, share: 1.0, second: 0.0 };
     }
     let mut mean: Vec<Vec<f64>> = defaults.iter().map(|default| vec![0.0; default.len()]).collect();
     let mut dominant = defaults;
@@ -279,18 +292,26 @@ fn mixed(
         }
         second = second.max(part * child.second);
     }
-    Answer { field, kink_distance, silent, mean: mean.into(), dominant: dominant.clone(), share, second }
+    SampleAnswer {
+        field,
+        kink_distance,
+        silent,
+        mean: mean.into(),
+        dominant: dominant.clone(),
+        share,
+        second,
+    }
 }
 
 /// How far a node is from any kink that reaches its answer, and whether its field is zero all around.
 fn decide(
     combinator: Combinator,
     iso: f64,
-    children: &[Answer],
+    children: &[SampleAnswer],
     winner: Option<usize>,
     field: f64,
 ) -> (f64, bool) {
-    let nearest = |d: f64, child: &Answer| d.min(child.kink_distance);
+    let nearest = |d: f64, child: &SampleAnswer| d.min(child.kink_distance);
     let all_nearest = || children.iter().fold(f64::INFINITY, nearest);
     if children.iter().all(|child| child.silent) {
         // The complement of nothing is something, but it is the same all around.
@@ -300,35 +321,35 @@ fn decide(
         || children.iter().filter(|child| !child.silent).map(|child| child.field).collect::<Vec<_>>();
     // To the form it does not matter here whether numbers depend on parameters.
     match combinator.form(false) {
-        Form::Reduce(ReduceCode::Fold(code)) if code.absorbs() => {
+        OperatorForm::Reduce(ReduceCode::Fold(code)) if code.absorbs() => {
             let silent = children.iter().any(|child| child.silent);
             // Where the field falls to zero, attributes jump to their defaults.
             let fading = heard_fields().iter().fold(f64::INFINITY, |least, f| least.min(f.abs()));
             (all_nearest().min(if silent { f64::INFINITY } else { fading }), silent)
         }
-        Form::Reduce(ReduceCode::Step(_)) => {
+        OperatorForm::Reduce(ReduceCode::Step(_)) => {
             let fields: Vec<f64> = children.iter().map(|child| child.field).collect();
             if field == 0.0 && children.iter().any(|child| child.silent) {
                 return (all_nearest(), true);
             }
             (combinator.kink_distance(&fields, iso).min(all_nearest()).min(field.abs()), false)
         }
-        Form::Map(_) => {
+        OperatorForm::Map(_) => {
             let child = &children[0];
             let fading = child.field.abs().min(field.abs());
             (combinator.kink_distance(&[child.field], iso).min(child.kink_distance).min(fading), false)
         }
-        Form::Reduce(ReduceCode::Fold(_)) => {
+        OperatorForm::Reduce(ReduceCode::Fold(_)) => {
             // Where the total weight falls to zero, attributes jump to their defaults.
             let heard = || children.iter().filter(|child| !child.silent).map(|child| child.field);
             let largest = heard().fold(f64::NEG_INFINITY, f64::max);
             (children.iter().fold(largest.abs(), nearest), false)
         }
-        form @ (Form::Reduce(ReduceCode::Choice(_)) | Form::Difference) => {
+        form @ (OperatorForm::Reduce(ReduceCode::Choice(_)) | OperatorForm::Difference) => {
             let winner = &children[winner.unwrap_or(0)];
             // A tie of children that are zero all around is none: the first of them wins, whatever the
             // engine.
-            let first = usize::from(form == Form::Difference);
+            let first = usize::from(form == OperatorForm::Difference);
             let quiet = children.iter().skip(first).position(|child| child.silent).map(|i| i + first);
             let rivals: Vec<f64> = (0..children.len())
                 .filter(|&i| i < first || !children[i].silent || Some(i) == quiet)
@@ -342,7 +363,7 @@ fn decide(
     }
 }
 
-fn finish(tree: &CheckedTree, root: &Answer) -> Sample {
+fn finish(tree: &CheckedTree, root: &SampleAnswer) -> Sample {
     let values = root.mean.iter().zip(root.dominant.iter());
     let pick = |(group, (mean, dominant)): (&AttributeGroup, (&Vec<f64>, &Vec<f64>))| match group.mixing {
         Mixing::Blend => mean.clone(),

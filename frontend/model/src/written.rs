@@ -25,7 +25,7 @@ use crate::falloff::Falloff;
 use crate::field::{FieldKind, FieldValue, plain};
 use crate::kind::{NodeKind, Primitive};
 use crate::map::MapKind;
-use crate::number::{Number, Step, Values};
+use crate::number::{Number, ParameterValues, Step};
 use crate::report::Fault;
 use crate::skeleton::SkeletonKind;
 use crate::warp::{FormulaWarp, WarpKind};
@@ -188,7 +188,7 @@ impl Written {
     }
 
     /// The same with the present values of parameters. An error names the place of a formula, if it has one.
-    pub(crate) fn refreshed(&self, known: &Values) -> Result<Self, Diagnostic> {
+    pub(crate) fn refreshed(&self, known: &ParameterValues) -> Result<Self, Diagnostic> {
         let mut fresh = self.clone();
         for number in fresh.numbers_mut() {
             *number = number.refreshed(known)?;

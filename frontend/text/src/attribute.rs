@@ -8,7 +8,7 @@
 //! ```
 
 use super::color::color_hint;
-use super::expression::Place;
+use super::expression::ExpressionPlace;
 use super::lex::{Token, TokenKind};
 use super::primitive::Slots;
 use super::state::Parser;
@@ -103,7 +103,7 @@ impl Parser<'_> {
                     self.once(&mut scale, numbers, token);
                 }
                 "rotate" => {
-                    let number = self.expression(Place::Alone).number;
+                    let number = self.expression(ExpressionPlace::Alone).number;
                     self.once(&mut degrees, number, token);
                 }
                 _ => {

@@ -20,7 +20,7 @@ pub(super) enum Head {
 }
 
 /// An open block.
-pub(super) struct Frame {
+pub(super) struct BlockFrame {
     pub(super) head: Head,
     /// Its first child on the stack of finished subtrees.
     pub(super) first: u32,
@@ -34,7 +34,7 @@ pub(super) struct Frame {
     pub(super) around: Option<Box<Written>>,
 }
 
-impl Frame {
+impl BlockFrame {
     /// With a node around it.
     pub(super) fn inside(self, around: Written) -> Self {
         Self { around: Some(Box::new(around)), ..self }
@@ -46,7 +46,7 @@ pub(super) enum Begun {
     /// A whole subtree.
     Leaf(Tree),
     /// A block is open.
-    Block(Frame),
+    Block(BlockFrame),
     /// Nothing: the word was skipped.
     Nothing,
 }

@@ -14,12 +14,12 @@
 use jbt_ir::limits::MAX_EXPRESSION_DEPTH;
 
 use super::lex::{Token, TokenKind};
-use super::scope::Scope;
+use super::scope::FormulaScope;
 use super::state::Parser;
 use super::words::{CONSTANTS, constant};
 use jbt_model::diagnostic::{Diagnostic, Span};
 pub use jbt_model::function::Function;
-use jbt_model::number::{Binary, Formula, Number, Step, Variable};
+use jbt_model::number::{Binary, Number, NumberFormula, Step, Variable};
 use jbt_model::report::{clip, nearest};
 use jbt_model::word::is_statement;
 
@@ -50,14 +50,14 @@ impl Waiting {
 
 /// A number and the text that it came from.
 #[derive(Clone, Debug)]
-pub(super) struct Operand {
+pub(super) struct ParsedOperand {
     pub(super) number: Number,
     pub(super) span: Span,
 }
 
 /// An operand on the stack.
 #[derive(Clone, Copy, Debug)]
-struct Part {
+struct StackedOperand {
     value: f64,
     span: Span,
     /// Where its steps begin in the list; they end where those of the next operand begin.
@@ -68,7 +68,7 @@ struct Part {
 
 /// Where an expression stands, which decides where it ends.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) enum Place {
+pub(super) enum ExpressionPlace {
     /// By itself: it goes on as long as operators follow.
     Alone,
     /// Directly inside a vector: a `+` or `-` with a blank before it and none after it begins the next
@@ -79,7 +79,7 @@ pub(super) enum Place {
 /// The two stacks, and the steps of the operands on theirs.
 #[derive(Default)]
 struct Stacks {
-    operands: Vec<Part>,
+    operands: Vec<StackedOperand>,
     steps: Vec<Step>,
     waiting: Vec<(Waiting, u32)>,
     /// How many groups and calls wait.
@@ -91,14 +91,14 @@ impl Stacks {
     fn push(&mut self, value: f64, span: Span) {
         let first = self.steps.len() as u32;
         self.steps.push(Step::Literal(value));
-        self.operands.push(Part { value, span, first, depends: false });
+        self.operands.push(StackedOperand { value, span, first, depends: false });
     }
 
     /// What is no number before there is a point. Nothing is computed of it, so its value is NaN.
     fn push_variable(&mut self, variable: Variable, span: Span) {
         let first = self.steps.len() as u32;
         self.steps.push(Step::Variable(variable));
-        self.operands.push(Part { value: f64::NAN, span, first, depends: true });
+        self.operands.push(StackedOperand { value: f64::NAN, span, first, depends: true });
     }
 
     /// A number that is made already.
@@ -108,7 +108,7 @@ impl Stacks {
             Some(formula) => {
                 let first = self.steps.len() as u32;
                 self.steps.extend_from_slice(formula.steps());
-                self.operands.push(Part { value: number.value(), span, first, depends: true });
+                self.operands.push(StackedOperand { value: number.value(), span, first, depends: true });
             }
         }
     }
@@ -119,7 +119,7 @@ impl Stacks {
         match step {
             Some(step) => {
                 self.steps.push(step);
-                self.operands.push(Part { value, span, first, depends: true });
+                self.operands.push(StackedOperand { value, span, first, depends: true });
             }
             None => {
                 self.steps.truncate(first as usize);
@@ -129,20 +129,20 @@ impl Stacks {
     }
 
     /// The only operand that is left.
-    fn finish(&mut self) -> Option<Operand> {
+    fn finish(&mut self) -> Option<ParsedOperand> {
         let part = self.operands.pop()?;
         let number = if part.depends {
-            Number::with_formula(part.value, Formula::new(self.steps.clone(), Some(part.span)))
+            Number::with_formula(part.value, NumberFormula::new(self.steps.clone(), Some(part.span)))
         } else {
             Number::from(part.value)
         };
-        Some(Operand { number, span: part.span })
+        Some(ParsedOperand { number, span: part.span })
     }
 }
 
 impl Parser<'_> {
     /// A number. After an error that has lost the place, NaN.
-    pub(super) fn expression(&mut self, place: Place) -> Operand {
+    pub(super) fn expression(&mut self, place: ExpressionPlace) -> ParsedOperand {
         let sign = self.accept(b'-');
         let token = self.peek();
         if token.kind != TokenKind::Number {
@@ -164,40 +164,45 @@ impl Parser<'_> {
         // Most numbers stand alone.
         let start = sign.map_or(token.start, |sign| sign.start);
         let value = if sign.is_some() { -value } else { value };
-        Operand { number: value.into(), span: Span::new(start, token.end) }
+        ParsedOperand { number: value.into(), span: Span::new(start, token.end) }
     }
 
     /// A number whose first operand has been read.
-    pub(super) fn expression_from(&mut self, place: Place, first: &Operand) -> Operand {
+    pub(super) fn expression_from(&mut self, place: ExpressionPlace, first: &ParsedOperand) -> ParsedOperand {
         self.expression_after(place, None, Some((&first.number, first.span)))
     }
 
     /// A number whose minus sign has been read, or its first operand, or both.
     fn expression_after(
         &mut self,
-        place: Place,
+        place: ExpressionPlace,
         sign: Option<Token>,
         first: Option<(&Number, Span)>,
-    ) -> Operand {
+    ) -> ParsedOperand {
         let mut stacks = Stacks::default();
         stacks.waiting.extend(sign.map(|sign| (Waiting::Negate, sign.start as u32)));
         let wanted = first.is_none();
         if let Some((number, span)) = first {
             stacks.push_number(number, span);
         }
-        let lost = Operand { number: f64::NAN.into(), span: self.peek().span() };
+        let lost = ParsedOperand { number: f64::NAN.into(), span: self.peek().span() };
         self.finished(&mut stacks, wanted, place).unwrap_or(lost)
     }
 
     /// Whether a `+` or `-` begins the next element of a vector.
-    fn begins_element(&self, binary: Binary, place: Place) -> bool {
+    fn begins_element(&self, binary: Binary, place: ExpressionPlace) -> bool {
         let additive = matches!(binary, Binary::Add | Binary::Subtract);
-        place == Place::Element && additive && self.leans_right()
+        place == ExpressionPlace::Element && additive && self.leans_right()
     }
 
     /// The number that the stacks, the text and the place lead to; nothing after an error that has lost the
     /// place.
-    fn finished(&mut self, stacks: &mut Stacks, mut wanted: bool, place: Place) -> Option<Operand> {
+    fn finished(
+        &mut self,
+        stacks: &mut Stacks,
+        mut wanted: bool,
+        place: ExpressionPlace,
+    ) -> Option<ParsedOperand> {
         loop {
             if stacks.waiting.len().max(stacks.operands.len()) >= MAX_EXPRESSION_DEPTH {
                 let message = format!("more than {MAX_EXPRESSION_DEPTH} operators wait in one expression");
@@ -300,7 +305,7 @@ impl Parser<'_> {
 
     /// Takes what may follow an operand. Returns whether another one is wanted, or nothing if the expression
     /// ends here.
-    fn operator(&mut self, stacks: &mut Stacks, place: Place) -> Option<bool> {
+    fn operator(&mut self, stacks: &mut Stacks, place: ExpressionPlace) -> Option<bool> {
         let token = self.peek();
         let TokenKind::Mark(mark) = token.kind else {
             return None;
@@ -373,7 +378,7 @@ impl Parser<'_> {
             }
             return;
         };
-        let parts: Vec<Part> = stacks.operands.drain(first as usize..).collect();
+        let parts: Vec<StackedOperand> = stacks.operands.drain(first as usize..).collect();
         let arguments: Vec<f64> = parts.iter().map(|part| part.value).collect();
         let (fewest, most) = function.arity();
         let (name, count) = (function.name(), arguments.len());
@@ -397,7 +402,7 @@ impl Parser<'_> {
         stacks.push_result(value, span, begin, step);
     }
 
-    fn binary(&mut self, stacks: &mut Stacks, binary: Binary, left: Part, right: Part) {
+    fn binary(&mut self, stacks: &mut Stacks, binary: Binary, left: StackedOperand, right: StackedOperand) {
         let span = Span { start: left.span.start, end: right.span.end };
         let (a, b) = (left.value, right.value);
         let value =
@@ -432,7 +437,7 @@ impl Parser<'_> {
             if parser.scope.is_some() && parser.lets.contains_key(word) {
                 return error.expected(format!("perhaps `field({word})`"));
             }
-            let here = parser.scope.iter().flat_map(Scope::words);
+            let here = parser.scope.iter().flat_map(FormulaScope::words);
             match nearest(word, parser.parameter_names().chain(builtin).chain(here)) {
                 Some(near) => error.expected(format!("perhaps `{near}`")),
                 None => error.expected(format!("declare it above: param {} = 1", clip(word))),

@@ -6,9 +6,9 @@
 use jbt_ir::limits::MAX_EXPRESSION_STEPS;
 
 use super::block::{Begun, Head};
-use super::expression::Place;
+use super::expression::ExpressionPlace;
 use super::lex::{Token, TokenKind};
-use super::scope::Scope;
+use super::scope::FormulaScope;
 use super::state::Parser;
 use super::words::{WEIGHTED, is_builtin};
 use jbt_model::diagnostic::{Diagnostic, Span};
@@ -113,7 +113,7 @@ impl<'a> Parser<'a> {
         let Some(open) = self.open() else {
             return self.broken.clone();
         };
-        let Some((assembled, children)) = self.formula((start, open), Scope::default(), 1) else {
+        let Some((assembled, children)) = self.formula((start, open), FormulaScope::default(), 1) else {
             return self.broken.clone();
         };
         let span = Span::new(start.start, self.previous_end());
@@ -124,7 +124,7 @@ impl<'a> Parser<'a> {
     /// The formula of an attribute, whose word, `start`, has just been taken: one value for each channel.
     pub(super) fn attribute_formula(&mut self, start: Token, width: usize) -> Option<Formula> {
         let open = self.open()?;
-        let scope = Scope { fieldless: true, ..Scope::default() };
+        let scope = FormulaScope { fieldless: true, ..FormulaScope::default() };
         let (assembled, _) = self.formula((start, open), scope, width)?;
         Some(Formula::new(assembled, None))
     }
@@ -134,7 +134,7 @@ impl<'a> Parser<'a> {
     fn formula(
         &mut self,
         (start, open): (Token, Token),
-        scope: Scope<'a>,
+        scope: FormulaScope<'a>,
         width: usize,
     ) -> Option<(Assembled, Vec<Tree>)> {
         self.scope = Some(scope);
@@ -177,7 +177,7 @@ impl<'a> Parser<'a> {
             // Numbers whose steps may hold variables.
             let numbers = match (defines, width) {
                 (false, 2..) => self.group_values(Some(width)),
-                _ => vec![self.expression(Place::Alone).number],
+                _ => vec![self.expression(ExpressionPlace::Alone).number],
             };
             let drafts = numbers.iter().map(|number| assembler.postfix(&number.steps(), &values));
             let mut drafts: Vec<Draft> = drafts.collect();
@@ -206,7 +206,7 @@ impl<'a> Parser<'a> {
                 self.next();
                 self.next();
             }
-            let number = self.expression(Place::Alone).number;
+            let number = self.expression(ExpressionPlace::Alone).number;
             let value = assembler.postfix(&number.steps(), &definitions);
             match name.filter(|_| !self.is_muted()) {
                 Some(name) => {
@@ -252,7 +252,7 @@ impl<'a> Parser<'a> {
             self.expected_at(self.peek(), "expected `(` and three coordinates: warp (x, y, z)");
             return None;
         }
-        self.scope = Some(Scope { pointwise: true, ..Scope::default() });
+        self.scope = Some(FormulaScope { pointwise: true, ..FormulaScope::default() });
         let mut assembler = Assembler::default();
         let values = self.formulas(&mut assembler, 3);
         self.scope = None;
@@ -333,7 +333,7 @@ impl<'a> Parser<'a> {
             self.expected_at(self.peek(), "expected `radius`, the distance at which the field reaches zero");
             return self.unary(start, None);
         }
-        let radius = self.expression(Place::Alone).number;
+        let radius = self.expression(ExpressionPlace::Alone).number;
         self.unary(start, Some(Written::Expression(Formula::fading(falloff, radius))))
     }
 }

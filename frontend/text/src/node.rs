@@ -2,8 +2,8 @@
 
 use jbt_ir::limits::MAX_NODES;
 
-use super::block::{Begun, Frame, Head};
-use super::expression::Place;
+use super::block::{Begun, BlockFrame, Head};
+use super::expression::ExpressionPlace;
 use super::hints::foreign_word;
 use super::lex::{Token, TokenKind};
 use super::state::Parser;
@@ -32,7 +32,7 @@ impl<'a> Parser<'a> {
 
     /// A node with everything below it.
     pub(super) fn tree(&mut self) -> Tree {
-        let mut frames: Vec<Frame> = Vec::new();
+        let mut frames: Vec<BlockFrame> = Vec::new();
         let mut finished: Vec<Tree> = Vec::new();
         loop {
             let token = self.peek();
@@ -41,7 +41,7 @@ impl<'a> Parser<'a> {
                 TokenKind::Word if !word.is_some_and(is_statement) => match self.begin() {
                     Begun::Leaf(tree) => finished.push(tree),
                     Begun::Block(frame) => {
-                        frames.push(Frame { first: finished.len() as u32, ..frame });
+                        frames.push(BlockFrame { first: finished.len() as u32, ..frame });
                         continue;
                     }
                     Begun::Nothing => {}
@@ -222,7 +222,7 @@ impl<'a> Parser<'a> {
         match self.open() {
             Some(open) => {
                 let open = open.start as u32;
-                Begun::Block(Frame { head, first: 0, span, open, incomplete: false, around: None })
+                Begun::Block(BlockFrame { head, first: 0, span, open, incomplete: false, around: None })
             }
             None => Begun::Leaf(self.broken.clone()),
         }
@@ -256,7 +256,7 @@ impl<'a> Parser<'a> {
     }
 
     /// The node of a block that has been closed.
-    fn close(&mut self, frame: Frame, children: Vec<Tree>) -> Tree {
+    fn close(&mut self, frame: BlockFrame, children: Vec<Tree>) -> Tree {
         let written = match frame.head {
             Head::Broken => return self.broken.clone(),
             Head::Combine(combinator) => {
@@ -298,7 +298,7 @@ impl<'a> Parser<'a> {
     }
 
     fn select(&mut self, start: Token) -> Begun {
-        let which = self.expression(Place::Alone).number;
+        let which = self.expression(ExpressionPlace::Alone).number;
         self.block(start, Head::Operator(Box::new(Written::Select(which))))
     }
 

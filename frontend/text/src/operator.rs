@@ -9,7 +9,7 @@
 //! Operators of one word differ in the names of their numbers.
 
 use super::block::{Begun, Head};
-use super::expression::Place;
+use super::expression::ExpressionPlace;
 use super::lex::Token;
 use super::state::Parser;
 use jbt_model::combine::{CombinatorKind, SetOperation, Syntax};
@@ -94,7 +94,7 @@ impl Parser<'_> {
 
     /// A whole number that depends on no parameter: it selects code.
     fn whole(&mut self, word: &str, name: &str) -> Option<FieldNumber> {
-        let value = self.expression(Place::Alone);
+        let value = self.expression(ExpressionPlace::Alone);
         let (number, span) = (value.number, value.span);
         let whole = number.value();
         if !number.depends_on_parameters() && whole.fract() == 0.0 && (0.0..=1e9).contains(&whole) {

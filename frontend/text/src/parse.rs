@@ -4,14 +4,14 @@ use std::sync::Arc;
 
 use jbt_ir::limits::{MAX_ATTRIBUTE_WIDTH, MAX_ATTRIBUTES, MAX_SCENE_BYTES};
 
-use super::expression::Place;
+use super::expression::ExpressionPlace;
 use super::lex::{Token, TokenKind};
 use super::state::{Options, Parser};
 use super::words::is_builtin;
 use jbt_model::attribute::{AttributeGroup, Mixing};
 use jbt_model::diagnostic::{Diagnostic, Span};
 use jbt_model::model::Model;
-use jbt_model::number::{Formula, Number};
+use jbt_model::number::{Number, NumberFormula};
 use jbt_model::parameter::{Parameter, not_finite, unknown};
 use jbt_model::report::clip;
 use jbt_model::word::is_statement;
@@ -39,7 +39,7 @@ pub(super) fn read(text: &[u8], options: &Options) -> Result<Model, Vec<Diagnost
 pub(super) fn read_number(text: &str) -> Result<f64, Vec<Diagnostic>> {
     let options = Options::default();
     let mut parser = Parser::new(text, &options);
-    let value = parser.expression(Place::Alone).number.value();
+    let value = parser.expression(ExpressionPlace::Alone).number.value();
     let rest = parser.peek();
     if rest.kind != TokenKind::End {
         parser.expected_at(rest, "expected one number");
@@ -131,7 +131,7 @@ impl<'a> Parser<'a> {
     }
 
     fn iso_statement(&mut self, span: Span) {
-        let value = self.expression(Place::Alone).number;
+        let value = self.expression(ExpressionPlace::Alone).number;
         if self.iso_at.is_some() {
             self.report(|| Diagnostic::error(Some(span), "a second `iso`").expected("expected it once"));
         } else if self.nodes > 0 {
@@ -178,7 +178,7 @@ impl<'a> Parser<'a> {
         };
         self.equals();
         let lost = self.is_muted();
-        let default = if lost { f64::NAN.into() } else { self.expression(Place::Alone).number };
+        let default = if lost { f64::NAN.into() } else { self.expression(ExpressionPlace::Alone).number };
         if is_builtin(name) {
             self.report(|| Diagnostic::error(Some(span), format!("`{name}` means something else already")));
         } else if self.references.contains_key(name) {
@@ -197,7 +197,7 @@ impl<'a> Parser<'a> {
             return;
         };
         let width_at = self.peek();
-        let width = self.expression(Place::Alone);
+        let width = self.expression(ExpressionPlace::Alone);
         self.declares(&width.number, width.span);
         let (width, width_span) = (width.number.value(), width.span);
         let right = width.fract() == 0.0 && (1.0..=MAX_ATTRIBUTE_WIDTH as f64).contains(&width);
@@ -235,7 +235,7 @@ impl<'a> Parser<'a> {
 
     /// Marks the parameters of a number that stays as it is read.
     fn declares(&mut self, number: &Number, span: Span) {
-        for (name, _) in number.formula().into_iter().flat_map(Formula::parameters) {
+        for (name, _) in number.formula().into_iter().flat_map(NumberFormula::parameters) {
             let declared = self.parameters.iter_mut().find(|parameter| parameter.name() == &**name);
             if let Some(parameter) = declared {
                 parameter.declares(span);

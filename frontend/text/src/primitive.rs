@@ -1,6 +1,6 @@
 //! Named parameters in a text, and the block of a primitive.
 
-use super::expression::Place;
+use super::expression::ExpressionPlace;
 use super::hints::{in_braces, radii};
 use super::lex::{Token, TokenKind};
 use super::state::Parser;
@@ -183,7 +183,7 @@ impl Parser<'_> {
             return;
         }
         // A plain number keeps no place: an error of the check underlines the whole primitive.
-        let value = self.expression(Place::Alone);
+        let value = self.expression(ExpressionPlace::Alone);
         match word {
             "radius" => self.once(&mut common.radius, value.number, token),
             "surface_radius" => {

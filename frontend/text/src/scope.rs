@@ -8,7 +8,7 @@ use jbt_model::word::{COORDINATES, FIELD};
 
 /// What a formula may be about besides numbers.
 #[derive(Default)]
-pub(super) struct Scope<'a> {
+pub(super) struct FormulaScope<'a> {
     /// Whether it may ask for no fields.
     pub(super) fieldless: bool,
     /// The place of each definition.
@@ -20,7 +20,7 @@ pub(super) struct Scope<'a> {
     pub(super) pointwise: bool,
 }
 
-impl Scope<'_> {
+impl FormulaScope<'_> {
     /// The words that stand for something.
     pub(super) fn words(&self) -> impl Iterator<Item = &str> {
         let field = (!self.fieldless).then_some(FIELD);

@@ -8,7 +8,7 @@ use std::collections::HashMap;
 
 use super::hints::foreign_mark;
 use super::lex::{Lexer, Token, TokenKind};
-use super::scope::Scope;
+use super::scope::FormulaScope;
 use jbt_model::attribute::AttributeGroup;
 use jbt_model::combine::{Combinator, Sum};
 use jbt_model::diagnostic::{Diagnostic, Span};
@@ -40,7 +40,7 @@ pub(super) struct Parser<'a> {
     pub(super) references: HashMap<&'a str, Number>,
     pub(super) lets: HashMap<&'a str, Tree>,
     /// Inside of the formula of a field: what it may be about besides numbers.
-    pub(super) scope: Option<Scope<'a>>,
+    pub(super) scope: Option<FormulaScope<'a>>,
     pub(super) attributes: Vec<AttributeGroup>,
     pub(super) iso: Number,
     pub(super) iso_at: Option<Span>,

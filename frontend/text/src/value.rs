@@ -4,7 +4,7 @@ use jbt_ir::limits::MAX_SKELETON_POINTS;
 
 use jbt_ir::limits::MAX_ATTRIBUTE_WIDTH;
 
-use super::expression::{Operand, Place};
+use super::expression::{ExpressionPlace, ParsedOperand};
 use super::lex::TokenKind;
 use super::state::Parser;
 use super::words::COMMON_FIELDS;
@@ -27,7 +27,7 @@ pub(super) struct Elements {
 }
 
 impl Elements {
-    fn one(operand: Operand) -> Self {
+    fn one(operand: ParsedOperand) -> Self {
         Self { numbers: vec![operand.number], count: 1, span: operand.span }
     }
 }
@@ -49,7 +49,7 @@ impl Parser<'_> {
             if all.count > 0 {
                 self.accept(b',');
             }
-            let element = self.expression(Place::Element);
+            let element = self.expression(ExpressionPlace::Element);
             if self.is_muted() {
                 self.skip_to_close();
                 return None;
@@ -67,15 +67,15 @@ impl Parser<'_> {
     /// follow.
     pub(super) fn number_or_elements(&mut self) -> Option<Elements> {
         if !self.peek().is(b'(') {
-            let operand = self.expression(Place::Alone);
+            let operand = self.expression(ExpressionPlace::Alone);
             return (!self.is_muted()).then(|| Elements::one(operand));
         }
         let all = self.elements()?;
         let [number] = all.numbers.as_slice() else {
             return Some(all);
         };
-        let first = Operand { number: number.clone(), span: all.span };
-        let operand = self.expression_from(Place::Alone, &first);
+        let first = ParsedOperand { number: number.clone(), span: all.span };
+        let operand = self.expression_from(ExpressionPlace::Alone, &first);
         (!self.is_muted()).then(|| Elements::one(operand))
     }
 
@@ -168,7 +168,7 @@ impl Parser<'_> {
             | FieldKind::Degrees
             | FieldKind::Count
             | FieldKind::Whole { .. }
-            | FieldKind::Within { .. } => FieldNumber::Real(self.expression(Place::Alone).number),
+            | FieldKind::Within { .. } => FieldNumber::Real(self.expression(ExpressionPlace::Alone).number),
             FieldKind::Position | FieldKind::Extents | FieldKind::Stretches => {
                 FieldNumber::Vector(self.vector())
             }
@@ -179,7 +179,7 @@ impl Parser<'_> {
             FieldKind::Choice(words) => FieldValue::Real(self.choice(words)).into(),
             FieldKind::Positions => FieldNumber::Vectors(self.list(Self::vector)),
             FieldKind::Lengths => {
-                FieldNumber::Reals(self.list(|parser| parser.expression(Place::Element).number))
+                FieldNumber::Reals(self.list(|parser| parser.expression(ExpressionPlace::Element).number))
             }
             FieldKind::Flag => FieldValue::Real(self.flag()).into(),
             FieldKind::Rows => FieldNumber::Reals(self.vector::<12>().into()),

@@ -105,7 +105,7 @@ const SLOT: MemFlagsData = MemFlagsData::trusted();
 const PLANE: MemFlagsData = MemFlagsData::new().with_notrap();
 
 /// Where a value of the IR is.
-enum Place<'f, const K: usize> {
+enum ValuePlace<'f, const K: usize> {
     /// Computed; it stays.
     Computed(Any<Vectors<'f, K>>),
     /// To be made where it is used.
@@ -122,7 +122,7 @@ enum Place<'f, const K: usize> {
 
 /// The current row of a table, inside its fold.
 #[derive(Clone, Copy)]
-struct Row {
+struct CurrentRow {
     /// Bytes from the table's first active row to it: what leads to the rows that it owns.
     position: ir::Value,
     /// The address of its first number.
@@ -131,7 +131,7 @@ struct Row {
 
 /// The parameters of the code.
 #[derive(Clone, Copy)]
-struct Frame {
+struct CodeParameters {
     planes: ir::Value,
     bytes: ir::Value,
     tables: ir::Value,
@@ -147,7 +147,7 @@ struct Strip {
 }
 
 /// The current block of points.
-struct Points {
+struct PointBlock {
     /// Bytes from the start of each plane.
     offset: ir::Value,
     /// The address in each input plane, for all folds of the one piece that there is; empty if there are
@@ -162,18 +162,18 @@ struct Lowering<'f, const K: usize> {
     function: &'f Function,
     plan: &'f Plan,
     vectors: Vectors<'f, K>,
-    frame: Frame,
+    frame: CodeParameters,
     /// Where the frame has the slots of the plan, if it needs any.
     slots: Option<ir::StackSlot>,
-    places: Vec<Option<Place<'f, K>>>,
+    places: Vec<Option<ValuePlace<'f, K>>>,
     /// What the current Cranelift block has read anew.
     made: HashMap<Value, Any<Vectors<'f, K>>>,
     /// What the current piece has put into slots, for the pieces after it.
     kept: Vec<Value>,
     /// The current row of each table whose fold is open.
-    rows: Vec<Option<Row>>,
+    rows: Vec<Option<CurrentRow>>,
     /// `None` outside of a piece.
-    points: Option<Points>,
+    points: Option<PointBlock>,
 }
 
 impl<'f, const K: usize> Lowering<'f, K> {
@@ -195,7 +195,7 @@ impl<'f, const K: usize> Lowering<'f, K> {
             function,
             plan,
             vectors: Vectors::new(builder),
-            frame: Frame { planes, bytes, tables },
+            frame: CodeParameters { planes, bytes, tables },
             slots,
             places: function.values.values().map(|_| None).collect(),
             made: HashMap::new(),
@@ -248,12 +248,12 @@ impl<'f, const K: usize> Lowering<'f, K> {
     fn inst(&mut self, inst: Inst) {
         let data = &self.function.insts[inst];
         let place = match &data.kind {
-            InstKind::Input(index) => Place::Input(*index),
-            InstKind::Constant(number) => Place::Constant(*number),
-            InstKind::BitsConstant(bits) => Place::Bits(*bits),
+            InstKind::Input(index) => ValuePlace::Input(*index),
+            InstKind::Constant(number) => ValuePlace::Constant(*number),
+            InstKind::BitsConstant(bits) => ValuePlace::Bits(*bits),
             // It may have been broadcast before its piece.
             InstKind::Column { .. } if self.places[data.results[0].index()].is_some() => return,
-            InstKind::Column { table, column } => Place::Column(*table, *column),
+            InstKind::Column { table, column } => ValuePlace::Column(*table, *column),
             InstKind::Op { op, args } => {
                 let args = self.operands(args);
                 let computed = apply(&mut self.vectors, *op, &args);
@@ -276,7 +276,7 @@ impl<'f, const K: usize> Lowering<'f, K> {
             self.keep(value, &computed);
             self.kept.push(value);
         }
-        self.places[value.index()] = Some(Place::Computed(computed));
+        self.places[value.index()] = Some(ValuePlace::Computed(computed));
     }
 
     fn operands(&mut self, values: &[Value]) -> Vec<Any<Vectors<'f, K>>> {
@@ -287,17 +287,21 @@ impl<'f, const K: usize> Lowering<'f, K> {
     fn operand(&mut self, value: Value) -> Any<Vectors<'f, K>> {
         let place = self.places[value.index()].as_ref();
         let made = match *place.expect("a verified function defines values before it uses them") {
-            Place::Computed(computed) => return computed,
-            Place::Constant(_) | Place::Bits(_) | Place::Column(..) | Place::Input(_) | Place::Kept(..)
+            ValuePlace::Computed(computed) => return computed,
+            ValuePlace::Constant(_)
+            | ValuePlace::Bits(_)
+            | ValuePlace::Column(..)
+            | ValuePlace::Input(_)
+            | ValuePlace::Kept(..)
                 if self.made.contains_key(&value) =>
             {
                 return self.made[&value];
             }
-            Place::Constant(number) => Any::Real(self.vectors.constant(number)),
-            Place::Bits(bits) => Any::Bits(self.vectors.bits_constant(bits)),
-            Place::Column(table, column) => Any::Real(self.column(table, column)),
-            Place::Input(index) => Any::Real(self.input(index)),
-            Place::Kept(slot, type_) => self.load_kept(slot, type_),
+            ValuePlace::Constant(number) => Any::Real(self.vectors.constant(number)),
+            ValuePlace::Bits(bits) => Any::Bits(self.vectors.bits_constant(bits)),
+            ValuePlace::Column(table, column) => Any::Real(self.column(table, column)),
+            ValuePlace::Input(index) => Any::Real(self.input(index)),
+            ValuePlace::Kept(slot, type_) => self.load_kept(slot, type_),
         };
         self.made.insert(value, made);
         made
@@ -318,7 +322,7 @@ impl<'f, const K: usize> Lowering<'f, K> {
 
     /// Loads the current block of points of an input plane.
     fn input(&mut self, index: usize) -> [ir::Value; K] {
-        let Points { offset: here, inputs, .. } = self.here();
+        let PointBlock { offset: here, inputs, .. } = self.here();
         let (here, address) = (*here, inputs.get(index).copied());
         let address = address.unwrap_or_else(|| self.plane(index, here));
         std::array::from_fn(|vector| {
@@ -339,7 +343,7 @@ impl<'f, const K: usize> Lowering<'f, K> {
     }
 
     /// The current row of a table whose fold is open.
-    fn row(&self, table: Table) -> Row {
+    fn row(&self, table: Table) -> CurrentRow {
         self.rows[table.index()].expect("a verified function names a row inside the fold over its table")
     }
 }

@@ -22,7 +22,7 @@ use jbt_ir::{Function, Level, Verified};
 
 use crate::entry::Kernel;
 use crate::error::CompileError;
-use crate::memory::Code;
+use crate::memory::MachineCode;
 use crate::options::{Allocator, OptLevel, Pieces, VectorCount, asm};
 use crate::{isa, prepare};
 
@@ -61,7 +61,7 @@ pub struct Cranelift {
 }
 
 /// What is made of a function, with nothing left open.
-struct Choice {
+struct ChosenPlan {
     plan: Plan,
     vectors: VectorCount,
     allocator: Allocator,
@@ -78,10 +78,10 @@ impl Cranelift {
     /// When the processor, a limit or the system forbids it.
     pub fn kernel(&self, function: &Verified) -> Result<Kernel, CompileError> {
         let outside = function.function();
-        let Choice { plan, vectors, allocator } = self.choose(outside)?;
+        let ChosenPlan { plan, vectors, allocator } = self.choose(outside)?;
         let isa = isa::host(self.opt_level, allocator)?;
         let lanes = vectors.count() * LANES;
-        let code = guard(|| Code::new(lower::lower(outside, &plan, vectors), lanes, isa))??;
+        let code = guard(|| MachineCode::new(lower::lower(outside, &plan, vectors), lanes, isa))??;
         Ok(Kernel::new(code, outside))
     }
 
@@ -91,7 +91,7 @@ impl Cranelift {
     /// When the function is beyond our limits.
     pub fn clif(&self, function: &Verified) -> Result<String, CompileError> {
         let function = function.function();
-        let Choice { plan, vectors, .. } = self.choose(function)?;
+        let ChosenPlan { plan, vectors, .. } = self.choose(function)?;
         guard(|| lower::lower(function, &plan, vectors).into_function().display().to_string())
     }
 
@@ -101,7 +101,7 @@ impl Cranelift {
     /// Those of [`kernel`](Self::kernel).
     pub fn asm(&self, function: &Verified) -> Result<String, CompileError> {
         let function = function.function();
-        let Choice { plan, vectors, allocator } = self.choose(function)?;
+        let ChosenPlan { plan, vectors, allocator } = self.choose(function)?;
         let isa = isa::host(self.opt_level, allocator)?;
         guard(|| {
             let mut context = Context::for_function(lower::lower(function, &plan, vectors).into_function());
@@ -116,7 +116,7 @@ impl Cranelift {
     ///
     /// # Errors
     /// When the function is beyond our limits.
-    fn choose(&self, function: &Function) -> Result<Choice, CompileError> {
+    fn choose(&self, function: &Function) -> Result<ChosenPlan, CompileError> {
         prepare::check(function)?;
         let plan = prepare::plan(function, self.pieces, WHOLE_UP_TO);
         let live = pressure::live_values(function, &plan);
@@ -135,7 +135,7 @@ impl Cranelift {
         } else {
             (VectorCount::One, Allocator::Backtracking)
         };
-        Ok(Choice {
+        Ok(ChosenPlan {
             plan,
             vectors: self.vectors.unwrap_or(vectors),
             allocator: self.allocator.unwrap_or(allocator),

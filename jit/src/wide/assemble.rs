@@ -12,7 +12,7 @@
 
 use super::encode::{Encoder, Shape};
 use super::inst::{Inst, Integer};
-use super::state::State;
+use super::state::WalkState;
 
 /// The frame begins at a multiple of this.
 const ALIGNMENT: usize = 64;
@@ -20,12 +20,12 @@ const ALIGNMENT: usize = 64;
 const PAGE: usize = 4096;
 
 /// Bytes of stack that the code takes, besides the registers that it saves.
-pub(super) fn frame_bytes(state: &State<'_>, slot_bytes: usize) -> usize {
+pub(super) fn frame_bytes(state: &WalkState<'_>, slot_bytes: usize) -> usize {
     state.frame_bytes().next_multiple_of(ALIGNMENT) + slot_bytes + ALIGNMENT
 }
 
 /// The bytes of code and constants, and how many are code.
-pub(super) fn assemble(mut state: State<'_>, frame_bytes: usize, shape: Shape) -> (Vec<u8>, usize) {
+pub(super) fn assemble(mut state: WalkState<'_>, frame_bytes: usize, shape: Shape) -> (Vec<u8>, usize) {
     let slots = state.frame_bytes().next_multiple_of(ALIGNMENT);
     for &index in &state.slot_addresses {
         if let Inst::Integer(Integer::Address { of, .. }) = &mut state.code[index] {

@@ -7,11 +7,11 @@ use jbt_ir::pass::{Gates, gates};
 use jbt_ir::plan::Plan;
 use jbt_ir::{Function, Level, Verified};
 
-use super::{Wish, emit, lanes};
-use crate::blob::{Blob, Emitted};
+use super::{EmitterWish, emit, lanes};
+use crate::blob::{CodeBlob, Emitted};
 use crate::entry::Kernel;
 use crate::error::CompileError;
-use crate::memory::Code;
+use crate::memory::MachineCode;
 use crate::options::{Check, Pieces, VectorCount, asm};
 use crate::prepare;
 
@@ -49,7 +49,7 @@ impl Wide {
     /// When the processor, a limit or the system forbids it.
     pub fn kernel(&self, function: &Verified, level: Level) -> Result<Kernel, CompileError> {
         require(level)?;
-        let code = Code::from_emitted(&self.emit(function, level)?)?;
+        let code = MachineCode::from_emitted(&self.emit(function, level)?)?;
         Ok(Kernel::new(code, function.function()))
     }
 
@@ -66,7 +66,7 @@ impl Wide {
     pub(crate) fn emit(&self, function: &Verified, level: Level) -> Result<Emitted, CompileError> {
         let function = function.function();
         prepare::check(function)?;
-        let wish = Wish {
+        let wish = EmitterWish {
             level: level.max(Level::Avx2),
             vectors: self.vectors,
             is_checked: self.check != Check::Off,
@@ -122,13 +122,13 @@ fn require(level: Level) -> Result<(), CompileError> {
 fn emit_rest(
     function: &Function,
     (plan, gates): (&Plan, &Gates),
-    wish: &Wish,
+    wish: &EmitterWish,
     block: usize,
-) -> Result<Option<Blob>, CompileError> {
+) -> Result<Option<CodeBlob>, CompileError> {
     if block <= lanes(wish.level) {
         return Ok(None);
     }
-    let wish = Wish { vectors: Some(VectorCount::One), ..*wish };
+    let wish = EmitterWish { vectors: Some(VectorCount::One), ..*wish };
     // A strip of one block has nothing to share: pieces would but store what they hand to each other.
     match emit(function, (&Plan::whole(function), gates), &wish) {
         Err(CompileError::Frame { .. }) if !plan.is_whole() => emit(function, (plan, gates), &wish).map(Some),

@@ -5,15 +5,17 @@ use jbt_ir::plan::{Plan, Slot, Then};
 use jbt_ir::{Block, Entity, Fold, FoldKind, Function, Inst, InstKind, Op, Type, Value};
 use rustc_hash::FxHashSet as HashSet;
 
-use super::linear::{Data, Home, Item, Kind, Linear, Loop, LoopId, NONE, Name, Over, POINTERS, Phi};
+use super::linear::{
+    Data, Definition, Home, LinearCode, LinearItem, LinearLoop, LoopId, NONE, Over, POINTERS, Phi, ValueName,
+};
 
 /// The list of a function, cut into the pieces of a plan. Plan and gates belong to the function.
-pub(crate) fn list(function: &Function, plan: &Plan, gates: &Gates) -> Linear {
+pub(crate) fn list(function: &Function, plan: &Plan, gates: &Gates) -> LinearCode {
     let mut builder = Builder {
         function,
         plan,
         gates,
-        linear: Linear::default(),
+        linear: LinearCode::default(),
         bindings: vec![Binding::Nothing; function.values.len()],
         rows: vec![NONE; function.tables.len()],
         current: NONE,
@@ -35,10 +37,10 @@ pub(crate) fn list(function: &Function, plan: &Plan, gates: &Gates) -> Linear {
 #[derive(Clone, Copy)]
 enum Binding {
     Nothing,
-    Name(Name),
+    Name(ValueName),
     /// To a leaf that has another name in each loop over points: its home, the last such loop, and its name
     /// there.
-    PerPiece(Home, LoopId, Name),
+    PerPiece(Home, LoopId, ValueName),
 }
 
 /// The walk over a function.
@@ -47,7 +49,7 @@ struct Builder<'a> {
     plan: &'a Plan,
     /// The condition under which a row changes nothing, for each fold's body.
     gates: &'a Gates,
-    linear: Linear,
+    linear: LinearCode,
     bindings: Vec<Binding>,
     /// The open loop over each table.
     rows: Vec<LoopId>,
@@ -60,19 +62,19 @@ struct Builder<'a> {
 }
 
 impl<'a> Builder<'a> {
-    fn push(&mut self, item: Item) {
+    fn push(&mut self, item: LinearItem) {
         self.linear.items.push(item);
     }
 
-    fn name(&mut self, data: Data) -> Name {
+    fn name(&mut self, data: Data) -> ValueName {
         self.linear.names.push(data);
-        self.linear.names.len() as Name - 1
+        self.linear.names.len() as ValueName - 1
     }
 
     fn open(&mut self, over: Over, phis: Vec<Phi>) -> LoopId {
         let id = self.linear.loops.len() as LoopId;
         let open = self.linear.items.len() as u32;
-        self.linear.loops.push(Loop {
+        self.linear.loops.push(LinearLoop {
             over,
             parent: self.current,
             open,
@@ -81,7 +83,7 @@ impl<'a> Builder<'a> {
             inputs: 0,
             gate: Vec::new(),
         });
-        self.push(Item::Open(id));
+        self.push(LinearItem::Open(id));
         self.current = id;
         if let Some(table) = over.table() {
             self.rows[table.index()] = id;
@@ -93,7 +95,7 @@ impl<'a> Builder<'a> {
 
     fn close(&mut self) {
         let id = self.current;
-        self.push(Item::Close(id));
+        self.push(LinearItem::Close(id));
         let close = self.linear.items.len() as u32 - 1;
         let data = &mut self.linear.loops[id as usize];
         data.close = close;
@@ -186,18 +188,18 @@ impl<'a> Builder<'a> {
         for &(_, value) in &moves {
             let mut name = self.read(value);
             let data = self.linear.names[name as usize];
-            if let Kind::Leaf(Home::Slot(slot)) = data.kind
+            if let Definition::Leaf(Home::Slot(slot)) = data.kind
                 && written.contains(&slot)
             {
                 let from = name;
-                name = self.name(Data { kind: Kind::Computed, ..data });
-                self.push(Item::Read { to: name, from });
+                name = self.name(Data { kind: Definition::Computed, ..data });
+                self.push(LinearItem::Read { to: name, from });
             }
             names.push(name);
         }
         for ((target, _), value) in moves.into_iter().zip(names) {
             if let Some(slot) = self.plan.slot(target) {
-                self.push(Item::Keep { slot, value });
+                self.push(LinearItem::Keep { slot, value });
             }
         }
     }
@@ -205,7 +207,7 @@ impl<'a> Builder<'a> {
     fn outputs(&mut self, results: &[Value]) {
         for (plane, &result) in results.iter().enumerate() {
             let value = self.read(result);
-            self.push(Item::Output { plane, value });
+            self.push(LinearItem::Output { plane, value });
         }
     }
 
@@ -240,7 +242,7 @@ impl<'a> Builder<'a> {
         let gate: Vec<_> = gate.iter().map(|&(value, number)| (self.read(value), number.to_bits())).collect();
         let id = self.current;
         self.linear.loops[id as usize].gate = gate;
-        self.push(Item::Skip(id));
+        self.push(LinearItem::Skip(id));
         both.by_ref().filter(|&(_, &is_first)| !is_first).for_each(|(&inst, _)| self.inst(inst));
     }
 
@@ -270,7 +272,7 @@ impl<'a> Builder<'a> {
                 self.op(*op, args, result);
                 if let Some(slot) = self.plan.slot(result) {
                     let value = self.read(result);
-                    self.push(Item::Keep { slot, value });
+                    self.push(LinearItem::Keep { slot, value });
                     self.kept.push(result);
                 }
             }
@@ -288,19 +290,20 @@ impl<'a> Builder<'a> {
                 return;
             }
         };
-        let data = Data { kind: Kind::Leaf(home), is_uniform: true, is_mask: false, scope };
+        let data = Data { kind: Definition::Leaf(home), is_uniform: true, is_mask: false, scope };
         self.bindings[value] = Binding::Name(self.name(data));
     }
 
     /// The name of a value that an instruction here reads.
-    fn read(&mut self, value: Value) -> Name {
+    fn read(&mut self, value: Value) -> ValueName {
         match self.bindings[value.index()] {
             Binding::Nothing => unreachable!("a verified function defines values before it uses them"),
             Binding::Name(name) => name,
             Binding::PerPiece(_, points, name) if points == self.points => name,
             Binding::PerPiece(home, ..) => {
                 let is_mask = self.function.values[value] == Type::Mask;
-                let data = Data { kind: Kind::Leaf(home), is_uniform: false, is_mask, scope: self.points };
+                let data =
+                    Data { kind: Definition::Leaf(home), is_uniform: false, is_mask, scope: self.points };
                 let name = self.name(data);
                 if let Home::Input(index) = home
                     && index < POINTERS
@@ -326,8 +329,8 @@ impl<'a> Builder<'a> {
         let mut known = names.iter().filter(|&&name| name != NONE);
         let is_uniform = known.all(|&name| self.linear.names[name as usize].is_uniform);
         let is_mask = op.result() == Type::Mask;
-        let to = self.name(Data { kind: Kind::Computed, is_uniform, is_mask, scope: self.current });
-        self.push(Item::Op { op, to, args: names });
+        let to = self.name(Data { kind: Definition::Computed, is_uniform, is_mask, scope: self.current });
+        self.push(LinearItem::Op { op, to, args: names });
         self.bindings[result.index()] = Binding::Name(to);
     }
 
@@ -341,7 +344,7 @@ impl<'a> Builder<'a> {
             let initial = self.read(initial);
             let is_mask = function.values[param] == Type::Mask;
             let scope = self.current;
-            let value = self.name(Data { kind: Kind::Phi(id), is_uniform: false, is_mask, scope });
+            let value = self.name(Data { kind: Definition::Phi(id), is_uniform: false, is_mask, scope });
             phis.push(Phi { value, initial, next: NONE });
             self.bindings[param.index()] = Binding::Name(value);
         }

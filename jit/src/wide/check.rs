@@ -7,22 +7,22 @@
 
 use std::collections::HashMap;
 
-use super::event::{Event, NEXT, Part, Place};
+use super::event::{Event, NEXT, PartPlace, ValuePart};
 use super::inst::{Base, Gpr, Inst, Memory, Operand};
-use super::linear::{Home, Kind, Linear, NONE};
+use super::linear::{Definition, Home, LinearCode, NONE};
 use super::state::MASKS;
 
 /// The part at each place.
-type Contents = HashMap<Place, Part>;
+type PlaceContents = HashMap<PartPlace, ValuePart>;
 
 /// A finished walk.
 pub(crate) struct Replay<'a> {
-    pub(crate) linear: &'a Linear,
+    pub(crate) linear: &'a LinearCode,
     pub(crate) vectors: u32,
     pub(crate) vector_bytes: usize,
     pub(crate) has_masks: bool,
     pub(crate) code: &'a [Inst],
-    pub(crate) notes: &'a [([Part; 3], Part)],
+    pub(crate) notes: &'a [([ValuePart; 3], ValuePart)],
     pub(crate) events: &'a [(usize, Event)],
     pub(crate) constants: &'a [u8],
 }
@@ -30,7 +30,7 @@ pub(crate) struct Replay<'a> {
 impl Replay<'_> {
     /// The first instruction that reads a wrong part, in words.
     pub(crate) fn check(&self) -> Result<(), String> {
-        let mut contents = Contents::new();
+        let mut contents = PlaceContents::new();
         self.walk(0, 0, &mut contents)?;
         Ok(())
     }
@@ -41,10 +41,10 @@ impl Replay<'_> {
         &self,
         mut at: usize,
         mut event: usize,
-        contents: &mut Contents,
+        contents: &mut PlaceContents,
     ) -> Result<(usize, usize), String> {
         // The contents at early ends of iterations.
-        let mut early: Vec<Contents> = Vec::new();
+        let mut early: Vec<PlaceContents> = Vec::new();
         loop {
             let next = self.events.get(event);
             match next {
@@ -66,7 +66,7 @@ impl Replay<'_> {
                         }
                         Event::Skip => early.push(contents.clone()),
                         Event::Close => {
-                            let next: Vec<Part> = contents
+                            let next: Vec<ValuePart> = contents
                                 .values()
                                 .filter(|&&part| part & NEXT != 0)
                                 .map(|part| part ^ NEXT)
@@ -98,15 +98,15 @@ impl Replay<'_> {
     }
 
     /// Replays one instruction.
-    fn step(&self, at: usize, contents: &mut Contents) -> Result<(), String> {
+    fn step(&self, at: usize, contents: &mut PlaceContents) -> Result<(), String> {
         let inst = &self.code[at];
         let (reads, write) = self.places(inst);
         let (read_parts, written) = &self.notes[at];
         for (place, &part) in reads.into_iter().zip(read_parts) {
             let (Some(place), true) = (place, part != NONE) else { continue };
             let is_there = match place {
-                Place::Elsewhere(memory) => self.is_home(memory, part),
-                Place::Register(_) | Place::Frame(_) => contents.get(&place) == Some(&part),
+                PartPlace::Elsewhere(memory) => self.is_home(memory, part),
+                PartPlace::Register(_) | PartPlace::Frame(_) => contents.get(&place) == Some(&part),
             };
             if !is_there {
                 let there = contents.get(&place);
@@ -114,34 +114,36 @@ impl Replay<'_> {
             }
         }
         match write {
-            Some(place @ (Place::Register(_) | Place::Frame(_))) => {
+            Some(place @ (PartPlace::Register(_) | PartPlace::Frame(_))) => {
                 contents.insert(place, *written);
             }
-            Some(Place::Elsewhere(_)) | None => {}
+            Some(PartPlace::Elsewhere(_)) | None => {}
         }
         Ok(())
     }
 
     /// Whether an address is the home of a leaf.
-    fn is_home(&self, memory: Memory, part: Part) -> bool {
+    fn is_home(&self, memory: Memory, part: ValuePart) -> bool {
         let data = &self.linear.names[(part / self.vectors) as usize];
         let vector = (part % self.vectors) as i32 * self.vector_bytes as i32;
         match data.kind {
-            Kind::Computed | Kind::Phi(_) => false,
-            Kind::Leaf(Home::Number(bits)) => {
+            Definition::Computed | Definition::Phi(_) => false,
+            Definition::Leaf(Home::Number(bits)) => {
                 let at = memory.displacement as usize;
                 memory.base == Base::Constants && self.constants[at..at + 4] == bits.to_le_bytes()
             }
-            Kind::Leaf(Home::Column(_, column)) => memory.is_one && memory.displacement == 4 * column as i32,
-            Kind::Leaf(Home::Input(_)) => !memory.is_one && memory.displacement == vector,
-            Kind::Leaf(Home::Slot(_)) => memory.base == Base::Register(Gpr::R8),
+            Definition::Leaf(Home::Column(_, column)) => {
+                memory.is_one && memory.displacement == 4 * column as i32
+            }
+            Definition::Leaf(Home::Input(_)) => !memory.is_one && memory.displacement == vector,
+            Definition::Leaf(Home::Slot(_)) => memory.base == Base::Register(Gpr::R8),
         }
     }
 
     /// The places that an instruction reads, in the order of its note, and the place that it writes.
-    fn places(&self, inst: &Inst) -> ([Option<Place>; 3], Option<Place>) {
-        let vector = |number: u8| Some(Place::Register(number));
-        let mask = |number: u8| Some(Place::Register(MASKS + number));
+    fn places(&self, inst: &Inst) -> ([Option<PartPlace>; 3], Option<PartPlace>) {
+        let vector = |number: u8| Some(PartPlace::Register(number));
+        let mask = |number: u8| Some(PartPlace::Register(MASKS + number));
         let operand = |operand: Operand| match operand {
             Operand::Register(number) => vector(number),
             Operand::Memory(memory) => Some(in_memory(memory)),
@@ -171,9 +173,9 @@ impl Replay<'_> {
     }
 }
 
-fn in_memory(memory: Memory) -> Place {
+fn in_memory(memory: Memory) -> PartPlace {
     match memory.base {
-        Base::Register(Gpr::Rsp) => Place::Frame(memory.displacement),
-        Base::Register(_) | Base::Sum(..) | Base::Constants => Place::Elsewhere(memory),
+        Base::Register(Gpr::Rsp) => PartPlace::Frame(memory.displacement),
+        Base::Register(_) | Base::Sum(..) | Base::Constants => PartPlace::Elsewhere(memory),
     }
 }

@@ -12,7 +12,7 @@ use jbt_ir::Entity;
 
 use super::inst::{Base, Condition, Gpr, Inst, Integer, Label, Memory};
 use super::linear::{LoopId, NONE, Over, POINTERS};
-use super::state::{ALL_BYTES, Open, SAVED, STRIP_START, State};
+use super::state::{ALL_BYTES, OpenLoop, SAVED, STRIP_START, WalkState};
 use crate::abi::TableView;
 
 /// Bytes of the frame for the registers of one fold.
@@ -24,7 +24,7 @@ const BANKS: [[Gpr; 3]; 2] = [[Gpr::R9, Gpr::R10, Gpr::R11], [Gpr::Rbp, Gpr::R12
 /// The registers of input planes.
 const INPUTS: [Gpr; POINTERS] = [Gpr::R13, Gpr::R14, Gpr::R15];
 
-impl State<'_> {
+impl WalkState<'_> {
     /// Computes the first address or counter of a loop.
     pub(super) fn find(&mut self, id: LoopId) {
         match self.linear.loops[id as usize].over {
@@ -48,7 +48,7 @@ impl State<'_> {
     }
 
     /// Continues with the next iteration of a loop, or leaves it.
-    pub(super) fn end(&mut self, id: LoopId, open: &Open) {
+    pub(super) fn end(&mut self, id: LoopId, open: &OpenLoop) {
         match self.linear.loops[id as usize].over {
             Over::Strips => self.end_strips(open),
             Over::Points => self.end_points(id, open),
@@ -122,7 +122,7 @@ impl State<'_> {
     /// Opens a loop over rows, once registers hold the values of its top.
     fn begin_rows(&mut self, table: usize) {
         let [cursor, end, row] = BANKS[(self.depth - 1) % 2];
-        let Some(&Open { top, exit, .. }) = self.open.last() else { return };
+        let Some(&OpenLoop { top, exit, .. }) = self.open.last() else { return };
         self.integer(Integer::Compare64 { a: cursor, b: end });
         self.integer(Inst::Jump { condition: Condition::Equal, to: exit });
         self.integer(Inst::Here(top));
@@ -135,7 +135,7 @@ impl State<'_> {
     }
 
     /// Ends a loop over rows.
-    fn end_rows(&mut self, table: usize, open: &Open) {
+    fn end_rows(&mut self, table: usize, open: &OpenLoop) {
         let depth = self.depth - 1;
         let [cursor, end, _] = BANKS[depth % 2];
         self.integer(Integer::AddConstant { to: cursor, number: size_of::<u32>() as i32 });
@@ -175,7 +175,7 @@ impl State<'_> {
         INPUTS.into_iter().enumerate().filter(move |&(plane, _)| inputs >> plane & 1 == 1)
     }
 
-    fn end_points(&mut self, id: LoopId, open: &Open) {
+    fn end_points(&mut self, id: LoopId, open: &OpenLoop) {
         let number = (self.vectors as usize * self.shape.bytes) as i32;
         let is_whole = self.linear.loops[id as usize].parent == NONE;
         for (_, to) in self.inputs(id) {
@@ -201,7 +201,7 @@ impl State<'_> {
         self.integer(Integer::TakeIfAbove { to: Gpr::Rsi, from: all });
     }
 
-    fn end_strips(&mut self, open: &Open) {
+    fn end_strips(&mut self, open: &OpenLoop) {
         let number = i32::try_from(self.strip_bytes).expect("a strip is short");
         self.integer(Integer::LoadPointer { to: Gpr::Rcx, from: Memory::at(Gpr::Rsp, STRIP_START) });
         self.integer(Integer::AddConstant { to: Gpr::Rcx, number });

@@ -10,7 +10,7 @@
 //! broadcast operand), and otherwise the shorter VEX form. Instructions on mask registers and integers have
 //! no EVEX form.
 
-use super::inst::{Base, Binary, Condition, Form, Gpr, Inst, Integer, Label, Memory, Operand};
+use super::inst::{Base, Binary, Condition, FmaForm, Gpr, Inst, Integer, Label, Memory, Operand};
 
 /// The width of vectors, and the features of the level.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -38,11 +38,11 @@ enum Prefix {
 
 /// An opcode with its map and prefix.
 #[derive(Clone, Copy)]
-struct Code(Map, Prefix, u8);
+struct Opcode(Map, Prefix, u8);
 
 /// The fields of an instruction with a VEX or EVEX prefix.
 struct Vex {
-    code: Code,
+    code: Opcode,
     /// The register in `modrm.reg`, or the extension of the opcode there.
     reg: u8,
     /// The register in `vvvv`, 0 if there is none.
@@ -104,37 +104,39 @@ impl Encoder {
     pub(crate) fn inst(&mut self, inst: &Inst) {
         match *inst {
             Inst::Binary { op, to, a, b } => self.vector(binary(op), to, a, b),
-            Inst::Sqrt { to, a } => self.vector(Code(Map::M0F, Prefix::None, 0x51), to, 0, a),
+            Inst::Sqrt { to, a } => self.vector(Opcode(Map::M0F, Prefix::None, 0x51), to, 0, a),
             Inst::Fma { form, to, b, c } => {
                 let opcode = match form {
-                    Form::F132 => 0x98,
-                    Form::F213 => 0xA8,
-                    Form::F231 => 0xB8,
+                    FmaForm::F132 => 0x98,
+                    FmaForm::F213 => 0xA8,
+                    FmaForm::F231 => 0xB8,
                 };
-                self.vector(Code(Map::M0F38, Prefix::P66, opcode), to, b, c);
+                self.vector(Opcode(Map::M0F38, Prefix::P66, opcode), to, b, c);
             }
             Inst::Shift { left, to, a, amount } => {
-                let code = Code(Map::M0F, Prefix::P66, 0x72);
+                let code = Opcode(Map::M0F, Prefix::P66, 0x72);
                 let (reg, rm) = (if left { 6 } else { 2 }, Operand::Register(a));
                 self.vex(&Vex { immediate: Some(amount), ..self.plain(code, reg, to, rm) });
             }
             Inst::Compare { predicate, to, a, b } => {
-                let code = Code(Map::M0F, Prefix::None, 0xC2);
+                let code = Opcode(Map::M0F, Prefix::None, 0xC2);
                 let vex = self.plain(code, to, a, b);
                 let is_evex = vex.is_evex || self.shape.has_masks;
                 self.vex(&Vex { immediate: Some(predicate as u8), is_evex, ..vex });
             }
-            Inst::Test { a } => self.vector(Code(Map::M0F38, Prefix::P66, 0x17), a, 0, Operand::Register(a)),
+            Inst::Test { a } => {
+                self.vector(Opcode(Map::M0F38, Prefix::P66, 0x17), a, 0, Operand::Register(a));
+            }
             Inst::TestToMask { to, a } => {
-                let vex = self.plain(Code(Map::M0F38, Prefix::P66, 0x27), to, a, Operand::Register(a));
+                let vex = self.plain(Opcode(Map::M0F38, Prefix::P66, 0x27), to, a, Operand::Register(a));
                 self.vex(&Vex { is_evex: true, ..vex });
             }
             Inst::Blend { to, mask, no, yes } if self.shape.has_masks => {
-                let vex = self.plain(Code(Map::M0F38, Prefix::P66, 0x65), to, no, yes);
+                let vex = self.plain(Opcode(Map::M0F38, Prefix::P66, 0x65), to, no, yes);
                 self.vex(&Vex { mask, is_evex: true, ..vex });
             }
             Inst::Blend { to, mask, no, yes } => {
-                let vex = self.plain(Code(Map::M0F3A, Prefix::P66, 0x4A), to, no, yes);
+                let vex = self.plain(Opcode(Map::M0F3A, Prefix::P66, 0x4A), to, no, yes);
                 self.vex(&Vex { immediate: Some(mask << 4), ..vex });
             }
             Inst::Zero { .. } | Inst::Move { .. } | Inst::Load { .. } | Inst::Store { .. } => self.copy(inst),
@@ -155,34 +157,34 @@ impl Encoder {
     fn copy(&mut self, inst: &Inst) {
         match *inst {
             Inst::Zero { to } => {
-                let (code, rm) = (Code(Map::M0F, Prefix::P66, 0xEF), Operand::Register(to));
+                let (code, rm) = (Opcode(Map::M0F, Prefix::P66, 0xEF), Operand::Register(to));
                 // 128 bits are written, the others become 0.
                 self.vex(&Vex { bytes: 16, is_evex: to > 15, ..self.plain(code, to, to, rm) });
             }
             Inst::Move { to, from } => {
-                self.vector(Code(Map::M0F, Prefix::None, 0x28), to, 0, Operand::Register(from));
+                self.vector(Opcode(Map::M0F, Prefix::None, 0x28), to, 0, Operand::Register(from));
             }
             Inst::Load { to, from } if from.is_one => {
-                let vex = self.plain(Code(Map::M0F38, Prefix::P66, 0x18), to, 0, Operand::Memory(from));
+                let vex = self.plain(Opcode(Map::M0F38, Prefix::P66, 0x18), to, 0, Operand::Memory(from));
                 let is_evex = to > 15 || self.shape.bytes == 64;
                 self.vex(&Vex { is_evex, ..vex });
             }
             Inst::Load { to, from } => {
-                self.vector(Code(Map::M0F, Prefix::None, 0x10), to, 0, Operand::Memory(from));
+                self.vector(Opcode(Map::M0F, Prefix::None, 0x10), to, 0, Operand::Memory(from));
             }
             Inst::Store { to, from } => {
-                self.vector(Code(Map::M0F, Prefix::None, 0x11), from, 0, Operand::Memory(to));
+                self.vector(Opcode(Map::M0F, Prefix::None, 0x11), from, 0, Operand::Memory(to));
             }
             _ => unreachable!("only instructions that copy vectors come here"),
         }
     }
 
     /// An instruction on whole vectors, without anything special.
-    fn vector(&mut self, code: Code, reg: u8, other: u8, rm: Operand) {
+    fn vector(&mut self, code: Opcode, reg: u8, other: u8, rm: Operand) {
         self.vex(&self.plain(code, reg, other, rm));
     }
 
-    fn plain(&self, code: Code, reg: u8, other: u8, rm: Operand) -> Vex {
+    fn plain(&self, code: Opcode, reg: u8, other: u8, rm: Operand) -> Vex {
         let is_high = reg > 15 || other > 15 || matches!(rm, Operand::Register(rm) if rm > 15);
         let is_one = matches!(rm, Operand::Memory(memory) if memory.is_one);
         let is_evex = is_high || is_one || self.shape.bytes == 64;
@@ -192,7 +194,7 @@ impl Encoder {
     /// Instructions on mask registers. They operate on 16 lanes, of which the lower ones count, as many as a
     /// vector has.
     fn mask(&mut self, inst: &Inst) {
-        let none = |opcode| Code(Map::M0F, Prefix::None, opcode);
+        let none = |opcode| Opcode(Map::M0F, Prefix::None, opcode);
         let (code, reg, other, rm, bytes) = match *inst {
             Inst::MaskAnd { to, a, b } => (none(0x41), to, a, Operand::Register(b), 32),
             Inst::MaskOr { to, a, b } => (none(0x45), to, a, Operand::Register(b), 32),
@@ -208,7 +210,7 @@ impl Encoder {
 
     /// An instruction with a prefix of either form.
     fn vex(&mut self, vex: &Vex) {
-        let Code(map, prefix, opcode) = vex.code;
+        let Opcode(map, prefix, opcode) = vex.code;
         let (x, b) = match vex.rm {
             Operand::Register(rm) => (rm >> 4 & 1, rm >> 3 & 1),
             Operand::Memory(Memory { base, .. }) => match base {
@@ -352,18 +354,18 @@ impl Encoder {
     }
 }
 
-const fn binary(op: Binary) -> Code {
+const fn binary(op: Binary) -> Opcode {
     match op {
-        Binary::Add => Code(Map::M0F, Prefix::None, 0x58),
-        Binary::Sub => Code(Map::M0F, Prefix::None, 0x5C),
-        Binary::Mul => Code(Map::M0F, Prefix::None, 0x59),
-        Binary::Div => Code(Map::M0F, Prefix::None, 0x5E),
-        Binary::Min => Code(Map::M0F, Prefix::None, 0x5D),
-        Binary::Max => Code(Map::M0F, Prefix::None, 0x5F),
-        Binary::And => Code(Map::M0F, Prefix::P66, 0xDB),
-        Binary::Or => Code(Map::M0F, Prefix::P66, 0xEB),
-        Binary::Xor => Code(Map::M0F, Prefix::P66, 0xEF),
-        Binary::IntAdd => Code(Map::M0F, Prefix::P66, 0xFE),
-        Binary::IntSub => Code(Map::M0F, Prefix::P66, 0xFA),
+        Binary::Add => Opcode(Map::M0F, Prefix::None, 0x58),
+        Binary::Sub => Opcode(Map::M0F, Prefix::None, 0x5C),
+        Binary::Mul => Opcode(Map::M0F, Prefix::None, 0x59),
+        Binary::Div => Opcode(Map::M0F, Prefix::None, 0x5E),
+        Binary::Min => Opcode(Map::M0F, Prefix::None, 0x5D),
+        Binary::Max => Opcode(Map::M0F, Prefix::None, 0x5F),
+        Binary::And => Opcode(Map::M0F, Prefix::P66, 0xDB),
+        Binary::Or => Opcode(Map::M0F, Prefix::P66, 0xEB),
+        Binary::Xor => Opcode(Map::M0F, Prefix::P66, 0xEF),
+        Binary::IntAdd => Opcode(Map::M0F, Prefix::P66, 0xFE),
+        Binary::IntSub => Opcode(Map::M0F, Prefix::P66, 0xFA),
     }
 }

@@ -3,7 +3,7 @@
 use super::inst::Memory;
 
 /// One vector of a value: the value's name times the vectors of a value, plus the index of the vector.
-pub(crate) type Part = u32;
+pub(crate) type ValuePart = u32;
 
 /// An event between two instructions.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -15,17 +15,17 @@ pub(crate) enum Event {
     /// The loop's last instruction on values has passed.
     Close,
     /// From now on one part stands for the other, in every place.
-    Rename { from: Part, to: Part },
+    Rename { from: ValuePart, to: ValuePart },
     /// The part at a place is the next value of an accumulator there.
-    Next { from: Part, to: Part, at: Place },
+    Next { from: ValuePart, to: ValuePart, at: PartPlace },
 }
 
 /// Marks an accumulator of the next iteration, until the loop closes, to tell it from the current one.
-pub(crate) const NEXT: Part = 1 << 31;
+pub(crate) const NEXT: ValuePart = 1 << 31;
 
 /// The place of a value.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-pub(crate) enum Place {
+pub(crate) enum PartPlace {
     /// A register; masks follow vectors.
     Register(u8),
     /// A displacement from the stack pointer, in bytes.

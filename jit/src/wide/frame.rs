@@ -3,14 +3,14 @@
 use jbt_ir::Entity;
 
 use super::counters::SAVED_BYTES;
-use super::event::Part;
+use super::event::ValuePart;
 use super::inst::{Base, Gpr, Inst, Memory};
-use super::linear::{Home, Kind, NONE, Name};
-use super::state::{NOWHERE, Register, SAVED, State, load, store};
+use super::linear::{Definition, Home, NONE, ValueName};
+use super::state::{NOWHERE, Register, SAVED, WalkState, load, store};
 
-impl State<'_> {
+impl WalkState<'_> {
     /// The place of a part in the frame; the first call allocates it.
-    pub(super) fn frame_memory(&mut self, part: Part) -> Memory {
+    pub(super) fn frame_memory(&mut self, part: ValuePart) -> Memory {
         if self.frame[part as usize] == NONE {
             self.frame[part as usize] = self.fresh_slot().0;
         }
@@ -29,13 +29,13 @@ impl State<'_> {
     }
 
     /// Gives the frame's place of a part to another part with the same bits.
-    pub(super) fn hand_over_frame(&mut self, from: Part, to: Part) {
+    pub(super) fn hand_over_frame(&mut self, from: ValuePart, to: ValuePart) {
         self.frame[to as usize] = std::mem::replace(&mut self.frame[from as usize], NONE);
         self.stored[from as usize] = false;
     }
 
     /// Stores a part if it is in no memory yet.
-    pub(super) fn store(&mut self, part: Part) {
+    pub(super) fn store(&mut self, part: ValuePart) {
         if self.stored[part as usize] || self.is_leaf(self.name(part)) {
             return;
         }
@@ -48,7 +48,7 @@ impl State<'_> {
     }
 
     /// Releases the registers and the memory of a name.
-    pub(super) fn bury(&mut self, name: Name) {
+    pub(super) fn bury(&mut self, name: ValueName) {
         for part in self.parts(name) {
             self.release(part);
             let slot = std::mem::replace(&mut self.frame[part as usize], NONE);
@@ -61,11 +61,11 @@ impl State<'_> {
 
     /// Ends a live range of a name at the current position; for an accumulator this may be only the range
     /// inside of its loop.
-    pub(crate) fn end_life(&mut self, name: Name) {
+    pub(crate) fn end_life(&mut self, name: ValueName) {
         if self.lives.last[name as usize] == self.position {
             return self.bury(name);
         }
-        if let Kind::Phi(id) = self.linear.names[name as usize].kind
+        if let Definition::Phi(id) = self.linear.names[name as usize].kind
             && self.linear.loops[id as usize].close != self.position
         {
             // It is set again at the end of the iteration, in the same place.
@@ -78,23 +78,23 @@ impl State<'_> {
     /// Where memory has a part. A column is one f32 at the row's address (see `counters`) plus 4 times its
     /// index: `vbroadcastss` loads it, or with AVX-512 the arithmetic instruction broadcasts it. The address
     /// may be in `rax`, so it holds until the next instruction only.
-    pub(super) fn home(&mut self, part: Part) -> Memory {
+    pub(super) fn home(&mut self, part: ValuePart) -> Memory {
         let name = self.name(part);
         let vector = (part - name * self.vectors) as i32;
         let displacement = vector * self.shape.bytes as i32;
         match self.linear.names[name as usize].kind {
-            Kind::Computed | Kind::Phi(_) => {
+            Definition::Computed | Definition::Phi(_) => {
                 debug_assert!(self.stored[part as usize], "a value is somewhere");
                 self.frame_memory(part)
             }
-            Kind::Leaf(Home::Number(bits)) => self.number(bits),
-            Kind::Leaf(Home::Column(table, column)) => {
+            Definition::Leaf(Home::Number(bits)) => self.number(bits),
+            Definition::Leaf(Home::Column(table, column)) => {
                 let base = Base::Register(self.row(table.index()));
                 let displacement = i32::try_from(4 * column).expect("a row has fewer bytes");
                 Memory { base, displacement, is_one: true }
             }
-            Kind::Leaf(Home::Input(plane)) => self.input(plane, displacement),
-            Kind::Leaf(Home::Slot(slot)) => {
+            Definition::Leaf(Home::Input(plane)) => self.input(plane, displacement),
+            Definition::Leaf(Home::Slot(slot)) => {
                 Memory::at(Gpr::R8, self.strip_displacement(slot.0) + displacement)
             }
         }
@@ -118,8 +118,8 @@ impl State<'_> {
 
     /// Whether an arithmetic instruction can read a part from its memory. AVX2 has no operands that
     /// broadcast, so there columns are loaded first.
-    pub(super) fn can_be_operand(&self, name: Name) -> bool {
-        let is_column = matches!(self.linear.names[name as usize].kind, Kind::Leaf(Home::Column(..)));
+    pub(super) fn can_be_operand(&self, name: ValueName) -> bool {
+        let is_column = matches!(self.linear.names[name as usize].kind, Definition::Leaf(Home::Column(..)));
         self.class(name) == 0 && (self.shape.has_masks || !is_column)
     }
 
@@ -138,13 +138,14 @@ impl State<'_> {
     }
 
     /// Loads a part into a register.
-    pub(super) fn load_into(&mut self, register: Register, part: Part) {
+    pub(super) fn load_into(&mut self, register: Register, part: ValuePart) {
         self.load_as(register, part, part);
     }
 
     /// Loads a part into a register, as another part.
-    pub(super) fn load_as(&mut self, register: Register, part: Part, to: Part) {
-        let is_zero = matches!(self.linear.names[self.name(part) as usize].kind, Kind::Leaf(Home::Number(0)));
+    pub(super) fn load_as(&mut self, register: Register, part: ValuePart, to: ValuePart) {
+        let is_zero =
+            matches!(self.linear.names[self.name(part) as usize].kind, Definition::Leaf(Home::Number(0)));
         if is_zero {
             self.emit(Inst::Zero { to: register }, &[], to);
             return;
@@ -154,7 +155,7 @@ impl State<'_> {
     }
 
     /// The register of a part, which is loaded if necessary.
-    pub(super) fn fetch(&mut self, part: Part) -> Register {
+    pub(super) fn fetch(&mut self, part: ValuePart) -> Register {
         let name = self.name(part);
         let register = self.register_of(part).unwrap_or_else(|| {
             let register = self.take(self.class(name));

@@ -106,7 +106,7 @@ impl Binary {
 
 /// Which two of `to`, `b`, `c` an fma multiplies. The third is added.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(crate) enum Form {
+pub(crate) enum FmaForm {
     /// `to = to * c + b`.
     F132,
     /// `to = b * to + c`.
@@ -171,7 +171,7 @@ pub(crate) enum Inst {
     },
     /// Reads `to` as well.
     Fma {
-        form: Form,
+        form: FmaForm,
         to: u8,
         b: u8,
         c: Operand,

@@ -19,7 +19,7 @@ use jbt_ir::plan::Slot;
 use jbt_ir::{Op, Table};
 
 /// A value of the list.
-pub(crate) type Name = u32;
+pub(crate) type ValueName = u32;
 
 /// A loop of the list.
 pub(crate) type LoopId = u32;
@@ -42,7 +42,7 @@ pub(crate) enum Home {
 
 /// The definition of a name.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(crate) enum Kind {
+pub(crate) enum Definition {
     Leaf(Home),
     /// Computed by one item.
     Computed,
@@ -53,7 +53,7 @@ pub(crate) enum Kind {
 /// A value.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Data {
-    pub(crate) kind: Kind,
+    pub(crate) kind: Definition,
     /// Whether all lanes have the same number.
     pub(crate) is_uniform: bool,
     pub(crate) is_mask: bool,
@@ -64,24 +64,24 @@ pub(crate) struct Data {
 
 /// An item of the list.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Item {
+pub(crate) enum LinearItem {
     Op {
         op: Op,
-        to: Name,
-        args: [Name; 3],
+        to: ValueName,
+        args: [ValueName; 3],
     },
     /// Copies a leaf now, because its home will be overwritten.
     Read {
-        to: Name,
-        from: Name,
+        to: ValueName,
+        from: ValueName,
     },
     Keep {
         slot: Slot,
-        value: Name,
+        value: ValueName,
     },
     Output {
         plane: usize,
-        value: Name,
+        value: ValueName,
     },
     /// Continues with the next iteration of the innermost loop if the values of the loop's gate have the
     /// gate's bits in all lanes.
@@ -93,9 +93,9 @@ pub(crate) enum Item {
 /// An accumulator of a loop.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Phi {
-    pub(crate) value: Name,
-    pub(crate) initial: Name,
-    pub(crate) next: Name,
+    pub(crate) value: ValueName,
+    pub(crate) initial: ValueName,
+    pub(crate) next: ValueName,
 }
 
 /// What a loop iterates over.
@@ -125,7 +125,7 @@ impl Over {
 
 /// A loop.
 #[derive(Debug)]
-pub(crate) struct Loop {
+pub(crate) struct LinearLoop {
     pub(crate) over: Over,
     /// The loop around it, or [`NONE`].
     pub(crate) parent: LoopId,
@@ -136,7 +136,7 @@ pub(crate) struct Loop {
     /// For a loop over points: the input planes that it reads, a bit each, for the first [`POINTERS`] planes.
     pub(crate) inputs: u32,
     /// If an iteration may end early: the condition for it, values and their bits.
-    pub(crate) gate: Vec<(Name, u32)>,
+    pub(crate) gate: Vec<(ValueName, u32)>,
 }
 
 /// The number of input planes whose address in the current block of points has a register.
@@ -144,15 +144,15 @@ pub(crate) const POINTERS: usize = 3;
 
 /// The list.
 #[derive(Debug, Default)]
-pub(crate) struct Linear {
-    pub(crate) items: Vec<Item>,
-    pub(crate) loops: Vec<Loop>,
+pub(crate) struct LinearCode {
+    pub(crate) items: Vec<LinearItem>,
+    pub(crate) loops: Vec<LinearLoop>,
     pub(crate) names: Vec<Data>,
     /// The depth of nested folds.
     pub(crate) depth: usize,
 }
 
-impl Linear {
+impl LinearCode {
     /// The loops from `from` outwards, up to but without `to`.
     pub(crate) fn outwards(&self, from: LoopId, to: LoopId) -> impl Iterator<Item = LoopId> {
         let mut next = from;

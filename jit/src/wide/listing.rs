@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use iced_x86::{Decoder, DecoderOptions, Formatter as _, IntelFormatter};
 
-use crate::blob::{Blob, Emitted};
+use crate::blob::{CodeBlob, Emitted};
 
 /// Bytes of constants in a line.
 const LINE: usize = 16;
@@ -16,7 +16,7 @@ pub(crate) fn listing(Emitted { blocks, rest }: &Emitted) -> String {
 }
 
 /// Instructions with their addresses, then the constants.
-fn function(blob: &Blob) -> String {
+fn function(blob: &CodeBlob) -> String {
     let mut formatter = IntelFormatter::new();
     formatter.options_mut().set_rip_relative_addresses(true);
     let (code, rest) = blob.bytes.split_at(blob.code_bytes);

@@ -5,12 +5,12 @@
 //! live ranges: in an iteration of its loop, from the top to its last use there (then it is set again), and
 //! from the end of the loop to its last use after the loop.
 
-use super::linear::{Item, Kind, Linear, LoopId, NONE, Name, Over};
+use super::linear::{Definition, LinearCode, LinearItem, LoopId, NONE, Over, ValueName};
 
 /// A value that a loop reads but does not compute.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Captured {
-    pub(crate) name: Name,
+    pub(crate) name: ValueName,
     /// The number of reads in an iteration; reads in inner loops weigh more.
     pub(crate) weight: f32,
 }
@@ -29,31 +29,35 @@ pub(crate) struct Lives {
     pub(crate) last_in_body: Vec<u32>,
     /// The names whose live range ends at each position, the range inside of a loop included.
     death_starts: Vec<u32>,
-    deaths: Vec<Name>,
+    deaths: Vec<ValueName>,
     /// The names that each loop reads from outside, once each. The loop's own accumulators are among them.
     pub(crate) captured: Vec<Vec<Captured>>,
 }
 
 /// The operands of an item that is no loop.
-fn operands(item: &Item) -> ([Name; 3], usize) {
+fn operands(item: &LinearItem) -> ([ValueName; 3], usize) {
     match *item {
-        Item::Op { op, args, .. } => (args, op.operands().len()),
-        Item::Read { from, .. } => ([from, NONE, NONE], 1),
-        Item::Keep { value, .. } | Item::Output { value, .. } => ([value, NONE, NONE], 1),
-        Item::Skip(_) | Item::Open(_) | Item::Close(_) => ([NONE; 3], 0),
+        LinearItem::Op { op, args, .. } => (args, op.operands().len()),
+        LinearItem::Read { from, .. } => ([from, NONE, NONE], 1),
+        LinearItem::Keep { value, .. } | LinearItem::Output { value, .. } => ([value, NONE, NONE], 1),
+        LinearItem::Skip(_) | LinearItem::Open(_) | LinearItem::Close(_) => ([NONE; 3], 0),
     }
 }
 
 /// The name that an item computes.
-pub(crate) fn computed(item: &Item) -> Option<Name> {
+pub(crate) fn computed(item: &LinearItem) -> Option<ValueName> {
     match *item {
-        Item::Op { to, .. } | Item::Read { to, .. } => Some(to),
-        Item::Keep { .. } | Item::Output { .. } | Item::Skip(_) | Item::Open(_) | Item::Close(_) => None,
+        LinearItem::Op { to, .. } | LinearItem::Read { to, .. } => Some(to),
+        LinearItem::Keep { .. }
+        | LinearItem::Output { .. }
+        | LinearItem::Skip(_)
+        | LinearItem::Open(_)
+        | LinearItem::Close(_) => None,
     }
 }
 
 /// Calls back with each use, in order: the name, the position, the loop that it is in.
-fn for_each_use(linear: &Linear, mut each: impl FnMut(Name, u32, LoopId)) {
+fn for_each_use(linear: &LinearCode, mut each: impl FnMut(ValueName, u32, LoopId)) {
     let mut current = NONE;
     for (position, item) in (0..).zip(&linear.items) {
         let (args, count) = operands(item);
@@ -63,20 +67,20 @@ fn for_each_use(linear: &Linear, mut each: impl FnMut(Name, u32, LoopId)) {
             }
         }
         match *item {
-            Item::Open(id) => {
+            LinearItem::Open(id) => {
                 for phi in &linear.loops[id as usize].phis {
                     each(phi.initial, position, current);
                 }
                 current = id;
             }
-            Item::Close(id) => {
+            LinearItem::Close(id) => {
                 for phi in &linear.loops[id as usize].phis {
                     each(phi.next, position, current);
                 }
                 current = linear.loops[id as usize].parent;
             }
             // An iteration that ends here passes the accumulators on unchanged.
-            Item::Skip(id) => {
+            LinearItem::Skip(id) => {
                 let data = &linear.loops[id as usize];
                 let phis = data.phis.iter().map(|phi| phi.value);
                 let phis = phis.filter(|phi| data.gate.iter().all(|(value, _)| value != phi));
@@ -84,7 +88,10 @@ fn for_each_use(linear: &Linear, mut each: impl FnMut(Name, u32, LoopId)) {
                     each(name, position, current);
                 }
             }
-            Item::Op { .. } | Item::Read { .. } | Item::Keep { .. } | Item::Output { .. } => {}
+            LinearItem::Op { .. }
+            | LinearItem::Read { .. }
+            | LinearItem::Keep { .. }
+            | LinearItem::Output { .. } => {}
         }
     }
 }
@@ -107,7 +114,7 @@ fn by_key(keys: usize, pairs: impl Iterator<Item = (u32, u32)> + Clone) -> (Vec<
 }
 
 impl Lives {
-    pub(crate) fn new(linear: &Linear) -> Self {
+    pub(crate) fn new(linear: &LinearCode) -> Self {
         let names = linear.names.len();
         let (mut last, mut last_in_body) = (vec![0; names], vec![0; names]);
         for (position, item) in (0..).zip(&linear.items) {
@@ -144,7 +151,7 @@ impl Lives {
     }
 
     /// The positions at which a name is used, ascending.
-    pub(crate) fn uses(&self, name: Name) -> &[u32] {
+    pub(crate) fn uses(&self, name: ValueName) -> &[u32] {
         let [start, end] = [0, 1].map(|side| self.starts[name as usize + side] as usize);
         &self.positions[start..end]
     }
@@ -156,12 +163,12 @@ impl Lives {
         start..end
     }
 
-    pub(crate) fn death(&self, index: usize) -> Name {
+    pub(crate) fn death(&self, index: usize) -> ValueName {
         self.deaths[index]
     }
 
     /// The last position that reads the value that a name has at `position`.
-    pub(crate) fn end(&self, linear: &Linear, name: Name, position: u32) -> u32 {
+    pub(crate) fn end(&self, linear: &LinearCode, name: ValueName, position: u32) -> u32 {
         let (_, is_in_body) = scope_at(linear, name, position);
         if is_in_body { self.last_in_body[name as usize] } else { self.last[name as usize] }
     }
@@ -169,9 +176,9 @@ impl Lives {
 
 /// The loop whose iterations change a name, as seen from a position; and whether the name is an accumulator
 /// inside of its loop.
-fn scope_at(linear: &Linear, name: Name, position: u32) -> (LoopId, bool) {
+fn scope_at(linear: &LinearCode, name: ValueName, position: u32) -> (LoopId, bool) {
     let data = &linear.names[name as usize];
-    if let Kind::Phi(id) = data.kind {
+    if let Definition::Phi(id) = data.kind {
         let own = &linear.loops[id as usize];
         if own.open < position && position <= own.close {
             return (id, true);
@@ -181,11 +188,11 @@ fn scope_at(linear: &Linear, name: Name, position: u32) -> (LoopId, bool) {
 }
 
 /// The ends of all live ranges: positions and names.
-fn ends(linear: &Linear, last: &[u32], last_in_body: &[u32]) -> Vec<(u32, Name)> {
+fn ends(linear: &LinearCode, last: &[u32], last_in_body: &[u32]) -> Vec<(u32, ValueName)> {
     let mut ends = Vec::with_capacity(linear.names.len());
     for (name, data) in (0..).zip(&linear.names) {
         ends.push((last[name as usize], name));
-        if let Kind::Phi(_) = data.kind {
+        if let Definition::Phi(_) = data.kind {
             ends.push((last_in_body[name as usize], name));
         }
     }
@@ -193,7 +200,7 @@ fn ends(linear: &Linear, last: &[u32], last_in_body: &[u32]) -> Vec<(u32, Name)>
 }
 
 /// The values that each loop reads from outside, from the reads directly in each loop.
-fn captured(linear: &Linear, mut raw: Vec<Vec<Captured>>) -> Vec<Vec<Captured>> {
+fn captured(linear: &LinearCode, mut raw: Vec<Vec<Captured>>) -> Vec<Vec<Captured>> {
     // Inner loops have larger ids than the loops around them.
     for id in (0..linear.loops.len()).rev() {
         let mut list = std::mem::take(&mut raw[id]);
@@ -232,16 +239,21 @@ const fn linear_weight(is_constant: bool) -> f32 {
 
 /// For each loop, the largest number of registers, vectors and masks, for the values that it computes itself;
 /// `vectors` is the number of vectors of a value.
-pub(crate) fn pressure(linear: &Linear, lives: &Lives, vectors: usize, has_masks: bool) -> Vec<[usize; 2]> {
+pub(crate) fn pressure(
+    linear: &LinearCode,
+    lives: &Lives,
+    vectors: usize,
+    has_masks: bool,
+) -> Vec<[usize; 2]> {
     let mut most = vec![[0; 2]; linear.loops.len()];
     // For each open loop, the live values that it computes directly.
     let mut alive: Vec<(LoopId, [isize; 2])> = vec![(NONE, [0; 2])];
-    let size = |name: Name| {
+    let size = |name: ValueName| {
         let data = &linear.names[name as usize];
         let count = if data.is_uniform { 1 } else { vectors as isize };
         (count, usize::from(data.is_mask && has_masks))
     };
-    let mut add = |alive: &mut Vec<(LoopId, [isize; 2])>, level: usize, name: Name| {
+    let mut add = |alive: &mut Vec<(LoopId, [isize; 2])>, level: usize, name: ValueName| {
         let (count, class) = size(name);
         alive[level].1[class] += count;
         let mut sum = [0; 2];
@@ -266,7 +278,7 @@ pub(crate) fn pressure(linear: &Linear, lives: &Lives, vectors: usize, has_masks
             }
         }
         match *item {
-            Item::Op { to, .. } | Item::Read { to, .. } => {
+            LinearItem::Op { to, .. } | LinearItem::Read { to, .. } => {
                 let level = alive.len() - 1;
                 let level = add(&mut alive, level, to);
                 // Nobody reads it: it dies at once.
@@ -277,17 +289,17 @@ pub(crate) fn pressure(linear: &Linear, lives: &Lives, vectors: usize, has_masks
                     levels[to as usize] = level;
                 }
             }
-            Item::Open(id) => {
+            LinearItem::Open(id) => {
                 for phi in &linear.loops[id as usize].phis {
                     let level = alive.len() - 1;
                     levels[phi.value as usize] = add(&mut alive, level, phi.value);
                 }
                 alive.push((id, [0; 2]));
             }
-            Item::Close(_) => {
+            LinearItem::Close(_) => {
                 alive.pop();
             }
-            Item::Keep { .. } | Item::Output { .. } | Item::Skip(_) => {}
+            LinearItem::Keep { .. } | LinearItem::Output { .. } | LinearItem::Skip(_) => {}
         }
     }
     most

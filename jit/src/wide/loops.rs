@@ -1,11 +1,11 @@
 //! The contents of registers at the top of a loop: decided and loaded when the loop opens.
 
-use super::event::{Event, Part};
+use super::event::{Event, ValuePart};
 use super::inst::{Binary, Condition, Inst, Operand};
-use super::linear::{Kind, LoopId, NONE, Name, Over, Phi};
-use super::state::{MASKS, Open, REGISTERS, Register, SPARE_MASK, State, copy, store};
+use super::linear::{Definition, LoopId, NONE, Over, Phi, ValueName};
+use super::state::{MASKS, OpenLoop, REGISTERS, Register, SPARE_MASK, WalkState, copy, store};
 
-impl State<'_> {
+impl WalkState<'_> {
     /// Closes a loop.
     pub(super) fn close_loop(&mut self, id: LoopId) {
         match self.linear.loops[id as usize].over {
@@ -37,7 +37,7 @@ impl State<'_> {
         let has_gate = !self.linear.loops[id as usize].gate.is_empty();
         let early = has_gate.then(|| self.label());
         let header = self.occupant;
-        self.open.push(Open { id, header, journal: self.journal.len(), top, exit, early });
+        self.open.push(OpenLoop { id, header, journal: self.journal.len(), top, exit, early });
         self.reserve();
         self.look_up_again();
         self.event(Event::Open);
@@ -50,8 +50,8 @@ impl State<'_> {
         self.put_header_back();
         let linear = self.linear;
         let gate = &linear.loops[id as usize].gate;
-        let wanted = |&(name, bits): &(Name, u32)| self.parts(name).map(move |part| (part, bits));
-        let parts: Vec<(Part, u32)> = gate.iter().flat_map(wanted).collect();
+        let wanted = |&(name, bits): &(ValueName, u32)| self.parts(name).map(move |part| (part, bits));
+        let parts: Vec<(ValuePart, u32)> = gate.iter().flat_map(wanted).collect();
         let tested = match (&parts[..], self.register_of(parts[0].0)) {
             ([(_, 0)], Some(register)) => register,
             (_, _) => self.different_bits(&parts),
@@ -70,7 +70,7 @@ impl State<'_> {
 
     /// A register with all differences between some parts and their wanted bits. Its old contents must be
     /// unused.
-    fn different_bits(&mut self, parts: &[(Part, u32)]) -> Register {
+    fn different_bits(&mut self, parts: &[(ValuePart, u32)]) -> Register {
         let header = self.open.last().expect("a loop is open").header;
         let is_empty = |&register: &Register| self.occupant[register as usize] == NONE;
         let is_free = |&register: &Register| header[register as usize] == NONE;
@@ -130,7 +130,7 @@ impl State<'_> {
         self.reserved = 0;
         let Some(open) = self.open.last() else { return };
         for (register, &part) in open.header.iter().enumerate() {
-            if part != NONE && self.linear.names[self.name(part) as usize].kind == Kind::Phi(open.id) {
+            if part != NONE && self.linear.names[self.name(part) as usize].kind == Definition::Phi(open.id) {
                 self.reserved |= 1 << register;
             }
         }
@@ -148,7 +148,7 @@ impl State<'_> {
         let chosen = self.choose(id);
         let linear = self.linear;
         let phis = &linear.loops[id as usize].phis;
-        let mut initials: Vec<Name> = phis.iter().map(|phi| phi.initial).collect();
+        let mut initials: Vec<ValueName> = phis.iter().map(|phi| phi.initial).collect();
         initials.sort_unstable();
         let mut copies = Vec::new();
         for phi in phis {
@@ -165,7 +165,8 @@ impl State<'_> {
         for &(from, to, _) in copies.iter().filter(|&&(_, _, is_chosen)| !is_chosen) {
             self.begin_in_frame(from, to);
         }
-        let is_source = |part: Part| copies.iter().any(|&(from, _, is_chosen)| is_chosen && from == part);
+        let is_source =
+            |part: ValuePart| copies.iter().any(|&(from, _, is_chosen)| is_chosen && from == part);
         for register in 0..REGISTERS as Register {
             let part = self.occupant[register as usize];
             if part != NONE && !chosen.contains(&self.name(part)) && !is_source(part) {
@@ -191,7 +192,7 @@ impl State<'_> {
     }
 
     /// Takes a part out of its register; stores it if it has a later use.
-    fn leave_register(&mut self, part: Part) {
+    fn leave_register(&mut self, part: ValuePart) {
         if !self.dies(self.name(part)) {
             self.store(part);
         }
@@ -199,7 +200,7 @@ impl State<'_> {
     }
 
     /// Loads chosen values that are in no register, as far as registers are free.
-    fn load_chosen(&mut self, chosen: &[Name], phis: &[Phi]) {
+    fn load_chosen(&mut self, chosen: &[ValueName], phis: &[Phi]) {
         for &name in chosen {
             if phis.iter().any(|phi| phi.value == name) {
                 continue;
@@ -216,7 +217,7 @@ impl State<'_> {
     }
 
     /// Lets an accumulator begin in the place of its initial value, if nothing else needs that value.
-    fn take_over(&mut self, from: Part, to: Part, is_alone: bool, is_chosen: bool) -> bool {
+    fn take_over(&mut self, from: ValuePart, to: ValuePart, is_alone: bool, is_chosen: bool) -> bool {
         let name = self.name(from);
         let is_mine = is_alone && self.dies(name) && !self.is_leaf(name);
         if !is_mine || self.linear.names[name as usize].is_uniform {
@@ -240,7 +241,7 @@ impl State<'_> {
     }
 
     /// Stores the initial value of an accumulator that lives in the frame.
-    fn begin_in_frame(&mut self, from: Part, to: Part) {
+    fn begin_in_frame(&mut self, from: ValuePart, to: ValuePart) {
         let class = self.class(self.name(from));
         let register = match self.register_of(from) {
             Some(register) => register,
@@ -256,7 +257,7 @@ impl State<'_> {
     }
 
     /// Copies the initial value of an accumulator that lives in a register.
-    fn begin_in_register(&mut self, from: Part, to: Part) {
+    fn begin_in_register(&mut self, from: ValuePart, to: ValuePart) {
         let class = self.class(self.name(to));
         let source = self.register_of(from);
         if let Some(source) = source {
@@ -272,13 +273,13 @@ impl State<'_> {
     }
 
     /// The values to hold in registers at the top of each iteration, the most valuable first.
-    fn choose(&mut self, id: LoopId) -> Vec<Name> {
+    fn choose(&mut self, id: LoopId) -> Vec<ValueName> {
         let data = &self.linear.loops[id as usize];
         let is_guard = matches!(data.over, Over::Guard(_));
-        let mut candidates: Vec<(f32, Name)> = Vec::new();
+        let mut candidates: Vec<(f32, ValueName)> = Vec::new();
         for captured in &self.lives.captured[id as usize] {
             let name = captured.name;
-            let is_mine = self.linear.names[name as usize].kind == Kind::Phi(id);
+            let is_mine = self.linear.names[name as usize].kind == Definition::Phi(id);
             let is_there = self.parts(name).all(|part| self.register_of(part).is_some());
             if is_mine || is_there || !is_guard {
                 candidates.push((self.value_of(name, captured.weight, is_mine), name));
@@ -310,7 +311,7 @@ impl State<'_> {
     }
 
     /// The value of holding a name in registers, for each register that it takes.
-    fn value_of(&self, name: Name, weight: f32, is_accumulator: bool) -> f32 {
+    fn value_of(&self, name: ValueName, weight: f32, is_accumulator: bool) -> f32 {
         let data = &self.linear.names[name as usize];
         let reads = if data.is_uniform { self.vectors as f32 } else { 1.0 };
         let loads = if self.can_be_operand(name) { 1.0 } else { 2.0 };

@@ -48,10 +48,10 @@ use jbt_ir::{Entity, Function, Level, limits};
 use self::build::list;
 use self::check::Replay;
 use self::encode::Shape;
-use self::linear::{Item, Linear};
+use self::linear::{LinearCode, LinearItem};
 use self::lives::Lives;
-use self::state::{Count, State, Task};
-use crate::blob::Blob;
+use self::state::{RegisterCount, WalkInput, WalkState};
+use crate::blob::CodeBlob;
 use crate::error::CompileError;
 use crate::options::VectorCount;
 
@@ -59,7 +59,7 @@ pub use self::backend::Wide;
 
 /// What is asked of the emitter.
 #[derive(Clone, Copy, Debug)]
-struct Wish {
+struct EmitterWish {
     level: Level,
     vectors: Option<VectorCount>,
     /// Replays the code, and fails if it is wrong; and gives it few registers if wanted.
@@ -68,15 +68,15 @@ struct Wish {
 }
 
 /// Registers of a test that makes everything spill: vectors, masks.
-const FEW: Count = Count([3, 1]);
+const FEW: RegisterCount = RegisterCount([3, 1]);
 
 /// The vectors and registers of a level.
-const fn shape(level: Level) -> (Shape, Count) {
+const fn shape(level: Level) -> (Shape, RegisterCount) {
     match level {
         // Nobody emits for less than AVX2.
-        Level::Baseline | Level::Avx2 => (Shape { bytes: 32, has_masks: false }, Count([16, 0])),
-        Level::Avx512Vl => (Shape { bytes: 32, has_masks: true }, Count([32, 6])),
-        Level::Avx512 => (Shape { bytes: 64, has_masks: true }, Count([32, 6])),
+        Level::Baseline | Level::Avx2 => (Shape { bytes: 32, has_masks: false }, RegisterCount([16, 0])),
+        Level::Avx512Vl => (Shape { bytes: 32, has_masks: true }, RegisterCount([32, 6])),
+        Level::Avx512 => (Shape { bytes: 64, has_masks: true }, RegisterCount([32, 6])),
     }
 }
 
@@ -89,12 +89,16 @@ const fn lanes(level: Level) -> usize {
 ///
 /// # Errors
 /// When the frame is too large; when it is checked and found wrong, which is a defect of the emitter.
-fn emit(function: &Function, (plan, gates): (&Plan, &Gates), wish: &Wish) -> Result<Blob, CompileError> {
+fn emit(
+    function: &Function,
+    (plan, gates): (&Plan, &Gates),
+    wish: &EmitterWish,
+) -> Result<CodeBlob, CompileError> {
     let linear = list(function, plan, gates);
     let lives = Lives::new(&linear);
     let (shape, mut count) = shape(wish.level);
     if wish.few_registers {
-        count = Count([FEW.0[0], if shape.has_masks { FEW.0[1] } else { 0 }]);
+        count = RegisterCount([FEW.0[0], if shape.has_masks { FEW.0[1] } else { 0 }]);
     }
     let mut vectors = match wish.vectors {
         // With this many vectors blocks have [`crate::Kernel::MAX_LANES`] points, at most.
@@ -106,7 +110,7 @@ fn emit(function: &Function, (plan, gates): (&Plan, &Gates), wish: &Wish) -> Res
         let (count_of, is_checked) = (vectors.count(), wish.is_checked);
         let tables = function.tables.values();
         let tables = tables.map(|schema| (4 * schema.columns.len(), schema.parent.map(Entity::index)));
-        let mut state = State::new(Task {
+        let mut state = WalkState::new(WalkInput {
             linear: &linear,
             lives: &lives,
             vectors: count_of,
@@ -124,7 +128,7 @@ fn emit(function: &Function, (plan, gates): (&Plan, &Gates), wish: &Wish) -> Res
             let constants = state.constants.len();
             let (bytes, code_bytes) = assemble::assemble(state, frame_bytes, shape);
             let lanes = vectors.count() * shape.bytes / size_of::<f32>();
-            return Ok(Blob { bytes, code_bytes, constants, frame_bytes, lanes });
+            return Ok(CodeBlob { bytes, code_bytes, constants, frame_bytes, lanes });
         }
         vectors = match vectors {
             VectorCount::Four if wish.vectors.is_none() => VectorCount::Two,
@@ -138,18 +142,18 @@ fn emit(function: &Function, (plan, gates): (&Plan, &Gates), wish: &Wish) -> Res
 }
 
 /// Emits all items.
-fn walk(state: &mut State<'_>) {
+fn walk(state: &mut WalkState<'_>) {
     let (linear, lives) = (state.linear, state.lives);
     for (position, item) in (0..).zip(&linear.items) {
         state.position = position;
         match *item {
-            Item::Op { op, to, args } => state.op(op, to, args),
-            Item::Read { to, from } => state.read(to, from),
-            Item::Keep { slot, value } => state.keep(slot.0, value),
-            Item::Output { plane, value } => state.output(plane, value),
-            Item::Skip(id) => state.skip(id),
-            Item::Open(id) => state.open_loop(id),
-            Item::Close(id) => state.close_loop(id),
+            LinearItem::Op { op, to, args } => state.op(op, to, args),
+            LinearItem::Read { to, from } => state.read(to, from),
+            LinearItem::Keep { slot, value } => state.keep(slot.0, value),
+            LinearItem::Output { plane, value } => state.output(plane, value),
+            LinearItem::Skip(id) => state.skip(id),
+            LinearItem::Open(id) => state.open_loop(id),
+            LinearItem::Close(id) => state.close_loop(id),
         }
         for index in lives.deaths(position) {
             state.end_life(lives.death(index));
@@ -158,7 +162,12 @@ fn walk(state: &mut State<'_>) {
 }
 
 /// Replays the code, if notes were taken.
-fn check(state: &State<'_>, linear: &Linear, vectors: usize, shape: Shape) -> Result<(), CompileError> {
+fn check(
+    state: &WalkState<'_>,
+    linear: &LinearCode,
+    vectors: usize,
+    shape: Shape,
+) -> Result<(), CompileError> {
     let Some(notes) = &state.notes else { return Ok(()) };
     let replay = Replay {
         linear,

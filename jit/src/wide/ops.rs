@@ -6,10 +6,10 @@
 
 use jbt_ir::Op;
 
-use super::event::Part;
-use super::inst::{Base, Binary, Form, Gpr, Inst, Integer, Memory, Operand, Predicate};
-use super::linear::{Home, Kind, NONE, Name};
-use super::state::{MASKS, NOWHERE, Register, SPARE_MASK, State, copy, load, store};
+use super::event::ValuePart;
+use super::inst::{Base, Binary, FmaForm, Gpr, Inst, Integer, Memory, Operand, Predicate};
+use super::linear::{Definition, Home, NONE, ValueName};
+use super::state::{MASKS, NOWHERE, Register, SPARE_MASK, WalkState, copy, load, store};
 
 /// The distance of the next use up to which a number is loaded into a register: beyond, it is read from
 /// memory again.
@@ -17,15 +17,15 @@ const NEAR: u32 = 64;
 
 /// An operand of the current instruction.
 #[derive(Clone, Copy)]
-enum Source {
+enum OperandSource {
     Register(Register),
     /// Where memory has the part.
-    Home(Part),
+    Home(ValuePart),
 }
 
-impl State<'_> {
+impl WalkState<'_> {
     /// Emits an op for all vectors.
-    pub(super) fn op(&mut self, op: Op, to: Name, args: [Name; 3]) {
+    pub(super) fn op(&mut self, op: Op, to: ValueName, args: [ValueName; 3]) {
         let count = self.parts(to).len() as u32;
         for vector in 0..count {
             let is_last = vector + 1 == count;
@@ -36,7 +36,7 @@ impl State<'_> {
         }
     }
 
-    fn op_part(&mut self, op: Op, to: Part, [a, b, c]: [Part; 3], is_last: bool) {
+    fn op_part(&mut self, op: Op, to: ValuePart, [a, b, c]: [ValuePart; 3], is_last: bool) {
         let has_masks = self.shape.has_masks;
         match op {
             Op::Add => self.binary(Binary::Add, to, [a, b], is_last),
@@ -75,7 +75,7 @@ impl State<'_> {
 
     /// Whether a part is in no register, an instruction may read it from memory, and that is better than
     /// loading it.
-    fn stays_in_memory(&mut self, part: Part, is_last: bool) -> bool {
+    fn stays_in_memory(&mut self, part: ValuePart, is_last: bool) -> bool {
         let name = self.name(part);
         if self.register_of(part).is_some() || !self.can_be_operand(name) {
             return false;
@@ -91,31 +91,31 @@ impl State<'_> {
     }
 
     /// An operand that may be in memory.
-    fn source(&mut self, part: Part, is_last: bool) -> Source {
+    fn source(&mut self, part: ValuePart, is_last: bool) -> OperandSource {
         if self.stays_in_memory(part, is_last) {
-            Source::Home(part)
+            OperandSource::Home(part)
         } else {
-            Source::Register(self.fetch(part))
+            OperandSource::Register(self.fetch(part))
         }
     }
 
     /// The operand, just before its instruction.
-    fn operand(&mut self, source: Source) -> Operand {
+    fn operand(&mut self, source: OperandSource) -> Operand {
         match source {
-            Source::Register(register) => Operand::Register(register),
-            Source::Home(part) => Operand::Memory(self.home(part)),
+            OperandSource::Register(register) => Operand::Register(register),
+            OperandSource::Home(part) => Operand::Memory(self.home(part)),
         }
     }
 
     /// Whether the instruction of one vector is the last use of a part.
-    fn ends(&self, part: Part, is_last: bool) -> bool {
+    fn ends(&self, part: ValuePart, is_last: bool) -> bool {
         let name = self.name(part);
         (is_last || !self.linear.names[name as usize].is_uniform) && self.dies(name)
     }
 
     /// The register in which an accumulator begins an iteration, if the part is its next value and the
     /// register is available.
-    fn wish(&self, to: Part) -> Option<Register> {
+    fn wish(&self, to: ValuePart) -> Option<Register> {
         let name = self.name(to);
         let phi = self.becomes[name as usize];
         if phi == NONE {
@@ -129,7 +129,13 @@ impl State<'_> {
 
     /// A register for a result: if possible the register of an operand that dies, but not `taboo`. Operands
     /// that die are released.
-    fn target(&mut self, to: Part, args: &[Part], is_last: bool, taboo: Option<Register>) -> Register {
+    fn target(
+        &mut self,
+        to: ValuePart,
+        args: &[ValuePart],
+        is_last: bool,
+        taboo: Option<Register>,
+    ) -> Register {
         let class = self.class(self.name(to));
         let mut ending = [NOWHERE; 3];
         for (place, &arg) in ending.iter_mut().zip(args) {
@@ -164,7 +170,7 @@ impl State<'_> {
 
     /// An empty register. If the instruction needs all others, the register of an operand, which is stored:
     /// an instruction reads before it writes.
-    fn take_or_overwrite(&mut self, class: usize, args: &[Part], taboo: Option<Register>) -> Register {
+    fn take_or_overwrite(&mut self, class: usize, args: &[ValuePart], taboo: Option<Register>) -> Register {
         let mut registers = self.registers(class);
         if registers.any(|register| self.locked >> register & 1 == 0) {
             return self.take(class);
@@ -182,7 +188,7 @@ impl State<'_> {
 
     // ── vectors ──────────────────────────────────────────────────────────────────────────────────
 
-    fn binary(&mut self, op: Binary, to: Part, [mut a, mut b]: [Part; 2], is_last: bool) {
+    fn binary(&mut self, op: Binary, to: ValuePart, [mut a, mut b]: [ValuePart; 2], is_last: bool) {
         let in_register = |state: &Self, part| state.register_of(part).is_some();
         if op.commutes() && !in_register(self, a) && in_register(self, b) {
             (a, b) = (b, a);
@@ -196,7 +202,7 @@ impl State<'_> {
         if self.stays_in_memory(a, is_last) {
             // Loads a directly into the register of the result, which must differ from the register of b.
             let source = self.source(b, is_last);
-            let taboo = if let Source::Register(register) = source { Some(register) } else { None };
+            let taboo = if let OperandSource::Register(register) = source { Some(register) } else { None };
             let target = self.target(to, &[], is_last, taboo);
             self.load_into(target, a);
             let operand = self.operand(source);
@@ -210,7 +216,7 @@ impl State<'_> {
     }
 
     /// An instruction whose second operand is a number.
-    fn with_number(&mut self, op: Binary, bits: u32, to: Part, a: Part, is_last: bool) {
+    fn with_number(&mut self, op: Binary, bits: u32, to: ValuePart, a: ValuePart, is_last: bool) {
         if self.stays_in_memory(a, is_last) {
             let target = self.target(to, &[], is_last, None);
             self.load_into(target, a);
@@ -223,15 +229,15 @@ impl State<'_> {
         self.emit(Inst::Binary { op, to: target, a: register, b }, &[a], to);
     }
 
-    fn sqrt(&mut self, to: Part, a: Part, is_last: bool) {
+    fn sqrt(&mut self, to: ValuePart, a: ValuePart, is_last: bool) {
         let source = self.source(a, is_last);
         let target = self.target(to, &[a], is_last, None);
         let a_operand = self.operand(source);
         self.emit(Inst::Sqrt { to: target, a: a_operand }, &[a], to);
     }
 
-    fn shift(&mut self, left: bool, to: Part, [a, by]: [Part; 2], is_last: bool) {
-        let Kind::Leaf(Home::Number(amount)) = self.linear.names[self.name(by) as usize].kind else {
+    fn shift(&mut self, left: bool, to: ValuePart, [a, by]: [ValuePart; 2], is_last: bool) {
+        let Definition::Leaf(Home::Number(amount)) = self.linear.names[self.name(by) as usize].kind else {
             unreachable!("a verified function shifts by constants")
         };
         let register = self.fetch(a);
@@ -240,12 +246,18 @@ impl State<'_> {
         self.emit(inst, &[a], to);
     }
 
-    fn compare(&mut self, mut predicate: Predicate, to: Part, [mut a, mut b]: [Part; 2], is_last: bool) {
+    fn compare(
+        &mut self,
+        mut predicate: Predicate,
+        to: ValuePart,
+        [mut a, mut b]: [ValuePart; 2],
+        is_last: bool,
+    ) {
         if self.register_of(a).is_none() && self.register_of(b).is_some() {
             (a, b, predicate) = (b, a, predicate.swapped());
         }
         let register = self.fetch(a);
-        let source = if a == b { Source::Register(register) } else { self.source(b, is_last) };
+        let source = if a == b { OperandSource::Register(register) } else { self.source(b, is_last) };
         let target = self.target(to, &[a, b], is_last, None);
         let b_operand = self.operand(source);
         let number = if target < MASKS { target } else { target - MASKS };
@@ -253,7 +265,7 @@ impl State<'_> {
     }
 
     /// The mask register of a mask: the spare one, if the mask is in none.
-    fn mask_register(&mut self, part: Part) -> u8 {
+    fn mask_register(&mut self, part: ValuePart) -> u8 {
         if let Some(register) = self.register_of(part) {
             self.lock(register);
             return register - MASKS;
@@ -266,12 +278,13 @@ impl State<'_> {
     }
 
     /// `if mask { yes } else { no }`.
-    fn select(&mut self, to: Part, [mask, yes, no]: [Part; 3], is_last: bool) {
+    fn select(&mut self, to: ValuePart, [mask, yes, no]: [ValuePart; 3], is_last: bool) {
         let has_masks = self.shape.has_masks;
         let mask_number = if has_masks { self.mask_register(mask) } else { self.fetch(mask) };
         if yes != no && self.stays_in_memory(no, is_last) {
             let source = self.source(yes, is_last);
-            let yes_register = if let Source::Register(register) = source { Some(register) } else { None };
+            let yes_register =
+                if let OperandSource::Register(register) = source { Some(register) } else { None };
             // Without mask registers the mask is a vector, and stays locked so that the result cannot
             // overwrite it.
             let target = self.target(to, &[], is_last, yes_register);
@@ -281,7 +294,7 @@ impl State<'_> {
             return self.emit(inst, &[mask, no, yes], to);
         }
         let no_register = self.fetch(no);
-        let source = if yes == no { Source::Register(no_register) } else { self.source(yes, is_last) };
+        let source = if yes == no { OperandSource::Register(no_register) } else { self.source(yes, is_last) };
         let target = self.target(to, &[no, yes, mask], is_last, None);
         let operand = self.operand(source);
         let inst = Inst::Blend { to: target, mask: mask_number, no: no_register, yes: operand };
@@ -289,7 +302,7 @@ impl State<'_> {
     }
 
     /// Ops on mask registers.
-    fn mask(&mut self, op: Op, to: Part, [a, b]: [Part; 2], is_last: bool) {
+    fn mask(&mut self, op: Op, to: ValuePart, [a, b]: [ValuePart; 2], is_last: bool) {
         if op == Op::Not {
             let register = self.mask_register(a);
             let target = self.target(to, &[a], is_last, None) - MASKS;
@@ -311,7 +324,7 @@ impl State<'_> {
 
     /// `a * b + c`. The result takes the register of one operand: of one that dies, of one that is loaded for
     /// it, or of a copy.
-    fn fma(&mut self, to: Part, [mut a, mut b, c]: [Part; 3], is_last: bool) {
+    fn fma(&mut self, to: ValuePart, [mut a, mut b, c]: [ValuePart; 3], is_last: bool) {
         // One operand in memory may stay there: the last one in this order.
         let mut in_memory = NONE;
         for part in [c, b, a] {
@@ -336,7 +349,7 @@ impl State<'_> {
             let target = self.target(to, &[], is_last, None);
             self.load_into(target, in_memory);
             let (form, other, last) =
-                if b == in_memory { (Form::F213, ra, rc) } else { (Form::F231, ra, rb) };
+                if b == in_memory { (FmaForm::F213, ra, rc) } else { (FmaForm::F231, ra, rb) };
             // 213: to = other * to + last.  231: to = other * last + to.
             let reads = if b == in_memory { [b, a, c] } else { [c, a, b] };
             let inst = Inst::Fma { form, to: target, b: other, c: Operand::Register(last) };
@@ -347,7 +360,7 @@ impl State<'_> {
             let (other, last, other_part, last_part) = (ra, b, a, b);
             let operand =
                 if last == in_memory { Operand::Memory(self.home(b)) } else { Operand::Register(rb) };
-            let inst = Inst::Fma { form: Form::F231, to: target, b: other, c: operand };
+            let inst = Inst::Fma { form: FmaForm::F231, to: target, b: other, c: operand };
             return self.emit(inst, &[c, other_part, last_part], to);
         }
         // The target is a, or b, or a copy of a.
@@ -358,23 +371,29 @@ impl State<'_> {
         }
         let inst = if other == in_memory {
             let operand = Operand::Memory(self.home(other));
-            (Inst::Fma { form: Form::F132, to: target, b: rc, c: operand }, [factor, c, other])
+            (Inst::Fma { form: FmaForm::F132, to: target, b: rc, c: operand }, [factor, c, other])
         } else {
             let operand = if c == in_memory { Operand::Memory(self.home(c)) } else { Operand::Register(rc) };
-            (Inst::Fma { form: Form::F213, to: target, b: other_register, c: operand }, [factor, other, c])
+            (Inst::Fma { form: FmaForm::F213, to: target, b: other_register, c: operand }, [factor, other, c])
         };
         self.emit(inst.0, &inst.1, to);
     }
 
     /// The register of an fma's result: the register of an operand that dies, or the target of a copy.
-    fn fma_target(&mut self, to: Part, args: [Part; 3], in_memory: Part, is_last: bool) -> Register {
+    fn fma_target(
+        &mut self,
+        to: ValuePart,
+        args: [ValuePart; 3],
+        in_memory: ValuePart,
+        is_last: bool,
+    ) -> Register {
         let ending = args
             .into_iter()
             .filter(|&part| part != in_memory && self.ends(part, is_last))
             .filter_map(|part| Some((part, self.register_of(part)?)));
         let wish = self.wish(to);
-        let is_wish = |&(_, register): &(Part, Register)| Some(register) == wish;
-        let is_free = |&(_, register): &(Part, Register)| self.reserved >> register & 1 == 0;
+        let is_wish = |&(_, register): &(ValuePart, Register)| Some(register) == wish;
+        let is_free = |&(_, register): &(ValuePart, Register)| self.reserved >> register & 1 == 0;
         let chosen = ending.clone().find(is_wish);
         let chosen = chosen.or_else(|| ending.clone().find(is_free)).or_else(|| ending.clone().next());
         match chosen {
@@ -390,7 +409,7 @@ impl State<'_> {
     // ── stores ───────────────────────────────────────────────────────────────────────────────────
 
     /// Copies a leaf into a computed value.
-    pub(super) fn read(&mut self, to: Name, from: Name) {
+    pub(super) fn read(&mut self, to: ValueName, from: ValueName) {
         for vector in 0..self.parts(to).len() as u32 {
             let [to, from] = [to, from].map(|name| self.part(name, vector));
             let class = self.class(self.name(to));
@@ -412,7 +431,7 @@ impl State<'_> {
     }
 
     /// Stores all vectors of a value at consecutive addresses.
-    fn store_at(&mut self, value: Name, first: impl Fn(&mut Self) -> Memory) {
+    fn store_at(&mut self, value: ValueName, first: impl Fn(&mut Self) -> Memory) {
         let class = self.class(value);
         for vector in 0..self.vectors {
             let part = self.part(value, vector);
@@ -424,12 +443,12 @@ impl State<'_> {
         }
     }
 
-    pub(super) fn keep(&mut self, slot: usize, value: Name) {
+    pub(super) fn keep(&mut self, slot: usize, value: ValueName) {
         let displacement = self.strip_displacement(slot);
         self.store_at(value, |_| Memory::at(Gpr::R8, displacement));
     }
 
-    pub(super) fn output(&mut self, plane: usize, value: Name) {
+    pub(super) fn output(&mut self, plane: usize, value: ValueName) {
         let plane = i32::try_from(8 * (self.planes + plane)).expect("planes are limited");
         self.store_at(value, |state| {
             state.integer(Integer::LoadPointer { to: Gpr::Rax, from: Memory::at(Gpr::Rdi, plane) });

@@ -11,9 +11,9 @@
 use rustc_hash::FxHashMap as HashMap;
 
 use super::encode::Shape;
-use super::event::{Event, Part};
+use super::event::{Event, ValuePart};
 use super::inst::{Inst, Label, Memory};
-use super::linear::{Kind, Linear, LoopId, NONE, Name};
+use super::linear::{Definition, LinearCode, LoopId, NONE, ValueName};
 use super::lives::Lives;
 
 /// A register: 0 to 31 are vectors, from 32 on masks. The first mask register is unused.
@@ -37,9 +37,9 @@ pub(crate) const SAVED: i32 = 24;
 
 /// How many registers may be used: vectors and masks.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(crate) struct Count(pub(crate) [u8; 2]);
+pub(crate) struct RegisterCount(pub(crate) [u8; 2]);
 
-impl Count {
+impl RegisterCount {
     /// The registers of a class.
     fn registers(self, class: usize) -> std::ops::Range<Register> {
         if class == 0 { 0..self.0[0] } else { MASKS + 1..MASKS + 1 + self.0[1] }
@@ -47,10 +47,10 @@ impl Count {
 }
 
 /// An open loop.
-pub(super) struct Open {
+pub(super) struct OpenLoop {
     pub(super) id: LoopId,
     /// The contents of the registers at the top of each iteration.
-    pub(super) header: [Part; REGISTERS],
+    pub(super) header: [ValuePart; REGISTERS],
     /// The length of the journal when the loop opened.
     pub(super) journal: usize,
     /// Where an iteration begins, and where the loop is left.
@@ -61,15 +61,15 @@ pub(super) struct Open {
 }
 
 /// The walk over a list.
-pub(crate) struct State<'a> {
-    pub(super) linear: &'a Linear,
+pub(crate) struct WalkState<'a> {
+    pub(super) linear: &'a LinearCode,
     pub(super) lives: &'a Lives,
     /// The number of registers that each loop needs for the values that it computes.
     pub(super) pressure: Vec<[usize; 2]>,
     /// The number of vectors of a value.
     pub(super) vectors: u32,
     pub(super) shape: Shape,
-    pub(super) count: Count,
+    pub(super) count: RegisterCount,
     /// The number of input planes of the function: output planes follow them.
     pub(super) planes: usize,
     pub(super) strip_bytes: usize,
@@ -78,7 +78,7 @@ pub(crate) struct State<'a> {
 
     pub(crate) code: Vec<Inst>,
     /// The parts that each instruction reads and writes, if the code is to be checked.
-    pub(crate) notes: Option<Vec<([Part; 3], Part)>>,
+    pub(crate) notes: Option<Vec<([ValuePart; 3], ValuePart)>>,
     /// Events between instructions, for the same purpose.
     pub(crate) events: Vec<(usize, Event)>,
     pub(crate) labels: u32,
@@ -88,7 +88,7 @@ pub(crate) struct State<'a> {
     pub(crate) slot_addresses: Vec<usize>,
 
     /// What each register holds.
-    pub(super) occupant: [Part; REGISTERS],
+    pub(super) occupant: [ValuePart; REGISTERS],
     /// A bit for each register that holds a part.
     full: u64,
     /// The registers of each class, as bits.
@@ -105,17 +105,17 @@ pub(crate) struct State<'a> {
     pub(super) free: Vec<u32>,
     pub(crate) frame_slots: u32,
     /// Parts that have been stored while loops are open, in order.
-    pub(super) journal: Vec<Part>,
+    pub(super) journal: Vec<ValuePart>,
     /// How many uses of each name the walk has passed.
     passed: Vec<u32>,
     /// The registers that the current instruction needs, as bits.
     pub(super) locked: u64,
     pub(super) position: u32,
-    pub(super) open: Vec<Open>,
+    pub(super) open: Vec<OpenLoop>,
     /// The registers in which accumulators of the innermost loop begin an iteration.
     pub(super) reserved: u64,
     /// The accumulator whose next value a name is.
-    pub(super) becomes: Vec<Name>,
+    pub(super) becomes: Vec<ValueName>,
     /// The loop over each table.
     pub(super) rows: Vec<Option<usize>>,
     /// The number of open folds.
@@ -123,12 +123,12 @@ pub(crate) struct State<'a> {
 }
 
 /// The input of a walk.
-pub(crate) struct Task<'a> {
-    pub(crate) linear: &'a Linear,
+pub(crate) struct WalkInput<'a> {
+    pub(crate) linear: &'a LinearCode,
     pub(crate) lives: &'a Lives,
     pub(crate) vectors: usize,
     pub(crate) shape: Shape,
-    pub(crate) count: Count,
+    pub(crate) count: RegisterCount,
     pub(crate) planes: usize,
     pub(crate) strip_bytes: usize,
     /// For each table, the bytes of a row and the parent.
@@ -136,9 +136,10 @@ pub(crate) struct Task<'a> {
     pub(crate) is_checked: bool,
 }
 
-impl<'a> State<'a> {
-    pub(crate) fn new(task: Task<'a>) -> Self {
-        let Task { linear, lives, vectors, shape, count, planes, strip_bytes, tables, is_checked } = task;
+impl<'a> WalkState<'a> {
+    pub(crate) fn new(task: WalkInput<'a>) -> Self {
+        let WalkInput { linear, lives, vectors, shape, count, planes, strip_bytes, tables, is_checked } =
+            task;
         let parts = linear.names.len() * vectors;
         let bits = |registers: std::ops::Range<Register>| registers.map(|register| 1 << register).sum();
         let mut becomes = vec![NONE; linear.names.len()];
@@ -189,7 +190,7 @@ impl<'a> State<'a> {
 
     /// Appends an instruction on values, with the parts that it reads, in the order of its fields, and the
     /// part that it writes.
-    pub(super) fn emit(&mut self, inst: Inst, reads: &[Part], write: Part) {
+    pub(super) fn emit(&mut self, inst: Inst, reads: &[ValuePart], write: ValuePart) {
         self.code.push(inst);
         if let Some(notes) = &mut self.notes {
             let mut all = [NONE; 3];
@@ -216,38 +217,38 @@ impl<'a> State<'a> {
 
     // ── values ───────────────────────────────────────────────────────────────────────────────────
 
-    pub(super) fn name(&self, part: Part) -> Name {
+    pub(super) fn name(&self, part: ValuePart) -> ValueName {
         part / self.vectors
     }
 
-    pub(super) fn part(&self, name: Name, vector: u32) -> Part {
+    pub(super) fn part(&self, name: ValueName, vector: u32) -> ValuePart {
         let is_uniform = self.linear.names[name as usize].is_uniform;
         name * self.vectors + if is_uniform { 0 } else { vector }
     }
 
     /// The parts of a name.
-    pub(super) fn parts(&self, name: Name) -> std::ops::Range<Part> {
+    pub(super) fn parts(&self, name: ValueName) -> std::ops::Range<ValuePart> {
         let count = if self.linear.names[name as usize].is_uniform { 1 } else { self.vectors };
         name * self.vectors..name * self.vectors + count
     }
 
     /// 0 for a value in vectors, 1 for one in mask registers.
-    pub(super) fn class(&self, name: Name) -> usize {
+    pub(super) fn class(&self, name: ValueName) -> usize {
         usize::from(self.linear.names[name as usize].is_mask && self.shape.has_masks)
     }
 
-    pub(super) fn is_leaf(&self, name: Name) -> bool {
-        matches!(self.linear.names[name as usize].kind, Kind::Leaf(_))
+    pub(super) fn is_leaf(&self, name: ValueName) -> bool {
+        matches!(self.linear.names[name as usize].kind, Definition::Leaf(_))
     }
 
     /// The register that a part is in.
-    pub(super) fn register_of(&self, part: Part) -> Option<Register> {
+    pub(super) fn register_of(&self, part: ValuePart) -> Option<Register> {
         let register = self.place[part as usize];
         (register != NOWHERE).then_some(register)
     }
 
     /// The next use of the name, at this position or later.
-    pub(super) fn next_use(&mut self, name: Name) -> u32 {
+    pub(super) fn next_use(&mut self, name: ValueName) -> u32 {
         let (uses, passed) = (self.lives.uses(name), &mut self.passed[name as usize]);
         while uses.get(*passed as usize).is_some_and(|&at| at < self.position) {
             *passed += 1;
@@ -261,7 +262,7 @@ impl<'a> State<'a> {
     }
 
     /// The next use of the name after the current position, if it has one.
-    pub(super) fn later_use(&mut self, name: Name) -> Option<u32> {
+    pub(super) fn later_use(&mut self, name: ValueName) -> Option<u32> {
         self.next_use(name);
         let uses = self.lives.uses(name);
         let mut index = self.passed[name as usize] as usize;
@@ -273,7 +274,7 @@ impl<'a> State<'a> {
     }
 
     /// Whether the name has no use after the current position.
-    pub(super) fn dies(&self, name: Name) -> bool {
+    pub(super) fn dies(&self, name: ValueName) -> bool {
         self.lives.end(self.linear, name, self.position) <= self.position
     }
 
@@ -319,7 +320,7 @@ impl<'a> State<'a> {
 
     /// The priority of a register for spilling: the distance of the next use of its part, more if nothing has
     /// to be stored.
-    fn reluctance(&mut self, register: Register, part: Part) -> u64 {
+    fn reluctance(&mut self, register: Register, part: ValuePart) -> u64 {
         let name = self.name(part);
         let index = register as usize;
         // The next use stays the same until the walk passes it.
@@ -353,7 +354,7 @@ impl<'a> State<'a> {
     }
 
     /// Records that a part is in no register.
-    pub(super) fn release(&mut self, part: Part) {
+    pub(super) fn release(&mut self, part: ValuePart) {
         let register = std::mem::replace(&mut self.place[part as usize], NOWHERE);
         if register != NOWHERE {
             self.occupant[register as usize] = NONE;
@@ -362,7 +363,7 @@ impl<'a> State<'a> {
     }
 
     /// Records that a part is in a register, which was empty.
-    pub(super) fn bind(&mut self, part: Part, register: Register) {
+    pub(super) fn bind(&mut self, part: ValuePart, register: Register) {
         debug_assert_eq!(self.occupant[register as usize], NONE, "a register holds one thing");
         self.occupant[register as usize] = part;
         self.full |= 1 << register;

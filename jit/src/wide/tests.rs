@@ -9,7 +9,7 @@ use crate::options::{Check, Pieces, VectorCount};
 
 use super::Wide;
 use super::encode::{Encoder, Shape};
-use super::inst::{Base, Binary, Condition, Form, Gpr, Inst, Integer, Label, Memory, Operand, Predicate};
+use super::inst::{Base, Binary, Condition, FmaForm, Gpr, Inst, Integer, Label, Memory, Operand, Predicate};
 
 const AVX2: Shape = Shape { bytes: 32, has_masks: false };
 const AVX512VL: Shape = Shape { bytes: 32, has_masks: true };
@@ -189,9 +189,9 @@ fn arithmetic_is_encoded() {
         let first = |number| vector(shape, number);
         check_vector(shape, Mnemonic::Vsqrtps, first, |to, _, a| Inst::Sqrt { to, a }, false);
         for (form, mnemonic) in [
-            (Form::F132, Mnemonic::Vfmadd132ps),
-            (Form::F213, Mnemonic::Vfmadd213ps),
-            (Form::F231, Mnemonic::Vfmadd231ps),
+            (FmaForm::F132, Mnemonic::Vfmadd132ps),
+            (FmaForm::F213, Mnemonic::Vfmadd213ps),
+            (FmaForm::F231, Mnemonic::Vfmadd231ps),
         ] {
             check_vector(shape, mnemonic, first, |to, b, c| Inst::Fma { form, to, b, c }, true);
         }

@@ -4,14 +4,14 @@
 
 use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 
-use super::event::{Event, NEXT, Part, Place};
+use super::event::{Event, NEXT, PartPlace, ValuePart};
 use super::inst::Memory;
-use super::linear::{Kind, LoopId, NONE};
-use super::state::{MASKS, REGISTERS, Register, SPARE_MASK, State, copy, load, store};
+use super::linear::{Definition, LoopId, NONE};
+use super::state::{MASKS, REGISTERS, Register, SPARE_MASK, WalkState, copy, load, store};
 
 /// The place of a value that a transfer reads.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
-enum Source {
+enum TransferSource {
     Register(Register),
     Memory(Memory),
     Leaf,
@@ -20,25 +20,26 @@ enum Source {
 /// A value that has to be at another place when an iteration begins.
 #[derive(Clone, Copy)]
 struct Transfer {
-    from: Part,
-    source: Source,
+    from: ValuePart,
+    source: TransferSource,
     /// The part that it becomes there.
-    to: Part,
-    /// [`Source::Register`] or [`Source::Memory`].
-    target: Source,
+    to: ValuePart,
+    /// [`TransferSource::Register`] or [`TransferSource::Memory`].
+    target: TransferSource,
 }
 
-impl State<'_> {
+impl WalkState<'_> {
     /// Restores all values that the top of an iteration relies on.
     pub(super) fn put_back(&mut self, id: LoopId) {
         let header = self.open.last().expect("the loop is open").header;
         let (mut transfers, mut renames) = self.transfers(id, &header);
         // A move from memory to memory, or a move through memory because its target is also a source.
-        let sources: HashSet<Source> = transfers.iter().map(|transfer| transfer.source).collect();
+        let sources: HashSet<TransferSource> = transfers.iter().map(|transfer| transfer.source).collect();
         let needs_register = transfers.iter().any(|transfer| {
-            matches!(transfer.target, Source::Memory(_))
+            matches!(transfer.target, TransferSource::Memory(_))
                 && self.class(self.name(transfer.to)) == 0
-                && (!matches!(transfer.source, Source::Register(_)) || sources.contains(&transfer.target))
+                && (!matches!(transfer.source, TransferSource::Register(_))
+                    || sources.contains(&transfer.target))
         });
         let mut spare = MASKS;
         if needs_register {
@@ -72,10 +73,10 @@ impl State<'_> {
             return;
         }
         // Registers first: where only cycles are left, a cycle is broken at a register.
-        transfers.sort_by_key(|transfer| !matches!(transfer.source, Source::Register(_)));
+        transfers.sort_by_key(|transfer| !matches!(transfer.source, TransferSource::Register(_)));
         // The readers of a place, how many of them are still pending, and the writer of the place.
-        let mut readers: HashMap<Source, (Vec<usize>, usize)> = HashMap::default();
-        let mut writer: HashMap<Source, usize> = HashMap::default();
+        let mut readers: HashMap<TransferSource, (Vec<usize>, usize)> = HashMap::default();
+        let mut writer: HashMap<TransferSource, usize> = HashMap::default();
         for (index, transfer) in transfers.iter().enumerate() {
             let (list, left) = readers.entry(transfer.source).or_default();
             list.push(index);
@@ -96,7 +97,7 @@ impl State<'_> {
                 let memory = self.set_aside(transfers[first], spare, &mut fresh);
                 let (list, _) = readers.remove(&aside).unwrap_or_default();
                 for index in list {
-                    transfers[index].source = Source::Memory(memory);
+                    transfers[index].source = TransferSource::Memory(memory);
                 }
                 ready.extend(writer.get(&aside));
                 continue;
@@ -118,23 +119,23 @@ impl State<'_> {
     fn transfers(
         &mut self,
         id: LoopId,
-        header: &[Part; REGISTERS],
-    ) -> (Vec<Transfer>, Vec<(Part, Part, Place)>) {
+        header: &[ValuePart; REGISTERS],
+    ) -> (Vec<Transfer>, Vec<(ValuePart, ValuePart, PartPlace)>) {
         let linear = self.linear;
         let (mut transfers, mut renames) = (Vec::new(), Vec::new());
         for phi in &linear.loops[id as usize].phis {
             for vector in 0..self.vectors {
                 let (from, to) = (self.part(phi.next, vector), self.part(phi.value, vector));
                 let target = match header.iter().position(|&part| part == to) {
-                    Some(register) => Source::Register(register as Register),
-                    None => Source::Memory(self.frame_memory(to)),
+                    Some(register) => TransferSource::Register(register as Register),
+                    None => TransferSource::Memory(self.frame_memory(to)),
                 };
                 let source = self.whereabouts(from);
                 if source == target {
                     let place = match target {
-                        Source::Register(register) => Place::Register(register),
-                        Source::Memory(memory) => Place::Frame(memory.displacement),
-                        Source::Leaf => unreachable!("leaves are not written"),
+                        TransferSource::Register(register) => PartPlace::Register(register),
+                        TransferSource::Memory(memory) => PartPlace::Frame(memory.displacement),
+                        TransferSource::Leaf => unreachable!("leaves are not written"),
                     };
                     renames.push((from, to, place));
                 } else {
@@ -143,48 +144,48 @@ impl State<'_> {
             }
         }
         for (register, &part) in header.iter().enumerate() {
-            let is_phi = part != NONE && linear.names[self.name(part) as usize].kind == Kind::Phi(id);
+            let is_phi = part != NONE && linear.names[self.name(part) as usize].kind == Definition::Phi(id);
             if part == NONE || is_phi || usize::from(self.place[part as usize]) == register {
                 continue;
             }
-            let (source, target) = (self.whereabouts(part), Source::Register(register as Register));
+            let (source, target) = (self.whereabouts(part), TransferSource::Register(register as Register));
             transfers.push(Transfer { from: part, source, to: part, target });
         }
         (transfers, renames)
     }
 
-    fn whereabouts(&mut self, part: Part) -> Source {
+    fn whereabouts(&mut self, part: ValuePart) -> TransferSource {
         match self.register_of(part) {
-            Some(register) => Source::Register(register),
-            None if self.is_leaf(self.name(part)) => Source::Leaf,
-            None => Source::Memory(self.frame_memory(part)),
+            Some(register) => TransferSource::Register(register),
+            None if self.is_leaf(self.name(part)) => TransferSource::Leaf,
+            None => TransferSource::Memory(self.frame_memory(part)),
         }
     }
 
     fn transfer(&mut self, Transfer { from, source, to, target }: Transfer, spare: Register) {
-        let next = |part: Part| if part == from { part } else { part | NEXT };
+        let next = |part: ValuePart| if part == from { part } else { part | NEXT };
         let mask = MASKS + SPARE_MASK;
         let spare = if self.class(self.name(to)) == 1 { mask } else { spare };
         match (source, target) {
-            (Source::Register(source), Source::Register(target)) => {
+            (TransferSource::Register(source), TransferSource::Register(target)) => {
                 self.emit(copy(target, source), &[from], next(to));
             }
-            (Source::Register(source), Source::Memory(target)) => {
+            (TransferSource::Register(source), TransferSource::Memory(target)) => {
                 self.emit(store(source, target), &[from], next(to));
             }
-            (Source::Memory(source), Source::Register(target)) => {
+            (TransferSource::Memory(source), TransferSource::Register(target)) => {
                 self.emit(load(target, source), &[from], next(to));
             }
-            (Source::Leaf, Source::Register(target)) => self.load_as(target, from, next(to)),
-            (Source::Memory(source), Source::Memory(target)) => {
+            (TransferSource::Leaf, TransferSource::Register(target)) => self.load_as(target, from, next(to)),
+            (TransferSource::Memory(source), TransferSource::Memory(target)) => {
                 self.emit(load(spare, source), &[from], from);
                 self.emit(store(spare, target), &[from], next(to));
             }
-            (Source::Leaf, Source::Memory(target)) => {
+            (TransferSource::Leaf, TransferSource::Memory(target)) => {
                 self.load_into(spare, from);
                 self.emit(store(spare, target), &[from], next(to));
             }
-            (_, Source::Leaf) => unreachable!("leaves are not written"),
+            (_, TransferSource::Leaf) => unreachable!("leaves are not written"),
         }
     }
 
@@ -192,7 +193,7 @@ impl State<'_> {
     fn set_aside(&mut self, transfer: Transfer, spare: Register, fresh: &mut Vec<u32>) -> Memory {
         let (slot, memory) = self.fresh_slot();
         fresh.push(slot);
-        let target = Source::Memory(memory);
+        let target = TransferSource::Memory(memory);
         self.transfer(Transfer { to: transfer.from, target, ..transfer }, spare);
         memory
     }

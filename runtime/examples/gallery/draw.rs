@@ -4,7 +4,7 @@ use std::error::Error;
 use std::fs;
 use std::path::Path;
 
-use jbt::contour::{Detail, ImageDetail, Mode, Plane, Slicer, circles};
+use jbt::contour::{Detail, ImageDetail, ImageMode, Plane, Slicer, circles};
 use jbt::export::svg::{Paint, Style, write_svg};
 use jbt::export::write_png;
 use jbt::{CheckedTree, Compiler, Diagnostics, Fineness, Picture, Query, text};
@@ -26,7 +26,8 @@ pub fn draw(root: &Path, entry: &Entry) -> Result<Vec<u8>, Box<dyn Error>> {
             write_png(&coarse(&made.picture), &mut bytes)?;
         }
         Drawing::Slice { plane, mode, pixels } => {
-            let query = if matches!(mode, Mode::Attribute(_)) { Query::ATTRIBUTES } else { Query::FIELD };
+            let query =
+                if matches!(mode, ImageMode::Attribute(_)) { Query::ATTRIBUTES } else { Query::FIELD };
             let slicer = Slicer::new(&compiler, &tree, plane, query)?;
             let detail = ImageDetail { fineness: Fineness::Resolution(*pixels), samples: 1 };
             let picture = slicer.picture(&slicer.rectangle()?, mode, &detail).run()?;

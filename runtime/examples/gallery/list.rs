@@ -4,7 +4,7 @@ use std::error::Error;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use jbt::contour::{Mode, Plane};
+use jbt::contour::{ImageMode, Plane};
 use jbt::render::Render;
 
 use crate::looks;
@@ -39,7 +39,7 @@ pub enum Drawing {
     /// An image of a slice, so many pixels along its longer side.
     Slice {
         plane: Plane,
-        mode: Mode,
+        mode: ImageMode,
         pixels: usize,
     },
     /// A contour and its quadtree, so many cells along their longer side.
@@ -100,7 +100,7 @@ fn member(scene: &Path) -> Result<Drawing, Box<dyn Error>> {
         ))));
     }
     let plane = first.strip_prefix("# slice ").ok_or("the first line says how to look at it")?;
-    Ok(Drawing::Slice { plane: plane.parse()?, mode: Mode::Field, pixels: SLICE })
+    Ok(Drawing::Slice { plane: plane.parse()?, mode: ImageMode::Field, pixels: SLICE })
 }
 
 /// The scenes of a folder, by name.

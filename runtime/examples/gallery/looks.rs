@@ -6,7 +6,7 @@ use std::path::Path;
 
 use jbt::Box3;
 use jbt::contour;
-use jbt::render::{Background, Mode, Quality, Render, Stance, View};
+use jbt::render::{Background, Quality, Render, RenderMode, Stance, View};
 
 use crate::list::{Drawing, Entry, Scene};
 
@@ -76,7 +76,7 @@ pub fn extras(root: &Path) -> Result<Vec<Entry>, Box<dyn Error>> {
         Ok(Entry { name: name.to_owned(), scene, drawing })
     };
     let hero = rendered(&USUAL);
-    let with = |mode: Mode, background| Render { mode, background, ..hero.clone() };
+    let with = |mode: RenderMode, background| Render { mode, background, ..hero.clone() };
     let front = Box3::new([-1.8, 0.0, -0.6], [1.8, 1.8, 1.6]);
     let splash = Look { from: [1.0, -0.62, 0.55], size: [480, 288], ..USUAL };
     Ok(vec![
@@ -86,14 +86,18 @@ pub fn extras(root: &Path) -> Result<Vec<Entry>, Box<dyn Error>> {
             rendered(&Look { from: [0.75, -0.45, 0.95], size: [300, 300], ..USUAL }),
         ),
         render("particles", Scene::Splash, rendered(&splash)),
-        render("hero_normals", file("hero"), with(Mode::Normal, None)),
-        render("hero_depths", file("hero"), with(Mode::Depth, None)),
-        render("hero_evaluations", file("hero"), with(Mode::Evaluations, Some(Background::Color([0; 3])))),
+        render("hero_normals", file("hero"), with(RenderMode::Normal, None)),
+        render("hero_depths", file("hero"), with(RenderMode::Depth, None)),
+        render(
+            "hero_evaluations",
+            file("hero"),
+            with(RenderMode::Evaluations, Some(Background::Color([0; 3]))),
+        ),
         render("hero_cut", file("hero"), Render { region: Some(front), ..hero.clone() }),
-        slice("hero_slice", file("hero"), "z=0.1", contour::Mode::Field)?,
-        slice("circles_field", file("circles"), "z=0", contour::Mode::Field)?,
-        slice("circles_height", file("circles"), "z=0", contour::Mode::Height)?,
-        slice("gyroid_slice", file("gyroid"), "0,0,0, 1,-1,0, 0,0,1", contour::Mode::Field)?,
+        slice("hero_slice", file("hero"), "z=0.1", contour::ImageMode::Field)?,
+        slice("circles_field", file("circles"), "z=0", contour::ImageMode::Field)?,
+        slice("circles_height", file("circles"), "z=0", contour::ImageMode::Height)?,
+        slice("gyroid_slice", file("gyroid"), "0,0,0, 1,-1,0, 0,0,1", contour::ImageMode::Field)?,
         Entry {
             name: "circles_quadtree".to_owned(),
             scene: file("circles"),

@@ -11,9 +11,9 @@
 //! Beyond the rectangle everything is outside: there is one more row of cells around it, of no width, in
 //! which the contour follows the border.
 
-use super::divide::Square;
+use super::divide::CellSquare;
 use super::grid::Grid;
-use super::roots::{Edge, solve};
+use super::roots::{CutEdge, solve};
 use super::slicer::Slicer;
 use crate::error::EvalError;
 use crate::prune::Region;
@@ -22,12 +22,12 @@ use crate::prune::Region;
 /// at its upper end. One that leads to the lattice from beyond it has 0 along its axis, and one that leads
 /// out of it has one more than the last point.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
-pub(super) struct Key(u64);
+pub(super) struct EdgeKey(u64);
 
 /// Bits of a row or a column: from 0 to 2^20 + 1.
 const BITS: u32 = 21;
 
-impl Key {
+impl EdgeKey {
     fn new(axis: usize, column: u32, row: u32) -> Self {
         Self((axis as u64) << (2 * BITS) | u64::from(row) << BITS | u64::from(column))
     }
@@ -48,10 +48,10 @@ impl Key {
 
 /// A piece of the contour, with the inside on its left.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Segment {
+pub(super) struct ContourSegment {
     /// The edges that it begins and ends at.
-    pub(super) from: Key,
-    pub(super) to: Key,
+    pub(super) from: EdgeKey,
+    pub(super) to: EdgeKey,
     /// The vertex where it begins.
     pub(super) place: [f32; 2],
     /// Whether the point at the lower end of the edge where it begins is inside.
@@ -62,13 +62,13 @@ pub(super) struct Segment {
 
 /// The segments of a square, and the attributes of their vertices.
 pub(super) struct Segments {
-    pub(super) list: Vec<Segment>,
+    pub(super) list: Vec<ContourSegment>,
     /// Plane by plane.
     pub(super) attributes: Vec<Vec<f32>>,
 }
 
 /// A block of cells with the field at its points.
-pub(super) struct Block<'a> {
+pub(super) struct CellBlock<'a> {
     slicer: &'a Slicer,
     grid: &'a Grid,
     /// The first and the last point.
@@ -78,17 +78,17 @@ pub(super) struct Block<'a> {
 }
 
 /// A segment before its vertex is known.
-struct Draft {
-    segment: Segment,
-    edge: Option<Edge>,
+struct SegmentDraft {
+    segment: ContourSegment,
+    edge: Option<CutEdge>,
 }
 
-impl<'a> Block<'a> {
+impl<'a> CellBlock<'a> {
     /// Evaluates the points of a square.
     pub(super) fn new(
         slicer: &'a Slicer,
         grid: &'a Grid,
-        square: &Square,
+        square: &CellSquare,
         region: &Region,
     ) -> Result<Self, EvalError> {
         let [u, v] = grid.block(square.first, square.end.map(|end| end + 1));
@@ -172,16 +172,16 @@ impl<'a> Block<'a> {
     }
 
     /// The segments of a cell.
-    fn draft(&self, cell: [u32; 2], inside: [bool; 4], join: bool, drafts: &mut Vec<Draft>) {
+    fn draft(&self, cell: [u32; 2], inside: [bool; 4], join: bool, drafts: &mut Vec<SegmentDraft>) {
         let corners = Self::corners(cell);
         let [i, j] = cell;
         // An edge at which a segment begins or ends has a point of the lattice, so nothing wraps here that is
         // used.
         let key = |edge: usize| match edge {
-            0 => Key::new(0, i, j.wrapping_sub(1)),
-            1 => Key::new(1, i, j),
-            2 => Key::new(0, i, j),
-            _ => Key::new(1, i.wrapping_sub(1), j),
+            0 => EdgeKey::new(0, i, j.wrapping_sub(1)),
+            1 => EdgeKey::new(1, i, j),
+            2 => EdgeKey::new(0, i, j),
+            _ => EdgeKey::new(1, i.wrapping_sub(1), j),
         };
         let ends = |edge: usize| inside[edge] != inside[(edge + 1) % 4] && !inside[edge];
         for edge in (0..4).filter(|&edge| inside[edge] && !inside[(edge + 1) % 4]) {
@@ -194,8 +194,8 @@ impl<'a> Block<'a> {
             }
             let (near, far) = (corners[edge], corners[(edge + 1) % 4]);
             let (crossing, place) = self.crossing(edge % 2, near, far);
-            drafts.push(Draft {
-                segment: Segment {
+            drafts.push(SegmentDraft {
+                segment: ContourSegment {
                     from: key(edge),
                     to: key(to),
                     place,
@@ -209,14 +209,14 @@ impl<'a> Block<'a> {
 
     /// The edge from an inside point to an outside one; on the border there is none, and the vertex is the
     /// inside point.
-    fn crossing(&self, axis: usize, near: [u32; 2], far: [u32; 2]) -> (Option<Edge>, [f32; 2]) {
+    fn crossing(&self, axis: usize, near: [u32; 2], far: [u32; 2]) -> (Option<CutEdge>, [f32; 2]) {
         let coordinate = |axis: usize, point: [u32; 2]| self.grid.axes[axis][point[axis] as usize];
         let place = [coordinate(0, near), coordinate(1, near)];
         let points = self.grid.points();
         if (far[axis] as usize) >= points[axis] {
             return (None, place);
         }
-        let edge = Edge {
+        let edge = CutEdge {
             axis,
             beside: place[1 - axis],
             ends: [place[axis], coordinate(axis, far)],
@@ -226,14 +226,14 @@ impl<'a> Block<'a> {
     }
 
     /// Finds the vertices, and what they have.
-    fn finish(&self, region: &Region, drafts: &[Draft]) -> Result<Segments, EvalError> {
-        let edges: Vec<Edge> = drafts.iter().filter_map(|draft| draft.edge).collect();
+    fn finish(&self, region: &Region, drafts: &[SegmentDraft]) -> Result<Segments, EvalError> {
+        let edges: Vec<CutEdge> = drafts.iter().filter_map(|draft| draft.edge).collect();
         let mut field =
             |points: [&[f32]; 2], values: &mut Vec<f32>| self.slicer.values(region, points, values);
         let mut places = solve(&edges, self.slicer.iso, &mut field)?.into_iter();
         let list = drafts.iter().map(|draft| {
             let place = draft.edge.and_then(|_| places.next()).unwrap_or(draft.segment.place);
-            Segment { place, ..draft.segment }
+            ContourSegment { place, ..draft.segment }
         });
         with_attributes(self.slicer, region, list.collect())
     }
@@ -244,21 +244,21 @@ impl<'a> Block<'a> {
 pub(super) fn border(
     slicer: &Slicer,
     grid: &Grid,
-    square: &Square,
+    square: &CellSquare,
     region: &Region,
 ) -> Result<Option<Segments>, EvalError> {
     let [last_u, last_v] = grid.points().map(|points| points as u32 - 1);
     let ([a, b], [c, d]) = (square.first, square.end);
     let mut list = Vec::new();
-    let mut push = |from: Key, to: Key, [i, j]: [u32; 2], low_inside: bool| {
+    let mut push = |from: EdgeKey, to: EdgeKey, [i, j]: [u32; 2], low_inside: bool| {
         let place = [grid.axes[0][i as usize], grid.axes[1][j as usize]];
-        list.push(Segment { from, to, place, low_inside, border: true });
+        list.push(ContourSegment { from, to, place, low_inside, border: true });
     };
     // Edges that lead out of the lattice: to the left, below, to the right, above.
-    let left = |j: u32| Key::new(0, 0, j);
-    let below = |i: u32| Key::new(1, i, 0);
-    let right = |j: u32| Key::new(0, last_u + 1, j);
-    let above = |i: u32| Key::new(1, i, last_v + 1);
+    let left = |j: u32| EdgeKey::new(0, 0, j);
+    let below = |i: u32| EdgeKey::new(1, i, 0);
+    let right = |j: u32| EdgeKey::new(0, last_u + 1, j);
+    let above = |i: u32| EdgeKey::new(1, i, last_v + 1);
     let sides = [a == 0, b == 0, c == last_u, d == last_v];
     if sides[1] {
         push(below(a), below(c), [a, b], false);
@@ -287,7 +287,11 @@ pub(super) fn border(
     if list.is_empty() { Ok(None) } else { with_attributes(slicer, region, list).map(Some) }
 }
 
-fn with_attributes(slicer: &Slicer, region: &Region, list: Vec<Segment>) -> Result<Segments, EvalError> {
+fn with_attributes(
+    slicer: &Slicer,
+    region: &Region,
+    list: Vec<ContourSegment>,
+) -> Result<Segments, EvalError> {
     let Some(full) = slicer.full.as_ref().filter(|_| !list.is_empty()) else {
         return Ok(Segments { list, attributes: Vec::new() });
     };

@@ -26,7 +26,7 @@ use crate::region::{Box3, Range};
 
 /// A square of cells, cut off where the grid ends.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) struct Square {
+pub(super) struct CellSquare {
     /// Its lowest cell.
     pub(super) first: [u32; 2],
     /// The cell behind its last one, along each axis.
@@ -35,7 +35,7 @@ pub(super) struct Square {
     pub(super) size: u32,
 }
 
-impl Square {
+impl CellSquare {
     fn cells(&self) -> f64 {
         [0, 1].map(|axis| f64::from(self.end[axis] - self.first[axis])).iter().product()
     }
@@ -94,7 +94,7 @@ pub struct DividedSquare {
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
-pub struct Level {
+pub struct ContourLevel {
     /// How often the side of the whole was halved to get theirs.
     pub depth: u8,
     /// Cells along their sides.
@@ -111,7 +111,7 @@ pub struct Level {
     pub evaluated: u64,
 }
 
-impl Level {
+impl ContourLevel {
     /// All squares of this size.
     #[must_use]
     pub fn squares(&self) -> u64 {
@@ -120,12 +120,12 @@ impl Level {
 }
 
 /// What is made of squares.
-pub(super) trait Work: Sync {
+pub(super) trait SquareWork: Sync {
     /// What a square leaves.
     type Piece: Send;
 
     /// The closed box of its points.
-    fn bounds(&self, square: &Square) -> Box3;
+    fn bounds(&self, square: &CellSquare) -> Box3;
 
     /// Whether a square is done with, by the range of the field in it.
     fn verdict(&self, range: Range) -> Verdict;
@@ -133,22 +133,22 @@ pub(super) trait Work: Sync {
     /// A square that is done with. `around` is the region of a square around it.
     fn dropped(
         &self,
-        square: &Square,
+        square: &CellSquare,
         inside: bool,
         around: &Region,
     ) -> Result<Option<Self::Piece>, EvalError>;
 
     /// Whether a square is a leaf before it is small, because its points are evaluated sooner than it is
     /// divided.
-    fn is_told(&self, square: &Square, region: &Region) -> bool;
+    fn is_told(&self, square: &CellSquare, region: &Region) -> bool;
 
     /// A leaf, and whether the contour crosses it.
-    fn leaf(&self, square: &Square, region: &Region) -> Result<(Option<Self::Piece>, bool), SliceError>;
+    fn leaf(&self, square: &CellSquare, region: &Region) -> Result<(Option<Self::Piece>, bool), SliceError>;
 }
 
 /// How to divide.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Plan {
+pub(super) struct DivisionPlan {
     /// Cells along u and v.
     pub(super) cells: [u32; 2],
     /// Cells along the side of leaves: a power of two.
@@ -163,8 +163,8 @@ pub(super) struct Plan {
 pub(super) struct Divided<P> {
     pub(super) pieces: Vec<P>,
     /// The squares by size, largest first, without sizes of which there are none.
-    pub(super) levels: Vec<Level>,
-    pub(super) squares: Vec<(Square, u8, Fate)>,
+    pub(super) levels: Vec<ContourLevel>,
+    pub(super) squares: Vec<(CellSquare, u8, Fate)>,
 }
 
 /// The halvings of 2^20 cells, and the whole.
@@ -183,9 +183,9 @@ impl<P> Divided<P> {
 
 /// Counts of squares of one size, by fate.
 #[derive(Default)]
-struct Tally([AtomicU64; 5]);
+struct FateCounts([AtomicU64; 5]);
 
-impl Tally {
+impl FateCounts {
     fn of(&self, fate: Fate) -> &AtomicU64 {
         &self.0[match fate {
             Fate::Divided => 0,
@@ -196,9 +196,9 @@ impl Tally {
         }]
     }
 
-    fn level(&self, depth: usize, cells: u32) -> Level {
+    fn level(&self, depth: usize, cells: u32) -> ContourLevel {
         let count = |fate| self.of(fate).load(Ordering::Relaxed);
-        Level {
+        ContourLevel {
             depth: depth as u8,
             cells,
             divided: count(Fate::Divided),
@@ -210,33 +210,33 @@ impl Tally {
     }
 }
 
-struct Run<'a, 'hook, W> {
+struct SquareDivider<'a, 'hook, W> {
     pruner: &'a Pruner,
     work: &'a W,
-    plan: Plan,
+    plan: DivisionPlan,
     /// Halvings from the whole to one cell.
     depth: u32,
     progress: &'a Progress<'hook>,
     leaves: AtomicU64,
-    tallies: [Tally; LEVELS],
+    tallies: [FateCounts; LEVELS],
 }
 
 /// The side, in leaves, of the smallest squares whose parts are visited in parallel.
 const PARALLEL: u32 = 2;
 
 /// Divides all cells, on the threads of the rayon pool in which this is called.
-pub(super) fn divide<W: Work>(
+pub(super) fn divide<W: SquareWork>(
     pruner: &Pruner,
     work: &W,
-    plan: Plan,
+    plan: DivisionPlan,
     progress: &Progress<'_>,
 ) -> Result<Divided<W::Piece>, SliceError> {
     let most = plan.cells[0].max(plan.cells[1]);
     let size = most.next_power_of_two().max(plan.leaf);
     let depth = size.ilog2();
     let (leaves, tallies) = (AtomicU64::new(0), Default::default());
-    let run = Run { pruner, work, plan, depth, progress, leaves, tallies };
-    let whole = Square { first: [0; 2], end: plan.cells, size };
+    let run = SquareDivider { pruner, work, plan, depth, progress, leaves, tallies };
+    let whole = CellSquare { first: [0; 2], end: plan.cells, size };
     let mut divided = run.parts(&pruner.everywhere(), &[whole])?;
     let levels = run.tallies.iter().enumerate().take(1 + depth as usize);
     divided.levels = levels.map(|(depth, tally)| tally.level(depth, size >> depth)).collect();
@@ -244,12 +244,12 @@ pub(super) fn divide<W: Work>(
     Ok(divided)
 }
 
-impl<W: Work> Run<'_, '_, W> {
-    fn depth(&self, square: &Square) -> usize {
+impl<W: SquareWork> SquareDivider<'_, '_, W> {
+    fn depth(&self, square: &CellSquare) -> usize {
         (self.depth - square.size.ilog2()) as usize
     }
 
-    fn note(&self, found: &mut Divided<W::Piece>, square: &Square, fate: Fate) {
+    fn note(&self, found: &mut Divided<W::Piece>, square: &CellSquare, fate: Fate) {
         let depth = self.depth(square);
         self.tallies[depth].of(fate).fetch_add(1, Ordering::Relaxed);
         if self.plan.keep {
@@ -258,11 +258,11 @@ impl<W: Work> Run<'_, '_, W> {
     }
 
     /// Some squares in a region.
-    fn parts(&self, around: &Region, squares: &[Square]) -> Result<Divided<W::Piece>, SliceError> {
+    fn parts(&self, around: &Region, squares: &[CellSquare]) -> Result<Divided<W::Piece>, SliceError> {
         let boxes: Vec<Box3> = squares.iter().map(|square| self.work.bounds(square)).collect();
         let wanted = |range| self.work.verdict(range) == Verdict::Open;
         let surveyed = self.pruner.survey(around, &boxes, &wanted)?;
-        let visit = |(square, (range, region)): (&Square, (Range, Option<Region>))| {
+        let visit = |(square, (range, region)): (&CellSquare, (Range, Option<Region>))| {
             self.visit(square, range, region.as_ref(), around)
         };
         let all = squares.iter().zip(surveyed);
@@ -280,7 +280,7 @@ impl<W: Work> Run<'_, '_, W> {
 
     fn visit(
         &self,
-        square: &Square,
+        square: &CellSquare,
         range: Range,
         region: Option<&Region>,
         around: &Region,
@@ -309,18 +309,18 @@ impl<W: Work> Run<'_, '_, W> {
     }
 
     /// Tells that a square is done.
-    fn finish(&self, square: &Square) -> Result<(), SliceError> {
+    fn finish(&self, square: &CellSquare) -> Result<(), SliceError> {
         let all = f64::from(self.plan.cells[0]) * f64::from(self.plan.cells[1]);
         Ok(self.progress.add(square.cells() / all)?)
     }
 
     /// The parts of a square that are in the grid, u fastest.
-    fn split(&self, square: &Square) -> Vec<Square> {
+    fn split(&self, square: &CellSquare) -> Vec<CellSquare> {
         let size = (square.size >> self.plan.step).max(self.plan.leaf).min(square.size / 2);
         let starts = |axis: usize| (square.first[axis]..square.end[axis]).step_by(size as usize);
         let part = |u: u32, v: u32| {
             let end = [(u + size).min(square.end[0]), (v + size).min(square.end[1])];
-            Square { first: [u, v], end, size }
+            CellSquare { first: [u, v], end, size }
         };
         starts(1).flat_map(|v| starts(0).map(move |u| part(u, v))).collect()
     }

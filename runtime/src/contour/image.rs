@@ -11,9 +11,9 @@
 
 use jbt_ir::limits::MAX_PIXELS;
 
-use super::divide::{Divided, Plan, Square, Verdict, Work, divide};
+use super::divide::{CellSquare, Divided, DivisionPlan, SquareWork, Verdict, divide};
 use super::grid::{Grid, Rectangle};
-use super::raster::{Raster, Tile};
+use super::raster::{Raster, RasterTile};
 use super::shade;
 use super::slicer::{SliceError, Slicer};
 use crate::error::EvalError;
@@ -71,7 +71,7 @@ impl Default for ImageDetail {
 /// What an image shows.
 #[derive(Clone, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Mode {
+pub enum ImageMode {
     /// White inside, black outside.
     Inside,
     /// The field, from blue outside over white at the iso-value to red inside, each as far as the field goes
@@ -108,35 +108,35 @@ impl<'a> Canvas<'a> {
         self.grid.points().map(|points| points / self.samples)
     }
 
-    fn plan(&self) -> Plan {
+    fn plan(&self) -> DivisionPlan {
         let leaf = smallest(self.slicer.field.block());
-        Plan { cells: self.pixels().map(|pixels| pixels as u32), leaf, step: STEP, keep: false }
+        DivisionPlan { cells: self.pixels().map(|pixels| pixels as u32), leaf, step: STEP, keep: false }
     }
 
     /// The points of a square: the first one, and those behind the last one.
-    fn points(&self, square: &Square) -> [[u32; 2]; 2] {
+    fn points(&self, square: &CellSquare) -> [[u32; 2]; 2] {
         [square.first, square.end].map(|pixel| pixel.map(|index| index * self.samples as u32))
     }
 
-    fn bounds(&self, square: &Square) -> Box3 {
+    fn bounds(&self, square: &CellSquare) -> Box3 {
         let [first, end] = self.points(square);
         self.slicer.bounds(self.grid.bounds(first, end.map(|end| end - 1)))
     }
 
-    fn block(&self, square: &Square) -> [Vec<f32>; 2] {
+    fn block(&self, square: &CellSquare) -> [Vec<f32>; 2] {
         let [first, end] = self.points(square);
         self.grid.block(first, end)
     }
 
     /// Whether the points of a square are evaluated sooner than it is divided.
-    fn is_cheap(&self, square: &Square, region: &Region) -> bool {
+    fn is_cheap(&self, square: &CellSquare, region: &Region) -> bool {
         let points = (self.samples * self.samples) as u64 * u64::from(square.size) * u64::from(square.size);
         let tables = self.slicer.field.program().function().tables.len() as u64;
         points.saturating_mul(self.slicer.field.ops_in(region)) <= CHEAP + CHEAP_FOR_A_TABLE * tables
     }
 
     /// The pixel (in its square) of each of the points of a square, in their order.
-    fn pixel_of_points(&self, square: &Square) -> impl Iterator<Item = usize> {
+    fn pixel_of_points(&self, square: &CellSquare) -> impl Iterator<Item = usize> {
         let [width, height] = [0, 1].map(|axis| (square.end[axis] - square.first[axis]) as usize);
         let samples = self.samples;
         (0..height * samples).flat_map(move |row| {
@@ -144,7 +144,7 @@ impl<'a> Canvas<'a> {
         })
     }
 
-    fn raster<T: Copy>(&self, divided: &Divided<Tile<T>>, value: T) -> Raster<T> {
+    fn raster<T: Copy>(&self, divided: &Divided<RasterTile<T>>, value: T) -> Raster<T> {
         let [width, height] = self.pixels();
         let mut raster = Raster::new(width, height, value);
         divided.pieces.iter().for_each(|tile| raster.put(tile));
@@ -152,17 +152,17 @@ impl<'a> Canvas<'a> {
     }
 }
 
-fn tile<T>(square: &Square, values: Vec<T>) -> Option<Tile<T>> {
-    Some(Tile { square: *square, values })
+fn tile<T>(square: &CellSquare, values: Vec<T>) -> Option<RasterTile<T>> {
+    Some(RasterTile { square: *square, values })
 }
 
 /// Which part of each pixel is inside, of 255.
-struct Inside<'a>(Canvas<'a>);
+struct PixelCoverage<'a>(Canvas<'a>);
 
-impl Work for Inside<'_> {
-    type Piece = Tile<u8>;
+impl SquareWork for PixelCoverage<'_> {
+    type Piece = RasterTile<u8>;
 
-    fn bounds(&self, square: &Square) -> Box3 {
+    fn bounds(&self, square: &CellSquare) -> Box3 {
         self.0.bounds(square)
     }
 
@@ -170,15 +170,24 @@ impl Work for Inside<'_> {
         Verdict::of(range, self.0.slicer.iso)
     }
 
-    fn dropped(&self, square: &Square, inside: bool, _: &Region) -> Result<Option<Tile<u8>>, EvalError> {
+    fn dropped(
+        &self,
+        square: &CellSquare,
+        inside: bool,
+        _: &Region,
+    ) -> Result<Option<RasterTile<u8>>, EvalError> {
         Ok(if inside { tile(square, vec![u8::MAX]) } else { None })
     }
 
-    fn is_told(&self, square: &Square, region: &Region) -> bool {
+    fn is_told(&self, square: &CellSquare, region: &Region) -> bool {
         self.0.is_cheap(square, region)
     }
 
-    fn leaf(&self, square: &Square, region: &Region) -> Result<(Option<Tile<u8>>, bool), SliceError> {
+    fn leaf(
+        &self,
+        square: &CellSquare,
+        region: &Region,
+    ) -> Result<(Option<RasterTile<u8>>, bool), SliceError> {
         let [u, v] = self.0.block(square);
         let mut values = Vec::new();
         self.0.slicer.values(region, [&u, &v], &mut values)?;
@@ -198,12 +207,12 @@ impl Work for Inside<'_> {
 }
 
 /// The field in the middle of each pixel.
-struct Values<'a>(Canvas<'a>);
+struct PixelFields<'a>(Canvas<'a>);
 
-impl Work for Values<'_> {
-    type Piece = Tile<f32>;
+impl SquareWork for PixelFields<'_> {
+    type Piece = RasterTile<f32>;
 
-    fn bounds(&self, square: &Square) -> Box3 {
+    fn bounds(&self, square: &CellSquare) -> Box3 {
         self.0.bounds(square)
     }
 
@@ -213,18 +222,27 @@ impl Work for Values<'_> {
         if low == high { Verdict::Outside } else { Verdict::Open }
     }
 
-    fn dropped(&self, square: &Square, _: bool, around: &Region) -> Result<Option<Tile<f32>>, EvalError> {
-        let [u, v] = self.0.block(&Square { end: square.first.map(|pixel| pixel + 1), ..*square });
+    fn dropped(
+        &self,
+        square: &CellSquare,
+        _: bool,
+        around: &Region,
+    ) -> Result<Option<RasterTile<f32>>, EvalError> {
+        let [u, v] = self.0.block(&CellSquare { end: square.first.map(|pixel| pixel + 1), ..*square });
         let mut values = Vec::new();
         self.0.slicer.values(around, [&u, &v], &mut values)?;
         Ok(tile(square, values))
     }
 
-    fn is_told(&self, square: &Square, region: &Region) -> bool {
+    fn is_told(&self, square: &CellSquare, region: &Region) -> bool {
         self.0.is_cheap(square, region)
     }
 
-    fn leaf(&self, square: &Square, region: &Region) -> Result<(Option<Tile<f32>>, bool), SliceError> {
+    fn leaf(
+        &self,
+        square: &CellSquare,
+        region: &Region,
+    ) -> Result<(Option<RasterTile<f32>>, bool), SliceError> {
         let [u, v] = self.0.block(square);
         let mut values = Vec::new();
         self.0.slicer.values(region, [&u, &v], &mut values)?;
@@ -240,10 +258,10 @@ struct Painted<'a> {
     planes: [Option<usize>; 3],
 }
 
-impl Work for Painted<'_> {
-    type Piece = Tile<[f32; 4]>;
+impl SquareWork for Painted<'_> {
+    type Piece = RasterTile<[f32; 4]>;
 
-    fn bounds(&self, square: &Square) -> Box3 {
+    fn bounds(&self, square: &CellSquare) -> Box3 {
         self.canvas.bounds(square)
     }
 
@@ -254,15 +272,24 @@ impl Work for Painted<'_> {
         }
     }
 
-    fn dropped(&self, _: &Square, _: bool, _: &Region) -> Result<Option<Tile<[f32; 4]>>, EvalError> {
+    fn dropped(
+        &self,
+        _: &CellSquare,
+        _: bool,
+        _: &Region,
+    ) -> Result<Option<RasterTile<[f32; 4]>>, EvalError> {
         Ok(None)
     }
 
-    fn is_told(&self, square: &Square, region: &Region) -> bool {
+    fn is_told(&self, square: &CellSquare, region: &Region) -> bool {
         self.canvas.is_cheap(square, region)
     }
 
-    fn leaf(&self, square: &Square, region: &Region) -> Result<(Option<Tile<[f32; 4]>>, bool), SliceError> {
+    fn leaf(
+        &self,
+        square: &CellSquare,
+        region: &Region,
+    ) -> Result<(Option<RasterTile<[f32; 4]>>, bool), SliceError> {
         let [u, v] = self.canvas.block(square);
         let mut planes = vec![vec![0.0; u.len()]; self.evaluator.layout().names().len()];
         let mut answers: Vec<&mut [f32]> = planes.iter_mut().map(Vec::as_mut_slice).collect();
@@ -304,7 +331,7 @@ impl Slicer {
         detail: &ImageDetail,
         hook: Hook<'_>,
     ) -> Result<Raster<u8>, SliceError> {
-        let work = Inside(Canvas::new(self, rectangle, detail)?);
+        let work = PixelCoverage(Canvas::new(self, rectangle, detail)?);
         let divided = divide(&self.pruner, &work, work.0.plan(), &Progress::new(hook, SOME))?;
         Ok(work.0.raster(&divided, 0))
     }
@@ -328,7 +355,7 @@ impl Slicer {
         fineness: Fineness,
         hook: Hook<'_>,
     ) -> Result<Raster<f32>, SliceError> {
-        let work = Values(Canvas::new(self, rectangle, &ImageDetail { fineness, samples: 1 })?);
+        let work = PixelFields(Canvas::new(self, rectangle, &ImageDetail { fineness, samples: 1 })?);
         let divided = divide(&self.pruner, &work, work.0.plan(), &Progress::new(hook, SOME))?;
         Ok(work.0.raster(&divided, 0.0))
     }
@@ -359,7 +386,7 @@ impl Slicer {
     pub fn picture(
         &self,
         rectangle: &Rectangle,
-        mode: &Mode,
+        mode: &ImageMode,
         detail: &ImageDetail,
     ) -> Job<'_, Picture, SliceError> {
         let (rectangle, mode, detail) = (*rectangle, mode.clone(), *detail);
@@ -369,16 +396,18 @@ impl Slicer {
     fn picture_hooked(
         &self,
         rectangle: &Rectangle,
-        mode: &Mode,
+        mode: &ImageMode,
         detail: &ImageDetail,
         hook: Hook<'_>,
     ) -> Result<Picture, SliceError> {
         let shade = match mode {
-            Mode::Inside => return Ok(shade::mask(&self.inside_hooked(rectangle, detail, hook)?)),
-            Mode::Attribute(name) => return Ok(shade::paint(&self.painted(rectangle, name, detail, hook)?)),
-            Mode::Field => shade::diverging,
-            Mode::Grey => shade::grey,
-            Mode::Height => shade::relief,
+            ImageMode::Inside => return Ok(shade::mask(&self.inside_hooked(rectangle, detail, hook)?)),
+            ImageMode::Attribute(name) => {
+                return Ok(shade::paint(&self.painted(rectangle, name, detail, hook)?));
+            }
+            ImageMode::Field => shade::diverging,
+            ImageMode::Grey => shade::grey,
+            ImageMode::Height => shade::relief,
         };
         Ok(shade(&self.values_hooked(rectangle, detail.fineness, hook)?, self.iso))
     }

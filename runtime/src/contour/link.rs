@@ -13,7 +13,7 @@
 
 use crate::parallel::*;
 
-use super::cells::{Key, Segment, Segments};
+use super::cells::{ContourSegment, EdgeKey, Segments};
 
 /// A closed loop of the contour, with the inside on its left.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -39,11 +39,11 @@ pub struct Loop {
 }
 
 /// What a loop is before it has its place.
-struct Draft {
+struct LoopDraft {
     /// Its vertices, as numbers of segments.
     vertices: Vec<usize>,
     /// The leftmost crossing of a row.
-    leftmost: Key,
+    leftmost: EdgeKey,
     is_hole: bool,
 }
 
@@ -58,7 +58,8 @@ pub(super) struct Linked {
 /// Links all segments. Panics if they are no closed loops: the field was on both sides of the iso-value at
 /// one point.
 pub(super) fn link(pieces: Vec<Segments>, planes: usize) -> Linked {
-    let mut segments: Vec<Segment> = Vec::with_capacity(pieces.iter().map(|piece| piece.list.len()).sum());
+    let mut segments: Vec<ContourSegment> =
+        Vec::with_capacity(pieces.iter().map(|piece| piece.list.len()).sum());
     let mut attributes = vec![Vec::with_capacity(segments.capacity()); planes];
     for mut piece in pieces {
         segments.append(&mut piece.list);
@@ -74,7 +75,7 @@ pub(super) fn link(pieces: Vec<Segments>, planes: usize) -> Linked {
             drafts.extend(follow(first, &segments, &next, &mut of_segment));
         }
     }
-    let low = |draft: &Draft| segments[draft.vertices[0]].place;
+    let low = |draft: &LoopDraft| segments[draft.vertices[0]].place;
     drafts.sort_by(|a, b| by_place(low(a), low(b)).then(a.leftmost.cmp(&b.leftmost)));
     let parents = nest(&drafts, &segments, &of_segment);
     let order: Vec<usize> = drafts.iter().flat_map(|draft| draft.vertices.iter().copied()).collect();
@@ -85,8 +86,8 @@ pub(super) fn link(pieces: Vec<Segments>, planes: usize) -> Linked {
 }
 
 /// For each segment the one that begins where it ends.
-fn following(segments: &[Segment]) -> Vec<usize> {
-    let sorted = |key: fn(&Segment) -> Key| {
+fn following(segments: &[ContourSegment]) -> Vec<usize> {
+    let sorted = |key: fn(&ContourSegment) -> EdgeKey| {
         let mut order: Vec<usize> = (0..segments.len()).collect();
         order.par_sort_unstable_by_key(|&segment| key(&segments[segment]));
         order
@@ -102,15 +103,20 @@ fn following(segments: &[Segment]) -> Vec<usize> {
 }
 
 /// The loop of a segment, if it encloses anything.
-fn follow(first: usize, segments: &[Segment], next: &[usize], of_segment: &mut [usize]) -> Option<Draft> {
+fn follow(
+    first: usize,
+    segments: &[ContourSegment],
+    next: &[usize],
+    of_segment: &mut [usize],
+) -> Option<LoopDraft> {
     let mut around = Vec::new();
     let mut segment = first;
-    let mut leftmost: Option<(Key, bool)> = None;
+    let mut leftmost: Option<(EdgeKey, bool)> = None;
     while of_segment[segment] == usize::MAX {
         of_segment[segment] = first;
         around.push(segment);
-        let Segment { from, low_inside, .. } = segments[segment];
-        let column = |key: Key| (key.column(), key.row());
+        let ContourSegment { from, low_inside, .. } = segments[segment];
+        let column = |key: EdgeKey| (key.column(), key.row());
         if from.axis() == 0 && leftmost.is_none_or(|(best, _)| column(from) < column(best)) {
             leftmost = Some((from, low_inside));
         }
@@ -118,11 +124,11 @@ fn follow(first: usize, segments: &[Segment], next: &[usize], of_segment: &mut [
     }
     let (leftmost, low_inside) = leftmost.expect("a loop encloses a point, whose row it crosses");
     let vertices = tidied(around, segments);
-    (vertices.len() >= 3).then_some(Draft { vertices, leftmost, is_hole: low_inside })
+    (vertices.len() >= 3).then_some(LoopDraft { vertices, leftmost, is_hole: low_inside })
 }
 
 /// The vertices of a loop without those that say nothing, from its lowest one on.
-fn tidied(mut around: Vec<usize>, segments: &[Segment]) -> Vec<usize> {
+fn tidied(mut around: Vec<usize>, segments: &[ContourSegment]) -> Vec<usize> {
     let place = |segment: usize| segments[segment].place;
     around.dedup_by_key(|segment| place(*segment));
     while around.len() > 1 && place(around[0]) == place(around[around.len() - 1]) {
@@ -146,7 +152,7 @@ fn by_place(a: [f32; 2], b: [f32; 2]) -> std::cmp::Ordering {
 }
 
 /// For each loop the one around it.
-fn nest(drafts: &[Draft], segments: &[Segment], of_segment: &[usize]) -> Vec<Option<usize>> {
+fn nest(drafts: &[LoopDraft], segments: &[ContourSegment], of_segment: &[usize]) -> Vec<Option<usize>> {
     // Loops by their first segments, as `of_segment` names them.
     let mut named: Vec<(usize, usize)> =
         drafts.iter().enumerate().map(|(index, draft)| (of_segment[draft.vertices[0]], index)).collect();
@@ -156,7 +162,7 @@ fn nest(drafts: &[Draft], segments: &[Segment], of_segment: &[usize]) -> Vec<Opt
         found.ok().map(|index| named[index].1)
     };
     let crossings = (0..segments.len()).filter(|&segment| segments[segment].from.axis() == 0);
-    let mut crossings: Vec<(Key, usize)> =
+    let mut crossings: Vec<(EdgeKey, usize)> =
         crossings.filter_map(|segment| Some((segments[segment].from, loop_of(segment)?))).collect();
     crossings.par_sort_unstable_by_key(|(key, _)| *key);
     // Those on the left border, by row.
@@ -169,7 +175,7 @@ fn nest(drafts: &[Draft], segments: &[Segment], of_segment: &[usize]) -> Vec<Opt
     order.sort_unstable_by_key(|&index| (drafts[index].leftmost.column(), drafts[index].leftmost));
     let mut parents: Vec<Option<usize>> = vec![None; drafts.len()];
     for index in order {
-        let Draft { leftmost, is_hole, .. } = drafts[index];
+        let LoopDraft { leftmost, is_hole, .. } = drafts[index];
         let at = crossings.partition_point(|(key, _)| *key < leftmost);
         let before = at.checked_sub(1).map(|before| crossings[before]);
         let before = before.filter(|(key, _)| key.row() == leftmost.row()).map(|(_, other)| other);
@@ -184,7 +190,7 @@ fn nest(drafts: &[Draft], segments: &[Segment], of_segment: &[usize]) -> Vec<Opt
     parents
 }
 
-fn loops(drafts: &[Draft], parents: &[Option<usize>], positions: &[[f32; 2]]) -> Vec<Loop> {
+fn loops(drafts: &[LoopDraft], parents: &[Option<usize>], positions: &[[f32; 2]]) -> Vec<Loop> {
     let mut loops: Vec<Loop> = Vec::with_capacity(drafts.len());
     let mut start = 0;
     for (draft, &parent) in drafts.iter().zip(parents) {

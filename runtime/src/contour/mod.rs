@@ -54,16 +54,16 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use jbt_ir::limits::MAX_CONTOUR_VERTICES;
 
 pub use circles::circles;
-pub use divide::{DividedSquare, Fate, Level};
+pub use divide::{ContourLevel, DividedSquare, Fate};
 pub use grid::{Rectangle, RectangleError};
-pub use image::{ImageDetail, MAX_SAMPLES, Mode};
+pub use image::{ImageDetail, ImageMode, MAX_SAMPLES};
 pub use link::Loop;
 pub use plane::{Plane, PlaneError};
 pub use raster::Raster;
 pub use slicer::{SliceError, Slicer};
 
-use cells::{Block, Segments, border};
-use divide::{Plan, Square, Verdict, Work, divide};
+use cells::{CellBlock, Segments, border};
+use divide::{CellSquare, DivisionPlan, SquareWork, Verdict, divide};
 use grid::Grid;
 
 use crate::error::EvalError;
@@ -115,7 +115,7 @@ pub struct Contour {
     /// The sides of the rectangle that cut the solid: left, below, right, above.
     pub cut_sides: [bool; 4],
     /// How many squares there are of each size, and what became of them.
-    pub levels: Vec<Level>,
+    pub levels: Vec<ContourLevel>,
     /// The squares, if they were to be kept: those that were divided before their parts.
     pub squares: Vec<DividedSquare>,
 }
@@ -169,10 +169,10 @@ impl Contouring<'_> {
     }
 }
 
-impl Work for Contouring<'_> {
+impl SquareWork for Contouring<'_> {
     type Piece = Segments;
 
-    fn bounds(&self, square: &Square) -> Box3 {
+    fn bounds(&self, square: &CellSquare) -> Box3 {
         self.slicer.bounds(self.grid.bounds(square.first, square.end))
     }
 
@@ -180,16 +180,21 @@ impl Work for Contouring<'_> {
         Verdict::of(range, self.slicer.iso)
     }
 
-    fn dropped(&self, square: &Square, inside: bool, around: &Region) -> Result<Option<Segments>, EvalError> {
+    fn dropped(
+        &self,
+        square: &CellSquare,
+        inside: bool,
+        around: &Region,
+    ) -> Result<Option<Segments>, EvalError> {
         if inside { border(self.slicer, self.grid, square, around) } else { Ok(None) }
     }
 
-    fn is_told(&self, _: &Square, _: &Region) -> bool {
+    fn is_told(&self, _: &CellSquare, _: &Region) -> bool {
         false
     }
 
-    fn leaf(&self, square: &Square, region: &Region) -> Result<(Option<Segments>, bool), SliceError> {
-        let segments = Block::new(self.slicer, self.grid, square, region)?.segments(region)?;
+    fn leaf(&self, square: &CellSquare, region: &Region) -> Result<(Option<Segments>, bool), SliceError> {
+        let segments = CellBlock::new(self.slicer, self.grid, square, region)?.segments(region)?;
         let crossed = !segments.list.is_empty();
         Ok((crossed.then(|| self.counted(segments)).transpose()?, crossed))
     }
@@ -220,7 +225,7 @@ impl Slicer {
         }
         let grid = Grid::corners(&self.local(rectangle)?, detail.fineness)?;
         let cells = grid.points().map(|points| points - 1);
-        let plan = Plan {
+        let plan = DivisionPlan {
             cells: cells.map(|cells| cells as u32),
             leaf: block as u32,
             step: if detail.quadtree { 1 } else { 2 },

@@ -23,10 +23,10 @@ use thiserror::Error;
 /// assert!((tilted.point([0.0, 5.0])[2] - 5.0).abs() < 1e-12);
 /// ```
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Plane(pub(super) Kind);
+pub struct Plane(pub(super) PlaneKind);
 
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub(super) enum Kind {
+pub(super) enum PlaneKind {
     /// Across a coordinate axis (0, 1 or 2), where its coordinate is this.
     Across { axis: usize, at: f64 },
     /// Through a point, along u and v.
@@ -62,7 +62,7 @@ impl Classified for PlaneError {
 impl Default for Plane {
     /// z = 0: where two-dimensional models live.
     fn default() -> Self {
-        Self(Kind::Across { axis: 2, at: 0.0 })
+        Self(PlaneKind::Across { axis: 2, at: 0.0 })
     }
 }
 
@@ -77,7 +77,7 @@ impl Plane {
             Axis::Y => 1,
             Axis::Z => 2,
         };
-        Self(Kind::Across { axis, at }).checked()
+        Self(PlaneKind::Across { axis, at }).checked()
     }
 
     /// The plane through a point, with u along a direction and v in the plane of both, perpendicular to u.
@@ -94,14 +94,14 @@ impl Plane {
         if dot(across, across) < 1e-20 {
             return Err(PlaneError::Parallel);
         }
-        Self(Kind::Spanned { origin, u, v: unit(across)? }).checked()
+        Self(PlaneKind::Spanned { origin, u, v: unit(across)? }).checked()
     }
 
     fn checked(self) -> Result<Self, PlaneError> {
         let fits = |value: f64| (value as f32).is_finite();
         let fine = match self.0 {
-            Kind::Across { at, .. } => fits(at),
-            Kind::Spanned { origin, .. } => origin.into_iter().all(fits),
+            PlaneKind::Across { at, .. } => fits(at),
+            PlaneKind::Spanned { origin, .. } => origin.into_iter().all(fits),
         };
         if fine { Ok(self) } else { Err(PlaneError::NotFinite) }
     }
@@ -110,13 +110,13 @@ impl Plane {
     #[must_use]
     pub fn point(&self, [a, b]: [f64; 2]) -> [f64; 3] {
         match self.0 {
-            Kind::Across { axis, at } => {
+            PlaneKind::Across { axis, at } => {
                 let [first, second] = others(axis);
                 let mut point = [at; 3];
                 (point[first], point[second]) = (a, b);
                 point
             }
-            Kind::Spanned { origin, u, v } => {
+            PlaneKind::Spanned { origin, u, v } => {
                 std::array::from_fn(|axis| origin[axis] + a * u[axis] + b * v[axis])
             }
         }
@@ -132,12 +132,12 @@ impl Plane {
     /// The map from space to coordinates in the plane and the distance from it, by rows.
     pub(super) fn rows(&self) -> [[f64; 4]; 3] {
         let (origin, u, v) = match self.0 {
-            Kind::Across { axis, at } => {
+            PlaneKind::Across { axis, at } => {
                 let [first, second] = others(axis);
                 let unit = |axis: usize| std::array::from_fn(|k| if k == axis { 1.0 } else { 0.0 });
                 (unit(axis).map(|one: f64| one * at), unit(first), unit(second))
             }
-            Kind::Spanned { origin, u, v } => (origin, u, v),
+            PlaneKind::Spanned { origin, u, v } => (origin, u, v),
         };
         let normal =
             std::array::from_fn(|k| u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3]);
@@ -194,8 +194,8 @@ impl fmt::Display for Plane {
     /// As [`from_str`](Self::from_str) reads it.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.0 {
-            Kind::Across { axis, at } => write!(f, "{}={at}", ["x", "y", "z"][axis]),
-            Kind::Spanned { origin, u, v } => {
+            PlaneKind::Across { axis, at } => write!(f, "{}={at}", ["x", "y", "z"][axis]),
+            PlaneKind::Spanned { origin, u, v } => {
                 let words: Vec<String> =
                     [origin, u, v].iter().flatten().map(|number| (number + 0.0).to_string()).collect();
                 f.write_str(&words.join(","))

@@ -1,6 +1,6 @@
 //! Numbers for pixels, which tiles of squares fill.
 
-use super::divide::Square;
+use super::divide::CellSquare;
 
 /// Numbers for the pixels of a rectangle: row by row, from above.
 #[derive(Clone, PartialEq, Debug)]
@@ -19,7 +19,7 @@ impl<T: Copy> Raster<T> {
     }
 
     /// Writes the pixels of a tile, whose rows go upwards.
-    pub(super) fn put(&mut self, tile: &Tile<T>) {
+    pub(super) fn put(&mut self, tile: &RasterTile<T>) {
         let [first, end] =
             [tile.square.first, tile.square.end].map(|pixel| pixel.map(|index| index as usize));
         let width = end[0] - first[0];
@@ -35,7 +35,7 @@ impl<T: Copy> Raster<T> {
 }
 
 /// A square of pixels: one number for each, or one for all.
-pub(super) struct Tile<T> {
-    pub(super) square: Square,
+pub(super) struct RasterTile<T> {
+    pub(super) square: CellSquare,
     pub(super) values: Vec<T>,
 }

@@ -25,7 +25,7 @@ const MARGIN: f64 = 1.0 / 4096.0;
 
 /// An edge with a point inside and one outside.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Edge {
+pub(super) struct CutEdge {
     /// The axis that it is along: 0 is u, 1 is v.
     pub(super) axis: usize,
     /// The coordinate along the other axis.
@@ -37,8 +37,8 @@ pub(super) struct Edge {
 }
 
 /// An edge on its way to its root.
-struct Search {
-    edge: Edge,
+struct RootSearch {
+    edge: CutEdge,
     /// The ends that the root is between: inside, outside.
     ends: [f64; 2],
     /// The field less the iso-value at these, or less of it.
@@ -57,8 +57,8 @@ fn near(error: f64, scale: f64) -> bool {
     error <= TOLERANCE * scale && scale.is_finite()
 }
 
-impl Search {
-    fn new(edge: Edge, iso: f32) -> Self {
+impl RootSearch {
+    fn new(edge: CutEdge, iso: f32) -> Self {
         let values = edge.values.map(|value| f64::from(value) - f64::from(iso));
         let ends = edge.ends.map(f64::from);
         let scale = (values[0] - values[1]).abs();
@@ -111,8 +111,12 @@ impl Search {
 pub(super) type FieldAt<'a> = dyn FnMut([&[f32]; 2], &mut Vec<f32>) -> Result<(), EvalError> + 'a;
 
 /// The places of the vertices on some edges.
-pub(super) fn solve(edges: &[Edge], iso: f32, field: &mut FieldAt<'_>) -> Result<Vec<[f32; 2]>, EvalError> {
-    let mut searches: Vec<Search> = edges.iter().map(|&edge| Search::new(edge, iso)).collect();
+pub(super) fn solve(
+    edges: &[CutEdge],
+    iso: f32,
+    field: &mut FieldAt<'_>,
+) -> Result<Vec<[f32; 2]>, EvalError> {
+    let mut searches: Vec<RootSearch> = edges.iter().map(|&edge| RootSearch::new(edge, iso)).collect();
     let (mut points, mut values) = ([Vec::new(), Vec::new()], Vec::new());
     for _ in 0..ROUNDS {
         points.iter_mut().for_each(Vec::clear);
@@ -128,7 +132,7 @@ pub(super) fn solve(edges: &[Edge], iso: f32, field: &mut FieldAt<'_>) -> Result
             search.take(value, iso);
         }
     }
-    Ok(searches.iter().map(Search::place).collect())
+    Ok(searches.iter().map(RootSearch::place).collect())
 }
 
 #[cfg(test)]
@@ -137,7 +141,7 @@ mod tests {
 
     /// The place on the edge from 0 (inside) to 1 (outside) at v = 3, and the evaluations.
     fn root(f: impl Fn(f64) -> f64) -> (f64, usize) {
-        let edge = Edge { axis: 0, beside: 3.0, ends: [0.0, 1.0], values: [f(0.0) as f32, f(1.0) as f32] };
+        let edge = CutEdge { axis: 0, beside: 3.0, ends: [0.0, 1.0], values: [f(0.0) as f32, f(1.0) as f32] };
         let mut count = 0;
         let mut field = |[u, v]: [&[f32]; 2], values: &mut Vec<f32>| {
             assert_eq!(v, vec![3.0; u.len()]);

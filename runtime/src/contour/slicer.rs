@@ -5,8 +5,8 @@ use jbt_model::query::{AnswerKind, Query};
 use thiserror::Error;
 
 use super::grid::{Rectangle, RectangleError};
-use super::plane::{Kind, Plane, others};
-use crate::compiled::{Compiled, Need, Scope};
+use super::plane::{Plane, PlaneKind, others};
+use crate::compiled::{Compiled, Need, PointScope};
 use crate::compiler::Compiler;
 use crate::counter::Counters;
 use crate::debug::brief_debug;
@@ -27,9 +27,9 @@ pub struct Slicer {
     plane: Plane,
     /// Where coordinates of points of the plane count from, in coordinates of the plane.
     origin: [f64; 2],
-    view: View,
+    view: PlaneView,
     /// Where the field may differ from zero, in coordinates of the plane from the origin.
-    support: Support,
+    support: PlaneSupport,
     pub(super) iso: f32,
     pub(super) pruner: Pruner,
     pub(super) field: Evaluator,
@@ -41,7 +41,7 @@ brief_debug!(Slicer, "Slicer", this: plane = this.plane, engine = this.field.eng
 
 /// The part of a plane in which the field may differ from zero.
 #[derive(Clone, Copy, PartialEq, Debug)]
-enum Support {
+enum PlaneSupport {
     Empty,
     Unbounded,
     Rectangle([[f64; 2]; 2]),
@@ -49,7 +49,7 @@ enum Support {
 
 /// Which coordinates of the compiled model are those of the plane.
 #[derive(Clone, Copy, Debug)]
-struct View {
+struct PlaneView {
     /// Along u and v.
     axes: [usize; 2],
     /// The value of the third one.
@@ -167,18 +167,18 @@ impl Slicer {
     pub fn of(compiled: &Compiled, plane: &Plane, query: Query) -> Result<Self, CompileError> {
         let moved;
         let (compiled, axes, across, at) = match plane.0 {
-            Kind::Across { axis, at } => (compiled, others(axis), axis, at),
-            Kind::Spanned { .. } => {
+            PlaneKind::Across { axis, at } => (compiled, others(axis), axis, at),
+            PlaneKind::Spanned { .. } => {
                 moved = compiled.compiler().compile(&compiled.tree().mapped(plane.rows()));
                 (&moved, [0, 1], 2, 0.0)
             }
         };
         let tree = compiled.tree();
-        let view = View { axes, at: tree.origin().rounded([at; 3])[across] };
+        let view = PlaneView { axes, at: tree.origin().rounded([at; 3])[across] };
         let needs = [
-            Need::Answers(Scope::Regions, Query::ATTRIBUTES),
+            Need::Answers(PointScope::Regions, Query::ATTRIBUTES),
             Need::Ranges,
-            Need::Answers(Scope::Regions, Query::FIELD),
+            Need::Answers(PointScope::Regions, Query::FIELD),
         ];
         let has_attributes = query.contains(AnswerKind::Attributes);
         compiled.prepare(if has_attributes { &needs } else { &needs[1..] })?;
@@ -213,9 +213,9 @@ impl Slicer {
     /// [`SliceError::Empty`] and [`SliceError::Unbounded`]: it needs a rectangle then.
     pub fn rectangle(&self) -> Result<Rectangle, SliceError> {
         match self.support {
-            Support::Empty => Err(SliceError::Empty),
-            Support::Unbounded => Err(SliceError::Unbounded),
-            Support::Rectangle([low, high]) => {
+            PlaneSupport::Empty => Err(SliceError::Empty),
+            PlaneSupport::Unbounded => Err(SliceError::Unbounded),
+            PlaneSupport::Rectangle([low, high]) => {
                 let margin = MARGIN * (high[0] - low[0]).max(high[1] - low[1]);
                 let local = Rectangle::new(low.map(|side| side - margin), high.map(|side| side + margin))?;
                 Ok(local.moved(self.origin)?)
@@ -297,12 +297,12 @@ impl Slicer {
 
 /// The support in coordinates of the plane. Where the plane misses it, the field is zero, and the rectangle
 /// is where the support would be seen.
-fn support(tree: &CheckedTree, view: &View) -> Support {
+fn support(tree: &CheckedTree, view: &PlaneView) -> PlaneSupport {
     let support = tree.local_support();
     if support.is_empty() {
-        return Support::Empty;
+        return PlaneSupport::Empty;
     }
     let [low, high] = [support.low(), support.high()].map(|corner| view.axes.map(|axis| corner[axis]));
     let is_finite = low.iter().chain(&high).all(|side| side.is_finite());
-    if is_finite { Support::Rectangle([low, high]) } else { Support::Unbounded }
+    if is_finite { PlaneSupport::Rectangle([low, high]) } else { PlaneSupport::Unbounded }
 }

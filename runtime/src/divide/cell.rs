@@ -6,7 +6,7 @@ use std::fmt;
 use crate::region::{ANYTHING, Box3, Divisible, MAX_PARTS, Range};
 
 /// The parts of one box, and what has been found of them.
-pub(super) struct Group<'a, F: Divisible> {
+pub(super) struct Siblings<'a, F: Divisible> {
     field: &'a F,
     parent: &'a F::Region,
     pub(super) boxes: &'a [Box3],
@@ -16,7 +16,7 @@ pub(super) struct Group<'a, F: Divisible> {
     regions: OnceCell<Vec<F::Region>>,
 }
 
-impl<'a, F: Divisible> Group<'a, F> {
+impl<'a, F: Divisible> Siblings<'a, F> {
     pub(super) fn new(field: &'a F, parent: &'a F::Region, boxes: &'a [Box3]) -> Self {
         Self { field, parent, boxes, ranges: Slot::new(None), asked: Slot::new(0), regions: OnceCell::new() }
     }
@@ -66,7 +66,7 @@ impl<'a, F: Divisible> Group<'a, F> {
 
 /// A box, and what a decider may want to know about it.
 pub struct Cell<'a, F: Divisible> {
-    pub(super) group: &'a Group<'a, F>,
+    pub(super) siblings: &'a Siblings<'a, F>,
     pub(super) part: usize,
     pub(super) depth: usize,
 }
@@ -84,7 +84,7 @@ impl<F: Divisible> Cell<'_, F> {
     /// The box.
     #[must_use]
     pub fn bounds(&self) -> Box3 {
-        self.group.boxes[self.part]
+        self.siblings.boxes[self.part]
     }
 
     /// How often a box was split to get here.
@@ -98,8 +98,8 @@ impl<F: Divisible> Cell<'_, F> {
     /// # Errors
     /// Those of [`Divisible::ranges`].
     pub fn range(&self) -> Result<Range, F::Error> {
-        self.group.asked.set(self.group.asked.get() | 1 << self.part);
-        Ok(self.group.ranges()?[self.part])
+        self.siblings.asked.set(self.siblings.asked.get() | 1 << self.part);
+        Ok(self.siblings.ranges()?[self.part])
     }
 
     /// What matters in the box.
@@ -107,12 +107,12 @@ impl<F: Divisible> Cell<'_, F> {
     /// # Errors
     /// Those of [`Divisible::narrow`].
     pub fn region(&self) -> Result<&F::Region, F::Error> {
-        Ok(&self.group.regions()?[self.part])
+        Ok(&self.siblings.regions()?[self.part])
     }
 
     /// What matters in the box around this one: known already, and more than matters here.
     #[must_use]
     pub fn around(&self) -> &F::Region {
-        self.group.parent
+        self.siblings.parent
     }
 }

@@ -4,7 +4,7 @@ use std::sync::atomic::AtomicU64;
 
 use super::decide::Decide;
 use super::node::{Division, Outcome};
-use super::run::{DivideError, Limits, Previous, Run, Subtree};
+use super::run::{DivideError, DivisionRun, Limits, Previous, Subtree};
 use crate::region::{Box3, Divisible, MAX_PARTS};
 
 /// The part of space in which an edited model may differ from what it was.
@@ -92,7 +92,7 @@ impl<R: Send + Sync, D: Clone + PartialEq + Send + Sync> Division<R, D> {
         leaves.push(count);
         let before = Before { division: self, edit, leaves, renew };
         let boxes = AtomicU64::new(0);
-        let run = Run { field, limits: limits.capped(), decide, boxes, previous: Some(&before) };
+        let run = DivisionRun { field, limits: limits.capped(), decide, boxes, previous: Some(&before) };
         let root = &self.nodes[0];
         run.start(root.bounds, root.data.clone())
     }

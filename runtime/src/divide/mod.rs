@@ -30,13 +30,13 @@ mod run;
 pub use cell::Cell;
 pub use decide::{Decide, Decision};
 pub use edit::Edit;
-pub use node::{Division, Node, Outcome, Tally};
+pub use node::{Division, DivisionNode, Outcome, Tally};
 pub use ray::Passage;
 pub use run::{DivideError, Limits};
 
 use std::sync::atomic::AtomicU64;
 
-use run::Run;
+use run::DivisionRun;
 
 use crate::region::{Box3, Divisible};
 
@@ -79,6 +79,7 @@ pub fn divide<F: Divisible, D: Send + Sync>(
     limits: &Limits,
     decide: &Decide<'_, F, D>,
 ) -> Result<Division<F::Region, D>, DivideError<F::Error>> {
-    let run = Run { field, limits: limits.capped(), decide, boxes: AtomicU64::new(0), previous: None };
+    let run =
+        DivisionRun { field, limits: limits.capped(), decide, boxes: AtomicU64::new(0), previous: None };
     run.start(bounds, data)
 }

@@ -15,7 +15,7 @@ pub enum Outcome {
 
 /// A box that was decided.
 #[derive(Clone, PartialEq, Debug)]
-pub struct Node<D> {
+pub struct DivisionNode<D> {
     /// The box.
     pub bounds: Box3,
     /// A range of the field in it, if the decider asked for one.
@@ -33,7 +33,7 @@ pub struct Node<D> {
 /// A divided box: all nodes in the order of a walk down the tree, parts in the order of their split.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Division<R, D> {
-    pub(super) nodes: Vec<Node<D>>,
+    pub(super) nodes: Vec<DivisionNode<D>>,
     /// Those of the leaves, in order.
     pub(super) regions: Vec<R>,
     pub(super) decisions: u64,
@@ -56,12 +56,12 @@ pub struct Tally {
 impl<R, D> Division<R, D> {
     /// All boxes.
     #[must_use]
-    pub fn nodes(&self) -> &[Node<D>] {
+    pub fn nodes(&self) -> &[DivisionNode<D>] {
         &self.nodes
     }
 
     /// The kept boxes, each with its region.
-    pub fn leaves(&self) -> impl Iterator<Item = (&Node<D>, &R)> {
+    pub fn leaves(&self) -> impl Iterator<Item = (&DivisionNode<D>, &R)> {
         self.nodes.iter().filter(|node| node.outcome == Outcome::Leaf).zip(&self.regions)
     }
 

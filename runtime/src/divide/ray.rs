@@ -1,6 +1,6 @@
 //! A ray through a divided box: the leaves that it passes, from the nearest to the farthest.
 
-use super::node::{Division, Node, Outcome};
+use super::node::{Division, DivisionNode, Outcome};
 use crate::region::Box3;
 
 /// A leaf that a ray passes.
@@ -11,7 +11,7 @@ pub struct Passage<'a, R, D> {
     /// Where it leaves it.
     pub exit: f32,
     /// The leaf.
-    pub node: &'a Node<D>,
+    pub node: &'a DivisionNode<D>,
     /// What is known of it.
     pub region: &'a R,
 }

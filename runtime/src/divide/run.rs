@@ -6,9 +6,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use crate::parallel::*;
 use thiserror::Error;
 
-use super::cell::{Cell, Group};
+use super::cell::{Cell, Siblings};
 use super::decide::{Decide, Decision};
-use super::node::{Division, Node, Outcome};
+use super::node::{Division, DivisionNode, Outcome};
 use crate::error::{Classified, ErrorKind, EvalError};
 use crate::limits;
 use crate::region::{Box3, Divisible, MAX_PARTS};
@@ -87,11 +87,11 @@ impl Classified for DivideError<EvalError> {
     }
 }
 
-pub(super) type Failure<F> = DivideError<<F as Divisible>::Error>;
+pub(super) type DivisionFailure<F> = DivideError<<F as Divisible>::Error>;
 
 /// A subtree, to be appended to what comes before it.
 pub(super) struct Subtree<R, D> {
-    pub(super) nodes: Vec<Node<D>>,
+    pub(super) nodes: Vec<DivisionNode<D>>,
     pub(super) regions: Vec<R>,
 }
 
@@ -115,7 +115,7 @@ pub(super) trait Previous<R, D>: Sync {
     fn parts(&self, node: usize, boxes: &[Box3], data: &[D]) -> Option<[usize; MAX_PARTS]>;
 }
 
-pub(super) struct Run<'a, F: Divisible, D> {
+pub(super) struct DivisionRun<'a, F: Divisible, D> {
     pub(super) field: &'a F,
     pub(super) limits: Limits,
     pub(super) decide: &'a Decide<'a, F, D>,
@@ -139,12 +139,12 @@ struct Parts<D> {
 /// A part once it is decided.
 enum Decided<R, D> {
     Untouched(Subtree<R, D>),
-    Node { node: Node<D>, region: Option<R>, split: Option<Parts<D>> },
+    Node { node: DivisionNode<D>, region: Option<R>, split: Option<Parts<D>> },
 }
 
-impl<F: Divisible, D: Send + Sync> Run<'_, F, D> {
+impl<F: Divisible, D: Send + Sync> DivisionRun<'_, F, D> {
     /// Divides the whole box.
-    pub(super) fn start(&self, bounds: Box3, data: D) -> Result<Division<F::Region, D>, Failure<F>> {
+    pub(super) fn start(&self, bounds: Box3, data: D) -> Result<Division<F::Region, D>, DivisionFailure<F>> {
         if !bounds.is_proper() {
             return Err(DivideError::Bounds { bounds });
         }
@@ -156,7 +156,11 @@ impl<F: Divisible, D: Send + Sync> Run<'_, F, D> {
     }
 
     /// The subtrees of all parts, one after the other.
-    fn parts(&self, around: &F::Region, parts: Parts<D>) -> Result<Subtree<F::Region, D>, Failure<F>> {
+    fn parts(
+        &self,
+        around: &F::Region,
+        parts: Parts<D>,
+    ) -> Result<Subtree<F::Region, D>, DivisionFailure<F>> {
         let depth = parts.depth;
         let decided = self.decide(around, parts)?;
         let subtrees: Vec<_> = if depth < PARALLEL_DEPTH {
@@ -171,7 +175,7 @@ impl<F: Divisible, D: Send + Sync> Run<'_, F, D> {
         Ok(all)
     }
 
-    fn subtree(&self, decided: Decided<F::Region, D>) -> Result<Subtree<F::Region, D>, Failure<F>> {
+    fn subtree(&self, decided: Decided<F::Region, D>) -> Result<Subtree<F::Region, D>, DivisionFailure<F>> {
         match decided {
             Decided::Untouched(subtree) => Ok(subtree),
             Decided::Node { node, region, split: None } => {
@@ -193,9 +197,13 @@ impl<F: Divisible, D: Send + Sync> Run<'_, F, D> {
     }
 
     /// Asks about every part that an edit touches, and finds the regions of those that go on.
-    fn decide(&self, around: &F::Region, parts: Parts<D>) -> Result<Vec<Decided<F::Region, D>>, Failure<F>> {
+    fn decide(
+        &self,
+        around: &F::Region,
+        parts: Parts<D>,
+    ) -> Result<Vec<Decided<F::Region, D>>, DivisionFailure<F>> {
         let Parts { boxes, data, depth, old } = parts;
-        let group = Group::new(self.field, around, &boxes);
+        let siblings = Siblings::new(self.field, around, &boxes);
         let mut wanted = [false; MAX_PARTS];
         let mut decisions = Vec::with_capacity(boxes.len());
         for (part, data) in data.into_iter().enumerate() {
@@ -207,13 +215,14 @@ impl<F: Divisible, D: Send + Sync> Run<'_, F, D> {
             if self.boxes.fetch_add(1, Ordering::Relaxed) >= self.limits.boxes {
                 return Err(DivideError::Boxes { boxes: self.limits.boxes });
             }
-            let cell = Cell { group: &group, part, depth };
+            let cell = Cell { siblings: &siblings, part, depth };
             let decision = (self.decide)(&cell, &data).map_err(DivideError::Field)?;
             wanted[part] = !matches!(decision, Decision::Stop);
             decisions.push(Ok((data, decision)));
         }
-        let ranges: Vec<_> = (0..boxes.len()).map(|part| group.known_range(part)).collect();
-        let mut regions = group.into_regions(&wanted[..boxes.len()]).map_err(DivideError::Field)?.into_iter();
+        let ranges: Vec<_> = (0..boxes.len()).map(|part| siblings.known_range(part)).collect();
+        let mut regions =
+            siblings.into_regions(&wanted[..boxes.len()]).map_err(DivideError::Field)?.into_iter();
         let mut decided = Vec::with_capacity(boxes.len());
         for (part, decision) in decisions.into_iter().enumerate() {
             let (data, decision) = match decision {
@@ -232,7 +241,8 @@ impl<F: Divisible, D: Send + Sync> Run<'_, F, D> {
                     (Outcome::Split, Some(self.split(&bounds, depth, decision, old.map(|old| old[part]))?))
                 }
             };
-            let node = Node { bounds, range: ranges[part], data, outcome, depth: depth as u16, size: 1 };
+            let node =
+                DivisionNode { bounds, range: ranges[part], data, outcome, depth: depth as u16, size: 1 };
             decided.push(Decided::Node { node, region, split });
         }
         Ok(decided)
@@ -245,7 +255,7 @@ impl<F: Divisible, D: Send + Sync> Run<'_, F, D> {
         depth: usize,
         decision: Decision<D>,
         old: Option<usize>,
-    ) -> Result<Parts<D>, Failure<F>> {
+    ) -> Result<Parts<D>, DivisionFailure<F>> {
         if depth >= self.limits.depth {
             return Err(DivideError::Depth { depth: self.limits.depth });
         }

@@ -135,7 +135,7 @@ impl ColorEncoding {
 
 /// What a file is like: what options say, else the conventions of its format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Choices {
+pub(super) struct FileChoices {
     pub up: Up,
     /// Any, where there are no colours.
     pub colors: ColorEncoding,

@@ -5,7 +5,7 @@ use std::io::Write;
 use std::path::Path;
 use std::str::FromStr;
 
-use super::conventions::{Choices, ColorEncoding, Conventions, Up};
+use super::conventions::{ColorEncoding, Conventions, FileChoices, Up};
 use super::parts::WriteError;
 use super::{glb, obj, ply, stl};
 use crate::mesh::Mesh;
@@ -33,7 +33,7 @@ macro_rules! formats {
             pub(super) fn write(
                 self,
                 mesh: &Mesh,
-                choices: Choices,
+                choices: FileChoices,
                 out: &mut impl Write,
             ) -> Result<(), WriteError> {
                 match self { $( Format::$variant => $module::write(mesh, choices, out), )+ }
@@ -100,7 +100,7 @@ impl ExportOptions {
     }
 }
 
-impl Choices {
+impl FileChoices {
     pub(super) fn new(format: Format, options: &ExportOptions) -> Self {
         Self { up: options.up_in(format), colors: options.colors_in(format).unwrap_or(ColorEncoding::Linear) }
     }

@@ -21,7 +21,7 @@ use std::io::Write;
 
 use serde_json::{Map, Value, json};
 
-use super::conventions::{Choices, ColorEncoding, Colors, Conventions, FarMeshes, Up};
+use super::conventions::{ColorEncoding, Colors, Conventions, FarMeshes, FileChoices, Up};
 use super::parts::{NamedAttribute, WriteError, colors, finite, others, uvs, write_reals};
 use crate::mesh::Mesh;
 use crate::region::Box3;
@@ -50,7 +50,7 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     far: FarMeshes::Node,
 };
 
-pub(super) fn write(mesh: &Mesh, choices: Choices, out: &mut impl Write) -> Result<(), WriteError> {
+pub(super) fn write(mesh: &Mesh, choices: FileChoices, out: &mut impl Write) -> Result<(), WriteError> {
     let attributes = others(mesh, &[], spell);
     let (json, binary) = describe(mesh, choices.up, &attributes);
     // Printing a JSON value cannot fail.
@@ -88,7 +88,7 @@ fn spell(stem: &str, width: usize) -> Vec<String> {
 
 fn write_binary(
     mesh: &Mesh,
-    choices: Choices,
+    choices: FileChoices,
     attributes: &[NamedAttribute<'_>],
     out: &mut impl Write,
 ) -> Result<(), WriteError> {

@@ -38,7 +38,7 @@ use thiserror::Error;
 
 use crate::error::{Classified, ErrorKind};
 use crate::mesh::{Attribute, Mesh};
-use conventions::Choices;
+use conventions::FileChoices;
 use parts::WriteError;
 
 /// Bytes that are collected before they go to a file.
@@ -115,7 +115,7 @@ pub fn write_with(
     out: &mut impl Write,
 ) -> Result<(), ExportError> {
     check(mesh)?;
-    let choices = Choices::new(format, options);
+    let choices = FileChoices::new(format, options);
     let mut out = BufWriter::with_capacity(BUFFER, out);
     format.write(mesh, choices, &mut out).map_err(|error| match error {
         WriteError::Write(error) => ExportError::Write(error),

@@ -6,7 +6,7 @@ use std::fmt::Display;
 use std::io::Write;
 use std::ops::Sub;
 
-use super::conventions::{Choices, ColorEncoding, Colors, Conventions, FarMeshes, Up};
+use super::conventions::{ColorEncoding, Colors, Conventions, FarMeshes, FileChoices, Up};
 use super::parts::{WriteError, colors, finite, uvs, world};
 use crate::mesh::Mesh;
 
@@ -22,8 +22,8 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     far: FarMeshes::Digits,
 };
 
-pub(super) fn write(mesh: &Mesh, choices: Choices, out: &mut impl Write) -> Result<(), WriteError> {
-    let Choices { up, colors: encoding } = choices;
+pub(super) fn write(mesh: &Mesh, choices: FileChoices, out: &mut impl Write) -> Result<(), WriteError> {
+    let FileChoices { up, colors: encoding } = choices;
     writeln!(out, "# jbt, {up} up")?;
     if colors(mesh).is_some() {
         writeln!(out, "# v x y z red green blue: {encoding}, clamped to 0..1")?;
@@ -54,7 +54,7 @@ pub(super) fn write(mesh: &Mesh, choices: Choices, out: &mut impl Write) -> Resu
 /// The vertices, at these positions, and their colours.
 fn write_vertices<T: Default + Display + Sub<Output = T>>(
     mesh: &Mesh,
-    Choices { up, colors: encoding }: Choices,
+    FileChoices { up, colors: encoding }: FileChoices,
     positions: impl Iterator<Item = [T; 3]>,
     out: &mut impl Write,
 ) -> Result<(), WriteError> {

@@ -6,7 +6,7 @@
 
 use std::io::Write;
 
-use super::conventions::{Choices, ColorEncoding, Colors, Conventions, FarMeshes, Up};
+use super::conventions::{ColorEncoding, Colors, Conventions, FarMeshes, FileChoices, Up};
 use super::parts::{NamedAttribute, WriteError, colors, others, uvs, write_reals};
 use crate::mesh::Mesh;
 use crate::srgb;
@@ -26,8 +26,8 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     far: FarMeshes::Digits,
 };
 
-pub(super) fn write(mesh: &Mesh, choices: Choices, out: &mut impl Write) -> Result<(), WriteError> {
-    let Choices { up, colors: encoding } = choices;
+pub(super) fn write(mesh: &Mesh, choices: FileChoices, out: &mut impl Write) -> Result<(), WriteError> {
+    let FileChoices { up, colors: encoding } = choices;
     let attributes = others(mesh, &RESERVED, spell);
     let (colors, uvs) = (colors(mesh), uvs(mesh));
     writeln!(out, "ply\nformat binary_little_endian 1.0\ncomment jbt, {up} up")?;

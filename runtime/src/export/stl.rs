@@ -3,7 +3,7 @@
 
 use std::io::Write;
 
-use super::conventions::{Choices, Conventions, FarMeshes, Up};
+use super::conventions::{Conventions, FarMeshes, FileChoices, Up};
 use super::parts::{WriteError, write_reals};
 use crate::mesh::{Mesh, area_vector, unit};
 
@@ -31,7 +31,7 @@ pub(super) const CONVENTIONS: Conventions = Conventions {
     far: FarMeshes::Rounded,
 };
 
-pub(super) fn write(mesh: &Mesh, choices: Choices, out: &mut impl Write) -> Result<(), WriteError> {
+pub(super) fn write(mesh: &Mesh, choices: FileChoices, out: &mut impl Write) -> Result<(), WriteError> {
     let size = mesh.triangles.len() as u64;
     let Ok(count) = u32::try_from(size) else {
         return Err(WriteError::TooLarge(size));

@@ -7,7 +7,7 @@ use jbt_ir::engine::BoundProgram;
 use jbt_ir::pass::dce;
 use jbt_ir::{Function, Selection, Straight, Tables, Verified};
 
-use super::engine::{Compiled, Engine, Wish, compile};
+use super::engine::{CompiledFunction, Engine, Wish, compile};
 use super::optimise::{Purpose, optimise};
 use crate::error::{CompileError, EvalError};
 
@@ -22,7 +22,7 @@ pub(crate) struct Kernel {
     pub(crate) per_row: Vec<u64>,
     /// For each table, the ops that an active row takes.
     pub(crate) ops_per_row: Vec<u64>,
-    compiled: Compiled,
+    compiled: CompiledFunction,
     /// What runs where the gradient is not finite, once that has been met; see [`guarded`](Self::guarded).
     guarded: OnceLock<Option<Arc<Kernel>>>,
 }
@@ -63,7 +63,7 @@ impl Kernel {
             field.blocks[body].results.truncate(1);
             let field = dce(&field);
             let verified = optimise(field.clone(), Purpose::Guarded, &mut |_, _| {}).ok()?;
-            let Compiled { engine, level, .. } = self.compiled;
+            let CompiledFunction { engine, level, .. } = self.compiled;
             let wish = Wish { engine: Some(engine.for_few()), level: Some(level) };
             Self::new(field, None, verified, wish).ok().map(Arc::new)
         };
@@ -77,7 +77,7 @@ impl Kernel {
 
     /// Gives the kernel its numbers: those of the lowered function, which fit its straight code if it has
     /// one.
-    pub(crate) fn bind(self: &Arc<Self>, lowered: Arc<Tables>) -> Bound {
+    pub(crate) fn bind(self: &Arc<Self>, lowered: Arc<Tables>) -> BoundKernel {
         let tables = match &self.straight {
             None => Arc::clone(&lowered),
             Some(straight) => Arc::new(straight.tables(&lowered).expect("whoever binds has seen to that")),
@@ -86,21 +86,21 @@ impl Kernel {
         // it.
         let program = Arc::clone(&self.compiled.program);
         let program = BoundProgram::new(program, tables).expect("lowering gives tables that fit");
-        Bound { kernel: Arc::clone(self), program, lowered, guarded: OnceLock::new() }
+        BoundKernel { kernel: Arc::clone(self), program, lowered, guarded: OnceLock::new() }
     }
 }
 
 /// A kernel with its numbers: the thing that runs.
-pub(crate) struct Bound {
+pub(crate) struct BoundKernel {
     pub(crate) kernel: Arc<Kernel>,
     program: BoundProgram,
     /// Those of the lowered function: others than its own only if the kernel is straight code.
     pub(crate) lowered: Arc<Tables>,
     /// The guarded kernel with the same numbers.
-    pub(crate) guarded: OnceLock<Option<Box<Bound>>>,
+    pub(crate) guarded: OnceLock<Option<Box<BoundKernel>>>,
 }
 
-impl Bound {
+impl BoundKernel {
     /// Its numbers.
     pub(crate) fn tables(&self) -> &Arc<Tables> {
         self.program.tables()

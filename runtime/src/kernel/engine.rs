@@ -63,17 +63,17 @@ impl Engine {
 }
 
 /// An engine of this build.
-struct Row {
+struct EngineRow {
     engine: Engine,
     backends: &'static [&'static dyn Backend],
 }
 
 /// The engines of this build: the one place that knows them.
-static ENGINES: &[Row] = &[
-    Row { engine: Engine::Scalar, backends: &[&Reference] },
-    Row { engine: Engine::Lanes, backends: &[&Interpreter] },
+static ENGINES: &[EngineRow] = &[
+    EngineRow { engine: Engine::Scalar, backends: &[&Reference] },
+    EngineRow { engine: Engine::Lanes, backends: &[&Interpreter] },
     #[cfg(feature = "jit")]
-    Row { engine: Engine::Jit, backends: jbt_jit::BACKENDS },
+    EngineRow { engine: Engine::Jit, backends: jbt_jit::BACKENDS },
 ];
 
 /// The texts that the engines of this build make of functions, each once.
@@ -120,7 +120,7 @@ pub(crate) struct Wish {
 }
 
 /// A function on an engine.
-pub(super) struct Compiled {
+pub(super) struct CompiledFunction {
     pub(super) engine: Engine,
     pub(super) level: Level,
     pub(super) program: Arc<dyn Program>,
@@ -128,13 +128,13 @@ pub(super) struct Compiled {
 
 /// Compiles a function. Without an engine in mind, machine code is tried first and the interpreter then: for
 /// each kernel by itself.
-pub(super) fn compile(function: &Arc<Verified>, wish: Wish) -> Result<Compiled, CompileError> {
+pub(super) fn compile(function: &Arc<Verified>, wish: Wish) -> Result<CompiledFunction, CompileError> {
     let level = wish.level.unwrap_or_else(best_level);
     let declined = |engine: Engine, reason| CompileError::Engine { engine: engine.name(), reason };
     let first = wish.engine.unwrap_or(Engine::Jit);
     level.require().map_err(|missing| declined(first, missing.to_string()))?;
     let engine = match (first.compile(function, level), wish.engine) {
-        (Ok(program), _) => return Ok(Compiled { engine: first, level, program }),
+        (Ok(program), _) => return Ok(CompiledFunction { engine: first, level, program }),
         (Err(reason), Some(engine)) => return Err(declined(engine, reason)),
         (Err(reason), None) => {
             warn_once(&reason);
@@ -142,7 +142,7 @@ pub(super) fn compile(function: &Arc<Verified>, wish: Wish) -> Result<Compiled, 
         }
     };
     let program = engine.compile(function, level).map_err(|reason| declined(engine, reason))?;
-    Ok(Compiled { engine, level, program })
+    Ok(CompiledFunction { engine, level, program })
 }
 
 /// The best level that may be used. Says once for each process what is wrong with the variable that bounds

@@ -21,7 +21,7 @@ mod bound;
 mod engine;
 mod optimise;
 
-pub(crate) use bound::{Bound, Kernel};
+pub(crate) use bound::{BoundKernel, Kernel};
 pub(crate) use engine::Wish;
 pub use engine::{Engine, form, forms};
 pub use optimise::{Purpose, optimise, optimise_straight, passes, straighten};

@@ -327,9 +327,9 @@ pub(crate) fn sheets_with_quads(signs: u8, flips: u8, sides: u8) -> Sheets {
 /// bits for each axis, the number of edges along other axes that lie on the high side of the cell; then the
 /// number of edges.
 #[derive(Clone, Copy, Default)]
-pub(crate) struct Edges(u32);
+pub(crate) struct SheetEdges(u32);
 
-impl Edges {
+impl SheetEdges {
     /// The first bit after the bits of the edges.
     const HIGH: u32 = 12;
     /// The first bit of the number of edges.
@@ -393,13 +393,13 @@ impl Edges {
 }
 
 /// The edges of the sheets of every case without flipped faces.
-static DEFAULT_EDGES: [[Edges; 4]; 256] = {
-    let mut edges = [[Edges(0); 4]; 256];
+static DEFAULT_EDGES: [[SheetEdges; 4]; 256] = {
+    let mut edges = [[SheetEdges(0); 4]; 256];
     let mut signs = 0;
     while signs < 256 {
         let mut sheet = 0;
         while sheet < DEFAULT[signs].count {
-            edges[signs][sheet as usize] = Edges::new(DEFAULT[signs].edges(sheet as u32));
+            edges[signs][sheet as usize] = SheetEdges::new(DEFAULT[signs].edges(sheet as u32));
             sheet += 1;
         }
         signs += 1;
@@ -409,14 +409,14 @@ static DEFAULT_EDGES: [[Edges; 4]; 256] = {
 
 /// The edges of each sheet of a cell without flipped faces.
 #[inline(always)]
-pub(crate) fn default_edges(signs: u8) -> &'static [Edges] {
+pub(crate) fn default_edges(signs: u8) -> &'static [SheetEdges] {
     &DEFAULT_EDGES[usize::from(signs)][..usize::from(DEFAULT[usize::from(signs)].count)]
 }
 
 /// The edges of each sheet of a cell with flipped faces.
-pub(crate) fn edges(signs: u8, flips: u8) -> Vec<Edges> {
+pub(crate) fn edges(signs: u8, flips: u8) -> Vec<SheetEdges> {
     let sheets = sheets(signs, flips);
-    (0..sheets.count()).map(|sheet| Edges::new(sheets.edges(sheet))).collect()
+    (0..sheets.count()).map(|sheet| SheetEdges::new(sheets.edges(sheet))).collect()
 }
 
 /// The edges with all four cells around them, a bit each, of a cell that touches these sides of the lattice

@@ -35,14 +35,14 @@ pub enum Defect {
 }
 
 /// The edges that leave each vertex, directed as their triangles go around.
-struct Edges {
+struct DirectedEdges {
     /// Where the edges of each vertex begin in `ends`, and the end.
     starts: Vec<usize>,
     /// For each edge its end vertex, ascending within a start vertex, and the third corner of its triangle.
     ends: Vec<(u32, u32)>,
 }
 
-impl Edges {
+impl DirectedEdges {
     /// Sorts the edges by start vertex, by counting. Fails with the first triangle that names a missing
     /// vertex.
     fn new(vertices: usize, triangles: &[[u32; 3]]) -> Result<Self, usize> {
@@ -68,7 +68,7 @@ impl Edges {
         for vertex in 0..vertices {
             ends[starts[vertex]..starts[vertex + 1]].sort_unstable();
         }
-        Ok(Edges { starts, ends })
+        Ok(DirectedEdges { starts, ends })
     }
 
     fn of(&self, vertex: u32) -> &[(u32, u32)] {
@@ -179,7 +179,7 @@ fn find(ends: &mut [u32; SLOTS], end: u32) -> Option<usize> {
 /// # Errors
 /// The first defect, in the order of the vertices; edges before fans.
 pub fn check_manifold(vertices: usize, triangles: &[[u32; 3]]) -> Result<(), Defect> {
-    let edges = Edges::new(vertices, triangles).map_err(|triangle| Defect::Index { triangle })?;
+    let edges = DirectedEdges::new(vertices, triangles).map_err(|triangle| Defect::Index { triangle })?;
     let all = 0..edges.vertices();
     let defect = all.clone().into_par_iter().find_map_first(|vertex| edges.broken_edge(vertex));
     let defect = defect.or_else(|| all.into_par_iter().find_map_first(|vertex| edges.broken_fan(vertex)));

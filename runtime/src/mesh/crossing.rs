@@ -11,11 +11,11 @@ use crate::parallel::*;
 use super::brick::{Bricks, NONE, cell_sides, direction, number, place, split, starts};
 use super::cell::{default_edges, default_sheets, sheets, sheets_with_quads};
 use super::report::Sides;
-use super::sample::Samples;
+use super::sample::BrickSamples;
 
 /// A cell that the surface crosses.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Cell {
+pub(crate) struct CrossedCell {
     /// The vertex of its first sheet, counted from the first vertex of its brick; the vertices of the other
     /// sheets follow.
     pub(crate) vertex: u32,
@@ -29,7 +29,7 @@ pub(crate) struct Cell {
 
 /// All crossing cells, in Morton order.
 pub(crate) struct Crossings {
-    pub(crate) cells: Vec<Cell>,
+    pub(crate) cells: Vec<CrossedCell>,
     /// The field at their corners, by groups of bricks.
     pub(crate) corners: Vec<Vec<[f32; 8]>>,
     /// Where the cells of each brick begin, and the end.
@@ -46,7 +46,7 @@ pub(crate) struct Crossings {
 
 impl Crossings {
     /// The cells of a brick.
-    pub(crate) fn of(&self, brick: usize) -> &[Cell] {
+    pub(crate) fn of(&self, brick: usize) -> &[CrossedCell] {
         &self.cells[self.starts[brick]..self.starts[brick + 1]]
     }
 
@@ -69,13 +69,13 @@ impl Crossings {
 }
 
 /// Finds the crossing cells, flips faces, and numbers the vertices.
-pub(crate) fn find(bricks: &Bricks, samples: &Samples, iso: f32) -> Crossings {
+pub(crate) fn find(bricks: &Bricks, samples: &BrickSamples, iso: f32) -> Crossings {
     let group = bricks.group();
     let groups = bricks.len().div_ceil(group);
     let found = (0..groups).into_par_iter().map_init(
         || Signs::new(bricks),
         |signs, index| {
-            let mut found = Found::with_room(group * bricks.edge.pow(3) / 4);
+            let mut found = FoundCells::with_room(group * bricks.edge.pow(3) / 4);
             for brick in index * group..bricks.len().min((index + 1) * group) {
                 samples.gather(bricks, brick, &mut signs.values);
                 signs.find(bricks, iso, brick, &mut found);
@@ -84,7 +84,7 @@ pub(crate) fn find(bricks: &Bricks, samples: &Samples, iso: f32) -> Crossings {
             found
         },
     );
-    let found: Vec<Found> = found.collect();
+    let found: Vec<FoundCells> = found.collect();
     let mut cells = Vec::with_capacity(found.iter().map(|found| found.cells.len()).sum());
     let (mut counts, mut suspects, mut cut) = (Vec::new(), Vec::new(), Sides::default());
     let mut corners = Vec::with_capacity(groups);
@@ -105,8 +105,8 @@ pub(crate) fn find(bricks: &Bricks, samples: &Samples, iso: f32) -> Crossings {
 
 /// The crossing cells of some bricks.
 #[derive(Default)]
-struct Found {
-    cells: Vec<Cell>,
+struct FoundCells {
+    cells: Vec<CrossedCell>,
     /// The field at their corners.
     corners: Vec<[f32; 8]>,
     /// The number of cells of each brick.
@@ -116,7 +116,7 @@ struct Found {
     cut: Sides,
 }
 
-impl Found {
+impl FoundCells {
     /// Room for this many cells.
     fn with_room(cells: usize) -> Self {
         Self { cells: Vec::with_capacity(cells), corners: Vec::with_capacity(cells), ..Self::default() }
@@ -133,19 +133,19 @@ struct Signs {
     /// For each point, the signs of the cell whose low corner it is.
     cells: Vec<u8>,
     /// Room for the crossed cells of a brick, and one more.
-    crossed: Vec<Cell>,
+    crossed: Vec<CrossedCell>,
 }
 
 impl Signs {
     fn new(bricks: &Bricks) -> Self {
         let values = vec![0.0; bricks.table_len()];
         let padded = vec![0; values.len() + bricks.stride().pow(2)];
-        let crossed = vec![Cell::default(); bricks.edge.pow(3) + 1];
+        let crossed = vec![CrossedCell::default(); bricks.edge.pow(3) + 1];
         Self { values, points: padded.clone(), pairs: padded.clone(), cells: padded, crossed }
     }
 
     /// Appends the crossing cells of a brick.
-    fn find(&mut self, bricks: &Bricks, iso: f32, brick: usize, found: &mut Found) {
+    fn find(&mut self, bricks: &Bricks, iso: f32, brick: usize, found: &mut FoundCells) {
         compare(iso, &self.values, &mut self.points);
         let (extent, sides) = (bricks.extent(brick), bricks.sides(brick));
         if sides != 0 {
@@ -205,7 +205,7 @@ impl Signs {
         }
     }
 
-    fn push_cells(&mut self, bricks: &Bricks, brick: usize, found: &mut Found) {
+    fn push_cells(&mut self, bricks: &Bricks, brick: usize, found: &mut FoundCells) {
         let stride = bricks.stride();
         let layer = stride * stride;
         let (before, mut count) = (found.cells.len(), 0);
@@ -223,7 +223,8 @@ impl Signs {
             let first = count;
             let mut pinched = false;
             for (rest, signs) in (0..).zip(signs.to_le_bytes()) {
-                self.crossed[count] = Cell { vertex: 0, number: (octet as u16) << 3 | rest, signs, flips: 0 };
+                self.crossed[count] =
+                    CrossedCell { vertex: 0, number: (octet as u16) << 3 | rest, signs, flips: 0 };
                 count += usize::from(signs != 0 && signs != u8::MAX);
                 pinched |= default_sheets(signs).pinched_low();
             }
@@ -235,7 +236,7 @@ impl Signs {
         }
         let crossed = &self.crossed[..count];
         found.cells.extend_from_slice(crossed);
-        let corners = |cell: &Cell| corners(&self.values, bricks.at(cell.number).in_table(), stride);
+        let corners = |cell: &CrossedCell| corners(&self.values, bricks.at(cell.number).in_table(), stride);
         found.corners.extend(crossed.iter().map(corners));
     }
 }
@@ -265,13 +266,13 @@ fn join<const WIDTH: usize>(bits: &[u8], step: usize, joined: &mut [u8]) {
 }
 
 /// Flips faces until none is pinched in both of its cells. Returns the number of flips.
-fn flip(bricks: &Bricks, starts: &[usize], cells: &mut [Cell], suspects: &[(usize, usize)]) -> u64 {
+fn flip(bricks: &Bricks, starts: &[usize], cells: &mut [CrossedCell], suspects: &[(usize, usize)]) -> u64 {
     let mut count = 0;
     for &(brick, upper) in suspects {
         for axis in 0..3 {
             // An earlier flip may have split one of the sheets already.
-            let pinched = |cells: &[Cell], cell: usize, face: usize| {
-                let Cell { signs, flips, .. } = cells[cell];
+            let pinched = |cells: &[CrossedCell], cell: usize, face: usize| {
+                let CrossedCell { signs, flips, .. } = cells[cell];
                 sheets(signs, flips).pinched(face)
             };
             if !pinched(cells, upper, 2 * axis) {
@@ -293,7 +294,7 @@ fn flip(bricks: &Bricks, starts: &[usize], cells: &mut [Cell], suspects: &[(usiz
 fn below(
     bricks: &Bricks,
     starts: &[usize],
-    cells: &[Cell],
+    cells: &[CrossedCell],
     brick: usize,
     cell: usize,
     axis: usize,
@@ -320,7 +321,7 @@ fn below(
 fn number_vertices(
     bricks: &Bricks,
     starts_of_cells: &[usize],
-    cells: &mut [Cell],
+    cells: &mut [CrossedCell],
 ) -> (Vec<usize>, Vec<usize>) {
     let group = bricks.group();
     let groups = split(cells, starts_of_cells, group, 1);
@@ -340,32 +341,32 @@ fn number_vertices(
 /// The counts of a cell without flipped faces inside the lattice: sheets, and crossed edges at its low
 /// corner.
 #[derive(Clone, Copy)]
-struct Counts {
+struct CellCounts {
     sheets: u8,
     quads: u8,
 }
 
-static COUNTS: [Counts; 256] = {
-    let mut counts = [Counts { sheets: 0, quads: 0 }; 256];
+static COUNTS: [CellCounts; 256] = {
+    let mut counts = [CellCounts { sheets: 0, quads: 0 }; 256];
     let mut signs = 0;
     while signs < 256 {
         let differs =
             (signs ^ signs >> 1) & 1 | ((signs ^ signs >> 2) & 1) << 1 | ((signs ^ signs >> 4) & 1) << 2;
         let sheets = default_sheets(signs as u8).count() as u8;
-        counts[signs] = Counts { sheets, quads: differs.count_ones() as u8 };
+        counts[signs] = CellCounts { sheets, quads: differs.count_ones() as u8 };
         signs += 1;
     }
     counts
 };
 
 /// Numbers the vertices of a brick, and counts them and the quads.
-fn number_brick(bricks: &Bricks, brick: usize, cells: &mut [Cell]) -> (usize, usize) {
+fn number_brick(bricks: &Bricks, brick: usize, cells: &mut [CrossedCell]) -> (usize, usize) {
     let (sides, extent) = (bricks.sides(brick), bricks.extent(brick));
     let (mut vertices, mut quads) = (0, 0);
     for cell in cells {
         cell.vertex = vertices;
         if sides == 0 && cell.flips == 0 {
-            let Counts { sheets, quads: more } = COUNTS[usize::from(cell.signs)];
+            let CellCounts { sheets, quads: more } = COUNTS[usize::from(cell.signs)];
             (vertices, quads) = (vertices + u32::from(sheets), quads + usize::from(more));
             continue;
         }

@@ -21,18 +21,18 @@ use super::error::{MAX_BRICK, MeshError};
 use super::field::Field;
 use super::options::Options;
 use super::report::Sides;
-use super::stage::Stage;
+use super::stage::MeshStage;
 use crate::progress::Progress;
 use crate::region::{ANYTHING, Box3, MAX_PARTS};
 
 /// The result of the division.
-pub(crate) struct Division<R> {
+pub(crate) struct BrickDivision<R> {
     /// The bricks that the surface may cross.
     pub(crate) bricks: Bricks,
     /// The region of each brick.
     pub(crate) regions: Vec<R>,
     /// Counts of boxes.
-    pub(crate) boxes: Boxes,
+    pub(crate) boxes: BoxCounts,
     /// The boxes of [`CHUNK`] cells along an edge that the surface may cross, and their regions, if bricks
     /// are smaller and chunks are wanted.
     pub(crate) chunks: Option<Kept<R>>,
@@ -43,7 +43,7 @@ pub(crate) type Kept<R> = (Vec<[u32; 3]>, Vec<R>);
 
 /// Counts of boxes.
 #[derive(Clone, Copy, Default)]
-pub(crate) struct Boxes {
+pub(crate) struct BoxCounts {
     /// Boxes whose range was computed.
     pub(crate) examined: u64,
     /// Boxes that were dropped as all inside.
@@ -56,7 +56,7 @@ pub(crate) struct Boxes {
     pub(crate) cut: Sides,
 }
 
-impl Boxes {
+impl BoxCounts {
     fn add(&mut self, other: Self) {
         self.examined += other.examined;
         self.inside += other.inside;
@@ -67,7 +67,7 @@ impl Boxes {
 }
 
 /// The remaining boxes of one size, in Morton order.
-struct Level<R> {
+struct BoxLevel<R> {
     /// Where they are, in units of their size.
     places: Vec<[u32; 3]>,
     regions: Vec<R>,
@@ -75,7 +75,7 @@ struct Level<R> {
 }
 
 /// The boxes of the next size, and the chunks if that is their size.
-type Descended<R> = (Level<R>, Option<Kept<R>>);
+type Descended<R> = (BoxLevel<R>, Option<Kept<R>>);
 
 /// The edge in cells of the boxes that the search for thin parts uses, for any edge of bricks.
 pub(crate) const CHUNK: usize = 8;
@@ -84,7 +84,7 @@ const DEFAULT_BRICK: usize = 8;
 /// The mean ops of a point from which on bricks are halved: fewer points for more bricks.
 const COSTLY: u64 = 200;
 
-impl<R> Level<R> {
+impl<R> BoxLevel<R> {
     /// Whether a point is costly, on average.
     fn is_costly<F: Field<Region = R>>(&self, field: &F) -> bool {
         let ops = self.regions.iter().map(|region| field.work(region).ops).fold(0, u64::saturating_add);
@@ -93,16 +93,16 @@ impl<R> Level<R> {
 }
 
 /// The children of some boxes.
-struct Children<R> {
+struct BoxChildren<R> {
     /// For each box, its remaining children, a bit each.
     masks: Vec<u8>,
     /// The regions of these children.
     regions: Vec<R>,
-    boxes: Boxes,
+    boxes: BoxCounts,
 }
 
 /// The constant inputs of the division.
-struct Work<'a, 'hook, F: Field> {
+struct BrickDivider<'a, 'hook, F: Field> {
     field: &'a F,
     axes: &'a [Vec<f32>; 3],
     iso: f32,
@@ -117,55 +117,55 @@ pub(crate) fn divide<F: Field>(
     options: &Options,
     limit: usize,
     progress: &Progress<'_>,
-) -> Result<Division<F::Region>, MeshError<F::Error>> {
+) -> Result<BrickDivision<F::Region>, MeshError<F::Error>> {
     let mut edge = options.brick.unwrap_or(DEFAULT_BRICK);
-    let work = Work { field, axes: &axes, iso: options.iso, limit, progress };
+    let divider = BrickDivider { field, axes: &axes, iso: options.iso, limit, progress };
     let most = axes.iter().map(|axis| axis.len() - 1).fold(1, usize::max);
     // The search for thin parts wants the same boxes around each box, whatever the edge of bricks is: the
     // first has room for the largest brick.
     let least = if options.thin_parts { MAX_BRICK } else { edge };
     let halvings = most.next_power_of_two().max(least).ilog2() - edge.ilog2();
-    Stage::Divide.begin(progress)?;
-    let mut boxes = Boxes::default();
-    let mut level = work.root(edge << halvings, &mut boxes)?;
+    MeshStage::Divide.begin(progress)?;
+    let mut boxes = BoxCounts::default();
+    let mut level = divider.root(edge << halvings, &mut boxes)?;
     let mut chunks = None;
     for halving in (0..halvings).rev() {
         let above = (edge << halving) * 2;
-        (level, chunks) = work.descend_and_keep(level, above, (options.thin_parts, chunks), &mut boxes)?;
+        (level, chunks) = divider.descend_and_keep(level, above, (options.thin_parts, chunks), &mut boxes)?;
         progress.add(1.0 / f64::from(halvings))?;
     }
     if options.brick.is_none() && level.is_costly(field) {
-        (level, chunks) = work.descend_and_keep(level, edge, (options.thin_parts, chunks), &mut boxes)?;
+        (level, chunks) = divider.descend_and_keep(level, edge, (options.thin_parts, chunks), &mut boxes)?;
         edge /= 2;
     }
-    let Level { places, regions, neighbours } = level;
-    Ok(Division { bricks: Bricks::new(edge, axes, places, neighbours), regions, boxes, chunks })
+    let BoxLevel { places, regions, neighbours } = level;
+    Ok(BrickDivision { bricks: Bricks::new(edge, axes, places, neighbours), regions, boxes, chunks })
 }
 
-impl<F: Field> Work<'_, '_, F> {
+impl<F: Field> BrickDivider<'_, '_, F> {
     /// The whole lattice as one box of this size; no box if it has no surface.
-    fn root(&self, size: usize, boxes: &mut Boxes) -> Result<Level<F::Region>, MeshError<F::Error>> {
+    fn root(&self, size: usize, boxes: &mut BoxCounts) -> Result<BoxLevel<F::Region>, MeshError<F::Error>> {
         let bounds = box_of(self.axes, [0; 3], [size; 3]);
         let region = self.field.region(bounds).map_err(MeshError::Field)?;
         let ranges = self.ranges(&region, &[bounds])?;
-        let level = Level { places: Vec::new(), regions: Vec::new(), neighbours: Vec::new() };
+        let level = BoxLevel { places: Vec::new(), regions: Vec::new(), neighbours: Vec::new() };
         if !self.may_cross(&region, ranges[0], ([0; 3], size), boxes) {
             return Ok(level);
         }
         self.check(1)?;
         let mut neighbours = [NONE; 27];
         neighbours[SELF] = 0;
-        Ok(Level { places: vec![[0; 3]], regions: vec![region], neighbours: vec![neighbours] })
+        Ok(BoxLevel { places: vec![[0; 3]], regions: vec![region], neighbours: vec![neighbours] })
     }
 
     /// The children of all boxes, with the new size. The boxes themselves are kept if they are wanted as
     /// chunks.
     fn descend_and_keep(
         &self,
-        level: Level<F::Region>,
+        level: BoxLevel<F::Region>,
         size: usize,
         (wanted, chunks): (bool, Option<Kept<F::Region>>),
-        boxes: &mut Boxes,
+        boxes: &mut BoxCounts,
     ) -> Result<Descended<F::Region>, MeshError<F::Error>> {
         let children = self.descend(&level, size / 2, boxes)?;
         let chunks = if wanted && size == CHUNK { Some((level.places, level.regions)) } else { chunks };
@@ -175,10 +175,10 @@ impl<F: Field> Work<'_, '_, F> {
     /// The children, of this size, of all boxes.
     fn descend(
         &self,
-        level: &Level<F::Region>,
+        level: &BoxLevel<F::Region>,
         size: usize,
-        boxes: &mut Boxes,
-    ) -> Result<Level<F::Region>, MeshError<F::Error>> {
+        boxes: &mut BoxCounts,
+    ) -> Result<BoxLevel<F::Region>, MeshError<F::Error>> {
         // Near the top there are few boxes, and each is costly.
         let group = if level.places.len() < 256 { 1 } else { 16 };
         let found = AtomicUsize::new(0);
@@ -190,7 +190,7 @@ impl<F: Field> Work<'_, '_, F> {
             self.check(before + children.regions.len())?;
             Ok(children)
         });
-        let groups = groups.collect::<Result<Vec<Children<F::Region>>, MeshError<F::Error>>>()?;
+        let groups = groups.collect::<Result<Vec<BoxChildren<F::Region>>, MeshError<F::Error>>>()?;
         let mut masks = Vec::with_capacity(level.places.len());
         let mut regions = Vec::with_capacity(found.into_inner());
         for mut children in groups {
@@ -199,7 +199,7 @@ impl<F: Field> Work<'_, '_, F> {
             boxes.add(children.boxes);
         }
         let (places, neighbours) = link(&level.places, &level.neighbours, &masks);
-        Ok(Level { places, regions, neighbours })
+        Ok(BoxLevel { places, regions, neighbours })
     }
 
     fn check(&self, bricks: usize) -> Result<(), MeshError<F::Error>> {
@@ -213,11 +213,11 @@ impl<F: Field> Work<'_, '_, F> {
         places: &[[u32; 3]],
         regions: &[F::Region],
         size: usize,
-    ) -> Result<Children<F::Region>, MeshError<F::Error>> {
-        let mut children = Children {
+    ) -> Result<BoxChildren<F::Region>, MeshError<F::Error>> {
+        let mut children = BoxChildren {
             masks: Vec::with_capacity(places.len()),
             regions: Vec::with_capacity(4 * places.len()),
-            boxes: Boxes::default(),
+            boxes: BoxCounts::default(),
         };
         for (place, region) in places.iter().zip(regions) {
             self.divide_box(*place, region, size, &mut children)?;
@@ -230,7 +230,7 @@ impl<F: Field> Work<'_, '_, F> {
         place: [u32; 3],
         region: &F::Region,
         size: usize,
-        children: &mut Children<F::Region>,
+        children: &mut BoxChildren<F::Region>,
     ) -> Result<(), MeshError<F::Error>> {
         let first =
             |child: usize| [0, 1, 2].map(|axis| (2 * place[axis] as usize + (child >> axis & 1)) * size);
@@ -278,7 +278,7 @@ impl<F: Field> Work<'_, '_, F> {
         around: &F::Region,
         [low, high]: [f32; 2],
         (first, size): ([usize; 3], usize),
-        boxes: &mut Boxes,
+        boxes: &mut BoxCounts,
     ) -> bool {
         boxes.examined += 1;
         let (inside, outside) = (low >= self.iso, high < self.iso);
@@ -358,7 +358,7 @@ mod tests {
     use std::convert::Infallible;
 
     use super::*;
-    use crate::mesh::Work as FieldWork;
+    use crate::mesh::FieldWork;
     use crate::progress::EACH;
     use crate::region::Divisible;
 
@@ -432,7 +432,7 @@ mod tests {
     }
 
     /// Divides a lattice with so many cells along each axis, from -3 on, into bricks of 2^3 cells of 1/8.
-    fn divided(cells: [usize; 3], limit: usize) -> Result<Division<()>, MeshError<Infallible>> {
+    fn divided(cells: [usize; 3], limit: usize) -> Result<BrickDivision<()>, MeshError<Infallible>> {
         let axes = cells.map(|cells| (0..=cells).map(|index| -3.0 + 0.125 * index as f32).collect());
         let options = Options { iso: -4.0, brick: Some(2), ..Options::default() };
         divide(&Ball, axes, &options, limit, &Progress::new(&mut |_| true, EACH))
@@ -450,7 +450,7 @@ mod tests {
 
     #[test]
     fn bricks_are_those_that_the_surface_may_be_in_and_know_each_other() {
-        let Division { bricks, regions, boxes, chunks: _ } = divided([48, 31, 40], usize::MAX).unwrap();
+        let BrickDivision { bricks, regions, boxes, chunks: _ } = divided([48, 31, 40], usize::MAX).unwrap();
         assert_eq!(bricks.len(), regions.len());
         assert!(boxes.examined > boxes.inside + boxes.outside && boxes.inside > 0 && boxes.outside > 0);
         // The lattice ends at y = 0.875 and z = 2.

@@ -4,7 +4,7 @@ use crate::region::Divisible;
 
 /// The cost of the field at a point: for counters, and to choose the size of bricks.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-pub struct Work {
+pub struct FieldWork {
     /// Evaluations of distances to skeletons, or another count of the field's choice.
     pub evaluations: u64,
     /// Ops: a measure of the time.
@@ -29,7 +29,7 @@ pub trait Field: Divisible {
     fn attributes(&self) -> Vec<(String, usize)>;
 
     /// The cost of the field at a point of a region.
-    fn work(&self, region: &Self::Region) -> Work;
+    fn work(&self, region: &Self::Region) -> FieldWork;
 
     /// The field at each point, all of which are in the region's box. Inside is `field >= iso`; NaN is
     /// outside.

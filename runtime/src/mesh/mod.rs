@@ -60,11 +60,11 @@ use jbt_ir::limits::MAX_BRICKS;
 
 pub use check::{Defect, check_manifold, is_closed};
 pub use error::{MAX_BRICK, MAX_PULLS, MIN_BRICK, MeshError};
-pub use field::{Field, Work};
+pub use field::{Field, FieldWork};
 pub use indexed::{Attribute, Mesh};
 pub use lattice::{Lattice, LatticeError};
 pub use options::Options;
-pub use report::{MAX_NEAR, Report, Sides, ThinReport};
+pub use report::{MAX_NEAR, MeshReport, Sides, ThinReport};
 
 #[cfg(feature = "export")]
 pub(crate) use surface::{area_vector, unit};
@@ -73,14 +73,14 @@ use crate::job::{Hook, Job};
 use crate::progress::{EACH, Progress};
 
 use crossing::Crossings;
-use divide::Division;
-use vertex::batch::Source;
+use divide::BrickDivision;
+use vertex::batch::VertexSource;
 
 /// Meshes the surface `field = iso` over a lattice.
 ///
 /// Vertices are in the order of their cells, which is Morton order (the bits of z, y and x interleaved, x
 /// lowest); triangles are in the order of the last cell that they touch. A vertex stays within its cell, off
-/// its sides; so positions differ, unless [`Report::crowded`] is set.
+/// its sides; so positions differ, unless [`MeshReport::crowded`] is set.
 ///
 /// # Errors
 /// See [`MeshError`].
@@ -91,7 +91,7 @@ pub fn extract<'a, F: Field>(
     field: &'a F,
     lattice: &'a Lattice,
     options: &Options,
-) -> Job<'a, (Mesh, Report), MeshError<F::Error>> {
+) -> Job<'a, (Mesh, MeshReport), MeshError<F::Error>> {
     let options = options.clone();
     Job::new(move |hook| extract_hooked(field, lattice, &options, hook, |_| ()))
 }
@@ -103,8 +103,8 @@ pub(crate) fn extract_hooked<F: Field>(
     lattice: &Lattice,
     options: &Options,
     hook: Hook<'_>,
-    meshed: impl FnOnce(&Report),
-) -> Result<(Mesh, Report), MeshError<F::Error>> {
+    meshed: impl FnOnce(&MeshReport),
+) -> Result<(Mesh, MeshReport), MeshError<F::Error>> {
     options.check()?;
     let progress = Progress::new(hook, EACH);
     let division = divide::divide(field, lattice.axes(), options, MAX_BRICKS, &progress)?;
@@ -126,11 +126,11 @@ pub(crate) fn extract_hooked<F: Field>(
 /// Meshes the bricks of a lattice.
 fn polygonize<F: Field>(
     field: &F,
-    division: &Division<F::Region>,
+    division: &BrickDivision<F::Region>,
     options: &Options,
     progress: &Progress<'_>,
-) -> Result<(Mesh, Report, Crossings), MeshError<F::Error>> {
-    let Division { bricks, regions, boxes, chunks: _ } = division;
+) -> Result<(Mesh, MeshReport, Crossings), MeshError<F::Error>> {
+    let BrickDivision { bricks, regions, boxes, chunks: _ } = division;
     let samples = sample::sample(field, bricks, regions, progress)?;
     let mut crossings = crossing::find(bricks, &samples, options.iso);
     let field_evaluations = samples.len() as u64;
@@ -139,9 +139,9 @@ fn polygonize<F: Field>(
     if u32::try_from(count).is_err() {
         return Err(MeshError::TooManyVertices { vertices: count as u64 });
     }
-    let source = Source { field, options, bricks, regions, crossings: &crossings };
+    let source = VertexSource { field, options, bricks, regions, crossings: &crossings };
     let (mut mesh, done) = vertex::finish(&source, progress)?;
-    let mut report = Report {
+    let mut report = MeshReport {
         cut_sides: crossings.cut,
         boxes: boxes.examined,
         boxes_inside: boxes.inside,

@@ -21,8 +21,9 @@ pub struct Options {
     /// Whether to check every edge of the mesh to find out whether it is closed. Where no side of the lattice
     /// cuts the body, the mesh is closed by construction.
     pub verify: bool,
-    /// Whether to search for parts that are thinner than a cell: see [`Report::thin`](super::Report::thin).
-    /// The search needs a field that knows ranges of boxes, and does not change the mesh.
+    /// Whether to search for parts that are thinner than a cell: see
+    /// [`MeshReport::thin`](super::MeshReport::thin). The search needs a field that knows ranges of boxes,
+    /// and does not change the mesh.
     pub thin_parts: bool,
 }
 

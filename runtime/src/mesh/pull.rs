@@ -6,11 +6,11 @@ use crate::region::Box3;
 pub(super) const LANES: usize = 8;
 
 /// A number for each of some vertices. Loops over lanes have no branches and compile to vector instructions.
-pub(super) type Lanes = [f32; LANES];
+pub(super) type VertexLanes = [f32; LANES];
 
 /// Sums of squares by lanes.
 #[inline(always)]
-pub(super) fn squares([x, y, z]: &[Lanes; 3]) -> Lanes {
+pub(super) fn squares([x, y, z]: &[VertexLanes; 3]) -> VertexLanes {
     let mut sums = [0.0; LANES];
     for i in 0..LANES {
         sums[i] = x[i] * x[i] + y[i] * y[i] + z[i] * z[i];
@@ -31,11 +31,11 @@ pub(super) fn all(conditions: &[u32; LANES]) -> bool {
 #[inline(always)]
 pub(super) fn pull_lanes(
     iso: f32,
-    points: &mut [Lanes; 3],
-    values: &Lanes,
-    gradient: &[Lanes; 3],
-    low: &[Lanes; 3],
-    high: &[Lanes; 3],
+    points: &mut [VertexLanes; 3],
+    values: &VertexLanes,
+    gradient: &[VertexLanes; 3],
+    low: &[VertexLanes; 3],
+    high: &[VertexLanes; 3],
 ) {
     let mut step = squares(gradient);
     for i in 0..LANES {
@@ -51,7 +51,7 @@ pub(super) fn pull_lanes(
     }
     if !all(&stays) {
         for i in (0..LANES).filter(|&i| stays[i] == 0) {
-            let at = |planes: &[Lanes; 3]| [planes[0][i], planes[1][i], planes[2][i]];
+            let at = |planes: &[VertexLanes; 3]| [planes[0][i], planes[1][i], planes[2][i]];
             let pulled = pull(iso, at(points), values[i], at(gradient), Box3::new(at(low), at(high)));
             for (plane, coordinate) in aims.iter_mut().zip(pulled) {
                 plane[i] = coordinate;
@@ -140,7 +140,7 @@ mod tests {
         let before = points;
         pull_lanes(0.5, &mut points, &values, &gradient, &low, &high);
         for lane in 0..LANES {
-            let at = |planes: [Lanes; 3]| planes.map(|plane| plane[lane]);
+            let at = |planes: [VertexLanes; 3]| planes.map(|plane| plane[lane]);
             let pulled = pull(0.5, at(before), values[lane], at(gradient), bounds);
             assert_eq!(at(points), pulled, "lane {lane}");
         }

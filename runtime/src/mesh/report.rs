@@ -48,7 +48,7 @@ impl fmt::Display for Sides {
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
-pub struct Report {
+pub struct MeshReport {
     /// Whether every edge has exactly two triangles, in opposite directions. A mesh without triangles is
     /// closed. Checked if [`Options::verify`](super::Options::verify) is set, otherwise derived from
     /// `cut_sides`.

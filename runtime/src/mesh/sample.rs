@@ -22,7 +22,7 @@ use crate::parallel::*;
 use super::brick::{Bricks, NONE, SELF, direction, split, starts};
 use super::error::MeshError;
 use super::field::Field;
-use super::stage::Stage;
+use super::stage::MeshStage;
 use crate::progress::Progress;
 
 /// Marks a class of points that a brick does not own.
@@ -123,7 +123,7 @@ fn span(kind: u8, cells: usize) -> (usize, usize) {
 }
 
 /// The field at the points of all bricks.
-pub(crate) struct Samples {
+pub(crate) struct BrickSamples {
     /// Brick by brick: its half-open box, x fastest, then y, then z; then the classes of its rim.
     values: Vec<f32>,
     /// Where the values of each brick begin, and the end.
@@ -138,7 +138,7 @@ pub(crate) fn sample<F: Field>(
     bricks: &Bricks,
     regions: &[F::Region],
     progress: &Progress<'_>,
-) -> Result<Samples, MeshError<F::Error>> {
+) -> Result<BrickSamples, MeshError<F::Error>> {
     let (rims, counts): (Vec<[u16; 27]>, Vec<usize>) =
         (0..bricks.len()).into_par_iter().with_min_len(64).map(|brick| rim(bricks, brick)).unzip();
     let starts = starts(counts.into_iter());
@@ -146,18 +146,21 @@ pub(crate) fn sample<F: Field>(
     let group = bricks.group();
     let groups = split(&mut values, &starts, group, 1);
     let total = groups.len();
-    Stage::Lattice.begin(progress)?;
-    groups.into_par_iter().enumerate().try_for_each_init(Points::default, |points, (index, values)| {
-        let first = index * group;
-        for brick in first..bricks.len().min(first + group) {
-            let mine = starts[brick] - starts[first]..starts[brick + 1] - starts[first];
-            points.collect(bricks, brick, &rims[brick]);
-            let Points { x, y, z } = &*points;
-            field.field(&regions[brick], x, y, z, &mut values[mine]).map_err(MeshError::Field)?;
-        }
-        progress.add(1.0 / total as f64).map_err(MeshError::from)
-    })?;
-    Ok(Samples { values, starts, rims })
+    MeshStage::Lattice.begin(progress)?;
+    groups.into_par_iter().enumerate().try_for_each_init(
+        BrickPoints::default,
+        |points, (index, values)| {
+            let first = index * group;
+            for brick in first..bricks.len().min(first + group) {
+                let mine = starts[brick] - starts[first]..starts[brick + 1] - starts[first];
+                points.collect(bricks, brick, &rims[brick]);
+                let BrickPoints { x, y, z } = &*points;
+                field.field(&regions[brick], x, y, z, &mut values[mine]).map_err(MeshError::Field)?;
+            }
+            progress.add(1.0 / total as f64).map_err(MeshError::from)
+        },
+    )?;
+    Ok(BrickSamples { values, starts, rims })
 }
 
 /// A vector of zeros, or an error where the allocator would abort.
@@ -196,13 +199,13 @@ fn rim(bricks: &Bricks, brick: usize) -> ([u16; 27], usize) {
 
 /// The points of a brick.
 #[derive(Default)]
-struct Points {
+struct BrickPoints {
     x: Vec<f32>,
     y: Vec<f32>,
     z: Vec<f32>,
 }
 
-impl Points {
+impl BrickPoints {
     /// The points that a brick owns, in the order of its values.
     fn collect(&mut self, bricks: &Bricks, brick: usize, rim: &[u16; 27]) {
         self.x.clear();
@@ -252,13 +255,13 @@ fn repeat(numbers: &mut Vec<f32>, length: usize, times: usize) {
 
 /// The place of a box of points in a list of numbers: its first number, and the strides of rows and layers.
 #[derive(Clone, Copy)]
-struct Block {
+struct BlockLayout {
     start: usize,
     row: usize,
     layer: usize,
 }
 
-impl Samples {
+impl BrickSamples {
     /// How many points were sampled.
     pub(crate) fn len(&self) -> usize {
         self.values.len()
@@ -272,7 +275,7 @@ impl Samples {
         let (extent, stride) = (bricks.extent(brick), bricks.stride());
         let neighbours = &bricks.neighbours[brick];
         let own = self.block(extent, brick, [0; 3]);
-        let target = Block { start: 0, row: stride, layer: stride * stride };
+        let target = BlockLayout { start: 0, row: stride, layer: stride * stride };
         copy(source, own, table, target, extent);
         for (direction, classes) in SIDES {
             let last = &CLASSES[classes[classes.len() - 1]].kinds;
@@ -296,12 +299,12 @@ impl Samples {
     }
 
     /// The values of a brick's half-open box from a point on.
-    fn block(&self, extent: [usize; 3], brick: usize, first: [usize; 3]) -> Block {
-        Block { start: self.starts[brick], row: extent[0], layer: extent[0] * extent[1] }.at(first)
+    fn block(&self, extent: [usize; 3], brick: usize, first: [usize; 3]) -> BlockLayout {
+        BlockLayout { start: self.starts[brick], row: extent[0], layer: extent[0] * extent[1] }.at(first)
     }
 
     /// The place of the values of a class of a brick's points.
-    fn class(&self, bricks: &Bricks, brick: usize, class: usize) -> Block {
+    fn class(&self, bricks: &Bricks, brick: usize, class: usize) -> BlockLayout {
         let Class { candidates, count, .. } = &CLASSES[class];
         let neighbours = &bricks.neighbours[brick];
         let is_there = |candidate: &&Candidate| neighbours[usize::from(candidate.direction)] != NONE;
@@ -315,11 +318,11 @@ impl Samples {
         let box_points: usize = extent.iter().product();
         let start =
             self.starts[other] + box_points + usize::from(self.rims[other][class_number(owner.kinds)]);
-        Block { start, row: spans[0].1, layer: spans[0].1 * spans[1].1 }
+        BlockLayout { start, row: spans[0].1, layer: spans[0].1 * spans[1].1 }
     }
 }
 
-impl Block {
+impl BlockLayout {
     /// The same box from another point on.
     fn at(self, first: [usize; 3]) -> Self {
         Self { start: self.start + first[0] + self.row * first[1] + self.layer * first[2], ..self }
@@ -327,7 +330,13 @@ impl Block {
 }
 
 /// Copies a box of numbers.
-fn copy<T: Copy>(source: &[T], from: Block, target: &mut [T], to: Block, [nx, ny, nz]: [usize; 3]) {
+fn copy<T: Copy>(
+    source: &[T],
+    from: BlockLayout,
+    target: &mut [T],
+    to: BlockLayout,
+    [nx, ny, nz]: [usize; 3],
+) {
     // Rows of whole bricks, and columns: their lengths are known, so that no function is called for each.
     match nx {
         1 => copy_rows(source, from, target, to, [ny, nz], |source, target| target[0] = source[0]),
@@ -344,9 +353,9 @@ fn copy<T: Copy>(source: &[T], from: Block, target: &mut [T], to: Block, [nx, ny
 #[inline(always)]
 fn copy_rows<T: Copy>(
     source: &[T],
-    from: Block,
+    from: BlockLayout,
     target: &mut [T],
-    to: Block,
+    to: BlockLayout,
     [ny, nz]: [usize; 2],
     row: impl Fn(&[T], &mut [T]),
 ) {

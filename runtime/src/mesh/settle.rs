@@ -9,7 +9,7 @@
 //! ```
 
 use super::field::Field;
-use super::pull::{LANES, Lanes, pull};
+use super::pull::{LANES, VertexLanes, pull};
 use crate::region::Box3;
 
 /// The number of further pulls of a stray.
@@ -23,7 +23,12 @@ const TOLERANCE: f32 = 1e-3;
 /// Which vertices are far from the surface, 1 or 0 each, in cells with these low and high sides along x;
 /// `square` is the squared length of the gradient. A gradient of NaN gives 0.
 #[inline(always)]
-pub(super) fn is_far(iso: f32, [low, high]: [&Lanes; 2], values: &Lanes, square: &Lanes) -> [u32; LANES] {
+pub(super) fn is_far(
+    iso: f32,
+    [low, high]: [&VertexLanes; 2],
+    values: &VertexLanes,
+    square: &VertexLanes,
+) -> [u32; LANES] {
     let mut far = [0; LANES];
     for i in 0..LANES {
         let error = (values[i] - iso).abs();
@@ -35,14 +40,14 @@ pub(super) fn is_far(iso: f32, [low, high]: [&Lanes; 2], values: &Lanes, square:
 
 /// Where a vertex may be.
 #[derive(Clone, Copy)]
-pub(super) struct Place {
+pub(super) struct VertexPlace {
     /// Its cell.
     pub(super) bounds: Box3,
     /// The corners that its sheet separates: those outside and those inside, a bit for each corner.
     pub(super) corners: [u8; 2],
 }
 
-impl Place {
+impl VertexPlace {
     /// The nearest of the corners on one side of the sheet.
     fn corner(&self, inside: bool, from: [f32; 3]) -> Option<[f32; 3]> {
         let mask = self.corners[usize::from(inside)];
@@ -56,7 +61,7 @@ impl Place {
 pub(super) struct Stray {
     /// Its index in the batch.
     pub(super) index: usize,
-    place: Place,
+    place: VertexPlace,
     position: [f32; 3],
     value: f32,
     gradient: [f32; 3],
@@ -71,7 +76,7 @@ impl Stray {
     pub(super) fn new(
         iso: f32,
         index: usize,
-        place: Place,
+        place: VertexPlace,
         position: [f32; 3],
         value: f32,
         gradient: [f32; 3],

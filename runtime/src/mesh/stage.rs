@@ -4,7 +4,7 @@ use crate::progress::{Cancelled, Progress};
 
 /// A stage of the work.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Stage {
+pub(crate) enum MeshStage {
     /// The boxes of the lattice.
     Divide,
     /// The field at the points of bricks.
@@ -15,7 +15,7 @@ pub(crate) enum Stage {
     Thin,
 }
 
-impl Stage {
+impl MeshStage {
     /// Where it begins and ends in the whole work. A guess, for a progress bar.
     fn span(self) -> [f64; 2] {
         match self {

@@ -39,7 +39,7 @@ pub(crate) fn triangles(bricks: &Bricks, crossings: &Crossings, positions: &[[f3
 
 /// A crossed cell: its first vertex, and the sheets of its edges.
 #[derive(Clone, Copy, Default)]
-struct Entry {
+struct CellVertices {
     vertex: u32,
     sheets: SheetNumbers,
 }
@@ -56,7 +56,7 @@ struct Corner {
 /// The cells of a brick and the cells just below it. Entries of cells that are not crossed are arbitrary.
 struct Around {
     /// x fastest, then y, then z; each begins with the layer below the brick.
-    table: Vec<Entry>,
+    table: Vec<CellVertices>,
     /// Room for the indices of some crossed cells of a brick.
     chosen: Vec<u16>,
     /// The quads of the brick: eight times the place of the last cell around the edge, plus the number of its
@@ -75,7 +75,7 @@ impl Around {
     fn new(bricks: &Bricks) -> Self {
         let stride = bricks.stride();
         let steps = [1, stride, stride * stride];
-        let table = vec![Entry::default(); bricks.table_len()];
+        let table = vec![CellVertices::default(); bricks.table_len()];
         let mut turns = [[Corner::default(); 4]; 8];
         for axis in 0..3 {
             let (b, c) = (steps[(axis + 1) % 3] as u32, steps[(axis + 2) % 3] as u32);
@@ -133,7 +133,7 @@ impl Around {
                 }
             }
             let at = first.wrapping_add(at.in_table());
-            self.table[at] = Entry { vertex: vertex + cell.vertex, sheets };
+            self.table[at] = CellVertices { vertex: vertex + cell.vertex, sheets };
         }
     }
 
@@ -166,7 +166,7 @@ impl Around {
     /// The vertex of the cell at a place of the table on one of its crossed edges.
     #[inline(always)]
     fn vertex(&self, at: usize, corner: Corner) -> u32 {
-        let Entry { vertex, sheets } = self.table[at - corner.back as usize];
+        let CellVertices { vertex, sheets } = self.table[at - corner.back as usize];
         vertex + sheets.at(corner.place)
     }
 }

@@ -21,18 +21,18 @@ use super::brick::split;
 use super::error::MeshError;
 use super::field::Field;
 use super::indexed::{Attribute, Mesh};
-use super::pull::{LANES, Lanes, pull_lanes};
-use super::stage::Stage;
+use super::pull::{LANES, VertexLanes, pull_lanes};
+use super::stage::MeshStage;
 use crate::progress::Progress;
 
-use batch::{Batch, Done, Planes, Source, lane, lanes};
+use batch::{Done, VertexBatch, VertexPlanes, VertexSource, lane, lanes};
 use normal::normals_of;
-use seed::Group;
+use seed::SeedGroup;
 
 pub(super) use room::is_crowded;
 
 /// The parts of the mesh that some bricks write.
-struct Target<'a> {
+struct MeshTarget<'a> {
     positions: &'a mut [[f32; 3]],
     normals: &'a mut [[f32; 3]],
     /// For each attribute, its values.
@@ -42,7 +42,7 @@ struct Target<'a> {
 /// Makes one vertex for each sheet of each crossed cell that has quads. A vertex whose gradient vanishes or
 /// is NaN has the normal zero.
 pub(crate) fn finish<F: Field>(
-    source: &Source<'_, F>,
+    source: &VertexSource<'_, F>,
     progress: &Progress<'_>,
 ) -> Result<(Mesh, Done), MeshError<F::Error>> {
     let count = source.crossings.vertex_count();
@@ -65,9 +65,9 @@ pub(crate) fn finish<F: Field>(
     let group = source.bricks.group();
     let targets = targets(&mut mesh, &source.crossings.vertices, group);
     let total = targets.len();
-    Stage::Vertices.begin(progress)?;
+    MeshStage::Vertices.begin(progress)?;
     let work = targets.into_par_iter().enumerate();
-    let work = work.map_init(Batch::default, |batch, (index, target)| {
+    let work = work.map_init(VertexBatch::default, |batch, (index, target)| {
         let first = index * group;
         let bricks = first..source.bricks.len().min(first + group);
         let done = finish_group(source, &widths, bricks, target, batch).map_err(MeshError::Field)?;
@@ -79,12 +79,12 @@ pub(crate) fn finish<F: Field>(
 }
 
 /// Divides a mesh's vertices among groups of bricks.
-fn targets<'a>(mesh: &'a mut Mesh, starts: &[usize], group: usize) -> Vec<Target<'a>> {
+fn targets<'a>(mesh: &'a mut Mesh, starts: &[usize], group: usize) -> Vec<MeshTarget<'a>> {
     let positions = split(&mut mesh.positions, starts, group, 1);
     let normals = split(&mut mesh.normals, starts, group, 1);
     let both = positions.into_iter().zip(normals);
-    let mut targets: Vec<Target<'a>> =
-        both.map(|(positions, normals)| Target { positions, normals, attributes: Vec::new() }).collect();
+    let mut targets: Vec<MeshTarget<'a>> =
+        both.map(|(positions, normals)| MeshTarget { positions, normals, attributes: Vec::new() }).collect();
     for attribute in &mut mesh.attributes {
         for (target, values) in
             targets.iter_mut().zip(split(&mut attribute.values, starts, group, attribute.width))
@@ -96,11 +96,11 @@ fn targets<'a>(mesh: &'a mut Mesh, starts: &[usize], group: usize) -> Vec<Target
 }
 
 fn finish_group<F: Field>(
-    source: &Source<'_, F>,
+    source: &VertexSource<'_, F>,
     widths: &[usize],
     bricks: Range<usize>,
-    mut target: Target<'_>,
-    batch: &mut Batch,
+    mut target: MeshTarget<'_>,
+    batch: &mut VertexBatch,
 ) -> Result<Done, F::Error> {
     let starts = &source.crossings.vertices;
     let (first, mut done) = (starts[bricks.start], Done::default());
@@ -117,15 +117,15 @@ fn finish_group<F: Field>(
     Ok(done)
 }
 
-impl Batch {
+impl VertexBatch {
     /// Pulls the vertices and evaluates everything at them, with `width` channels of attributes.
     fn evaluate<F: Field>(
         &mut self,
-        source: &Source<'_, F>,
+        source: &VertexSource<'_, F>,
         brick: usize,
         width: usize,
     ) -> Result<Done, F::Error> {
-        let Source { field, options, regions, .. } = source;
+        let VertexSource { field, options, regions, .. } = source;
         let (region, count) = (&regions[brick], self.count);
         for _ in 0..options.pulls {
             let [x, y, z] = self.points.each_ref().map(|plane| &plane[..count]);
@@ -149,7 +149,7 @@ impl Batch {
     }
 
     /// Writes the vertices to their range of the target, and records vertices without a normal.
-    fn write(&mut self, target: &mut Target<'_>, range: Range<usize>, widths: &[usize]) {
+    fn write(&mut self, target: &mut MeshTarget<'_>, range: Range<usize>, widths: &[usize]) {
         let normals = &mut target.normals[range.clone()];
         let positions = &mut target.positions[range.clone()];
         if write_places((&self.points, positions), (&self.gradient, normals)) {
@@ -183,8 +183,8 @@ impl Batch {
 /// Writes positions, and normals opposite to the gradients. Returns whether a normal is missing.
 #[cfg_attr(feature = "levels", multiversion::multiversion(targets("x86_64+avx2")))]
 fn write_places(
-    (points, positions): (&Planes, &mut [[f32; 3]]),
-    (gradient, normals): (&Planes, &mut [[f32; 3]]),
+    (points, positions): (&VertexPlanes, &mut [[f32; 3]]),
+    (gradient, normals): (&VertexPlanes, &mut [[f32; 3]]),
 ) -> bool {
     let mut is_missing = false;
     for (chunk, (positions, normals)) in
@@ -200,7 +200,7 @@ fn write_places(
 
 /// Writes vectors from lanes, as many as `vectors` has room for.
 #[inline(always)]
-fn weave([x, y, z]: &[Lanes; 3], vectors: &mut [[f32; 3]]) {
+fn weave([x, y, z]: &[VertexLanes; 3], vectors: &mut [[f32; 3]]) {
     if let Some(vectors) = vectors.as_mut_array::<LANES>() {
         for i in 0..LANES {
             vectors[i] = [x[i], y[i], z[i]];
@@ -224,7 +224,13 @@ fn interleave<const WIDTH: usize>(planes: &[f32], vectors: &mut [f32]) {
 
 /// A pull of all vertices.
 #[cfg_attr(feature = "levels", multiversion::multiversion(targets("x86_64+avx2")))]
-fn pull_all(iso: f32, groups: &[Group], points: &mut Planes, values: &[f32], gradient: &Planes) {
+fn pull_all(
+    iso: f32,
+    groups: &[SeedGroup],
+    points: &mut VertexPlanes,
+    values: &[f32],
+    gradient: &VertexPlanes,
+) {
     for (chunk, group) in groups.iter().enumerate() {
         let mut lanes_of = lanes(points, chunk);
         let (values, gradient) = (&lane(values, chunk), lanes(gradient, chunk));

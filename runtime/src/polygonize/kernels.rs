@@ -2,12 +2,12 @@
 
 use jbt_model::query::Query;
 
-use crate::compiled::{Compiled, Need, Scope};
+use crate::compiled::{Compiled, Need, PointScope};
 use crate::counter::Counters;
 use crate::error::{CompileError, EvalError};
 use crate::evaluator::Evaluator;
 use crate::kernel::Engine;
-use crate::mesh::{Field, Work};
+use crate::mesh::{Field, FieldWork};
 use crate::prune::{PruneCounters, Pruner, Region};
 use crate::region::{Box3, Divisible, Range};
 
@@ -23,7 +23,7 @@ impl Kernels {
     /// Those of a compiled model.
     pub(super) fn new(compiled: &Compiled) -> Result<Self, CompileError> {
         let queries = [Query::FIELD, Query::GRADIENT, Query::SURFACE];
-        let [field, gradient, all] = queries.map(|query| Need::Answers(Scope::Regions, query));
+        let [field, gradient, all] = queries.map(|query| Need::Answers(PointScope::Regions, query));
         compiled.prepare(&[Need::Ranges, field, gradient, all])?;
         let [field, gradient, all] = queries.map(|query| compiled.regional(query));
         Ok(Self { pruner: compiled.pruner()?, field: field?, gradient: gradient?, all: all? })
@@ -72,8 +72,8 @@ impl Field for Kernels {
         self.all.layout().attributes().map(|(name, _, width)| (name.to_owned(), width)).collect()
     }
 
-    fn work(&self, region: &Region) -> Work {
-        Work { evaluations: self.field.evaluations_in(region), ops: self.field.ops_in(region) }
+    fn work(&self, region: &Region) -> FieldWork {
+        FieldWork { evaluations: self.field.evaluations_in(region), ops: self.field.ops_in(region) }
     }
 
     fn field(

@@ -15,13 +15,13 @@ use jbt_lower::prune_info::{LARGEST_COORDINATE, Support};
 use crate::region::{Box3, MAX_PARTS};
 
 /// The supports of a table's rows, each in half a cache line, because rows are accessed in any order.
-pub(super) struct Supports {
-    rows: Vec<Row>,
+pub(super) struct RowSupports {
+    rows: Vec<SupportRow>,
 }
 
 #[repr(align(32))]
 #[derive(Clone, Copy, PartialEq)]
-struct Row {
+struct SupportRow {
     low: [f32; 3],
     high: [f32; 3],
     radius_squared: f32,
@@ -63,9 +63,9 @@ impl Boxes {
     }
 }
 
-impl Supports {
+impl RowSupports {
     pub(super) fn new(supports: &[Support]) -> Self {
-        let row = |support: &Support| Row {
+        let row = |support: &Support| SupportRow {
             low: support.low,
             high: support.high,
             radius_squared: support.radius_squared,
@@ -96,7 +96,7 @@ impl Supports {
 
     /// The box around the support of a row, rounded outwards.
     pub(super) fn bounds(&self, row: usize) -> Box3 {
-        let Row { low, high, radius_squared } = self.rows[row];
+        let SupportRow { low, high, radius_squared } = self.rows[row];
         let radius = radius_squared.sqrt().next_up();
         Box3 {
             low: low.map(|side| (side - radius).next_down()),
@@ -109,13 +109,13 @@ impl Supports {
 mod tests {
     use super::*;
 
-    fn supports(rows: &[([f32; 3], [f32; 3], f32)]) -> Supports {
+    fn supports(rows: &[([f32; 3], [f32; 3], f32)]) -> RowSupports {
         let support = |&(low, high, radius): &([f32; 3], [f32; 3], f32)| Support {
             low,
             high,
             radius_squared: radius * radius,
         };
-        Supports::new(&rows.iter().map(support).collect::<Vec<_>>())
+        RowSupports::new(&rows.iter().map(support).collect::<Vec<_>>())
     }
 
     #[test]

@@ -4,7 +4,7 @@
 use jbt_ir::{Entity, Selection, Table};
 use jbt_lower::prune_info::{DecidedRows, Decision, PruneInfo};
 
-use super::ranges::Probes;
+use super::ranges::ProbeRanges;
 use crate::region::MAX_PARTS;
 
 /// For each table, the index of its first row among all active rows of a selection.
@@ -20,7 +20,7 @@ pub(super) fn firsts(selection: &Selection) -> Vec<usize> {
 
 /// Clears the masks of rows of operands that do not decide, for each such box. `probes` are the ranges that
 /// the interval kernel gave for the boxes, with the rows of the selection.
-pub(super) fn leave_out(info: &PruneInfo, probes: Probes<'_>, selection: &Selection, masks: &mut [u8]) {
+pub(super) fn leave_out(info: &PruneInfo, probes: ProbeRanges<'_>, selection: &Selection, masks: &mut [u8]) {
     let decisions = || info.decisions.iter().filter(|decision| decision.rows == DecidedRows::All);
     if decisions().next().is_none() {
         return;
@@ -85,12 +85,12 @@ impl<'a> Alone<'a> {
         for (table, place) in places.into_iter().enumerate() {
             let rows = selection.active(Table::new(table)).len();
             let runs = match place {
-                Place::Operand => true,
-                Place::Above => {
+                TablePlace::Operand => true,
+                TablePlace::Above => {
                     repeated += rows;
                     true
                 }
-                Place::Elsewhere => {
+                TablePlace::Elsewhere => {
                     repeated += if free { 0 } else { rows };
                     !free
                 }
@@ -134,7 +134,7 @@ impl<'a> Alone<'a> {
         &self,
         (selection, iso2): (&Selection, f32),
         row: usize,
-        (probes, alone): (Probes<'_>, Probes<'_>),
+        (probes, alone): (ProbeRanges<'_>, ProbeRanges<'_>),
         spared: &mut [u32],
     ) {
         for decision in &self.decisions {
@@ -155,7 +155,7 @@ impl<'a> Alone<'a> {
 
 /// The place of a table's rows relative to the operands.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Place {
+enum TablePlace {
     /// Operands, or rows below one: they run with the operand.
     Operand,
     /// Rows above operands.
@@ -164,23 +164,23 @@ enum Place {
 }
 
 /// The place of each table.
-fn places(decisions: &[&Decision], selection: &Selection) -> Vec<Place> {
-    let mut places = vec![Place::Elsewhere; selection.tables()];
+fn places(decisions: &[&Decision], selection: &Selection) -> Vec<TablePlace> {
+    let mut places = vec![TablePlace::Elsewhere; selection.tables()];
     for decision in decisions {
-        places[decision.table.index()] = Place::Operand;
+        places[decision.table.index()] = TablePlace::Operand;
     }
     for decision in decisions {
         let mut above = selection.parent(decision.table);
-        while let Some(table) = above.filter(|table| places[table.index()] == Place::Elsewhere) {
-            places[table.index()] = Place::Above;
+        while let Some(table) = above.filter(|table| places[table.index()] == TablePlace::Elsewhere) {
+            places[table.index()] = TablePlace::Above;
             above = selection.parent(table);
         }
     }
     // Tables come after their parents.
     for table in 0..places.len() {
         let above = selection.parent(Table::new(table));
-        if above.is_some_and(|above| places[above.index()] == Place::Operand) {
-            places[table] = Place::Operand;
+        if above.is_some_and(|above| places[above.index()] == TablePlace::Operand) {
+            places[table] = TablePlace::Operand;
         }
     }
     places

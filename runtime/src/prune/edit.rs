@@ -15,7 +15,7 @@ use jbt_ir::selection::Shift;
 use jbt_ir::{Rows, Table};
 use jbt_lower::prune_info::{Rule, Support, SupportSpace};
 
-use super::cull::Supports;
+use super::cull::RowSupports;
 use super::{Pruner, Region};
 use crate::divide::Edit;
 use crate::region::{Box3, Divisible};
@@ -170,7 +170,7 @@ impl Pruner {
             let info = &self.program.info.tables[table];
             let support = info.supports[row];
             if info.space == SupportSpace::World && support != Support::EVERYWHERE {
-                return Some(Supports::new(&[support]).bounds(0));
+                return Some(RowSupports::new(&[support]).bounds(0));
             }
             (table, row) = above;
         }

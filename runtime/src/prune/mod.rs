@@ -45,7 +45,7 @@ use crate::region::{ANYTHING, Box3, Divisible, MAX_PARTS, Range};
 use cull::Boxes;
 use decide::Alone;
 use program::RangeProgram;
-use ranges::{Probes, Ranges};
+use ranges::{ProbeRanges, Ranges};
 
 /// A box, and the rows of a model that run in it, for each table. A [`Pruner`] makes it
 /// ([`Divisible::region`]). Every evaluator of the model takes a region
@@ -198,7 +198,7 @@ impl Pruner {
     /// For each active row of the region, the boxes in which it matters, a bit each. `probes` are the ranges
     /// of the field and of all probes in these boxes, if they are known. Operands that are rows are handled
     /// by [`spared`](Self::spared).
-    fn masks(&self, region: &Region, boxes: &[Box3], probes: Option<Probes<'_>>) -> Vec<u8> {
+    fn masks(&self, region: &Region, boxes: &[Box3], probes: Option<ProbeRanges<'_>>) -> Vec<u8> {
         let world = Boxes::new(boxes);
         let selection = &*region.selection;
         let mut masks = vec![world.all(); selection.len()];
@@ -235,7 +235,7 @@ impl Pruner {
         &self,
         region: &Region,
         boxes: &[Box3],
-        probes: Probes<'_>,
+        probes: ProbeRanges<'_>,
     ) -> Result<Option<Vec<u32>>, EvalError> {
         let selection = &*region.selection;
         let Some(alone) = Alone::new(&self.program.info, selection) else { return Ok(None) };
@@ -259,7 +259,7 @@ impl Pruner {
         &self,
         region: &Region,
         boxes: &[Box3],
-        probes: Option<Probes<'_>>,
+        probes: Option<ProbeRanges<'_>>,
         regions: &mut Vec<Region>,
     ) -> Result<(), EvalError> {
         for (index, boxes) in boxes.chunks(MAX_SPARED).enumerate() {
@@ -286,7 +286,7 @@ impl Pruner {
 const MAX_SPARED: usize = 32;
 
 /// The boxes of a point inside of a warp, whose ranges are probes.
-fn inner_boxes(probes: Probes<'_>, probe: usize) -> Boxes {
+fn inner_boxes(probes: ProbeRanges<'_>, probe: usize) -> Boxes {
     let mut boxes = [Box3::default(); MAX_PARTS];
     let boxes = &mut boxes[..probes.count()];
     for (lane, bounds) in boxes.iter_mut().enumerate() {

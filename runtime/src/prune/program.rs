@@ -4,18 +4,18 @@ use std::sync::Arc;
 
 use jbt_lower::prune_info::{PruneInfo, RangeFunction, Rule, TablePruneInfo};
 
-use super::cull::Supports;
+use super::cull::RowSupports;
 use crate::compiler::Compiler;
 use crate::error::CompileError;
-use crate::kernel::{Bound, Kernel, Purpose};
-use crate::program::Program;
+use crate::kernel::{BoundKernel, Kernel, Purpose};
+use crate::program::ModelProgram;
 
 /// The range program of a model, and what one has to know to leave its rows out.
 pub(crate) struct RangeProgram {
-    pub(super) bound: Bound,
+    pub(super) bound: BoundKernel,
     pub(super) info: PruneInfo,
     /// By table; `None` where rows are not left out by their supports.
-    pub(super) supports: Vec<Option<Supports>>,
+    pub(super) supports: Vec<Option<RowSupports>>,
 }
 
 impl RangeProgram {
@@ -31,16 +31,16 @@ impl RangeProgram {
     }
 }
 
-impl Program for RangeProgram {
+impl ModelProgram for RangeProgram {
     fn kernel(&self) -> &Arc<Kernel> {
         &self.bound.kernel
     }
 }
 
 /// The supports of a table, if rows are left out by them.
-fn supports(info: &TablePruneInfo) -> Option<Supports> {
+fn supports(info: &TablePruneInfo) -> Option<RowSupports> {
     match info.rule {
         Rule::Never => None,
-        Rule::Neutral | Rule::KeepOne | Rule::OnlyZero => Some(Supports::new(&info.supports)),
+        Rule::Neutral | Rule::KeepOne | Rule::OnlyZero => Some(RowSupports::new(&info.supports)),
     }
 }

@@ -3,7 +3,7 @@
 use jbt_ir::Selection;
 
 use crate::error::EvalError;
-use crate::kernel::Bound;
+use crate::kernel::BoundKernel;
 use crate::region::{Box3, Range};
 
 /// Boxes, a lane each, and the ranges in them.
@@ -18,7 +18,7 @@ pub(super) struct Ranges {
 
 impl Ranges {
     /// Boxes without ranges.
-    pub(super) fn new(kernel: &Bound, boxes: &[Box3]) -> Self {
+    pub(super) fn new(kernel: &BoundKernel, boxes: &[Box3]) -> Self {
         // A run of fewer boxes than a block would copy them to a block and back: whole blocks run in place.
         let stride = boxes.len().max(kernel.kernel.block());
         let mut ends = vec![0.0; 6 * stride];
@@ -34,7 +34,7 @@ impl Ranges {
     }
 
     /// Computes the ranges with the rows of a selection.
-    pub(super) fn find(&mut self, kernel: &Bound, rows: &Selection) -> Result<(), EvalError> {
+    pub(super) fn find(&mut self, kernel: &BoundKernel, rows: &Selection) -> Result<(), EvalError> {
         let boxes: [&[f32]; 6] =
             std::array::from_fn(|plane| &self.boxes[plane * self.stride..][..self.stride]);
         let mut planes: Vec<&mut [f32]> = self.numbers.chunks_exact_mut(self.stride).collect();
@@ -48,29 +48,29 @@ impl Ranges {
     }
 
     /// The ranges of the probes in some of the boxes.
-    pub(super) fn probes<'a>(&'a self, lanes: &'a [usize]) -> Probes<'a> {
-        Probes { ranges: self, lanes }
+    pub(super) fn probes<'a>(&'a self, lanes: &'a [usize]) -> ProbeRanges<'a> {
+        ProbeRanges { ranges: self, lanes }
     }
 }
 
 /// Ranges of all probes in some boxes.
 #[derive(Clone, Copy)]
-pub(super) struct Probes<'a> {
+pub(super) struct ProbeRanges<'a> {
     ranges: &'a Ranges,
     /// The lane of each box.
     lanes: &'a [usize],
 }
 
-impl<'a> Probes<'a> {
+impl<'a> ProbeRanges<'a> {
     /// The number of boxes.
     pub(super) fn count(self) -> usize {
         self.lanes.len()
     }
 
     /// The probes of chunk `index` of the boxes: `size` boxes, fewer in the last chunk.
-    pub(super) fn chunk(self, index: usize, size: usize) -> Probes<'a> {
+    pub(super) fn chunk(self, index: usize, size: usize) -> ProbeRanges<'a> {
         let start = index * size;
-        Probes { lanes: &self.lanes[start..self.lanes.len().min(start + size)], ..self }
+        ProbeRanges { lanes: &self.lanes[start..self.lanes.len().min(start + size)], ..self }
     }
 
     /// The range of a probe in a box, by the box's index.

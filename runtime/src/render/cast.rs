@@ -3,7 +3,7 @@
 use super::color::Rgb;
 use super::error::RenderError;
 use super::frame::Frame;
-use super::settings::Mode;
+use super::settings::RenderMode;
 use super::vector::{Vector, along, scale, unit};
 use crate::buffer::Samples;
 use crate::trace::Ray;
@@ -11,7 +11,7 @@ use jbt_model::check::CheckedTree;
 use jbt_model::kind::NodeKind;
 
 /// A hit of a ray.
-pub struct Met {
+pub struct CastHit {
     /// The index of the ray.
     pub cast: usize,
     /// Relative to the model's origin.
@@ -25,13 +25,13 @@ pub struct Met {
 /// The hits of rays, and the cost of each ray.
 pub struct Meetings {
     /// In the order of the rays, without the rays that hit nothing.
-    pub met: Vec<Met>,
+    pub met: Vec<CastHit>,
     /// For each ray, the number of distances to skeletons that were evaluated.
     pub evaluations: Vec<f32>,
 }
 
 /// The source of the surface's colour.
-pub enum Paint {
+pub enum SurfacePaint {
     /// The same everywhere.
     Plain(Rgb),
     /// Planes of the samples: the first one, and how many, at most three.
@@ -41,13 +41,15 @@ pub enum Paint {
 /// The colour of models without colours: clay, as linear light.
 const CLAY: Rgb = [0.60, 0.55, 0.50];
 
-impl Paint {
+impl SurfacePaint {
     /// The paint of a model in a mode.
     fn new(frame: &Frame<'_>) -> Self {
         let group = match &frame.render.mode {
-            Mode::Shaded if is_colored(frame.renderer.tree()) => "color",
-            Mode::Shaded | Mode::Normal | Mode::Depth | Mode::Evaluations => return Self::Plain(CLAY),
-            Mode::Attribute(name) => name,
+            RenderMode::Shaded if is_colored(frame.renderer.tree()) => "color",
+            RenderMode::Shaded | RenderMode::Normal | RenderMode::Depth | RenderMode::Evaluations => {
+                return Self::Plain(CLAY);
+            }
+            RenderMode::Attribute(name) => name,
         };
         match frame.renderer.evaluator.layout().attribute(group) {
             Some((plane, width)) => Self::Planes(plane, width.min(3)),
@@ -75,7 +77,7 @@ fn is_colored(tree: &CheckedTree) -> bool {
 
 /// Finds the first hits of rays.
 pub fn cast(frame: &Frame<'_>, casts: &[Ray]) -> Result<Meetings, RenderError> {
-    let paint = Paint::new(frame);
+    let paint = SurfacePaint::new(frame);
     let mut evaluations = vec![0.0; casts.len()];
     let mut met = if frame.render.region.is_some() {
         cuts(frame, casts, &paint, &mut evaluations)?
@@ -92,7 +94,7 @@ pub fn cast(frame: &Frame<'_>, casts: &[Ray]) -> Result<Meetings, RenderError> {
         evaluations[cast] += hits.evaluations[ray];
         let hit = hits.starts[ray] as usize;
         if hit < hits.starts[ray + 1] as usize {
-            met.push(Met {
+            met.push(CastHit {
                 cast,
                 position: hits.positions.get(hit).map(f64::from),
                 normal: normal(&hits.samples, hit, casts[cast].direction),
@@ -108,9 +110,9 @@ pub fn cast(frame: &Frame<'_>, casts: &[Ray]) -> Result<Meetings, RenderError> {
 fn cuts(
     frame: &Frame<'_>,
     casts: &[Ray],
-    paint: &Paint,
+    paint: &SurfacePaint,
     evaluations: &mut [f32],
-) -> Result<Vec<Met>, RenderError> {
+) -> Result<Vec<CastHit>, RenderError> {
     let tracer = &frame.renderer.tracer;
     let starts: Vec<[f32; 3]> = casts.iter().map(start).collect();
     let Some((region, field)) = tracer.fields(&starts)? else { return Ok(Vec::new()) };
@@ -129,7 +131,7 @@ fn cuts(
     let samples = Samples::from_planes(evaluator.layout().clone(), answers);
     let meet = |(index, &cast): (usize, &usize)| {
         let position = starts[cast].map(f64::from);
-        Met { cast, position, normal: frame.side(position), paint: paint.at(&samples, index) }
+        CastHit { cast, position, normal: frame.side(position), paint: paint.at(&samples, index) }
     };
     Ok(inside.iter().enumerate().map(meet).collect())
 }

@@ -1,7 +1,7 @@
 //! Developing: from the sums of each pixel to colours.
 
 use super::color::{Rgb, byte, decode, encode, inferno, viridis};
-use super::settings::{Background, Meaning};
+use super::settings::{Background, FilmMeaning};
 use crate::picture::Picture;
 
 /// The mean over the rays of a pixel: three numbers, multiplied by the share of the rays that have values,
@@ -12,13 +12,13 @@ pub type Gathered = [f32; 4];
 pub fn develop(
     film: &[Gathered],
     [width, height]: [u32; 2],
-    meaning: Meaning,
+    meaning: FilmMeaning,
     background: Background,
 ) -> (Picture, Option<[f32; 2]>) {
     let range = match meaning {
-        Meaning::Light | Meaning::Screen => None,
-        Meaning::Number | Meaning::Distance => range(film, |_| true),
-        Meaning::Cost => range(film, |cost| cost > 0.0),
+        FilmMeaning::Light | FilmMeaning::Screen => None,
+        FilmMeaning::Number | FilmMeaning::Distance => range(film, |_| true),
+        FilmMeaning::Cost => range(film, |cost| cost > 0.0),
     };
     let mut made = Vec::with_capacity(film.len());
     for (row, pixels) in film.chunks(width as usize).enumerate() {
@@ -26,15 +26,15 @@ pub fn develop(
         for &[red, green, blue, share] in pixels {
             let front = match (meaning, range) {
                 _ if share == 0.0 => [0.0; 3],
-                (Meaning::Light | Meaning::Screen, _) => [red, green, blue],
-                (Meaning::Number | Meaning::Distance | Meaning::Cost, None) => [0.0; 3],
-                (Meaning::Number, Some(range)) => viridis(part(red / share, range)).map(|x| x * share),
-                (Meaning::Distance, Some(range)) => [(1.0 - 0.85 * part(red / share, range)) * share; 3],
-                (Meaning::Cost, Some(range)) => {
+                (FilmMeaning::Light | FilmMeaning::Screen, _) => [red, green, blue],
+                (FilmMeaning::Number | FilmMeaning::Distance | FilmMeaning::Cost, None) => [0.0; 3],
+                (FilmMeaning::Number, Some(range)) => viridis(part(red / share, range)).map(|x| x * share),
+                (FilmMeaning::Distance, Some(range)) => [(1.0 - 0.85 * part(red / share, range)) * share; 3],
+                (FilmMeaning::Cost, Some(range)) => {
                     inferno(part((red / share).ln(), range.map(f32::ln))).map(|x| x * share)
                 }
             };
-            made.push(over(front, share, behind, meaning == Meaning::Light));
+            made.push(over(front, share, behind, meaning == FilmMeaning::Light));
         }
     }
     (Picture::new(width, height, made).expect("a film has a pixel at least"), range)
@@ -77,31 +77,34 @@ fn over(front: Rgb, opacity: f32, behind: Option<Rgb>, is_light: bool) -> [u8; 4
 mod tests {
     use super::*;
 
-    fn pixel(gathered: Gathered, meaning: Meaning, background: Background) -> [u8; 4] {
+    fn pixel(gathered: Gathered, meaning: FilmMeaning, background: Background) -> [u8; 4] {
         develop(&[gathered], [1, 1], meaning, background).0.pixel(0, 0)
     }
 
     #[test]
     fn light_is_mixed_as_light() {
         let white = Background::Color([255; 3]);
-        assert_eq!(pixel([0.0, 0.0, 0.0, 0.5], Meaning::Light, white), [188, 188, 188, 255]);
-        assert_eq!(pixel([0.0, 0.0, 0.0, 0.5], Meaning::Screen, white), [128, 128, 128, 255]);
-        assert_eq!(pixel([0.5, 0.0, 0.0, 0.5], Meaning::Light, Background::Transparent), [255, 0, 0, 128]);
-        assert_eq!(pixel([0.0; 4], Meaning::Light, Background::Transparent), [0; 4]);
-        assert_eq!(pixel([0.0; 4], Meaning::Light, Background::Color([1, 2, 3])), [1, 2, 3, 255]);
+        assert_eq!(pixel([0.0, 0.0, 0.0, 0.5], FilmMeaning::Light, white), [188, 188, 188, 255]);
+        assert_eq!(pixel([0.0, 0.0, 0.0, 0.5], FilmMeaning::Screen, white), [128, 128, 128, 255]);
+        assert_eq!(
+            pixel([0.5, 0.0, 0.0, 0.5], FilmMeaning::Light, Background::Transparent),
+            [255, 0, 0, 128]
+        );
+        assert_eq!(pixel([0.0; 4], FilmMeaning::Light, Background::Transparent), [0; 4]);
+        assert_eq!(pixel([0.0; 4], FilmMeaning::Light, Background::Color([1, 2, 3])), [1, 2, 3, 255]);
     }
 
     #[test]
     fn numbers_have_a_range() {
         let film = [[1.0, 0.0, 0.0, 1.0], [1.5, 0.0, 0.0, 0.5], [0.0; 4]];
-        let (picture, range) = develop(&film, [3, 1], Meaning::Distance, Background::Transparent);
+        let (picture, range) = develop(&film, [3, 1], FilmMeaning::Distance, Background::Transparent);
         assert_eq!(range, Some([1.0, 3.0]));
         assert_eq!(picture.pixel(0, 0), [255; 4]);
         assert_eq!(picture.pixel(1, 0), [38, 38, 38, 128]);
         assert_eq!(picture.pixel(2, 0), [0; 4]);
-        assert_eq!(develop(&[[0.0; 4]], [1, 1], Meaning::Number, Background::Transparent).1, None);
+        assert_eq!(develop(&[[0.0; 4]], [1, 1], FilmMeaning::Number, Background::Transparent).1, None);
         // A single number gives no division by zero.
-        assert_eq!(pixel([2.0, 0.0, 0.0, 1.0], Meaning::Number, Background::Studio)[3], 255);
-        assert_eq!(pixel([0.0, 0.0, 0.0, 1.0], Meaning::Cost, Background::Studio)[3], 255);
+        assert_eq!(pixel([2.0, 0.0, 0.0, 1.0], FilmMeaning::Number, Background::Studio)[3], 255);
+        assert_eq!(pixel([0.0, 0.0, 0.0, 1.0], FilmMeaning::Cost, Background::Studio)[3], 255);
     }
 }

@@ -8,7 +8,7 @@ use super::error::RenderError;
 use super::frame::Frame;
 use super::lights::Lights;
 use super::renderer::Renderer;
-use super::settings::{Mode, Quality, Render};
+use super::settings::{Quality, Render, RenderMode};
 use super::vector::{Vector, add, dot, length, scale, sub, tangents};
 use crate::region::Box3;
 use crate::trace::Ray;
@@ -31,7 +31,8 @@ impl<'a> Frame<'a> {
         let corners = corners(&bounds);
         let (low, high) = (bounds.low.map(f64::from), bounds.high.map(f64::from));
         let up = render.view.upwards();
-        let with_ground = render.ground && render.mode == Mode::Shaded && render.quality != Quality::Draft;
+        let with_ground =
+            render.ground && render.mode == RenderMode::Shaded && render.quality != Quality::Draft;
         let view = render.view.about(renderer.tree().origin());
         let camera = view.camera(render.aspect(), &corners)?;
         let mut frame = Self {

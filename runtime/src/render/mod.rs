@@ -31,8 +31,8 @@ mod vector;
 pub use camera::{Camera, CameraError, Stance, VIEWS, View};
 pub use error::RenderError;
 pub use renderer::Renderer;
-pub use report::{Notice, Rays, Rendered, Report};
-pub use settings::{Background, Mode, Quality, Render};
+pub use report::{Notice, Rays, RenderReport, Rendered};
+pub use settings::{Background, Quality, Render, RenderMode};
 
 use std::time::{Duration, Instant};
 
@@ -45,7 +45,7 @@ use crate::job::{Hook, Job};
 
 use develop::{Gathered, develop};
 use frame::Frame;
-use tile::{Place, Tile};
+use tile::{Tile, TileArea};
 
 /// The number of tiles between two reports of progress.
 const STRIDE: usize = 32;
@@ -112,7 +112,7 @@ impl Render {
             Some(_) if done.pixels_hit == 0 => Some(Notice::OutOfView),
             Some(_) => None,
         };
-        let report = Report {
+        let report = RenderReport {
             camera: frame.as_ref().map(Frame::seen_from),
             pixels_hit: done.pixels_hit,
             tolerance: frame.as_ref().map_or(0.0, |frame| frame.tolerance),
@@ -142,7 +142,7 @@ impl Render {
 /// Exposes all tiles of a film. Returns their total cost.
 fn expose(frame: &Frame<'_>, film: &mut [Gathered], hook: Hook<'_>) -> Result<Tile, RenderError> {
     let width = frame.render.size[0] as usize;
-    let places = Place::all(frame.render.size, frame.render.antialias);
+    let places = TileArea::all(frame.render.size, frame.render.antialias);
     let mut all = Tile::default();
     for (done, some) in places.chunks(STRIDE).enumerate() {
         let tiles: Vec<Tile> =

@@ -13,14 +13,14 @@ pub struct Rendered {
     /// The picture.
     pub picture: Picture,
     /// How it was made.
-    pub report: Report,
+    pub report: RenderReport,
 }
 
 /// How a picture was made.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
-pub struct Report {
+pub struct RenderReport {
     /// The camera; `None` if the model was empty.
     pub camera: Option<Camera>,
     /// The pixels in which a ray met the surface.

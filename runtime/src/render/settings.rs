@@ -28,7 +28,7 @@ pub struct Render {
     /// The view.
     pub view: View,
     /// The values that the picture shows.
-    pub mode: Mode,
+    pub mode: RenderMode,
     /// The effort for light; it matters only for a shaded surface.
     pub quality: Quality,
     /// The number of rays along each side of a pixel: 1 to [`MAX_ANTIALIAS`].
@@ -50,7 +50,7 @@ impl Default for Render {
         Self {
             size: [800, 600],
             view: View::default(),
-            mode: Mode::Shaded,
+            mode: RenderMode::Shaded,
             quality: Quality::Good,
             antialias: 2,
             background: None,
@@ -63,7 +63,7 @@ impl Default for Render {
 /// The values that a picture shows.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Mode {
+pub enum RenderMode {
     /// The surface in light: in the colour of the model, or of clay if it has none.
     #[default]
     Shaded,
@@ -161,7 +161,7 @@ impl Background {
 
 /// The meaning of a film's numbers.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Meaning {
+pub enum FilmMeaning {
     /// Linear light.
     Light,
     /// Screen values.
@@ -189,7 +189,7 @@ impl Render {
             return Err(RenderError::Antialias { antialias: self.antialias });
         }
         self.view.check()?;
-        if let Mode::Attribute(name) = &self.mode
+        if let RenderMode::Attribute(name) = &self.mode
             && width_of(tree, name).is_none()
         {
             let known = tree.attributes().iter().map(|group| group.name.to_string()).collect();
@@ -213,22 +213,24 @@ impl Render {
     }
 
     /// The meaning of the film's numbers.
-    pub(super) fn meaning(&self, tree: &CheckedTree) -> Meaning {
+    pub(super) fn meaning(&self, tree: &CheckedTree) -> FilmMeaning {
         match &self.mode {
-            Mode::Shaded => Meaning::Light,
-            Mode::Normal => Meaning::Screen,
-            Mode::Depth => Meaning::Distance,
-            Mode::Attribute(name) if width_of(tree, name) == Some(1) => Meaning::Number,
-            Mode::Attribute(_) => Meaning::Light,
-            Mode::Evaluations => Meaning::Cost,
+            RenderMode::Shaded => FilmMeaning::Light,
+            RenderMode::Normal => FilmMeaning::Screen,
+            RenderMode::Depth => FilmMeaning::Distance,
+            RenderMode::Attribute(name) if width_of(tree, name) == Some(1) => FilmMeaning::Number,
+            RenderMode::Attribute(_) => FilmMeaning::Light,
+            RenderMode::Evaluations => FilmMeaning::Cost,
         }
     }
 
     /// The given background, or the mode's default.
     pub(super) fn background(&self) -> Background {
         self.background.unwrap_or(match self.mode {
-            Mode::Shaded => Background::Studio,
-            Mode::Normal | Mode::Depth | Mode::Attribute(_) | Mode::Evaluations => Background::Transparent,
+            RenderMode::Shaded => Background::Studio,
+            RenderMode::Normal | RenderMode::Depth | RenderMode::Attribute(_) | RenderMode::Evaluations => {
+                Background::Transparent
+            }
         })
     }
 }

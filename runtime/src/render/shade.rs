@@ -3,7 +3,7 @@
 //! All of it is linear. The key light is warm and comes over the viewer's left shoulder, a weak light from
 //! the right fills its shadows, and the sky is brighter and bluer the higher it is.
 
-use super::cast::Met;
+use super::cast::CastHit;
 use super::color::{Rgb, shoulder};
 use super::error::RenderError;
 use super::frame::Frame;
@@ -30,8 +30,8 @@ const FADE: [f64; 2] = [1.3, 3.4];
 /// The screen values of the hits of a tile: opaque colours. `pixel` and `sample` tell which ray sees a hit.
 pub fn surfaces(
     frame: &Frame<'_>,
-    met: &[Met],
-    seen: impl Fn(&Met) -> ([u32; 2], u32, Vector),
+    met: &[CastHit],
+    seen: impl Fn(&CastHit) -> ([u32; 2], u32, Vector),
 ) -> Result<(Vec<Rgb>, Cost), RenderError> {
     let spots: Vec<Spot> = met
         .iter()
@@ -46,7 +46,7 @@ pub fn surfaces(
 }
 
 /// The screen values of a surface, seen along a unit vector.
-fn surface(frame: &Frame<'_>, met: &Met, light: Light, looking: Vector) -> Rgb {
+fn surface(frame: &Frame<'_>, met: &CastHit, light: Light, looking: Vector) -> Rgb {
     let view = scale(looking, -1.0);
     let facing = dot(met.normal, view).clamp(0.0, 1.0);
     let fill = dot(met.normal, frame.lights.fill).max(0.0) as f32 * light.open;
@@ -65,14 +65,14 @@ fn surface(frame: &Frame<'_>, met: &Met, light: Light, looking: Vector) -> Rgb {
 }
 
 /// A place of the ground that a pixel sees.
-pub struct Ground {
+pub struct GroundSpot {
     pub position: Vector,
     pub pixel: [u32; 2],
     pub sample: u32,
 }
 
 /// The shadows on the ground: red, green and blue, premultiplied by the opacity, which comes last.
-pub fn shadows(frame: &Frame<'_>, places: &[Ground]) -> Result<(Vec<[f32; 4]>, Cost), RenderError> {
+pub fn shadows(frame: &Frame<'_>, places: &[GroundSpot]) -> Result<(Vec<[f32; 4]>, Cost), RenderError> {
     let spots: Vec<Spot> =
         places.iter().map(|place| spot(frame, place.position, frame.up, place.pixel, place.sample)).collect();
     let rays = frame.render.antialias * frame.render.antialias;

@@ -7,8 +7,8 @@ use super::develop::Gathered;
 use super::error::RenderError;
 use super::frame::Frame;
 use super::report::Rays;
-use super::settings::{Mode, Quality};
-use super::shade::{Ground, fade, shadows, surfaces};
+use super::settings::{Quality, RenderMode};
+use super::shade::{GroundSpot, fade, shadows, surfaces};
 use crate::trace::Ray;
 
 /// The approximate number of rays of a full tile.
@@ -16,14 +16,14 @@ const PACKET: u32 = 1024;
 
 /// A part of a picture: its first column and row, and its size.
 #[derive(Clone, Copy)]
-pub struct Place {
+pub struct TileArea {
     pub x: u32,
     pub y: u32,
     pub width: u32,
     pub height: u32,
 }
 
-impl Place {
+impl TileArea {
     /// The tiles of a picture, row by row. They do not depend on threads.
     pub fn all([width, height]: [u32; 2], antialias: u32) -> Vec<Self> {
         let side = ((f64::from(PACKET).sqrt() / f64::from(antialias)) as u32).max(2);
@@ -87,7 +87,7 @@ struct Aim {
 /// A tile that is being exposed.
 struct Exposure<'a> {
     frame: &'a Frame<'a>,
-    place: Place,
+    place: TileArea,
     aims: Vec<Aim>,
     /// The aim of each ray into the region.
     aim_of: Vec<usize>,
@@ -95,7 +95,7 @@ struct Exposure<'a> {
 }
 
 /// Exposes a tile.
-pub fn expose(frame: &Frame<'_>, place: &Place) -> Result<Tile, RenderError> {
+pub fn expose(frame: &Frame<'_>, place: &TileArea) -> Result<Tile, RenderError> {
     let begin = Instant::now();
     let (aims, casts) = aim(frame, place);
     let aim_of = (0..aims.len()).filter(|&aim| aims[aim].cast.is_some()).collect();
@@ -105,9 +105,9 @@ pub fn expose(frame: &Frame<'_>, place: &Place) -> Result<Tile, RenderError> {
     exposure.tile.trace = begin.elapsed();
     let begin = Instant::now();
     match frame.render.mode {
-        Mode::Shaded => exposure.light(&meetings, &casts)?,
-        Mode::Normal | Mode::Depth | Mode::Attribute(_) => exposure.show(&meetings),
-        Mode::Evaluations => exposure.charge(&meetings),
+        RenderMode::Shaded => exposure.light(&meetings, &casts)?,
+        RenderMode::Normal | RenderMode::Depth | RenderMode::Attribute(_) => exposure.show(&meetings),
+        RenderMode::Evaluations => exposure.charge(&meetings),
     }
     let each = 1.0 / (frame.render.antialias * frame.render.antialias) as f32;
     exposure.tile.pixels.iter_mut().for_each(|pixel| *pixel = pixel.map(|sum| sum * each));
@@ -116,7 +116,7 @@ pub fn expose(frame: &Frame<'_>, place: &Place) -> Result<Tile, RenderError> {
 }
 
 /// All rays of a tile, pixel by pixel, and those that go into the region.
-fn aim(frame: &Frame<'_>, place: &Place) -> (Vec<Aim>, Vec<Ray>) {
+fn aim(frame: &Frame<'_>, place: &TileArea) -> (Vec<Aim>, Vec<Ray>) {
     let ([width, height], rays) = (frame.render.size, frame.render.antialias);
     let (mut aims, mut casts) = (Vec::new(), Vec::new());
     for pixel in 0..(place.width * place.height) as usize {
@@ -182,13 +182,13 @@ impl Exposure<'_> {
         let mut is_met = vec![false; self.aim_of.len()];
         meetings.met.iter().for_each(|met| is_met[met.cast] = true);
         // One place stands for all rays of a pixel: shadows on the ground have no sharp rims.
-        let (mut places, mut pixels): (Vec<Ground>, Vec<(usize, f32)>) = (Vec::new(), Vec::new());
+        let (mut places, mut pixels): (Vec<GroundSpot>, Vec<(usize, f32)>) = (Vec::new(), Vec::new());
         for aim in self.aims.iter().filter(|aim| !aim.cast.is_some_and(|cast| is_met[cast])) {
             let Some(position) = self.frame.on_ground(aim.place[0], aim.place[1]) else { continue };
             if let Some((_, rays)) = pixels.last_mut().filter(|(pixel, _)| *pixel == aim.pixel) {
                 *rays += 1.0;
             } else if fade(self.frame, position) > 0.0 {
-                places.push(Ground { position, pixel: self.place.pixel(aim.pixel), sample: 0 });
+                places.push(GroundSpot { position, pixel: self.place.pixel(aim.pixel), sample: 0 });
                 pixels.push((aim.pixel, 1.0));
             }
         }
@@ -206,9 +206,9 @@ impl Exposure<'_> {
     fn show(&mut self, meetings: &Meetings) {
         for met in &meetings.met {
             let [a, b, c] = match &self.frame.render.mode {
-                Mode::Normal => met.normal.map(|x| (0.5 + 0.5 * x) as f32),
-                Mode::Depth => [self.frame.camera.depth(met.position) as f32, 0.0, 0.0],
-                Mode::Shaded | Mode::Attribute(_) | Mode::Evaluations => met.paint,
+                RenderMode::Normal => met.normal.map(|x| (0.5 + 0.5 * x) as f32),
+                RenderMode::Depth => [self.frame.camera.depth(met.position) as f32, 0.0, 0.0],
+                RenderMode::Shaded | RenderMode::Attribute(_) | RenderMode::Evaluations => met.paint,
             };
             self.add(self.aim(met.cast).pixel, [a, b, c, 1.0]);
         }

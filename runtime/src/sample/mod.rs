@@ -25,7 +25,7 @@ use jbt_model::kind::NodeKind;
 use jbt_model::query::Query;
 
 use crate::buffer::Layout;
-use crate::compiled::{Compiled, Need, Scope};
+use crate::compiled::{Compiled, Need, PointScope};
 use crate::compiler::Compiler;
 use crate::debug::brief_debug;
 use crate::divide::{Cell, Decision, DivideError, Limits, divide};
@@ -127,7 +127,7 @@ impl Sampler {
     /// The model is beyond a limit, or the engine cannot be had.
     pub fn of(compiled: &Compiled, query: Query) -> Result<Self, CompileError> {
         let is_formula = |kind: &NodeKind| matches!(kind, NodeKind::Expression(_));
-        compiled.prepare(&[Need::Answers(Scope::Regions, query), Need::Ranges])?;
+        compiled.prepare(&[Need::Answers(PointScope::Regions, query), Need::Ranges])?;
         Ok(Self {
             evaluator: compiled.regional(query)?,
             pruner: compiled.pruner()?,

@@ -15,7 +15,7 @@ use std::collections::BinaryHeap;
 
 use jbt_ir::limits::MAX_SEARCH_BOXES;
 
-use super::{Batch, RegionError, Solid, center, cut};
+use super::{RegionError, Solid, SolidBatch, center, cut};
 use crate::error::{Classified, ErrorKind, EvalError};
 use crate::prune::Region;
 use crate::region::{ANYTHING, Box3, Divisible as _, MAX_PARTS};
@@ -82,8 +82,8 @@ impl Solid {
             Err(RegionError::Empty) => return Ok(found),
             Err(error @ (RegionError::Bounds { .. } | RegionError::Unbounded)) => return Err(error.into()),
         };
-        for side in Side::ALL {
-            let mut search = Search::new(self, side, tolerance, outer, found.inner);
+        for side in BoxSide::ALL {
+            let mut search = SideSearch::new(self, side, tolerance, outer, found.inner);
             // What was found of a side narrows the search for the next one.
             let Some(reach) = search.run()? else {
                 return Ok(found);
@@ -93,7 +93,7 @@ impl Solid {
         }
         if let Some(inner) = &mut found.inner {
             found.converged =
-                Side::ALL.iter().all(|side| side.reach(&outer) <= side.reach(inner) + tolerance);
+                BoxSide::ALL.iter().all(|side| side.reach(&outer) <= side.reach(inner) + tolerance);
         } else {
             found.converged = false;
         }
@@ -107,12 +107,12 @@ const MAX_CLIMB: usize = 256;
 
 /// One of the six sides of a box.
 #[derive(Clone, Copy)]
-struct Side {
+struct BoxSide {
     axis: usize,
     upper: bool,
 }
 
-impl Side {
+impl BoxSide {
     const ALL: [Self; 6] = [
         Self { axis: 0, upper: false },
         Self { axis: 0, upper: true },
@@ -138,7 +138,7 @@ impl Side {
 }
 
 /// A box that may hold inside points farther than all that are known.
-struct Open {
+struct FartherBox {
     reach: f32,
     /// The number of boxes that were open before it: of equals the first is taken first.
     number: usize,
@@ -146,45 +146,45 @@ struct Open {
     around: Region,
 }
 
-impl Ord for Open {
+impl Ord for FartherBox {
     fn cmp(&self, other: &Self) -> Ordering {
         self.reach.total_cmp(&other.reach).then(other.number.cmp(&self.number))
     }
 }
 
-impl PartialOrd for Open {
+impl PartialOrd for FartherBox {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl PartialEq for Open {
+impl PartialEq for FartherBox {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other) == Ordering::Equal
     }
 }
 
-impl Eq for Open {}
+impl Eq for FartherBox {}
 
 /// The search for one side.
-struct Search<'a> {
+struct SideSearch<'a> {
     solid: &'a Solid,
-    side: Side,
+    side: BoxSide,
     tolerance: f32,
     whole: Box3,
     /// The smallest box around all points that are known to be inside.
     inner: Option<Box3>,
-    open: BinaryHeap<Open>,
+    open: BinaryHeap<FartherBox>,
     /// Boxes that were opened.
     opened: usize,
     /// Boxes that were asked about.
     asked: usize,
-    batch: Batch,
+    batch: SolidBatch,
 }
 
-impl<'a> Search<'a> {
-    fn new(solid: &'a Solid, side: Side, tolerance: f32, whole: Box3, inner: Option<Box3>) -> Self {
-        let (open, batch) = (BinaryHeap::new(), Batch::default());
+impl<'a> SideSearch<'a> {
+    fn new(solid: &'a Solid, side: BoxSide, tolerance: f32, whole: Box3, inner: Option<Box3>) -> Self {
+        let (open, batch) = (BinaryHeap::new(), SolidBatch::default());
         Self { solid, side, tolerance, whole, inner, open, opened: 0, asked: 0, batch }
     }
 
@@ -212,7 +212,7 @@ impl<'a> Search<'a> {
         let reach = self.side.reach(&bounds);
         if reach > self.known() {
             self.opened += 1;
-            self.open.push(Open { reach, number: self.opened, bounds, around: around.clone() });
+            self.open.push(FartherBox { reach, number: self.opened, bounds, around: around.clone() });
         }
     }
 
@@ -226,7 +226,7 @@ impl<'a> Search<'a> {
     }
 
     /// Makes an open box smaller, or cuts it. False if it cannot be cut.
-    fn expand(&mut self, open: &Open) -> Result<bool, EvalError> {
+    fn expand(&mut self, open: &FartherBox) -> Result<bool, EvalError> {
         let mut bounds = open.bounds;
         // What is nearer than known points does not matter.
         if self.known() > f32::NEG_INFINITY {

@@ -20,7 +20,7 @@
 //! off by at most `l h / 4`. Where lines are in a box is scattered, or flat faces and edges along an axis
 //! would meet all of them alike.
 
-use super::{Batch, Solid};
+use super::{Solid, SolidBatch};
 use crate::error::EvalError;
 use crate::evaluator::Evaluator;
 use crate::prune::Region;
@@ -62,11 +62,11 @@ pub(super) fn crossed(
     bounds: &Box3,
     region: &Region,
 ) -> Result<Crossed, EvalError> {
-    Lattice { solid, normals, bounds, region }.ask()
+    LineLattice { solid, normals, bounds, region }.ask()
 }
 
 /// Lines in a box.
-struct Lattice<'a> {
+struct LineLattice<'a> {
     solid: &'a Solid,
     normals: &'a Evaluator,
     bounds: &'a Box3,
@@ -121,7 +121,7 @@ impl Crossing {
     }
 }
 
-impl Lattice<'_> {
+impl LineLattice<'_> {
     fn side(&self, axis: usize) -> f64 {
         f64::from(self.bounds.high[axis]) - f64::from(self.bounds.low[axis])
     }
@@ -162,7 +162,7 @@ impl Lattice<'_> {
     /// The crossed segments, and how much of the lines is inside, in sides of the box, where a crossed
     /// segment counts as half.
     fn crossings(&self) -> Result<(Vec<Crossing>, f64), EvalError> {
-        let mut batch = Batch::default();
+        let mut batch = SolidBatch::default();
         for axis in 0..3 {
             let across = [(axis + 1) % 3, (axis + 2) % 3];
             for line in 0..LINES * LINES {
@@ -206,7 +206,7 @@ impl Lattice<'_> {
 
     /// The unit normal at each crossing: of the gradient, or of the wall.
     fn normals_at(&self, crossings: &[Crossing]) -> Result<Vec<[f64; 3]>, EvalError> {
-        let mut batch = Batch::default();
+        let mut batch = SolidBatch::default();
         crossings.iter().for_each(|crossing| batch.push(crossing.point(crossing.place)));
         let mut planes = [0; 4].map(|_| vec![0.0_f32; crossings.len()]);
         let points = batch.points.each_ref().map(Vec::as_slice);
@@ -252,7 +252,7 @@ impl Lattice<'_> {
         at[crossing.axis] = crossing.place;
         let Some((axis, sign)) = self.main_axis(region, at, reach)? else { return Ok(None) };
         let across = [(axis + 1) % 3, (axis + 2) % 3];
-        let mut batch = Batch::default();
+        let mut batch = SolidBatch::default();
         let offsets = across.map(|other| [-1.0, 1.0].map(|offset| (other, offset * reach)));
         for (other, offset) in offsets.into_iter().flatten() {
             for end in [-2.0, 2.0] {
@@ -299,7 +299,7 @@ impl Lattice<'_> {
         at: [f64; 3],
         reach: f64,
     ) -> Result<Option<(usize, f64)>, EvalError> {
-        let mut batch = Batch::default();
+        let mut batch = SolidBatch::default();
         let offset = |place: usize| [place % 3, place / 3 % 3, place / 9].map(|step| step as f64 - 1.0);
         for place in 0..27 {
             let offset = offset(place);
@@ -320,7 +320,7 @@ impl Lattice<'_> {
 /// Finds where segments are crossed. Where the surface is not where a linear field has it, or the field
 /// jumps, segments are halved.
 fn locate(solid: &Solid, region: &Region, crossings: &mut [Crossing]) -> Result<(), EvalError> {
-    let mut batch = Batch::default();
+    let mut batch = SolidBatch::default();
     for crossing in &mut *crossings {
         let part = crossing.linear(solid.iso);
         crossing.place = crossing.along(part);
@@ -342,7 +342,7 @@ fn locate(solid: &Solid, region: &Region, crossings: &mut [Crossing]) -> Result<
 
 /// Halves segments towards their crossings, and tells walls.
 fn halve(solid: &Solid, region: &Region, crossings: &mut [&mut Crossing]) -> Result<(), EvalError> {
-    let mut batch = Batch::default();
+    let mut batch = SolidBatch::default();
     let mut noted = Vec::new();
     for halving in 0..if crossings.is_empty() { 0 } else { HALVINGS } {
         if halving == NOTED {

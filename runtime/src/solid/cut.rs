@@ -25,7 +25,7 @@ pub(super) fn gauss(low: f32, high: f32) -> [f32; 2] {
 
 /// A linear field about the middle of a box.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub(super) struct Linear {
+pub(super) struct LinearField {
     /// Its value in the middle.
     pub(super) middle: f64,
     /// Its gradient.
@@ -34,7 +34,7 @@ pub(super) struct Linear {
     pub(super) residual: f64,
 }
 
-impl Linear {
+impl LinearField {
     /// Fits values at eight points: the corners of a box with these coordinates, bit 0 of their number is x,
     /// bit 1 y, bit 2 z.
     pub(super) fn fit(places: &[[f32; 2]; 3], values: &[f32]) -> Self {
@@ -117,13 +117,13 @@ mod tests {
             let point = |point: usize| [0, 1, 2].map(|axis| f64::from(places[axis][point >> axis & 1]));
             (0..8).map(|index| field(point(index)) as f32).collect()
         };
-        let linear = Linear::fit(&places, &values(&|[x, y, z]| 1.0 + 2.0 * x - y + 0.5 * z));
+        let linear = LinearField::fit(&places, &values(&|[x, y, z]| 1.0 + 2.0 * x - y + 0.5 * z));
         near(linear.middle, 4.0);
         (0..3).for_each(|axis| assert!((linear.gradient[axis] - [2.0, -1.0, 0.5][axis]).abs() < 1e-5));
         assert!(linear.residual < 1e-5);
         // The mean of z^3 from 2 to 6.
-        near(Linear::fit(&places, &values(&|[_, _, z]| z * z * z)).middle, 80.0);
-        near(Linear::fit(&places, &values(&|[x, y, _]| (x - 0.5) * y)).residual, 1.0 / 6.0);
+        near(LinearField::fit(&places, &values(&|[_, _, z]| z * z * z)).middle, 80.0);
+        near(LinearField::fit(&places, &values(&|[x, y, _]| (x - 0.5) * y)).residual, 1.0 / 6.0);
     }
 
     #[test]

@@ -19,9 +19,9 @@ use jbt_model::diagnostic::Diagnostics;
 use jbt_ir::limits::{MAX_MEASURE_BOXES, MAX_RESOLUTION};
 
 use super::crossings::crossed;
-use super::cut::{self, Linear};
-use super::{Batch, RegionError, Solid, center};
-use crate::divide::{Cell, Decision, DivideError, Division, Limits, Node, Outcome, divide};
+use super::cut::{self, LinearField};
+use super::{RegionError, Solid, SolidBatch, center};
+use crate::divide::{Cell, Decision, DivideError, Division, DivisionNode, Limits, Outcome, divide};
 use crate::error::{Classified, CompileError, ErrorKind, EvalError};
 use crate::evaluator::Evaluator;
 use crate::job::{Hook, Job};
@@ -57,7 +57,7 @@ pub struct Volume {
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
-pub struct Level {
+pub struct MeasureLevel {
     /// Boxes that were split.
     pub splits: u64,
     /// Boxes that are all inside.
@@ -96,7 +96,7 @@ pub struct Measures {
     /// is 0.
     pub center: Option<[f64; 3]>,
     /// Boxes by how often they were split and what became of them.
-    pub levels: Vec<Level>,
+    pub levels: Vec<MeasureLevel>,
     /// The volume of the boxes that are all outside.
     pub air: f64,
     /// The volume of the boxes that may hold surface.
@@ -114,8 +114,8 @@ impl Measures {
 
     /// All boxes.
     #[must_use]
-    pub fn boxes(&self) -> Level {
-        self.levels.iter().fold(Level::default(), |all, level| Level {
+    pub fn boxes(&self) -> MeasureLevel {
+        self.levels.iter().fold(MeasureLevel::default(), |all, level| MeasureLevel {
             splits: all.splits + level.splits,
             solid: all.solid + level.solid,
             air: all.air + level.air,
@@ -227,9 +227,9 @@ impl Solid {
         let division = divide(&self.pruner, bounds, (), &limits, &decide)?;
         progress.check()?;
         let normals = self.normals()?;
-        let leaves: Vec<(&Node<()>, &Region)> = division.leaves().collect();
+        let leaves: Vec<(&DivisionNode<()>, &Region)> = division.leaves().collect();
         let share = (1.0 - DIVISION_SHARE) / leaves.len() as f64;
-        let pieces: Vec<Piece> = leaves
+        let pieces: Vec<MeasurePiece> = leaves
             .par_iter()
             .map(|(node, region)| {
                 progress.add(share)?;
@@ -260,20 +260,20 @@ impl Solid {
     }
 
     /// What a box that may hold surface holds, about.
-    fn piece(&self, normals: &Evaluator, bounds: &Box3, region: &Region) -> Result<Piece, EvalError> {
+    fn piece(&self, normals: &Evaluator, bounds: &Box3, region: &Region) -> Result<MeasurePiece, EvalError> {
         let crossed = crossed(self, normals, bounds, region)?;
         let volume = match crossed.walled_part {
             Some(part) => part * volume_of(bounds),
             None => self.linear_volume(bounds, region)?,
         };
-        Ok(Piece { volume, area: crossed.area, primitives: self.field.evaluations_in(region) })
+        Ok(MeasurePiece { volume, area: crossed.area, primitives: self.field.evaluations_in(region) })
     }
 
     /// The volume of the solid in a box that may hold surface, about. The box is cut where the linear field
     /// that fits best is zero; where none fits well, as at creases, its parts are asked.
     fn linear_volume(&self, bounds: &Box3, region: &Region) -> Result<f64, EvalError> {
         let mut volume = 0.0;
-        let mut batch = Batch::default();
+        let mut batch = SolidBatch::default();
         let mut parts = vec![(*bounds, 0)];
         while let Some((bounds, depth)) = parts.pop() {
             let places = [0, 1, 2].map(|axis| cut::gauss(bounds.low[axis], bounds.high[axis]));
@@ -281,7 +281,7 @@ impl Solid {
             for point in 0..8 {
                 batch.push([0, 1, 2].map(|axis| places[axis][point >> axis & 1]));
             }
-            let linear = Linear::fit(&places, batch.values(self, region)?);
+            let linear = LinearField::fit(&places, batch.values(self, region)?);
             let sides = [0, 1, 2].map(|axis| f64::from(bounds.high[axis]) - f64::from(bounds.low[axis]));
             let middle = linear.middle - f64::from(self.iso);
             let rises = [0, 1, 2].map(|axis| sides[axis] * linear.gradient[axis].abs());
@@ -297,14 +297,14 @@ impl Solid {
     }
 
     /// Adds everything up, in the order of the division.
-    fn sum(&self, mut sums: Measures, division: &Division<Region, ()>, pieces: &[Piece]) -> Measures {
+    fn sum(&self, mut sums: Measures, division: &Division<Region, ()>, pieces: &[MeasurePiece]) -> Measures {
         let mut pieces = pieces.iter();
         let mut moment = [0.0; 3];
         let mut primitives = 0_u64;
         for node in division.nodes() {
             let depth = usize::from(node.depth);
             if sums.levels.len() <= depth {
-                sums.levels.resize(depth + 1, Level::default());
+                sums.levels.resize(depth + 1, MeasureLevel::default());
             }
             let level = &mut sums.levels[depth];
             let volume = volume_of(&node.bounds);
@@ -349,7 +349,7 @@ impl Solid {
 }
 
 /// What a box that may hold surface holds, about.
-struct Piece {
+struct MeasurePiece {
     volume: f64,
     area: f64,
     primitives: u64,

@@ -14,7 +14,7 @@ use std::collections::VecDeque;
 
 use jbt_ir::limits::MAX_MEMBERSHIP_BOXES;
 
-use super::{Batch, Solid, center, cut};
+use super::{Solid, SolidBatch, center, cut};
 use crate::error::{Classified, ErrorKind, EvalError};
 use crate::points::Points;
 use crate::prune::Region;
@@ -113,7 +113,7 @@ impl Solid {
         if let Some(index) = (0..points.len()).find(|&index| point(index).iter().any(|x| !x.is_finite())) {
             return Err(MembershipError::Point { index, point: point(index) });
         }
-        let question = Question { solid: self, planes, eps };
+        let question = MembershipQuestion { solid: self, planes, eps };
         let mut order: Vec<usize> = (0..points.len()).collect();
         let mut found = vec![Membership::Outside; points.len()];
         if !order.is_empty() {
@@ -128,13 +128,13 @@ impl Solid {
 }
 
 /// What is asked.
-struct Question<'a> {
+struct MembershipQuestion<'a> {
     solid: &'a Solid,
     planes: [&'a [f32]; 3],
     eps: f32,
 }
 
-impl Question<'_> {
+impl MembershipQuestion<'_> {
     fn point(&self, index: usize) -> [f32; 3] {
         self.planes.map(|plane| plane[index])
     }
@@ -198,7 +198,7 @@ impl Question<'_> {
 
     /// Answers for up to [`MAX_PARTS`] points of a region.
     fn each(&self, region: &Region, order: &[usize], answers: &mut [Membership]) -> Result<(), EvalError> {
-        let mut batch = Batch::default();
+        let mut batch = SolidBatch::default();
         order.iter().for_each(|&index| batch.push(self.point(index)));
         let sides = batch.sides(self.solid, region)?;
         if self.eps == 0.0 {
@@ -220,7 +220,7 @@ impl Question<'_> {
 
     /// Whether it can be proven that all points of a cube are on this side.
     fn is_on_one_side(&self, around: &Region, cube: Box3, inside: bool) -> Result<bool, EvalError> {
-        let mut batch = Batch::default();
+        let mut batch = SolidBatch::default();
         for corner in 0..8 {
             batch.push([0, 1, 2].map(
                 |axis| {

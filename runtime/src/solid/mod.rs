@@ -23,7 +23,7 @@ mod membership;
 pub use bounds::{BoundsError, TightBounds};
 pub use jbt_model::check::NodeId;
 pub use jbt_model::owner::Owner;
-pub use measure::{Contents, Level, Measure, MeasureError, Measures, Volume};
+pub use measure::{Contents, Measure, MeasureError, MeasureLevel, Measures, Volume};
 pub use membership::{Membership, MembershipError};
 
 use std::sync::OnceLock;
@@ -32,7 +32,7 @@ use jbt_model::check::CheckedTree;
 use jbt_model::owner;
 use jbt_model::query::Query;
 
-use crate::compiled::{Compiled, Need, Scope};
+use crate::compiled::{Compiled, Need, PointScope};
 use crate::compiler::Compiler;
 use crate::counter::Counters;
 use crate::debug::brief_debug;
@@ -110,7 +110,7 @@ impl Solid {
     /// # Errors
     /// The model is beyond a limit, or the engine cannot be had.
     pub fn of(compiled: &Compiled) -> Result<Self, CompileError> {
-        compiled.prepare(&[Need::Ranges, Need::Answers(Scope::Regions, Query::FIELD)])?;
+        compiled.prepare(&[Need::Ranges, Need::Answers(PointScope::Regions, Query::FIELD)])?;
         Ok(Self {
             compiled: compiled.clone(),
             iso: compiled.tree().iso() as f32,
@@ -237,12 +237,12 @@ impl Classified for OwnersError {
 
 /// Points by coordinates, as kernels read them, and their fields.
 #[derive(Default)]
-struct Batch {
+struct SolidBatch {
     points: [Vec<f32>; 3],
     field: Vec<f32>,
 }
 
-impl Batch {
+impl SolidBatch {
     fn clear(&mut self) {
         self.points.iter_mut().for_each(Vec::clear);
     }

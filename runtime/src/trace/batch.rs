@@ -6,12 +6,12 @@ use crate::error::EvalError;
 use crate::prune::Region;
 
 /// The limit of points and boxes that may still be evaluated for some rays.
-pub(super) struct Work {
+pub(super) struct WorkLimit {
     pub(super) left: u64,
     pub(super) rays: usize,
 }
 
-impl Work {
+impl WorkLimit {
     pub(super) fn spend(&mut self, work: u64) -> Result<(), TraceError> {
         self.left = self.left.checked_sub(work).ok_or(TraceError::Work { rays: self.rays })?;
         Ok(())
@@ -20,12 +20,12 @@ impl Work {
 
 /// Points by coordinates, and the field there.
 #[derive(Default)]
-pub(super) struct Batch {
+pub(super) struct TraceBatch {
     pub(super) points: [Vec<f32>; 3],
     pub(super) field: Vec<f32>,
 }
 
-impl Batch {
+impl TraceBatch {
     pub(super) fn clear(&mut self) {
         self.points.iter_mut().for_each(Vec::clear);
     }

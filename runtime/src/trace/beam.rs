@@ -4,7 +4,7 @@
 //! for t between two ends, and origins and directions between two bounds, every coordinate is between the
 //! results of the same operations for ends and bounds: boxes need no margin.
 
-use super::ray::Line;
+use super::ray::RayLine;
 use crate::region::Box3;
 
 /// What is known of some rays with one step.
@@ -22,7 +22,7 @@ pub(super) struct Beam {
 
 impl Beam {
     /// The beam of some rays; `None` if there are none.
-    pub(super) fn around<'a>(lines: impl IntoIterator<Item = &'a Line>) -> Option<Self> {
+    pub(super) fn around<'a>(lines: impl IntoIterator<Item = &'a RayLine>) -> Option<Self> {
         let mut lines = lines.into_iter();
         let first = lines.next()?;
         let mut beam = Self {

@@ -1,8 +1,8 @@
 //! The results of a packet so far.
 
 use super::hits::Hits;
-use super::polish::Bracket;
-use super::ray::Line;
+use super::polish::RayBracket;
+use super::ray::RayLine;
 use super::target::Target;
 use crate::buffer::Samples;
 use crate::error::EvalError;
@@ -18,7 +18,7 @@ pub(super) struct Record {
 }
 
 /// Hits in the order of discovery: the hits of one ray ascend with t.
-pub(super) struct Found {
+pub(super) struct FoundHits {
     pub(super) records: Vec<Record>,
     /// The positions of the hits, by coordinates.
     pub(super) positions: [Vec<f32>; 3],
@@ -30,7 +30,7 @@ pub(super) struct Found {
     pub(super) evaluations: Vec<f32>,
 }
 
-impl Found {
+impl FoundHits {
     /// Empty results for this number of rays and planes.
     pub(super) fn new(rays: usize, planes: usize) -> Self {
         Self {
@@ -61,8 +61,8 @@ impl Found {
         &mut self,
         tracer: &Target,
         region: &Region,
-        lines: &[Line],
-        brackets: &[Bracket],
+        lines: &[RayLine],
+        brackets: &[RayBracket],
     ) -> Result<(), EvalError> {
         let start = self.records.len();
         let each = tracer.full().evaluations_in(region) as f32;

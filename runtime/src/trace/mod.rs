@@ -58,7 +58,7 @@ use jbt_model::owner;
 use jbt_model::query::Query;
 
 use crate::buffer::Layout;
-use crate::compiled::{Compiled, Need, Scope};
+use crate::compiled::{Compiled, Need, PointScope};
 use crate::compiler::Compiler;
 use crate::debug::brief_debug;
 use crate::error::{CompileError, EvalError};
@@ -66,9 +66,9 @@ use crate::evaluator::Evaluator;
 use crate::prune::Region;
 use crate::region::{Box3, Divisible as _};
 
-use found::Found;
-use packet::{Run, Want};
-use ray::{Line, Reach, STRIDE};
+use found::FoundHits;
+use packet::{PacketTrace, Want};
+use ray::{RayLine, RayReach, STRIDE};
 use target::Target;
 
 /// A model, compiled for rays.
@@ -133,8 +133,8 @@ impl Tracer {
     pub fn of(compiled: &Compiled, query: Query) -> Result<Self, CompileError> {
         compiled.prepare(&[
             Need::Ranges,
-            Need::Answers(Scope::Regions, Query::FIELD),
-            Need::Answers(Scope::Regions, query),
+            Need::Answers(PointScope::Regions, Query::FIELD),
+            Need::Answers(PointScope::Regions, query),
         ])?;
         let (pruner, field) = (compiled.pruner()?, compiled.regional(Query::FIELD)?);
         let full = (query != Query::FIELD).then(|| compiled.regional(query)).transpose()?;
@@ -142,7 +142,7 @@ impl Tracer {
         let target = Target {
             iso: tree.iso() as f32,
             origin: tree.origin(),
-            reach: Reach::new(tree.local_support()),
+            reach: RayReach::new(tree.local_support()),
             layout: Arc::new(full.as_ref().unwrap_or(&field).layout().clone()),
             pruner,
             field,
@@ -331,7 +331,7 @@ impl Tracer {
         Ok(hits)
     }
 
-    fn follow(&self, want: Want, stride: i64, rays: &[Ray], tolerance: f64) -> Result<Found, TraceError> {
+    fn follow(&self, want: Want, stride: i64, rays: &[Ray], tolerance: f64) -> Result<FoundHits, TraceError> {
         if !(tolerance > 0.0 && tolerance.is_finite()) {
             return Err(TraceError::Tolerance { tolerance });
         }
@@ -341,8 +341,8 @@ impl Tracer {
         self.rays.fetch_add(rays.len() as u64, Ordering::Relaxed);
         let mut lines = Vec::with_capacity(rays.len());
         for (index, ray) in rays.iter().enumerate() {
-            lines.extend(Line::new(index, ray, tolerance, stride, self.target.reach.as_ref())?);
+            lines.extend(RayLine::new(index, ray, tolerance, stride, self.target.reach.as_ref())?);
         }
-        Run::new(&self.target, (want, stride), tolerance, rays.len(), lines).finish()
+        PacketTrace::new(&self.target, (want, stride), tolerance, rays.len(), lines).finish()
     }
 }

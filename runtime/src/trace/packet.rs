@@ -15,13 +15,13 @@
 
 use std::ops::Range;
 
-use super::batch::{Batch, Work};
+use super::batch::{TraceBatch, WorkLimit};
 use super::beam::Beam;
 use super::error::TraceError;
-use super::found::Found;
-use super::polish::{Bracket, polish};
-use super::ray::Line;
-use super::refine::{Refiner, Segment, Stretch};
+use super::found::FoundHits;
+use super::polish::{RayBracket, polish};
+use super::ray::RayLine;
+use super::refine::{RaySegment, RayStretch, Refiner};
 use super::target::Target;
 use crate::error::EvalError;
 use crate::prune::Region;
@@ -41,7 +41,7 @@ pub(super) enum Want {
 }
 
 /// A part of a packet that is still to be examined.
-struct Cell {
+struct PacketCell {
     /// The lines; some of them may be done.
     lines: Range<usize>,
     /// The beam around the lines that were not done when the cell was made.
@@ -54,34 +54,34 @@ struct Cell {
 
 /// A part of a cell, before its ranges are known.
 #[derive(Clone)]
-struct Part {
+struct PacketPart {
     lines: Range<usize>,
     beam: Beam,
     places: [i64; 2],
 }
 
 /// The state of tracing a packet.
-pub(super) struct Run<'a> {
+pub(super) struct PacketTrace<'a> {
     tracer: &'a Target,
     want: Want,
     /// Steps of the lattice from one coarse place to the next.
     stride: i64,
     tolerance: f64,
     /// The rays that may hit the model; rays with the same step are neighbours.
-    lines: Vec<Line>,
+    lines: Vec<RayLine>,
     /// For each line, whether its answer is complete.
     done: Vec<bool>,
-    cells: Vec<Cell>,
-    batch: Batch,
+    cells: Vec<PacketCell>,
+    batch: TraceBatch,
     /// The times of the places of a cell.
     lattice: Vec<f64>,
-    brackets: Vec<Bracket>,
+    brackets: Vec<RayBracket>,
     /// The stretches of a cell: neighbouring coarse places on one side.
-    stretches: Vec<Stretch>,
+    stretches: Vec<RayStretch>,
     /// The segments of a cell whose ends are on different sides.
-    segments: Vec<Segment>,
-    found: Found,
-    work: Work,
+    segments: Vec<RaySegment>,
+    found: FoundHits,
+    work: WorkLimit,
 }
 
 /// The cost of dividing a cell without its distances, in distances at points: boxes, rows, calls.
@@ -99,13 +99,13 @@ fn worth_asking(each: u64) -> u64 {
     RANGES.saturating_mul(each).saturating_add(DIVISION) / each.saturating_add(POINT)
 }
 
-impl<'a> Run<'a> {
+impl<'a> PacketTrace<'a> {
     pub(super) fn new(
         tracer: &'a Target,
         (want, stride): (Want, i64),
         tolerance: f64,
         rays: usize,
-        mut lines: Vec<Line>,
+        mut lines: Vec<RayLine>,
     ) -> Self {
         if lines.windows(2).any(|pair| pair[0].step != pair[1].step) {
             lines.sort_by(|a, b| a.step.total_cmp(&b.step));
@@ -118,19 +118,19 @@ impl<'a> Run<'a> {
             done: vec![false; lines.len()],
             lines,
             cells: Vec::new(),
-            batch: Batch::default(),
+            batch: TraceBatch::default(),
             lattice: Vec::new(),
             brackets: Vec::new(),
             stretches: Vec::new(),
             segments: Vec::new(),
-            found: Found::new(rays, tracer.layout.names().len()),
+            found: FoundHits::new(rays, tracer.layout.names().len()),
             // Hits are counted in 32 bits, and each hit takes a point.
-            work: Work { left: MAX_RAY_WORK.saturating_mul(rays as u64).min(u32::MAX.into()), rays },
+            work: WorkLimit { left: MAX_RAY_WORK.saturating_mul(rays as u64).min(u32::MAX.into()), rays },
         }
     }
 
     /// Traces all rays to their ends.
-    pub(super) fn finish(mut self) -> Result<Found, TraceError> {
+    pub(super) fn finish(mut self) -> Result<FoundHits, TraceError> {
         self.start()?;
         while let Some(cell) = self.cells.pop() {
             self.visit(cell)?;
@@ -149,7 +149,7 @@ impl<'a> Run<'a> {
             let Some(beam) = self.beam(lines.clone()) else { continue };
             if beam.places[0] < beam.places[1] {
                 let region = self.tracer.pruner.region(beam.bounds(beam.places))?;
-                self.cells.push(Cell { lines, places: beam.places, beam, region, fruitless: 0 });
+                self.cells.push(PacketCell { lines, places: beam.places, beam, region, fruitless: 0 });
             }
         }
         Ok(())
@@ -165,7 +165,7 @@ impl<'a> Run<'a> {
         lines.filter(|&line| !self.done[line])
     }
 
-    fn visit(&mut self, mut cell: Cell) -> Result<(), TraceError> {
+    fn visit(&mut self, mut cell: PacketCell) -> Result<(), TraceError> {
         let open = self.open(cell.lines.clone()).count();
         if open == 0 {
             return Ok(());
@@ -193,10 +193,10 @@ impl<'a> Run<'a> {
     }
 
     /// Cuts a cell across if that makes it shorter, otherwise along its rays, of which `open` are not done.
-    fn divide(&mut self, cell: &Cell, open: usize) -> Result<(), EvalError> {
+    fn divide(&mut self, cell: &PacketCell, open: usize) -> Result<(), EvalError> {
         let steps = cell.places[1] - cell.places[0];
         let [length, width] = cell.beam.proportions(cell.places);
-        let mut parts: Vec<Part> = Vec::with_capacity(MAX_PARTS);
+        let mut parts: Vec<PacketPart> = Vec::with_capacity(MAX_PARTS);
         if open > 1 && (width >= length || steps == 1) {
             let count = cell.lines.len().min(MAX_PARTS);
             let cut = |part: usize| cell.lines.start + cell.lines.len() * part / count;
@@ -204,7 +204,7 @@ impl<'a> Run<'a> {
                 let Some(beam) = self.beam(lines.clone()) else { continue };
                 let places = common(cell.places, beam.places);
                 if places[0] < places[1] {
-                    parts.push(Part { lines, beam, places });
+                    parts.push(PacketPart { lines, beam, places });
                 }
             }
         } else {
@@ -213,14 +213,14 @@ impl<'a> Run<'a> {
             let (most, rest) = (steps / count, steps % count);
             let cut = |part: i64| cell.places[0] + most * part + rest.min(part);
             for places in (0..count).map(|part| [cut(part), cut(part + 1)]) {
-                parts.push(Part { lines: cell.lines.clone(), beam: cell.beam, places });
+                parts.push(PacketPart { lines: cell.lines.clone(), beam: cell.beam, places });
             }
         }
         if parts.is_empty() { Ok(()) } else { self.push_parts(cell, open, &parts) }
     }
 
     /// Puts the parts that may hold the surface onto the list.
-    fn push_parts(&mut self, cell: &Cell, open: usize, parts: &[Part]) -> Result<(), EvalError> {
+    fn push_parts(&mut self, cell: &PacketCell, open: usize, parts: &[PacketPart]) -> Result<(), EvalError> {
         let mut boxes = [Box3::default(); MAX_PARTS];
         for (bounds, part) in boxes.iter_mut().zip(parts) {
             *bounds = part.beam.bounds(part.places);
@@ -231,8 +231,8 @@ impl<'a> Run<'a> {
             self.tracer.pruner.split(&cell.region, &boxes[..parts.len()], &undecided)?;
         let fruitless = if kept.len() == parts.len() { cell.fruitless + 1 } else { 0 };
         for (part, region) in kept.into_iter().rev() {
-            let Part { lines, beam, places } = parts[part].clone();
-            self.cells.push(Cell { lines, beam, places, region, fruitless });
+            let PacketPart { lines, beam, places } = parts[part].clone();
+            self.cells.push(PacketCell { lines, beam, places, region, fruitless });
         }
         let share = evaluations as f32 / open as f32;
         for line in cell.lines.clone().filter(|&line| !self.done[line]) {
@@ -242,7 +242,7 @@ impl<'a> Run<'a> {
     }
 
     /// Evaluates the field at all places of a cell, and finds the hits between them.
-    fn sample(&mut self, cell: &Cell, each: u64) -> Result<(), TraceError> {
+    fn sample(&mut self, cell: &PacketCell, each: u64) -> Result<(), TraceError> {
         let mut batch = std::mem::take(&mut self.batch);
         batch.clear();
         // Most rays have all places of the cell, so the times of these are computed once.
@@ -294,13 +294,13 @@ impl<'a> Run<'a> {
             }
             if self.stride == 1 {
                 let times = [place(at), place(at + 1)].map(|place| here.time(place));
-                self.brackets.push(Bracket::new(line, here, self.tolerance, iso, times, ends));
+                self.brackets.push(RayBracket::new(line, here, self.tolerance, iso, times, ends));
             } else {
                 if start < at {
                     let places = [place(start), place(at)];
-                    self.stretches.push(Stretch { line, places, field: start });
+                    self.stretches.push(RayStretch { line, places, field: start });
                 }
-                self.segments.push(Segment { line, place: place(at), fields: ends });
+                self.segments.push(RaySegment { line, place: place(at), fields: ends });
             }
             start = at + 1;
             if self.want == Want::First {
@@ -309,12 +309,12 @@ impl<'a> Run<'a> {
         }
         if self.stride > 1 && start + 1 < of.end {
             let places = [place(start), place(of.end - 1)];
-            self.stretches.push(Stretch { line, places, field: start });
+            self.stretches.push(RayStretch { line, places, field: start });
         }
     }
 
     /// Finds the hits between coarse places; the batch holds the fields at these.
-    fn refine(&mut self, region: &Region, batch: &mut Batch) -> Result<(), TraceError> {
+    fn refine(&mut self, region: &Region, batch: &mut TraceBatch) -> Result<(), TraceError> {
         if self.stretches.is_empty() && self.segments.is_empty() {
             return Ok(());
         }
@@ -331,8 +331,9 @@ impl<'a> Run<'a> {
         refiner.refine(&self.stretches, &mut self.segments, batch, &mut self.brackets)?;
         self.stretches.clear();
         self.segments.clear();
-        let order =
-            |a: &Bracket, b: &Bracket| a.line().cmp(&b.line()).then_with(|| a.start().total_cmp(&b.start()));
+        let order = |a: &RayBracket, b: &RayBracket| {
+            a.line().cmp(&b.line()).then_with(|| a.start().total_cmp(&b.start()))
+        };
         self.brackets.sort_by(order);
         if self.want != Want::All {
             self.brackets.dedup_by_key(|bracket| bracket.line());
@@ -341,7 +342,7 @@ impl<'a> Run<'a> {
     }
 
     /// Makes hits of the brackets of a cell, as far as they are wanted.
-    fn close(&mut self, region: &Region, each: u64, batch: &mut Batch) -> Result<(), EvalError> {
+    fn close(&mut self, region: &Region, each: u64, batch: &mut TraceBatch) -> Result<(), EvalError> {
         for bracket in &self.brackets {
             self.done[bracket.line()] = self.want != Want::All;
             if self.want == Want::Any {
@@ -368,7 +369,7 @@ fn common(a: [i64; 2], b: [i64; 2]) -> [i64; 2] {
 
 /// Adds the points of a ray from one place to another, both included. Times are the lattice's, except for the
 /// ray's ends.
-fn push_places(batch: &mut Batch, line: &Line, places: [i64; 2], times: &[f64]) {
+fn push_places(batch: &mut TraceBatch, line: &RayLine, places: [i64; 2], times: &[f64]) {
     let ends = [0, 1].map(|end| (places[end] == line.places[end]).then(|| line.position(line.span[end])));
     for (axis, plane) in batch.points.iter_mut().enumerate() {
         let (origin, direction) = (line.origin[axis], line.direction[axis]);

@@ -11,8 +11,8 @@
 //!
 //! The final bracket depends only on the field along its ray.
 
-use super::batch::Batch;
-use super::ray::{Line, spacing};
+use super::batch::TraceBatch;
+use super::ray::{RayLine, spacing};
 use super::target::Target;
 use crate::error::EvalError;
 use crate::prune::Region;
@@ -24,7 +24,7 @@ const CHECKED: u32 = 3;
 
 /// A stretch of a ray whose ends are on different sides.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub(super) struct Bracket {
+pub(super) struct RayBracket {
     line: usize,
     times: [f64; 2],
     /// The fields at the ends minus the iso-value, as weights of false position: the weight of an end that
@@ -40,10 +40,10 @@ pub(super) struct Bracket {
     checked: f64,
 }
 
-impl Bracket {
+impl RayBracket {
     pub(super) fn new(
         index: usize,
-        line: &Line,
+        line: &RayLine,
         tolerance: f64,
         iso: f32,
         times: [f64; 2],
@@ -142,9 +142,9 @@ fn meet(times: [f64; 2], heights: [f64; 2]) -> f64 {
 pub(super) fn polish(
     tracer: &Target,
     region: &Region,
-    lines: &[Line],
-    brackets: &mut [Bracket],
-    batch: &mut Batch,
+    lines: &[RayLine],
+    brackets: &mut [RayBracket],
+    batch: &mut TraceBatch,
 ) -> Result<(), EvalError> {
     let mut open: Vec<usize> = (0..brackets.len()).collect();
     let mut times = Vec::with_capacity(open.len());

@@ -39,7 +39,7 @@ pub(super) const STRIDE: i64 = 16;
 
 /// A box outside of which the field is 0, with a margin.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub(super) struct Reach(Box3<f64>);
+pub(super) struct RayReach(Box3<f64>);
 
 /// The part of a coordinate by which the box exceeds it at least.
 const ROUNDING: f64 = 1.0 / (1 << 20) as f64;
@@ -52,7 +52,7 @@ const SQUARES: [f64; 2] = [1e-200, 1e200];
 /// A bound of the error of a product and a sum in f64, as a part of the terms.
 const TINY: f64 = 1.0 / (1_u64 << 48) as f64;
 
-impl Reach {
+impl RayReach {
     /// `None` if the field is 0 everywhere.
     pub(super) fn new(support: Bounds) -> Option<Self> {
         if support.is_empty() {
@@ -90,7 +90,7 @@ impl Reach {
 
 /// A ray that may hit something, with its lattice.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub(super) struct Line {
+pub(super) struct RayLine {
     /// The index of the ray in the packet.
     pub(super) ray: u32,
     pub(super) origin: [f64; 3],
@@ -107,14 +107,14 @@ pub(super) struct Line {
     pub(super) length: f64,
 }
 
-impl Line {
+impl RayLine {
     /// Checks a ray; `None` if it does not come near the model.
     pub(super) fn new(
         index: usize,
         ray: &Ray,
         tolerance: f64,
         stride: i64,
-        reach: Option<&Reach>,
+        reach: Option<&RayReach>,
     ) -> Result<Option<Self>, TraceError> {
         let Ray { origin, direction, span } = *ray;
         if !origin.iter().chain(&direction).chain(&span).all(|number| number.is_finite()) {

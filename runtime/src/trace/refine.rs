@@ -14,18 +14,18 @@
 
 use std::ops::Range;
 
-use super::batch::{Batch, Work};
+use super::batch::{TraceBatch, WorkLimit};
 use super::error::TraceError;
-use super::found::Found;
-use super::polish::Bracket;
-use super::ray::Line;
+use super::found::FoundHits;
+use super::polish::RayBracket;
+use super::ray::RayLine;
 use super::target::Target;
 use crate::prune::Region;
 use crate::region::Box3;
 
 /// Neighbouring coarse places of a ray that are on one side.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub(super) struct Stretch {
+pub(super) struct RayStretch {
     pub(super) line: usize,
     /// The first and the last place.
     pub(super) places: [i64; 2],
@@ -34,7 +34,7 @@ pub(super) struct Stretch {
 }
 
 /// Stretches of neighbouring rays, clipped to two coarse places.
-struct Group {
+struct StretchGroup {
     stretches: Range<usize>,
     places: [i64; 2],
     /// The number of its segments, once it is tight.
@@ -42,7 +42,7 @@ struct Group {
 }
 
 /// From a coarse place of a ray to the next one.
-pub(super) struct Segment {
+pub(super) struct RaySegment {
     pub(super) line: usize,
     pub(super) place: i64,
     /// The fields at both ends.
@@ -62,14 +62,14 @@ pub(super) struct Refiner<'a> {
     pub(super) tracer: &'a Target,
     /// The region of all stretches.
     pub(super) region: &'a Region,
-    pub(super) lines: &'a [Line],
+    pub(super) lines: &'a [RayLine],
     /// Steps of the lattice from one coarse place to the next, on all lines.
     pub(super) stride: i64,
     pub(super) tolerance: f64,
     /// Whether all changes of a ray are wanted, or only the first.
     pub(super) all: bool,
-    pub(super) found: &'a mut Found,
-    pub(super) work: &'a mut Work,
+    pub(super) found: &'a mut FoundHits,
+    pub(super) work: &'a mut WorkLimit,
 }
 
 impl Refiner<'_> {
@@ -77,10 +77,10 @@ impl Refiner<'_> {
     /// stretches are among those in the batch.
     pub(super) fn refine(
         &mut self,
-        stretches: &[Stretch],
-        segments: &mut Vec<Segment>,
-        batch: &mut Batch,
-        brackets: &mut Vec<Bracket>,
+        stretches: &[RayStretch],
+        segments: &mut Vec<RaySegment>,
+        batch: &mut TraceBatch,
+        brackets: &mut Vec<RayBracket>,
     ) -> Result<(), TraceError> {
         let fields = std::mem::take(&mut batch.field);
         self.undecided(stretches, &fields, segments)?;
@@ -89,7 +89,7 @@ impl Refiner<'_> {
             return Ok(());
         }
         batch.clear();
-        for &Segment { line, place, .. } in &*segments {
+        for &RaySegment { line, place, .. } in &*segments {
             self.lines[line].push_between(place, batch.planes());
         }
         let inner = self.stride as usize - 1;
@@ -106,22 +106,22 @@ impl Refiner<'_> {
     /// Adds the segments of stretches whose ranges do not prove one side.
     fn undecided(
         &mut self,
-        stretches: &[Stretch],
+        stretches: &[RayStretch],
         fields: &[f32],
-        segments: &mut Vec<Segment>,
+        segments: &mut Vec<RaySegment>,
     ) -> Result<(), TraceError> {
         let iso = self.tracer.iso;
         let starts = (0..stretches.len()).step_by(TOGETHER);
-        let mut groups: Vec<Group> = starts
-            .map(|start| Group {
+        let mut groups: Vec<StretchGroup> = starts
+            .map(|start| StretchGroup {
                 stretches: start..(start + TOGETHER).min(stretches.len()),
                 places: [i64::MIN, i64::MAX],
                 segments: 0,
             })
             .collect();
-        let known = |(stretch, place): (&Stretch, i64)| {
+        let known = |(stretch, place): (&RayStretch, i64)| {
             let field = stretch.field + (place - stretch.places[0]) as usize;
-            Segment { line: stretch.line, place, fields: [fields[field], fields[field + 1]] }
+            RaySegment { line: stretch.line, place, fields: [fields[field], fields[field + 1]] }
         };
         let worth_asking = WORTH_ASKING / (self.stride as usize - 1);
         let mut boxes = Vec::with_capacity(groups.len());
@@ -159,7 +159,7 @@ impl Refiner<'_> {
     }
 
     /// The changes of side in a segment, from the fields at the places in it.
-    fn find(&self, segment: &Segment, asked: &[f32], brackets: &mut Vec<Bracket>) {
+    fn find(&self, segment: &RaySegment, asked: &[f32], brackets: &mut Vec<RayBracket>) {
         let iso = self.tracer.iso;
         let line = &self.lines[segment.line];
         let [start, end] = segment.fields;
@@ -167,7 +167,14 @@ impl Refiner<'_> {
         for (place, &field) in (segment.place * self.stride..).zip(asked.iter().chain([&end])) {
             if (before >= iso) != (field >= iso) {
                 let times = [place, place + 1].map(|place| line.time_between(place));
-                brackets.push(Bracket::new(segment.line, line, self.tolerance, iso, times, [before, field]));
+                brackets.push(RayBracket::new(
+                    segment.line,
+                    line,
+                    self.tolerance,
+                    iso,
+                    times,
+                    [before, field],
+                ));
                 if !self.all {
                     return;
                 }
@@ -177,14 +184,14 @@ impl Refiner<'_> {
     }
 }
 
-impl Group {
+impl StretchGroup {
     /// Shrinks the group to its segments; `None` if it has none, else the box around them.
-    fn tighten(&mut self, stretches: &[Stretch], lines: &[Line]) -> Option<Box3> {
+    fn tighten(&mut self, stretches: &[RayStretch], lines: &[RayLine]) -> Option<Box3> {
         let mut bounds: Option<Box3> = None;
         let (mut members, mut places) = (self.stretches.end..self.stretches.start, [i64::MAX, i64::MIN]);
         self.segments = 0;
         for index in self.stretches.clone() {
-            let Stretch { line, places: mine, .. } = stretches[index];
+            let RayStretch { line, places: mine, .. } = stretches[index];
             let [first, last] = [mine[0].max(self.places[0]), mine[1].min(self.places[1])];
             if first >= last {
                 continue;
@@ -205,7 +212,10 @@ impl Group {
     }
 
     /// Its segments, each with its stretch.
-    fn segments<'a>(&self, stretches: &'a [Stretch]) -> impl Iterator<Item = (&'a Stretch, i64)> + use<'a> {
+    fn segments<'a>(
+        &self,
+        stretches: &'a [RayStretch],
+    ) -> impl Iterator<Item = (&'a RayStretch, i64)> + use<'a> {
         let [first, last] = self.places;
         stretches[self.stretches.clone()].iter().flat_map(move |stretch| {
             let [from, to] = [stretch.places[0].max(first), stretch.places[1].min(last)];

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use jbt_model::origin::ModelOrigin;
 
-use super::ray::Reach;
+use super::ray::RayReach;
 use crate::buffer::Layout;
 use crate::evaluator::Evaluator;
 use crate::prune::Pruner;
@@ -16,7 +16,7 @@ pub(super) struct Target {
     /// The origin of positions.
     pub(super) origin: ModelOrigin,
     /// The box outside of which the field is 0; `None` if it is 0 everywhere.
-    pub(super) reach: Option<Reach>,
+    pub(super) reach: Option<RayReach>,
     pub(super) pruner: Pruner,
     pub(super) field: Evaluator,
     /// The evaluator for hits; `None` if it is the evaluator of the field.

@@ -7,7 +7,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use jbt::Box3;
-use jbt::mesh::{Field, Lattice, Mesh, Options, Report, Sides, Work, check_manifold, extract};
+use jbt::mesh::{Field, FieldWork, Lattice, Mesh, MeshReport, Options, Sides, check_manifold, extract};
 use jbt::region::Divisible;
 
 use crate::fields::{Closed, Sample, hash, signs, sphere, torus};
@@ -81,8 +81,8 @@ impl<F: Fn([f32; 3]) -> Sample + Sync, R: Fn(&Box3) -> [f32; 2] + Sync> Field fo
         self.field.attributes()
     }
 
-    fn work(&self, _: &Box3) -> Work {
-        Work::default()
+    fn work(&self, _: &Box3) -> FieldWork {
+        FieldWork::default()
     }
 
     fn field(
@@ -170,7 +170,7 @@ fn with_brick(brick: usize) -> Options {
 }
 
 /// Meshes with every brick size; the meshes have the same bits as without ranges.
-fn mesh<F, R>(field: impl Fn() -> F, range: impl Fn() -> R, lattice: &Lattice) -> Vec<(Mesh, Report)>
+fn mesh<F, R>(field: impl Fn() -> F, range: impl Fn() -> R, lattice: &Lattice) -> Vec<(Mesh, MeshReport)>
 where
     F: Fn([f32; 3]) -> Sample + Sync,
     R: Fn(&Box3) -> [f32; 2] + Sync,

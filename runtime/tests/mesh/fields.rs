@@ -3,7 +3,7 @@
 use std::convert::Infallible;
 
 use jbt::Box3;
-use jbt::mesh::{Field, Work};
+use jbt::mesh::{Field, FieldWork};
 use jbt::region::Divisible;
 
 /// A field and its gradient at one point.
@@ -42,8 +42,8 @@ impl<F: Fn([f32; 3]) -> Sample + Sync> Field for Closed<F> {
         vec![("color".to_owned(), 3), ("height".to_owned(), 1)]
     }
 
-    fn work(&self, (): &()) -> Work {
-        Work::default()
+    fn work(&self, (): &()) -> FieldWork {
+        FieldWork::default()
     }
 
     fn field(&self, (): &(), x: &[f32], y: &[f32], z: &[f32], field: &mut [f32]) -> Result<(), Infallible> {

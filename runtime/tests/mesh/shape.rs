@@ -6,7 +6,9 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use jbt::limits::MAX_ATTRIBUTE_WIDTH;
-use jbt::mesh::{Field, Lattice, Mesh, MeshError, Options, Report, Sides, Work, check_manifold, extract};
+use jbt::mesh::{
+    Field, FieldWork, Lattice, Mesh, MeshError, MeshReport, Options, Sides, check_manifold, extract,
+};
 use jbt::region::Divisible;
 use jbt::{Box3, CancelToken};
 
@@ -18,7 +20,7 @@ fn lattice(half: f64, spacing: f64) -> Lattice {
     Lattice::covering([-half; 3], [half; 3], spacing).unwrap()
 }
 
-fn mesh(field: impl Fn([f32; 3]) -> Sample + Sync, lattice: &Lattice) -> (Mesh, Report) {
+fn mesh(field: impl Fn([f32; 3]) -> Sample + Sync, lattice: &Lattice) -> (Mesh, MeshReport) {
     extract(&Closed(field), lattice, &Options::default()).run().unwrap()
 }
 
@@ -62,7 +64,7 @@ fn euler(mesh: &Mesh) -> i64 {
 }
 
 #[track_caller]
-fn assert_manifold(mesh: &Mesh, report: &Report) {
+fn assert_manifold(mesh: &Mesh, report: &MeshReport) {
     assert!(report.closed);
     assert_eq!(report.cut_sides, Sides::default());
     assert_eq!(check_manifold(mesh.positions.len(), &mesh.triangles), Ok(()));
@@ -357,8 +359,8 @@ impl Field for Failing {
         Vec::new()
     }
 
-    fn work(&self, (): &()) -> Work {
-        Work::default()
+    fn work(&self, (): &()) -> FieldWork {
+        FieldWork::default()
     }
 
     fn field(&self, (): &(), x: &[f32], y: &[f32], z: &[f32], field: &mut [f32]) -> Result<(), NoMore> {
@@ -434,8 +436,8 @@ impl Field for Wide {
         vec![("wide".to_owned(), self.0)]
     }
 
-    fn work(&self, (): &()) -> Work {
-        Work::default()
+    fn work(&self, (): &()) -> FieldWork {
+        FieldWork::default()
     }
 
     fn field(&self, (): &(), x: &[f32], y: &[f32], z: &[f32], field: &mut [f32]) -> Result<(), Infallible> {

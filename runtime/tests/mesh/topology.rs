@@ -1,15 +1,15 @@
 //! Closed and manifold for any signs whatever, and the same bits however the work is divided.
 
-use jbt::mesh::{Lattice, Mesh, Options, Report, check_manifold, extract};
+use jbt::mesh::{Lattice, Mesh, MeshReport, Options, check_manifold, extract};
 
 use crate::fields::{Closed, Sample, cubic, hash, signs, sphere, torus, union};
 
-fn mesh(field: impl Fn([f32; 3]) -> Sample + Sync, cells: [usize; 3]) -> (Mesh, Report) {
+fn mesh(field: impl Fn([f32; 3]) -> Sample + Sync, cells: [usize; 3]) -> (Mesh, MeshReport) {
     extract(&Closed(field), &Lattice::new([0.0; 3], 1.0, cells).unwrap(), &Options::default()).run().unwrap()
 }
 
 #[track_caller]
-fn assert_manifold(mesh: &Mesh, report: &Report, what: impl Fn() -> String) {
+fn assert_manifold(mesh: &Mesh, report: &MeshReport, what: impl Fn() -> String) {
     assert!(report.closed && !report.cut_sides.any(), "{}", what());
     assert_eq!(check_manifold(mesh.positions.len(), &mesh.triangles), Ok(()), "{}", what());
 }
@@ -129,7 +129,7 @@ pub fn bits(mesh: &Mesh) -> Vec<u32> {
 }
 
 /// What does not depend on the bricks.
-pub fn without_boxes(mut report: Report) -> Report {
+pub fn without_boxes(mut report: MeshReport) -> MeshReport {
     // Neighbouring bricks look for jumps on the edges between them, each by itself.
     (report.boxes, report.bricks, report.jump_evaluations) = (0, 0, 0);
     report

@@ -1,6 +1,6 @@
 //! Where the field jumps, vertices are on the wall and have its normal, whatever the field inside does.
 
-use jbt::mesh::{Lattice, Options, Report, check_manifold, extract};
+use jbt::mesh::{Lattice, MeshReport, Options, check_manifold, extract};
 use jbt::{Box3, Compiler, Engine, Fineness, Polygonize, Polygonized};
 
 use crate::fields::{Closed, Sample};
@@ -236,7 +236,7 @@ fn walls_have_the_same_bits_for_any_threads_bricks_and_engines() {
 fn smooth_surfaces_have_no_walls() {
     let blobs =
         "sum { point { at (-0.4 0 0) surface_radius 0.31 } point { at (0.4 0.1 0) surface_radius 0.4 } }";
-    let Report { jump_evaluations, jump_vertices, .. } = mesh(blobs, 64).report;
+    let MeshReport { jump_evaluations, jump_vertices, .. } = mesh(blobs, 64).report;
     assert_eq!((jump_evaluations, jump_vertices), (0, 0));
     let crease =
         "union { point { at (-0.4 0 0) surface_radius 0.5 } point { at (0.4 0.1 0) surface_radius 0.5 } }";

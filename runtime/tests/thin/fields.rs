@@ -1,6 +1,6 @@
 //! A model as a field of the mesher, with or without pruning, that takes edits.
 
-use jbt::mesh::{Field, Work};
+use jbt::mesh::{Field, FieldWork};
 use jbt::region::{Divisible, Range};
 use jbt::{Box3, CheckedTree, Compiler, Engine, EvalError, Evaluator, Pruner, Query, Region};
 
@@ -55,9 +55,9 @@ impl Field for ModelField {
         layout.attributes().map(|(name, _, width)| (name.to_owned(), width)).collect()
     }
 
-    fn work(&self, region: &Region) -> Work {
+    fn work(&self, region: &Region) -> FieldWork {
         let rows = region.rows() as u64;
-        Work { evaluations: rows, ops: 30 * rows }
+        FieldWork { evaluations: rows, ops: 30 * rows }
     }
 
     fn field(

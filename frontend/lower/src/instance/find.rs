@@ -14,7 +14,7 @@ use crate::demand::Demand;
 use crate::names::ComputedId;
 use crate::position::{Position, PositionKey, Trails, position_key};
 use jbt_model::check::{CheckedTree, NodeId};
-use jbt_model::combine::{Combinator, Extreme, Form, ReduceCode, Union};
+use jbt_model::combine::{Combinator, Extreme, OperatorForm, ReduceCode, Union};
 use jbt_model::expression::Expression;
 use jbt_model::kind::{NodeKind, Primitive, chosen};
 use jbt_model::origin::ModelOrigin;
@@ -298,9 +298,9 @@ impl<'a> Finder<'a> {
         let depends = self.scene.tree.written(node).is_some();
         let operator = if depends { combinator } else { combinator.simplest() };
         match operator.form(depends) {
-            Form::Reduce(code) => InstanceKind::Reduce { operator, code, children },
-            Form::Difference => self.difference(node, position, &children),
-            Form::Map(code) => InstanceKind::Map { code, child: children[0] },
+            OperatorForm::Reduce(code) => InstanceKind::Reduce { operator, code, children },
+            OperatorForm::Difference => self.difference(node, position, &children),
+            OperatorForm::Map(code) => InstanceKind::Map { code, child: children[0] },
         }
     }
 

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use super::arena::NodeId;
-use crate::number::{Formula, Number};
+use crate::number::{Number, NumberFormula};
 use crate::parameter::Parameter;
 use crate::written::Written;
 
@@ -62,7 +62,7 @@ impl Dependence {
     /// The nodes that can change with these parameters, ascending.
     pub(super) fn affected(&self, parameters: &[Parameter], moved: &mut [bool]) -> Vec<NodeId> {
         let mentions = |number: &Number, moved: &[bool]| {
-            let mut names = number.formula().into_iter().flat_map(Formula::parameters);
+            let mut names = number.formula().into_iter().flat_map(NumberFormula::parameters);
             names.any(|(name, _)| self.names.get(name).is_some_and(|&index| moved[index]))
         };
         // A default mentions earlier parameters only.

@@ -6,7 +6,7 @@ use jbt_ir::limits;
 
 use crate::diagnostic::{Diagnostic, Span};
 use crate::expression::{Expression, Form, Formula};
-use crate::number::{Formula as NumberFormula, Number};
+use crate::number::{Number, NumberFormula};
 use crate::report::Report;
 use crate::word::{COORDINATES, FIELD};
 

@@ -2,7 +2,7 @@
 
 use super::arena::NodeId;
 use super::tree::CheckedTree;
-use crate::traverse::{Nodes, Order, Visit, Walk};
+use crate::traverse::{Nodes, Order, Traversal, Visit};
 
 /// The nodes of a checked tree.
 impl Nodes for &CheckedTree {
@@ -22,16 +22,16 @@ impl Nodes for &CheckedTree {
 impl CheckedTree {
     /// Parents before children, children in order.
     pub fn prefix(&self, visit: Visit) -> impl Iterator<Item = NodeId> {
-        Walk::new(self, self.root(), Order::Before, visit)
+        Traversal::new(self, self.root(), Order::Before, visit)
     }
 
     /// Parents between their children, children in order: see [`traverse`](crate::traverse).
     pub fn infix(&self, visit: Visit) -> impl Iterator<Item = NodeId> {
-        Walk::new(self, self.root(), Order::Between, visit)
+        Traversal::new(self, self.root(), Order::Between, visit)
     }
 
     /// Children before parents, in order.
     pub fn postfix(&self, visit: Visit) -> impl Iterator<Item = NodeId> {
-        Walk::new(self, self.root(), Order::Behind, visit)
+        Traversal::new(self, self.root(), Order::Behind, visit)
     }
 }

@@ -11,7 +11,7 @@ use super::numbers::check_number;
 use super::tree::CheckedTree;
 use crate::diagnostic::{Diagnostic, Diagnostics, Span};
 use crate::kind::NodeKind;
-use crate::number::{Formula, Number, Values};
+use crate::number::{Number, NumberFormula, ParameterValues};
 use crate::parameter::{Parameter, is_name, not_finite, refresh, unknown};
 use crate::report::{Report, clip};
 use crate::written::Written;
@@ -19,7 +19,7 @@ use crate::written::Written;
 /// The kind of a node for these values of parameters.
 pub(super) fn evaluate(
     written: &Written,
-    values: &Values,
+    values: &ParameterValues,
     iso: f64,
     span: Option<Span>,
 ) -> Result<NodeKind, Diagnostic> {
@@ -29,8 +29,8 @@ pub(super) fn evaluate(
 }
 
 /// The iso-value for these values of parameters, checked.
-pub(super) fn check_iso(report: &mut Report, iso: &Number, values: &Values) -> f64 {
-    let span = iso.formula().and_then(Formula::span);
+pub(super) fn check_iso(report: &mut Report, iso: &Number, values: &ParameterValues) -> f64 {
+    let span = iso.formula().and_then(NumberFormula::span);
     let iso = match iso.refreshed(values) {
         Ok(iso) => iso.value(),
         Err(error) => {
@@ -148,7 +148,7 @@ impl CheckedTree {
     fn evaluated_again(
         &self,
         moved: &mut [bool],
-        (iso, values): (f64, &Values),
+        (iso, values): (f64, &ParameterValues),
         report: &mut Report,
     ) -> Arc<[CheckedNode]> {
         let affected = self.dependence.affected(&self.parameters, moved);

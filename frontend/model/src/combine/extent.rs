@@ -4,7 +4,7 @@
 //! Both are needed: the smaller of a negative field and zero is the negative field, so an intersection
 //! reaches out of a child as far as the others can be negative.
 
-use super::member::Reach;
+use super::member::OperatorReach;
 use crate::bounds::Bounds;
 
 /// Boxes outside of which a field is zero, and not negative.
@@ -44,16 +44,16 @@ impl Extent {
     }
 
     /// That of an operator that can be something else than 0 there.
-    pub(super) fn reaching(reach: Reach, children: &[Self]) -> Self {
+    pub(super) fn reaching(reach: OperatorReach, children: &[Self]) -> Self {
         match reach {
-            Reach::Any => {
+            OperatorReach::Any => {
                 Self { support: Self::any(children).support, negative: Self::all(children).negative }
             }
-            Reach::Both => {
+            OperatorReach::Both => {
                 let negative = Self::any(children).negative;
                 Self { support: Self::all(children).support.hull(negative), negative }
             }
-            Reach::Left => children[0],
+            OperatorReach::Left => children[0],
         }
     }
 }

@@ -6,7 +6,7 @@
 use super::difference::Difference;
 use super::extent::Extent;
 use super::extreme::Extreme;
-use super::member::{Choice, Fold, Reach, Step, Unary};
+use super::member::{Choice, Fold, OperatorReach, Step, Unary};
 use crate::bounds::Bounds;
 
 /// Operands in any order, each with a weight.
@@ -104,8 +104,8 @@ impl<T: Choice> Plain<Choices> for T {
 
     fn extent(self, children: &[Extent], _: f64) -> Extent {
         let reach = match T::EXTREME {
-            Extreme::Largest => Reach::Any,
-            Extreme::Smallest => Reach::Both,
+            Extreme::Largest => OperatorReach::Any,
+            Extreme::Smallest => OperatorReach::Both,
         };
         Extent::reaching(reach, children)
     }
@@ -138,7 +138,7 @@ impl Plain<Differences> for Difference {
     }
 
     fn extent(self, children: &[Extent], _: f64) -> Extent {
-        Extent::reaching(Reach::Left, children)
+        Extent::reaching(OperatorReach::Left, children)
     }
 
     fn is_non_negative(self, children: &mut dyn Iterator<Item = bool>, _: bool) -> bool {

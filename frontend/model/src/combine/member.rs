@@ -170,7 +170,7 @@ pub trait Choice: Operator {
 
 /// What becomes of two sides.
 #[derive(Clone, Copy, Debug)]
-pub struct Pair<R> {
+pub struct PairResult<R> {
     /// The field.
     pub field: R,
     /// How much of the attributes comes from the left and from the right side, up to a common factor; at
@@ -180,7 +180,7 @@ pub struct Pair<R> {
 
 /// Where an operator can be something else than 0.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Reach {
+pub enum OperatorReach {
     /// Where any side is.
     Any,
     /// Where all are, if none is negative anywhere.
@@ -203,13 +203,13 @@ pub trait Step: Operator {
     fn push_columns(self, _row: &mut Vec<f64>) {}
 
     /// The step, plainly.
-    fn pair(self, sides: [f64; 2], iso: f64) -> Pair<f64>;
+    fn pair(self, sides: [f64; 2], iso: f64) -> PairResult<f64>;
 
     /// How far two fields are from where another formula holds, or another side wins.
     fn kink_distance(self, sides: [f64; 2], iso: f64) -> f64;
 
     /// Where it can be something else than 0.
-    fn reach(self) -> Reach;
+    fn reach(self) -> OperatorReach;
 
     /// Whether the field can never be negative, if those of the sides can (`false`) or cannot (`true`).
     fn is_non_negative(self, sides: [bool; 2]) -> bool;
@@ -224,7 +224,7 @@ pub trait Step: Operator {
         sides: [D::Real; 2],
         row: &[D::Real],
         iso2: D::Real,
-    ) -> Pair<D::Real>;
+    ) -> PairResult<D::Real>;
 }
 
 /// What a map states: it takes one field.

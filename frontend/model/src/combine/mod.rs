@@ -50,7 +50,7 @@ mod smooth;
 
 pub use extreme::Extreme;
 pub use member::Syntax;
-pub use member::{Finished, Met, Pair, Setting};
+pub use member::{Finished, Met, PairResult, Setting};
 pub use set::SetOperation;
 
 use extent::Extent;
@@ -59,7 +59,7 @@ use member::{Choice, Fold, Operator, Step, Unary};
 
 /// What an operator is to the compiler: whatever selects code, without numbers.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-pub enum Form {
+pub enum OperatorForm {
     /// A fold, a choice or a step: any number of operands, which may be rows of a fold of the IR.
     Reduce(ReduceCode),
     /// The first child without the others.
@@ -180,7 +180,7 @@ macro_rules! operators {
                 sides: [D::Real; 2],
                 row: &[D::Real],
                 iso2: D::Real,
-            ) -> Pair<D::Real> {
+            ) -> PairResult<D::Real> {
                 match self { $( Self::$step(code) => <$step as Step>::emit(code, d, sides, row, iso2), )+ }
             }
         }
@@ -201,13 +201,13 @@ macro_rules! operators {
 
         impl Combinator {
             /// What it is to the compiler; `depends`: its numbers depend on parameters.
-            pub fn form(self, depends: bool) -> Form {
+            pub fn form(self, depends: bool) -> OperatorForm {
                 match self {
-                    $( Self::$fold(it) => Form::Reduce(ReduceCode::Fold(FoldCode::$fold(it.code(depends)))), )+
-                    $( Self::$choice(_) => Form::Reduce(ReduceCode::Choice(<$choice as Choice>::EXTREME)), )+
-                    Self::$difference(_) => Form::Difference,
-                    $( Self::$step(it) => Form::Reduce(ReduceCode::Step(StepCode::$step(it.code()))), )+
-                    $( Self::$map(_) => Form::Map(MapCode::$map), )+
+                    $( Self::$fold(it) => OperatorForm::Reduce(ReduceCode::Fold(FoldCode::$fold(it.code(depends)))), )+
+                    $( Self::$choice(_) => OperatorForm::Reduce(ReduceCode::Choice(<$choice as Choice>::EXTREME)), )+
+                    Self::$difference(_) => OperatorForm::Difference,
+                    $( Self::$step(it) => OperatorForm::Reduce(ReduceCode::Step(StepCode::$step(it.code()))), )+
+                    $( Self::$map(_) => OperatorForm::Map(MapCode::$map), )+
                 }
             }
 

@@ -40,7 +40,7 @@
 
 use jbt_ir::{Domain, Rule};
 
-use super::member::{Pair, Reach};
+use super::member::{OperatorReach, PairResult};
 use super::ricci::FLOOR;
 use super::set::SetOperation;
 use super::set_step::SetFormula;
@@ -134,7 +134,7 @@ impl SetFormula for Rvachev {
         }
     }
 
-    fn pair(self, [a, b]: [f64; 2], number: f64, iso: f64) -> Pair<f64> {
+    fn pair(self, [a, b]: [f64; 2], number: f64, iso: f64) -> PairResult<f64> {
         let (relative, here) = self.relative([a, b], number, iso);
         let right = match self.0 {
             SetOperation::Union | SetOperation::Intersection => b,
@@ -142,7 +142,7 @@ impl SetFormula for Rvachev {
             SetOperation::Difference => 0.0,
         };
         let weights = [a.max(0.0) * here.slopes[0].max(0.0), right.max(0.0) * here.slopes[1].max(0.0)];
-        Pair { field: iso * relative.max(0.0), weights }
+        PairResult { field: iso * relative.max(0.0), weights }
     }
 
     fn kink_distance(self, [a, b]: [f64; 2], number: f64, iso: f64) -> f64 {
@@ -154,8 +154,8 @@ impl SetFormula for Rvachev {
         iso * here.root.min(relative.abs()).min(appears / iso)
     }
 
-    fn reach(self) -> Reach {
-        Reach::Any
+    fn reach(self) -> OperatorReach {
+        OperatorReach::Any
     }
 
     fn is_non_negative(self, _: [bool; 2]) -> bool {
@@ -172,7 +172,7 @@ impl SetFormula for Rvachev {
         [a, b]: [D::Real; 2],
         row: &[D::Real],
         iso2: D::Real,
-    ) -> Pair<D::Real> {
+    ) -> PairResult<D::Real> {
         let (zero, one, half, two) = (d.constant(0.0), d.constant(1.0), d.constant(0.5), d.constant(2.0));
         let (iso, inverse) = (d.mul(iso2, half), d.div(two, iso2));
         let in_units = [d.mul(a, inverse), d.mul(b, inverse)];
@@ -195,7 +195,7 @@ impl SetFormula for Rvachev {
             let (field, slope) = (positive_part(d, field), positive_part(d, slope));
             d.mul(field, slope)
         };
-        Pair { field, weights: [weight(a, here.slopes[0]), weight(right, here.slopes[1])] }
+        PairResult { field, weights: [weight(a, here.slopes[0]), weight(right, here.slopes[1])] }
     }
 }
 

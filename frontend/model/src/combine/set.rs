@@ -1,7 +1,7 @@
 //! The three operations on sets.
 
 use crate::field::FieldValue;
-use crate::member::Parameter;
+use crate::member::ParameterType;
 
 /// What is made of sets.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
@@ -33,7 +33,7 @@ impl SetOperation {
     }
 }
 
-impl Parameter for SetOperation {
+impl ParameterType for SetOperation {
     fn read(value: &FieldValue) -> Self {
         Self::ALL[(value.real() as usize).min(2)]
     }

@@ -5,7 +5,7 @@ use std::hash::Hash;
 
 use jbt_ir::{Domain, Rule};
 
-use super::member::{Operator, Pair, Reach, Step};
+use super::member::{Operator, OperatorReach, PairResult, Step};
 
 /// The formula of a set operation in a family. It is what of the step selects code.
 pub trait SetFormula: Copy + Eq + Hash + Debug {
@@ -13,13 +13,13 @@ pub trait SetFormula: Copy + Eq + Hash + Debug {
     fn push_columns(self, number: f64, row: &mut Vec<f64>);
 
     /// The step, plainly.
-    fn pair(self, sides: [f64; 2], number: f64, iso: f64) -> Pair<f64>;
+    fn pair(self, sides: [f64; 2], number: f64, iso: f64) -> PairResult<f64>;
 
     /// How far two fields are from where gradients jump.
     fn kink_distance(self, sides: [f64; 2], number: f64, iso: f64) -> f64;
 
     /// Where it can be something else than 0.
-    fn reach(self) -> Reach;
+    fn reach(self) -> OperatorReach;
 
     /// Whether the field can never be negative, if those of the sides can (`false`) or cannot (`true`).
     fn is_non_negative(self, sides: [bool; 2]) -> bool;
@@ -28,8 +28,13 @@ pub trait SetFormula: Copy + Eq + Hash + Debug {
     fn rule(self, non_negative: bool) -> Rule;
 
     /// The step over the ops. `iso2` is twice the iso-value.
-    fn emit<D: Domain>(self, d: &mut D, sides: [D::Real; 2], row: &[D::Real], iso2: D::Real)
-    -> Pair<D::Real>;
+    fn emit<D: Domain>(
+        self,
+        d: &mut D,
+        sides: [D::Real; 2],
+        row: &[D::Real],
+        iso2: D::Real,
+    ) -> PairResult<D::Real>;
 }
 
 /// A step that has such a formula.
@@ -58,7 +63,7 @@ impl<T: SetStep> Step for T {
         self.formula().push_columns(self.number(), row);
     }
 
-    fn pair(self, sides: [f64; 2], iso: f64) -> Pair<f64> {
+    fn pair(self, sides: [f64; 2], iso: f64) -> PairResult<f64> {
         self.formula().pair(sides, self.number(), iso)
     }
 
@@ -66,7 +71,7 @@ impl<T: SetStep> Step for T {
         self.formula().kink_distance(sides, self.number(), iso)
     }
 
-    fn reach(self) -> Reach {
+    fn reach(self) -> OperatorReach {
         self.formula().reach()
     }
 
@@ -84,7 +89,7 @@ impl<T: SetStep> Step for T {
         sides: [D::Real; 2],
         row: &[D::Real],
         iso2: D::Real,
-    ) -> Pair<D::Real> {
+    ) -> PairResult<D::Real> {
         formula.emit(d, sides, row, iso2)
     }
 }

@@ -20,7 +20,7 @@
 
 use jbt_ir::{Domain, Rule};
 
-use super::member::{Pair, Reach};
+use super::member::{OperatorReach, PairResult};
 use super::set::SetOperation;
 use super::set_step::SetFormula;
 use crate::skeleton::positive_part;
@@ -83,19 +83,19 @@ impl SetFormula for Smooth {
         row.extend([width, 0.25 / width]);
     }
 
-    fn pair(self, [a, b]: [f64; 2], width: f64, iso: f64) -> Pair<f64> {
+    fn pair(self, [a, b]: [f64; 2], width: f64, iso: f64) -> PairResult<f64> {
         let is_union = self.0 == SetOperation::Union;
         match self.0 {
             SetOperation::Union | SetOperation::Intersection => {
                 let (field, slopes) = rounded(is_union, [a, b], width);
-                Pair { field, weights: [(a * slopes[0]).max(0.0), (b * slopes[1]).max(0.0)] }
+                PairResult { field, weights: [(a * slopes[0]).max(0.0), (b * slopes[1]).max(0.0)] }
             }
             SetOperation::Difference => {
                 let (width, complement) = (limited(width, b).0, (2.0 * iso - b).max(0.0));
                 let (field, slopes) = rounded(false, [a, complement], width);
                 // What is not there may limit the field, but takes nothing from the attributes.
                 let slopes = if b > 0.0 { slopes } else { [1.0, 0.0] };
-                Pair { field, weights: [(a * slopes[0]).max(0.0), (complement * slopes[1]).max(0.0)] }
+                PairResult { field, weights: [(a * slopes[0]).max(0.0), (complement * slopes[1]).max(0.0)] }
             }
         }
     }
@@ -113,11 +113,11 @@ impl SetFormula for Smooth {
         }
     }
 
-    fn reach(self) -> Reach {
+    fn reach(self) -> OperatorReach {
         match self.0 {
-            SetOperation::Union => Reach::Any,
-            SetOperation::Intersection => Reach::Both,
-            SetOperation::Difference => Reach::Left,
+            SetOperation::Union => OperatorReach::Any,
+            SetOperation::Intersection => OperatorReach::Both,
+            SetOperation::Difference => OperatorReach::Left,
         }
     }
 
@@ -144,16 +144,16 @@ impl SetFormula for Smooth {
         [a, b]: [D::Real; 2],
         row: &[D::Real],
         iso2: D::Real,
-    ) -> Pair<D::Real> {
+    ) -> PairResult<D::Real> {
         let width = Width { width: row[0], quarter: row[1] };
         match self.0 {
             SetOperation::Union => {
                 let (field, [left, right]) = emit_rounded(d, true, [a, b], width);
-                Pair { field, weights: [weight(d, a, left), weight(d, b, right)] }
+                PairResult { field, weights: [weight(d, a, left), weight(d, b, right)] }
             }
             SetOperation::Intersection => {
                 let (field, [left, right]) = emit_rounded(d, false, [a, b], width);
-                Pair { field, weights: [weight(d, a, left), weight(d, b, right)] }
+                PairResult { field, weights: [weight(d, a, left), weight(d, b, right)] }
             }
             SetOperation::Difference => {
                 let (here, _) = emit_limited(d, width, b);
@@ -168,7 +168,7 @@ impl SetFormula for Smooth {
                 // What is not there may limit the field, but takes nothing from the attributes.
                 let there = d.lt(zero, b);
                 let (left, right) = (d.select(there, left, one), d.select(there, right, zero));
-                Pair { field, weights: [weight(d, a, left), weight(d, cut, right)] }
+                PairResult { field, weights: [weight(d, a, left), weight(d, cut, right)] }
             }
         }
     }

@@ -11,7 +11,7 @@
 
 use jbt_ir::{Domain, Rule};
 
-use super::member::{Operator, Pair, Reach, Step};
+use super::member::{Operator, PairResult, OperatorReach, Step};
 use crate::member::member;
 use crate::skeleton::positive_part;
 
@@ -28,13 +28,13 @@ impl Step for SymmetricDifference {
 
     fn code(self) {}
 
-    fn pair(self, [a, b]: [f64; 2], iso: f64) -> Pair<f64> {
+    fn pair(self, [a, b]: [f64; 2], iso: f64) -> PairResult<f64> {
         let (larger, smaller) = (a.max(b), a.min(b));
         let cut = (2.0 * iso - smaller).max(0.0);
         let right_is_larger = a < b;
         let cuts = cut < larger && smaller > 0.0;
         let weights = if cuts == right_is_larger { [1.0, 0.0] } else { [0.0, 1.0] };
-        Pair { field: cut.min(larger), weights }
+        PairResult { field: cut.min(larger), weights }
     }
 
     fn kink_distance(self, [a, b]: [f64; 2], iso: f64) -> f64 {
@@ -48,8 +48,8 @@ impl Step for SymmetricDifference {
         between.min(cut.abs()).min(appears)
     }
 
-    fn reach(self) -> Reach {
-        Reach::Any
+    fn reach(self) -> OperatorReach {
+        OperatorReach::Any
     }
 
     fn is_non_negative(self, [left, right]: [bool; 2]) -> bool {
@@ -66,7 +66,7 @@ impl Step for SymmetricDifference {
         [a, b]: [D::Real; 2],
         _: &[D::Real],
         iso2: D::Real,
-    ) -> Pair<D::Real> {
+    ) -> PairResult<D::Real> {
         let (larger, smaller) = (d.max(b, a), d.min(b, a));
         let complement = d.sub(iso2, smaller);
         let cut = positive_part(d, complement);
@@ -79,6 +79,6 @@ impl Step for SymmetricDifference {
             (d.select(right_is_larger, one, zero), d.select(right_is_larger, zero, one));
         let right = d.select(cuts, smaller_wins, larger_wins);
         let left = d.sub(one, right);
-        Pair { field, weights: [left, right] }
+        PairResult { field, weights: [left, right] }
     }
 }

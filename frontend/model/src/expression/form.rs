@@ -18,7 +18,7 @@ use super::operand::Operand;
 use super::operation::{self, Operation};
 use crate::falloff::Falloff;
 use crate::function::ANY;
-use crate::number::{Formula as NumberFormula, Number, Step, Variable};
+use crate::number::{Number, NumberFormula, Step, Variable};
 
 /// A formula without its numbers: what selects code.
 #[derive(Clone, PartialEq, Eq, Hash, Debug)]
@@ -271,32 +271,32 @@ impl Assembler {
     /// Steps that depend on no variable become one number, in time linear in the list.
     pub fn postfix(&mut self, steps: &[Step], definitions: &[Draft]) -> Draft {
         /// An operand: a number, whose steps begin here, or something else.
-        enum Entry {
+        enum StackEntry {
             Constant(usize),
             Varying(Draft),
         }
-        let mut stack: Vec<(Entry, usize)> = Vec::new();
-        let drafted = |(entry, end): (Entry, usize)| match entry {
-            Entry::Varying(draft) => draft,
-            Entry::Constant(first) => Draft::Constant(number(&steps[first..end])),
+        let mut stack: Vec<(StackEntry, usize)> = Vec::new();
+        let drafted = |(entry, end): (StackEntry, usize)| match entry {
+            StackEntry::Varying(draft) => draft,
+            StackEntry::Constant(first) => Draft::Constant(number(&steps[first..end])),
         };
         for (index, step) in steps.iter().enumerate() {
             let first = stack.len() - step.operands();
-            let constant = stack[first..].iter().all(|(entry, _)| matches!(entry, Entry::Constant(_)));
+            let constant = stack[first..].iter().all(|(entry, _)| matches!(entry, StackEntry::Constant(_)));
             let entry = match step {
-                Step::Variable(Variable::Coordinate(axis)) => Entry::Varying(Draft::Coordinate(*axis)),
-                Step::Variable(Variable::Child(child)) => Entry::Varying(Draft::Child(*child)),
+                Step::Variable(Variable::Coordinate(axis)) => StackEntry::Varying(Draft::Coordinate(*axis)),
+                Step::Variable(Variable::Child(child)) => StackEntry::Varying(Draft::Child(*child)),
                 Step::Variable(Variable::Definition(place)) => {
-                    Entry::Varying(definitions[*place as usize].clone())
+                    StackEntry::Varying(definitions[*place as usize].clone())
                 }
-                Step::Literal(_) | Step::Parameter { .. } => Entry::Constant(index),
+                Step::Literal(_) | Step::Parameter { .. } => StackEntry::Constant(index),
                 Step::Negate | Step::Binary(_) | Step::Call(..) if constant => match &stack[first].0 {
-                    Entry::Constant(start) => Entry::Constant(*start),
-                    Entry::Varying(_) => unreachable!("all are constant"),
+                    StackEntry::Constant(start) => StackEntry::Constant(*start),
+                    StackEntry::Varying(_) => unreachable!("all are constant"),
                 },
                 Step::Negate | Step::Binary(_) | Step::Call(..) => {
                     let operands = stack.drain(first..).map(drafted).collect();
-                    Entry::Varying(self.apply(step, operands))
+                    StackEntry::Varying(self.apply(step, operands))
                 }
             };
             stack.truncate(first);

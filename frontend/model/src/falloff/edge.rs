@@ -3,7 +3,7 @@
 use jbt_ir::Domain;
 
 use crate::field::FieldValue;
-use crate::member::Parameter;
+use crate::member::ParameterType;
 
 /// The edge of a falloff.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -79,7 +79,7 @@ impl Edge {
     }
 }
 
-impl Parameter for Edge {
+impl ParameterType for Edge {
     fn read(value: &FieldValue) -> Self {
         if value.real() == 0.0 { Self::Exact } else { Self::Smooth }
     }

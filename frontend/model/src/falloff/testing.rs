@@ -36,7 +36,7 @@ impl Published {
         }
         inverse_is_inverse(falloff);
         for depends in [false, true] {
-            Compiled::new(falloff, depends).judge(falloff);
+            CompiledFalloff::new(falloff, depends).judge(falloff);
         }
     }
 }
@@ -59,7 +59,7 @@ fn inverse_is_inverse(falloff: Falloff) {
 }
 
 /// A falloff as code with its row.
-struct Compiled {
+struct CompiledFalloff {
     kind: FalloffKind,
     row: Vec<f32>,
 }
@@ -67,7 +67,7 @@ struct Compiled {
 /// Steps of s from 0 to 1.
 const STEPS: u32 = 100_000;
 
-impl Compiled {
+impl CompiledFalloff {
     fn new(falloff: Falloff, depends: bool) -> Self {
         let (kind, mut row) = (falloff.code(depends), Vec::new());
         falloff.columns(kind, &mut row);

@@ -6,7 +6,7 @@ use std::mem;
 use std::sync::Arc;
 
 use super::binary::Binary;
-use super::value::Values;
+use super::value::ParameterValues;
 use crate::diagnostic::{Diagnostic, Span};
 use crate::field::plain;
 use crate::function::Function;
@@ -99,19 +99,19 @@ impl Step {
 
 /// A number as steps, at least one of which is a parameter.
 #[derive(Clone, Debug)]
-pub struct Formula {
+pub struct NumberFormula {
     steps: Box<[Step]>,
     /// Its place in the text.
     span: Option<Span>,
 }
 
-impl PartialEq for Formula {
+impl PartialEq for NumberFormula {
     fn eq(&self, other: &Self) -> bool {
         self.steps == other.steps
     }
 }
 
-impl Formula {
+impl NumberFormula {
     /// A formula of steps that leave one value.
     pub fn new(steps: Vec<Step>, span: Option<Span>) -> Self {
         Self { steps: steps.into(), span }
@@ -136,7 +136,7 @@ impl Formula {
     }
 
     /// The value for these values of the parameters.
-    pub(crate) fn evaluate(&self, values: &Values) -> Result<f64, Diagnostic> {
+    pub(crate) fn evaluate(&self, values: &ParameterValues) -> Result<f64, Diagnostic> {
         let error = |message: String| Diagnostic::error(self.span, message);
         let mut stack: Vec<f64> = Vec::new();
         for step in &self.steps {
@@ -177,13 +177,13 @@ const SIGN: u8 = 3;
 const ATOM: u8 = 5;
 
 /// Output that is still to be printed.
-enum Piece {
+enum Pending {
     Text(&'static str),
     /// A step, in parentheses if it binds less strongly than this.
     Step(u32, u8),
 }
 
-impl fmt::Display for Formula {
+impl fmt::Display for NumberFormula {
     /// In the text format, with no more parentheses than it needs.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         show(&self.steps, f, |_, _| Ok(()))
@@ -197,21 +197,21 @@ pub fn show<W: fmt::Write>(
     mut name: impl FnMut(&mut W, Variable) -> fmt::Result,
 ) -> fmt::Result {
     let (operands, starts) = operands(steps);
-    let mut pieces = vec![Piece::Step(steps.len() as u32 - 1, 0)];
+    let mut pieces = vec![Pending::Step(steps.len() as u32 - 1, 0)];
     while let Some(piece) = pieces.pop() {
         let (index, least) = match piece {
-            Piece::Text(text) => {
+            Pending::Text(text) => {
                 f.write_str(text)?;
                 continue;
             }
-            Piece::Step(index, least) => (index, least),
+            Pending::Step(index, least) => (index, least),
         };
         let step = &steps[index as usize];
         let mine = &operands[starts[index as usize] as usize..][..step.operands()];
         let strength = strength(step);
         if strength < least {
             f.write_str("(")?;
-            pieces.push(Piece::Text(")"));
+            pieces.push(Pending::Text(")"));
         }
         match step {
             Step::Literal(value) => f.write_str(&plain(*value))?,
@@ -219,7 +219,7 @@ pub fn show<W: fmt::Write>(
             Step::Variable(variable) => name(f, *variable)?,
             Step::Negate => {
                 f.write_str("-")?;
-                pieces.push(Piece::Step(mine[0], SIGN));
+                pieces.push(Pending::Step(mine[0], SIGN));
             }
             Step::Binary(binary) => {
                 // Operands group to the left, powers to the right; a sign in an exponent needs no
@@ -230,20 +230,20 @@ pub fn show<W: fmt::Write>(
                         (strength, strength + 1)
                     }
                 };
-                pieces.push(Piece::Step(mine[1], right));
-                pieces.push(Piece::Text(binary.text()));
-                pieces.push(Piece::Step(mine[0], left));
+                pieces.push(Pending::Step(mine[1], right));
+                pieces.push(Pending::Text(binary.text()));
+                pieces.push(Pending::Step(mine[0], left));
             }
             Step::Call(function, _) => {
                 match function {
                     Function::Falloff(falloff) => write!(f, "{}(", falloff.0.text())?,
                     _ => write!(f, "{}(", function.name())?,
                 }
-                pieces.push(Piece::Text(")"));
+                pieces.push(Pending::Text(")"));
                 for (place, &operand) in mine.iter().enumerate().rev() {
-                    pieces.push(Piece::Step(operand, 0));
+                    pieces.push(Pending::Step(operand, 0));
                     if place > 0 {
-                        pieces.push(Piece::Text(", "));
+                        pieces.push(Pending::Text(", "));
                     }
                 }
             }

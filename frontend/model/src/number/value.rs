@@ -4,4 +4,4 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 /// The values of parameters, by name.
-pub(crate) type Values = HashMap<Arc<str>, f64>;
+pub(crate) type ParameterValues = HashMap<Arc<str>, f64>;

@@ -35,9 +35,9 @@ use glam::{DAffine3, DVec3};
 use jbt_ir::Domain;
 use jbt_ir::limits::MAX_CURVE_HALVINGS;
 
-use super::points::Place;
+use super::points::NearestPlace;
 use super::tapered::Cone;
-use super::tube::Part;
+use super::tube::TubePart;
 use crate::bounds::Bounds;
 
 /// Newton's steps.
@@ -136,7 +136,7 @@ impl Cubic {
     }
 }
 
-impl Part for Cubic {
+impl TubePart for Cubic {
     const COLUMNS: &'static [&'static str] = &[
         "px", "py", "pz", "c1x", "c1y", "c1z", "c2x", "c2y", "c2z", "c3x", "c3y", "c3z", "r0", "r1", "r2",
         "r3", //
@@ -179,7 +179,7 @@ impl Part for Cubic {
     }
 
     fn emit<D: Domain>(d: &mut D, p: [D::Real; 3], piece: &[D::Real]) -> D::Real {
-        let curve = Curve::new(d, p, piece);
+        let curve = CubicCurve::new(d, p, piece);
         let mut t = curve.start(d, [piece[16], piece[17], piece[18]], piece[19]);
         let at = curve.ball(d, t);
         let mut best = (at.distance, t);
@@ -195,7 +195,7 @@ impl Part for Cubic {
         curve.ball(d, t).distance
     }
 
-    fn places(parts: impl Iterator<Item = Self>, p: DVec3) -> Vec<Place> {
+    fn places(parts: impl Iterator<Item = Self>, p: DVec3) -> Vec<NearestPlace> {
         let mut places = Vec::new();
         for cubic in parts {
             let at = |i: usize| i as f64 / SAMPLES as f64;
@@ -206,7 +206,11 @@ impl Part for Cubic {
                     let t = minimum(at(before), at(behind), |t| cubic.distance_at(p, t));
                     let t = if cubic.distance_at(p, at(i)) < cubic.distance_at(p, t) { at(i) } else { t };
                     let firmness = if t > 0.0 && t < 1.0 { cubic.firmness(p, t) } else { 1.0 };
-                    places.push(Place { distance: cubic.distance_at(p, t), foot: cubic.at(t).0, firmness });
+                    places.push(NearestPlace {
+                        distance: cubic.distance_at(p, t),
+                        foot: cubic.at(t).0,
+                        firmness,
+                    });
                 }
             }
         }
@@ -263,7 +267,7 @@ fn largest([a, b, c, d]: [f64; 4]) -> f64 {
 }
 
 /// A piece, as seen from a point.
-struct Curve<D: Domain> {
+struct CubicCurve<D: Domain> {
     /// From the first end to the point.
     from_start: [D::Real; 3],
     /// Coefficients of the first, second and third power.
@@ -282,7 +286,7 @@ struct Ball<D: Domain> {
     distance: D::Real,
 }
 
-impl<D: Domain> Curve<D> {
+impl<D: Domain> CubicCurve<D> {
     fn new(d: &mut D, p: [D::Real; 3], piece: &[D::Real]) -> Self {
         Self {
             from_start: std::array::from_fn(|axis| d.sub(p[axis], piece[axis])),

@@ -47,7 +47,7 @@ use std::f64::consts::{PI, TAU};
 use glam::{DAffine3, DVec3};
 use jbt_ir::{Domain, limits};
 
-use super::points::{self, Place};
+use super::points::{self, NearestPlace};
 use super::{SkeletonMember, Symmetry};
 use crate::affine::sin_cos_degrees;
 use crate::angle::atan2;
@@ -111,10 +111,10 @@ impl Helix {
 
     /// The nearest places of all turns that may hold the nearest of all, and ends; `q` is in the pose. With
     /// `all`, both ends; otherwise only ends that are nearer than the curve next to them.
-    fn places(&self, q: DVec3, all: bool) -> Vec<Place> {
+    fn places(&self, q: DVec3, all: bool) -> Vec<NearestPlace> {
         let (rho, phi, b) = (q.x.hypot(q.y), q.y.atan2(q.x), self.rise());
         let stretch = rho * self.radius / (b * b);
-        let place = |t: f64| Place {
+        let place = |t: f64| NearestPlace {
             distance: q.distance(self.at(t)),
             foot: self.at(t),
             firmness: (rho * self.radius * (t - phi).cos() + b * b) / (self.radius.powi(2) + b * b),
@@ -133,12 +133,12 @@ impl Helix {
             root(stretch, sigma.abs()).map(|s| middle + s.copysign(sigma))
         };
         let inside = |t: &f64| *t >= 0.0 && *t <= self.last();
-        let mut places: Vec<Place> =
+        let mut places: Vec<NearestPlace> =
             turns.into_iter().filter_map(place_of).filter(inside).map(place).collect();
         let [begins, ends] = [0.0, self.last()].map(|t| self.slope(q, t));
         let all = all || places.is_empty();
         for (t, is_nearest) in [(0.0, all || begins >= 0.0), (self.last(), all || ends <= 0.0)] {
-            places.extend(is_nearest.then(|| Place { firmness: 1.0, ..place(t) }));
+            places.extend(is_nearest.then(|| NearestPlace { firmness: 1.0, ..place(t) }));
         }
         places
     }
@@ -234,7 +234,7 @@ impl SkeletonMember for Helix {
 
     fn emit<D: Domain>(d: &mut D, p: [D::Real; 3], row: &[D::Real]) -> D::Real {
         let (radius, end) = (row[0], [row[1], row[2], row[3]]);
-        let curve = Curve::<D> { radius, end, pitch: row[4], rise: row[5], turns: row[8], whole: row[9], rest: row[10] };
+        let curve = HelixCurve::<D> { radius, end, pitch: row[4], rise: row[5], turns: row[8], whole: row[9], rest: row[10] };
         let (phi, height) = (atan2(d, p[1], p[0]), d.mul(p[2], row[6]));
         let height = clamped(d, height, HIGHEST);
         let turn = curve.turn(d, p, phi, height);
@@ -311,7 +311,7 @@ fn offset<D: Domain>(d: &mut D, a: D::Real, sigma: D::Real) -> D::Real {
 }
 
 /// A helix as the program sees it: see [`Helix::COLUMNS`](SkeletonMember::COLUMNS).
-struct Curve<D: Domain> {
+struct HelixCurve<D: Domain> {
     radius: D::Real,
     end: [D::Real; 3],
     pitch: D::Real,
@@ -321,7 +321,7 @@ struct Curve<D: Domain> {
     rest: D::Real,
 }
 
-impl<D: Domain> Curve<D> {
+impl<D: Domain> HelixCurve<D> {
     /// The number of the turn that may hold the nearest place; `height` is in turns.
     fn turn(&self, d: &mut D, p: [D::Real; 3], phi: D::Real, height: D::Real) -> D::Real {
         let (zero, one) = (d.constant(0.0), d.constant(1.0));

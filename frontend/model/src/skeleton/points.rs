@@ -67,7 +67,7 @@ pub(super) fn fault(owner: &str, points: &[DVec3], radii: &[f64], least: usize) 
 
 /// A nearest place of a part of a skeleton.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
+pub(super) struct NearestPlace {
     /// The distance from it, below zero inside.
     pub(super) distance: f64,
     /// The point of the skeleton that the direction leads to.
@@ -77,13 +77,13 @@ pub(super) struct Place {
 }
 
 /// The smallest distance, squared: zero inside.
-pub(super) fn distance_squared(places: impl IntoIterator<Item = Place>) -> f64 {
+pub(super) fn distance_squared(places: impl IntoIterator<Item = NearestPlace>) -> f64 {
     let nearest = places.into_iter().map(|place| place.distance).fold(f64::INFINITY, f64::min);
     nearest.max(0.0).powi(2)
 }
 
 /// How much nearer the nearest place is than the next one in another direction.
-pub(super) fn kink_distance(places: &[Place]) -> f64 {
+pub(super) fn kink_distance(places: &[NearestPlace]) -> f64 {
     let Some(best) = places.iter().min_by(|a, b| a.distance.total_cmp(&b.distance)) else {
         return f64::INFINITY;
     };
@@ -94,6 +94,7 @@ pub(super) fn kink_distance(places: &[Place]) -> f64 {
         return 0.0;
     }
     // Where the distance is flat, the search finds the distance to all digits but the place to half of them.
-    let other = |place: &&Place| place.foot.distance(best.foot) > 1e-5 * (best.distance + best.foot.length());
+    let other =
+        |place: &&NearestPlace| place.foot.distance(best.foot) > 1e-5 * (best.distance + best.foot.length());
     places.iter().filter(other).map(|place| place.distance - best.distance).fold(f64::INFINITY, f64::min)
 }

@@ -16,7 +16,7 @@
 use glam::{DAffine3, DMat3, DVec2, DVec3};
 use jbt_ir::Domain;
 
-use super::points::{self, Place};
+use super::points::{self, NearestPlace};
 use super::segment::segment_distance_squared;
 use super::{Pieces, SkeletonMember, Symmetry};
 use crate::bounds::Bounds;
@@ -63,7 +63,7 @@ impl Polygon {
 
     /// The nearest place of each edge to a point of the pose; no places for a point above or below the
     /// inside.
-    fn places(&self, q: DVec3) -> Vec<Place> {
+    fn places(&self, q: DVec3) -> Vec<NearestPlace> {
         let edges = self.edges();
         let crossed = |[a, b]: &&[DVec2; 2]| {
             (a.y > q.y) != (b.y > q.y) && q.x < a.x + (q.y - a.y) * (b.x - a.x) / (b.y - a.y)
@@ -76,7 +76,7 @@ impl Polygon {
             let square = along.length_squared();
             let t = if square > 0.0 { ((q.truncate() - *a).dot(along) / square).clamp(0.0, 1.0) } else { 0.0 };
             let square = segment_distance_squared(q, a.extend(0.0), b.extend(0.0));
-            Place { distance: square.sqrt(), foot: (*a + t * along).extend(0.0), firmness: 1.0 }
+            NearestPlace { distance: square.sqrt(), foot: (*a + t * along).extend(0.0), firmness: 1.0 }
         };
         edges.iter().map(place).collect()
     }

@@ -14,8 +14,8 @@
 use glam::{DAffine3, DVec3};
 use jbt_ir::Domain;
 
-use super::points::Place;
-use super::tube::Part;
+use super::points::NearestPlace;
+use super::tube::TubePart;
 use crate::bounds::Bounds;
 
 /// The balls between two end balls, with the end balls.
@@ -61,7 +61,7 @@ impl Cone {
     }
 }
 
-impl Part for Cone {
+impl TubePart for Cone {
     const COLUMNS: &'static [&'static str] =
         &["ax", "ay", "az", "ux", "uy", "uz", "length", "radius", "taper", "lean"];
 
@@ -102,10 +102,10 @@ impl Part for Cone {
         d.sub(distance, ball)
     }
 
-    fn places(parts: impl Iterator<Item = Self>, p: DVec3) -> Vec<Place> {
+    fn places(parts: impl Iterator<Item = Self>, p: DVec3) -> Vec<NearestPlace> {
         let place = |cone: Self| {
             let (foot, radius) = cone.at(cone.nearest(p));
-            Place { distance: p.distance(foot) - radius, foot, firmness: 1.0 }
+            NearestPlace { distance: p.distance(foot) - radius, foot, firmness: 1.0 }
         };
         parts.map(place).collect()
     }

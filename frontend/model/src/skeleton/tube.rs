@@ -1,4 +1,5 @@
-//! Tubes along paths: the shared code of lines and curves through points. Each skeleton lists its [`Part`]s.
+//! Tubes along paths: the shared code of lines and curves through points. Each skeleton lists its
+//! [`TubePart`]s.
 //!
 //! A tube is the solid of all balls with middles on the path, whose radii may differ: its distance is the
 //! smallest distance of its parts, and 0 inside. A thin tube has radii of 0. The parts, or divisions of them,
@@ -7,14 +8,14 @@
 use glam::{DAffine3, DVec3};
 use jbt_ir::Domain;
 
-use super::points::{self, Path, Place};
+use super::points::{self, NearestPlace, Path};
 use super::{Pieces, SkeletonMember, Symmetry};
 use crate::bounds::Bounds;
 use crate::diagnostic::Diagnostic;
 use crate::member::Member;
 
 /// The balls along a line or a curve.
-pub(super) trait Part: Sized {
+pub(super) trait TubePart: Sized {
     /// Names of the columns that [`columns`](Self::columns) fills, in order.
     const COLUMNS: &'static [&'static str];
 
@@ -22,7 +23,7 @@ pub(super) trait Part: Sized {
     fn bounds_under(&self, map: &DAffine3) -> Bounds;
 
     /// The nearest places of all parts, in f64: for each part, every local minimum of the distance.
-    fn places(parts: impl Iterator<Item = Self>, p: DVec3) -> Vec<Place>;
+    fn places(parts: impl Iterator<Item = Self>, p: DVec3) -> Vec<NearestPlace>;
 
     /// The pieces of all parts that the program sees, for this support radius.
     fn divided(parts: impl Iterator<Item = Self>, reach: f64) -> impl Iterator<Item = Self>;
@@ -37,7 +38,7 @@ pub(super) trait Part: Sized {
 /// A skeleton along a path.
 pub(super) trait Tube: Member {
     /// What it consists of.
-    type Part: Part;
+    type Part: TubePart;
 
     /// Its points and radii.
     fn path(&self) -> Path<'_>;

@@ -11,13 +11,13 @@ pub const LARGEST_CELL: f32 = 2_097_152.0;
 pub(super) const ROUND: f32 = 12_582_912.0;
 
 /// The cell of a coordinate: its number, as the low bits, and how far into the cell it is, from 0 to 1.
-pub(super) struct Cell<D: Domain> {
+pub(super) struct TextureCell<D: Domain> {
     pub(super) number: D::Bits,
     pub(super) rest: D::Real,
 }
 
 /// Divides a coordinate, in cells, into the number of its cell and the rest.
-pub(super) fn emit_cell<D: Domain>(d: &mut D, x: D::Real) -> Cell<D> {
+pub(super) fn emit_cell<D: Domain>(d: &mut D, x: D::Real) -> TextureCell<D> {
     let (low, high) = (d.constant(-LARGEST_CELL), d.constant(LARGEST_CELL));
     // The order of the operands matters: NaN becomes the low end.
     let x = d.max(x, low);
@@ -31,7 +31,7 @@ pub(super) fn emit_cell<D: Domain>(d: &mut D, x: D::Real) -> Cell<D> {
     let floor = d.sub(nearest, step);
     let shifted = d.add(floor, round);
     let (bits, offset) = (d.to_bits(shifted), d.bits_constant(ROUND.to_bits()));
-    Cell { number: d.int_sub(bits, offset), rest: d.sub(x, floor) }
+    TextureCell { number: d.int_sub(bits, offset), rest: d.sub(x, floor) }
 }
 
 /// Divides a coordinate, in cells, into the number of its cell and the rest, in f64.

@@ -4,14 +4,14 @@ use std::collections::HashMap;
 use std::marker::PhantomData;
 
 use super::Tree;
-use crate::traverse::{Nodes, Order, Visit, Walk};
+use crate::traverse::{Nodes, Order, Traversal, Visit};
 use crate::written::Written;
 
 /// Any tree.
 #[derive(Clone, Copy)]
-struct Plain<'a>(PhantomData<&'a Tree>);
+struct PlainNodes<'a>(PhantomData<&'a Tree>);
 
-impl<'a> Nodes for Plain<'a> {
+impl<'a> Nodes for PlainNodes<'a> {
     type Node = &'a Tree;
 
     fn children(self, node: &'a Tree) -> impl DoubleEndedIterator<Item = &'a Tree> + ExactSizeIterator {
@@ -26,17 +26,17 @@ impl<'a> Nodes for Plain<'a> {
 impl Tree {
     /// Parents before children, children in order.
     pub fn prefix(&self, visit: Visit) -> impl Iterator<Item = &Self> {
-        Walk::new(Plain(PhantomData), self, Order::Before, visit)
+        Traversal::new(PlainNodes(PhantomData), self, Order::Before, visit)
     }
 
     /// Parents between their children, children in order: see [`traverse`](crate::traverse).
     pub fn infix(&self, visit: Visit) -> impl Iterator<Item = &Self> {
-        Walk::new(Plain(PhantomData), self, Order::Between, visit)
+        Traversal::new(PlainNodes(PhantomData), self, Order::Between, visit)
     }
 
     /// Children before parents, in order.
     pub fn postfix(&self, visit: Visit) -> impl Iterator<Item = &Self> {
-        Walk::new(Plain(PhantomData), self, Order::Behind, visit)
+        Traversal::new(PlainNodes(PhantomData), self, Order::Behind, visit)
     }
 
     /// The tree with every node replaced for which `replace` returns another one.

@@ -31,7 +31,7 @@ use std::f64::consts::PI;
 use glam::{DAffine3, DMat3, DVec3};
 use jbt_ir::Domain;
 
-use super::{Growth, ROUNDINGS, UNDERFLOW, WarpFault, WarpMember, farthest};
+use super::{WarpGrowth, ROUNDINGS, UNDERFLOW, WarpFault, WarpMember, farthest};
 use crate::affine::map_bounds;
 use crate::angle;
 use crate::axis::Axis;
@@ -256,14 +256,14 @@ impl WarpMember for Bend {
         self.bent(child.grown(slack), slack).grown(slack)
     }
 
-    fn growth(&self, largest: f64) -> Growth {
+    fn growth(&self, largest: f64) -> WarpGrowth {
         let turn = self.rate.abs() * (largest + self.center.abs());
         if turn > LARGEST_PRODUCT {
-            return Growth::UNKNOWN;
+            return WarpGrowth::UNKNOWN;
         }
         let ends = self.from.abs().max(self.to.abs());
         let coordinates = 4.0 * (largest + self.center.abs() + ends);
-        Growth { coordinates, derivatives: 64.0 / SMALLEST_DISTANCE + 16.0 * (1.0 + turn).powi(2) }
+        WarpGrowth { coordinates, derivatives: 64.0 / SMALLEST_DISTANCE + 16.0 * (1.0 + turn).powi(2) }
     }
 
     fn columns(&self, row: &mut Vec<f64>) {

@@ -11,7 +11,7 @@
 use glam::{DAffine3, DMat3, DVec3};
 use jbt_ir::Domain;
 
-use super::{Growth, ROUNDINGS, UNDERFLOW, WarpFault, WarpMember, farthest};
+use super::{WarpGrowth, ROUNDINGS, UNDERFLOW, WarpFault, WarpMember, farthest};
 use crate::affine::{map_bounds, rotation, sin_cos_degrees};
 use crate::bounds::Bounds;
 use crate::member::member;
@@ -97,11 +97,11 @@ impl WarpMember for Deform {
         map_bounds(&map, child.grown((part * size + fixed) / (1.0 - part)))
     }
 
-    fn growth(&self, largest: f64) -> Growth {
+    fn growth(&self, largest: f64) -> WarpGrowth {
         let back = self.map().inverse();
         let factor = 1.01 * largest_row(back.matrix3);
         let coordinates = factor * largest + 1.01 * back.translation.abs().max_element();
-        Growth { coordinates, derivatives: factor }
+        WarpGrowth { coordinates, derivatives: factor }
     }
 
     fn columns(&self, row: &mut Vec<f64>) {

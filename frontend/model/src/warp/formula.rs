@@ -17,7 +17,7 @@ use std::sync::Arc;
 use glam::DVec3;
 use jbt_ir::Domain;
 
-use super::{Growth, WarpFault};
+use super::{WarpFault, WarpGrowth};
 use crate::bounds::Bounds;
 use crate::expression::{Form, Formula, Operand};
 
@@ -75,10 +75,10 @@ impl FormulaWarp {
         if child.is_empty() { Bounds::EMPTY } else { Bounds::EVERYWHERE }
     }
 
-    pub(super) fn growth(&self, largest: f64) -> Growth {
+    pub(super) fn growth(&self, largest: f64) -> WarpGrowth {
         let values = self.form.growth(&self.numbers, largest);
         let most = |of: fn(&crate::function::Growth) -> f64| values.iter().map(of).fold(0.0, f64::max);
-        Growth {
+        WarpGrowth {
             coordinates: most(|growth| growth.value).min(LARGEST_WARPED.into()),
             derivatives: most(|growth| growth.slope),
         }

@@ -31,7 +31,7 @@ pub trait WarpMember: Member {
     fn reach(&self, child: Bounds) -> Bounds;
 
     /// Bounds of the inverse map for coordinates up to `largest` in magnitude.
-    fn growth(&self, largest: f64) -> Growth;
+    fn growth(&self, largest: f64) -> WarpGrowth;
 
     /// The numbers of a row: one for each of [`COLUMNS`](Self::COLUMNS).
     fn columns(&self, row: &mut Vec<f64>);
@@ -54,14 +54,14 @@ pub struct WarpFault {
 
 /// How large the numbers behind a warp may become.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Growth {
+pub struct WarpGrowth {
     /// A bound of the child's coordinates, in magnitude.
     pub coordinates: f64,
     /// A bound of the sum of the derivatives of a child's coordinate along the three axes, in magnitude.
     pub derivatives: f64,
 }
 
-impl Growth {
+impl WarpGrowth {
     /// Nothing is known: the image of such a warp may be anywhere.
     pub(crate) const UNKNOWN: Self = Self { coordinates: f64::INFINITY, derivatives: f64::INFINITY };
 }

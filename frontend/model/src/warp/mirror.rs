@@ -7,7 +7,7 @@
 use glam::DVec3;
 use jbt_ir::Domain;
 
-use super::{Growth, WarpFault, WarpMember};
+use super::{WarpGrowth, WarpFault, WarpMember};
 use crate::axis::Axis;
 use crate::bounds::Bounds;
 use crate::member::member;
@@ -54,8 +54,8 @@ impl WarpMember for Mirror {
         self.forward_bounds(child)
     }
 
-    fn growth(&self, largest: f64) -> Growth {
-        Growth { coordinates: largest, derivatives: 1.0 }
+    fn growth(&self, largest: f64) -> WarpGrowth {
+        WarpGrowth { coordinates: largest, derivatives: 1.0 }
     }
 
     fn columns(&self, _: &mut Vec<f64>) {}

@@ -26,7 +26,7 @@ mod testing;
 
 use axes::{ROUNDINGS, UNDERFLOW, farthest, turned};
 pub use formula::{FormulaWarp, LARGEST_WARPED};
-pub use member::{Growth, WarpFault, WarpMember};
+pub use member::{WarpFault, WarpGrowth, WarpMember};
 
 macro_rules! warps {
     ($($module:ident :: $name:ident),+ $(,)?) => {
@@ -121,7 +121,7 @@ macro_rules! warps {
 
             /// See [`WarpMember::growth`].
             #[must_use]
-            pub fn growth(&self, largest: f64) -> Growth { match self { $( Self::$name(w) => w.growth(largest), )+ Self::Formula(w) => w.growth(largest) } }
+            pub fn growth(&self, largest: f64) -> WarpGrowth { match self { $( Self::$name(w) => w.growth(largest), )+ Self::Formula(w) => w.growth(largest) } }
 
             /// See [`WarpMember::columns`].
             pub fn columns(&self, row: &mut Vec<f64>) { match self { $( Self::$name(w) => w.columns(row), )+ Self::Formula(w) => row.extend(&w.numbers) } }

@@ -14,7 +14,7 @@
 use glam::DVec3;
 use jbt_ir::Domain;
 
-use super::{Growth, ROUNDINGS, UNDERFLOW, WarpFault, WarpMember};
+use super::{WarpGrowth, ROUNDINGS, UNDERFLOW, WarpFault, WarpMember};
 use crate::axis::Axis;
 use crate::bounds::Bounds;
 use crate::member::member;
@@ -111,8 +111,8 @@ impl WarpMember for Repeat {
         reach
     }
 
-    fn growth(&self, largest: f64) -> Growth {
-        Growth { coordinates: 1.01 * largest.max(self.spacing), derivatives: 2.0 }
+    fn growth(&self, largest: f64) -> WarpGrowth {
+        WarpGrowth { coordinates: 1.01 * largest.max(self.spacing), derivatives: 2.0 }
     }
 
     fn columns(&self, row: &mut Vec<f64>) {

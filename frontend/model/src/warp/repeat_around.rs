@@ -11,7 +11,7 @@ use glam::DVec3;
 use jbt_ir::Domain;
 
 use super::repeat::ROUND;
-use super::{Growth, UNDERFLOW, WarpFault, WarpMember, turned};
+use super::{WarpGrowth, UNDERFLOW, WarpFault, WarpMember, turned};
 use crate::angle;
 use crate::axis::Axis;
 use crate::bounds::Bounds;
@@ -80,8 +80,8 @@ impl WarpMember for RepeatAround {
         turned(self.axis, child.grown(UNDERFLOW), 1.0 + 2f64.powi(-20))
     }
 
-    fn growth(&self, largest: f64) -> Growth {
-        Growth { coordinates: 1.5 * largest, derivatives: 2.0 }
+    fn growth(&self, largest: f64) -> WarpGrowth {
+        WarpGrowth { coordinates: 1.5 * largest, derivatives: 2.0 }
     }
 
     fn columns(&self, row: &mut Vec<f64>) {

@@ -13,7 +13,7 @@
 use glam::DVec3;
 use jbt_ir::Domain;
 
-use super::{Growth, ROUNDINGS, UNDERFLOW, WarpFault, WarpMember, farthest};
+use super::{WarpGrowth, ROUNDINGS, UNDERFLOW, WarpFault, WarpMember, farthest};
 use crate::bounds::Bounds;
 use crate::member::member;
 
@@ -76,10 +76,10 @@ impl WarpMember for SpaceMap {
         self.pulled(child, radius).grown(ROUNDINGS * size + UNDERFLOW)
     }
 
-    fn growth(&self, largest: f64) -> Growth {
+    fn growth(&self, largest: f64) -> WarpGrowth {
         let shift = self.shift().abs().max_element();
         // f falls at most four times as fast as t grows, along three axes.
-        Growth { coordinates: 1.01 * (largest + shift), derivatives: 1.0 + 16.0 * shift / self.radius }
+        WarpGrowth { coordinates: 1.01 * (largest + shift), derivatives: 1.0 + 16.0 * shift / self.radius }
     }
 
     fn columns(&self, row: &mut Vec<f64>) {

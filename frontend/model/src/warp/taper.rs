@@ -14,7 +14,7 @@
 use glam::DVec3;
 use jbt_ir::Domain;
 
-use super::{Growth, ROUNDINGS, UNDERFLOW, WarpFault, WarpMember};
+use super::{WarpGrowth, ROUNDINGS, UNDERFLOW, WarpFault, WarpMember};
 use crate::axis::Axis;
 use crate::bounds::Bounds;
 use crate::member::member;
@@ -123,11 +123,11 @@ impl WarpMember for Taper {
         reach
     }
 
-    fn growth(&self, largest: f64) -> Growth {
+    fn growth(&self, largest: f64) -> WarpGrowth {
         let inverse = 1.01 / self.start.min(self.end).max(SMALLEST_SCALE);
         let steepness = (self.end - self.start).abs() / (self.to - self.from).abs();
         let coordinates = largest * inverse.max(1.0);
-        Growth { coordinates, derivatives: 1.0 + inverse + 2.0 * coordinates * inverse * steepness }
+        WarpGrowth { coordinates, derivatives: 1.0 + inverse + 2.0 * coordinates * inverse * steepness }
     }
 
     fn columns(&self, row: &mut Vec<f64>) {

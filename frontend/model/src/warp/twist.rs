@@ -6,7 +6,7 @@
 use glam::DVec3;
 use jbt_ir::Domain;
 
-use super::{Growth, WarpFault, WarpMember, turned};
+use super::{WarpGrowth, WarpFault, WarpMember, turned};
 use crate::axis::Axis;
 use crate::bounds::Bounds;
 use crate::member::member;
@@ -61,11 +61,11 @@ impl WarpMember for Twist {
         turned(self.axis, child, 1.0 + 2f64.powi(-20))
     }
 
-    fn growth(&self, largest: f64) -> Growth {
+    fn growth(&self, largest: f64) -> WarpGrowth {
         // A coordinate is at most sqrt(2) times as large; it depends on the two coordinates that turn, and on
         // the height.
         let coordinates = 1.5 * largest;
-        Growth { coordinates, derivatives: 2.0 + 2.0 * self.rate.abs() * coordinates }
+        WarpGrowth { coordinates, derivatives: 2.0 + 2.0 * self.rate.abs() * coordinates }
     }
 
     fn columns(&self, row: &mut Vec<f64>) {

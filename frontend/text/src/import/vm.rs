@@ -43,7 +43,7 @@ const SMALLEST: u32 = 96;
 
 /// What an instruction does.
 #[derive(Clone, Copy, PartialEq, Debug)]
-enum Code {
+enum VmOp {
     Coordinate(u8),
     Constant(f64),
     Negate,
@@ -61,37 +61,37 @@ enum Code {
 }
 
 /// The operations that have operands.
-const CODES: &[(&str, Code, usize)] = &[
-    ("neg", Code::Negate, 1),
-    ("abs", Code::Call(Function::Abs), 1),
-    ("recip", Code::Reciprocal, 1),
-    ("sqrt", Code::Call(Function::Sqrt), 1),
-    ("square", Code::Call(Function::Square), 1),
-    ("floor", Code::Call(Function::Floor), 1),
-    ("ceil", Code::Call(Function::Ceil), 1),
-    ("round", Code::Call(Function::Round), 1),
-    ("sin", Code::Call(Function::Sin), 1),
-    ("cos", Code::Call(Function::Cos), 1),
-    ("tan", Code::Call(Function::Tan), 1),
-    ("asin", Code::Call(Function::Asin), 1),
-    ("acos", Code::Call(Function::Acos), 1),
-    ("atan", Code::Call(Function::Atan), 1),
-    ("exp", Code::Call(Function::Exp), 1),
-    ("ln", Code::Call(Function::Ln), 1),
-    ("log", Code::Call(Function::Ln), 1),
-    ("not", Code::Not, 1),
-    ("add", Code::Binary(Binary::Add), 2),
-    ("sub", Code::Binary(Binary::Subtract), 2),
-    ("mul", Code::Binary(Binary::Multiply), 2),
-    ("div", Code::Binary(Binary::Divide), 2),
-    ("pow", Code::Binary(Binary::Power), 2),
-    ("min", Code::Call(Function::Min), 2),
-    ("max", Code::Call(Function::Max), 2),
-    ("mod", Code::Call(Function::Mod), 2),
-    ("atan2", Code::Call(Function::Atan2), 2),
-    ("compare", Code::Compare, 2),
-    ("and", Code::And, 2),
-    ("or", Code::Or, 2),
+const CODES: &[(&str, VmOp, usize)] = &[
+    ("neg", VmOp::Negate, 1),
+    ("abs", VmOp::Call(Function::Abs), 1),
+    ("recip", VmOp::Reciprocal, 1),
+    ("sqrt", VmOp::Call(Function::Sqrt), 1),
+    ("square", VmOp::Call(Function::Square), 1),
+    ("floor", VmOp::Call(Function::Floor), 1),
+    ("ceil", VmOp::Call(Function::Ceil), 1),
+    ("round", VmOp::Call(Function::Round), 1),
+    ("sin", VmOp::Call(Function::Sin), 1),
+    ("cos", VmOp::Call(Function::Cos), 1),
+    ("tan", VmOp::Call(Function::Tan), 1),
+    ("asin", VmOp::Call(Function::Asin), 1),
+    ("acos", VmOp::Call(Function::Acos), 1),
+    ("atan", VmOp::Call(Function::Atan), 1),
+    ("exp", VmOp::Call(Function::Exp), 1),
+    ("ln", VmOp::Call(Function::Ln), 1),
+    ("log", VmOp::Call(Function::Ln), 1),
+    ("not", VmOp::Not, 1),
+    ("add", VmOp::Binary(Binary::Add), 2),
+    ("sub", VmOp::Binary(Binary::Subtract), 2),
+    ("mul", VmOp::Binary(Binary::Multiply), 2),
+    ("div", VmOp::Binary(Binary::Divide), 2),
+    ("pow", VmOp::Binary(Binary::Power), 2),
+    ("min", VmOp::Call(Function::Min), 2),
+    ("max", VmOp::Call(Function::Max), 2),
+    ("mod", VmOp::Call(Function::Mod), 2),
+    ("atan2", VmOp::Call(Function::Atan2), 2),
+    ("compare", VmOp::Compare, 2),
+    ("and", VmOp::And, 2),
+    ("or", VmOp::Or, 2),
 ];
 
 /// The operations without operands.
@@ -100,7 +100,7 @@ const LEAVES: [&str; 4] = ["const", "var-x", "var-y", "var-z"];
 /// A line with an instruction.
 #[derive(Clone, Copy, Debug)]
 struct Instruction {
-    code: Code,
+    code: VmOp,
     operands: [u32; 2],
     count: usize,
     span: Span,
@@ -141,7 +141,7 @@ fn read(bytes: &[u8]) -> Result<(Model, Vec<Diagnostic>), Vec<Diagnostic>> {
     if !reader.report.is_empty() {
         return Err(reader.report.finish());
     }
-    let program = Program { instructions: reader.instructions, iso: Model::DEFAULT_ISO.into() };
+    let program = VmProgram { instructions: reader.instructions, iso: Model::DEFAULT_ISO.into() };
     Ok((Model::new(program.tree()), Vec::new()))
 }
 
@@ -169,7 +169,7 @@ impl<'a> Reader<'a> {
         let instruction = self.instruction(&words, Span { start: span.start, end });
         // A line with an error still defines its name, so that uses of the name are no further errors.
         let instruction = instruction.unwrap_or(Instruction {
-            code: Code::Constant(0.0),
+            code: VmOp::Constant(0.0),
             operands: [0; 2],
             count: 0,
             span,
@@ -191,10 +191,10 @@ impl<'a> Reader<'a> {
         };
         let plain = |code| Instruction { code, operands: [0; 2], count: 0, span };
         let (instruction, count) = match operation {
-            b"var-x" => (plain(Code::Coordinate(0)), 0),
-            b"var-y" => (plain(Code::Coordinate(1)), 0),
-            b"var-z" => (plain(Code::Coordinate(2)), 0),
-            b"const" => (plain(Code::Constant(0.0)), 1),
+            b"var-x" => (plain(VmOp::Coordinate(0)), 0),
+            b"var-y" => (plain(VmOp::Coordinate(1)), 0),
+            b"var-z" => (plain(VmOp::Coordinate(2)), 0),
+            b"const" => (plain(VmOp::Constant(0.0)), 1),
             _ => {
                 let known = CODES.iter().find(|(name, ..)| name.as_bytes() == operation);
                 let Some(&(_, code, count)) = known else {
@@ -215,7 +215,7 @@ impl<'a> Reader<'a> {
             return None;
         }
         if operation == b"const" {
-            return self.constant(words[2]).map(|value| plain(Code::Constant(value)));
+            return self.constant(words[2]).map(|value| plain(VmOp::Constant(value)));
         }
         self.operands(instruction, &words[2..])
     }
@@ -265,82 +265,83 @@ fn shown(word: &[u8]) -> String {
 }
 
 /// A program without errors.
-struct Program {
+struct VmProgram {
     instructions: Vec<Instruction>,
     iso: Number,
 }
 
 /// A field to build: the iso-value plus or minus the value of this line.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-struct Wanted {
+struct WantedField {
     line: u32,
     negative: bool,
 }
 
 /// How a wanted field is built.
-enum Split {
-    Same(Wanted),
-    Combine(Combinator, [Wanted; 2]),
+enum FieldSplit {
+    Same(WantedField),
+    Combine(Combinator, [WantedField; 2]),
     Leaf,
 }
 
-impl Program {
+impl VmProgram {
     /// The tree of `iso - value`.
     fn tree(&self) -> Tree {
-        let root = Wanted { line: self.instructions.len() as u32 - 1, negative: true };
+        let root = WantedField { line: self.instructions.len() as u32 - 1, negative: true };
         self.split(root).unwrap_or_else(|| self.leaf(root, usize::MAX).0)
     }
 
-    fn parts(&self, Wanted { line, negative }: Wanted) -> Split {
+    fn parts(&self, WantedField { line, negative }: WantedField) -> FieldSplit {
         let instruction = &self.instructions[line as usize];
         let [a, b] = instruction.operands;
-        let both = [a, b].map(|line| Wanted { line, negative });
+        let both = [a, b].map(|line| WantedField { line, negative });
         match instruction.code {
-            Code::Negate => Split::Same(Wanted { line: a, negative: !negative }),
-            Code::Call(Function::Min) if negative => Split::Combine(Union {}.into(), both),
-            Code::Call(Function::Min) => Split::Combine(Intersection {}.into(), both),
-            Code::Call(Function::Max) if negative => Split::Combine(Intersection {}.into(), both),
-            Code::Call(Function::Max) => Split::Combine(Union {}.into(), both),
-            Code::Coordinate(_)
-            | Code::Constant(_)
-            | Code::Binary(_)
-            | Code::Call(_)
-            | Code::Reciprocal
-            | Code::Compare
-            | Code::Not
-            | Code::And
-            | Code::Or => Split::Leaf,
+            VmOp::Negate => FieldSplit::Same(WantedField { line: a, negative: !negative }),
+            VmOp::Call(Function::Min) if negative => FieldSplit::Combine(Union {}.into(), both),
+            VmOp::Call(Function::Min) => FieldSplit::Combine(Intersection {}.into(), both),
+            VmOp::Call(Function::Max) if negative => FieldSplit::Combine(Intersection {}.into(), both),
+            VmOp::Call(Function::Max) => FieldSplit::Combine(Union {}.into(), both),
+            VmOp::Coordinate(_)
+            | VmOp::Constant(_)
+            | VmOp::Binary(_)
+            | VmOp::Call(_)
+            | VmOp::Reciprocal
+            | VmOp::Compare
+            | VmOp::Not
+            | VmOp::And
+            | VmOp::Or => FieldSplit::Leaf,
         }
     }
 
     /// A tree of unions and intersections of formulas; `None` if these are too long together.
-    fn split(&self, root: Wanted) -> Option<Tree> {
+    fn split(&self, root: WantedField) -> Option<Tree> {
         let mut left = LONGEST * self.instructions.len();
         let sizes = self.sizes();
-        let mut done: HashMap<Wanted, Tree> = HashMap::new();
+        let mut done: HashMap<WantedField, Tree> = HashMap::new();
         let mut stack = vec![(root, false)];
         while let Some((wanted, opened)) = stack.pop() {
             if done.contains_key(&wanted) {
                 continue;
             }
-            let parts = if sizes[wanted.line as usize] < SMALLEST { Split::Leaf } else { self.parts(wanted) };
+            let parts =
+                if sizes[wanted.line as usize] < SMALLEST { FieldSplit::Leaf } else { self.parts(wanted) };
             let tree = match parts {
-                Split::Leaf => {
+                FieldSplit::Leaf => {
                     let (tree, steps) = self.leaf(wanted, left);
                     left = left.checked_sub(steps)?;
                     tree
                 }
-                Split::Same(other) if opened => done[&other].clone(),
-                Split::Combine(combinator, parts) if opened => {
+                FieldSplit::Same(other) if opened => done[&other].clone(),
+                FieldSplit::Combine(combinator, parts) if opened => {
                     let children = parts.iter().map(|part| done[part].clone()).collect();
                     let span = self.instructions[wanted.line as usize].span;
                     Tree::at(span, combinator, children)
                 }
-                Split::Same(other) => {
+                FieldSplit::Same(other) => {
                     stack.extend([(wanted, true), (other, false)]);
                     continue;
                 }
-                Split::Combine(_, [a, b]) => {
+                FieldSplit::Combine(_, [a, b]) => {
                     stack.extend([(wanted, true), (b, false), (a, false)]);
                     continue;
                 }
@@ -361,7 +362,7 @@ impl Program {
     }
 
     /// One formula, and its number of operations; the count may stop beyond `most`.
-    fn leaf(&self, wanted: Wanted, most: usize) -> (Tree, usize) {
+    fn leaf(&self, wanted: WantedField, most: usize) -> (Tree, usize) {
         let mut assembler = Assembler::default();
         let value = self.draft(&mut assembler, wanted.line, most);
         let sign = if wanted.negative { Binary::Subtract } else { Binary::Add };
@@ -397,7 +398,7 @@ impl Program {
 }
 
 /// The result of an instruction on its operands.
-fn step(assembler: &mut Assembler, code: Code, operands: Vec<Draft>) -> Draft {
+fn step(assembler: &mut Assembler, code: VmOp, operands: Vec<Draft>) -> Draft {
     let one = || Draft::Constant(1.0.into());
     let binary = |assembler: &mut Assembler, binary, a: Draft, b: Draft| {
         assembler.apply(&Step::Binary(binary), vec![a, b])
@@ -409,25 +410,25 @@ fn step(assembler: &mut Assembler, code: Code, operands: Vec<Draft>) -> Draft {
     };
     let operand = |place: usize| operands[place].clone();
     match code {
-        Code::Coordinate(axis) => Draft::Coordinate(axis),
-        Code::Constant(value) => Draft::Constant(value.into()),
-        Code::Negate => assembler.apply(&Step::Negate, operands),
-        Code::Binary(binary) => assembler.apply(&Step::Binary(binary), operands),
-        Code::Call(function) => assembler.apply(&Step::Call(function, operands.len() as u32), operands),
-        Code::Reciprocal => binary(assembler, Binary::Divide, one(), operand(0)),
-        Code::Compare => {
+        VmOp::Coordinate(axis) => Draft::Coordinate(axis),
+        VmOp::Constant(value) => Draft::Constant(value.into()),
+        VmOp::Negate => assembler.apply(&Step::Negate, operands),
+        VmOp::Binary(binary) => assembler.apply(&Step::Binary(binary), operands),
+        VmOp::Call(function) => assembler.apply(&Step::Call(function, operands.len() as u32), operands),
+        VmOp::Reciprocal => binary(assembler, Binary::Divide, one(), operand(0)),
+        VmOp::Compare => {
             let difference = binary(assembler, Binary::Subtract, operand(0), operand(1));
             assembler.apply(&Step::Call(Function::Sign, 1), vec![difference])
         }
-        Code::Not => {
+        VmOp::Not => {
             let truth = truth(assembler, operand(0));
             binary(assembler, Binary::Subtract, one(), truth)
         }
-        Code::And => {
+        VmOp::And => {
             let truth = truth(assembler, operand(0));
             binary(assembler, Binary::Multiply, truth, operand(1))
         }
-        Code::Or => {
+        VmOp::Or => {
             let truth = truth(assembler, operand(0));
             let not = binary(assembler, Binary::Subtract, one(), truth);
             let other = binary(assembler, Binary::Multiply, not, operand(1));

@@ -6,7 +6,7 @@ use cranelift_codegen::ir::{self, BlockArg, InstBuilder};
 use cranelift_frontend::FunctionBuilder;
 use jbt_ir::{Any, Entity, Fold, Table};
 
-use super::{Lowering, Place, READ, Row, offset};
+use super::{CurrentRow, Lowering, READ, ValuePlace, offset};
 use crate::abi::TableView;
 use crate::cranelift::vectors::Vectors;
 
@@ -30,7 +30,7 @@ impl<'f, const K: usize> Lowering<'f, K> {
         self.each_row(fold.table, &initial, |lowering, accumulators| {
             for (&param, &accumulator) in lowering.function.blocks[fold.body].params.iter().zip(accumulators)
             {
-                lowering.places[param.index()] = Some(Place::Computed(accumulator));
+                lowering.places[param.index()] = Some(ValuePlace::Computed(accumulator));
             }
             lowering.block(fold.body)
         })
@@ -97,13 +97,19 @@ impl<'f, const K: usize> Lowering<'f, K> {
     }
 
     /// The row that the cursor points at.
-    fn read_row(&mut self, table: Table, numbers: ir::Value, first: ir::Value, cursor: ir::Value) -> Row {
+    fn read_row(
+        &mut self,
+        table: Table,
+        numbers: ir::Value,
+        first: ir::Value,
+        cursor: ir::Value,
+    ) -> CurrentRow {
         let row_bytes = self.function.tables[table].columns.len() * size_of::<f32>();
         let builder = &mut self.vectors.builder;
         let index = builder.ins().uload32(READ, cursor, 0);
         let skipped = builder.ins().imul_imm_s(index, row_bytes as i64);
         let numbers = builder.ins().iadd(numbers, skipped);
-        Row { position: builder.ins().isub(cursor, first), numbers }
+        CurrentRow { position: builder.ins().isub(cursor, first), numbers }
     }
 }
 

@@ -8,7 +8,7 @@ use cranelift_codegen::ir::{self, BlockArg, InstBuilder};
 use jbt_ir::plan::{Column, Piece, Slot, Then};
 use jbt_ir::{Any, Block, Entity, Fold, Inst, InstKind, Type, Value};
 
-use super::{Lowering, Place, Points, SLOT, Strip, offset};
+use super::{Lowering, PointBlock, SLOT, Strip, ValuePlace, offset};
 use crate::cranelift::vectors::{VECTOR_BYTES, Vectors};
 
 impl<'f, const K: usize> Lowering<'f, K> {
@@ -56,7 +56,7 @@ impl<'f, const K: usize> Lowering<'f, K> {
                     lowering.points = None;
                 });
                 for &Column { value, table, column } in &piece.columns {
-                    self.places[value.index()] = Some(Place::Column(table, column));
+                    self.places[value.index()] = Some(ValuePlace::Column(table, column));
                 }
                 for value in std::mem::take(&mut self.kept) {
                     self.places[value.index()] = self.kept(value);
@@ -85,12 +85,12 @@ impl<'f, const K: usize> Lowering<'f, K> {
     fn broadcast(&mut self, columns: &[Column]) {
         for &Column { value, table, column } in columns {
             let vectors = self.column(table, column);
-            self.places[value.index()] = Some(Place::Computed(Any::Real(vectors)));
+            self.places[value.index()] = Some(ValuePlace::Computed(Any::Real(vectors)));
         }
     }
 
     /// The addresses of a block of points.
-    pub(super) fn points(&mut self, strip: Strip, offset: ir::Value) -> Points {
+    pub(super) fn points(&mut self, strip: Strip, offset: ir::Value) -> PointBlock {
         let inputs = if self.plan.is_whole() { self.function.inputs.len() } else { 0 };
         let inputs = (0..inputs).map(|index| self.plane(index, offset)).collect();
         let builder = &mut self.vectors.builder;
@@ -99,11 +99,11 @@ impl<'f, const K: usize> Lowering<'f, K> {
             let within = builder.ins().isub(offset, strip.start);
             builder.ins().iadd(first, within)
         });
-        Points { offset, inputs, slots }
+        PointBlock { offset, inputs, slots }
     }
 
     /// The current block of points.
-    pub(super) fn here(&self) -> &Points {
+    pub(super) fn here(&self) -> &PointBlock {
         self.points.as_ref().expect("instructions are in pieces")
     }
 
@@ -134,8 +134,8 @@ impl<'f, const K: usize> Lowering<'f, K> {
     }
 
     /// Where a value is that has a slot.
-    fn kept(&self, value: Value) -> Option<Place<'f, K>> {
-        self.plan.slot(value).map(|slot| Place::Kept(slot, self.function.values[value]))
+    fn kept(&self, value: Value) -> Option<ValuePlace<'f, K>> {
+        self.plan.slot(value).map(|slot| ValuePlace::Kept(slot, self.function.values[value]))
     }
 
     /// Stores values of the current block of points into the slots of others, as if all were read before the

@@ -3,10 +3,10 @@
 use iced_x86::{Instruction, Mnemonic, OpKind, Register};
 
 use super::machine::Machine;
-use super::memory::Step;
+use super::memory::Simulated;
 
 impl Machine {
-    pub(super) fn integer(&mut self, inst: &Instruction) -> Step {
+    pub(super) fn integer(&mut self, inst: &Instruction) -> Simulated {
         match inst.mnemonic() {
             Mnemonic::Push => {
                 let number = self.operand(inst, 0)?;
@@ -50,7 +50,7 @@ impl Machine {
     }
 
     /// Takes an address or a register's number from the stack.
-    pub(super) fn pop(&mut self) -> Step<u64> {
+    pub(super) fn pop(&mut self) -> Simulated<u64> {
         let top = self.get(Register::RSP);
         let number = self.memory.read_pointer(top)?;
         self.set(Register::RSP, top + 8);
@@ -58,13 +58,13 @@ impl Machine {
     }
 
     /// `first = first op second`. The flags that follow are read by nobody.
-    fn combine(&mut self, inst: &Instruction, op: impl Fn(u64, u64) -> u64) -> Step {
+    fn combine(&mut self, inst: &Instruction, op: impl Fn(u64, u64) -> u64) -> Simulated {
         let (a, b) = (self.operand(inst, 0)?, self.operand(inst, 1)?);
         self.put(inst, op(a, b))
     }
 
     /// An operand, as 64 bits.
-    fn operand(&self, inst: &Instruction, index: u32) -> Step<u64> {
+    fn operand(&self, inst: &Instruction, index: u32) -> Simulated<u64> {
         match inst.op_kind(index) {
             OpKind::Register => Ok(self.get(inst.op_register(index))),
             OpKind::Memory => match inst.memory_size().size() {
@@ -77,7 +77,7 @@ impl Machine {
     }
 
     /// Writes the first operand.
-    fn put(&mut self, inst: &Instruction, number: u64) -> Step {
+    fn put(&mut self, inst: &Instruction, number: u64) -> Simulated {
         match inst.op_kind(0) {
             OpKind::Register => self.set(inst.op_register(0), number),
             _ => self.memory.write(self.address(inst)?, &number.to_le_bytes())?,

@@ -5,16 +5,16 @@ use std::fmt;
 
 use iced_x86::{Decoder, DecoderOptions, Instruction, Mnemonic, Register};
 
-use super::memory::{CALLER, CODE, Memory, Step};
+use super::memory::{CALLER, CODE, Simulated, SimulatedMemory};
 
 /// What went wrong, and where.
 #[derive(Clone, PartialEq, Eq, Debug)]
-pub(super) struct Fault {
+pub(super) struct MachineFault {
     what: String,
     at: String,
 }
 
-impl fmt::Display for Fault {
+impl fmt::Display for MachineFault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}, at {}", self.what, self.at)
     }
@@ -37,13 +37,13 @@ pub(super) struct Machine {
     /// Of the last comparison: equal, and below as unsigned numbers.
     pub(super) equal: bool,
     pub(super) below: bool,
-    pub(super) memory: Memory,
+    pub(super) memory: SimulatedMemory,
 }
 
 impl Machine {
     /// As a function finds it: registers hold nothing, but for the upper halves of vectors that the caller
     /// has cleared, see [`crate::memory`].
-    pub(super) fn new(memory: Memory) -> Self {
+    pub(super) fn new(memory: SimulatedMemory) -> Self {
         let mut vectors = [[POISON; 16]; 32];
         vectors[..16].iter_mut().for_each(|lanes| lanes[4..].fill(0));
         let integers = [0x5EED_5EED_5EED_5EED; 16];
@@ -51,7 +51,7 @@ impl Machine {
     }
 
     /// Executes code from its first instruction until it returns.
-    pub(super) fn execute(&mut self, code: &[u8]) -> Result<(), Fault> {
+    pub(super) fn execute(&mut self, code: &[u8]) -> Result<(), MachineFault> {
         let insts: Vec<Instruction> =
             Decoder::with_ip(64, code, CODE, DecoderOptions::NONE).into_iter().collect();
         let positions: HashMap<u64, usize> =
@@ -62,10 +62,10 @@ impl Machine {
         for _ in 0..MOST_STEPS {
             let Some(&index) = positions.get(&at) else {
                 let what = "the code jumps to where no instruction begins".to_owned();
-                return Err(Fault { what, at: format!("{at:x}") });
+                return Err(MachineFault { what, at: format!("{at:x}") });
             };
             let inst = &insts[index];
-            let fault = |what| Fault { what, at: format!("{:x}: {inst}", inst.ip() - CODE) };
+            let fault = |what| MachineFault { what, at: format!("{:x}: {inst}", inst.ip() - CODE) };
             at = self.step(inst).map_err(fault)?;
             if at == CALLER {
                 let is_kept = KEPT.map(|register| self.get(register)) == before;
@@ -80,11 +80,11 @@ impl Machine {
                 return Ok(());
             }
         }
-        Err(Fault { what: "the code does not end".to_owned(), at: format!("{at:x}") })
+        Err(MachineFault { what: "the code does not end".to_owned(), at: format!("{at:x}") })
     }
 
     /// Executes one instruction; where the next one is.
-    fn step(&mut self, inst: &Instruction) -> Step<u64> {
+    fn step(&mut self, inst: &Instruction) -> Simulated<u64> {
         let next = inst.next_ip();
         let jump = |condition: bool| if condition { inst.near_branch_target() } else { next };
         match inst.mnemonic() {
@@ -120,7 +120,7 @@ impl Machine {
     }
 
     /// The address of an instruction's operand in memory.
-    pub(super) fn address(&self, inst: &Instruction) -> Step<u64> {
+    pub(super) fn address(&self, inst: &Instruction) -> Simulated<u64> {
         let known = |register: Register| register.is_gpr64().then(|| self.get(register));
         if inst.is_ip_rel_memory_operand() {
             return Ok(inst.ip_rel_memory_address());

@@ -2,10 +2,10 @@
 //! whoever reads or writes there faults.
 
 use crate::abi::TableView;
-use crate::blob::Blob;
+use crate::blob::CodeBlob;
 
 /// What an instruction may say instead of a result.
-pub(super) type Step<T = ()> = Result<T, String>;
+pub(super) type Simulated<T = ()> = Result<T, String>;
 
 /// Where the code is.
 pub(super) const CODE: u64 = 0x10_0000;
@@ -21,19 +21,19 @@ pub(super) struct Call<'a> {
 }
 
 /// A stretch of addresses.
-struct Region {
+struct AddressRegion {
     first: u64,
     bytes: Vec<u8>,
     is_writable: bool,
 }
 
 /// Regions in the order of their addresses.
-pub(super) struct Memory {
-    regions: Vec<Region>,
+pub(super) struct SimulatedMemory {
+    regions: Vec<AddressRegion>,
 }
 
 /// Where a run's arguments are.
-pub(super) struct Layout {
+pub(super) struct ArgumentLayout {
     pub(super) planes: u64,
     pub(super) views: u64,
     /// The stack pointer of the call.
@@ -54,10 +54,10 @@ fn bytes_of<T: Copy, const N: usize>(items: &[T], to_bytes: impl Fn(T) -> [u8; N
     items.iter().flat_map(|&item| to_bytes(item)).collect()
 }
 
-impl Memory {
+impl SimulatedMemory {
     /// Lays out what a call of a function gets.
-    pub(super) fn new(blob: &Blob, call: &Call<'_>) -> (Self, Layout) {
-        let code = Region { first: CODE, bytes: blob.bytes.clone(), is_writable: false };
+    pub(super) fn new(blob: &CodeBlob, call: &Call<'_>) -> (Self, ArgumentLayout) {
+        let code = AddressRegion { first: CODE, bytes: blob.bytes.clone(), is_writable: false };
         let mut memory = Self { regions: vec![code] };
         let numbers = |plane: &[f32]| bytes_of(plane, f32::to_le_bytes);
         let words = |list: &[u32]| bytes_of(list, u32::to_le_bytes);
@@ -83,7 +83,7 @@ impl Memory {
         // A call finds the stack at 8 bytes from a multiple of 16.
         let stack = first + size as u64 - 8;
         memory.write(stack, &CALLER.to_le_bytes()).expect("the stack has room for an address");
-        (memory, Layout { planes, views, stack, outputs })
+        (memory, ArgumentLayout { planes, views, stack, outputs })
     }
 
     /// A new region behind all others. It begins at an odd multiple of 4 where it may, as planes do that
@@ -92,12 +92,12 @@ impl Memory {
         let last = self.regions.last().map_or(0, |last| last.first + last.bytes.len() as u64);
         let offset = if bytes.len().is_multiple_of(16) { 0 } else { 4 };
         let first = (last + GAP).next_multiple_of(64) + offset;
-        self.regions.push(Region { first, bytes, is_writable });
+        self.regions.push(AddressRegion { first, bytes, is_writable });
         first
     }
 
     /// The region around an access, and where in it that begins.
-    fn find(&self, address: u64, length: usize) -> Step<(usize, usize)> {
+    fn find(&self, address: u64, length: usize) -> Simulated<(usize, usize)> {
         let nowhere = || format!("there are no {length} bytes at {address:x}");
         let behind = self.regions.partition_point(|region| region.first <= address);
         let index = behind.checked_sub(1).ok_or_else(nowhere)?;
@@ -106,22 +106,22 @@ impl Memory {
         if fits { Ok((index, offset)) } else { Err(nowhere()) }
     }
 
-    pub(super) fn read(&self, address: u64, length: usize) -> Step<&[u8]> {
+    pub(super) fn read(&self, address: u64, length: usize) -> Simulated<&[u8]> {
         let (index, offset) = self.find(address, length)?;
         Ok(&self.regions[index].bytes[offset..offset + length])
     }
 
-    pub(super) fn read_word(&self, address: u64) -> Step<u32> {
+    pub(super) fn read_word(&self, address: u64) -> Simulated<u32> {
         let bytes = self.read(address, 4)?;
         Ok(u32::from_le_bytes(bytes.try_into().expect("four bytes were read")))
     }
 
-    pub(super) fn read_pointer(&self, address: u64) -> Step<u64> {
+    pub(super) fn read_pointer(&self, address: u64) -> Simulated<u64> {
         let bytes = self.read(address, 8)?;
         Ok(u64::from_le_bytes(bytes.try_into().expect("eight bytes were read")))
     }
 
-    pub(super) fn write(&mut self, address: u64, bytes: &[u8]) -> Step {
+    pub(super) fn write(&mut self, address: u64, bytes: &[u8]) -> Simulated {
         let (index, offset) = self.find(address, bytes.len())?;
         let region = &mut self.regions[index];
         if !region.is_writable {
@@ -132,7 +132,7 @@ impl Memory {
     }
 
     /// The output planes.
-    pub(super) fn outputs(&self, layout: &Layout) -> Vec<Vec<f32>> {
+    pub(super) fn outputs(&self, layout: &ArgumentLayout) -> Vec<Vec<f32>> {
         let plane = |&first: &u64| {
             let index = self.regions.partition_point(|region| region.first < first);
             let words = self.regions[index].bytes.chunks_exact(4);

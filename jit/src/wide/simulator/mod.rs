@@ -2,7 +2,7 @@
 //! lack.
 //!
 //! ```text
-//! Blob ──iced-x86──► instructions ──► Machine { integers, vectors, masks, flags, Memory }
+//! code ──iced-x86──► instructions ──► Machine { integers, vectors, masks, flags, memory }
 //!                                       step by step, until the code returns
 //! ```
 //!
@@ -19,13 +19,13 @@ mod vector;
 
 use iced_x86::Register;
 
-use self::machine::{Fault, Machine};
-use self::memory::{Call, Memory};
-use super::Blob;
+use self::machine::{Machine, MachineFault};
+use self::memory::{Call, SimulatedMemory};
+use super::CodeBlob;
 
 /// Runs a function; its output planes.
-fn run(blob: &Blob, call: &Call<'_>) -> Result<Vec<Vec<f32>>, Fault> {
-    let (memory, layout) = Memory::new(blob, call);
+fn run(blob: &CodeBlob, call: &Call<'_>) -> Result<Vec<Vec<f32>>, MachineFault> {
+    let (memory, layout) = SimulatedMemory::new(blob, call);
     let mut machine = Machine::new(memory);
     let bytes = (call.inputs.first().map_or(0, Vec::len) * size_of::<f32>()) as u64;
     for (register, number) in [

@@ -7,10 +7,10 @@ use jbt_ir::engine::BoundProgram;
 use jbt_ir::pass::{PIPELINE, run_pipeline};
 use jbt_ir::{Entity, Level, Selection, Table, Tables, Verified, interpret, verify};
 
-use super::machine::Fault;
+use super::machine::MachineFault;
 use super::memory::Call;
 use super::run;
-use crate::blob::{Blob, Emitted};
+use crate::blob::{CodeBlob, Emitted};
 use crate::options::{Check, Pieces, VectorCount};
 use crate::wide::Wide;
 use crate::wide::encode::{Encoder, Shape};
@@ -60,7 +60,11 @@ impl Case {
     }
 
     /// What the simulator makes of code for these points.
-    fn simulate(&self, blob: &Blob, points: std::ops::Range<usize>) -> Result<Vec<Vec<f32>>, Fault> {
+    fn simulate(
+        &self,
+        blob: &CodeBlob,
+        points: std::ops::Range<usize>,
+    ) -> Result<Vec<Vec<f32>>, MachineFault> {
         let tables: Vec<_> = (0..self.tables.tables.len())
             .map(|index| {
                 let table = Table::new(index);
@@ -148,7 +152,7 @@ fn fault_of(insts: &[Inst]) -> String {
     encoder.bytes.push(0xC3);
     let code_bytes = encoder.bytes.len();
     let bytes = encoder.finish(&[0; 32]);
-    let blob = Blob { bytes, code_bytes, constants: 32, frame_bytes: 64, lanes: 8 };
+    let blob = CodeBlob { bytes, code_bytes, constants: 32, frame_bytes: 64, lanes: 8 };
     let call = Call { inputs: &[vec![1.0; 8]], outputs: 1, tables: &[] };
     run(&blob, &call).err().map_or(String::new(), |fault| fault.to_string())
 }

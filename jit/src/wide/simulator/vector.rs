@@ -3,10 +3,10 @@
 use iced_x86::{Instruction, Mnemonic, OpKind, Register};
 
 use super::machine::Machine;
-use super::memory::Step;
+use super::memory::Simulated;
 
 /// The lanes of a vector; those that it does not have are 0.
-type Lanes = [u32; 16];
+type VectorLanes = [u32; 16];
 
 /// How many lanes of 32 bits a register has.
 fn lanes_of(register: Register) -> usize {
@@ -19,7 +19,7 @@ fn reals(a: u32, b: u32, op: impl Fn(f32, f32) -> f32) -> u32 {
 }
 
 impl Machine {
-    pub(super) fn vector(&mut self, inst: &Instruction) -> Step {
+    pub(super) fn vector(&mut self, inst: &Instruction) -> Simulated {
         match inst.mnemonic() {
             Mnemonic::Vaddps => self.binary(inst, |a, b| reals(a, b, |a, b| a + b)),
             Mnemonic::Vsubps => self.binary(inst, |a, b| reals(a, b, |a, b| a - b)),
@@ -80,7 +80,7 @@ impl Machine {
     }
 
     /// The lanes of an operand: of a vector register, of memory, or one number of memory in all of them.
-    fn lanes(&self, inst: &Instruction, index: u32) -> Step<Lanes> {
+    fn lanes(&self, inst: &Instruction, index: u32) -> Simulated<VectorLanes> {
         if inst.op_kind(index) == OpKind::Register {
             return Ok(self.vectors[inst.op_register(index).number()]);
         }
@@ -97,25 +97,25 @@ impl Machine {
     }
 
     /// Writes the first operand, a vector register: lanes that it does not have become 0.
-    fn put_lanes(&mut self, inst: &Instruction, mut lanes: Lanes) -> Step {
+    fn put_lanes(&mut self, inst: &Instruction, mut lanes: VectorLanes) -> Simulated {
         let register = inst.op_register(0);
         lanes[lanes_of(register)..].fill(0);
         self.vectors[register.number()] = lanes;
         Ok(())
     }
 
-    fn binary(&mut self, inst: &Instruction, op: impl Fn(u32, u32) -> u32) -> Step {
+    fn binary(&mut self, inst: &Instruction, op: impl Fn(u32, u32) -> u32) -> Simulated {
         let (a, b) = (self.lanes(inst, 1)?, self.lanes(inst, 2)?);
         self.put_lanes(inst, std::array::from_fn(|lane| op(a[lane], b[lane])))
     }
 
-    fn shift(&mut self, inst: &Instruction, op: impl Fn(u32, u32) -> u32) -> Step {
+    fn shift(&mut self, inst: &Instruction, op: impl Fn(u32, u32) -> u32) -> Simulated {
         let (a, by) = (self.lanes(inst, 1)?, inst.immediate(2) as u32);
         self.put_lanes(inst, a.map(|a| if by < 32 { op(a, by) } else { 0 }))
     }
 
     /// `order` picks the factors and what is added of the three operands.
-    fn fma(&mut self, inst: &Instruction, order: impl Fn([u32; 3]) -> (u32, u32, u32)) -> Step {
+    fn fma(&mut self, inst: &Instruction, order: impl Fn([u32; 3]) -> (u32, u32, u32)) -> Simulated {
         let [a, b, c] = [self.lanes(inst, 0)?, self.lanes(inst, 1)?, self.lanes(inst, 2)?];
         let lane = |lane: usize| {
             let (a, b, c) = order([a[lane], b[lane], c[lane]]);
@@ -125,7 +125,7 @@ impl Machine {
     }
 
     /// To a mask register, or to lanes of all ones.
-    fn compare(&mut self, inst: &Instruction) -> Step {
+    fn compare(&mut self, inst: &Instruction) -> Simulated {
         let (a, b) = (self.lanes(inst, 1)?, self.lanes(inst, 2)?);
         let predicate = inst.immediate8();
         let holds = |lane: usize| {
@@ -152,12 +152,12 @@ impl Machine {
     }
 
     /// The second operand where the mask is true, else the first one.
-    fn blend(&mut self, inst: &Instruction, is_true: impl Fn(usize) -> bool) -> Step {
+    fn blend(&mut self, inst: &Instruction, is_true: impl Fn(usize) -> bool) -> Simulated {
         let (no, yes) = (self.lanes(inst, 1)?, self.lanes(inst, 2)?);
         self.put_lanes(inst, std::array::from_fn(|lane| if is_true(lane) { yes[lane] } else { no[lane] }))
     }
 
-    fn copy(&mut self, inst: &Instruction) -> Step {
+    fn copy(&mut self, inst: &Instruction) -> Simulated {
         if inst.op_kind(0) == OpKind::Register {
             let lanes = self.lanes(inst, 1)?;
             return self.put_lanes(inst, lanes);
@@ -170,8 +170,8 @@ impl Machine {
     }
 
     /// Instructions on mask registers of 16 bits.
-    fn mask(&mut self, inst: &Instruction) -> Step {
-        let source = |machine: &Self, index: u32| -> Step<u16> {
+    fn mask(&mut self, inst: &Instruction) -> Simulated {
+        let source = |machine: &Self, index: u32| -> Simulated<u16> {
             if inst.op_kind(index) == OpKind::Register {
                 return Ok(machine.masks[inst.op_register(index).number()]);
             }

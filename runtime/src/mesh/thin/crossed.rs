@@ -13,7 +13,7 @@
 //! All of this depends only on the signs of lattice points, so it is the same for bricks of any size.
 
 use crate::mesh::brick::{Bricks, place};
-use crate::mesh::crossing::{Cell, Crossings};
+use crate::mesh::crossing::{CrossedCell, Crossings};
 
 /// Cells along the edge of a block.
 pub(super) const EDGE: usize = 4;
@@ -116,7 +116,7 @@ pub(super) fn step(place: [u32; 3], steps: [i32; 3]) -> Option<[u32; 3]> {
 
 /// The blocks that the surface crosses, in Morton order.
 pub(super) struct CrossedBlocks<'a> {
-    cells: &'a [Cell],
+    cells: &'a [CrossedCell],
     codes: Vec<u64>,
     /// The crossed cells of each block, a bit each in Morton order.
     masks: Vec<u64>,
@@ -255,7 +255,7 @@ impl<'a> CrossedBlocks<'a> {
             let mut point = [0, 1, 2].map(|axis| origin[axis] * EDGE as u32 + (bit >> (2 * axis) & 3));
             point[axis] += 1;
             found.first = Some(point);
-            let is_scrap = |&(bit, cell): &(u64, &Cell)| {
+            let is_scrap = |&(bit, cell): &(u64, &CrossedCell)| {
                 matches!(cell.signs, 0x80 | 0x7f) && self.is_scrap(self.cell(origin, bit), cell.signs, block)
             };
             if let Some((bit, _)) = bits(mask).zip(cells).find(is_scrap) {

@@ -18,12 +18,12 @@ mod shreds;
 use crate::parallel::*;
 
 use super::crossing::Crossings;
-use super::divide::Division;
+use super::divide::BrickDivision;
 use super::error::MeshError;
 use super::field::Field;
 use super::indexed::Mesh;
 use super::report::{MAX_NEAR, ThinReport};
-use super::stage::Stage;
+use super::stage::MeshStage;
 use crate::progress::Progress;
 
 use alarm::{ALARM, Alarm};
@@ -34,7 +34,7 @@ use shreds::{Chunks, Looked};
 /// Searches the bricks of a division.
 pub(super) fn find<F: Field>(
     field: &F,
-    division: &Division<F::Region>,
+    division: &BrickDivision<F::Region>,
     (crossings, mesh): (&Crossings, &Mesh),
     iso: f32,
     progress: &Progress<'_>,
@@ -53,7 +53,7 @@ pub(super) fn find<F: Field>(
     let search = ThinSearch { field, axes: &bricks.axes, iso, crossed: &crossed, blocks };
     let group = 64;
     let total = places.len().div_ceil(group);
-    Stage::Thin.begin(progress)?;
+    MeshStage::Thin.begin(progress)?;
     let groups = places.par_chunks(group).zip(regions.par_chunks(group));
     let found = groups.map(|(places, regions)| {
         let (mut found, mut near) = (ChunkFindings::default(), 0);

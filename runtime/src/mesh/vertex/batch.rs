@@ -4,9 +4,9 @@ use super::super::brick::Bricks;
 use super::super::crossing::Crossings;
 use super::super::field::Field;
 use super::super::options::Options;
-use super::super::pull::{LANES, Lanes};
+use super::super::pull::{LANES, VertexLanes};
 use super::bracket::CrossedEdges;
-use super::seed::{Group, Seeds};
+use super::seed::{SeedGroup, Seeds};
 use crate::region::Box3;
 
 /// Counts of the work at vertices.
@@ -38,7 +38,7 @@ impl Done {
 }
 
 /// The data that the vertices of all bricks are made from.
-pub(in super::super) struct Source<'a, F: Field> {
+pub(in super::super) struct VertexSource<'a, F: Field> {
     pub(in super::super) field: &'a F,
     pub(in super::super) options: &'a Options,
     pub(in super::super) bricks: &'a Bricks,
@@ -58,19 +58,19 @@ pub(super) struct Shared {
 }
 
 /// Three planes of numbers.
-pub(super) type Planes = [Vec<f32>; 3];
+pub(super) type VertexPlanes = [Vec<f32>; 3];
 
 /// The vertices of one brick, in planes padded to whole [`LANES`].
 #[derive(Default)]
-pub(super) struct Batch {
+pub(super) struct VertexBatch {
     /// The number of vertices.
     pub(super) count: usize,
-    pub(super) points: Planes,
+    pub(super) points: VertexPlanes,
     /// For each [`LANES`] of vertices: their cells, and the values derived from these.
     pub(super) seeds: Vec<Seeds>,
-    pub(super) groups: Vec<Group>,
+    pub(super) groups: Vec<SeedGroup>,
     pub(super) values: Vec<f32>,
-    pub(super) gradient: Planes,
+    pub(super) gradient: VertexPlanes,
     /// One plane after the other, each for `count` vertices.
     pub(super) attributes: Vec<f32>,
     /// Vertices that share their cell with others.
@@ -81,7 +81,7 @@ pub(super) struct Batch {
     pub(super) crossed: CrossedEdges,
 }
 
-impl Batch {
+impl VertexBatch {
     pub(super) fn resize(&mut self, count: usize) {
         self.count = count;
         let padded = count.next_multiple_of(LANES);
@@ -89,7 +89,7 @@ impl Batch {
         planes.into_iter().flatten().for_each(|plane| plane.resize(padded, 0.0));
         self.values.resize(padded, 0.0);
         self.seeds.resize(padded / LANES, Seeds::default());
-        self.groups.resize(padded / LANES, Group::default());
+        self.groups.resize(padded / LANES, SeedGroup::default());
     }
 
     /// The box in which a vertex stays.
@@ -100,11 +100,11 @@ impl Batch {
 }
 
 #[inline(always)]
-pub(super) fn lane(plane: &[f32], chunk: usize) -> Lanes {
+pub(super) fn lane(plane: &[f32], chunk: usize) -> VertexLanes {
     *plane[chunk * LANES..].first_chunk().expect("planes are filled up")
 }
 
 #[inline(always)]
-pub(super) fn lanes(planes: &Planes, chunk: usize) -> [Lanes; 3] {
+pub(super) fn lanes(planes: &VertexPlanes, chunk: usize) -> [VertexLanes; 3] {
     planes.each_ref().map(|plane| lane(plane, chunk))
 }

@@ -48,12 +48,12 @@ impl Bracket {
 
 /// Room for points and the field at them.
 #[derive(Default)]
-pub(super) struct Points {
+pub(super) struct BracketPoints {
     planes: [Vec<f32>; 3],
     values: Vec<f32>,
 }
 
-impl Points {
+impl BracketPoints {
     /// Evaluates the field at the points.
     pub(super) fn ask<F: Field>(
         &mut self,
@@ -173,7 +173,7 @@ pub(super) struct CrossedEdges {
     numbers: Vec<u32>,
     /// The entries that are not 0.
     used: Vec<usize>,
-    points: Points,
+    points: BracketPoints,
 }
 
 impl CrossedEdges {

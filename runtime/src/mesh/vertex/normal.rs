@@ -4,12 +4,12 @@
 
 use std::ops::RangeInclusive;
 
-use super::super::pull::{LANES, Lanes, all, squares};
+use super::super::pull::{LANES, VertexLanes, all, squares};
 use super::super::surface::unit;
 
 /// Unit vectors away from the inside, or zero where the gradient vanishes or is NaN.
 #[inline(always)]
-pub(super) fn normals_of(gradient: &[Lanes; 3]) -> [Lanes; 3] {
+pub(super) fn normals_of(gradient: &[VertexLanes; 3]) -> [VertexLanes; 3] {
     /// Squared lengths whose terms neither overflow nor lose digits.
     const TAME: RangeInclusive<f32> = 1e-24..=1e30;
     let square = squares(gradient);

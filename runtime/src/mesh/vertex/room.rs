@@ -10,7 +10,7 @@
 //!     +-----------+-----------+
 //! ```
 
-use super::batch::{Batch, Shared};
+use super::batch::{Shared, VertexBatch};
 use super::margin::{four_steps, quarter};
 
 /// Whether four steps of f32 are more than a quarter of a cell, somewhere between the first and the last
@@ -25,7 +25,7 @@ pub(in super::super) fn is_crowded(axes: &[Vec<f32>; 3]) -> bool {
     })
 }
 
-impl Batch {
+impl VertexBatch {
     /// Separates vertices of one cell: step by step towards the mean of their sheet's crossings, where they
     /// started at different places, and then towards the middle of the cell.
     pub(super) fn separate(&mut self) {

@@ -6,38 +6,38 @@
 //! start = the mean, in the room that a vertex has in its cell
 //! ```
 
-use super::super::cell::{EDGE_CORNERS, Edges};
-use super::super::pull::{LANES, Lanes, all};
+use super::super::cell::{EDGE_CORNERS, SheetEdges};
+use super::super::pull::{LANES, VertexLanes, all};
 use super::margin::room;
 
 /// The data of the cells of [`LANES`] vertices.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Seeds {
     /// The field at the corners.
-    corners: [Lanes; 8],
+    corners: [VertexLanes; 8],
     /// The low and the high side along each axis.
-    sides: [[Lanes; 2]; 3],
+    sides: [[VertexLanes; 2]; 3],
     /// The edges of their sheets.
-    edges: [Edges; LANES],
+    edges: [SheetEdges; LANES],
 }
 
 /// Values derived from [`Seeds`].
 #[derive(Clone, Copy, Default)]
-pub(super) struct Group {
+pub(super) struct SeedGroup {
     /// The low and the high corners of the vertices' rooms.
-    pub(super) low: [Lanes; 3],
-    pub(super) high: [Lanes; 3],
+    pub(super) low: [VertexLanes; 3],
+    pub(super) high: [VertexLanes; 3],
     /// The approximate rise of the field along the axes: from the low corners of the cells to the high ones,
     /// or along the edges that the sheets cross.
-    pub(super) rise: [Lanes; 3],
+    pub(super) rise: [VertexLanes; 3],
     /// The largest difference of the field among the corners of each cell.
-    pub(super) spread: Lanes,
+    pub(super) spread: VertexLanes,
 }
 
 impl Seeds {
     /// Puts a vertex into a lane.
     #[inline(always)]
-    pub(super) fn put(&mut self, lane: usize, corners: &[f32; 8], sides: [[f32; 2]; 3], edges: Edges) {
+    pub(super) fn put(&mut self, lane: usize, corners: &[f32; 8], sides: [[f32; 2]; 3], edges: SheetEdges) {
         for (lanes, corner) in self.corners.iter_mut().zip(corners) {
             lanes[lane] = *corner;
         }
@@ -50,7 +50,7 @@ impl Seeds {
     /// The starts of the vertices, and their group; `rise` is computed as if each vertex had a cell of its
     /// own.
     #[inline(always)]
-    fn grow(&self, iso: f32, group: &mut Group) -> [Lanes; 3] {
+    fn grow(&self, iso: f32, group: &mut SeedGroup) -> [VertexLanes; 3] {
         let (means, is_tame) = self.tame_means(iso, group);
         let mut means = means;
         if !all(&is_tame) {
@@ -80,7 +80,7 @@ impl Seeds {
     // Plain indices become vectors.
     #[allow(clippy::needless_range_loop)]
     #[inline(always)]
-    fn tame_means(&self, iso: f32, group: &mut Group) -> ([Lanes; 3], [u32; LANES]) {
+    fn tame_means(&self, iso: f32, group: &mut SeedGroup) -> ([VertexLanes; 3], [u32; LANES]) {
         /// Numbers up to this limit have differences that do not overflow.
         const LARGE: f32 = 1e38;
         let (mut means, mut is_tame) = ([[0.0; LANES]; 3], [0; LANES]);
@@ -120,7 +120,7 @@ impl Seeds {
 // Plain indices become vectors.
 #[allow(clippy::needless_range_loop)]
 #[inline(always)]
-fn tame_mean(iso: f32, corners: &[f32; 8], edges: Edges) -> [f32; 3] {
+fn tame_mean(iso: f32, corners: &[f32; 8], edges: SheetEdges) -> [f32; 3] {
     let mut mean = [0.0; 3];
     for axis in 0..3 {
         let mut t = [0.0; 4];
@@ -138,7 +138,7 @@ fn tame_mean(iso: f32, corners: &[f32; 8], edges: Edges) -> [f32; 3] {
 
 /// Computes the starts and the groups of vertices.
 #[cfg_attr(feature = "levels", multiversion::multiversion(targets("x86_64+avx2")))]
-pub(super) fn grow(iso: f32, seeds: &[Seeds], groups: &mut [Group], points: [&mut [f32]; 3]) {
+pub(super) fn grow(iso: f32, seeds: &[Seeds], groups: &mut [SeedGroup], points: [&mut [f32]; 3]) {
     let [x, y, z] = points.map(|plane| plane.as_chunks_mut::<LANES>().0);
     for ((seeds, group), ((x, y), z)) in seeds.iter().zip(groups).zip(x.iter_mut().zip(y).zip(z)) {
         [*x, *y, *z] = seeds.grow(iso, group);
@@ -183,7 +183,7 @@ mod tests {
     fn mean(iso: f32, corners: &[f32; 8], signs: u8) -> [f32; 3] {
         let mut seeds = Seeds::default();
         seeds.put(LANES - 1, corners, [[0.0, 1.0]; 3], default_edges(signs)[0]);
-        let (mut groups, mut planes) = ([Group::default()], [[0.0; LANES]; 3]);
+        let (mut groups, mut planes) = ([SeedGroup::default()], [[0.0; LANES]; 3]);
         grow(iso, &[seeds], &mut groups, planes.each_mut().map(|plane| &mut plane[..]));
         planes.map(|lanes| lanes[LANES - 1])
     }
@@ -226,7 +226,7 @@ mod tests {
         // So near to the corner that there is no room.
         corners[0] = 0.5;
         seeds.put(1, &corners, [[4.0, 6.0]; 3], default_edges(1)[0]);
-        let (mut groups, mut planes) = ([Group::default()], [[0.0; LANES]; 3]);
+        let (mut groups, mut planes) = ([SeedGroup::default()], [[0.0; LANES]; 3]);
         grow(0.5, &[seeds], &mut groups, planes.each_mut().map(|plane| &mut plane[..]));
         let [low, high] = room([4.0, 6.0]);
         for (axis, plane) in planes.iter().enumerate() {

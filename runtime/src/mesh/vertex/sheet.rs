@@ -3,7 +3,7 @@
 
 use super::super::brick::{Bricks, cell_sides, place};
 use super::super::cell::{EDGE_CORNERS, following, sheets_with_quads};
-use super::super::crossing::Cell;
+use super::super::crossing::CrossedCell;
 use super::bracket::{Bracket, CrossedEdge, CrossedEdges};
 use super::normal::sheet_normal;
 use crate::region::Box3;
@@ -43,7 +43,7 @@ impl Sheet {
     pub(super) fn new(
         bricks: &Bricks,
         brick: usize,
-        (cell, sheet): (&Cell, u32),
+        (cell, sheet): (&CrossedCell, u32),
         start: Start,
         values: &[f32; 8],
         crossed: &mut CrossedEdges,

@@ -5,12 +5,12 @@ use super::super::cell::{default_edges, edges};
 use super::super::error::MAX_BRICK;
 use super::super::field::Field;
 use super::super::pull::LANES;
-use super::batch::{Batch, Shared, Source};
+use super::batch::{Shared, VertexBatch, VertexSource};
 use super::seed::grow;
 
-impl Batch {
+impl VertexBatch {
     /// Puts the vertices of a brick at their starts.
-    pub(super) fn start<F: Field>(&mut self, source: &Source<'_, F>, brick: usize, count: usize) {
+    pub(super) fn start<F: Field>(&mut self, source: &VertexSource<'_, F>, brick: usize, count: usize) {
         self.resize(count);
         self.shared.clear();
         self.doubtful.clear();
@@ -25,8 +25,8 @@ impl Batch {
     }
 
     /// Collects the seeds of the vertices of a brick. Lanes behind the last vertex keep data of other bricks.
-    fn sow<F: Field>(&mut self, source: &Source<'_, F>, brick: usize) {
-        let Source { bricks, crossings, .. } = source;
+    fn sow<F: Field>(&mut self, source: &VertexSource<'_, F>, brick: usize) {
+        let VertexSource { bricks, crossings, .. } = source;
         let (origin, extent, lattice_sides) =
             (bricks.origin(brick), bricks.extent(brick), bricks.sides(brick));
         let axes = [0, 1, 2].map(|axis| sides(&bricks.axes[axis][origin[axis]..][..extent[axis] + 1]));

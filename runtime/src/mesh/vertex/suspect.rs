@@ -13,10 +13,10 @@
 //! vertex.
 
 use super::super::field::Field;
-use super::super::pull::{LANES, Lanes, squares};
-use super::super::settle::{Place, Stray, is_far, settle};
-use super::batch::{Batch, Done, Planes, Source, lane, lanes};
-use super::seed::Group;
+use super::super::pull::{LANES, VertexLanes, squares};
+use super::super::settle::{Stray, VertexPlace, is_far, settle};
+use super::batch::{Done, VertexBatch, VertexPlanes, VertexSource, lane, lanes};
+use super::seed::SeedGroup;
 use super::sheet::{Sheet, Start};
 use super::wall::{Wall, follow};
 
@@ -29,7 +29,7 @@ const EXCESS: f32 = 1.5;
 const ASTRAY: f32 = 0.85;
 
 /// The results of the tests of vertices, as 1 or 0 each.
-struct Verdict {
+struct VertexTests {
     /// Far from the surface.
     far: [u32; LANES],
     /// The gradient does not explain the spread of the field in the cell, or is NaN.
@@ -40,8 +40,8 @@ struct Verdict {
 
 /// The tests of vertices.
 #[inline(always)]
-fn judge(iso: f32, group: &Group, values: &Lanes, gradient: &[Lanes; 3]) -> Verdict {
-    let Group { low: [low, ..], high: [high, ..], rise, spread } = group;
+fn judge(iso: f32, group: &SeedGroup, values: &VertexLanes, gradient: &[VertexLanes; 3]) -> VertexTests {
+    let SeedGroup { low: [low, ..], high: [high, ..], rise, spread } = group;
     let (square, rises) = (squares(gradient), squares(rise));
     let far = is_far(iso, [low, high], values, &square);
     let ([x, y, z], [u, v, w]) = (gradient, rise);
@@ -54,21 +54,21 @@ fn judge(iso: f32, group: &Group, values: &Lanes, gradient: &[Lanes; 3]) -> Verd
         let along = x[i] * u[i] + y[i] * v[i] + z[i] * w[i];
         turned[i] = u32::from(along < ASTRAY * (square[i] * rises[i]).sqrt());
     }
-    Verdict { far, odd, turned }
+    VertexTests { far, odd, turned }
 }
 
 /// The groups with a vertex that fails a test.
 #[cfg_attr(feature = "levels", multiversion::multiversion(targets("x86_64+avx2")))]
 fn judge_all(
     iso: f32,
-    groups: &[Group],
+    groups: &[SeedGroup],
     values: &[f32],
-    gradient: &Planes,
-    verdicts: &mut Vec<(usize, Verdict)>,
+    gradient: &VertexPlanes,
+    verdicts: &mut Vec<(usize, VertexTests)>,
 ) {
     for (chunk, group) in groups.iter().enumerate() {
         let verdict = judge(iso, group, &lane(values, chunk), &lanes(gradient, chunk));
-        let Verdict { far, odd, turned } = &verdict;
+        let VertexTests { far, odd, turned } = &verdict;
         let any = far.iter().chain(odd).chain(turned).fold(0, |any, condition| any | condition);
         if any != 0 {
             verdicts.push((chunk, verdict));
@@ -84,14 +84,14 @@ struct Again {
     normal: Option<[f32; 3]>,
 }
 
-impl Batch {
+impl VertexBatch {
     /// Moves suspects to their places, and evaluates everything there again.
     pub(super) fn look_again<F: Field>(
         &mut self,
-        source: &Source<'_, F>,
+        source: &VertexSource<'_, F>,
         brick: usize,
     ) -> Result<Done, F::Error> {
-        let Source { field, options, regions, .. } = source;
+        let VertexSource { field, options, regions, .. } = source;
         let (region, iso) = (&regions[brick], options.iso);
         let suspects = self.suspects(iso);
         if suspects.is_empty() {
@@ -137,7 +137,7 @@ impl Batch {
         let mut found = Vec::new();
         let mut verdicts = Vec::new();
         judge_all(iso, &self.groups, &self.values, &self.gradient, &mut verdicts);
-        for (chunk, Verdict { far, odd, turned }) in verdicts {
+        for (chunk, VertexTests { far, odd, turned }) in verdicts {
             let start = chunk * LANES;
             for lane in 0..LANES.min(self.count - start) {
                 if far[lane] | odd[lane] == 1 {
@@ -151,7 +151,7 @@ impl Batch {
         found
     }
 
-    fn sheet<F: Field>(&mut self, source: &Source<'_, F>, brick: usize, vertex: usize) -> Sheet {
+    fn sheet<F: Field>(&mut self, source: &VertexSource<'_, F>, brick: usize, vertex: usize) -> Sheet {
         let cells = source.crossings.of(brick);
         // A cell without a vertex has the number of the next vertex.
         let index = cells.partition_point(|cell| cell.vertex as usize <= vertex) - 1;
@@ -163,14 +163,14 @@ impl Batch {
 
     fn stray(&self, iso: f32, sheet: &Sheet) -> Stray {
         let Start { vertex, bounds, .. } = sheet.start;
-        let at = |planes: &Planes| planes.each_ref().map(|plane| plane[vertex]);
-        let place = Place { bounds, corners: sheet.corners };
+        let at = |planes: &VertexPlanes| planes.each_ref().map(|plane| plane[vertex]);
+        let place = VertexPlace { bounds, corners: sheet.corners };
         Stray::new(iso, vertex, place, at(&self.points), self.values[vertex], at(&self.gradient))
     }
 
     fn evaluate_again<F: Field>(
         &mut self,
-        source: &Source<'_, F>,
+        source: &VertexSource<'_, F>,
         brick: usize,
         again: &[Again],
     ) -> Result<(), F::Error> {

@@ -14,7 +14,7 @@
 //! edges and smooth crossings on others bends around an edge of the solid, and is found in the same way.
 
 use super::super::field::Field;
-use super::bracket::{Bracket, CrossedEdge, CrossedEdges, Points};
+use super::bracket::{Bracket, BracketPoints, CrossedEdge, CrossedEdges};
 use super::sheet::{Sheet, Start};
 use crate::region::Box3;
 
@@ -77,7 +77,7 @@ pub(super) fn follow<F: Field>(
     iso: f32,
     walls: &mut [Wall],
 ) -> Result<u64, F::Error> {
-    let (mut points, mut asked) = (Points::default(), 0);
+    let (mut points, mut asked) = (BracketPoints::default(), 0);
     let holds = |bracket: &Bracket| bracket.values.map(|value| value >= iso) == [false, true];
     let near = across(field, region, &mut points, walls.iter(), NEAR)?;
     asked += 2 * near.len() as u64;
@@ -105,7 +105,7 @@ pub(super) fn follow<F: Field>(
 fn across<'a, F: Field>(
     field: &F,
     region: &F::Region,
-    points: &mut Points,
+    points: &mut BracketPoints,
     walls: impl IntoIterator<Item = &'a Wall>,
     way: f32,
 ) -> Result<Vec<Bracket>, F::Error> {

@@ -34,7 +34,7 @@ use jbt_ir::limits::{MAX_NODES, MAX_SCENE_BYTES};
 
 use self::node::Reading;
 use self::scan::{Key, Section};
-use self::state::{Importer, Meaning, State};
+use self::state::{Importer, Meaning, NodeState};
 use super::Imported;
 use jbt_model::combine::{Combinator, Sum};
 use jbt_model::diagnostic::{Diagnostic, Diagnostics, Span};
@@ -161,36 +161,38 @@ impl Importer<'_> {
 
     /// The tree below a node: depth first, with an explicit stack.
     fn build(&mut self, root: u32, reference: Span) -> Tree {
-        enum Task {
+        enum ReadTask {
             Enter(u32, Span),
             Leave(u32, Box<Reading>),
         }
         let broken = Tree::new(Combinator::from(Sum {}), Vec::new());
-        let mut states = vec![State::New; self.sections.nodes.len()];
-        let mut tasks = vec![Task::Enter(root, reference)];
+        let mut states = vec![NodeState::New; self.sections.nodes.len()];
+        let mut tasks = vec![ReadTask::Enter(root, reference)];
         while let Some(task) = tasks.pop() {
             match task {
-                Task::Enter(index, reference) => match states[index as usize] {
-                    State::Done(_) => {}
-                    State::Open => {
+                ReadTask::Enter(index, reference) => match states[index as usize] {
+                    NodeState::Done(_) => {}
+                    NodeState::Open => {
                         let id = self.sections.nodes[index as usize].id;
                         self.errors
                             .add(|| Diagnostic::error(Some(reference), format!("node {id} contains itself")));
                     }
-                    State::New => {
-                        states[index as usize] = State::Open;
+                    NodeState::New => {
+                        states[index as usize] = NodeState::Open;
                         let section = self.sections.nodes[index as usize].clone();
                         let reading = self.node(&section);
                         let (children, reference) = (reading.children.clone(), reading.reference);
-                        tasks.push(Task::Leave(index, Box::new(reading)));
-                        tasks.extend(children.into_iter().rev().map(|child| Task::Enter(child, reference)));
+                        tasks.push(ReadTask::Leave(index, Box::new(reading)));
+                        tasks.extend(
+                            children.into_iter().rev().map(|child| ReadTask::Enter(child, reference)),
+                        );
                     }
                 },
-                Task::Leave(index, reading) => {
+                ReadTask::Leave(index, reading) => {
                     let children = reading.children.iter().map(|&child| match &states[child as usize] {
-                        State::Done(tree) => tree.clone(),
+                        NodeState::Done(tree) => tree.clone(),
                         // Only a cycle, which has been reported, leaves a child unfinished.
-                        State::New | State::Open => broken.clone(),
+                        NodeState::New | NodeState::Open => broken.clone(),
                     });
                     let children: Vec<Tree> = children.collect();
                     let span = self.sections.nodes[index as usize].span;
@@ -198,20 +200,20 @@ impl Importer<'_> {
                         .meaning
                         .and_then(|meaning| assemble(span, meaning, reading.map, children))
                         .unwrap_or_else(|| broken.clone());
-                    states[index as usize] = State::Done(tree);
+                    states[index as usize] = NodeState::Done(tree);
                 }
             }
         }
         self.unreached(&states);
         match &states[root as usize] {
-            State::Done(tree) => tree.clone(),
-            State::New | State::Open => broken,
+            NodeState::Done(tree) => tree.clone(),
+            NodeState::New | NodeState::Open => broken,
         }
     }
 
     /// Nodes that nobody uses.
-    fn unreached(&mut self, states: &[State]) {
-        let unused = states.iter().enumerate().filter(|(_, state)| matches!(state, State::New));
+    fn unreached(&mut self, states: &[NodeState]) {
+        let unused = states.iter().enumerate().filter(|(_, state)| matches!(state, NodeState::New));
         let unused: Vec<usize> = unused.map(|(index, _)| index).collect();
         if let Some(&first) = unused.first() {
             let section = &self.sections.nodes[first];

@@ -18,7 +18,7 @@ use jbt_model::warp::Twist;
 
 /// The meaning of an operator's name.
 #[derive(Clone, Copy, PartialEq, Debug)]
-enum Operator {
+enum OperatorName {
     /// A combinator without parameters.
     Combine(Combinator),
     Ricci,
@@ -29,31 +29,31 @@ enum Operator {
     Foreign(&'static str),
 }
 
-const OPERATORS: &[(&str, Operator)] = &[
-    ("UNION", Operator::Combine(Combinator::Union(Union {}))),
-    ("INTERSECTION", Operator::Combine(Combinator::Intersection(Intersection {}))),
-    ("DIFFERENCE", Operator::Combine(Combinator::Difference(Difference {}))),
+const OPERATORS: &[(&str, OperatorName)] = &[
+    ("UNION", OperatorName::Combine(Combinator::Union(Union {}))),
+    ("INTERSECTION", OperatorName::Combine(Combinator::Intersection(Intersection {}))),
+    ("DIFFERENCE", OperatorName::Combine(Combinator::Difference(Difference {}))),
     (
         "SMOOTH DIFFERENCE",
-        Operator::Foreign("the product of the first field and the complements of the others"),
+        OperatorName::Foreign("the product of the first field and the complements of the others"),
     ),
-    ("BLEND", Operator::Combine(Combinator::Sum(Sum {}))),
-    ("GRADIENT BLEND", Operator::Combine(Combinator::Sum(Sum {}))),
-    ("RICCI BLEND", Operator::Ricci),
-    ("FASTQUADRICPOINTSET", Operator::Combine(Combinator::Sum(Sum {}))),
-    ("FASTQUADRATICPOINTSET", Operator::Combine(Combinator::Sum(Sum {}))),
-    ("PCM", Operator::Foreign("precise contact of two deforming bodies")),
-    ("CACHE", Operator::Pass),
-    ("TEXTURE", Operator::Pass),
-    ("TWIST", Operator::Twist),
-    ("TAPER", Operator::Foreign("a scale along one axis that changes along another")),
-    ("SHEAR", Operator::Foreign("a shift along one axis that changes along another")),
-    ("BEND", Operator::Foreign("the bend of an axis about a circle")),
+    ("BLEND", OperatorName::Combine(Combinator::Sum(Sum {}))),
+    ("GRADIENT BLEND", OperatorName::Combine(Combinator::Sum(Sum {}))),
+    ("RICCI BLEND", OperatorName::Ricci),
+    ("FASTQUADRICPOINTSET", OperatorName::Combine(Combinator::Sum(Sum {}))),
+    ("FASTQUADRATICPOINTSET", OperatorName::Combine(Combinator::Sum(Sum {}))),
+    ("PCM", OperatorName::Foreign("precise contact of two deforming bodies")),
+    ("CACHE", OperatorName::Pass),
+    ("TEXTURE", OperatorName::Pass),
+    ("TWIST", OperatorName::Twist),
+    ("TAPER", OperatorName::Foreign("a scale along one axis that changes along another")),
+    ("SHEAR", OperatorName::Foreign("a shift along one axis that changes along another")),
+    ("BEND", OperatorName::Foreign("the bend of an axis about a circle")),
 ];
 
 /// The meaning of a leaf's name.
 #[derive(Clone, Copy, PartialEq, Debug)]
-enum Leaf {
+enum LeafName {
     Point,
     Line,
     Cylinder,
@@ -67,17 +67,17 @@ enum Leaf {
     Foreign(&'static str),
 }
 
-const LEAVES: &[(&str, Leaf)] = &[
-    ("POINT", Leaf::Point),
-    ("LINE", Leaf::Line),
-    ("CYLINDER", Leaf::Cylinder),
-    ("DISC", Leaf::Disc),
-    ("RING", Leaf::Ring),
-    ("CUBE", Leaf::Cube),
-    ("TRIANGLE", Leaf::Triangle),
-    ("QUADRICPOINT", Leaf::Foreign("a ball whose field falls as the square of 1 - d^2/R^2")),
-    ("NULL", Leaf::Null),
-    ("INSTANCE", Leaf::Instance),
+const LEAVES: &[(&str, LeafName)] = &[
+    ("POINT", LeafName::Point),
+    ("LINE", LeafName::Line),
+    ("CYLINDER", LeafName::Cylinder),
+    ("DISC", LeafName::Disc),
+    ("RING", LeafName::Ring),
+    ("CUBE", LeafName::Cube),
+    ("TRIANGLE", LeafName::Triangle),
+    ("QUADRICPOINT", LeafName::Foreign("a ball whose field falls as the square of 1 - d^2/R^2")),
+    ("NULL", LeafName::Null),
+    ("INSTANCE", LeafName::Instance),
 ];
 
 /// A node, without its children.
@@ -172,8 +172,8 @@ impl Importer<'_> {
             return;
         };
         let unary = match operator {
-            Operator::Pass | Operator::Twist => true,
-            Operator::Combine(_) | Operator::Ricci | Operator::Foreign(_) => false,
+            OperatorName::Pass | OperatorName::Twist => true,
+            OperatorName::Combine(_) | OperatorName::Ricci | OperatorName::Foreign(_) => false,
         };
         let (id, reference, count) = (section.id, reading.reference, reading.children.len());
         if unary && count > 1 {
@@ -184,15 +184,15 @@ impl Importer<'_> {
             return;
         }
         reading.meaning = match operator {
-            Operator::Combine(combinator) => Some(Meaning::Combine(combinator)),
-            Operator::Ricci => {
+            OperatorName::Combine(combinator) => Some(Meaning::Combine(combinator)),
+            OperatorName::Ricci => {
                 let power = self.number(section, Key::Power).unwrap_or(0.0);
                 let exponent = if power == 0.0 { 2.0 } else { power };
                 Some(Meaning::Combine(Ricci { exponent }.into()))
             }
-            Operator::Pass => Some(Meaning::Same),
-            Operator::Twist => self.twist(section).map(Meaning::Warp),
-            Operator::Foreign(does) => {
+            OperatorName::Pass => Some(Meaning::Same),
+            OperatorName::Twist => self.twist(section).map(Meaning::Warp),
+            OperatorName::Foreign(does) => {
                 self.foreign(&name, span, does);
                 None
             }
@@ -225,9 +225,9 @@ impl Importer<'_> {
         let Some(leaf) = self.look_up("primitive", &name, span, LEAVES) else {
             return;
         };
-        let strength = if leaf == Leaf::Null { 0.0 } else { 1.0 };
+        let strength = if leaf == LeafName::Null { 0.0 } else { 1.0 };
         let skeleton = match leaf {
-            Leaf::Instance => {
+            LeafName::Instance => {
                 if let Some(span) = self.need(section, Key::Original)
                     && let Some(original) = self.integer(section, Key::Original)
                 {
@@ -237,15 +237,15 @@ impl Importer<'_> {
                 }
                 return;
             }
-            Leaf::Foreign(is) => return self.foreign(&name, span, is),
-            Leaf::Null => Some(Point { at: DVec3::ZERO }.into()),
-            Leaf::Point
-            | Leaf::Line
-            | Leaf::Cylinder
-            | Leaf::Disc
-            | Leaf::Ring
-            | Leaf::Cube
-            | Leaf::Triangle => self.skeleton(section, leaf),
+            LeafName::Foreign(is) => return self.foreign(&name, span, is),
+            LeafName::Null => Some(Point { at: DVec3::ZERO }.into()),
+            LeafName::Point
+            | LeafName::Line
+            | LeafName::Cylinder
+            | LeafName::Disc
+            | LeafName::Ring
+            | LeafName::Cube
+            | LeafName::Triangle => self.skeleton(section, leaf),
         };
         let color = self.tuple::<3>(section, Key::Diffused, 1);
         reading.meaning = skeleton.map(|skeleton| {
@@ -255,18 +255,18 @@ impl Importer<'_> {
     }
 
     /// The skeleton of a leaf that has one. `None` after a message.
-    fn skeleton(&mut self, section: &Section, leaf: Leaf) -> Option<Skeleton> {
+    fn skeleton(&mut self, section: &Section, leaf: LeafName) -> Option<Skeleton> {
         let position = match section.get(Key::Position) {
             Some(_) => self.tuple::<3>(section, Key::Position, 0)?.into(),
             None => DVec3::ZERO,
         };
         Some(match leaf {
-            Leaf::Line => {
+            LeafName::Line => {
                 let (start, end) =
                     (self.needed_tuple(section, Key::Start), self.needed_tuple(section, Key::End));
                 Segment { from: start?.into(), to: end?.into() }.into()
             }
-            Leaf::Cylinder => {
+            LeafName::Cylinder => {
                 let direction = self.direction(section);
                 let (radius, height) = (self.length(section, Key::Radius), self.length(section, Key::Height));
                 let (direction, radius, height) = (direction?, radius?, height?);
@@ -277,24 +277,26 @@ impl Importer<'_> {
                     Cylinder { from: position, to: position + height * direction, radius }.into()
                 }
             }
-            Leaf::Disc => {
+            LeafName::Disc => {
                 let (normal, radius) = (self.direction(section), self.length(section, Key::Radius));
                 Disc { center: position, normal: normal?, radius: radius? }.into()
             }
-            Leaf::Ring => {
+            LeafName::Ring => {
                 let (normal, radius) = (self.direction(section), self.length(section, Key::Radius));
                 Ring { center: position, normal: normal?, radius: radius? }.into()
             }
-            Leaf::Cube => {
+            LeafName::Cube => {
                 let half = self.length(section, Key::Side)?;
                 skeleton::Cuboid { center: position, half: DVec3::splat(half) }.into()
             }
-            Leaf::Triangle => {
+            LeafName::Triangle => {
                 let corners = [Key::Corner0, Key::Corner1, Key::Corner2]
                     .map(|key| self.needed_tuple::<3>(section, key).map(DVec3::from));
                 Triangle { a: corners[0]?, b: corners[1]?, c: corners[2]? }.into()
             }
-            Leaf::Point | Leaf::Null | Leaf::Instance | Leaf::Foreign(_) => Point { at: position }.into(),
+            LeafName::Point | LeafName::Null | LeafName::Instance | LeafName::Foreign(_) => {
+                Point { at: position }.into()
+            }
         })
     }
 

@@ -61,7 +61,7 @@ keys! {
 
 /// The place of a value.
 #[derive(Clone, Copy, Debug)]
-struct Entry {
+struct KeyEntry {
     key: Key,
     span: Span,
 }
@@ -73,7 +73,7 @@ pub(super) struct Section {
     pub(super) id: i64,
     /// Its heading.
     pub(super) span: Span,
-    entries: Vec<Entry>,
+    entries: Vec<KeyEntry>,
 }
 
 impl Section {
@@ -222,5 +222,5 @@ fn entry(bytes: &[u8], line: Span, section: Option<&mut Section>, warnings: &mut
         });
         return;
     }
-    section.entries.push(Entry { key, span: shrunk(bytes, start + equals + 1, end) });
+    section.entries.push(KeyEntry { key, span: shrunk(bytes, start + equals + 1, end) });
 }

@@ -21,7 +21,7 @@ pub(super) enum Meaning {
 
 /// The progress of reading a node.
 #[derive(Clone)]
-pub(super) enum State {
+pub(super) enum NodeState {
     New,
     /// Its children are being read: a reference to it now is a cycle.
     Open,
