@@ -52,7 +52,7 @@ pub fn run(arguments: &CheckArguments, quiet: bool) -> Result<(), Failure> {
 struct Checked {
     scene: Scene,
     tree: CheckedTree,
-    occurrences: u64,
+    instances: u64,
 }
 
 fn check(arguments: &SceneArguments, quiet: bool) -> Result<Checked, Failure> {
@@ -61,7 +61,7 @@ fn check(arguments: &SceneArguments, quiet: bool) -> Result<Checked, Failure> {
     let tree = scene.check()?;
     // Some numbers leave the range of f32, and some limits are reached, only in the program for all answers.
     let evaluator = scene.evaluator(&Compiler::for_engine(Engine::Scalar).compile(&tree), Query::ALL)?;
-    Ok(Checked { scene, tree, occurrences: evaluator.evaluations_per_point() })
+    Ok(Checked { scene, tree, instances: evaluator.evaluations_per_point() })
 }
 
 /// What has been found out about the files so far.
@@ -111,7 +111,7 @@ impl Checked {
         json!({
             "nodes": tree.nodes().len(),
             "leaves": self.leaves(),
-            "occurrences": self.occurrences,
+            "instances": self.instances,
             "iso": tree.iso(),
             "parameters": parameters.collect::<Map<String, Value>>(),
             "bounds": bounds,
@@ -126,7 +126,7 @@ impl Checked {
         let mut out = format!("{}: no errors\n", escape(self.scene.name()));
         let _ = writeln!(out, "  nodes        {}", grouped(tree.nodes().len() as u64));
         let _ = writeln!(out, "  leaves       {}", grouped(self.leaves() as u64));
-        let _ = writeln!(out, "  occurrences  {}", grouped(self.occurrences));
+        let _ = writeln!(out, "  instances  {}", grouped(self.instances));
         let _ = writeln!(out, "  iso          {}", tree.iso());
         if !tree.parameters().is_empty() {
             let _ = writeln!(out, "  parameters   {}", parameters(tree));

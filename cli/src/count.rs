@@ -44,7 +44,7 @@ fn formula() -> String {
         terms.map(|(count, what)| format!("{count} ({what})")).collect::<Vec<_>>().join(" + ")
     };
     format!(
-        "separate = walks x uses of leaves; walks = {}; cached = places x occurrences of leaves; places = {}",
+        "separate = walks x uses of leaves; walks = {}; cached = places x instances of leaves; places = {}",
         sum(AnswerKind::ALL.map(|answer| answer.row().walks)),
         sum(AnswerKind::ALL.map(|answer| answer.row().places))
     )
@@ -90,7 +90,7 @@ pub fn run(arguments: &CountArguments, quiet: bool) -> Result<(), Failure> {
         counts,
         leaves: leaves(&scene, &tree),
         uses: statistics.uses(),
-        occurrences: statistics.occurrences(),
+        instances: statistics.instances(),
         evaluations: field.evaluations.fused,
         lattice: lattice.zip(supports),
         mesh,
@@ -214,7 +214,7 @@ struct CountReport {
     counts: Vec<QueryCount>,
     leaves: Vec<CountedLeaf>,
     uses: u64,
-    occurrences: u64,
+    instances: u64,
     /// Evaluations that the field of one point takes.
     evaluations: u64,
     lattice: Option<(Lattice, Supports)>,
@@ -254,7 +254,7 @@ impl CountReport {
             "{} in the tree, {} of them along all paths, {} at different places\n\n",
             plural(self.leaves.len() as u64, "leaf", "leaves"),
             plural(self.uses, "use", "uses"),
-            plural(self.occurrences, "occurrence", "occurrences")
+            plural(self.instances, "instance", "instances")
         );
         self.write_queries(&mut out, 1);
         let _ = writeln!(out, "{}\n", formula().replace("; cached", "\ncached"));
@@ -322,7 +322,7 @@ impl CountReport {
         });
         json!({
             "formula": formula(),
-            "occurrences": self.occurrences,
+            "instances": self.instances,
             "uses": self.uses,
             "queries": self.counts.iter().map(|count| self.json_query(count)).collect::<Vec<_>>(),
             "leaves": self.leaves.iter().map(|leaf| self.json_leaf(leaf)).collect::<Vec<_>>(),

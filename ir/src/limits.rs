@@ -15,7 +15,7 @@ pub const MAX_EXPRESSION_STEPS: usize = 100_000;
 /// Nodes of one tree, shared ones counted once.
 pub const MAX_NODES: usize = 4_000_000;
 /// Uses of nodes, counted along every path from the root: what is left when no subtree is shared.
-pub const MAX_OCCURRENCES: usize = 4_000_000;
+pub const MAX_INSTANCES: usize = 4_000_000;
 /// Reals of one attribute group.
 pub const MAX_ATTRIBUTE_WIDTH: usize = 64;
 /// Attribute groups of one model, colour included.

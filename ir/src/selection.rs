@@ -380,7 +380,7 @@ fn bits(mut mask: u8) -> impl Iterator<Item = usize> {
 /// A length as engines read it.
 fn word(length: usize) -> u32 {
     u32::try_from(length)
-        .expect("a selection has fewer than 2^32 words: limits::MAX_OCCURRENCES bounds its rows")
+        .expect("a selection has fewer than 2^32 words: limits::MAX_INSTANCES bounds its rows")
 }
 
 #[cfg(test)]

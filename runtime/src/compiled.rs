@@ -299,8 +299,8 @@ impl Compiled {
         lowering: Option<&Lowering<'t>>,
     ) -> Result<&'t Arc<RangeProgram>, CompileError> {
         self.0.ranges.get_or_make(|earlier| {
-            let guided = self.lowered(lowering, Lowering::guided)?;
-            RangeProgram::new(&self.0.compiler, guided, earlier).map(Arc::new)
+            let ranges = self.lowered(lowering, Lowering::ranges)?;
+            RangeProgram::new(&self.0.compiler, ranges, earlier).map(Arc::new)
         })
     }
 

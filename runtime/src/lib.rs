@@ -33,7 +33,7 @@
 //!
 //! * [`Scene::load`], [`build`], [`text`] and [`import`] make a [`Model`]; [`Model::check`] says everything
 //!   that is wrong with it. [`tree`] is for programs that read one.
-//! * Numbers may follow named parameters ([`build::param`], `param` in a text):
+//! * Numbers may depend on named parameters ([`build::param`], `param` in a text):
 //!   [`CheckedTree::with_parameters`] sets them, and [`Compiled::updated`] and [`Evaluator::update`] then
 //!   write numbers and compile nothing.
 //! * A [`Compiler`] makes a [`Compiled`] model, which compiles what is asked of it when it is asked, and

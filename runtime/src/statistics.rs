@@ -3,18 +3,18 @@
 //!
 //! ```text
 //! separate   walks(query) x uses of leaves           each walk goes down every path: shared subtrees again at each use
-//! cached     places(query) x occurrences of leaves   a memory for each point: a leaf at a position once for each place asked
+//! cached     places(query) x instances of leaves   a memory for each point: a leaf at a position once for each place asked
 //! fused      what the compiled program evaluates
-//! matters    pairs of a point and an occurrence where the point is inside of the primitive's support
+//! matters    pairs of a point and an instance where the point is inside of the primitive's support
 //! ```
 //!
 //! An *evaluation* is one distance to one skeleton at one place. A *use* of a leaf is a path from the root to
-//! it; an *occurrence* is a leaf at a position, whatever the number of paths that lead there.
+//! it; an *instance* is a leaf at a position, whatever the number of paths that lead there.
 
 use std::collections::BTreeMap;
 
 use crate::parallel::*;
-use jbt_lower::LeafOccurrences;
+use jbt_lower::LeafInstances;
 use jbt_model::check::CheckedTree;
 use jbt_model::query::Query;
 
@@ -54,24 +54,24 @@ pub struct PerPoint {
 /// What is known about the leaves of a model.
 pub struct Statistics<'a> {
     uses: u64,
-    occurrences: LeafOccurrences<'a>,
+    instances: LeafInstances<'a>,
 }
 
-brief_debug!(Statistics<'_>, "Statistics", this: uses = this.uses, occurrences = this.occurrences());
+brief_debug!(Statistics<'_>, "Statistics", this: uses = this.uses, instances = this.instances());
 
 /// How far around a leaf's support lattice points are tried, as a part of the largest coordinate: more than
 /// f32 is off by.
 const ROUNDING: f64 = 1.0 / (1 << 18) as f64;
 /// Points that are evaluated at once.
 const BATCH: usize = 1 << 13;
-/// Occurrences between two reports of progress.
+/// Instances between two reports of progress.
 const STRIDE: usize = 64;
 
 impl<'a> Statistics<'a> {
     /// The statistics of a model. Cost: all paths of the tree at worst.
     #[must_use]
     pub fn new(tree: &'a CheckedTree) -> Self {
-        Self { uses: leaf_uses(tree), occurrences: LeafOccurrences::new(tree) }
+        Self { uses: leaf_uses(tree), instances: LeafInstances::new(tree) }
     }
 
     /// Uses of leaves: paths from the root to a leaf.
@@ -80,10 +80,10 @@ impl<'a> Statistics<'a> {
         self.uses
     }
 
-    /// Occurrences of leaves: a leaf at a position once.
+    /// Instances of leaves: a leaf at a position once.
     #[must_use]
-    pub fn occurrences(&self) -> u64 {
-        self.occurrences.len() as u64
+    pub fn instances(&self) -> u64 {
+        self.instances.len() as u64
     }
 
     /// The evaluations for one point of the query of an evaluator for this model.
@@ -92,12 +92,12 @@ impl<'a> Statistics<'a> {
         let query = evaluator.query();
         PerPoint {
             separate: walks(query).saturating_mul(self.uses),
-            cached: places(query).saturating_mul(self.occurrences()),
+            cached: places(query).saturating_mul(self.instances()),
             fused: evaluator.evaluations_per_point(),
         }
     }
 
-    /// Counts the pairs of a lattice point and an occurrence where the point is inside of the primitive's
+    /// Counts the pairs of a lattice point and an instance where the point is inside of the primitive's
     /// support, nearer to its skeleton than its radius.
     ///
     /// Every point near the box of a support is tried by the compiled field of that leaf alone, in the same
@@ -124,7 +124,7 @@ impl<'a> Statistics<'a> {
         lattice.check_points()?;
         let axes = lattice.axes();
         let mut supports = Supports { points: lattice.point_count(), pairs: 0, by_node: BTreeMap::new() };
-        let count = self.occurrences.len();
+        let count = self.instances.len();
         for start in (0..count).step_by(STRIDE) {
             if !hook(start as f32 / count as f32) {
                 return Err(SupportsError::Cancelled);
@@ -133,11 +133,11 @@ impl<'a> Statistics<'a> {
             let pairs: Vec<u64> = some
                 .clone()
                 .into_par_iter()
-                .map(|index| inside(compiler, &self.occurrences.alone(index), lattice.spacing(), &axes))
+                .map(|index| inside(compiler, &self.instances.alone(index), lattice.spacing(), &axes))
                 .collect::<Result<_, _>>()?;
             for (index, pairs) in some.zip(pairs) {
                 supports.pairs += pairs;
-                *supports.by_node.entry(self.occurrences.node(index).0).or_default() += pairs;
+                *supports.by_node.entry(self.instances.node(index).0).or_default() += pairs;
             }
         }
         Ok(supports)
@@ -150,9 +150,9 @@ impl<'a> Statistics<'a> {
 pub struct Supports {
     /// Points of the lattice.
     pub points: u64,
-    /// Pairs of a point and an occurrence whose support it is inside of.
+    /// Pairs of a point and an instance whose support it is inside of.
     pub pairs: u64,
-    /// The pairs by tree node: every leaf is here, with all its occurrences.
+    /// The pairs by tree node: every leaf is here, with all its instances.
     pub by_node: BTreeMap<u32, u64>,
 }
 

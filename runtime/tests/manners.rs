@@ -132,10 +132,10 @@ fn trees_add_up() {
     }
     let smooth = Tree::smooth(SetOperation::Union, 0.1, balls.clone());
     assert_eq!(smooth.node().children().len(), 5);
-    // What follows a parameter is seen from a root that grew.
-    let mut follows = ball(0) + ball(1);
+    // What depends on a parameter is seen from a root that grew.
+    let mut depends = ball(0) + ball(1);
     follows += point([2, 0, 0], param("r", 1.0));
-    assert!(follows.node().follows());
+    assert!(depends.node().depends_on_parameters());
     assert!(Model::new(follows).check().unwrap().with_parameters(&[("r", 2.0)]).is_ok());
 }
 

@@ -1,4 +1,4 @@
-//! One distance for each occurrence and point, whatever is asked.
+//! One distance for each instance and point, whatever is asked.
 
 use jbt::statistics::leaf_uses;
 use jbt::{Compiler, Engine, Query};
@@ -86,7 +86,7 @@ fn coloured_parts_have_the_values_of_the_oracle() {
 
 /// Distances by an independent count: every path from the root to a leaf with the map that it goes through,
 /// each pair once.
-fn occurrences(tree: &CheckedTree) -> u64 {
+fn instances(tree: &CheckedTree) -> u64 {
     use jbt_model::kind::NodeKind;
     let mut found = std::collections::HashSet::new();
     let mut stack = vec![(tree.root(), String::new(), glam::DAffine3::IDENTITY)];
@@ -112,11 +112,11 @@ fn occurrences(tree: &CheckedTree) -> u64 {
 }
 
 #[test]
-fn each_occurrence_is_evaluated_once_for_any_query() {
+fn each_instance_is_evaluated_once_for_any_query() {
     let scenes = examples();
     assert!(scenes.len() >= 5, "there are examples");
     for (name, tree) in scenes {
-        let expected = occurrences(&tree);
+        let expected = instances(&tree);
         for query in Query::EVERY {
             let evaluator =
                 Compiler::for_engine(Engine::Lanes).evaluator(&tree, query).expect("examples compile");

@@ -196,7 +196,7 @@ fn a_sweep_writes_numbers_and_agrees_with_the_model_with_the_number_written_in()
             // another shape.
             assert_eq!(tree(&parametrised, Some(value)).nodes(), set.nodes(), "{what} at {value}");
             let plain = tree(&substituted(body, value), None);
-            assert!(!plain.follows());
+            assert!(!plain.depends_on_parameters());
             literal.update(&plain).unwrap();
             if literal.program().function() == evaluator.program().function() {
                 assert!(same_bits(&found, &answers(&literal, &points)), "{what} at {value}");

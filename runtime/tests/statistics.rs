@@ -97,7 +97,7 @@ fn a_shared_subtree_is_walked_at_each_use_and_computed_once() {
          difference { union { use pair use pair translate (4 0 0) { use pair } } sum { use pair } }",
     );
     let statistics = Statistics::new(&tree);
-    assert_eq!((statistics.uses(), statistics.occurrences()), (8, 4));
+    assert_eq!((statistics.uses(), statistics.instances()), (8, 4));
     let per_point =
         |query| statistics.per_point(&Compiler::new().evaluator(&tree, query).expect("it compiles"));
     assert_eq!(per_point(Query::FIELD), PerPoint { separate: 8, cached: 4, fused: 4 });
@@ -190,7 +190,7 @@ fn the_supports_of_all_examples_are_those_of_plain_formulas() {
             let pairs = found.by_node[&node];
             assert!((least..=most).contains(&pairs), "{} node {node}: {pairs}", path.display());
         }
-        assert_eq!(Statistics::new(&tree).occurrences(), paths.len() as u64, "{}", path.display());
+        assert_eq!(Statistics::new(&tree).instances(), paths.len() as u64, "{}", path.display());
     }
 }
 

@@ -70,7 +70,7 @@ mesh` would take with the same options.
             is inside of; 1 is none
 
 Keys of --json. For one point:
-  formula, occurrences, uses, queries: [{query, walks, separate, cached, fused, total: {separate, cached, fused}}],
+  formula, instances, uses, queries: [{query, walks, separate, cached, fused, total: {separate, cached, fused}}],
   leaves: [{node, kind, line, column, uses, evaluations: {QUERY: count}, pairs_in_support}]
 For the lattice (`total` and `pairs_in_support` too):
   lattice: {region: [x0, y0, z0, x1, y1, z1], cell, cells: [nx, ny, nz]}, points, evaluations (of primitives, for the
@@ -148,7 +148,7 @@ const CHECK_HELP: &str = "\
 All files are checked. The exit code is that of the first one with which something is wrong.
 
 Keys of --json:
-  files: [{file, ok, model: {nodes, leaves, occurrences, iso, parameters: {NAME: value}, bounds: [x0, y0, z0, x1, y1, z1]
+  files: [{file, ok, model: {nodes, leaves, instances, iso, parameters: {NAME: value}, bounds: [x0, y0, z0, x1, y1, z1]
   (null if empty or unbounded), origin: [x, y, z], attributes: [{name, width, mixing}]}}] (model is null where something is wrong),
   diagnostics: [{file, severity (error, warning or limit), line, column, end: {line, column}, message, hint}], where end
   is one past the last character, columns count characters from 1, and what is not there is null

@@ -53,7 +53,7 @@ fn check_reports_for_machines() {
     assert_eq!(of("file"), ["bad.jbt", "scene.jbt", "none.jbt"]);
     assert_eq!(of("ok"), [false, true, false]);
     let model = &files[1]["model"];
-    assert_eq!((&model["leaves"], &model["occurrences"], &model["iso"]), (&json!(2), &json!(3), &json!(0.5)));
+    assert_eq!((&model["leaves"], &model["instances"], &model["iso"]), (&json!(2), &json!(3), &json!(0.5)));
     assert_eq!(model["parameters"], json!({ "bulge": 0.6 }));
     assert_eq!(model["bounds"].as_array().map(Vec::len), Some(6));
     assert_eq!(model["attributes"][1], json!({ "name": "rough", "width": 1, "mixing": "dominant" }));

@@ -349,7 +349,7 @@ fn levels_change_no_byte() {
 fn count_compares_with_separate_walks() {
     let folder = folder();
     let report = folder.jbt(&["count", "scene.jbt", "--json"]).code(0).json();
-    assert_eq!(report["occurrences"], 3);
+    assert_eq!(report["instances"], 3);
     let queries = report["queries"].as_array().unwrap();
     let found: Vec<_> = queries
         .iter()
@@ -390,7 +390,7 @@ fn count_tells_what_matters_on_the_lattice_of_mesh() {
     let inside = all.clone().filter(|square| *square < 0.95 * 0.95).count() as u64;
     let points = all.count() as u64;
     assert_eq!((&report["points"], &report["pairs_in_support"]), (&points.into(), &inside.into()));
-    assert_eq!((&report["uses"], &report["occurrences"]), (&2.into(), &1.into()));
+    assert_eq!((&report["uses"], &report["instances"]), (&2.into(), &1.into()));
     assert_eq!(report["evaluations"], points);
     let (mesh, stages) = (&report["mesh"], &report["mesh"]["stages"]);
     let of = |value: &serde_json::Value| value.as_u64().expect("a count");
@@ -498,7 +498,7 @@ fn check_summarises_a_good_scene() {
     for words in [
         "scene.jbt: no errors",
         "leaves       2",
-        "occurrences  3",
+        "instances  3",
         "bounds       (",
         "rough (1 x f32, dominant)",
     ] {

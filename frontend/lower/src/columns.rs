@@ -10,7 +10,7 @@
 
 use glam::{DAffine3, DVec3};
 
-use super::occurrence::{FieldId, LeafField, Scene, SpaceId};
+use super::instance::{FieldId, LeafField, Scene, SpaceId};
 use super::position::MapKind;
 use jbt_model::attribute::{AttributeGroup, UvMap};
 use jbt_model::check::NodeId;

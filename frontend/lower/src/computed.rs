@@ -59,7 +59,7 @@ pub(super) struct Computed {
     pub(super) map: DAffine3,
     /// What the inverse of the map is as code.
     pub(super) map_kind: MapKind,
-    /// How many leaf occurrences are bound to it.
+    /// How many leaf instances are bound to it.
     pub(super) uses: u32,
     /// Whether it is hoisted to the start of its space.
     pub(super) shared: bool,

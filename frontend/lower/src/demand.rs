@@ -1,4 +1,4 @@
-//! What selectors leave out: which occurrences are asked for now, and which whatever is chosen.
+//! What selectors leave out: which instances are asked for now, and which whatever is chosen.
 //!
 //! A selector asks one of its children, and its code has all of them, each in a fold over one row that is
 //! active or not. What several places share is computed in front of them, where its space begins, so that
@@ -11,7 +11,7 @@
 //! b   asked for by the selector's children    computed in front, in a fold over one row; not now, so its row is not active
 //! ```
 
-use super::names::{FieldId, Hoist, OccurrenceId, SpaceId};
+use super::names::{FieldId, Hoist, InstanceId, SpaceId};
 
 /// Who asks for something.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -31,10 +31,10 @@ impl Asked {
 
 /// What is asked for. Without selectors it is everything, and nothing is kept.
 pub(super) struct Demand {
-    pub(super) occurrences: Vec<Asked>,
+    pub(super) instances: Vec<Asked>,
     pub(super) fields: Vec<Asked>,
     pub(super) spaces: Vec<Asked>,
-    /// Of each occurrence, whether its answer can be the model's as it is.
+    /// Of each instance, whether its answer can be the model's as it is.
     pub(super) bare: Vec<bool>,
     pub(super) selects: bool,
 }
@@ -42,7 +42,7 @@ pub(super) struct Demand {
 impl Demand {
     /// Everything is asked for.
     pub(super) const ALL: Self = Self {
-        occurrences: Vec::new(),
+        instances: Vec::new(),
         fields: Vec::new(),
         spaces: Vec::new(),
         bare: Vec::new(),
@@ -56,7 +56,7 @@ impl Demand {
         match hoist {
             Hoist::Field(FieldId(id)) => self.fields[id as usize],
             Hoist::Space(SpaceId(id)) => self.spaces[id as usize],
-            Hoist::Occurrence(OccurrenceId(id)) => self.occurrences[id as usize],
+            Hoist::Instance(InstanceId(id)) => self.instances[id as usize],
             // It has no row of its own.
             Hoist::Computed(_) => Asked { always: true, now: true },
         }
@@ -69,7 +69,7 @@ impl Demand {
 
     /// Whether an answer can be the model's as it is, with nothing but warps and selectors between: then its
     /// attributes are seen even where its field is zero. Without selectors nobody asks.
-    pub(super) fn is_bare(&self, OccurrenceId(id): OccurrenceId) -> bool {
+    pub(super) fn is_bare(&self, InstanceId(id): InstanceId) -> bool {
         self.selects && self.bare[id as usize]
     }
 

@@ -1,7 +1,7 @@
-//! The code of a scene: every shape once, from its first occurrence.
+//! The code of a scene: every shape once, from its first instance.
 //!
 //! ```text
-//! define(occurrence):  leaf        its point, squared distance, falloff, strength; attributes are columns
+//! define(instance):  leaf        its point, squared distance, falloff, strength; attributes are columns
 //!                      warp        its point in a new space, then the child there
 //!                      difference  both sides, then the smaller
 //!                      map         the child, then the map of its field
@@ -16,7 +16,7 @@
 //! columns of a row are declared in the order in which the code asks for them; [`super::rows`] goes through
 //! the same order for every row.
 //!
-//! The guide function is emitted in the same way, and carries probes out of its guards: see `probe`.
+//! The range function is emitted in the same way, and carries probes out of its guards: see `probe`.
 
 mod computed;
 mod express;
@@ -34,10 +34,10 @@ use jbt_ir::{Domain, Function, FunctionBuilder, Rule, Table, Value, limits};
 
 use self::parts::{Guard, GuardStart, Probes, Select};
 use super::columns;
-use super::guide::{Decision, DecisionKind};
+use super::instance::{FieldId, InstanceId, InstanceKind, Scene, SpaceId};
 use super::mixing::{Answer, Operator, State, difference, mapped};
 use super::names::ComputedId;
-use super::occurrence::{FieldId, OccurrenceId, OccurrenceKind, Scene, SpaceId};
+use super::prune_info::{Decision, DecisionKind};
 use super::shape::{Hoist, Shapes};
 use jbt_model::attribute::Mixing;
 use jbt_model::check::CheckedTree;
@@ -50,7 +50,7 @@ pub(super) struct Code {
     pub(super) function: Function,
     /// By table.
     pub(super) tables: Vec<TableCode>,
-    /// Of a guide function; others have none.
+    /// Of a range function; others have none.
     pub(super) decisions: Vec<Decision>,
 }
 
@@ -62,7 +62,7 @@ pub(super) struct TableCode {
     pub(super) depth: usize,
     /// The space in which its fold stands, for its first row.
     pub(super) space: SpaceId,
-    /// The first of the three probes of the point in that space, in a guide function, if all rows see the
+    /// The first of the three probes of the point in that space, in a range function, if all rows see the
     /// same point.
     pub(super) probe: Option<usize>,
 }
@@ -77,18 +77,18 @@ pub(super) fn emit(scene: &Scene<'_>, shapes: &Shapes, query: Query) -> Result<C
     Emitter::new(scene, shapes, query, None).run()
 }
 
-/// Writes the guide function.
-pub(super) fn emit_guide(scene: &Scene<'_>, shapes: &Shapes) -> Result<Code, Vec<Diagnostic>> {
+/// Writes the range function.
+pub(super) fn emit_ranges(scene: &Scene<'_>, shapes: &Shapes) -> Result<Code, Vec<Diagnostic>> {
     Emitter::new(scene, shapes, Query::FIELD, Some(Probes::default())).run()
 }
 
 enum Task {
-    /// The answer of an occurrence, for one of its uses.
-    Use(OccurrenceId),
-    /// The answer of an occurrence, computed here.
-    Define(OccurrenceId),
+    /// The answer of an instance, for one of its uses.
+    Use(InstanceId),
+    /// The answer of an instance, computed here.
+    Define(InstanceId),
     /// What was computed here is what all uses see.
-    Keep(OccurrenceId),
+    Keep(InstanceId),
     HoistField(FieldId),
     HoistComputed(ComputedId),
     /// The point in a space is what all uses see.
@@ -97,11 +97,11 @@ enum Task {
     OpenFold,
     CloseFold,
     /// An operand that is written out: under a guard, if it is worth one.
-    Operand(OccurrenceId, Guard),
-    OpenGuard(OccurrenceId, GuardStart),
+    Operand(InstanceId, Guard),
+    OpenGuard(InstanceId, GuardStart),
     CloseGuard(Option<DecisionKind>),
     /// The children of a formula have their answers.
-    Express(OccurrenceId),
+    Express(InstanceId),
     /// The next operand of an operator has its answer.
     Step,
     FinishReduce,
@@ -111,7 +111,7 @@ enum Task {
     /// The child of a map has its answer; these are the map's numbers.
     Map(MapCode, Vec<Value>),
     BeginSelect,
-    OpenChild(OccurrenceId),
+    OpenChild(InstanceId),
     CloseChild,
     FinishSelect,
     /// An operand that is written out: its place in the file is a number of the current row.
@@ -146,14 +146,14 @@ struct Emitter<'a> {
     tables: Vec<TableCode>,
     reduces: Vec<Reduce>,
     selects: Vec<Select>,
-    kept: HashMap<OccurrenceId, Answer>,
+    kept: HashMap<InstanceId, Answer>,
     kept_fields: HashMap<FieldId, Value>,
     kept_computed: HashMap<ComputedId, Vec<Value>>,
     kept_points: HashMap<SpaceId, [Value; 3]>,
     slots: u32,
     iso2: Option<Value>,
     defaults: Vec<Vec<Value>>,
-    /// In a guide function.
+    /// In a range function.
     probes: Option<Probes>,
 }
 
@@ -351,40 +351,40 @@ impl<'a> Emitter<'a> {
         self.answers.push(answer);
     }
 
-    fn define(&mut self, id: OccurrenceId) {
-        match &self.scene.occurrence(id).kind {
-            OccurrenceKind::Leaf { field, .. } => {
+    fn define(&mut self, id: InstanceId) {
+        match &self.scene.instance(id).kind {
+            InstanceKind::Leaf { field, .. } => {
                 let value = self.kept_fields.get(field).copied().unwrap_or_else(|| self.leaf(*field));
                 let groups = self.leaf_attributes(id);
                 self.answers.push(Answer { field: value, groups });
             }
-            OccurrenceKind::Warp { inside, child, .. } => {
+            InstanceKind::Warp { inside, child, .. } => {
                 self.tasks.extend([Task::LeaveSpace, Task::Use(*child)]);
                 match self.kept_points.get(inside) {
                     Some(&point) => self.points.push((*inside, point)),
                     None => self.enter_warp(*inside),
                 }
             }
-            OccurrenceKind::Difference { left, right } => {
+            InstanceKind::Difference { left, right } => {
                 self.begin_operator();
                 self.tasks.push(Task::Difference);
                 self.tasks.push(Task::Operand(*right, Guard::RIGHT));
                 self.tasks.push(Task::Operand(*left, Guard::LEFT));
             }
-            OccurrenceKind::Map { code, child } => {
-                let node = self.scene.occurrence(id).node;
+            InstanceKind::Map { code, child } => {
+                let node = self.scene.instance(id).node;
                 let operator = self.scene.combinator(node);
                 let row = columns::operator(self, self.scene, node, operator, code.columns());
                 self.tasks.push(Task::Map(*code, row));
                 self.tasks.push(Task::Operand(*child, Guard::ZERO));
             }
-            OccurrenceKind::Expression { children, .. } => {
+            InstanceKind::Expression { children, .. } => {
                 self.tasks.push(Task::Express(id));
-                let operand = |&child: &OccurrenceId| Task::Operand(child, Guard::ALONE);
+                let operand = |&child: &InstanceId| Task::Operand(child, Guard::ALONE);
                 self.tasks.extend(children.iter().rev().map(operand));
             }
-            OccurrenceKind::Select { children, .. } => self.select(children),
-            OccurrenceKind::Reduce { .. } => self.begin_reduce(id),
+            InstanceKind::Select { children, .. } => self.select(children),
+            InstanceKind::Reduce { .. } => self.begin_reduce(id),
         }
     }
 
@@ -422,11 +422,11 @@ impl<'a> Emitter<'a> {
                 Hoist::Field(field) => self.tasks.push(Task::HoistField(*field)),
                 Hoist::Computed(id) => self.tasks.push(Task::HoistComputed(*id)),
                 Hoist::Space(space) => self.tasks.push(Task::HoistSpace(*space)),
-                Hoist::Occurrence(id) if self.guards_hoisted(*hoist) => {
+                Hoist::Instance(id) if self.guards_hoisted(*hoist) => {
                     self.tasks.extend([Task::Keep(*id), Task::CloseGuard(None), Task::Define(*id)]);
                     self.tasks.push(Task::OpenGuard(*id, GuardStart::Zero));
                 }
-                Hoist::Occurrence(id) => self.tasks.extend([Task::Keep(*id), Task::Define(*id)]),
+                Hoist::Instance(id) => self.tasks.extend([Task::Keep(*id), Task::Define(*id)]),
             }
         }
     }

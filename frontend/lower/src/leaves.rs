@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::occurrence::{FieldId, Scene};
+use super::instance::{FieldId, Scene};
 use super::shape::Hoist;
 use jbt_model::check::{CheckedTree, NodeId};
 use jbt_model::kind::{NodeKind, Primitive};
@@ -13,29 +13,29 @@ use jbt_model::kind::{NodeKind, Primitive};
 ///
 /// ```
 /// use jbt_model::builder::point;
-/// use jbt_lower::LeafOccurrences;
+/// use jbt_lower::LeafInstances;
 /// use jbt_model::model::Model;
 /// use jbt_model::walk::walk;
 ///
 /// let ball = point([0.0; 3], 1.0);
 /// let tree = Model::new((&ball + &ball) | ball.translate([5.0, 0.0, 0.0])).check().unwrap();
-/// let leaves = LeafOccurrences::new(&tree);
+/// let leaves = LeafInstances::new(&tree);
 /// assert_eq!(leaves.len(), 2, "three uses, two of them at one place");
 /// assert_eq!(walk(&leaves.alone(1), [5.0, 0.0, 0.0]).field, 1.0);
 /// ```
-pub struct LeafOccurrences<'a> {
+pub struct LeafInstances<'a> {
     scene: Scene<'a>,
     /// Those that selectors do not leave out.
     asked: Vec<FieldId>,
 }
 
-impl fmt::Debug for LeafOccurrences<'_> {
+impl fmt::Debug for LeafInstances<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("LeafOccurrences").field("len", &self.len()).finish_non_exhaustive()
+        f.debug_struct("LeafInstances").field("len", &self.len()).finish_non_exhaustive()
     }
 }
 
-impl<'a> LeafOccurrences<'a> {
+impl<'a> LeafInstances<'a> {
     /// Finds them. Cost: all paths of the tree at worst.
     #[must_use]
     pub fn new(tree: &'a CheckedTree) -> Self {
@@ -65,7 +65,7 @@ impl<'a> LeafOccurrences<'a> {
 
     /// A model of this leaf alone, where it stands in the whole, in local coordinates of that and with
     /// strength 1: its field is above zero exactly inside the primitive's support. Its numbers are, to the
-    /// bit, those that it has in the program of the whole model, unless they follow parameters: then to
+    /// bit, those that it has in the program of the whole model, unless they depend on parameters: then to
     /// within rounding. Panics if there are not as many.
     #[must_use]
     pub fn alone(&self, index: usize) -> CheckedTree {
@@ -91,7 +91,7 @@ mod tests {
 
     fn leaves(text: &str, p: [f64; 3]) -> Vec<f64> {
         let tree = parse(text.as_bytes(), &Options::default()).unwrap().check().unwrap();
-        let leaves = LeafOccurrences::new(&tree);
+        let leaves = LeafInstances::new(&tree);
         (0..leaves.len()).map(|index| jbt_model::walk::walk(&leaves.alone(index), p).field).collect()
     }
 

@@ -1,24 +1,24 @@
 //! Lowering: a checked tree and a query become a program and its numbers.
 //!
 //! ```text
-//! tree ──occurrence──► occurrences ──shape──► shapes ──emit──► ir::Function      the shape of the tree becomes code,
+//! tree ──instance──► instances ──shape──► shapes ──emit──► ir::Function      the shape of the tree becomes code,
 //!      what stands where,            which of them            one body a shape
 //!      sharing                       are alike       ──rows──► ir::Tables         its numbers become rows
 //! ```
 //!
-//! * `occurrence`: affine and attribute nodes dissolve into the position and the attribute bindings of the
-//!   leaves below them; a node that is met twice at one position is one occurrence.
-//! * `shape`: nested operators of a kind flatten; occurrences that differ in numbers alone have one shape.
+//! * `instance`: affine and attribute nodes dissolve into the position and the attribute bindings of the
+//!   leaves below them; a node that is met twice at one position is one instance.
+//! * `shape`: nested operators of a kind flatten; instances that differ in numbers alone have one shape.
 //! * `emit`: children of one operator that have one shape are the rows of one table, under one fold. Field
 //!   and attribute weights come out of the same traversal; the gradient is the business of a later pass.
 //! * `slopes`: how a formula's value follows its children's, for the weights of their attributes.
 //! * `computed`: attribute values that are functions of the point.
 //! * `demand`: what selectors leave out has code, in folds whose rows are not active.
 //! * `columns`: what each column is called, and its number; `emit` declares them, `rows` fills them.
-//! * `rows`: walks the occurrences in the order of `emit` and writes down their numbers.
-//! * `support`: finds for each occurrence where it can be anything but zero, in the program's own arithmetic.
-//! * [`guide`]: what somebody has to know who leaves rows out: supports, rules, and a function of probes;
-//!   `guided` makes it.
+//! * `rows`: walks the instances in the order of `emit` and writes down their numbers.
+//! * `support`: finds for each instance where it can be anything but zero, in the program's own arithmetic.
+//! * [`prune_info`]: what somebody has to know who leaves rows out: supports, rules, and a function of probes;
+//!   `ranges` makes it.
 //! * `names`: the names that all of them use.
 //!
 //! The tables, their rows and the order of these are the same for every query; only columns differ.
@@ -30,13 +30,13 @@ mod columns;
 mod computed;
 mod demand;
 mod emit;
-pub mod guide;
-mod guided;
+mod instance;
 mod leaves;
 mod mixing;
 mod names;
-mod occurrence;
 mod position;
+pub mod prune_info;
+mod ranges;
 mod rows;
 mod shape;
 mod slopes;
@@ -50,8 +50,8 @@ use jbt_model::check::CheckedTree;
 use jbt_model::diagnostic::Diagnostic;
 use jbt_model::query::Query;
 
-pub use guide::{Guide, Guided};
-pub use leaves::LeafOccurrences;
+pub use leaves::LeafInstances;
+pub use prune_info::{PruneInfo, RangeFunction};
 
 /// A program, before any pass, and its numbers.
 #[derive(Clone, Debug)]
@@ -65,7 +65,7 @@ pub struct Lowered {
 /// A model on its way to programs: what stands where, and which parts are alike. It is found once, for all
 /// that is asked of the model.
 pub struct Lowering<'a> {
-    scene: occurrence::Scene<'a>,
+    scene: instance::Scene<'a>,
     shapes: shape::Shapes,
 }
 
@@ -80,7 +80,7 @@ impl<'a> Lowering<'a> {
     /// Cost: all paths of the tree that do not lead to the same place.
     #[must_use]
     pub fn new(tree: &'a CheckedTree) -> Self {
-        let scene = occurrence::Scene::new(tree);
+        let scene = instance::Scene::new(tree);
         let shapes = shape::Shapes::new(&scene);
         Self { scene, shapes }
     }
@@ -104,12 +104,12 @@ impl<'a> Lowering<'a> {
         Ok(Lowered { function: code.function, tables: rows.tables })
     }
 
-    /// The guide function, and what there is to know about the tables of all queries.
+    /// The range function, and what there is to know about the tables of all queries.
     ///
     /// # Errors
     /// Those of [`answers`](Self::answers).
-    pub fn guided(&self) -> Result<Guided, Vec<Diagnostic>> {
-        guided::guided(&self.scene, &self.shapes)
+    pub fn ranges(&self) -> Result<RangeFunction, Vec<Diagnostic>> {
+        ranges::ranges(&self.scene, &self.shapes)
     }
 }
 
@@ -121,10 +121,10 @@ pub fn lower(tree: &CheckedTree, query: Query) -> Result<Lowered, Vec<Diagnostic
     Lowering::new(tree).answers(query)
 }
 
-/// Lowers a model to its guide function, and says what there is to know about its tables: see [`Lowering`].
+/// Lowers a model to its range function, and says what there is to know about its tables: see [`Lowering`].
 ///
 /// # Errors
-/// Those of [`Lowering::guided`].
-pub fn lower_guided(tree: &CheckedTree) -> Result<Guided, Vec<Diagnostic>> {
-    Lowering::new(tree).guided()
+/// Those of [`Lowering::ranges`].
+pub fn lower_ranges(tree: &CheckedTree) -> Result<RangeFunction, Vec<Diagnostic>> {
+    Lowering::new(tree).ranges()
 }

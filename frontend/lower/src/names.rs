@@ -1,8 +1,8 @@
 //! Names: of what stands where, and of what is hoisted.
 
-/// The name of an occurrence.
+/// The name of an instance.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, PartialOrd, Ord)]
-pub(super) struct OccurrenceId(pub(super) u32);
+pub(super) struct InstanceId(pub(super) u32);
 
 /// The name of a field of a leaf: a leaf at a position, whatever its attributes.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, PartialOrd, Ord)]
@@ -32,5 +32,5 @@ pub(super) enum Hoist {
     Computed(ComputedId),
     /// The point in a space that several lead into, and what is hoisted to its start.
     Space(SpaceId),
-    Occurrence(OccurrenceId),
+    Instance(InstanceId),
 }

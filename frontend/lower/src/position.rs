@@ -1,4 +1,4 @@
-//! Where an occurrence stands: in which space its points are asked, and the affine map from there to its own
+//! Where an instance stands: in which space its points are asked, and the affine map from there to its own
 //! space.
 //!
 //! Affine runs collapse into one matrix. What a row has to do to the point depends on the matrix:
@@ -11,7 +11,7 @@
 //! | full | 12 | 9 fused steps |
 
 //!
-//! A map that follows parameters has the kind that serves all their values, and is told from others by how it
+//! A map that depends on parameters has the kind that serves all their values, and is told from others by how it
 //! was made: two that are equal for the present values are not one position, because they will not be equal
 //! for the next ones.
 
@@ -27,7 +27,7 @@ use jbt_model::origin::ModelOrigin;
 use jbt_model::skeleton::{Skeleton, Symmetry};
 use jbt_model::written::{Freedom, MapKey, Written};
 
-/// The map from an occurrence's own space to `space`.
+/// The map from an instance's own space to `space`.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) struct Position {
     pub(super) space: SpaceId,
@@ -38,11 +38,11 @@ pub(super) struct Position {
 /// What is known of a map whatever the parameters.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) struct Trail {
-    /// How the map was made, up to the last factor that follows parameters; 0 if none does.
+    /// How the map was made, up to the last factor that depends on parameters; 0 if none does.
     pub(super) name: u32,
     /// The product of the factors after it.
     pub(super) since: DAffine3,
-    /// How much the factors that follow parameters can change the linear part.
+    /// How much the factors that depend on parameters can change the linear part.
     freedom: Freedom,
     /// Whether another factor is no similarity.
     skewed: bool,
@@ -90,7 +90,7 @@ pub(super) struct Trails {
 }
 
 impl Trails {
-    /// The name of the trail that a map which follows parameters ends.
+    /// The name of the trail that a map which depends on parameters ends.
     pub(super) fn name(&mut self, before: PositionKey, node: NodeId, written: &Written) -> u32 {
         let maps = &mut self.maps;
         let map = *self.map_of_node.entry(node).or_insert_with(|| {
@@ -129,10 +129,10 @@ impl Position {
     }
 
     /// The map from the frame in which a skeleton that stands here has its uv, and what its inverse is as
-    /// code. `follows`: numbers of the skeleton follow parameters.
-    pub(super) fn of_uv(&self, skeleton: &Skeleton, follows: bool) -> (DAffine3, MapKind) {
+    /// code. `depends`: numbers of the skeleton depend on parameters.
+    pub(super) fn of_uv(&self, skeleton: &Skeleton, depends: bool) -> (DAffine3, MapKind) {
         let map = self.map * skeleton.uv_frame();
-        let least = if follows || self.trail.name != 0 { MapKind::Full } else { MapKind::Translation };
+        let least = if depends || self.trail.name != 0 { MapKind::Full } else { MapKind::Translation };
         (map, MapKind::of(&map).max(least))
     }
 

@@ -1,6 +1,6 @@
 //! The numbers of a scene: for every row, what its code asks for, in the order in which it asks.
 //!
-//! This goes through the occurrences as [`super::emit`] does, but through all members of a group and not the
+//! This goes through the instances as [`super::emit`] does, but through all members of a group and not the
 //! first alone, and writes numbers where that declares columns. Numbers are derived in f64 and rounded once.
 
 use glam::DVec3;
@@ -9,9 +9,9 @@ use jbt_ir::{Entity, Rows, Store, Table, Tables};
 use super::columns::{self, Scribe};
 use super::computed::{self, ComputedValue};
 use super::emit::{Code, groups};
+use super::instance::{BindingsId, FieldId, InstanceId, InstanceKind, LeafField, Scene, SpaceId};
 use super::mixing::wants_order;
 use super::names::ComputedId;
-use super::occurrence::{BindingsId, FieldId, LeafField, OccurrenceId, OccurrenceKind, Scene, SpaceId};
 use super::shape::{Hoist, Shapes};
 use jbt_model::attribute::{AttributeGroup, AttributeValue, Mixing, Textured};
 use jbt_model::check::NodeId;
@@ -56,16 +56,16 @@ pub(super) fn rows(
 }
 
 enum Task {
-    Use(OccurrenceId),
-    Define(OccurrenceId),
+    Use(InstanceId),
+    Define(InstanceId),
     Order(u32),
     Hoist(Hoist),
     /// The members of a folded group become rows of the next child table.
-    Rows(OccurrenceId, usize),
+    Rows(InstanceId, usize),
     /// The numbers of a formula, behind those of its children.
-    Express(OccurrenceId),
+    Express(InstanceId),
     /// An operand that is written out: the row of the next child table, if it has a guard.
-    Operand(OccurrenceId),
+    Operand(InstanceId),
     /// One row of the next child table, active or not.
     Guard(Member, bool),
 }
@@ -75,7 +75,7 @@ enum Task {
 pub(super) enum Member {
     /// What stands here: the scene, an operand, or a selector's child. And its place in the order of its
     /// operator, where that is a column.
-    Operand(OccurrenceId, Option<u32>),
+    Operand(InstanceId, Option<u32>),
     /// What is hoisted and has a guard.
     Hoisted(Hoist),
     /// A piece of a leaf's skeleton, by its place among them.
@@ -86,7 +86,7 @@ impl Member {
     /// The tree node whose numbers stand in the row.
     pub(super) fn node(self, scene: &Scene<'_>) -> NodeId {
         match self {
-            Self::Operand(id, _) | Self::Hoisted(Hoist::Occurrence(id)) => scene.occurrence(id).node,
+            Self::Operand(id, _) | Self::Hoisted(Hoist::Instance(id)) => scene.instance(id).node,
             Self::Hoisted(Hoist::Field(field)) | Self::Piece(field, _) => scene.field(field).node,
             Self::Hoisted(Hoist::Computed(id)) => scene.computed(id).node,
             Self::Hoisted(Hoist::Space(space)) => scene.inside(space).expect("the world is not hoisted").warp,
@@ -190,7 +190,7 @@ impl<'a> Writer<'a> {
             Member::Hoisted(Hoist::Field(field)) => self.leaf(field),
             Member::Hoisted(Hoist::Computed(id)) => self.hoisted(id),
             Member::Hoisted(Hoist::Space(space)) => self.warp(space),
-            Member::Hoisted(Hoist::Occurrence(id)) => tasks.push(Task::Define(id)),
+            Member::Hoisted(Hoist::Instance(id)) => tasks.push(Task::Define(id)),
             Member::Piece(..) => unreachable!("pieces are written with their leaves"),
         }
         if table.index() == 0 {
@@ -199,7 +199,7 @@ impl<'a> Writer<'a> {
         while let Some(task) = tasks.pop() {
             match task {
                 // It is computed where it is hoisted to.
-                Task::Use(id) if self.scene.occurrence(id).uses > 1 => {}
+                Task::Use(id) if self.scene.instance(id).uses > 1 => {}
                 Task::Use(id) | Task::Define(id) => self.define(id, &mut tasks),
                 Task::Order(order) => columns::order(self, order),
                 Task::Express(id) => self.express(id),
@@ -248,10 +248,10 @@ impl<'a> Writer<'a> {
             Hoist::Computed(_) => {}
             Hoist::Field(field) if !guarded => self.leaf(field),
             Hoist::Space(space) if !guarded => self.enter_warp(space, tasks),
-            Hoist::Occurrence(id) if !guarded => tasks.push(Task::Define(id)),
+            Hoist::Instance(id) if !guarded => tasks.push(Task::Define(id)),
             // Only the point is computed under the guard.
             Hoist::Space(space) => self.enter_space(space, tasks),
-            Hoist::Field(_) | Hoist::Occurrence(_) => {}
+            Hoist::Field(_) | Hoist::Instance(_) => {}
         }
         if guarded {
             tasks.push(Task::Guard(Member::Hoisted(hoist), self.scene.demand.is_asked(hoist)));
@@ -262,40 +262,40 @@ impl<'a> Writer<'a> {
         tasks.extend(self.shapes.hoists(space).iter().rev().map(|&hoist| Task::Hoist(hoist)));
     }
 
-    fn define(&mut self, id: OccurrenceId, tasks: &mut Vec<Task>) {
-        let occurrence = self.scene.occurrence(id);
-        match &occurrence.kind {
-            OccurrenceKind::Leaf { field, bindings, computed } => {
+    fn define(&mut self, id: InstanceId, tasks: &mut Vec<Task>) {
+        let instance = self.scene.instance(id);
+        match &instance.kind {
+            InstanceKind::Leaf { field, bindings, computed } => {
                 if self.scene.field(*field).uses == 1 {
                     self.leaf(*field);
                 }
                 self.attributes(*bindings, computed);
             }
-            OccurrenceKind::Warp { inside, child, .. } => {
+            InstanceKind::Warp { inside, child, .. } => {
                 tasks.push(Task::Use(*child));
                 if !self.scene.is_shared(*inside) {
                     self.enter_warp(*inside, tasks);
                 }
             }
-            OccurrenceKind::Difference { left, right } => {
+            InstanceKind::Difference { left, right } => {
                 tasks.extend([Task::Operand(*right), Task::Operand(*left)]);
             }
-            OccurrenceKind::Map { code, child } => {
-                let operator = self.scene.combinator(occurrence.node);
-                columns::operator(self, self.scene, occurrence.node, operator, code.columns());
+            InstanceKind::Map { code, child } => {
+                let operator = self.scene.combinator(instance.node);
+                columns::operator(self, self.scene, instance.node, operator, code.columns());
                 tasks.push(Task::Operand(*child));
             }
-            OccurrenceKind::Expression { children, .. } => {
+            InstanceKind::Expression { children, .. } => {
                 tasks.push(Task::Express(id));
                 tasks.extend(children.iter().rev().map(|&child| Task::Operand(child)));
             }
-            OccurrenceKind::Select { children, chosen } => {
+            InstanceKind::Select { children, chosen } => {
                 for (place, &child) in children.iter().enumerate().rev() {
                     tasks.push(Task::Guard(Member::Operand(child, None), place == *chosen));
                 }
             }
-            OccurrenceKind::Reduce { operator, code, .. } => {
-                columns::operator(self, self.scene, occurrence.node, *operator, code.columns());
+            InstanceKind::Reduce { operator, code, .. } => {
+                columns::operator(self, self.scene, instance.node, *operator, code.columns());
                 let groups = self.shapes.groups(id);
                 let ordered = wants_order(
                     *code,
@@ -320,14 +320,14 @@ impl<'a> Writer<'a> {
     }
 
     /// Makes the members of a group rows of the next child table, owned by the row in progress.
-    fn hand_out(&mut self, id: OccurrenceId, group: usize) {
-        let OccurrenceKind::Reduce { code, .. } = &self.scene.occurrence(id).kind else {
+    fn hand_out(&mut self, id: InstanceId, group: usize) {
+        let InstanceKind::Reduce { code, .. } = &self.scene.instance(id).kind else {
             unreachable!("only operators have groups")
         };
         let groups = self.shapes.groups(id);
         let ordered =
             wants_order(*code, groups.len() > 1, self.query.contains(AnswerKind::Gradient), &self.mixing);
-        let member = |&(occurrence, order)| Member::Operand(occurrence, ordered.then_some(order));
+        let member = |&(instance, order)| Member::Operand(instance, ordered.then_some(order));
         let members: Vec<Member> = groups[group].members.iter().map(member).collect();
         self.own(&members, true);
     }
@@ -365,13 +365,13 @@ impl<'a> Writer<'a> {
 
     /// The numbers of a formula: the map to its space, its own, and those of the leaf that it is without
     /// children.
-    fn express(&mut self, id: OccurrenceId) {
-        let occurrence = self.scene.occurrence(id);
-        let OccurrenceKind::Expression { position, shift, bindings, children, computed } = &occurrence.kind
+    fn express(&mut self, id: InstanceId) {
+        let instance = self.scene.instance(id);
+        let InstanceKind::Expression { position, shift, bindings, children, computed } = &instance.kind
         else {
             unreachable!("only formulas are expressed")
         };
-        let expression = self.scene.expression(occurrence.node);
+        let expression = self.scene.expression(instance.node);
         if expression.form().asks_point() {
             let position = self.scene.position(*position);
             columns::map(self, position.kind(), &position.map);
@@ -387,7 +387,7 @@ impl<'a> Writer<'a> {
         let (primitive, scale) = (self.scene.primitive(field), self.scene.field(field).scale);
         let mut numbers = Vec::new();
         primitive.skeleton.pieces(scale, primitive.radius, &mut numbers);
-        // At most limits::MAX_OCCURRENCES.
+        // At most limits::MAX_INSTANCES.
         let members: Vec<Member> =
             (0..numbers.len() / columns).map(|piece| Member::Piece(field, piece as u32)).collect();
         let table = self.own(&members, true);

@@ -1,6 +1,6 @@
-//! Which occurrences are alike: same node kinds, different numbers.
+//! Which instances are alike: same node kinds, different numbers.
 //!
-//! A shape is what selects code. Nested operators of a kind flatten into one; an occurrence with several uses
+//! A shape is what selects code. Nested operators of a kind flatten into one; an instance with several uses
 //! is *hoisted*: computed once, where its space begins, and seen by the others as a value. The children of an
 //! operator form groups, one for each shape; a group is the rows of one table, unless its shape holds tables
 //! of its own and there is one such child: that one is written out.
@@ -15,9 +15,9 @@ use rustc_hash::FxHashMap as HashMap;
 pub(super) use self::key::ShapeId;
 use self::key::{Content, ShapeKey};
 use super::computed::ComputedShape;
+use super::instance::{FieldId, InstanceId, InstanceKind, LeafCode, Scene, SpaceId};
 use super::names::ComputedId;
 pub(super) use super::names::Hoist;
-use super::occurrence::{FieldId, LeafCode, OccurrenceId, OccurrenceKind, Scene, SpaceId};
 use jbt_model::combine::ReduceCode;
 
 /// The children of an operator that have one shape.
@@ -26,7 +26,7 @@ pub(super) struct Group {
     /// Whether they are rows of a table; otherwise they are written out one after the other.
     pub(super) folded: bool,
     /// Children, each with its place in the order of the file.
-    pub(super) members: Vec<(OccurrenceId, u32)>,
+    pub(super) members: Vec<(InstanceId, u32)>,
 }
 
 /// Operations of a formula that cost as much as a leaf.
@@ -41,41 +41,41 @@ fn steps_of(scene: &Scene<'_>, computed: &[Option<ComputedId>]) -> usize {
 /// The shapes of a scene.
 pub(super) struct Shapes {
     /// Groups of each operator that has not been flattened into another.
-    groups: HashMap<OccurrenceId, Vec<Group>>,
+    groups: HashMap<InstanceId, Vec<Group>>,
     hoists: HashMap<SpaceId, Vec<Hoist>>,
-    /// Of each occurrence, where it is computed. Not of those that have been flattened.
+    /// Of each instance, where it is computed. Not of those that have been flattened.
     contents: Vec<Content>,
 }
 
 impl Shapes {
-    /// Finds the shape of every occurrence.
+    /// Finds the shape of every instance.
     pub(super) fn new(scene: &Scene<'_>) -> Self {
         Classifier::new(scene).run()
     }
 
     /// The groups of an operator, in the order of their code.
-    pub(super) fn groups(&self, id: OccurrenceId) -> &[Group] {
+    pub(super) fn groups(&self, id: InstanceId) -> &[Group] {
         &self.groups[&id]
     }
 
     /// Whether it holds a formula of the point, of which no support is known.
-    pub(super) fn holds_formulas(&self, id: OccurrenceId) -> bool {
+    pub(super) fn holds_formulas(&self, id: InstanceId) -> bool {
         self.contents[id.0 as usize].formulas
     }
 
     /// Whether an operand that is not a row is computed under a guard, inside of `depth` folds. What is
     /// hoisted is not: its value is there.
-    pub(super) fn guards_operand(&self, scene: &Scene<'_>, id: OccurrenceId, depth: usize) -> bool {
+    pub(super) fn guards_operand(&self, scene: &Scene<'_>, id: InstanceId, depth: usize) -> bool {
         let content = self.contents[id.0 as usize];
         // Without tables of its own it may stand in a row, whose shape guards must not change.
-        scene.occurrence(id).uses == 1 && content.written_out && content.wants_guard(depth)
+        scene.instance(id).uses == 1 && content.written_out && content.wants_guard(depth)
     }
 
     /// Whether what is hoisted is computed under a guard, inside of `depth` folds: because some choices of
     /// selectors do without it, or because it is worth one.
     pub(super) fn guards_hoisted(&self, scene: &Scene<'_>, hoist: Hoist, depth: usize) -> bool {
         let worth = match hoist {
-            Hoist::Occurrence(id) => self.contents[id.0 as usize].wants_guard(depth),
+            Hoist::Instance(id) => self.contents[id.0 as usize].wants_guard(depth),
             Hoist::Field(_) | Hoist::Space(_) | Hoist::Computed(_) => false,
         };
         worth || scene.demand.is_guarded(hoist)
@@ -92,7 +92,7 @@ struct Classifier<'a> {
     names: HashMap<ShapeKey, ShapeId>,
     /// By shape.
     contents: Vec<Content>,
-    /// The shape of each occurrence, as its user sees it.
+    /// The shape of each instance, as its user sees it.
     shapes: Vec<ShapeId>,
     /// The last leaf that computes no attribute, and its shape: the next one is like it as a rule.
     last_leaf: Option<(LeafCode, ShapeId)>,
@@ -111,7 +111,7 @@ impl<'a> Classifier<'a> {
             scene,
             names: HashMap::default(),
             contents: Vec::new(),
-            shapes: Vec::with_capacity(scene.occurrences.len()),
+            shapes: Vec::with_capacity(scene.instances.len()),
             last_leaf: None,
             flattened,
             entered: rustc_hash::FxHashSet::default(),
@@ -139,14 +139,14 @@ impl<'a> Classifier<'a> {
                 self.result.hoists.entry(outside).or_default().push(Hoist::Space(space));
             }
         }
-        for index in 0..self.scene.occurrences.len() {
-            let id = OccurrenceId(index as u32);
+        for index in 0..self.scene.instances.len() {
+            let id = InstanceId(index as u32);
             self.hoist_weighted(id);
             let shape = self.shape(id);
-            let occurrence = self.scene.occurrence(id);
+            let instance = self.scene.instance(id);
             self.result.contents.push(self.contents[shape.0 as usize]);
-            let shape = if occurrence.uses > 1 {
-                self.result.hoists.entry(occurrence.space).or_default().push(Hoist::Occurrence(id));
+            let shape = if instance.uses > 1 {
+                self.result.hoists.entry(instance.space).or_default().push(Hoist::Instance(id));
                 self.name(ShapeKey::Hoisted(id), Content::HOISTED)
             } else {
                 shape
@@ -156,14 +156,14 @@ impl<'a> Classifier<'a> {
         self.result
     }
 
-    /// Hoists the point inside of a weighted warp that several occurrences share, when the first of them is
+    /// Hoists the point inside of a weighted warp that several instances share, when the first of them is
     /// met: its weight, and whatever that is made of, came before.
-    fn hoist_weighted(&mut self, id: OccurrenceId) {
-        let occurrence = self.scene.occurrence(id);
-        let OccurrenceKind::Warp { inside, weight: Some(_), .. } = occurrence.kind else { return };
+    fn hoist_weighted(&mut self, id: InstanceId) {
+        let instance = self.scene.instance(id);
+        let InstanceKind::Warp { inside, weight: Some(_), .. } = instance.kind else { return };
         let shared = self.scene.is_shared(inside);
         if shared && self.entered.insert(inside) {
-            self.result.hoists.entry(occurrence.space).or_default().push(Hoist::Space(inside));
+            self.result.hoists.entry(instance.space).or_default().push(Hoist::Space(inside));
         }
     }
 
@@ -176,40 +176,40 @@ impl<'a> Classifier<'a> {
         id
     }
 
-    fn of(&self, id: OccurrenceId) -> (ShapeId, Content) {
+    fn of(&self, id: InstanceId) -> (ShapeId, Content) {
         let shape = self.shapes[id.0 as usize];
         (shape, self.contents[shape.0 as usize])
     }
 
-    /// The shape of an occurrence whose children have theirs.
-    fn shape(&mut self, id: OccurrenceId) -> ShapeId {
-        let occurrence = self.scene.occurrence(id);
-        match &occurrence.kind {
-            OccurrenceKind::Leaf { field, computed, .. } if self.scene.field(*field).uses > 1 => {
-                let computed = self.computed(computed, occurrence.space);
+    /// The shape of an instance whose children have theirs.
+    fn shape(&mut self, id: InstanceId) -> ShapeId {
+        let instance = self.scene.instance(id);
+        match &instance.kind {
+            InstanceKind::Leaf { field, computed, .. } if self.scene.field(*field).uses > 1 => {
+                let computed = self.computed(computed, instance.space);
                 self.name(ShapeKey::LeafOf(*field, computed), Content::HOISTED)
             }
-            OccurrenceKind::Leaf { field, computed, .. } => self.leaf(*field, computed, occurrence.space),
-            OccurrenceKind::Warp { .. } => self.warp(id),
-            OccurrenceKind::Difference { left, right } => {
+            InstanceKind::Leaf { field, computed, .. } => self.leaf(*field, computed, instance.space),
+            InstanceKind::Warp { .. } => self.warp(id),
+            InstanceKind::Difference { left, right } => {
                 let ((left, content), (right, other)) = (self.of(*left), self.of(*right));
                 self.name(ShapeKey::Difference { left, right }, content.and(other))
             }
-            OccurrenceKind::Map { code, child } => {
+            InstanceKind::Map { code, child } => {
                 let (child, content) = self.of(*child);
                 self.name(ShapeKey::Map { code: *code, child }, content)
             }
-            OccurrenceKind::Expression { .. } => self.expression(id),
-            OccurrenceKind::Select { children, .. } => {
+            InstanceKind::Expression { .. } => self.expression(id),
+            InstanceKind::Select { children, .. } => {
                 let children = children.iter().map(|child| self.of(*child).0).collect();
                 // Each child is a row of a table of its own.
                 self.name(ShapeKey::Select(children), Content::ROWS)
             }
-            OccurrenceKind::Reduce { .. } if self.flattened[id.0 as usize] => {
+            InstanceKind::Reduce { .. } if self.flattened[id.0 as usize] => {
                 // Its user asks for its children; nobody asks for its shape.
                 self.name(ShapeKey::Hoisted(id), Content::HOISTED)
             }
-            OccurrenceKind::Reduce { code, .. } => self.reduce(id, *code),
+            InstanceKind::Reduce { code, .. } => self.reduce(id, *code),
         }
     }
 
@@ -234,9 +234,9 @@ impl<'a> Classifier<'a> {
     }
 
     /// The shape of a warp, with what is below it.
-    fn warp(&mut self, id: OccurrenceId) -> ShapeId {
-        let occurrence = self.scene.occurrence(id);
-        let OccurrenceKind::Warp { position, inside, child, weight } = &occurrence.kind else {
+    fn warp(&mut self, id: InstanceId) -> ShapeId {
+        let instance = self.scene.instance(id);
+        let InstanceKind::Warp { position, inside, child, weight } = &instance.kind else {
             unreachable!("it is a warp")
         };
         let (child, mut content) = self.of(*child);
@@ -254,16 +254,16 @@ impl<'a> Classifier<'a> {
         content.written_out |= pinned.is_some();
         content.leaves = content.leaves.saturating_add(hoists.map_or(0, Vec::len));
         let map = self.scene.position(*position).kind();
-        let warp = self.scene.warp(occurrence.node).code();
+        let warp = self.scene.warp(instance.node).code();
         let key = ShapeKey::Warp { map, warp, child, weight, pinned };
         self.name(key, content)
     }
 
     /// The shape of an operator, whose children of one shape are a group.
-    fn reduce(&mut self, id: OccurrenceId, code: ReduceCode) -> ShapeId {
+    fn reduce(&mut self, id: InstanceId, code: ReduceCode) -> ShapeId {
         let groups = self.group(id, code);
         let content = groups.iter().fold(Content::HOISTED, |all, group| {
-            let of = |member: &(OccurrenceId, u32)| self.of(member.0).1;
+            let of = |member: &(InstanceId, u32)| self.of(member.0).1;
             match group.folded {
                 true => all.and(Content { formulas: of(&group.members[0]).formulas, ..Content::ROWS }),
                 false => group.members.iter().fold(all, |all, member| all.and(of(member))),
@@ -285,12 +285,12 @@ impl<'a> Classifier<'a> {
     }
 
     /// The shape of a formula: its form, and whether it asks for the point.
-    fn expression(&mut self, id: OccurrenceId) -> ShapeId {
-        let occurrence = self.scene.occurrence(id);
-        let OccurrenceKind::Expression { position, children, computed, .. } = &occurrence.kind else {
+    fn expression(&mut self, id: InstanceId) -> ShapeId {
+        let instance = self.scene.instance(id);
+        let InstanceKind::Expression { position, children, computed, .. } = &instance.kind else {
             unreachable!("only formulas have forms")
         };
-        let form = self.scene.expression(occurrence.node).shared_form();
+        let form = self.scene.expression(instance.node).shared_form();
         let steps = form.steps() + steps_of(self.scene, computed);
         let formulas = children.is_empty();
         let own = Content { leaves: 1 + steps / STEPS_OF_A_LEAF, formulas, ..Content::LEAF };
@@ -298,10 +298,10 @@ impl<'a> Classifier<'a> {
         let key = ShapeKey::Expression {
             map: form.asks_point().then(|| self.scene.position(*position).kind()),
             form,
-            vanishes: self.scene.vanishes(occurrence.node),
-            non_negative: occurrence.non_negative,
+            vanishes: self.scene.vanishes(instance.node),
+            non_negative: instance.non_negative,
             children: children.iter().map(|&child| self.of(child).0).collect(),
-            computed: self.computed(computed, occurrence.space),
+            computed: self.computed(computed, instance.space),
         };
         self.name(key, content)
     }
@@ -320,26 +320,26 @@ impl<'a> Classifier<'a> {
     }
 
     /// The operands of an operator, those of flattened ones among them, by shape.
-    fn group(&self, id: OccurrenceId, code: ReduceCode) -> Vec<Group> {
+    fn group(&self, id: InstanceId, code: ReduceCode) -> Vec<Group> {
         match code {
             ReduceCode::Step(_) => return self.runs(id),
             ReduceCode::Fold(_) | ReduceCode::Choice(_) => {}
         }
-        let mut by_shape: HashMap<ShapeId, Vec<(OccurrenceId, u32)>> = HashMap::default();
+        let mut by_shape: HashMap<ShapeId, Vec<(InstanceId, u32)>> = HashMap::default();
         let mut stack = vec![id];
         let mut order = 0;
         while let Some(next) = stack.pop() {
-            match &self.scene.occurrence(next).kind {
-                OccurrenceKind::Reduce { children, .. } if next == id || self.flattened[next.0 as usize] => {
+            match &self.scene.instance(next).kind {
+                InstanceKind::Reduce { children, .. } if next == id || self.flattened[next.0 as usize] => {
                     stack.extend(children.iter().rev());
                 }
-                OccurrenceKind::Reduce { .. }
-                | OccurrenceKind::Leaf { .. }
-                | OccurrenceKind::Warp { .. }
-                | OccurrenceKind::Map { .. }
-                | OccurrenceKind::Expression { .. }
-                | OccurrenceKind::Select { .. }
-                | OccurrenceKind::Difference { .. } => {
+                InstanceKind::Reduce { .. }
+                | InstanceKind::Leaf { .. }
+                | InstanceKind::Warp { .. }
+                | InstanceKind::Map { .. }
+                | InstanceKind::Expression { .. }
+                | InstanceKind::Select { .. }
+                | InstanceKind::Difference { .. } => {
                     by_shape.entry(self.of(next).0).or_default().push((next, order));
                     order += 1;
                 }
@@ -351,8 +351,8 @@ impl<'a> Classifier<'a> {
     }
 
     /// The operands of a step: the first alone, the others as runs of one shape.
-    fn runs(&self, id: OccurrenceId) -> Vec<Group> {
-        let children = super::occurrence::children(&self.scene.occurrence(id).kind);
+    fn runs(&self, id: InstanceId) -> Vec<Group> {
+        let children = super::instance::children(&self.scene.instance(id).kind);
         let mut members = children.iter().copied().zip(0..);
         let first = members.next().expect("an operator has children");
         let mut groups = vec![Group { folded: false, members: vec![first] }];
@@ -372,41 +372,41 @@ impl<'a> Classifier<'a> {
     }
 
     /// Whether operands of one shape are rows of a table.
-    fn is_folded(&self, members: &[(OccurrenceId, u32)]) -> bool {
+    fn is_folded(&self, members: &[(InstanceId, u32)]) -> bool {
         let first = members[0].0;
-        let hoisted = self.scene.occurrence(first).uses > 1;
+        let hoisted = self.scene.instance(first).uses > 1;
         let written_out = self.of(first).1.written_out;
         !written_out || (members.len() > 1 && !hoisted && !self.is_leaf(first))
     }
 
-    fn is_leaf(&self, id: OccurrenceId) -> bool {
-        matches!(self.scene.occurrence(id).kind, OccurrenceKind::Leaf { .. })
+    fn is_leaf(&self, id: InstanceId) -> bool {
+        matches!(self.scene.instance(id).kind, InstanceKind::Leaf { .. })
     }
 }
 
 /// Whether no operand can be negative.
 pub(super) fn non_negative(scene: &Scene<'_>, groups: &[Group]) -> bool {
     let mut members = groups.iter().flat_map(|group| &group.members);
-    members.all(|(member, _)| scene.occurrence(*member).non_negative)
+    members.all(|(member, _)| scene.instance(*member).non_negative)
 }
 
 /// Whether no operand is further from 0 than [`LARGEST_FIELD`](jbt_model::expression::LARGEST_FIELD).
 pub(super) fn bounded(scene: &Scene<'_>, groups: &[Group]) -> bool {
-    groups.iter().flat_map(|group| &group.members).all(|(member, _)| scene.occurrence(*member).bounded)
+    groups.iter().flat_map(|group| &group.members).all(|(member, _)| scene.instance(*member).bounded)
 }
 
 /// Which operators dissolve into the operator that uses them: equal ones, one use, and the same answers
 /// either way.
 fn flattened(scene: &Scene<'_>) -> Vec<bool> {
-    let mut flattened = vec![false; scene.occurrences.len()];
-    for occurrence in &scene.occurrences {
-        let OccurrenceKind::Reduce { operator, children, .. } = &occurrence.kind else { continue };
+    let mut flattened = vec![false; scene.instances.len()];
+    for instance in &scene.instances {
+        let InstanceKind::Reduce { operator, children, .. } = &instance.kind else { continue };
         // Numbers that are equal now may differ later.
-        let fixed = scene.tree.written(occurrence.node).is_none();
+        let fixed = scene.tree.written(instance.node).is_none();
         for child in children {
-            let inner = scene.occurrence(*child);
-            if let OccurrenceKind::Reduce { operator: nested, children: operands, .. } = &inner.kind {
-                let non_negative = || operands.iter().all(|id| scene.occurrence(*id).non_negative);
+            let inner = scene.instance(*child);
+            if let InstanceKind::Reduce { operator: nested, children: operands, .. } = &inner.kind {
+                let non_negative = || operands.iter().all(|id| scene.instance(*id).non_negative);
                 let like = fixed && nested == operator && inner.uses == 1;
                 flattened[child.0 as usize] = like && operator.flattens(non_negative());
             }

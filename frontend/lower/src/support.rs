@@ -1,4 +1,4 @@
-//! Supports: where an occurrence's field can be anything but zero, as the compiled program computes it.
+//! Supports: where an instance's field can be anything but zero, as the compiled program computes it.
 //!
 //! A leaf's field is zero where its skeleton is farther away than its radius, and so is, outside of a box,
 //! whatever is made of leaves. The program computes in f32, so all boxes are inflated by what rounding may
@@ -34,9 +34,9 @@
 use glam::{DAffine3, DMat3, DVec3};
 use rustc_hash::FxHashMap as HashMap;
 
-use super::guide::{LARGEST_COORDINATE, Support};
-use super::occurrence::{FieldId, OccurrenceId, OccurrenceKind, PositionId, Scene};
+use super::instance::{FieldId, InstanceId, InstanceKind, PositionId, Scene};
 use super::position::{MapKind, Position};
+use super::prune_info::{LARGEST_COORDINATE, Support};
 use jbt_model::affine::{Similarity, map_bounds};
 use jbt_model::bounds::Bounds;
 use jbt_model::check::NodeId;
@@ -76,13 +76,13 @@ impl Rounded {
     }
 }
 
-/// The supports of all occurrences of a scene, each in the space in which it is asked.
+/// The supports of all instances of a scene, each in the space in which it is asked.
 pub(super) struct Supports<'a> {
     scene: &'a Scene<'a>,
     fields: Vec<Rounded>,
     /// Of leaves whose pieces count near themselves only.
     pieces: HashMap<FieldId, Vec<Rounded>>,
-    /// By occurrence.
+    /// By instance.
     extents: Vec<Extent>,
 }
 
@@ -100,10 +100,9 @@ impl<'a> Supports<'a> {
             leaf.whole()
         };
         let fields = (0..scene.fields.len()).map(field).collect();
-        let mut supports =
-            Self { scene, fields, pieces, extents: Vec::with_capacity(scene.occurrences.len()) };
-        for index in 0..scene.occurrences.len() {
-            let extent = supports.find(OccurrenceId(index as u32));
+        let mut supports = Self { scene, fields, pieces, extents: Vec::with_capacity(scene.instances.len()) };
+        for index in 0..scene.instances.len() {
+            let extent = supports.find(InstanceId(index as u32));
             // Whatever is empty is empty in every direction, so that it adds nothing to a box around several.
             supports
                 .extents
@@ -112,16 +111,16 @@ impl<'a> Supports<'a> {
         supports
     }
 
-    /// The support of an occurrence: round for a leaf, a box otherwise.
-    pub(super) fn of(&self, id: OccurrenceId) -> Support {
-        match &self.scene.occurrence(id).kind {
-            OccurrenceKind::Leaf { field, .. } => self.of_field(*field),
-            OccurrenceKind::Warp { .. }
-            | OccurrenceKind::Reduce { .. }
-            | OccurrenceKind::Expression { .. }
-            | OccurrenceKind::Select { .. }
-            | OccurrenceKind::Map { .. }
-            | OccurrenceKind::Difference { .. } => Support::around(self.extents[id.0 as usize].support, 0.0),
+    /// The support of an instance: round for a leaf, a box otherwise.
+    pub(super) fn of(&self, id: InstanceId) -> Support {
+        match &self.scene.instance(id).kind {
+            InstanceKind::Leaf { field, .. } => self.of_field(*field),
+            InstanceKind::Warp { .. }
+            | InstanceKind::Reduce { .. }
+            | InstanceKind::Expression { .. }
+            | InstanceKind::Select { .. }
+            | InstanceKind::Map { .. }
+            | InstanceKind::Difference { .. } => Support::around(self.extents[id.0 as usize].support, 0.0),
         }
     }
 
@@ -137,36 +136,34 @@ impl<'a> Supports<'a> {
         piece.map_or(Support::EVERYWHERE, |Rounded { core, radius }| Support::around(core, radius))
     }
 
-    fn find(&self, id: OccurrenceId) -> Extent {
-        let of = |id: &OccurrenceId| self.extents[id.0 as usize];
-        let all = |children: &[OccurrenceId]| children.iter().map(of).collect::<Vec<_>>();
-        let (occurrence, iso) = (self.scene.occurrence(id), self.scene.tree.iso());
-        match &occurrence.kind {
-            OccurrenceKind::Leaf { field, .. } => {
+    fn find(&self, id: InstanceId) -> Extent {
+        let of = |id: &InstanceId| self.extents[id.0 as usize];
+        let all = |children: &[InstanceId]| children.iter().map(of).collect::<Vec<_>>();
+        let (instance, iso) = (self.scene.instance(id), self.scene.tree.iso());
+        match &instance.kind {
+            InstanceKind::Leaf { field, .. } => {
                 let support = self.fields[field.0 as usize].bounds();
                 let signed = self.scene.primitive(*field).strength < 0.0;
                 Extent { support, negative: if signed { support } else { Bounds::EMPTY } }
             }
-            OccurrenceKind::Warp { position, child, weight: Some(weight), .. } => {
+            InstanceKind::Warp { position, child, weight: Some(weight), .. } => {
                 let position = self.scene.position(*position);
                 of(child).map(|bounds| around_map(position, bounds)).weighted(&of(weight))
             }
-            OccurrenceKind::Warp { position, inside, child, weight: None } => {
+            InstanceKind::Warp { position, inside, child, weight: None } => {
                 let warp = self.scene.warp(self.scene.insides[inside.0 as usize - 1].warp);
                 let position = self.scene.position(*position);
                 of(child).map(|bounds| around_map(position, warp.reach(bounds)))
             }
-            OccurrenceKind::Reduce { operator, children, .. } => operator.extent(&all(children), iso),
-            OccurrenceKind::Difference { left, .. } => of(left),
-            OccurrenceKind::Map { child, .. } => {
-                self.scene.combinator(occurrence.node).extent(&[of(child)], iso)
-            }
-            OccurrenceKind::Expression { position, shift, children, .. } => {
-                let support = self.of_expression(occurrence.node, (*position, *shift), &all(children));
-                let negative = if occurrence.non_negative { Bounds::EMPTY } else { support };
+            InstanceKind::Reduce { operator, children, .. } => operator.extent(&all(children), iso),
+            InstanceKind::Difference { left, .. } => of(left),
+            InstanceKind::Map { child, .. } => self.scene.combinator(instance.node).extent(&[of(child)], iso),
+            InstanceKind::Expression { position, shift, children, .. } => {
+                let support = self.of_expression(instance.node, (*position, *shift), &all(children));
+                let negative = if instance.non_negative { Bounds::EMPTY } else { support };
                 Extent { support, negative }
             }
-            OccurrenceKind::Select { children, chosen } => of(&children[*chosen]),
+            InstanceKind::Select { children, chosen } => of(&children[*chosen]),
         }
     }
 
@@ -227,14 +224,14 @@ fn sizes(scene: &Scene<'_>) -> Vec<Sizes> {
     sizes
 }
 
-/// Bounds of how fast the fields of occurrences change in their space, far above what they do: they are there
+/// Bounds of how fast the fields of instances change in their space, far above what they do: they are there
 /// to exclude overflow.
 fn slopes_of(scene: &Scene<'_>) -> Vec<f64> {
-    let mut slopes: Vec<f64> = Vec::with_capacity(scene.occurrences.len());
-    for occurrence in &scene.occurrences {
-        let of = |id: &OccurrenceId| slopes[id.0 as usize];
-        let slope = match &occurrence.kind {
-            OccurrenceKind::Leaf { field, .. } => {
+    let mut slopes: Vec<f64> = Vec::with_capacity(scene.instances.len());
+    for instance in &scene.instances {
+        let of = |id: &InstanceId| slopes[id.0 as usize];
+        let slope = match &instance.kind {
+            InstanceKind::Leaf { field, .. } => {
                 let (leaf, primitive) = (scene.field(*field), scene.primitive(*field));
                 let rows = absolute(leaf.code.map.inverse(&leaf.map).matrix3) * DVec3::ONE;
                 let metric = primitive.skeleton.metric().steepness();
@@ -242,16 +239,14 @@ fn slopes_of(scene: &Scene<'_>) -> Vec<f64> {
                 slope / (leaf.scale * primitive.radius)
             }
             // Behind a warp nothing is known, nor of formulas.
-            OccurrenceKind::Warp { .. } | OccurrenceKind::Expression { .. } | OccurrenceKind::Map { .. } => {
+            InstanceKind::Warp { .. } | InstanceKind::Expression { .. } | InstanceKind::Map { .. } => {
                 f64::INFINITY
             }
-            OccurrenceKind::Reduce { code: ReduceCode::Step(_), .. } => f64::INFINITY,
-            OccurrenceKind::Reduce { code: ReduceCode::Fold(code), .. } if code.is_steep() => f64::INFINITY,
-            OccurrenceKind::Reduce {
-                code: ReduceCode::Fold(_) | ReduceCode::Choice(_), children, ..
-            }
-            | OccurrenceKind::Select { children, .. } => children.iter().map(of).sum(),
-            OccurrenceKind::Difference { left, right } => of(left) + of(right),
+            InstanceKind::Reduce { code: ReduceCode::Step(_), .. } => f64::INFINITY,
+            InstanceKind::Reduce { code: ReduceCode::Fold(code), .. } if code.is_steep() => f64::INFINITY,
+            InstanceKind::Reduce { code: ReduceCode::Fold(_) | ReduceCode::Choice(_), children, .. }
+            | InstanceKind::Select { children, .. } => children.iter().map(of).sum(),
+            InstanceKind::Difference { left, right } => of(left) + of(right),
         };
         slopes.push(slope);
     }

@@ -35,7 +35,7 @@
 //! | `Tree::expression(0.7 * a.field() * b.field() + x())` | a formula of fields and coordinates |
 //!
 //! Numbers may be `f64`, `f32` or integers: `point([0, 1, 0], 1)`. Wherever a number is asked for, one that
-//! follows a parameter will do; it can be set again without compiling anything:
+//! depends on a parameter will do; it can be set again without compiling anything:
 //!
 //! ```
 //! use jbt_model::builder::{param, point};

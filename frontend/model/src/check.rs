@@ -17,7 +17,7 @@
 //! * The origin has finite coordinates.
 //! * The first attribute group is `color` with three reals; names are unique; attribute nodes name a group
 //!   and fit its width.
-//! * There are at most [`limits::MAX_NODES`] nodes and [`limits::MAX_OCCURRENCES`] paths from the root to
+//! * There are at most [`limits::MAX_NODES`] nodes and [`limits::MAX_INSTANCES`] paths from the root to
 //!   leaves, where a leaf counts once more for each piece of its skeleton.
 
 use std::collections::HashMap;
@@ -47,7 +47,7 @@ mod parameters;
 mod tree;
 
 pub use arena::{CheckedNode, Children, NodeId};
-use arena::{Paths, check_occurrences};
+use arena::{Paths, check_instances};
 use dependence::Dependence;
 use groups::{check_groups, share_name, widths};
 pub use node::MIN_RECIPROCAL_CONDITION;
@@ -66,11 +66,11 @@ impl Model {
     /// All errors, in the order of their places in the text; after [`limits::MAX_ERRORS`] errors, one more
     /// with the number of the remaining errors.
     pub fn check(&self) -> Result<CheckedTree, Diagnostics> {
-        let checked = self.check_within(limits::MAX_NODES, limits::MAX_OCCURRENCES);
+        let checked = self.check_within(limits::MAX_NODES, limits::MAX_INSTANCES);
         checked.map_err(|list| Diagnostics::new(list, self.source.clone()))
     }
 
-    fn check_within(&self, max_nodes: usize, max_occurrences: usize) -> Result<CheckedTree, Vec<Diagnostic>> {
+    fn check_within(&self, max_nodes: usize, max_instances: usize) -> Result<CheckedTree, Vec<Diagnostic>> {
         let mut report = Report::default();
         let (mut parameters, errors) = collect(&self.parameters, &self.iso, &self.root);
         report.extend(errors);
@@ -90,7 +90,7 @@ impl Model {
         let mut dependence = Dependence::new(&parameters, &self.iso);
         let nodes = self.arena(max_nodes, &mut report, (iso, &values), &mut dependence);
         if report.is_empty() {
-            check_occurrences(&mut report, &nodes, max_occurrences);
+            check_instances(&mut report, &nodes, max_instances);
         }
         if !report.is_empty() {
             report.sort();
@@ -134,7 +134,9 @@ impl Model {
             }
             let id = NodeId(nodes.len() as u32);
             let written = node.written();
-            if written.follows(&self.iso) || (self.iso.follows() && written.is_limited_by_iso()) {
+            if written.depends_on_parameters(&self.iso)
+                || (self.iso.depends_on_parameters() && written.is_limited_by_iso())
+            {
                 // An operator's limit depends on the iso-value, so it is checked again when that changes.
                 dependence.add(id, &Arc::new(written.clone()));
             }

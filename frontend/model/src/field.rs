@@ -21,7 +21,7 @@ pub enum FieldKind {
     Choice(&'static [&'static str]),
     /// A whole number from 0 to [`jbt_ir::limits::MAX_COPIES`].
     Count,
-    /// A whole number in a range, ends included, that follows no parameter: it selects code.
+    /// A whole number in a range, ends included, that depends on no parameter: it selects code.
     Whole {
         /// The smallest one.
         least: u32,
@@ -106,7 +106,7 @@ pub trait NumberText {
     /// Its present value.
     fn present(&self) -> f64;
 
-    /// Whether it follows no parameter.
+    /// Whether it depends on no parameter.
     fn is_fixed(&self) -> bool;
 
     /// Its text: reads back as the same number.
@@ -175,7 +175,7 @@ impl Field {
     }
 }
 
-/// Whether the numbers are these, to the bit, and follow no parameter.
+/// Whether the numbers are these, to the bit, and depend on no parameter.
 fn same<T: NumberText>(default: &FieldValue, value: &FieldOf<T>) -> bool {
     let shape = std::mem::discriminant(&default.map(|_| ())) == std::mem::discriminant(&value.map(|_| ()));
     let bits = |number: f64| number.to_bits();

@@ -29,7 +29,7 @@ pub use formula::{Formula, Step, Variable, show};
 
 pub(crate) use value::Values;
 
-/// A number of a model: a plain one, or one that follows parameters.
+/// A number of a model: a plain one, or one that depends on parameters.
 ///
 /// It converts from `f64`, `f32`, and integers of up to 32 bits, all exactly (so that 0.1f32 is
 /// 0.10000000149011612), and has the operators
@@ -58,9 +58,9 @@ impl Number {
         self.value
     }
 
-    /// Whether it follows a parameter.
+    /// Whether it depends on a parameter.
     #[must_use]
-    pub const fn follows(&self) -> bool {
+    pub const fn depends_on_parameters(&self) -> bool {
         self.formula.is_some()
     }
 
@@ -95,7 +95,7 @@ impl Number {
     }
 
     fn unary(&self, step: Step, value: f64) -> Self {
-        if !self.follows() {
+        if !self.depends_on_parameters() {
             return Self::from(value);
         }
         let mut steps = self.steps();
@@ -104,7 +104,7 @@ impl Number {
     }
 
     fn binary(&self, other: &Self, step: Step, value: f64) -> Self {
-        if !self.follows() && !other.follows() {
+        if !self.depends_on_parameters() && !other.depends_on_parameters() {
             return Self::from(value);
         }
         let mut steps = self.steps();
@@ -123,7 +123,7 @@ impl Number {
             Step::Literal(value) | Step::Parameter { default: value, .. } => *value,
             Step::Variable(_) => f64::NAN,
         };
-        if !operands.iter().any(|number| number.follows()) {
+        if !operands.iter().any(|number| number.depends_on_parameters()) {
             return Self::from(value);
         }
         let mut steps: Vec<Step> = operands.iter().flat_map(|number| number.steps()).collect();
@@ -246,12 +246,12 @@ impl NumberText for Number {
     }
 
     fn is_fixed(&self) -> bool {
-        !self.follows()
+        !self.depends_on_parameters()
     }
 
     /// Plain numbers, the common case, in one piece.
     fn text(&self) -> String {
-        if self.follows() { self.to_string() } else { plain(self.value) }
+        if self.depends_on_parameters() { self.to_string() } else { plain(self.value) }
     }
 }
 
@@ -321,7 +321,7 @@ operators! {
     Div div Divide,
 }
 
-/// Three numbers: from an array, or from a tuple where some are plain and some follow parameters; with the
+/// Three numbers: from an array, or from a tuple where some are plain and some depend on parameters; with the
 /// features `glam` and `mint` from their vectors.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Vector(pub(crate) [Number; 3]);

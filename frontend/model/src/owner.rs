@@ -23,7 +23,7 @@ use crate::expression::Expression;
 use crate::kind::{NodeKind, Primitive};
 use crate::warp::Warp;
 
-/// A leaf that decides, as one of its occurrences.
+/// A leaf that decides, as one of its instances.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Owner {
     /// The leaf.
@@ -109,7 +109,7 @@ impl Question for Owners {
     type Mark = ();
 
     fn enter(&mut self, node: NodeId, way: Place) -> Place {
-        // At most limits::MAX_OCCURRENCES.
+        // At most limits::MAX_INSTANCES.
         let step = self.steps.len() as u32;
         self.steps.push(Step { node, above: way.step, child: way.child });
         Place { step, child: 0 }

@@ -14,7 +14,7 @@ use crate::word::{is_identifier, is_statement};
 #[derive(Clone, Debug)]
 pub struct Parameter {
     pub(crate) name: Arc<str>,
-    /// May follow parameters before this one; evaluated for their present values.
+    /// May depend on parameters before this one; evaluated for their present values.
     pub(crate) default: Number,
     /// What was set instead of the default.
     pub(crate) setting: Option<f64>,
@@ -44,7 +44,7 @@ impl Parameter {
         Number::with_formula(self.value(), Formula::new(vec![step], None))
     }
 
-    /// Notes a declaration of attributes or of the origin that follows the parameter: no setting reaches such
+    /// Notes a declaration of attributes or of the origin that depends on the parameter: no setting reaches such
     /// a declaration.
     pub fn declares(&mut self, span: Span) {
         self.declares = Some(span);
@@ -56,7 +56,7 @@ impl Parameter {
         &self.name
     }
 
-    /// The present value of its default. It may follow the parameters before this one.
+    /// The present value of its default. It may depend on the parameters before this one.
     #[must_use]
     pub fn default(&self) -> f64 {
         self.default.value()
@@ -120,7 +120,8 @@ pub(crate) fn collect(
     let mut all = Collector { parameters: declared.to_vec(), ..Collector::default() };
     for parameter in declared {
         // What a text declares stands, whatever its uses remember; defaults of Rust are given by every use.
-        let given = (parameter.span.is_none() && !parameter.default.follows()).then(|| parameter.default());
+        let given = (parameter.span.is_none() && !parameter.default.depends_on_parameters())
+            .then(|| parameter.default());
         all.defaults.insert(Arc::clone(&parameter.name), given);
     }
     all.take(iso.formula(), None);
@@ -128,10 +129,10 @@ pub(crate) fn collect(
     let mut stack: Vec<&Tree> = vec![root];
     let mut seen = HashSet::new();
     while let Some(tree) = stack.pop() {
-        if !tree.node().follows() || !seen.insert(tree.identity()) {
+        if !tree.node().depends_on_parameters() || !seen.insert(tree.identity()) {
             continue;
         }
-        for number in tree.node().written().following() {
+        for number in tree.node().written().dependent_numbers() {
             all.take(number.formula(), tree.node().span());
         }
         stack.extend(tree.node().children().iter().rev());

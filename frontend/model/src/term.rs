@@ -319,7 +319,7 @@ impl Tree {
             let Written::Primitive { strength, .. } = tree.node().written() else { return None };
             let cone = tree.falloff(Falloff::Linear).strength(1.0);
             let field = formula(1.0 - cone.field());
-            let is_plain = !strength.follows() && strength.value() == 1.0;
+            let is_plain = !strength.depends_on_parameters() && strength.value() == 1.0;
             Some(Self::expression(if is_plain { field } else { field * strength.clone() }))
         })
     }

@@ -31,8 +31,8 @@ pub struct Node {
     written: Written,
     children: Vec<Tree>,
     span: Option<Span>,
-    /// Whether a number of this node, or of one below, follows a parameter.
-    follows: bool,
+    /// Whether a number of this node, or of one below, depends on a parameter.
+    depends: bool,
 }
 
 impl Node {
@@ -42,10 +42,10 @@ impl Node {
         &self.written
     }
 
-    /// Whether a number of this node, or of one below, follows a parameter.
+    /// Whether a number of this node, or of one below, depends on a parameter.
     #[must_use]
-    pub fn follows(&self) -> bool {
-        self.follows
+    pub fn depends_on_parameters(&self) -> bool {
+        self.depends
     }
 
     /// Its children, in order.
@@ -81,14 +81,15 @@ impl Tree {
 
     /// A node of all its parts.
     pub(crate) fn assemble(written: Written, children: Vec<Self>, span: Option<Span>) -> Self {
-        let follows = written.following().next().is_some() || children.iter().any(|child| child.0.follows);
-        Self(Arc::new(Node { written, children, span, follows }))
+        let depends =
+            written.dependent_numbers().next().is_some() || children.iter().any(|child| child.0.depends);
+        Self(Arc::new(Node { written, children, span, depends }))
     }
 
     /// Adds a last child to the root. Trees that share the root keep it as it was.
     pub(crate) fn push(&mut self, child: Self) {
         if let Some(node) = Arc::get_mut(&mut self.0) {
-            node.follows |= child.0.follows;
+            node.depends |= child.0.depends;
             node.children.push(child);
             return;
         }

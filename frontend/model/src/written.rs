@@ -45,7 +45,7 @@ pub enum Radius {
     Surface(Number),
 }
 
-/// What tells maps apart that follow parameters: the kind of an affine map, none for the move to the box of a
+/// What tells maps apart that depend on parameters: the kind of an affine map, none for the move to the box of a
 /// formula, and the steps of the numbers that it is made of.
 pub type MapKey = (Option<MapKind>, Vec<Step>);
 
@@ -167,14 +167,14 @@ impl Written {
         }
     }
 
-    /// The numbers that follow parameters.
-    pub(crate) fn following(&self) -> impl Iterator<Item = &Number> {
-        self.numbers().filter(|number| number.follows())
+    /// The numbers that depend on parameters.
+    pub(crate) fn dependent_numbers(&self) -> impl Iterator<Item = &Number> {
+        self.numbers().filter(|number| number.depends_on_parameters())
     }
 
-    /// Whether a number follows a parameter; of a surface radius, the iso-value counts too.
-    pub(crate) fn follows(&self, iso: &Number) -> bool {
-        self.following().next().is_some() || (iso.follows() && self.asks_iso())
+    /// Whether a number depends on a parameter; of a surface radius, the iso-value counts too.
+    pub(crate) fn depends_on_parameters(&self, iso: &Number) -> bool {
+        self.dependent_numbers().next().is_some() || (iso.depends_on_parameters() && self.asks_iso())
     }
 
     /// Whether the node depends on the iso-value of its model.
@@ -221,8 +221,8 @@ impl Written {
             }
             Self::Combine { combinator, fields } => {
                 let combinator = combinator.from_fields(&values(fields));
-                let follows = self.following().next().is_some();
-                NodeKind::Combine(if follows { combinator.following() } else { combinator })
+                let depends = self.dependent_numbers().next().is_some();
+                NodeKind::Combine(if depends { combinator.general() } else { combinator })
             }
             Self::Expression(formula) => NodeKind::Expression(formula.expression()),
             Self::Select(which) => NodeKind::Select(which.value()),
@@ -235,7 +235,7 @@ impl Written {
         })
     }
 
-    /// What tells the maps of nodes apart that follow parameters: equal for those that are equal whatever the
+    /// What tells the maps of nodes apart that depend on parameters: equal for those that are equal whatever the
     /// values. An affine node has one, and so has a formula in a box; nothing else moves what is in it.
     pub fn map_key(&self) -> MapKey {
         let steps = |numbers: &mut dyn Iterator<Item = &Number>| numbers.flat_map(Number::steps).collect();
@@ -256,7 +256,7 @@ impl Written {
     /// How much the linear part of a map can change.
     pub fn freedom(&self) -> Freedom {
         match self {
-            Self::Map { map, .. } if self.following().next().is_some() => map.freedom(),
+            Self::Map { map, .. } if self.dependent_numbers().next().is_some() => map.freedom(),
             Self::Map { .. }
             | Self::Primitive { .. }
             | Self::Combine { .. }
@@ -268,7 +268,7 @@ impl Written {
         }
     }
 
-    /// Whether a primitive's skeleton can turn: a direction or an angle follows a parameter, or one of
+    /// Whether a primitive's skeleton can turn: a direction or an angle depends on a parameter, or one of
     /// several positions, which give it its own.
     pub fn skeleton_turns(&self) -> bool {
         let Self::Primitive { skeleton, fields, .. } = self else { return false };
@@ -292,7 +292,7 @@ impl Written {
                 | FieldKind::Rows
                 | FieldKind::Flag => false,
             };
-            turns && value.numbers().iter().any(Number::follows)
+            turns && value.numbers().iter().any(Number::depends_on_parameters)
         })
     }
 
@@ -301,14 +301,14 @@ impl Written {
         matches!(self, Self::Primitive { .. })
     }
 
-    /// Whether the strength of a primitive follows a parameter.
-    pub fn strength_follows(&self) -> bool {
-        matches!(self, Self::Primitive { strength, .. } if strength.follows())
+    /// Whether the strength of a primitive depends on a parameter.
+    pub fn strength_depends_on_parameters(&self) -> bool {
+        matches!(self, Self::Primitive { strength, .. } if strength.depends_on_parameters())
     }
 
     /// Whether a parameter of a primitive's falloff follows one of the model.
-    pub fn falloff_follows(&self) -> bool {
-        matches!(self, Self::Primitive { falloff, .. } if falloff.follows())
+    pub fn falloff_depends_on_parameters(&self) -> bool {
+        matches!(self, Self::Primitive { falloff, .. } if falloff.depends_on_parameters())
     }
 
     /// The same with another strength, if it is a primitive.

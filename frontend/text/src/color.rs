@@ -4,7 +4,7 @@
 //! ```text
 //! color "#ff8800" { .. }              three reals; "#f80" is the same
 //! glass "#ff880080" { .. }            four, for a group of four: the last one, opacity, is what it is
-//! color srgb(1 0.53 0) { .. }         numbers from 0 to 1, which may follow parameters
+//! color srgb(1 0.53 0) { .. }         numbers from 0 to 1, which may depend on parameters
 //! ```
 
 use super::lex::{Token, TokenKind};

@@ -7,7 +7,7 @@
 //!
 //! A number that could not be computed is NaN from there on, and is reported once: where it arose.
 //!
-//! What follows parameters is written down as a formula besides. Both stacks meet the operands in the order
+//! What depends on parameters is written down as a formula besides. Both stacks meet the operands in the order
 //! of the text, so the steps of the formula come out in postfix order, each operand's after those of the
 //! operand before it.
 
@@ -62,8 +62,8 @@ struct Part {
     span: Span,
     /// Where its steps begin in the list; they end where those of the next operand begin.
     first: u32,
-    /// Whether it follows a parameter; otherwise its only step is its value.
-    follows: bool,
+    /// Whether it depends on a parameter; otherwise its only step is its value.
+    depends: bool,
 }
 
 /// Where an expression stands, which decides where it ends.
@@ -91,14 +91,14 @@ impl Stacks {
     fn push(&mut self, value: f64, span: Span) {
         let first = self.steps.len() as u32;
         self.steps.push(Step::Literal(value));
-        self.operands.push(Part { value, span, first, follows: false });
+        self.operands.push(Part { value, span, first, depends: false });
     }
 
     /// What is no number before there is a point. Nothing is computed of it, so its value is NaN.
     fn push_variable(&mut self, variable: Variable, span: Span) {
         let first = self.steps.len() as u32;
         self.steps.push(Step::Variable(variable));
-        self.operands.push(Part { value: f64::NAN, span, first, follows: true });
+        self.operands.push(Part { value: f64::NAN, span, first, depends: true });
     }
 
     /// A number that is made already.
@@ -108,7 +108,7 @@ impl Stacks {
             Some(formula) => {
                 let first = self.steps.len() as u32;
                 self.steps.extend_from_slice(formula.steps());
-                self.operands.push(Part { value: number.value(), span, first, follows: true });
+                self.operands.push(Part { value: number.value(), span, first, depends: true });
             }
         }
     }
@@ -119,7 +119,7 @@ impl Stacks {
         match step {
             Some(step) => {
                 self.steps.push(step);
-                self.operands.push(Part { value, span, first, follows: true });
+                self.operands.push(Part { value, span, first, depends: true });
             }
             None => {
                 self.steps.truncate(first as usize);
@@ -131,7 +131,7 @@ impl Stacks {
     /// The only operand that is left.
     fn finish(&mut self) -> Option<Operand> {
         let part = self.operands.pop()?;
-        let number = if part.follows {
+        let number = if part.depends {
             Number::with_formula(part.value, Formula::new(self.steps.clone(), Some(part.span)))
         } else {
             Number::from(part.value)
@@ -357,7 +357,7 @@ impl Parser<'_> {
                 }
                 Waiting::Negate => {
                     let span = Span { start: at, end: right.span.end };
-                    let step = right.follows.then_some(Step::Negate);
+                    let step = right.depends.then_some(Step::Negate);
                     stacks.push_result(-right.value, span, right.first, step);
                 }
                 Waiting::Group | Waiting::Call(..) => stacks.operands.push(right),
@@ -391,8 +391,8 @@ impl Parser<'_> {
         } else {
             self.computed(function.compute(&arguments), span)
         };
-        let follows = parts.iter().any(|part| part.follows);
-        let step = follows.then_some(Step::Call(function, count as u32));
+        let depends = parts.iter().any(|part| part.depends);
+        let step = depends.then_some(Step::Call(function, count as u32));
         let begin = parts.first().map_or(stacks.steps.len() as u32, |part| part.first);
         stacks.push_result(value, span, begin, step);
     }
@@ -402,7 +402,7 @@ impl Parser<'_> {
         let (a, b) = (left.value, right.value);
         let value =
             if a.is_nan() || b.is_nan() { f64::NAN } else { self.computed(binary.compute(a, b), span) };
-        let step = (left.follows || right.follows).then_some(Step::Binary(binary));
+        let step = (left.depends || right.depends).then_some(Step::Binary(binary));
         stacks.push_result(value, span, left.first, step);
     }
 

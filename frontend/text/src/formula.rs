@@ -48,9 +48,9 @@ impl<'a> Parser<'a> {
 
     /// A falloff of plain numbers.
     fn fixed_falloff(&mut self, written: &WrittenFalloff, span: Span) -> Falloff {
-        if written.follows() {
+        if written.depends_on_parameters() {
             self.report(|| {
-                Diagnostic::error(Some(span), "the numbers of this falloff follow a parameter")
+                Diagnostic::error(Some(span), "the numbers of this falloff depend on a parameter")
                     .expected("expected plain numbers: in a formula they are code")
             });
         }

@@ -80,12 +80,12 @@
 //! * `#` and `//` begin a comment that ends with the line: at a line feed, a carriage return, or both. Line
 //!   ends are blanks like others.
 //! * Colours in hex stand in quotes, `color "#ff8800"`: without them they are comments. `srgb` takes numbers
-//!   from 0 to 1, which may follow parameters. Both become linear as they are read.
+//!   from 0 to 1, which may depend on parameters. Both become linear as they are read.
 //! * A parameter can be set from outside, `-D bulge=2`, and again at run time
 //!   ([`CheckedTree::with_parameters`](jbt_model::check::CheckedTree::with_parameters)): numbers that mention
 //!   it follow it, and so do parameters whose defaults mention it, unless they are set themselves. Parameters
 //!   in the width or the default of an attribute group, or in the origin, count as they were read. An
-//!   exponent of `ricci` that follows a parameter is a blend also where it is 1: unlike the plain sum, it
+//!   exponent of `ricci` that depends on a parameter is a blend also where it is 1: unlike the plain sum, it
 //!   takes negative fields as 0.
 //! * `select which { a b c }` is one of its children, and the others do not count: `a` for 0, `b` for 1, `c`
 //!   for 2, and what is between is rounded. A number that is near no child is an error.

@@ -92,19 +92,19 @@ impl Parser<'_> {
         Some((self.next(), field))
     }
 
-    /// A whole number that follows no parameter: it selects code.
+    /// A whole number that depends on no parameter: it selects code.
     fn whole(&mut self, word: &str, name: &str) -> Option<FieldNumber> {
         let value = self.expression(Place::Alone);
         let (number, span) = (value.number, value.span);
         let whole = number.value();
-        if !number.follows() && whole.fract() == 0.0 && (0.0..=1e9).contains(&whole) {
+        if !number.depends_on_parameters() && whole.fract() == 0.0 && (0.0..=1e9).contains(&whole) {
             return Some(FieldNumber::Real(number));
         }
-        if !whole.is_nan() || number.follows() {
+        if !whole.is_nan() || number.depends_on_parameters() {
             self.report(|| {
                 let what = format!("the `{name}` of the {} is no whole number", clip(word));
                 Diagnostic::error(Some(span), what)
-                    .expected("expected a whole number that follows no parameter")
+                    .expected("expected a whole number that depends on no parameter")
             });
         }
         None

@@ -315,7 +315,7 @@ fn uv(out: &mut String, map: &WrittenUv) {
 
 /// Whether numbers are plain and have the same bits.
 fn same_numbers(a: &[Number], b: &[Number]) -> bool {
-    let plain = |number: &Number| (!number.follows()).then(|| number.value().to_bits());
+    let plain = |number: &Number| (!number.depends_on_parameters()).then(|| number.value().to_bits());
     a.iter().zip(b).all(|(a, b)| plain(a).is_some() && plain(a) == plain(b))
 }
 
@@ -324,7 +324,7 @@ fn rest_of_primitive(out: &mut String, falloff: &WrittenFalloff, strength: &Numb
     if falloff.kind() != FalloffKind::Soft {
         let _ = write!(out, " falloff {}", falloff.kind().text(falloff.fields()));
     }
-    if strength.follows() || strength.value().to_bits() != 1f64.to_bits() {
+    if strength.depends_on_parameters() || strength.value().to_bits() != 1f64.to_bits() {
         let _ = write!(out, " strength {strength}");
     }
     out.push_str(" }");

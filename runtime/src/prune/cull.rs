@@ -8,9 +8,9 @@
 //! ```
 //!
 //! A support exceeds the true support by more than the error of these few roundings (see
-//! `jbt_lower::guide::Support`).
+//! `jbt_lower::prune_info::Support`).
 
-use jbt_lower::guide::{LARGEST_COORDINATE, Support};
+use jbt_lower::prune_info::{LARGEST_COORDINATE, Support};
 
 use crate::region::{Box3, MAX_PARTS};
 

@@ -2,7 +2,7 @@
 //! be left out.
 
 use jbt_ir::{Entity, Selection, Table};
-use jbt_lower::guide::{DecidedRows, Decision, Guide};
+use jbt_lower::prune_info::{DecidedRows, Decision, PruneInfo};
 
 use super::ranges::Probes;
 use crate::region::MAX_PARTS;
@@ -20,8 +20,8 @@ pub(super) fn firsts(selection: &Selection) -> Vec<usize> {
 
 /// Clears the masks of rows of operands that do not decide, for each such box. `probes` are the ranges that
 /// the interval kernel gave for the boxes, with the rows of the selection.
-pub(super) fn leave_out(guide: &Guide, probes: Probes<'_>, selection: &Selection, masks: &mut [u8]) {
-    let decisions = || guide.decisions.iter().filter(|decision| decision.rows == DecidedRows::All);
+pub(super) fn leave_out(info: &PruneInfo, probes: Probes<'_>, selection: &Selection, masks: &mut [u8]) {
+    let decisions = || info.decisions.iter().filter(|decision| decision.rows == DecidedRows::All);
     if decisions().next().is_none() {
         return;
     }
@@ -35,7 +35,7 @@ pub(super) fn leave_out(guide: &Guide, probes: Probes<'_>, selection: &Selection
             // Comparisons with NaN are false, so an operand with an unknown range decides.
             let [operand, node] =
                 [decision.operand, decision.node].map(|probe| probes.range(probe, box_index));
-            if decision.kind.spares(operand, node, guide.iso2) {
+            if decision.kind.spares(operand, node, info.iso2) {
                 let first = firsts[decision.table.index()];
                 masks[first..first + rows].iter_mut().for_each(|mask| *mask &= !(1 << box_index));
             }
@@ -64,10 +64,10 @@ pub(super) struct Alone<'a> {
 
 impl<'a> Alone<'a> {
     /// The selections for an outer selection, if running them is worth it.
-    pub(super) fn new(guide: &'a Guide, selection: &Selection) -> Option<Self> {
+    pub(super) fn new(info: &'a PruneInfo, selection: &Selection) -> Option<Self> {
         let rows = |decision: &Decision| selection.active(decision.table).len();
         let (mut decisions, mut free) = (Vec::new(), true);
-        for decision in &guide.decisions {
+        for decision in &info.decisions {
             let DecidedRows::Each { free: it } = decision.rows else { continue };
             if (1..=MOST_ALONE).contains(&rows(decision)) {
                 free &= it;

@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 use jbt_ir::selection::Shift;
 use jbt_ir::{Rows, Table};
-use jbt_lower::guide::{Rule, SpaceGuide, Support};
+use jbt_lower::prune_info::{Rule, Support, SupportSpace};
 
 use super::cull::Supports;
 use super::{Pruner, Region};
@@ -47,7 +47,7 @@ impl Change {
 
     /// The shift of the unchanged rows after the change.
     fn shift(&self) -> Shift {
-        // Row numbers are below 2^31: limits::MAX_OCCURRENCES.
+        // Row numbers are below 2^31: limits::MAX_INSTANCES.
         Shift { from: self.before.end as u32, by: self.now.end as i32 - self.before.end as i32 }
     }
 }
@@ -100,7 +100,7 @@ impl Pruner {
         if !(before.has_single_rows(table) && self.has_single_rows(table)) {
             return None;
         }
-        if self.program.guide.tables[table].is_hoisted {
+        if self.program.info.tables[table].is_hoisted {
             return Some(());
         }
         for row in 0..self.tables().tables[table].len() {
@@ -159,7 +159,7 @@ impl Pruner {
             }
             above = function.tables[parent].parent;
         }
-        let neutral = self.program.guide.tables[table].rule == Rule::Neutral;
+        let neutral = self.program.info.tables[table].rule == Rule::Neutral;
         neutral && !has_children && tables[table].active.len() == tables[table].len()
     }
 
@@ -167,9 +167,9 @@ impl Pruner {
     fn reach_of(&self, mut table: Table, mut row: usize) -> Option<Box3> {
         loop {
             let above = self.above(table, row)?;
-            let guide = &self.program.guide.tables[table];
-            let support = guide.supports[row];
-            if guide.space == SpaceGuide::World && support != Support::EVERYWHERE {
+            let info = &self.program.info.tables[table];
+            let support = info.supports[row];
+            if info.space == SupportSpace::World && support != Support::EVERYWHERE {
                 return Some(Supports::new(&[support]).bounds(0));
             }
             (table, row) = above;
@@ -197,7 +197,7 @@ impl Pruner {
     }
 
     fn is_active(&self, table: Table, row: usize) -> bool {
-        // Row numbers are below 2^31: limits::MAX_OCCURRENCES.
+        // Row numbers are below 2^31: limits::MAX_INSTANCES.
         !self.has_single_rows(table)
             || self.tables().tables[table].active.binary_search(&(row as u32)).is_ok()
     }

@@ -32,7 +32,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use jbt_ir::domain::counting::of_selection;
 use jbt_ir::selection::Extent;
 use jbt_ir::{Entity as _, Selection, Tables};
-use jbt_lower::guide::SpaceGuide;
+use jbt_lower::prune_info::SupportSpace;
 use jbt_model::check::CheckedTree;
 use jbt_model::origin::ModelOrigin;
 
@@ -202,28 +202,27 @@ impl Pruner {
         let mut masks = vec![world.all(); selection.len()];
         let mut first = 0;
         for &table in selection.present() {
-            let (guide, supports) =
-                (&self.program.guide.tables[table], &self.program.supports[table.index()]);
+            let (info, supports) = (&self.program.info.tables[table], &self.program.supports[table.index()]);
             let active = selection.active(table);
             let mine = &mut masks[first..][..active.len()];
             first += active.len();
             let inside;
-            let boxes = match (guide.space, probes) {
-                (SpaceGuide::World, _) => &world,
-                (SpaceGuide::Probed(probe), Some(probes)) => {
+            let boxes = match (info.space, probes) {
+                (SupportSpace::World, _) => &world,
+                (SupportSpace::Probed(probe), Some(probes)) => {
                     inside = inner_boxes(probes, probe);
                     &inside
                 }
-                (SpaceGuide::Probed(_), None) | (SpaceGuide::Unknown, _) => continue,
+                (SupportSpace::Probed(_), None) | (SupportSpace::Unknown, _) => continue,
             };
             let Some(supports) = supports else { continue };
             for (mask, &row) in mine.iter_mut().zip(active) {
                 *mask = supports.reach(row, boxes);
             }
-            rule::apply(guide.rule, selection.starts(table), mine, boxes.all());
+            rule::apply(info.rule, selection.starts(table), mine, boxes.all());
         }
         if let Some(probes) = probes {
-            decide::leave_out(&self.program.guide, probes, selection, &mut masks);
+            decide::leave_out(&self.program.info, probes, selection, &mut masks);
         }
         masks
     }
@@ -237,7 +236,7 @@ impl Pruner {
         probes: Probes<'_>,
     ) -> Result<Option<Vec<u32>>, EvalError> {
         let selection = &*region.selection;
-        let Some(alone) = Alone::new(&self.program.guide, selection) else { return Ok(None) };
+        let Some(alone) = Alone::new(&self.program.info, selection) else { return Ok(None) };
         let mut spared = vec![0; selection.len()];
         let lanes: [usize; MAX_SPARED] = std::array::from_fn(|lane| lane);
         let mut parts: [Selection; MAX_PARTS] = Default::default();
@@ -247,7 +246,7 @@ impl Pruner {
             for (part, rows) in parts[..count].iter().enumerate() {
                 self.find(&mut ranges, rows, boxes.len())?;
                 let both = (probes, ranges.probes(&lanes[..boxes.len()]));
-                alone.spare((selection, self.program.guide.iso2), run + part, both, &mut spared);
+                alone.spare((selection, self.program.info.iso2), run + part, both, &mut spared);
             }
         }
         Ok(Some(spared))
@@ -319,7 +318,7 @@ impl Divisible for Pruner {
     }
 
     fn narrow(&self, region: &Region, boxes: &[Box3], parts: &mut Vec<Region>) -> Result<(), EvalError> {
-        let probed = self.program.guide.probes > 0 && region.rows() <= MAX_RANGED_ROWS;
+        let probed = self.program.info.probes > 0 && region.rows() <= MAX_RANGED_ROWS;
         let ranges = if probed { Some(self.evaluate(&region.selection, boxes)?) } else { None };
         let lanes: [usize; MAX_PARTS] = std::array::from_fn(|lane| lane);
         self.regions(region, boxes, ranges.as_ref().map(|ranges| ranges.probes(&lanes[..boxes.len()])), parts)

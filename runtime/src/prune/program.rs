@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use jbt_lower::guide::{Guide, Guided, Rule, TableGuide};
+use jbt_lower::prune_info::{PruneInfo, RangeFunction, Rule, TablePruneInfo};
 
 use super::cull::Supports;
 use crate::compiler::Compiler;
@@ -13,7 +13,7 @@ use crate::program::Program;
 /// A program of ranges, and what there is to know about who leaves rows out.
 pub(crate) struct RangeProgram {
     pub(super) bound: Bound,
-    pub(super) guide: Guide,
+    pub(super) info: PruneInfo,
     /// By table; `None` where rows are not left out by their supports.
     pub(super) supports: Vec<Option<Supports>>,
 }
@@ -22,12 +22,12 @@ impl RangeProgram {
     /// The program of a model. `present` is a kernel that may have its shape.
     pub(crate) fn new(
         compiler: &Compiler,
-        Guided { function, tables, guide }: Guided,
+        RangeFunction { function, tables, info }: RangeFunction,
         present: Option<&Arc<Kernel>>,
     ) -> Result<Self, CompileError> {
         let kernel = compiler.kernel(function, Purpose::Ranges, present)?;
-        let supports = guide.tables.values().map(supports).collect();
-        Ok(Self { bound: compiler.bind(&kernel, tables), guide, supports })
+        let supports = info.tables.values().map(supports).collect();
+        Ok(Self { bound: compiler.bind(&kernel, tables), info, supports })
     }
 }
 
@@ -38,9 +38,9 @@ impl Program for RangeProgram {
 }
 
 /// The supports of a table, if rows are left out by them.
-fn supports(guide: &TableGuide) -> Option<Supports> {
-    match guide.rule {
+fn supports(info: &TablePruneInfo) -> Option<Supports> {
+    match info.rule {
         Rule::Never => None,
-        Rule::Neutral | Rule::KeepOne | Rule::OnlyZero => Some(Supports::new(&guide.supports)),
+        Rule::Neutral | Rule::KeepOne | Rule::OnlyZero => Some(Supports::new(&info.supports)),
     }
 }

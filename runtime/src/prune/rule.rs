@@ -1,6 +1,6 @@
 //! The rows that an operator's rule keeps.
 
-use jbt_lower::guide::Rule;
+use jbt_lower::prune_info::Rule;
 
 /// Turns the rows that reach boxes into the rows to keep. `masks` has a byte for each active row of a table,
 /// with a bit for each box that the row reaches; `starts` are the starts of the selection.

@@ -34,7 +34,7 @@ impl Pruner {
         let mut found: Vec<(Range, Option<Region>)> =
             (0..boxes.len()).map(|index| (range(index), None)).collect();
         let chosen: Vec<usize> = (0..boxes.len()).filter(|&index| wanted(found[index].0)).collect();
-        let probed = ranges.as_ref().filter(|_| self.program.guide.probes > 0);
+        let probed = ranges.as_ref().filter(|_| self.program.info.probes > 0);
         let parts: Vec<Box3> = chosen.iter().map(|&index| boxes[index]).collect();
         let mut regions = Vec::with_capacity(chosen.len());
         self.regions(region, &parts, probed.map(|ranges| ranges.probes(&chosen)), &mut regions)?;
@@ -64,7 +64,7 @@ impl Pruner {
         let some: Vec<Box3> = kept.iter().map(|&lane| boxes[lane]).collect();
         let mut regions = Vec::with_capacity(kept.len());
         let probes =
-            ranges.as_ref().filter(|_| self.program.guide.probes > 0).map(|ranges| ranges.probes(&kept));
+            ranges.as_ref().filter(|_| self.program.info.probes > 0).map(|ranges| ranges.probes(&kept));
         self.regions(region, &some, probes, &mut regions)?;
         Ok((kept.into_iter().zip(regions).collect(), evaluations))
     }

@@ -181,10 +181,10 @@ fn the_gradient_of_a_twist_is_turned_back() {
 #[test]
 fn the_gradient_of_a_scale_is_divided_by_it() {
     let (factors, center) = ([2.0, 0.5, 1.5], [0.25, 0.0, 0.0]);
-    // One map is known when the code is made, the other one follows a parameter.
+    // One map is known when the code is made, the other one depends on a parameter.
     let ball = point(center, 1.0);
     let follows = ball.scale_axes((param("x", factors[0]), factors[1], factors[2]));
-    for tree in [ball.scale_axes(factors), follows] {
+    for tree in [ball.scale_axes(factors), depends] {
         for p in [[1.0, 0.25, 0.5], [-0.25, -0.25, 0.25]] {
             let g = ball_gradient(std::array::from_fn(|axis| p[axis] / factors[axis]), center, 1.0);
             let right = std::array::from_fn(|axis| g[axis] / factors[axis]);

@@ -1,4 +1,4 @@
-//! Affine maps whose numbers follow parameters: their code serves all values of them. (`nodes` has plain
+//! Affine maps whose numbers depend on parameters: their code serves all values of them. (`nodes` has plain
 //! ones.)
 
 use jbt::{CheckedTree, Model, Tree};

@@ -55,14 +55,14 @@ impl Random {
         still.node().written().evaluated(0.5).expect("formulas mean something")
     }
 
-    /// The tree with a formula as an attribute, with a number that follows a parameter.
+    /// The tree with a formula as an attribute, with a number that depends on a parameter.
     pub(super) fn expressed(&mut self, tree: &Tree, group: &AttributeGroup) -> Tree {
         let (size, part) = (self.between(0.3, 2.0), self.between(0.0, 1.0));
         let follows = self.parameter("wave", size);
         let radius = (x() * x() + y() * y() + z() * z()).sqrt();
         // The last one is infinite or no number where the point is.
         let mut all = vec![
-            (x() * follows).sin() * part,
+            (x() * depends).sin() * part,
             radius.falloff(Falloff::Wyvill),
             y().clamp(-part, part),
             radius.clone() + part,

@@ -153,7 +153,7 @@ impl Random {
         }
     }
 
-    /// The tree with a noise that follows parameters: its code serves all their values.
+    /// The tree with a noise that depends on parameters: its code serves all their values.
     fn textured_following(&mut self, tree: &Tree, group: &AttributeGroup) -> Tree {
         let (octaves, low) = (self.between(0.5, 3.5), self.between(0.0, 1.0));
         let pattern = noise(self.between(0.3, 1.0), self.parameter("octaves", octaves), 0);

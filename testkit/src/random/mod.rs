@@ -47,7 +47,7 @@ pub struct Settings {
     pub walls: bool,
     /// Whether selectors choose some of the subtrees.
     pub selectors: bool,
-    /// Whether some numbers follow parameters, each its own.
+    /// Whether some numbers depend on parameters, each its own.
     pub parameters: bool,
 }
 
@@ -162,7 +162,7 @@ impl Random {
         tree
     }
 
-    /// A number that follows a parameter of its own, or none if there are no parameters.
+    /// A number that depends on a parameter of its own, or none if there are no parameters.
     fn parameter(&mut self, kind: &str, value: f64) -> Number {
         if !self.settings.parameters {
             return value.into();
@@ -171,15 +171,15 @@ impl Random {
         param(&format!("{kind}{}", self.parameters), value)
     }
 
-    /// The tree under a map that follows a parameter of its own: its code serves all values.
+    /// The tree under a map that depends on a parameter of its own: its code serves all values.
     fn following(&mut self, tree: &Tree) -> Tree {
         // Times 90 it is still finite.
         let value = self.between(-1.0, 1.0).clamp(-1e300, 1e300);
         let follows = self.parameter("map", value);
         match self.shape.u8(0..3) {
-            0 => tree.translate((follows, 0.0, self.between(-0.5, 0.5))),
-            1 => tree.scale(1.0 + 0.4 * follows),
-            _ => tree.rotate([0.3, 0.5, 1.0], 90.0 * follows),
+            0 => tree.translate((depends, 0.0, self.between(-0.5, 0.5))),
+            1 => tree.scale(1.0 + 0.4 * depends),
+            _ => tree.rotate([0.3, 0.5, 1.0], 90.0 * depends),
         }
     }
 }

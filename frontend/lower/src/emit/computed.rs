@@ -6,17 +6,17 @@ use jbt_ir::{Domain as _, Value};
 use super::Emitter;
 use crate::columns;
 use crate::computed::{ComputedValue, kept};
+use crate::instance::{InstanceId, InstanceKind};
 use crate::mixing::GroupAnswer;
 use crate::names::ComputedId;
-use crate::occurrence::{OccurrenceId, OccurrenceKind};
 use jbt_model::attribute::Textured;
 use jbt_model::expression::Operand;
 
 impl Emitter<'_> {
     /// The attributes of a leaf: numbers of its row, and what is computed.
-    pub(super) fn leaf_attributes(&mut self, id: OccurrenceId) -> Vec<GroupAnswer> {
-        let (OccurrenceKind::Leaf { computed, .. } | OccurrenceKind::Expression { computed, .. }) =
-            &self.scene.occurrence(id).kind
+    pub(super) fn leaf_attributes(&mut self, id: InstanceId) -> Vec<GroupAnswer> {
+        let (InstanceKind::Leaf { computed, .. } | InstanceKind::Expression { computed, .. }) =
+            &self.scene.instance(id).kind
         else {
             unreachable!("only leaves have attributes of their own")
         };

@@ -17,8 +17,8 @@ use rustc_hash::FxHashSet;
 
 use super::{Emitter, Reduce, Task};
 use crate::columns;
+use crate::instance::{InstanceId, InstanceKind};
 use crate::mixing::{Answer, GroupAnswer, weighted};
-use crate::occurrence::{OccurrenceId, OccurrenceKind};
 use crate::slopes::{Tape, slopes};
 use jbt_model::combine::{Extreme, ReduceCode};
 use jbt_model::expression::{Form, LARGEST_FIELD, Operand};
@@ -60,12 +60,12 @@ fn distinct(d: &mut FunctionBuilder, mut fields: Vec<Value>) -> Vec<Value> {
 
 impl Emitter<'_> {
     /// The answer of a formula whose children have theirs.
-    pub(super) fn express(&mut self, id: OccurrenceId) {
-        let occurrence = self.scene.occurrence(id);
-        let OccurrenceKind::Expression { position, shift, children, .. } = &occurrence.kind else {
+    pub(super) fn express(&mut self, id: InstanceId) {
+        let instance = self.scene.instance(id);
+        let InstanceKind::Expression { position, shift, children, .. } = &instance.kind else {
             unreachable!("only formulas are expressed")
         };
-        let expression = self.scene.expression(occurrence.node);
+        let expression = self.scene.expression(instance.node);
         let form = expression.form();
         let answers = self.answers.split_off(self.answers.len() - children.len());
         let point = form.asks_point().then(|| {
@@ -82,8 +82,8 @@ impl Emitter<'_> {
         let mut tape = Tape::new(&mut self.builder, weighs);
         let value = form.emit(&mut tape, |operand| leaves.of(operand))[0];
         let tape = tape.finish();
-        let lowest = if occurrence.non_negative { 0.0 } else { -LARGEST_FIELD };
-        let vanishes = self.scene.vanishes(occurrence.node);
+        let lowest = if instance.non_negative { 0.0 } else { -LARGEST_FIELD };
+        let vanishes = self.scene.vanishes(instance.node);
         let field = if !vanishes && !form.bounded && self.leaves_open() {
             self.opened(value, lowest)
         } else {

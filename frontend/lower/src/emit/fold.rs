@@ -7,22 +7,22 @@ use jbt_ir::{Domain as _, Entity, FoldKind, Rule, Schema, Value};
 use super::parts::Guard;
 use super::{Emitter, Reduce, TableCode, Task};
 use crate::columns;
-use crate::guide::{DecidedRows, DecisionKind};
+use crate::instance::{InstanceId, InstanceKind, SpaceId};
 use crate::mixing::{Operator, State, beyond};
-use crate::occurrence::{OccurrenceId, OccurrenceKind, SpaceId};
+use crate::prune_info::{DecidedRows, DecisionKind};
 use crate::shape::{bounded, non_negative};
 use jbt_model::combine::ReduceCode;
 use jbt_model::query::AnswerKind;
 
 impl Emitter<'_> {
     /// An operator: its accumulators, and what is to be done for its operands.
-    pub(super) fn begin_reduce(&mut self, id: OccurrenceId) {
-        let occurrence = self.scene.occurrence(id);
-        let OccurrenceKind::Reduce { operator, code, .. } = occurrence.kind else {
+    pub(super) fn begin_reduce(&mut self, id: InstanceId) {
+        let instance = self.scene.instance(id);
+        let InstanceKind::Reduce { operator, code, .. } = instance.kind else {
             unreachable!("only operators are reduced")
         };
         let groups = self.shapes.groups(id);
-        let row = columns::operator(self, self.scene, occurrence.node, operator, code.columns());
+        let row = columns::operator(self, self.scene, instance.node, operator, code.columns());
         let operator = Operator {
             code,
             row,
@@ -113,17 +113,15 @@ impl Emitter<'_> {
     }
 
     /// The name of a table whose first row is this.
-    pub(super) fn group_name(&self, id: OccurrenceId) -> String {
-        match &self.scene.occurrence(id).kind {
-            OccurrenceKind::Leaf { field, .. } => self.scene.field(*field).code.skeleton.name().to_owned(),
-            OccurrenceKind::Warp { .. } => self.scene.warp(self.scene.occurrence(id).node).name().to_owned(),
-            OccurrenceKind::Difference { .. } => "difference".to_owned(),
-            OccurrenceKind::Map { .. } => {
-                self.scene.combinator(self.scene.occurrence(id).node).name().to_owned()
-            }
-            OccurrenceKind::Expression { .. } => "expression".to_owned(),
-            OccurrenceKind::Select { .. } => "select".to_owned(),
-            OccurrenceKind::Reduce { operator, .. } => operator.name().to_owned(),
+    pub(super) fn group_name(&self, id: InstanceId) -> String {
+        match &self.scene.instance(id).kind {
+            InstanceKind::Leaf { field, .. } => self.scene.field(*field).code.skeleton.name().to_owned(),
+            InstanceKind::Warp { .. } => self.scene.warp(self.scene.instance(id).node).name().to_owned(),
+            InstanceKind::Difference { .. } => "difference".to_owned(),
+            InstanceKind::Map { .. } => self.scene.combinator(self.scene.instance(id).node).name().to_owned(),
+            InstanceKind::Expression { .. } => "expression".to_owned(),
+            InstanceKind::Select { .. } => "select".to_owned(),
+            InstanceKind::Reduce { operator, .. } => operator.name().to_owned(),
         }
     }
 }

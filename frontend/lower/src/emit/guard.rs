@@ -13,9 +13,9 @@ use jbt_ir::{Domain, FoldKind, Rule, Value};
 
 use super::Emitter;
 use super::parts::GuardStart;
-use crate::guide::{DecidedRows, DecisionKind};
+use crate::instance::{InstanceId, SpaceId};
 use crate::mixing::{Answer, GroupAnswer};
-use crate::occurrence::{OccurrenceId, SpaceId};
+use crate::prune_info::{DecidedRows, DecisionKind};
 use crate::shape::Hoist;
 
 impl Emitter<'_> {
@@ -24,11 +24,11 @@ impl Emitter<'_> {
         self.shapes.guards_hoisted(self.scene, hoist, self.builder.fold_depth())
     }
 
-    pub(super) fn open_guard(&mut self, id: OccurrenceId, start: GuardStart) {
+    pub(super) fn open_guard(&mut self, id: InstanceId, start: GuardStart) {
         let name = self.group_name(id);
         let field = self.builder.constant(start.number());
         let rule = if self.scene.demand.is_bare(id) { Rule::Never } else { start.rule() };
-        self.open_only(&name, self.scene.occurrence(id).space, rule, &[field]);
+        self.open_only(&name, self.scene.instance(id).space, rule, &[field]);
     }
 
     /// The answer that has just been computed in the guard's row, as it is seen outside.

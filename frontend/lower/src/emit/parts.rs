@@ -3,8 +3,8 @@
 use jbt_ir::{Rule, Table, Value};
 use rustc_hash::FxHashMap as HashMap;
 
-use crate::guide::{DecidedRows, Decision, DecisionKind};
 use crate::names::SpaceId;
+use crate::prune_info::{DecidedRows, Decision, DecisionKind};
 use jbt_model::combine::{Extreme, ReduceCode};
 
 /// The field of a guard whose row is left out.
@@ -86,7 +86,7 @@ pub(super) struct Operand {
     pub(super) name: usize,
 }
 
-/// The probes of a guide function.
+/// The probes of a range function.
 #[derive(Default)]
 pub(super) struct Probes {
     /// How many there are.

@@ -1,4 +1,4 @@
-//! Probes: numbers of a point that the guide function carries out of its folds.
+//! Probes: numbers of a point that the range function carries out of its folds.
 //!
 //! A probe is one number for a point, so it can only be taken where no fold over several rows is open: in the
 //! row of the scene and in the rows of guards in it. It comes out of each of these folds as one more
@@ -8,8 +8,8 @@ use jbt_ir::{Table, Value};
 
 use super::parts::{Operand, Probe, Probes};
 use super::{Emitter, TableCode};
-use crate::guide::{DecidedRows, Decision, DecisionKind};
-use crate::occurrence::{OccurrenceId, SpaceId};
+use crate::instance::{InstanceId, SpaceId};
+use crate::prune_info::{DecidedRows, Decision, DecisionKind};
 use jbt_model::combine::{Extreme, ReduceCode};
 
 impl Probes {
@@ -120,7 +120,7 @@ impl Emitter<'_> {
 
     /// What to keep of operands that are about to become rows, so that each may be left out while it is not
     /// zero. Supports say nothing about formulas; of other rows they say enough.
-    pub(super) fn decides_rows(&mut self, code: ReduceCode, member: OccurrenceId) -> Option<Extreme> {
+    pub(super) fn decides_rows(&mut self, code: ReduceCode, member: InstanceId) -> Option<Extreme> {
         let extreme = match code {
             ReduceCode::Choice(extreme) => extreme,
             ReduceCode::Fold(_) | ReduceCode::Step(_) => return None,

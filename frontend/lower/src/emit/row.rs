@@ -4,7 +4,7 @@ use jbt_ir::{Domain, FoldKind, Origin, Part, Rule, Value};
 
 use super::Emitter;
 use crate::columns::{self, Scribe};
-use crate::occurrence::{FieldId, LeafCode, LeafField};
+use crate::instance::{FieldId, LeafCode, LeafField};
 use jbt_model::falloff::Nearness;
 use jbt_model::skeleton::Pieces;
 

@@ -17,13 +17,13 @@ use jbt_ir::{Domain, Rule, Value};
 use super::super::mixing::{Answer, GroupAnswer};
 use super::parts::Select;
 use super::{Emitter, Task};
-use crate::occurrence::{FieldId, OccurrenceId, SpaceId};
+use crate::instance::{FieldId, InstanceId, SpaceId};
 use crate::shape::Hoist;
 use jbt_model::attribute::Mixing;
 
 impl Emitter<'_> {
     /// Leaves the parts of a selector on the tasks.
-    pub(super) fn select(&mut self, children: &[OccurrenceId]) {
+    pub(super) fn select(&mut self, children: &[InstanceId]) {
         self.tasks.push(Task::FinishSelect);
         for &child in children.iter().rev() {
             self.tasks.extend([Task::CloseChild, Task::Use(child), Task::OpenChild(child)]);
@@ -38,11 +38,11 @@ impl Emitter<'_> {
         self.selects.push(Select { state: vec![zero; width] });
     }
 
-    pub(super) fn open_child(&mut self, id: OccurrenceId) {
+    pub(super) fn open_child(&mut self, id: InstanceId) {
         let state = self.selects.last().expect("children belong to selectors").state.clone();
         let name = self.group_name(id);
         let rule = if self.scene.demand.is_bare(id) { Rule::Never } else { Rule::Neutral };
-        self.open_only(&name, self.scene.occurrence(id).space, rule, &state);
+        self.open_only(&name, self.scene.instance(id).space, rule, &state);
     }
 
     pub(super) fn close_child(&mut self) {
@@ -78,7 +78,7 @@ impl Emitter<'_> {
         self.answers.push(Answer { field, groups });
     }
 
-    /// The field of a leaf that several occurrences share.
+    /// The field of a leaf that several instances share.
     pub(super) fn hoist_field(&mut self, field: FieldId) -> Value {
         if !self.guards_hoisted(Hoist::Field(field)) {
             return self.leaf(field);
@@ -90,7 +90,7 @@ impl Emitter<'_> {
         value
     }
 
-    /// The point inside a warp that several occurrences share.
+    /// The point inside a warp that several instances share.
     pub(super) fn hoist_point(&mut self, space: SpaceId) -> [Value; 3] {
         if !self.guards_hoisted(Hoist::Space(space)) {
             return self.point_inside(space);

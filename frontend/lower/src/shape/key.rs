@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::computed::ComputedShape;
-use crate::occurrence::{FieldId, LeafCode, OccurrenceId, SpaceId};
+use crate::instance::{FieldId, InstanceId, LeafCode, SpaceId};
 use crate::position::MapKind;
 use jbt_model::combine::{MapCode, ReduceCode};
 use jbt_model::expression::Form;
@@ -53,14 +53,14 @@ pub(super) enum ShapeKey {
         computed: Box<[Option<ComputedShape>]>,
     },
     Select(Vec<ShapeId>),
-    Hoisted(OccurrenceId),
+    Hoisted(InstanceId),
 }
 
 /// How many folds there may be around a guard. Behind so many, what is left of a deep model is mostly left
 /// out with what is around it.
 ///
-/// Folds over several rows that own rows double the occurrences each, so there are at most 22 of these in
-/// each other, by [`jbt_ir::limits::MAX_OCCURRENCES`]; with this many guards they stay below
+/// Folds over several rows that own rows double the instances each, so there are at most 22 of these in
+/// each other, by [`jbt_ir::limits::MAX_INSTANCES`]; with this many guards they stay below
 /// [`jbt_ir::limits::MAX_FOLD_DEPTH`].
 const MAX_DEPTH_OF_GUARDS: usize = 24;
 

@@ -18,7 +18,7 @@ impl Tree {
         Self::new(operator.into(), children.into_iter().collect())
     }
 
-    /// An operator whose numbers may follow parameters.
+    /// An operator whose numbers may depend on parameters.
     pub(super) fn operator(
         combinator: CombinatorKind,
         fields: Vec<FieldNumber>,

@@ -3,7 +3,7 @@
 use crate::texture::TextureKind;
 use crate::written::FieldNumber;
 
-/// A texture whose numbers may follow parameters.
+/// A texture whose numbers may depend on parameters.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Pattern {
     pub(super) texture: TextureKind,

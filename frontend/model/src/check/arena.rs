@@ -71,7 +71,7 @@ fn paths(nodes: &[CheckedNode], below: impl Fn(&CheckedNode) -> &[NodeId]) -> Ve
 }
 
 /// Checks the number of paths from the root to all nodes: a bound of the work of lowering, and of its rows.
-pub(super) fn check_occurrences(report: &mut Report, nodes: &[CheckedNode], most: usize) {
+pub(super) fn check_instances(report: &mut Report, nodes: &[CheckedNode], most: usize) {
     let weights = nodes.iter().map(|node| match &node.kind {
         // Each piece is a row as well.
         NodeKind::Primitive(leaf) => 1 + leaf.skeleton.piece_count(leaf.radius, most) as u64,

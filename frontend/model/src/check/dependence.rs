@@ -28,7 +28,7 @@ impl Dependence {
     pub(super) fn new(parameters: &[Parameter], iso: &Number) -> Self {
         let names = parameters.iter().enumerate().map(|(index, p)| (Arc::clone(&p.name), index)).collect();
         Self {
-            iso: iso.follows().then(|| iso.clone()),
+            iso: iso.depends_on_parameters().then(|| iso.clone()),
             names,
             mentions: vec![Vec::new(); parameters.len()],
             ..Self::default()
@@ -37,7 +37,7 @@ impl Dependence {
 
     /// Adds a node, which comes after all nodes added before.
     pub(super) fn add(&mut self, id: NodeId, written: &Arc<Written>) {
-        for formula in written.following().filter_map(Number::formula) {
+        for formula in written.dependent_numbers().filter_map(Number::formula) {
             for (name, _) in formula.parameters() {
                 let mentions = self.names.get(name).map(|&index| &mut self.mentions[index]);
                 if let Some(mentions) = mentions

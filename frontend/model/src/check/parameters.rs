@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use jbt_ir::limits;
 
-use super::arena::{CheckedNode, NodeId, Paths, check_occurrences};
+use super::arena::{CheckedNode, NodeId, Paths, check_instances};
 use super::groups::widths;
 use super::node::check_node;
 use super::numbers::check_number;
@@ -23,7 +23,7 @@ pub(super) fn evaluate(
     iso: f64,
     span: Option<Span>,
 ) -> Result<NodeKind, Diagnostic> {
-    let is_plain = written.following().next().is_none();
+    let is_plain = written.dependent_numbers().next().is_none();
     let meant = if is_plain { written.evaluated(iso) } else { written.refreshed(values)?.evaluated(iso) };
     meant.map_err(|fault| Diagnostic { span, ..fault })
 }
@@ -63,7 +63,7 @@ pub(super) fn check_names(report: &mut Report, parameters: &[Parameter]) {
         if !seen.insert(&parameter.name) {
             report.add(|| Diagnostic::error(span, format!("two parameters are called `{name}`")));
         }
-        let plain = parameter.setting.is_some() || !parameter.default.follows();
+        let plain = parameter.setting.is_some() || !parameter.default.depends_on_parameters();
         if plain && !parameter.value().is_finite() {
             let value = parameter.value();
             report.add(|| {
@@ -172,7 +172,7 @@ impl CheckedTree {
         }
         // A curve may have more pieces now.
         if in_pieces && report.is_empty() {
-            check_occurrences(report, &nodes, limits::MAX_OCCURRENCES);
+            check_instances(report, &nodes, limits::MAX_INSTANCES);
         }
         nodes.into()
     }
@@ -195,7 +195,7 @@ impl CheckedTree {
 
     /// Whether any number depends on a parameter.
     #[must_use]
-    pub fn follows(&self) -> bool {
+    pub fn depends_on_parameters(&self) -> bool {
         !self.dependence.nodes.is_empty()
     }
 }

@@ -39,7 +39,7 @@ pub(super) trait Plain<F>: Copy {
 
     fn is_non_negative(self, children: &mut dyn Iterator<Item = bool>, fixed: bool) -> bool;
 
-    fn push_columns(self, follows: bool, iso: f64, row: &mut Vec<f64>);
+    fn push_columns(self, depends: bool, iso: f64, row: &mut Vec<f64>);
 }
 
 impl<T: Fold> Plain<Folds> for T {
@@ -73,8 +73,8 @@ impl<T: Fold> Plain<Folds> for T {
             && (Fold::is_non_negative(self, false) || Iterator::all(&mut children, |child| child))
     }
 
-    fn push_columns(self, follows: bool, _: f64, row: &mut Vec<f64>) {
-        Fold::push_columns(self, self.code(follows), row);
+    fn push_columns(self, depends: bool, _: f64, row: &mut Vec<f64>) {
+        Fold::push_columns(self, self.code(depends), row);
     }
 }
 

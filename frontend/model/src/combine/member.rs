@@ -44,9 +44,9 @@ pub trait Operator: Member + Copy {
         None
     }
 
-    /// The operator with this value of a number that follows a parameter. Passing by a value must not
+    /// The operator with this value of a number that depends on a parameter. Passing by a value must not
     /// exchange one operator for another.
-    fn following(self) -> Self {
+    fn general(self) -> Self {
         self
     }
 }
@@ -95,9 +95,9 @@ pub trait Fold: Operator {
     /// Whether slopes of the field are not bounded by the sum of those of the operands.
     const IS_STEEP: bool = false;
 
-    /// What of it selects code; `follows`: numbers follow parameters, so that the code has to serve all
+    /// What of it selects code; `depends`: numbers depend on parameters, so that the code has to serve all
     /// values.
-    fn code(self, follows: bool) -> Self::Code;
+    fn code(self, depends: bool) -> Self::Code;
 
     /// The field, plainly.
     fn field(self, fields: &[f64], iso: f64) -> f64;
@@ -238,7 +238,7 @@ pub trait Unary: Operator {
     fn kink_distance(self, f: f64, iso: f64) -> f64;
 
     /// Whether the field can never be negative, if that of the child can (`false`) or cannot (`true`).
-    /// `fixed`: the numbers follow no parameter; otherwise they may become anything.
+    /// `fixed`: the numbers depend on no parameter; otherwise they may become anything.
     fn is_non_negative(self, child: bool, fixed: bool) -> bool;
 
     /// The field over the ops. `iso2` is twice the iso-value.

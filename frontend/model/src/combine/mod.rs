@@ -197,10 +197,10 @@ macro_rules! operators {
         }
 
         impl Combinator {
-            /// What it is to the compiler; `follows`: its numbers follow parameters.
-            pub fn form(self, follows: bool) -> Form {
+            /// What it is to the compiler; `depends`: its numbers depend on parameters.
+            pub fn form(self, depends: bool) -> Form {
                 match self {
-                    $( Self::$fold(it) => Form::Reduce(ReduceCode::Fold(FoldCode::$fold(it.code(follows)))), )+
+                    $( Self::$fold(it) => Form::Reduce(ReduceCode::Fold(FoldCode::$fold(it.code(depends)))), )+
                     $( Self::$choice(_) => Form::Reduce(ReduceCode::Choice(<$choice as Choice>::EXTREME)), )+
                     Self::$difference(_) => Form::Difference,
                     $( Self::$step(it) => Form::Reduce(ReduceCode::Step(StepCode::$step(it.code()))), )+
@@ -286,7 +286,7 @@ macro_rules! members {
             pub const fn passes_single(self) -> bool { match self { $( Self::$name(_) => <$name as Plain<$form>>::PASSES_SINGLE, )+ } }
 
             /// See [`Operator::following`].
-            pub(crate) fn following(self) -> Self { match self { $( Self::$name(it) => Self::$name(it.following()), )+ } }
+            pub(crate) fn general(self) -> Self { match self { $( Self::$name(it) => Self::$name(it.general()), )+ } }
 
             /// See [`Operator::fault`].
             pub(crate) fn fault(self, iso: f64) -> Option<Diagnostic> { match self { $( Self::$name(it) => it.fault(iso), )+ } }
@@ -326,14 +326,14 @@ macro_rules! members {
             }
 
             /// Whether the field can never be negative; of each child, whether its field can never be.
-            /// `fixed`: the numbers follow no parameter.
+            /// `fixed`: the numbers depend on no parameter.
             pub fn is_non_negative(self, children: &mut dyn Iterator<Item = bool>, fixed: bool) -> bool {
                 match self { $( Self::$name(it) => Plain::<$form>::is_non_negative(it, children, fixed), )+ }
             }
 
             /// Pushes the numbers that a row keeps for it: one for each column of its code.
-            pub fn push_columns(self, follows: bool, iso: f64, row: &mut Vec<f64>) {
-                match self { $( Self::$name(it) => Plain::<$form>::push_columns(it, follows, iso, row), )+ }
+            pub fn push_columns(self, depends: bool, iso: f64, row: &mut Vec<f64>) {
+                match self { $( Self::$name(it) => Plain::<$form>::push_columns(it, depends, iso, row), )+ }
             }
         }
     };

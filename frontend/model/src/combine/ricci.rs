@@ -86,7 +86,7 @@ impl Operator for Ricci {
 
     /// Never exactly 1: the plain sum is another operator where fields are negative. The next number above 1
     /// is the same exponent in f32.
-    fn following(self) -> Self {
+    fn general(self) -> Self {
         if self.is_sum() { Self { exponent: 1.0 + f64::EPSILON } } else { self }
     }
 }
@@ -94,10 +94,10 @@ impl Operator for Ricci {
 impl Fold for Ricci {
     type Code = RicciCode;
 
-    fn code(self, follows: bool) -> RicciCode {
+    fn code(self, depends: bool) -> RicciCode {
         let (n, negative) = (self.exponent.abs(), self.exponent < 0.0);
         let is_integer = n == f64::from(n as u32);
-        RicciCode { integer: (is_integer && !follows).then_some(n as u32), negative }
+        RicciCode { integer: (is_integer && !depends).then_some(n as u32), negative }
     }
 
     fn field(self, fields: &[f64], iso: f64) -> f64 {

@@ -191,7 +191,7 @@ impl Expression {
     }
 }
 
-/// A formula whose numbers may follow parameters.
+/// A formula whose numbers may depend on parameters.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Formula {
     /// How the numbers are used.

@@ -34,7 +34,8 @@ const LARGEST_EXPONENT: f64 = 1024.0;
 /// The exponent, if it is a whole literal that is code.
 pub(super) fn whole_exponent(number: &Number) -> Option<i32> {
     let n = number.value();
-    let whole = !number.follows() && n.fract() == 0.0 && (1.0..=LARGEST_EXPONENT).contains(&n.abs());
+    let whole =
+        !number.depends_on_parameters() && n.fract() == 0.0 && (1.0..=LARGEST_EXPONENT).contains(&n.abs());
     whole.then_some(n as i32)
 }
 

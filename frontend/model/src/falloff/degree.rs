@@ -43,8 +43,8 @@ impl FalloffMember for Degree {
         false
     }
 
-    fn variant(&self, follows: bool) -> u8 {
-        if follows { 0 } else { whole(self.exponent, MOST_WHOLE).unwrap_or(0) }
+    fn variant(&self, depends: bool) -> u8 {
+        if depends { 0 } else { whole(self.exponent, MOST_WHOLE).unwrap_or(0) }
     }
 
     fn column_names(variant: u8) -> &'static [&'static str] {
@@ -89,7 +89,7 @@ mod tests {
 
     #[test]
     fn whole_exponents_are_code() {
-        let variant = |exponent, follows| Degree { exponent }.variant(follows);
+        let variant = |exponent, depends| Degree { exponent }.variant(depends);
         let found = [variant(1.0, false), variant(64.0, false), variant(65.0, false), variant(2.5, false)];
         assert_eq!((found, variant(2.0, true)), ([1, 64, 0, 0], 0));
     }

@@ -58,8 +58,8 @@ impl FalloffMember for InversePower {
     }
 
     /// The edge in the lowest bit; above it the exponent, if it is whole.
-    fn variant(&self, follows: bool) -> u8 {
-        let exponent = if follows { 0 } else { whole(self.exponent, MOST).unwrap_or(0) };
+    fn variant(&self, depends: bool) -> u8 {
+        let exponent = if depends { 0 } else { whole(self.exponent, MOST).unwrap_or(0) };
         self.edge.bit() | exponent << 1
     }
 

@@ -77,9 +77,9 @@ pub trait FalloffMember: Member {
     /// jumps.
     fn is_pointed(&self) -> bool;
 
-    /// The part of the parameters that selects code. With `follows`, a parameter of the model changes the
+    /// The part of the parameters that selects code. With `depends`, a parameter of the model changes the
     /// numbers, so the code must serve all values.
-    fn variant(&self, follows: bool) -> u8;
+    fn variant(&self, depends: bool) -> u8;
 
     /// The names of the columns of a row, for this variant.
     fn column_names(variant: u8) -> &'static [&'static str];

@@ -141,10 +141,10 @@ macro_rules! falloffs {
             /// The kind, and the variant whose code serves these numbers or, if the numbers follow a
             /// parameter, all numbers.
             #[must_use]
-            pub fn code(&self, follows: bool) -> FalloffKind {
+            pub fn code(&self, depends: bool) -> FalloffKind {
                 match self {
                     $( Self::$name => FalloffKind::$name, )+
-                    $( Self::$rich(falloff) => FalloffKind::$rich(falloff.variant(follows)), )+
+                    $( Self::$rich(falloff) => FalloffKind::$rich(falloff.variant(depends)), )+
                 }
             }
 

@@ -35,8 +35,8 @@ impl Published {
             }
         }
         inverse_is_inverse(falloff);
-        for follows in [false, true] {
-            Compiled::new(falloff, follows).judge(falloff);
+        for depends in [false, true] {
+            Compiled::new(falloff, depends).judge(falloff);
         }
     }
 }
@@ -68,8 +68,8 @@ struct Compiled {
 const STEPS: u32 = 100_000;
 
 impl Compiled {
-    fn new(falloff: Falloff, follows: bool) -> Self {
-        let (kind, mut row) = (falloff.code(follows), Vec::new());
+    fn new(falloff: Falloff, depends: bool) -> Self {
+        let (kind, mut row) = (falloff.code(depends), Vec::new());
         falloff.columns(kind, &mut row);
         assert_eq!(row.len(), kind.columns().len(), "one number for each column");
         Self { kind, row: row.into_iter().map(|number| number as f32).collect() }

@@ -24,7 +24,7 @@ pub(super) trait MapMember: Member {
     /// Whether its parameters are written by name. Otherwise it has one parameter, whose value follows the
     /// word.
     const NAMED: bool = true;
-    /// How much its linear part can change, where its numbers follow parameters.
+    /// How much its linear part can change, where its numbers depend on parameters.
     const FREEDOM: Freedom;
 
     /// The map that takes the child's space to the parent's. An axis without a direction is a fault.

@@ -40,7 +40,7 @@ macro_rules! maps {
             #[must_use]
             pub const fn is_named(self) -> bool { match self { $( Self::$name => $name::NAMED, )+ } }
 
-            /// How much the linear part can change, where its numbers follow parameters.
+            /// How much the linear part can change, where its numbers depend on parameters.
             pub(crate) const fn freedom(self) -> Freedom { match self { $( Self::$name => $name::FREEDOM, )+ } }
 
             /// The map that takes the child's space to the parent's, from the values of its parameters.

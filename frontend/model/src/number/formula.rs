@@ -127,7 +127,7 @@ impl Formula {
         self.span
     }
 
-    /// Its parameters, one entry for each occurrence: name and default.
+    /// Its parameters, one entry for each instance: name and default.
     pub fn parameters(&self) -> impl Iterator<Item = (&Arc<str>, f64)> {
         self.steps.iter().filter_map(|step| match step {
             Step::Parameter { name, default } => Some((name, *default)),

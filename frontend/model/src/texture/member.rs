@@ -18,10 +18,10 @@ pub trait TextureMember: Member {
     /// The distance of `p` from the nearest jump of the number; infinity if it never jumps.
     fn kink_distance(&self, p: DVec3) -> f64;
 
-    /// The part of the parameters that selects code. With `follows`, the numbers follow parameters of the
+    /// The part of the parameters that selects code. With `depends`, the numbers depend on parameters of the
     /// model, so the code must serve all values.
-    fn variant(&self, follows: bool) -> u8 {
-        let _ = follows;
+    fn variant(&self, depends: bool) -> u8 {
+        let _ = depends;
         0
     }
 

@@ -85,8 +85,8 @@ macro_rules! textures {
 
             /// The kind and the variant of its code; see [`TextureMember::variant`].
             #[must_use]
-            pub fn code(&self, follows: bool) -> TextureKind {
-                match self { $( Self::$name(t) => TextureKind::$name(t.variant(follows)), )+ }
+            pub fn code(&self, depends: bool) -> TextureKind {
+                match self { $( Self::$name(t) => TextureKind::$name(t.variant(depends)), )+ }
             }
 
             /// The parameters, in the order of [`TextureKind::fields`].

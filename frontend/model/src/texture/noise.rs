@@ -31,7 +31,7 @@ member! {
         /// The side of a cube of the first octave.
         pub size: f64 [Positive] = Real(1.0),
         /// How many octaves, at most 8; less than one is one. The whole number above it selects code, unless
-        /// it follows a parameter: then all eight are computed.
+        /// it depends on a parameter: then all eight are computed.
         pub octaves: f64 [Positive] = Real(1.0),
         /// The nearest whole number, up to 2^21 in magnitude, tells one noise from another.
         pub seed: f64 [Real] = Real(0.0),
@@ -72,8 +72,8 @@ impl TextureMember for Noise {
         f64::INFINITY
     }
 
-    fn variant(&self, follows: bool) -> u8 {
-        if follows { MAX_OCTAVES } else { self.octaves.ceil().clamp(1.0, f64::from(MAX_OCTAVES)) as u8 }
+    fn variant(&self, depends: bool) -> u8 {
+        if depends { MAX_OCTAVES } else { self.octaves.ceil().clamp(1.0, f64::from(MAX_OCTAVES)) as u8 }
     }
 
     fn columns(variant: u8) -> &'static [&'static str] {

@@ -45,10 +45,10 @@ impl WrittenFalloff {
         self.kind.from_fields(&values)
     }
 
-    /// Whether one of its numbers follows a parameter.
+    /// Whether one of its numbers depends on a parameter.
     #[must_use]
-    pub fn follows(&self) -> bool {
-        self.fields.iter().flat_map(FieldNumber::numbers).any(Number::follows)
+    pub fn depends_on_parameters(&self) -> bool {
+        self.fields.iter().flat_map(FieldNumber::numbers).any(Number::depends_on_parameters)
     }
 }
 

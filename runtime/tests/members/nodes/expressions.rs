@@ -86,7 +86,7 @@ fn boxes() -> [Row; 3] {
         .attribute("color", [-0.5, 0.25, 0.25], &[1.0, 0.0, 0.0])
         .attribute("color", [2.0, 0.25, 0.25], &[1.0; 3]),
         row(
-            "within a box that follows a parameter, in a sum",
+            "within a box that depends on a parameter, in a sum",
             "param t = 0.5 sum { expression within (-t -t -t) to (t t t) { 1 - x^2 } box { half (1 1 1) radius 0.5 } }",
             &[
                 ([0.0; 3], 2.0),

@@ -1,29 +1,29 @@
-//! Makes the guide of a scene: the guide function, and what there is to know about its tables.
+//! Makes the range function of a scene, and what there is to know about its tables.
 
 use jbt_ir::{Entity as _, Function, InstKind, Rule, Store};
 
 use super::emit::{self, TableCode};
-use super::guide::{Guide, Guided, SpaceGuide, Support, TableGuide};
-use super::occurrence::{Scene, SpaceId};
+use super::instance::{Scene, SpaceId};
+use super::prune_info::{PruneInfo, RangeFunction, Support, SupportSpace, TablePruneInfo};
 use super::rows::{self, Member};
 use super::shape::{Hoist, Shapes};
 use super::support::Supports;
 use jbt_model::diagnostic::Diagnostic;
 use jbt_model::query::Query;
 
-/// The guide function of a scene, and what there is to know about its tables.
-pub(super) fn guided(scene: &Scene<'_>, shapes: &Shapes) -> Result<Guided, Vec<Diagnostic>> {
-    let code = emit::emit_guide(scene, shapes)?;
+/// The range function of a scene, and what there is to know about its tables.
+pub(super) fn ranges(scene: &Scene<'_>, shapes: &Shapes) -> Result<RangeFunction, Vec<Diagnostic>> {
+    let code = emit::emit_ranges(scene, shapes)?;
     let rows = rows::rows(scene, shapes, Query::FIELD, &code)?;
     let supports = Supports::new(scene);
     let mut tables = Store::new();
     let rules = rules(&code.function);
     for ((code, members), rule) in code.tables.iter().zip(&rows.members).zip(rules) {
-        tables.push(table_guide(scene, &supports, (code, rule), members));
+        tables.push(table_info(scene, &supports, (code, rule), members));
     }
     let iso2 = (2.0 * scene.tree.iso()) as f32;
-    let guide = Guide { tables, probes: code.function.outputs.len() - 1, decisions: code.decisions, iso2 };
-    Ok(Guided { function: code.function, tables: rows.tables, guide })
+    let info = PruneInfo { tables, probes: code.function.outputs.len() - 1, decisions: code.decisions, iso2 };
+    Ok(RangeFunction { function: code.function, tables: rows.tables, info })
 }
 
 /// By table, what may be done with rows that are zero: nothing where no fold runs them.
@@ -37,18 +37,18 @@ fn rules(function: &Function) -> Vec<Rule> {
     rules
 }
 
-fn table_guide(
+fn table_info(
     scene: &Scene<'_>,
     supports: &Supports<'_>,
     (code, rule): (&TableCode, Rule),
     members: &[Member],
-) -> TableGuide {
+) -> TablePruneInfo {
     let space = match (code.space, code.probe) {
-        (SpaceId(0), _) => SpaceGuide::World,
-        (_, Some(probe)) => SpaceGuide::Probed(probe),
-        (_, None) => SpaceGuide::Unknown,
+        (SpaceId(0), _) => SupportSpace::World,
+        (_, Some(probe)) => SupportSpace::Probed(probe),
+        (_, None) => SupportSpace::Unknown,
     };
-    TableGuide {
+    TablePruneInfo {
         space,
         supports: members.iter().map(|member| support(supports, member)).collect(),
         rule,
@@ -59,7 +59,7 @@ fn table_guide(
 
 fn support(supports: &Supports<'_>, member: &Member) -> Support {
     match member {
-        Member::Operand(id, _) | Member::Hoisted(Hoist::Occurrence(id)) => supports.of(*id),
+        Member::Operand(id, _) | Member::Hoisted(Hoist::Instance(id)) => supports.of(*id),
         Member::Hoisted(Hoist::Field(field)) => supports.of_field(*field),
         Member::Piece(field, piece) => supports.of_piece(*field, *piece),
         Member::Hoisted(Hoist::Space(_) | Hoist::Computed(_)) => Support::EVERYWHERE,

@@ -1,12 +1,12 @@
-//! What the guide says holds to the bit: supports, rules and decisions, tried at points of random models.
+//! What `PruneInfo` says holds to the bit: supports, rules and decisions, tried at points of random models.
 
 use fastrand::Rng;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use jbt_ir::domain::scalar::Scalar;
 use jbt_ir::pass::{PIPELINE, run_pipeline};
 use jbt_ir::{Table, Tables, Verified, interpret, verify};
-use jbt_lower::guide::{LARGEST_COORDINATE, Rule, SpaceGuide, Support};
-use jbt_lower::{Guided, lower_guided};
+use jbt_lower::prune_info::{LARGEST_COORDINATE, Rule, Support, SupportSpace};
+use jbt_lower::{RangeFunction, lower_ranges};
 use jbt_model::check::CheckedTree;
 use jbt_model::falloff::Falloff;
 use jbt_model::kind::{NodeKind, Primitive};
@@ -30,10 +30,10 @@ fn model(seed: u64, leaves: usize, negative: bool) -> Model {
 
 /// The support of the whole model: that of the scene's row.
 fn support(tree: &CheckedTree) -> Support {
-    let guided = lower_guided(tree).expect("it can be lowered");
-    let guide = guided.guide.tables.values().next().expect("there is the scene");
-    assert_eq!((guide.space, guide.rule), (SpaceGuide::World, Rule::Never));
-    guide.supports[0]
+    let ranges = lower_ranges(tree).expect("it can be lowered");
+    let info = ranges.info.tables.values().next().expect("there is the scene");
+    assert_eq!((info.space, info.rule), (SupportSpace::World, Rule::Never));
+    info.supports[0]
 }
 
 /// A point outside of a support, hardly or by up to a thousandth; `None` if all directions from the inside
@@ -206,22 +206,28 @@ struct Tally {
     points: usize,
 }
 
-/// Leaves out all that the guide allows at a point.
-fn prune(guided: &Guided, tables: &Tables, point: [f32; 3], probes: &[f32], tally: &mut Tally) -> Tables {
+/// Leaves out all that `PruneInfo` allows at a point.
+fn prune(
+    ranges: &RangeFunction,
+    tables: &Tables,
+    point: [f32; 3],
+    probes: &[f32],
+    tally: &mut Tally,
+) -> Tables {
     let mut pruned = tables.clone();
-    for (table, guide) in guided.guide.tables.iter() {
-        let at = match guide.space {
-            SpaceGuide::World => point,
-            SpaceGuide::Probed(first) => std::array::from_fn(|k| probes[first + k]),
-            SpaceGuide::Unknown => continue,
+    for (table, info) in ranges.info.tables.iter() {
+        let at = match info.space {
+            SupportSpace::World => point,
+            SupportSpace::Probed(first) => std::array::from_fn(|k| probes[first + k]),
+            SupportSpace::Unknown => continue,
         };
         let rows = &mut pruned.tables[table];
-        let zero = |row: &u32| guide.supports[*row as usize].misses(at, at);
+        let zero = |row: &u32| info.supports[*row as usize].misses(at, at);
         let (mut active, mut starts) = (Vec::new(), vec![0]);
         for parent in 0..rows.starts.len() - 1 {
             let range = rows.range(parent);
             let first = range.iter().position(zero);
-            let stays = |(place, row): (usize, &u32)| match guide.rule {
+            let stays = |(place, row): (usize, &u32)| match info.rule {
                 Rule::Neutral => !zero(row),
                 Rule::KeepOne => !zero(row) || Some(place) == first,
                 Rule::OnlyZero => first.is_none() || Some(place) == first,
@@ -233,18 +239,18 @@ fn prune(guided: &Guided, tables: &Tables, point: [f32; 3], probes: &[f32], tall
             starts.push(active.len() as u32);
         }
         let out = rows.active.len() - active.len();
-        match (guide.rule, guide.space) {
+        match (info.rule, info.space) {
             (Rule::OnlyZero, _) => tally.alone += out,
-            (_, SpaceGuide::Probed(_)) => tally.probed += out,
+            (_, SupportSpace::Probed(_)) => tally.probed += out,
             (Rule::Neutral | Rule::KeepOne | Rule::Never, _) => tally.zero += out,
         }
         (rows.active, rows.starts) = (active, starts);
     }
-    for decision in &guided.guide.decisions {
+    for decision in &ranges.info.decisions {
         let [operand, node] = [decision.operand, decision.node].map(|probe| [probes[probe]; 2]);
         let rows = &mut pruned.tables[decision.table];
         assert_eq!(rows.len(), 1, "a guard has one row");
-        if !rows.active.is_empty() && decision.kind.spares(operand, node, guided.guide.iso2) {
+        if !rows.active.is_empty() && decision.kind.spares(operand, node, ranges.info.iso2) {
             tally.decided[decision.kind as usize] += 1;
             rows.active.clear();
             rows.starts = vec![0, 0];
@@ -268,29 +274,29 @@ fn with_active(tables: &Tables, active: &Tables) -> Tables {
 }
 
 #[test]
-fn leaving_out_what_the_guide_allows_changes_no_bit() {
+fn leaving_out_what_may_be_changes_no_bit() {
     let mut rng = Rng::with_seed(5);
     let mut tally = Tally::default();
 
     for index in 0..1000 {
         let model = model(index, 2 + index as usize % 24, index % 3 == 0);
         let tree = model.check().expect("its numbers are ordinary");
-        let guided = lower_guided(&tree).expect("it can be lowered");
-        assert_eq!(guided.function.outputs.len(), 1 + guided.guide.probes);
-        guided.tables.check(&guided.function).expect("its rows fit");
-        let function = run_pipeline(guided.function.clone(), PIPELINE, &mut |_, _| {});
+        let ranges = lower_ranges(&tree).expect("it can be lowered");
+        assert_eq!(ranges.function.outputs.len(), 1 + ranges.info.probes);
+        ranges.tables.check(&ranges.function).expect("its rows fit");
+        let function = run_pipeline(ranges.function.clone(), PIPELINE, &mut |_, _| {});
         let probing = verify(function).expect("passes keep the rules");
         let (full, tables) = compiled(&tree, Query::ALL);
         for _ in 0..25 {
             let point: [f32; 3] = vector(&mut rng, 1.8).map(|x| x as f32);
             tally.points += 1;
             let expected = run(&full, &tables, &point);
-            let mut active = guided.tables.clone();
-            // Twice: what is left out is left out of the guide function, too.
+            let mut active = ranges.tables.clone();
+            // Twice: what is left out is left out of the range function, too.
             for round in 0..2 {
                 let probes = run(&probing, &active, &point);
-                assert_eq!(probes[0].to_bits(), expected[0].to_bits(), "the guide function has the field");
-                active = prune(&guided, &active, point, &probes[1..], &mut tally);
+                assert_eq!(probes[0].to_bits(), expected[0].to_bits(), "the range function has the field");
+                active = prune(&ranges, &active, point, &probes[1..], &mut tally);
                 let pruned = with_active(&tables, &active);
                 pruned.check(full.function()).expect("fewer rows fit as well");
                 let found = run(&full, &pruned, &point);

@@ -1,4 +1,4 @@
-//! How occurrences are found: a walk from the root that remembers what it has met, by node, position and
+//! How instances are found: a walk from the root that remembers what it has met, by node, position and
 //! bindings.
 
 use glam::{DAffine3, DVec3};
@@ -6,8 +6,8 @@ use rustc_hash::FxHashMap as HashMap;
 
 use super::asked;
 use super::{
-    BindingsId, Bound, FieldId, Inside, LeafCode, LeafField, Occurrence, OccurrenceId, OccurrenceKind,
-    PositionId, Scene, SpaceId, children,
+    BindingsId, Bound, FieldId, Inside, Instance, InstanceId, InstanceKind, LeafCode, LeafField, PositionId,
+    Scene, SpaceId, children,
 };
 use crate::computed::share;
 use crate::demand::Demand;
@@ -21,8 +21,8 @@ use jbt_model::origin::ModelOrigin;
 use jbt_model::written::{Freedom, Written};
 
 impl<'a> Scene<'a> {
-    /// Finds every occurrence, without recursion. All attribute groups count, whatever is asked: so the
-    /// tables of a tree, which are made of its occurrences, have the same rows for every query.
+    /// Finds every instance, without recursion. All attribute groups count, whatever is asked: so the
+    /// tables of a tree, which are made of its instances, have the same rows for every query.
     pub(crate) fn new(tree: &'a CheckedTree) -> Self {
         Finder::new(tree).run()
     }
@@ -31,11 +31,11 @@ impl<'a> Scene<'a> {
 /// A node and what its ancestors say about it.
 type Key = (NodeId, PositionId, BindingsId);
 
-/// A node on its way to becoming an occurrence.
+/// A node on its way to becoming an instance.
 struct Frame {
     key: Key,
     /// Children that are done.
-    children: Vec<OccurrenceId>,
+    children: Vec<InstanceId>,
     /// The inside of a warp.
     inside: Option<(SpaceId, PositionId)>,
 }
@@ -55,7 +55,7 @@ pub(super) struct Finder<'a> {
     pub(super) computed_names: HashMap<(NodeId, PositionId, Option<NodeId>), ComputedId>,
     field_names: HashMap<(NodeId, PositionId), FieldId>,
     inside_names: HashMap<(NodeId, PositionId), (SpaceId, PositionId)>,
-    known: HashMap<Key, OccurrenceId>,
+    known: HashMap<Key, InstanceId>,
     /// For each node, whether one path leads to it from the root: then it is met once, and nothing has to be
     /// remembered of it.
     once: Vec<bool>,
@@ -72,9 +72,9 @@ impl<'a> Finder<'a> {
         let scene = Scene {
             tree,
             // Large ones are moved as they grow: there is room for a tree without sharing.
-            occurrences: Vec::with_capacity(once.len()),
+            instances: Vec::with_capacity(once.len()),
             fields: Vec::with_capacity(once.len() / 2),
-            root: OccurrenceId(0),
+            root: InstanceId(0),
             positions: Vec::new(),
             bindings: Vec::new(),
             computed: Vec::new(),
@@ -127,7 +127,7 @@ impl<'a> Finder<'a> {
             }
         }
         self.scene.root = done.expect("the last frame was the root");
-        self.scene.occurrences[self.scene.root.0 as usize].uses += 1;
+        self.scene.instances[self.scene.root.0 as usize].uses += 1;
         share(&mut self.scene.computed);
         if self.selects {
             self.scene.demand = asked::demand(&self.scene);
@@ -147,7 +147,7 @@ impl<'a> Finder<'a> {
                     let Position { space, map, trail } =
                         moved.unwrap_or_else(|| *self.scene.position(position));
                     let trail = match self.scene.tree.written(node) {
-                        None => trail.fixed(inner, self.scene.tree.follows()),
+                        None => trail.fixed(inner, self.scene.tree.depends_on_parameters()),
                         Some(written) => {
                             let name = self.trails.name(
                                 position_key(space, trail.name, &trail.since),
@@ -199,8 +199,8 @@ impl<'a> Finder<'a> {
         }
     }
 
-    /// The occurrence, if it is known; otherwise it goes on the stack.
-    fn enter(&mut self, key: Key) -> Option<OccurrenceId> {
+    /// The instance, if it is known; otherwise it goes on the stack.
+    fn enter(&mut self, key: Key) -> Option<InstanceId> {
         if !self.once[key.0.0 as usize]
             && let Some(&known) = self.known.get(&key)
         {
@@ -217,8 +217,8 @@ impl<'a> Finder<'a> {
         None
     }
 
-    /// Makes an occurrence of a node whose children are done, and remembers it if it can be met again.
-    fn leave(&mut self, frame: Frame) -> OccurrenceId {
+    /// Makes an instance of a node whose children are done, and remembers it if it can be met again.
+    fn leave(&mut self, frame: Frame) -> InstanceId {
         let key = frame.key;
         let id = self.close(frame);
         if !self.once[key.0.0 as usize] {
@@ -227,19 +227,19 @@ impl<'a> Finder<'a> {
         id
     }
 
-    /// Makes an occurrence of a node whose children are done.
-    fn close(&mut self, frame: Frame) -> OccurrenceId {
+    /// Makes an instance of a node whose children are done.
+    fn close(&mut self, frame: Frame) -> InstanceId {
         let (node, position, bindings) = frame.key;
         let kind = match &self.scene.tree.node(node).kind {
             NodeKind::Primitive(primitive) => {
                 let field = self.field(node, primitive, position);
-                OccurrenceKind::Leaf { field, bindings, computed: self.computed(bindings, node, position) }
+                InstanceKind::Leaf { field, bindings, computed: self.computed(bindings, node, position) }
             }
             NodeKind::Warp(_) => {
                 let (inside, _) = frame.inside.expect("a warp's frame has its inside");
                 let weight = frame.children.get(1).copied();
                 self.scene.insides[inside.0 as usize - 1].weight = weight;
-                OccurrenceKind::Warp { position, inside, child: frame.children[0], weight }
+                InstanceKind::Warp { position, inside, child: frame.children[0], weight }
             }
             NodeKind::Combine(combinator) => self.operator(node, *combinator, position, frame.children),
             NodeKind::Expression(expression) => {
@@ -247,11 +247,11 @@ impl<'a> Finder<'a> {
                 let is_leaf = children.is_empty();
                 let computed = if is_leaf { self.computed(bindings, node, position) } else { Box::default() };
                 let (position, shift) = self.near_box(node, expression, position);
-                OccurrenceKind::Expression { position, shift, bindings, children, computed }
+                InstanceKind::Expression { position, shift, bindings, children, computed }
             }
             NodeKind::Select(which) => {
                 self.selects = true;
-                OccurrenceKind::Select { children: frame.children, chosen: chosen(*which) }
+                InstanceKind::Select { children: frame.children, chosen: chosen(*which) }
             }
             NodeKind::Affine(_) | NodeKind::Attribute { .. } => unreachable!("resolve walks through these"),
         };
@@ -278,7 +278,7 @@ impl<'a> Finder<'a> {
         let trail = match self.scene.tree.written(node) {
             None if shift == DVec3::ZERO => return (position, shift),
             None => trail.fixed(&inner, false),
-            // A box that follows parameters may come near and go far.
+            // A box that depends on parameters may come near and go far.
             Some(written) => {
                 let name = self.trails.name(position_key(space, trail.name, &trail.since), node, written);
                 trail.free(name, Freedom::Fixed)
@@ -287,20 +287,20 @@ impl<'a> Finder<'a> {
         (self.name_position(Position { space, map: map * inner, trail }), shift)
     }
 
-    /// The occurrence of an operator whose children are done.
+    /// The instance of an operator whose children are done.
     fn operator(
         &mut self,
         node: NodeId,
         combinator: Combinator,
         position: PositionId,
-        children: Vec<OccurrenceId>,
-    ) -> OccurrenceKind {
-        let follows = self.scene.tree.written(node).is_some();
-        let operator = if follows { combinator } else { combinator.simplest() };
-        match operator.form(follows) {
-            Form::Reduce(code) => OccurrenceKind::Reduce { operator, code, children },
+        children: Vec<InstanceId>,
+    ) -> InstanceKind {
+        let depends = self.scene.tree.written(node).is_some();
+        let operator = if depends { combinator } else { combinator.simplest() };
+        match operator.form(depends) {
+            Form::Reduce(code) => InstanceKind::Reduce { operator, code, children },
             Form::Difference => self.difference(node, position, &children),
-            Form::Map(code) => OccurrenceKind::Map { code, child: children[0] },
+            Form::Map(code) => InstanceKind::Map { code, child: children[0] },
         }
     }
 
@@ -313,8 +313,9 @@ impl<'a> Finder<'a> {
             let written = self.scene.tree.written(node);
             let turns = written.is_some_and(Written::skeleton_turns);
             let (map, scale, inverse) = self.scene.position(position).of_skeleton(&primitive.skeleton, turns);
-            let strong = primitive.strength != 1.0 || written.is_some_and(Written::strength_follows);
-            let falloff = primitive.falloff.code(written.is_some_and(Written::falloff_follows));
+            let strong =
+                primitive.strength != 1.0 || written.is_some_and(Written::strength_depends_on_parameters);
+            let falloff = primitive.falloff.code(written.is_some_and(Written::falloff_depends_on_parameters));
             let code = LeafCode { map: inverse, skeleton: primitive.skeleton.kind(), falloff, strong };
             self.scene.fields.push(LeafField { node, position, uses: 0, map, scale, code });
         }
@@ -323,59 +324,54 @@ impl<'a> Finder<'a> {
     }
 
     /// The first child without the union of the others.
-    fn difference(
-        &mut self,
-        node: NodeId,
-        position: PositionId,
-        children: &[OccurrenceId],
-    ) -> OccurrenceKind {
+    fn difference(&mut self, node: NodeId, position: PositionId, children: &[InstanceId]) -> InstanceKind {
         let right = match children[1..] {
             [only] => only,
             _ => {
                 let (operator, children) = (Union {}.into(), children[1..].to_vec());
                 let code = ReduceCode::Choice(Extreme::Largest);
-                self.push(node, position, OccurrenceKind::Reduce { operator, code, children })
+                self.push(node, position, InstanceKind::Reduce { operator, code, children })
             }
         };
-        OccurrenceKind::Difference { left: children[0], right }
+        InstanceKind::Difference { left: children[0], right }
     }
 
-    fn push(&mut self, node: NodeId, position: PositionId, kind: OccurrenceKind) -> OccurrenceId {
+    fn push(&mut self, node: NodeId, position: PositionId, kind: InstanceKind) -> InstanceId {
         let space = self.scene.position(position).space;
         let (non_negative, bounded) = (self.non_negative(node, &kind), self.bounded(&kind));
         for &child in children(&kind).iter() {
-            self.scene.occurrences[child.0 as usize].uses += 1;
+            self.scene.instances[child.0 as usize].uses += 1;
         }
-        if let OccurrenceKind::Warp { weight: Some(weight), .. } = kind {
+        if let InstanceKind::Warp { weight: Some(weight), .. } = kind {
             // The point inside uses it once more, so that it is hoisted: known before any row that enters.
-            self.scene.occurrences[weight.0 as usize].uses += 1;
+            self.scene.instances[weight.0 as usize].uses += 1;
         }
-        self.scene.occurrences.push(Occurrence { node, kind, space, uses: 0, non_negative, bounded });
-        OccurrenceId(self.scene.occurrences.len() as u32 - 1)
+        self.scene.instances.push(Instance { node, kind, space, uses: 0, non_negative, bounded });
+        InstanceId(self.scene.instances.len() as u32 - 1)
     }
 
-    fn non_negative(&self, node: NodeId, kind: &OccurrenceKind) -> bool {
-        let of = |id: &OccurrenceId| self.scene.occurrence(*id).non_negative;
+    fn non_negative(&self, node: NodeId, kind: &InstanceKind) -> bool {
+        let of = |id: &InstanceId| self.scene.instance(*id).non_negative;
         match kind {
-            OccurrenceKind::Leaf { field, .. } => {
+            InstanceKind::Leaf { field, .. } => {
                 let written = self.scene.tree.written(self.scene.field(*field).node);
-                let follows = written.is_some_and(Written::strength_follows);
-                self.scene.primitive(*field).strength >= 0.0 && !follows
+                let depends = written.is_some_and(Written::strength_depends_on_parameters);
+                self.scene.primitive(*field).strength >= 0.0 && !depends
             }
-            OccurrenceKind::Warp { child, .. } => of(child),
-            OccurrenceKind::Difference { left, .. } => of(left),
-            OccurrenceKind::Map { child, .. } => {
+            InstanceKind::Warp { child, .. } => of(child),
+            InstanceKind::Difference { left, .. } => of(left),
+            InstanceKind::Map { child, .. } => {
                 let fixed = self.scene.tree.written(node).is_none();
                 self.scene.combinator(node).is_non_negative(&mut std::iter::once(of(child)), fixed)
             }
-            OccurrenceKind::Expression { children, .. } => {
+            InstanceKind::Expression { children, .. } => {
                 let signs: Vec<bool> = children.iter().map(of).collect();
                 let known = |number: usize| self.scene.fixed_number(node, number);
                 let positive = |number| known(number).is_some_and(|value| value >= 0.0);
                 self.scene.expression(node).form().non_negative(&signs, positive)
             }
-            OccurrenceKind::Select { children, .. } => children.iter().all(of),
-            OccurrenceKind::Reduce { operator, children, .. } => {
+            InstanceKind::Select { children, .. } => children.iter().all(of),
+            InstanceKind::Reduce { operator, children, .. } => {
                 let fixed = self.scene.tree.written(node).is_none();
                 operator.is_non_negative(&mut children.iter().map(of), fixed)
             }
@@ -383,17 +379,17 @@ impl<'a> Finder<'a> {
     }
 
     /// Of a formula, and of whatever gives the field of one of its children and nothing else.
-    fn bounded(&self, kind: &OccurrenceKind) -> bool {
-        let of = |id: &OccurrenceId| self.scene.occurrence(*id).bounded;
+    fn bounded(&self, kind: &InstanceKind) -> bool {
+        let of = |id: &InstanceId| self.scene.instance(*id).bounded;
         match kind {
-            OccurrenceKind::Expression { .. } => true,
-            OccurrenceKind::Warp { child, .. } => of(child),
-            OccurrenceKind::Select { children, .. }
-            | OccurrenceKind::Reduce { code: ReduceCode::Choice(_), children, .. } => children.iter().all(of),
-            OccurrenceKind::Leaf { .. }
-            | OccurrenceKind::Difference { .. }
-            | OccurrenceKind::Map { .. }
-            | OccurrenceKind::Reduce { .. } => false,
+            InstanceKind::Expression { .. } => true,
+            InstanceKind::Warp { child, .. } => of(child),
+            InstanceKind::Select { children, .. }
+            | InstanceKind::Reduce { code: ReduceCode::Choice(_), children, .. } => children.iter().all(of),
+            InstanceKind::Leaf { .. }
+            | InstanceKind::Difference { .. }
+            | InstanceKind::Map { .. }
+            | InstanceKind::Reduce { .. } => false,
         }
     }
 

@@ -1,4 +1,4 @@
-//! The guide: what a model's program does not say, and whoever leaves rows out has to know.
+//! What pruning has to know of a model besides its program.
 //!
 //! A row may be left out of the active rows in a box of space where that changes no bit of any answer. There
 //! are two reasons:
@@ -8,7 +8,7 @@
 //! it does not decide   it is the one row of a guard, and the ranges of two fields in the box say that another operand is strictly ahead
 //! ```
 //!
-//! Supports and rules are here. The ranges come out of the *guide function*: the model's field followed by
+//! Supports and rules are here. The ranges come out of the *range function*: the model's field followed by
 //! probes, over the same tables; run with intervals, it gives the ranges of them all over a box.
 //!
 //! A *guard* is a fold over one row around an operand that has tables of its own. Where the row is left out,
@@ -28,10 +28,10 @@ pub const LARGEST_COORDINATE: f32 = 1_048_576.0;
 /// What there is to know about the tables of a model. It fits the programs of all queries, which have the
 /// same tables.
 #[derive(Clone, PartialEq, Debug)]
-pub struct Guide {
+pub struct PruneInfo {
     /// By table.
-    pub tables: Store<Table, TableGuide>,
-    /// How many probes the guide function has, behind the field.
+    pub tables: Store<Table, TablePruneInfo>,
+    /// How many probes the range function has, behind the field.
     pub probes: usize,
     /// What may be left out because it does not decide. Operators come after their operands.
     pub decisions: Vec<Decision>,
@@ -41,9 +41,9 @@ pub struct Guide {
 
 /// What there is to know about the rows of a table.
 #[derive(Clone, PartialEq, Debug)]
-pub struct TableGuide {
+pub struct TablePruneInfo {
     /// Which coordinates the supports are in.
-    pub space: SpaceGuide,
+    pub space: SupportSpace,
     /// Of each row, where its field may be something else than zero.
     pub supports: Vec<Support>,
     /// What may be done with rows that are zero.
@@ -58,7 +58,7 @@ pub struct TableGuide {
 
 /// The space in which the fold over a table stands.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum SpaceGuide {
+pub enum SupportSpace {
     /// The world: supports are compared with the box itself.
     World,
     /// The inside of a warp, whose point has the ranges of this probe and the two after it. They mean nothing
@@ -97,7 +97,7 @@ pub enum DecidedRows {
     },
 }
 
-/// When an operand does not decide. `iso2` is [`Guide::iso2`].
+/// When an operand does not decide. `iso2` is [`PruneInfo::iso2`].
 ///
 /// If the guard itself, or one around it, has been left out already, the probes mean nothing, and there is
 /// nothing to decide.
@@ -189,13 +189,13 @@ fn round_down(number: f64) -> f32 {
     if f64::from(nearest) > number { nearest.next_down() } else { nearest }
 }
 
-/// A model's guide function with its numbers, and the guide.
+/// A model's range function with its numbers, and what pruning has to know.
 #[derive(Clone, Debug)]
-pub struct Guided {
+pub struct RangeFunction {
     /// Outputs: `field`, then `probe0`, `probe1`, and so on. A probe whose guard is left out is 0.
     pub function: Function,
     /// Its numbers: the rows of the program of any query, without orders and attributes.
     pub tables: Tables,
     /// What there is to know about the tables.
-    pub guide: Guide,
+    pub info: PruneInfo,
 }

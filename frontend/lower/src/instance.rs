@@ -1,7 +1,7 @@
 //! What stands where: the tree with affine and attribute nodes dissolved into positions and bindings.
 //!
-//! An *occurrence* is a node at a position with attribute bindings. A node that is reached twice with the
-//! same of each is one occurrence with two uses; under other coordinates it is another one.
+//! An *instance* is a node at a position with attribute bindings. A node that is reached twice with the
+//! same of each is one instance with two uses; under other coordinates it is another one.
 
 use std::borrow::Cow;
 
@@ -10,7 +10,7 @@ use glam::{DAffine3, DVec3};
 use super::computed::Computed;
 use super::demand::Demand;
 use super::names::ComputedId;
-pub(super) use super::names::{BindingsId, FieldId, OccurrenceId, PositionId, SpaceId};
+pub(super) use super::names::{BindingsId, FieldId, InstanceId, PositionId, SpaceId};
 use super::position::{MapKind, Position};
 use jbt_model::check::{CheckedTree, NodeId};
 use jbt_model::combine::{Combinator, MapCode, ReduceCode};
@@ -40,9 +40,9 @@ pub(super) struct Inside {
     pub(super) warp: NodeId,
     /// Where the warp stands.
     pub(super) position: PositionId,
-    /// Whose field is its weight, if it has one: known once its occurrence is.
-    pub(super) weight: Option<OccurrenceId>,
-    /// How many occurrences, with different attributes, lead into it.
+    /// Whose field is its weight, if it has one: known once its instance is.
+    pub(super) weight: Option<InstanceId>,
+    /// How many instances, with different attributes, lead into it.
     pub(super) uses: u32,
 }
 
@@ -51,7 +51,7 @@ pub(super) struct Inside {
 pub(super) struct LeafField {
     pub(super) node: NodeId,
     pub(super) position: PositionId,
-    /// How many occurrences, with different attributes, have this field.
+    /// How many instances, with different attributes, have this field.
     pub(super) uses: u32,
     /// The map from the skeleton's pose, scaled, to the space in which it is asked.
     pub(super) map: DAffine3,
@@ -73,7 +73,7 @@ pub(super) struct LeafCode {
 }
 
 #[derive(Clone, Debug)]
-pub(super) enum OccurrenceKind {
+pub(super) enum InstanceKind {
     Leaf {
         field: FieldId,
         bindings: BindingsId,
@@ -83,25 +83,25 @@ pub(super) enum OccurrenceKind {
     Warp {
         position: PositionId,
         inside: SpaceId,
-        child: OccurrenceId,
+        child: InstanceId,
         /// What weighs it, in the space where the warp stands. It is always hoisted.
-        weight: Option<OccurrenceId>,
+        weight: Option<InstanceId>,
     },
     /// An operator whose operands are alike: any number of them, in any order but for ties; the operands of a
     /// step in that of the file.
     Reduce {
         operator: Combinator,
         code: ReduceCode,
-        children: Vec<OccurrenceId>,
+        children: Vec<InstanceId>,
     },
     Difference {
-        left: OccurrenceId,
-        right: OccurrenceId,
+        left: InstanceId,
+        right: InstanceId,
     },
     /// A map of one field.
     Map {
         code: MapCode,
-        child: OccurrenceId,
+        child: InstanceId,
     },
     /// A formula of the point and of the children's fields: a leaf with attributes of its own, if there are
     /// none.
@@ -110,21 +110,21 @@ pub(super) enum OccurrenceKind {
         /// What the sides of its box are counted from, in the space of the node.
         shift: DVec3,
         bindings: BindingsId,
-        children: Vec<OccurrenceId>,
+        children: Vec<InstanceId>,
         /// As for a leaf.
         computed: Box<[Option<ComputedId>]>,
     },
     /// One child answers now; all have code.
     Select {
-        children: Vec<OccurrenceId>,
+        children: Vec<InstanceId>,
         chosen: usize,
     },
 }
 
 #[derive(Clone, Debug)]
-pub(super) struct Occurrence {
+pub(super) struct Instance {
     pub(super) node: NodeId,
-    pub(super) kind: OccurrenceKind,
+    pub(super) kind: InstanceKind,
     /// The space in which it is asked.
     pub(super) space: SpaceId,
     /// How many places ask for it.
@@ -136,12 +136,12 @@ pub(super) struct Occurrence {
     pub(super) bounded: bool,
 }
 
-/// All occurrences of a tree, children before parents.
+/// All instances of a tree, children before parents.
 pub(super) struct Scene<'a> {
     pub(super) tree: &'a CheckedTree,
-    pub(super) occurrences: Vec<Occurrence>,
+    pub(super) instances: Vec<Instance>,
     pub(super) fields: Vec<LeafField>,
-    pub(super) root: OccurrenceId,
+    pub(super) root: InstanceId,
     positions: Vec<Position>,
     /// Of each set of bindings, what each attribute group is bound to.
     bindings: Vec<Option<Bound>>,
@@ -153,8 +153,8 @@ pub(super) struct Scene<'a> {
 }
 
 impl<'a> Scene<'a> {
-    pub(super) fn occurrence(&self, id: OccurrenceId) -> &Occurrence {
-        &self.occurrences[id.0 as usize]
+    pub(super) fn instance(&self, id: InstanceId) -> &Instance {
+        &self.instances[id.0 as usize]
     }
 
     pub(super) fn field(&self, id: FieldId) -> &LeafField {
@@ -216,11 +216,11 @@ impl<'a> Scene<'a> {
 
     /// A number of an expression, if it is the same for all values of the parameters.
     pub(super) fn fixed_number(&self, node: NodeId, number: usize) -> Option<f64> {
-        let follows = match self.tree.written(node) {
-            Some(Written::Expression(formula)) => formula.numbers[number].follows(),
+        let depends = match self.tree.written(node) {
+            Some(Written::Expression(formula)) => formula.numbers[number].depends_on_parameters(),
             Some(_) | None => false,
         };
-        (!follows).then(|| self.expression(node).numbers()[number])
+        (!depends).then(|| self.expression(node).numbers()[number])
     }
 
     /// Whether an expression is 0 wherever its children are, for all values of the parameters.
@@ -233,7 +233,7 @@ impl<'a> Scene<'a> {
         self.insides.get((space.0 as usize).checked_sub(1)?)
     }
 
-    /// Whether several occurrences lead into a space: then its points are computed once, for all of them.
+    /// Whether several instances lead into a space: then its points are computed once, for all of them.
     pub(super) fn is_shared(&self, space: SpaceId) -> bool {
         self.inside(space).is_some_and(|inside| inside.uses > 1)
     }
@@ -288,17 +288,17 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// The occurrences that one asks for.
-pub(super) fn children(kind: &OccurrenceKind) -> Cow<'_, [OccurrenceId]> {
+/// The instances that one asks for.
+pub(super) fn children(kind: &InstanceKind) -> Cow<'_, [InstanceId]> {
     match kind {
-        OccurrenceKind::Leaf { .. } => Cow::Borrowed(&[]),
-        OccurrenceKind::Warp { child, weight: None, .. } | OccurrenceKind::Map { child, .. } => {
+        InstanceKind::Leaf { .. } => Cow::Borrowed(&[]),
+        InstanceKind::Warp { child, weight: None, .. } | InstanceKind::Map { child, .. } => {
             Cow::Borrowed(std::slice::from_ref(child))
         }
-        OccurrenceKind::Warp { child, weight: Some(weight), .. } => Cow::Owned(vec![*child, *weight]),
-        OccurrenceKind::Reduce { children, .. }
-        | OccurrenceKind::Expression { children, .. }
-        | OccurrenceKind::Select { children, .. } => Cow::Borrowed(children),
-        OccurrenceKind::Difference { left, right } => Cow::Owned(vec![*left, *right]),
+        InstanceKind::Warp { child, weight: Some(weight), .. } => Cow::Owned(vec![*child, *weight]),
+        InstanceKind::Reduce { children, .. }
+        | InstanceKind::Expression { children, .. }
+        | InstanceKind::Select { children, .. } => Cow::Borrowed(children),
+        InstanceKind::Difference { left, right } => Cow::Owned(vec![*left, *right]),
     }
 }
