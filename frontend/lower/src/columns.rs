@@ -1,125 +1,187 @@
 //! The columns of rows: what each is called, and its number.
 //!
-//! ```text
-//! code  (emit)   a scribe that declares columns by their names, and answers the values in them
-//! rows  (rows)   a scribe that pushes their numbers: of the first row of a table, it compares the names with those declared
-//! ```
-//!
-//! A column stands here once, with both. The numbers are not asked for where there is only code to write, and
-//! the names are not made where there are only numbers to write. Numbers are derived in f64.
+//! A column stands once, here. Its name is made of what all rows of a table have in common, which is an
+//! argument. Its number is made of what stands at its place in a row, which the [recipe](super::recipe)
+//! gives.
 
-use glam::{DAffine3, DVec3};
+use std::iter::repeat_n;
 
-use super::instance::{FieldId, LeafField, Scene, SpaceId};
+use glam::DVec3;
+
+use super::computed::{Computed, attribute as given};
+use super::instance::{LeafField, Scene};
 use super::position::MapKind;
-use jbt_model::attribute::{AttributeGroup, UvMap};
-use jbt_model::check::NodeId;
-use jbt_model::combine::Combinator;
-use jbt_model::expression::Expression;
-use jbt_model::skeleton::{BEYOND, Skeleton};
-use jbt_model::texture::{Texture, TextureKind};
+use super::recipe::{ColumnNumbers, Member};
+use jbt_model::attribute::{AttributeGroup, AttributeValue, Textured};
+use jbt_model::expression::Form;
+use jbt_model::falloff::FalloffKind;
+use jbt_model::kind::Primitive;
+use jbt_model::skeleton::{BEYOND, SkeletonKind};
+use jbt_model::texture::TextureKind;
+use jbt_model::warp::WarpCode;
 
-/// Who goes through the columns of a row.
-pub(super) trait Scribe {
-    /// What columns are to it.
-    type Row;
+/// Neighbouring columns.
+pub(super) struct Columns<N> {
+    pub(super) names: N,
+    /// As many as there are names.
+    pub(super) numbers: ColumnNumbers,
+}
 
-    /// The next columns: as many names as numbers are pushed.
-    fn columns<N: AsRef<str>>(
-        &mut self,
-        names: impl IntoIterator<Item = N>,
-        numbers: impl FnOnce(&mut Vec<f64>),
-    ) -> Self::Row;
+/// The names of columns.
+pub(super) trait Names: IntoIterator<Item: AsRef<str>> {}
+
+impl<N: IntoIterator<Item: AsRef<str>>> Names for N {}
+
+fn columns<N: Names>(names: N, numbers: impl Fn(&Scene<'_>, Member, &mut Vec<f64>) + 'static) -> Columns<N> {
+    Columns { names, numbers: Box::new(numbers) }
 }
 
 /// Twice the iso-value.
-pub(super) fn iso2<S: Scribe>(s: &mut S, scene: &Scene<'_>) -> S::Row {
-    s.columns(["iso2"], |row| row.push(2.0 * scene.tree.iso()))
+pub(super) fn iso2() -> Columns<impl Names> {
+    columns(["iso2"], |scene, _, row| row.push(2.0 * scene.tree.iso()))
 }
 
 /// The place of an operand in the file.
-pub(super) fn order<S: Scribe>(s: &mut S, place: u32) -> S::Row {
-    s.columns(["order"], |row| row.push(f64::from(place)))
+pub(super) fn order() -> Columns<impl Names> {
+    columns(["order"], |_, operand, row| {
+        let Member::Operand { order, .. } = operand else { unreachable!("only operands have an order") };
+        row.push(f64::from(order));
+    })
 }
 
-/// The channels of an attribute group.
-pub(super) fn channels<S: Scribe>(s: &mut S, group: &AttributeGroup, numbers: &[f64]) -> S::Row {
-    s.columns((0..group.width()).map(|index| group.channel(index)), |row| row.extend(numbers))
+/// The channels of an attribute group, with these numbers.
+fn channels(
+    group: &AttributeGroup,
+    numbers: impl for<'s> Fn(&'s Scene<'_>, Member) -> &'s [f64] + 'static,
+) -> Columns<impl Names> {
+    let names = (0..group.width()).map(|index| group.channel(index));
+    columns(names, move |scene, member, row| row.extend(numbers(scene, member)))
 }
 
-/// The inverse of a map.
-pub(super) fn map<S: Scribe>(s: &mut S, kind: MapKind, map: &DAffine3) -> S::Row {
-    s.columns(kind.columns(), |row| kind.push_columns(map, row))
+/// The default of the attribute group with this index.
+pub(super) fn default(group: &AttributeGroup, index: usize) -> Columns<impl Names> {
+    channels(group, move |scene, _| &scene.tree.attributes()[index].default)
 }
 
-/// The warp at whose inside a space is.
-pub(super) fn warp<S: Scribe>(s: &mut S, scene: &Scene<'_>, space: SpaceId) -> S::Row {
-    let warp = scene.warp(scene.inside(space).expect("the world is no warp's inside").warp);
-    let names = std::iter::once_with(|| warp.code().columns()).flatten();
-    s.columns(names, |row| warp.columns(row))
+/// What a leaf has of the attribute group with this index, if that is not computed.
+pub(super) fn attribute(group: &AttributeGroup, index: usize) -> Columns<impl Names> {
+    channels(group, move |scene, leaf| {
+        let (bindings, _) = leaf.attributes(scene);
+        match bindings[index].map(|bound| given(scene.tree, bound.node)) {
+            None => &scene.tree.attributes()[index].default,
+            Some(AttributeValue::Numbers(numbers)) => numbers,
+            Some(AttributeValue::Textured(_) | AttributeValue::Uv(_) | AttributeValue::Expressed(_)) => {
+                unreachable!("it is computed")
+            }
+        }
+    })
+}
+
+/// The inverse of the map of a leaf, a warp or a formula.
+pub(super) fn map(kind: MapKind) -> Columns<impl Names> {
+    columns(kind.columns(), move |scene, member, row| kind.push_columns(member.map(scene), row))
+}
+
+/// The inverse of the map of what is computed of an attribute group.
+pub(super) fn map_of_computed(kind: MapKind, group: usize) -> Columns<impl Names> {
+    columns(kind.columns(), move |scene, member, row| {
+        kind.push_columns(&computed(scene, member, group).map, row);
+    })
+}
+
+/// A warp.
+pub(super) fn warp(code: &WarpCode) -> Columns<impl Names> {
+    columns(code.columns(), |scene, warp, row| scene.warp(warp.node(scene)).columns(row))
+}
+
+fn leaf<'s>(scene: &'s Scene<'_>, member: Member) -> (&'s LeafField, &'s Primitive) {
+    let field = member.field(scene);
+    (scene.field(field), scene.primitive(field))
 }
 
 /// The skeleton of a leaf.
-pub(super) fn skeleton<S: Scribe>(s: &mut S, scene: &Scene<'_>, field: FieldId) -> S::Row {
-    let LeafField { scale, code, .. } = scene.field(field);
-    s.columns(code.skeleton.columns(), |row| scene.primitive(field).skeleton.columns(*scale, row))
+pub(super) fn skeleton(kind: SkeletonKind) -> Columns<impl Names> {
+    columns(kind.columns(), |scene, member, row| {
+        let (field, primitive) = leaf(scene, member);
+        primitive.skeleton.columns(field.scale, row);
+    })
 }
 
 /// A distance that is beyond the support of a leaf, in its pose.
-pub(super) fn beyond<S: Scribe>(s: &mut S, scene: &Scene<'_>, field: FieldId) -> S::Row {
-    s.columns(["beyond"], |row| row.push(BEYOND * scene.field(field).scale * scene.primitive(field).radius))
+pub(super) fn beyond() -> Columns<impl Names> {
+    columns(["beyond"], |scene, member, row| {
+        let (field, primitive) = leaf(scene, member);
+        row.push(BEYOND * field.scale * primitive.radius);
+    })
 }
 
 /// `-1 / R^2`, with the support radius of a leaf in its pose.
-pub(super) fn slope<S: Scribe>(s: &mut S, scene: &Scene<'_>, field: FieldId) -> S::Row {
-    let radius = |row: &mut Vec<f64>| {
-        row.push(-(scene.field(field).scale * scene.primitive(field).radius).powi(-2));
-    };
-    s.columns(["neg_inv_r2"], radius)
+pub(super) fn slope() -> Columns<impl Names> {
+    columns(["neg_inv_r2"], |scene, member, row| {
+        let (field, primitive) = leaf(scene, member);
+        row.push(-(field.scale * primitive.radius).powi(-2));
+    })
 }
 
 /// The falloff of a leaf.
-pub(super) fn falloff<S: Scribe>(s: &mut S, scene: &Scene<'_>, field: FieldId) -> S::Row {
-    let kind = scene.field(field).code.falloff;
-    s.columns(kind.columns(), |row| scene.primitive(field).falloff.columns(kind, row))
+pub(super) fn falloff(kind: FalloffKind) -> Columns<impl Names> {
+    columns(kind.columns(), move |scene, member, row| leaf(scene, member).1.falloff.columns(kind, row))
 }
 
 /// The strength of a leaf.
-pub(super) fn strength<S: Scribe>(s: &mut S, scene: &Scene<'_>, field: FieldId) -> S::Row {
-    s.columns(["strength"], |row| row.push(scene.primitive(field).strength))
+pub(super) fn strength() -> Columns<impl Names> {
+    columns(["strength"], |scene, member, row| row.push(leaf(scene, member).1.strength))
 }
 
 /// An operator, whose columns have these names.
-pub(super) fn operator<S: Scribe>(
-    s: &mut S,
-    scene: &Scene<'_>,
-    node: NodeId,
-    operator: Combinator,
-    names: &[&str],
-) -> S::Row {
-    let numbers = |row: &mut Vec<f64>| {
-        operator.push_columns(scene.tree.written(node).is_some(), scene.tree.iso(), row);
-    };
-    s.columns(names, numbers)
+pub(super) fn operator(names: &'static [&'static str]) -> Columns<impl Names> {
+    columns(names, |scene, member, row| {
+        let depends = scene.tree.written(member.node(scene)).is_some();
+        member.operator(scene).push_columns(depends, scene.tree.iso(), row);
+    })
 }
 
-/// A formula, the corners of whose box are counted from a point.
-pub(super) fn formula<S: Scribe>(s: &mut S, expression: &Expression, from: DVec3) -> S::Row {
-    let names = std::iter::repeat_n("number", expression.form().numbers());
-    s.columns(names, |row| row.extend(expression.numbers_from(from)))
+/// A formula.
+pub(super) fn formula(form: &Form) -> Columns<impl Names> {
+    columns(repeat_n("number", form.numbers()), |scene, member, row| {
+        row.extend(scene.expression(member.node(scene)).numbers_from(member.shift(scene)));
+    })
+}
+
+/// What is computed of an attribute group for a leaf, or for all that share it.
+fn computed<'s>(scene: &'s Scene<'_>, member: Member, group: usize) -> &'s Computed {
+    scene.computed(member.computed(scene, group).expect("it is no number"))
 }
 
 /// A texture, as code of this kind.
-pub(super) fn texture<S: Scribe>(s: &mut S, kind: TextureKind, texture: &Texture) -> S::Row {
-    s.columns(kind.columns(), |row| kind.push_columns(texture, row))
+pub(super) fn texture(kind: TextureKind, group: usize) -> Columns<impl Names> {
+    columns(kind.columns(), move |scene, member, row| {
+        kind.push_columns(&computed(scene, member, group).textured(scene.tree).texture, row);
+    })
+}
+
+/// The channels of one side of a texture.
+pub(super) fn side(group: &AttributeGroup, index: usize, of: fn(&Textured) -> &[f64]) -> Columns<impl Names> {
+    channels(group, move |scene, member| of(computed(scene, member, index).textured(scene.tree)))
 }
 
 /// The uv of a skeleton.
-pub(super) fn uv<S: Scribe>(s: &mut S, skeleton: &Skeleton) -> S::Row {
-    s.columns(skeleton.kind().uv_columns(), |row| skeleton.uv_columns(row))
+pub(super) fn uv(kind: SkeletonKind, group: usize) -> Columns<impl Names> {
+    columns(kind.uv_columns(), move |scene, member, row| {
+        computed(scene, member, group).uv(scene.tree).0.uv_columns(row);
+    })
 }
 
-/// A map of uv.
-pub(super) fn uv_map<S: Scribe>(s: &mut S, map: &UvMap) -> S::Row {
-    s.columns(["uu", "uv", "u", "vu", "vv", "v"], |row| row.extend(map.matrix().as_flattened()))
+/// The map of uv.
+pub(super) fn uv_map(group: usize) -> Columns<impl Names> {
+    columns(["uu", "uv", "u", "vu", "vv", "v"], move |scene, member, row| {
+        row.extend(computed(scene, member, group).uv(scene.tree).1.matrix().as_flattened());
+    })
+}
+
+/// A formula that is an attribute.
+pub(super) fn formula_of_attribute(form: &Form, group: usize) -> Columns<impl Names> {
+    columns(repeat_n("number", form.numbers()), move |scene, member, row| {
+        row.extend(computed(scene, member, group).formula(scene.tree).numbers_from(DVec3::ZERO));
+    })
 }

@@ -17,8 +17,8 @@
 //!
 //! All this is there for queries that ask for attributes; for others, rows have no such columns.
 //!
-//! To add another kind of computed value: a variant of [`AttributeValue`], ones of [`ComputedKind`] and
-//! [`ComputedValue`], its columns and its code in `emit` and `rows`, and what the oracle makes of it.
+//! To add another kind of computed value: a variant of [`AttributeValue`] and one of [`ComputedKind`], its
+//! columns in `columns`, its code in `emit/computed.rs`, and what the oracle makes of it.
 
 use std::sync::Arc;
 
@@ -92,36 +92,29 @@ impl ComputedKind {
     }
 }
 
-/// A computed value: what its code is made of, and its numbers.
-pub(super) enum ComputedValue<'a> {
-    Texture(TextureKind, &'a Textured),
-    /// The uv of a skeleton, mapped.
-    Uv(&'a Skeleton, &'a UvMap),
-    Formula(&'a Expression),
-}
-
 impl Computed {
-    /// What the attribute node gives.
-    pub(super) fn value<'a>(&self, tree: &'a CheckedTree) -> ComputedValue<'a> {
-        match (attribute(tree, self.node), &self.kind) {
-            (AttributeValue::Textured(value), ComputedKind::Texture(kind)) => {
-                ComputedValue::Texture(*kind, value)
-            }
-            (AttributeValue::Uv(map), ComputedKind::Uv(_)) => {
-                let leaf = self.leaf.expect("a uv has its leaf");
-                ComputedValue::Uv(tree.node(leaf).kind.uv_skeleton(), map)
-            }
-            (AttributeValue::Expressed(expression), ComputedKind::Formula(_)) => {
-                ComputedValue::Formula(expression)
-            }
-            (
-                AttributeValue::Numbers(_)
-                | AttributeValue::Textured(_)
-                | AttributeValue::Uv(_)
-                | AttributeValue::Expressed(_),
-                _,
-            ) => unreachable!("the kind is that of the node"),
-        }
+    /// The texture with its values.
+    pub(super) fn textured<'a>(&self, tree: &'a CheckedTree) -> &'a Textured {
+        let AttributeValue::Textured(value) = attribute(tree, self.node) else {
+            unreachable!("the kind is that of the node")
+        };
+        value
+    }
+
+    /// The skeleton whose uv it is, and their map.
+    pub(super) fn uv<'a>(&self, tree: &'a CheckedTree) -> (&'a Skeleton, &'a UvMap) {
+        let (AttributeValue::Uv(map), Some(leaf)) = (attribute(tree, self.node), self.leaf) else {
+            unreachable!("the kind is that of the node, and a uv has its leaf")
+        };
+        (tree.node(leaf).kind.uv_skeleton(), map)
+    }
+
+    /// The formula.
+    pub(super) fn formula<'a>(&self, tree: &'a CheckedTree) -> &'a Expression {
+        let AttributeValue::Expressed(expression) = attribute(tree, self.node) else {
+            unreachable!("the kind is that of the node")
+        };
+        expression
     }
 }
 

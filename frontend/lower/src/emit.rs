@@ -12,9 +12,9 @@
 //! define under a guard: open a fold over a table of one row, define, close; the answer is what the fold carries out
 //! ```
 //!
-//! An explicit list of tasks takes the place of recursion, because a model may be a chain of any length. The
-//! columns of a row are declared in the order in which the code asks for them; [`super::rows`] goes through
-//! the same order for every row.
+//! An explicit list of tasks takes the place of recursion, because a model may be a chain of any length.
+//! Columns are declared when the code asks for them. The [recipe](super::recipe) of their table says where
+//! their numbers come from, for every row.
 //!
 //! The range function is emitted in the same way, and carries probes out of its guards: see `probe`.
 
@@ -22,6 +22,7 @@ mod computed;
 mod express;
 mod fold;
 mod guard;
+mod hoist;
 mod parts;
 mod probe;
 mod row;
@@ -30,17 +31,17 @@ mod select;
 use rustc_hash::FxHashMap as HashMap;
 use std::rc::Rc;
 
-use jbt_ir::{Domain, Function, FunctionBuilder, Rule, Table, Value, limits};
+use jbt_ir::{Domain, FoldKind, Function, FunctionBuilder, Rule, Table, Value, limits};
 
-use self::parts::{Guard, GuardStart, Probes, Select};
+use self::parts::{Guard, GuardStart, Probes};
 use super::columns;
 use super::instance::{FieldId, InstanceId, InstanceKind, Scene, SpaceId};
 use super::mixing::{Answer, Operator, State, difference, mapped};
 use super::names::ComputedId;
 use super::prune_info::{Decision, DecisionKind};
-use super::shape::{Hoist, Shapes};
-use jbt_model::attribute::Mixing;
-use jbt_model::check::CheckedTree;
+use super::recipe::{Member, RowPlace, RowPlaces, RowStep};
+use super::shape::Shapes;
+use jbt_model::attribute::{AttributeGroup, Mixing};
 use jbt_model::combine::{Extreme, MapCode};
 use jbt_model::diagnostic::Diagnostic;
 use jbt_model::query::{AnswerKind, Query};
@@ -56,8 +57,8 @@ pub(super) struct Code {
 
 /// What the code says about a table.
 pub(super) struct TableCode {
-    /// The tables under it, in the order in which a row meets them.
-    pub(super) children: Vec<Table>,
+    /// How a row is filled.
+    pub(super) recipe: Vec<RowStep>,
     /// How many folds are open in its rows.
     pub(super) depth: usize,
     /// The space in which its fold stands, for its first row.
@@ -65,11 +66,6 @@ pub(super) struct TableCode {
     /// The first of the three probes of the point in that space, in a range function, if all rows see the
     /// same point.
     pub(super) probe: Option<usize>,
-}
-
-/// How many attribute groups a query asks for.
-pub(super) fn groups(tree: &CheckedTree, query: Query) -> usize {
-    if query.contains(AnswerKind::Attributes) { tree.attributes().len() } else { 0 }
 }
 
 /// Writes the code.
@@ -82,26 +78,24 @@ pub(super) fn emit_ranges(scene: &Scene<'_>, shapes: &Shapes) -> Result<Code, Ve
     Emitter::new(scene, shapes, Query::FIELD, Some(Probes::default())).run()
 }
 
+/// Places are those of the row that is open when the task's turn comes.
 enum Task {
-    /// The answer of an instance, for one of its uses.
-    Use(InstanceId),
-    /// The answer of an instance, computed here.
-    Define(InstanceId),
+    /// The answer of an instance, for one of its uses: computed here, if nothing has been kept.
+    Use(RowPlace),
     /// What was computed here is what all uses see.
     Keep(InstanceId),
-    HoistField(FieldId),
-    HoistComputed(ComputedId),
-    /// The point in a space is what all uses see.
-    HoistSpace(SpaceId),
+    /// What is hoisted to here is computed, for all uses.
+    Hoist(RowPlace),
     LeaveSpace,
-    OpenFold,
+    /// The group of an operator.
+    OpenFold(RowPlace, usize),
     CloseFold,
     /// An operand that is written out: under a guard, if it is worth one.
-    Operand(InstanceId, Guard),
-    OpenGuard(InstanceId, GuardStart),
+    Operand(RowPlace, Guard),
+    OpenGuard(RowPlace, GuardStart),
     CloseGuard(Option<DecisionKind>),
     /// The children of a formula have their answers.
-    Express(InstanceId),
+    Express(RowPlace),
     /// The next operand of an operator has its answer.
     Step,
     FinishReduce,
@@ -110,12 +104,11 @@ enum Task {
     Difference,
     /// The child of a map has its answer; these are the map's numbers.
     Map(MapCode, Vec<Value>),
-    BeginSelect,
-    OpenChild(InstanceId),
+    OpenChild(RowPlace),
     CloseChild,
     FinishSelect,
     /// An operand that is written out: its place in the file is a number of the current row.
-    Order,
+    Order(RowPlace),
 }
 
 /// An operator in progress.
@@ -131,21 +124,30 @@ struct Reduce {
     open: bool,
 }
 
+/// A row whose code is being written: the first of its table.
+struct OpenRow {
+    table: Table,
+    places: RowPlaces,
+}
+
 struct Emitter<'a> {
     scene: &'a Scene<'a>,
     shapes: &'a Shapes,
     query: Query,
+    /// The attribute groups that the query asks for, and how they mix.
+    groups: &'a [AttributeGroup],
     mixing: Rc<[Mixing]>,
     builder: FunctionBuilder,
     tasks: Vec<Task>,
     answers: Vec<Answer>,
     /// The point in each space that is open.
     points: Vec<(SpaceId, [Value; 3])>,
-    /// The tables whose rows are open.
-    rows: Vec<Table>,
+    /// The innermost one last.
+    rows: Vec<OpenRow>,
     tables: Vec<TableCode>,
     reduces: Vec<Reduce>,
-    selects: Vec<Select>,
+    /// Selectors in progress: the answer so far, as accumulators.
+    selects: Vec<Vec<Value>>,
     kept: HashMap<InstanceId, Answer>,
     kept_fields: HashMap<FieldId, Value>,
     kept_computed: HashMap<ComputedId, Vec<Value>>,
@@ -159,12 +161,14 @@ struct Emitter<'a> {
 
 impl<'a> Emitter<'a> {
     fn new(scene: &'a Scene<'a>, shapes: &'a Shapes, query: Query, probes: Option<Probes>) -> Self {
-        let attributes = &scene.tree.attributes()[..groups(scene.tree, query)];
+        let wanted = query.contains(AnswerKind::Attributes);
+        let groups = if wanted { scene.tree.attributes() } else { &[] };
         Self {
             scene,
             shapes,
             query,
-            mixing: attributes.iter().map(|group| group.mixing).collect(),
+            groups,
+            mixing: groups.iter().map(|group| group.mixing).collect(),
             builder: FunctionBuilder::new("model", &["x", "y", "z"]),
             tasks: Vec::new(),
             answers: Vec::new(),
@@ -198,14 +202,15 @@ impl<'a> Emitter<'a> {
         let point = std::array::from_fn(|axis| self.builder.input(axis));
         self.points.push((SpaceId(0), point));
         let zero = self.builder.constant(0.0);
-        self.open_only("scene", SpaceId(0), Rule::Never, &[zero]);
-        self.iso2 = Some(columns::iso2(self, self.scene)[0]);
-        for group in &self.scene.tree.attributes()[..self.mixing.len()] {
-            let default = columns::channels(self, group, &group.default);
+        self.probe_row();
+        self.open_table("scene", Member::root(self.scene), (FoldKind::Guard, Rule::Never), &[zero]);
+        self.iso2 = Some(self.columns(RowPlace::ROW, columns::iso2())[0]);
+        for (index, group) in self.groups.iter().enumerate() {
+            let default = self.columns(RowPlace::ROW, columns::default(group, index));
             self.defaults.push(default);
         }
-        self.tasks.push(Task::Use(self.scene.root));
-        self.enter_space(SpaceId(0));
+        self.tasks.push(Task::Use(RowPlace::ROW));
+        self.hoist_all(SpaceId(0));
     }
 
     /// Closes the scene's row: its answer is the function's.
@@ -219,7 +224,7 @@ impl<'a> Emitter<'a> {
         }
         let results = self.close_only(next, 1);
         let mut names = vec!["field".to_owned()];
-        for group in &self.scene.tree.attributes()[..self.mixing.len()] {
+        for group in self.groups {
             names.extend((0..group.width()).map(|i| group.channel(i)));
         }
         let mut outputs: Vec<_> = names.into_iter().zip(results).collect();
@@ -249,59 +254,43 @@ impl<'a> Emitter<'a> {
 
     fn work(&mut self, task: Task) {
         match task {
-            Task::Use(id) => match self.kept.get(&id) {
+            Task::Use(place) => match self.kept.get(&self.at(place).instance()) {
                 Some(answer) => self.answers.push(answer.clone()),
-                None => self.define(id),
+                None => self.define(place),
             },
-            Task::Define(id) => self.define(id),
             Task::Keep(id) => {
                 let answer = self.answers.pop().expect("it has just been defined");
                 self.kept.insert(id, answer);
             }
-            Task::HoistField(field) => {
-                let value = self.hoist_field(field);
-                self.kept_fields.insert(field, value);
-            }
-            Task::HoistComputed(id) => self.hoist_computed(id),
-            Task::HoistSpace(space) => self.hoist_space(space),
+            Task::Hoist(place) => self.hoist(place),
             Task::LeaveSpace => {
                 self.points.pop();
             }
-            Task::Operand(id, guard) => {
+            Task::Operand(place, guard) => {
+                let id = self.at(place).instance();
                 if self.shapes.guards_operand(self.scene, id, self.builder.fold_depth()) {
                     self.tasks.push(Task::CloseGuard(guard.decision));
-                    self.tasks.push(Task::Define(id));
-                    self.tasks.push(Task::OpenGuard(id, guard.start));
+                    self.tasks.push(Task::Use(RowPlace::ROW));
+                    self.tasks.push(Task::OpenGuard(place, guard.start));
                 } else {
-                    self.tasks.push(Task::Use(id));
+                    self.tasks.push(Task::Use(place));
                 }
             }
-            Task::OpenGuard(id, start) => self.open_guard(id, start),
+            Task::OpenGuard(place, start) => self.open_guard(place, start),
             Task::CloseGuard(decision) => self.close_guard(decision),
-            Task::Express(id) => self.express(id),
-            Task::BeginSelect => self.begin_select(),
-            Task::OpenChild(id) => self.open_child(id),
+            Task::Express(place) => self.express(place),
+            Task::OpenChild(place) => self.open_child(place),
             Task::CloseChild => self.close_child(),
             Task::FinishSelect => self.finish_select(),
-            Task::OpenFold => self.open_group(),
+            Task::OpenFold(place, group) => self.open_group(place, group),
             Task::CloseFold => self.close_group(),
-            Task::Order => self.read_order(),
+            Task::Order(place) => self.read_order(place),
             Task::Step => self.step(),
             Task::FinishReduce => self.finish_reduce(),
             Task::Seed => self.seed(),
             Task::Map(code, row) => self.map(code, &row),
             Task::Difference => self.difference(),
         }
-    }
-
-    /// Computes a point that several uses share, and enters its space.
-    fn hoist_space(&mut self, space: SpaceId) {
-        self.tasks.push(Task::LeaveSpace);
-        let point = self.hoist_point(space);
-        self.points.push((space, point));
-        self.probe_point(space, point);
-        self.kept_points.insert(space, point);
-        self.enter_space(space);
     }
 
     /// The last answer comes to its operator.
@@ -351,60 +340,58 @@ impl<'a> Emitter<'a> {
         self.answers.push(answer);
     }
 
-    fn define(&mut self, id: InstanceId) {
+    fn define(&mut self, place: RowPlace) {
+        let id = self.at(place).instance();
         match &self.scene.instance(id).kind {
             InstanceKind::Leaf { field, .. } => {
-                let value = self.kept_fields.get(field).copied().unwrap_or_else(|| self.leaf(*field));
-                let groups = self.leaf_attributes(id);
+                let value = self.kept_fields.get(field).copied().unwrap_or_else(|| self.leaf(place));
+                let groups = self.leaf_attributes(place);
                 self.answers.push(Answer { field: value, groups });
             }
-            InstanceKind::Warp { inside, child, .. } => {
-                self.tasks.extend([Task::LeaveSpace, Task::Use(*child)]);
+            InstanceKind::Warp { inside, .. } => {
+                // The other one is its weight, which is hoisted.
+                let child = self.operands(place).next().map(Task::Use);
+                self.tasks.push(Task::LeaveSpace);
+                self.tasks.extend(child);
                 match self.kept_points.get(inside) {
                     Some(&point) => self.points.push((*inside, point)),
-                    None => self.enter_warp(*inside),
+                    None => {
+                        let point = self.point_inside(place);
+                        self.enter_space(*inside, point);
+                    }
                 }
             }
-            InstanceKind::Difference { left, right } => {
+            InstanceKind::Difference { .. } => {
                 self.begin_operator();
                 self.tasks.push(Task::Difference);
-                self.tasks.push(Task::Operand(*right, Guard::RIGHT));
-                self.tasks.push(Task::Operand(*left, Guard::LEFT));
+                let sides = self.operands(place).rev().zip([Guard::RIGHT, Guard::LEFT]);
+                self.tasks.extend(sides.map(|(side, guard)| Task::Operand(side, guard)));
             }
-            InstanceKind::Map { code, child } => {
-                let node = self.scene.instance(id).node;
-                let operator = self.scene.combinator(node);
-                let row = columns::operator(self, self.scene, node, operator, code.columns());
+            InstanceKind::Map { code, .. } => {
+                let row = self.columns(place, columns::operator(code.columns()));
                 self.tasks.push(Task::Map(*code, row));
-                self.tasks.push(Task::Operand(*child, Guard::ZERO));
+                let child = self.operands(place).map(|child| Task::Operand(child, Guard::ZERO));
+                self.tasks.extend(child);
             }
-            InstanceKind::Expression { children, .. } => {
-                self.tasks.push(Task::Express(id));
-                let operand = |&child: &InstanceId| Task::Operand(child, Guard::ALONE);
-                self.tasks.extend(children.iter().rev().map(operand));
+            InstanceKind::Expression { .. } => {
+                self.tasks.push(Task::Express(place));
+                let children = self.operands(place).map(|child| Task::Operand(child, Guard::ZERO));
+                self.tasks.extend(children.rev());
             }
-            InstanceKind::Select { children, .. } => self.select(children),
-            InstanceKind::Reduce { .. } => self.begin_reduce(id),
+            InstanceKind::Select { .. } => self.select(place),
+            InstanceKind::Reduce { code, .. } => self.begin_reduce(place, *code),
         }
     }
 
-    /// Computes the point inside a warp, and what is hoisted to the start of its space.
-    fn enter_warp(&mut self, space: SpaceId) {
-        let point = self.point_inside(space);
-        self.points.push((space, point));
-        self.probe_point(space, point);
-        self.enter_space(space);
-    }
-
     /// The point inside a warp.
-    fn point_inside(&mut self, space: SpaceId) -> [Value; 3] {
-        let inside = self.scene.inside(space).expect("the world is no warp's inside");
-        let position = self.scene.position(inside.position);
+    fn point_inside(&mut self, place: RowPlace) -> [Value; 3] {
+        let inside = self.at(place).inside(self.scene);
+        let kind = self.scene.position(inside.position).kind();
         let (_, outer) = *self.points.last().expect("a space is open");
-        let row = columns::map(self, position.kind(), &position.map);
-        let point = position.kind().emit(&mut self.builder, outer, &row);
+        let row = self.columns(place, columns::map(kind));
+        let point = kind.emit(&mut self.builder, outer, &row);
         let code = self.scene.warp(inside.warp).code();
-        let row = columns::warp(self, self.scene, space);
+        let row = self.columns(place, columns::warp(&code));
         match inside.weight {
             None => code.emit(&mut self.builder, point, &row),
             Some(weight) => {
@@ -415,19 +402,10 @@ impl<'a> Emitter<'a> {
         }
     }
 
-    /// Puts what is hoisted to the start of a space on top of the tasks.
-    fn enter_space(&mut self, space: SpaceId) {
-        for hoist in self.shapes.hoists(space).iter().rev() {
-            match hoist {
-                Hoist::Field(field) => self.tasks.push(Task::HoistField(*field)),
-                Hoist::Computed(id) => self.tasks.push(Task::HoistComputed(*id)),
-                Hoist::Space(space) => self.tasks.push(Task::HoistSpace(*space)),
-                Hoist::Instance(id) if self.guards_hoisted(*hoist) => {
-                    self.tasks.extend([Task::Keep(*id), Task::CloseGuard(None), Task::Define(*id)]);
-                    self.tasks.push(Task::OpenGuard(*id, GuardStart::Zero));
-                }
-                Hoist::Instance(id) => self.tasks.extend([Task::Keep(*id), Task::Define(*id)]),
-            }
-        }
+    /// Enters a space at this point.
+    fn enter_space(&mut self, space: SpaceId, point: [Value; 3]) {
+        self.points.push((space, point));
+        self.probe_point(space, point);
+        self.hoist_all(space);
     }
 }

@@ -3,8 +3,6 @@
 //! An *instance* is a node at a position with attribute bindings. A node that is reached twice with the
 //! same of each is one instance with two uses; under other coordinates it is another one.
 
-use std::borrow::Cow;
-
 use glam::{DAffine3, DVec3};
 
 use super::computed::Computed;
@@ -289,17 +287,16 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// The instances that one asks for.
-pub(super) fn children(kind: &InstanceKind) -> Cow<'_, [InstanceId]> {
-    match kind {
-        InstanceKind::Leaf { .. } => Cow::Borrowed(&[]),
-        InstanceKind::Warp { child, weight: None, .. } | InstanceKind::Map { child, .. } => {
-            Cow::Borrowed(std::slice::from_ref(child))
-        }
-        InstanceKind::Warp { child, weight: Some(weight), .. } => Cow::Owned(vec![*child, *weight]),
+/// The instances that one asks for: behind a warp's child comes its weight.
+pub(super) fn children(kind: &InstanceKind) -> impl Iterator<Item = InstanceId> {
+    let (few, many): ([Option<InstanceId>; 2], &[InstanceId]) = match kind {
+        InstanceKind::Leaf { .. } => ([None; 2], &[]),
+        InstanceKind::Warp { child, weight, .. } => ([Some(*child), *weight], &[]),
+        InstanceKind::Map { child, .. } => ([Some(*child), None], &[]),
+        InstanceKind::Difference { left, right } => ([Some(*left), Some(*right)], &[]),
         InstanceKind::Reduce { children, .. }
         | InstanceKind::Expression { children, .. }
-        | InstanceKind::Select { children, .. } => Cow::Borrowed(children),
-        InstanceKind::Difference { left, right } => Cow::Owned(vec![*left, *right]),
-    }
+        | InstanceKind::Select { children, .. } => ([None; 2], children),
+    };
+    few.into_iter().flatten().chain(many.iter().copied())
 }

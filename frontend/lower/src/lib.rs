@@ -3,7 +3,7 @@
 //! ```text
 //! tree ──instance──► instances ──shape──► shapes ──emit──► ir::Function      the shape of the tree becomes code,
 //!      what stands where,            which of them            one body a shape
-//!      sharing                       are alike       ──rows──► ir::Tables         its numbers become rows
+//!      sharing                       are alike       ──rows──► ir::Tables         its numbers become rows, by recipe
 //! ```
 //!
 //! * `instance`: affine and attribute nodes dissolve into the position and the attribute bindings of the
@@ -16,8 +16,9 @@
 //! * `slopes`: how a formula's value follows its children's, for the weights of their attributes.
 //! * `computed`: attribute values that are functions of the point.
 //! * `demand`: what selectors leave out has code, in folds whose rows are not active.
-//! * `columns`: what each column is called, and its number; `emit` declares them, `rows` fills them.
-//! * `rows`: walks the instances in the order of `emit` and writes down their numbers.
+//! * `columns`: what each column is called, and its number.
+//! * `recipe`: how the rows of a table are filled: `emit` writes that down as it declares columns.
+//! * `rows`: fills every row by the recipe of its table.
 //! * `support`: finds for each instance where it can be anything but zero, in the program's own arithmetic.
 //! * [`prune_info`]: what pruning has to know: supports, rules, and the range function; `ranges` makes
 //!   it.
@@ -39,6 +40,7 @@ mod names;
 mod position;
 pub mod prune_info;
 mod ranges;
+mod recipe;
 mod rows;
 mod shape;
 mod slopes;
@@ -103,7 +105,7 @@ impl<'a> Lowering<'a> {
     /// beyond [`jbt_ir::limits`].
     pub fn answers(&self, query: Query) -> Result<Lowered, Vec<Diagnostic>> {
         let code = emit::emit(&self.scene, &self.shapes, query)?;
-        let rows = rows::rows(&self.scene, &self.shapes, query, &code)?;
+        let rows = rows::rows(&self.scene, &self.shapes, &code)?;
         Ok(Lowered { function: code.function, tables: rows.tables })
     }
 

@@ -74,19 +74,14 @@ impl Operator {
     /// Whether operands need their place in the file: something is decided among several groups, and somebody
     /// sees by whom.
     pub(super) fn wants_order(&self) -> bool {
-        wants_order(self.code, self.ordered, self.moving, &self.mixing)
+        let decides = match self.code {
+            ReduceCode::Fold(_) => self.mixing.contains(&Mixing::Dominant),
+            ReduceCode::Choice(_) => self.moving || !self.mixing.is_empty(),
+            // They come in that order.
+            ReduceCode::Step(_) => false,
+        };
+        self.ordered && decides
     }
-}
-
-/// See [`Operator::wants_order`].
-pub(super) fn wants_order(code: ReduceCode, ordered: bool, moving: bool, mixing: &[Mixing]) -> bool {
-    let decides = match code {
-        ReduceCode::Fold(_) => mixing.contains(&Mixing::Dominant),
-        ReduceCode::Choice(_) => moving || !mixing.is_empty(),
-        // They come in that order.
-        ReduceCode::Step(_) => false,
-    };
-    ordered && decides
 }
 
 /// What no field goes beyond on the far side of an extreme. Finite, because a range with an infinite end says

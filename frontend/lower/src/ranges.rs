@@ -5,16 +5,16 @@ use jbt_ir::{Entity as _, Function, InstKind, Rule, Store};
 use super::emit::{self, TableCode};
 use super::instance::{Scene, SpaceId};
 use super::prune_info::{PruneInfo, RangeFunction, Support, SupportSpace, TablePruneInfo};
-use super::rows::{self, Member};
+use super::recipe::Member;
+use super::rows;
 use super::shape::{Hoist, Shapes};
 use super::support::Supports;
 use jbt_model::diagnostic::Diagnostic;
-use jbt_model::query::Query;
 
 /// The range function of a scene, and what there is to know about its tables.
 pub(super) fn ranges(scene: &Scene<'_>, shapes: &Shapes) -> Result<RangeFunction, Vec<Diagnostic>> {
     let code = emit::emit_ranges(scene, shapes)?;
-    let rows = rows::rows(scene, shapes, Query::FIELD, &code)?;
+    let rows = rows::rows(scene, shapes, &code)?;
     let supports = Supports::new(scene);
     let mut tables = Store::new();
     let rules = rules(&code.function);
@@ -59,7 +59,7 @@ fn table_info(
 
 fn support(supports: &Supports<'_>, member: &Member) -> Support {
     match member {
-        Member::Operand(id, _) | Member::Hoisted(Hoist::Instance(id)) => supports.of(*id),
+        Member::Operand { id, .. } | Member::Hoisted(Hoist::Instance(id)) => supports.of(*id),
         Member::Hoisted(Hoist::Field(field)) => supports.of_field(*field),
         Member::Piece(field, piece) => supports.of_piece(*field, *piece),
         Member::Hoisted(Hoist::Space(_) | Hoist::Computed(_)) => Support::EVERYWHERE,

@@ -16,7 +16,7 @@ use rustc_hash::FxHashMap as HashMap;
 pub(super) use self::key::ShapeId;
 use self::key::{Content, ShapeKey};
 use super::computed::ComputedShape;
-use super::instance::{FieldId, InstanceId, InstanceKind, LeafCode, Scene, SpaceId};
+use super::instance::{FieldId, InstanceId, InstanceKind, LeafCode, Scene, SpaceId, children};
 use super::names::ComputedId;
 pub(super) use super::names::Hoist;
 use jbt_model::combine::ReduceCode;
@@ -353,8 +353,7 @@ impl<'a> Classifier<'a> {
 
     /// The operands of a step: the first alone, the others as runs of one shape.
     fn runs(&self, id: InstanceId) -> Vec<Group> {
-        let children = super::instance::children(&self.scene.instance(id).kind);
-        let mut members = children.iter().copied().zip(0..);
+        let mut members = children(&self.scene.instance(id).kind).zip(0..);
         let first = members.next().expect("an operator has children");
         let mut groups = vec![Group { folded: false, members: vec![first] }];
         for member in members {

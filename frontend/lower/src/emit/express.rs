@@ -17,8 +17,9 @@ use rustc_hash::FxHashSet;
 
 use super::{Emitter, Reduce, Task};
 use crate::columns;
-use crate::instance::{InstanceId, InstanceKind};
+use crate::instance::InstanceKind;
 use crate::mixing::{Answer, GroupAnswer, weighted};
+use crate::recipe::RowPlace;
 use crate::slopes::{Tape, slopes};
 use jbt_model::combine::{Extreme, ReduceCode};
 use jbt_model::expression::{Form, LARGEST_FIELD, Operand};
@@ -60,21 +61,20 @@ fn distinct(d: &mut FunctionBuilder, mut fields: Vec<Value>) -> Vec<Value> {
 
 impl Emitter<'_> {
     /// The answer of a formula whose children have theirs.
-    pub(super) fn express(&mut self, id: InstanceId) {
-        let instance = self.scene.instance(id);
-        let InstanceKind::Expression { position, shift, children, .. } = &instance.kind else {
+    pub(super) fn express(&mut self, place: RowPlace) {
+        let instance = self.scene.instance(self.at(place).instance());
+        let InstanceKind::Expression { position, children, .. } = &instance.kind else {
             unreachable!("only formulas are expressed")
         };
-        let expression = self.scene.expression(instance.node);
-        let form = expression.form();
+        let form = self.scene.expression(instance.node).form();
         let answers = self.answers.split_off(self.answers.len() - children.len());
         let point = form.asks_point().then(|| {
-            let position = self.scene.position(*position);
-            let row = columns::map(self, position.kind(), &position.map);
+            let kind = self.scene.position(*position).kind();
+            let row = self.columns(place, columns::map(kind));
             let (_, outer) = *self.points.last().expect("a space is open");
-            position.kind().emit(&mut self.builder, outer, &row)
+            kind.emit(&mut self.builder, outer, &row)
         });
-        let numbers = columns::formula(self, expression, *shift);
+        let numbers = self.columns(place, columns::formula(form));
         let weighs = !self.mixing.is_empty() && answers.len() > 1;
         let fields: Vec<Value> = answers.iter().map(|answer| answer.field).collect();
         let fields = if weighs { distinct(&mut self.builder, fields) } else { fields };
@@ -90,7 +90,7 @@ impl Emitter<'_> {
             self.bounded(value, form, &leaves, lowest, vanishes)
         };
         let groups = match &answers[..] {
-            [] => self.leaf_attributes(id),
+            [] => self.leaf_attributes(place),
             [child] => self.passed_on(child),
             _ if weighs => {
                 let slopes = slopes(&mut self.builder, &tape, value, &leaves.fields);

@@ -2,27 +2,23 @@
 
 use std::rc::Rc;
 
-use jbt_ir::{Domain as _, Entity, FoldKind, Rule, Schema, Value};
+use jbt_ir::{Domain as _, Entity, FoldKind, Rule, Schema, Table, Value};
 
 use super::parts::Guard;
-use super::{Emitter, Reduce, TableCode, Task};
+use super::{Emitter, OpenRow, Reduce, TableCode, Task};
 use crate::columns;
-use crate::instance::{InstanceId, InstanceKind, SpaceId};
 use crate::mixing::{Operator, State, beyond};
 use crate::prune_info::{DecidedRows, DecisionKind};
+use crate::recipe::{Lead, Member, Owned, RowPlace, RowPlaces, RowStep};
 use crate::shape::{bounded, non_negative};
 use jbt_model::combine::ReduceCode;
 use jbt_model::query::AnswerKind;
 
 impl Emitter<'_> {
     /// An operator: its accumulators, and what is to be done for its operands.
-    pub(super) fn begin_reduce(&mut self, id: InstanceId) {
-        let instance = self.scene.instance(id);
-        let InstanceKind::Reduce { operator, code, .. } = instance.kind else {
-            unreachable!("only operators are reduced")
-        };
-        let groups = self.shapes.groups(id);
-        let row = columns::operator(self, self.scene, instance.node, operator, code.columns());
+    pub(super) fn begin_reduce(&mut self, place: RowPlace, code: ReduceCode) {
+        let groups = self.shapes.groups(self.at(place).instance());
+        let row = self.columns(place, columns::operator(code.columns()));
         let operator = Operator {
             code,
             row,
@@ -38,66 +34,84 @@ impl Emitter<'_> {
         self.reduces.push(Reduce { operator, state, order: None, extreme: None, open: false });
         self.begin_operator();
         self.tasks.push(Task::FinishReduce);
-        for group in groups.iter().rev() {
+        for (index, group) in groups.iter().enumerate().rev() {
             if group.folded {
-                self.tasks.extend([Task::CloseFold, Task::Step, Task::Use(group.members[0].0)]);
-                self.tasks.push(Task::OpenFold);
+                self.tasks.extend([Task::CloseFold, Task::Step, Task::Use(RowPlace::ROW)]);
+                self.tasks.push(Task::OpenFold(place, index));
             } else {
-                for &(member, order) in group.members.iter().rev() {
-                    // A step begins with its first operand.
+                for operand in self.lead(Lead::Members(place, index)).rev() {
+                    // A step begins with its first operand, which is alone in the first group.
                     let step = match code {
-                        ReduceCode::Step(_) if order == 0 => Task::Seed,
+                        ReduceCode::Step(_) if index == 0 => Task::Seed,
                         ReduceCode::Step(_) | ReduceCode::Fold(_) | ReduceCode::Choice(_) => Task::Step,
                     };
-                    self.tasks.extend([step, Task::Operand(member, guard), Task::Order]);
+                    self.tasks.extend([step, Task::Operand(operand, guard), Task::Order(operand)]);
                 }
             }
         }
     }
 
-    /// Opens a fold over a new table under the innermost open row.
+    /// The first of the rows that the innermost open row owns.
+    fn first(&self, owned: Owned) -> Member {
+        match owned {
+            Owned::Alone(place) => self.at(place),
+            Owned::Members(place, group) => {
+                self.at(place).members(self.shapes, group).next().expect("no group is empty")
+            }
+            Owned::Pieces(place) => Member::Piece(self.at(place).field(self.scene), 0),
+        }
+    }
+
+    /// Opens a fold over rows that the innermost open row owns.
     pub(super) fn open_fold(
         &mut self,
-        name: &str,
-        space: SpaceId,
+        owned: Owned,
         kind: (FoldKind, Rule),
         initial: &[Value],
     ) -> Vec<Value> {
-        let parent = self.rows.last().copied();
+        let first = self.first(owned);
+        let table = Table::new(self.tables.len());
+        self.record(RowStep::Rows(table, owned));
+        self.open_table(first.name(self.scene), first, kind, initial)
+    }
+
+    /// Opens a fold over a new table, whose first row this is.
+    pub(super) fn open_table(
+        &mut self,
+        name: &str,
+        first: Member,
+        kind: (FoldKind, Rule),
+        initial: &[Value],
+    ) -> Vec<Value> {
+        let parent = self.rows.last().map(|row| row.table);
         let schema = Schema { name: name.to_owned(), columns: Vec::new(), parent, slots: Vec::new() };
         let table = self.builder.table(schema);
-        if let Some(parent) = parent {
-            self.tables[parent.index()].children.push(table);
-        }
-        self.rows.push(table);
+        self.rows.push(OpenRow { table, places: RowPlaces::of(first) });
+        let (space, _) = *self.points.last().expect("a space is open");
         let probe = self.probes.as_ref().and_then(|probes| probes.point(space));
-        self.tables.push(TableCode { children: Vec::new(), depth: self.rows.len(), space, probe });
+        self.tables.push(TableCode { recipe: Vec::new(), depth: self.rows.len(), space, probe });
         self.builder.begin_fold(table, kind, initial)
     }
 
-    /// Opens the fold over the rows of a group; its first task gives the group its name.
-    pub(super) fn open_group(&mut self) {
+    /// Opens the fold over the rows of a group.
+    pub(super) fn open_group(&mut self, place: RowPlace, group: usize) {
         let mut reduce = self.reduces.pop().expect("folds belong to operators");
-        let Some(&Task::Use(member)) = self.tasks.last() else {
-            unreachable!("the first member is used next")
-        };
-        let name = self.group_name(member);
-        let extreme = self.decides_rows(reduce.operator.code, member);
+        let owned = Owned::Members(place, group);
+        let extreme = self.decides_rows(reduce.operator.code, self.first(owned).instance());
         let mut initial = reduce.state.values();
         initial.extend(extreme.map(|extreme| self.builder.constant(beyond(extreme, false))));
         let rule = reduce.operator.code.rule(reduce.operator.non_negative);
-        let (space, _) = *self.points.last().expect("a space is open");
-        let mut params = self.open_fold(&name, space, (FoldKind::Rows, rule), &initial);
+        let mut params = self.open_fold(owned, (FoldKind::Rows, rule), &initial);
         reduce.extreme =
             extreme.map(|extreme| (extreme, params.pop().expect("it is the last that was given")));
         reduce.state.replace(&params);
         self.reduces.push(reduce);
-        self.read_order();
+        self.read_order(RowPlace::ROW);
     }
 
     /// Closes the fold over the rows of a group.
     pub(super) fn close_group(&mut self) {
-        let table = self.rows.pop().expect("the fold is open");
+        let table = self.rows.pop().expect("the fold is open").table;
         let reduce = self.reduces.last_mut().expect("folds belong to operators");
         let mut next = reduce.state.values();
         let extreme = reduce.extreme.take();
@@ -110,18 +124,5 @@ impl Emitter<'_> {
         }
         let reduce = self.reduces.last_mut().expect("folds belong to operators");
         reduce.state.replace(&results);
-    }
-
-    /// The name of a table whose first row is this.
-    pub(super) fn group_name(&self, id: InstanceId) -> String {
-        match &self.scene.instance(id).kind {
-            InstanceKind::Leaf { field, .. } => self.scene.field(*field).code.skeleton.name().to_owned(),
-            InstanceKind::Warp { .. } => self.scene.warp(self.scene.instance(id).node).name().to_owned(),
-            InstanceKind::Difference { .. } => "difference".to_owned(),
-            InstanceKind::Map { .. } => self.scene.combinator(self.scene.instance(id).node).name().to_owned(),
-            InstanceKind::Expression { .. } => "expression".to_owned(),
-            InstanceKind::Select { .. } => "select".to_owned(),
-            InstanceKind::Reduce { operator, .. } => operator.name().to_owned(),
-        }
     }
 }

@@ -14,22 +14,15 @@ use jbt_ir::{Domain, FoldKind, Rule, Value};
 
 use super::Emitter;
 use super::parts::GuardStart;
-use crate::instance::{InstanceId, SpaceId};
 use crate::mixing::{Answer, GroupAnswer};
 use crate::prune_info::{DecidedRows, DecisionKind};
-use crate::shape::Hoist;
+use crate::recipe::{Owned, RowPlace};
 
 impl Emitter<'_> {
-    /// Whether what is hoisted here is computed under a guard.
-    pub(super) fn guards_hoisted(&self, hoist: Hoist) -> bool {
-        self.shapes.guards_hoisted(self.scene, hoist, self.builder.fold_depth())
-    }
-
-    pub(super) fn open_guard(&mut self, id: InstanceId, start: GuardStart) {
-        let name = self.group_name(id);
+    pub(super) fn open_guard(&mut self, place: RowPlace, start: GuardStart) {
         let field = self.builder.constant(start.number());
-        let rule = if self.scene.demand.is_bare(id) { Rule::Never } else { start.rule() };
-        self.open_only(&name, self.scene.instance(id).space, rule, &[field]);
+        let is_bare = self.scene.demand.is_bare(self.at(place).instance());
+        self.open_only(place, if is_bare { Rule::Never } else { start.rule() }, &[field]);
     }
 
     /// The answer that has just been computed in the guard's row, as it is seen outside.
@@ -40,7 +33,7 @@ impl Emitter<'_> {
             next.extend(&group.channels);
             next.extend(group.share);
         }
-        let table = *self.rows.last().expect("the guard's row is open");
+        let table = self.row().table;
         let mut results = self.close_only(next, 1).into_iter();
         let mut result = || results.next().expect("as many as were carried out");
         let field = result();
@@ -55,10 +48,11 @@ impl Emitter<'_> {
         self.answers.push(Answer { field, groups });
     }
 
-    /// Opens a fold over one row. It carries out what is given here, and whatever else it is closed with.
-    pub(super) fn open_only(&mut self, name: &str, space: SpaceId, rule: Rule, initial: &[Value]) {
+    /// Opens a fold over one row, of what stands at a place. It carries out what is given here, and whatever
+    /// else it is closed with.
+    pub(super) fn open_only(&mut self, place: RowPlace, rule: Rule, initial: &[Value]) {
         self.probe_row();
-        self.open_fold(name, space, (FoldKind::Guard, rule), initial);
+        self.open_fold(Owned::Alone(place), (FoldKind::Guard, rule), initial);
     }
 
     /// Closes a fold over one row that was opened with so many values. What it carries out behind these

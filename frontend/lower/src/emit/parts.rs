@@ -1,4 +1,4 @@
-//! What is in progress while code is emitted: guards, probes, selectors.
+//! What is in progress while code is emitted: guards and probes.
 
 use jbt_ir::{Rule, Table, Value};
 use rustc_hash::FxHashMap as HashMap;
@@ -52,9 +52,6 @@ impl Guard {
     pub(super) const RIGHT: Self =
         Self { start: GuardStart::Zero, decision: Some(DecisionKind::DifferenceRight) };
 
-    /// Of a child of a formula.
-    pub(super) const ALONE: Self = Self { start: GuardStart::Zero, decision: None };
-
     /// Of an operand.
     pub(super) const fn of(code: ReduceCode, non_negative: bool) -> Self {
         match code {
@@ -102,9 +99,4 @@ pub(super) struct Probes {
     pub(super) decisions: Vec<Decision>,
     /// In the end: the values behind the scene's row.
     pub(super) results: Vec<Probe>,
-}
-
-/// A selector in progress: the answer so far, as accumulators.
-pub(super) struct Select {
-    pub(super) state: Vec<Value>,
 }

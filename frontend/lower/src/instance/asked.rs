@@ -40,7 +40,7 @@ pub(super) fn demand(scene: &Scene<'_>) -> Demand {
             | InstanceKind::Difference { .. }
             | InstanceKind::Expression { .. }
             | InstanceKind::Map { .. } => {
-                for &child in children(kind).iter() {
+                for child in children(kind) {
                     demand.instances[child.0 as usize].also(asked);
                 }
             }
