@@ -147,7 +147,8 @@ macro_rules! operators {
                 match self { $( Self::$fold(code) => <$fold as Fold>::meet(code, d, so_far, operand, setting, weighs), )+ }
             }
 
-            /// The field and what shares are; `total` is the sum of weights, where that is an accumulator of its own.
+            /// The field and what shares are; `total` is the sum of weights, where that is an accumulator of
+            /// its own.
             pub fn finish<D: Domain>(
                 self,
                 d: &mut D,
@@ -170,7 +171,8 @@ macro_rules! operators {
             /// See [`Step::rule`].
             fn rule(self, non_negative: bool) -> Rule { match self { $( Self::$step(code) => <$step as Step>::rule(code, non_negative), )+ } }
 
-            /// The field of two sides and the weight of either, from a row of numbers and twice the iso-value.
+            /// The field of two sides and the weight of either, from a row of numbers and twice the
+            /// iso-value.
             pub fn emit<D: Domain>(
                 self,
                 d: &mut D,
@@ -208,8 +210,8 @@ macro_rules! operators {
                 }
             }
 
-            /// Whether operands of one that is the operand of an equal one may be that one's, where no such operand
-            /// can be negative, or some can.
+            /// Whether operands of one that is the operand of an equal one may be that one's, where no such
+            /// operand can be negative, or some can.
             pub fn flattens(self, non_negative: bool) -> bool {
                 match self {
                     $( Self::$fold(it) => it.flattens(non_negative), )+
