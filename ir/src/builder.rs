@@ -1,7 +1,7 @@
 //! Builds functions. The builder is itself a [`Domain`]: code written over `Domain` and run on it becomes
 //! instructions.
 //!
-//! Two things happen on the way, always:
+//! Two things happen on the way, unless a function is copied as it is (`translate::renumber`):
 //!
 //! * **Hash-consing.** An instruction that exists already where it can be seen is not written again.
 //! * **Hoisting.** An instruction goes into the outermost open block that has all its operands, so whatever
@@ -30,7 +30,7 @@ use rustc_hash::FxHashMap as HashMap;
 use crate::entity::{Block, Entity, Inst, Table, Value, Values};
 use crate::function::{BlockData, Fold, FoldKind, Function, InstData, InstKind, Rule, Schema};
 use crate::op::{Domain, Op, Type};
-use crate::origin::Origin;
+use crate::origin::{Origin, Part};
 
 /// What makes two instructions the same.
 #[derive(Clone, PartialEq, Eq, Hash)]
@@ -63,6 +63,8 @@ pub struct FunctionBuilder {
     /// For each value, whether it is the same at all points of a row.
     uniform: Vec<bool>,
     origin: Origin,
+    /// Whether equal instructions are shared, and hoisted.
+    shares: bool,
 }
 
 impl fmt::Debug for FunctionBuilder {
@@ -86,19 +88,33 @@ impl FunctionBuilder {
             definition: Vec::new(),
             uniform: Vec::new(),
             origin: Origin::SHARED,
+            shares: true,
         }
     }
 
     /// Starts a function with the planes and tables of another one, to write a changed version of it.
     #[must_use]
     pub fn like(function: &Function) -> Self {
+        let mut builder = Self { shares: true, ..Self::verbatim(function) };
+        builder.known.reserve(function.insts.len());
+        builder
+    }
+
+    /// As [`like`](Self::like), for a copy: each instruction is written where it is asked for, and shared
+    /// with no other.
+    #[must_use]
+    pub(crate) fn verbatim(function: &Function) -> Self {
         let inputs: Vec<&str> = function.inputs.iter().map(String::as_str).collect();
         let mut builder = Self::new(&function.name, &inputs);
         builder.function.tables = Arc::clone(&function.tables);
         // A changed version is about as long.
-        builder.function.values.reserve(function.values.len());
+        let count = function.values.len();
+        builder.function.values.reserve(count);
         builder.function.insts.reserve(function.insts.len());
-        builder.known.reserve(function.insts.len());
+        builder.depth.reserve(count);
+        builder.definition.reserve(count);
+        builder.uniform.reserve(count);
+        builder.shares = false;
         builder
     }
 
@@ -140,6 +156,14 @@ impl FunctionBuilder {
     pub fn mark(&mut self, value: Value, origin: Origin) {
         if let Some(inst) = self.definition[value.index()] {
             self.function.insts[inst].origin = origin;
+        }
+    }
+
+    /// Marks a value that replaces a distance, if an op computes it: the distance stays one for the counters,
+    /// also if the value was there already for something else.
+    pub(crate) fn keep_distance(&mut self, value: Value, origin: Origin) {
+        if origin.part == Part::Distance && matches!(self.definition(value), Some(InstKind::Op { .. })) {
+            self.mark(value, origin);
         }
     }
 
@@ -274,6 +298,11 @@ impl FunctionBuilder {
     }
 
     fn insert(&mut self, key: Key, depth: usize, kind: InstKind, type_: Type) -> Value {
+        if !self.shares {
+            let value = self.new_value(type_, depth);
+            self.append(self.open.len() - 1, kind, Values::from_slice(&[value]));
+            return value;
+        }
         if let Some(&value) = self.known.get(&key) {
             return value;
         }

@@ -22,9 +22,6 @@ pub mod origin;
 pub mod pass;
 pub mod plan;
 pub mod selection;
-#[cfg(test)]
-#[path = "../tests/common/spicy.rs"]
-mod spicy;
 pub mod straight;
 pub mod table;
 pub mod text;

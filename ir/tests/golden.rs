@@ -1,15 +1,13 @@
 //! Runs the golden files in `tests/golden`: one folder for each stage, text in, text out.
 
-mod common;
-
 use std::fmt::Write as _;
 use std::fs;
 
-use common::golden::{check_golden, differ, files, folder};
 use jbt_ir::domain::scalar::Scalar;
 use jbt_ir::pass::{GRADIENT, GUARDED_GRADIENT, INTERVAL, PIPELINE};
 use jbt_ir::text::annotated;
 use jbt_ir::{Any, Function, Op, Type, apply, parse, verify};
+use jbt_testkit::golden::{check_golden, differ, files, folder};
 
 /// Parses the input of a pass and checks it: a golden file with a broken input is itself wrong.
 fn verified(text: &str) -> Function {
@@ -50,7 +48,7 @@ const RULES_WITH_A_FILE: usize = 13;
 fn verify_rules() {
     let mut failures = String::new();
     let mut tested = [false; RULES_WITH_A_FILE + 1];
-    for (path, text) in files("verify") {
+    for (path, text) in files("verify", "txt") {
         let function =
             parse(&text).unwrap_or_else(|errors| panic!("{}:\n{}", path.display(), lines(&errors)));
         let errors = verify(function.clone()).err().unwrap_or_default();
@@ -184,7 +182,7 @@ fn transcendental_ops_give_what_their_rows_define() {
 
 #[test]
 fn every_op_file_belongs_to_an_op() {
-    for (path, _) in files("op") {
+    for (path, _) in files("op", "txt") {
         let name = path.file_stem().and_then(|name| name.to_str()).expect("names are ASCII");
         assert!(Op::ALL.iter().any(|op| op.name() == name), "{} belongs to no op", path.display());
     }

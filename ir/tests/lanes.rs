@@ -13,10 +13,7 @@ use jbt_ir::{
     Domain, FoldKind, Function, FunctionBuilder, Op, Rows, Rule, Schema, Selection, Table, Tables, Value,
     Verified, verify,
 };
-
-fn same(a: f32, b: f32) -> bool {
-    a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan())
-}
+use jbt_testkit::bits::assert_same;
 
 fn tape(function: &Verified) -> Tape {
     Tape::new(function).expect("the function is legal")
@@ -83,15 +80,7 @@ fn check_selected(
     let tape = tape(function);
     for level in Level::available() {
         let given = lanes(level, &tape, rows, inputs, expected.len(), scratch);
-        for (plane, (given, expected)) in given.iter().zip(&expected).enumerate() {
-            for (point, (given, expected)) in given.iter().zip(expected).enumerate() {
-                assert!(
-                    same(*given, *expected),
-                    "{what} at {}, output {plane}, point {point}: {given:e}, not {expected:e}",
-                    level.name()
-                );
-            }
-        }
+        assert_same(&expected, &given, &format!("{what} at {}", level.name()));
     }
 }
 

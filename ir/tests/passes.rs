@@ -9,6 +9,7 @@ use jbt_ir::interpret::run;
 use jbt_ir::pass::{GRADIENT, PIPELINE, Pass, dce, max_live, run_pipeline, schedule};
 use jbt_ir::translate::rewrite;
 use jbt_ir::{Domain, Entity, Function, FunctionBuilder, InstKind, Op, Origin, Part, Tables, Value, verify};
+use jbt_testkit::bits::assert_same;
 
 const FUNCTIONS: u64 = 120;
 
@@ -22,15 +23,6 @@ fn points(seed: u64) -> Vec<[f32; 3]> {
     (0..6).map(|_| std::array::from_fn(|_| random::number(&mut random))).collect()
 }
 
-#[track_caller]
-fn same_bits(what: &str, old: &[f32], new: &[f32]) {
-    assert_eq!(old.len(), new.len(), "{what}");
-    for (index, (old, new)) in old.iter().zip(new).enumerate() {
-        let same = old.to_bits() == new.to_bits() || (old.is_nan() && new.is_nan());
-        assert!(same, "{what}, output {index}: {old:e} became {new:e}");
-    }
-}
-
 #[test]
 fn each_pass_keeps_the_bits() {
     for pass in PIPELINE {
@@ -41,7 +33,7 @@ fn each_pass_keeps_the_bits() {
             let what = format!("{} on random function {seed}", pass.name);
             tables.check(&after).expect("the tables keep their layout");
             assert_eq!(before.outputs, after.outputs);
-            same_bits(&what, &outputs(&before, &tables, &points), &outputs(&after, &tables, &points));
+            assert_same(&[outputs(&before, &tables, &points)], &[outputs(&after, &tables, &points)], &what);
         }
     }
 }
@@ -57,10 +49,10 @@ fn the_pipeline_keeps_the_bits() {
         let after = run_pipeline(before, PIPELINE, &mut |name, function| {
             stages.push(name.to_owned());
             let what = format!("{name} after the passes before it, on random function {seed}");
-            same_bits(&what, &expected, &outputs(function, &tables, &points));
+            assert_same(&[&expected], &[&outputs(function, &tables, &points)], &what);
         });
         assert_eq!(stages, PIPELINE.iter().map(|pass| pass.name).collect::<Vec<_>>());
-        same_bits("the pipeline", &expected, &outputs(&after, &tables, &points));
+        assert_same(&[&expected], &[&outputs(&after, &tables, &points)], "the pipeline");
         finite += expected.iter().filter(|number| number.is_finite()).count();
         total += expected.len();
     }
@@ -74,7 +66,7 @@ fn the_pipeline_keeps_the_bits_of_gradients() {
         let (tables, points) = (random::tables(&before, seed), points(seed));
         let expected = outputs(&before, &tables, &points);
         let after = run_pipeline(before, PIPELINE, &mut |_, _| {});
-        same_bits(&format!("gradient of {seed}"), &expected, &outputs(&after, &tables, &points));
+        assert_same(&[&expected], &[&outputs(&after, &tables, &points)], &format!("gradient of {seed}"));
     }
 }
 
@@ -154,7 +146,7 @@ fn a_chain_of_100000_ops_goes_through_every_pass() {
     let function = b.finish(&[("out".into(), value)]);
     let expected = outputs(&function, &Tables::default(), &[[0.25, -3.0, 0.0]]);
     let function = run_pipeline(function, PIPELINE, &mut |_, function| {
-        same_bits("a chain", &expected, &outputs(function, &Tables::default(), &[[0.25, -3.0, 0.0]]));
+        assert_same(&[&expected], &[&outputs(function, &Tables::default(), &[[0.25, -3.0, 0.0]])], "a chain");
     });
     assert!(max_live(&function) <= 4);
 }

@@ -5,16 +5,13 @@
 
 use jbt_ir::pass::{PIPELINE, run_pipeline};
 use jbt_ir::{Level, parse, verify};
+use jbt_testkit::golden::check_golden;
 
 use crate::{Cranelift, Wide};
 
-#[path = "../../ir/tests/common/golden.rs"]
-#[allow(dead_code, reason = "tests of other crates use more of it")]
-mod files;
-
 #[test]
 fn code() {
-    files::check_golden("code", |input| {
+    check_golden("code", |input| {
         let function = parse(input).unwrap_or_else(|errors| panic!("{input}\n{errors:?}"));
         let legalize = PIPELINE.iter().filter(|pass| pass.name == "legalize");
         let function = run_pipeline(function, legalize, &mut |_, _| {});

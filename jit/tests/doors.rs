@@ -7,11 +7,12 @@ mod common;
 
 use std::sync::Arc;
 
-use common::{assert_same_bits, bind, compile, finish, reference, rows, run, spicy_plane, table, tables};
+use common::{bind, compile, finish, reference, rows, run, spicy_plane, table, tables};
 use jbt_ir::engine::{Backend, BoundProgram, Program, RunError, choose};
 use jbt_ir::limits::{MAX_JIT_FRAME_BYTES, MAX_JIT_LIVE_VALUES, MAX_JIT_VALUES};
 use jbt_ir::{Domain, FoldKind, FunctionBuilder, Level, Rule, Tables, Value, Verified};
 use jbt_jit::{Allocator, BACKENDS, CompileError, Cranelift, Kernel, Pieces, VectorCount, Wide, available};
+use jbt_testkit::bits::assert_same;
 
 /// The sum over rows of `c0 * x`, and `y`.
 fn function() -> Verified {
@@ -82,7 +83,7 @@ fn planes_may_begin_anywhere_and_nothing_beside_them_is_written() {
                 .run(&inputs, &mut [&mut a[start + 1..start + 1 + length], &mut b[..length]])
                 .expect("the planes fit");
             let expected = reference(&function, &three_rows(), &inputs.map(<[f32]>::to_vec));
-            assert_same_bits(
+            assert_same(
                 &expected,
                 &[a[start + 1..start + 1 + length].to_vec(), b[..length].to_vec()],
                 "inside",
@@ -146,7 +147,7 @@ fn one_kernel_runs_over_many_tables() {
         let numbers = |row: usize, _| (row as f32).sin() * 3.0;
         let tables = tables([rows(1, count as usize, &active, &[0, count], numbers)]);
         let expected = reference(&function, &tables, &inputs);
-        assert_same_bits(&expected, &run(&kernel, &Arc::new(tables), &inputs, 2), "other rows");
+        assert_same(&expected, &run(&kernel, &Arc::new(tables), &inputs, 2), "other rows");
     }
 }
 
@@ -163,7 +164,7 @@ fn a_program_runs_on_many_threads_and_outlives_its_first_handle() {
                 for _ in 0..20 {
                     let (mut a, mut b) = (vec![0.0; 480], vec![0.0; 480]);
                     bound.run(&[&inputs[0], &inputs[1]], &mut [&mut a, &mut b]).expect("the planes fit");
-                    assert_same_bits(&expected, &[a, b], "a thread");
+                    assert_same(&expected, &[a, b], "a thread");
                 }
             });
         }
@@ -184,7 +185,7 @@ fn more_planes_than_the_stack_holds_are_fine() {
     let kernel = compile(&function);
     let inputs = [spicy_plane(5, 32)];
     let expected = reference(&function, &Tables::default(), &inputs);
-    assert_same_bits(&expected, &run(&kernel, &Arc::default(), &inputs, 100), "100 planes");
+    assert_same(&expected, &run(&kernel, &Arc::default(), &inputs, 100), "100 planes");
 }
 
 /// A chain: as many values as it says, two of which are alive.
@@ -233,7 +234,7 @@ fn the_limit_of_live_values_compiles_and_one_more_does_not() {
     let inputs = [vec![0.5; 32]];
     let expected = reference(&crowd(MAX_JIT_LIVE_VALUES), &Tables::default(), &inputs);
     let kernel: Arc<dyn Program> = Arc::new(kernel);
-    assert_same_bits(&expected, &run(&kernel, &Arc::default(), &inputs, 1), "a crowd");
+    assert_same(&expected, &run(&kernel, &Arc::default(), &inputs, 1), "a crowd");
     let too_many = crowd(MAX_JIT_LIVE_VALUES + 1);
     let error = Cranelift::STANDARD.kernel(&too_many).expect_err("it is too crowded");
     assert_eq!(error, CompileError::LiveValues { live: MAX_JIT_LIVE_VALUES + 1, limit: MAX_JIT_LIVE_VALUES });
@@ -291,7 +292,7 @@ fn a_frame_of_wide_code_that_is_too_large_is_refused() {
         let inputs = [spicy_plane(6, 32)];
         let expected = reference(&fits, &Tables::default(), &inputs);
         let kernel: Arc<dyn Program> = Arc::new(kernel);
-        assert_same_bits(&expected, &run(&kernel, &Arc::default(), &inputs, 1), "a large frame");
+        assert_same(&expected, &run(&kernel, &Arc::default(), &inputs, 1), "a large frame");
         let two = whole(Some(VectorCount::Two)).kernel(&fits, level);
         assert!(matches!(two, Err(CompileError::Frame { bytes, limit }) if bytes > limit));
         let crowd = crowd(MAX_JIT_FRAME_BYTES / bytes + 50);

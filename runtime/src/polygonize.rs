@@ -281,13 +281,9 @@ impl Polygonize {
 
 #[cfg(test)]
 mod tests {
-    use jbt_text::{Options, parse};
+    use jbt_testkit::scene::tree;
 
     use super::*;
-
-    fn tree(text: &str) -> CheckedTree {
-        parse(text.as_bytes(), &Options::default()).unwrap().check().unwrap()
-    }
 
     #[test]
     fn the_default_region_is_the_support_and_a_little_more() {

@@ -4,7 +4,7 @@
 use jbt::internals::ir::domain::scalar::Scalar;
 use jbt::internals::ir::{Entity, FoldKind, Rule, Tables, interpret};
 use jbt::{Compiler, Engine, Evaluator, Query};
-use jbt_text::{Options, parse};
+use jbt_testkit::scene::tree;
 
 /// A sum and a Ricci blend of points and segments with colours, strengths of both signs and another
 /// attribute.
@@ -88,9 +88,7 @@ fn rows_that_add_nothing_change_no_bit() {
     for operator in ["sum", "blend ricci 2", "blend ricci 3.5", "blend ricci 7"] {
         for _ in 0..10 {
             let text = scene(&mut rng, operator);
-            let model =
-                parse(text.as_bytes(), &Options::default()).unwrap_or_else(|e| panic!("{text}\n{e:?}"));
-            let tree = model.check().expect("a good model");
+            let tree = tree(&text);
             let evaluator =
                 Compiler::for_engine(Engine::Scalar).evaluator(&tree, Query::ALL).expect("it compiles");
             for _ in 0..60 {

@@ -1,14 +1,13 @@
 //! Attributes of any width and kind, from the text to files: what is evaluated, meshed and written is what
 //! the oracle says.
 
+mod common;
+
+use common::answers;
 use jbt::export::{Format, write};
-use jbt::text::{Options, parse};
 use jbt::walk::walk;
 use jbt::{CheckedTree, Compiler, Engine, Fineness, Points, Polygonize, Polygonized, Query};
-
-fn tree(text: &str) -> CheckedTree {
-    parse(text.as_bytes(), &Options::default()).expect("it reads").check().expect("it is a good model")
-}
+use jbt_testkit::scene::tree;
 
 fn meshed(tree: &CheckedTree, resolution: usize) -> Polygonized {
     let polygonize = Polygonize { fineness: Fineness::Resolution(resolution), ..Polygonize::default() };
@@ -43,8 +42,7 @@ fn groups_of_any_width_go_all_the_way() {
         for engine in Engine::ALL {
             let evaluator =
                 Compiler::for_engine(engine).evaluator(&tree, Query::ATTRIBUTES).expect("it compiles");
-            let mut samples = evaluator.samples();
-            evaluator.eval(&points, &mut samples).expect("the buffers fit");
+            let samples = answers(&evaluator, &points);
             let reference = reference.get_or_insert_with(|| samples.clone());
             assert!(reference.planes() == samples.planes(), "{width} reals by {}", engine.name());
         }
@@ -234,8 +232,7 @@ fn a_default_dominates_with_all_of_its_field() {
         for engine in Engine::ALL {
             let evaluator =
                 Compiler::for_engine(engine).evaluator(&tree, Query::ATTRIBUTES).expect("it compiles");
-            let mut samples = evaluator.samples();
-            evaluator.eval(&[[0.0f32; 3]], &mut samples).expect("the buffers fit");
+            let samples = answers(&evaluator, &[[0.0f32; 3]]);
             assert_eq!(samples.attribute("tag").expect("asked for")[0][0], 5.0, "{engine}: {far}");
         }
     }

@@ -3,9 +3,12 @@
 //! `JBT_CONTOUR_MODELS` says how many random models are tried.
 #![allow(clippy::print_stdout, reason = "a test may show its figures")]
 
+mod common;
+
 use std::collections::HashSet;
 use std::f64::consts::PI;
 
+use common::answers;
 use fastrand::Rng;
 use jbt::build::{Axis, cuboid, point, segment, x, y, z};
 use jbt::contour::{
@@ -132,8 +135,7 @@ fn oriented(tree: &jbt::CheckedTree, contour: &Contour) -> [usize; 2] {
             }
         }
     }
-    let mut samples = evaluator.samples();
-    evaluator.eval(&points, &mut samples).expect("it evaluates");
+    let samples = answers(&evaluator, &points);
     let iso = tree.iso() as f32;
     let right = samples.field().chunks_exact(2).filter(|pair| pair[0] >= iso && pair[1] < iso).count();
     [right, points.len() / 2]
@@ -390,8 +392,7 @@ fn images_have_the_bits_of_the_field() {
             })
             .collect();
         let evaluator = Evaluator::compile(&tree, Query::FIELD).unwrap();
-        let mut samples = evaluator.samples();
-        evaluator.eval(&points, &mut samples).unwrap();
+        let samples = answers(&evaluator, &points);
         let bits = |values: &[f32]| values.iter().map(|value| value.to_bits()).collect::<Vec<u32>>();
         assert_eq!(bits(&field.values), bits(samples.field()), "model {seed}");
         let inside = slicer.inside(&rectangle, &detail).run().unwrap();
@@ -553,8 +554,7 @@ fn a_program_of_instructions_is_drawn_as_its_field_says() {
         })
         .collect();
     let evaluator = Compiler::for_engine(Engine::Lanes).evaluator(&tree, Query::FIELD).expect("it compiles");
-    let mut samples = evaluator.samples();
-    evaluator.eval(&points, &mut samples).expect("it evaluates");
+    let samples = answers(&evaluator, &points);
     let expected: Vec<u8> = samples.field().iter().map(|&f| if f >= 0.5 { 255 } else { 0 }).collect();
     assert!(image.values == expected, "every pixel is what its point says");
 }

@@ -14,13 +14,17 @@
 //! prints the model.
 #![allow(clippy::print_stdout, reason = "a test may show its figures")]
 
+mod common;
+
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use common::answers;
 use jbt::{Combinator, Compiler, Engine, Evaluator, Level, Model, Points, Query, Samples, Update};
 use jbt_model::check::CheckedTree;
 use jbt_model::kind::NodeKind;
 use jbt_model::walk::{walk, walk_gradient};
 use jbt_model::warp::Warp;
+use jbt_testkit::bits::same;
 use jbt_testkit::points::{HOSTILE, spicy};
 use jbt_testkit::random::Random;
 use jbt_testkit::scene::count;
@@ -163,8 +167,7 @@ fn compare_engines(what: &str, model: &Model, all: &[Vec<Evaluator>], points: &P
     for (query, engines) in Query::EVERY.iter().zip(all) {
         let mut reference: Option<Samples> = None;
         for evaluator in engines {
-            let mut samples = evaluator.samples();
-            evaluator.eval(points, &mut samples).expect("the buffers fit");
+            let samples = answers(evaluator, points);
             let Some(reference) = &reference else {
                 reference = Some(samples);
                 continue;
@@ -201,10 +204,9 @@ fn compare_engines(what: &str, model: &Model, all: &[Vec<Evaluator>], points: &P
 
 fn same_bits(what: &str, engine: &str, model: &Model, points: &Points, old: &[f32], new: &[f32]) {
     for (index, (old, new)) in old.iter().zip(new).enumerate() {
-        let same = old.to_bits() == new.to_bits() || (old.is_nan() && new.is_nan());
         let point = points.get(index);
         assert!(
-            same,
+            same(*old, *new),
             "{what}: {old:e} became {new:e} by {engine}, point {index} {point:?} of {}\n{}",
             points.len(),
             print(model)

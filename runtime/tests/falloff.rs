@@ -1,11 +1,15 @@
 //! Falloffs through the compiler: gradients against the oracle, what happens at the skeleton, at the rim and
 //! beyond it, parameters, and that pruning changes nothing.
 
+mod common;
+
+use common::answers;
 use jbt::build::{Edge, Term, arctan, blanc, blinn, degree, inverse_power, param, point, segment};
 use jbt::region::Divisible;
 use jbt::walk::{walk, walk_gradient};
 use jbt::{Box3, Compiler, Engine, Falloff, Model, Points, Pruner, Query, Samples, Tree, Update};
 use jbt_model::written::WrittenFalloff;
+use jbt_testkit::scene;
 
 /// Every falloff, those with parameters with several.
 fn falloffs() -> Vec<WrittenFalloff> {
@@ -35,9 +39,7 @@ fn falloffs() -> Vec<WrittenFalloff> {
 fn evaluate(tree: &Tree, points: &Points, engine: Engine) -> Samples {
     let tree = Model::new(tree.clone()).check().expect("a good model");
     let evaluator = Compiler::for_engine(engine).evaluator(&tree, Query::GRADIENT).expect("it compiles");
-    let mut samples = evaluator.samples();
-    evaluator.eval(points, &mut samples).expect("the buffers fit");
-    samples
+    answers(&evaluator, points)
 }
 
 fn gradient(samples: &Samples, index: usize) -> [f64; 3] {
@@ -168,8 +170,7 @@ fn a_falloff_may_be_a_formula() {
         assert!(checked.support().is_finite());
         let compiler = Compiler::new();
         let evaluator = compiler.evaluator(&checked, Query::GRADIENT).expect("it compiles");
-        let mut all = evaluator.samples();
-        evaluator.eval(&points, &mut all).expect("the buffers fit");
+        let all = answers(&evaluator, &points);
         let pruner = Pruner::new(&compiler, &checked).expect("it compiles");
         let mut beyond = 0;
         for index in 0..points.len() {
@@ -220,8 +221,7 @@ fn parameters_of_falloffs_are_numbers() {
         for value in [2.0, 1.0, 3.0, 2.7, 8.0] {
             let set = tree.with_parameters(&[("t", value)]).unwrap();
             assert_eq!(evaluator.update(&set).unwrap(), Update::Numbers, "{falloff:?}");
-            let mut samples = evaluator.samples();
-            evaluator.eval(&points, &mut samples).unwrap();
+            let samples = answers(&evaluator, &points);
             for index in 0..points.len() {
                 let expected = walk(&set, points.get(index).map(f64::from)).field;
                 let found = f64::from(samples.field()[index]);
@@ -244,7 +244,7 @@ fn a_surface_radius_is_where_the_surface_is() {
         "blanc { hardness 3 }",
     ] {
         let text = format!("jbt 1 param size = 0.5 point {{ surface_radius size falloff {falloff} }}");
-        let tree = jbt::text::parse(text.as_bytes(), &Default::default()).unwrap().check().unwrap();
+        let tree = scene::tree(&text);
         for size in [0.5, 2.0] {
             let field = walk(&tree.with_parameters(&[("size", size)]).unwrap(), [0.0, size, 0.0]).field;
             assert!((field - 0.5).abs() < 1e-12, "{falloff}: {field}");
@@ -266,7 +266,7 @@ fn bad_parameters_are_refused() {
         ("blanc { hardness -0.1 }", "the `hardness` of the blanc falloff is -0.1"),
     ] {
         let text = format!("jbt 1 point {{ radius 1 falloff {falloff} }}");
-        let errors = jbt::text::parse(text.as_bytes(), &Default::default()).unwrap().check().unwrap_err();
+        let errors = scene::model(&text).check().unwrap_err();
         assert_eq!(errors.len(), 1, "{falloff}");
         assert_eq!(errors[0].message, message);
     }

@@ -1,39 +1,29 @@
 //! Gradients are finite at all points with finite coordinates: they are 0 where a field stands still,
 //! saturate at 2^100, and have the bits that they had where nothing overflows, with the ops that they took.
 
+mod common;
+
 use fastrand::Rng;
 use jbt::region::Divisible;
-use jbt::{Box3, CheckedTree, Compiler, Engine, Points, Pruner, Query, Samples, text};
+use jbt::{Box3, CheckedTree, Compiler, Engine, Points, Pruner, Query, Samples};
+use jbt_testkit::bits::bits;
 use jbt_testkit::points::HOSTILE;
+use jbt_testkit::scene::tree;
 
 /// Beyond this gradients saturate: 2^100.
 const LARGEST: f32 = (1u128 << 100) as f32;
-
-fn tree(root: &str) -> CheckedTree {
-    let text = format!("jbt 1 {root}");
-    text::parse(text.as_bytes(), &text::Options::default())
-        .expect("a good text")
-        .check()
-        .expect("a good model")
-}
 
 /// Field and gradient, on which all engines agree.
 fn answers(tree: &CheckedTree, points: &Points) -> Samples {
     let answers = Engine::ALL.map(|engine| {
         let evaluator = Compiler::for_engine(engine).evaluator(tree, Query::GRADIENT).expect("it compiles");
-        let mut samples = evaluator.samples();
-        evaluator.eval(points, &mut samples).expect("the buffers fit");
-        samples
+        common::answers(&evaluator, points)
     });
     let [scalar, others @ ..] = answers;
     for other in &others {
-        assert_eq!(bits(&scalar), bits(other));
+        assert_eq!(bits(scalar.planes()), bits(other.planes()));
     }
     scalar
-}
-
-fn bits(samples: &Samples) -> Vec<Vec<u32>> {
-    samples.planes().iter().map(|plane| plane.iter().map(|x| x.to_bits()).collect()).collect()
 }
 
 /// Field and gradient at a point.
@@ -132,15 +122,14 @@ fn pruned_or_not_hostile_points_have_the_same_bits() {
                 })
             })
             .collect();
-        let mut samples = evaluator.samples();
-        evaluator.eval(&points, &mut samples).expect("the buffers fit");
+        let samples = common::answers(&evaluator, &points);
         assert!(samples.planes().iter().flatten().all(|x| x.is_finite()));
         let mut planes = vec![vec![f32::NAN; points.len()]; samples.planes().len()];
         let mut buffers: Vec<&mut [f32]> = planes.iter_mut().map(Vec::as_mut_slice).collect();
         evaluator.eval_region(&region, points.planes(), &mut buffers).expect("the buffers fit");
         let found: Vec<Vec<u32>> =
             planes.iter().map(|plane| plane.iter().map(|x| x.to_bits()).collect()).collect();
-        assert_eq!(found, bits(&samples), "{:?}", region.bounds());
+        assert_eq!(found, bits(samples.planes()), "{:?}", region.bounds());
         let one = rng.usize(0..points.len());
         let probe = evaluator.probe(points.get(one));
         assert_eq!(probe.gradient(), samples.gradient().map(|planes| planes.map(|plane| plane[one])));

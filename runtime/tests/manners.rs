@@ -16,8 +16,9 @@ use jbt::tree::SetOperation;
 use jbt::tree::operators::{Difference, Intersection, Sum, SymmetricDifference, Union};
 use jbt::{
     CancelToken, CheckedTree, Combinator, CompileError, Compiler, Diagnostics, Engine, Evaluator, Fineness,
-    Model, Points, Polygonize, PolygonizeError, Query, Render, Samples, Scene, SceneFormat, Solid, Tree,
+    Model, Points, Polygonize, PolygonizeError, Query, Render, Scene, SceneFormat, Solid, Tree,
 };
+use jbt_testkit::bits::bits;
 
 const WRONG: &[u8] = b"jbt 1\nsum {\n  point { radius -2 }\n  sphere { sphere_radius 1 radius 0 }\n}\n";
 
@@ -162,10 +163,6 @@ fn model() -> CheckedTree {
     Model::new(cut).check().unwrap()
 }
 
-fn bits(samples: &Samples) -> Vec<Vec<u32>> {
-    samples.planes().iter().map(|plane| plane.iter().map(|x| x.to_bits()).collect()).collect()
-}
-
 /// Points of the model, and one that is no place.
 fn places(count: usize) -> Vec<[f32; 3]> {
     let mut rng = fastrand::Rng::with_seed(16);
@@ -187,7 +184,7 @@ fn points_are_evaluated_as_they_are() {
             let before = evaluator.counters().points;
             evaluator.eval(&places[..], &mut rows).unwrap();
             assert_eq!(evaluator.counters().points, before + count as u64);
-            assert_eq!(bits(&planes), bits(&rows), "{engine}, {count} points");
+            assert_eq!(bits(planes.planes()), bits(rows.planes()), "{engine}, {count} points");
         }
     }
 }
@@ -204,9 +201,17 @@ fn threads_give_the_same_bits() {
             for threads in [1, 2, 5] {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
                 pool.install(|| evaluator.par_eval(&rows, &mut parallel)).unwrap();
-                assert_eq!(bits(&serial), bits(&parallel), "{engine}, {count} points, {threads} threads");
+                assert_eq!(
+                    bits(serial.planes()),
+                    bits(parallel.planes()),
+                    "{engine}, {count} points, {threads} threads"
+                );
                 pool.install(|| evaluator.par_eval(&planes, &mut parallel)).unwrap();
-                assert_eq!(bits(&serial), bits(&parallel), "{engine}, {count} planes, {threads} threads");
+                assert_eq!(
+                    bits(serial.planes()),
+                    bits(parallel.planes()),
+                    "{engine}, {count} planes, {threads} threads"
+                );
             }
         }
         let other = Compiler::for_engine(engine).evaluator(&model(), Query::FIELD).unwrap();
@@ -299,9 +304,9 @@ fn glam_points_are_points() {
     let (mut ours, mut samples) = (evaluator.samples(), evaluator.samples());
     evaluator.eval(&places, &mut ours).unwrap();
     evaluator.eval(&theirs, &mut samples).unwrap();
-    assert_eq!(bits(&ours), bits(&samples));
+    assert_eq!(bits(ours.planes()), bits(samples.planes()));
     evaluator.par_eval(&Points::from(&theirs), &mut samples).unwrap();
-    assert_eq!(bits(&ours), bits(&samples));
+    assert_eq!(bits(ours.planes()), bits(samples.planes()));
     assert_eq!(point(glam::Vec3::X, 1), point([1, 0, 0], 1));
 }
 

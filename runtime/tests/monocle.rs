@@ -4,16 +4,15 @@
 #[path = "../examples/monocle/solid.rs"]
 mod solid;
 
-use jbt::text::{Options, parse, print};
 use jbt::{Evaluator, Model, Query};
 use jbt_model::traverse::Visit;
 use jbt_model::walk::walk;
+use jbt_testkit::scene::{self, assert_reads_back};
 
 use solid::{Material, model, monocle};
 
 fn written() -> Model {
-    let text = include_bytes!("../../examples/monocle.jbt");
-    parse(text, &Options::default()).expect("the example reads")
+    scene::model(include_str!("../../examples/monocle.jbt"))
 }
 
 #[test]
@@ -38,8 +37,7 @@ fn nodes_and_paths_are_those_of_the_listing() {
 #[test]
 fn what_is_printed_reads_back() {
     let model = model(monocle());
-    let again = parse(print(&model).as_bytes(), &Options::default()).expect("it reads");
-    assert_eq!(again, model);
+    let again = assert_reads_back(&model);
     // The ball is written once.
     assert_eq!(again.root.prefix(Visit::Nodes).count(), 9);
 }

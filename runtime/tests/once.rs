@@ -1,30 +1,17 @@
 //! One distance for each instance and point, whatever is asked.
 
+mod common;
+
+use common::answers;
 use jbt::statistics::leaf_uses;
 use jbt::{Compiler, Engine, Query};
 use jbt_model::check::CheckedTree;
-use jbt_text as text;
+use jbt_testkit::scene;
 
 /// Every scene of the examples folder, and one that shares what none of them does.
 fn examples() -> Vec<(String, CheckedTree)> {
-    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples");
-    let mut scenes: Vec<_> = std::fs::read_dir(folder)
-        .expect("the project has examples")
-        .map(|entry| entry.expect("a readable folder").path())
-        .filter(|path| path.extension().is_some_and(|extension| extension == "jbt"))
-        .map(|path| {
-            let name = path.file_name().expect("a file").to_string_lossy().into_owned();
-            let bytes = std::fs::read(&path).expect("a readable file");
-            let model = text::parse(&bytes, &text::Options::default()).expect("examples are good models");
-            (name, model.check().expect("examples are good models"))
-        })
-        .collect();
-    scenes.sort_by(|a, b| a.0.cmp(&b.0));
-    for (name, text) in COLOURED {
-        let model = text::parse(text.as_bytes(), &text::Options::default()).expect("it reads");
-        scenes.push((name.to_owned(), model.check().expect("it is a good model")));
-    }
-    scenes
+    let coloured = COLOURED.map(|(name, text)| (name.to_owned(), text.to_owned()));
+    scene::examples().into_iter().chain(coloured).map(|(name, text)| (name, scene::tree(&text))).collect()
 }
 
 /// Parts at one place with several colours: their fields are shared, their attributes are not.
@@ -63,8 +50,7 @@ fn coloured_parts_have_the_values_of_the_oracle() {
         let evaluator =
             Compiler::for_engine(Engine::Scalar).evaluator(tree, Query::ALL).expect("it compiles");
         let points: jbt::Points = (0..300).map(|_| std::array::from_fn(|_| 2.0 * rng.f32() - 1.0)).collect();
-        let mut samples = evaluator.samples();
-        evaluator.eval(&points, &mut samples).expect("the buffers fit");
+        let samples = answers(&evaluator, &points);
         let colors = samples.attribute("color").expect("it has colours");
         let mut compared = 0;
         for index in 0..points.len() {

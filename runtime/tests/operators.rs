@@ -1,8 +1,12 @@
 //! What is often wrong with operators in systems of this kind, on every engine: lanes that share what the
 //! first of them decides, and models that end nowhere.
 
+mod common;
+
+use common::answers;
 use jbt::build::point;
 use jbt::{Compiler, Engine, Model, Points, Polygonize, PolygonizeError, Query, SetOperation, Tree};
+use jbt_testkit::scene::tree;
 
 /// Eight balls in a row, each red and blue in parts of its own.
 fn balls(operator: impl Fn([Tree; 2]) -> Tree) -> Tree {
@@ -30,8 +34,7 @@ fn lanes_do_not_share_the_colour_of_the_first() {
         let points: Points = (0..8).map(|i| [3.0 * i as f32, 0.1, 0.0]).collect();
         for engine in Engine::ALL {
             let evaluator = Compiler::for_engine(engine).evaluator(&tree, Query::ALL).unwrap();
-            let mut samples = evaluator.samples();
-            evaluator.eval(&points, &mut samples).unwrap();
+            let samples = answers(&evaluator, &points);
             let red = &samples.attribute("color").unwrap()[0];
             for (i, red) in red.iter().enumerate() {
                 let expected = jbt::walk::walk(&tree, points.get(i).map(f64::from)).attributes[0][0];
@@ -63,8 +66,7 @@ fn children_of_a_formula_that_share_a_field_have_weights_of_their_own() {
     let tree = Model::new(Tree::expression(2.0 * red.field() - 0.5 * blue.field())).check().unwrap();
     for engine in Engine::ALL {
         let evaluator = Compiler::for_engine(engine).evaluator(&tree, Query::ALL).unwrap();
-        let mut samples = evaluator.samples();
-        evaluator.eval(&[[0.3, 0.2, 0.1]], &mut samples).unwrap();
+        let samples = answers(&evaluator, &[[0.3, 0.2, 0.1]]);
         let color = samples.attribute("color").unwrap();
         assert_eq!([color[0][0], color[1][0], color[2][0]], [1.0, 0.0, 0.0], "{}", engine.name());
     }
@@ -92,15 +94,13 @@ fn operands_that_leave_all_bounds_give_the_same_field_to_every_query() {
             format!("{operator} {{ {all} {ball} }}"),
         ];
         for scene in scenes {
-            let tree = jbt::text::parse(format!("jbt 1\n{scene}").as_bytes(), &Default::default()).unwrap();
-            let tree = tree.check().unwrap();
+            let tree = tree(&scene);
             let special = [0.0, -0.0, 1.0, -1.0, 0.3, -7.0, 1e30, -1e30, f32::INFINITY, f32::NAN];
             let points: Points =
                 special.iter().flat_map(|&x| special.iter().map(move |&y| [x, y, 0.5])).collect();
             let field = |engine, query| {
                 let evaluator = Compiler::for_engine(engine).evaluator(&tree, query).unwrap();
-                let mut samples = evaluator.samples();
-                evaluator.eval(&points, &mut samples).unwrap();
+                let samples = answers(&evaluator, &points);
                 samples.field().iter().map(|field| field.to_bits()).collect::<Vec<u32>>()
             };
             let expected = field(Engine::Scalar, Query::ALL);

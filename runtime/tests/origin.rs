@@ -9,6 +9,9 @@
 //!
 //! `JBT_ORIGIN_SHAPES` sets the number of random shapes.
 
+mod common;
+
+use common::answers;
 use fastrand::Rng;
 use jbt::contour::{Detail, Slicer};
 use jbt::divide::Edit;
@@ -24,6 +27,7 @@ use jbt::{
     Polygonized, Pruner, Query, Ray, Samples, Tracer, Tree,
 };
 use jbt_model::walk::{walk, walk_gradient};
+use jbt_testkit::bits::bits;
 use jbt_testkit::random::Random;
 use jbt_testkit::scene::{count, model, tree};
 use rayon::prelude::*;
@@ -39,10 +43,6 @@ fn moved(node: &str, [x, y, z]: [f64; 3]) -> String {
 fn mesh(tree: &CheckedTree, fineness: Fineness) -> Polygonized {
     let polygonize = Polygonize { fineness, verify: true, ..Polygonize::default() };
     polygonize.mesh(&Compiler::new(), tree).run().expect("it has a surface")
-}
-
-fn bits(samples: &Samples) -> Vec<Vec<u32>> {
-    samples.planes().iter().map(|plane| plane.iter().map(|x| x.to_bits()).collect()).collect()
 }
 
 /// Models of which each shows something else that has a place.
@@ -91,9 +91,8 @@ fn moved_by_a_multiple_of_a_power_of_two_everything_has_the_bits_of_home() {
             let answers = [&home, &far].map(|tree| {
                 let evaluator =
                     Compiler::for_engine(engine).evaluator(tree, Query::ALL).expect("it compiles");
-                let mut samples = evaluator.samples();
-                evaluator.eval(&points(&evaluator), &mut samples).expect("the buffers fit");
-                bits(&samples)
+                let samples = answers(&evaluator, &points(&evaluator));
+                bits(samples.planes())
             });
             assert_eq!(answers[0], answers[1], "{name} on {}", engine.name());
         }
@@ -201,8 +200,7 @@ fn fields_far_away_are_those_of_the_oracle() {
         let far = tree(&format!("jbt 1 {}", moved(node, FAR)));
         let evaluator = Evaluator::compile(&far, Query::FIELD).expect("it compiles");
         let points = around(&far, &mut Rng::with_seed(3), 2000);
-        let mut samples = evaluator.samples();
-        evaluator.eval(&points, &mut samples).expect("the buffers fit");
+        let samples = answers(&evaluator, &points);
         for (index, field) in samples.field().iter().enumerate() {
             let p = points.world(index);
             let oracle = walk(&far, p);
@@ -236,9 +234,7 @@ fn try_shape(shape: u64) -> usize {
     let home = model.check().expect("a random model is a good model");
     let field = |tree: &CheckedTree, points: &Points| {
         let evaluator = Compiler::for_engine(Engine::Lanes).evaluator(tree, Query::ALL).expect("it compiles");
-        let mut samples = evaluator.samples();
-        evaluator.eval(points, &mut samples).expect("the buffers fit");
-        samples
+        answers(&evaluator, points)
     };
     // The same place of the model, but for a rounding of the coordinates.
     let mut near = Points::new();
@@ -301,8 +297,7 @@ fn boxes_far_away_are_where_they_are_said_to_be() {
                 }
             }
         }
-        let mut samples = evaluator.samples();
-        evaluator.eval(&points, &mut samples).expect("the buffers fit");
+        let samples = answers(&evaluator, &points);
         let inside: Vec<bool> = samples.field().iter().map(|&field| field > 0.0).collect();
         assert_eq!(inside, expected);
         // The rows that matter around each point give its bits.
@@ -335,8 +330,7 @@ fn edits_leave_the_origin() {
     assert_eq!(evaluator.origin(), first.origin());
     let mut points = evaluator.points();
     points.push_world([2e5 + 0.5, -1e5, 3.3e4]);
-    let mut samples = evaluator.samples();
-    evaluator.eval(&points, &mut samples).expect("the buffers fit");
+    let samples = answers(&evaluator, &points);
     assert_eq!(samples.field()[0], 0.5);
 
     let compiler = Compiler::new();

@@ -1,10 +1,14 @@
 //! Parameters at run time: setting one writes numbers and compiles nothing, whatever the value, and gives
 //! what the model with that number written in gives.
 
+mod common;
+
+use common::answers;
 use jbt::build::{Axis, Number, param, point};
 use jbt::{CheckedTree, Compiler, Engine, Evaluator, Model, Points, Query, Samples, Update};
 use jbt_model::walk::walk;
-use jbt_text::{Options, parse, print};
+use jbt_testkit::scene::assert_reads_back;
+use jbt_text::{Options, parse};
 
 /// Models with the parameter `p`, each in another place that numbers can have.
 const SWEPT: [(&str, f64, f64, &str); 27] = [
@@ -149,23 +153,14 @@ fn text(body: &str, head: &str) -> String {
 
 fn tree(text: &str, set: Option<f64>) -> CheckedTree {
     let parameters = set.map(|value| ("p".to_owned(), value)).into_iter().collect();
-    let model = parse(text.as_bytes(), &Options { parameters });
-    model
-        .unwrap_or_else(|errors| panic!("{text}\n{errors:?}"))
-        .check()
-        .unwrap_or_else(|e| panic!("{text}\n{e:?}"))
+    let model = parse(text.as_bytes(), &Options { parameters }).and_then(|model| model.check());
+    model.unwrap_or_else(|errors| panic!("{text}\n{errors:?}"))
 }
 
 fn points() -> Points {
     let mut rng = fastrand::Rng::with_seed(7);
     let mut at = || std::array::from_fn(|_| rng.f32() * 3.0 - 1.5);
     std::iter::once([0.0; 3]).chain((0..24).map(|_| at())).collect()
-}
-
-fn answers(evaluator: &Evaluator, points: &Points) -> Samples {
-    let mut samples = evaluator.samples();
-    evaluator.eval(points, &mut samples).unwrap();
-    samples
 }
 
 fn same_bits(a: &Samples, b: &Samples) -> bool {
@@ -265,7 +260,7 @@ fn parameters_of_rust() {
         .strength(bulge.sqrt());
     let model = Model::new(body);
     assert_eq!(model.parameters.len(), 1);
-    assert_eq!(parse(print(&model).as_bytes(), &Options::default()).unwrap(), model, "{}", print(&model));
+    assert_reads_back(&model);
     let start = model.check().unwrap();
     let mut evaluator = Evaluator::compile(&start, Query::ALL).unwrap();
     for value in [0.3, 1.0, 2.0] {

@@ -2,6 +2,9 @@
 //! and colour.
 #![allow(clippy::print_stdout, reason = "a test may show its figures")]
 
+mod common;
+
+use common::answers;
 use jbt::{Compiler, Engine, Points, Query};
 use jbt_testkit::samples;
 use jbt_text::import;
@@ -45,8 +48,7 @@ fn every_scene_has_the_values_that_others_computed() {
         for engine in Engine::ALL {
             let evaluator =
                 Compiler::for_engine(engine).evaluator(&tree, Query::ALL).expect("the scene compiles");
-            let mut samples = evaluator.samples();
-            evaluator.eval(&points, &mut samples).expect("the buffers fit");
+            let samples = answers(&evaluator, &points);
             let gradient = samples.gradient().expect("asked for");
             let color = samples.attribute("color").expect("asked for");
             let mut worst = [0.0f64; 3];

@@ -1,7 +1,12 @@
 //! Points with coordinates that are not finite: an infinity is the largest number, a NaN has no answer; on
 //! all engines.
 
-use jbt::{CheckedTree, Compiler, Engine, Points, Pruner, Query, Samples, text};
+mod common;
+
+use common::answers;
+use jbt::{CheckedTree, Compiler, Engine, Points, Pruner, Query};
+use jbt_testkit::bits::bits;
+use jbt_testkit::scene;
 
 const MODELS: [&str; 4] = [
     // In its pose a NaN would be in the disc.
@@ -12,14 +17,7 @@ const MODELS: [&str; 4] = [
 ];
 
 fn tree(root: &str) -> CheckedTree {
-    let text =
-        format!("jbt 1\nattribute rough 2 default (0.25 -0)\nattribute kind 1 default 3 dominant\n{root}");
-    let model = text::parse(text.as_bytes(), &text::Options::default()).expect("a good text");
-    model.check().expect("a good model")
-}
-
-fn bits(samples: &Samples) -> Vec<Vec<u32>> {
-    samples.planes().iter().map(|plane| plane.iter().map(|x| x.to_bits()).collect()).collect()
+    scene::tree(&format!("attribute rough 2 default (0.25 -0)\nattribute kind 1 default 3 dominant\n{root}"))
 }
 
 /// Points with these numbers in one place, ordinary ones among them.
@@ -40,8 +38,7 @@ fn a_point_with_a_nan_has_no_answer() {
         for engine in Engine::ALL {
             let evaluator = Compiler::for_engine(engine).evaluator(&tree, Query::ALL).expect("it compiles");
             let points: Points = with(&[f32::NAN, -f32::NAN]).into_iter().collect();
-            let mut samples = evaluator.samples();
-            evaluator.eval(&points, &mut samples).expect("the buffers fit");
+            let samples = answers(&evaluator, &points);
             for index in 0..points.len() {
                 let nowhere = points.get(index).iter().any(|x| x.is_nan());
                 let field = samples.field()[index];
@@ -70,9 +67,8 @@ fn an_infinity_is_the_largest_number() {
         for engine in Engine::ALL {
             let evaluator = Compiler::for_engine(engine).evaluator(&tree, Query::ALL).expect("it compiles");
             let answers = |points: Vec<[f32; 3]>| {
-                let mut samples = evaluator.samples();
-                evaluator.eval(&points, &mut samples).expect("the buffers fit");
-                bits(&samples)
+                let samples = answers(&evaluator, &points);
+                bits(samples.planes())
             };
             let infinite = answers(with(&[f32::INFINITY, f32::NEG_INFINITY]));
             assert_eq!(infinite, answers(with(&[f32::MAX, f32::MIN])), "{model}, {}", engine.name());
@@ -86,15 +82,14 @@ fn regions_and_probes_answer_alike() {
     let compiler = Compiler::new();
     let evaluator = compiler.evaluator(&tree, Query::ALL).expect("it compiles");
     let points: Points = with(&[f32::NAN, f32::INFINITY]).into_iter().collect();
-    let mut samples = evaluator.samples();
-    evaluator.eval(&points, &mut samples).expect("the buffers fit");
+    let samples = answers(&evaluator, &points);
     let everywhere = Pruner::new(&compiler, &tree).expect("it compiles").everywhere();
     let mut planes = vec![vec![0.0; points.len()]; samples.planes().len()];
     let mut buffers: Vec<&mut [f32]> = planes.iter_mut().map(Vec::as_mut_slice).collect();
     evaluator.eval_region(&everywhere, points.planes(), &mut buffers).expect("the buffers fit");
     let found: Vec<Vec<u32>> =
         planes.iter().map(|plane| plane.iter().map(|x| x.to_bits()).collect()).collect();
-    assert_eq!(found, bits(&samples));
+    assert_eq!(found, bits(samples.planes()));
     let probe = evaluator.probe([0.0, f32::NAN, 0.0]);
     assert!(probe.value().is_nan());
     assert_eq!((probe.normal(), probe.color()), (None, Some([1.0; 3])));

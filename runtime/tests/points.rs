@@ -1,11 +1,15 @@
 //! Skeletons of any number of points: many of them are one fold in a fold, pieces out of reach are left out,
 //! and gradients have no facets.
 
+mod common;
+
+use common::answers;
 use fastrand::Rng;
 use jbt::build::{bezier, catmull_rom, polygon, polyline};
 use jbt::divide::Edit;
 use jbt::region::Divisible;
-use jbt::{Box3, Compiler, Engine, Evaluator, Model, Points, Pruner, Query, Samples, Tree, Update};
+use jbt::{Box3, Compiler, Engine, Model, Points, Pruner, Query, Tree, Update};
+use jbt_testkit::bits::bits;
 
 fn positions(rng: &mut Rng, count: usize, around: [f64; 3], size: f64) -> Vec<[f64; 3]> {
     (0..count).map(|_| around.map(|x| x + size * (2.0 * rng.f64() - 1.0))).collect()
@@ -28,16 +32,6 @@ fn points(seed: u64, count: usize, size: f32) -> Points {
     (0..count).map(|_| [0; 3].map(|_: i32| size * (2.0 * rng.f32() - 1.0))).collect()
 }
 
-fn answers(evaluator: &Evaluator, points: &Points) -> Samples {
-    let mut samples = evaluator.samples();
-    evaluator.eval(points, &mut samples).expect("the buffers fit");
-    samples
-}
-
-fn bits(samples: &Samples) -> Vec<Vec<u32>> {
-    samples.planes().iter().map(|plane| plane.iter().map(|x| x.to_bits()).collect()).collect()
-}
-
 #[test]
 fn a_thousand_lines_are_one_fold_in_a_fold() {
     let tree = lines(1000, 1).check().expect("a good model");
@@ -56,7 +50,7 @@ fn a_thousand_lines_are_one_fold_in_a_fold() {
         answers(&evaluator, &points)
     });
     for samples in &found[1..] {
-        assert_eq!(bits(&found[0]), bits(samples));
+        assert_eq!(bits(found[0].planes()), bits(samples.planes()));
     }
 }
 
@@ -103,7 +97,7 @@ fn pieces_out_of_reach_are_left_out() {
             evaluator.eval_region(&region, inside.planes(), &mut buffers).expect("the buffers fit");
             let found: Vec<Vec<u32>> =
                 planes.iter().map(|plane| plane.iter().map(|x| x.to_bits()).collect()).collect();
-            assert_eq!(found, bits(&expected), "model {index} in {bounds:?}");
+            assert_eq!(found, bits(expected.planes()), "model {index} in {bounds:?}");
             kept += region.rows();
             all += pruner.everywhere().rows();
         }

@@ -1,15 +1,11 @@
 //! Meshes of models: vertices are on the surface, also at creases, and every engine makes the same mesh.
 
-use jbt::solid::RegionError;
-use jbt::text::{Options, parse};
-use jbt::{
-    Box3, CheckedTree, Compiler, Engine, Evaluator, Fineness, Points, Polygonize, PolygonizeError, Query,
-    Solid,
-};
+mod common;
 
-fn tree(text: &str) -> CheckedTree {
-    parse(text.as_bytes(), &Options::default()).expect("it reads").check().expect("it is a good model")
-}
+use common::answers;
+use jbt::solid::RegionError;
+use jbt::{Box3, Compiler, Engine, Evaluator, Fineness, Points, Polygonize, PolygonizeError, Query, Solid};
+use jbt_testkit::scene::tree;
 
 /// A ball without a thin capsule: the gradient jumps where the capsule leaves the ball.
 const CREASE: &str = "jbt 1 difference {
@@ -26,8 +22,7 @@ fn vertices_at_creases_are_on_the_surface() {
         let made = polygonize.mesh(&Compiler::new(), &tree).run().expect("it has a surface");
         assert!(made.report.closed);
         let points: Points = made.mesh.positions.iter().copied().collect();
-        let mut samples = evaluator.samples();
-        evaluator.eval(&points, &mut samples).expect("the buffers fit");
+        let samples = answers(&evaluator, &points);
         let gradient = samples.gradient().expect("asked for");
         let mut worst = 0.0f32;
         for (index, field) in samples.field().iter().enumerate() {

@@ -9,14 +9,18 @@
 //! the model.
 #![allow(clippy::print_stdout, reason = "a test may show its figures")]
 
+mod common;
+
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use common::answers;
 use fastrand::Rng;
 use jbt::divide::Edit;
 use jbt::prune::Region;
 use jbt::region::{ANYTHING, Divisible};
 use jbt::{Box3, Compiler, Engine, Evaluator, Model, Points, Pruner, Query, Update};
 use jbt_model::tree::Tree;
+use jbt_testkit::bits::same;
 use jbt_testkit::random::Random;
 use jbt_testkit::scene::{count, model, tree};
 use jbt_text::print;
@@ -182,15 +186,14 @@ fn formulas_that_do_not_decide_are_left_out() {
 }
 
 fn compare(what: &str, model: &Model, evaluator: &Evaluator, region: &Region, points: &Points) {
-    let mut all = evaluator.samples();
-    evaluator.eval(points, &mut all).expect("the buffers fit");
+    let all = answers(evaluator, points);
     let mut planes = vec![vec![f32::NAN; points.len()]; evaluator.layout().names().len()];
     let mut selected: Vec<&mut [f32]> = planes.iter_mut().map(Vec::as_mut_slice).collect();
     evaluator.eval_region(region, points.planes(), &mut selected).expect("the buffers fit");
     for ((name, all), selected) in evaluator.layout().names().iter().zip(all.planes()).zip(&planes) {
         for (index, (all, selected)) in all.iter().zip(selected).enumerate() {
             assert!(
-                all.to_bits() == selected.to_bits() || (all.is_nan() && selected.is_nan()),
+                same(*all, *selected),
                 "{what}: {name} is {all:e}, and {selected:e} with {} of {} rows, at {:?} in {:?}\n{}",
                 region.rows(),
                 evaluator.tables().tables.values().map(jbt::internals::ir::Rows::len).sum::<usize>(),
@@ -215,8 +218,7 @@ fn check_ranges(
     pruner.ranges(region, boxes, &mut ranges).expect("the boxes are proper");
     for (bounds, range) in boxes.iter().zip(ranges) {
         let points = points_in(rng, bounds, 8);
-        let mut samples = field.samples();
-        field.eval(&points, &mut samples).expect("the buffers fit");
+        let samples = answers(field, &points);
         for (index, &value) in samples.field().iter().enumerate() {
             let inside = range == ANYTHING || (range[0] <= value && value <= range[1]);
             let point = points.get(index);
@@ -318,8 +320,7 @@ fn a_choice_is_an_edit_where_the_children_are() {
 }
 
 fn fields(evaluator: &Evaluator, points: &Points) -> Vec<f32> {
-    let mut samples = evaluator.samples();
-    evaluator.eval(points, &mut samples).expect("the buffers fit");
+    let samples = answers(evaluator, points);
     samples.field().to_vec()
 }
 

@@ -2,7 +2,7 @@
 //! the only ones.
 
 use jbt::{Compiler, Polygonize};
-use jbt_text::{Options, parse};
+use jbt_testkit::scene::tree;
 
 fn readme() -> String {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../README.md");
@@ -15,8 +15,7 @@ fn the_scene_on_the_first_screen_is_a_closed_surface() {
     let scene: Vec<&str> =
         readme.lines().skip_while(|line| *line != "jbt 1").take_while(|line| *line != "```").collect();
     assert_eq!(scene.len(), 12, "a scene of twelve lines");
-    let model = parse(scene.join("\n").as_bytes(), &Options::default()).expect("it reads");
-    let tree = model.check().expect("it is a good model");
+    let tree = tree(&scene.join("\n"));
     let made = Polygonize::default().mesh(&Compiler::new(), &tree).run().expect("it has a surface");
     assert!(made.report.closed && !made.mesh.triangles.is_empty());
 }

@@ -8,11 +8,8 @@ use jbt::export::write_png;
 use jbt::limits::{MAX_ANTIALIAS, MAX_PICTURE_SIDE};
 use jbt::render::{Background, Notice, Quality, RenderError, RenderMode, Rendered, Stance, VIEWS, View};
 use jbt::{Box3, CancelToken, CheckedTree, Compiler, Render, Renderer};
+use jbt_testkit::scene::tree;
 use jbt_text::{Options, parse};
-
-fn tree(text: &str) -> CheckedTree {
-    parse(text.as_bytes(), &Options::default()).unwrap().check().unwrap()
-}
 
 fn ball() -> CheckedTree {
     tree("jbt 1 point { surface_radius 1 }")

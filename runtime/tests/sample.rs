@@ -3,11 +3,8 @@
 use jbt::mesh::Lattice;
 use jbt::sample::{SampleError, Sampler, Wanted};
 use jbt::{CancelToken, CheckedTree, Compiler, Engine, Points, Query};
-use jbt_text::{Options, parse};
-
-fn tree(text: &str) -> CheckedTree {
-    parse(text.as_bytes(), &Options::default()).unwrap().check().unwrap()
-}
+use jbt_testkit::bits::bits;
+use jbt_testkit::scene::tree;
 
 /// Two coloured balls and a twisted bar, far from each other.
 fn scene() -> CheckedTree {
@@ -45,10 +42,6 @@ fn expected(sampler: &Sampler, lattice: &Lattice) -> Vec<Vec<f32>> {
     samples.planes().to_vec()
 }
 
-fn bits(planes: &[Vec<f32>]) -> Vec<Vec<u32>> {
-    planes.iter().map(|plane| plane.iter().map(|number| number.to_bits()).collect()).collect()
-}
-
 #[test]
 fn dense_samples_have_the_bits_of_points() {
     let tree = scene();
@@ -59,7 +52,7 @@ fn dense_samples_have_the_bits_of_points() {
         let done = sampler.evaluator().counters();
         assert!(done.points < lattice.point_count(), "constant blocks take one point");
         assert!(done.evaluations_pruned > done.primitive_evaluations);
-        assert_eq!(bits(&dense), bits(&expected(&sampler, &lattice)), "{}", query.name());
+        assert_eq!(bits(&dense), bits(expected(&sampler, &lattice)), "{}", query.name());
     }
 }
 
@@ -68,7 +61,7 @@ fn a_formula_is_not_constant_where_no_primitive_is() {
     for query in Query::EVERY {
         let sampler = Sampler::new(&Compiler::for_engine(Engine::Lanes), &formula(), query).unwrap();
         let dense = sampler.dense(&lattice()).run().unwrap();
-        assert_eq!(bits(&dense), bits(&expected(&sampler, &lattice())), "{}", query.name());
+        assert_eq!(bits(&dense), bits(expected(&sampler, &lattice())), "{}", query.name());
     }
 }
 

@@ -1,11 +1,14 @@
 //! Selectors: choosing another child writes numbers and compiles nothing, gives what the child alone gives,
 //! and costs what it costs.
 
+mod common;
+
+use common::answers;
 use jbt::build::{param, point};
 use jbt::statistics::leaf_uses;
 use jbt::{CheckedTree, Compiler, Engine, Evaluator, Model, Points, Query, Samples, Tree, Update};
 use jbt_model::walk::walk;
-use jbt_text::{Options, parse, print};
+use jbt_testkit::scene::{self, assert_reads_back};
 
 /// Children of many kinds: leaves, blends, cuts, maps, warps, attributes of both ways to mix.
 const CHILDREN: [&str; 7] = [
@@ -23,21 +26,14 @@ const HEAD: &str = "jbt 1 attribute material 1 default 1 dominant
     let b = twist axis y rate 0.7 { sum { use a material 5 { point { at (0 0 0.5) radius 0.9 } } } }";
 
 fn tree(text: &str) -> CheckedTree {
-    let model = parse(text.as_bytes(), &Options::default()).unwrap_or_else(|e| panic!("{text}\n{e:?}"));
-    assert_eq!(parse(print(&model).as_bytes(), &Options::default()).as_ref(), Ok(&model));
-    model.check().unwrap_or_else(|e| panic!("{text}\n{e:?}"))
+    assert_reads_back(&scene::model(text));
+    scene::tree(text)
 }
 
 fn points() -> Points {
     let mut rng = fastrand::Rng::with_seed(11);
     let mut at = || std::array::from_fn(|_| rng.f32() * 3.0 - 1.5);
     std::iter::once([0.0; 3]).chain((0..60).map(|_| at())).collect()
-}
-
-fn answers(evaluator: &Evaluator, points: &Points) -> Samples {
-    let mut samples = evaluator.samples();
-    evaluator.eval(points, &mut samples).unwrap();
-    samples
 }
 
 /// Both give the same to within rounding; the field to the bit, if it has to be `exact`.
@@ -205,8 +201,8 @@ fn a_choice_of_no_child_is_an_error_where_it_stands() {
     for (good, radius) in [(-0.49, 1.0), (0.49, 1.0), (0.5, 2.0), (1.49, 2.0)] {
         assert_eq!(tree.with_parameters(&[("which", good)]).unwrap().support().high(), [radius; 3]);
     }
-    let literal = parse(b"jbt 1 select 3 { point { radius 1 } }", &Options::default()).unwrap();
+    let literal = scene::model("select 3 { point { radius 1 } }");
     assert_eq!(literal.check().unwrap_err()[0].message, "the selector chooses child 3 of 1");
-    let empty = parse(b"jbt 1 select 0 { }", &Options::default()).unwrap();
+    let empty = scene::model("select 0 { }");
     assert_eq!(empty.check().unwrap_err()[0].message, "a node `select` has 0 children");
 }

@@ -3,11 +3,11 @@
 use jbt::solid::{
     BoundsError, Measure, MeasureError, Measures, Membership, MembershipError, RegionError, Solid,
 };
-use jbt::text::{Options, parse};
 use jbt::walk::walk;
 use jbt::{Box3, CancelToken, CheckedTree, Compiler, Engine, Fineness, Points, Polygonize};
 use jbt_model::check::NodeId;
 use jbt_model::kind::NodeKind;
+use jbt_testkit::scene::tree;
 
 const BALL: &str = "jbt 1 point { surface_radius 1 }";
 const TORUS: &str = "jbt 1 translate (1 2 3) { ring { ring_radius 1 surface_radius 0.25 } }";
@@ -42,10 +42,6 @@ const SCENE: &str = "jbt 1
         sum { point { at (0 -1 0) radius 0.8 } point { at (0.3 -1 0) radius 0.5 strength -0.5 } }
         union { ring { center (0 0 -0.5) ring_radius 0.5 radius 0.4 } point { at (0 0 -0.8) radius 0.5 } }
     }";
-
-fn tree(text: &str) -> CheckedTree {
-    parse(text.as_bytes(), &Options::default()).unwrap().check().unwrap()
-}
 
 fn solid(text: &str) -> Solid {
     Solid::new(&Compiler::for_engine(Engine::Lanes), &tree(text)).unwrap()

@@ -8,12 +8,7 @@ use jbt_model::check::{CheckedTree, NodeId};
 use jbt_model::kind::NodeKind;
 use jbt_model::walk::walk;
 use jbt_model::warp::Warp;
-use jbt_text as text;
-
-fn tree(text: &str) -> CheckedTree {
-    let model = text::parse(text.as_bytes(), &text::Options::default()).expect("it reads");
-    model.check().expect("it is a good model")
-}
+use jbt_testkit::scene::{examples, tree};
 
 fn supports(tree: &CheckedTree, lattice: &Lattice) -> SupportCounts {
     Statistics::new(tree).supports(&Compiler::new(), lattice).run().expect("it compiles")
@@ -157,10 +152,8 @@ enum Map {
 
 #[test]
 fn the_supports_of_all_examples_are_those_of_plain_formulas() {
-    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples");
-    for entry in std::fs::read_dir(folder).expect("the project has examples") {
-        let path = entry.expect("a readable folder").path();
-        let tree = tree(&std::fs::read_to_string(&path).expect("a readable file"));
+    for (name, text) in examples() {
+        let tree = tree(&text);
         let settings = Polygonize { fineness: Fineness::Resolution(20), ..Polygonize::default() };
         let lattice = settings.lattice(&tree).expect("examples have a surface");
         // Of each node, the points that are inside for certain, and those that are not certainly outside.
@@ -184,13 +177,13 @@ fn the_supports_of_all_examples_are_those_of_plain_formulas() {
             }
         }
         let found = supports(&tree, &lattice);
-        assert_eq!(found.by_node.len(), bounds.len(), "{}", path.display());
+        assert_eq!(found.by_node.len(), bounds.len(), "{name}");
         assert_eq!(found.by_node.values().sum::<u64>(), found.pairs);
         for (node, [least, most]) in bounds {
             let pairs = found.by_node[&node];
-            assert!((least..=most).contains(&pairs), "{} node {node}: {pairs}", path.display());
+            assert!((least..=most).contains(&pairs), "{name} node {node}: {pairs}");
         }
-        assert_eq!(Statistics::new(&tree).instances(), paths.len() as u64, "{}", path.display());
+        assert_eq!(Statistics::new(&tree).instances(), paths.len() as u64, "{name}");
     }
 }
 

@@ -1,6 +1,9 @@
 //! Straight code gives the bits of rows, for every query, engine and level; regions, counters and edits do
 //! not notice it, but for what an edit compiles.
 
+mod common;
+
+use common::answers;
 use jbt::internals::ir::Level;
 use jbt::region::Divisible;
 use jbt::{Box3, Compiler, Engine, Evaluator, Points, Pruner, Query, Update};
@@ -55,8 +58,7 @@ fn points() -> Points {
 }
 
 fn bits(evaluator: &Evaluator, points: &Points) -> Vec<u32> {
-    let mut samples = evaluator.samples();
-    evaluator.eval(points, &mut samples).unwrap();
+    let samples = answers(evaluator, points);
     samples.planes().iter().flatten().map(|x| x.to_bits()).collect()
 }
 

@@ -3,20 +3,9 @@
 #![allow(clippy::print_stdout, reason = "a test may show its figures")]
 
 use jbt::render::{Render, RenderMode, Stance, View};
-use jbt::text::{Options, parse};
 use jbt::{CheckedTree, Compiler};
-
-fn tree(text: &str) -> CheckedTree {
-    let model =
-        parse(text.as_bytes(), &Options::default()).unwrap_or_else(|errors| panic!("{text}\n{errors:?}"));
-    model.check().unwrap_or_else(|errors| panic!("{text}\n{errors:?}"))
-}
-
-type Vector = [f64; 3];
-
-fn dot(a: Vector, b: Vector) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
+use jbt_testkit::scene::tree;
+use jbt_testkit::vector::{Vector3, dot};
 
 /// What a picture shows.
 #[derive(Default, Debug)]
@@ -34,7 +23,7 @@ struct Seen {
 /// A picture without perspective, of the default size and quality, from the direction of `eye`: what the rays
 /// through the middles of pixels meet, and what is shown. `chord` is how long a ray, from a point into a unit
 /// direction, is inside.
-fn look(model: &CheckedTree, eye: Vector, chord: impl Fn(Vector, Vector) -> f64) -> Seen {
+fn look(model: &CheckedTree, eye: Vector3, chord: impl Fn(Vector3, Vector3) -> f64) -> Seen {
     let stance = Stance::At { eye, target: [0.0; 3] };
     let lens = 2.0 * (1.2 / dot(eye, eye).sqrt()).atan().to_degrees();
     let view = View { stance, lens, orthographic: true, ..View::default() };
@@ -65,7 +54,7 @@ fn look(model: &CheckedTree, eye: Vector, chord: impl Fn(Vector, Vector) -> f64)
 }
 
 /// How long a ray is in a box about the origin.
-fn in_box(half: Vector, origin: Vector, direction: Vector) -> f64 {
+fn in_box(half: Vector3, origin: Vector3, direction: Vector3) -> f64 {
     let mut span = [f64::NEG_INFINITY, f64::INFINITY];
     for axis in 0..3 {
         let ends = [-half[axis], half[axis]].map(|side| (side - origin[axis]) / direction[axis]);
@@ -81,7 +70,7 @@ fn in_box(half: Vector, origin: Vector, direction: Vector) -> f64 {
 }
 
 /// How long a ray is in a ball.
-fn in_ball(center: Vector, radius: f64, origin: Vector, direction: Vector) -> f64 {
+fn in_ball(center: Vector3, radius: f64, origin: Vector3, direction: Vector3) -> f64 {
     let to = [0, 1, 2].map(|axis| center[axis] - origin[axis]);
     let along = dot(to, direction);
     let square = radius * radius - (dot(to, to) - along * along);
@@ -89,7 +78,7 @@ fn in_ball(center: Vector, radius: f64, origin: Vector, direction: Vector) -> f6
 }
 
 /// How long a ray is in a round rod along the z axis, of so much length on each side, without its round ends.
-fn in_rod(radius: f64, half: f64, origin: Vector, direction: Vector) -> f64 {
+fn in_rod(radius: f64, half: f64, origin: Vector3, direction: Vector3) -> f64 {
     let [a, b, c] = [
         direction[0].powi(2) + direction[1].powi(2),
         direction[0] * origin[0] + direction[1] * origin[1],
@@ -105,7 +94,7 @@ fn in_rod(radius: f64, half: f64, origin: Vector, direction: Vector) -> f64 {
 }
 
 /// From straight on to nearly along a sheet across z.
-const EYES: [Vector; 4] = [[0.0, 0.01, 4.0], [1.0, 2.0, 3.0], [-3.0, 1.0, 1.0], [0.5, -4.0, 0.1]];
+const EYES: [Vector3; 4] = [[0.0, 0.01, 4.0], [1.0, 2.0, 3.0], [-3.0, 1.0, 1.0], [0.5, -4.0, 0.1]];
 
 #[test]
 fn a_sheet_of_half_a_pixel_loses_no_pixel() {
@@ -160,7 +149,7 @@ fn rods_and_specks_of_a_pixel_are_seen() {
         }
     }
     // Specks of two pixels on a spiral, nowhere in front of each other.
-    let places: Vec<Vector> = (1..1500)
+    let places: Vec<Vector3> = (1..1500)
         .map(|index| {
             let (turn, far) = (2.399_963 * f64::from(index), (f64::from(index) / 1500.0).sqrt());
             [far * turn.cos(), far * turn.sin(), 0.3 * (far * 9.0).sin()]

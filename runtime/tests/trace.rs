@@ -5,17 +5,22 @@
 //! the first seed. A failure prints the model.
 #![allow(clippy::print_stdout, reason = "a test may show its figures")]
 
+mod common;
+
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use common::answers;
 use fastrand::Rng;
 use jbt::region::{ANYTHING, Divisible as _};
 use jbt::text::print;
 use jbt::trace::{Hits, Ray, TraceError, Tracer};
-use jbt::{Box3, Compiler, Engine, Evaluator, Model, Points, Pruner, Query, Samples};
+use jbt::{Box3, Compiler, Engine, Evaluator, Model, Points, Pruner, Query};
 use jbt_model::kind::NodeKind;
+use jbt_testkit::bits;
 use jbt_testkit::random::Random;
 use jbt_testkit::scene::{count, tree};
+use jbt_testkit::vector::dot;
 use rayon::prelude::*;
 
 const BALL: &str = "jbt 1 point { surface_radius 1 }";
@@ -56,10 +61,6 @@ fn unit(rng: &mut Rng) -> [f64; 3] {
             return v.map(|x| x / length);
         }
     }
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 #[test]
@@ -402,8 +403,7 @@ fn try_model(seed: u64, count: usize, tally: &Tally) {
 fn sides(field: &Evaluator, iso: f32, ray: &Ray, times: &[f64]) -> Vec<bool> {
     let place = |t: &f64| std::array::from_fn(|axis| (ray.origin[axis] + t * ray.direction[axis]) as f32);
     let points: Points = times.iter().map(place).collect();
-    let mut samples = field.samples();
-    field.eval(&points, &mut samples).expect("the buffers fit");
+    let samples = answers(field, &points);
     samples.field().iter().map(|&value| value >= iso).collect()
 }
 
@@ -586,8 +586,7 @@ fn ranges_of_parts_of_rays_hold_the_fields_at_their_places() {
                     .ranges(&regions[index], &boxes[index..=index], &mut ranges[1..])
                     .expect("proper boxes");
                 let points: Points = (part[0]..=part[1]).map(at).collect();
-                let mut samples = field.samples();
-                field.eval(&points, &mut samples).expect("the buffers fit");
+                let samples = answers(&field, &points);
                 for [low, high] in ranges.into_iter().chain([surveyed[index].0]) {
                     let holds = |value: &f32| [low, high] == ANYTHING || (low <= *value && *value <= high);
                     assert!(
@@ -604,14 +603,12 @@ fn ranges_of_parts_of_rays_hold_the_fields_at_their_places() {
 }
 
 fn same(a: &[f32], b: &[f32]) -> bool {
-    a.len() == b.len()
-        && a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan()))
+    a.len() == b.len() && a.iter().zip(b).all(|(&a, &b)| bits::same(a, b))
 }
 
 /// Samples at hits are those of the plain evaluator at their positions.
 fn compare_samples(full: &Evaluator, all: &Hits, what: &dyn Fn() -> String) {
-    let mut samples: Samples = full.samples();
-    full.eval(&all.positions, &mut samples).expect("the buffers fit");
+    let samples = answers(full, &all.positions);
     for ((name, here), there) in full.layout().names().iter().zip(all.samples.planes()).zip(samples.planes())
     {
         assert!(same(here, there), "{name}, {}", what());

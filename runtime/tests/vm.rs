@@ -3,8 +3,11 @@
 //! The samples are those of the folder `vm`, see `jbt_testkit::samples`.
 #![allow(clippy::print_stdout, reason = "a test may show its figures")]
 
+mod common;
+
 use std::time::Instant;
 
+use common::answers;
 use jbt::region::Divisible;
 use jbt::{Box3, Compiler, Engine, Points, Pruner, Query};
 use jbt_model::walk::walk;
@@ -32,8 +35,7 @@ fn samples_compile_and_agree() {
             let start = Instant::now();
             let evaluator = Compiler::for_engine(engine).evaluator(&tree, Query::FIELD).unwrap();
             times.push(start.elapsed());
-            let mut samples = evaluator.samples();
-            evaluator.eval(&points, &mut samples).unwrap();
+            let samples = answers(&evaluator, &points);
             let bits = samples.planes().iter().flatten().map(|x| x.to_bits()).collect();
             assert_eq!(*first.get_or_insert_with(|| Vec::clone(&bits)), bits, "{name} {engine:?}");
             for (index, &field) in samples.field().iter().enumerate() {
@@ -50,8 +52,7 @@ fn samples_compile_and_agree() {
             let start = Instant::now();
             let evaluator = Compiler::for_engine(engine).evaluator(&tree, Query::GRADIENT).unwrap();
             times.push(start.elapsed());
-            let mut samples = evaluator.samples();
-            evaluator.eval(&points, &mut samples).unwrap();
+            let samples = answers(&evaluator, &points);
             samples.planes().iter().flatten().map(|x| x.to_bits()).collect::<Vec<u32>>()
         });
         assert_eq!(gradients[0], gradients[1], "{name}");
@@ -70,8 +71,7 @@ fn samples_compile_and_agree() {
         );
         let inside: Points =
             (0..50).map(|_| std::array::from_fn(|_| size * (0.1 + 0.05 * rng.f32()))).collect();
-        let mut all = evaluator.samples();
-        evaluator.eval(&inside, &mut all).unwrap();
+        let all = answers(&evaluator, &inside);
         let mut pruned = vec![0.0; inside.len()];
         evaluator.eval_region(&region, inside.planes(), &mut [&mut pruned[..]]).unwrap();
         assert_eq!(all.field(), pruned, "{name}");

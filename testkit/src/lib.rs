@@ -2,10 +2,18 @@
 //!
 //! It is a package and no file included by path: its code is compiled once instead of once for each test
 //! program. The packages that it depends on have it as a dev-dependency. Cargo allows that circle, and
-//! integration tests see one and the same library on both ways.
+//! integration tests see one and the same library on both ways. What knows models is a feature, `models`:
+//! without it the kit depends on no other package of the project, and tests of `ir` and `jit` need not
+//! wait for the packages of the frontend.
 
+pub mod bits;
+pub mod golden;
 pub mod points;
+#[cfg(feature = "models")]
 pub mod random;
 pub mod samples;
+#[cfg(feature = "models")]
 pub mod scene;
 pub mod skip;
+pub mod surface;
+pub mod vector;

@@ -1,4 +1,4 @@
-//! Points that hurt.
+//! Numbers and points that hurt.
 
 use fastrand::Rng;
 
@@ -33,6 +33,44 @@ pub const HOSTILE: [f32; 24] = [
     f32::MIN,
     f32::MAX,
 ];
+
+/// Numbers at which ops decide, round, overflow or give NaN. Zeros and ones of both signs come first.
+pub const OPERANDS: [f32; 29] = [
+    0.0,
+    -0.0,
+    1.0,
+    -1.0,
+    0.5,
+    2.0,
+    -4.0,
+    0.1,
+    -3.7,
+    -2.75,
+    100.25,
+    1e-45,
+    -1e-45,
+    1e-39,
+    1.1e-38,
+    f32::MIN_POSITIVE,
+    -f32::MIN_POSITIVE * 0.5,
+    f32::EPSILON,
+    1.0 + f32::EPSILON,
+    0.333_333_34,
+    16_777_216.0,
+    1e30,
+    -1e30,
+    f32::MAX,
+    f32::MIN,
+    f32::INFINITY,
+    f32::NEG_INFINITY,
+    f32::NAN,
+    std::f32::consts::PI,
+];
+
+/// A number from `low` to `high`.
+pub fn between(rng: &mut Rng, low: f64, high: f64) -> f64 {
+    low + (high - low) * rng.f64()
+}
 
 /// Ordinary points within `size` of the origin, with spicy ones among them.
 pub fn spicy(rng: &mut Rng, count: usize, size: f32) -> impl Iterator<Item = [f32; 3]> {

@@ -1,23 +1,61 @@
 //! Scenes of tests: models from text, their programs, how many of them to try.
 
+use std::borrow::Borrow;
+use std::path::{Path, PathBuf};
+
+use jbt_ir::domain::scalar::Scalar;
 use jbt_ir::pass::{PIPELINE, run_pipeline};
-use jbt_ir::{Tables, Verified, verify};
+use jbt_ir::{Tables, Verified, interpret, verify};
 use jbt_lower::{Lowered, lower};
 use jbt_model::check::CheckedTree;
 use jbt_model::model::Model;
 use jbt_model::query::Query;
-use jbt_text::{Options, parse};
+use jbt_model::tree::Tree;
+use jbt_text::{Options, parse, print};
 
-/// The model of a text. Panics with the text and its errors, if it does not read.
+/// The model of a text, which needs no first line. Panics with the text and its errors, if it does not read.
 #[must_use]
 pub fn model(text: &str) -> Model {
+    let head = if text.contains("jbt 1") { "" } else { "jbt 1\n" };
+    let text = format!("{head}{text}");
     parse(text.as_bytes(), &Options::default()).unwrap_or_else(|errors| panic!("{text}\n{errors:?}"))
 }
 
-/// The checked model of a text. Panics with the text and its errors, if it is no good model.
+/// The checked [`model`] of a text. Panics with the text and its errors, if it is no good model.
 #[must_use]
 pub fn tree(text: &str) -> CheckedTree {
     model(text).check().unwrap_or_else(|errors| panic!("{text}\n{errors:?}"))
+}
+
+/// A tree of the builder, checked. Panics with its errors.
+#[must_use]
+pub fn checked(tree: impl Borrow<Tree>) -> CheckedTree {
+    Model::new(tree.borrow().clone()).check().unwrap_or_else(|errors| panic!("{errors:?}"))
+}
+
+/// What is printed of a model, read again. Panics unless it is the same model.
+#[track_caller]
+pub fn assert_reads_back(written: &Model) -> Model {
+    let text = print(written);
+    let read = model(&text);
+    assert_eq!(read, *written, "{text}");
+    read
+}
+
+/// The example scenes of the project: names of files and texts, by name.
+#[must_use]
+pub fn examples() -> Vec<(String, String)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples");
+    let entries = std::fs::read_dir(folder).expect("the project has examples");
+    let mut paths: Vec<PathBuf> = entries.map(|entry| entry.expect("a readable folder").path()).collect();
+    paths.retain(|path| path.extension().is_some_and(|extension| extension == "jbt"));
+    paths.sort();
+    assert!(paths.len() >= 27, "{} examples", paths.len());
+    let read = |path: PathBuf| {
+        let name = path.file_name().expect("a file").to_string_lossy().into_owned();
+        (name, std::fs::read_to_string(path).expect("a readable text"))
+    };
+    paths.into_iter().map(read).collect()
 }
 
 /// The program of a model for a query, after all passes, with its numbers.
@@ -26,6 +64,13 @@ pub fn compiled(tree: &CheckedTree, query: Query) -> (Verified, Tables) {
     let Lowered { function, tables } = lower(tree, query).expect("it can be lowered");
     let passes = query.passes().chain(PIPELINE);
     (verify(run_pipeline(function, passes, &mut |_, _| {})).expect("passes keep the rules"), tables)
+}
+
+/// What a [`compiled`] program answers at a point, by the reference.
+#[must_use]
+pub fn run((program, tables): &(Verified, Tables), point: [f64; 3]) -> Vec<f64> {
+    let answers = interpret::run(program, tables, &mut Scalar, &point.map(|x| x as f32));
+    answers.into_iter().map(f64::from).collect()
 }
 
 /// How many cases to try: what this environment variable says, or the default.

@@ -4,15 +4,15 @@
 //! found.
 
 use std::fmt::Write as _;
-use std::path::Path;
 
 use jbt_ir::{InstKind, Op};
 use jbt_lower::{Lowered, lower};
 use jbt_model::query::Query;
-use jbt_text::{Options, parse};
+use jbt_testkit::golden::{compare, files};
+use jbt_testkit::scene::tree;
 
-fn shown(scene: &[u8], query: Query) -> String {
-    let tree = parse(scene, &Options::default()).unwrap().check().unwrap();
+fn shown(scene: &str, query: Query) -> String {
+    let tree = tree(scene);
     let Lowered { function, tables } = lower(&tree, query).unwrap();
     tables.check(&function).unwrap();
     jbt_ir::verify(function.clone()).unwrap();
@@ -28,28 +28,16 @@ fn shown(scene: &[u8], query: Query) -> String {
 
 #[test]
 fn programs_are_as_expected() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/lower");
-    let mut scenes = 0;
-    for entry in std::fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.extension().is_none_or(|extension| extension != "jbt") {
-            continue;
-        }
-        scenes += 1;
-        let found = shown(&std::fs::read(&path).unwrap(), Query::ATTRIBUTES);
-        let golden = path.with_extension("ir");
-        if std::env::var_os("BLESS").is_some() {
-            std::fs::write(&golden, &found).unwrap();
-        }
-        let expected = std::fs::read_to_string(&golden).unwrap_or_default();
-        assert_eq!(expected, found, "{} differs; BLESS=1 accepts what was found", golden.display());
+    let scenes = files("lower", "jbt");
+    assert!(scenes.len() >= 5);
+    for (path, scene) in scenes {
+        compare(&path.with_extension("ir"), &shown(&scene, Query::ATTRIBUTES));
     }
-    assert!(scenes >= 5);
 }
 
 /// How often an op stands in the program of all answers.
 fn count_of(op: Op, scene: &str, query: Query) -> usize {
-    let tree = parse(scene.as_bytes(), &Options::default()).unwrap().check().unwrap();
+    let tree = tree(scene);
     let function = lower(&tree, query).unwrap().function;
     function
         .insts
@@ -99,7 +87,7 @@ fn computed_attributes_make_no_rows() {
         rough marble { a 0 b 1 } { uv scale 2 { select 0 {
             sum { point { radius 1 } twist axis z rate 1 { color checker { a (1 1 1) b (0 0 0) } { sum { ring { ring_radius 1 radius 1 } point { radius 1 } } } } }
             box { half (1 1 1) radius 1 } } } }";
-    let tree = parse(scene.as_bytes(), &Options::default()).unwrap().check().unwrap();
+    let tree = tree(scene);
     let rows = |query| {
         let Lowered { function, tables } = lower(&tree, query).unwrap();
         tables.check(&function).unwrap();
@@ -116,7 +104,7 @@ fn computed_attributes_make_no_rows() {
 fn a_long_chain_of_operators_has_some_guards() {
     let text = "union { point { radius 1 } sum { point { radius 2 }\n".repeat(500);
     let text = format!("jbt 1 {text} point {{ radius 3 }} {}", "} }".repeat(500));
-    let tree = parse(text.as_bytes(), &Options::default()).unwrap().check().unwrap();
+    let tree = tree(&text);
     for query in Query::EVERY {
         let Lowered { function, tables } = lower(&tree, query).unwrap();
         assert_eq!(function.tables.len(), 1 + 1000 + 23, "the scene, points, guards");
@@ -129,7 +117,7 @@ fn a_long_chain_of_operators_has_some_guards() {
 #[test]
 fn alike_models_have_one_program() {
     let function = |scene: &str| {
-        let tree = parse(scene.as_bytes(), &Options::default()).unwrap().check().unwrap();
+        let tree = tree(scene);
         lower(&tree, Query::ALL).unwrap().function
     };
     let five =

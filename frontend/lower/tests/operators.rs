@@ -1,9 +1,6 @@
 //! Operators by their closed forms, and what is often wrong with them: the oracle, and the compiled program
 //! in f32 beside it.
 
-use jbt_ir::domain::scalar::Scalar;
-use jbt_ir::pass::{GRADIENT, PIPELINE, run_pipeline};
-use jbt_ir::{interpret, verify};
 use jbt_lower::lower;
 use jbt_model::builder::{param, point, segment};
 use jbt_model::check::CheckedTree;
@@ -16,7 +13,8 @@ use jbt_model::query::Query;
 use jbt_model::tree::Tree;
 use jbt_model::walk::{walk, walk_gradient};
 use jbt_model::written::Written;
-use jbt_text::{Options, parse, print};
+use jbt_testkit::scene::{self, assert_reads_back, checked};
+use jbt_testkit::vector::near;
 
 const RED: [f64; 3] = [1.0, 0.0, 0.0];
 const BLUE: [f64; 3] = [0.0, 0.0, 1.0];
@@ -28,17 +26,9 @@ fn level(field: f64) -> Tree {
     point(HERE, 1.0).strength(field)
 }
 
-fn checked(tree: &Tree) -> CheckedTree {
-    Model::new(tree.clone()).check().unwrap()
-}
-
 /// Field, gradient and colour of the program at a point.
-fn compiled(tree: &CheckedTree, p: [f64; 3]) -> [f64; 7] {
-    let lowered = lower(tree, Query::ALL).unwrap();
-    let passes = std::iter::once(&GRADIENT).chain(PIPELINE);
-    let program = verify(run_pipeline(lowered.function, passes, &mut |_, _| {})).unwrap();
-    let answers = interpret::run(&program, &lowered.tables, &mut Scalar, &p.map(|x| x as f32));
-    std::array::from_fn(|i| f64::from(answers[i]))
+fn compiled(tree: &CheckedTree, p: [f64; 3]) -> Vec<f64> {
+    scene::run(&scene::compiled(tree, Query::ALL), p)
 }
 
 /// The field at the origin, by the oracle; the program has to agree.
@@ -57,14 +47,6 @@ fn color(tree: &Tree) -> [f64; 3] {
     let found = compiled(&tree, HERE);
     assert!(near(found[4..].try_into().unwrap(), color, 1e-5), "{found:?} is not {color:?}");
     color
-}
-
-fn near(a: [f64; 3], b: [f64; 3], within: f64) -> bool {
-    a.iter().zip(b).all(|(a, b)| (a - b).abs() <= within)
-}
-
-fn text(text: &str) -> CheckedTree {
-    parse(text.as_bytes(), &Options::default()).unwrap().check().unwrap()
 }
 
 const ALL_SETS: [SetOperation; 3] = SetOperation::ALL;
@@ -116,7 +98,7 @@ fn nothing_of_nothing_is_nothing() {
             let nowhere = point([9.0, 0.0, 0.0], 1.0);
             let children = vec![nowhere.clone(); count];
             let children: Vec<Tree> = children.iter().map(|child| child.translate(RED)).collect();
-            let tree = checked(&Tree::combine(combinator, children));
+            let tree = checked(Tree::combine(combinator, children));
             assert_eq!(walk(&tree, HERE).field, 0.0, "{combinator:?}");
             let found = compiled(&tree, HERE);
             assert!(
@@ -208,7 +190,7 @@ fn gradients_are_finite_in_the_corner_of_r_functions() {
     // Both fields are iso at the origin, so that x = y = 0 there.
     let (a, b) = (point([0.5, 0.0, 0.0], 1.0), point([-0.5, 0.0, 0.0], 1.0));
     for combinator in of_two() {
-        let tree = checked(&Tree::combine(combinator, [a.clone(), b.clone()]));
+        let tree = checked(Tree::combine(combinator, [a.clone(), b.clone()]));
         let found = compiled(&tree, HERE);
         assert!(found.iter().all(|x| x.is_finite()), "{combinator:?}: {found:?}");
     }
@@ -236,7 +218,7 @@ fn gradients_agree_with_differences() {
             segment([-0.5, -0.2, 0.0], [0.1, 0.6, 0.3], 1.1).color(BLUE),
             point([0.0, 0.5, -0.2], 0.9),
         ];
-        let tree = checked(&Tree::combine(combinator, parts));
+        let tree = checked(Tree::combine(combinator, parts));
         for _ in 0..60 {
             let p: [f64; 3] = std::array::from_fn(|_| f64::from(1.6 * rng.f32() - 0.8));
             let oracle = walk(&tree, p);
@@ -383,7 +365,7 @@ fn numbers_of_operators_follow_parameters() {
     let error = tree.with_parameters(&[("by", 0.5)]).unwrap_err();
     assert_eq!(error[0].message, "the offset is 0.5");
     // The iso-value is a limit of plain numbers too.
-    let shell = text("jbt 1 param level = 0.5 iso level shell 0.6 { point { radius 1 } }");
+    let shell = scene::tree("jbt 1 param level = 0.5 iso level shell 0.6 { point { radius 1 } }");
     assert_eq!(
         shell.with_parameters(&[("level", 0.3)]).unwrap_err()[0].message,
         "the thickness of the shell is 0.6"
@@ -395,7 +377,7 @@ fn numbers_of_operators_follow_parameters() {
 fn many_operands_of_a_step_are_rows() {
     let operator = |count: usize| {
         let children = (0..count).map(|i| point([0.1 * i as f64, 0.0, 0.0], 0.3));
-        checked(&Tree::smooth(SetOperation::Union, 0.1, children))
+        checked(Tree::smooth(SetOperation::Union, 0.1, children))
     };
     let values = |count: usize| lower(&operator(count), Query::ALL).unwrap().function.values.len();
     assert_eq!(values(4), values(400));
@@ -417,8 +399,7 @@ fn every_operator_prints_and_reads_back() {
     for tree in trees {
         let model = Model::new(tree);
         let model = Model { parameters: model.all_parameters(), ..model };
-        let again = parse(print(&model).as_bytes(), &Options::default()).unwrap();
-        assert!(again.root == model.root, "{}", print(&model));
+        assert_reads_back(&model);
         assert!(matches!(model.root.node().written(), Written::Combine { .. }));
     }
 }

@@ -3,15 +3,11 @@
 use jbt_ir::limits;
 use jbt_lower::lower;
 use jbt_model::builder::{bezier, catmull_rom, param, polyline};
-use jbt_model::check::CheckedTree;
 use jbt_model::model::Model;
 use jbt_model::query::Query;
 use jbt_model::tree::Tree;
-use jbt_text::{Options, parse, print};
-
-fn checked(tree: Tree) -> CheckedTree {
-    Model::new(tree).check().expect("a good model")
-}
+use jbt_testkit::scene::{assert_reads_back, checked};
+use jbt_text::{Options, parse};
 
 #[test]
 fn any_number_of_points_is_the_same_code() {
@@ -38,7 +34,7 @@ fn points_follow_parameters() {
         catmull_rom([(0.0.into(), 0.0, 0.0), (end.clone(), 1.0, 0.0)], 0.5).radii([end * 0.1, 0.2.into()]);
     let model = Model::new(tube);
     let tree = model.check().expect("a good model");
-    assert_eq!(parse(print(&model).as_bytes(), &Options::default()).expect("it reads"), model);
+    assert_reads_back(&model);
     let far = tree.with_parameters(&[("end", 3.0)]).expect("a good value");
     assert_eq!(far.support().high(), [3.7, 1.7, 0.8]);
     let [before, now] = [&tree, &far].map(|tree| lower(tree, Query::ALL).expect("it lowers"));

@@ -14,9 +14,10 @@ use jbt_model::model::Model;
 use jbt_model::query::Query;
 use jbt_model::skeleton::{Point, Skeleton};
 use jbt_model::tree::Tree;
+use jbt_testkit::bits::assert_same;
 use jbt_testkit::random::{Random, Settings, vector};
-use jbt_testkit::scene::compiled;
-use jbt_text::{Options, parse, print};
+use jbt_testkit::scene::{self, compiled};
+use jbt_text::print;
 
 fn under(maps: impl IntoIterator<Item = NodeKind>, leaf: Primitive) -> Model {
     let leaf = Tree::new(NodeKind::Primitive(leaf), Vec::new());
@@ -184,7 +185,7 @@ fn supports_of_points_are_no_larger_than_they_have_to_be() {
 #[test]
 fn a_turned_segment_has_its_ends_and_not_a_turned_box() {
     let text = "jbt 1 rotate axis z degrees 45 { segment { from (0 0 0) to (1 0 0) radius 0.1 } }";
-    let tree = parse(text.as_bytes(), &Options::default()).expect("it reads").check().expect("it is a model");
+    let tree = scene::tree(text);
     let support = support(&tree);
     let half = 0.5f32.sqrt();
     for (side, expected) in support.low.iter().chain(&support.high).zip([0.0, 0.0, 0.0, half, half, 0.0]) {
@@ -300,12 +301,8 @@ fn leaving_out_what_may_be_changes_no_bit() {
                 let pruned = with_active(&tables, &active);
                 pruned.check(full.function()).expect("fewer rows fit as well");
                 let found = run(&full, &pruned, &point);
-                let same = |(a, b): (&f32, &f32)| a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan();
-                assert!(
-                    expected.iter().zip(&found).all(same),
-                    "tree {index}, round {round}, {point:?}: {expected:?} became {found:?}\n{}",
-                    print(&model)
-                );
+                let what = format!("tree {index}, round {round}, {point:?} of\n{}", print(&model));
+                assert_same(&[&expected], &[&found], &what);
             }
         }
     }

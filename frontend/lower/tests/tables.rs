@@ -1,12 +1,10 @@
 //! The tables of a tree are the same for every query: one list of active rows serves all programs of a model.
 
-use std::path::Path;
-
 use jbt_lower::lower;
 use jbt_model::check::CheckedTree;
 use jbt_model::query::Query;
 use jbt_testkit::random::{Numbers, Random, Settings};
-use jbt_text::{Options, parse};
+use jbt_testkit::scene::{examples, tree};
 
 fn same_tables(tree: &CheckedTree, what: &str) -> bool {
     let Ok(first) = lower(tree, Query::FIELD) else { return false };
@@ -30,14 +28,8 @@ fn same_tables(tree: &CheckedTree, what: &str) -> bool {
 
 #[test]
 fn of_examples() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
-    for entry in std::fs::read_dir(folder).expect("the project has examples") {
-        let path = entry.expect("a readable folder").path();
-        if path.extension().is_some_and(|extension| extension == "jbt") {
-            let text = std::fs::read(&path).expect("a readable file");
-            let tree = parse(&text, &Options::default()).expect("it reads").check().expect("it is a model");
-            assert!(same_tables(&tree, &path.display().to_string()));
-        }
+    for (name, text) in examples() {
+        assert!(same_tables(&tree(&text), &name));
     }
 }
 

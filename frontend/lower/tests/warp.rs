@@ -1,8 +1,7 @@
 //! Warps in models: their gradients, their rows, their parameters, and what others get wrong about them.
 
 use glam::DVec3;
-use jbt_ir::domain::scalar::Scalar;
-use jbt_ir::{Tables, Verified, interpret};
+use jbt_ir::{Tables, Verified};
 use jbt_lower::{Lowered, lower};
 use jbt_model::builder::{Axis, param, point, segment};
 use jbt_model::check::CheckedTree;
@@ -13,21 +12,16 @@ use jbt_model::tree::Tree;
 use jbt_model::walk::{walk, walk_gradient};
 use jbt_model::warp::WarpKind;
 use jbt_testkit::random::Random;
-use jbt_testkit::scene;
-use jbt_text::{Options, parse, print};
-
-fn checked(tree: Tree) -> CheckedTree {
-    Model::new(tree).check().expect("a good model")
-}
+use jbt_testkit::scene::{self, assert_reads_back, checked, run};
+use jbt_text::print;
 
 /// The program of the field and its gradient.
 fn compiled(tree: &CheckedTree) -> (Verified, Tables) {
     scene::compiled(tree, Query::GRADIENT)
 }
 
-fn gradient((program, tables): &(Verified, Tables), p: DVec3) -> DVec3 {
-    let answers = interpret::run(program, tables, &mut Scalar, &p.as_vec3().to_array());
-    DVec3::new(answers[1].into(), answers[2].into(), answers[3].into())
+fn gradient(program: &(Verified, Tables), p: DVec3) -> DVec3 {
+    DVec3::from_slice(&run(program, p.into())[1..])
 }
 
 fn blob(random: &mut Random) -> Tree {
@@ -212,13 +206,8 @@ fn numbers_of_warps_follow_parameters() {
             space_map from (0 p 0) to (p 0 0) radius 4 * p { point { radius 1 } }
             reflect axis (p 1 0) { stretch axis (1 p 0) by p { shear axis z by (p 0 0) { point { radius 1 } } } }
         }";
-    let model = parse(text.as_bytes(), &Options::default()).expect("it reads");
-    assert_eq!(
-        parse(print(&model).as_bytes(), &Options::default()).expect("it reads"),
-        model,
-        "{}",
-        print(&model)
-    );
+    let model = scene::model(text);
+    assert_reads_back(&model);
     let tree = model.check().expect("a good model");
     let set = tree.with_parameters(&[("p", 1.5)]).expect("a good value");
     let [before, after] = [&tree, &set].map(|tree| lower(tree, Query::GRADIENT).expect("it can be lowered"));
@@ -248,7 +237,7 @@ fn errors_stand_where_the_warp_does() {
         ("shear axis x by (-1 0 0) { point { radius 1 } }", "the affine map is singular"),
     ] {
         let text = format!("jbt 1 {text}");
-        let errors = parse(text.as_bytes(), &Options::default()).expect("it reads").check().expect_err(&text);
+        let errors = scene::model(&text).check().expect_err(&text);
         assert!(errors[0].message.contains(expected), "{}", errors[0].message);
         assert_eq!(errors[0].span.map(|span| span.start), Some(6));
     }

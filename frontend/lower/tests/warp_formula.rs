@@ -1,8 +1,7 @@
 //! Warps that are given by formulas, in models: gradients, boxes, parameters, weights, text.
 
 use glam::DVec3;
-use jbt_ir::domain::scalar::Scalar;
-use jbt_ir::{Tables, Verified, interpret};
+use jbt_ir::{Tables, Verified};
 use jbt_lower::{Lowered, lower};
 use jbt_model::builder::{point, segment};
 use jbt_model::check::CheckedTree;
@@ -11,17 +10,17 @@ use jbt_model::query::Query;
 use jbt_model::tree::Tree;
 use jbt_model::walk::{walk, walk_gradient};
 use jbt_testkit::random::Random;
-use jbt_testkit::scene::{self, model as read};
-use jbt_text::{Options, parse, print};
+use jbt_testkit::scene::{self, assert_reads_back, model as read};
+use jbt_text::{Options, parse};
 
 /// The program of the field and its gradient.
 fn compiled(tree: &CheckedTree) -> (Verified, Tables) {
     scene::compiled(tree, Query::GRADIENT)
 }
 
-fn run((program, tables): &(Verified, Tables), p: DVec3) -> (f64, DVec3) {
-    let answers = interpret::run(program, tables, &mut Scalar, &p.as_vec3().to_array());
-    (answers[0].into(), DVec3::new(answers[1].into(), answers[2].into(), answers[3].into()))
+fn run(program: &(Verified, Tables), p: DVec3) -> (f64, DVec3) {
+    let answers = scene::run(program, p.into());
+    (answers[0], DVec3::from_slice(&answers[1..]))
 }
 
 /// Compares the program with differences of the oracle at some points; how many.
@@ -115,7 +114,7 @@ fn text_and_what_is_wrong_with_it() {
         "jbt 1 let b = point { radius 1 } union { warp (z, x, y) { use b } warp (y, z, x) within (0 0 0) to (1 1 1) { use b } }",
     ] {
         let model = read(text);
-        assert_eq!(read(&print(&model)), model, "{}", print(&model));
+        assert_reads_back(&model);
         model.check().unwrap();
     }
     for (text, message) in [

@@ -8,6 +8,7 @@ use jbt_model::model::Model;
 use jbt_model::traverse::Visit;
 use jbt_model::tree::Tree;
 use jbt_model::walk::{Sample, walk, walk_gradient};
+use jbt_testkit::vector::near;
 
 const RED: [f64; 3] = [1.0, 0.0, 0.0];
 const GREEN: [f64; 3] = [0.0, 1.0, 0.0];
@@ -26,10 +27,6 @@ fn level(field: f64) -> Tree {
 
 fn color(tree: &Tree, p: [f64; 3]) -> [f64; 3] {
     at(tree, p).attributes[0].clone().try_into().unwrap()
-}
-
-fn near(a: [f64; 3], b: [f64; 3], within: f64) -> bool {
-    a.iter().zip(b).all(|(a, b)| (a - b).abs() <= within)
 }
 
 #[test]

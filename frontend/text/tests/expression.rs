@@ -8,11 +8,8 @@ use jbt_model::kind::NodeKind;
 use jbt_model::model::Model;
 use jbt_model::tree::Tree;
 use jbt_model::walk::walk;
+use jbt_testkit::scene::model as read;
 use jbt_text::{Options, parse, print};
-
-fn read(text: &str) -> Model {
-    parse(text.as_bytes(), &Options::default()).unwrap_or_else(|errors| panic!("{text}: {errors:?}"))
-}
 
 fn field(text: &str, p: [f64; 3]) -> f64 {
     walk(&read(text).check().unwrap_or_else(|errors| panic!("{text}: {errors:?}")), p).field

@@ -2,14 +2,11 @@
 
 use jbt_model::builder::{checker, point};
 use jbt_model::model::Model;
-use jbt_text::{Options, parse};
+use jbt_testkit::scene;
 
 #[test]
 fn judges_what_attribute_nodes_compute() {
-    let model = |text: &str| {
-        let text = format!("jbt 1 attribute uv 2 param size = 0 {text}");
-        parse(text.as_bytes(), &Options::default()).unwrap()
-    };
+    let model = |text: &str| scene::model(&format!("attribute uv 2 param size = 0 {text}"));
     let messages = |text: &str| {
         let errors = model(text).check().unwrap_err();
         errors

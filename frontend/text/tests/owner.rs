@@ -1,12 +1,7 @@
 //! Who owns a point: paths through the tree.
 
-use jbt_model::check::CheckedTree;
 use jbt_model::owner::owner;
-use jbt_text::{Options, parse};
-
-fn tree(text: &str) -> CheckedTree {
-    parse(text.as_bytes(), &Options::default()).unwrap().check().unwrap()
-}
+use jbt_testkit::scene::tree;
 
 fn path(text: &str, p: [f64; 3]) -> Option<String> {
     let tree = tree(text);

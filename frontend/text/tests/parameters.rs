@@ -5,11 +5,8 @@ use jbt_model::check::{CheckedTree, NodeId};
 use jbt_model::diagnostic::Source;
 use jbt_model::kind::NodeKind;
 use jbt_model::model::Model;
+use jbt_testkit::scene::model;
 use jbt_text::{Options, number, parse, print};
-
-fn model(text: &str) -> Model {
-    parse(text.as_bytes(), &Options::default()).unwrap_or_else(|errors| panic!("{text}\n{errors:?}"))
-}
 
 fn radii(tree: &CheckedTree) -> Vec<f64> {
     let radius = |kind: &NodeKind| match kind {

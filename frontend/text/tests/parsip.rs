@@ -11,8 +11,8 @@ use jbt_model::attribute::AttributeGroup;
 use jbt_model::diagnostic::{Diagnostic, Severity};
 use jbt_model::walk::{walk, walk_gradient};
 use jbt_testkit::samples;
+use jbt_testkit::scene::assert_reads_back;
 use jbt_text::import::{Imported, parsip};
-use jbt_text::{Options, parse, print};
 
 /// Field and colour of a scene.
 fn evaluate(scene: &Imported, p: [f64; 3]) -> (f64, Vec<f64>) {
@@ -48,8 +48,7 @@ fn every_sample_agrees_with_its_oracle() {
         assert_eq!(message(&bytes, &scene.warnings), "", "{}", path.display());
         assert_eq!(scene.model.attributes, [AttributeGroup::color()]);
         let tree = scene.model.check().unwrap_or_else(|errors| panic!("{}", message(&bytes, &errors)));
-        let again = parse(print(&scene.model).as_bytes(), &Options::default()).unwrap();
-        assert_eq!(again, scene.model, "{}", path.display());
+        assert_reads_back(&scene.model);
         let mut rows = csv::Reader::from_path(path.with_extension("oracle.csv")).unwrap();
         let mut count = 0;
         for row in rows.deserialize() {

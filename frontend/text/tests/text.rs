@@ -16,25 +16,16 @@ use jbt_model::kind::NodeKind;
 use jbt_model::model::Model;
 use jbt_model::traverse::Visit;
 use jbt_model::tree::Tree;
+use jbt_testkit::golden::{compare, files};
 use jbt_testkit::random::{Numbers, Random, Settings};
+use jbt_testkit::scene::assert_reads_back;
 use jbt_text::{Options, parse, print};
 
-fn golden_files() -> Vec<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/text");
-    let mut files: Vec<PathBuf> =
-        std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
-    files.retain(|path| path.extension().is_some_and(|extension| extension == "jbt"));
-    files.sort();
-    assert!(files.len() > 10);
-    files
-}
-
-fn compare(path: &Path, found: &str) {
-    if std::env::var_os("BLESS").is_some() {
-        std::fs::write(path, found).unwrap();
-    }
-    let expected = std::fs::read_to_string(path).unwrap_or_default();
-    assert_eq!(expected, found, "{} differs; BLESS=1 accepts what was found", path.display());
+/// The golden files of errors, or the others.
+fn golden_files(of_errors: bool) -> impl Iterator<Item = (PathBuf, String)> {
+    let is_wanted =
+        move |path: &Path| path.file_name().unwrap().to_str().unwrap().starts_with("error_") == of_errors;
+    files("text", "jbt").into_iter().filter(move |(path, _)| is_wanted(path))
 }
 
 fn options(text: &str) -> Options {
@@ -82,34 +73,26 @@ fn marked(text: &str, diagnostics: &[Diagnostic]) -> String {
     lines.join("\n") + "\n" + &rest
 }
 
-fn is_error_file(path: &Path) -> bool {
-    path.file_name().unwrap().to_str().unwrap().starts_with("error_")
-}
-
 #[test]
 fn golden_prints() {
-    for path in golden_files().iter().filter(|path| !is_error_file(path)) {
-        let text = std::fs::read_to_string(path).unwrap();
+    for (path, text) in golden_files(false) {
         let model = parse(text.as_bytes(), &options(&text))
             .unwrap_or_else(|errors| panic!("{}\n{}", path.display(), marked(&text, &errors)));
-        let printed = print(&model);
-        compare(&path.with_extension("print"), &printed);
-        let again = parse(printed.as_bytes(), &Options::default()).unwrap();
-        assert_eq!(again, model, "{}", path.display());
+        compare(&path.with_extension("print"), &print(&model));
+        let again = assert_reads_back(&model);
         assert_eq!(distinct(&again.root), distinct(&model.root), "{}", path.display());
     }
 }
 
 #[test]
 fn golden_errors() {
-    for path in golden_files().iter().filter(|path| is_error_file(path)) {
-        let file = std::fs::read_to_string(path).unwrap();
+    for (path, file) in golden_files(true) {
         let text = unmarked(&file);
         // What reads well may make no sense: then the check says so.
         let model = parse(text.as_bytes(), &options(&text)).and_then(|model| model.check());
         let errors = model.expect_err(path.to_str().unwrap());
         inside(&text, &errors);
-        compare(path, &marked(&text, &errors));
+        compare(&path, &marked(&text, &errors));
     }
 }
 
@@ -172,8 +155,7 @@ fn a_graph_prints_as_long_as_it_is() {
     let model = Model::new(tree);
     let text = print(&model);
     assert!(text.len() < 5_000, "{}", text.len());
-    let again = parse(text.as_bytes(), &Options::default()).unwrap();
-    assert_eq!(again, model);
+    let again = assert_reads_back(&model);
     assert_eq!(distinct(&again.root), 61);
 }
 

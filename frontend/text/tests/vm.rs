@@ -8,8 +8,8 @@ use std::collections::HashMap;
 use jbt_model::diagnostic::{Diagnostic, Source};
 use jbt_model::walk::walk;
 use jbt_testkit::samples;
+use jbt_testkit::scene::assert_reads_back;
 use jbt_text::import::vm;
-use jbt_text::{Options, parse, print};
 
 /// The value of a program, line by line: from the meaning of the file alone.
 fn interpret(text: &str, [x, y, z]: [f64; 3]) -> f64 {
@@ -69,8 +69,7 @@ fn samples_have_the_values_of_their_instructions() {
             let close = (found - truth).abs() <= 1e-9 * truth.abs().max(1.0);
             assert!(far || close, "{name}: {found}, not {truth}, at {p:?}");
         }
-        let again = parse(print(&model).as_bytes(), &Options::default()).unwrap();
-        assert_eq!(again, model, "{name} survives printing");
+        assert_reads_back(&model);
     }
 }
 

@@ -12,11 +12,15 @@
 //! (s, sx, sy, sz) = fold t0 rows neutral (0, 0, 0, 0) (acc, ax, ay, az): ... yield next, nx, ny, nz
 //! ```
 
+use smallvec::SmallVec;
+
 use crate::builder::FunctionBuilder;
-use crate::domain::tangent::{Dual, Tangent, Vector};
-use crate::entity::{Block, Entity, Value};
-use crate::function::{Fold, Function, InstKind};
+use crate::domain::tangent::{Slope, Tangent};
+use crate::entity::{Entity, Table, Value};
+use crate::function::{Fold, Function, InstData, InstKind};
 use crate::op::{Any, Domain, Op, Type, apply};
+use crate::origin::Origin;
+use crate::translate::{AccumulatorParts, Translation, translate};
 
 /// Names of the outputs that the pass adds.
 pub const GRADIENT_OUTPUTS: [&str; 3] = ["gx", "gy", "gz"];
@@ -36,30 +40,25 @@ pub fn guarded_gradient(function: &Function) -> Function {
 }
 
 fn with_gradient(function: &Function, tangent: Tangent) -> Function {
-    let mut pass = GradientPass {
-        function,
-        moves: moving(function),
-        tangent,
-        values: vec![None; function.values.len()],
-    };
-    pass.block(function.body);
-    let body = &function.blocks[function.body];
+    let mut differentiation = Differentiation { moves: moving(function), function, tangent };
+    let results = translate(function, &mut differentiation);
     let mut outputs = Vec::new();
-    for (index, (name, &value)) in function.outputs.iter().zip(&body.results).enumerate() {
-        let dual = pass.value(value).real();
+    for (index, (name, result)) in function.outputs.iter().zip(results).enumerate() {
+        let dual = result.real();
         outputs.push((name.clone(), dual.value));
         if index == 0 {
-            let slope = pass.tangent.components(dual.slope);
-            let zero = pass.tangent.builder.constant(0.0);
-            for (name, component) in GRADIENT_OUTPUTS.iter().zip(pass.with_zeros(slope)) {
-                let component = pass.tangent.saturated(component);
+            let slope = differentiation.components(dual.slope);
+            let tangent = &mut differentiation.tangent;
+            let zero = tangent.builder.constant(0.0);
+            for (name, component) in GRADIENT_OUTPUTS.iter().zip(slope) {
+                let component = tangent.saturated(component);
                 // The sign of a zero may depend on rows that add nothing; adding +0 removes it.
-                let component = pass.tangent.builder.add(component, zero);
+                let component = tangent.builder.add(component, zero);
                 outputs.push(((*name).to_owned(), component));
             }
         }
     }
-    pass.tangent.builder.finish(&outputs)
+    differentiation.tangent.builder.finish(&outputs)
 }
 
 /// The values that the first output depends on.
@@ -144,115 +143,103 @@ fn moved(function: &Function) -> Vec<bool> {
     }
 }
 
-struct GradientPass<'a> {
+/// The translation into the tangent domain.
+struct Differentiation<'a> {
     function: &'a Function,
+    /// The values that have a tangent.
     moves: Vec<bool>,
     tangent: Tangent,
-    values: Vec<Option<Any<Tangent>>>,
 }
 
-impl GradientPass<'_> {
-    fn value(&self, value: Value) -> Any<Tangent> {
-        self.values[value.index()].expect("a verified function defines values before it uses them")
+impl Differentiation<'_> {
+    /// The three components of a slope.
+    fn components(&mut self, slope: Slope) -> [Value; 3] {
+        let components = self.tangent.components(slope);
+        components.map(|component| component.unwrap_or_else(|| self.tangent.builder.constant(0.0)))
+    }
+}
+
+impl Translation for Differentiation<'_> {
+    type Value = Any<Tangent>;
+    type Part = Value;
+
+    fn begin(&mut self, origin: Origin) {
+        self.tangent.builder.set_origin(origin);
     }
 
-    /// An operand; without its tangent if nothing needs the tangent of the result.
-    fn operand(&self, value: Value, moves: bool) -> Any<Tangent> {
-        match self.value(value) {
-            Any::Real(dual) if !moves => Any::Real(Tangent::still(dual.value)),
-            operand => operand,
-        }
-    }
-
-    fn with_zeros(&mut self, vector: Vector) -> [Value; 3] {
-        vector.map(|component| component.unwrap_or_else(|| self.tangent.builder.constant(0.0)))
-    }
-
-    fn block(&mut self, block: Block) {
-        for &inst in &self.function.blocks[block].insts {
-            let data = &self.function.insts[inst];
-            self.tangent.builder.set_origin(data.origin);
-            let result = match &data.kind {
-                InstKind::Input(index) => Any::Real(self.input(*index)),
-                InstKind::Constant(number) => Any::Real(self.tangent.constant(*number)),
-                InstKind::BitsConstant(bits) => Any::Bits(self.tangent.bits_constant(*bits)),
-                InstKind::Column { table, column } => {
-                    Any::Real(Tangent::still(self.tangent.builder.column(*table, *column)))
-                }
-                InstKind::Op { op, args } => {
-                    let moves = self.moves[data.results[0].index()];
-                    let args: Vec<Any<Tangent>> = args.iter().map(|&arg| self.operand(arg, moves)).collect();
-                    apply(&mut self.tangent, *op, &args)
-                }
-                InstKind::Fold(fold) => {
-                    self.fold(fold, &data.results);
-                    continue;
-                }
-            };
-            self.values[data.results[0].index()] = Some(result);
-        }
-    }
-
-    fn input(&mut self, index: usize) -> Dual {
+    fn input(&mut self, index: usize) -> Any<Tangent> {
         let value = self.tangent.builder.input(index);
         if index >= 3 {
-            return Tangent::still(value);
+            return Any::Real(Tangent::still(value));
         }
         let one = self.tangent.builder.constant(1.0);
         let axis = std::array::from_fn(|axis| (axis == index).then_some(one));
-        self.tangent.moving(value, axis)
+        Any::Real(self.tangent.moving(value, axis))
     }
 
-    /// The fold, with three more accumulators for each accumulator that has a tangent.
-    fn fold(&mut self, fold: &Fold, results: &[Value]) {
-        let origin = self.tangent.builder.origin();
-        let body = &self.function.blocks[fold.body];
-        let initial = self.flatten(&fold.initial, &body.params);
-        let params = self.tangent.builder.begin_fold(fold.table, (fold.kind, fold.rule), &initial);
-        self.unflatten(&body.params, &params);
-        self.block(fold.body);
-        let next = self.flatten(&body.results, &body.params);
-        self.tangent.builder.set_origin(origin);
-        let finals = self.tangent.builder.end_fold(&next);
-        self.unflatten(results, &finals);
+    fn constant(&mut self, number: f32) -> Any<Tangent> {
+        Any::Real(self.tangent.constant(number))
     }
 
-    /// The values, each followed by its tangent where the accumulator in its place has one.
-    fn flatten(&mut self, values: &[Value], accumulators: &[Value]) -> Vec<Value> {
-        let mut flat = Vec::new();
-        for (&value, accumulator) in values.iter().zip(accumulators) {
-            match self.value(value) {
-                Any::Mask(mask) => flat.push(mask),
-                Any::Bits(bits) => flat.push(bits),
-                Any::Real(dual) => {
-                    flat.push(dual.value);
-                    if self.moves[accumulator.index()] {
-                        let slope = self.tangent.components(dual.slope);
-                        flat.extend(self.with_zeros(slope));
-                    }
+    fn bits_constant(&mut self, bits: u32) -> Any<Tangent> {
+        Any::Bits(self.tangent.bits_constant(bits))
+    }
+
+    fn column(&mut self, table: Table, column: usize) -> Any<Tangent> {
+        Any::Real(Tangent::still(self.tangent.builder.column(table, column)))
+    }
+
+    /// Where nothing needs the tangent of the result, operands go without theirs.
+    fn op(&mut self, inst: &InstData, op: Op, args: &[Any<Tangent>]) -> Any<Tangent> {
+        if self.moves[inst.results[0].index()] {
+            return apply(&mut self.tangent, op, args);
+        }
+        let args: SmallVec<[Any<Tangent>; 3]> = args.iter().map(|&arg| still(arg)).collect();
+        apply(&mut self.tangent, op, &args)
+    }
+
+    /// The value, and its tangent if the accumulator has one.
+    fn split(&mut self, value: Any<Tangent>, accumulator: Value, parts: &mut AccumulatorParts<Value>) {
+        match value {
+            Any::Mask(mask) => parts.push(mask),
+            Any::Bits(bits) => parts.push(bits),
+            Any::Real(dual) => {
+                parts.push(dual.value);
+                if self.moves[accumulator.index()] {
+                    parts.extend(self.components(dual.slope));
                 }
             }
         }
-        flat
     }
 
-    /// Gives `values` what [`flatten`](Self::flatten) laid out.
-    fn unflatten(&mut self, values: &[Value], flat: &[Value]) {
-        let mut flat = flat.iter().copied();
-        let mut next = || flat.next().expect("the layout is that of flatten");
-        for &value in values {
-            let primal = next();
-            let any = match self.function.values[value] {
-                Type::Mask => Any::Mask(primal),
-                Type::Bits => Any::Bits(primal),
-                Type::Real if self.moves[value.index()] => {
-                    // Components are finite, and so are accumulators made of them.
-                    let slope = [0; 3].map(|_| Some(self.tangent.note(next())));
-                    Any::Real(self.tangent.moving(primal, slope))
-                }
-                Type::Real => Any::Real(Tangent::still(primal)),
-            };
-            self.values[value.index()] = Some(any);
+    fn whole(&mut self, accumulator: Value, mut next: impl FnMut() -> Value) -> Any<Tangent> {
+        let value = next();
+        match self.function.values[accumulator] {
+            Type::Mask => Any::Mask(value),
+            Type::Bits => Any::Bits(value),
+            Type::Real if self.moves[accumulator.index()] => {
+                // Components are finite, and so are accumulators made of them.
+                let slope = [0; 3].map(|_| Some(self.tangent.note(next())));
+                Any::Real(self.tangent.moving(value, slope))
+            }
+            Type::Real => Any::Real(Tangent::still(value)),
         }
+    }
+
+    fn enter(&mut self, fold: &Fold, _: usize, initial: AccumulatorParts<Value>) -> AccumulatorParts<Value> {
+        self.tangent.builder.begin_fold(fold.table, (fold.kind, fold.rule), &initial).into()
+    }
+
+    fn leave(&mut self, _: &Fold, origin: Origin, next: AccumulatorParts<Value>) -> AccumulatorParts<Value> {
+        self.tangent.builder.set_origin(origin);
+        self.tangent.builder.end_fold(&next).into()
+    }
+}
+
+/// An operand without its tangent.
+fn still(operand: Any<Tangent>) -> Any<Tangent> {
+    match operand {
+        Any::Real(dual) => Any::Real(Tangent::still(dual.value)),
+        Any::Mask(_) | Any::Bits(_) => operand,
     }
 }

@@ -17,10 +17,10 @@
 //! ranges of the gradient.
 
 use crate::builder::FunctionBuilder;
-use crate::domain::interval::{Ground, Walk};
-use crate::entity::{Table, Value};
-use crate::function::{Fold, Function, InstKind};
-use crate::op::Any;
+use crate::domain::interval::{BoundParts, Enclosure, Ground};
+use crate::entity::{Table, Value, Values};
+use crate::function::{Fold, Function};
+use crate::op::{Any, Type};
 use crate::origin::{Origin, Part};
 
 /// What the names of low and of high bounds end with, in their order.
@@ -32,11 +32,10 @@ pub const BOUND_SUFFIXES: [&str; 2] = [".low", ".high"];
 pub fn interval(function: &Function) -> Function {
     let mut bounds = FunctionBuilder::like(function);
     bounds.set_inputs(function.inputs.iter().flat_map(|name| both(name)).collect());
-    let mut walk = Walk::new(function, bounds, Emitting);
-    let outputs = walk.outputs();
+    let (outputs, bounds) = Enclosure::new(function, bounds, Emitting).outputs();
     let names = function.outputs.iter().flat_map(|name| both(name));
     let outputs: Vec<(String, Value)> = names.zip(outputs.into_iter().flatten()).collect();
-    walk.interval.domain.finish(&outputs)
+    bounds.finish(&outputs)
 }
 
 /// The names of the bounds of a plane.
@@ -58,10 +57,7 @@ impl Ground for Emitting {
     }
 
     fn end(&mut self, bounds: &mut FunctionBuilder, origin: Origin, high: Value) {
-        let computed = matches!(bounds.definition(high), Some(InstKind::Op { .. }));
-        if computed && origin.part == Part::Distance {
-            bounds.mark(high, origin);
-        }
+        bounds.keep_distance(high, origin);
     }
 
     fn input(&mut self, bounds: &mut FunctionBuilder, index: usize) -> [Value; 2] {
@@ -72,27 +68,47 @@ impl Ground for Emitting {
         bounds.column(table, column)
     }
 
-    fn fold(
-        walk: &mut Walk<'_, Self>,
+    fn runs(&mut self, _: &Fold) -> usize {
+        1
+    }
+
+    fn enter(
+        &mut self,
+        bounds: &mut FunctionBuilder,
         fold: &Fold,
+        _: usize,
+        initial: BoundParts<Self>,
+    ) -> BoundParts<Self> {
+        let initial: Values = initial.into_iter().map(value).collect();
+        let params = bounds.begin_fold(fold.table, (fold.kind, fold.rule), &initial);
+        params.into_iter().map(|param| typed(bounds, param)).collect()
+    }
+
+    fn leave(
+        &mut self,
+        bounds: &mut FunctionBuilder,
         origin: Origin,
-        initial: Vec<Any<FunctionBuilder>>,
-    ) -> Vec<Any<FunctionBuilder>> {
-        let (types, initial): (Vec<_>, Vec<Value>) = initial.into_iter().map(split).unzip();
-        let params = walk.interval.domain.begin_fold(fold.table, (fold.kind, fold.rule), &initial);
-        let params = types.iter().zip(params).map(|(wrap, value)| wrap(value)).collect();
-        let next: Vec<Value> = walk.body(fold, params).into_iter().map(|any| split(any).1).collect();
-        walk.interval.domain.set_origin(origin);
-        let finals = walk.interval.domain.end_fold(&next);
-        types.iter().zip(finals).map(|(wrap, value)| wrap(value)).collect()
+        next: BoundParts<Self>,
+    ) -> BoundParts<Self> {
+        bounds.set_origin(origin);
+        let next: Values = next.into_iter().map(value).collect();
+        let results = bounds.end_fold(&next);
+        results.into_iter().map(|result| typed(bounds, result)).collect()
     }
 }
 
-/// A value, and the constructor of its type.
-fn split(any: Any<FunctionBuilder>) -> (fn(Value) -> Any<FunctionBuilder>, Value) {
+/// A value of the new function, with its type.
+fn typed(bounds: &FunctionBuilder, value: Value) -> Any<FunctionBuilder> {
+    match bounds.function().values[value] {
+        Type::Real => Any::Real(value),
+        Type::Mask => Any::Mask(value),
+        Type::Bits => Any::Bits(value),
+    }
+}
+
+/// The value, without its type.
+fn value(any: Any<FunctionBuilder>) -> Value {
     match any {
-        Any::Real(value) => (Any::Real, value),
-        Any::Mask(value) => (Any::Mask, value),
-        Any::Bits(value) => (Any::Bits, value),
+        Any::Real(value) | Any::Mask(value) | Any::Bits(value) => value,
     }
 }

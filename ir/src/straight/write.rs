@@ -3,11 +3,12 @@
 use rustc_hash::FxHashMap as HashMap;
 
 use crate::builder::FunctionBuilder;
-use crate::entity::{Block, Entity, Table, Value, Values};
-use crate::function::{Fold, Function, InstData, InstKind, Schema};
-use crate::op::Domain as _;
-use crate::origin::{Origin, Part};
+use crate::entity::{Entity, Table, Value};
+use crate::function::{Fold, Function, InstData, Schema};
+use crate::op::{Domain as _, Op};
+use crate::origin::Origin;
 use crate::table::Tables;
+use crate::translate::{AccumulatorParts, Translation, translate};
 
 use super::choose::Chosen;
 use super::plan::{Copied, Count, Place, Source, Under};
@@ -22,8 +23,6 @@ pub(super) struct Written {
 }
 
 /// Writes a function again, with straight code in place of the folds over the chosen tables.
-///
-/// The recursion is over nested folds, at most [`crate::limits::MAX_FOLD_DEPTH`] deep.
 pub(super) struct Writer<'a> {
     function: &'a Function,
     tables: &'a Tables,
@@ -33,8 +32,6 @@ pub(super) struct Writer<'a> {
     /// Whether numbers of the row that stays may share a column: only if the row holds no primitive.
     shares_root: bool,
     builder: FunctionBuilder,
-    /// The new value of each old one.
-    map: Vec<Option<Value>>,
     places: Vec<Place>,
     rows: Vec<usize>,
     counts: Vec<Count>,
@@ -69,7 +66,6 @@ impl<'a> Writer<'a> {
             apart,
             shares_root: function.tables[root].slots.is_empty(),
             builder,
-            map: vec![None; function.values.len()],
             places: vec![Place { parent: 0, table: root, position: 0 }],
             rows: vec![tables.tables[root].active[0] as usize],
             counts: Vec::new(),
@@ -85,10 +81,8 @@ impl<'a> Writer<'a> {
     }
 
     pub(super) fn run(mut self) -> Written {
-        let function = self.function;
-        self.insts(function.body);
-        let results = self.map_all(&function.blocks[function.body].results);
-        let outputs: Vec<(String, Value)> = function.outputs.iter().cloned().zip(results).collect();
+        let results = translate(self.function, &mut self);
+        let outputs: Vec<(String, Value)> = self.function.outputs.iter().cloned().zip(results).collect();
         // The rows of a place are looked up when the place is: in the order of places.
         self.counts.sort_by_key(|count| count.place);
         Written {
@@ -100,53 +94,10 @@ impl<'a> Writer<'a> {
         }
     }
 
-    fn map_all(&self, values: &[Value]) -> Values {
-        values.iter().map(|value| self.map[value.index()].expect("values are defined before use")).collect()
-    }
-
-    fn bind(&mut self, old: &[Value], new: &[Value]) {
-        for (old, &new) in old.iter().zip(new) {
-            self.map[old.index()] = Some(new);
-        }
-    }
-
-    fn insts(&mut self, block: Block) {
-        let function = self.function;
-        for &inst in &function.blocks[block].insts {
-            self.inst(&function.insts[inst]);
-        }
-    }
-
-    fn inst(&mut self, data: &'a InstData) {
-        let slot = data.origin.slot.map(|slot| self.slots.get(&slot).copied().unwrap_or(slot));
-        let origin = Origin { slot, ..data.origin };
-        self.builder.set_origin(origin);
-        let result = match &data.kind {
-            InstKind::Input(index) => self.builder.input(*index),
-            InstKind::Constant(number) => self.builder.constant(*number),
-            InstKind::BitsConstant(bits) => self.builder.bits_constant(*bits),
-            InstKind::Column { table, column } => self.column(*table, *column),
-            InstKind::Op { op, args } => {
-                let args = self.map_all(args);
-                let result = self.builder.op(*op, &args);
-                if origin.part == Part::Distance {
-                    self.builder.mark(result, origin);
-                }
-                result
-            }
-            InstKind::Fold(fold) => {
-                let initial = self.map_all(&fold.initial);
-                let results = match self.parent(fold.table) {
-                    Under::Place(place) if self.chosen.straight[fold.table.index()] => {
-                        self.straight(fold, place, initial)
-                    }
-                    parent => self.fold(fold, parent, &initial, origin),
-                };
-                self.bind(&data.results, &results);
-                return;
-            }
-        };
-        self.bind(&data.results, &[result]);
+    /// The origin of the new instructions: slots have other numbers.
+    fn origin(&self, old: Origin) -> Origin {
+        let slot = old.slot.map(|slot| self.slots.get(&slot).copied().unwrap_or(slot));
+        Origin { slot, ..old }
     }
 
     /// Where the parent of a table is now.
@@ -156,40 +107,17 @@ impl<'a> Writer<'a> {
         })
     }
 
-    /// The body once for each row.
-    fn straight(&mut self, fold: &'a Fold, parent: usize, initial: Values) -> Values {
-        let (function, table) = (self.function, fold.table);
-        let rows = self.tables.tables[table].range(self.rows[parent]);
-        self.counts.push(Count { place: parent, table, rows: rows.len() });
-        let mut so_far = initial;
-        for (position, &row) in rows.iter().enumerate() {
-            self.here[table.index()] = Some(Under::Place(self.places.len()));
-            self.places.push(Place { parent, table, position });
-            self.rows.push(row as usize);
-            self.bind(&function.blocks[fold.body].params, &so_far);
-            self.insts(fold.body);
-            so_far = self.map_all(&function.blocks[fold.body].results);
+    /// The place under which the rows of a fold become straight code, if they do.
+    fn straight_under(&self, fold: &Fold) -> Option<usize> {
+        match self.parent(fold.table) {
+            Under::Place(place) => self.chosen.straight[fold.table.index()].then_some(place),
+            Under::Nothing | Under::Table(_) => None,
         }
-        so_far
     }
 
-    /// A fold as before: over the table of the row that stays, or over a new one.
-    fn fold(&mut self, fold: &'a Fold, parent: Under, initial: &[Value], origin: Origin) -> Values {
-        let function = self.function;
-        let table = if fold.table == self.chosen.root {
-            self.here[fold.table.index()] = Some(Under::Place(0));
-            Table::new(0)
-        } else {
-            let table = self.copied(fold.table, parent);
-            self.here[fold.table.index()] = Some(Under::Table(table));
-            table
-        };
-        let params = self.builder.begin_fold(table, (fold.kind, fold.rule), initial);
-        self.bind(&function.blocks[fold.body].params, &params);
-        self.insts(fold.body);
-        let next = self.map_all(&function.blocks[fold.body].results);
-        self.builder.set_origin(origin);
-        self.builder.end_fold(&next).into()
+    /// The active rows of a table under a place.
+    fn rows_under(&self, table: Table, place: usize) -> &'a [u32] {
+        self.tables.tables[table].range(self.rows[place])
     }
 
     /// A new table for rows of an old one.
@@ -209,17 +137,6 @@ impl<'a> Writer<'a> {
         self.copies.push(Copied { table, under });
         let (name, columns) = (schema.name.clone(), schema.columns.clone());
         self.builder.table(Schema { name, columns, parent, slots })
-    }
-
-    fn column(&mut self, table: Table, column: usize) -> Value {
-        match self.here[table.index()].expect("a column is read inside the fold over its table") {
-            Under::Nothing => unreachable!("no body stands there"),
-            Under::Table(table) => self.builder.column(table, column),
-            Under::Place(place) => {
-                let column = self.shared(Source { place, column });
-                self.builder.column(Table::new(0), column)
-            }
-        }
     }
 
     /// The column of the row that stays which holds this number.
@@ -244,5 +161,92 @@ impl<'a> Writer<'a> {
         self.columns[column].push(source);
         self.column_of.insert(source, column);
         column
+    }
+}
+
+impl Translation for Writer<'_> {
+    type Value = Value;
+    type Part = Value;
+
+    fn begin(&mut self, origin: Origin) {
+        self.builder.set_origin(self.origin(origin));
+    }
+
+    fn input(&mut self, index: usize) -> Value {
+        self.builder.input(index)
+    }
+
+    fn constant(&mut self, number: f32) -> Value {
+        self.builder.constant(number)
+    }
+
+    fn bits_constant(&mut self, bits: u32) -> Value {
+        self.builder.bits_constant(bits)
+    }
+
+    fn column(&mut self, table: Table, column: usize) -> Value {
+        match self.here[table.index()].expect("a column is read inside the fold over its table") {
+            Under::Nothing => unreachable!("no body stands there"),
+            Under::Table(table) => self.builder.column(table, column),
+            Under::Place(place) => {
+                let column = self.shared(Source { place, column });
+                self.builder.column(Table::new(0), column)
+            }
+        }
+    }
+
+    fn op(&mut self, _: &InstData, op: Op, args: &[Value]) -> Value {
+        let result = self.builder.op(op, args);
+        let origin = self.builder.origin();
+        self.builder.keep_distance(result, origin);
+        result
+    }
+
+    fn split(&mut self, value: Value, _: Value, parts: &mut AccumulatorParts<Value>) {
+        parts.push(value);
+    }
+
+    fn whole(&mut self, _: Value, mut next: impl FnMut() -> Value) -> Value {
+        next()
+    }
+
+    /// Straight code has the body once for each row.
+    fn runs(&mut self, fold: &Fold) -> usize {
+        let Some(place) = self.straight_under(fold) else { return 1 };
+        let rows = self.rows_under(fold.table, place).len();
+        self.counts.push(Count { place, table: fold.table, rows });
+        rows
+    }
+
+    /// A fold that stays is over the table of the row that stays, or over a new one.
+    fn enter(&mut self, fold: &Fold, run: usize, parts: AccumulatorParts<Value>) -> AccumulatorParts<Value> {
+        let table = fold.table;
+        if let Some(parent) = self.straight_under(fold) {
+            self.here[table.index()] = Some(Under::Place(self.places.len()));
+            self.places.push(Place { parent, table, position: run });
+            self.rows.push(self.rows_under(table, parent)[run] as usize);
+            return parts;
+        }
+        let (here, table) = if table == self.chosen.root {
+            (Under::Place(0), Table::new(0))
+        } else {
+            let table = self.copied(table, self.parent(table));
+            (Under::Table(table), table)
+        };
+        self.here[fold.table.index()] = Some(here);
+        self.builder.begin_fold(table, (fold.kind, fold.rule), &parts).into()
+    }
+
+    fn leave(
+        &mut self,
+        fold: &Fold,
+        origin: Origin,
+        next: AccumulatorParts<Value>,
+    ) -> AccumulatorParts<Value> {
+        if self.straight_under(fold).is_some() {
+            return next;
+        }
+        self.builder.set_origin(self.origin(origin));
+        self.builder.end_fold(&next).into()
     }
 }

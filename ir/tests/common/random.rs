@@ -4,8 +4,7 @@
 use jbt_ir::{
     Domain, FoldKind, Function, FunctionBuilder, Op, Rows, Rule, Schema, Table, Tables, Type, Value,
 };
-
-use super::spicy::SPICY;
+use jbt_testkit::points::OPERANDS;
 
 /// The input planes of every random function.
 pub const INPUTS: [&str; 3] = ["x", "y", "z"];
@@ -14,8 +13,8 @@ pub const INPUTS: [&str; 3] = ["x", "y", "z"];
 pub fn number(random: &mut fastrand::Rng) -> f32 {
     match random.u8(0..8) {
         // Zeros and ones of both signs are the first four.
-        0..3 => SPICY[random.usize(0..4)],
-        3 | 4 => SPICY[random.usize(0..SPICY.len())],
+        0..3 => OPERANDS[random.usize(0..4)],
+        3 | 4 => OPERANDS[random.usize(0..OPERANDS.len())],
         5 => f32::from_bits(random.u32(..)),
         _ => (random.f32() - 0.5) * 8.0,
     }

@@ -11,6 +11,7 @@ use jbt_ir::{
     interpret, verify,
 };
 use jbt_jit::{Allocator, BACKENDS, Check, Cranelift, Kernel, OptLevel, Pieces, VectorCount, Wide};
+use jbt_testkit::bits::assert_same;
 
 /// Numbers on which engines have been seen to differ.
 pub const SPICE: [f32; 22] = [
@@ -168,21 +169,6 @@ pub fn run_selected(
     planes
 }
 
-/// Asserts equal bits, where a NaN equals any NaN.
-pub fn assert_same_bits(expected: &[Vec<f32>], given: &[Vec<f32>], what: &str) {
-    assert_eq!(expected.len(), given.len());
-    for (plane, (expected, given)) in expected.iter().zip(given).enumerate() {
-        assert_eq!(expected.len(), given.len());
-        for (point, (&expected, &given)) in expected.iter().zip(given).enumerate() {
-            let same = expected.to_bits() == given.to_bits() || expected.is_nan() && given.is_nan();
-            assert!(
-                same,
-                "{what}: output {plane} of point {point} is {given:e}, the reference has {expected:e}"
-            );
-        }
-    }
-}
-
 /// A generator, a level, and whether the vectors of a value are open.
 type Setting = (Box<dyn Backend>, Level, bool);
 
@@ -236,7 +222,7 @@ fn check_few(
             planes.iter().map(|plane| plane[..length].to_vec()).collect()
         };
         let given = run_selected(bound, selection, &cut(inputs), expected.len());
-        assert_same_bits(&cut(expected), &given, &format!("{what}, {length} points"));
+        assert_same(&cut(expected), &given, &format!("{what}, {length} points"));
     }
 }
 
@@ -262,7 +248,7 @@ pub fn check(function: &Verified, tables: &Tables, inputs: Vec<Vec<f32>>) {
         for (selection, expected) in selections.iter().zip(&expected) {
             let given = run_selected(&bound, selection, &inputs, expected.len());
             let what = format!("{level} {generator:?}, {} rows", selection.len());
-            assert_same_bits(expected, &given, &what);
+            assert_same(expected, &given, &what);
             if is_open {
                 check_few(&bound, selection, (&inputs, expected), &what);
             }

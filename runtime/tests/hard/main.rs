@@ -4,13 +4,18 @@
 //!
 //! `JBT_HARD_SCENES` sets how many there are; the seeds begin at [`FIRST`].
 
+#[path = "../common/mod.rs"]
+mod common;
 #[path = "../thin/planted.rs"]
 mod planted;
 mod scenes;
 
+use common::answers;
 use jbt::mesh::{Mesh, check_manifold};
-use jbt::text::{Options, parse};
 use jbt::{Box3, CheckedTree, Compiler, Engine, Evaluator, Fineness, Points, Polygonize, Query};
+use jbt_testkit::scene::{count, tree};
+use jbt_testkit::surface::{area_vector, corners, volume};
+use jbt_testkit::vector::{dot, minus};
 use rayon::prelude::*;
 use scenes::{HALF, RESOLUTION, Scene, scene};
 
@@ -42,7 +47,7 @@ struct Found {
 
 #[test]
 fn hard_scenes_have_good_meshes() {
-    let count: u64 = std::env::var("JBT_HARD_SCENES").map_or(200, |count| count.parse().expect("a number"));
+    let count = count("JBT_HARD_SCENES", 200);
     let found: Vec<Found> = (0..count).into_par_iter().map(|index| judge(FIRST + index)).collect();
     let faults: Vec<&String> = found.iter().flat_map(|found| &found.faults).collect();
     assert!(faults.is_empty(), "{} faults, first {:#?}", faults.len(), &faults[..faults.len().min(8)]);
@@ -61,8 +66,7 @@ fn hard_scenes_have_good_meshes() {
 
 fn judge(seed: u64) -> Found {
     let scene = scene(seed);
-    let tree =
-        parse(scene.text.as_bytes(), &Options::default()).expect("it reads").check().expect("it is a model");
+    let tree = tree(&scene.text);
     let low = scene.center.map(|x| x - HALF);
     let high = scene.center.map(|x| x + HALF);
     let settings = Polygonize {
@@ -101,7 +105,8 @@ fn judge(seed: u64) -> Found {
     if inward > 0 {
         fault(format!("{inward} normals point inward"));
     }
-    let (meshed, sampled) = (volume(&made.mesh), dense_volume(&tree, &scene, seed));
+    let (meshed, sampled) =
+        (volume(&made.mesh.positions, &made.mesh.triangles), dense_volume(&tree, &scene, seed));
     if (meshed / sampled - 1.0).abs() > VOLUME && !is_named {
         let half = scene.part.as_ref().map(|part| part.half);
         fault(format!(
@@ -117,7 +122,7 @@ fn judge(seed: u64) -> Found {
 fn normals(mesh: &Mesh, is_left_out: impl Fn(usize) -> bool) -> (usize, usize) {
     let mut sums = vec![([0.0_f64; 3], 0.0_f64); mesh.positions.len()];
     for &triangle in &mesh.triangles {
-        let normal = area_vector(mesh, triangle);
+        let normal = area_vector(corners(&mesh.positions, triangle));
         let area = dot(normal, normal).sqrt();
         for vertex in triangle {
             let (sum, areas) = &mut sums[vertex as usize];
@@ -135,26 +140,6 @@ fn normals(mesh: &Mesh, is_left_out: impl Fn(usize) -> bool) -> (usize, usize) {
         }
     }
     (inward, needles)
-}
-
-fn corners(mesh: &Mesh, triangle: [u32; 3]) -> [[f64; 3]; 3] {
-    triangle.map(|vertex| mesh.positions[vertex as usize].map(f64::from))
-}
-
-/// Twice the area, along the normal.
-fn area_vector(mesh: &Mesh, triangle: [u32; 3]) -> [f64; 3] {
-    let [p, q, r] = corners(mesh, triangle);
-    cross(minus(q, p), minus(r, p))
-}
-
-/// By the divergence theorem, about the first vertex.
-fn volume(mesh: &Mesh) -> f64 {
-    let about = mesh.positions[0].map(f64::from);
-    let of = |triangle: &[u32; 3]| {
-        let [p, q, r] = corners(mesh, *triangle).map(|corner| minus(corner, about));
-        dot(p, cross(q, r)) / 6.0
-    };
-    mesh.triangles.iter().map(of).sum()
 }
 
 /// One point anywhere in each cell of the region; the part of them that is inside.
@@ -177,19 +162,6 @@ fn dense_volume(tree: &CheckedTree, scene: &Scene, seed: u64) -> f64 {
 }
 
 fn inside_of(evaluator: &Evaluator, points: &Points, iso: f32) -> usize {
-    let mut samples = evaluator.samples();
-    evaluator.eval(points, &mut samples).expect("it evaluates");
+    let samples = answers(evaluator, points);
     samples.field().iter().filter(|&&field| field >= iso).count()
-}
-
-fn minus(u: [f64; 3], v: [f64; 3]) -> [f64; 3] {
-    [u[0] - v[0], u[1] - v[1], u[2] - v[2]]
-}
-
-fn dot(u: [f64; 3], v: [f64; 3]) -> f64 {
-    u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
-}
-
-fn cross(u: [f64; 3], v: [f64; 3]) -> [f64; 3] {
-    [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
 }

@@ -2,6 +2,7 @@
 //! are thinner than a cell.
 
 use fastrand::Rng;
+use jbt_testkit::points::between;
 
 use crate::planted::{Made, Planted, Thin, planted};
 
@@ -47,10 +48,6 @@ fn corner_part(rng: &mut Rng) -> Option<Planted> {
     let kind = (Thin::ALL[rng.usize(0..Thin::ALL.len())], Made::ALL[rng.usize(0..Made::ALL.len())]);
     let center = [0; 3].map(|_| if rng.bool() { CORNER } else { -CORNER });
     Some(planted(rng, kind, center, 2.0 * HALF / RESOLUTION as f64))
-}
-
-fn between(rng: &mut Rng, low: f64, high: f64) -> f64 {
-    low + (high - low) * rng.f64()
 }
 
 fn vector(rng: &mut Rng, size: f64) -> String {

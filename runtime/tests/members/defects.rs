@@ -5,6 +5,7 @@
 
 use jbt::build::{Axis, param, point, round_cone, segment};
 use jbt::{Compiler, Engine, Model, Points, Query, Samples, SetOperation, Tree};
+use jbt_testkit::vector::{length, minus};
 
 use crate::falloffs::soft;
 
@@ -14,7 +15,7 @@ fn answers(root: &Tree, points: &[[f32; 3]]) -> Vec<(Engine, Samples)> {
     let points: Points = points.iter().copied().collect();
     let of = |engine| {
         let evaluator = Compiler::for_engine(engine).evaluator(&tree, Query::ALL).expect("it compiles");
-        (engine, crate::subject::answers(&evaluator, &points))
+        (engine, crate::common::answers(&evaluator, &points))
     };
     Engine::ALL.map(of).into_iter().collect()
 }
@@ -60,16 +61,8 @@ fn judge_fields(root: &Tree, places: &[([f64; 3], f64)], defective: impl Fn([f64
     }
 }
 
-fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|axis| a[axis] - b[axis])
-}
-
 fn times(factor: f64, v: [f64; 3]) -> [f64; 3] {
     v.map(|x| factor * x)
-}
-
-fn length(v: [f64; 3]) -> f64 {
-    v.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
 /// The gradient of a soft ball: `dg/ds 2 (p - c) / R^2`, with `dg/ds = -(22 - 34 s + 12 s^2) / 9`.

@@ -21,6 +21,8 @@
 mod attributes;
 mod check;
 mod combinators;
+#[path = "../common/mod.rs"]
+mod common;
 mod defects;
 mod falloffs;
 mod folds;

@@ -3,6 +3,7 @@
 use jbt::diagnostic::{Diagnostic, Source};
 use jbt::{Box3, CheckedTree, Compiler, Engine, Evaluator, Model, Points, Query, Samples, text};
 
+use crate::common::answers;
 use crate::row::Row;
 
 /// How much larger than the support the box is in which points are taken, on each side, as a part of its
@@ -56,13 +57,6 @@ impl Subject {
         let attributes = self.row.attributes.iter().map(|attributes| attributes.at);
         self.row.fields.iter().map(|&(at, _)| at).chain(attributes)
     }
-}
-
-/// The answers of an evaluator at points.
-pub fn answers(evaluator: &Evaluator, points: &Points) -> Samples {
-    let mut samples = evaluator.samples();
-    evaluator.eval(points, &mut samples).expect("the buffer was made for it");
-    samples
 }
 
 fn bounds(row: &Row, tree: &CheckedTree) -> Result<Box3, String> {

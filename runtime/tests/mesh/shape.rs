@@ -11,8 +11,11 @@ use jbt::mesh::{
 };
 use jbt::region::Divisible;
 use jbt::{Box3, CancelToken};
+use jbt_testkit::surface::{area_vector, corners};
+use jbt_testkit::vector::{dot, length, minus};
 
 use crate::fields::{Closed, Sample, cubic, no_ranges, sphere, torus, union};
+use crate::models::volume;
 
 const PI: f64 = std::f64::consts::PI;
 
@@ -24,37 +27,8 @@ fn mesh(field: impl Fn([f32; 3]) -> Sample + Sync, lattice: &Lattice) -> (Mesh, 
     extract(&Closed(field), lattice, &Options::default()).run().unwrap()
 }
 
-fn corners(mesh: &Mesh, triangle: [u32; 3]) -> [[f64; 3]; 3] {
-    triangle.map(|vertex| mesh.positions[vertex as usize].map(f64::from))
-}
-
-fn cross(u: [f64; 3], v: [f64; 3]) -> [f64; 3] {
-    [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
-}
-
-fn minus(u: [f64; 3], v: [f64; 3]) -> [f64; 3] {
-    [u[0] - v[0], u[1] - v[1], u[2] - v[2]]
-}
-
-fn dot(u: [f64; 3], v: [f64; 3]) -> f64 {
-    u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
-}
-
-/// By the divergence theorem; positive if the triangles are counter-clockwise from outside.
-fn volume(mesh: &Mesh) -> f64 {
-    let of = |triangle: &[u32; 3]| {
-        let [p, q, r] = corners(mesh, *triangle);
-        dot(p, cross(q, r)) / 6.0
-    };
-    mesh.triangles.iter().map(of).sum()
-}
-
 fn area(mesh: &Mesh) -> f64 {
-    let of = |triangle: &[u32; 3]| {
-        let [p, q, r] = corners(mesh, *triangle);
-        let n = cross(minus(q, p), minus(r, p));
-        dot(n, n).sqrt() / 2.0
-    };
+    let of = |&triangle: &[u32; 3]| length(area_vector(corners(&mesh.positions, triangle))) / 2.0;
     mesh.triangles.iter().map(of).sum()
 }
 
@@ -106,7 +80,7 @@ fn a_soft_field_is_pulled_onto_its_surface() {
     let radius = (1.0 - 0.5_f64.cbrt()).sqrt();
     for position in &mesh.positions {
         let position = position.map(f64::from);
-        assert!((dot(position, position).sqrt() - radius).abs() < 1e-6);
+        assert!((length(position) - radius).abs() < 1e-6);
     }
     assert_near(volume(&mesh), 4.0 / 3.0 * PI * radius.powi(3), 0.02);
 }

@@ -2,9 +2,11 @@
 
 use jbt::mesh::{Lattice, MeshReport, Options, check_manifold, extract};
 use jbt::{Box3, Compiler, Engine, Fineness, Polygonize, Polygonized};
+use jbt_testkit::scene::tree;
+use jbt_testkit::vector::{dot, length};
 
 use crate::fields::{Closed, Sample};
-use crate::models::{cell, dot, length, mesh, mesh_in, tree, volume};
+use crate::models::{cell, mesh, mesh_in, volume};
 use crate::topology::{bits, without_boxes};
 
 /// Half of a box of edge 2: where x y z is positive, in checkerboard octants. Near the coordinate planes the

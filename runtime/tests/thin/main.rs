@@ -3,20 +3,13 @@
 mod fields;
 mod planted;
 
-use std::path::Path;
-
 use fastrand::Rng;
 use fields::ModelField;
 use jbt::mesh::{Lattice, Options, ThinReport, extract};
-use jbt::text;
-use jbt::{Box3, CheckedTree, Compiler, Engine, Fineness, Polygonize, Polygonized, Scene};
+use jbt::{Box3, Compiler, Engine, Fineness, Polygonize, Polygonized};
+use jbt_testkit::scene::{count, examples, tree};
 use planted::{Made, Thin, planted};
 use rayon::prelude::*;
-
-fn tree(model: &str) -> CheckedTree {
-    let model = text::parse(format!("jbt 1\n{model}").as_bytes(), &text::Options::default());
-    model.unwrap_or_else(|e| panic!("{e:?}")).check().unwrap_or_else(|e| panic!("{e:?}"))
-}
 
 fn mesh(model: &str, polygonize: Polygonize) -> Polygonized {
     let made = polygonize.mesh(&Compiler::for_engine(Engine::Lanes), &tree(model)).run();
@@ -64,7 +57,7 @@ fn kinds() -> Vec<(Thin, Made)> {
 
 #[test]
 fn planted_parts_are_named() {
-    let count = std::env::var("JBT_THIN_PARTS").map_or(30, |count| count.parse().expect("a number"));
+    let count = count("JBT_THIN_PARTS", 30);
     let all: Vec<((Thin, Made), u64)> = (0_u64..)
         .zip(kinds())
         .flat_map(|(n, kind)| (0..count).map(move |m| (kind, SEED + 1000 * n + m)))
@@ -105,17 +98,12 @@ fn smooth_bodies_are_silent() {
 
 #[test]
 fn examples_are_silent() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples");
-    let paths =
-        std::fs::read_dir(folder).expect("there are examples").map(|entry| entry.expect("an entry").path());
-    let paths: Vec<_> = paths.filter(|path| path.extension().is_some_and(|ending| ending == "jbt")).collect();
-    assert!(paths.len() >= 27);
-    paths.into_par_iter().for_each(|path| {
-        let tree = Scene::load(&path).expect("it reads").check().expect("it is a model");
+    examples().into_par_iter().for_each(|(name, text)| {
+        let tree = tree(&text);
         // Some have no end of their own.
         let Ok(made) = Polygonize::default().mesh(&Compiler::new(), &tree).run() else { return };
         let found = made.report.thin.expect("it was searched for");
-        assert_eq!(found.places, 0, "{}: {found:?}", path.display());
+        assert_eq!(found.places, 0, "{name}: {found:?}");
     });
 }
 

@@ -2,6 +2,7 @@
 //! primitives, walls and formulas.
 
 use fastrand::Rng;
+use jbt_testkit::points::between;
 
 /// What is thin about a part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,10 +43,6 @@ pub struct Planted {
     pub reach: f64,
     /// Half of its thickness, in cells.
     pub half: f64,
-}
-
-fn between(rng: &mut Rng, low: f64, high: f64) -> f64 {
-    low + (high - low) * rng.f64()
 }
 
 /// A part about a place, for cells of this edge.

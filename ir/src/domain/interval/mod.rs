@@ -43,18 +43,18 @@
 //! * Facts that are known before there are numbers, signs above all, choose short forms.
 
 mod arithmetic;
+mod enclosure;
 mod facts;
 mod order;
 mod transcendental;
 mod value;
-mod walk;
 
 #[cfg(test)]
 mod tests;
 
+pub use enclosure::enclose;
+pub(crate) use enclosure::{BoundParts, Enclosure, Ground};
 pub use value::{Certainty, Interval, Known, Range};
-pub use walk::enclose;
-pub(crate) use walk::{Ground, Walk};
 
 use facts::Facts;
 use value::{of_both, of_one};

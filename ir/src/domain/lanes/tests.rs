@@ -1,10 +1,11 @@
 //! Every op of the lanes domain against the scalar one: all kinds of operands, all ways in which registers
 //! can coincide.
 
+use jbt_testkit::points::OPERANDS;
+
 use super::ops::{Chunk, Handle, Lanes, WIDTH};
 use crate::domain::scalar::Scalar;
 use crate::op::{Any, Op, Type, apply};
-use crate::spicy::SPICY;
 
 /// What a spicy number is as an operand of this type: the bits in a lane, and the operand of the scalar
 /// domain.
@@ -53,7 +54,7 @@ fn same(type_: Type, a: u32, b: u32) -> bool {
 /// many triples.
 fn numbers(row: usize, lane: usize) -> [f32; 3] {
     let n = row * WIDTH + lane;
-    [n, n / SPICY.len(), n / 7 + 3 * n].map(|n| SPICY[n % SPICY.len()])
+    [n, n / OPERANDS.len(), n / 7 + 3 * n].map(|n| OPERANDS[n % OPERANDS.len()])
 }
 
 /// Runs an op once. `registers[i]` is where operand i stands, or `None` for a splat; equal registers hold the
@@ -63,10 +64,10 @@ fn check(op: Op, registers: [Option<usize>; 3], result: usize) {
     const STRIDE: usize = 5;
     let types = op.operands();
     let mut file = vec![Chunk::ZERO; ROWS * STRIDE];
-    for (splat, _) in SPICY.iter().enumerate() {
+    for (splat, _) in OPERANDS.iter().enumerate() {
         // What operand i is in a lane, after later operands may have taken its register.
         let number = |operand: usize, row: usize, lane: usize| match registers[operand] {
-            None => SPICY[(splat + 3 * operand) % SPICY.len()],
+            None => OPERANDS[(splat + 3 * operand) % OPERANDS.len()],
             Some(register) => {
                 let last = (0..types.len()).rfind(|&other| registers[other] == Some(register)).unwrap();
                 numbers(row, lane)[last]

@@ -6,6 +6,7 @@ use jbt_ir::domain::scalar::Scalar;
 use jbt_ir::engine::BoundProgram;
 use jbt_ir::pass::{PIPELINE, run_pipeline};
 use jbt_ir::{Entity, Level, Selection, Table, Tables, Verified, interpret, verify};
+use jbt_testkit::bits::assert_same;
 
 use super::machine::MachineFault;
 use super::memory::Call;
@@ -19,8 +20,6 @@ use crate::wide::inst::{Base, Condition, Gpr, Inst, Integer, Label, Memory};
 #[path = "../../../../ir/tests/common/random.rs"]
 #[allow(dead_code, reason = "tests of other crates use more of it")]
 mod random;
-#[path = "../../../../ir/tests/common/spicy.rs"]
-mod spicy;
 
 /// Functions that are run.
 const FUNCTIONS: u64 = 40;
@@ -91,19 +90,6 @@ impl Case {
 
 fn cut(planes: &[Vec<f32>], points: std::ops::Range<usize>) -> Vec<Vec<f32>> {
     planes.iter().map(|plane| plane[points.clone()].to_vec()).collect()
-}
-
-/// Asserts equal bits, where a NaN equals any NaN.
-#[track_caller]
-fn assert_same(expected: &[Vec<f32>], given: &[Vec<f32>], what: &str) {
-    assert_eq!(expected.len(), given.len(), "{what}");
-    for (plane, (expected, given)) in expected.iter().zip(given).enumerate() {
-        assert_eq!(expected.len(), given.len(), "{what}");
-        for (point, (&expected, &given)) in expected.iter().zip(given).enumerate() {
-            let same = expected.to_bits() == given.to_bits() || expected.is_nan() && given.is_nan();
-            assert!(same, "{what}: output {plane} of point {point} is {given:e}, and not {expected:e}");
-        }
-    }
 }
 
 /// The settings that a function is emitted with: different ones for each function, all for all together.

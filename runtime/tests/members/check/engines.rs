@@ -4,10 +4,12 @@
 
 use fastrand::Rng;
 use jbt::{Evaluator, Points, Samples};
+use jbt_testkit::bits;
 
 use super::Verdict;
+use crate::common::answers;
 use crate::points;
-use crate::subject::{Subject, answers};
+use crate::subject::Subject;
 
 /// Points, hostile ones among them.
 const POINTS: usize = 1000;
@@ -45,7 +47,7 @@ fn same(evaluators: &[Evaluator], points: &Points) -> Result<Samples, String> {
 
 /// Two planes have the same bits; a NaN equals any NaN.
 pub fn same_bits(what: &str, points: &Points, expected: &[f32], got: &[f32]) -> Verdict {
-    let differs = |(a, b): (&f32, &f32)| a.to_bits() != b.to_bits() && !(a.is_nan() && b.is_nan());
+    let differs = |(&a, &b): (&f32, &f32)| !bits::same(a, b);
     match expected.iter().zip(got).position(differs) {
         None => Ok(()),
         Some(index) => {

@@ -5,7 +5,8 @@
 use jbt::Points;
 
 use super::Verdict;
-use crate::subject::{Subject, answers};
+use crate::common::answers;
+use crate::subject::Subject;
 use jbt_testkit::points::HOSTILE;
 
 pub fn check(subject: &Subject) -> Verdict {

@@ -16,6 +16,7 @@
 use fastrand::Rng;
 use jbt::{CheckedTree, Engine, Points, Samples};
 use jbt_model::walk::{Sample, walk, walk_gradient};
+use jbt_testkit::vector::length;
 
 use super::Verdict;
 use crate::points;
@@ -112,10 +113,6 @@ fn compare_attributes(samples: &Samples, plain: &Sample, index: usize, within: f
         }
     }
     Ok(())
-}
-
-fn length(v: [f64; 3]) -> f64 {
-    v.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
 fn judge(slopes: &[Slope]) -> Verdict {

@@ -8,8 +8,9 @@ use jbt::{Box3, CheckedTree, Compiler, Engine, Evaluator, Model, Points, Pruner,
 
 use super::Verdict;
 use super::engines::same_bits;
+use crate::common::answers;
 use crate::points;
-use crate::subject::{Subject, answers};
+use crate::subject::Subject;
 
 /// Boxes, each of so many parts, with so many points in each part.
 const BOXES: usize = 125;

@@ -7,7 +7,8 @@ use fastrand::Rng;
 use jbt::Points;
 
 use super::Verdict;
-use crate::subject::{Subject, answers};
+use crate::common::answers;
+use crate::subject::Subject;
 
 const POINTS: usize = 1000;
 /// How far outside a point has to be, as a part of the largest coordinate of the support and of its longest

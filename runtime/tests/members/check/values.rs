@@ -6,7 +6,8 @@ use jbt::Points;
 use jbt_model::walk::walk;
 
 use super::Verdict;
-use crate::subject::{Subject, answers};
+use crate::common::answers;
+use crate::subject::Subject;
 
 /// What the oracle may be off by, and what the engines may, relatively.
 const PLAIN: f64 = 1e-12;

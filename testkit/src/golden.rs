@@ -1,5 +1,7 @@
-//! Golden files: an input, a line of dashes, the expected output. `BLESS=1 cargo test` writes what came out
-//! as expected.
+//! Golden files: what a stage makes of an input. `BLESS=1 cargo test` writes what came out as expected.
+//!
+//! A file holds an input, a line of dashes, and the expected output ([`check_golden`]), or the expected
+//! output alone, beside the file of the input ([`compare`]).
 //!
 //! A review reads the difference of these files, so blessing is no proof of anything: what changed has to be
 //! explained.
@@ -10,18 +12,23 @@ use std::path::{Path, PathBuf};
 /// Between the input and the expected output.
 const SEPARATOR: &str = "\n----\n";
 
-/// The folder of the golden files of one stage, `tests/golden/<name>`.
+/// The folder of the golden files of one stage, `tests/golden/<name>` of the package that is tested.
+#[must_use]
 pub fn folder(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(name)
+    // Cargo sets it for the programs that it runs, too; whoever runs one by hand stands in the package.
+    let package = std::env::var_os("CARGO_MANIFEST_DIR").unwrap_or_else(|| ".".into());
+    Path::new(&package).join("tests/golden").join(name)
 }
 
-/// The golden files of one stage, by name. Fails if there are none: then the stage is not tested.
-pub fn files(name: &str) -> Vec<(PathBuf, String)> {
+/// The golden files of one stage with this extension, in order, with their texts. Fails if there are none:
+/// then the stage is not tested.
+#[must_use]
+pub fn files(name: &str, extension: &str) -> Vec<(PathBuf, String)> {
     let folder = folder(name);
     let entries = fs::read_dir(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
     let mut paths: Vec<PathBuf> =
         entries.map(|entry| entry.expect("a folder can be listed").path()).collect();
-    paths.retain(|path| path.extension().is_some_and(|extension| extension == "txt"));
+    paths.retain(|path| path.extension().is_some_and(|found| found == extension));
     paths.sort();
     assert!(!paths.is_empty(), "{} has no golden file", folder.display());
     let read = |path: PathBuf| {
@@ -40,7 +47,7 @@ pub fn blessing() -> bool {
 /// dashes.
 pub fn check_golden(name: &str, run: impl Fn(&str) -> String) {
     let mut failures = String::new();
-    for (path, text) in files(name) {
+    for (path, text) in files(name, "txt") {
         let (input, expected) = text.split_once(SEPARATOR).unwrap_or((text.trim_end(), ""));
         let mut found = run(&format!("{input}\n"));
         if !found.ends_with('\n') {
@@ -50,6 +57,17 @@ pub fn check_golden(name: &str, run: impl Fn(&str) -> String) {
             let whole = format!("{input}{SEPARATOR}{found}");
             differ(&path, &text, &whole, &mut failures);
         }
+    }
+    assert!(failures.is_empty(), "{failures}");
+}
+
+/// Compares what was found with the file that expects it.
+#[track_caller]
+pub fn compare(path: &Path, found: &str) {
+    let expected = fs::read_to_string(path).unwrap_or_default();
+    let mut failures = String::new();
+    if found != expected {
+        differ(path, &expected, found, &mut failures);
     }
     assert!(failures.is_empty(), "{failures}");
 }
