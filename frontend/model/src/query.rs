@@ -84,6 +84,12 @@ impl Query {
         self.0 >> answer as u8 & 1 == 1
     }
 
+    /// Whether programs for it are differentiated: then ties have to be decided.
+    #[must_use]
+    pub const fn is_differentiated(self) -> bool {
+        self.contains(AnswerKind::Gradient)
+    }
+
     /// Its answers, in the order of their planes.
     pub fn answers(self) -> impl Iterator<Item = AnswerKind> {
         AnswerKind::ALL.into_iter().filter(move |&answer| self.contains(answer))

@@ -32,7 +32,7 @@ const SHARED: [(&str, &[(&str, usize)]); 6] = [
     ]),
     ("To be told apart: several things of one package. Whoever changes one of them says whose it is.", &[
         ("Interpreted", 2), ("Open", 2), ("Pair", 3), ("Place", 3), ("Range", 3), ("Run", 2), ("Span", 3),
-        ("Task", 2), ("Walk", 2),
+        ("Walk", 2),
     ]),
 ];
 

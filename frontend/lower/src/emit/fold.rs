@@ -12,7 +12,6 @@ use crate::prune_info::{DecidedRows, DecisionKind};
 use crate::recipe::{Lead, Member, Owned, RowPlace, RowPlaces, RowStep};
 use crate::shape::{bounded, non_negative};
 use jbt_model::combine::ReduceCode;
-use jbt_model::query::AnswerKind;
 
 impl Emitter<'_> {
     /// An operator: its accumulators, and what is to be done for its operands.
@@ -26,7 +25,7 @@ impl Emitter<'_> {
             non_negative: non_negative(self.scene, groups),
             bounded: bounded(self.scene, groups),
             ordered: groups.len() > 1,
-            moving: self.query.contains(AnswerKind::Gradient),
+            moving: self.query.is_differentiated(),
             mixing: Rc::clone(&self.mixing),
         };
         let state = State::new(&mut self.builder, &operator, &self.defaults);
