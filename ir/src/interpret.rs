@@ -19,7 +19,7 @@ use crate::table::Tables;
 use crate::verify::Verified;
 
 /// One run of one function.
-struct Run<'a, D: Domain> {
+struct Interpretation<'a, D: Domain> {
     function: &'a Function,
     tables: &'a Tables,
     /// Which rows run; all that are active, if there is none.
@@ -63,11 +63,11 @@ fn run_rows<D: Domain>(
     let function = function.function();
     let values = vec![None; function.values.len()];
     let rows = vec![(0, 0); function.tables.len()];
-    let mut run = Run { function, tables, selection, domain, inputs, values, rows };
+    let mut run = Interpretation { function, tables, selection, domain, inputs, values, rows };
     run.block(function.body).into_iter().map(Any::real).collect()
 }
 
-impl<'a, D: Domain> Run<'a, D> {
+impl<'a, D: Domain> Interpretation<'a, D> {
     fn block(&mut self, block: Block) -> Vec<Any<D>> {
         let data = &self.function.blocks[block];
         for &inst in &data.insts {

@@ -342,12 +342,12 @@ const EXP2: [f32; 6] =
     [0.693_147_24, 0.240_226_52, 0.055_503_104, 0.009_617_692, 0.001_340_673_5, 0.000_155_949_14];
 
 /// An unevaluated sum of two reals, the second one far smaller: about 46 bits.
-struct Pair<D: Domain> {
+struct DoubleReal<D: Domain> {
     high: D::Real,
     low: D::Real,
 }
 
-impl<D: Domain> Pair<D> {
+impl<D: Domain> DoubleReal<D> {
     /// `a + (b + low)` for |a| >= |b| or a = 0 (Dekker, 1971).
     #[inline(always)]
     fn sum(d: &mut D, a: D::Real, b: D::Real, low: D::Real) -> Self {
@@ -372,7 +372,7 @@ impl<D: Domain> Pair<D> {
 
 /// The binary logarithm of a positive finite number, to about 2^-34 of itself.
 #[inline(always)]
-fn log2_pair<D: Domain>(d: &mut D, a: D::Real) -> Pair<D> {
+fn log2_pair<D: Domain>(d: &mut D, a: D::Real) -> DoubleReal<D> {
     let Split { mantissa, exponent } = split(d, a);
 
     // s = (m - 1) / (m + 1): the numerator is exact, the denominator a pair, and `fma` gives the remainder of
@@ -388,20 +388,20 @@ fn log2_pair<D: Domain>(d: &mut D, a: D::Real) -> Pair<D> {
     let remainder = d.fma(negated, denominator, numerator);
     let remainder = d.fma(negated, lost, remainder);
     let low = d.mul(remainder, inverse);
-    let s = Pair { high, low };
+    let s = DoubleReal { high, low };
 
     // log2 m = s (c0 + z (c1 + z tail)) with z = s^2; only the tail may be a single real.
-    let z = Pair::product(d, &s, &s);
+    let z = DoubleReal::product(d, &s, &s);
     let tail = polynomial(d, z.high, &LOG2);
     let tail = d.mul(z.high, tail);
     let [c0, c0_low] = LOG2_FIRST.map(|part| d.constant(part));
     let [c1, c1_low] = LOG2_SECOND.map(|part| d.constant(part));
-    let second = Pair::sum(d, c1, tail, c1_low);
-    let second = Pair::product(d, &z, &second);
+    let second = DoubleReal::sum(d, c1, tail, c1_low);
+    let second = DoubleReal::product(d, &z, &second);
     let low = d.add(second.low, c0_low);
-    let first = Pair::sum(d, c0, second.high, low);
-    let log = Pair::product(d, &s, &first);
-    Pair::sum(d, exponent, log.high, log.low)
+    let first = DoubleReal::sum(d, c0, second.high, low);
+    let log = DoubleReal::product(d, &s, &first);
+    DoubleReal::sum(d, exponent, log.high, log.low)
 }
 
 /// `a` to the power `b`, within 1.25 ULP, also where the result is subnormal.

@@ -51,7 +51,7 @@ impl Extent {
 
 /// Where the lists of a table are among the words.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-struct Span {
+struct RowSpan {
     /// The first start.
     starts: u32,
     /// The first active row; the starts end here.
@@ -60,7 +60,7 @@ struct Span {
     end: u32,
 }
 
-impl Span {
+impl RowSpan {
     /// That of a table which is not present: one start, which is the first word, and no rows.
     const ABSENT: Self = Self { starts: 0, active: 1, end: 1 };
 }
@@ -72,7 +72,7 @@ pub struct Selection {
     /// A zero; then for each table that is present its starts, then its active rows.
     words: Vec<u32>,
     /// By table.
-    spans: Vec<Span>,
+    spans: Vec<RowSpan>,
     /// The tables that are present, ascending.
     present: Vec<Table>,
 }
@@ -132,7 +132,7 @@ impl Selection {
         self.words.clear();
         self.words.push(0);
         self.spans.clear();
-        self.spans.resize(extent.counts.len(), Span::ABSENT);
+        self.spans.resize(extent.counts.len(), RowSpan::ABSENT);
         self.present.clear();
     }
 
@@ -145,7 +145,7 @@ impl Selection {
         let starts = self.words.len();
         self.words.resize(starts + parents + 1, 0);
         let active = self.words.len();
-        self.spans[table.index()] = Span { starts: word(starts), active: word(active), end: word(active) };
+        self.spans[table.index()] = RowSpan { starts: word(starts), active: word(active), end: word(active) };
         self.present.push(table);
         Some(active)
     }

@@ -30,7 +30,7 @@ impl Backend for Interpreter {
         self.supports(level)?;
         let tape = Tape::new(function).map_err(|error| Declined { reason: error.to_string() })?;
         let interface = Arc::new(Interface::new(function.function()));
-        Ok(Arc::new(Interpreted { tape, level, interface, scratch: Mutex::default() }))
+        Ok(Arc::new(LanesProgram { tape, level, interface, scratch: Mutex::default() }))
     }
 
     fn forms(&self) -> &'static [Form] {
@@ -40,7 +40,7 @@ impl Backend for Interpreter {
 
 /// A tape at a level.
 #[derive(Debug)]
-struct Interpreted {
+struct LanesProgram {
     tape: Tape,
     level: Level,
     interface: Arc<Interface>,
@@ -48,7 +48,7 @@ struct Interpreted {
     scratch: Mutex<Vec<Scratch>>,
 }
 
-impl Program for Interpreted {
+impl Program for LanesProgram {
     fn interface(&self) -> &Arc<Interface> {
         &self.interface
     }

@@ -31,7 +31,7 @@ impl Backend for Reference {
     fn compile(&self, function: &Arc<Verified>, level: Level) -> Result<Arc<dyn Program>, Declined> {
         self.supports(level)?;
         let interface = Arc::new(Interface::new(function.function()));
-        Ok(Arc::new(Interpreted { function: Arc::clone(function), interface }))
+        Ok(Arc::new(ScalarProgram { function: Arc::clone(function), interface }))
     }
 
     fn forms(&self) -> &'static [Form] {
@@ -41,12 +41,12 @@ impl Backend for Reference {
 
 /// A function as it is.
 #[derive(Debug)]
-struct Interpreted {
+struct ScalarProgram {
     function: Arc<Verified>,
     interface: Arc<Interface>,
 }
 
-impl Program for Interpreted {
+impl Program for ScalarProgram {
     fn interface(&self) -> &Arc<Interface> {
         &self.interface
     }

@@ -40,7 +40,7 @@ use crate::selection::Selection;
 use crate::table::{Rows, Tables};
 
 use choose::Chosen;
-use plan::{Copied, Count, Place, Source, Under};
+use plan::{ChosenRow, Copied, Count, Source, Under};
 use write::{Writer, Written};
 
 /// Ops of a point beyond which the folds stay: code that long no longer fits into the nearest cache for
@@ -55,7 +55,7 @@ const WORTH: f64 = 0.95;
 pub struct Straight {
     function: Function,
     /// The row that stays, and all that became straight code. Parents come before their children.
-    places: Vec<Place>,
+    places: Vec<ChosenRow>,
     /// How many rows have to be where.
     counts: Vec<Count>,
     /// By column of the row that stays: the numbers that it holds, all of them the same.

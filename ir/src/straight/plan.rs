@@ -5,7 +5,7 @@ use crate::entity::Table;
 /// A row that became straight code: the n-th active row of a table under another place. The first place is
 /// the row that stays.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) struct Place {
+pub(super) struct ChosenRow {
     pub(super) parent: usize,
     pub(super) table: Table,
     pub(super) position: usize,

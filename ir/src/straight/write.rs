@@ -11,12 +11,12 @@ use crate::table::Tables;
 use crate::translate::{AccumulatorParts, Translation, translate};
 
 use super::choose::Chosen;
-use super::plan::{Copied, Count, Place, Source, Under};
+use super::plan::{ChosenRow, Copied, Count, Source, Under};
 
 /// The new function and how its tables follow from old ones: the fields of [`Straight`](super::Straight).
 pub(super) struct Written {
     pub(super) function: Function,
-    pub(super) places: Vec<Place>,
+    pub(super) places: Vec<ChosenRow>,
     pub(super) counts: Vec<Count>,
     pub(super) columns: Vec<Vec<Source>>,
     pub(super) copies: Vec<Copied>,
@@ -32,7 +32,7 @@ pub(super) struct Writer<'a> {
     /// Whether numbers of the row that stays may share a column: only if the row holds no primitive.
     shares_root: bool,
     builder: FunctionBuilder,
-    places: Vec<Place>,
+    places: Vec<ChosenRow>,
     rows: Vec<usize>,
     counts: Vec<Count>,
     columns: Vec<Vec<Source>>,
@@ -66,7 +66,7 @@ impl<'a> Writer<'a> {
             apart,
             shares_root: function.tables[root].slots.is_empty(),
             builder,
-            places: vec![Place { parent: 0, table: root, position: 0 }],
+            places: vec![ChosenRow { parent: 0, table: root, position: 0 }],
             rows: vec![tables.tables[root].active[0] as usize],
             counts: Vec::new(),
             columns: Vec::new(),
@@ -223,7 +223,7 @@ impl Translation for Writer<'_> {
         let table = fold.table;
         if let Some(parent) = self.straight_under(fold) {
             self.here[table.index()] = Some(Under::Place(self.places.len()));
-            self.places.push(Place { parent, table, position: run });
+            self.places.push(ChosenRow { parent, table, position: run });
             self.rows.push(self.rows_under(table, parent)[run] as usize);
             return parts;
         }

@@ -35,7 +35,7 @@ impl fmt::Display for ParseError {
 impl std::error::Error for ParseError {}
 
 /// A stretch of a line.
-pub struct Span<'a> {
+pub struct LineSpan<'a> {
     /// The number of the line, from 1.
     pub line: usize,
     /// The line.
@@ -46,7 +46,7 @@ pub struct Span<'a> {
     pub end: usize,
 }
 
-impl Span<'_> {
+impl LineSpan<'_> {
     /// The error that something else could stand here. It repeats no character that a terminal would obey.
     pub fn error(&self, expected: impl Into<String>) -> ParseError {
         /// Characters of the line shown before and after the place.
@@ -108,7 +108,7 @@ impl<'a> Line<'a> {
     /// The error that something else could stand in place of the current token.
     pub fn error(&self, expected: impl Into<String>) -> ParseError {
         let (start, end) = (self.token.start, self.token.end);
-        Span { line: self.number, text: self.text, start, end }.error(expected)
+        LineSpan { line: self.number, text: self.text, start, end }.error(expected)
     }
 
     /// Takes the token if `read` makes something of it.

@@ -12,7 +12,7 @@ use crate::limits::{MAX_ERRORS, MAX_FOLD_DEPTH, MAX_TABLES};
 use crate::op::{Op, Type};
 
 use super::lex::Kind;
-use super::line::{Defined, Line, ParseError, Parsed, Span};
+use super::line::{Defined, Line, LineSpan, ParseError, Parsed};
 
 /// Reads one function. The text form is described at the head of [`crate::text`].
 ///
@@ -31,7 +31,7 @@ pub fn parse(text: &str) -> Result<Function, Vec<ParseError>> {
         }
     }
     if parser.stage != Stage::End {
-        let at = Span { line: last.0, text: last.1, start: last.1.len(), end: last.1.len() };
+        let at = LineSpan { line: last.0, text: last.1, start: last.1.len(), end: last.1.len() };
         parser.errors.push(at.error(parser.stage.expected(parser.open.is_empty())));
     }
     if parser.errors.is_empty() { Ok(parser.function) } else { Err(parser.errors) }

@@ -50,7 +50,7 @@ struct Printer<'a> {
 }
 
 /// A block that is being written.
-struct Open {
+struct PrintedBlock {
     block: Block,
     next: usize,
 }
@@ -87,16 +87,16 @@ impl<'a> Printer<'a> {
         self.end_line(w, &[Place::Block(body)])?;
         let mut open = Vec::new();
         if opened {
-            open.push(Open { block: body, next: 0 });
+            open.push(PrintedBlock { block: body, next: 0 });
         }
-        while let Some(Open { block, next }) = open.last_mut() {
+        while let Some(PrintedBlock { block, next }) = open.last_mut() {
             let (block, at) = (*block, *next);
             *next += 1;
             indent(w, open.len())?;
             match function.blocks[block].insts.get(at) {
                 Some(&inst) => {
                     if let Some(inner) = self.inst(w, inst)? {
-                        open.push(Open { block: inner, next: 0 });
+                        open.push(PrintedBlock { block: inner, next: 0 });
                     }
                 }
                 None => {

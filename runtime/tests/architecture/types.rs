@@ -10,7 +10,7 @@ const APART: [&str; 3] = ["benches/src/limit", "benches/src/naive", "benches/src
 
 /// Names that more than one file defines, and the most files of each; by reason.
 #[rustfmt::skip]
-const SHARED: [(&str, &[(&str, usize)]); 6] = [
+const SHARED: [(&str, &[(&str, usize)]); 5] = [
     ("The door of a package, and what the package below calls so.", &[
         ("CompileError", 2), ("Compiler", 2), ("Kernel", 2), ("Lowered", 2), ("Lowering", 2), ("Options", 3),
     ]),
@@ -27,12 +27,8 @@ const SHARED: [(&str, &[(&str, usize)]); 6] = [
         ("Arguments", 2), ("Binary", 2), ("Block", 2), ("Code", 2), ("Decision", 2), ("Event", 2),
         ("Extent", 2), ("Field", 2), ("Fold", 2), ("Form", 2), ("Frame", 2), ("Function", 2), ("Job", 2),
         ("Key", 3), ("Member", 2), ("Number", 2), ("Operand", 4), ("Pattern", 2), ("Pieces", 2),
-        ("Planes", 2), ("Probe", 2), ("Rows", 2), ("Scene", 2), ("Source", 2), ("Tape", 2), ("Vector", 3),
+        ("Planes", 2), ("Probe", 2), ("Range", 2), ("Rows", 2), ("Scene", 2), ("Source", 2), ("Tape", 2), ("Vector", 3),
         ("Writer", 2), ("Written", 3),
-    ]),
-    ("To be told apart: several things of one package. Whoever changes one of them says whose it is.", &[
-        ("Interpreted", 2), ("Open", 2), ("Pair", 3), ("Place", 3), ("Range", 3), ("Run", 2), ("Span", 3),
-        ("Walk", 2),
     ]),
 ];
 

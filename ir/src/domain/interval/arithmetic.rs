@@ -22,15 +22,15 @@ use super::facts::{Facts, Sign};
 use super::value::{Interval, Range, of_both, of_one, same};
 
 /// Two factors.
-type Pair<D> = (<D as Domain>::Real, <D as Domain>::Real);
+type RealPair<D> = (<D as Domain>::Real, <D as Domain>::Real);
 
 /// Where the ends of a product are.
 enum Ends<D: Domain> {
     /// The low one and the high one.
-    At(Pair<D>, Pair<D>),
+    At(RealPair<D>, RealPair<D>),
     /// Each is one of four. The range becomes NaN where the number, times anything, says that a bound is not
     /// finite.
-    Among([Pair<D>; 4], D::Real),
+    Among([RealPair<D>; 4], D::Real),
 }
 
 impl<D: Domain> Interval<D> {
@@ -134,7 +134,7 @@ impl<D: Domain> Interval<D> {
 
     /// The number of the range nearest to 0, and one of the largest magnitude. The latter is not finite where
     /// a bound is not finite.
-    fn near_and_far(&mut self, a: Range<D>) -> Pair<D> {
+    fn near_and_far(&mut self, a: Range<D>) -> RealPair<D> {
         match a.facts.sign {
             Sign::NonNegative => (a.low, a.high),
             Sign::NonPositive => (a.high, a.low),

@@ -12,13 +12,13 @@ use std::collections::{BinaryHeap, HashMap};
 use crate::entity::{Entity, Inst, Value};
 use crate::function::InstKind;
 
-use super::place::Place;
-use super::schedule::{Event, Range, Schedule};
+use super::place::ScratchPlace;
+use super::schedule::{Event, InstRange, Schedule};
 
 /// The places of all values.
 pub(super) struct Places {
     /// By value. A value that only renames another one shares its place.
-    pub places: Vec<Place>,
+    pub places: Vec<ScratchPlace>,
     /// Number of registers.
     pub registers: usize,
     /// The bits of the constants: the first splats.
@@ -30,7 +30,7 @@ pub(super) struct Places {
 pub(super) fn assign(schedule: &Schedule<'_>) -> Places {
     let classes = Classes::of(schedule);
     let mut places = Places {
-        places: vec![Place::splat(0); schedule.function.values.len()],
+        places: vec![ScratchPlace::splat(0); schedule.function.values.len()],
         registers: 0,
         constants: Vec::new(),
         splats: 0,
@@ -55,7 +55,7 @@ fn assign_splats(schedule: &Schedule<'_>, places: &mut Places) {
                 continue;
             }
         };
-        places.places[data.results[0].index()] = Place::splat(places.constants.len());
+        places.places[data.results[0].index()] = ScratchPlace::splat(places.constants.len());
         places.constants.push(bits);
     }
     places.splats = places.constants.len();
@@ -81,7 +81,7 @@ fn assign_splats(schedule: &Schedule<'_>, places: &mut Places) {
 fn assign_slot(schedule: &Schedule<'_>, places: &mut Places, values: &[Value]) {
     if values.iter().all(|value| schedule.splat[value.index()] && schedule.holder[value.index()] == *value) {
         for value in values {
-            places.places[value.index()] = Place::splat(places.splats);
+            places.places[value.index()] = ScratchPlace::splat(places.splats);
         }
         places.splats += 1;
     }
@@ -89,7 +89,7 @@ fn assign_slot(schedule: &Schedule<'_>, places: &mut Places, values: &[Value]) {
 
 /// Linear scan over the hulls of the classes.
 fn assign_registers(schedule: &Schedule<'_>, classes: &Classes, places: &mut Places) {
-    let mut hulls: HashMap<Value, Range> = HashMap::new();
+    let mut hulls: HashMap<Value, InstRange> = HashMap::new();
     let blocks = || {
         schedule
             .function
@@ -103,7 +103,7 @@ fn assign_registers(schedule: &Schedule<'_>, classes: &Classes, places: &mut Pla
         hull.start = hull.start.min(range.start);
         hull.end = hull.end.max(range.end);
     }
-    let mut order: Vec<(Range, Value)> = hulls.into_iter().map(|(value, range)| (range, value)).collect();
+    let mut order: Vec<(InstRange, Value)> = hulls.into_iter().map(|(value, range)| (range, value)).collect();
     order.sort_unstable_by_key(|&(range, value)| (range.start, value));
 
     let mut free: BinaryHeap<Reverse<usize>> = BinaryHeap::new();
@@ -127,7 +127,7 @@ fn assign_registers(schedule: &Schedule<'_>, classes: &Classes, places: &mut Pla
         register_of.insert(root, register);
     }
     for value in blocks() {
-        places.places[value.index()] = Place::block(register_of[&classes.root(value)]);
+        places.places[value.index()] = ScratchPlace::block(register_of[&classes.root(value)]);
     }
 }
 
@@ -138,7 +138,7 @@ struct Classes {
     size: Vec<u32>,
     /// The live ranges of the class of a root, ascending, never touching. A root without an entry is alone in
     /// its class.
-    ranges: HashMap<Value, Vec<Range>>,
+    ranges: HashMap<Value, Vec<InstRange>>,
 }
 
 impl Classes {
@@ -226,7 +226,7 @@ impl Classes {
 }
 
 /// Adds a range that overlaps no range of the list. Ranges that touch are merged.
-fn insert(ranges: &mut Vec<Range>, new: Range) {
+fn insert(ranges: &mut Vec<InstRange>, new: InstRange) {
     let at = ranges.partition_point(|range| range.end <= new.start);
     let joins_before = at > 0 && ranges[at - 1].end == new.start;
     let joins_after = ranges.get(at).is_some_and(|range| range.start == new.end);

@@ -5,7 +5,7 @@ use crate::function::{Function, InstKind};
 
 use super::assign::{Places, assign};
 use super::pairs::MOST_OPERANDS;
-use super::place::Place;
+use super::place::ScratchPlace;
 use super::schedule::{Accumulator, Event, Paired, Schedule};
 use super::tape::{Code, FoldStep, OpStep, Step, Tape};
 
@@ -43,7 +43,7 @@ struct Compiler<'a> {
     /// The folds whose end has not come yet, by their number.
     open: Vec<usize>,
     /// Where a value waits while a cycle of moves is broken: a register and a splat, made when first needed.
-    waiting: [Option<Place>; 2],
+    waiting: [Option<ScratchPlace>; 2],
     /// By place, for [`moves`](Self::moves): how many pending moves read it. All zero between calls.
     readers: [Vec<u32>; 2],
 }
@@ -70,7 +70,7 @@ impl<'a> Compiler<'a> {
         self.tape
     }
 
-    fn place(&self, value: Value) -> Place {
+    fn place(&self, value: Value) -> ScratchPlace {
         self.places.places[value.index()]
     }
 
@@ -135,7 +135,7 @@ impl<'a> Compiler<'a> {
     /// Copies values as if all at once: a place is written after all pending reads of it. In a cycle of
     /// moves, one value is first moved aside.
     fn moves(&mut self, moves: impl Iterator<Item = (Value, Value)>) {
-        let mut pending: Vec<(Place, Place)> = moves
+        let mut pending: Vec<(ScratchPlace, ScratchPlace)> = moves
             .map(|(from, to)| (self.place(from), self.place(to)))
             .filter(|(from, to)| from != to)
             .collect();
@@ -144,7 +144,7 @@ impl<'a> Compiler<'a> {
         }
         // Which move writes a place: the last read of the place releases that move.
         let mut ready: Vec<usize> = Vec::new();
-        let mut writer: Vec<(Place, usize)> =
+        let mut writer: Vec<(ScratchPlace, usize)> =
             pending.iter().enumerate().map(|(index, &(_, to))| (to, index)).collect();
         writer.sort_unstable();
         for (index, &(_, to)) in pending.iter().enumerate() {
@@ -181,12 +181,12 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    fn readers_of(&mut self, place: Place) -> &mut u32 {
+    fn readers_of(&mut self, place: ScratchPlace) -> &mut u32 {
         &mut self.readers[usize::from(place.is_splat())][place.index()]
     }
 
     /// A place of the same kind that holds no value.
-    fn aside(&mut self, place: Place) -> Place {
+    fn aside(&mut self, place: ScratchPlace) -> ScratchPlace {
         let kind = usize::from(place.is_splat());
         let tape = &mut self.tape;
         let readers = &mut self.readers[kind];
@@ -194,10 +194,10 @@ impl<'a> Compiler<'a> {
             readers.push(0);
             if place.is_splat() {
                 tape.splats += 1;
-                Place::splat(tape.splats - 1)
+                ScratchPlace::splat(tape.splats - 1)
             } else {
                 tape.registers += 1;
-                Place::block(tape.registers - 1)
+                ScratchPlace::block(tape.registers - 1)
             }
         })
     }

@@ -8,7 +8,7 @@ use crate::selection::Selection;
 use crate::table::Tables;
 
 use super::ops::{Handle, Lanes, WIDTH};
-use super::place::Place;
+use super::place::ScratchPlace;
 use super::tape::{Code, FoldStep, OpStep, OpenFold, Scratch, Step, Tape};
 
 /// What to run, on what. Planes and scratch have been checked against the tape.
@@ -108,7 +108,7 @@ impl Block<'_> {
     }
 
     #[inline(always)]
-    fn handle(&self, place: Place) -> Handle {
+    fn handle(&self, place: ScratchPlace) -> Handle {
         if place.is_splat() {
             Handle::Splat(self.splats[place.index()])
         } else {
@@ -117,7 +117,7 @@ impl Block<'_> {
     }
 
     #[inline(always)]
-    fn copy(&mut self, from: Place, to: Place) {
+    fn copy(&mut self, from: ScratchPlace, to: ScratchPlace) {
         let from = self.handle(from);
         match from {
             Handle::Splat(bits) if to.is_splat() => self.splats[to.index()] = bits,
@@ -127,7 +127,7 @@ impl Block<'_> {
 
     /// Copies the first points of a register, or a splat, to an output plane.
     #[inline(always)]
-    fn store(&self, place: Place, output: &mut [f32]) {
+    fn store(&self, place: ScratchPlace, output: &mut [f32]) {
         match self.handle(place) {
             Handle::Splat(bits) => output.fill(f32::from_bits(bits)),
             Handle::Block(register) => self.lanes.store(register, output),

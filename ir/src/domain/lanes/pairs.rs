@@ -16,7 +16,7 @@ use crate::entity::Value;
 use crate::op::{Domain, Op};
 
 use super::ops::{Chunk, Lanes};
-use super::place::Place;
+use super::place::ScratchPlace;
 
 /// Operands of a pair, at most.
 pub(super) const MOST_OPERANDS: usize = 5;
@@ -30,7 +30,7 @@ trait Operand: Copy {
     type Value;
     /// Whether it is the same in all lanes.
     const IS_SPLAT: bool;
-    fn new(place: Place, splats: &[u32]) -> Self;
+    fn new(place: ScratchPlace, splats: &[u32]) -> Self;
     fn at(self, row: &[Chunk], lane: usize) -> Self::Value;
 }
 
@@ -46,7 +46,7 @@ macro_rules! register {
             const IS_SPLAT: bool = false;
 
             #[inline(always)]
-            fn new(place: Place, _: &[u32]) -> Self {
+            fn new(place: ScratchPlace, _: &[u32]) -> Self {
                 Self(place.index())
             }
 
@@ -77,7 +77,7 @@ impl Operand for Number {
     const IS_SPLAT: bool = true;
 
     #[inline(always)]
-    fn new(place: Place, splats: &[u32]) -> Self {
+    fn new(place: ScratchPlace, splats: &[u32]) -> Self {
         Self(f32::from_bits(splats[place.index()]))
     }
 
@@ -108,7 +108,7 @@ impl Result for bool {
 
 /// A row of the table as data.
 struct Pattern {
-    pair: Pair,
+    pair: FusedPair,
     /// For each operand, whether it is a splat.
     splats: &'static [bool],
     first: Op,
@@ -162,7 +162,7 @@ macro_rules! pairs {
     )+) => {
         /// Two ops in one loop.
         #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-        pub(super) enum Pair {
+        pub(super) enum FusedPair {
             $(
                 #[doc = concat!(stringify!($t = $first($($p),+)), ", ", stringify!($second($($q),+)))]
                 $name,
@@ -172,7 +172,7 @@ macro_rules! pairs {
         static PATTERNS: &[Pattern] = &[$({
             const NAMES: &[&str] = &[$(stringify!($arg)),+];
             Pattern {
-                pair: Pair::$name,
+                pair: FusedPair::$name,
                 splats: &[$($kind::IS_SPLAT),+],
                 first: op_named(stringify!($first)),
                 of_first: &[$(position(NAMES, stringify!($p))),+],
@@ -184,9 +184,9 @@ macro_rules! pairs {
         impl Lanes<'_> {
             /// Runs a pair; the result register gets what the second op gives.
             #[inline(always)]
-            pub(super) fn pair(&mut self, pair: Pair, args: &[Place; MOST_OPERANDS], splats: &[u32]) {
+            pub(super) fn pair(&mut self, pair: FusedPair, args: &[ScratchPlace; MOST_OPERANDS], splats: &[u32]) {
                 match pair {
-                    $(Pair::$name => {
+                    $(FusedPair::$name => {
                         let mut places = args.iter();
                         $(
                             let $arg = $kind::new(*places.next().expect("as many as the row has"), splats);
@@ -292,7 +292,7 @@ pub(super) fn find(
     t: Value,
     second: Single<'_>,
     is_splat: impl Fn(Value) -> bool,
-) -> Option<(Pair, [Value; MOST_OPERANDS])> {
+) -> Option<(FusedPair, [Value; MOST_OPERANDS])> {
     let candidates = PATTERNS.iter().filter(|of| of.first == first.0 && of.second == second.0);
     let mut orders =
         candidates.flat_map(|pattern| [0, 1, 2, 3].map(|order| (pattern, order & 1 == 1, order & 2 == 2)));
@@ -419,9 +419,9 @@ mod tests {
                 outputs.push(("product".to_owned(), product));
             }
             let function = verify(b.finish(&outputs)).expect("it obeys the rules");
-            Tape::new(&function).expect("its ops are plain").pairs().collect::<Vec<Pair>>()
+            Tape::new(&function).expect("its ops are plain").pairs().collect::<Vec<FusedPair>>()
         };
         assert_eq!(pairs(true), []);
-        assert_eq!(pairs(false), [Pair::MulAdd]);
+        assert_eq!(pairs(false), [FusedPair::MulAdd]);
     }
 }

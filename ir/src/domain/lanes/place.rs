@@ -2,9 +2,9 @@
 
 /// The number of a register, or the number of a splat with the top bit set.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
-pub(super) struct Place(u32);
+pub(super) struct ScratchPlace(u32);
 
-impl Place {
+impl ScratchPlace {
     const SPLAT: u32 = 1 << 31;
 
     pub fn block(register: usize) -> Self {
@@ -31,6 +31,6 @@ impl Place {
 fn narrow(index: usize) -> u32 {
     u32::try_from(index)
         .ok()
-        .filter(|index| index & Place::SPLAT == 0)
+        .filter(|index| index & ScratchPlace::SPLAT == 0)
         .expect("limits::MAX_VALUES is far below 2^31")
 }

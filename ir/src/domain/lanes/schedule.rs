@@ -18,7 +18,7 @@
 use crate::entity::{Entity, Inst, Value};
 use crate::function::{Fold, Function, InstKind};
 
-use super::pairs::{MOST_OPERANDS, Pair, find};
+use super::pairs::{FusedPair, MOST_OPERANDS, find};
 
 /// What happens at a position.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -34,7 +34,7 @@ pub(super) enum Event {
 
 /// When a value is alive: from its definition up to and without `end`, in half positions.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) struct Range {
+pub(super) struct InstRange {
     pub start: usize,
     pub end: usize,
 }
@@ -49,7 +49,7 @@ pub(super) struct Schedule<'a> {
     /// For each holder, whether it is the same in all lanes.
     pub splat: Vec<bool>,
     /// For each holder, when it is alive.
-    pub live: Vec<Range>,
+    pub live: Vec<InstRange>,
     /// By instruction, whether it is the first of a pair, and runs in the loop of the next instruction.
     pub is_first: Vec<bool>,
     /// The pairs, by their second instruction, in order.
@@ -59,7 +59,7 @@ pub(super) struct Schedule<'a> {
 /// Two instructions that run in one loop.
 pub(super) struct Paired {
     second: Inst,
-    pub pair: Pair,
+    pub pair: FusedPair,
     pub args: [Value; MOST_OPERANDS],
 }
 
@@ -305,11 +305,11 @@ fn splats(function: &Function, holder: &[Value]) -> Vec<bool> {
     splat
 }
 
-fn ranges(function: &Function, events: &[Event], holder: &[Value]) -> Vec<Range> {
+fn ranges(function: &Function, events: &[Event], holder: &[Value]) -> Vec<InstRange> {
     let ends = ends_of_folds(events);
-    let mut walk = Walk {
+    let mut walk = ScheduleWalk {
         holder,
-        live: vec![Range { start: 0, end: 0 }; function.values.len()],
+        live: vec![InstRange { start: 0, end: 0 }; function.values.len()],
         depth: vec![0; function.values.len()],
         open: Vec::new(),
     };
@@ -367,19 +367,19 @@ fn ends_of_folds(events: &[Event]) -> Vec<usize> {
 }
 
 /// The walk over the events that finds the live ranges.
-struct Walk<'a> {
+struct ScheduleWalk<'a> {
     holder: &'a [Value],
-    live: Vec<Range>,
+    live: Vec<InstRange>,
     /// How many folds enclose the definition of each value.
     depth: Vec<usize>,
     /// Where the open folds end.
     open: Vec<usize>,
 }
 
-impl Walk<'_> {
+impl ScheduleWalk<'_> {
     fn write(&mut self, value: Value, position: usize) {
         let start = 2 * position + 1;
-        self.live[value.index()] = Range { start, end: start + 1 };
+        self.live[value.index()] = InstRange { start, end: start + 1 };
         self.depth[value.index()] = self.open.len();
     }
 

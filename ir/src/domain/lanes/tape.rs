@@ -4,8 +4,8 @@ use crate::entity::Table;
 use crate::op::Op;
 
 use super::ops::{Chunk, WIDTH};
-use super::pairs::{MOST_OPERANDS, Pair};
-use super::place::Place;
+use super::pairs::{FusedPair, MOST_OPERANDS};
+use super::place::ScratchPlace;
 
 /// A function that is ready to run on blocks of points. It never changes, so threads may share it, each with
 /// its own [`Scratch`].
@@ -30,7 +30,7 @@ pub struct Tape {
     /// Number of input planes.
     pub(super) inputs: usize,
     /// The place that each output plane is copied from.
-    pub(super) outputs: Vec<Place>,
+    pub(super) outputs: Vec<ScratchPlace>,
     /// The program.
     pub(super) steps: Vec<Step>,
     /// The ops, in the order of the steps that run them.
@@ -53,7 +53,7 @@ pub(super) enum Step {
     /// Reads the block's points of an input plane into a register.
     Input { plane: u32, register: u32 },
     /// Copies a value, or spreads a splat into a register.
-    Move { from: Place, to: Place },
+    Move { from: ScratchPlace, to: ScratchPlace },
     /// Runs these ops, one after the other.
     Ops { first: u32, end: u32 },
     /// Makes the first active row the current one; without active rows, jumps behind the end of the fold.
@@ -68,15 +68,15 @@ pub(super) enum Step {
 pub(super) struct OpStep {
     pub code: Code,
     /// The operands, then unused places.
-    pub args: [Place; MOST_OPERANDS],
-    pub result: Place,
+    pub args: [ScratchPlace; MOST_OPERANDS],
+    pub result: ScratchPlace,
 }
 
 /// What an [`OpStep`] does.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Code {
     Op(Op),
-    Pair(Pair),
+    Pair(FusedPair),
 }
 
 /// One fold.
@@ -149,7 +149,7 @@ impl Tape {
 
     /// The steps that are two ops.
     #[cfg(test)]
-    pub(super) fn pairs(&self) -> impl Iterator<Item = Pair> {
+    pub(super) fn pairs(&self) -> impl Iterator<Item = FusedPair> {
         self.ops.iter().filter_map(|step| match step.code {
             Code::Op(_) => None,
             Code::Pair(pair) => Some(pair),
