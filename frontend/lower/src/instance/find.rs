@@ -339,9 +339,7 @@ impl<'a> Finder<'a> {
     fn push(&mut self, node: NodeId, position: PositionId, kind: InstanceKind) -> InstanceId {
         let space = self.scene.position(position).space;
         let (non_negative, bounded) = (self.non_negative(node, &kind), self.bounded(&kind));
-        for child in children(&kind) {
-            self.scene.instances[child.0 as usize].uses += 1;
-        }
+        children(&kind).for_each(|child| self.scene.instances[child.0 as usize].uses += 1);
         if let InstanceKind::Warp { weight: Some(weight), .. } = kind {
             // The point inside uses it once more, so that it is hoisted: known before any row that enters.
             self.scene.instances[weight.0 as usize].uses += 1;

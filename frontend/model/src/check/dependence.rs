@@ -53,6 +53,7 @@ impl Dependence {
         self.nodes.push((id, Arc::clone(written)));
     }
 
+    #[inline]
     pub(super) fn written(&self, id: NodeId) -> Option<&Arc<Written>> {
         // Usually the list is empty.
         let found = self.nodes.binary_search_by_key(&id, |&(node, _)| node).ok()?;

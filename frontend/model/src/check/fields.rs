@@ -1,5 +1,7 @@
 //! The check of members' parameters, and of the functions that formulas call.
 
+use std::fmt;
+
 use jbt_ir::limits;
 
 use super::numbers::{check_count, check_expression, check_list, check_number, check_numbers, check_within};
@@ -10,47 +12,47 @@ use crate::field::{Field, FieldKind, FieldValue};
 use crate::report::Report;
 
 pub(super) fn check_falloff(report: &mut Report, span: Option<Span>, falloff: &Falloff) {
-    let owner = format!("{} falloff", falloff.name());
-    check_fields(report, span, &owner, falloff.kind().fields(), &falloff.to_fields());
+    let owner = format_args!("{} falloff", falloff.name());
+    check_fields(report, span, owner, falloff.kind().fields(), &falloff.to_fields());
 }
 
 /// Checks the parameters of a skeleton, a falloff or a warp, each by its kind. Returns whether all are valid.
 pub(super) fn check_fields(
     report: &mut Report,
     span: Option<Span>,
-    owner: &str,
+    owner: impl fmt::Display,
     fields: &[Field],
     values: &[FieldValue],
 ) -> bool {
     let before = report.len();
     for (field, value) in fields.iter().zip(values) {
-        let what = format!("the `{}` of the {owner}", field.name);
+        let what = format_args!("the `{}` of the {owner}", field.name);
         match field.kind {
             FieldKind::Real => {
-                check_number(report, span, &what, value.real(), f64::NEG_INFINITY);
+                check_number(report, span, what, value.real(), f64::NEG_INFINITY);
             }
             FieldKind::Positive => {
-                check_number(report, span, &what, value.real(), limits::MIN_LENGTH);
+                check_number(report, span, what, value.real(), limits::MIN_LENGTH);
             }
             FieldKind::NonNegative => {
-                check_number(report, span, &what, value.real(), 0.0);
+                check_number(report, span, what, value.real(), 0.0);
             }
             FieldKind::Within { least, most } => {
-                check_within(report, span, &what, value.real(), least..=most);
+                check_within(report, span, what, value.real(), least..=most);
             }
             FieldKind::Choice(words) => {
-                check_within(report, span, &what, value.real(), 0.0..=words.len() as f64 - 1.0);
+                check_within(report, span, what, value.real(), 0.0..=words.len() as f64 - 1.0);
             }
             FieldKind::Whole { least, most } => {
-                check_within(report, span, &what, value.real(), least.into()..=most.into());
+                check_within(report, span, what, value.real(), least.into()..=most.into());
             }
-            FieldKind::Count => check_count(report, span, &what, value.real()),
-            FieldKind::Degrees => check_within(report, span, &what, value.real(), 0.0..=360.0),
-            FieldKind::Extents => check_numbers(report, span, &what, &value.vector(), 0.0),
-            FieldKind::Stretches => check_numbers(report, span, &what, &value.vector(), limits::MIN_LENGTH),
-            FieldKind::Position => check_numbers(report, span, &what, &value.vector(), f64::NEG_INFINITY),
+            FieldKind::Count => check_count(report, span, what, value.real()),
+            FieldKind::Degrees => check_within(report, span, what, value.real(), 0.0..=360.0),
+            FieldKind::Extents => check_numbers(report, span, what, &value.vector(), 0.0),
+            FieldKind::Stretches => check_numbers(report, span, what, &value.vector(), limits::MIN_LENGTH),
+            FieldKind::Position => check_numbers(report, span, what, &value.vector(), f64::NEG_INFINITY),
             FieldKind::Direction | FieldKind::Axis => {
-                check_numbers(report, span, &what, &value.vector(), f64::NEG_INFINITY);
+                check_numbers(report, span, what, &value.vector(), f64::NEG_INFINITY);
                 if value.vector() == [0.0; 3] {
                     report.add(|| {
                         Diagnostic::error(span, format!("{what} is (0 0 0)")).expected("expected a direction")
@@ -66,9 +68,9 @@ pub(super) fn check_fields(
                 let (values, _) = value.reals().as_chunks::<1>();
                 check_list(report, span, &what, values, 0.0);
             }
-            FieldKind::Rows => check_numbers(report, span, &what, value.reals(), f64::NEG_INFINITY),
+            FieldKind::Rows => check_numbers(report, span, what, value.reals(), f64::NEG_INFINITY),
             FieldKind::Flag => {
-                check_number(report, span, &what, value.real(), 0.0);
+                check_number(report, span, what, value.real(), 0.0);
             }
         }
     }

@@ -96,7 +96,7 @@ pub(super) fn check_attribute(
             report
                 .add(|| Diagnostic::error(span, message).expected(format!("expected {width} real{plural}")));
         }
-        check_numbers(report, span, &format!("the attribute `{name}`"), numbers, f64::NEG_INFINITY);
+        check_numbers(report, span, format_args!("the attribute `{name}`"), numbers, f64::NEG_INFINITY);
     };
     match value {
         AttributeValue::Numbers(numbers) => fits(numbers),

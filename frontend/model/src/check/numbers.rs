@@ -1,5 +1,6 @@
 //! The check of numbers: single numbers, several numbers, exponents and choices.
 
+use std::fmt;
 use std::ops::RangeInclusive;
 
 use jbt_ir::limits;
@@ -14,7 +15,7 @@ use crate::word::{COORDINATES, FIELD};
 pub(super) fn check_number(
     report: &mut Report,
     span: Option<Span>,
-    what: &str,
+    what: impl fmt::Display,
     value: f64,
     least: f64,
 ) -> bool {
@@ -40,7 +41,7 @@ pub(super) fn check_number(
 pub(super) fn check_within(
     report: &mut Report,
     span: Option<Span>,
-    what: &str,
+    what: impl fmt::Display,
     value: f64,
     range: RangeInclusive<f64>,
 ) {
@@ -57,7 +58,13 @@ pub(super) fn check_within(
 }
 
 /// Three numbers, or an error that shows all of them.
-pub(super) fn check_numbers(report: &mut Report, span: Option<Span>, what: &str, values: &[f64], least: f64) {
+pub(super) fn check_numbers(
+    report: &mut Report,
+    span: Option<Span>,
+    what: impl fmt::Display,
+    values: &[f64],
+    least: f64,
+) {
     let good = |x: &f64| x.is_finite() && x.abs() <= limits::MAX_NUMBER && *x >= least;
     if !values.iter().all(good) {
         let shown: Vec<String> = values.iter().map(f64::to_string).collect();
@@ -76,7 +83,7 @@ pub(super) fn check_numbers(report: &mut Report, span: Option<Span>, what: &str,
 }
 
 /// A whole number of at least 0 and not too large.
-pub(super) fn check_count(report: &mut Report, span: Option<Span>, what: &str, value: f64) {
+pub(super) fn check_count(report: &mut Report, span: Option<Span>, what: impl fmt::Display, value: f64) {
     // Written so that a NaN is refused as well.
     let fits = value.fract() == 0.0 && (0.0..=limits::MAX_COPIES).contains(&value);
     if !fits {
@@ -153,7 +160,7 @@ pub(super) fn check_expression(
 pub(super) fn check_formula(
     report: &mut Report,
     span: Option<Span>,
-    what: &str,
+    what: impl fmt::Display,
     form: &Form,
     numbers: &[f64],
 ) -> bool {

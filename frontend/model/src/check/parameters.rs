@@ -190,6 +190,7 @@ impl CheckedTree {
     /// What a node was written as, if it can change: a number of it depends on a parameter, or it asks for an
     /// iso-value that does. `None`: no parameter changes the node.
     #[must_use]
+    #[inline]
     pub fn written(&self, id: NodeId) -> Option<&Written> {
         self.dependence.written(id).map(|written| &**written)
     }

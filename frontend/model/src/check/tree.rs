@@ -87,6 +87,7 @@ impl CheckedTree {
 
     /// A node.
     #[must_use]
+    #[inline]
     pub fn node(&self, id: NodeId) -> &CheckedNode {
         &self.nodes[id.0 as usize]
     }

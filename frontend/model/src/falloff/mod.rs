@@ -141,6 +141,7 @@ macro_rules! falloffs {
             /// The kind, and the variant whose code serves these numbers or, if the numbers follow a
             /// parameter, all numbers.
             #[must_use]
+            #[inline]
             pub fn code(&self, depends: bool) -> FalloffKind {
                 match self {
                     $( Self::$name => FalloffKind::$name, )+

@@ -98,6 +98,7 @@ macro_rules! skeletons {
         impl Skeleton {
             /// The kind.
             #[must_use]
+            #[inline]
             pub const fn kind(&self) -> SkeletonKind { match self { $( Self::$name(_) => SkeletonKind::$name, )+ } }
 
             /// The parameters, in the order of [`SkeletonKind::fields`].
