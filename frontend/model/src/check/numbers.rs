@@ -104,7 +104,7 @@ pub(super) fn check_list<const N: usize>(
 ) {
     let good = |x: &f64| x.is_finite() && x.abs() <= limits::MAX_NUMBER && *x >= least;
     if let Some(index) = elements.iter().position(|element| !element.iter().all(good)) {
-        check_numbers(report, span, &what(index), &elements[index], least);
+        check_numbers(report, span, what(index), &elements[index], least);
     }
     if elements.len() > limits::MAX_SKELETON_POINTS {
         let message = format!("a list of {} elements", elements.len());
