@@ -12,9 +12,9 @@
 //! define under a guard: open a fold over a table of one row, define, close; the answer is what the fold carries out
 //! ```
 //!
-//! An explicit list of tasks takes the place of recursion, because a model may be a chain of any length.
-//! Columns are declared when the code asks for them. The [recipe](super::recipe) of their table says where
-//! their numbers come from, for every row.
+//! An explicit stack of tasks takes the place of recursion, because a model may be a chain of any length:
+//! what is pushed last is done first. Columns are declared when the code asks for them. The
+//! [recipe](super::recipe) of their table says where their numbers come from, for every row.
 //!
 //! The range function is emitted in the same way, and carries probes out of its guards: see `probe`.
 

@@ -10,6 +10,9 @@
 //! steps    blend:     a = (l a + r b) / (l + r), of both sides' weights l and r; where one is 0, the other side's to the bit
 //!          dominant:  that with the larger share
 //! ```
+//!
+//! w is what the operator's own code gives (`Met::weight`): `f_i dF/df_i` up to a factor that all operands
+//! share; for products all weights are equal. The table in `combine/mod.rs` of `jbt-model` has them.
 
 mod group;
 
@@ -36,13 +39,13 @@ pub(super) struct Operator {
     pub(super) code: ReduceCode,
     /// The numbers that the row of the operator keeps.
     pub(super) row: Vec<Value>,
-    /// Twice the iso-value.
+    /// Twice the iso-value: a complement is `2 iso - field`.
     pub(super) iso2: Value,
     /// Whether no operand can be negative.
     pub(super) non_negative: bool,
     /// Whether no operand is further from 0 than [`LARGEST_FIELD`].
     pub(super) bounded: bool,
-    /// Whether operands come in several groups: then ties need their order in the file.
+    /// Whether operands have several shapes: then ties need their order in the file.
     pub(super) ordered: bool,
     /// Whether the field will be differentiated.
     pub(super) moving: bool,
@@ -116,8 +119,8 @@ impl State {
             ReduceCode::Fold(code) => code.start(d, operator.setting()),
             // Until its first operand comes.
             ReduceCode::Step(_) => vec![zero],
-            // Zero takes part without a row: whoever is above zero wins all the same, and where nobody is
-            // there is only the default.
+            // Begins at 0, as if an operand were 0: one above 0 still wins, and where none is, attributes are
+            // defaults.
             ReduceCode::Choice(Extreme::Largest) if operator.non_negative => vec![zero],
             ReduceCode::Choice(extreme) => vec![d.constant(beyond(extreme, operator.bounded))],
         };

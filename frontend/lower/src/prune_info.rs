@@ -9,7 +9,9 @@
 //! ```
 //!
 //! Supports and rules are here. The ranges come out of the *range function*: the model's field followed by
-//! probes, over the same tables; run with intervals, it gives the ranges of them all over a box.
+//! probes, over the same tables; run with intervals, it gives the ranges of them all over a box. A *probe* is
+//! a number inside the program that pruning has to know: the field of an operand or operator, or a coordinate
+//! of the point inside of a warp.
 //!
 //! A *guard* is a fold over one row around an operand that has tables of its own. Where the row is left out,
 //! the operand's field is what the fold starts with: 0, or the lowest or highest number where that never
@@ -35,7 +37,7 @@ pub struct PruneInfo {
     pub probes: usize,
     /// What may be left out because it does not decide. Operators come after their operands.
     pub decisions: Vec<Decision>,
-    /// Twice the iso-value, as the program has it: see [`DecisionKind`].
+    /// Twice the iso-value, as the program has it, for complements (`2 iso - field`): see [`DecisionKind`].
     pub iso2: f32,
 }
 
