@@ -118,13 +118,19 @@ macro_rules! operators {
 
         impl FoldCode {
             /// Whether slopes of the field are not bounded by the sum of those of the operands.
-            pub const fn is_steep(self) -> bool { match self { $( Self::$fold(_) => <$fold as Fold>::IS_STEEP, )+ } }
+            pub const fn is_steep(self) -> bool {
+                match self { $( Self::$fold(_) => <$fold as Fold>::IS_STEEP, )+ }
+            }
 
             /// See [`Fold::absorbs`].
-            pub(crate) fn absorbs(self) -> bool { match self { $( Self::$fold(code) => <$fold as Fold>::absorbs(code), )+ } }
+            pub(crate) fn absorbs(self) -> bool {
+                match self { $( Self::$fold(code) => <$fold as Fold>::absorbs(code), )+ }
+            }
 
             /// See [`Fold::columns`].
-            fn columns(self) -> &'static [&'static str] { match self { $( Self::$fold(code) => <$fold as Fold>::columns(code), )+ } }
+            fn columns(self) -> &'static [&'static str] {
+                match self { $( Self::$fold(code) => <$fold as Fold>::columns(code), )+ }
+            }
 
             /// Whether the sum of weights is an accumulator of its own.
             pub fn has_total(self, non_negative: bool) -> bool {
@@ -145,7 +151,9 @@ macro_rules! operators {
                 setting: Setting<'_, D::Real>,
                 weighs: bool,
             ) -> Met<D::Real> {
-                match self { $( Self::$fold(code) => <$fold as Fold>::meet(code, d, so_far, operand, setting, weighs), )+ }
+                match self {
+                    $( Self::$fold(code) => <$fold as Fold>::meet(code, d, so_far, operand, setting, weighs), )+
+                }
             }
 
             /// The field and what shares are; `total` is the sum of weights, where that is an accumulator of
@@ -157,7 +165,9 @@ macro_rules! operators {
                 total: Option<D::Real>,
                 setting: Setting<'_, D::Real>,
             ) -> Finished<D::Real> {
-                match self { $( Self::$fold(code) => <$fold as Fold>::finish(code, d, so_far, total, setting), )+ }
+                match self {
+                    $( Self::$fold(code) => <$fold as Fold>::finish(code, d, so_far, total, setting), )+
+                }
             }
         }
 
@@ -167,10 +177,14 @@ macro_rules! operators {
 
         impl StepCode {
             /// See [`Step::COLUMNS`].
-            const fn columns(self) -> &'static [&'static str] { match self { $( Self::$step(_) => <$step as Step>::COLUMNS, )+ } }
+            const fn columns(self) -> &'static [&'static str] {
+                match self { $( Self::$step(_) => <$step as Step>::COLUMNS, )+ }
+            }
 
             /// See [`Step::rule`].
-            fn rule(self, non_negative: bool) -> Rule { match self { $( Self::$step(code) => <$step as Step>::rule(code, non_negative), )+ } }
+            fn rule(self, non_negative: bool) -> Rule {
+                match self { $( Self::$step(code) => <$step as Step>::rule(code, non_negative), )+ }
+            }
 
             /// The field of two sides and the weight of either, from a row of numbers and twice the
             /// iso-value.
@@ -191,7 +205,9 @@ macro_rules! operators {
 
         impl MapCode {
             /// Names of the numbers that a row keeps for it.
-            pub const fn columns(self) -> &'static [&'static str] { match self { $( Self::$map => <$map as Unary>::COLUMNS, )+ } }
+            pub const fn columns(self) -> &'static [&'static str] {
+                match self { $( Self::$map => <$map as Unary>::COLUMNS, )+ }
+            }
 
             /// The field of a child with the field `f`, from a row of numbers and twice the iso-value.
             pub fn emit<D: Domain>(self, d: &mut D, f: D::Real, row: &[D::Real], iso2: D::Real) -> D::Real {
@@ -240,11 +256,21 @@ macro_rules! members {
 
         /// An operator of any kind.
         #[derive(Clone, Copy, PartialEq, Debug)]
-        pub enum Combinator { $( #[doc = concat!("See [`", stringify!($name), "`](struct@", stringify!($name), ").")] $name($name), )+ }
+        pub enum Combinator {
+            $(
+                #[doc = concat!("See [`", stringify!($name), "`](struct@", stringify!($name), ").")]
+                $name($name),
+            )+
+        }
 
         /// The kind of an operator.
         #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-        pub enum CombinatorKind { $( #[doc = concat!("See [`", stringify!($name), "`](struct@", stringify!($name), ").")] $name, )+ }
+        pub enum CombinatorKind {
+            $(
+                #[doc = concat!("See [`", stringify!($name), "`](struct@", stringify!($name), ").")]
+                $name,
+            )+
+        }
 
         $( impl From<$name> for Combinator { fn from(operator: $name) -> Self { Self::$name(operator) } } )+
 
@@ -258,21 +284,31 @@ macro_rules! members {
 
             /// The parameters.
             #[must_use]
-            pub const fn fields(self) -> &'static [Field] { match self { $( Self::$name => $name::FIELDS, )+ } }
+            pub const fn fields(self) -> &'static [Field] {
+                match self { $( Self::$name => $name::FIELDS, )+ }
+            }
 
             /// How they are written.
             #[must_use]
-            pub const fn syntax(self) -> Syntax { match self { $( Self::$name => <$name as Operator>::SYNTAX, )+ } }
+            pub const fn syntax(self) -> Syntax {
+                match self { $( Self::$name => <$name as Operator>::SYNTAX, )+ }
+            }
 
             /// What it is printed as.
-            pub const fn head(self) -> &'static str { match self { $( Self::$name => <$name as Operator>::HEAD, )+ } }
+            pub const fn head(self) -> &'static str {
+                match self { $( Self::$name => <$name as Operator>::HEAD, )+ }
+            }
 
             /// Whether it has one child; otherwise it has one or more.
             #[must_use]
-            pub const fn takes_one(self) -> bool { match self { $( Self::$name => <$name as Plain<$form>>::TAKES_ONE, )+ } }
+            pub const fn takes_one(self) -> bool {
+                match self { $( Self::$name => <$name as Plain<$form>>::TAKES_ONE, )+ }
+            }
 
             /// Whether what its numbers may be depends on the iso-value.
-            pub(crate) const fn asks_iso(self) -> bool { match self { $( Self::$name => <$name as Operator>::ASKS_ISO, )+ } }
+            pub(crate) const fn asks_iso(self) -> bool {
+                match self { $( Self::$name => <$name as Operator>::ASKS_ISO, )+ }
+            }
 
             /// The operator of this kind with these parameters.
             #[must_use]
@@ -284,21 +320,31 @@ macro_rules! members {
         impl Combinator {
             /// The kind.
             #[must_use]
-            pub const fn kind(self) -> CombinatorKind { match self { $( Self::$name(_) => CombinatorKind::$name, )+ } }
+            pub const fn kind(self) -> CombinatorKind {
+                match self { $( Self::$name(_) => CombinatorKind::$name, )+ }
+            }
 
             /// The parameters, in the order of [`CombinatorKind::fields`].
             #[must_use]
-            pub fn to_fields(self) -> Vec<FieldValue> { match self { $( Self::$name(it) => it.to_fields(), )+ } }
+            pub fn to_fields(self) -> Vec<FieldValue> {
+                match self { $( Self::$name(it) => it.to_fields(), )+ }
+            }
 
             /// Whether a single child answers as if the operator were not there.
             #[must_use]
-            pub const fn passes_single(self) -> bool { match self { $( Self::$name(_) => <$name as Plain<$form>>::PASSES_SINGLE, )+ } }
+            pub const fn passes_single(self) -> bool {
+                match self { $( Self::$name(_) => <$name as Plain<$form>>::PASSES_SINGLE, )+ }
+            }
 
             /// See [`Operator::following`].
-            pub(crate) fn general(self) -> Self { match self { $( Self::$name(it) => Self::$name(it.general()), )+ } }
+            pub(crate) fn general(self) -> Self {
+                match self { $( Self::$name(it) => Self::$name(it.general()), )+ }
+            }
 
             /// See [`Operator::fault`].
-            pub(crate) fn fault(self, iso: f64) -> Option<Diagnostic> { match self { $( Self::$name(it) => it.fault(iso), )+ } }
+            pub(crate) fn fault(self, iso: f64) -> Option<Diagnostic> {
+                match self { $( Self::$name(it) => it.fault(iso), )+ }
+            }
 
             /// The field of the node from its children's fields, plainly.
             #[must_use]

@@ -234,7 +234,8 @@ impl SkeletonMember for Helix {
 
     fn emit<D: Domain>(d: &mut D, p: [D::Real; 3], row: &[D::Real]) -> D::Real {
         let (radius, end) = (row[0], [row[1], row[2], row[3]]);
-        let curve = HelixCurve::<D> { radius, end, pitch: row[4], rise: row[5], turns: row[8], whole: row[9], rest: row[10] };
+        let (pitch, rise, turns, whole, rest) = (row[4], row[5], row[8], row[9], row[10]);
+        let curve = HelixCurve::<D> { radius, end, pitch, rise, turns, whole, rest };
         let (phi, height) = (atan2(d, p[1], p[0]), d.mul(p[2], row[6]));
         let height = clamped(d, height, HIGHEST);
         let turn = curve.turn(d, p, phi, height);

@@ -34,14 +34,23 @@ macro_rules! warps {
 
         /// A warp of any kind.
         #[derive(Clone, PartialEq, Debug)]
-        pub enum Warp { $( #[doc = concat!("See [`", stringify!($name), "`](struct@", stringify!($name), ").")] $name($name), )+
+        pub enum Warp {
+            $(
+                #[doc = concat!("See [`", stringify!($name), "`](struct@", stringify!($name), ").")]
+                $name($name),
+            )+
             /// See [`FormulaWarp`](struct@FormulaWarp).
             Formula(FormulaWarp),
         }
 
         /// The kind of a member and the variant of its code: what selects code.
         #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, PartialOrd, Ord)]
-        pub enum WarpKind { $( #[doc = concat!("See [`", stringify!($name), "`](struct@", stringify!($name), ").")] $name(u8), )+ }
+        pub enum WarpKind {
+            $(
+                #[doc = concat!("See [`", stringify!($name), "`](struct@", stringify!($name), ").")]
+                $name(u8),
+            )+
+        }
 
         $( impl From<$name> for Warp { fn from(warp: $name) -> Self { Self::$name(warp) } } )+
 
@@ -55,11 +64,15 @@ macro_rules! warps {
 
             /// The parameters.
             #[must_use]
-            pub const fn fields(self) -> &'static [Field] { match self { $( Self::$name(_) => $name::FIELDS, )+ } }
+            pub const fn fields(self) -> &'static [Field] {
+                match self { $( Self::$name(_) => $name::FIELDS, )+ }
+            }
 
             /// The names of the columns of a row.
             #[must_use]
-            pub const fn columns(self) -> &'static [&'static str] { match self { $( Self::$name(_) => $name::COLUMNS, )+ } }
+            pub const fn columns(self) -> &'static [&'static str] {
+                match self { $( Self::$name(_) => $name::COLUMNS, )+ }
+            }
 
             /// The warp of this kind with these parameters.
             #[must_use]
@@ -85,46 +98,83 @@ macro_rules! warps {
 
             /// The kind of a member, with variant 0; `None` for formulas.
             #[must_use]
-            pub const fn kind(&self) -> Option<WarpKind> { match self { $( Self::$name(_) => Some(WarpKind::$name(0)), )+ Self::Formula(_) => None } }
+            pub const fn kind(&self) -> Option<WarpKind> {
+                match self { $( Self::$name(_) => Some(WarpKind::$name(0)), )+ Self::Formula(_) => None }
+            }
 
             /// The word of the text format.
             #[must_use]
-            pub const fn name(&self) -> &'static str { match self { $( Self::$name(_) => $name::NAME, )+ Self::Formula(_) => FormulaWarp::NAME } }
+            pub const fn name(&self) -> &'static str {
+                match self { $( Self::$name(_) => $name::NAME, )+ Self::Formula(_) => FormulaWarp::NAME }
+            }
 
             /// The parameters; formulas have numbers of their own.
             #[must_use]
-            pub const fn fields(&self) -> &'static [Field] { match self { $( Self::$name(_) => $name::FIELDS, )+ Self::Formula(_) => &[] } }
+            pub const fn fields(&self) -> &'static [Field] {
+                match self { $( Self::$name(_) => $name::FIELDS, )+ Self::Formula(_) => &[] }
+            }
 
             /// The parameters, in the order of [`fields`](Self::fields).
             #[must_use]
-            pub fn to_fields(&self) -> Vec<FieldValue> { match self { $( Self::$name(w) => w.to_fields(), )+ Self::Formula(_) => Vec::new() } }
+            pub fn to_fields(&self) -> Vec<FieldValue> {
+                match self { $( Self::$name(w) => w.to_fields(), )+ Self::Formula(_) => Vec::new() }
+            }
 
             /// See [`WarpMember::inverse`].
             #[must_use]
-            pub fn inverse(&self, p: DVec3) -> DVec3 { match self { $( Self::$name(w) => w.inverse(p), )+ Self::Formula(w) => w.inverse(p) } }
+            pub fn inverse(&self, p: DVec3) -> DVec3 {
+                match self { $( Self::$name(w) => w.inverse(p), )+ Self::Formula(w) => w.inverse(p) }
+            }
 
             /// See [`WarpMember::kink_distance`].
             #[must_use]
-            pub fn kink_distance(&self, p: DVec3) -> f64 { match self { $( Self::$name(w) => w.kink_distance(p), )+ Self::Formula(w) => w.kink_distance(p) } }
+            pub fn kink_distance(&self, p: DVec3) -> f64 {
+                match self {
+                    $( Self::$name(w) => w.kink_distance(p), )+
+                    Self::Formula(w) => w.kink_distance(p),
+                }
+            }
 
             /// See [`WarpMember::fault`].
             #[must_use]
-            pub fn fault(&self) -> Option<WarpFault> { match self { $( Self::$name(w) => w.fault(), )+ Self::Formula(w) => w.fault() } }
+            pub fn fault(&self) -> Option<WarpFault> {
+                match self { $( Self::$name(w) => w.fault(), )+ Self::Formula(w) => w.fault() }
+            }
 
             /// See [`WarpMember::forward_bounds`].
             #[must_use]
-            pub fn forward_bounds(&self, child: Bounds) -> Bounds { match self { $( Self::$name(w) => w.forward_bounds(child), )+ Self::Formula(_) => FormulaWarp::reach(child) } }
+            pub fn forward_bounds(&self, child: Bounds) -> Bounds {
+                match self {
+                    $( Self::$name(w) => w.forward_bounds(child), )+
+                    Self::Formula(_) => FormulaWarp::reach(child),
+                }
+            }
 
             /// See [`WarpMember::reach`].
             #[must_use]
-            pub fn reach(&self, child: Bounds) -> Bounds { match self { $( Self::$name(w) => w.reach(child), )+ Self::Formula(_) => FormulaWarp::reach(child) } }
+            pub fn reach(&self, child: Bounds) -> Bounds {
+                match self {
+                    $( Self::$name(w) => w.reach(child), )+
+                    Self::Formula(_) => FormulaWarp::reach(child),
+                }
+            }
 
             /// See [`WarpMember::growth`].
             #[must_use]
-            pub fn growth(&self, largest: f64) -> WarpGrowth { match self { $( Self::$name(w) => w.growth(largest), )+ Self::Formula(w) => w.growth(largest) } }
+            pub fn growth(&self, largest: f64) -> WarpGrowth {
+                match self {
+                    $( Self::$name(w) => w.growth(largest), )+
+                    Self::Formula(w) => w.growth(largest),
+                }
+            }
 
             /// See [`WarpMember::columns`].
-            pub fn columns(&self, row: &mut Vec<f64>) { match self { $( Self::$name(w) => w.columns(row), )+ Self::Formula(w) => row.extend(&w.numbers) } }
+            pub fn columns(&self, row: &mut Vec<f64>) {
+                match self {
+                    $( Self::$name(w) => w.columns(row), )+
+                    Self::Formula(w) => row.extend(&w.numbers),
+                }
+            }
         }
 
         $crate::member::each! { ($) warp $($module)+ }
