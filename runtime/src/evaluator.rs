@@ -13,6 +13,7 @@ use jbt_model::check::{CheckedTree, NodeId};
 use jbt_model::origin::ModelOrigin;
 use jbt_model::query::Query;
 
+use crate::boxes::Box3;
 use crate::buffer::{Layout, Samples};
 use crate::compiled::{Compiled, PointScope};
 use crate::compiler::Compiler;
@@ -23,7 +24,6 @@ use crate::kernel::{BoundKernel, Engine};
 use crate::points::{AsPoints, Points};
 use crate::program::AnswerProgram;
 use crate::prune::Region;
-use crate::region::Box3;
 
 impl Compiler {
     /// An evaluator for a model and a query, of which nothing else is asked: see [`Compiled::evaluator`].

@@ -112,6 +112,7 @@
 //!   version.
 //! * Of [`internals`] nothing is promised.
 
+pub mod boxes;
 mod buffer;
 mod compiled;
 mod compiler;
@@ -137,7 +138,6 @@ mod probe;
 mod program;
 mod progress;
 pub mod prune;
-pub mod region;
 pub mod render;
 pub mod sample;
 mod scene;
@@ -172,6 +172,7 @@ pub use jbt_model::walk;
 pub use jbt_text as text;
 pub use jbt_text::import;
 
+pub use boxes::{Box3, Range};
 pub use buffer::{Layout, Samples};
 pub use compiled::Compiled;
 pub use compiler::{CompileCounters, Compiler};
@@ -185,7 +186,6 @@ pub use points::{AsPoint, AsPoints, LengthError, Points, PointsIter};
 pub use polygonize::{Fineness, MeshCounters, Polygonize, PolygonizeError, Polygonized};
 pub use probe::Probe;
 pub use prune::{PruneCounters, Pruner, Region};
-pub use region::{Box3, Range};
 pub use render::{Render, Renderer};
 pub use scene::{Scene, SceneFormat};
 pub use solid::{Membership, Solid};

@@ -14,6 +14,7 @@ use std::time::{Duration, Instant};
 
 use jbt_model::check::CheckedTree;
 
+use crate::boxes::Box3;
 use crate::compiled::Compiled;
 use crate::compiler::Compiler;
 use crate::counter::Counters;
@@ -22,7 +23,6 @@ use crate::job::{Hook, Job};
 use crate::kernel::Engine;
 use crate::mesh::{self, Lattice, LatticeError, Mesh, MeshError, MeshReport};
 use crate::prune::PruneCounters;
-use crate::region::Box3;
 use crate::support::{NoBox, around};
 
 use kernels::Kernels;
@@ -213,7 +213,7 @@ impl Polygonize {
     /// The lattice over the region, in coordinates about the model's [origin](CheckedTree::origin).
     ///
     /// # Errors
-    /// Those of [`region`](Self::region), and a lattice that cannot be or is beyond a limit.
+    /// Those of [`boxes`](Self::region), and a lattice that cannot be or is beyond a limit.
     pub fn lattice(&self, tree: &CheckedTree) -> Result<Lattice, PolygonizeError> {
         let Box3 { low, high } = self.local_region(tree)?;
         Ok(match self.fineness {

@@ -3,7 +3,7 @@
 
 use jbt_model::check::CheckedTree;
 
-use crate::region::Box3;
+use crate::boxes::Box3;
 
 /// Why a model has no box of its own.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

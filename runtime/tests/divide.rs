@@ -6,8 +6,8 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use jbt::Box3;
+use jbt::boxes::{Divisible, Range};
 use jbt::divide::{Cell, Decision, DivideError, Division, Edit, Limits, Outcome, divide};
-use jbt::region::{Divisible, Range};
 
 /// The distance from a centre, exactly enclosed. A region is its box; `asked` counts the boxes whose ranges
 /// were asked for.

@@ -4,8 +4,8 @@
 mod common;
 
 use common::answers;
+use jbt::boxes::Divisible;
 use jbt::build::{Edge, Term, arctan, blanc, blinn, degree, inverse_power, param, point, segment};
-use jbt::region::Divisible;
 use jbt::walk::{walk, walk_gradient};
 use jbt::{Box3, Compiler, Engine, Falloff, Model, Points, Pruner, Query, Samples, Tree, Update};
 use jbt_model::written::WrittenFalloff;

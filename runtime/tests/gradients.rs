@@ -4,7 +4,7 @@
 mod common;
 
 use fastrand::Rng;
-use jbt::region::Divisible;
+use jbt::boxes::Divisible;
 use jbt::{Box3, CheckedTree, Compiler, Engine, Points, Pruner, Query, Samples};
 use jbt_testkit::bits::bits;
 use jbt_testkit::points::HOSTILE;

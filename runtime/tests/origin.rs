@@ -13,11 +13,11 @@ mod common;
 
 use common::answers;
 use fastrand::Rng;
+use jbt::boxes::Divisible as _;
 use jbt::contour::{Detail, Slicer};
 use jbt::divide::Edit;
 use jbt::export::Format;
 use jbt::mesh::check_manifold;
-use jbt::region::Divisible as _;
 use jbt::render::Render;
 use jbt::sample::Sampler;
 use jbt::solid::{Measure, Solid};

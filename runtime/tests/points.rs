@@ -5,9 +5,9 @@ mod common;
 
 use common::answers;
 use fastrand::Rng;
+use jbt::boxes::Divisible;
 use jbt::build::{bezier, catmull_rom, polygon, polyline};
 use jbt::divide::Edit;
-use jbt::region::Divisible;
 use jbt::{Box3, Compiler, Engine, Model, Points, Pruner, Query, Tree, Update};
 use jbt_testkit::bits::bits;
 

@@ -15,9 +15,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use common::answers;
 use fastrand::Rng;
+use jbt::boxes::{ANYTHING, Divisible};
 use jbt::divide::Edit;
 use jbt::prune::Region;
-use jbt::region::{ANYTHING, Divisible};
 use jbt::{Box3, Compiler, Engine, Evaluator, Model, Points, Pruner, Query, Update};
 use jbt_model::tree::Tree;
 use jbt_testkit::bits::same;

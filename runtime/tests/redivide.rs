@@ -1,8 +1,8 @@
 //! Division of edited models: only where something has changed is it decided again.
 
+use jbt::boxes::Divisible;
 use jbt::divide::{Cell, Decision, Division, Edit, Limits, divide};
 use jbt::prune::Region;
-use jbt::region::Divisible;
 use jbt::{Box3, Compiler, Engine, EvalError, Model, Pruner};
 use jbt_model::tree::Tree;
 

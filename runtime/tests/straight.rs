@@ -4,8 +4,8 @@
 mod common;
 
 use common::answers;
+use jbt::boxes::Divisible;
 use jbt::internals::ir::Level;
-use jbt::region::Divisible;
 use jbt::{Box3, Compiler, Engine, Evaluator, Points, Pruner, Query, Update};
 use jbt_model::check::CheckedTree;
 use jbt_testkit::scene::tree;

@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use common::answers;
 use fastrand::Rng;
-use jbt::region::{ANYTHING, Divisible as _};
+use jbt::boxes::{ANYTHING, Divisible as _};
 use jbt::text::print;
 use jbt::trace::{Hits, Ray, TraceError, Tracer};
 use jbt::{Box3, Compiler, Engine, Evaluator, Model, Points, Pruner, Query};

@@ -8,7 +8,7 @@ mod common;
 use std::time::Instant;
 
 use common::answers;
-use jbt::region::Divisible;
+use jbt::boxes::Divisible;
 use jbt::{Box3, Compiler, Engine, Points, Pruner, Query};
 use jbt_model::walk::walk;
 use jbt_testkit::samples;

@@ -116,7 +116,7 @@ pub(super) fn beyond() -> Columns<impl Names> {
 }
 
 /// `-1 / R^2`, with the support radius of a leaf in its pose.
-pub(super) fn slope() -> Columns<impl Names> {
+pub(super) fn neg_inv_r2() -> Columns<impl Names> {
     columns(["neg_inv_r2"], |scene, member, row| {
         let (field, primitive) = leaf(scene, member);
         row.push(-(field.scale * primitive.radius).powi(-2));
@@ -136,7 +136,7 @@ pub(super) fn strength() -> Columns<impl Names> {
 /// An operator, whose columns have these names.
 pub(super) fn operator(names: &'static [&'static str]) -> Columns<impl Names> {
     columns(names, |scene, member, row| {
-        let depends = scene.tree.written(member.node(scene)).is_some();
+        let depends = scene.tree.dependent(member.node(scene)).is_some();
         member.operator(scene).push_columns(depends, scene.tree.iso(), row);
     })
 }

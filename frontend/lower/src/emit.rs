@@ -97,7 +97,7 @@ enum Task {
     /// The children of a formula have their answers.
     Express(RowPlace),
     /// The next operand of an operator has its answer.
-    Step,
+    Meet,
     FinishReduce,
     /// The first operand of a step has its answer: the others come to it.
     Seed,
@@ -285,7 +285,7 @@ impl<'a> Emitter<'a> {
             Task::OpenFold(place, group) => self.open_group(place, group),
             Task::CloseFold => self.close_group(),
             Task::Order(place) => self.read_order(place),
-            Task::Step => self.step(),
+            Task::Meet => self.meet(),
             Task::FinishReduce => self.finish_reduce(),
             Task::Seed => self.seed(),
             Task::Map(code, row) => self.map(code, &row),
@@ -294,14 +294,14 @@ impl<'a> Emitter<'a> {
     }
 
     /// The last answer comes to its operator.
-    fn step(&mut self) {
+    fn meet(&mut self) {
         let operand = self.answers.pop().expect("the operand has been defined");
         let reduce = self.reduces.last_mut().expect("steps belong to operators");
         let order = reduce.order.take();
         if let Some((extreme, value)) = &mut reduce.extreme {
             *value = extreme.step(&mut self.builder, operand.field, *value);
         }
-        reduce.state.step(&mut self.builder, &reduce.operator, &operand, order);
+        reduce.state.meet(&mut self.builder, &reduce.operator, &operand, order);
     }
 
     /// An operator answers.

@@ -3,6 +3,8 @@
 //! An *instance* is a node at a position with attribute bindings. A node that is reached twice with the
 //! same of each is one instance with two uses; under other coordinates it is another one.
 
+use std::slice::from_ref;
+
 use glam::{DAffine3, DVec3};
 
 use super::computed::Computed;
@@ -215,7 +217,7 @@ impl<'a> Scene<'a> {
 
     /// A number of an expression, if it is the same for all values of the parameters.
     pub(super) fn fixed_number(&self, node: NodeId, number: usize) -> Option<f64> {
-        let depends = match self.tree.written(node) {
+        let depends = match self.tree.dependent(node) {
             Some(Written::Expression(formula)) => formula.numbers[number].depends_on_parameters(),
             Some(_) | None => false,
         };
@@ -289,14 +291,14 @@ impl<'a> Scene<'a> {
 
 /// The instances that one asks for: behind a warp's child comes its weight.
 pub(super) fn children(kind: &InstanceKind) -> impl Iterator<Item = InstanceId> {
-    let (few, many): ([Option<InstanceId>; 2], &[InstanceId]) = match kind {
-        InstanceKind::Leaf { .. } => ([None; 2], &[]),
-        InstanceKind::Warp { child, weight, .. } => ([Some(*child), *weight], &[]),
-        InstanceKind::Map { child, .. } => ([Some(*child), None], &[]),
-        InstanceKind::Difference { left, right } => ([Some(*left), Some(*right)], &[]),
+    let (children, last): (&[InstanceId], Option<InstanceId>) = match kind {
+        InstanceKind::Leaf { .. } => (&[], None),
+        InstanceKind::Warp { child, weight, .. } => (from_ref(child), *weight),
+        InstanceKind::Map { child, .. } => (from_ref(child), None),
+        InstanceKind::Difference { left, right } => (from_ref(left), Some(*right)),
         InstanceKind::Reduce { children, .. }
         | InstanceKind::Expression { children, .. }
-        | InstanceKind::Select { children, .. } => ([None; 2], children),
+        | InstanceKind::Select { children, .. } => (children, None),
     };
-    few.into_iter().flatten().chain(many.iter().copied())
+    children.iter().copied().chain(last)
 }

@@ -166,7 +166,7 @@ impl State {
     }
 
     /// One operand more. `order` is its place in the file, where the operator is ordered.
-    pub(super) fn step(
+    pub(super) fn meet(
         &mut self,
         d: &mut FunctionBuilder,
         operator: &Operator,

@@ -23,7 +23,7 @@ use jbt_model::combine::ReduceCode;
 
 /// The children of an operator that have one shape.
 #[derive(Clone, Debug)]
-pub(super) struct Group {
+pub(super) struct RowGroup {
     /// Whether they are rows of a table; otherwise they are written out one after the other.
     pub(super) folded: bool,
     /// Children, each with its place in the order of the file.
@@ -42,7 +42,7 @@ fn steps_of(scene: &Scene<'_>, computed: &[Option<ComputedId>]) -> usize {
 /// The shapes of a scene.
 pub(super) struct Shapes {
     /// Groups of each operator that has not been flattened into another.
-    groups: HashMap<InstanceId, Vec<Group>>,
+    groups: HashMap<InstanceId, Vec<RowGroup>>,
     hoists: HashMap<SpaceId, Vec<Hoist>>,
     /// Of each instance, where it is computed. Not of those that have been flattened.
     contents: Vec<Content>,
@@ -55,7 +55,7 @@ impl Shapes {
     }
 
     /// The groups of an operator, in the order of their code.
-    pub(super) fn groups(&self, id: InstanceId) -> &[Group] {
+    pub(super) fn groups(&self, id: InstanceId) -> &[RowGroup] {
         &self.groups[&id]
     }
 
@@ -321,7 +321,7 @@ impl<'a> Classifier<'a> {
     }
 
     /// The operands of an operator, those of flattened ones among them, by shape.
-    fn group(&self, id: InstanceId, code: ReduceCode) -> Vec<Group> {
+    fn group(&self, id: InstanceId, code: ReduceCode) -> Vec<RowGroup> {
         match code {
             ReduceCode::Step(_) => return self.runs(id),
             ReduceCode::Fold(_) | ReduceCode::Choice(_) => {}
@@ -348,21 +348,24 @@ impl<'a> Classifier<'a> {
         }
         let mut by_shape: Vec<_> = by_shape.into_iter().collect();
         by_shape.sort_unstable_by_key(|(shape, _)| *shape);
-        by_shape.into_iter().map(|(_, members)| Group { folded: self.is_folded(&members), members }).collect()
+        by_shape
+            .into_iter()
+            .map(|(_, members)| RowGroup { folded: self.is_folded(&members), members })
+            .collect()
     }
 
     /// The operands of a step: the first alone, the others as runs of one shape.
-    fn runs(&self, id: InstanceId) -> Vec<Group> {
+    fn runs(&self, id: InstanceId) -> Vec<RowGroup> {
         let mut members = children(&self.scene.instance(id).kind).zip(0..);
         let first = members.next().expect("an operator has children");
-        let mut groups = vec![Group { folded: false, members: vec![first] }];
+        let mut groups = vec![RowGroup { folded: false, members: vec![first] }];
         for member in members {
             let shape = self.of(member.0).0;
             match groups.last_mut() {
                 Some(run) if run.members[0].1 > 0 && self.of(run.members[0].0).0 == shape => {
                     run.members.push(member);
                 }
-                _ => groups.push(Group { folded: false, members: vec![member] }),
+                _ => groups.push(RowGroup { folded: false, members: vec![member] }),
             }
         }
         for run in &mut groups[1..] {
@@ -385,13 +388,13 @@ impl<'a> Classifier<'a> {
 }
 
 /// Whether no operand can be negative.
-pub(super) fn non_negative(scene: &Scene<'_>, groups: &[Group]) -> bool {
+pub(super) fn non_negative(scene: &Scene<'_>, groups: &[RowGroup]) -> bool {
     let mut members = groups.iter().flat_map(|group| &group.members);
     members.all(|(member, _)| scene.instance(*member).non_negative)
 }
 
 /// Whether no operand is further from 0 than [`LARGEST_FIELD`](jbt_model::expression::LARGEST_FIELD).
-pub(super) fn bounded(scene: &Scene<'_>, groups: &[Group]) -> bool {
+pub(super) fn bounded(scene: &Scene<'_>, groups: &[RowGroup]) -> bool {
     groups.iter().flat_map(|group| &group.members).all(|(member, _)| scene.instance(*member).bounded)
 }
 
@@ -401,7 +404,7 @@ fn flattened(scene: &Scene<'_>) -> Vec<bool> {
     let mut flattened = vec![false; scene.instances.len()];
     for instance in &scene.instances {
         let InstanceKind::Reduce { operator, children, .. } = &instance.kind else { continue };
-        let fixed = |node| scene.tree.written(node).is_none();
+        let fixed = |node| scene.tree.dependent(node).is_none();
         for child in children {
             let inner = scene.instance(*child);
             if let InstanceKind::Reduce { operator: nested, children: operands, .. } = &inner.kind {

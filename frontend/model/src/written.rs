@@ -364,6 +364,10 @@ fn support_radius(radius: f64, falloff: Falloff, strength: f64, iso: f64) -> Res
     if radius.is_nan() || level.is_nan() {
         return Ok(f64::NAN);
     }
+    if radius <= 0.0 {
+        let message = format!("the surface radius is {}", plain(radius));
+        return Err(Fault { message, help: Some("expected a number above 0") });
+    }
     if !(level > 0.0 && level < 1.0) {
         let (iso, strength) = (plain(iso), plain(strength));
         return Err(Fault {

@@ -40,7 +40,7 @@ pub fn guarded_gradient(function: &Function) -> Function {
 }
 
 fn with_gradient(function: &Function, tangent: Tangent) -> Function {
-    let mut differentiation = Differentiation { moves: moving(function), function, tangent };
+    let mut differentiation = Differentiation { differentiated: differentiated(function), function, tangent };
     let results = translate(function, &mut differentiation);
     let mut outputs = Vec::new();
     for (index, (name, result)) in function.outputs.iter().zip(results).enumerate() {
@@ -94,51 +94,52 @@ fn wanted(function: &Function) -> Vec<bool> {
 }
 
 /// Which values depend on the inputs and change the first output.
-fn moving(function: &Function) -> Vec<bool> {
-    let mut moves = moved(function);
-    for (moves, wanted) in moves.iter_mut().zip(wanted(function)) {
-        *moves &= wanted;
+fn differentiated(function: &Function) -> Vec<bool> {
+    let mut varies = depends_on_point(function);
+    for (varies, wanted) in varies.iter_mut().zip(wanted(function)) {
+        *varies &= wanted;
     }
     // An accumulator may be wanted only in the body, or only behind the fold: its tangent exists in both or
     // in neither.
     for inst in function.insts.values() {
         if let InstKind::Fold(fold) = &inst.kind {
             for (&param, &result) in function.blocks[fold.body].params.iter().zip(&inst.results) {
-                let either = moves[param.index()] || moves[result.index()];
-                moves[param.index()] = either;
-                moves[result.index()] = either;
+                let either = varies[param.index()] || varies[result.index()];
+                varies[param.index()] = either;
+                varies[result.index()] = either;
             }
         }
     }
-    moves
+    varies
 }
 
 /// Which values depend on the inputs. Accumulators need a fixed point: the body may make an accumulator
 /// depend on the inputs whose initial value does not.
-fn moved(function: &Function) -> Vec<bool> {
-    let mut moves = vec![false; function.values.len()];
+fn depends_on_point(function: &Function) -> Vec<bool> {
+    let mut varies = vec![false; function.values.len()];
     loop {
-        let before = moves.iter().filter(|&&m| m).count();
+        let before = varies.iter().filter(|&&varies| varies).count();
         for inst in function.insts.values() {
             match &inst.kind {
-                InstKind::Input(index) => moves[inst.results[0].index()] = *index < 3,
+                InstKind::Input(index) => varies[inst.results[0].index()] = *index < 3,
                 InstKind::Constant(_) | InstKind::BitsConstant(_) | InstKind::Column { .. } => {}
                 InstKind::Op { op, args } => {
                     let held = *op == Op::StopGradient || op.result() != Type::Real;
-                    moves[inst.results[0].index()] = !held && args.iter().any(|arg| moves[arg.index()]);
+                    varies[inst.results[0].index()] = !held && args.iter().any(|arg| varies[arg.index()]);
                 }
                 InstKind::Fold(fold) => {
                     let body = &function.blocks[fold.body];
                     for (place, result) in inst.results.iter().enumerate() {
-                        let moved = moves[fold.initial[place].index()] || moves[body.results[place].index()];
-                        moves[body.params[place].index()] |= moved;
-                        moves[result.index()] |= moved;
+                        let depends =
+                            varies[fold.initial[place].index()] || varies[body.results[place].index()];
+                        varies[body.params[place].index()] |= depends;
+                        varies[result.index()] |= depends;
                     }
                 }
             }
         }
-        if moves.iter().filter(|&&m| m).count() == before {
-            return moves;
+        if varies.iter().filter(|&&varies| varies).count() == before {
+            return varies;
         }
     }
 }
@@ -147,7 +148,7 @@ fn moved(function: &Function) -> Vec<bool> {
 struct Differentiation<'a> {
     function: &'a Function,
     /// The values that have a tangent.
-    moves: Vec<bool>,
+    differentiated: Vec<bool>,
     tangent: Tangent,
 }
 
@@ -174,7 +175,7 @@ impl Translation for Differentiation<'_> {
         }
         let one = self.tangent.builder.constant(1.0);
         let axis = std::array::from_fn(|axis| (axis == index).then_some(one));
-        Any::Real(self.tangent.moving(value, axis))
+        Any::Real(self.tangent.with_tangent(value, axis))
     }
 
     fn constant(&mut self, number: f32) -> Any<Tangent> {
@@ -191,7 +192,7 @@ impl Translation for Differentiation<'_> {
 
     /// Where nothing needs the tangent of the result, operands go without theirs.
     fn op(&mut self, inst: &InstData, op: Op, args: &[Any<Tangent>]) -> Any<Tangent> {
-        if self.moves[inst.results[0].index()] {
+        if self.differentiated[inst.results[0].index()] {
             return apply(&mut self.tangent, op, args);
         }
         let args: SmallVec<[Any<Tangent>; 3]> = args.iter().map(|&arg| still(arg)).collect();
@@ -205,7 +206,7 @@ impl Translation for Differentiation<'_> {
             Any::Bits(bits) => parts.push(bits),
             Any::Real(dual) => {
                 parts.push(dual.value);
-                if self.moves[accumulator.index()] {
+                if self.differentiated[accumulator.index()] {
                     parts.extend(self.components(dual.slope));
                 }
             }
@@ -217,10 +218,10 @@ impl Translation for Differentiation<'_> {
         match self.function.values[accumulator] {
             Type::Mask => Any::Mask(value),
             Type::Bits => Any::Bits(value),
-            Type::Real if self.moves[accumulator.index()] => {
+            Type::Real if self.differentiated[accumulator.index()] => {
                 // Components are finite, and so are accumulators made of them.
                 let slope = [0; 3].map(|_| Some(self.tangent.note(next())));
-                Any::Real(self.tangent.moving(value, slope))
+                Any::Real(self.tangent.with_tangent(value, slope))
             }
             Type::Real => Any::Real(Tangent::still(value)),
         }

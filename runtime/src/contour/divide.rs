@@ -19,10 +19,10 @@ use crate::parallel::*;
 use jbt_ir::limits::MAX_SQUARES;
 
 use super::SliceError;
+use crate::boxes::{Box3, Range};
 use crate::error::EvalError;
 use crate::progress::Progress;
 use crate::prune::{Pruner, Region};
-use crate::region::{Box3, Range};
 
 /// A square of cells, cut off where the grid ends.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

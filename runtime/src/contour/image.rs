@@ -16,6 +16,7 @@ use super::grid::{Grid, Rectangle};
 use super::raster::{Raster, RasterTile};
 use super::shade;
 use super::slicer::{SliceError, Slicer};
+use crate::boxes::{Box3, Range};
 use crate::error::EvalError;
 use crate::evaluator::Evaluator;
 use crate::job::{Hook, Job};
@@ -23,7 +24,6 @@ use crate::picture::Picture;
 use crate::polygonize::Fineness;
 use crate::progress::{Progress, SOME};
 use crate::prune::Region;
-use crate::region::{Box3, Range};
 
 /// The largest [`ImageDetail::samples`].
 pub const MAX_SAMPLES: usize = 8;

@@ -66,13 +66,13 @@ use cells::{CellBlock, Segments, border};
 use divide::{CellSquare, DivisionPlan, SquareWork, Verdict, divide};
 use grid::Grid;
 
+use crate::boxes::{Box3, Range};
 use crate::error::EvalError;
 use crate::job::{Hook, Job};
 use crate::mesh::Attribute;
 use crate::polygonize::Fineness;
 use crate::progress::{Progress, SOME};
 use crate::prune::Region;
-use crate::region::{Box3, Range};
 
 /// The largest [`Detail::block`].
 pub const MAX_BLOCK: usize = 64;

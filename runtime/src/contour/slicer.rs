@@ -6,6 +6,7 @@ use thiserror::Error;
 
 use super::grid::{Rectangle, RectangleError};
 use super::plane::{Plane, PlaneKind, others};
+use crate::boxes::Box3;
 use crate::compiled::{Compiled, Need, PointScope};
 use crate::compiler::Compiler;
 use crate::counter::Counters;
@@ -16,7 +17,6 @@ use crate::kernel::Engine;
 use crate::mesh::LatticeError;
 use crate::progress::Cancelled;
 use crate::prune::{PruneCounters, Pruner, Region};
-use crate::region::Box3;
 use crate::support::MARGIN;
 
 /// A compiled model and a plane: makes contours and images, any number of them, from any thread.

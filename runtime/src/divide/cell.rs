@@ -3,7 +3,7 @@
 use std::cell::{Cell as Slot, OnceCell};
 use std::fmt;
 
-use crate::region::{ANYTHING, Box3, Divisible, MAX_PARTS, Range};
+use crate::boxes::{ANYTHING, Box3, Divisible, MAX_PARTS, Range};
 
 /// The parts of one box, and what has been found of them.
 pub(super) struct Siblings<'a, F: Divisible> {

@@ -1,7 +1,7 @@
 //! What decides about a box, and what it may say.
 
 use super::cell::Cell;
-use crate::region::Divisible;
+use crate::boxes::Divisible;
 
 /// What to do with a box. `D` is what the decider gives each box on its way down.
 #[derive(Clone, Copy, PartialEq, Debug)]

@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicU64;
 use super::decide::Decide;
 use super::node::{Division, Outcome};
 use super::run::{DivideError, DivisionRun, Limits, Previous, Subtree};
-use crate::region::{Box3, Divisible, MAX_PARTS};
+use crate::boxes::{Box3, Divisible, MAX_PARTS};
 
 /// The part of space in which an edited model may differ from what it was.
 #[derive(Clone, PartialEq, Debug)]

@@ -38,7 +38,7 @@ use std::sync::atomic::AtomicU64;
 
 use run::DivisionRun;
 
-use crate::region::{Box3, Divisible};
+use crate::boxes::{Box3, Divisible};
 
 /// Divides a box.
 ///

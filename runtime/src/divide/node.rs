@@ -1,6 +1,6 @@
 //! What a division leaves: every box that was decided, and the regions of its leaves.
 
-use crate::region::{Box3, Range};
+use crate::boxes::{Box3, Range};
 
 /// What became of a box.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]

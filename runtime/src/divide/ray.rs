@@ -1,7 +1,7 @@
 //! A ray through a divided box: the leaves that it passes, from the nearest to the farthest.
 
 use super::node::{Division, DivisionNode, Outcome};
-use crate::region::Box3;
+use crate::boxes::Box3;
 
 /// A leaf that a ray passes.
 #[derive(Clone, Copy, PartialEq, Debug)]

@@ -9,9 +9,9 @@ use thiserror::Error;
 use super::cell::{Cell, Siblings};
 use super::decide::{Decide, Decision};
 use super::node::{Division, DivisionNode, Outcome};
+use crate::boxes::{Box3, Divisible, MAX_PARTS};
 use crate::error::{Classified, ErrorKind, EvalError};
 use crate::limits;
-use crate::region::{Box3, Divisible, MAX_PARTS};
 
 /// How far a division may go.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

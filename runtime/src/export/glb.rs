@@ -23,8 +23,8 @@ use serde_json::{Map, Value, json};
 
 use super::conventions::{ColorEncoding, Colors, Conventions, FarMeshes, FileChoices, Up};
 use super::parts::{NamedAttribute, WriteError, colors, finite, others, uvs, write_reals};
+use crate::boxes::Box3;
 use crate::mesh::Mesh;
-use crate::region::Box3;
 
 const HEADER_BYTES: u64 = 12;
 const CHUNK_HEADER_BYTES: u64 = 8;

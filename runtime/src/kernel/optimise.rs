@@ -13,7 +13,7 @@ pub enum Purpose {
     /// To answer a query at points.
     Answers(Query),
     /// To answer again at those points where the gradient of the usual program is not finite.
-    Guarded,
+    FiniteGradient,
     /// To enclose the field in boxes.
     Ranges,
 }
@@ -23,7 +23,7 @@ impl Purpose {
     fn first_passes(self) -> Vec<&'static Pass> {
         match self {
             Self::Answers(query) => query.passes().collect(),
-            Self::Guarded => vec![&GUARDED_GRADIENT],
+            Self::FiniteGradient => vec![&GUARDED_GRADIENT],
             Self::Ranges => vec![&INTERVAL],
         }
     }

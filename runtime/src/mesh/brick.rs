@@ -15,7 +15,7 @@
 //! Bricks are aligned to multiples of their edge, which is a power of two, and are in Morton order as well.
 //! So bricks and their cells, one after the other, run through all cells in Morton order for any edge.
 
-use crate::region::Box3;
+use crate::boxes::Box3;
 
 /// No brick.
 pub(crate) const NONE: u32 = u32::MAX;

@@ -22,8 +22,8 @@ use super::field::Field;
 use super::options::Options;
 use super::report::Sides;
 use super::stage::MeshStage;
+use crate::boxes::{ANYTHING, Box3, MAX_PARTS};
 use crate::progress::Progress;
-use crate::region::{ANYTHING, Box3, MAX_PARTS};
 
 /// The result of the division.
 pub(crate) struct BrickDivision<R> {
@@ -358,9 +358,9 @@ mod tests {
     use std::convert::Infallible;
 
     use super::*;
+    use crate::boxes::Divisible;
     use crate::mesh::FieldWork;
     use crate::progress::EACH;
-    use crate::region::Divisible;
 
     /// The ball of radius 2 about the origin, by its square, with exact ranges of boxes. Nothing is
     /// evaluated.

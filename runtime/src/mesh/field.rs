@@ -1,6 +1,6 @@
 //! The interface of a field to the mesher.
 
-use crate::region::Divisible;
+use crate::boxes::Divisible;
 
 /// The cost of the field at a point: for counters, and to choose the size of bricks.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]

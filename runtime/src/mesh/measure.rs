@@ -1,6 +1,6 @@
 //! Measures of a mesh: its bounds, its area and its volume.
 
-use crate::region::Box3;
+use crate::boxes::Box3;
 
 use super::indexed::Mesh;
 use super::surface::area_vector;

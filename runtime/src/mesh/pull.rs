@@ -1,6 +1,6 @@
 //! Newton's step along the gradient, within the cell of a vertex.
 
-use crate::region::Box3;
+use crate::boxes::Box3;
 
 /// Vertices that are pulled together: two registers of 128 bits, or one of 256.
 pub(super) const LANES: usize = 8;

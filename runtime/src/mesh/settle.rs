@@ -10,7 +10,7 @@
 
 use super::field::Field;
 use super::pull::{LANES, VertexLanes, pull};
-use crate::region::Box3;
+use crate::boxes::Box3;
 
 /// The number of further pulls of a stray.
 const ROUNDS: usize = 6;

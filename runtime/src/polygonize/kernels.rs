@@ -2,6 +2,7 @@
 
 use jbt_model::query::Query;
 
+use crate::boxes::{Box3, Divisible, Range};
 use crate::compiled::{Compiled, Need, PointScope};
 use crate::counter::Counters;
 use crate::error::{CompileError, EvalError};
@@ -9,7 +10,6 @@ use crate::evaluator::Evaluator;
 use crate::kernel::Engine;
 use crate::mesh::{Field, FieldWork};
 use crate::prune::{PruneCounters, Pruner, Region};
-use crate::region::{Box3, Divisible, Range};
 
 /// What a mesh asks: a pruner, and three evaluators for regions.
 pub(super) struct Kernels {

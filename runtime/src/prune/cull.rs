@@ -12,7 +12,7 @@
 
 use jbt_lower::prune_info::{LARGEST_COORDINATE, Support};
 
-use crate::region::{Box3, MAX_PARTS};
+use crate::boxes::{Box3, MAX_PARTS};
 
 /// The supports of a table's rows, each in half a cache line, because rows are accessed in any order.
 pub(super) struct RowSupports {

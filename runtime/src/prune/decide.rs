@@ -5,7 +5,7 @@ use jbt_ir::{Entity, Selection, Table};
 use jbt_lower::prune_info::{DecidedRows, Decision, PruneInfo};
 
 use super::ranges::ProbeRanges;
-use crate::region::MAX_PARTS;
+use crate::boxes::MAX_PARTS;
 
 /// For each table, the index of its first row among all active rows of a selection.
 pub(super) fn firsts(selection: &Selection) -> Vec<usize> {

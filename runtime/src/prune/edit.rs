@@ -17,8 +17,8 @@ use jbt_lower::prune_info::{Rule, Support, SupportSpace};
 
 use super::cull::RowSupports;
 use super::{Pruner, Region};
+use crate::boxes::{Box3, Divisible};
 use crate::divide::Edit;
-use crate::region::{Box3, Divisible};
 
 /// The changed rows of a table.
 struct Change {

@@ -36,11 +36,11 @@ use jbt_lower::prune_info::SupportSpace;
 use jbt_model::check::CheckedTree;
 use jbt_model::origin::ModelOrigin;
 
+use crate::boxes::{ANYTHING, Box3, Divisible, MAX_PARTS, Range};
 use crate::compiled::Compiled;
 use crate::compiler::Compiler;
 use crate::debug::brief_debug;
 use crate::error::{CompileError, EvalError};
-use crate::region::{ANYTHING, Box3, Divisible, MAX_PARTS, Range};
 
 use cull::Boxes;
 use decide::Alone;

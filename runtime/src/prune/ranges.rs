@@ -2,9 +2,9 @@
 
 use jbt_ir::Selection;
 
+use crate::boxes::{Box3, Range};
 use crate::error::EvalError;
 use crate::kernel::BoundKernel;
-use crate::region::{Box3, Range};
 
 /// Boxes, a lane each, and the ranges in them.
 pub(super) struct Ranges {

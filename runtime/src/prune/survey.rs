@@ -7,17 +7,17 @@
 //! ```
 
 use super::{MAX_RANGED_ROWS, Pruner, Region};
-use crate::error::EvalError;
 #[cfg(doc)]
-use crate::region::MAX_PARTS;
-use crate::region::{ANYTHING, Box3, Range};
+use crate::boxes::MAX_PARTS;
+use crate::boxes::{ANYTHING, Box3, Range};
+use crate::error::EvalError;
 
 impl Pruner {
     /// The ranges of the field in any number of proper boxes inside a region, and the regions of the boxes
     /// whose range is wanted.
     ///
-    /// The result equals that of [`ranges`](crate::region::Divisible::ranges) and
-    /// [`narrow`](crate::region::Divisible::narrow), at lower cost: both run the interval kernel where
+    /// The result equals that of [`ranges`](crate::boxes::Divisible::ranges) and
+    /// [`narrow`](crate::boxes::Divisible::narrow), at lower cost: both run the interval kernel where
     /// operands may not decide, and a run of few boxes fills few of its lanes.
     ///
     /// # Errors

@@ -4,8 +4,8 @@ use jbt_ir::limits::{MAX_ANTIALIAS, MAX_PICTURE_PIXELS, MAX_PICTURE_SIDE};
 use jbt_model::diagnostic::Diagnostics;
 
 use super::camera::CameraError;
+use crate::boxes::Box3;
 use crate::error::{Classified, CompileError, ErrorKind, EvalError};
-use crate::region::Box3;
 use crate::solid::BoundsError;
 use crate::trace::TraceError;
 

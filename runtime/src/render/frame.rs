@@ -5,7 +5,7 @@ use super::lights::Lights;
 use super::renderer::Renderer;
 use super::settings::Render;
 use super::vector::{Vector, along, dot};
-use crate::region::Box3;
+use crate::boxes::Box3;
 use crate::trace::Ray;
 
 /// A picture that can be exposed. All coordinates are relative to the model's origin.

@@ -10,7 +10,7 @@ use super::lights::Lights;
 use super::renderer::Renderer;
 use super::settings::{Quality, Render, RenderMode};
 use super::vector::{Vector, add, dot, length, scale, sub, tangents};
-use crate::region::Box3;
+use crate::boxes::Box3;
 use crate::trace::Ray;
 
 /// The tolerance of the bounds, as a part of the region's longest side: rays refine them.

@@ -7,7 +7,7 @@ use jbt_model::check::CheckedTree;
 use super::camera::View;
 use super::color::Rgb;
 use super::error::RenderError;
-use crate::region::Box3;
+use crate::boxes::Box3;
 use crate::support::{NoBox, around_in_f32};
 
 /// The settings of a picture.

@@ -24,6 +24,7 @@ use jbt_model::check::CheckedTree;
 use jbt_model::kind::NodeKind;
 use jbt_model::query::Query;
 
+use crate::boxes::Box3;
 use crate::buffer::Layout;
 use crate::compiled::{Compiled, Need, PointScope};
 use crate::compiler::Compiler;
@@ -34,7 +35,6 @@ use crate::evaluator::Evaluator;
 use crate::job::{Hook, Job};
 use crate::mesh::Lattice;
 use crate::prune::{Pruner, Region};
-use crate::region::Box3;
 
 /// Which blocks of a lattice are sampled.
 #[derive(Clone, Copy, PartialEq, Debug)]

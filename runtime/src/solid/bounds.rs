@@ -16,9 +16,9 @@ use std::collections::BinaryHeap;
 use jbt_ir::limits::MAX_SEARCH_BOXES;
 
 use super::{RegionError, Solid, SolidBatch, center, cut};
+use crate::boxes::{ANYTHING, Box3, Divisible as _, MAX_PARTS};
 use crate::error::{Classified, ErrorKind, EvalError};
 use crate::prune::Region;
-use crate::region::{ANYTHING, Box3, Divisible as _, MAX_PARTS};
 
 /// A box around a solid, and one that the solid fills up to its sides.
 #[derive(Clone, Copy, PartialEq, Debug)]

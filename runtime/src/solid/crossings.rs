@@ -21,10 +21,10 @@
 //! would meet all of them alike.
 
 use super::{Solid, SolidBatch};
+use crate::boxes::{Box3, Divisible as _};
 use crate::error::EvalError;
 use crate::evaluator::Evaluator;
 use crate::prune::Region;
-use crate::region::{Box3, Divisible as _};
 
 /// Lines along an axis, in each of the two directions across it.
 const LINES: usize = 2;

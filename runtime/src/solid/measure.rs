@@ -21,6 +21,7 @@ use jbt_ir::limits::{MAX_MEASURE_BOXES, MAX_RESOLUTION};
 use super::crossings::crossed;
 use super::cut::{self, LinearField};
 use super::{RegionError, Solid, SolidBatch, center};
+use crate::boxes::Box3;
 use crate::divide::{Cell, Decision, DivideError, Division, DivisionNode, Limits, Outcome, divide};
 use crate::error::{Classified, CompileError, ErrorKind, EvalError};
 use crate::evaluator::Evaluator;
@@ -28,7 +29,6 @@ use crate::job::{Hook, Job};
 use crate::polygonize::Fineness;
 use crate::progress::{Cancelled, Progress, SOME};
 use crate::prune::{Pruner, Region};
-use crate::region::Box3;
 
 /// Where to measure a solid, and how finely.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]

@@ -15,10 +15,10 @@ use std::collections::VecDeque;
 use jbt_ir::limits::MAX_MEMBERSHIP_BOXES;
 
 use super::{Solid, SolidBatch, center, cut};
+use crate::boxes::{ANYTHING, Box3, Divisible as _, MAX_PARTS};
 use crate::error::{Classified, ErrorKind, EvalError};
 use crate::points::Points;
 use crate::prune::Region;
-use crate::region::{ANYTHING, Box3, Divisible as _, MAX_PARTS};
 
 /// Where a point is.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]

@@ -10,7 +10,7 @@
 //!
 //! The field is that of the compiled kernels, in f32, and the iso-value is rounded to f32, as meshing has
 //! them. What is said to hold in a box is proven by enclosing ranges
-//! ([`Divisible`](crate::region::Divisible)), so it holds for every value that a kernel gives there. What is
+//! ([`Divisible`](crate::boxes::Divisible)), so it holds for every value that a kernel gives there. What is
 //! estimated says so. After Bowyer's svLis (1999): its membership test, its tight fit and the report of its
 //! divisions.
 
@@ -32,6 +32,7 @@ use jbt_model::check::CheckedTree;
 use jbt_model::owner;
 use jbt_model::query::Query;
 
+use crate::boxes::{Box3, Divisible as _, Range};
 use crate::compiled::{Compiled, Need, PointScope};
 use crate::compiler::Compiler;
 use crate::counter::Counters;
@@ -39,7 +40,6 @@ use crate::debug::brief_debug;
 use crate::error::{Classified, CompileError, ErrorKind, EvalError};
 use crate::evaluator::Evaluator;
 use crate::prune::{Pruner, Region};
-use crate::region::{Box3, Divisible as _, Range};
 use crate::support::{NoBox, around_in_f32};
 
 /// A model, compiled for questions about its solid: the set where `field >= iso`.

@@ -5,7 +5,7 @@
 //! results of the same operations for ends and bounds: boxes need no margin.
 
 use super::ray::RayLine;
-use crate::region::Box3;
+use crate::boxes::Box3;
 
 /// What is known of some rays with one step.
 #[derive(Clone, Copy, PartialEq, Debug)]

@@ -17,7 +17,7 @@
 //! details costs little more, and a sheet, a rod or a speck is found if it is as thick along the ray as the
 //! tolerance.
 //!
-//! Most places are never evaluated: ranges of the field ([`Divisible`](crate::region::Divisible)) prove for
+//! Most places are never evaluated: ranges of the field ([`Divisible`](crate::boxes::Divisible)) prove for
 //! whole boxes that all places are on one side. The result is, to the bit, the result of evaluating all
 //! places. All of this is about the field that the kernels compute in f32, at positions rounded to f32:
 //! between the ends of a part of a ray each coordinate stays between the coordinates of the ends, rounding
@@ -57,6 +57,7 @@ use jbt_model::check::{CheckedTree, NodeId};
 use jbt_model::owner;
 use jbt_model::query::Query;
 
+use crate::boxes::{Box3, Divisible as _};
 use crate::buffer::Layout;
 use crate::compiled::{Compiled, Need, PointScope};
 use crate::compiler::Compiler;
@@ -64,7 +65,6 @@ use crate::debug::brief_debug;
 use crate::error::{CompileError, EvalError};
 use crate::evaluator::Evaluator;
 use crate::prune::Region;
-use crate::region::{Box3, Divisible as _};
 
 use found::FoundHits;
 use packet::{PacketTrace, Want};

@@ -23,9 +23,9 @@ use super::polish::{RayBracket, polish};
 use super::ray::RayLine;
 use super::refine::{RaySegment, RayStretch, Refiner};
 use super::target::Target;
+use crate::boxes::{Box3, Divisible as _, MAX_PARTS};
 use crate::error::EvalError;
 use crate::prune::Region;
-use crate::region::{Box3, Divisible as _, MAX_PARTS};
 
 use jbt_ir::limits::MAX_RAY_WORK;
 

@@ -17,7 +17,7 @@
 use jbt_model::bounds::Bounds;
 
 use super::error::TraceError;
-use crate::region::Box3;
+use crate::boxes::Box3;
 use crate::support::MARGIN;
 
 /// The points `origin + t * direction` for t in the span. The direction may have any length but 0; t counts

@@ -20,8 +20,8 @@ use super::found::FoundHits;
 use super::polish::RayBracket;
 use super::ray::RayLine;
 use super::target::Target;
+use crate::boxes::Box3;
 use crate::prune::Region;
-use crate::region::Box3;
 
 /// Neighbouring coarse places of a ray that are on one side.
 #[derive(Clone, Copy, PartialEq, Debug)]

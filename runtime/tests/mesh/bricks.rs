@@ -7,8 +7,8 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use jbt::Box3;
+use jbt::boxes::Divisible;
 use jbt::mesh::{Field, FieldWork, Lattice, Mesh, MeshReport, Options, Sides, check_manifold, extract};
-use jbt::region::Divisible;
 
 use crate::fields::{Closed, Sample, hash, signs, sphere, torus};
 use crate::topology::bits;

@@ -3,8 +3,8 @@
 use std::convert::Infallible;
 
 use jbt::Box3;
+use jbt::boxes::Divisible;
 use jbt::mesh::{Field, FieldWork};
-use jbt::region::Divisible;
 
 /// A field and its gradient at one point.
 pub type Sample = (f32, [f32; 3]);

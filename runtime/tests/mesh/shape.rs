@@ -5,11 +5,11 @@ use std::convert::Infallible;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use jbt::boxes::Divisible;
 use jbt::limits::MAX_ATTRIBUTE_WIDTH;
 use jbt::mesh::{
     Field, FieldWork, Lattice, Mesh, MeshError, MeshReport, Options, Sides, check_manifold, extract,
 };
-use jbt::region::Divisible;
 use jbt::{Box3, CancelToken};
 use jbt_testkit::surface::{area_vector, corners};
 use jbt_testkit::vector::{dot, length, minus};

@@ -1,7 +1,7 @@
 //! A model as a field of the mesher, with or without pruning, that takes edits.
 
+use jbt::boxes::{Divisible, Range};
 use jbt::mesh::{Field, FieldWork};
-use jbt::region::{Divisible, Range};
 use jbt::{Box3, CheckedTree, Compiler, Engine, EvalError, Evaluator, Pruner, Query, Region};
 
 pub struct ModelField {

@@ -105,7 +105,7 @@ impl Emitter<'_> {
     /// Whether what is emitted now is the operand of an operator that keeps it within bounds.
     fn leaves_open(&self) -> bool {
         let Some(Reduce { operator, .. }) = self.reduces.last() else { return false };
-        let is_operand = matches!(self.tasks.last(), Some(Task::Step));
+        let is_operand = matches!(self.tasks.last(), Some(Task::Meet));
         is_operand && operator.bounded && operator.only_chooses() && self.probes.is_none()
     }
 

@@ -35,14 +35,14 @@ impl Emitter<'_> {
         self.tasks.push(Task::FinishReduce);
         for (index, group) in groups.iter().enumerate().rev() {
             if group.folded {
-                self.tasks.extend([Task::CloseFold, Task::Step, Task::Use(RowPlace::ROW)]);
+                self.tasks.extend([Task::CloseFold, Task::Meet, Task::Use(RowPlace::ROW)]);
                 self.tasks.push(Task::OpenFold(place, index));
             } else {
                 for operand in self.lead(Lead::Members(place, index)).rev() {
                     // A step begins with its first operand, which is alone in the first group.
                     let step = match code {
                         ReduceCode::Step(_) if index == 0 => Task::Seed,
-                        ReduceCode::Step(_) | ReduceCode::Fold(_) | ReduceCode::Choice(_) => Task::Step,
+                        ReduceCode::Step(_) | ReduceCode::Fold(_) | ReduceCode::Choice(_) => Task::Meet,
                     };
                     self.tasks.extend([step, Task::Operand(operand, guard), Task::Order(operand)]);
                 }

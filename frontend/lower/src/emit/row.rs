@@ -85,7 +85,7 @@ impl Emitter<'_> {
         self.builder.mark(square, Origin::leaf(slot, Part::Distance));
 
         self.builder.set_origin(Origin::leaf(slot, Part::Falloff));
-        let slope = self.columns(place, columns::slope())[0];
+        let slope = self.columns(place, columns::neg_inv_r2())[0];
         let near = Nearness::emit(&mut self.builder, square, slope);
         let row = self.columns(place, columns::falloff(falloff));
         let mut value = falloff.emit(&mut self.builder, near, &row);

@@ -38,7 +38,7 @@ impl Finder<'_> {
             AttributeValue::Numbers(_) => return None,
             AttributeValue::Textured(textured) => {
                 let at = bound.at.expect("textures are bound with their places");
-                let kind = ComputedKind::Texture(textured.texture.code(tree.written(node).is_some()));
+                let kind = ComputedKind::Texture(textured.texture.code(tree.dependent(node).is_some()));
                 let position = self.scene.position(at);
                 ((node, at, None), kind, position, position.map, position.kind())
             }
@@ -52,7 +52,7 @@ impl Finder<'_> {
                 let skeleton = tree.node(leaf).kind.uv_skeleton();
                 let kind = ComputedKind::Uv(skeleton.kind());
                 let place = self.scene.position(position);
-                let (map, map_kind) = place.of_uv(skeleton, tree.written(leaf).is_some());
+                let (map, map_kind) = place.of_uv(skeleton, tree.dependent(leaf).is_some());
                 ((node, position, Some(leaf)), kind, place, map, map_kind)
             }
         };

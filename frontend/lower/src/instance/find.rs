@@ -146,7 +146,7 @@ impl<'a> Finder<'a> {
                 NodeKind::Affine(inner) => {
                     let Position { space, map, trail } =
                         moved.unwrap_or_else(|| *self.scene.position(position));
-                    let trail = match self.scene.tree.written(node) {
+                    let trail = match self.scene.tree.dependent(node) {
                         None => trail.fixed(inner, self.scene.tree.depends_on_parameters()),
                         Some(written) => {
                             let name = self.trails.name(
@@ -275,7 +275,7 @@ impl<'a> Finder<'a> {
         let shift = DVec3::from(ModelOrigin::of(bounds).point());
         let inner = DAffine3::from_translation(shift);
         let Position { space, map, trail } = *self.scene.position(position);
-        let trail = match self.scene.tree.written(node) {
+        let trail = match self.scene.tree.dependent(node) {
             None if shift == DVec3::ZERO => return (position, shift),
             None => trail.fixed(&inner, false),
             // A box that depends on parameters may come near and go far.
@@ -295,7 +295,7 @@ impl<'a> Finder<'a> {
         position: PositionId,
         children: Vec<InstanceId>,
     ) -> InstanceKind {
-        let depends = self.scene.tree.written(node).is_some();
+        let depends = self.scene.tree.dependent(node).is_some();
         let operator = if depends { combinator } else { combinator.simplest() };
         match operator.form(depends) {
             OperatorForm::Reduce(code) => InstanceKind::Reduce { operator, code, children },
@@ -310,7 +310,7 @@ impl<'a> Finder<'a> {
         let once = self.once[node.0 as usize];
         let id = if once { next } else { *self.field_names.entry((node, position)).or_insert(next) };
         if id == next {
-            let written = self.scene.tree.written(node);
+            let written = self.scene.tree.dependent(node);
             let turns = written.is_some_and(Written::skeleton_turns);
             let (map, scale, inverse) = self.scene.position(position).of_skeleton(&primitive.skeleton, turns);
             let strong =
@@ -352,14 +352,14 @@ impl<'a> Finder<'a> {
         let of = |id: &InstanceId| self.scene.instance(*id).non_negative;
         match kind {
             InstanceKind::Leaf { field, .. } => {
-                let written = self.scene.tree.written(self.scene.field(*field).node);
+                let written = self.scene.tree.dependent(self.scene.field(*field).node);
                 let depends = written.is_some_and(Written::strength_depends_on_parameters);
                 self.scene.primitive(*field).strength >= 0.0 && !depends
             }
             InstanceKind::Warp { child, .. } => of(child),
             InstanceKind::Difference { left, .. } => of(left),
             InstanceKind::Map { child, .. } => {
-                let fixed = self.scene.tree.written(node).is_none();
+                let fixed = self.scene.tree.dependent(node).is_none();
                 self.scene.combinator(node).is_non_negative(&mut std::iter::once(of(child)), fixed)
             }
             InstanceKind::Expression { children, .. } => {
@@ -370,7 +370,7 @@ impl<'a> Finder<'a> {
             }
             InstanceKind::Select { children, .. } => children.iter().all(of),
             InstanceKind::Reduce { operator, children, .. } => {
-                let fixed = self.scene.tree.written(node).is_none();
+                let fixed = self.scene.tree.dependent(node).is_none();
                 operator.is_non_negative(&mut children.iter().map(of), fixed)
             }
         }

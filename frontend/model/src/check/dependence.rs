@@ -55,7 +55,9 @@ impl Dependence {
 
     #[inline]
     pub(super) fn written(&self, id: NodeId) -> Option<&Arc<Written>> {
-        // Usually the list is empty.
+        if self.nodes.is_empty() {
+            return None;
+        }
         let found = self.nodes.binary_search_by_key(&id, |&(node, _)| node).ok()?;
         Some(&self.nodes[found].1)
     }

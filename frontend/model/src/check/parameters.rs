@@ -191,7 +191,7 @@ impl CheckedTree {
     /// iso-value that does. `None`: no parameter changes the node.
     #[must_use]
     #[inline]
-    pub fn written(&self, id: NodeId) -> Option<&Written> {
+    pub fn dependent(&self, id: NodeId) -> Option<&Written> {
         self.dependence.written(id).map(|written| &**written)
     }
 

@@ -58,6 +58,7 @@ macro_rules! skeletons {
 
             /// See [`SkeletonMember::SYMMETRY`].
             #[must_use]
+            #[inline]
             pub const fn symmetry(self) -> Symmetry { match self { $( Self::$name => $name::SYMMETRY, )+ } }
 
             /// The squared distance over the ops, in the pose.
@@ -127,6 +128,7 @@ macro_rules! skeletons {
 
             /// See [`SkeletonMember::pose`].
             #[must_use]
+            #[inline]
             pub fn pose(&self) -> DAffine3 { match self { $( Self::$name(s) => s.pose(), )+ } }
 
             /// See [`SkeletonMember::columns`].

@@ -369,7 +369,7 @@ mod tests {
         let column = builder.column(table, 0);
         let mut tangent = Tangent::new(builder);
         let one = tangent.builder.constant(1.0);
-        let x = tangent.moving(x, [Some(one), None, None]);
+        let x = tangent.with_tangent(x, [Some(one), None, None]);
         let y = f(&mut tangent, x, Tangent::still(column));
         let [dx, ..] = tangent.components(y.slope);
         let next = tangent.builder.add(sum, dx.expect("y moves"));

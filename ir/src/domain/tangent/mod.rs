@@ -74,7 +74,7 @@ impl Tangent {
     }
 
     /// A value with this tangent.
-    pub fn moving(&mut self, value: Value, tangent: Vector) -> Dual {
+    pub fn with_tangent(&mut self, value: Value, tangent: Vector) -> Dual {
         Dual { value, slope: self.vector(1.0, Factors::default(), tangent) }
     }
 

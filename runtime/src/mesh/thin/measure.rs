@@ -1,8 +1,8 @@
 //! The thickness of parts at some points, and so the cells that would show them.
 
+use crate::boxes::Box3;
 use crate::mesh::error::MeshError;
 use crate::mesh::field::Field;
-use crate::region::Box3;
 
 /// Distances along a ray: the first is a cell, each is a little shorter than the one before, the last is a
 /// 64th.

@@ -15,10 +15,10 @@
 //! chunks, and searching them would cost more than the mesh.
 
 use super::crossed::{CrossedBlocks, EDGE, bits, morton};
+use crate::boxes::{ANYTHING, Box3, MAX_PARTS, Range};
 use crate::mesh::brick::{box_of, place};
 use crate::mesh::error::MeshError;
 use crate::mesh::field::Field;
-use crate::region::{ANYTHING, Box3, MAX_PARTS, Range};
 
 /// The most steps of eight boxes for a block. A speck usually takes nine: two down to its cell, and one for
 /// each halving.

@@ -7,7 +7,7 @@ use super::super::options::Options;
 use super::super::pull::{LANES, VertexLanes};
 use super::bracket::CrossedEdges;
 use super::seed::{SeedGroup, Seeds};
-use crate::region::Box3;
+use crate::boxes::Box3;
 
 /// Counts of the work at vertices.
 #[derive(Default)]

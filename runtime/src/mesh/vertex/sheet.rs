@@ -6,7 +6,7 @@ use super::super::cell::{EDGE_CORNERS, following, sheets_with_quads};
 use super::super::crossing::CrossedCell;
 use super::bracket::{Bracket, CrossedEdge, CrossedEdges};
 use super::normal::sheet_normal;
-use crate::region::Box3;
+use crate::boxes::Box3;
 
 /// The error of a crossing after the last halving, in parts of its edge.
 const ERROR: f32 = 1.0 / 8192.0;

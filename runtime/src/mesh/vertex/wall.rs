@@ -16,7 +16,7 @@
 use super::super::field::Field;
 use super::bracket::{Bracket, BracketPoints, CrossedEdge, CrossedEdges};
 use super::sheet::{Sheet, Start};
-use crate::region::Box3;
+use crate::boxes::Box3;
 
 /// Halvings along the normal.
 const HALVINGS: usize = 12;

@@ -2,8 +2,8 @@
 //! give.
 
 use fastrand::Rng;
+use jbt::boxes::{ANYTHING, Divisible};
 use jbt::prune::Region;
-use jbt::region::{ANYTHING, Divisible};
 use jbt::{Box3, CheckedTree, Compiler, Engine, Evaluator, Model, Points, Pruner, Query, Samples};
 
 use super::Verdict;
