@@ -21,7 +21,10 @@ pub(super) fn rows(scene: &Scene<'_>, shapes: &Shapes, code: &Code) -> Result<Wr
     let mut writer = Writer::new(scene, shapes, code);
     for (table, code) in code.tables.iter().enumerate() {
         // Pieces have been written with their leaves.
-        for row in writer.tables[table].count..writer.members[table].len() {
+        let rows = writer.tables[table].count..writer.members[table].len();
+        let stride = writer.tables[table].stride;
+        writer.tables[table].numbers.reserve(rows.len() * stride);
+        for row in rows {
             writer.row(table, &code.recipe, writer.members[table][row]);
         }
     }
@@ -94,6 +97,9 @@ impl<'a> Writer<'a> {
 
     fn own(&mut self, child: usize, owned: impl IntoIterator<Item = Member>) {
         let (rows, members) = (&mut self.tables[child], &mut self.members[child]);
+        let owned = owned.into_iter();
+        members.reserve(owned.size_hint().0);
+        rows.active.reserve(owned.size_hint().0);
         for member in owned {
             if member.is_asked(self.scene) {
                 // At most limits::MAX_INSTANCES.
@@ -120,16 +126,22 @@ impl<'a> Writer<'a> {
     fn append(&mut self, table: usize, member: Member, row: &[f64]) {
         let rows = &mut self.tables[table];
         rows.count += 1;
-        rows.numbers.extend(row.iter().map(|&number| number as f32));
-        for &number in row.iter().filter(|number| !(**number as f32).is_finite()) {
-            self.complain(member, number);
+        let mut is_finite = true;
+        rows.numbers.extend(row.iter().map(|&number| {
+            let number = number as f32;
+            is_finite &= number.is_finite();
+            number
+        }));
+        if !is_finite {
+            self.complain(member, row);
         }
     }
 
-    /// A number of a row is none in f32.
+    /// Some numbers of a row are none in f32.
     #[cold]
-    fn complain(&mut self, member: Member, number: f64) {
-        if self.errors.len() < jbt_ir::limits::MAX_ERRORS {
+    fn complain(&mut self, member: Member, row: &[f64]) {
+        let room = jbt_ir::limits::MAX_ERRORS - self.errors.len();
+        for number in row.iter().filter(|number| !(**number as f32).is_finite()).take(room) {
             let node = self.scene.tree.node(member.node(self.scene));
             let message = format!("a number derived from this part leaves the range of f32: {number:e}");
             let help = "the part is too small, too large or too far away once all transforms are applied";
