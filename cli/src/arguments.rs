@@ -127,6 +127,9 @@ pub struct MeshArguments {
     /// Do not search for parts that are thinner than a cell
     #[arg(long)]
     pub no_thin: bool,
+    /// Look at every edge of the mesh to say that it is closed, and do not take it from how meshes are made
+    #[arg(long)]
+    pub verify: bool,
     #[command(flatten)]
     pub work: WorkArguments,
 }

@@ -21,7 +21,11 @@ pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(),
     let destination = arguments.output.destination(&arguments.scene.path)?;
     arguments.work.check_output(&destination.path, "mesh")?;
     let options = options(arguments, destination.kind)?;
-    let settings = Polygonize { thin_parts: !arguments.no_thin, ..lattice::settings(&arguments.lattice)? };
+    let settings = Polygonize {
+        thin_parts: !arguments.no_thin,
+        verify: arguments.verify,
+        ..lattice::settings(&arguments.lattice)?
+    };
     let scene = LoadedScene::load(&arguments.scene)?;
     scene.warn(quiet);
     let tree = scene.check()?;
@@ -32,8 +36,12 @@ pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(),
     let made = arguments.work.run(&mut work)?.map_err(|error| scene.failure(&error))?;
     drop(progress);
 
+    // The file is written while the mesh is measured.
     let mut output = Output::open(&destination)?;
-    export::write_with(&made.mesh, destination.kind, &options, &mut output).map_err(|error| match error {
+    let mut write = || export::write_with(&made.mesh, destination.kind, &options, &mut output);
+    let mut both = || rayon::join(&mut write, || MeshMeasures::new(&made));
+    let (written, measures) = arguments.work.run(&mut both)?;
+    written.map_err(|error| match error {
         ExportError::Write(error) => output.failure(error),
         error => scene.failure(&error),
     })?;
@@ -46,6 +54,7 @@ pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(),
     warnings.splice(0..0, scene.warnings);
     let report = MeshSummary {
         made: &made,
+        measures,
         format: destination.kind,
         options,
         warnings: &warnings,
@@ -111,9 +120,26 @@ fn thin_warning(thin: &ThinReport) -> Option<String> {
     Some(format!("{places} may hold parts thinner than a cell, near {}; try --cell {cell}", named.join(", ")))
 }
 
+/// The measures of a mesh.
+#[derive(Clone, Copy)]
+struct MeshMeasures {
+    /// Relative to its origin.
+    bounds: Option<Box3>,
+    area: f64,
+    /// Of a closed mesh.
+    volume: Option<f64>,
+}
+
+impl MeshMeasures {
+    fn new(Polygonized { mesh, report, .. }: &Polygonized) -> Self {
+        Self { bounds: mesh.bounds(), area: mesh.area(), volume: report.closed.then(|| mesh.volume()) }
+    }
+}
+
 /// What is told about a mesh.
 struct MeshSummary<'a> {
     made: &'a Polygonized,
+    measures: MeshMeasures,
     format: Format,
     options: ExportOptions,
     warnings: &'a [String],
@@ -127,15 +153,16 @@ impl MeshSummary<'_> {
         let origin = ModelOrigin::new(mesh.origin);
         let Box3 { low, high } = lattice::bounds(lattice, origin);
         let world = |corner: [f32; 3]| origin.world(corner.map(f64::from));
-        let bounds = mesh.bounds().map(|bounds| bounds.map(world));
+        let MeshMeasures { bounds, area, volume } = self.measures;
+        let bounds = bounds.map(|bounds| bounds.map(world));
         json!({
             "triangles": mesh.triangles.len(),
             "vertices": mesh.positions.len(),
             "closed": report.closed,
             "bounds": bounds.map(|bounds| [bounds.low, bounds.high].concat()),
             "size": bounds.map(size),
-            "volume": report.closed.then(|| mesh.volume()),
-            "area": mesh.area(),
+            "volume": volume,
+            "area": area,
             "format": self.format.extension(),
             "up": self.options.up_in(self.format).name(),
             "colors": self.options.colors_in(self.format).map(ColorEncoding::name),
@@ -167,11 +194,11 @@ impl MeshSummary<'_> {
 
     /// The size of the mesh in words: `2 x 2 x 2, volume 4.18854, area 12.5661`.
     fn measures(&self) -> String {
-        let Polygonized { mesh, report, .. } = self.made;
-        let Some(bounds) = mesh.bounds() else { return "nothing".to_owned() };
+        let MeshMeasures { bounds, area, volume } = self.measures;
+        let Some(bounds) = bounds else { return "nothing".to_owned() };
         let sides = size(bounds.map(|corner| corner.map(f64::from))).map(digits);
-        let volume = if report.closed { digits(mesh.volume()) } else { "none (open)".to_owned() };
-        format!("{}, volume {volume}, area {}", sides.join(" x "), digits(mesh.area()))
+        let volume = volume.map_or_else(|| "none (open)".to_owned(), digits);
+        format!("{}, volume {volume}, area {}", sides.join(" x "), digits(area))
     }
 
     /// For people.

@@ -4,16 +4,21 @@
 //! meaning: they are the case of one thread.
 
 #[cfg(feature = "parallel")]
-pub(crate) use rayon::{join, prelude::*};
+pub(crate) use rayon::{current_num_threads as thread_count, join, prelude::*};
 
 #[cfg(not(feature = "parallel"))]
-pub(crate) use serial::{IntoParallelIterator, ParallelIterator, ParallelSlice, join};
+pub(crate) use serial::{IntoParallelIterator, ParallelIterator, ParallelSlice, join, thread_count};
 
 #[cfg(not(feature = "parallel"))]
 mod serial {
     //! What this crate uses of rayon's interface, on iterators of the standard library.
 
     use std::slice::{Chunks, Iter};
+
+    /// One: the caller.
+    pub(crate) fn thread_count() -> usize {
+        1
+    }
 
     /// Both, the first one first.
     pub(crate) fn join<A, B>(first: impl FnOnce() -> A, second: impl FnOnce() -> B) -> (A, B) {

@@ -22,7 +22,9 @@ use std::io::Write;
 use serde_json::{Map, Value, json};
 
 use super::conventions::{ColorEncoding, Colors, Conventions, FarMeshes, FileChoices, Up};
-use super::parts::{NamedAttribute, WriteError, colors, finite, others, uvs, write_reals};
+use super::parts::{
+    NamedAttribute, WriteError, colors, finite, others, push_reals, push_three, uvs, write_items,
+};
 use crate::boxes::Box3;
 use crate::mesh::Mesh;
 
@@ -92,25 +94,38 @@ fn write_binary(
     attributes: &[NamedAttribute<'_>],
     out: &mut impl Write,
 ) -> Result<(), WriteError> {
-    write_reals(out, mesh.positions.iter().flatten().copied())?;
-    write_reals(out, mesh.normals.iter().flatten().copied())?;
+    let three = |reals: [f32; 3], bytes: &mut Vec<u8>| {
+        push_three(bytes, reals.map(f32::to_bits));
+        Ok(())
+    };
+    let count = mesh.positions.len();
+    write_items(out, count, |vertex, bytes| three(mesh.positions[vertex], bytes))?;
+    write_items(out, count, |vertex, bytes| three(mesh.normals[vertex], bytes))?;
     if let Some(colors) = colors(mesh) {
-        write_reals(out, colors.iter().flatten().map(|&channel| choices.colors.encode(channel)))?;
+        let color = |vertex: usize| colors[vertex].map(|channel| choices.colors.encode(channel));
+        write_items(out, count, |vertex, bytes| three(color(vertex), bytes))?;
     }
     // glTF forbids infinities and NaN.
     if let Some(uvs) = uvs(mesh) {
-        write_reals(out, uvs.chunks_exact(2).flat_map(|uv| [finite(uv[0]), finite(1.0 - uv[1])]))?;
+        write_items(out, count, |vertex, bytes| {
+            push_reals(bytes, [finite(uvs[2 * vertex]), finite(1.0 - uvs[2 * vertex + 1])]);
+            Ok(())
+        })?;
     }
     for NamedAttribute { names, attribute } in attributes {
         for part in 0..names.len() {
             let reals = WIDEST * part..attribute.width.min(WIDEST * (part + 1));
-            let vertices = attribute.values.chunks_exact(attribute.width);
-            write_reals(out, vertices.flat_map(|vertex| &vertex[reals.clone()]).map(|&value| finite(value)))?;
+            write_items(out, count, |vertex, bytes| {
+                let values = &attribute.values[attribute.width * vertex..][reals.clone()];
+                push_reals(bytes, values.iter().map(|&value| finite(value)));
+                Ok(())
+            })?;
         }
     }
-    for vertex in mesh.triangles.iter().flatten() {
-        out.write_all(&vertex.to_le_bytes())?;
-    }
+    write_items(out, mesh.triangles.len(), |triangle, bytes| {
+        push_three(bytes, mesh.triangles[triangle]);
+        Ok(())
+    })?;
     Ok(())
 }
 
@@ -147,7 +162,8 @@ fn describe(mesh: &Mesh, up: Up, attributes: &[NamedAttribute<'_>]) -> (Value, u
     let mut layout = BufferLayout::default();
     let mut vertex = Map::new();
     let positions = layout.add(ARRAY_BUFFER, FLOAT, 3, count);
-    let Box3 { low, high } = bounds(&mesh.positions);
+    // In f64, so that their decimals are those of the same numbers in any parser.
+    let Box3 { low, high } = mesh.bounds().unwrap_or_default().map(|corner| corner.map(f64::from));
     layout.accessors[positions]["min"] = json!(low);
     layout.accessors[positions]["max"] = json!(high);
     vertex.insert("POSITION".to_owned(), json!(positions));
@@ -197,17 +213,4 @@ fn node(mesh: &Mesh, up: Up) -> Value {
         node["translation"] = json!(up.place(mesh.origin));
     }
     node
-}
-
-/// The exact bounds of the positions. In f64, so that their decimals are those of the same numbers in any
-/// parser.
-fn bounds(positions: &[[f32; 3]]) -> Box3<f64> {
-    let mut bounds = Box3::new([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-    for position in positions {
-        for (axis, &coordinate) in position.iter().enumerate() {
-            bounds.low[axis] = bounds.low[axis].min(f64::from(coordinate));
-            bounds.high[axis] = bounds.high[axis].max(f64::from(coordinate));
-        }
-    }
-    bounds
 }

@@ -38,6 +38,7 @@ use thiserror::Error;
 
 use crate::error::{Classified, ErrorKind};
 use crate::mesh::{Attribute, Mesh};
+use crate::parallel::*;
 use conventions::FileChoices;
 use parts::WriteError;
 
@@ -192,16 +193,25 @@ fn check(mesh: &Mesh) -> Result<(), ExportError> {
             ));
         }
     }
-    if let Some(triangle) = mesh.triangles.iter().flatten().position(|&vertex| vertex as usize >= count) {
-        return malformed(format!("triangle {} names a vertex that does not exist", triangle / 3));
+    let is_missing = |triangle: &[u32; 3]| triangle.iter().any(|&vertex| vertex as usize >= count);
+    if let Some(index) = first(&mesh.triangles, is_missing) {
+        return malformed(format!("triangle {index} names a vertex that does not exist"));
     }
-    if let Some(index) = mesh.positions.iter().flatten().position(|c| !c.is_finite()) {
-        return malformed(format!("the position of vertex {} is not finite", index / 3));
+    let is_endless = |numbers: &[f32; 3]| !numbers.iter().all(|number| number.is_finite());
+    if let Some(index) = first(&mesh.positions, is_endless) {
+        return malformed(format!("the position of vertex {index} is not finite"));
     }
-    if let Some(index) = mesh.normals.iter().flatten().position(|c| !c.is_finite()) {
-        return malformed(format!("the normal of vertex {} is not finite", index / 3));
+    if let Some(index) = first(&mesh.normals, is_endless) {
+        return malformed(format!("the normal of vertex {index} is not finite"));
     }
     Ok(())
+}
+
+/// The index of the first item with a property.
+fn first<T: Sync>(items: &[T], has: impl Fn(&T) -> bool + Sync) -> Option<usize> {
+    const PART: usize = 1 << 14;
+    let parts: Vec<Option<usize>> = items.par_chunks(PART).map(|part| part.iter().position(&has)).collect();
+    parts.into_iter().enumerate().find_map(|(part, place)| Some(part * PART + place?))
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use std::io::Write;
 use std::ops::Sub;
 
 use super::conventions::{ColorEncoding, Colors, Conventions, FarMeshes, FileChoices, Up};
-use super::parts::{WriteError, colors, finite, uvs, world};
+use super::parts::{WriteError, colors, finite, uvs, write_items};
 use crate::mesh::Mesh;
 
 /// What is usual in these files.
@@ -29,25 +29,28 @@ pub(super) fn write(mesh: &Mesh, choices: FileChoices, out: &mut impl Write) -> 
         writeln!(out, "# v x y z red green blue: {encoding}, clamped to 0..1")?;
     }
     if mesh.is_about_world() {
-        write_vertices(mesh, choices, mesh.positions.iter().copied(), out)?;
+        write_vertices(mesh, choices, |vertex| mesh.positions[vertex], out)?;
     } else {
-        write_vertices(mesh, choices, world(mesh), out)?;
+        write_vertices(mesh, choices, |vertex| mesh.world(vertex), out)?;
     }
-    for [x, y, z] in mesh.normals.iter().map(|&normal| up.place(normal)) {
-        writeln!(out, "vn {x} {y} {z}")?;
-    }
+    write_items(out, mesh.normals.len(), |vertex, bytes| {
+        let [x, y, z] = up.place(mesh.normals[vertex]);
+        writeln!(bytes, "vn {x} {y} {z}")
+    })?;
     let uvs = uvs(mesh);
-    for uv in uvs.into_iter().flat_map(|uvs| uvs.chunks_exact(2)) {
-        writeln!(out, "vt {} {}", finite(uv[0]), finite(uv[1]))?;
+    if let Some(uvs) = uvs {
+        write_items(out, mesh.positions.len(), |vertex, bytes| {
+            writeln!(bytes, "vt {} {}", finite(uvs[2 * vertex]), finite(uvs[2 * vertex + 1]))
+        })?;
     }
-    for triangle in &mesh.triangles {
+    write_items(out, mesh.triangles.len(), |triangle, bytes| {
         // Counted from 1, which may be one more than a u32 holds.
-        let [a, b, c] = triangle.map(|vertex| u64::from(vertex) + 1);
+        let [a, b, c] = mesh.triangles[triangle].map(|vertex| u64::from(vertex) + 1);
         match uvs {
-            Some(_) => writeln!(out, "f {a}/{a}/{a} {b}/{b}/{b} {c}/{c}/{c}")?,
-            None => writeln!(out, "f {a}//{a} {b}//{b} {c}//{c}")?,
+            Some(_) => writeln!(bytes, "f {a}/{a}/{a} {b}/{b}/{b} {c}/{c}/{c}"),
+            None => writeln!(bytes, "f {a}//{a} {b}//{b} {c}//{c}"),
         }
-    }
+    })?;
     Ok(())
 }
 
@@ -55,18 +58,18 @@ pub(super) fn write(mesh: &Mesh, choices: FileChoices, out: &mut impl Write) -> 
 fn write_vertices<T: Default + Display + Sub<Output = T>>(
     mesh: &Mesh,
     FileChoices { up, colors: encoding }: FileChoices,
-    positions: impl Iterator<Item = [T; 3]>,
+    position: impl Fn(usize) -> [T; 3] + Sync,
     out: &mut impl Write,
 ) -> Result<(), WriteError> {
     let colors = colors(mesh);
-    for (vertex, position) in positions.enumerate() {
-        let [x, y, z] = up.place(position);
-        write!(out, "v {x} {y} {z}")?;
+    write_items(out, mesh.positions.len(), |vertex, bytes| {
+        let [x, y, z] = up.place(position(vertex));
+        write!(bytes, "v {x} {y} {z}")?;
         if let Some(colors) = colors {
             let [r, g, b] = colors[vertex].map(|channel| encoding.encode(channel));
-            write!(out, " {r} {g} {b}")?;
+            write!(bytes, " {r} {g} {b}")?;
         }
-        writeln!(out)?;
-    }
+        writeln!(bytes)
+    })?;
     Ok(())
 }

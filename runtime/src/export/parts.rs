@@ -5,6 +5,8 @@ use std::io::{self, Write};
 
 use thiserror::Error;
 
+use crate::parallel::*;
+
 use crate::mesh::{Attribute, Mesh};
 
 /// Why a writer stopped.
@@ -16,11 +18,6 @@ pub(super) enum WriteError {
     /// The format counts in 32 bits, and this is more: bytes or triangles.
     #[error("{0} are too many")]
     TooLarge(u64),
-}
-
-/// The writers' view of where a vertex is in the world.
-pub(super) fn world(mesh: &Mesh) -> impl Iterator<Item = [f64; 3]> + '_ {
-    (0..mesh.positions.len()).map(|vertex| mesh.world(vertex))
 }
 
 /// The linear colours of a mesh, if it has the attribute `color` of width 3: one for each vertex.
@@ -86,7 +83,42 @@ pub(super) fn others<'a>(
     named
 }
 
-/// Writes reals as little-endian bytes.
-pub(super) fn write_reals(out: &mut impl Write, values: impl IntoIterator<Item = f32>) -> io::Result<()> {
-    values.into_iter().try_for_each(|value| out.write_all(&value.to_le_bytes()))
+/// Items that a thread turns into bytes at a time.
+const BLOCK: usize = 1 << 14;
+/// Blocks whose bytes are in memory at once.
+const BLOCKS: usize = 32;
+
+/// Writes the bytes of items, one after the other. All threads make bytes, from the index of an item each.
+pub(super) fn write_items(
+    out: &mut impl Write,
+    count: usize,
+    bytes: impl Fn(usize, &mut Vec<u8>) -> io::Result<()> + Sync,
+) -> io::Result<()> {
+    let block = |first: usize| {
+        let mut block = Vec::new();
+        (first..count.min(first + BLOCK)).try_for_each(|item| bytes(item, &mut block))?;
+        Ok(block)
+    };
+    for first in (0..count).step_by(BLOCK * BLOCKS) {
+        let firsts: Vec<usize> = (first..count.min(first + BLOCK * BLOCKS)).step_by(BLOCK).collect();
+        let blocks: Vec<io::Result<Vec<u8>>> = firsts.into_par_iter().map(block).collect();
+        blocks.into_iter().try_for_each(|block| out.write_all(&block?))?;
+    }
+    Ok(())
+}
+
+/// Appends reals as little-endian bytes.
+#[inline]
+pub(super) fn push_reals(bytes: &mut Vec<u8>, values: impl IntoIterator<Item = f32>) {
+    values.into_iter().for_each(|value| bytes.extend_from_slice(&value.to_le_bytes()));
+}
+
+/// Appends three words as little-endian bytes.
+#[inline]
+pub(super) fn push_three(bytes: &mut Vec<u8>, words: [u32; 3]) {
+    let mut three = [0; 12];
+    for (place, word) in three.as_chunks_mut().0.iter_mut().zip(words) {
+        *place = word.to_le_bytes();
+    }
+    bytes.extend_from_slice(&three);
 }

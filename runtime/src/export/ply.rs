@@ -7,7 +7,7 @@
 use std::io::Write;
 
 use super::conventions::{ColorEncoding, Colors, Conventions, FarMeshes, FileChoices, Up};
-use super::parts::{NamedAttribute, WriteError, colors, others, uvs, write_reals};
+use super::parts::{NamedAttribute, WriteError, colors, others, push_reals, push_three, uvs, write_items};
 use crate::mesh::Mesh;
 use crate::srgb;
 
@@ -54,31 +54,31 @@ pub(super) fn write(mesh: &Mesh, choices: FileChoices, out: &mut impl Write) -> 
     writeln!(out, "element face {}", mesh.triangles.len())?;
     writeln!(out, "property list uchar uint vertex_indices\nend_header")?;
 
-    for (vertex, (position, normal)) in mesh.positions.iter().zip(&mesh.normals).enumerate() {
+    write_items(out, mesh.positions.len(), |vertex, bytes| {
         if is_far {
             let place = up.place(mesh.world(vertex));
-            place.iter().try_for_each(|x| out.write_all(&x.to_le_bytes()))?;
+            place.iter().for_each(|x| bytes.extend_from_slice(&x.to_le_bytes()));
         } else {
-            write_reals(out, up.place(*position))?;
+            push_reals(bytes, up.place(mesh.positions[vertex]));
         }
-        write_reals(out, up.place(*normal))?;
+        push_reals(bytes, up.place(mesh.normals[vertex]));
         if let Some(colors) = colors {
-            out.write_all(&colors[vertex].map(|channel| srgb::byte(encoding.encode(channel))))?;
+            bytes.extend_from_slice(&colors[vertex].map(|channel| srgb::byte(encoding.encode(channel))));
         }
         if let Some(uvs) = uvs {
-            write_reals(out, uvs[2 * vertex..2 * vertex + 2].iter().copied())?;
+            push_reals(bytes, uvs[2 * vertex..2 * vertex + 2].iter().copied());
         }
         for NamedAttribute { attribute, .. } in &attributes {
             let start = vertex * attribute.width;
-            write_reals(out, attribute.values[start..start + attribute.width].iter().copied())?;
+            push_reals(bytes, attribute.values[start..start + attribute.width].iter().copied());
         }
-    }
-    for triangle in &mesh.triangles {
-        out.write_all(&[3])?;
-        for vertex in triangle {
-            out.write_all(&vertex.to_le_bytes())?;
-        }
-    }
+        Ok(())
+    })?;
+    write_items(out, mesh.triangles.len(), |triangle, bytes| {
+        bytes.push(3);
+        push_three(bytes, mesh.triangles[triangle]);
+        Ok(())
+    })?;
     Ok(())
 }
 

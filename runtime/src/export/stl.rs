@@ -4,7 +4,7 @@
 use std::io::Write;
 
 use super::conventions::{Conventions, FarMeshes, FileChoices, Up};
-use super::parts::{WriteError, write_reals};
+use super::parts::{WriteError, push_reals, write_items};
 use crate::mesh::{Mesh, area_vector, unit};
 
 /// Readers take a file for text if it begins with "solid"; this does not.
@@ -38,13 +38,15 @@ pub(super) fn write(mesh: &Mesh, choices: FileChoices, out: &mut impl Write) -> 
     };
     out.write_all(&HEADER)?;
     out.write_all(&count.to_le_bytes())?;
-    for triangle in &mesh.triangles {
+    write_items(out, mesh.triangles.len(), |triangle, bytes| {
+        let triangle = mesh.triangles[triangle];
         let corners = triangle.map(|vertex| choices.up.place(mesh.positions[vertex as usize]));
         let normal = unit(area_vector(corners)).unwrap_or([0.0; 3]);
         let rounded = |vertex: u32| choices.up.place(mesh.world(vertex as usize).map(|x| x as f32));
-        write_reals(out, normal.into_iter().chain(triangle.map(rounded).into_iter().flatten()))?;
+        push_reals(bytes, normal.into_iter().chain(triangle.map(rounded).into_iter().flatten()));
         // The attribute byte count, which has no agreed meaning.
-        out.write_all(&[0, 0])?;
-    }
+        bytes.extend_from_slice(&[0, 0]);
+        Ok(())
+    })?;
     Ok(())
 }

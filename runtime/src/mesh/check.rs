@@ -1,5 +1,7 @@
 //! Whether a mesh is closed, and whether it is a manifold.
 
+use std::ops::Range;
+
 use crate::parallel::*;
 use thiserror::Error;
 
@@ -115,10 +117,24 @@ impl DirectedEdges {
 /// vertex is not.
 ///
 /// Linear in triangles and vertices, as long as few vertices have very many triangles.
+///
+/// Each thread looks at the edges whose lower vertex is in its part of the vertices.
 pub fn is_closed(vertices: usize, triangles: &[[u32; 3]]) -> bool {
-    let mut slots = vec![[NO_END; SLOTS]; vertices];
+    let part = vertices.div_ceil(thread_count().clamp(1, MAX_SPLIT)).max(1);
+    let parts: Vec<Range<usize>> =
+        (0..vertices.max(1)).step_by(part).map(|first| first..vertices.min(first + part)).collect();
+    parts.into_par_iter().all(|own| are_paired(own, vertices, triangles))
+}
+
+/// Threads that check a mesh together: each reads all triangles.
+const MAX_SPLIT: usize = 16;
+
+/// Whether the edges whose lower vertex is one of these have two triangles each, in opposite directions, and
+/// no triangle names a missing vertex.
+fn are_paired(own: Range<usize>, vertices: usize, triangles: &[[u32; 3]]) -> bool {
+    let mut slots = vec![[NO_END; SLOTS]; own.len()];
     // For each vertex and direction, the slots whose edges have been seen in that direction, a bit each.
-    let mut met = vec![[0_u8; 2]; vertices];
+    let mut met = vec![[0_u8; 2]; own.len()];
     let mut rest = Vec::new();
     for &[p, q, r] in triangles {
         let last = p.max(q).max(r);
@@ -126,9 +142,12 @@ pub fn is_closed(vertices: usize, triangles: &[[u32; 3]]) -> bool {
             return false;
         }
         for (from, to) in [(p, q), (q, r), (r, p)] {
-            let (low, high) = (from.min(to) as usize, from.max(to));
+            let (low, high) = ((from.min(to) as usize).wrapping_sub(own.start), from.max(to));
+            if low >= own.len() {
+                continue;
+            }
             let Some(slot) = find(&mut slots[low], high) else {
-                rest.push((low as u32, high, from > to));
+                rest.push((low, high, from > to));
                 continue;
             };
             let met = &mut met[low][usize::from(from > to)];
@@ -141,7 +160,7 @@ pub fn is_closed(vertices: usize, triangles: &[[u32; 3]]) -> bool {
     // Sorted, the two directions of each edge are neighbours.
     rest.sort_unstable();
     let (pairs, odd) = rest.as_chunks::<2>();
-    let is_pair = |&[(a, b, up), (c, d, down)]: &[(u32, u32, bool); 2]| (a, b, up) == (c, d, !down) && !up;
+    let is_pair = |&[(a, b, up), (c, d, down)]: &[(usize, u32, bool); 2]| (a, b, up) == (c, d, !down) && !up;
     met.iter().all(|[up, down]| up == down)
         && odd.is_empty()
         && pairs.iter().all(is_pair)

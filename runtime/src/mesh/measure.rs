@@ -1,24 +1,28 @@
 //! Measures of a mesh: its bounds, its area and its volume.
 
 use crate::boxes::Box3;
+use crate::parallel::*;
 
 use super::indexed::Mesh;
 use super::surface::area_vector;
+
+/// Triangles or vertices that a thread takes at a time. Sums over triangles are sums of these parts' sums,
+/// for any number of threads.
+const PART: usize = 1 << 14;
 
 impl Mesh {
     /// The smallest box that holds all positions, relative to the mesh's origin, in units of the model.
     /// `None` without positions.
     #[must_use]
     pub fn bounds(&self) -> Option<Box3> {
-        let (&first, rest) = self.positions.split_first()?;
-        let mut bounds = Box3::new(first, first);
-        for position in rest {
-            for (axis, &coordinate) in position.iter().enumerate() {
-                bounds.low[axis] = bounds.low[axis].min(coordinate);
-                bounds.high[axis] = bounds.high[axis].max(coordinate);
-            }
-        }
-        Some(bounds)
+        let both = |a: Box3, b: Box3| Box3 {
+            low: [0, 1, 2].map(|axis| a.low[axis].min(b.low[axis])),
+            high: [0, 1, 2].map(|axis| a.high[axis].max(b.high[axis])),
+        };
+        let point = |&position: &[f32; 3]| Box3::new(position, position);
+        let part = |part: &[[f32; 3]]| part.iter().map(point).reduce(both);
+        let parts: Vec<Option<Box3>> = self.positions.par_chunks(PART).map(part).collect();
+        parts.into_iter().flatten().reduce(both)
     }
 
     /// The area of all triangles together, in squared units of the model: half the lengths of the cross
@@ -29,7 +33,7 @@ impl Mesh {
             let vector = area_vector(self.corners(triangle));
             vector.iter().map(|c| c * c).sum::<f64>().sqrt()
         };
-        0.5 * self.triangles.iter().map(twice).sum::<f64>()
+        0.5 * self.sum(twice)
     }
 
     /// The volume that the mesh encloses, in cubed units of the model: by the divergence theorem, the sum of
@@ -49,7 +53,14 @@ impl Mesh {
             let (vector, [corner, ..]) = (area_vector(corners), corners);
             (0..3).map(|axis| vector[axis] * (f64::from(corner[axis]) - middle[axis])).sum::<f64>()
         };
-        self.triangles.iter().map(six).sum::<f64>() / 6.0
+        self.sum(six) / 6.0
+    }
+
+    /// The sum of a number of each triangle.
+    fn sum(&self, number: impl Fn(&[u32; 3]) -> f64 + Sync) -> f64 {
+        let part = |part: &[[u32; 3]]| part.iter().map(&number).sum::<f64>();
+        let parts: Vec<f64> = self.triangles.par_chunks(PART).map(part).collect();
+        parts.into_iter().sum()
     }
 
     fn corners(&self, [a, b, c]: [u32; 3]) -> [[f32; 3]; 3] {

@@ -114,10 +114,11 @@ pub(crate) fn extract_hooked<F: Field>(
         report.thin = Some(thin::find(field, &division, (&crossings, &mesh), options.iso, &progress)?);
     }
     drop((division, crossings));
-    report.closed = if options.verify {
+    // Where no side of the lattice cuts the body, the mesh is closed by construction.
+    report.closed = if options.verify || report.cut_sides.any() {
         is_closed(mesh.positions.len(), &mesh.triangles)
     } else {
-        !report.cut_sides.any()
+        true
     };
     progress.finish()?;
     Ok((mesh, report))

@@ -50,8 +50,8 @@ impl fmt::Display for Sides {
 #[non_exhaustive]
 pub struct MeshReport {
     /// Whether every edge has exactly two triangles, in opposite directions. A mesh without triangles is
-    /// closed. Checked if [`Options::verify`](super::Options::verify) is set, otherwise derived from
-    /// `cut_sides`.
+    /// closed. Every edge is looked at if [`Options::verify`](super::Options::verify) is set, or if a side of
+    /// the lattice cuts the body; otherwise the mesh is closed by construction.
     pub closed: bool,
     /// The sides of the lattice that cut the body: some lattice point on that side is inside. Without any,
     /// the mesh is closed.
