@@ -45,6 +45,7 @@
 //! * A [`Pruner`] makes a [`Region`] of a box: the rows that matter there. [`Evaluator::eval_region`] runs
 //!   these alone, with the same bits; [`divide`], [`sample`] and meshes do so by themselves.
 //! * [`Polygonize`] meshes a model, [`Render`] makes pictures of it; [`export`] writes both.
+//! * A [`LiveMesh`] follows the edits of its model: what has changed is made anew, in buffers for a GPU.
 //! * A [`contour::Slicer`] looks at a model in a plane: contours as closed loops, and images.
 //! * A [`Solid`] answers questions about the set that a model encloses: which side a point is on, which leaf
 //!   decides there, how far it reaches, how large it is.
@@ -128,6 +129,7 @@ mod finite_points;
 pub mod internals;
 mod job;
 mod kernel;
+pub mod live;
 pub mod mesh;
 mod parallel;
 mod picture;
@@ -180,6 +182,7 @@ pub use error::{Classified, CompileError, ErrorKind, EvalError};
 pub use evaluator::{Evaluator, Update};
 pub use job::{CancelToken, Job};
 pub use kernel::Engine;
+pub use live::LiveMesh;
 pub use picture::Picture;
 pub use points::{AsPoint, AsPoints, LengthError, Points, PointsIter};
 pub use polygonize::{Fineness, MeshCounters, Polygonize, PolygonizeError, Polygonized};

@@ -16,8 +16,8 @@
 use crate::parallel::*;
 
 use super::alarm::{ALARM, Alarm};
-use super::crossed::{CrossedBlocks, morton};
-use crate::mesh::brick::Bricks;
+use super::crossed::CrossedBlocks;
+use crate::mesh::brick::{Bricks, morton};
 use crate::mesh::crossing::Crossings;
 use crate::mesh::error::MeshError;
 use crate::mesh::field::Field;
