@@ -160,7 +160,7 @@ pub use jbt_ir::level::{self, Level};
 pub use jbt_ir::limits;
 pub use jbt_model::attribute::{AttributeGroup, Mixing};
 pub use jbt_model::builder as build;
-pub use jbt_model::check::{CheckedTree, NodeId};
+pub use jbt_model::check::{CheckedModel, CheckedTree, NodeId};
 pub use jbt_model::combine::{Combinator, SetOperation};
 pub use jbt_model::diagnostic::{self, Diagnostic, Diagnostics};
 pub use jbt_model::falloff::Falloff;

@@ -167,6 +167,9 @@ impl Leaf {
 /// The scene that is edited.
 struct Edited {
     leaves: Vec<Leaf>,
+    /// Trees of leaves that are as they were.
+    made: Vec<Option<Tree>>,
+    ball: Option<Tree>,
     operator: u8,
     bulge: f64,
     iso: f64,
@@ -175,22 +178,34 @@ struct Edited {
 
 impl Edited {
     fn new(rng: &mut Rng, leaves: usize) -> Self {
-        let leaves = (0..leaves).map(|_| Leaf::new(rng)).collect();
-        Self { leaves, operator: 0, bulge: 0.5, iso: 0.5, shade: 0.5 }
+        let leaves: Vec<Leaf> = (0..leaves).map(|_| Leaf::new(rng)).collect();
+        let made = vec![None; leaves.len()];
+        Self { leaves, made, ball: None, operator: 0, bulge: 0.5, iso: 0.5, shade: 0.5 }
     }
 
-    fn model(&self) -> CheckedTree {
-        let leaves = self.leaves.iter().map(Leaf::tree);
-        let some = match self.operator {
+    /// A leaf that is to be changed.
+    fn leaf(&mut self, index: usize) -> &mut Leaf {
+        self.made[index] = None;
+        &mut self.leaves[index]
+    }
+
+    /// The model, which shares with the one before what has not changed.
+    fn model(&mut self) -> Model {
+        let leaves = self.leaves.iter().zip(&mut self.made);
+        let leaves: Vec<Tree> =
+            leaves.map(|(leaf, made)| made.get_or_insert_with(|| leaf.tree()).clone()).collect();
+        let bulge = param("bulge", self.bulge);
+        let ball =
+            || point((0.3, 0.2, &bulge * 0.5 - 0.2), &bulge).color((1.0, param("shade", self.shade), 0.0));
+        let ball = self.ball.get_or_insert_with(ball).clone();
+        let leaves = leaves.into_iter().chain([ball]);
+        let mut model = Model::new(match self.operator {
             0 => Tree::sum(leaves),
             1 => Tree::blend(3.0, leaves),
             _ => Tree::union(leaves),
-        };
-        let bulge = param("bulge", self.bulge);
-        let ball = point((0.3, 0.2, &bulge * 0.5 - 0.2), bulge).color((1.0, param("shade", self.shade), 0.0));
-        let mut model = Model::new(some + ball);
+        });
         model.iso = Number::from(self.iso);
-        model.check().expect("a good model")
+        model
     }
 }
 
@@ -200,42 +215,53 @@ fn edit(rng: &mut Rng, scene: &mut Edited, live: &mut LiveMesh) -> LiveChange {
     match rng.u8(0..40) {
         0..=9 => {
             let by = if rng.u8(0..8) == 0 { 1.5 } else { 0.1 };
-            scene.leaves[some].at.iter_mut().for_each(|x| *x += by * (rng.f64() - 0.5));
+            scene.leaf(some).at.iter_mut().for_each(|x| *x += by * (rng.f64() - 0.5));
         }
-        10..=14 => scene.leaves[some].radius *= 0.8 + 0.4 * rng.f64(),
-        15..=19 => scene.leaves[some].color = [rng.f64(), rng.f64(), 0.5],
+        10..=14 => scene.leaf(some).radius *= 0.8 + 0.4 * rng.f64(),
+        15..=19 => scene.leaf(some).color = [rng.f64(), rng.f64(), 0.5],
         20..=22 if scene.leaves.len() < 300 => {
             let leaf = Leaf { kind: 9, ..Leaf::new(rng) };
             scene.leaves.insert(some, leaf);
+            scene.made.insert(some, None);
         }
-        23..=25 if scene.leaves.len() > 10 => drop(scene.leaves.remove(some)),
+        23..=25 if scene.leaves.len() > 10 => drop((scene.leaves.remove(some), scene.made.remove(some))),
         26 => scene.operator = (scene.operator + 1) % 3,
         27 => scene.iso = 0.3 + 0.4 * rng.f64(),
-        28 => scene.leaves[some] = Leaf::new(rng),
+        28 => *scene.leaf(some) = Leaf::new(rng),
         29..=33 => {
             scene.bulge = 0.2 + rng.f64();
+            scene.ball = None;
             return live.set(&[("bulge", scene.bulge)]).run().expect("a good value");
         }
         34..=37 => {
             scene.shade = rng.f64();
+            scene.ball = None;
             return live.set(&[("shade", scene.shade)]).run().expect("a good value");
         }
         38 => {}
         _ => {
-            for leaf in scene.leaves.iter_mut().step_by(3) {
-                leaf.at[1] += 0.02;
+            for index in (0..scene.leaves.len()).step_by(3) {
+                scene.leaf(index).at[1] += 0.02;
             }
         }
     }
-    live.replace(&scene.model()).run().expect("a good model")
+    let model = scene.model();
+    let tree = model.check().expect("a good model");
+    let change = match rng.bool() {
+        true => live.replace(&model).run(),
+        false => live.replace(&tree).run(),
+    };
+    assert_eq!(*live.tree(), tree.with_origin(live.tree().origin()));
+    change.expect("a good model")
 }
 
-/// Follows random edits; returns how many flips there were, and how many edits left most bricks alone.
-fn follow(engine: Engine, (seed, leaves): (u64, usize), edits: usize, settings: Polygonize) -> [usize; 2] {
+/// Follows random edits; returns how many flips there were, how many edits left most bricks alone, and of how
+/// many only changed rows were lowered.
+fn follow(engine: Engine, (seed, leaves): (u64, usize), edits: usize, settings: Polygonize) -> [usize; 3] {
     let mut rng = Rng::with_seed(seed);
     let mut scene = Edited::new(&mut rng, leaves);
-    let mut live =
-        LiveMesh::new(&Compiler::for_engine(engine), &scene.model(), settings).run().expect("a mesh");
+    let compiler = Compiler::for_engine(engine);
+    let mut live = LiveMesh::new(&compiler, &scene.model(), settings).run().expect("a mesh");
     let mut copied = Copied::of(&live);
     let (mut flips, mut local) = (0, 0);
     for number in 0..edits {
@@ -253,14 +279,14 @@ fn follow(engine: Engine, (seed, leaves): (u64, usize), edits: usize, settings: 
         local += usize::from(told > 0 && 3 * told < live.bricks().count());
         flips += full.report.flipped_faces as usize;
     }
-    [flips, local]
+    [flips, local, compiler.counters().patched as usize]
 }
 
 #[test]
 fn a_thousand_edits() {
     let cells = |cell| Polygonize { fineness: Fineness::Cell(cell), ..Polygonize::default() };
-    let [_, local] = follow(Engine::Lanes, (1, 30), 600, cells(0.07));
-    assert!(local > 200, "{local} local edits");
+    let [_, local, patched] = follow(Engine::Lanes, (1, 30), 600, cells(0.07));
+    assert!(local > 200 && patched > 150, "{local} local edits, {patched} patched ones");
     let region = Some(Box3::new([-0.8, -1.0, -0.9], [0.9, 0.7, 1.0]));
     follow(Engine::Lanes, (2, 30), 200, Polygonize { region, ..cells(0.1) });
     follow(Engine::Scalar, (3, 30), 50, cells(0.12));
@@ -273,7 +299,7 @@ fn a_thousand_edits() {
 #[test]
 fn edits_of_shreds() {
     let settings = Polygonize { fineness: Fineness::Cell(0.17), ..Polygonize::default() };
-    let [flips, _] = follow(Engine::Lanes, (5, 250), 100, settings);
+    let [flips, ..] = follow(Engine::Lanes, (5, 250), 100, settings);
     assert!(flips > 200, "{flips} flips");
 }
 

@@ -1,6 +1,7 @@
 //! The live mesh.
 
-use jbt_model::check::CheckedTree;
+use jbt_model::check::{CheckedModel, CheckedTree};
+use jbt_model::model::Model;
 
 use super::change::{BrickRanges, BrickUpdate, LiveChange};
 use crate::compiled::Compiled;
@@ -60,12 +61,40 @@ use crate::support::{NoBox, around};
 /// read as a whole.
 pub struct LiveMesh {
     settings: Polygonize,
+    /// The model and its check, if it was given as a model. It may be one that could not be meshed.
+    checked: Option<CheckedModel>,
     compiled: Compiled,
     kernels: Kernels,
     mesh: BrickMesh,
 }
 
 brief_debug!(LiveMesh, "LiveMesh", this: bricks = this.mesh.len());
+
+/// A state of a model that a live mesh takes: a [`Model`], or its check.
+///
+/// A model whose tree shares most of its nodes with the model before is checked, and lowered, where it
+/// differs ([`CheckedModel`]). A check of a model says nothing about another one, so a [`CheckedTree`] is
+/// lowered as a whole, unless it was made of the present one by
+/// [parameters](CheckedTree::with_parameters).
+#[derive(Clone, Copy, Debug)]
+pub enum ModelState<'a> {
+    /// A model, which is to be checked.
+    Model(&'a Model),
+    /// A checked model.
+    Checked(&'a CheckedTree),
+}
+
+impl<'a> From<&'a Model> for ModelState<'a> {
+    fn from(model: &'a Model) -> Self {
+        Self::Model(model)
+    }
+}
+
+impl<'a> From<&'a CheckedTree> for ModelState<'a> {
+    fn from(tree: &'a CheckedTree) -> Self {
+        Self::Checked(tree)
+    }
+}
 
 /// An edited model, before its bricks are made.
 struct EditedModel {
@@ -83,10 +112,21 @@ impl LiveMesh {
     /// See [`PolygonizeError`].
     pub fn new<'a>(
         compiler: &'a Compiler,
-        tree: &'a CheckedTree,
+        model: impl Into<ModelState<'a>>,
         settings: Polygonize,
     ) -> Job<'a, Self, PolygonizeError> {
-        Job::new(move |hook| Self::start(&compiler.clone().for_edits().compile(tree), settings, hook))
+        let model = model.into();
+        Job::new(move |hook| {
+            let compiler = compiler.clone().for_edits();
+            match model {
+                ModelState::Checked(tree) => Self::start(&compiler.compile(tree), settings, hook),
+                ModelState::Model(model) => {
+                    let checked = CheckedModel::new(model).map_err(CompileError::from)?;
+                    let live = Self::start(&compiler.compile(checked.tree()), settings, hook)?;
+                    Ok(Self { checked: Some(checked), ..live })
+                }
+            }
+        })
     }
 
     /// As [`new`](Self::new), of a compiled model.
@@ -104,7 +144,7 @@ impl LiveMesh {
         let options = settings.options(compiled.tree());
         let renewal = mesh.renewal(&kernels, &lattice, (&options, None), hook)?;
         mesh.commit(renewal);
-        Ok(Self { settings, compiled: compiled.clone(), kernels, mesh })
+        Ok(Self { settings, checked: None, compiled: compiled.clone(), kernels, mesh })
     }
 
     /// Sets parameters of the model: see [`CheckedTree::with_parameters`]. Parameters that are not named keep
@@ -126,8 +166,30 @@ impl LiveMesh {
     /// # Errors
     /// See [`PolygonizeError`]; the mesh, and its model, stay as they were. A model without a field is no
     /// error: its mesh is empty.
-    pub fn replace<'a>(&'a mut self, tree: &'a CheckedTree) -> Job<'a, LiveChange, PolygonizeError> {
-        Job::new(move |hook| self.follow(tree, hook))
+    pub fn replace<'a>(
+        &'a mut self,
+        model: impl Into<ModelState<'a>>,
+    ) -> Job<'a, LiveChange, PolygonizeError> {
+        let model = model.into();
+        Job::new(move |hook| {
+            let tree = match model {
+                ModelState::Checked(tree) => tree.clone(),
+                ModelState::Model(model) => self.check(model)?,
+            };
+            self.follow(&tree, hook)
+        })
+    }
+
+    /// The check of a model: of what differs from the last one.
+    fn check(&mut self, model: &Model) -> Result<CheckedTree, CompileError> {
+        let checked = match &mut self.checked {
+            Some(checked) => {
+                checked.edit(model)?;
+                checked
+            }
+            none => none.insert(CheckedModel::new(model)?),
+        };
+        Ok(checked.tree().clone())
     }
 
     fn follow(&mut self, tree: &CheckedTree, hook: Hook<'_>) -> Result<LiveChange, PolygonizeError> {

@@ -13,4 +13,4 @@ mod change;
 mod mesh;
 
 pub use change::{BrickRanges, BrickUpdate, LiveChange};
-pub use mesh::LiveMesh;
+pub use mesh::{LiveMesh, ModelState};
