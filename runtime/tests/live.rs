@@ -402,7 +402,7 @@ fn an_edit_that_fails_changes_nothing() {
         let moved = balls(2.5);
         let watch = |done| {
             if done >= 0.05 * part as f32 {
-                token.cancel()
+                token.cancel();
             }
         };
         let error = live.replace(&moved).on_progress(watch).cancel(&token).run();

@@ -161,7 +161,9 @@ impl CheckedModel {
     /// The tree with changed nodes, which are checked.
     fn checked(&self, edited: &Model, changes: &[(NodeId, Tree, Tree)]) -> Result<CheckedTree, Diagnostics> {
         let (mut report, groups) = (Report::default(), widths(&edited.attributes));
-        let mut nodes = self.tree.nodes.to_vec();
+        // Nobody else has the copy yet.
+        let mut copy: Arc<[CheckedNode]> = self.tree.nodes.iter().cloned().collect();
+        let nodes = Arc::get_mut(&mut copy).unwrap_or_default();
         let mut is_whole = true;
         for (id, _, new) in changes {
             let (node, written) = (new.node(), new.node().written());
@@ -195,7 +197,7 @@ impl CheckedModel {
             changed: changes.iter().map(|&(id, ..)| id).collect(),
         };
         let tree = CheckedTree {
-            nodes: nodes.into(),
+            nodes: copy,
             source: edited.source.clone(),
             lineage: Some(lineage),
             ..self.tree.clone()

@@ -53,7 +53,7 @@ impl Chain<'_> {
                 );
                 cells.extend_from_slice(&found.cells[range]);
             } else {
-                let kept = &self.mesh.bricks[&self.from_anchor(place)];
+                let kept = &self.mesh.bricks[&self.to_anchor(place)];
                 suspects.extend(kept.suspects.iter().map(|&cell| (brick, before + cell as usize)));
                 cells.extend(kept.cells.iter().map(|cell| CrossedCell { flips: 0, ..*cell }));
             }
@@ -68,7 +68,7 @@ impl Chain<'_> {
                 let range = found.starts[new]..found.starts[new + 1];
                 found.cells[range].copy_from_slice(flipped);
             } else {
-                let kept = &self.mesh.bricks[&self.from_anchor(place)].cells;
+                let kept = &self.mesh.bricks[&self.to_anchor(place)].cells;
                 if kept.iter().zip(flipped).any(|(old, new)| old.flips != new.flips) {
                     changed.push(place);
                 }
@@ -81,12 +81,12 @@ impl Chain<'_> {
     fn others(&self, found: &UnflippedCells) -> Vec<BrickPlace> {
         let number = self.numbers();
         let (mut seen, mut others) = (FxHashSet::default(), Vec::new());
-        let mut list: Vec<BrickPlace> = self.touched.bricks().map(|place| self.from_anchor(place)).collect();
+        let mut list: Vec<BrickPlace> = self.touched.bricks().map(|place| self.to_anchor(place)).collect();
         while let Some(brick) = list.pop() {
             if !seen.insert(brick) {
                 continue;
             }
-            let new = self.from_first(brick).filter(|place| self.touched.has_brick(*place));
+            let new = self.to_first(brick).filter(|place| self.touched.has_brick(*place));
             if new.is_none() {
                 others.push(brick);
             }
@@ -119,7 +119,7 @@ impl Chain<'_> {
     }
 
     fn is_touched(&self, brick: BrickPlace) -> bool {
-        self.from_first(brick).is_some_and(|place| self.touched.has_brick(place))
+        self.to_first(brick).is_some_and(|place| self.touched.has_brick(place))
     }
 
     /// A brick as it was.
@@ -134,13 +134,14 @@ impl Chain<'_> {
         mine.map(|&(_, cell)| (cell - found.starts[brick]) as u32).collect()
     }
 
-    fn from_anchor(&self, place: [u32; 3]) -> BrickPlace {
+    /// A place from the lattice's anchor.
+    fn to_anchor(&self, place: [u32; 3]) -> BrickPlace {
         let shift = BrickMesh::shift(self.lattice, self.bricks.edge);
         [0, 1, 2].map(|axis| place[axis] as i32 + shift[axis])
     }
 
     /// A place from the lattice's first brick; `None` if it is below that.
-    fn from_first(&self, place: BrickPlace) -> Option<[u32; 3]> {
+    fn to_first(&self, place: BrickPlace) -> Option<[u32; 3]> {
         let shift = BrickMesh::shift(self.lattice, self.bricks.edge);
         let steps = [0, 1, 2].map(|axis| u32::try_from(place[axis] - shift[axis]).ok());
         let [Some(x), Some(y), Some(z)] = steps else { return None };

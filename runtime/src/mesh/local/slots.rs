@@ -88,7 +88,7 @@ mod tests {
 
     #[test]
     fn classes_have_room() {
-        let sizes = [1, 16, 17, 24, 25, 32, 33, 48, 49, 64].map(|len| class(len));
+        let sizes = [1, 16, 17, 24, 25, 32, 33, 48, 49, 64].map(class);
         let expected =
             [(0, 16), (0, 16), (1, 24), (1, 24), (2, 32), (2, 32), (3, 48), (3, 48), (4, 64), (4, 64)];
         assert_eq!(sizes, expected);
