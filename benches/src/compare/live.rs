@@ -85,8 +85,9 @@ fn row(count: usize, options: Options) -> ResultRow {
     let pool = pool.expect("threads can be made");
     let (compiler, moving) = (Compiler::new().for_edits(), MovingBlobs::new(count));
     let checked = pool.install(|| check(&compiler, &moving));
-    let live = LiveMesh::new(&compiler, &moving.model(), settings());
-    let mut live = pool.install(|| live.run()).expect("blobs have a mesh");
+    let model = moving.model();
+    let start = || LiveMesh::new(&compiler, &model, settings()).run();
+    let mut live = pool.install(start).expect("blobs have a mesh");
     let triangles = live.compact().triangles.len();
     let mut contest = Contest::new();
     let (pool, mut edits) = (&pool, moving.clone());
