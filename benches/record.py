@@ -36,7 +36,7 @@ BEGIN, END = "<!-- benches:begin -->", "<!-- benches:end -->"
 CARGO = ["cargo", "run", "--release", "-p", "jbt-benches", "--features", "peers", "--bin", "compare", "--", "--json"]
 
 # Other contestants than ours, the limit and fidget, in the order in which they are named.
-OTHERS = ["searched", "lanes", "splashsurf", "walk", "separate"]
+OTHERS = ["searched", "whole", "lanes", "splashsurf", "walk", "separate"]
 CONTESTANTS = ["ours", "limit", "fidget_jit", "fidget_vm", *OTHERS]
 
 # Columns of a record: these first and in this order, then any others by name, then the check.

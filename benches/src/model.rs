@@ -65,20 +65,23 @@ pub fn particles(count: usize, seed: u64) -> Vec<Blob> {
     particles
 }
 
+/// A blob as a tree.
+#[must_use]
+pub fn leaf(blob: &Blob) -> Tree {
+    let primitive = Primitive {
+        skeleton: Point { at: blob.center.map(f64::from).into() }.into(),
+        falloff: Falloff::Soft,
+        radius: f64::from(blob.radius),
+        strength: 1.0,
+    };
+    let leaf = Tree::new(NodeKind::Primitive(primitive), Vec::new());
+    let values = blob.color.map(f64::from).to_vec();
+    Tree::new(NodeKind::Attribute { name: "color".into(), value: values.into() }, vec![leaf])
+}
+
 /// The sum of blobs as a BlobTree.
 #[must_use]
 pub fn tree(blobs: &[Blob]) -> CheckedTree {
-    let leaf = |blob: &Blob| {
-        let primitive = Primitive {
-            skeleton: Point { at: blob.center.map(f64::from).into() }.into(),
-            falloff: Falloff::Soft,
-            radius: f64::from(blob.radius),
-            strength: 1.0,
-        };
-        let leaf = Tree::new(NodeKind::Primitive(primitive), Vec::new());
-        let values = blob.color.map(f64::from).to_vec();
-        Tree::new(NodeKind::Attribute { name: "color".into(), value: values.into() }, vec![leaf])
-    };
     let tree = Tree::sum(blobs.iter().map(leaf));
     Model::new(tree).check().expect("blobs are a good model")
 }

@@ -9,6 +9,8 @@
 //! Whatever looks at a model borrows programs from here and counts its own work: two tracers of one model run
 //! the same code on the same numbers, and each says what its own rays took.
 
+mod patch;
+
 use std::sync::{Arc, OnceLock};
 
 use crate::parallel::*;
@@ -137,15 +139,21 @@ impl Compiled {
     /// Another model, usually an edited one. It is lowered when something is asked of it. A program whose
     /// function is equal takes the new numbers; only others are compiled. The [origin](Self::origin) stays,
     /// wherever the other model is.
+    ///
+    /// If the check knows which nodes of the present model were edited ([`CheckedTree::changed_since`]), and
+    /// these are few, the programs that are there get the rows of these nodes anew, and nothing is lowered
+    /// but them.
     #[must_use]
     pub fn updated(&self, tree: &CheckedTree) -> Self {
-        Self(Arc::new(CompiledParts {
+        let parts = CompiledParts {
             compiler: self.0.compiler.clone(),
             tree: tree.with_origin(self.origin()),
             anywhere: self.0.anywhere.each_ref().map(ProgramSlot::renewed),
             in_regions: self.0.in_regions.each_ref().map(ProgramSlot::renewed),
             ranges: self.0.ranges.renewed(),
-        }))
+        };
+        patch::patch(&self.0, &parts);
+        Self(Arc::new(parts))
     }
 
     /// The model.

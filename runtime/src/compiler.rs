@@ -31,6 +31,9 @@ pub struct CompileCounters {
     pub kernels: u64,
     /// Programs that were given the numbers of a model.
     pub bound: u64,
+    /// Edited models of which only changed rows were lowered: see
+    /// [`Compiled::updated`](crate::Compiled::updated).
+    pub patched: u64,
 }
 
 /// What the clones of a compiler share.
@@ -39,6 +42,7 @@ struct CompilerMemory {
     known: Mutex<Vec<KnownKernel>>,
     kernels: AtomicU64,
     bound: AtomicU64,
+    patched: AtomicU64,
 }
 
 /// The code of a shape, for a purpose.
@@ -103,7 +107,13 @@ impl Compiler {
         CompileCounters {
             kernels: self.memory.kernels.load(Ordering::Relaxed),
             bound: self.memory.bound.load(Ordering::Relaxed),
+            patched: self.memory.patched.load(Ordering::Relaxed),
         }
+    }
+
+    /// Counts an edited model of which only changed rows were lowered.
+    pub(crate) fn count_patched(&self) {
+        self.memory.patched.fetch_add(1, Ordering::Relaxed);
     }
 
     /// Whether formulas of a model may become straight code. No value of a parameter compiles anything, so

@@ -137,6 +137,16 @@ impl Evaluator {
         }
     }
 
+    /// The numbers of what runs points of regions.
+    pub(crate) fn regional_tables(&self) -> &Tables {
+        self.regional().tables()
+    }
+
+    /// Whether another evaluator runs the same code at points of regions, and lays its answers out alike.
+    pub(crate) fn is_alike(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.regional().kernel, &other.regional().kernel) && self.layout() == other.layout()
+    }
+
     /// The query that it answers.
     #[must_use]
     pub fn query(&self) -> Query {

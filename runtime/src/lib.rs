@@ -45,6 +45,7 @@
 //! * A [`Pruner`] makes a [`Region`] of a box: the rows that matter there. [`Evaluator::eval_region`] runs
 //!   these alone, with the same bits; [`divide`], [`sample`] and meshes do so by themselves.
 //! * [`Polygonize`] meshes a model, [`Render`] makes pictures of it; [`export`] writes both.
+//! * A [`LiveMesh`] follows the edits of its model: what has changed is made anew, in buffers for a GPU.
 //! * A [`contour::Slicer`] looks at a model in a plane: contours as closed loops, and images.
 //! * A [`Solid`] answers questions about the set that a model encloses: which side a point is on, which leaf
 //!   decides there, how far it reaches, how large it is.
@@ -129,6 +130,7 @@ mod finite_points;
 pub mod internals;
 mod job;
 mod kernel;
+pub mod live;
 pub mod mesh;
 mod parallel;
 mod picture;
@@ -158,7 +160,7 @@ pub use jbt_ir::level::{self, Level};
 pub use jbt_ir::limits;
 pub use jbt_model::attribute::{AttributeGroup, Mixing};
 pub use jbt_model::builder as build;
-pub use jbt_model::check::{CheckedTree, NodeId};
+pub use jbt_model::check::{CheckedModel, CheckedTree, NodeId};
 pub use jbt_model::combine::{Combinator, SetOperation};
 pub use jbt_model::diagnostic::{self, Diagnostic, Diagnostics};
 pub use jbt_model::falloff::Falloff;
@@ -181,6 +183,7 @@ pub use error::{Classified, CompileError, ErrorKind, EvalError};
 pub use evaluator::{Evaluator, Update};
 pub use job::{CancelToken, Job};
 pub use kernel::Engine;
+pub use live::LiveMesh;
 pub use picture::Picture;
 pub use points::{AsPoint, AsPoints, LengthError, Points, PointsIter};
 pub use polygonize::{Fineness, MeshCounters, Polygonize, PolygonizeError, Polygonized};

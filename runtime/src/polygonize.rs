@@ -25,7 +25,7 @@ use crate::mesh::{self, Lattice, LatticeError, Mesh, MeshError, MeshReport};
 use crate::prune::PruneCounters;
 use crate::support::{NoBox, around};
 
-use kernels::Kernels;
+pub(crate) use kernels::Kernels;
 
 /// How fine a lattice is.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -244,18 +244,45 @@ impl Polygonize {
         Job::new(move |hook| settings.mesh_hooked(compiled, hook))
     }
 
-    fn mesh_hooked(&self, compiled: &Compiled, hook: Hook<'_>) -> Result<Polygonized, PolygonizeError> {
-        let tree = compiled.tree();
-        let lattice = self.lattice(tree)?;
-        let start = Instant::now();
-        let kernels = Kernels::new(compiled)?;
-        let compile_time = start.elapsed();
-        let options = mesh::Options {
+    /// The mesh of a compiled model over a lattice, in coordinates about the model's
+    /// [origin](Compiled::origin). Region and fineness are not asked.
+    ///
+    /// # Errors
+    /// See [`PolygonizeError`].
+    pub fn over<'a>(
+        &self,
+        compiled: &'a Compiled,
+        lattice: &'a Lattice,
+    ) -> Job<'a, Polygonized, PolygonizeError> {
+        let settings = *self;
+        Job::new(move |hook| settings.mesh_over(compiled, lattice.clone(), hook))
+    }
+
+    /// How the mesher is asked.
+    pub(crate) fn options(&self, tree: &CheckedTree) -> mesh::Options {
+        mesh::Options {
             iso: tree.iso() as f32,
             verify: self.verify,
             thin_parts: self.thin_parts,
             ..mesh::Options::default()
-        };
+        }
+    }
+
+    fn mesh_hooked(&self, compiled: &Compiled, hook: Hook<'_>) -> Result<Polygonized, PolygonizeError> {
+        self.mesh_over(compiled, self.lattice(compiled.tree())?, hook)
+    }
+
+    fn mesh_over(
+        &self,
+        compiled: &Compiled,
+        lattice: Lattice,
+        hook: Hook<'_>,
+    ) -> Result<Polygonized, PolygonizeError> {
+        let tree = compiled.tree();
+        let start = Instant::now();
+        let kernels = Kernels::new(compiled)?;
+        let compile_time = start.elapsed();
+        let options = self.options(tree);
         let mut counters = MeshCounters::default();
         let meshed = |report: &MeshReport| counters = MeshCounters::new(&kernels, report, &lattice);
         let (mut mesh, mut report) = mesh::extract_hooked(&kernels, &lattice, &options, hook, meshed)?;

@@ -1,13 +1,14 @@
 //! One compiled model: whatever looks at it, each program is compiled and given its numbers once, and nothing
 //! is that nobody asks for.
 
+use jbt::boxes::Divisible as _;
 use jbt::build::point;
-use jbt::contour::{Detail, Plane, Slicer};
+use jbt::contour::{Detail, Plane, Rectangle, Slicer};
 use jbt::sample::Sampler;
 use jbt::solid::Measure;
 use jbt::{
-    CheckedTree, CompileCounters, Compiled, Compiler, Engine, Fineness, Model, Polygonize, Query, Ray,
-    Render, Renderer, Solid, Tracer, Tree, Update,
+    Box3, CheckedModel, CheckedTree, CompileCounters, Compiled, Compiler, Engine, Fineness, Model,
+    Polygonize, Query, Ray, Render, Renderer, Solid, Tracer, Tree, Update,
 };
 
 fn balls(count: usize, radius: f64) -> CheckedTree {
@@ -136,4 +137,81 @@ fn straight_code_and_rows_are_made_when_they_are_asked_for() {
     Tracer::of(&compiled, Query::FIELD).expect("it compiles");
     assert_eq!(made(&compiled), [3; 2], "rays run rows, which are there");
     assert_eq!(compiled.evaluator(Query::FIELD).unwrap().update(&tree).unwrap(), Update::Numbers);
+}
+
+/// Points with numbers of their own, the leaves of one sum.
+fn blobs(count: usize, seed: u64) -> Vec<Tree> {
+    let mut rng = fastrand::Rng::with_seed(seed);
+    let mut coordinate = move || 2.0 * rng.f64() - 1.0;
+    let mut blob = |n: usize| {
+        let at = [coordinate(), coordinate(), coordinate()];
+        let leaf = if n.is_multiple_of(3) {
+            jbt::build::segment(at, at.map(|c| c + 0.1), 0.3)
+        } else {
+            point(at, 0.4).strength(if n.is_multiple_of(7) { -0.5 } else { 1.0 })
+        };
+        let leaf = if n.is_multiple_of(5) { leaf.translate([0.1, 0.0, 0.0]) } else { leaf };
+        if n.is_multiple_of(4) { leaf } else { leaf.color([coordinate().abs(), 0.5, 0.2]) }
+    };
+    (0..count).map(&mut blob).collect()
+}
+
+/// A model, edited leaf by leaf: what was patched has the tables, the supports and the answers of what is
+/// made anew.
+#[test]
+fn patched_programs_are_those_of_the_model() {
+    let others = blobs(60, 2);
+    for operator in 0..4 {
+        let mut leaves = blobs(60, 1);
+        let model = |leaves: &[Tree]| {
+            let leaves = leaves.iter().cloned();
+            Model::new(match operator {
+                0 => Tree::sum(leaves),
+                1 => Tree::blend(3.0, leaves).translate([0.3, 0.0, 0.0]),
+                2 => Tree::union(leaves).color([0.5, 0.5, 0.5]),
+                _ => Tree::sum(leaves).twist(jbt::build::Axis::Z, 0.5),
+            })
+        };
+        let compiler = Compiler::for_engine(Engine::Lanes);
+        let mut checked = CheckedModel::new(&model(&leaves)).expect("a good model");
+        let mut slicer = Slicer::of(&compiler.compile(checked.tree()), &Plane::default(), Query::ALL);
+        let mut evaluator = compiler.compile(checked.tree()).evaluator(Query::ALL).expect("it compiles");
+        let mut compiled = compiler.compile(checked.tree());
+        let _ = Polygonize::default().with(&compiled).run().expect("it has a mesh");
+        for (n, other) in others.iter().enumerate() {
+            leaves[n] = other.clone();
+            let edited = model(&leaves);
+            let tree = checked.edit(&edited).expect("a good model").clone();
+            assert_eq!(tree, edited.check().expect("a good model"));
+            compiled = compiled.updated(&tree);
+            let fresh = Compiler::for_engine(Engine::Lanes).compile(&tree.with_origin(compiled.origin()));
+            for query in [Query::FIELD, Query::GRADIENT, Query::ALL] {
+                let [now, new] =
+                    [&compiled, &fresh].map(|compiled| compiled.evaluator(query).expect("it compiles"));
+                // Some constants are NaN, and their texts are equal.
+                assert_eq!(format!("{:?}", now.program()), format!("{:?}", new.program()));
+                for (now, new) in now.tables().tables.values().zip(new.tables().tables.values()) {
+                    assert_eq!((now, &now.nodes), (new, &new.nodes), "operator {operator}, edit {n}");
+                }
+            }
+            let [now, new] = [&compiled, &fresh].map(|compiled| compiled.pruner().expect("it compiles"));
+            let mut rng = fastrand::Rng::with_seed(n as u64);
+            for _ in 0..20 {
+                let low: [f32; 3] = std::array::from_fn(|_| 2.4 * rng.f32() - 1.2);
+                let bounds = Box3::new(low, low.map(|c| c + 0.5 * rng.f32()));
+                let [now, new] = [&now, &new].map(|pruner| pruner.region(bounds).expect("a box"));
+                assert_eq!(now.selection(), new.selection(), "operator {operator}, edit {n}, {bounds:?}");
+            }
+            evaluator.update(&tree).expect("it compiles");
+            let next = slicer.expect("it compiles").updated(&tree);
+            let square = Rectangle::new([-1.0; 2], [1.0; 2]).expect("a square");
+            let anew = Slicer::new(&compiler, &tree, &Plane::default(), Query::ALL).expect("it compiles");
+            let contours = [next.as_ref().expect("it compiles"), &anew]
+                .map(|slicer| slicer.contour(&square, &Detail::default()).run().expect("a contour"));
+            assert_eq!(contours[0].positions, contours[1].positions);
+            slicer = next;
+        }
+        let patched = compiler.counters().patched;
+        assert!(patched >= 20, "operator {operator}: {patched} edits were patched");
+    }
 }

@@ -68,6 +68,7 @@ forms, NAME_form, the fastest. NAME is one of:
   ours        the compiler, on its best engine (key engine); the lanes interpreter for the case interpreter
   limit       hand-written loops for sums of points (key limit_level: their instruction set, which --level bounds too)
   searched    the compiler, with the search for parts that its mesh misses
+  whole       the compiler, everything made anew after an edit but the code
   lanes       the lanes interpreter, beside ours where both take part
   fidget_jit  fidget's machine code          fidget_vm  its interpreter
   splashsurf  another surface of the same particles

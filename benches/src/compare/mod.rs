@@ -9,6 +9,7 @@
 
 mod contest;
 mod dense;
+mod live;
 mod mesh;
 mod options;
 mod oracle;
@@ -98,6 +99,11 @@ impl Case {
             name: "edit",
             what: "change a number of 512 points, evaluate the field at 4,096",
             run: rows::edit,
+        },
+        Self {
+            name: "live",
+            what: "one of 4,096 points moves, until the mesh is up to date, 129^3 lattice",
+            run: live::moves,
         },
     ];
 

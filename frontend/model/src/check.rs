@@ -38,6 +38,7 @@ use crate::report::Report;
 
 mod arena;
 mod dependence;
+mod edit;
 mod fields;
 mod groups;
 mod node;
@@ -49,6 +50,7 @@ mod tree;
 pub use arena::{CheckedNode, Children, NodeId};
 use arena::{Paths, check_instances};
 use dependence::Dependence;
+pub use edit::CheckedModel;
 use groups::{check_groups, share_name, widths};
 pub use node::MIN_RECIPROCAL_CONDITION;
 use node::check_node;
@@ -99,7 +101,17 @@ impl Model {
         let (attributes, dependence) = (self.attributes.clone(), Arc::new(dependence));
         let (paths, nodes, source) = (Paths::new(&nodes), nodes.into(), self.source.clone());
         let origin = self.origin.map_or(ModelOrigin::WORLD, ModelOrigin::new);
-        let tree = CheckedTree { iso, attributes, nodes, paths, parameters, dependence, origin, source };
+        let tree = CheckedTree {
+            iso,
+            attributes,
+            nodes,
+            paths,
+            parameters,
+            dependence,
+            origin,
+            source,
+            lineage: None,
+        };
         let found = || ModelOrigin::of(tree.support());
         Ok(if self.origin.is_some() { tree } else { CheckedTree { origin: found(), ..tree } })
     }

@@ -165,13 +165,35 @@ impl Slicer {
     /// # Errors
     /// The model is beyond a limit, or the engine cannot be had.
     pub fn of(compiled: &Compiled, plane: &Plane, query: Query) -> Result<Self, CompileError> {
-        let moved;
-        let (compiled, axes, across, at) = match plane.0 {
-            PlaneKind::Across { axis, at } => (compiled, others(axis), axis, at),
+        match plane.0 {
+            PlaneKind::Across { .. } => Self::looking(compiled, plane, query),
             PlaneKind::Spanned { .. } => {
-                moved = compiled.compiler().compile(&compiled.tree().mapped(plane.rows()));
-                (&moved, [0, 1], 2, 0.0)
+                let moved = compiled.compiler().compile(&compiled.tree().mapped(plane.rows()));
+                Self::looking(&moved, plane, query)
             }
+        }
+    }
+
+    /// A slicer for another model, usually an edited one, and the same plane: see [`Compiled::updated`]. The
+    /// origin of coordinates stays.
+    ///
+    /// # Errors
+    /// Those of [`of`](Self::of).
+    pub fn updated(&self, tree: &CheckedTree) -> Result<Self, CompileError> {
+        let compiled = self.pruner.compiled();
+        let updated = match self.plane.0 {
+            PlaneKind::Across { .. } => compiled.updated(tree),
+            PlaneKind::Spanned { .. } => compiled.updated(&tree.mapped(self.plane.rows())),
+        };
+        let query = if self.full.is_some() { Query::ATTRIBUTES } else { Query::FIELD };
+        Self::looking(&updated, &self.plane, query)
+    }
+
+    /// A slicer for a compiled model that has the plane across an axis.
+    fn looking(compiled: &Compiled, plane: &Plane, query: Query) -> Result<Self, CompileError> {
+        let (axes, across, at) = match plane.0 {
+            PlaneKind::Across { axis, at } => (others(axis), axis, at),
+            PlaneKind::Spanned { .. } => ([0, 1], 2, 0.0),
         };
         let tree = compiled.tree();
         let view = PlaneView { axes, at: tree.origin().rounded([at; 3])[across] };

@@ -14,7 +14,7 @@ use super::report::Sides;
 use super::sample::BrickSamples;
 
 /// A cell that the surface crosses.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub(crate) struct CrossedCell {
     /// The vertex of its first sheet, counted from the first vertex of its brick; the vertices of the other
     /// sheets follow.
@@ -70,6 +70,34 @@ impl Crossings {
 
 /// Finds the crossing cells, flips faces, and numbers the vertices.
 pub(crate) fn find(bricks: &Bricks, samples: &BrickSamples, iso: f32) -> Crossings {
+    let mut found = look(bricks, samples, iso);
+    let flipped_faces = flip(bricks, &found.starts, &mut found.cells, &found.suspects);
+    found.numbered(bricks, flipped_faces)
+}
+
+/// The crossing cells of all bricks, before faces are flipped.
+pub(crate) struct UnflippedCells {
+    pub(crate) cells: Vec<CrossedCell>,
+    /// See [`Crossings::corners`].
+    corners: Vec<Vec<[f32; 8]>>,
+    /// Where the cells of each brick begin, and the end.
+    pub(crate) starts: Vec<usize>,
+    /// Cells with a low face that is pinched by default: the brick and the cell, ascending.
+    pub(crate) suspects: Vec<(usize, usize)>,
+    cut: Sides,
+}
+
+impl UnflippedCells {
+    /// Numbers the vertices, once faces are flipped.
+    pub(crate) fn numbered(self, bricks: &Bricks, flipped_faces: u64) -> Crossings {
+        let Self { mut cells, corners, starts, suspects: _, cut } = self;
+        let (vertices, quads) = number_vertices(bricks, &starts, &mut cells);
+        Crossings { cells, corners, starts, vertices, quads, flipped_faces, cut }
+    }
+}
+
+/// Finds the crossing cells.
+pub(crate) fn look(bricks: &Bricks, samples: &BrickSamples, iso: f32) -> UnflippedCells {
     let group = bricks.group();
     let groups = bricks.len().div_ceil(group);
     let found = (0..groups).into_par_iter().map_init(
@@ -97,10 +125,7 @@ pub(crate) fn find(bricks: &Bricks, samples: &BrickSamples, iso: f32) -> Crossin
         corners.push(found.corners);
         cut.add(found.cut);
     }
-    let starts = starts(counts.into_iter());
-    let flipped_faces = flip(bricks, &starts, &mut cells, &suspects);
-    let (vertices, quads) = number_vertices(bricks, &starts, &mut cells);
-    Crossings { cells, corners, starts, vertices, quads, flipped_faces, cut }
+    UnflippedCells { cells, corners, starts: starts(counts.into_iter()), suspects, cut }
 }
 
 /// The crossing cells of some bricks.
@@ -266,7 +291,12 @@ fn join<const WIDTH: usize>(bits: &[u8], step: usize, joined: &mut [u8]) {
 }
 
 /// Flips faces until none is pinched in both of its cells. Returns the number of flips.
-fn flip(bricks: &Bricks, starts: &[usize], cells: &mut [CrossedCell], suspects: &[(usize, usize)]) -> u64 {
+pub(crate) fn flip(
+    bricks: &Bricks,
+    starts: &[usize],
+    cells: &mut [CrossedCell],
+    suspects: &[(usize, usize)],
+) -> u64 {
     let mut count = 0;
     for &(brick, upper) in suspects {
         for axis in 0..3 {

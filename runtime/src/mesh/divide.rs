@@ -22,6 +22,7 @@ use super::field::Field;
 use super::options::Options;
 use super::report::Sides;
 use super::stage::MeshStage;
+use super::touched::Touched;
 use crate::boxes::{ANYTHING, Box3, MAX_PARTS};
 use crate::progress::Progress;
 
@@ -105,21 +106,24 @@ struct BoxChildren<R> {
 struct BrickDivider<'a, 'hook, F: Field> {
     field: &'a F,
     axes: &'a [Vec<f32>; 3],
+    /// The boxes that are looked at; all, if there are none.
+    touched: Option<&'a Touched>,
     iso: f32,
     limit: usize,
     progress: &'a Progress<'hook>,
 }
 
-/// Divides a lattice with these coordinates into bricks. No more than `limit` boxes of one size are kept.
+/// Divides a lattice with these coordinates into bricks. No more than `limit` boxes of one size are kept. Of
+/// a lattice that is touched in parts, these parts alone are divided.
 pub(crate) fn divide<F: Field>(
     field: &F,
     axes: [Vec<f32>; 3],
-    options: &Options,
+    (options, touched): (&Options, Option<&Touched>),
     limit: usize,
     progress: &Progress<'_>,
 ) -> Result<BrickDivision<F::Region>, MeshError<F::Error>> {
     let mut edge = options.brick.unwrap_or(DEFAULT_BRICK);
-    let divider = BrickDivider { field, axes: &axes, iso: options.iso, limit, progress };
+    let divider = BrickDivider { field, axes: &axes, touched, iso: options.iso, limit, progress };
     let most = axes.iter().map(|axis| axis.len() - 1).fold(1, usize::max);
     // The search for thin parts wants the same boxes around each box, whatever the edge of bricks is: the
     // first has room for the largest brick.
@@ -235,13 +239,18 @@ impl<F: Field> BrickDivider<'_, '_, F> {
         let first =
             |child: usize| [0, 1, 2].map(|axis| (2 * place[axis] as usize + (child >> axis & 1)) * size);
         let in_lattice = |child: usize| (0..3).all(|axis| first(child)[axis] + 1 < self.axes[axis].len());
+        let is_touched = |child: usize| self.touched.is_none_or(|touched| touched.has(first(child), size));
         let bounds = |child: usize| box_of(self.axes, first(child), first(child).map(|index| index + size));
         let mut boxes = [Box3::default(); MAX_PARTS];
         let mut which = [0; MAX_PARTS];
         let mut count = 0;
-        for child in (0..8).filter(|&child| in_lattice(child)) {
+        for child in (0..8).filter(|&child| in_lattice(child) && is_touched(child)) {
             (boxes[count], which[count]) = (bounds(child), child);
             count += 1;
+        }
+        if count == 0 {
+            children.masks.push(0);
+            return Ok(());
         }
         let ranges = self.ranges(region, &boxes[..count])?;
         let (mut mask, mut kept) = (0_u8, 0);
@@ -435,7 +444,7 @@ mod tests {
     fn divided(cells: [usize; 3], limit: usize) -> Result<BrickDivision<()>, MeshError<Infallible>> {
         let axes = cells.map(|cells| (0..=cells).map(|index| -3.0 + 0.125 * index as f32).collect());
         let options = Options { iso: -4.0, brick: Some(2), ..Options::default() };
-        divide(&Ball, axes, &options, limit, &Progress::new(&mut |_| true, EACH))
+        divide(&Ball, axes, (&options, None), limit, &Progress::new(&mut |_| true, EACH))
     }
 
     #[test]

@@ -1,8 +1,9 @@
 //! The lattice: the points at which a mesh evaluates the field.
 //!
-//! A coordinate is a function of a *global* integer index alone: `origin + spacing * index` in f64 (a
+//! A coordinate is a function of a *global* integer index alone: `anchor + spacing * index` in f64 (a
 //! product, then a sum, not fused), rounded once to f32. Every brick and every thread computes the same bits
-//! for a corner, so a corner that several cells share is one point and is evaluated once.
+//! for a corner, so a corner that several cells share is one point and is evaluated once. A lattice that has
+//! [grown](Lattice::grown) counts from its old anchor, so its old corners keep their bits.
 
 use crate::error::{Classified, ErrorKind};
 use jbt_ir::limits::{MAX_LATTICE_POINTS, MAX_RESOLUTION};
@@ -84,7 +85,19 @@ pub struct Lattice {
     origin: [f64; 3],
     spacing: f64,
     cells: [usize; 3],
+    /// The indices of the first corner, counted from the origin: not 0 only if the lattice has grown.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "is_anchor"))]
+    first: [i64; 3],
 }
+
+/// Whether the first corner is the anchor.
+#[cfg(feature = "serde")]
+fn is_anchor(first: &[i64; 3]) -> bool {
+    *first == [0; 3]
+}
+
+/// The cells by whose multiples a lattice grows: the largest bricks keep their places.
+const GROWTH: i64 = super::error::MAX_BRICK as i64;
 
 impl Lattice {
     /// A lattice of `cells` cells of edge `spacing`, its first corner at `origin`.
@@ -98,16 +111,7 @@ impl Lattice {
         if spacing <= 0.0 {
             return Err(LatticeError::Spacing { spacing });
         }
-        for (axis, &cells) in cells.iter().enumerate() {
-            if cells == 0 || cells > MAX_RESOLUTION {
-                return Err(LatticeError::Cells { axis, cells });
-            }
-        }
-        let lattice = Lattice { origin, spacing, cells };
-        for axis in 0..3 {
-            lattice.check_axis(axis)?;
-        }
-        Ok(lattice)
+        Lattice { origin, spacing, cells, first: [0; 3] }.checked()
     }
 
     /// The lattice of the given spacing that begins at `low` and reaches `high` (or passes it by less than a
@@ -139,9 +143,52 @@ impl Lattice {
         Lattice::covering(low, high, length(longest) / resolution as f64)
     }
 
+    /// The same lattice with more cells on any side, so many that it covers a box: its old corners are among
+    /// the new ones, with the same coordinates. It grows by multiples of [`MAX_BRICK`](super::MAX_BRICK)
+    /// cells, and never shrinks.
+    ///
+    /// # Errors
+    /// As [`Lattice::new`], and [`LatticeError::EmptyRegion`].
+    pub fn grown(&self, low: [f64; 3], high: [f64; 3]) -> Result<Self, LatticeError> {
+        check_region(low, high)?;
+        let mut grown = self.clone();
+        for axis in 0..3 {
+            let (first, end) = (self.first[axis], self.first[axis] + self.cells[axis] as i64);
+            // The casts saturate at numbers that are beyond any limit.
+            let place = |side: f64| (side - self.origin[axis]) / self.spacing;
+            let below = first.saturating_sub((place(low[axis]) + UNCOVERED).floor() as i64).max(0);
+            let above = ((place(high[axis]) - UNCOVERED).ceil() as i64).saturating_sub(end).max(0);
+            let [below, above] =
+                [below, above].map(|cells| cells.saturating_add(GROWTH - 1) / GROWTH * GROWTH);
+            let cells = (self.cells[axis] as i64).saturating_add(below).saturating_add(above);
+            if cells > MAX_RESOLUTION as i64 {
+                return Err(LatticeError::Cells { axis, cells: cells as usize });
+            }
+            (grown.first[axis], grown.cells[axis]) = (first - below, cells as usize);
+        }
+        if grown == *self { Ok(grown) } else { grown.checked() }
+    }
+
+    /// The same lattice, if it keeps to the limits.
+    fn checked(self) -> Result<Self, LatticeError> {
+        for (axis, &cells) in self.cells.iter().enumerate() {
+            if cells == 0 || cells > MAX_RESOLUTION {
+                return Err(LatticeError::Cells { axis, cells });
+            }
+        }
+        (0..3).try_for_each(|axis| self.check_axis(axis))?;
+        Ok(self)
+    }
+
     /// The first corner.
     pub fn origin(&self) -> [f64; 3] {
-        self.origin
+        [0, 1, 2].map(|axis| self.place(axis, 0))
+    }
+
+    /// The indices of the first corner, counted from the corner that was the first one before the lattice
+    /// [grew](Self::grown).
+    pub fn first(&self) -> [i64; 3] {
+        self.first
     }
 
     /// The edge of a cell.
@@ -175,7 +222,13 @@ impl Lattice {
 
     /// The coordinate of the corners with this index along an axis (0, 1 or 2).
     pub fn coordinate(&self, axis: usize, index: usize) -> f32 {
-        (self.origin[axis] + self.spacing * index as f64) as f32
+        self.place(axis, index) as f32
+    }
+
+    /// As [`coordinate`](Self::coordinate), before it is rounded.
+    fn place(&self, axis: usize, index: usize) -> f64 {
+        // Whole numbers far below 2^53.
+        self.origin[axis] + self.spacing * (self.first[axis] + index as i64) as f64
     }
 
     /// The coordinates along each axis.
@@ -227,6 +280,20 @@ mod tests {
         assert!(lattice.check_points().is_ok());
         assert_eq!(lattice.coordinate(0, 0), -1.0);
         assert_eq!(Lattice::with_resolution([0.0; 3], [1.0, 3.0, 2.0], 30).unwrap().cells(), [10, 30, 20]);
+    }
+
+    #[test]
+    fn what_grows_keeps_its_corners() {
+        let lattice = Lattice::covering([-0.1; 3], [0.9; 3], 0.07).unwrap();
+        assert_eq!(lattice.cells(), [15; 3]);
+        let grown = lattice.grown([-0.2, 0.0, 0.0], [0.5, 0.95, 4.0]).unwrap();
+        assert_eq!((grown.first(), grown.cells()), ([-32, 0, 0], [47, 15, 79]));
+        for index in 0..=15 {
+            assert_eq!(grown.coordinate(0, index + 32).to_bits(), lattice.coordinate(0, index).to_bits());
+        }
+        assert_eq!(lattice.grown([0.0; 3], [0.5; 3]), Ok(lattice.clone()));
+        assert!(matches!(lattice.grown([0.0; 3], [1e9; 3]), Err(LatticeError::Cells { axis: 0, .. })));
+        assert!(matches!(lattice.grown([-1e300; 3], [1.0; 3]), Err(LatticeError::Cells { axis: 0, .. })));
     }
 
     #[test]

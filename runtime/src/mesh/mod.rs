@@ -45,6 +45,7 @@ mod error;
 mod field;
 mod indexed;
 mod lattice;
+pub(crate) mod local;
 mod measure;
 mod options;
 mod pull;
@@ -54,6 +55,7 @@ mod settle;
 mod stage;
 mod surface;
 mod thin;
+mod touched;
 mod vertex;
 
 use jbt_ir::limits::MAX_BRICKS;
@@ -107,7 +109,7 @@ pub(crate) fn extract_hooked<F: Field>(
 ) -> Result<(Mesh, MeshReport), MeshError<F::Error>> {
     options.check()?;
     let progress = Progress::new(hook, EACH);
-    let division = divide::divide(field, lattice.axes(), options, MAX_BRICKS, &progress)?;
+    let division = divide::divide(field, lattice.axes(), (options, None), MAX_BRICKS, &progress)?;
     let (mesh, mut report, crossings) = polygonize(field, &division, options, &progress)?;
     meshed(&report);
     if options.thin_parts {

@@ -197,41 +197,77 @@ fn halves([p, q, r, s]: [u32; 4], positions: &[[f32; 3]]) -> [[u32; 3]; 2] {
     [[q, r, d], [e, s, p]]
 }
 
-/// Repairs the normals of some vertices, given in ascending order, by their triangles. A vertex without a
-/// normal (its gradient vanishes or is NaN) gets the area-weighted mean of its triangles' normals; or up, if
-/// they have no area. So does a vertex whose normal is more than 90 degrees off: where two surfaces are
-/// closer than a cell, the gradient may be the other surface's.
+/// Repairs the normals of some vertices, given in ascending order, by their triangles: see [`judged`].
 pub(crate) fn repair_normals(mesh: &mut Mesh, bricks: &Bricks, crossings: &Crossings, vertices: &[u32]) {
     if vertices.is_empty() {
         return;
     }
     let Mesh { positions, normals, triangles, .. } = mesh;
-    // For each vertex, its index in the list plus one; 0 for all others.
-    let mut places = vec![0_u32; normals.len()];
-    for (place, &vertex) in (1..).zip(vertices) {
-        places[vertex as usize] = place;
-    }
-    let mut sums = vec![[0.0_f64; 3]; vertices.len()];
+    let mut doubtful = DoubtfulNormals::new(0, normals.len(), vertices.iter().copied());
     for brick in bricks_around(bricks, crossings, vertices) {
-        for triangle in &triangles[2 * crossings.quads[brick]..2 * crossings.quads[brick + 1]] {
-            let wanted = triangle.map(|vertex| places[vertex as usize]);
+        doubtful.add(&triangles[2 * crossings.quads[brick]..2 * crossings.quads[brick + 1]], positions);
+    }
+    for (&vertex, &sum) in vertices.iter().zip(doubtful.sums()) {
+        let normal = &mut normals[vertex as usize];
+        *normal = judged(*normal, sum);
+    }
+}
+
+/// The areas of the triangles of some vertices.
+pub(crate) struct DoubtfulNormals {
+    /// The first vertex that may be among them.
+    first: u32,
+    /// For each vertex from there on, its place among them plus one; 0 for all others.
+    places: Vec<u32>,
+    /// For each of them, the sum of the area vectors of its triangles.
+    sums: Vec<[f64; 3]>,
+}
+
+impl DoubtfulNormals {
+    /// Without triangles: vertices of a range that begins at `first`, counted from there.
+    pub(crate) fn new(first: u32, count: usize, vertices: impl Iterator<Item = u32>) -> Self {
+        let (mut places, mut sums) = (vec![0_u32; count], Vec::new());
+        for vertex in vertices {
+            sums.push([0.0_f64; 3]);
+            places[vertex as usize] = sums.len() as u32;
+        }
+        Self { first, places, sums }
+    }
+
+    /// Adds triangles.
+    pub(crate) fn add(&mut self, triangles: &[[u32; 3]], positions: &[[f32; 3]]) {
+        let place =
+            |vertex: u32| self.places.get(vertex.wrapping_sub(self.first) as usize).copied().unwrap_or(0);
+        for triangle in triangles {
+            let wanted = triangle.map(place);
             if wanted == [0; 3] {
                 continue;
             }
             let area = area_vector(triangle.map(|vertex| positions[vertex as usize]));
             for place in wanted.into_iter().filter(|&place| place > 0) {
-                sums[place as usize - 1].iter_mut().zip(area).for_each(|(sum, area)| *sum += area);
+                self.sums[place as usize - 1].iter_mut().zip(area).for_each(|(sum, area)| *sum += area);
             }
         }
     }
-    for (&vertex, sum) in vertices.iter().zip(sums) {
-        let normal = &mut normals[vertex as usize];
-        let along: f64 = (0..3).map(|axis| f64::from(normal[axis]) * sum[axis]).sum();
-        if *normal == [0.0; 3] {
-            *normal = unit(sum).unwrap_or([0.0, 0.0, 1.0]);
-        } else if along < 0.0 {
-            *normal = unit(sum).unwrap_or(*normal);
-        }
+
+    /// The sums, in the order of the vertices.
+    pub(crate) fn sums(&self) -> &[[f64; 3]] {
+        &self.sums
+    }
+}
+
+/// The normal of a doubtful vertex, from its first one and the sum of the area vectors of its triangles. A
+/// vertex without a normal (its gradient vanishes or is NaN) gets the area-weighted mean of its triangles'
+/// normals; or up, if they have no area. So does a vertex whose normal is more than 90 degrees off: where two
+/// surfaces are closer than a cell, the gradient may be the other surface's.
+pub(crate) fn judged(normal: [f32; 3], sum: [f64; 3]) -> [f32; 3] {
+    let along: f64 = (0..3).map(|axis| f64::from(normal[axis]) * sum[axis]).sum();
+    if normal == [0.0; 3] {
+        unit(sum).unwrap_or([0.0, 0.0, 1.0])
+    } else if along < 0.0 {
+        unit(sum).unwrap_or(normal)
+    } else {
+        normal
     }
 }
 

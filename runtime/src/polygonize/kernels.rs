@@ -5,6 +5,7 @@ use jbt_model::query::Query;
 use crate::boxes::{Box3, Divisible, Range};
 use crate::compiled::{Compiled, Need, PointScope};
 use crate::counter::Counters;
+use crate::divide::Edit;
 use crate::error::{CompileError, EvalError};
 use crate::evaluator::Evaluator;
 use crate::kernel::Engine;
@@ -12,7 +13,7 @@ use crate::mesh::{Field, FieldWork};
 use crate::prune::{PruneCounters, Pruner, Region};
 
 /// What a mesh asks: a pruner, and three evaluators for regions.
-pub(super) struct Kernels {
+pub(crate) struct Kernels {
     pruner: Pruner,
     field: Evaluator,
     gradient: Evaluator,
@@ -21,7 +22,7 @@ pub(super) struct Kernels {
 
 impl Kernels {
     /// Those of a compiled model.
-    pub(super) fn new(compiled: &Compiled) -> Result<Self, CompileError> {
+    pub(crate) fn new(compiled: &Compiled) -> Result<Self, CompileError> {
         let queries = [Query::FIELD, Query::GRADIENT, Query::SURFACE];
         let [field, gradient, all] = queries.map(|query| Need::Answers(PointScope::Regions, query));
         compiled.prepare(&[Need::Ranges, field, gradient, all])?;
@@ -42,6 +43,20 @@ impl Kernels {
     /// What the pruner has done.
     pub(super) fn pruned(&self) -> PruneCounters {
         self.pruner.counters()
+    }
+
+    /// Where the field or an attribute of this model may differ from those of an earlier one.
+    pub(crate) fn edit(&self, before: &Self) -> Edit {
+        if !self.all.is_alike(&before.all) {
+            return Edit::Everywhere;
+        }
+        let tables = [before, self].map(|kernels| kernels.all.regional_tables());
+        let (field, all) = (self.pruner.edit(&before.pruner), self.pruner.edit_of(&before.pruner, tables));
+        match (field, all) {
+            (Edit::Boxes(field), Edit::Boxes(all)) if field == all => Edit::Boxes(all),
+            (Edit::Boxes(field), Edit::Boxes(all)) => Edit::Boxes([field, all].concat()),
+            (Edit::Everywhere, _) | (_, Edit::Everywhere) => Edit::Everywhere,
+        }
     }
 
     /// Distances that the field takes at a point, with all rows.

@@ -15,6 +15,7 @@ use jbt_lower::prune_info::{LARGEST_COORDINATE, Support};
 use crate::boxes::{Box3, MAX_PARTS};
 
 /// The supports of a table's rows, each in half a cache line, because rows are accessed in any order.
+#[derive(Clone)]
 pub(super) struct RowSupports {
     rows: Vec<SupportRow>,
 }
@@ -63,14 +64,21 @@ impl Boxes {
     }
 }
 
+impl SupportRow {
+    fn new(support: &Support) -> Self {
+        let &Support { low, high, radius_squared } = support;
+        Self { low, high, radius_squared }
+    }
+}
+
 impl RowSupports {
     pub(super) fn new(supports: &[Support]) -> Self {
-        let row = |support: &Support| SupportRow {
-            low: support.low,
-            high: support.high,
-            radius_squared: support.radius_squared,
-        };
-        Self { rows: supports.iter().map(row).collect() }
+        Self { rows: supports.iter().map(SupportRow::new).collect() }
+    }
+
+    /// Gives a row another support.
+    pub(super) fn set(&mut self, row: usize, support: &Support) {
+        self.rows[row] = SupportRow::new(support);
     }
 
     /// The boxes that a row reaches, a bit each.

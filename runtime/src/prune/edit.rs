@@ -12,7 +12,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use jbt_ir::selection::Shift;
-use jbt_ir::{Rows, Table};
+use jbt_ir::{Rows, Table, Tables};
 use jbt_lower::prune_info::{Rule, Support, SupportSpace};
 
 use super::cull::RowSupports;
@@ -58,6 +58,12 @@ impl Pruner {
     /// Cost: a comparison of all numbers.
     #[must_use]
     pub fn edit(&self, before: &Self) -> Edit {
+        self.edit_of(before, [before.tables(), self.tables()])
+    }
+
+    /// As [`edit`](Self::edit), by the numbers of another program of the two models, before and now. Rows are
+    /// the same in all of them, so where a row reaches is known; numbers of attributes are in some alone.
+    pub(crate) fn edit_of(&self, before: &Self, [old, new]: [&Tables; 2]) -> Edit {
         if !Arc::ptr_eq(&self.program.bound.kernel, &before.program.bound.kernel)
             || self.origin() != before.origin()
         {
@@ -68,13 +74,19 @@ impl Pruner {
             return Edit::Everywhere;
         }
         let mut boxes = Vec::new();
-        let bounded = |table: Table| self.edit_table(before, table, &mut boxes).is_some();
+        let both = |table: Table| [&old.tables[table], &new.tables[table]];
+        let bounded = |table: Table| self.edit_table(before, both(table), table, &mut boxes).is_some();
         if self.tables().tables.keys().all(bounded) { Edit::Boxes(boxes) } else { Edit::Everywhere }
     }
 
     /// Adds the boxes in which rows of a table may change the field; `None` if these boxes are unknown.
-    fn edit_table(&self, before: &Self, table: Table, boxes: &mut Vec<Box3>) -> Option<()> {
-        let [old, new] = [before, self].map(|pruner| &pruner.tables().tables[table]);
+    fn edit_table(
+        &self,
+        before: &Self,
+        [old, new]: [&Rows; 2],
+        table: Table,
+        boxes: &mut Vec<Box3>,
+    ) -> Option<()> {
         if old.active != new.active || old.starts != new.starts {
             if old.len() == new.len() {
                 self.edit_choice(before, table, boxes)?;

@@ -145,6 +145,11 @@ impl Pruner {
         self.compiled.updated(tree).pruner()
     }
 
+    /// The model.
+    pub(crate) fn compiled(&self) -> &Compiled {
+        &self.compiled
+    }
+
     /// The origin of the coordinates of boxes: the same as [`Evaluator::origin`](crate::Evaluator::origin).
     #[must_use]
     pub fn origin(&self) -> ModelOrigin {

@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use jbt_lower::prune_info::{PruneInfo, RangeFunction, Rule, TablePruneInfo};
+use jbt_ir::{Entity as _, Table, Tables};
+use jbt_lower::prune_info::{PruneInfo, RangeFunction, Rule, Support, TablePruneInfo};
 
 use super::cull::RowSupports;
 use crate::compiler::Compiler;
@@ -28,6 +29,36 @@ impl RangeProgram {
         let kernel = compiler.kernel(function, Purpose::Ranges, present)?;
         let supports = info.tables.values().map(supports).collect();
         Ok(Self { bound: compiler.bind(&kernel, tables), info, supports })
+    }
+}
+
+impl RangeProgram {
+    /// What is known about the rows.
+    pub(crate) fn info(&self) -> &PruneInfo {
+        &self.info
+    }
+
+    /// The numbers.
+    pub(crate) fn tables(&self) -> &Tables {
+        self.bound.tables()
+    }
+
+    /// The program of an edited model with the same rows, which has these numbers, and these supports of some
+    /// rows.
+    pub(crate) fn patched(
+        &self,
+        compiler: &Compiler,
+        tables: Tables,
+        changed: &[(Table, usize, Support)],
+    ) -> Self {
+        let (mut info, mut supports) = (self.info.clone(), self.supports.clone());
+        for &(table, row, support) in changed {
+            info.tables[table].supports[row] = support;
+            if let Some(supports) = &mut supports[table.index()] {
+                supports.set(row, &support);
+            }
+        }
+        Self { bound: compiler.bind(&self.bound.kernel, tables), info, supports }
     }
 }
 

@@ -62,6 +62,14 @@ impl Dependence {
         Some(&self.nodes[found].1)
     }
 
+    /// What depends on parameters among some nodes, which have these names. It tells what nodes were written
+    /// as, and not which parameters change them.
+    pub(super) fn of(&self, name: impl Fn(&NodeId) -> Option<NodeId>) -> Self {
+        let nodes = self.nodes.iter();
+        let nodes = nodes.filter_map(|(id, written)| Some((name(id)?, Arc::clone(written)))).collect();
+        Self { iso: self.iso.clone(), nodes, ..Self::default() }
+    }
+
     /// The nodes that can change with these parameters, ascending.
     pub(super) fn affected(&self, parameters: &[Parameter], moved: &mut [bool]) -> Vec<NodeId> {
         let mentions = |number: &Number, moved: &[bool]| {

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use jbt_ir::limits;
 
 use super::arena::{CheckedNode, NodeId, Paths, check_instances};
+use super::edit::Lineage;
 use super::groups::widths;
 use super::node::check_node;
 use super::numbers::check_number;
@@ -134,31 +135,34 @@ impl CheckedTree {
             Some(iso) => check_iso(&mut report, iso, &values),
             None => self.iso,
         };
-        let nodes = self.evaluated_again(&mut moved, (iso, &values), &mut report);
+        let (nodes, changed) = self.evaluated_again(&mut moved, (iso, &values), &mut report);
         if !report.is_empty() {
             report.sort();
             return Err(report.finish());
         }
         let (attributes, dependence) = (self.attributes.clone(), Arc::clone(&self.dependence));
         let (origin, source) = (self.origin, self.source.clone());
-        Ok(Self { iso, attributes, paths: Paths::new(&nodes), nodes, parameters, dependence, origin, source })
+        let lineage = Some(Lineage { from: Arc::clone(&self.nodes), changed: changed.into() });
+        let paths = Paths::new(&nodes);
+        Ok(Self { iso, attributes, paths, nodes, parameters, dependence, origin, source, lineage })
     }
 
-    /// The nodes, with those that depend on moved parameters evaluated and checked again.
+    /// The nodes, with those that depend on moved parameters evaluated and checked again; and which they
+    /// are.
     fn evaluated_again(
         &self,
         moved: &mut [bool],
         (iso, values): (f64, &ParameterValues),
         report: &mut Report,
-    ) -> Arc<[CheckedNode]> {
+    ) -> (Arc<[CheckedNode]>, Vec<NodeId>) {
         let affected = self.dependence.affected(&self.parameters, moved);
         if affected.is_empty() {
-            return Arc::clone(&self.nodes);
+            return (Arc::clone(&self.nodes), affected);
         }
         let groups = widths(&self.attributes);
         let mut nodes = self.nodes.to_vec();
         let mut in_pieces = false;
-        for id in affected {
+        for &id in &affected {
             let node = &mut nodes[id.0 as usize];
             let written = self.dependence.written(id).expect("affected nodes are kept as written");
             match evaluate(written, values, iso, node.span) {
@@ -174,7 +178,7 @@ impl CheckedTree {
         if in_pieces && report.is_empty() {
             check_instances(report, &nodes, limits::MAX_INSTANCES);
         }
-        nodes.into()
+        (nodes.into(), affected)
     }
 
     /// The nodes that a parameter can change, ascending: directly, through other parameters or through the
@@ -203,7 +207,7 @@ impl CheckedTree {
 }
 
 /// Whether a node is a leaf whose skeleton has any number of pieces.
-fn is_in_pieces(kind: &NodeKind) -> bool {
+pub(super) fn is_in_pieces(kind: &NodeKind) -> bool {
     match kind {
         NodeKind::Primitive(leaf) => leaf.skeleton.kind().pieces().is_some(),
         NodeKind::Combine(_)

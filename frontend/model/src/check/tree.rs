@@ -7,6 +7,7 @@ use glam::DAffine3;
 
 use super::arena::{CheckedNode, Children, NodeId, Paths};
 use super::dependence::Dependence;
+use super::edit::Lineage;
 use crate::affine;
 use crate::attribute::AttributeGroup;
 use crate::bounds::Bounds;
@@ -29,12 +30,15 @@ pub struct CheckedTree {
     pub(super) origin: ModelOrigin,
     /// The text that spans refer to.
     pub(super) source: Option<SourceText>,
+    /// The tree that it was made of, if it is an edit of another one.
+    pub(super) lineage: Option<Lineage>,
 }
 
 impl PartialEq for CheckedTree {
     /// Equal nodes, attributes and parameters; the source text does not count.
     fn eq(&self, other: &Self) -> bool {
-        let Self { iso, attributes, nodes, parameters, dependence, origin, paths: _, source: _ } = self;
+        let Self { iso, attributes, nodes, parameters, dependence, origin, paths: _, source: _, lineage: _ } =
+            self;
         *iso == other.iso
             && *attributes == other.attributes
             && *nodes == other.nodes
@@ -183,7 +187,7 @@ impl CheckedTree {
         copies[&root]
     }
 
-    fn of_nodes(&self, nodes: Vec<CheckedNode>) -> Self {
+    pub(super) fn of_nodes(&self, nodes: Vec<CheckedNode>) -> Self {
         Self {
             iso: self.iso,
             attributes: self.attributes.clone(),
@@ -193,6 +197,7 @@ impl CheckedTree {
             dependence: Arc::default(),
             origin: ModelOrigin::WORLD,
             source: self.source.clone(),
+            lineage: None,
         }
     }
 }
@@ -206,8 +211,10 @@ impl CheckedTree {
     #[must_use]
     pub fn support(&self) -> Bounds {
         let mut done: Vec<Extent> = Vec::with_capacity(self.nodes.len());
+        let mut children: Vec<Extent> = Vec::new();
         for node in &*self.nodes {
-            let children: Vec<_> = node.children.iter().map(|id| done[id.0 as usize]).collect();
+            children.clear();
+            children.extend(node.children.iter().map(|id| done[id.0 as usize]));
             done.push(node_extent(&node.kind, &children, self.iso));
         }
         done.last().map_or(Bounds::EMPTY, |root| root.support)

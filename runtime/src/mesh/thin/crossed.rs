@@ -12,7 +12,7 @@
 //!
 //! All of this depends only on the signs of lattice points, so it is the same for bricks of any size.
 
-use crate::mesh::brick::{Bricks, place};
+use crate::mesh::brick::{Bricks, morton, place};
 use crate::mesh::crossing::{CrossedCell, Crossings};
 
 /// Cells along the edge of a block.
@@ -68,24 +68,6 @@ const CROSSED: [u8; 256] = {
     }
     crossed
 };
-
-/// The bits of x, y and z interleaved, x lowest.
-pub(super) fn morton(place: [u32; 3]) -> u64 {
-    let spread = |index: u32| {
-        let mut bits = u64::from(index);
-        for (shift, mask) in [
-            (32, 0x001f_0000_0000_ffff),
-            (16, 0x001f_0000_ff00_00ff),
-            (8, 0x100f_00f0_0f00_f00f),
-            (4, 0x10c3_0c30_c30c_30c3),
-            (2, 0x1249_2492_4924_9249),
-        ] {
-            bits = (bits | bits << shift) & mask;
-        }
-        bits
-    };
-    spread(place[0]) | spread(place[1]) << 1 | spread(place[2]) << 2
-}
 
 /// The inverse of [`morton`].
 fn unwoven(code: u64) -> [u32; 3] {

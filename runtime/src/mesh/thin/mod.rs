@@ -17,6 +17,7 @@ mod shreds;
 
 use crate::parallel::*;
 
+use super::brick::morton;
 use super::crossing::Crossings;
 use super::divide::BrickDivision;
 use super::error::MeshError;
@@ -27,7 +28,7 @@ use super::stage::MeshStage;
 use crate::progress::Progress;
 
 use alarm::{ALARM, Alarm};
-use crossed::{CrossedBlocks, EDGE, morton, step};
+use crossed::{CrossedBlocks, EDGE, step};
 use search::{ChunkFindings, ThinSearch};
 use shreds::{Chunks, Looked};
 

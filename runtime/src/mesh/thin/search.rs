@@ -14,9 +14,9 @@
 //! A chunk that the surface crosses is left out: nearly all of space beside a smooth surface is in such
 //! chunks, and searching them would cost more than the mesh.
 
-use super::crossed::{CrossedBlocks, EDGE, bits, morton};
+use super::crossed::{CrossedBlocks, EDGE, bits};
 use crate::boxes::{ANYTHING, Box3, MAX_PARTS, Range};
-use crate::mesh::brick::{box_of, place};
+use crate::mesh::brick::{box_of, morton, place};
 use crate::mesh::error::MeshError;
 use crate::mesh::field::Field;
 

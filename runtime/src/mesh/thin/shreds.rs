@@ -16,9 +16,9 @@
 use crate::parallel::*;
 
 use super::alarm::{ALARM, Alarm};
-use super::crossed::{CrossedBlocks, morton};
+use super::crossed::CrossedBlocks;
 use crate::boxes::Box3;
-use crate::mesh::brick::Bricks;
+use crate::mesh::brick::{Bricks, morton};
 use crate::mesh::crossing::Crossings;
 use crate::mesh::error::MeshError;
 use crate::mesh::field::Field;

@@ -1,0 +1,81 @@
+//! Triangles of some bricks, and the normals that triangles decide.
+
+use rustc_hash::FxHashSet;
+
+use super::{BrickMesh, BrickPlace, linked, octet};
+use crate::mesh::crossing::Crossings;
+use crate::mesh::report::Sides;
+use crate::mesh::surface;
+
+/// Bricks that get triangles, and those around them whose vertices these have.
+pub(super) struct Join {
+    /// All of them in Morton order, as places from the lattice's first brick and from its anchor.
+    pub(super) bricks: Vec<([u32; 3], BrickPlace)>,
+    /// Those that get triangles.
+    pub(super) own: FxHashSet<BrickPlace>,
+}
+
+impl BrickMesh {
+    /// The triangles of some bricks, as indices of the buffers.
+    pub(super) fn triangles(&self, join: &Join) -> Vec<(BrickPlace, Vec<[u32; 3]>)> {
+        if join.own.is_empty() {
+            return Vec::new();
+        }
+        let mut crossings = Crossings {
+            cells: Vec::new(),
+            corners: Vec::new(),
+            starts: vec![0],
+            vertices: vec![0],
+            quads: vec![0],
+            flipped_faces: 0,
+            cut: Sides::default(),
+        };
+        let (mut positions, mut names, mut quads) = (Vec::new(), Vec::new(), 0);
+        for (_, place) in &join.bricks {
+            let brick = &self.bricks[place];
+            crossings.cells.extend_from_slice(&brick.cells);
+            crossings.starts.push(crossings.cells.len());
+            positions.extend_from_slice(&self.buffers.positions[brick.vertices.range()]);
+            names.extend(brick.vertices.range().map(|vertex| vertex as u32));
+            crossings.vertices.push(positions.len());
+            quads += if join.own.contains(place) { brick.quads } else { 0 };
+            crossings.quads.push(quads);
+        }
+        let places = join.bricks.iter().map(|&(place, _)| place).collect();
+        let bricks = linked(self.edge, self.lattice.axes(), places);
+        let triangles = surface::triangles(&bricks, &crossings, &positions);
+        let of_brick = |(brick, &(_, place)): (usize, &([u32; 3], BrickPlace))| {
+            let mine = &triangles[2 * crossings.quads[brick]..2 * crossings.quads[brick + 1]];
+            (place, mine.iter().map(|triangle| triangle.map(|vertex| names[vertex as usize])).collect())
+        };
+        let own = join.bricks.iter().enumerate().filter(|(_, (_, place))| join.own.contains(place));
+        own.map(of_brick).collect()
+    }
+
+    /// Judges the doubtful normals of a brick by its triangles and those of the bricks above. Returns whether
+    /// a normal has changed.
+    pub(super) fn judge_normals(&mut self, place: BrickPlace) -> bool {
+        let Some(brick) = self.bricks.get(&place).filter(|brick| !brick.doubtful.is_empty()) else {
+            return false;
+        };
+        let vertices = brick.vertices.range();
+        let mut judged = surface::DoubtfulNormals::new(
+            vertices.start as u32,
+            vertices.len(),
+            brick.doubtful.iter().map(|&(vertex, _)| vertex),
+        );
+        let above = octet(place, 1).filter(|place| self.bricks.contains_key(place)).collect::<Vec<_>>();
+        for (_, place) in self.in_order(above.into_iter()) {
+            judged
+                .add(&self.buffers.triangles[self.bricks[&place].triangles.range()], &self.buffers.positions);
+        }
+        let mut changed = false;
+        for (&(vertex, first), sum) in brick.doubtful.iter().zip(judged.sums()) {
+            let normal = &mut self.buffers.normals[vertices.start + vertex as usize];
+            let now = surface::judged(first, *sum);
+            changed |= now.map(f32::to_bits) != normal.map(f32::to_bits);
+            *normal = now;
+        }
+        changed
+    }
+}

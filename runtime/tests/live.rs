@@ -1,0 +1,414 @@
+//! Live meshes: after any edits, the mesh of a full run over their lattice.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use fastrand::Rng;
+use jbt::Classified as _;
+use jbt::build::{Edge, blinn, param, point, segment, x};
+use jbt::live::{BrickRanges, LiveChange};
+use jbt::mesh::Mesh;
+use jbt::{
+    Box3, CancelToken, CheckedTree, Compiler, Engine, ErrorKind, Fineness, LiveMesh, Model, Number,
+    Polygonize, PolygonizeError, Tree,
+};
+
+/// What the buffers hold, as somebody has copied it by the reports of edits alone.
+#[derive(Default)]
+struct Copied {
+    buffers: Mesh,
+    bricks: BTreeMap<[i32; 3], [Range<usize>; 2]>,
+}
+
+impl Copied {
+    fn of(live: &LiveMesh) -> Self {
+        let bricks = live.bricks().map(|brick| (brick.place, [brick.vertices, brick.triangles])).collect();
+        Self { buffers: live.buffers().clone(), bricks }
+    }
+
+    /// Copies what an edit has written.
+    fn follow(&mut self, live: &LiveMesh, change: &LiveChange) {
+        let now = live.buffers();
+        assert_eq!(
+            change.grown,
+            now.positions.len() != self.buffers.positions.len()
+                || now.triangles.len() != self.buffers.triangles.len()
+        );
+        self.buffers.positions.resize(now.positions.len(), [0.0; 3]);
+        self.buffers.normals.resize(now.positions.len(), [0.0; 3]);
+        self.buffers.triangles.resize(now.triangles.len(), [0; 3]);
+        if change.relaid {
+            self.buffers.attributes.clone_from(&now.attributes);
+        }
+        for attribute in &mut self.buffers.attributes {
+            attribute.values.resize(attribute.width * now.positions.len(), 0.0);
+        }
+        for range in change.written_vertices() {
+            self.buffers.positions[range.clone()].copy_from_slice(&now.positions[range.clone()]);
+            self.buffers.normals[range.clone()].copy_from_slice(&now.normals[range.clone()]);
+            for (to, from) in self.buffers.attributes.iter_mut().zip(&now.attributes) {
+                let range = range.start * to.width..range.end * to.width;
+                to.values[range.clone()].copy_from_slice(&from.values[range]);
+            }
+        }
+        for range in change.written_triangles() {
+            self.buffers.triangles[range.clone()].copy_from_slice(&now.triangles[range]);
+        }
+        for BrickRanges { place, vertices, triangles } in &change.removed {
+            let ranges = [vertices.clone(), triangles.clone()];
+            assert_eq!(self.bricks.remove(place), Some(ranges), "a brick that was there");
+        }
+        for BrickRanges { place, vertices, triangles } in &change.added {
+            assert!(self.bricks.insert(*place, [vertices.clone(), triangles.clone()]).is_none());
+        }
+        for changed in &change.changed {
+            let BrickRanges { place, vertices, triangles } = changed.brick.clone();
+            assert!(changed.positions || changed.normals || changed.attributes || changed.triangles);
+            assert!(self.bricks.insert(place, [vertices, triangles]).is_some());
+        }
+    }
+
+    /// Compares what was copied with the live mesh.
+    fn check(&self, live: &LiveMesh) {
+        let bricks: BTreeMap<_, _> =
+            live.bricks().map(|brick| (brick.place, [brick.vertices, brick.triangles])).collect();
+        assert_eq!(self.bricks, bricks);
+        let now = live.buffers();
+        assert_eq!(self.buffers.triangles, now.triangles);
+        let mut vertices: Vec<_> = bricks.values().map(|[vertices, _]| vertices.clone()).collect();
+        vertices.retain(|range| !range.is_empty());
+        vertices.sort_by_key(|range| range.start);
+        assert!(vertices.windows(2).all(|pair| pair[0].end <= pair[1].start), "bricks do not overlap");
+        let mut triangles: Vec<_> = bricks.values().map(|[_, triangles]| triangles.clone()).collect();
+        // A brick may have no triangles of its own.
+        triangles.retain(|range| !range.is_empty());
+        triangles.sort_by_key(|range| range.start);
+        let mut end = 0;
+        for range in triangles {
+            assert!(end <= range.start, "bricks do not overlap");
+            assert!(now.triangles[end..range.start].iter().all(|triangle| *triangle == [0; 3]));
+            end = range.end;
+        }
+        assert!(now.triangles[end..].iter().all(|triangle| *triangle == [0; 3]));
+        for range in vertices {
+            same(&self.buffers.positions[range.clone()], &now.positions[range.clone()]);
+            same(&self.buffers.normals[range.clone()], &now.normals[range.clone()]);
+            for (copied, attribute) in self.buffers.attributes.iter().zip(&now.attributes) {
+                let range = range.start * attribute.width..range.end * attribute.width;
+                assert_eq!(bits(&copied.values[range.clone()]), bits(&attribute.values[range]));
+            }
+        }
+    }
+}
+
+fn bits(numbers: &[f32]) -> Vec<u32> {
+    numbers.iter().map(|number| number.to_bits()).collect()
+}
+
+fn same(a: &[[f32; 3]], b: &[[f32; 3]]) {
+    assert_eq!(bits(a.as_flattened()), bits(b.as_flattened()));
+}
+
+fn same_mesh(a: &Mesh, b: &Mesh) {
+    same(&a.positions, &b.positions);
+    same(&a.normals, &b.normals);
+    assert_eq!(a.triangles, b.triangles);
+    assert_eq!((a.origin, a.attributes.len()), (b.origin, b.attributes.len()));
+    for (a, b) in a.attributes.iter().zip(&b.attributes) {
+        assert_eq!((&a.name, a.width, bits(&a.values)), (&b.name, b.width, bits(&b.values)));
+    }
+}
+
+/// What a full run over the lattice makes, by another compiler.
+fn full(live: &LiveMesh, engine: Engine) -> jbt::Polygonized {
+    let compiled = Compiler::for_engine(engine).compile(live.tree());
+    Polygonize { thin_parts: false, ..Polygonize::default() }
+        .over(&compiled, live.lattice())
+        .run()
+        .expect("it has a mesh")
+}
+
+/// A leaf of the scene that is edited.
+#[derive(Clone)]
+struct Leaf {
+    kind: u8,
+    at: [f64; 3],
+    radius: f64,
+    color: [f64; 3],
+}
+
+impl Leaf {
+    fn new(rng: &mut Rng) -> Self {
+        Self {
+            kind: rng.u8(0..12),
+            at: std::array::from_fn(|_| 2.0 * rng.f64() - 1.0),
+            radius: 0.15 + 0.4 * rng.f64(),
+            color: std::array::from_fn(|_| rng.f64()),
+        }
+    }
+
+    fn tree(&self) -> Tree {
+        let end = [self.at[0] + 0.2, self.at[1] - 0.3, self.at[2] + 0.1];
+        let leaf = match self.kind {
+            0 => segment(self.at, end, self.radius),
+            1 => point(self.at, self.radius).strength(-0.7),
+            2 => point(self.at, self.radius).falloff(blinn(2.0, 1.0, Edge::Smooth)),
+            // A wall: the field ends without a slope.
+            3 => {
+                let (low, high) = (self.at, self.at.map(|side| side + 0.3 + self.radius));
+                Tree::expression_within(0.8 - 0.2 * x(), low, high)
+            }
+            _ => point(self.at, self.radius),
+        };
+        leaf.color(self.color)
+    }
+}
+
+/// The scene that is edited.
+struct Edited {
+    leaves: Vec<Leaf>,
+    /// Trees of leaves that are as they were.
+    made: Vec<Option<Tree>>,
+    ball: Option<Tree>,
+    operator: u8,
+    bulge: f64,
+    iso: f64,
+    shade: f64,
+}
+
+impl Edited {
+    fn new(rng: &mut Rng, leaves: usize) -> Self {
+        let leaves: Vec<Leaf> = (0..leaves).map(|_| Leaf::new(rng)).collect();
+        let made = vec![None; leaves.len()];
+        Self { leaves, made, ball: None, operator: 0, bulge: 0.5, iso: 0.5, shade: 0.5 }
+    }
+
+    /// A leaf that is to be changed.
+    fn leaf(&mut self, index: usize) -> &mut Leaf {
+        self.made[index] = None;
+        &mut self.leaves[index]
+    }
+
+    /// The model, which shares with the one before what has not changed.
+    fn model(&mut self) -> Model {
+        let leaves = self.leaves.iter().zip(&mut self.made);
+        let leaves: Vec<Tree> =
+            leaves.map(|(leaf, made)| made.get_or_insert_with(|| leaf.tree()).clone()).collect();
+        let bulge = param("bulge", self.bulge);
+        let ball =
+            || point((0.3, 0.2, &bulge * 0.5 - 0.2), &bulge).color((1.0, param("shade", self.shade), 0.0));
+        let ball = self.ball.get_or_insert_with(ball).clone();
+        let leaves = leaves.into_iter().chain([ball]);
+        let mut model = Model::new(match self.operator {
+            0 => Tree::sum(leaves),
+            1 => Tree::blend(3.0, leaves),
+            _ => Tree::union(leaves),
+        });
+        model.iso = Number::from(self.iso);
+        model
+    }
+}
+
+/// One edit of a scene that is followed.
+fn edit(rng: &mut Rng, scene: &mut Edited, live: &mut LiveMesh) -> LiveChange {
+    let some = rng.usize(0..scene.leaves.len());
+    match rng.u8(0..40) {
+        0..=9 => {
+            let by = if rng.u8(0..8) == 0 { 1.5 } else { 0.1 };
+            scene.leaf(some).at.iter_mut().for_each(|x| *x += by * (rng.f64() - 0.5));
+        }
+        10..=14 => scene.leaf(some).radius *= 0.8 + 0.4 * rng.f64(),
+        15..=19 => scene.leaf(some).color = [rng.f64(), rng.f64(), 0.5],
+        20..=22 if scene.leaves.len() < 300 => {
+            let leaf = Leaf { kind: 9, ..Leaf::new(rng) };
+            scene.leaves.insert(some, leaf);
+            scene.made.insert(some, None);
+        }
+        23..=25 if scene.leaves.len() > 10 => drop((scene.leaves.remove(some), scene.made.remove(some))),
+        26 => scene.operator = (scene.operator + 1) % 3,
+        27 => scene.iso = 0.3 + 0.4 * rng.f64(),
+        28 => *scene.leaf(some) = Leaf::new(rng),
+        29..=33 => {
+            scene.bulge = 0.2 + rng.f64();
+            scene.ball = None;
+            return live.set(&[("bulge", scene.bulge)]).run().expect("a good value");
+        }
+        34..=37 => {
+            scene.shade = rng.f64();
+            scene.ball = None;
+            return live.set(&[("shade", scene.shade)]).run().expect("a good value");
+        }
+        38 => {}
+        _ => {
+            for index in (0..scene.leaves.len()).step_by(3) {
+                scene.leaf(index).at[1] += 0.02;
+            }
+        }
+    }
+    let model = scene.model();
+    let tree = model.check().expect("a good model");
+    let change = match rng.bool() {
+        true => live.replace(&model).run(),
+        false => live.replace(&tree).run(),
+    };
+    assert_eq!(*live.tree(), tree.with_origin(live.tree().origin()));
+    change.expect("a good model")
+}
+
+/// Follows random edits; returns how many flips there were, how many edits left most bricks alone, and of how
+/// many only changed rows were lowered.
+fn follow(engine: Engine, (seed, leaves): (u64, usize), edits: usize, settings: Polygonize) -> [usize; 3] {
+    let mut rng = Rng::with_seed(seed);
+    let mut scene = Edited::new(&mut rng, leaves);
+    let compiler = Compiler::for_engine(engine);
+    let mut live = LiveMesh::new(&compiler, &scene.model(), settings).run().expect("a mesh");
+    let mut copied = Copied::of(&live);
+    let (mut flips, mut local) = (0, 0);
+    for number in 0..edits {
+        let change = edit(&mut rng, &mut scene, &mut live);
+        copied.follow(&live, &change);
+        copied.check(&live);
+        let full = full(&live, engine);
+        assert_eq!(full.lattice, *live.lattice());
+        let compact = live.compact();
+        assert!(
+            std::panic::catch_unwind(|| same_mesh(&compact, &full.mesh)).is_ok(),
+            "edit {number} of seed {seed} by {engine}"
+        );
+        let told = change.removed.len() + change.added.len() + change.changed.len();
+        local += usize::from(told > 0 && 3 * told < live.bricks().count());
+        flips += full.report.flipped_faces as usize;
+    }
+    [flips, local, compiler.counters().patched as usize]
+}
+
+#[test]
+fn a_thousand_edits() {
+    let cells = |cell| Polygonize { fineness: Fineness::Cell(cell), ..Polygonize::default() };
+    let [_, local, patched] = follow(Engine::Lanes, (1, 30), 600, cells(0.07));
+    assert!(local > 200 && patched > 150, "{local} local edits, {patched} patched ones");
+    let region = Some(Box3::new([-0.8, -1.0, -0.9], [0.9, 0.7, 1.0]));
+    follow(Engine::Lanes, (2, 30), 200, Polygonize { region, ..cells(0.1) });
+    follow(Engine::Scalar, (3, 30), 50, cells(0.12));
+    if !Engine::Jit.backends().is_empty() {
+        follow(Engine::Jit, (4, 30), 100, cells(0.07));
+    }
+}
+
+/// Parts about as large as cells: many faces are pinched, and flips depend on each other.
+#[test]
+fn edits_of_shreds() {
+    let settings = Polygonize { fineness: Fineness::Cell(0.17), ..Polygonize::default() };
+    let [flips, ..] = follow(Engine::Lanes, (5, 250), 100, settings);
+    assert!(flips > 200, "{flips} flips");
+}
+
+/// Three balls far apart, the last one by a parameter.
+fn balls(x: f64) -> CheckedTree {
+    let ball = |x: f64| point([x, 0.0, 0.0], 1.0).color([1.0, 0.5, 0.0]);
+    let last = point((6.0, 0.0, 0.0), param("bulge", 0.6)).color((0.0, param("green", 0.5), 1.0));
+    Model::new(ball(0.0) + ball(x) + last).check().expect("a good model")
+}
+
+fn coarse() -> Polygonize {
+    Polygonize { fineness: Fineness::Cell(0.1), ..Polygonize::default() }
+}
+
+#[test]
+fn only_what_has_changed_is_told() {
+    let compiler = Compiler::for_engine(Engine::Lanes);
+    let mut live = LiveMesh::new(&compiler, &balls(3.0), coarse()).run().expect("a mesh");
+    let kernels = compiler.counters().kernels;
+    assert!(live.replace(&balls(3.0)).run().expect("a good model").is_empty());
+    // Attributes alone, where one of the leaves is.
+    let change = live.set(&[("green", 0.25)]).run().expect("a good value");
+    assert!(change.added.is_empty() && change.removed.is_empty() && !change.changed.is_empty());
+    for changed in &change.changed {
+        assert!(changed.attributes && !changed.positions && !changed.normals && !changed.triangles);
+        let positions = &live.buffers().positions[changed.brick.vertices.clone()];
+        assert!(positions.iter().all(|[x, ..]| *x > 4.0));
+    }
+    assert!(change.written_triangles().is_empty() && !change.grown);
+    // A leaf more is an edit of its box, and compiles nothing.
+    let more = |at: f64| {
+        let leaf = |x: f64| point([x, 0.0, 0.0], 1.0).color([1.0, 0.5, 0.0]);
+        let last = point((6.0, 0.0, 0.0), param("bulge", 0.6)).color((0.0, param("green", 0.25), 1.0));
+        let model = Model::new(Tree::sum([leaf(0.0), leaf(at), leaf(3.0), last]));
+        model.check().expect("a good model")
+    };
+    let change = live.replace(&more(1.5)).run().expect("a good model");
+    assert!(!change.added.is_empty());
+    for brick in change.added.iter().chain(change.changed.iter().map(|changed| &changed.brick)) {
+        let positions = &live.buffers().positions[brick.vertices.clone()];
+        assert!(positions.iter().all(|[x, ..]| (-0.4..3.4).contains(x)));
+    }
+    assert_eq!(compiler.counters().kernels, kernels);
+}
+
+#[test]
+fn the_lattice_grows_with_the_model() {
+    let compiler = Compiler::for_engine(Engine::Lanes);
+    let mut live = LiveMesh::new(&compiler, &balls(3.0), coarse()).run().expect("a mesh");
+    let first = live.lattice().clone();
+    for x in [3.1, -9.0, 14.0, 3.0] {
+        live.replace(&balls(x)).run().expect("a good model");
+        same_mesh(&live.compact(), &full(&live, Engine::Lanes).mesh);
+    }
+    let grown = live.lattice();
+    assert!(grown.first()[0] < 0 && grown.cells()[0] > first.cells()[0] + 128, "{grown:?}");
+    // Nothing is left, and comes back.
+    let apart = point([0, 0, 0], 1) & point([3, 0, 0], 1);
+    let change =
+        live.replace(&Model::new(apart).check().expect("a good model")).run().expect("an empty mesh");
+    assert!(change.added.is_empty() && change.changed.is_empty() && live.compact().triangles.is_empty());
+    assert!(live.buffers().triangles.iter().all(|triangle| *triangle == [0; 3]));
+    live.replace(&balls(3.0)).run().expect("a good model");
+    same_mesh(&live.compact(), &full(&live, Engine::Lanes).mesh);
+}
+
+#[test]
+fn an_edit_that_fails_changes_nothing() {
+    let compiler = Compiler::for_engine(Engine::Lanes);
+    let mut live = LiveMesh::new(&compiler, &balls(3.0), coarse()).run().expect("a mesh");
+    let copied = Copied::of(&live);
+    let (tree, lattice) = (live.tree().clone(), live.lattice().clone());
+    let unchanged = |live: &LiveMesh| {
+        copied.check(live);
+        assert_eq!((live.tree(), live.lattice()), (&tree, &lattice));
+        same_mesh(&live.compact(), &full(live, Engine::Lanes).mesh);
+    };
+    let error = live.set(&[("bulge", -1.0)]).run().expect_err("a negative radius");
+    assert_eq!(error.diagnostics().map(|list| list[0].message.as_str()), Some("the radius is -1"));
+    unchanged(&live);
+    let error = live.set(&[("bilge", 1.0)]).run().expect_err("no parameter");
+    assert_eq!(error.kind(), ErrorKind::Model);
+    unchanged(&live);
+    // A lattice beyond its limits, and a model without an end.
+    let error = live.replace(&balls(1e6)).run().expect_err("too far away");
+    assert!(matches!(error, PolygonizeError::Lattice(_)), "{error}");
+    unchanged(&live);
+    let endless = Model::new(Tree::expression(x())).check().expect("a good model");
+    let error = live.replace(&endless).run().expect_err("without an end");
+    assert!(matches!(error, PolygonizeError::Unbounded), "{error}");
+    unchanged(&live);
+    // Cancelled before it begins, and at any of its steps.
+    let token = CancelToken::new();
+    token.cancel();
+    let error = live.replace(&balls(2.5)).cancel(&token).run().expect_err("cancelled");
+    assert_eq!(error.kind(), ErrorKind::Cancelled);
+    unchanged(&live);
+    for part in 0..20 {
+        let token = CancelToken::new();
+        let moved = balls(2.5);
+        let watch = |done| {
+            if done >= 0.05 * part as f32 {
+                token.cancel();
+            }
+        };
+        let error = live.replace(&moved).on_progress(watch).cancel(&token).run();
+        assert_eq!(error.expect_err("cancelled").kind(), ErrorKind::Cancelled);
+        unchanged(&live);
+    }
+    live.replace(&balls(2.5)).run().expect("a good model");
+    same_mesh(&live.compact(), &full(&live, Engine::Lanes).mesh);
+}
