@@ -99,7 +99,7 @@ impl Model {
             return Err(report.finish());
         }
         let (attributes, dependence) = (self.attributes.clone(), Arc::new(dependence));
-        let (paths, nodes, source) = (Paths::new(&nodes), nodes.into(), self.source.clone());
+        let (paths, nodes, source) = (Paths::new(&nodes), Arc::new(nodes), self.source.clone());
         let origin = self.origin.map_or(ModelOrigin::WORLD, ModelOrigin::new);
         let tree = CheckedTree {
             iso,
@@ -126,11 +126,18 @@ impl Model {
     ) -> Vec<CheckedNode> {
         let groups = widths(&self.attributes);
         let mut nodes: Vec<CheckedNode> = Vec::new();
+        // Of nodes that several parents may have.
         let mut ids: HashMap<usize, NodeId> = HashMap::new();
         // Each entry is a node, and whether its children have been visited.
         let mut stack = vec![(&self.root, false)];
+        // Nodes that are done and wait for their parents.
+        let mut waiting: Vec<NodeId> = Vec::new();
         while let Some((tree, done)) = stack.pop() {
-            if ids.contains_key(&tree.identity()) {
+            if !done
+                && tree.is_shared()
+                && let Some(&id) = ids.get(&tree.identity())
+            {
+                waiting.push(id);
                 continue;
             }
             let node = tree.node();
@@ -167,8 +174,13 @@ impl Model {
                 }
             };
             share_name(&mut kind, &self.attributes);
-            let children = node.children().iter().map(|child| ids[&child.identity()]).collect();
-            ids.insert(tree.identity(), id);
+            let first = waiting.len() - node.children().len();
+            let children = Children::from_slice(&waiting[first..]);
+            waiting.truncate(first);
+            waiting.push(id);
+            if tree.is_shared() {
+                ids.insert(tree.identity(), id);
+            }
             nodes.push(CheckedNode { kind, children, span: node.span() });
         }
         nodes

@@ -110,6 +110,11 @@ impl Tree {
     pub fn identity(&self) -> usize {
         Arc::as_ptr(&self.0) as usize
     }
+
+    /// Whether anything else may hold the same node: another parent, or a clone.
+    pub(crate) fn is_shared(&self) -> bool {
+        Arc::strong_count(&self.0) > 1
+    }
 }
 
 impl Drop for Node {

@@ -59,7 +59,7 @@ pub struct CheckedModel {
 #[derive(Clone, Debug)]
 pub(super) struct Lineage {
     /// All nodes of that tree.
-    pub(super) from: Arc<[CheckedNode]>,
+    pub(super) from: Arc<Vec<CheckedNode>>,
     /// Ascending.
     pub(super) changed: Arc<[NodeId]>,
 }
@@ -161,9 +161,7 @@ impl CheckedModel {
     /// The tree with changed nodes, which are checked.
     fn checked(&self, edited: &Model, changes: &[(NodeId, Tree, Tree)]) -> Result<CheckedTree, Diagnostics> {
         let (mut report, groups) = (Report::default(), widths(&edited.attributes));
-        // Nobody else has the copy yet.
-        let mut copy: Arc<[CheckedNode]> = self.tree.nodes.iter().cloned().collect();
-        let nodes = Arc::get_mut(&mut copy).unwrap_or_default();
+        let mut nodes = self.tree.nodes.to_vec();
         let mut is_whole = true;
         for (id, _, new) in changes {
             let (node, written) = (new.node(), new.node().written());
@@ -197,7 +195,7 @@ impl CheckedModel {
             changed: changes.iter().map(|&(id, ..)| id).collect(),
         };
         let tree = CheckedTree {
-            nodes: copy,
+            nodes: Arc::new(nodes),
             source: edited.source.clone(),
             lineage: Some(lineage),
             ..self.tree.clone()

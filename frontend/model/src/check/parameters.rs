@@ -154,7 +154,7 @@ impl CheckedTree {
         moved: &mut [bool],
         (iso, values): (f64, &ParameterValues),
         report: &mut Report,
-    ) -> (Arc<[CheckedNode]>, Vec<NodeId>) {
+    ) -> (Arc<Vec<CheckedNode>>, Vec<NodeId>) {
         let affected = self.dependence.affected(&self.parameters, moved);
         if affected.is_empty() {
             return (Arc::clone(&self.nodes), affected);
@@ -178,7 +178,7 @@ impl CheckedTree {
         if in_pieces && report.is_empty() {
             check_instances(report, &nodes, limits::MAX_INSTANCES);
         }
-        (nodes.into(), affected)
+        (Arc::new(nodes), affected)
     }
 
     /// The nodes that a parameter can change, ascending: directly, through other parameters or through the

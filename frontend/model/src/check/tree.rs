@@ -22,7 +22,7 @@ use crate::parameter::Parameter;
 pub struct CheckedTree {
     pub(super) iso: f64,
     pub(super) attributes: Vec<AttributeGroup>,
-    pub(super) nodes: Arc<[CheckedNode]>,
+    pub(super) nodes: Arc<Vec<CheckedNode>>,
     /// Of the nodes.
     pub(super) paths: Paths,
     pub(super) parameters: Vec<Parameter>,
@@ -192,7 +192,7 @@ impl CheckedTree {
             iso: self.iso,
             attributes: self.attributes.clone(),
             paths: Paths::new(&nodes),
-            nodes: nodes.into(),
+            nodes: Arc::new(nodes),
             parameters: Vec::new(),
             dependence: Arc::default(),
             origin: ModelOrigin::WORLD,
