@@ -151,7 +151,7 @@ impl<F: Field> BrickDivider<'_, '_, F> {
     fn root(&self, size: usize, boxes: &mut BoxCounts) -> Result<BoxLevel<F::Region>, MeshError<F::Error>> {
         let bounds = box_of(self.axes, [0; 3], [size; 3]);
         let region = self.field.region(bounds).map_err(MeshError::Field)?;
-        let ranges = self.ranges(&region, &[bounds])?;
+        let ranges = self.ranges_of(&region, &[bounds], size)?;
         let level = BoxLevel { places: Vec::new(), regions: Vec::new(), neighbours: Vec::new() };
         if !self.may_cross(&region, ranges[0], ([0; 3], size), boxes) {
             return Ok(level);
@@ -252,7 +252,7 @@ impl<F: Field> BrickDivider<'_, '_, F> {
             children.masks.push(0);
             return Ok(());
         }
-        let ranges = self.ranges(region, &boxes[..count])?;
+        let ranges = self.ranges_of(region, &boxes[..count], size)?;
         let (mut mask, mut kept) = (0_u8, 0);
         for n in 0..count {
             if self.may_cross(region, ranges[n], (first(which[n]), size), &mut children.boxes) {
@@ -269,6 +269,18 @@ impl<F: Field> BrickDivider<'_, '_, F> {
         self.field.narrow(region, &boxes[..kept], &mut children.regions).map_err(MeshError::Field)?;
         assert_eq!(children.regions.len(), before + kept, "a field gives each box a region");
         Ok(())
+    }
+
+    /// Ranges of boxes of this size. Around what is touched, only those of bricks are computed: there are few
+    /// boxes on the way, and the largest have the most rows.
+    fn ranges_of(
+        &self,
+        region: &F::Region,
+        boxes: &[Box3],
+        size: usize,
+    ) -> Result<[[f32; 2]; MAX_PARTS], MeshError<F::Error>> {
+        let is_passed = self.touched.is_some_and(|touched| size > touched.edge());
+        if is_passed { Ok([ANYTHING; MAX_PARTS]) } else { self.ranges(region, boxes) }
     }
 
     fn ranges(

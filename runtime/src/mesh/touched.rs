@@ -68,6 +68,11 @@ impl Touched {
         }
     }
 
+    /// Cells along the edge of a brick.
+    pub(crate) fn edge(&self) -> usize {
+        self.edge
+    }
+
     /// The bricks.
     pub(crate) fn bricks(&self) -> impl Iterator<Item = [u32; 3]> {
         self.levels[0].iter().copied()

@@ -2,7 +2,8 @@
 
 use rustc_hash::FxHashSet;
 
-use super::{BrickMesh, BrickPlace, linked, octet};
+use super::{BrickMesh, BrickPlace, KeptBrick, linked, octet};
+use crate::mesh::brick::place as number_place;
 use crate::mesh::crossing::Crossings;
 use crate::mesh::report::Sides;
 use crate::mesh::surface;
@@ -13,6 +14,22 @@ pub(super) struct Join {
     pub(super) bricks: Vec<([u32; 3], BrickPlace)>,
     /// Those that get triangles.
     pub(super) own: FxHashSet<BrickPlace>,
+}
+
+impl KeptBrick {
+    /// The bricks above, by their number in [`octet`], that may have triangles of doubtful vertices: a
+    /// triangle is one of the last cell that it touches, at most one further along each axis.
+    fn reached_above(&self, edge: usize) -> u8 {
+        let mut reached = 1;
+        for (vertex, _) in &self.doubtful {
+            // A cell without a vertex has the number of the next vertex.
+            let cell = self.cells.partition_point(|cell| cell.vertex <= *vertex) - 1;
+            let place = number_place(self.cells[cell].number);
+            let last = (0..3).fold(0_u8, |axes, axis| axes | u8::from(place[axis] + 1 == edge) << axis);
+            reached |= (0..8).filter(|axes| axes & !last == 0).fold(0, |bits, axes| bits | 1 << axes);
+        }
+        reached
+    }
 }
 
 impl BrickMesh {
@@ -64,7 +81,11 @@ impl BrickMesh {
             vertices.len(),
             brick.doubtful.iter().map(|&(vertex, _)| vertex),
         );
-        let above = octet(place, 1).filter(|place| self.bricks.contains_key(place)).collect::<Vec<_>>();
+        let reached = brick.reached_above(self.edge);
+        let above = octet(place, 1)
+            .enumerate()
+            .filter(|(axes, place)| reached >> axes & 1 == 1 && self.bricks.contains_key(place));
+        let above: Vec<BrickPlace> = above.map(|(_, place)| place).collect();
         for (_, place) in self.in_order(above.into_iter()) {
             judged
                 .add(&self.buffers.triangles[self.bricks[&place].triangles.range()], &self.buffers.positions);

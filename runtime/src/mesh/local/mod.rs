@@ -30,7 +30,7 @@ mod slots;
 use jbt_ir::limits::MAX_BRICKS;
 use rustc_hash::FxHashMap;
 
-use super::brick::{Bricks, NONE, SELF, direction, morton};
+use super::brick::{Bricks, NONE, direction, morton};
 use super::crossing::{self, CrossedCell, Crossings};
 use super::divide::{self, BrickDivision};
 use super::error::MeshError;
@@ -227,25 +227,22 @@ fn suspects(bricks: usize, starts: &[usize], all: &[(usize, usize)]) -> Vec<Vec<
     suspects
 }
 
-/// Bricks in these places, in Morton order, with their neighbours among each other.
+/// Bricks in these places, in Morton order, with those of their neighbours that are below them along some
+/// axes and beside them along none: all that flips and triangles ask for.
 fn linked(edge: usize, axes: [Vec<f32>; 3], places: Vec<[u32; 3]>) -> Bricks {
     let numbers: FxHashMap<[u32; 3], u32> =
         (0..).zip(&places).map(|(number, &place)| (place, number)).collect();
-    let around = |&place: &[u32; 3]| {
+    let below = |&place: &[u32; 3]| {
         let mut neighbours = [NONE; 27];
-        for steps in steps() {
+        for axes in 0..8 {
+            let steps = [0, 1, 2].map(|axis| -i8::from(axes >> axis & 1 == 1));
             let other = [0, 1, 2].map(|axis| place[axis].wrapping_add_signed(steps[axis].into()));
             neighbours[direction(steps)] = numbers.get(&other).copied().unwrap_or(NONE);
         }
         neighbours
     };
-    let neighbours = places.iter().map(around).collect();
+    let neighbours = places.iter().map(below).collect();
     Bricks::new(edge, axes, places, neighbours)
-}
-
-/// The steps to the 27 bricks around a brick, itself among them.
-fn steps() -> impl Iterator<Item = [i8; 3]> {
-    (0..27_i8).map(|n| [n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1])
 }
 
 /// The place some bricks further.
@@ -257,5 +254,3 @@ fn beside(place: BrickPlace, steps: [i32; 3]) -> BrickPlace {
 fn octet(place: BrickPlace, side: i32) -> impl Iterator<Item = BrickPlace> {
     (0..8).map(move |axes: i32| beside(place, [0, 1, 2].map(|axis| side * (axes >> axis & 1))))
 }
-
-const _: () = assert!(SELF == 13);
