@@ -22,6 +22,7 @@ use jbt_ir::{Domain, FunctionBuilder, Value};
 
 pub(super) use self::group::GroupAnswer;
 use self::group::{GroupState, group_states};
+use crate::prune_info::{Contest, ContestGroup};
 use jbt_model::attribute::Mixing;
 use jbt_model::combine::{Extreme, Met, ReduceCode, Setting};
 use jbt_model::expression::LARGEST_FIELD;
@@ -72,6 +73,13 @@ impl Operator {
     pub(super) fn only_chooses(&self) -> bool {
         let chooses = matches!(self.code, ReduceCode::Choice(_));
         chooses && !self.moving && self.mixing.is_empty()
+    }
+
+    /// The contest of these operands, if one of them wins.
+    pub(super) fn contest(&self, groups: Vec<ContestGroup>) -> Option<Contest> {
+        let ReduceCode::Choice(extreme) = self.code else { return None };
+        let start = (extreme == Extreme::Largest && self.non_negative).then_some(0.0);
+        (!groups.is_empty()).then_some(Contest { extreme, start, groups, node: None })
     }
 
     /// Whether operands need their place in the file: something is decided among several groups, and somebody

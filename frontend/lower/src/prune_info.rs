@@ -18,7 +18,7 @@
 //! decides.
 
 pub use jbt_ir::Rule;
-use jbt_ir::{Function, Store, Table, Tables};
+use jbt_ir::{Function, Store, Table, Tables, Value};
 
 use jbt_model::bounds::Bounds;
 use jbt_model::check::NodeId;
@@ -37,6 +37,8 @@ pub struct PruneInfo {
     pub probes: usize,
     /// What may be left out because it does not decide. Operators come after their operands.
     pub decisions: Vec<Decision>,
+    /// Rows of which one wins. Operators come after their operands.
+    pub contests: Vec<Contest>,
     /// Twice the iso-value, as the program has it, for complements (`2 iso - field`): see [`DecisionKind`].
     pub iso2: f32,
 }
@@ -87,12 +89,36 @@ pub struct Decision {
     pub kind: DecisionKind,
 }
 
+/// Operands of one operator that are rows, and of which one wins at each point: those that win nowhere in a
+/// box may be left out there, because no bit of an answer comes from them.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Contest {
+    /// Which of the fields wins; of equal ones in one table, that of the first row.
+    pub extreme: Extreme,
+    /// What wins if no field does better: that of a union without negative operands is 0.
+    pub start: Option<f32>,
+    /// The tables, all of which hang under one table.
+    pub groups: Vec<ContestGroup>,
+    /// The probe of the operator's field, if there is one.
+    pub node: Option<usize>,
+}
+
+/// The rows of a table that are operands.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct ContestGroup {
+    /// The table.
+    pub table: Table,
+    /// The field of a row, in the body of the fold over the table in the range function.
+    pub field: Value,
+}
+
 /// What an operand of a [`Decision`] is.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum DecidedRows {
     /// All rows: that of a guard.
     All,
-    /// Each row is an operand: run it without the others of its table, and the probe tells about it alone.
+    /// Each row is an operand: run it without the others of its table, and the probe tells about it alone. They are rows
+    /// of a [`Contest`] too.
     Each {
         /// Whether it needs no rows but those above and under it.
         free: bool,
