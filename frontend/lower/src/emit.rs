@@ -122,7 +122,7 @@ struct Reduce {
     extreme: Option<(Extreme, Value)>,
     /// The table whose rows are the operands in progress.
     rows: Option<Table>,
-    /// The operands so far that are rows.
+    /// The operands so far.
     groups: Vec<ContestGroup>,
     /// Whether operands have not been kept within bounds on the far side, the upper one of a union: that is
     /// done in the end.
@@ -301,14 +301,21 @@ impl<'a> Emitter<'a> {
     /// The last answer comes to its operator.
     fn step(&mut self) {
         let operand = self.answers.pop().expect("the operand has been defined");
+        self.enter_contest(operand.field);
         let reduce = self.reduces.last_mut().expect("steps belong to operators");
         let order = reduce.order.take();
-        let field = operand.field;
-        reduce.groups.extend(reduce.rows.map(|table| ContestGroup { table, field }));
         if let Some((extreme, value)) = &mut reduce.extreme {
             *value = extreme.step(&mut self.builder, operand.field, *value);
         }
         reduce.state.step(&mut self.builder, &reduce.operator, &operand, order);
+    }
+
+    /// The field of an operand, or of operands that are rows, comes to the contest of its operator.
+    fn enter_contest(&mut self, field: Value) {
+        let here = self.row().table;
+        let reduce = self.reduces.last_mut().expect("operands belong to operators");
+        let rows = reduce.rows.is_some();
+        reduce.groups.push(ContestGroup { table: reduce.rows.unwrap_or(here), field, rows });
     }
 
     /// An operator answers.
@@ -318,7 +325,7 @@ impl<'a> Emitter<'a> {
         if reduce.open {
             answer.field = self.closed(reduce.operator.code, answer.field);
         }
-        let contest = reduce.operator.contest(reduce.groups);
+        let contest = reduce.operator.contest(reduce.groups, &self.builder);
         self.end_operator(answer.field, contest);
         self.answers.push(answer);
     }
@@ -326,6 +333,7 @@ impl<'a> Emitter<'a> {
     /// The last answer is the first one of its operator.
     fn seed(&mut self) {
         let operand = self.answers.pop().expect("the operand has been defined");
+        self.enter_contest(operand.field);
         let reduce = self.reduces.last_mut().expect("steps belong to operators");
         reduce.state.seed(&mut self.builder, &operand);
     }

@@ -89,27 +89,42 @@ pub struct Decision {
     pub kind: DecisionKind,
 }
 
-/// Operands of one operator that are rows, and of which one wins at each point: those that win nowhere in a
-/// box may be left out there, because no bit of an answer comes from them.
+/// Operands of one operator, of which one wins at each point: rows that win nowhere in a box may be left out
+/// there, because no bit of an answer comes from them.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Contest {
     /// Which of the fields wins; of equal ones in one table, that of the first row.
     pub extreme: Extreme,
-    /// What wins if no field does better: that of a union without negative operands is 0.
-    pub start: Option<f32>,
-    /// The tables, all of which hang under one table.
+    /// Who wins.
+    pub kind: ContestKind,
+    /// The operands, all of which hang under one table.
     pub groups: Vec<ContestGroup>,
     /// The probe of the operator's field, if there is one.
     pub node: Option<usize>,
 }
 
-/// The rows of a table that are operands.
+/// Who wins a [`Contest`].
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum ContestKind {
+    /// The extreme of all fields and of this number, if there is one: for a union without negative operands it
+    /// is 0.
+    All(Option<f32>),
+    /// Of each operand and the result so far the extreme, if they are apart by this column of the operator's
+    /// row. The result is the extreme of all, or beyond it by less than that column. Groups are in the order
+    /// of operands.
+    Steps(Table, usize),
+}
+
+/// Operands of a [`Contest`].
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct ContestGroup {
     /// The table.
     pub table: Table,
     /// The field of a row, in the body of the fold over the table in the range function.
     pub field: Value,
+    /// Whether the rows are operands. If not, the operand is part of the operator's row, whose table this is,
+    /// and stays.
+    pub rows: bool,
 }
 
 /// What an operand of a [`Decision`] is.

@@ -6,6 +6,7 @@
 //! union:        best = the largest low end of a box, of the rows of one owner
 //!               a row goes if its high end is below best, or equal and behind the row that has it
 //! intersection: the same of the negative ranges
+//! smooth ones:  a row goes if it is the smaller side of its step by the width, or if a later row is the larger one by it
 //! ```
 //!
 //! A row that goes is beaten at every point by a row that stays, or equals one that comes before it. So no
@@ -18,7 +19,7 @@
 use std::sync::OnceLock;
 
 use jbt_ir::{Entity as _, RowFunction, Selection, Table, Tables};
-use jbt_lower::prune_info::{Contest, ContestGroup, PruneInfo};
+use jbt_lower::prune_info::{Contest, ContestGroup, ContestKind, PruneInfo};
 use jbt_model::combine::Extreme;
 
 use super::decide::firsts;
@@ -26,7 +27,7 @@ use super::ranges::ProbeRanges;
 use crate::compiler::Compiler;
 use crate::error::EvalError;
 use crate::kernel::{BoundKernel, Purpose};
-use crate::region::{Box3, Range};
+use crate::region::{ANYTHING, Box3, MAX_PARTS, Range};
 
 /// A contest of fewer rows, over the whole model, is not worth a program.
 const FEWEST_ROWS: usize = 8;
@@ -70,20 +71,15 @@ struct RowInBox {
     /// The position of the row that owns it.
     owner: u32,
     part: u8,
-}
-
-/// What is ahead so far, of the rows of one owner in a box.
-#[derive(Clone, Copy)]
-struct Ahead {
-    low: f32,
-    /// The row that has it; `None` for what comes before all rows.
-    place: Option<(usize, u32)>,
+    /// Whether it is no row that may go.
+    stays: bool,
 }
 
 impl Contests {
     pub(super) fn new(compiler: &Compiler, info: &PruneInfo, tables: &Tables) -> Self {
         let rows = |contest: &Contest| -> usize {
-            contest.groups.iter().map(|group| tables.tables[group.table].len()).sum()
+            let operands = contest.groups.iter().filter(|group| group.rows);
+            operands.map(|group| tables.tables[group.table].len()).sum()
         };
         let is_tried = |contest: &Contest| {
             let tried = |group: &ContestGroup| info.decisions.iter().any(|it| it.table == group.table);
@@ -108,7 +104,7 @@ impl Contests {
 
     /// Whether the rows of a table meet in a contest.
     pub(super) fn meet(&self, table: Table) -> bool {
-        self.all.iter().flat_map(|it| &it.contest.groups).any(|group| group.table == table)
+        self.all.iter().flat_map(|it| &it.contest.groups).any(|group| group.rows && group.table == table)
     }
 
     /// Clears the masks of rows that win nowhere, for each box. `lowered` is the range program, whose rows
@@ -127,108 +123,179 @@ impl Contests {
         }
         let firsts = firsts(selection);
         for ContestRows { contest, groups } in &self.all {
+            let operands = |group: &&ContestGroup| group.rows;
             let rows = |group: &ContestGroup| selection.active(group.table).len();
-            if contest.groups.iter().map(rows).sum::<usize>() < FEWEST_IN_BOX {
+            if contest.groups.iter().filter(operands).map(rows).sum::<usize>() < FEWEST_IN_BOX {
                 continue;
             }
-            let mut round = Round::new(contest, selection, boxes.len());
-            for (index, (group, made)) in contest.groups.iter().zip(groups).enumerate() {
-                let first = firsts[group.table.index()];
-                let entered = round.entered(group, (selection, first), masks);
-                if entered.len() < FEWEST_IN_BOX {
+            let enter = |group| entries(group, selection, &firsts, masks);
+            let mut entered: Vec<Vec<RowInBox>> = contest.groups.iter().map(enter).collect();
+            leave_few(contest, &mut entered);
+            let mut round = Round::default();
+            for (index, (group, entered)) in contest.groups.iter().zip(&entered).enumerate() {
+                if entered.is_empty() {
                     continue;
                 }
-                let made = made.get_or_init(|| RowRanges::new(&self.compiler, lowered, group));
-                let Some(ranges) = made else { continue };
-                evaluations += ranges.distances * entered.len() as u64;
-                ranges.find(&entered, boxes, &mut |entry, range| round.meet(index, entry, range))?;
+                let made = groups[index].get_or_init(|| RowRanges::new(&self.compiler, lowered, group));
+                let mut meet = |entry, range| round.meet(contest.extreme, index, entry, range);
+                match made {
+                    Some(ranges) => {
+                        evaluations += ranges.distances * entered.len() as u64;
+                        ranges.find(entered, boxes, &mut meet)?;
+                    }
+                    None => entered.iter().for_each(|&entry| meet(entry, ANYTHING)),
+                }
             }
-            round.finish(contest, probes, masks);
+            round.finish(contest, (selection, lowered.tables()), probes, masks);
         }
         Ok(evaluations)
     }
 }
 
+/// The operands of a group in each box in which they may matter.
+fn entries(group: &ContestGroup, selection: &Selection, firsts: &[usize], masks: &[u8]) -> Vec<RowInBox> {
+    let (starts, active) = (selection.starts(group.table), selection.active(group.table));
+    let first = firsts[group.table.index()];
+    let mut entered = Vec::new();
+    let mut enter = |owner: u32, position: u32| {
+        let place = first + position as usize;
+        let mut mask = masks[place];
+        while mask != 0 {
+            let part = mask.trailing_zeros() as u8;
+            mask &= mask - 1;
+            let row = active[position as usize];
+            // Selections have fewer than 2^32 rows.
+            entered.push(RowInBox { row, place: place as u32, owner, part, stays: !group.rows });
+        }
+    };
+    if group.rows {
+        for (owner, range) in (0..).zip(starts.windows(2)) {
+            (range[0]..range[1]).for_each(|position| enter(owner, position));
+        }
+    } else {
+        (0..active.len() as u32).for_each(|owner| enter(owner, owner));
+    }
+    entered
+}
+
+/// Leaves boxes with few operands alone.
+fn leave_few(contest: &Contest, entered: &mut [Vec<RowInBox>]) {
+    let mut counts = [0; MAX_PARTS];
+    for (_, entered) in contest.groups.iter().zip(&*entered).filter(|(group, _)| group.rows) {
+        entered.iter().for_each(|entry| counts[entry.part as usize] += 1);
+    }
+    for entered in entered {
+        entered.retain(|entry| counts[entry.part as usize] >= FEWEST_IN_BOX);
+    }
+}
+
 /// One contest in some boxes.
+#[derive(Default)]
 struct Round {
-    extreme: Extreme,
-    owners: usize,
-    /// By box and owner.
-    ahead: Vec<Ahead>,
-    /// Each row in each box, with its group and the high end of its range.
-    met: Vec<(RowInBox, usize, f32)>,
+    met: Vec<MetRow>,
+}
+
+/// A row in a box, with its group and its range: that of the negative field, where the smallest wins.
+#[derive(Clone, Copy)]
+struct MetRow {
+    entry: RowInBox,
+    group: usize,
+    low: f32,
+    high: f32,
 }
 
 impl Round {
-    fn new(contest: &Contest, selection: &Selection, boxes: usize) -> Self {
-        let owners = selection.starts(contest.groups[0].table).len() - 1;
-        let ahead = Ahead { low: contest.start.unwrap_or(f32::NEG_INFINITY), place: None };
-        Self { extreme: contest.extreme, owners, ahead: vec![ahead; boxes * owners], met: Vec::new() }
-    }
-
-    /// The rows of a group in each box in which they may matter.
-    fn entered(
-        &self,
-        group: &ContestGroup,
-        (selection, first): (&Selection, usize),
-        masks: &[u8],
-    ) -> Vec<RowInBox> {
-        let (starts, active) = (selection.starts(group.table), selection.active(group.table));
-        let mut entered = Vec::new();
-        for owner in 0..self.owners {
-            for position in starts[owner]..starts[owner + 1] {
-                let place = first + position as usize;
-                let mut mask = masks[place];
-                while mask != 0 {
-                    let part = mask.trailing_zeros() as u8;
-                    mask &= mask - 1;
-                    let row = active[position as usize];
-                    // Selections have fewer than 2^32 rows.
-                    entered.push(RowInBox { row, place: place as u32, owner: owner as u32, part });
-                }
-            }
-        }
-        entered
-    }
-
-    /// The place of what is ahead of a row.
-    fn of(&self, entry: RowInBox) -> usize {
-        entry.part as usize * self.owners + entry.owner as usize
-    }
-
-    /// A row with its range comes to the contest, in the order of rows.
-    fn meet(&mut self, group: usize, entry: RowInBox, [low, high]: Range) {
-        let [low, high] = match self.extreme {
+    /// An operand with its range comes to the contest.
+    fn meet(&mut self, extreme: Extreme, group: usize, entry: RowInBox, [low, high]: Range) {
+        let [low, high] = match extreme {
             Extreme::Largest => [low, high],
             Extreme::Smallest => [-high, -low],
         };
-        let place = self.of(entry);
-        let ahead = &mut self.ahead[place];
-        if low > ahead.low {
-            *ahead = Ahead { low, place: Some((group, entry.place)) };
-        }
-        self.met.push((entry, group, high));
+        self.met.push(MetRow { entry, group, low, high });
     }
 
     /// Clears the masks of rows that win nowhere.
-    fn finish(self, contest: &Contest, probes: Option<ProbeRanges<'_>>, masks: &mut [u8]) {
-        for &(entry, group, high) in &self.met {
-            let ahead = self.ahead[self.of(entry)];
-            let is_behind = match ahead.place {
-                None => contest.start.is_some(),
-                Some((other, place)) => other == group && place < entry.place,
+    fn finish(
+        mut self,
+        contest: &Contest,
+        (selection, tables): (&Selection, &Tables),
+        probes: Option<ProbeRanges<'_>>,
+        masks: &mut [u8],
+    ) {
+        // In a box, those of one owner in the order of operands.
+        self.met.sort_by_key(|met| (met.entry.part, met.entry.owner, met.group, met.entry.place));
+        let together =
+            |a: &MetRow, b: &MetRow| (a.entry.part, a.entry.owner) == (b.entry.part, b.entry.owner);
+        for rows in self.met.chunk_by(together) {
+            let RowInBox { part, owner, .. } = rows[0].entry;
+            let mut go = |met: &MetRow| {
+                if !met.entry.stays {
+                    masks[met.entry.place as usize] &= !(1 << part);
+                }
             };
-            // The range of the operator itself knows more operands than those that are rows.
-            let node = probes.zip(contest.node).map(|(probes, node)| probes.range(node, entry.part.into()));
-            let below = node.is_some_and(|[low, upper]| match self.extreme {
-                Extreme::Largest => high < low,
-                Extreme::Smallest => high < -upper,
-            });
-            if high < ahead.low || (high == ahead.low && is_behind) || below {
-                masks[entry.place as usize] &= !(1 << entry.part);
+            match contest.kind {
+                ContestKind::All(start) => {
+                    // The range of the operator itself knows more operands than those that are rows.
+                    let node = probes.zip(contest.node);
+                    let node = node.map(|(probes, node)| probes.range(node, part.into()));
+                    let below = node.map_or(f32::NEG_INFINITY, |[low, high]| match contest.extreme {
+                        Extreme::Largest => low,
+                        Extreme::Smallest => -high,
+                    });
+                    beaten(rows, start, below).for_each(&mut go);
+                }
+                ContestKind::Steps(table, column) => {
+                    let row = selection.active(table)[owner as usize];
+                    let width = tables.tables[table].row(row as usize)[column];
+                    passed_over(rows, width.into()).for_each(&mut go);
+                }
             }
         }
     }
+}
+
+/// The rows that win nowhere, of the rows of one owner in a box, where the largest field wins, or `start`.
+/// Something is nowhere below `below`.
+fn beaten(rows: &[MetRow], start: Option<f32>, below: f32) -> impl Iterator<Item = &MetRow> {
+    let (mut ahead, mut leader) = (start.unwrap_or(f32::NEG_INFINITY), None);
+    for met in rows {
+        if met.low > ahead {
+            (ahead, leader) = (met.low, Some((met.group, met.entry.place)));
+        }
+    }
+    rows.iter().filter(move |met| {
+        let is_behind = match leader {
+            None => start.is_some(),
+            // Between groups the order in the file decides.
+            Some((group, place)) => group == met.group && place < met.entry.place,
+        };
+        met.high < ahead || (met.high == ahead && is_behind) || met.high < below
+    })
+}
+
+/// The rows that change nothing in any step, of the rows of one owner in a box in their order. In a step, the
+/// larger side is the result if the sides are apart by `width`. In real numbers the result is at least the
+/// largest field so far, and at most that and `width`:
+///
+/// ```text
+/// passed over    a row that is below the largest low end before it by `width`
+/// begins anew    a row that is above the largest high end before it by twice `width`: all before it go
+/// ```
+fn passed_over(rows: &[MetRow], width: f64) -> impl Iterator<Item = &MetRow> {
+    let (mut low, mut high) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
+    let mut first = 0;
+    let mut passed = Vec::with_capacity(rows.len());
+    for (index, met) in rows.iter().enumerate() {
+        passed.push(f64::from(met.high) + width <= low);
+        // Each step may round by half a unit.
+        let rounding = f64::from(f32::EPSILON) * (index + 1) as f64 * (high.abs() + 2.0 * width);
+        if index > 0 && f64::from(met.low) >= high + 2.0 * width + rounding {
+            first = index;
+        }
+        low = low.max(met.low.into());
+        high = high.max(met.high.into());
+    }
+    rows.iter().enumerate().filter(move |&(index, _)| passed[index] || index < first).map(|(_, met)| met)
 }
 
 impl RowRanges {

@@ -53,8 +53,14 @@ fn operand(rng: &mut Rng, kind: OperandKind) -> String {
 /// Operators of operands of a few kinds, some of them the same, some of them different by a unit in the last
 /// place.
 fn operators(rng: &mut Rng) -> Model {
-    const OPERATORS: [&str; 6] =
-        ["union", "intersection", "difference", "smooth_union width 0.1", "smooth_intersection width 0.1", "sum"];
+    const OPERATORS: [&str; 6] = [
+        "union",
+        "intersection",
+        "difference",
+        "smooth_union width 0.1",
+        "smooth_intersection width 0.1",
+        "sum",
+    ];
     let mut text = String::from("jbt 1 ");
     if rng.bool() {
         text += "attribute color 3 default (0 0 0) dominant ";
@@ -114,8 +120,10 @@ fn of_a_thousand_spheres_a_few_are_left() {
         let operands: String = (0..1024).map(|_| operand(place(&mut rng, 1.0))).collect();
         format!("jbt 1 union {{ {operands} }}")
     };
+    let smooth = |text: &str| text.replace("union", "smooth_union width 0.02");
     let primitives = many(&|[x, y, z]| format!("point {{ at ({x} {y} {z}) radius 3 }} "));
     assert!(left(&primitives) < 32.0);
+    assert!(left(&smooth(&primitives)) < 64.0);
     let formulas =
         many(&|[x, y, z]| format!("expression {{ 0.6 - sqrt((x - {x})^2 + (y - {y})^2 + (z - {z})^2) }} "));
     assert!(left(&formulas) < 32.0);
