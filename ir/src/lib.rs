@@ -6,6 +6,7 @@
 
 #![deny(unsafe_code)]
 
+pub mod alone;
 pub mod builder;
 pub mod domain;
 pub mod engine;
@@ -28,6 +29,7 @@ pub mod text;
 pub mod translate;
 pub mod verify;
 
+pub use alone::RowFunction;
 pub use builder::FunctionBuilder;
 pub use entity::{Block, Entity, Inst, Store, Table, Value, Values};
 pub use function::{BlockData, Fold, FoldKind, Function, InstData, InstKind, Rule, Schema};

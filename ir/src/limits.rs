@@ -45,6 +45,12 @@ pub const MAX_VALUES: usize = 1_000_000;
 /// Values of a function that is compiled to machine code; a larger one is interpreted. It bounds the time
 /// that Cranelift takes, and the code of either backend to some megabytes.
 pub const MAX_JIT_VALUES: usize = 60_000;
+/// Values of the function of one row of a table, whose folds have become straight code: of longer rows no
+/// ranges are known.
+pub const MAX_ROW_VALUES: usize = 4_000;
+/// Copies of the body of a fold in such a function, times the rows of the table: each copy keeps the numbers
+/// of its columns for each row.
+pub const MAX_ROW_COPIES: usize = 1 << 21;
 /// Values that may be alive at once in Cranelift's code (a frame costs 16 bytes each per vector); beyond it
 /// the function is interpreted. Wide code has no such limit: its time to compile does not depend on it, and
 /// its frame is limited.

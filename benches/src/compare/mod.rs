@@ -18,6 +18,7 @@ mod programs;
 mod report;
 mod rows;
 mod train;
+mod unions;
 
 pub use contest::{Contestant, Effort, Standing, Standings};
 pub use options::Options;
@@ -68,6 +69,11 @@ impl Case {
             name: "mesh-scaling",
             what: "blobs to a mesh, 257^3 lattice, by number of blobs",
             run: mesh::scaling,
+        },
+        Self {
+            name: "unions",
+            what: "unions of 1,024 spheres and a sponge to meshes, 129^3 lattice",
+            run: unions::unions,
         },
         Self { name: "particles", what: "a ball of particles to a mesh", run: mesh::particles },
         Self {

@@ -200,13 +200,17 @@ impl<F: MathFunction + RenderHints> FidgetModel<F> {
     /// the way.
     #[must_use]
     pub fn mesh(&self, depth: u8, threads: Threads) -> MeshSize {
-        let shape: BoundShape<'_, F, f32> = self.surface.clone().try_into().expect("x, y and z alone");
-        let settings =
-            Settings { depth, threads: pool(threads), cancel: CancelToken::new(), ..Settings::default() };
-        let octree = Octree::build(&shape, &settings).expect("nobody cancels");
-        let mesh = octree.walk_dual();
-        MeshSize { triangles: mesh.triangles.len(), vertices: mesh.vertices.len() }
+        mesh(&self.surface, depth, threads)
     }
+}
+
+fn mesh<F: MathFunction + RenderHints>(shape: &Shape<F>, depth: u8, threads: Threads) -> MeshSize {
+    let shape: BoundShape<'_, F, f32> = shape.clone().try_into().expect("x, y and z alone");
+    let settings =
+        Settings { depth, threads: pool(threads), cancel: CancelToken::new(), ..Settings::default() };
+    let octree = Octree::build(&shape, &settings).expect("nobody cancels");
+    let mesh = octree.walk_dual();
+    MeshSize { triangles: mesh.triangles.len(), vertices: mesh.vertices.len() }
 }
 
 impl<F: MathFunction + RenderHints> FidgetModel<F> {
@@ -239,6 +243,12 @@ impl<F: MathFunction + RenderHints> FidgetProgram<F> {
     #[must_use]
     pub fn tape(&self) -> FieldTape<F> {
         FieldTape::new(&self.0)
+    }
+
+    /// A mesh, as [`FidgetModel::mesh`] makes it.
+    #[must_use]
+    pub fn mesh(&self, depth: u8, threads: Threads) -> MeshSize {
+        mesh(&self.0, depth, threads)
     }
 
     /// The square [-1, 1]^2 of the plane z = 0, of so many pixels along each side: how many are inside. Code

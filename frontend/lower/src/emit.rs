@@ -38,7 +38,7 @@ use super::columns;
 use super::instance::{FieldId, InstanceId, InstanceKind, Scene, SpaceId};
 use super::mixing::{Answer, Operator, State, difference, mapped};
 use super::names::ComputedId;
-use super::prune_info::{Decision, DecisionKind};
+use super::prune_info::{Contest, ContestGroup, Decision, DecisionKind};
 use super::recipe::{Member, RowPlace, RowPlaces, RowStep};
 use super::shape::Shapes;
 use jbt_model::attribute::{AttributeGroup, Mixing};
@@ -53,6 +53,7 @@ pub(super) struct Code {
     pub(super) tables: Vec<TableCode>,
     /// Of a range function; others have none.
     pub(super) decisions: Vec<Decision>,
+    pub(super) contests: Vec<Contest>,
 }
 
 /// What the code says about a table.
@@ -119,6 +120,10 @@ struct Reduce {
     order: Option<Value>,
     /// Where operands are rows, and each may be left out while it is not zero: the extreme of their fields.
     extreme: Option<(Extreme, Value)>,
+    /// The table whose rows are the operands in progress.
+    rows: Option<Table>,
+    /// The operands so far.
+    groups: Vec<ContestGroup>,
     /// Whether operands have not been kept within bounds on the far side, the upper one of a union: that is
     /// done in the end.
     open: bool,
@@ -228,9 +233,9 @@ impl<'a> Emitter<'a> {
             names.extend((0..group.width()).map(|i| group.channel(i)));
         }
         let mut outputs: Vec<_> = names.into_iter().zip(results).collect();
-        let decisions =
-            self.probes.map_or_else(Vec::new, |probes| probes.finish(&mut outputs, &mut self.tables));
-        Code { function: self.builder.finish(&outputs), tables: self.tables, decisions }
+        let (decisions, contests) =
+            self.probes.map(|probes| probes.finish(&mut outputs, &mut self.tables)).unwrap_or_default();
+        Code { function: self.builder.finish(&outputs), tables: self.tables, decisions, contests }
     }
 
     fn check_limits(&self) -> Result<(), Vec<Diagnostic>> {
@@ -296,12 +301,21 @@ impl<'a> Emitter<'a> {
     /// The last answer comes to its operator.
     fn meet(&mut self) {
         let operand = self.answers.pop().expect("the operand has been defined");
+        self.enter_contest(operand.field);
         let reduce = self.reduces.last_mut().expect("steps belong to operators");
         let order = reduce.order.take();
         if let Some((extreme, value)) = &mut reduce.extreme {
             *value = extreme.step(&mut self.builder, operand.field, *value);
         }
         reduce.state.meet(&mut self.builder, &reduce.operator, &operand, order);
+    }
+
+    /// The field of an operand, or of operands that are rows, comes to the contest of its operator.
+    fn enter_contest(&mut self, field: Value) {
+        let here = self.row().table;
+        let reduce = self.reduces.last_mut().expect("operands belong to operators");
+        let rows = reduce.rows.is_some();
+        reduce.groups.push(ContestGroup { table: reduce.rows.unwrap_or(here), field, rows });
     }
 
     /// An operator answers.
@@ -311,13 +325,15 @@ impl<'a> Emitter<'a> {
         if reduce.open {
             answer.field = self.closed(reduce.operator.code, answer.field);
         }
-        self.end_operator(answer.field);
+        let contest = reduce.operator.contest(reduce.groups, &self.builder);
+        self.end_operator(answer.field, contest);
         self.answers.push(answer);
     }
 
     /// The last answer is the first one of its operator.
     fn seed(&mut self) {
         let operand = self.answers.pop().expect("the operand has been defined");
+        self.enter_contest(operand.field);
         let reduce = self.reduces.last_mut().expect("steps belong to operators");
         reduce.state.seed(&mut self.builder, &operand);
     }
@@ -336,7 +352,7 @@ impl<'a> Emitter<'a> {
         let left = self.answers.pop().expect("the left side has been defined");
         let iso2 = self.iso2.expect("the scene's row is open");
         let answer = difference(&mut self.builder, &left, &right, iso2, &self.defaults);
-        self.end_operator(answer.field);
+        self.end_operator(answer.field, None);
         self.answers.push(answer);
     }
 

@@ -18,10 +18,11 @@ mod group;
 
 use std::rc::Rc;
 
-use jbt_ir::{Domain, FunctionBuilder, Value};
+use jbt_ir::{Domain, FunctionBuilder, InstKind, Value};
 
 pub(super) use self::group::GroupAnswer;
 use self::group::{GroupState, group_states};
+use crate::prune_info::{Contest, ContestGroup, ContestKind};
 use jbt_model::attribute::Mixing;
 use jbt_model::combine::{Extreme, Met, ReduceCode, Setting};
 use jbt_model::expression::LARGEST_FIELD;
@@ -72,6 +73,28 @@ impl Operator {
     pub(super) fn only_chooses(&self) -> bool {
         let chooses = matches!(self.code, ReduceCode::Choice(_));
         chooses && !self.moving && self.mixing.is_empty()
+    }
+
+    /// The contest of these operands, if one of them wins.
+    pub(super) fn contest(&self, mut groups: Vec<ContestGroup>, d: &FunctionBuilder) -> Option<Contest> {
+        let (extreme, kind) = match self.code {
+            ReduceCode::Fold(_) => return None,
+            ReduceCode::Choice(extreme) => {
+                let start = (extreme == Extreme::Largest && self.non_negative).then_some(0.0);
+                // The others are known by the range of the operator.
+                groups.retain(|group| group.rows);
+                (extreme, ContestKind::All(start))
+            }
+            ReduceCode::Step(code) => {
+                let extreme = code.takes_apart()?;
+                let &InstKind::Column { table, column } = d.definition(*self.row.first()?)? else {
+                    return None;
+                };
+                (extreme, ContestKind::Steps(table, column))
+            }
+        };
+        let any = groups.iter().any(|group| group.rows);
+        any.then_some(Contest { extreme, kind, groups, node: None })
     }
 
     /// Whether operands need their place in the file: something is decided among several groups, and somebody

@@ -18,7 +18,7 @@
 //! decides.
 
 pub use jbt_ir::Rule;
-use jbt_ir::{Function, Store, Table, Tables};
+use jbt_ir::{Function, Store, Table, Tables, Value};
 
 use jbt_model::bounds::Bounds;
 use jbt_model::check::NodeId;
@@ -37,6 +37,8 @@ pub struct PruneInfo {
     pub probes: usize,
     /// What may be left out because it does not decide. Operators come after their operands.
     pub decisions: Vec<Decision>,
+    /// Rows of which one wins. Operators come after their operands.
+    pub contests: Vec<Contest>,
     /// Twice the iso-value, as the program has it, for complements (`2 iso - field`): see [`DecisionKind`].
     pub iso2: f32,
 }
@@ -87,12 +89,51 @@ pub struct Decision {
     pub kind: DecisionKind,
 }
 
+/// Operands of one operator, of which one wins at each point: rows that win nowhere in a box may be left out
+/// there, because no bit of an answer comes from them.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Contest {
+    /// Which of the fields wins; of equal ones in one table, that of the first row.
+    pub extreme: Extreme,
+    /// Who wins.
+    pub kind: ContestKind,
+    /// The operands, all of which hang under one table.
+    pub groups: Vec<ContestGroup>,
+    /// The probe of the operator's field, if there is one.
+    pub node: Option<usize>,
+}
+
+/// Who wins a [`Contest`].
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum ContestKind {
+    /// The extreme of all fields and of this number, if there is one: for a union without negative operands it
+    /// is 0.
+    All(Option<f32>),
+    /// Of each operand and the result so far the extreme, if they are apart by this column of the operator's
+    /// row. The result is the extreme of all, or beyond it by less than that column. Groups are in the order
+    /// of operands.
+    Steps(Table, usize),
+}
+
+/// Operands of a [`Contest`].
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct ContestGroup {
+    /// The table.
+    pub table: Table,
+    /// The field of a row, in the body of the fold over the table in the range function.
+    pub field: Value,
+    /// Whether the rows are operands. If not, the operand is part of the operator's row, whose table this is,
+    /// and stays.
+    pub rows: bool,
+}
+
 /// What an operand of a [`Decision`] is.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum DecidedRows {
     /// All rows: that of a guard.
     All,
-    /// Each row is an operand: run it without the others of its table, and the probe tells about it alone.
+    /// Each row is an operand: run it without the others of its table, and the probe tells about it alone. They are rows
+    /// of a [`Contest`] too.
     Each {
         /// Whether it needs no rows but those above and under it.
         free: bool,

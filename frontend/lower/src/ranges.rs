@@ -22,7 +22,13 @@ pub(super) fn ranges(scene: &Scene<'_>, shapes: &Shapes) -> Result<RangeFunction
         tables.push(table_info(scene, &supports, (code, rule), members));
     }
     let iso2 = (2.0 * scene.tree.iso()) as f32;
-    let info = PruneInfo { tables, probes: code.function.outputs.len() - 1, decisions: code.decisions, iso2 };
+    let info = PruneInfo {
+        tables,
+        probes: code.function.outputs.len() - 1,
+        decisions: code.decisions,
+        contests: code.contests,
+        iso2,
+    };
     Ok(RangeFunction { function: code.function, tables: rows.tables, info })
 }
 

@@ -16,6 +16,7 @@
 //! The transcendentals have to be whole, so the pass runs before `legalize`; after `gradient` it gives the
 //! ranges of the gradient.
 
+use crate::alone::POINT_PLANES;
 use crate::builder::FunctionBuilder;
 use crate::domain::interval::{BoundParts, Enclosure, Ground};
 use crate::entity::{Table, Value, Values};
@@ -30,9 +31,22 @@ pub const BOUND_SUFFIXES: [&str; 2] = [".low", ".high"];
 /// bound of plane i and `2 i + 1` the high one.
 #[must_use]
 pub fn interval(function: &Function) -> Function {
+    enclosed(function, function.inputs.len())
+}
+
+/// As [`interval()`], for the function of one row ([`crate::alone`]): the point becomes ranges, and the inputs
+/// behind it stay numbers, one plane each.
+#[must_use]
+pub fn row_interval(function: &Function) -> Function {
+    enclosed(function, POINT_PLANES)
+}
+
+/// The function of ranges. The first inputs become ranges, the others stay numbers.
+fn enclosed(function: &Function, ranges: usize) -> Function {
     let mut bounds = FunctionBuilder::like(function);
-    bounds.set_inputs(function.inputs.iter().flat_map(|name| both(name)).collect());
-    let (outputs, bounds) = Enclosure::new(function, bounds, Emitting).outputs();
+    let (point, numbers) = function.inputs.split_at(ranges);
+    bounds.set_inputs(point.iter().flat_map(|name| both(name)).chain(numbers.iter().cloned()).collect());
+    let (outputs, bounds) = Enclosure::new(function, bounds, Emitting { ranges }).outputs();
     let names = function.outputs.iter().flat_map(|name| both(name));
     let outputs: Vec<(String, Value)> = names.zip(outputs.into_iter().flatten()).collect();
     bounds.finish(&outputs)
@@ -44,7 +58,10 @@ fn both(name: &str) -> [String; 2] {
 }
 
 /// The ground of the pass: bounds are emitted, and folds are written.
-struct Emitting;
+struct Emitting {
+    /// How many inputs are ranges; those behind are numbers.
+    ranges: usize,
+}
 
 impl Ground for Emitting {
     type Bound = FunctionBuilder;
@@ -62,6 +79,10 @@ impl Ground for Emitting {
 
     fn input(&mut self, bounds: &mut FunctionBuilder, index: usize) -> [Value; 2] {
         [bounds.input(2 * index), bounds.input(2 * index + 1)]
+    }
+
+    fn number(&mut self, bounds: &mut FunctionBuilder, index: usize) -> Option<Value> {
+        (index >= self.ranges).then(|| bounds.input(self.ranges + index))
     }
 
     fn column(&mut self, bounds: &mut FunctionBuilder, table: Table, column: usize) -> Value {

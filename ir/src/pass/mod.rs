@@ -29,7 +29,7 @@ pub use dce::dce;
 pub use fold_constants::fold_constants;
 pub use gradient::{GRADIENT_OUTPUTS, gradient, guarded_gradient};
 pub use idle::{Gate, Gates, gates};
-pub use interval::{BOUND_SUFFIXES, interval};
+pub use interval::{BOUND_SUFFIXES, interval, row_interval};
 pub use legalize::legalize;
 pub use liveness::max_live;
 pub use schedule::schedule;
@@ -69,6 +69,13 @@ pub const INTERVAL: Pass = Pass {
     name: "interval",
     what: "Replaces every input and output by a low and a high bound, by interval arithmetic.",
     run: interval,
+};
+
+/// As [`INTERVAL`], for the function of one row ([`crate::alone`]).
+pub const ROW_INTERVAL: Pass = Pass {
+    name: "row-interval",
+    what: "Replaces the point and every output by a low and a high bound; numbers of the row stay numbers.",
+    run: row_interval,
 };
 
 /// Every pass that each function goes through, in order.

@@ -1,6 +1,6 @@
 //! From a lowered function to one that engines accept: the passes that a purpose asks for, and straight code.
 
-use jbt_ir::pass::{GUARDED_GRADIENT, INTERVAL, PIPELINE, Pass, run_pipeline};
+use jbt_ir::pass::{GUARDED_GRADIENT, INTERVAL, PIPELINE, Pass, ROW_INTERVAL, run_pipeline};
 use jbt_ir::{Function, Straight, Tables, Verified, limits, verify};
 use jbt_model::diagnostic::Diagnostic;
 use jbt_model::query::Query;
@@ -16,6 +16,8 @@ pub enum Purpose {
     FiniteGradient,
     /// To enclose the field in boxes.
     Ranges,
+    /// To enclose the fields of rows in boxes, a row a lane.
+    RowRanges,
 }
 
 impl Purpose {
@@ -25,6 +27,7 @@ impl Purpose {
             Self::Answers(query) => query.passes().collect(),
             Self::FiniteGradient => vec![&GUARDED_GRADIENT],
             Self::Ranges => vec![&INTERVAL],
+            Self::RowRanges => vec![&ROW_INTERVAL],
         }
     }
 }

@@ -63,13 +63,18 @@ pub(super) struct Alone<'a> {
 }
 
 impl<'a> Alone<'a> {
-    /// The selections for an outer selection, if running them is worth it.
-    pub(super) fn new(info: &'a PruneInfo, selection: &Selection) -> Option<Self> {
+    /// The selections for an outer selection, if running them is worth it. `is_met`: the rows of a table meet
+    /// in a contest, which tells as much.
+    pub(super) fn new(
+        info: &'a PruneInfo,
+        selection: &Selection,
+        is_met: impl Fn(Table) -> bool,
+    ) -> Option<Self> {
         let rows = |decision: &Decision| selection.active(decision.table).len();
         let (mut decisions, mut free) = (Vec::new(), true);
         for decision in &info.decisions {
             let DecidedRows::Each { free: it } = decision.rows else { continue };
-            if (1..=MOST_ALONE).contains(&rows(decision)) {
+            if (1..=MOST_ALONE).contains(&rows(decision)) && !is_met(decision.table) {
                 free &= it;
                 decisions.push(decision);
             }

@@ -3,9 +3,10 @@
 //! ```text
 //! ranges:  one call of the interval kernel, boxes as lanes, with the rows of the region around them
 //! narrow:  for each table, row by row: the boxes that the row's support reaches              (cull)
-//!          operands of a union below its field in the whole box cannot win: left out (an intersection: above);
-//!          formulas that are rows are run one by one to find that out                         (decide)
 //!          the rule of the operator says which of the zero rows may go                        (rule)
+//!          operands of a union below its field in the whole box cannot win: left out (an intersection: above);
+//!          few formulas that are rows are run one by one to find that out                     (decide)
+//!          of other rows, ranges in a box come from one run with rows as lanes                (contest)
 //! ```
 //!
 //! A selection is right if evaluation with it gives, at every point of its box, the same bits as evaluation
@@ -18,6 +19,7 @@
 //!   larger).
 //! * Rows stay in their order.
 
+mod contest;
 mod cull;
 mod decide;
 mod edit;
@@ -201,9 +203,14 @@ impl Pruner {
     }
 
     /// For each active row of the region, the boxes in which it matters, a bit each. `probes` are the ranges
-    /// of the field and of all probes in these boxes, if they are known. Operands that are rows are handled
-    /// by [`spared`](Self::spared).
-    fn masks(&self, region: &Region, boxes: &[Box3], probes: Option<ProbeRanges<'_>>) -> Vec<u8> {
+    /// of the field and of all probes in these boxes, if they are known. Operands that are rows and meet in
+    /// no contest are handled by [`spared`](Self::spared).
+    fn masks(
+        &self,
+        region: &Region,
+        boxes: &[Box3],
+        probes: Option<ProbeRanges<'_>>,
+    ) -> Result<Vec<u8>, EvalError> {
         let world = Boxes::new(boxes);
         let selection = &*region.selection;
         let mut masks = vec![world.all(); selection.len()];
@@ -231,7 +238,10 @@ impl Pruner {
         if let Some(probes) = probes {
             decide::leave_out(&self.program.info, probes, selection, &mut masks);
         }
-        masks
+        let RangeProgram { bound, contests, .. } = &*self.program;
+        let taken = contests.leave_out(bound, (selection, boxes), probes, &mut masks)?;
+        self.counts.primitives.fetch_add(taken, Ordering::Relaxed);
+        Ok(masks)
     }
 
     /// For each active row of the region, the boxes in which it is an operand that does not decide, a bit
@@ -243,7 +253,8 @@ impl Pruner {
         probes: ProbeRanges<'_>,
     ) -> Result<Option<Vec<u32>>, EvalError> {
         let selection = &*region.selection;
-        let Some(alone) = Alone::new(&self.program.info, selection) else { return Ok(None) };
+        let is_met = |table| self.program.contests.meet(table);
+        let Some(alone) = Alone::new(&self.program.info, selection, is_met) else { return Ok(None) };
         let mut spared = vec![0; selection.len()];
         let lanes: [usize; MAX_SPARED] = std::array::from_fn(|lane| lane);
         let mut parts: [Selection; MAX_PARTS] = Default::default();
@@ -275,7 +286,7 @@ impl Pruner {
             };
             for (index, boxes) in boxes.chunks(MAX_PARTS).enumerate() {
                 let mut masks =
-                    self.masks(region, boxes, probes.map(|probes| probes.chunk(index, MAX_PARTS)));
+                    self.masks(region, boxes, probes.map(|probes| probes.chunk(index, MAX_PARTS)))?;
                 for (mask, spared) in masks.iter_mut().zip(spared.iter().flatten()) {
                     *mask &= !((spared >> (index * MAX_PARTS)) as u8);
                 }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use jbt_ir::{Entity as _, Table, Tables};
 use jbt_lower::prune_info::{PruneInfo, RangeFunction, Rule, Support, TablePruneInfo};
 
+use super::contest::Contests;
 use super::cull::RowSupports;
 use crate::compiler::Compiler;
 use crate::error::CompileError;
@@ -17,6 +18,7 @@ pub(crate) struct RangeProgram {
     pub(super) info: PruneInfo,
     /// By table; `None` where rows are not left out by their supports.
     pub(super) supports: Vec<Option<RowSupports>>,
+    pub(super) contests: Contests,
 }
 
 impl RangeProgram {
@@ -28,7 +30,8 @@ impl RangeProgram {
     ) -> Result<Self, CompileError> {
         let kernel = compiler.kernel(function, Purpose::Ranges, present)?;
         let supports = info.tables.values().map(supports).collect();
-        Ok(Self { bound: compiler.bind(&kernel, tables), info, supports })
+        let contests = Contests::new(compiler, &info, &tables);
+        Ok(Self { bound: compiler.bind(&kernel, tables), info, supports, contests })
     }
 }
 

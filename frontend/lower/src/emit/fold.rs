@@ -30,7 +30,15 @@ impl Emitter<'_> {
         };
         let state = State::new(&mut self.builder, &operator, &self.defaults);
         let guard = Guard::of(code, operator.non_negative);
-        self.reduces.push(Reduce { operator, state, order: None, extreme: None, open: false });
+        self.reduces.push(Reduce {
+            operator,
+            state,
+            order: None,
+            extreme: None,
+            rows: None,
+            groups: Vec::new(),
+            open: false,
+        });
         self.begin_operator();
         self.tasks.push(Task::FinishReduce);
         for (index, group) in groups.iter().enumerate().rev() {
@@ -104,6 +112,7 @@ impl Emitter<'_> {
         reduce.extreme =
             extreme.map(|extreme| (extreme, params.pop().expect("it is the last that was given")));
         reduce.state.replace(&params);
+        reduce.rows = Some(self.row().table);
         self.reduces.push(reduce);
         self.read_order(RowPlace::ROW);
     }
@@ -114,6 +123,7 @@ impl Emitter<'_> {
         let reduce = self.reduces.last_mut().expect("folds belong to operators");
         let mut next = reduce.state.values();
         let extreme = reduce.extreme.take();
+        reduce.rows = None;
         next.extend(extreme.map(|(_, value)| value));
         let mut results = self.builder.end_fold(&next);
         if let Some((extreme, _)) = extreme {

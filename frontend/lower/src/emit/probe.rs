@@ -9,7 +9,7 @@ use jbt_ir::{Table, Value};
 use super::parts::{Operand, Probe, Probes};
 use super::{Emitter, TableCode};
 use crate::instance::{InstanceId, SpaceId};
-use crate::prune_info::{DecidedRows, Decision, DecisionKind};
+use crate::prune_info::{Contest, DecidedRows, Decision, DecisionKind};
 use jbt_model::combine::{Extreme, ReduceCode};
 
 impl Probes {
@@ -25,13 +25,13 @@ impl Probes {
         name
     }
 
-    /// Makes outputs of the probes that somebody uses, and gives them their final names in the tables and
-    /// decisions.
+    /// Makes outputs of the probes that somebody uses, and gives them their final names in the tables,
+    /// decisions and contests.
     pub(super) fn finish(
         self,
         outputs: &mut Vec<(String, Value)>,
         tables: &mut [TableCode],
-    ) -> Vec<Decision> {
+    ) -> (Vec<Decision>, Vec<Contest>) {
         let mut used = vec![false; self.count];
         for first in tables.iter().filter_map(|table| table.probe) {
             used[first..first + 3].fill(true);
@@ -41,6 +41,9 @@ impl Probes {
             used[decision.node] = true;
         }
         let mut values: Vec<Option<Value>> = vec![None; self.count];
+        for node in self.contests.iter().filter_map(|contest| contest.node) {
+            used[node] = true;
+        }
         for probe in &self.results {
             values[probe.name] = Some(probe.value);
         }
@@ -59,7 +62,10 @@ impl Probes {
             node: names[decision.node],
             ..decision
         };
-        self.decisions.into_iter().map(rename).collect()
+        let contests = self.contests.into_iter();
+        let contests =
+            contests.map(|contest| Contest { node: contest.node.map(|node| names[node]), ..contest });
+        (self.decisions.into_iter().map(rename).collect(), contests.collect())
     }
 }
 
@@ -136,14 +142,17 @@ impl Emitter<'_> {
             && self.kept_points.is_empty()
     }
 
-    /// The field of the operator whose operands have been met.
-    pub(super) fn end_operator(&mut self, field: Value) {
+    /// The field of the operator whose operands have been met, and the rows of which one has won, if there
+    /// are any.
+    pub(super) fn end_operator(&mut self, field: Value, contest: Option<Contest>) {
         let Some(probes) = &mut self.probes else { return };
         let first = probes.outer.pop().expect("the operator has begun");
         if probes.operands.len() == first {
+            probes.contests.extend(contest);
             return;
         }
         let node = probes.take(field);
+        probes.contests.extend(contest.map(|contest| Contest { node: Some(node), ..contest }));
         for Operand { table, rows, kind, name } in probes.operands.split_off(first) {
             probes.decisions.push(Decision { table, rows, operand: name, node, kind });
         }

@@ -217,6 +217,13 @@ pub trait Step: Operator {
     /// What may be done with right sides that are rows and zero; `non_negative`: no field can be negative.
     fn rule(code: Self::Code, non_negative: bool) -> Rule;
 
+    /// Which of two sides is the result, with its attributes and to the bit, where they are further apart than
+    /// the first number of the row. The result is never on the other side of it, and beyond it by that number
+    /// at most. `None` if neither is.
+    fn takes_apart(_: Self::Code) -> Option<Extreme> {
+        None
+    }
+
     /// The step over the ops. `iso2` is twice the iso-value.
     fn emit<D: Domain>(
         code: Self::Code,

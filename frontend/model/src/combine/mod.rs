@@ -186,6 +186,11 @@ macro_rules! operators {
                 match self { $( Self::$step(code) => <$step as Step>::rule(code, non_negative), )+ }
             }
 
+            /// See [`Step::takes_apart`].
+            pub fn takes_apart(self) -> Option<Extreme> {
+                match self { $( Self::$step(code) => <$step as Step>::takes_apart(code), )+ }
+            }
+
             /// The field of two sides and the weight of either, from a row of numbers and twice the
             /// iso-value.
             pub fn emit<D: Domain>(

@@ -5,6 +5,7 @@ use std::hash::Hash;
 
 use jbt_ir::{Domain, Rule};
 
+use super::extreme::Extreme;
 use super::member::{Operator, OperatorReach, PairResult, Step};
 
 /// The formula of a set operation in a family. It is what of the step selects code.
@@ -26,6 +27,11 @@ pub trait SetFormula: Copy + Eq + Hash + Debug {
 
     /// What may be done with right sides that are rows and zero; `non_negative`: no field can be negative.
     fn rule(self, non_negative: bool) -> Rule;
+
+    /// See [`Step::takes_apart`].
+    fn takes_apart(self) -> Option<Extreme> {
+        None
+    }
 
     /// The step over the ops. `iso2` is twice the iso-value.
     fn emit<D: Domain>(
@@ -81,6 +87,10 @@ impl<T: SetStep> Step for T {
 
     fn rule(formula: T::Formula, non_negative: bool) -> Rule {
         formula.rule(non_negative)
+    }
+
+    fn takes_apart(formula: T::Formula) -> Option<Extreme> {
+        formula.takes_apart()
     }
 
     fn emit<D: Domain>(

@@ -20,6 +20,7 @@
 
 use jbt_ir::{Domain, Rule};
 
+use super::extreme::Extreme;
 use super::member::{OperatorReach, PairResult};
 use super::set::SetOperation;
 use super::set_step::SetFormula;
@@ -135,6 +136,14 @@ impl SetFormula for Smooth {
             SetOperation::Intersection if non_negative => Rule::OnlyZero,
             // One zero limits the others to 0, or to 2 iso, and then the next changes nothing.
             SetOperation::Union | SetOperation::Intersection | SetOperation::Difference => Rule::KeepOne,
+        }
+    }
+
+    fn takes_apart(self) -> Option<Extreme> {
+        match self.0 {
+            SetOperation::Union => Some(Extreme::Largest),
+            SetOperation::Intersection => Some(Extreme::Smallest),
+            SetOperation::Difference => None,
         }
     }
 

@@ -55,6 +55,11 @@ pub(crate) trait Ground: Sized {
     /// The bounds of an input plane.
     fn input(&mut self, bounds: &mut Self::Bound, index: usize) -> BoundPair<Self>;
 
+    /// An input plane that is a number and no range, if it is one.
+    fn number(&mut self, _: &mut Self::Bound, _index: usize) -> Option<<Self::Bound as Domain>::Real> {
+        None
+    }
+
     /// A column of the current row.
     fn column(
         &mut self,
@@ -112,6 +117,9 @@ impl<G: Ground> Translation for Enclosure<'_, G> {
     }
 
     fn input(&mut self, index: usize) -> Self::Value {
+        if let Some(number) = self.ground.number(&mut self.interval.domain, index) {
+            return Any::Real(self.interval.point(number));
+        }
         let [low, high] = self.ground.input(&mut self.interval.domain, index);
         Any::Real(self.interval.input(low, high))
     }

@@ -9,7 +9,9 @@
 //! the model.
 #![allow(clippy::print_stdout, reason = "a test may show its figures")]
 
+#[path = "../common/mod.rs"]
 mod common;
+mod unions;
 
 use std::sync::atomic::{AtomicU64, Ordering};
 

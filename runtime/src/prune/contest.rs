@@ -1,0 +1,348 @@
+//! Rows that win nowhere in a box: of the operands of a union or an intersection that are rows, those that
+//! another row beats in the whole box.
+//!
+//! ```text
+//! lanes:        each row of the contest with each box that it may matter in      one run of the row's own function
+//! union:        best = the largest low end of a box, of the rows of one owner
+//!               a row goes if its high end is below best, or equal and behind the row that has it
+//! intersection: the same of the negative ranges
+//! smooth ones:  a row goes if it is the smaller side of its step by the width, or if a later row is the larger one by it
+//! ```
+//!
+//! A row that goes is beaten at every point by a row that stays, or equals one that comes before it. So no
+//! field, gradient or attribute comes from it, and what is left out changes no bit. Rows that their supports
+//! leave out have gone before.
+//!
+//! The function of a row ([`RowFunction`]) has the ops of the program, so its range encloses every f32 that
+//! engines compute.
+
+use std::sync::OnceLock;
+
+use jbt_ir::{Entity as _, RowFunction, Selection, Table, Tables};
+use jbt_lower::prune_info::{Contest, ContestGroup, ContestKind, PruneInfo};
+use jbt_model::combine::Extreme;
+
+use super::decide::firsts;
+use super::ranges::ProbeRanges;
+use crate::compiler::Compiler;
+use crate::error::EvalError;
+use crate::kernel::{BoundKernel, Purpose};
+use crate::region::{ANYTHING, Box3, MAX_PARTS, Range};
+
+/// A contest of fewer rows, over the whole model, is not worth a program.
+const FEWEST_ROWS: usize = 8;
+/// The same of rows that are tried by the range program as well ([`super::decide::Alone`]).
+const FEWEST_TRIED_ROWS: usize = 48;
+/// Fewer rows in a box are not looked at.
+const FEWEST_IN_BOX: usize = 3;
+/// The most contests of a model that have programs: those of the most rows.
+const MOST_CONTESTS: usize = 24;
+/// Lanes of a run: their planes stay in the nearest caches.
+const MOST_LANES: usize = 1024;
+
+/// The contests of a model, with what runs their rows.
+pub(super) struct Contests {
+    compiler: Compiler,
+    /// Those that are worth it.
+    all: Vec<ContestRows>,
+}
+
+struct ContestRows {
+    contest: Contest,
+    /// By group: made when it is first asked for. `None` if no ranges of the rows can be had.
+    groups: Vec<OnceLock<Option<RowRanges>>>,
+}
+
+/// What gives the ranges of the rows of a table.
+struct RowRanges {
+    kernel: BoundKernel,
+    /// Numbers of the rows, plane by plane.
+    numbers: Vec<Vec<f32>>,
+    /// Distances in the function.
+    distances: u64,
+}
+
+/// A row in a box.
+#[derive(Clone, Copy)]
+struct RowInBox {
+    row: u32,
+    /// Its place among all active rows of the selection.
+    place: u32,
+    /// The position of the row that owns it.
+    owner: u32,
+    part: u8,
+    /// Whether it is no row that may go.
+    stays: bool,
+}
+
+impl Contests {
+    pub(super) fn new(compiler: &Compiler, info: &PruneInfo, tables: &Tables) -> Self {
+        let rows = |contest: &Contest| -> usize {
+            let operands = contest.groups.iter().filter(|group| group.rows);
+            operands.map(|group| tables.tables[group.table].len()).sum()
+        };
+        let is_tried = |contest: &Contest| {
+            let tried = |group: &ContestGroup| info.decisions.iter().any(|it| it.table == group.table);
+            contest.groups.iter().any(tried)
+        };
+        let mut worth: Vec<&Contest> = info
+            .contests
+            .iter()
+            .filter(|contest| {
+                let fewest = if is_tried(contest) { FEWEST_TRIED_ROWS } else { FEWEST_ROWS };
+                rows(contest) >= fewest
+            })
+            .collect();
+        worth.sort_by_key(|contest| std::cmp::Reverse(rows(contest)));
+        worth.truncate(MOST_CONTESTS);
+        let with_rows = |contest: &Contest| ContestRows {
+            groups: contest.groups.iter().map(|_| OnceLock::new()).collect(),
+            contest: contest.clone(),
+        };
+        Self { compiler: compiler.clone(), all: worth.into_iter().map(with_rows).collect() }
+    }
+
+    /// Whether the rows of a table meet in a contest.
+    pub(super) fn meet(&self, table: Table) -> bool {
+        self.all.iter().flat_map(|it| &it.contest.groups).any(|group| group.rows && group.table == table)
+    }
+
+    /// Clears the masks of rows that win nowhere, for each box. `lowered` is the range program, whose rows
+    /// the selection selects; `probes` are the ranges of its probes, if they are known. Returns how many
+    /// ranges of distances that took.
+    pub(super) fn leave_out(
+        &self,
+        lowered: &BoundKernel,
+        (selection, boxes): (&Selection, &[Box3]),
+        probes: Option<ProbeRanges<'_>>,
+        masks: &mut [u8],
+    ) -> Result<u64, EvalError> {
+        let mut evaluations = 0;
+        if self.all.is_empty() {
+            return Ok(evaluations);
+        }
+        let firsts = firsts(selection);
+        for ContestRows { contest, groups } in &self.all {
+            let operands = |group: &&ContestGroup| group.rows;
+            let rows = |group: &ContestGroup| selection.active(group.table).len();
+            if contest.groups.iter().filter(operands).map(rows).sum::<usize>() < FEWEST_IN_BOX {
+                continue;
+            }
+            let enter = |group| entries(group, selection, &firsts, masks);
+            let mut entered: Vec<Vec<RowInBox>> = contest.groups.iter().map(enter).collect();
+            leave_few(contest, &mut entered);
+            let mut round = Round::default();
+            for (index, (group, entered)) in contest.groups.iter().zip(&entered).enumerate() {
+                if entered.is_empty() {
+                    continue;
+                }
+                let made = groups[index].get_or_init(|| RowRanges::new(&self.compiler, lowered, group));
+                let mut meet = |entry, range| round.meet(contest.extreme, index, entry, range);
+                match made {
+                    Some(ranges) => {
+                        evaluations += ranges.distances * entered.len() as u64;
+                        ranges.find(entered, boxes, &mut meet)?;
+                    }
+                    None => entered.iter().for_each(|&entry| meet(entry, ANYTHING)),
+                }
+            }
+            round.finish(contest, (selection, lowered.tables()), probes, masks);
+        }
+        Ok(evaluations)
+    }
+}
+
+/// The operands of a group in each box in which they may matter.
+fn entries(group: &ContestGroup, selection: &Selection, firsts: &[usize], masks: &[u8]) -> Vec<RowInBox> {
+    let (starts, active) = (selection.starts(group.table), selection.active(group.table));
+    let first = firsts[group.table.index()];
+    let mut entered = Vec::new();
+    let mut enter = |owner: u32, position: u32| {
+        let place = first + position as usize;
+        let mut mask = masks[place];
+        while mask != 0 {
+            let part = mask.trailing_zeros() as u8;
+            mask &= mask - 1;
+            let row = active[position as usize];
+            // Selections have fewer than 2^32 rows.
+            entered.push(RowInBox { row, place: place as u32, owner, part, stays: !group.rows });
+        }
+    };
+    if group.rows {
+        for (owner, range) in (0..).zip(starts.windows(2)) {
+            (range[0]..range[1]).for_each(|position| enter(owner, position));
+        }
+    } else {
+        (0..active.len() as u32).for_each(|owner| enter(owner, owner));
+    }
+    entered
+}
+
+/// Leaves boxes with few operands alone.
+fn leave_few(contest: &Contest, entered: &mut [Vec<RowInBox>]) {
+    let mut counts = [0; MAX_PARTS];
+    for (_, entered) in contest.groups.iter().zip(&*entered).filter(|(group, _)| group.rows) {
+        entered.iter().for_each(|entry| counts[entry.part as usize] += 1);
+    }
+    for entered in entered {
+        entered.retain(|entry| counts[entry.part as usize] >= FEWEST_IN_BOX);
+    }
+}
+
+/// One contest in some boxes.
+#[derive(Default)]
+struct Round {
+    met: Vec<MetRow>,
+}
+
+/// A row in a box, with its group and its range: that of the negative field, where the smallest wins.
+#[derive(Clone, Copy)]
+struct MetRow {
+    entry: RowInBox,
+    group: usize,
+    low: f32,
+    high: f32,
+}
+
+impl Round {
+    /// An operand with its range comes to the contest.
+    fn meet(&mut self, extreme: Extreme, group: usize, entry: RowInBox, [low, high]: Range) {
+        let [low, high] = match extreme {
+            Extreme::Largest => [low, high],
+            Extreme::Smallest => [-high, -low],
+        };
+        self.met.push(MetRow { entry, group, low, high });
+    }
+
+    /// Clears the masks of rows that win nowhere.
+    fn finish(
+        mut self,
+        contest: &Contest,
+        (selection, tables): (&Selection, &Tables),
+        probes: Option<ProbeRanges<'_>>,
+        masks: &mut [u8],
+    ) {
+        // In a box, those of one owner in the order of operands.
+        self.met.sort_by_key(|met| (met.entry.part, met.entry.owner, met.group, met.entry.place));
+        let together =
+            |a: &MetRow, b: &MetRow| (a.entry.part, a.entry.owner) == (b.entry.part, b.entry.owner);
+        for rows in self.met.chunk_by(together) {
+            let RowInBox { part, owner, .. } = rows[0].entry;
+            let mut go = |met: &MetRow| {
+                if !met.entry.stays {
+                    masks[met.entry.place as usize] &= !(1 << part);
+                }
+            };
+            match contest.kind {
+                ContestKind::All(start) => {
+                    // The range of the operator itself knows more operands than those that are rows.
+                    let node = probes.zip(contest.node);
+                    let node = node.map(|(probes, node)| probes.range(node, part.into()));
+                    let below = node.map_or(f32::NEG_INFINITY, |[low, high]| match contest.extreme {
+                        Extreme::Largest => low,
+                        Extreme::Smallest => -high,
+                    });
+                    beaten(rows, start, below).for_each(&mut go);
+                }
+                ContestKind::Steps(table, column) => {
+                    let row = selection.active(table)[owner as usize];
+                    let width = tables.tables[table].row(row as usize)[column];
+                    passed_over(rows, width.into()).for_each(&mut go);
+                }
+            }
+        }
+    }
+}
+
+/// The rows that win nowhere, of the rows of one owner in a box, where the largest field wins, or `start`.
+/// Something is nowhere below `below`.
+fn beaten(rows: &[MetRow], start: Option<f32>, below: f32) -> impl Iterator<Item = &MetRow> {
+    let (mut ahead, mut leader) = (start.unwrap_or(f32::NEG_INFINITY), None);
+    for met in rows {
+        if met.low > ahead {
+            (ahead, leader) = (met.low, Some((met.group, met.entry.place)));
+        }
+    }
+    rows.iter().filter(move |met| {
+        let is_behind = match leader {
+            None => start.is_some(),
+            // Between groups the order in the file decides.
+            Some((group, place)) => group == met.group && place < met.entry.place,
+        };
+        met.high < ahead || (met.high == ahead && is_behind) || met.high < below
+    })
+}
+
+/// The rows that change nothing in any step, of the rows of one owner in a box in their order. In a step, the
+/// larger side is the result if the sides are apart by `width`. In real numbers the result is at least the
+/// largest field so far, and at most that and `width`:
+///
+/// ```text
+/// passed over    a row that is below the largest low end before it by `width`
+/// begins anew    a row that is above the largest high end before it by twice `width`: all before it go
+/// ```
+fn passed_over(rows: &[MetRow], width: f64) -> impl Iterator<Item = &MetRow> {
+    let (mut low, mut high) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
+    let mut first = 0;
+    let mut passed = Vec::with_capacity(rows.len());
+    for (index, met) in rows.iter().enumerate() {
+        passed.push(f64::from(met.high) + width <= low);
+        // Each step may round by half a unit.
+        let rounding = f64::from(f32::EPSILON) * (index + 1) as f64 * (high.abs() + 2.0 * width);
+        if index > 0 && f64::from(met.low) >= high + 2.0 * width + rounding {
+            first = index;
+        }
+        low = low.max(met.low.into());
+        high = high.max(met.high.into());
+    }
+    rows.iter().enumerate().filter(move |&(index, _)| passed[index] || index < first).map(|(_, met)| met)
+}
+
+impl RowRanges {
+    fn new(compiler: &Compiler, lowered: &BoundKernel, group: &ContestGroup) -> Option<Self> {
+        let function = &lowered.kernel.lowered;
+        let RowFunction { function, numbers, distances } =
+            RowFunction::new(function, lowered.tables(), group.table, group.field)?;
+        // What no program can be had for is not left out.
+        let kernel = compiler.kernel(function, Purpose::RowRanges, None).ok()?;
+        Some(Self { kernel: compiler.bind(&kernel, Tables::default()), numbers, distances })
+    }
+
+    /// The range of each row in its box.
+    fn find(
+        &self,
+        entered: &[RowInBox],
+        boxes: &[Box3],
+        met: &mut dyn FnMut(RowInBox, Range),
+    ) -> Result<(), EvalError> {
+        let most = MOST_LANES.next_multiple_of(self.kernel.kernel.block());
+        let mut planes: Vec<Vec<f32>> = vec![Vec::with_capacity(most); 6 + self.numbers.len()];
+        for entered in entered.chunks(most) {
+            // Whole blocks run in place.
+            let lanes = entered.len().next_multiple_of(self.kernel.kernel.block());
+            let (point, numbers) = planes.split_at_mut(6);
+            let part = |entry: &RowInBox| &boxes[entry.part as usize];
+            for axis in 0..3 {
+                fill(&mut point[2 * axis], lanes, entered.iter().map(|entry| part(entry).low[axis]));
+                fill(&mut point[2 * axis + 1], lanes, entered.iter().map(|entry| part(entry).high[axis]));
+            }
+            for (plane, numbers) in numbers.iter_mut().zip(&self.numbers) {
+                fill(plane, lanes, entered.iter().map(|entry| numbers[entry.row as usize]));
+            }
+            let inputs: Vec<&[f32]> = planes.iter().map(Vec::as_slice).collect();
+            let (mut low, mut high) = (vec![0.0; lanes], vec![0.0; lanes]);
+            self.kernel.run(self.kernel.all(), &inputs, &mut [&mut low, &mut high])?;
+            for ((&entry, &low), &high) in entered.iter().zip(&low).zip(&high) {
+                met(entry, [low, high]);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Fills a plane; lanes behind the last number repeat it.
+fn fill(plane: &mut Vec<f32>, lanes: usize, numbers: impl Iterator<Item = f32>) {
+    plane.clear();
+    plane.extend(numbers);
+    plane.resize(lanes, plane.last().copied().unwrap_or(0.0));
+}
