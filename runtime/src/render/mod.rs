@@ -19,12 +19,21 @@ mod error;
 mod frame;
 mod framing;
 mod gather;
+mod guide;
+mod hierarchy;
 mod lights;
+mod look;
+mod material;
 mod noise;
 mod renderer;
 mod report;
+mod seen;
 mod settings;
 mod shade;
+mod sheet;
+mod smooth;
+mod surface_field;
+mod telling;
 mod tile;
 mod vector;
 
@@ -45,6 +54,7 @@ use crate::job::{Hook, Job};
 
 use develop::{Gathered, develop};
 use frame::Frame;
+use telling::Telling;
 use tile::{Tile, TileArea};
 
 /// The number of tiles between two reports of progress.
@@ -93,19 +103,23 @@ impl Render {
 
     fn with_hooked(&self, renderer: &Renderer, hook: Hook<'_>) -> Result<Rendered, RenderError> {
         self.check(renderer.tree())?;
-        if !hook(0.0) {
-            return Err(RenderError::Cancelled);
-        }
+        let mut telling = Telling::new(hook)?;
         let start = Instant::now();
         let mut film = self.film()?;
-        let frame = Frame::new(self, renderer)?;
+        telling.begin(sheet::BEGIN);
+        let frame = Frame::new(self, renderer, &mut telling)?;
         let frame_time = start.elapsed();
         let start = Instant::now();
+        let guide = frame.as_ref().and_then(|frame| frame.guide.as_ref());
         let done = match &frame {
-            Some(frame) => expose(frame, &mut film, hook)?,
+            Some(frame) => match guide {
+                Some(guide) => sheet::expose(frame, guide, &mut film, &mut telling)?,
+                None => expose(frame, &mut film, &mut telling)?,
+            },
             None => Tile::default(),
         };
         let [trace_time, shade_time] = done.shares(start.elapsed());
+        let mesh_evaluations = guide.map_or(0, |guide| guide.evaluations);
         let (picture, range) = develop(&film, self.size, self.meaning(renderer.tree()), self.background());
         let notice = match &frame {
             None => Some(Notice::Empty),
@@ -117,7 +131,8 @@ impl Render {
             pixels_hit: done.pixels_hit,
             tolerance: frame.as_ref().map_or(0.0, |frame| frame.tolerance),
             rays: done.rays,
-            evaluations: done.evaluations.round() as u64,
+            evaluations: done.evaluations.round() as u64 + mesh_evaluations,
+            triangles: guide.map_or(0, |guide| guide.triangles),
             range,
             engine: renderer.evaluator.engine(),
             notice,
@@ -140,7 +155,8 @@ impl Render {
 }
 
 /// Exposes all tiles of a film. Returns their total cost.
-fn expose(frame: &Frame<'_>, film: &mut [Gathered], hook: Hook<'_>) -> Result<Tile, RenderError> {
+fn expose(frame: &Frame<'_>, film: &mut [Gathered], telling: &mut Telling<'_>) -> Result<Tile, RenderError> {
+    telling.begin(1.0);
     let width = frame.render.size[0] as usize;
     let places = TileArea::all(frame.render.size, frame.render.antialias);
     let mut all = Tile::default();
@@ -154,7 +170,7 @@ fn expose(frame: &Frame<'_>, film: &mut [Gathered], hook: Hook<'_>) -> Result<Ti
             all.add(&tile);
         }
         let fraction = ((done + 1) * STRIDE).min(places.len()) as f32 / places.len() as f32;
-        if !hook(fraction) {
+        if !telling.tell(fraction) {
             return Err(RenderError::Cancelled);
         }
     }

@@ -110,7 +110,15 @@ impl Quality {
         }
     }
 
-    /// The tolerance of rays to the light and the sky, in pixels: shadows are soft, so thinner parts may cast
+    /// The edge of a cell of the mesh that guides rays, in pixels; the best quality has none.
+    pub(super) fn cell(self) -> f64 {
+        match self {
+            Self::Draft => 5.0,
+            Self::Good | Self::Best => 3.0,
+        }
+    }
+
+    /// The tolerance of exact rays to the light and the sky, in pixels: shadows are soft, so thinner parts may cast
     /// none.
     pub(super) fn softness(self) -> f64 {
         match self {

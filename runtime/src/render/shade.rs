@@ -7,7 +7,7 @@ use super::cast::CastHit;
 use super::color::{Rgb, shoulder};
 use super::error::RenderError;
 use super::frame::Frame;
-use super::gather::{Cost, Light, Spot, gather, spot, unshadowed};
+use super::gather::{Cost, Light, RayBudget, Spot, gather, spot, unshadowed};
 use super::lights::{sky, sky_above};
 use super::vector::{Vector, add, along, dot, length, scale, sub, unit};
 
@@ -40,13 +40,14 @@ pub fn surfaces(
             spot(frame, met.position, met.normal, pixel, sample)
         })
         .collect();
-    let (lights, cost) = gather(frame, &spots, 1)?;
+    let each = frame.render.quality.rays();
+    let (lights, cost) = gather(frame, &spots, RayBudget { spot: each, pixel: rays_of_a_pixel(frame) })?;
     let colors = met.iter().zip(lights).map(|(met, light)| surface(frame, met, light, seen(met).2));
     Ok((colors.collect(), cost))
 }
 
 /// The screen values of a surface, seen along a unit vector.
-fn surface(frame: &Frame<'_>, met: &CastHit, light: Light, looking: Vector) -> Rgb {
+pub fn surface(frame: &Frame<'_>, met: &CastHit, light: Light, looking: Vector) -> Rgb {
     let view = scale(looking, -1.0);
     let facing = dot(met.normal, view).clamp(0.0, 1.0);
     let fill = dot(met.normal, frame.lights.fill).max(0.0) as f32 * light.open;
@@ -75,18 +76,26 @@ pub struct GroundSpot {
 pub fn shadows(frame: &Frame<'_>, places: &[GroundSpot]) -> Result<(Vec<[f32; 4]>, Cost), RenderError> {
     let spots: Vec<Spot> =
         places.iter().map(|place| spot(frame, place.position, frame.up, place.pixel, place.sample)).collect();
+    let all = rays_of_a_pixel(frame);
+    let (lights, cost) = gather(frame, &spots, RayBudget { spot: all, pixel: all })?;
+    Ok((spots.iter().zip(&lights).map(|(spot, light)| shadow(frame, spot, light)).collect(), cost))
+}
+
+/// The numbers of rays of a pixel to the key light and to the sky, where each of its rays is lit on its own.
+fn rays_of_a_pixel(frame: &Frame<'_>) -> [u32; 2] {
     let rays = frame.render.antialias * frame.render.antialias;
-    let (lights, cost) = gather(frame, &spots, rays)?;
+    frame.render.quality.rays().map(|count| count * rays)
+}
+
+/// The shadow at a spot of the ground that this light reaches.
+pub fn shadow(frame: &Frame<'_>, spot: &Spot, light: &Light) -> [f32; 4] {
     let strength = |light: &Light| {
         let sum = |channel: usize| KEY[channel] * light.facing + light.sky[channel];
         sum(0) + sum(1) + sum(2)
     };
-    let shadow = |(spot, light): (&Spot, &Light)| {
-        let missing = 1.0 - strength(light) / strength(&unshadowed(frame, spot));
-        let depth = DEEPEST * missing.clamp(0.0, 1.0) * fade(frame, spot.position);
-        [SHADE[0] * depth, SHADE[1] * depth, SHADE[2] * depth, depth]
-    };
-    Ok((spots.iter().zip(&lights).map(shadow).collect(), cost))
+    let missing = 1.0 - strength(light) / strength(&unshadowed(frame, spot));
+    let depth = DEEPEST * missing.clamp(0.0, 1.0) * fade(frame, spot.position);
+    [SHADE[0] * depth, SHADE[1] * depth, SHADE[2] * depth, depth]
 }
 
 /// The remaining part of a shadow at a place: 1 near the model, 0 far away.
