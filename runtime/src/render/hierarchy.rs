@@ -28,6 +28,14 @@ const SLACK: f32 = 1.0 + 1e-6;
 const FLAT: f32 = 1e-30;
 /// Every coordinate of a box that is missing. With infinity, its near and its far side would change places.
 const FAR_AWAY: f32 = f32::MAX;
+/// Segments that are led through the hierarchy together.
+const BUNDLE: usize = 64;
+/// Clusters beside such a bundle, beyond which each segment walks alone.
+const MANY: usize = 192;
+/// The least mean of unit directions of a bundle.
+const STRAIGHT: f32 = 0.9;
+/// A bound of the rounding of a plane, as a part of all lengths in it.
+const ROUNDING: f32 = 1e-5;
 /// Nodes that wait at most: seven brothers on each of eleven levels, and the last eight.
 const WAITING: usize = 96;
 
@@ -76,6 +84,7 @@ type Corners = [[f32; 3]; 2];
 
 const NOWHERE: Corners = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
 
+#[inline(always)]
 fn joined([low, high]: Corners, [other_low, other_high]: &Corners) -> Corners {
     [
         [0, 1, 2].map(|axis| low[axis].min(other_low[axis])),
@@ -130,16 +139,19 @@ impl TriangleCluster {
     }
 
     /// The normal of a triangle, of any length.
+    #[inline(always)]
     fn normal(&self, lane: usize) -> [f32; 3] {
         let [a, b] = self.edges.each_ref().map(|edge| edge.map(|axis| axis[lane]));
-        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+        cross(a, b)
     }
 }
 
 impl BoxNode {
+    const EMPTY: Self = Self { low: [[FAR_AWAY; WIDE]; 3], high: [[FAR_AWAY; WIDE]; 3] };
+
     /// The node of up to eight boxes, and the box around them.
     fn new(boxes: &[Corners]) -> (Self, Corners) {
-        let mut node = Self { low: [[FAR_AWAY; WIDE]; 3], high: [[FAR_AWAY; WIDE]; 3] };
+        let mut node = Self::EMPTY;
         for (lane, [low, high]) in boxes.iter().enumerate() {
             for axis in 0..3 {
                 node.low[axis][lane] = low[axis];
@@ -147,6 +159,36 @@ impl BoxNode {
             }
         }
         (node, boxes.iter().fold(NOWHERE, joined))
+    }
+
+    /// For each box that reaches into a beam a bound of its distance from where the beam begins; infinity for
+    /// the others.
+    #[inline(always)]
+    fn within(&self, beam: &Beam) -> EightLanes {
+        let mut outside = [0_u32; WIDE];
+        for ([x, y, z], most) in &beam.planes {
+            let side =
+                |axis: usize, normal: f32| if normal > 0.0 { &self.low[axis] } else { &self.high[axis] };
+            let corner = [side(0, *x), side(1, *y), side(2, *z)];
+            for i in 0..WIDE {
+                outside[i] |= u32::from(corner[0][i] * x + corner[1][i] * y + corner[2][i] * z > *most);
+            }
+        }
+        let mut square = [0.0_f32; WIDE];
+        for axis in 0..3 {
+            for i in 0..WIDE {
+                let below = self.low[axis][i] - beam.origins[1][axis];
+                let above = beam.origins[0][axis] - self.high[axis][i];
+                let gap = if below > above { below } else { above };
+                let gap = if gap > 0.0 { gap } else { 0.0 };
+                square[i] += gap * gap;
+            }
+        }
+        let mut distances = [f32::INFINITY; WIDE];
+        for i in 0..WIDE {
+            distances[i] = if outside[i] == 0 { square[i].sqrt() / SLACK } else { f32::INFINITY };
+        }
+        distances
     }
 
     /// The distance at which a ray enters each box, or infinity (Kay and Kajiya 1986: slabs).
@@ -170,6 +212,120 @@ impl BoxNode {
     }
 }
 
+/// The clusters beside a bundle of segments.
+#[derive(Default)]
+struct NearClusters {
+    /// Each with a bound of its distance from where the bundle begins; the nearest first.
+    clusters: Vec<(f32, u32)>,
+    /// Their boxes, in this order.
+    boxes: Vec<BoxNode>,
+}
+
+impl NearClusters {
+    /// Shows `visit` the clusters whose boxes a segment enters: see [`Hierarchy::walk`].
+    #[inline(always)]
+    fn walk(
+        &self,
+        hierarchy: &Hierarchy,
+        segment: &Segment,
+        mut visit: impl FnMut(&TriangleCluster, f32) -> f32,
+    ) {
+        let (inverse, mut reach) = (inverse(segment.direction), segment.reach);
+        for (node, clusters) in self.boxes.iter().zip(self.clusters.chunks(WIDE)) {
+            if clusters[0].0 > reach {
+                return;
+            }
+            let entered = node.enter(segment.origin, inverse, reach);
+            let mut mask = finite_lanes(&entered);
+            while mask != 0 {
+                let lane = (mask.trailing_zeros() & 7) as usize;
+                mask &= mask - 1;
+                if entered[lane] <= reach {
+                    reach = visit(&hierarchy.clusters[clusters[lane].1 as usize], reach);
+                }
+            }
+        }
+    }
+}
+
+/// The inverse of a direction's coordinates, all finite.
+#[inline(always)]
+fn inverse(direction: [f32; 3]) -> [f32; 3] {
+    direction.map(|x| 1.0 / if x.abs() < FLAT { FLAT.copysign(x) } else { x })
+}
+
+/// The space that some segments go through: what is on the inner side of four planes, and where they begin.
+struct Beam {
+    /// Normals, outwards, and the largest product of a point of the beam with each.
+    planes: [([f32; 3], f32); 4],
+    origins: Corners,
+}
+
+impl Beam {
+    /// The beam of segments that go about the same way; `None` if they do not.
+    ///
+    /// Along the mean direction, `across(t) = across(0) + t * slope` for each segment, so the largest of all
+    /// at both ends bounds them between.
+    #[inline(always)]
+    fn new(segments: &[Segment]) -> Option<Self> {
+        let mut mean = [0.0_f32; 3];
+        for segment in segments {
+            mean = [0, 1, 2].map(|axis| mean[axis] + segment.direction[axis]);
+        }
+        let length = dot(mean, mean).sqrt();
+        if length < STRAIGHT * segments.len() as f32 {
+            return None;
+        }
+        let ahead = mean.map(|x| x / length);
+        let least =
+            (0..3).fold(0, |best, axis| if ahead[axis].abs() < ahead[best].abs() { axis } else { best });
+        let mut along = [0.0; 3];
+        along[least] = 1.0;
+        let right = cross(ahead, along);
+        let right = right.map(|x| x / dot(right, right).sqrt());
+        let aside = [right, cross(ahead, right)];
+        let mut origins = NOWHERE;
+        let mut depths = [f32::INFINITY, f32::NEG_INFINITY];
+        for segment in segments {
+            let depth = dot(segment.origin, ahead);
+            origins = joined(origins, &[segment.origin, segment.origin]);
+            depths = [depths[0].min(depth), depths[1].max(depth + segment.reach)];
+        }
+        let mut ends = [[f32::NEG_INFINITY; 4]; 2];
+        for segment in segments {
+            let (from, speed) = (dot(segment.origin, ahead), 1.0 / dot(segment.direction, ahead));
+            for (ends, depth) in ends.iter_mut().zip(depths) {
+                let t = (depth - from) * speed;
+                for (axis, aside) in aside.iter().enumerate() {
+                    let across = dot(segment.origin, *aside) + t * dot(segment.direction, *aside);
+                    ends[2 * axis] = ends[2 * axis].max(across);
+                    ends[2 * axis + 1] = ends[2 * axis + 1].max(-across);
+                }
+            }
+        }
+        let size = (0..3).fold(depths[1] - depths[0], |size: f32, axis| {
+            size.max(origins[0][axis].abs()).max(origins[1][axis].abs())
+        });
+        let planes = std::array::from_fn(|plane| {
+            let slope = (ends[1][plane] - ends[0][plane]) / (depths[1] - depths[0]).max(f32::MIN_POSITIVE);
+            let sign = if plane % 2 == 0 { 1.0 } else { -1.0 };
+            let normal = [0, 1, 2].map(|axis| sign * aside[plane / 2][axis] - slope * ahead[axis]);
+            (normal, ends[0][plane] - slope * depths[0] + ROUNDING * (1.0 + slope.abs()) * size)
+        });
+        Some(Self { planes, origins })
+    }
+}
+
+#[inline(always)]
+fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[inline(always)]
+fn cross(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
 /// A node that waits: where the ray enters it, its level and its number.
 #[derive(Clone, Copy)]
 struct WaitingNode {
@@ -178,20 +334,32 @@ struct WaitingNode {
     number: u32,
 }
 
-/// The boxes that a ray enters, the farthest one first.
+/// The lanes whose bits are set in a mask, the farthest one first, and their number.
 #[inline(always)]
-fn sorted(entered: &EightLanes) -> ([usize; WIDE], usize) {
-    let (mut order, mut count) = ([0; WIDE], 0);
-    for lane in (0..WIDE).filter(|&lane| entered[lane] < f32::INFINITY) {
+fn sorted(mut mask: u32, entered: &EightLanes) -> ([u8; WIDE], usize) {
+    let (mut order, mut count) = ([0_u8; WIDE], 0);
+    while mask != 0 {
+        let lane = (mask.trailing_zeros() & 7) as u8;
+        mask &= mask - 1;
         let mut at = count;
-        while at > 0 && entered[order[at - 1]] < entered[lane] {
-            order[at] = order[at - 1];
+        while at > 0 && entered[usize::from(order[at - 1] & 7)] < entered[usize::from(lane)] {
+            order[at & 7] = order[at - 1];
             at -= 1;
         }
-        order[at] = lane;
+        order[at & 7] = lane;
         count += 1;
     }
     (order, count)
+}
+
+/// A bit for each lane that is finite.
+#[inline(always)]
+fn finite_lanes(lanes: &EightLanes) -> u32 {
+    let mut bits = [0; WIDE];
+    for i in 0..WIDE {
+        bits[i] = u32::from(lanes[i] < f32::INFINITY) << i;
+    }
+    bits.iter().fold(0, |mask, bit| mask | bit)
 }
 
 impl Hierarchy {
@@ -215,7 +383,8 @@ impl Hierarchy {
         (!clusters.is_empty()).then_some(Self { clusters, levels })
     }
 
-    /// Where each segment meets the mesh first, from either side.
+    /// Where each segment meets the mesh first, from either side. It is fast where neighbours in the list are
+    /// neighbours in space.
     pub fn first_of(&self, segments: &[Segment]) -> Vec<Option<MeshMeeting>> {
         let mut met = vec![None; segments.len()];
         first_all(self, segments, &mut met);
@@ -230,12 +399,53 @@ impl Hierarchy {
         met
     }
 
+    /// Collects the clusters whose boxes reach into a beam. Whether there are few enough.
+    #[inline(always)]
+    fn near_beam(&self, beam: &Beam, near: &mut NearClusters) -> bool {
+        near.clusters.clear();
+        near.boxes.clear();
+        let mut waiting = [(self.levels.len() as u32 - 1, 0_u32); WAITING];
+        let mut count = 1;
+        while count > 0 {
+            count -= 1;
+            let (level, number) = waiting[count];
+            let distances = self.levels[level as usize][number as usize].within(beam);
+            let mut mask = finite_lanes(&distances);
+            while mask != 0 {
+                let lane = mask.trailing_zeros() & 7;
+                mask &= mask - 1;
+                let number = number * WIDE as u32 + lane;
+                if level > 0 {
+                    waiting[count] = (level - 1, number);
+                    count += 1;
+                } else {
+                    near.clusters.push((distances[lane as usize], number));
+                }
+            }
+            if near.clusters.len() > MANY {
+                return false;
+            }
+        }
+        near.clusters.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        for some in near.clusters.chunks(WIDE) {
+            let mut node = BoxNode::EMPTY;
+            for (to, &(_, cluster)) in some.iter().enumerate() {
+                let (from, lane) = (&self.levels[0][cluster as usize / WIDE], cluster as usize % WIDE);
+                for axis in 0..3 {
+                    node.low[axis][to] = from.low[axis][lane];
+                    node.high[axis][to] = from.high[axis][lane];
+                }
+            }
+            near.boxes.push(node);
+        }
+        true
+    }
+
     /// Shows `visit` the clusters that a ray may meet, the nearest first, roughly. It returns the distance up
     /// to which the walk goes on, or less than 0 to end it.
     #[inline(always)]
     fn walk(&self, ray: &Segment, mut visit: impl FnMut(&TriangleCluster, f32) -> f32) {
-        let inverse = ray.direction.map(|x| 1.0 / if x.abs() < FLAT { FLAT.copysign(x) } else { x });
-        let mut reach = ray.reach;
+        let (inverse, mut reach) = (inverse(ray.direction), ray.reach);
         let mut waiting =
             [WaitingNode { near: 0.0, level: self.levels.len() as u32 - 1, number: 0 }; WAITING];
         let mut count = 1;
@@ -246,15 +456,19 @@ impl Hierarchy {
                 continue;
             }
             let entered = self.levels[level as usize][number as usize].enter(ray.origin, inverse, reach);
-            let (order, found) = sorted(&entered);
-            for &lane in order[..found].iter().filter(|_| level > 0) {
-                let number = number * WIDE as u32 + lane as u32;
-                waiting[count] = WaitingNode { near: entered[lane], level: level - 1, number };
-                count += 1;
+            let (order, found) = sorted(finite_lanes(&entered), &entered);
+            let first = number * WIDE as u32;
+            if level > 0 {
+                for &lane in &order[..found] {
+                    let near = entered[usize::from(lane & 7)];
+                    waiting[count] = WaitingNode { near, level: level - 1, number: first + u32::from(lane) };
+                    count += 1;
+                }
+                continue;
             }
-            for &lane in order[..found].iter().rev().filter(|_| level == 0) {
-                if entered[lane] <= reach {
-                    reach = visit(&self.clusters[number as usize * WIDE + lane], reach);
+            for &lane in order[..found].iter().rev() {
+                if entered[usize::from(lane & 7)] <= reach {
+                    reach = visit(&self.clusters[(first + u32::from(lane)) as usize], reach);
                 }
             }
             if reach < 0.0 {
@@ -264,36 +478,67 @@ impl Hierarchy {
     }
 }
 
+/// Looks for a nearer meeting in a cluster. Returns the distance up to which to look on.
+#[inline(always)]
+fn first_in(cluster: &TriangleCluster, segment: &Segment, reach: f32, met: &mut Option<MeshMeeting>) -> f32 {
+    let (distances, _) = cluster.meet(segment, reach);
+    let mut mask = finite_lanes(&distances);
+    let mut best = reach;
+    while mask != 0 {
+        let lane = (mask.trailing_zeros() & 7) as usize;
+        mask &= mask - 1;
+        let distance = distances[lane];
+        if distance < best || (distance == best && met.is_none()) {
+            best = distance;
+            *met = Some(MeshMeeting { distance, normal: cluster.normal(lane) });
+        }
+    }
+    best
+}
+
+/// Notes whether a segment meets a cluster: see [`Hierarchy::any_of`]. Returns the distance up to which to look
+/// on: less than 0 if it does.
+#[inline(always)]
+fn any_in(cluster: &TriangleCluster, segment: &Segment, (depth, reach): (f32, f32), met: &mut bool) -> f32 {
+    let (distances, behind) = cluster.meet(segment, segment.reach);
+    let mut counts = 0;
+    for i in 0..WIDE {
+        let is_met = u32::from(distances[i] < f32::INFINITY);
+        counts |= is_met & (u32::from(distances[i] > depth) | (1 - behind[i]));
+    }
+    *met = counts != 0;
+    if *met { -1.0 } else { reach }
+}
+
+// What is called from the loops below is always inlined: it takes their instruction set.
+
 #[cfg_attr(feature = "levels", multiversion::multiversion(targets("x86_64+avx2")))]
 fn first_all(hierarchy: &Hierarchy, segments: &[Segment], met: &mut [Option<MeshMeeting>]) {
-    for (segment, met) in segments.iter().zip(met) {
-        hierarchy.walk(segment, |cluster, reach| {
-            let (distances, _) = cluster.meet(segment, reach);
-            let mut best = reach;
-            for (lane, &distance) in distances.iter().enumerate() {
-                if distance < best || (distance == best && met.is_none()) {
-                    best = distance;
-                    *met = Some(MeshMeeting { distance, normal: cluster.normal(lane) });
-                }
+    let mut near = NearClusters::default();
+    for (segments, met) in segments.chunks(BUNDLE).zip(met.chunks_mut(BUNDLE)) {
+        let is_narrow = Beam::new(segments).is_some_and(|beam| hierarchy.near_beam(&beam, &mut near));
+        for (segment, met) in segments.iter().zip(met) {
+            if is_narrow {
+                near.walk(hierarchy, segment, |cluster, reach| first_in(cluster, segment, reach, met));
+            } else {
+                hierarchy.walk(segment, |cluster, reach| first_in(cluster, segment, reach, met));
             }
-            best
-        });
+        }
     }
 }
 
 #[cfg_attr(feature = "levels", multiversion::multiversion(targets("x86_64+avx2")))]
 fn any_all(hierarchy: &Hierarchy, segments: &[Segment], depth: f32, met: &mut [bool]) {
-    for (segment, met) in segments.iter().zip(met) {
-        hierarchy.walk(segment, |cluster, reach| {
-            let (distances, behind) = cluster.meet(segment, reach);
-            let mut counts = 0;
-            for i in 0..WIDE {
-                counts |= u32::from(distances[i] < f32::INFINITY)
-                    & (u32::from(distances[i] > depth) | (1 - behind[i]));
+    let mut near = NearClusters::default();
+    for (segments, met) in segments.chunks(BUNDLE).zip(met.chunks_mut(BUNDLE)) {
+        let is_narrow = Beam::new(segments).is_some_and(|beam| hierarchy.near_beam(&beam, &mut near));
+        for (segment, met) in segments.iter().zip(met) {
+            if is_narrow {
+                near.walk(hierarchy, segment, |cluster, reach| any_in(cluster, segment, (depth, reach), met));
+            } else {
+                hierarchy.walk(segment, |cluster, reach| any_in(cluster, segment, (depth, reach), met));
             }
-            *met = counts != 0;
-            if *met { -1.0 } else { reach }
-        });
+        }
     }
 }
 

@@ -113,8 +113,8 @@ impl Quality {
     /// The edge of a cell of the mesh that guides rays, in pixels; the best quality has none.
     pub(super) fn cell(self) -> f64 {
         match self {
-            Self::Draft => 5.0,
-            Self::Good | Self::Best => 3.0,
+            Self::Draft => 8.0,
+            Self::Good | Self::Best => 5.0,
         }
     }
 
@@ -132,7 +132,7 @@ impl Quality {
     pub(super) fn rays(self) -> [u32; 2] {
         match self {
             Self::Draft => [0, 0],
-            Self::Good => [2, 4],
+            Self::Good => [2, 3],
             Self::Best => [8, 16],
         }
     }

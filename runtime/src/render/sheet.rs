@@ -331,6 +331,7 @@ impl<'a> Sheet<'a> {
                 (0..parts * parts).map(|part| self.place(pixel, [part % parts, part / parts], parts)),
             );
         }
+        let is_exact = is_exact || self.frame.render.quality != Quality::Draft;
         let (seen, rays, evaluations) = sights(self.frame, &places, |rays| {
             if is_exact { cast(self.frame, rays) } else { look(self.frame, self.guide, rays) }
         })?;
