@@ -7,11 +7,11 @@
 //!    ──────o────────o──────
 //! ```
 
+use super::boxes::Segment;
 use super::cast::start;
 use super::color::Rgb;
 use super::error::RenderError;
 use super::frame::Frame;
-use super::hierarchy::Segment;
 use super::lights::{KEY_SPREAD, sky, sky_above};
 use super::look::segment;
 use super::noise::{Sequence, above, around};
@@ -56,7 +56,7 @@ const REACH: f64 = 0.7;
 /// The height above the surface where rays against a mesh begin, in cells.
 const ABOVE: f64 = 0.3;
 /// The depth below the mesh at which such a ray may still begin, in cells: the mesh is not quite the surface.
-const BURIED: f64 = 2.0;
+const BURIED: f64 = 0.75;
 
 /// The numbers of rays to the key light and to the sky: of a spot, and of all spots of its pixel.
 #[derive(Clone, Copy)]

@@ -13,41 +13,20 @@
 //! Clusters, boxes and the order of a walk depend on the mesh alone, and no product is fused with a sum. So
 //! answers have the same bits for every instruction set and any number of threads.
 
+use super::beam::Beam;
+use super::boxes::{
+    BoxNode, Corners, EightLanes, NOWHERE, Segment, WIDE, cross, finite_lanes, inverse, joined,
+};
 use crate::parallel::*;
-
-/// Boxes of a node, and triangles of a cluster.
-const WIDE: usize = 8;
-/// A number for each of them.
-type EightLanes = [f32; WIDE];
 
 /// By how much a triangle reaches beyond its edges, as a part of it: no ray slips through between two.
 const SEAM: f32 = 1e-5;
-/// The part by which the far side of a box is moved away, beyond the rounding of three operations.
-const SLACK: f32 = 1.0 + 1e-6;
-/// The least magnitude of a direction's coordinate that is divided by.
-const FLAT: f32 = 1e-30;
-/// Every coordinate of a box that is missing. With infinity, its near and its far side would change places.
-const FAR_AWAY: f32 = f32::MAX;
 /// Segments that are led through the hierarchy together.
 const BUNDLE: usize = 64;
 /// Clusters beside such a bundle, beyond which each segment walks alone.
 const MANY: usize = 192;
-/// The least mean of unit directions of a bundle.
-const STRAIGHT: f32 = 0.9;
-/// A bound of the rounding of a plane, as a part of all lengths in it.
-const ROUNDING: f32 = 1e-5;
 /// Nodes that wait at most: seven brothers on each of eleven levels, and the last eight.
 const WAITING: usize = 96;
-
-/// A part of a ray that begins at its origin, relative to the model's origin.
-#[derive(Clone, Copy)]
-pub struct Segment {
-    pub origin: [f32; 3],
-    /// A unit vector.
-    pub direction: [f32; 3],
-    /// The length of the part.
-    pub reach: f32,
-}
 
 /// Where a ray meets a mesh first.
 #[derive(Clone, Copy)]
@@ -65,31 +44,11 @@ struct TriangleCluster {
     edges: [[EightLanes; 3]; 2],
 }
 
-/// Eight boxes. What is missing is a point beyond any ray.
-#[derive(Clone)]
-struct BoxNode {
-    low: [EightLanes; 3],
-    high: [EightLanes; 3],
-}
-
 /// The triangles of a mesh in boxes.
 pub struct Hierarchy {
     clusters: Vec<TriangleCluster>,
     /// Nodes of clusters, nodes of these nodes, and so on. The last level has one node.
     levels: Vec<Vec<BoxNode>>,
-}
-
-/// A box: its smallest and its largest corner.
-type Corners = [[f32; 3]; 2];
-
-const NOWHERE: Corners = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
-
-#[inline(always)]
-fn joined([low, high]: Corners, [other_low, other_high]: &Corners) -> Corners {
-    [
-        [0, 1, 2].map(|axis| low[axis].min(other_low[axis])),
-        [0, 1, 2].map(|axis| high[axis].max(other_high[axis])),
-    ]
 }
 
 impl TriangleCluster {
@@ -146,72 +105,6 @@ impl TriangleCluster {
     }
 }
 
-impl BoxNode {
-    const EMPTY: Self = Self { low: [[FAR_AWAY; WIDE]; 3], high: [[FAR_AWAY; WIDE]; 3] };
-
-    /// The node of up to eight boxes, and the box around them.
-    fn new(boxes: &[Corners]) -> (Self, Corners) {
-        let mut node = Self::EMPTY;
-        for (lane, [low, high]) in boxes.iter().enumerate() {
-            for axis in 0..3 {
-                node.low[axis][lane] = low[axis];
-                node.high[axis][lane] = high[axis];
-            }
-        }
-        (node, boxes.iter().fold(NOWHERE, joined))
-    }
-
-    /// For each box that reaches into a beam a bound of its distance from where the beam begins; infinity for
-    /// the others.
-    #[inline(always)]
-    fn within(&self, beam: &Beam) -> EightLanes {
-        let mut outside = [0_u32; WIDE];
-        for ([x, y, z], most) in &beam.planes {
-            let side =
-                |axis: usize, normal: f32| if normal > 0.0 { &self.low[axis] } else { &self.high[axis] };
-            let corner = [side(0, *x), side(1, *y), side(2, *z)];
-            for i in 0..WIDE {
-                outside[i] |= u32::from(corner[0][i] * x + corner[1][i] * y + corner[2][i] * z > *most);
-            }
-        }
-        let mut square = [0.0_f32; WIDE];
-        for axis in 0..3 {
-            for i in 0..WIDE {
-                let below = self.low[axis][i] - beam.origins[1][axis];
-                let above = beam.origins[0][axis] - self.high[axis][i];
-                let gap = if below > above { below } else { above };
-                let gap = if gap > 0.0 { gap } else { 0.0 };
-                square[i] += gap * gap;
-            }
-        }
-        let mut distances = [f32::INFINITY; WIDE];
-        for i in 0..WIDE {
-            distances[i] = if outside[i] == 0 { square[i].sqrt() / SLACK } else { f32::INFINITY };
-        }
-        distances
-    }
-
-    /// The distance at which a ray enters each box, or infinity (Kay and Kajiya 1986: slabs).
-    #[inline(always)]
-    fn enter(&self, origin: [f32; 3], inverse: [f32; 3], reach: f32) -> EightLanes {
-        let (mut near, mut far) = ([0.0_f32; WIDE], [reach; WIDE]);
-        for axis in 0..3 {
-            for i in 0..WIDE {
-                let low = (self.low[axis][i] - origin[axis]) * inverse[axis];
-                let high = (self.high[axis][i] - origin[axis]) * inverse[axis];
-                let (first, last) = if low < high { (low, high) } else { (high, low) };
-                near[i] = if first > near[i] { first } else { near[i] };
-                far[i] = if last < far[i] { last } else { far[i] };
-            }
-        }
-        let mut entered = [f32::INFINITY; WIDE];
-        for i in 0..WIDE {
-            entered[i] = if near[i] <= far[i] * SLACK { near[i] } else { f32::INFINITY };
-        }
-        entered
-    }
-}
-
 /// The clusters beside a bundle of segments.
 #[derive(Default)]
 struct NearClusters {
@@ -248,84 +141,6 @@ impl NearClusters {
     }
 }
 
-/// The inverse of a direction's coordinates, all finite.
-#[inline(always)]
-fn inverse(direction: [f32; 3]) -> [f32; 3] {
-    direction.map(|x| 1.0 / if x.abs() < FLAT { FLAT.copysign(x) } else { x })
-}
-
-/// The space that some segments go through: what is on the inner side of four planes, and where they begin.
-struct Beam {
-    /// Normals, outwards, and the largest product of a point of the beam with each.
-    planes: [([f32; 3], f32); 4],
-    origins: Corners,
-}
-
-impl Beam {
-    /// The beam of segments that go about the same way; `None` if they do not.
-    ///
-    /// Along the mean direction, `across(t) = across(0) + t * slope` for each segment, so the largest of all
-    /// at both ends bounds them between.
-    #[inline(always)]
-    fn new(segments: &[Segment]) -> Option<Self> {
-        let mut mean = [0.0_f32; 3];
-        for segment in segments {
-            mean = [0, 1, 2].map(|axis| mean[axis] + segment.direction[axis]);
-        }
-        let length = dot(mean, mean).sqrt();
-        if length < STRAIGHT * segments.len() as f32 {
-            return None;
-        }
-        let ahead = mean.map(|x| x / length);
-        let least =
-            (0..3).fold(0, |best, axis| if ahead[axis].abs() < ahead[best].abs() { axis } else { best });
-        let mut along = [0.0; 3];
-        along[least] = 1.0;
-        let right = cross(ahead, along);
-        let right = right.map(|x| x / dot(right, right).sqrt());
-        let aside = [right, cross(ahead, right)];
-        let mut origins = NOWHERE;
-        let mut depths = [f32::INFINITY, f32::NEG_INFINITY];
-        for segment in segments {
-            let depth = dot(segment.origin, ahead);
-            origins = joined(origins, &[segment.origin, segment.origin]);
-            depths = [depths[0].min(depth), depths[1].max(depth + segment.reach)];
-        }
-        let mut ends = [[f32::NEG_INFINITY; 4]; 2];
-        for segment in segments {
-            let (from, speed) = (dot(segment.origin, ahead), 1.0 / dot(segment.direction, ahead));
-            for (ends, depth) in ends.iter_mut().zip(depths) {
-                let t = (depth - from) * speed;
-                for (axis, aside) in aside.iter().enumerate() {
-                    let across = dot(segment.origin, *aside) + t * dot(segment.direction, *aside);
-                    ends[2 * axis] = ends[2 * axis].max(across);
-                    ends[2 * axis + 1] = ends[2 * axis + 1].max(-across);
-                }
-            }
-        }
-        let size = (0..3).fold(depths[1] - depths[0], |size: f32, axis| {
-            size.max(origins[0][axis].abs()).max(origins[1][axis].abs())
-        });
-        let planes = std::array::from_fn(|plane| {
-            let slope = (ends[1][plane] - ends[0][plane]) / (depths[1] - depths[0]).max(f32::MIN_POSITIVE);
-            let sign = if plane % 2 == 0 { 1.0 } else { -1.0 };
-            let normal = [0, 1, 2].map(|axis| sign * aside[plane / 2][axis] - slope * ahead[axis]);
-            (normal, ends[0][plane] - slope * depths[0] + ROUNDING * (1.0 + slope.abs()) * size)
-        });
-        Some(Self { planes, origins })
-    }
-}
-
-#[inline(always)]
-fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-#[inline(always)]
-fn cross(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
 /// A node that waits: where the ray enters it, its level and its number.
 #[derive(Clone, Copy)]
 struct WaitingNode {
@@ -350,16 +165,6 @@ fn sorted(mut mask: u32, entered: &EightLanes) -> ([u8; WIDE], usize) {
         count += 1;
     }
     (order, count)
-}
-
-/// A bit for each lane that is finite.
-#[inline(always)]
-fn finite_lanes(lanes: &EightLanes) -> u32 {
-    let mut bits = [0; WIDE];
-    for i in 0..WIDE {
-        bits[i] = u32::from(lanes[i] < f32::INFINITY) << i;
-    }
-    bits.iter().fold(0, |mask, bit| mask | bit)
 }
 
 impl Hierarchy {
@@ -409,7 +214,7 @@ impl Hierarchy {
         while count > 0 {
             count -= 1;
             let (level, number) = waiting[count];
-            let distances = self.levels[level as usize][number as usize].within(beam);
+            let distances = beam.enter(&self.levels[level as usize][number as usize]);
             let mut mask = finite_lanes(&distances);
             while mask != 0 {
                 let lane = mask.trailing_zeros() & 7;

@@ -8,12 +8,12 @@
 //!
 //! Rays whose steps do not end near a place of the surface are traced exactly.
 
+use super::boxes::Segment;
 use super::cast::{CastHit, Meetings, SurfacePaint, cast, cuts};
 use super::color::Rgb;
 use super::error::RenderError;
 use super::frame::Frame;
 use super::guide::Guide;
-use super::hierarchy::Segment;
 use super::material::SurfaceMaterial;
 use super::settings::Quality;
 use super::vector::{Vector, along, dot, scale, unit};

@@ -11,6 +11,8 @@
 //! A picture is the same to the byte on any number of threads: tiles do not depend on threads, and directions
 //! come from sequences that each pixel shifts by a function of its place alone.
 
+mod beam;
+mod boxes;
 mod camera;
 mod cast;
 mod color;

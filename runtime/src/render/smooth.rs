@@ -9,7 +9,7 @@ use super::seen::{Seen, SeenKind};
 use crate::parallel::*;
 
 /// The distances of neighbours in pixels, and the difference of key light that halves a neighbour's weight.
-const PASSES: [(usize, f32); 3] = [(1, 2.0), (2, 0.35), (4, 0.2)];
+const PASSES: [(usize, f32); 3] = [(1, 4.0), (2, 0.8), (4, 0.45)];
 /// Rows beside a pixel that have a part in its light.
 pub const SMOOTH_ROWS: u32 = 7;
 
