@@ -143,6 +143,7 @@ impl RenderSummary<'_> {
             "pixels_hit": pixels_hit,
             "rays": { "camera": rays.camera, "shadow": rays.shadow, "sky": rays.sky, "total": rays.total() },
             "evaluations": evaluations,
+            "triangles": self.made.report.triangles,
             "evaluations_per_pixel": self.per_pixel(),
             "range": range,
             "camera": camera,

@@ -1,11 +1,16 @@
 //! Pictures of models: rays from a camera to the surface, and light that shows its shape.
 //!
 //! ```text
-//! frame:   tight bounds ── a coarse picture of who is hit ── the camera that this fills       (unless it stands at a point)
-//! tiles:   rays of a tile, a packet ── first hits ── normal, attributes                        (cast)
-//!          from each hit: rays to the key light, rays to the sky                               (gather)
-//!          what the light makes of the colour; the shadow on the ground where nothing is hit   (shade)
-//! develop: means over the rays of each pixel ── colours, over the background                   (picture)
+//! frame:   tight bounds ── a coarse mesh ── the camera that it fills, the ground          (framing, camera)
+//! guide:   a mesh with cells of some pixels ── boxes around its triangles                 (guide, hierarchy, beam)
+//! sheet:   rays that the mesh leads to the surface ── position, normal, attributes        (look)
+//!          from each hit: rays to the key light, rays to the sky, against the mesh         (gather)
+//!          the mean of light over neighbours that see the same                             (smooth)
+//!          what the light makes of the colour; the shadow on the ground                    (shade)
+//!          more rays where neighbours differ                                               (sheet)
+//! develop: colours, over the background                                                    (develop)
+//!
+//! best:    every ray exact, tile by tile, in place of guide and sheet                      (tile, cast)
 //! ```
 //!
 //! A picture is the same to the byte on any number of threads: tiles do not depend on threads, and directions
@@ -66,7 +71,8 @@ impl Render {
     /// A picture of a model. For several pictures, of an edited model or from several sides, keep a
     /// [`Renderer`] and use [`with`](Self::with).
     ///
-    /// Memory: 16 bytes a pixel.
+    /// Memory: 16 bytes a pixel; 150 more for each pixel of a band of rows, of which there are at most
+    /// [`MAX_BAND_PIXELS`](jbt_ir::limits::MAX_BAND_PIXELS), and the mesh that guides rays.
     ///
     /// # Errors
     /// See [`RenderError`].

@@ -31,7 +31,8 @@ pub struct Render {
     pub mode: RenderMode,
     /// The effort for light; it matters only for a shaded surface.
     pub quality: Quality,
-    /// The number of rays along each side of a pixel: 1 to [`MAX_ANTIALIAS`].
+    /// The number of rays along each side of a pixel: 1 to [`MAX_ANTIALIAS`]. In draft and good quality only
+    /// pixels that differ from a neighbour take more than one, where a mesh guides rays.
     pub antialias: u32,
     /// The picture where the model is not. `None` is the studio for a shaded surface, and transparency for
     /// other modes.
@@ -83,12 +84,14 @@ pub enum RenderMode {
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Quality {
-    /// Camera rays only: no shadows, no dark corners. For interaction.
+    /// No shadows, no dark corners, for interaction: a mesh with cells of eight pixels leads to the surface.
+    /// What is thinner than a cell may be missed.
     Draft,
-    /// Soft shadows and a sky, for looking.
+    /// Soft shadows and a sky, for looking. Light meets a mesh with cells of five pixels; the eye sees the
+    /// surface itself.
     #[default]
     Good,
-    /// The same with less noise, for showing.
+    /// Every ray is exact, for showing: dozens of times as long.
     Best,
 }
 
