@@ -84,6 +84,16 @@ impl Seen {
         (1.0 - off).max(0.0) * alike * alike
     }
 
+    /// Whether the surface breaks off between this pixel and the next one.
+    pub fn breaks(&self, other: &Self) -> bool {
+        match (self.kind, other.kind) {
+            (SeenKind::Surface, SeenKind::Surface) => self.likeness(other, 2.0) <= 0.0,
+            (SeenKind::Surface, SeenKind::Nothing | SeenKind::Ground)
+            | (SeenKind::Nothing | SeenKind::Ground, SeenKind::Surface) => true,
+            (SeenKind::Nothing | SeenKind::Ground, SeenKind::Nothing | SeenKind::Ground) => false,
+        }
+    }
+
     /// Whether a pixel needs more rays because of a neighbour.
     pub fn differs(&self, other: &Self) -> bool {
         if self.kind != other.kind {

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! look    one ray a pixel, led by the mesh; some exact rays watch out for what the mesh has missed
+//! sharpen exact rays where what is seen breaks off
 //! gather  rays from each pixel to the key light and the sky, against the mesh
 //! smooth  light of neighbours that see the same surface
 //! edges   where neighbours differ, more rays for the pixel; they take the light of the pixels around them
@@ -35,6 +36,8 @@ const STRIDE: usize = 32;
 const BLOCK: u32 = 8;
 /// Pixels from one exact ray to the next one, along rows and columns.
 const WATCH: u32 = 4;
+/// Pixels around a break that are looked at exactly.
+const BESIDE: u32 = 2;
 /// The distance from the mesh to an exact hit that proves nothing missed, in cells.
 const AGREE: f64 = 4.0;
 
@@ -71,7 +74,10 @@ pub fn expose(
         let mut sheet = Sheet::new(frame, guide, rows);
         let part = |of: f32| begin + (1.0 - begin) * (band as f32 + of) / bands as f32;
         let started = Instant::now();
-        sheet.look(telling, part(0.4))?;
+        sheet.look(telling, part(0.3))?;
+        if guide.leads && frame.render.quality != Quality::Draft {
+            sheet.sharpen(telling, part(0.4))?;
+        }
         sheet.cost.trace += started.elapsed();
         let started = Instant::now();
         if frame.render.mode == RenderMode::Shaded && frame.render.quality != Quality::Draft {
@@ -201,6 +207,42 @@ impl<'a> Sheet<'a> {
             self.is_exact.push(sight.is_exact);
             self.cost.rays.camera += sight.rays;
             self.cost.evaluations += sight.evaluations;
+        }
+        Ok(())
+    }
+
+    /// Looks exactly where what is seen breaks off: the mesh cuts the corners of sharp edges off, so a
+    /// silhouette may be a pixel or two farther out.
+    fn sharpen(&mut self, telling: &mut Telling<'_>, end: f32) -> Result<(), RenderError> {
+        let width = self.width();
+        let breaks = |index: usize| {
+            let beside = [(index % width + 1 < width).then_some(index + 1), Some(index + width)];
+            let mut beside = beside.into_iter().flatten().filter_map(|other| self.seen.get(other));
+            beside.any(|other| self.seen[index].breaks(other))
+        };
+        let is_break: Vec<bool> =
+            (0..self.seen.len()).into_par_iter().with_min_len(4096).map(breaks).collect();
+        let found = of_tiles(&self.tiles, (telling, end), |tile, area| {
+            let is_near = |&[x, y]: &[u32; 2]| {
+                let columns = x.saturating_sub(BESIDE)..(x + BESIDE + 1).min(width as u32);
+                let rows = y.saturating_sub(BESIDE).max(self.rows[0])..(y + BESIDE + 1).min(self.rows[1]);
+                rows.into_iter().any(|y| columns.clone().any(|x| is_break[self.index([x, y])]))
+            };
+            let near: Vec<[u32; 2]> =
+                pixels(area).into_iter().filter(|pixel| !self.is_exact[tile] && is_near(pixel)).collect();
+            let places: Vec<[f64; 2]> = near.iter().map(|&pixel| self.place(pixel, [0, 0], 1)).collect();
+            let sight = sights(self.frame, &places, |rays| cast(self.frame, rays))?;
+            Ok((near, sight))
+        })?;
+        for (near, (seen, rays, evaluations)) in found {
+            self.cost.rays.camera += rays;
+            self.cost.evaluations += evaluations;
+            for (pixel, seen) in near.into_iter().zip(seen) {
+                let index = self.index(pixel);
+                let was = std::mem::replace(&mut self.seen[index], seen);
+                self.cost.pixels_hit += u64::from(seen.kind == SeenKind::Surface);
+                self.cost.pixels_hit -= u64::from(was.kind == SeenKind::Surface);
+            }
         }
         Ok(())
     }
