@@ -4,8 +4,8 @@ use std::time::{Duration, Instant};
 
 use jbt::ModelOrigin;
 use jbt::diagnostic::escape;
-use jbt::export::write_png;
-use jbt::render::{Camera, Render, RenderMode, RenderReport, Rendered, Stance, View};
+use jbt::export::{PngEffort, write_png_with};
+use jbt::render::{Camera, Quality, Render, RenderMode, RenderReport, Rendered, Stance, View};
 use serde_json::json;
 
 use crate::arguments::{GroundName, RenderArguments};
@@ -34,7 +34,7 @@ pub fn run(arguments: &RenderArguments, quiet: bool, start: Instant) -> Result<(
 
     let mut output = Output::open(&destination)?;
     match destination.kind {
-        PictureKind::Png => write_png(&made.picture, &mut output),
+        PictureKind::Png => write_png_with(&made.picture, effort(settings.quality), &mut output),
     }
     .map_err(|error| output.failure(error))?;
     output.finish()?;
@@ -54,6 +54,14 @@ pub fn run(arguments: &RenderArguments, quiet: bool, start: Instant) -> Result<(
     };
     let told = arguments.work.told(quiet);
     told.report(&destination.path, || report.json().to_string(), |name| report.text(name))
+}
+
+/// The trouble for a file: a draft is looked at once.
+fn effort(quality: Quality) -> PngEffort {
+    match quality {
+        Quality::Draft => PngEffort::Quick,
+        Quality::Good | Quality::Best => PngEffort::Small,
+    }
 }
 
 /// What the options say.
@@ -135,6 +143,7 @@ impl RenderSummary<'_> {
             "pixels_hit": pixels_hit,
             "rays": { "camera": rays.camera, "shadow": rays.shadow, "sky": rays.sky, "total": rays.total() },
             "evaluations": evaluations,
+            "triangles": self.made.report.triangles,
             "evaluations_per_pixel": self.per_pixel(),
             "range": range,
             "camera": camera,

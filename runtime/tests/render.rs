@@ -7,7 +7,7 @@ use jbt::Picture;
 use jbt::export::write_png;
 use jbt::limits::{MAX_ANTIALIAS, MAX_PICTURE_SIDE};
 use jbt::render::{Background, Notice, Quality, RenderError, RenderMode, Rendered, Stance, VIEWS, View};
-use jbt::{Box3, CancelToken, CheckedTree, Compiler, Render, Renderer};
+use jbt::{Box3, CancelToken, CheckedTree, Compiler, Engine, Render, Renderer};
 use jbt_testkit::scene::tree;
 use jbt_text::{Options, parse};
 
@@ -118,8 +118,13 @@ fn attributes_are_shown_as_they_are() {
 fn the_bytes_do_not_depend_on_threads() {
     let tree = two();
     let renderer = Renderer::new(&Compiler::new(), &tree).unwrap();
-    for mode in [RenderMode::Shaded, RenderMode::Evaluations] {
-        let render = Render { size: [90, 50], mode, ..Render::default() };
+    for (mode, quality) in [
+        (RenderMode::Shaded, Quality::Good),
+        (RenderMode::Shaded, Quality::Best),
+        (RenderMode::Normal, Quality::Draft),
+        (RenderMode::Evaluations, Quality::Good),
+    ] {
+        let render = Render { size: [90, 50], mode, quality, ..Render::default() };
         let on = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| render.with(&renderer).run()).unwrap()
@@ -132,6 +137,83 @@ fn the_bytes_do_not_depend_on_threads() {
             assert_eq!(one.report.rays, other.report.rays);
         }
     }
+}
+
+#[test]
+fn the_bytes_do_not_depend_on_the_engine() {
+    let tree = tree(
+        "jbt 1 twist axis z rate 1 { blend ricci 3 {
+        color (1 0 0) { segment { from (-0.5 0 0) to (0.5 0 0) surface_radius 0.2 } }
+        color (0 0 1) { point { at (0.4 0.3 0.2) surface_radius 0.3 } }
+    } }",
+    );
+    for quality in [Quality::Draft, Quality::Good] {
+        let render = Render { size: [48, 36], quality, ..Render::default() };
+        let made = Engine::ALL
+            .map(|engine| render.picture(&Compiler::for_engine(engine), &tree).run().unwrap().picture);
+        assert!(made.iter().all(|picture| *picture == made[0]), "{quality:?}");
+    }
+}
+
+/// Light that meets a mesh is that of exact rays, but for noise.
+#[test]
+fn light_by_a_mesh_is_that_of_the_surface() {
+    let with = |quality: Quality| {
+        make(&Render { size: [120, 80], quality, antialias: 2, ..Render::default() }, &two())
+    };
+    let (good, best) = (with(Quality::Good), with(Quality::Best));
+    assert!(good.report.triangles > 1000 && best.report.triangles == 0);
+    assert!(good.report.evaluations * 4 < best.report.evaluations);
+    let differences = good.picture.pixels().iter().zip(best.picture.pixels()).flat_map(|(a, b)| {
+        (0..3).map(|channel| u64::from(a[channel].abs_diff(b[channel]))).collect::<Vec<_>>()
+    });
+    let (sum, count) = differences.fold((0, 0), |(sum, count), off| (sum + off, count + 1));
+    assert!(sum < 3 * count, "{sum} of {count}");
+}
+
+/// A rod that is thinner than a cell of the mesh is seen as by exact rays.
+#[test]
+fn what_the_mesh_misses_is_seen() {
+    let rod = tree(
+        "jbt 1 union {
+            point { surface_radius 0.4 }
+            segment { from (0 -1 0.6) to (0 1 0.6) surface_radius 0.012 }
+        }",
+    );
+    let hits = |quality: Quality| {
+        let view = View { orthographic: true, ..View::named("front").unwrap() };
+        let size = [240, 180];
+        let render = Render { size, quality, view, antialias: 1, ground: false, ..Render::default() };
+        make(&render, &rod).report.pixels_hit as f64
+    };
+    let (good, best, draft) = (hits(Quality::Good), hits(Quality::Best), hits(Quality::Draft));
+    assert!((good / best - 1.0).abs() < 0.03, "{good} {best}");
+    assert!(draft < best - 100.0, "the rod is thick enough for the mesh of a draft: {draft} {best}");
+}
+
+#[test]
+fn materials_are_seen() {
+    let ball = |words: &str| {
+        let text = format!(
+            "jbt 1
+            attribute rough 1 default 0.43
+            attribute metal 1 default 0
+            attribute glow 1 default 0
+            {words} {{ color (0.5 0.2 0.1) {{ point {{ surface_radius 1 }} }} }}"
+        );
+        let background = Some(Background::Color([0; 3]));
+        let render = Render { size: [64, 64], ground: false, background, ..Render::default() };
+        let made = make(&render, &tree(&text));
+        let bytes: Vec<u8> = made.picture.pixels().iter().map(|pixel| pixel[0]).collect();
+        let mean = bytes.iter().map(|&byte| f64::from(byte)).sum::<f64>() / bytes.len() as f64;
+        (bytes.into_iter().max().unwrap(), mean)
+    };
+    let (usual, glowing) = (ball("rough 0.43"), ball("glow 1"));
+    assert!(glowing.1 > usual.1 + 5.0, "{usual:?} {glowing:?}");
+    let (smooth, chalk) = (ball("rough 0.1"), ball("rough 1"));
+    assert!(smooth.0 > chalk.0 + 5, "{smooth:?} {chalk:?}");
+    assert_ne!(ball("metal 1"), usual);
+    assert_eq!(ball("metal 0"), usual);
 }
 
 #[test]

@@ -97,6 +97,11 @@ impl Case {
             run: picture::blobs,
         },
         Self {
+            name: "hero-picture",
+            what: "an octopus in light, 800 x 600 pixels, draft and good, on one thread and on two",
+            run: picture::hero,
+        },
+        Self {
             name: "scaling",
             what: "the field at 4,096 points, by number of primitives",
             run: dense::scaling,

@@ -1,11 +1,11 @@
-//! Pictures: a slice of a long program, and blobs seen from a side.
+//! Pictures: a slice of a long program, blobs seen from a side, an octopus in light.
 
 use std::cell::{Cell, RefCell};
 use std::time::Instant;
 
 use jbt::contour::{ImageDetail, Plane, Rectangle, Slicer};
 use jbt::import;
-use jbt::render::{Render, RenderMode, Renderer, View};
+use jbt::render::{Quality, Render, RenderMode, Renderer, View};
 use jbt::walk::walk;
 use jbt::{Box3, CheckedTree, Compiler, Fineness, Query};
 use jbt_testkit::samples;
@@ -109,6 +109,43 @@ fn check(tree: &CheckedTree, image: &[u8]) -> Result<(), String> {
     Ok(())
 }
 
+/// A picture of the octopus in light, as the command line makes it without options but `--quality`: draft and
+/// good, on one thread and on two. A renderer is kept, so nothing is compiled and no file is written.
+pub(super) fn hero(options: Options) -> Vec<ResultRow> {
+    let text = include_bytes!("../../../examples/hero.jbt");
+    let model = jbt::text::parse(text, &jbt::text::Options::default()).expect("the scene is right");
+    let tree = model.check().expect("the scene is right");
+    let renderer = Renderer::new(&Compiler::new(), &tree).expect("the scene compiles");
+    let mut rows = Vec::new();
+    for (quality, word) in [(Quality::Draft, "draft"), (Quality::Good, "good")] {
+        for threads in [1, 2] {
+            let render = Render { quality, ..Render::default() };
+            let pool = pool(Options { threads, ..options });
+            let ours = || {
+                let made = pool.install(|| render.with(&renderer).run());
+                made.expect("the scene has a picture").report.pixels_hit as usize
+            };
+            let seen = ours();
+            let mut contest = Contest::new();
+            contest.enter(Contestant::Ours, word, Ok(()), ours);
+            rows.push(ResultRow {
+                case: "hero-picture",
+                primitives: renderer.evaluator().evaluations_per_point() as usize,
+                points: render.size.iter().map(|&side| side as usize).product(),
+                unit: "run",
+                units: 1.0,
+                standings: contest.run(options.effort()),
+                extra: vec![
+                    ("quality", json!(word)),
+                    ("threads", json!(threads)),
+                    ("pixels_hit", json!(seen)),
+                ],
+            });
+        }
+    }
+    rows
+}
+
 /// A picture with normals of blobs, one of which has just been edited.
 pub(super) fn blobs(options: Options) -> Vec<ResultRow> {
     let blobs = model::blobs(BLOBS, 1);
@@ -121,7 +158,7 @@ pub(super) fn blobs(options: Options) -> Vec<ResultRow> {
         size: [PICTURE; 2],
         view,
         mode: RenderMode::Normal,
-        quality: jbt::render::Quality::Draft,
+        quality: Quality::Draft,
         antialias: 1,
         region: Some(Box3::new([-1.0; 3], [1.0; 3])),
         ..Render::default()

@@ -6,7 +6,7 @@
 use std::fmt::Write as _;
 
 use fastrand::Rng;
-use jbt::region::Divisible as _;
+use jbt::boxes::Divisible as _;
 use jbt::{Box3, CheckedTree, Compiler, Fineness, Polygonize, Polygonized, import};
 use serde_json::json;
 

@@ -46,10 +46,10 @@ pub struct RenderArguments {
     /// What to show: shaded, normal, depth, attribute NAME, evaluations
     #[arg(long, value_names = ["MODE", "NAME"], num_args = 1..=2, default_value = "shaded")]
     pub mode: Vec<String>,
-    /// How much trouble shadows take: none, some, or much
+    /// How much trouble light takes: none, some, or much
     #[arg(long, value_enum, default_value_t = QualityName::Good)]
     pub quality: QualityName,
-    /// Rays for a pixel: N x N
+    /// Rays for a pixel: N x N; but with --quality best only where neighbours differ
     #[arg(long, value_name = "N", default_value_t = 2)]
     pub antialias: u32,
     /// What is seen where nothing is: studio, transparent, #rrggbb or a name as white or black
@@ -72,7 +72,8 @@ A model looks along x, and z is up: `front` sees it from +x, `left` from +y, `to
 the model; a camera with --eye and --target stands where it is told to.
 
 Modes:
-  shaded          in light, in the colour of the model, or in that of clay if it has none
+  shaded          in light, in the colour of the model, or in that of clay if it has none; the attributes rough, metal and glow
+                  (one real each) are its material
   normal          x, y and z of the unit normal, from -1 to 1, as red, green and blue
   depth           the nearest place is white, the farthest is dark
   attribute NAME  one real from blue to yellow (viridis) between the smallest and the largest one that are seen; more reals as
@@ -81,7 +82,8 @@ Modes:
 
 Keys of --json:
   width, height, pixels, pixels_hit, rays: {camera, shadow, sky, total}, evaluations (of primitives, for all rays),
-  evaluations_per_pixel, range: [least, most] (what the ends of the colours stand for; null where colours are colours),
+  evaluations_per_pixel, triangles (of the mesh that guided rays, 0 without),
+  range: [least, most] (what the ends of the colours stand for; null where colours are colours),
   camera: {eye, right, up, back, half, orthographic} (null if the model is empty), tolerance, engine,
   compile_ms, frame_ms, trace_ms, shade_ms, total_ms, warnings
 
@@ -95,11 +97,11 @@ Examples:
 /// The words for qualities.
 #[derive(ValueEnum, Clone, Copy, PartialEq, Eq, Debug)]
 pub enum QualityName {
-    /// No shadows
+    /// No shadows; a mesh leads to the surface
     Draft,
-    /// Soft shadows and a sky
+    /// Soft shadows and a sky, by a mesh; the surface is exact
     Good,
-    /// The same with less noise
+    /// Every ray is exact
     Best,
 }
 

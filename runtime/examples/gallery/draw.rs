@@ -13,7 +13,7 @@ use crate::list::{Drawing, Entry, Scene};
 use crate::splash;
 
 /// See [`coarse`].
-const STEP: u8 = 4;
+const STEP: u8 = 2;
 
 /// The bytes of a picture's file.
 pub fn draw(root: &Path, entry: &Entry) -> Result<Vec<u8>, Box<dyn Error>> {

@@ -21,12 +21,13 @@ struct Look {
 const USUAL: Look = Look { from: [1.0, -0.62, 0.5], size: [400, 300], zoom: 1.0 };
 
 /// The looks of examples that have one of their own.
-const LOOKS: [(&str, Look); 16] = [
+const LOOKS: [(&str, Look); 18] = [
     ("attributes", Look { from: [1.0, -0.2, 0.35], ..USUAL }),
     ("blend", Look { from: [1.0, -0.3, 1.4], size: [400, 266], ..USUAL }),
     ("circles", Look { from: [0.3, -1.0, 2.2], size: [400, 266], ..USUAL }),
     ("falloffs", Look { from: [1.0, -0.12, 1.1], size: [400, 250], ..USUAL }),
-    ("hero", Look { size: [640, 480], ..USUAL }),
+    ("gyroid", Look { size: [900, 675], ..USUAL }),
+    ("hero", Look { size: [1200, 900], ..USUAL }),
     ("koi", Look { from: [1.0, -0.3, 1.5], size: [400, 266], ..USUAL }),
     ("machine", Look { from: [1.0, -0.5, 1.0], ..USUAL }),
     ("monocle", Look { from: [1.0, -0.62, 0.9], size: [400, 250], ..USUAL }),
@@ -36,7 +37,8 @@ const LOOKS: [(&str, Look); 16] = [
     ("seashell", Look { from: [0.6, -1.0, 0.3], ..USUAL }),
     ("skeletons", Look { from: [1.0, -0.12, 0.9], size: [480, 288], ..USUAL }),
     ("smooth", Look { from: [1.0, -0.3, 0.9], size: [400, 250], ..USUAL }),
-    ("succulent", Look { from: [1.0, -0.62, 0.9], ..USUAL }),
+    ("succulent", Look { from: [1.0, -0.62, 0.9], size: [900, 675], ..USUAL }),
+    ("temple", Look { size: [1200, 900], ..USUAL }),
     ("textures", Look { from: [1.0, 0.35, 0.8], size: [400, 266], ..USUAL }),
 ];
 

@@ -28,7 +28,7 @@ pub mod svg;
 pub use atomic::AtomicFile;
 pub use conventions::{ColorEncoding, Colors, Conventions, FarMeshes, Up};
 pub use format::{ExportOptions, Format};
-pub use png::write_png;
+pub use png::{PngEffort, write_png, write_png_with};
 
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};

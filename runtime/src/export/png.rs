@@ -5,17 +5,38 @@ use std::io::{self, Write};
 
 use crate::picture::Picture;
 
+/// How much trouble a file of a picture takes.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum PngEffort {
+    /// As little as can be: the file is about a third larger.
+    Quick,
+    /// As small as the compression of the format gets it.
+    #[default]
+    Small,
+}
+
+/// Writes a picture, as small as can be: see [`write_png_with`].
+///
+/// # Errors
+/// Those of the writer.
+pub fn write_png(picture: &Picture, out: &mut dyn Write) -> io::Result<()> {
+    write_png_with(picture, PngEffort::Small, out)
+}
+
 /// Writes a picture. What is opaque everywhere has no opacity in the file. The same picture gives the same
 /// bytes.
 ///
 /// # Errors
 /// Those of the writer.
-pub fn write_png(picture: &Picture, out: &mut dyn Write) -> io::Result<()> {
+pub fn write_png_with(picture: &Picture, effort: PngEffort, out: &mut dyn Write) -> io::Result<()> {
     let opaque = picture.pixels().iter().all(|pixel| pixel[3] == u8::MAX);
     let mut encoder = png::Encoder::new(out, picture.width(), picture.height());
     encoder.set_color(if opaque { png::ColorType::Rgb } else { png::ColorType::Rgba });
     encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_compression(png::Compression::High);
+    encoder.set_compression(match effort {
+        PngEffort::Quick => png::Compression::Fast,
+        PngEffort::Small => png::Compression::High,
+    });
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
     let mut writer = encoder.write_header().map_err(plain)?;
     if opaque {

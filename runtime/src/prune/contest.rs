@@ -24,10 +24,10 @@ use jbt_model::combine::Extreme;
 
 use super::decide::firsts;
 use super::ranges::ProbeRanges;
+use crate::boxes::{ANYTHING, Box3, MAX_PARTS, Range};
 use crate::compiler::Compiler;
 use crate::error::EvalError;
 use crate::kernel::{BoundKernel, Purpose};
-use crate::region::{ANYTHING, Box3, MAX_PARTS, Range};
 
 /// A contest of fewer rows, over the whole model, is not worth a program.
 const FEWEST_ROWS: usize = 8;

@@ -3,6 +3,7 @@
 use super::color::Rgb;
 use super::error::RenderError;
 use super::frame::Frame;
+use super::material::SurfaceMaterial;
 use super::settings::RenderMode;
 use super::vector::{Vector, along, scale, unit};
 use crate::buffer::Samples;
@@ -20,6 +21,7 @@ pub struct CastHit {
     pub normal: Vector,
     /// The mode's value at the hit: the colour, or the attribute. Finite.
     pub paint: Rgb,
+    pub material: SurfaceMaterial,
 }
 
 /// The hits of rays, and the cost of each ray.
@@ -31,40 +33,58 @@ pub struct Meetings {
 }
 
 /// The source of the surface's colour.
-pub enum SurfacePaint {
+enum ColorSource {
     /// The same everywhere.
     Plain(Rgb),
     /// Planes of the samples: the first one, and how many, at most three.
     Planes(usize, usize),
 }
 
+/// Where samples have the paint and the material of a surface.
+pub struct SurfacePaint {
+    color: ColorSource,
+    /// The planes of the attributes `rough`, `metal` and `glow`, if they are one real each.
+    material: [Option<usize>; 3],
+}
+
+/// The largest glow that a picture tells from less.
+const BRIGHTEST: f32 = 16.0;
 /// The colour of models without colours: clay, as linear light.
 const CLAY: Rgb = [0.60, 0.55, 0.50];
 
 impl SurfacePaint {
     /// The paint of a model in a mode.
-    fn new(frame: &Frame<'_>) -> Self {
+    pub fn new(frame: &Frame<'_>) -> Self {
         let group = match &frame.render.mode {
             RenderMode::Shaded if is_colored(frame.renderer.tree()) => "color",
-            RenderMode::Shaded | RenderMode::Normal | RenderMode::Depth | RenderMode::Evaluations => {
-                return Self::Plain(CLAY);
-            }
+            RenderMode::Shaded | RenderMode::Normal | RenderMode::Depth | RenderMode::Evaluations => "",
             RenderMode::Attribute(name) => name,
         };
-        match frame.renderer.evaluator.layout().attribute(group) {
-            Some((plane, width)) => Self::Planes(plane, width.min(3)),
-            None => Self::Plain(CLAY),
-        }
+        let layout = frame.renderer.evaluator.layout();
+        let color = match layout.attribute(group) {
+            Some((plane, width)) => ColorSource::Planes(plane, width.min(3)),
+            None => ColorSource::Plain(CLAY),
+        };
+        let one = |name| layout.attribute(name).filter(|&(_, width)| width == 1).map(|(plane, _)| plane);
+        Self { color, material: ["rough", "metal", "glow"].map(one) }
     }
 
-    fn at(&self, samples: &Samples, index: usize) -> Rgb {
-        match *self {
-            Self::Plain(color) => color,
-            Self::Planes(first, count) => [0, 1, 2].map(|channel| {
-                let value = if channel < count { samples.planes()[first + channel][index] } else { 0.0 };
-                if value.is_finite() { value } else { 0.0 }
+    /// The paint and the material of a point: planes of answers, and the index of the point in them.
+    pub fn at<P: AsRef<[f32]>>(&self, planes: &[P], index: usize) -> (Rgb, SurfaceMaterial) {
+        let finite = |value: f32| if value.is_finite() { value } else { 0.0 };
+        let color = match self.color {
+            ColorSource::Plain(color) => color,
+            ColorSource::Planes(first, count) => [0, 1, 2].map(|channel| {
+                if channel < count { finite(planes[first + channel].as_ref()[index]) } else { 0.0 }
             }),
-        }
+        };
+        let usual = SurfaceMaterial::default();
+        let [rough, metal, glow] = [0, 1, 2].map(|part| {
+            let usual = [usual.rough, usual.metal, usual.glow][part];
+            self.material[part].map_or(usual, |plane| finite(planes[plane].as_ref()[index]))
+        });
+        let glow = glow.clamp(0.0, BRIGHTEST);
+        (color, SurfaceMaterial { rough: rough.clamp(0.0, 1.0), metal: metal.clamp(0.0, 1.0), glow })
     }
 }
 
@@ -94,11 +114,13 @@ pub fn cast(frame: &Frame<'_>, casts: &[Ray]) -> Result<Meetings, RenderError> {
         evaluations[cast] += hits.evaluations[ray];
         let hit = hits.starts[ray] as usize;
         if hit < hits.starts[ray + 1] as usize {
+            let (color, material) = paint.at(hits.samples.planes(), hit);
             met.push(CastHit {
                 cast,
                 position: hits.positions.get(hit).map(f64::from),
                 normal: normal(&hits.samples, hit, casts[cast].direction),
-                paint: paint.at(&hits.samples, hit),
+                paint: color,
+                material,
             });
         }
     }
@@ -107,7 +129,7 @@ pub fn cast(frame: &Frame<'_>, casts: &[Ray]) -> Result<Meetings, RenderError> {
 }
 
 /// The rays that begin inside of the solid: they hit the cut that the region makes.
-fn cuts(
+pub fn cuts(
     frame: &Frame<'_>,
     casts: &[Ray],
     paint: &SurfacePaint,
@@ -128,10 +150,10 @@ fn cuts(
     evaluator.eval_region(&region, points.each_ref().map(Vec::as_slice), &mut full)?;
     let each = evaluator.evaluations_in(&region) as f32;
     inside.iter().for_each(|&cast| evaluations[cast] += each);
-    let samples = Samples::from_planes(evaluator.layout().clone(), answers);
     let meet = |(index, &cast): (usize, &usize)| {
         let position = starts[cast].map(f64::from);
-        CastHit { cast, position, normal: frame.side(position), paint: paint.at(&samples, index) }
+        let (color, material) = paint.at(&answers, index);
+        CastHit { cast, position, normal: frame.side(position), paint: color, material }
     };
     Ok(inside.iter().enumerate().map(meet).collect())
 }

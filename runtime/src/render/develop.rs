@@ -2,6 +2,7 @@
 
 use super::color::{Rgb, byte, decode, encode, inferno, viridis};
 use super::settings::{Background, FilmMeaning};
+use crate::parallel::*;
 use crate::picture::Picture;
 
 /// The mean over the rays of a pixel: three numbers, multiplied by the share of the rays that have values,
@@ -20,10 +21,10 @@ pub fn develop(
         FilmMeaning::Number | FilmMeaning::Distance => range(film, |_| true),
         FilmMeaning::Cost => range(film, |cost| cost > 0.0),
     };
-    let mut made = Vec::with_capacity(film.len());
-    for (row, pixels) in film.chunks(width as usize).enumerate() {
+    let row_of = |row: usize| -> Vec<[u8; 4]> {
+        let pixels = &film[row * width as usize..][..width as usize];
         let behind = background.at((row as f32 + 0.5) / height as f32);
-        for &[red, green, blue, share] in pixels {
+        let develop = |&[red, green, blue, share]: &Gathered| {
             let front = match (meaning, range) {
                 _ if share == 0.0 => [0.0; 3],
                 (FilmMeaning::Light | FilmMeaning::Screen, _) => [red, green, blue],
@@ -34,10 +35,12 @@ pub fn develop(
                     inferno(part((red / share).ln(), range.map(f32::ln))).map(|x| x * share)
                 }
             };
-            made.push(over(front, share, behind, meaning == FilmMeaning::Light));
-        }
-    }
-    (Picture::new(width, height, made).expect("a film has a pixel at least"), range)
+            over(front, share, behind, meaning == FilmMeaning::Light)
+        };
+        pixels.iter().map(develop).collect()
+    };
+    let rows: Vec<Vec<[u8; 4]>> = (0..height as usize).into_par_iter().map(row_of).collect();
+    (Picture::new(width, height, rows.concat()).expect("a film has a pixel at least"), range)
 }
 
 /// The range of the numbers of a film that count.

@@ -1,10 +1,11 @@
 //! Data that all tiles of a picture share: the camera, the region, the ground, and the tolerances.
 
 use super::camera::{Camera, View};
+use super::guide::Guide;
 use super::lights::Lights;
 use super::renderer::Renderer;
 use super::settings::Render;
-use super::vector::{Vector, along, dot};
+use super::vector::{Vector, along, dot, scale, sub, unit};
 use crate::boxes::Box3;
 use crate::trace::Ray;
 
@@ -28,12 +29,30 @@ pub struct Frame<'a> {
     /// The height of the ground along `up`, if there is ground.
     pub ground: Option<f64>,
     pub lights: Lights,
+    /// The mesh that light meets, and that leads the eye; `None` where rays are exact.
+    pub guide: Option<Guide>,
 }
 
 impl Frame<'_> {
     /// The tolerance of rays to the light and the sky.
     pub fn light_tolerance(&self) -> f64 {
         self.render.quality.softness() * self.pixel
+    }
+
+    /// The side of a pixel at a point.
+    pub fn footprint(&self, point: Vector) -> f64 {
+        let distance = if self.camera.orthographic { 1.0 } else { self.camera.depth(point).abs() };
+        2.0 * self.camera.half[1] * distance / f64::from(self.render.size[1])
+    }
+
+    /// The unit vector from the eye to a point.
+    pub fn looking(&self, point: Vector) -> Vector {
+        let straight = scale(self.camera.back, -1.0);
+        if self.camera.orthographic {
+            straight
+        } else {
+            unit(sub(point, self.camera.eye)).unwrap_or(straight)
+        }
     }
 
     /// The camera in the world.

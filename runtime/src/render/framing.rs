@@ -6,15 +6,20 @@ use super::camera::{Stance, View, is_usable};
 use super::cast::cast;
 use super::error::RenderError;
 use super::frame::Frame;
+use super::guide::{CoarseMesh, Guide};
 use super::lights::Lights;
 use super::renderer::Renderer;
 use super::settings::{Quality, Render, RenderMode};
+use super::telling::Telling;
 use super::vector::{Vector, add, dot, length, scale, sub, tangents};
 use crate::boxes::Box3;
+use crate::solid::TightBounds;
 use crate::trace::Ray;
 
 /// The tolerance of the bounds, as a part of the region's longest side: rays refine them.
 const COARSE: f32 = 1.0 / 8.0;
+/// Intervals between points along a side of a cut.
+const CUT_POINTS: u32 = 32;
 /// The number of rays along the longer side of the coarse picture that shows how the model fills a view.
 const SCOUTS: u32 = 96;
 /// The nearest distance at which a pixel's size is measured, as a part of the model's radius.
@@ -24,15 +29,17 @@ const FINEST: f64 = 1e-6;
 
 impl<'a> Frame<'a> {
     /// Frames the model. `None` if the model is empty.
-    pub fn new(render: &'a Render, renderer: &'a Renderer) -> Result<Option<Self>, RenderError> {
+    pub fn new(
+        render: &'a Render,
+        renderer: &'a Renderer,
+        telling: &mut Telling<'_>,
+    ) -> Result<Option<Self>, RenderError> {
         let Some(region) = render.looked_at(renderer.tree())? else { return Ok(None) };
         let tight = renderer.solid.tight_bounds(Some(region), COARSE * region.longest_side())?;
         let Some(bounds) = tight.outer else { return Ok(None) };
         let corners = corners(&bounds);
         let (low, high) = (bounds.low.map(f64::from), bounds.high.map(f64::from));
         let up = render.view.upwards();
-        let with_ground =
-            render.ground && render.mode == RenderMode::Shaded && render.quality != Quality::Draft;
         let view = render.view.about(renderer.tree().origin());
         let camera = view.camera(render.aspect(), &corners)?;
         let mut frame = Self {
@@ -48,17 +55,101 @@ impl<'a> Frame<'a> {
             up,
             ground: None,
             lights: Lights::new(&camera, up),
+            guide: None,
         };
-        if let Stance::From(_) = render.view.stance {
-            frame.fit(&corners)?;
+        let is_framed = matches!(render.view.stance, Stance::From(_));
+        let coarse = if is_framed || frame.is_guided() || frame.may_have_ground() {
+            CoarseMesh::new(renderer, &bounds, &mut |_| telling.tell(0.0))?
+        } else {
+            None
+        };
+        let places = coarse.as_ref().map(|coarse| frame.places(coarse, &tight)).transpose()?.flatten();
+        if is_framed {
+            match &places {
+                Some(places) => frame.camera = frame.view.camera(render.aspect(), places)?,
+                None => frame.fit(&corners)?,
+            }
         }
         frame.set_tolerance(render.size[1], render.view.zoom)?;
-        if with_ground {
+        if let Some(coarse) = coarse.filter(|_| frame.is_guided()) {
+            let cell = render.quality.cell() * frame.pixel;
+            frame.guide = Guide::new(renderer, (&bounds, &coarse), cell, up, &mut |part| telling.tell(part))?;
+        }
+        if frame.may_have_ground() {
+            let lowest = match (&frame.guide, &places) {
+                (Some(guide), Some(_)) if !guide.is_cut => guide.lowest,
+                (_, Some(places)) => places.iter().map(|&place| dot(place, up)).fold(f64::INFINITY, f64::min),
+                (_, None) => frame.lowest(&corners)?,
+            };
             // The ground is visible only from above.
-            frame.ground = Some(frame.lowest(&corners)?).filter(|&height| dot(frame.camera.eye, up) > height);
+            frame.ground = Some(lowest).filter(|&height| dot(frame.camera.eye, up) > height);
         }
         frame.check_eye()?;
         Ok(Some(frame))
+    }
+
+    /// Whether a mesh guides the rays of the picture.
+    fn is_guided(&self) -> bool {
+        match (self.render.quality, &self.render.mode) {
+            (Quality::Best, _) | (_, RenderMode::Evaluations) => false,
+            (Quality::Good, RenderMode::Shaded) => true,
+            (Quality::Good, RenderMode::Normal | RenderMode::Depth | RenderMode::Attribute(_)) => false,
+            (
+                Quality::Draft,
+                RenderMode::Shaded | RenderMode::Normal | RenderMode::Depth | RenderMode::Attribute(_),
+            ) => true,
+        }
+    }
+
+    fn may_have_ground(&self) -> bool {
+        let Render { ground, mode, quality, .. } = self.render;
+        *ground && *mode == RenderMode::Shaded && *quality != Quality::Draft
+    }
+
+    /// Places that reach as far as the model does: the vertices of a coarse mesh and, where the region cuts
+    /// the model, points of the cut. `None` if the mesh misses a part that is known to be there.
+    fn places(&self, coarse: &CoarseMesh, tight: &TightBounds) -> Result<Option<Vec<Vector>>, RenderError> {
+        let mut places: Vec<Vector> =
+            coarse.mesh.positions.iter().map(|position| position.map(f64::from)).collect();
+        if coarse.is_cut {
+            for axis in 0..3 {
+                for side in [self.region.low[axis], self.region.high[axis]] {
+                    self.push_cut(axis, side, &mut places)?;
+                }
+            }
+        }
+        let Some(inner) = tight.inner else { return Ok(Some(places).filter(|places| !places.is_empty())) };
+        let reaches = |axis: usize| {
+            let along = places.iter().map(|place| place[axis]);
+            let [low, high] =
+                along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
+            let margin = 2.0 * coarse.cell;
+            low <= f64::from(inner.low[axis]) + margin && high >= f64::from(inner.high[axis]) - margin
+        };
+        Ok((0..3).all(reaches).then_some(places))
+    }
+
+    /// Adds the points of a lattice on a side of the region that are inside.
+    fn push_cut(&self, axis: usize, side: f64, places: &mut Vec<Vector>) -> Result<(), RenderError> {
+        let [across, along] = [(axis + 1) % 3, (axis + 2) % 3];
+        let part = |axis: usize, index: u32| {
+            let [low, high] = [self.region.low[axis], self.region.high[axis]];
+            low + (high - low) * f64::from(index) / f64::from(CUT_POINTS)
+        };
+        let points: Vec<[f32; 3]> = (0..=CUT_POINTS)
+            .flat_map(|row| (0..=CUT_POINTS).map(move |column| [column, row]))
+            .map(|[column, row]| {
+                let mut point = [side; 3];
+                (point[across], point[along]) = (part(across, column), part(along, row));
+                point.map(|x| x as f32)
+            })
+            .collect();
+        let tracer = &self.renderer.tracer;
+        if let Some((_, field)) = tracer.fields(&points)? {
+            let inside = points.iter().zip(field).filter(|(_, value)| *value >= tracer.iso());
+            places.extend(inside.map(|(point, _)| point.map(f64::from)));
+        }
+        Ok(())
     }
 
     /// The lowest height of the model, found by a coarse picture from below.

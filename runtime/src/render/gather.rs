@@ -7,11 +7,13 @@
 //!    ──────o────────o──────
 //! ```
 
+use super::boxes::Segment;
 use super::cast::start;
 use super::color::Rgb;
 use super::error::RenderError;
 use super::frame::Frame;
 use super::lights::{KEY_SPREAD, sky, sky_above};
+use super::look::segment;
 use super::noise::{Sequence, above, around};
 use super::report::Rays;
 use super::vector::{Vector, along, dot};
@@ -51,25 +53,34 @@ pub struct Cost {
 
 /// The distance up to which things block the sky, as a part of the model's radius.
 const REACH: f64 = 0.7;
+/// The height above the surface where rays against a mesh begin, in cells.
+const ABOVE: f64 = 0.3;
+/// The depth below the mesh at which such a ray may still begin, in cells: the mesh is not quite the surface.
+const BURIED: f64 = 0.75;
 
-/// The light that reaches spots; each spot stands for `rays` rays of its pixel.
-pub fn gather(frame: &Frame<'_>, spots: &[Spot], rays: u32) -> Result<(Vec<Light>, Cost), RenderError> {
-    let [key_rays, sky_rays] = frame.render.quality.rays().map(|count| count * rays);
+/// The numbers of rays to the key light and to the sky: of a spot, and of all spots of its pixel.
+#[derive(Clone, Copy)]
+pub struct RayBudget {
+    pub spot: [u32; 2],
+    pub pixel: [u32; 2],
+}
+
+/// The light that reaches spots.
+pub fn gather(
+    frame: &Frame<'_>,
+    spots: &[Spot],
+    budget: RayBudget,
+) -> Result<(Vec<Light>, Cost), RenderError> {
+    let [key_rays, sky_rays] = budget.spot;
     let mut cost = Cost::default();
     let mut lights: Vec<Light> = spots.iter().map(|spot| unshadowed(frame, spot)).collect();
     if key_rays > 0 {
-        add_key(frame, spots, key_rays, &mut lights, &mut cost)?;
+        add_key(frame, spots, [key_rays, budget.pixel[0]], &mut lights, &mut cost)?;
     }
     if sky_rays > 0 {
-        add_sky(frame, spots, sky_rays, &mut lights, &mut cost)?;
+        add_sky(frame, spots, [sky_rays, budget.pixel[1]], &mut lights, &mut cost)?;
     }
     Ok((lights, cost))
-}
-
-/// The numbers of rays of a pixel to the key light and to the sky.
-fn rays_of_a_pixel(frame: &Frame<'_>) -> [u32; 2] {
-    let rays = frame.render.antialias * frame.render.antialias;
-    frame.render.quality.rays().map(|count| count * rays)
 }
 
 /// The light of a place without shadows.
@@ -113,11 +124,11 @@ fn send(
 fn add_key(
     frame: &Frame<'_>,
     spots: &[Spot],
-    count: u32,
+    [count, length]: [u32; 2],
     lights: &mut [Light],
     cost: &mut Cost,
 ) -> Result<(), RenderError> {
-    let (each, length) = (1.0 / count as f32, rays_of_a_pixel(frame)[0]);
+    let each = 1.0 / count as f32;
     lights.iter_mut().for_each(|light| (light.key, light.facing) = (0.0, 0.0));
     let aim = |spot: &Spot, number: u32| {
         let point = Sequence::new(spot.pixel, 0, length).point(number);
@@ -138,11 +149,11 @@ fn add_key(
 fn add_sky(
     frame: &Frame<'_>,
     spots: &[Spot],
-    count: u32,
+    [count, length]: [u32; 2],
     lights: &mut [Light],
     cost: &mut Cost,
 ) -> Result<(), RenderError> {
-    let (each, length) = (1.0 / count as f32, rays_of_a_pixel(frame)[1]);
+    let each = 1.0 / count as f32;
     lights.iter_mut().for_each(|light| (light.sky, light.open) = ([0.0; 3], 0.0));
     let aim = |spot: &Spot, number: u32| {
         let direction = above(spot.normal, Sequence::new(spot.pixel, 1, length).point(number));
@@ -193,14 +204,25 @@ fn blocked(
 ) -> Result<Vec<bool>, RenderError> {
     let mut asked: Vec<(usize, Ray)> =
         rays.iter().enumerate().filter_map(|(at, ray)| ray.map(|ray| (at, ray))).collect();
-    asked.sort_by_key(|(_, ray)| way(ray));
+    if frame.guide.is_none() {
+        asked.sort_by_key(|(_, ray)| way(ray));
+    }
     let some: Vec<Ray> = asked.iter().map(|(_, ray)| *ray).collect();
     *count += some.len() as u64;
-    let found = frame.renderer.tracer.any_of_local(&some, frame.light_tolerance())?;
-    *evaluations += found.evaluations.iter().map(|&evaluations| f64::from(evaluations)).sum::<f64>();
+    let found = match &frame.guide {
+        Some(guide) => {
+            let segments: Vec<Segment> = some.iter().map(segment).collect();
+            guide.hierarchy.any_of(&segments, (BURIED * guide.cell) as f32)
+        }
+        None => {
+            let found = frame.renderer.tracer.any_of_local(&some, frame.light_tolerance())?;
+            *evaluations += found.evaluations.iter().map(|&evaluations| f64::from(evaluations)).sum::<f64>();
+            found.blocked
+        }
+    };
     let cut = cut(frame, &some, evaluations)?;
     let mut answers = vec![false; rays.len()];
-    for ((&(at, _), &blocked), cut) in asked.iter().zip(&found.blocked).zip(cut) {
+    for ((&(at, _), &blocked), cut) in asked.iter().zip(&found).zip(cut) {
         answers[at] = blocked || cut;
     }
     Ok(answers)
@@ -209,7 +231,7 @@ fn blocked(
 /// Which rays begin inside the solid, where the region cuts it: they may hit no surface.
 fn cut(frame: &Frame<'_>, rays: &[Ray], evaluations: &mut f64) -> Result<Vec<bool>, RenderError> {
     let mut cut = vec![false; rays.len()];
-    if frame.render.region.is_none() {
+    if frame.render.region.is_none() || frame.guide.as_ref().is_some_and(|guide| !guide.is_cut) {
         return Ok(cut);
     }
     let enter: Vec<usize> = (0..rays.len()).filter(|&ray| rays[ray].span[0] > 0.0).collect();
@@ -225,5 +247,6 @@ fn cut(frame: &Frame<'_>, rays: &[Ray], evaluations: &mut f64) -> Result<Vec<boo
 
 /// A spot a little above a place of the surface, so that its rays do not hit that place.
 pub fn spot(frame: &Frame<'_>, position: Vector, normal: Vector, pixel: [u32; 2], sample: u32) -> Spot {
-    Spot { position: along(position, frame.pixel, normal), normal, pixel, sample }
+    let above = frame.guide.as_ref().map_or(frame.pixel, |guide| ABOVE * guide.cell);
+    Spot { position: along(position, above, normal), normal, pixel, sample }
 }

@@ -1,16 +1,23 @@
 //! Pictures of models: rays from a camera to the surface, and light that shows its shape.
 //!
 //! ```text
-//! frame:   tight bounds ── a coarse picture of who is hit ── the camera that this fills       (unless it stands at a point)
-//! tiles:   rays of a tile, a packet ── first hits ── normal, attributes                        (cast)
-//!          from each hit: rays to the key light, rays to the sky                               (gather)
-//!          what the light makes of the colour; the shadow on the ground where nothing is hit   (shade)
-//! develop: means over the rays of each pixel ── colours, over the background                   (picture)
+//! frame:   tight bounds ── a coarse mesh ── the camera that it fills, the ground          (framing, camera)
+//! guide:   a mesh with cells of some pixels ── boxes around its triangles                 (guide, hierarchy, beam)
+//! sheet:   rays that the mesh leads to the surface ── position, normal, attributes        (look)
+//!          from each hit: rays to the key light, rays to the sky, against the mesh         (gather)
+//!          the mean of light over neighbours that see the same                             (smooth)
+//!          what the light makes of the colour; the shadow on the ground                    (shade)
+//!          more rays where neighbours differ                                               (sheet)
+//! develop: colours, over the background                                                    (develop)
+//!
+//! best:    every ray exact, tile by tile, in place of guide and sheet                      (tile, cast)
 //! ```
 //!
 //! A picture is the same to the byte on any number of threads: tiles do not depend on threads, and directions
 //! come from sequences that each pixel shifts by a function of its place alone.
 
+mod beam;
+mod boxes;
 mod camera;
 mod cast;
 mod color;
@@ -19,12 +26,21 @@ mod error;
 mod frame;
 mod framing;
 mod gather;
+mod guide;
+mod hierarchy;
 mod lights;
+mod look;
+mod material;
 mod noise;
 mod renderer;
 mod report;
+mod seen;
 mod settings;
 mod shade;
+mod sheet;
+mod smooth;
+mod surface_field;
+mod telling;
 mod tile;
 mod vector;
 
@@ -45,6 +61,7 @@ use crate::job::{Hook, Job};
 
 use develop::{Gathered, develop};
 use frame::Frame;
+use telling::Telling;
 use tile::{Tile, TileArea};
 
 /// The number of tiles between two reports of progress.
@@ -54,7 +71,8 @@ impl Render {
     /// A picture of a model. For several pictures, of an edited model or from several sides, keep a
     /// [`Renderer`] and use [`with`](Self::with).
     ///
-    /// Memory: 16 bytes a pixel.
+    /// Memory: 16 bytes a pixel; 150 more for each pixel of a band of rows, of which there are at most
+    /// [`MAX_BAND_PIXELS`](jbt_ir::limits::MAX_BAND_PIXELS), and the mesh that guides rays.
     ///
     /// # Errors
     /// See [`RenderError`].
@@ -93,19 +111,23 @@ impl Render {
 
     fn with_hooked(&self, renderer: &Renderer, hook: Hook<'_>) -> Result<Rendered, RenderError> {
         self.check(renderer.tree())?;
-        if !hook(0.0) {
-            return Err(RenderError::Cancelled);
-        }
+        let mut telling = Telling::new(hook)?;
         let start = Instant::now();
         let mut film = self.film()?;
-        let frame = Frame::new(self, renderer)?;
+        telling.begin(sheet::BEGIN);
+        let frame = Frame::new(self, renderer, &mut telling)?;
         let frame_time = start.elapsed();
         let start = Instant::now();
+        let guide = frame.as_ref().and_then(|frame| frame.guide.as_ref());
         let done = match &frame {
-            Some(frame) => expose(frame, &mut film, hook)?,
+            Some(frame) => match guide {
+                Some(guide) => sheet::expose(frame, guide, &mut film, &mut telling)?,
+                None => expose(frame, &mut film, &mut telling)?,
+            },
             None => Tile::default(),
         };
         let [trace_time, shade_time] = done.shares(start.elapsed());
+        let mesh_evaluations = guide.map_or(0, |guide| guide.evaluations);
         let (picture, range) = develop(&film, self.size, self.meaning(renderer.tree()), self.background());
         let notice = match &frame {
             None => Some(Notice::Empty),
@@ -117,7 +139,8 @@ impl Render {
             pixels_hit: done.pixels_hit,
             tolerance: frame.as_ref().map_or(0.0, |frame| frame.tolerance),
             rays: done.rays,
-            evaluations: done.evaluations.round() as u64,
+            evaluations: done.evaluations.round() as u64 + mesh_evaluations,
+            triangles: guide.map_or(0, |guide| guide.triangles),
             range,
             engine: renderer.evaluator.engine(),
             notice,
@@ -140,7 +163,8 @@ impl Render {
 }
 
 /// Exposes all tiles of a film. Returns their total cost.
-fn expose(frame: &Frame<'_>, film: &mut [Gathered], hook: Hook<'_>) -> Result<Tile, RenderError> {
+fn expose(frame: &Frame<'_>, film: &mut [Gathered], telling: &mut Telling<'_>) -> Result<Tile, RenderError> {
+    telling.begin(1.0);
     let width = frame.render.size[0] as usize;
     let places = TileArea::all(frame.render.size, frame.render.antialias);
     let mut all = Tile::default();
@@ -154,7 +178,7 @@ fn expose(frame: &Frame<'_>, film: &mut [Gathered], hook: Hook<'_>) -> Result<Ti
             all.add(&tile);
         }
         let fraction = ((done + 1) * STRIDE).min(places.len()) as f32 / places.len() as f32;
-        if !hook(fraction) {
+        if !telling.tell(fraction) {
             return Err(RenderError::Cancelled);
         }
     }

@@ -22,7 +22,10 @@ impl Sequence {
     /// The points of a pixel that takes `length` of them; `stream` distinguishes their uses.
     pub fn new(pixel: [u32; 2], stream: u32, length: u32) -> Self {
         // Morton order for 2^13 columns and rows; beyond, it repeats.
-        let spread = |at: u32| (0..13).fold(0, |bits, bit| bits | (at >> bit & 1) << (2 * bit));
+        let spread = |at: u32| {
+            let halves = [(8, 0x00ff_00ff), (4, 0x0f0f_0f0f), (2, 0x3333_3333), (1, 0x5555_5555)];
+            halves.iter().fold(at & 0x1fff, |bits, (shift, mask)| (bits | bits << shift) & mask)
+        };
         let place = spread(pixel[0]) | spread(pixel[1]) << 1;
         let seed = |use_of: u32| hashed(3 * stream + use_of);
         Self { first: place.wrapping_mul(length.next_power_of_two()), seeds: [seed(0), seed(1), seed(2)] }

@@ -8,6 +8,7 @@ use crate::compiler::Compiler;
 use crate::debug::brief_debug;
 use crate::error::CompileError;
 use crate::evaluator::Evaluator;
+use crate::prune::Pruner;
 use crate::solid::Solid;
 use crate::trace::Tracer;
 
@@ -17,8 +18,11 @@ use crate::trace::Tracer;
 pub struct Renderer {
     pub(super) tracer: Tracer,
     pub(super) solid: Solid,
-    /// Evaluates where a region cuts the solid and there is no surface to hit.
+    /// Everything that is seen of a surface: where a region cuts the solid, and where a mesh leads the eye.
     pub(super) evaluator: Evaluator,
+    /// The field, for meshes.
+    pub(super) field: Evaluator,
+    pub(super) pruner: Pruner,
 }
 
 brief_debug!(Renderer, "Renderer", this: evaluator = this.evaluator);
@@ -41,6 +45,8 @@ impl Renderer {
             tracer: Tracer::of(compiled, Query::SURFACE)?,
             solid: Solid::of(compiled)?,
             evaluator: compiled.regional(Query::SURFACE)?,
+            field: compiled.regional(Query::FIELD)?,
+            pruner: compiled.pruner()?,
         })
     }
 

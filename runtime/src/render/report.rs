@@ -33,6 +33,8 @@ pub struct RenderReport {
     pub rays: Rays,
     /// The number of distances to skeletons that were evaluated for all rays.
     pub evaluations: u64,
+    /// Triangles of the mesh that light met, and that led the eye; 0 if every ray was exact.
+    pub triangles: u64,
     /// The numbers at the ends of the scale of colours or greys: distances from the eye, an attribute, or
     /// evaluations of a pixel with any. `None` where colours are colours, and if nothing is visible.
     pub range: Option<[f32; 2]>,
@@ -42,7 +44,7 @@ pub struct RenderReport {
     pub notice: Option<Notice>,
     /// Time to lower and compile the model.
     pub compile_time: Duration,
-    /// Time to find the bounds of the model and to frame it.
+    /// Time to find the bounds of the model, to frame it, and to mesh it for its light.
     pub frame_time: Duration,
     /// Time to trace the rays from the camera.
     pub trace_time: Duration,

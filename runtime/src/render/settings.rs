@@ -31,7 +31,8 @@ pub struct Render {
     pub mode: RenderMode,
     /// The effort for light; it matters only for a shaded surface.
     pub quality: Quality,
-    /// The number of rays along each side of a pixel: 1 to [`MAX_ANTIALIAS`].
+    /// The number of rays along each side of a pixel: 1 to [`MAX_ANTIALIAS`]. In draft and good quality only
+    /// pixels that differ from a neighbour take more than one, where a mesh guides rays.
     pub antialias: u32,
     /// The picture where the model is not. `None` is the studio for a shaded surface, and transparency for
     /// other modes.
@@ -83,12 +84,14 @@ pub enum RenderMode {
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Quality {
-    /// Camera rays only: no shadows, no dark corners. For interaction.
+    /// No shadows, no dark corners, for interaction: a mesh with cells of eight pixels leads to the surface.
+    /// What is thinner than a cell may be missed.
     Draft,
-    /// Soft shadows and a sky, for looking.
+    /// Soft shadows and a sky, for looking. Light meets a mesh with cells of five pixels; the eye sees the
+    /// surface itself.
     #[default]
     Good,
-    /// The same with less noise, for showing.
+    /// Every ray is exact, for showing: dozens of times as long.
     Best,
 }
 
@@ -110,7 +113,15 @@ impl Quality {
         }
     }
 
-    /// The tolerance of rays to the light and the sky, in pixels: shadows are soft, so thinner parts may cast
+    /// The edge of a cell of the mesh that guides rays, in pixels; the best quality has none.
+    pub(super) fn cell(self) -> f64 {
+        match self {
+            Self::Draft => 8.0,
+            Self::Good | Self::Best => 5.0,
+        }
+    }
+
+    /// The tolerance of exact rays to the light and the sky, in pixels: shadows are soft, so thinner parts may cast
     /// none.
     pub(super) fn softness(self) -> f64 {
         match self {
@@ -124,7 +135,7 @@ impl Quality {
     pub(super) fn rays(self) -> [u32; 2] {
         match self {
             Self::Draft => [0, 0],
-            Self::Good => [2, 4],
+            Self::Good => [2, 3],
             Self::Best => [8, 16],
         }
     }

@@ -7,8 +7,9 @@ use super::cast::CastHit;
 use super::color::{Rgb, shoulder};
 use super::error::RenderError;
 use super::frame::Frame;
-use super::gather::{Cost, Light, Spot, gather, spot, unshadowed};
+use super::gather::{Cost, Light, RayBudget, Spot, gather, spot, unshadowed};
 use super::lights::{sky, sky_above};
+use super::material::SurfaceMaterial;
 use super::vector::{Vector, add, along, dot, length, scale, sub, unit};
 
 /// The key light on a surface that faces it.
@@ -17,8 +18,14 @@ const KEY: Rgb = [0.92, 0.87, 0.79];
 const FILL: Rgb = [0.06, 0.072, 0.095];
 /// The part of the blocked light that reaches a place by reflection from the blocking surface.
 const AGAIN: f32 = 0.35;
-/// The highlight of the key light: exponent and brightness.
-const SHINE: (f64, f32) = (56.0, 0.16);
+/// The brightness of the key light's highlight, for each unit of its exponent, and the largest one.
+const SHINE: f32 = 0.16 / 58.0;
+const BRIGHTEST_SHINE: f32 = 4.0;
+/// The least roughness: a smoother surface would have a highlight smaller than a pixel.
+const SMOOTHEST: f32 = 0.1;
+/// By how many times a metal mirrors more of the key light, and of the sky, than a lacquer.
+const METAL_SHINE: f32 = 2.0;
+const METAL_SKY: f32 = 0.6;
 /// The reflectance at normal incidence, and its increase towards grazing angles (Schlick, 1994).
 const MIRROR: [f32; 2] = [0.03, 0.42];
 /// The colour of shadows on the ground, and their largest opacity.
@@ -40,28 +47,56 @@ pub fn surfaces(
             spot(frame, met.position, met.normal, pixel, sample)
         })
         .collect();
-    let (lights, cost) = gather(frame, &spots, 1)?;
+    let each = frame.render.quality.rays();
+    let (lights, cost) = gather(frame, &spots, RayBudget { spot: each, pixel: rays_of_a_pixel(frame) })?;
     let colors = met.iter().zip(lights).map(|(met, light)| surface(frame, met, light, seen(met).2));
     Ok((colors.collect(), cost))
 }
 
 /// The screen values of a surface, seen along a unit vector.
-fn surface(frame: &Frame<'_>, met: &CastHit, light: Light, looking: Vector) -> Rgb {
+pub fn surface(frame: &Frame<'_>, met: &CastHit, light: Light, looking: Vector) -> Rgb {
     let view = scale(looking, -1.0);
     let facing = dot(met.normal, view).clamp(0.0, 1.0);
     let fill = dot(met.normal, frame.lights.fill).max(0.0) as f32 * light.open;
     let half = unit(add(frame.lights.key, view)).map_or(0.0, |half| dot(half, met.normal).max(0.0));
-    let shine = light.key * SHINE.1 * half.powf(SHINE.0) as f32;
+    let SurfaceMaterial { rough, metal, glow } = met.material;
+    let (exponent, brightness) = shine(rough);
+    let shine = light.key * brightness * half.powf(exponent) as f32 * (1.0 + METAL_SHINE * metal);
     let mirrored = along(scale(met.normal, 2.0 * facing), -1.0, view);
-    let mirror = (MIRROR[0] + MIRROR[1] * (1.0 - facing).powi(5) as f32) * light.open;
-    let reflection = sky(dot(mirrored, frame.up).clamp(-1.0, 1.0));
+    let grazing = (1.0 - facing).powi(5) as f32;
+    let sharp = sky(dot(mirrored, frame.up).clamp(-1.0, 1.0));
+    let boxes = soft_boxes(frame, mirrored, rough) * metal;
     let around = sky_above(dot(met.normal, frame.up));
     [0, 1, 2].map(|channel| {
         let paint = met.paint[channel].clamp(0.0, 1.0);
         let again = AGAIN * paint * (1.0 - light.open) * around[channel];
         let falling = KEY[channel] * light.facing + FILL[channel] * fill + light.sky[channel] + again;
-        shoulder(paint * falling + KEY[channel] * shine + mirror * reflection[channel])
+        // A metal has no colour below its surface: what it mirrors is tinted instead.
+        let plain = MIRROR[0] + MIRROR[1] * grazing;
+        let mirror = plain + metal * (paint + (1.0 - paint) * grazing - plain);
+        let reflection = (1.0 + METAL_SKY * metal) * sharp[channel] + boxes;
+        let tint = 1.0 + metal * (paint - 1.0);
+        let lit = paint * falling * (1.0 - metal) + tint * KEY[channel] * shine;
+        shoulder(lit + mirror * light.open * reflection + glow * paint)
     })
+}
+
+/// The exponent and the brightness of the highlight on a surface of this roughness, after Blinn and Phong: the
+/// narrower, the brighter.
+fn shine(rough: f32) -> (f64, f32) {
+    let exponent = 2.0 / rough.max(SMOOTHEST).powi(4) - 2.0;
+    (f64::from(exponent), (SHINE * (exponent + 2.0)).min(BRIGHTEST_SHINE))
+}
+
+/// The light of the studio's lamps that a metal mirrors in a direction: large soft boxes at the key light and
+/// at the fill light.
+fn soft_boxes(frame: &Frame<'_>, direction: Vector, rough: f32) -> f32 {
+    let soft = 0.08 + 0.5 * f64::from(rough);
+    let lamp = |towards: Vector, edge: f64| {
+        let part = ((dot(direction, towards) - edge + soft) / (2.0 * soft)).clamp(0.0, 1.0);
+        (part * part * (3.0 - 2.0 * part)) as f32
+    };
+    0.9 * lamp(frame.lights.key, 0.8) + 0.35 * lamp(frame.lights.fill, 0.85)
 }
 
 /// A place of the ground that a pixel sees.
@@ -75,18 +110,26 @@ pub struct GroundSpot {
 pub fn shadows(frame: &Frame<'_>, places: &[GroundSpot]) -> Result<(Vec<[f32; 4]>, Cost), RenderError> {
     let spots: Vec<Spot> =
         places.iter().map(|place| spot(frame, place.position, frame.up, place.pixel, place.sample)).collect();
+    let all = rays_of_a_pixel(frame);
+    let (lights, cost) = gather(frame, &spots, RayBudget { spot: all, pixel: all })?;
+    Ok((spots.iter().zip(&lights).map(|(spot, light)| shadow(frame, spot, light)).collect(), cost))
+}
+
+/// The numbers of rays of a pixel to the key light and to the sky, where each of its rays is lit on its own.
+fn rays_of_a_pixel(frame: &Frame<'_>) -> [u32; 2] {
     let rays = frame.render.antialias * frame.render.antialias;
-    let (lights, cost) = gather(frame, &spots, rays)?;
+    frame.render.quality.rays().map(|count| count * rays)
+}
+
+/// The shadow at a spot of the ground that this light reaches.
+pub fn shadow(frame: &Frame<'_>, spot: &Spot, light: &Light) -> [f32; 4] {
     let strength = |light: &Light| {
         let sum = |channel: usize| KEY[channel] * light.facing + light.sky[channel];
         sum(0) + sum(1) + sum(2)
     };
-    let shadow = |(spot, light): (&Spot, &Light)| {
-        let missing = 1.0 - strength(light) / strength(&unshadowed(frame, spot));
-        let depth = DEEPEST * missing.clamp(0.0, 1.0) * fade(frame, spot.position);
-        [SHADE[0] * depth, SHADE[1] * depth, SHADE[2] * depth, depth]
-    };
-    Ok((spots.iter().zip(&lights).map(shadow).collect(), cost))
+    let missing = 1.0 - strength(light) / strength(&unshadowed(frame, spot));
+    let depth = DEEPEST * missing.clamp(0.0, 1.0) * fade(frame, spot.position);
+    [SHADE[0] * depth, SHADE[1] * depth, SHADE[2] * depth, depth]
 }
 
 /// The remaining part of a shadow at a place: 1 near the model, 0 far away.

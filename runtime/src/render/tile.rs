@@ -26,11 +26,16 @@ pub struct TileArea {
 impl TileArea {
     /// The tiles of a picture, row by row. They do not depend on threads.
     pub fn all([width, height]: [u32; 2], antialias: u32) -> Vec<Self> {
+        Self::of_rows(width, [0, height], antialias)
+    }
+
+    /// The tiles of some rows of a picture, from the first one up to the end.
+    pub fn of_rows(width: u32, [first, end]: [u32; 2], antialias: u32) -> Vec<Self> {
         let side = ((f64::from(PACKET).sqrt() / f64::from(antialias)) as u32).max(2);
         let mut places = Vec::new();
-        for y in (0..height).step_by(side as usize) {
+        for y in (first..end).step_by(side as usize) {
             for x in (0..width).step_by(side as usize) {
-                places.push(Self { x, y, width: side.min(width - x), height: side.min(height - y) });
+                places.push(Self { x, y, width: side.min(width - x), height: side.min(end - y) });
             }
         }
         places

@@ -1,0 +1,431 @@
+//! Pictures by way of a mesh: what each pixel sees, the light there, and more rays where neighbours differ.
+//!
+//! ```text
+//! look    one ray a pixel, led by the mesh; some exact rays watch out for what the mesh has missed
+//! sharpen exact rays where what is seen breaks off
+//! gather  rays from each pixel to the key light and the sky, against the mesh
+//! smooth  light of neighbours that see the same surface
+//! edges   where neighbours differ, more rays for the pixel; they take the light of the pixels around them
+//! ```
+//!
+//! A large picture is made in bands of rows, with some rows more on both sides than are kept.
+
+use std::time::Instant;
+
+use super::cast::{Meetings, cast};
+use super::develop::Gathered;
+use super::error::RenderError;
+use super::frame::Frame;
+use super::gather::{Light, RayBudget, Spot, gather, unshadowed};
+use super::guide::Guide;
+use super::look::look;
+use super::seen::{Seen, SeenKind};
+use super::settings::{Quality, RenderMode};
+use super::smooth::{SMOOTH_ROWS, smooth};
+use super::telling::Telling;
+use super::tile::{Tile, TileArea};
+use super::vector::{length, sub};
+use crate::parallel::*;
+use crate::trace::Ray;
+
+use jbt_ir::limits::MAX_BAND_PIXELS;
+
+/// The number of tiles between two reports of progress.
+const STRIDE: usize = 32;
+/// Pixels along the side of a block whose rays are neighbours in a packet.
+const BLOCK: u32 = 8;
+/// Pixels from one exact ray to the next one, along rows and columns.
+const WATCH: u32 = 4;
+/// Pixels around a break that are looked at exactly.
+const BESIDE: u32 = 2;
+/// The distance from the mesh to an exact hit that proves nothing missed, in cells.
+const AGREE: f64 = 4.0;
+
+/// Rows of a picture that are made together, and what they take.
+struct Sheet<'a> {
+    frame: &'a Frame<'a>,
+    guide: &'a Guide,
+    /// The first row, and the row behind the last one.
+    rows: [u32; 2],
+    tiles: Vec<TileArea>,
+    /// For each tile, whether the mesh misses something there: all of its rays are exact.
+    is_exact: Vec<bool>,
+    seen: Vec<Seen>,
+    lights: Vec<Light>,
+    cost: Tile,
+}
+
+/// Exposes all of a film. Returns the cost.
+pub fn expose(
+    frame: &Frame<'_>,
+    guide: &Guide,
+    film: &mut [Gathered],
+    telling: &mut Telling<'_>,
+) -> Result<Tile, RenderError> {
+    let [width, height] = frame.render.size;
+    let each = (MAX_BAND_PIXELS as u32 / width).clamp(1, height);
+    let bands = height.div_ceil(each);
+    let begin = BEGIN;
+    let mut cost = Tile::default();
+    for (band, kept) in film.chunks_mut((each * width) as usize).enumerate() {
+        let (first, count) = (band as u32 * each, kept.len() as u32 / width);
+        let beside = if bands > 1 { SMOOTH_ROWS + 1 } else { 0 };
+        let rows = [first.saturating_sub(beside), (first + count + beside).min(height)];
+        let mut sheet = Sheet::new(frame, guide, rows);
+        let part = |of: f32| begin + (1.0 - begin) * (band as f32 + of) / bands as f32;
+        let started = Instant::now();
+        sheet.look(telling, part(0.3))?;
+        if guide.leads && frame.render.quality != Quality::Draft {
+            sheet.sharpen(telling, part(0.4))?;
+        }
+        sheet.cost.trace += started.elapsed();
+        let started = Instant::now();
+        if frame.render.mode == RenderMode::Shaded && frame.render.quality != Quality::Draft {
+            sheet.light(telling, part(0.8))?;
+        }
+        sheet.develop((kept, first), telling, part(1.0))?;
+        sheet.cost.shade += started.elapsed();
+        cost.add(&sheet.cost);
+    }
+    Ok(cost)
+}
+
+/// The part of the work that is done when rays begin.
+pub const BEGIN: f32 = 0.2;
+
+/// The value of each tile, in order.
+fn of_tiles<T: Send>(
+    tiles: &[TileArea],
+    (telling, end): (&mut Telling<'_>, f32),
+    work: impl Fn(usize, &TileArea) -> Result<T, RenderError> + Sync + Send,
+) -> Result<Vec<T>, RenderError> {
+    telling.begin(end);
+    let mut all = Vec::with_capacity(tiles.len());
+    for (index, some) in tiles.chunks(STRIDE).enumerate() {
+        let first = index * STRIDE;
+        let made: Vec<T> = (first..first + some.len())
+            .into_par_iter()
+            .map(|tile| work(tile, &tiles[tile]))
+            .collect::<Result<_, _>>()?;
+        all.extend(made);
+        if !telling.tell(all.len() as f32 / tiles.len() as f32) {
+            return Err(RenderError::Cancelled);
+        }
+    }
+    Ok(all)
+}
+
+/// The pixels of a tile, block by block: neighbours in the list are neighbours in the picture.
+fn pixels(area: &TileArea) -> Vec<[u32; 2]> {
+    let mut pixels = Vec::with_capacity((area.width * area.height) as usize);
+    for y in (0..area.height).step_by(BLOCK as usize) {
+        for x in (0..area.width).step_by(BLOCK as usize) {
+            for row in y..(y + BLOCK).min(area.height) {
+                pixels.extend((x..(x + BLOCK).min(area.width)).map(|column| [area.x + column, area.y + row]));
+            }
+        }
+    }
+    pixels
+}
+
+/// What some rays through the picture see, how many of them go into the region, and how many evaluations they
+/// took.
+fn sights(
+    frame: &Frame<'_>,
+    places: &[[f64; 2]],
+    trace: impl Fn(&[Ray]) -> Result<Meetings, RenderError>,
+) -> Result<(Vec<Seen>, u64, f64), RenderError> {
+    let casts: Vec<Option<Ray>> = places.iter().map(|&[x, y]| frame.cast(x, y)).collect();
+    let rays: Vec<Ray> = casts.iter().flatten().copied().collect();
+    let meetings = trace(&rays)?;
+    let mut met = meetings.met.iter().peekable();
+    let mut ray = 0;
+    let mut seen = Vec::with_capacity(places.len());
+    for (&place, cast) in places.iter().zip(&casts) {
+        let hit = cast.and_then(|_| {
+            ray += 1;
+            met.next_if(|met| met.cast == ray - 1)
+        });
+        seen.push(hit.map_or_else(|| Seen::behind(frame, place), |hit| Seen::surface(frame, hit)));
+    }
+    let evaluations = meetings.evaluations.iter().map(|&count| f64::from(count)).sum();
+    Ok((seen, rays.len() as u64, evaluations))
+}
+
+/// What a tile sees.
+struct TileSight {
+    /// Row by row.
+    seen: Vec<Seen>,
+    is_exact: bool,
+    rays: u64,
+    evaluations: f64,
+}
+
+impl<'a> Sheet<'a> {
+    fn new(frame: &'a Frame<'a>, guide: &'a Guide, rows: [u32; 2]) -> Self {
+        let width = frame.render.size[0];
+        let tiles = TileArea::of_rows(width, rows, 1);
+        Self {
+            frame,
+            guide,
+            rows,
+            is_exact: Vec::new(),
+            tiles,
+            seen: vec![Seen::NOTHING; ((rows[1] - rows[0]) * width) as usize],
+            lights: Vec::new(),
+            cost: Tile::default(),
+        }
+    }
+
+    fn width(&self) -> usize {
+        self.frame.render.size[0] as usize
+    }
+
+    /// The index of a pixel.
+    fn index(&self, [x, y]: [u32; 2]) -> usize {
+        (y - self.rows[0]) as usize * self.width() + x as usize
+    }
+
+    /// The middle of a pixel, or of one of its parts, as a point of the picture.
+    fn place(&self, [x, y]: [u32; 2], [column, row]: [u32; 2], parts: u32) -> [f64; 2] {
+        let at = |pixel: u32, part: u32, of: u32| {
+            (f64::from(pixel) + (f64::from(part) + 0.5) / f64::from(parts)) / f64::from(of)
+        };
+        let [width, height] = self.frame.render.size;
+        [at(x, column, width), at(y, row, height)]
+    }
+
+    /// Finds what each pixel sees.
+    fn look(&mut self, telling: &mut Telling<'_>, end: f32) -> Result<(), RenderError> {
+        let found = of_tiles(&self.tiles, (telling, end), |_, area| self.look_tile(area))?;
+        for (area, sight) in self.tiles.clone().iter().zip(found) {
+            for (pixel, seen) in pixels(area).into_iter().zip(sight.seen) {
+                let index = self.index(pixel);
+                self.seen[index] = seen;
+                self.cost.pixels_hit += u64::from(seen.kind == SeenKind::Surface);
+            }
+            self.is_exact.push(sight.is_exact);
+            self.cost.rays.camera += sight.rays;
+            self.cost.evaluations += sight.evaluations;
+        }
+        Ok(())
+    }
+
+    /// Looks exactly where what is seen breaks off: the mesh cuts the corners of sharp edges off, so a
+    /// silhouette may be a pixel or two farther out.
+    fn sharpen(&mut self, telling: &mut Telling<'_>, end: f32) -> Result<(), RenderError> {
+        let width = self.width();
+        let breaks = |index: usize| {
+            let beside = [(index % width + 1 < width).then_some(index + 1), Some(index + width)];
+            let mut beside = beside.into_iter().flatten().filter_map(|other| self.seen.get(other));
+            beside.any(|other| self.seen[index].breaks(other))
+        };
+        let is_break: Vec<bool> =
+            (0..self.seen.len()).into_par_iter().with_min_len(4096).map(breaks).collect();
+        let found = of_tiles(&self.tiles, (telling, end), |tile, area| {
+            let is_near = |&[x, y]: &[u32; 2]| {
+                let columns = x.saturating_sub(BESIDE)..(x + BESIDE + 1).min(width as u32);
+                let rows = y.saturating_sub(BESIDE).max(self.rows[0])..(y + BESIDE + 1).min(self.rows[1]);
+                rows.into_iter().any(|y| columns.clone().any(|x| is_break[self.index([x, y])]))
+            };
+            let near: Vec<[u32; 2]> =
+                pixels(area).into_iter().filter(|pixel| !self.is_exact[tile] && is_near(pixel)).collect();
+            let places: Vec<[f64; 2]> = near.iter().map(|&pixel| self.place(pixel, [0, 0], 1)).collect();
+            let sight = sights(self.frame, &places, |rays| cast(self.frame, rays))?;
+            Ok((near, sight))
+        })?;
+        for (near, (seen, rays, evaluations)) in found {
+            self.cost.rays.camera += rays;
+            self.cost.evaluations += evaluations;
+            for (pixel, seen) in near.into_iter().zip(seen) {
+                let index = self.index(pixel);
+                let was = std::mem::replace(&mut self.seen[index], seen);
+                self.cost.pixels_hit += u64::from(seen.kind == SeenKind::Surface);
+                self.cost.pixels_hit -= u64::from(was.kind == SeenKind::Surface);
+            }
+        }
+        Ok(())
+    }
+
+    /// What a tile sees, in the order of [`pixels`].
+    fn look_tile(&self, area: &TileArea) -> Result<TileSight, RenderError> {
+        let frame = self.frame;
+        let pixels = pixels(area);
+        let places: Vec<[f64; 2]> = pixels.iter().map(|&pixel| self.place(pixel, [0, 0], 1)).collect();
+        let exactly = |rays: &[Ray]| cast(frame, rays);
+        if !self.guide.leads {
+            let (seen, rays, evaluations) = sights(frame, &places, exactly)?;
+            return Ok(TileSight { seen, is_exact: true, rays, evaluations });
+        }
+        let (mut seen, mut rays, mut evaluations) =
+            sights(frame, &places, |rays| look(frame, self.guide, rays))?;
+        let mut is_exact = false;
+        if frame.render.quality != Quality::Draft {
+            let is_watched = |&at: &usize| pixels[at].iter().all(|at| at % WATCH == WATCH / 2);
+            let watched: Vec<usize> = (0..pixels.len()).filter(is_watched).collect();
+            let some: Vec<[f64; 2]> = watched.iter().map(|&at| places[at]).collect();
+            let (exact, more, cost) = sights(frame, &some, exactly)?;
+            (rays, evaluations) = (rays + more, evaluations + cost);
+            let misses = |(&at, exact): (&usize, &Seen)| self.misses(&pixels, &seen, pixels[at], exact);
+            is_exact = watched.iter().zip(&exact).any(misses);
+            if is_exact {
+                let (exact, more, cost) = sights(frame, &places, exactly)?;
+                (seen, rays, evaluations) = (exact, rays + more, evaluations + cost);
+            }
+        }
+        Ok(TileSight { seen, is_exact, rays, evaluations })
+    }
+
+    /// Whether what an exact ray sees is not seen at its pixel, nor at any pixel beside.
+    fn misses(&self, pixels: &[[u32; 2]], seen: &[Seen], pixel: [u32; 2], exact: &Seen) -> bool {
+        let agrees = |other: &Seen| match (exact.kind, other.kind) {
+            (SeenKind::Surface, SeenKind::Surface) => {
+                let [a, b] = [exact, other].map(|seen| seen.position.map(f64::from));
+                length(sub(a, b)) <= AGREE * self.guide.cell
+            }
+            (SeenKind::Surface, SeenKind::Nothing | SeenKind::Ground)
+            | (SeenKind::Nothing | SeenKind::Ground, SeenKind::Surface) => false,
+            (SeenKind::Nothing | SeenKind::Ground, SeenKind::Nothing | SeenKind::Ground) => true,
+        };
+        let is_beside = |other: &[u32; 2]| (0..2).all(|axis| other[axis].abs_diff(pixel[axis]) <= 1);
+        !pixels.iter().zip(seen).any(|(other, seen)| is_beside(other) && agrees(seen))
+    }
+
+    /// Finds the light of each pixel.
+    fn light(&mut self, telling: &mut Telling<'_>, end: f32) -> Result<(), RenderError> {
+        let budget =
+            RayBudget { spot: self.frame.render.quality.rays(), pixel: self.frame.render.quality.rays() };
+        let dark = Light { key: 0.0, facing: 0.0, sky: [0.0; 3], open: 0.0 };
+        self.lights = vec![dark; self.seen.len()];
+        let found = of_tiles(&self.tiles, (telling, end), |_, area| {
+            let lit: Vec<[u32; 2]> = pixels(area)
+                .into_iter()
+                .filter(|&pixel| self.seen[self.index(pixel)].kind != SeenKind::Nothing)
+                .collect();
+            let spots: Vec<Spot> =
+                lit.iter().map(|&pixel| self.seen[self.index(pixel)].spot(self.frame, pixel)).collect();
+            let (lights, cost) = gather(self.frame, &spots, budget)?;
+            Ok((lit, lights, cost))
+        })?;
+        for (lit, lights, cost) in found {
+            for (pixel, light) in lit.into_iter().zip(lights) {
+                let index = self.index(pixel);
+                self.lights[index] = light;
+            }
+            self.cost.rays.shadow += cost.rays.shadow;
+            self.cost.rays.sky += cost.rays.sky;
+            self.cost.evaluations += cost.evaluations;
+        }
+        self.lights = smooth(&self.seen, std::mem::take(&mut self.lights), self.width());
+        for (seen, light) in self.seen.iter().zip(&mut self.lights) {
+            light.facing = light.key * seen.facing(self.frame);
+        }
+        Ok(())
+    }
+
+    /// Writes the values of the kept pixels, with more rays where neighbours differ.
+    fn develop(
+        &mut self,
+        (kept, first): (&mut [Gathered], u32),
+        telling: &mut Telling<'_>,
+        end: f32,
+    ) -> Result<(), RenderError> {
+        let rows = [first, first + (kept.len() / self.width()) as u32];
+        let made = of_tiles(&self.tiles, (telling, end), |tile, area| {
+            let inner: Vec<[u32; 2]> =
+                pixels(area).into_iter().filter(|[_, y]| (rows[0]..rows[1]).contains(y)).collect();
+            let (values, rays, evaluations) = self.develop_tile(&inner, self.is_exact[tile])?;
+            Ok((inner, values, rays, evaluations))
+        })?;
+        for (pixels, values, rays, evaluations) in made {
+            for ([x, y], value) in pixels.into_iter().zip(values) {
+                kept[(y - first) as usize * self.width() + x as usize] = value;
+            }
+            self.cost.rays.camera += rays;
+            self.cost.evaluations += evaluations;
+        }
+        Ok(())
+    }
+
+    /// Whether a pixel differs from one of the four beside it.
+    fn is_edge(&self, [x, y]: [u32; 2]) -> bool {
+        let here = &self.seen[self.index([x, y])];
+        let beside = [
+            (x > 0).then(|| [x - 1, y]),
+            (x + 1 < self.frame.render.size[0]).then(|| [x + 1, y]),
+            (y > self.rows[0]).then(|| [x, y - 1]),
+            (y + 1 < self.rows[1]).then(|| [x, y + 1]),
+        ];
+        beside.into_iter().flatten().any(|pixel| here.differs(&self.seen[self.index(pixel)]))
+    }
+
+    /// The values of pixels, and the rays and evaluations that they took.
+    fn develop_tile(
+        &self,
+        pixels: &[[u32; 2]],
+        is_exact: bool,
+    ) -> Result<(Vec<Gathered>, u64, f64), RenderError> {
+        let parts = self.frame.render.antialias;
+        let is_edge: Vec<bool> = pixels.iter().map(|&pixel| parts > 1 && self.is_edge(pixel)).collect();
+        let mut places = Vec::new();
+        for &pixel in pixels.iter().zip(&is_edge).filter(|(_, edge)| **edge).map(|(pixel, _)| pixel) {
+            places.extend(
+                (0..parts * parts).map(|part| self.place(pixel, [part % parts, part / parts], parts)),
+            );
+        }
+        let is_exact = is_exact || self.frame.render.quality != Quality::Draft;
+        let (seen, rays, evaluations) = sights(self.frame, &places, |rays| {
+            if is_exact { cast(self.frame, rays) } else { look(self.frame, self.guide, rays) }
+        })?;
+        let each = 1.0 / (parts * parts) as f32;
+        let mut seen = seen.chunks((parts * parts) as usize);
+        let values = pixels.iter().zip(is_edge).map(|(&pixel, is_edge)| {
+            if !is_edge {
+                let index = self.index(pixel);
+                return self.seen[index].value(self.frame, &self.light_at(index));
+            }
+            let mut sum = [0.0; 4];
+            for seen in seen.next().unwrap_or_default() {
+                let value = seen.value(self.frame, &self.light_near(pixel, seen));
+                sum.iter_mut().zip(value).for_each(|(sum, value)| *sum += value * each);
+            }
+            sum
+        });
+        Ok((values.collect(), rays, evaluations))
+    }
+
+    /// The light of a pixel.
+    fn light_at(&self, index: usize) -> Light {
+        self.lights.get(index).copied().unwrap_or_else(|| {
+            let spot = self.seen[index].spot(self.frame, [0, 0]);
+            unshadowed(self.frame, &spot)
+        })
+    }
+
+    /// The light of a ray of a pixel: that of the nine pixels around, as far as they see the same.
+    fn light_near(&self, [x, y]: [u32; 2], seen: &Seen) -> Light {
+        let mut sum = ([0.0; 5], 0.0);
+        let spot = seen.spot(self.frame, [x, y]);
+        if self.lights.is_empty() || seen.kind == SeenKind::Nothing {
+            return unshadowed(self.frame, &spot);
+        }
+        for down in y.saturating_sub(1).max(self.rows[0])..(y + 2).min(self.rows[1]) {
+            for across in x.saturating_sub(1)..(x + 2).min(self.frame.render.size[0]) {
+                let index = self.index([across, down]);
+                // Where nothing is quite the same, what is nearly the same.
+                let other = &self.seen[index];
+                let same = if other.kind == seen.kind { 1e-4 } else { 0.0 };
+                let weight = same + seen.likeness(other, 1.5);
+                let light = &self.lights[index];
+                let parts = [light.key, light.sky[0], light.sky[1], light.sky[2], light.open];
+                sum.0.iter_mut().zip(parts).for_each(|(sum, part)| *sum += weight * part);
+                sum.1 += weight;
+            }
+        }
+        if sum.1 == 0.0 {
+            return unshadowed(self.frame, &spot);
+        }
+        let [key, red, green, blue, open] = sum.0.map(|part| part / sum.1);
+        Light { key, facing: key * seen.facing(self.frame), sky: [red, green, blue], open }
+    }
+}
