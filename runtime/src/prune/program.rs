@@ -61,7 +61,8 @@ impl RangeProgram {
                 supports.set(row, &support);
             }
         }
-        Self { bound: compiler.bind(&self.bound.kernel, tables), info, supports }
+        let contests = Contests::new(compiler, &info, &tables);
+        Self { bound: compiler.bind(&self.bound.kernel, tables), info, supports, contests }
     }
 }
 
