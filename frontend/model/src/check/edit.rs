@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::arena::{CheckedNode, NodeId};
+use super::arena::{CheckedNode, Lineage, NodeId};
 use super::groups::{share_name, widths};
 use super::node::check_node;
 use super::numbers::check_words;
@@ -53,15 +53,6 @@ pub struct CheckedModel {
     tree: CheckedTree,
     /// The node of each tree by its identity. None, if a node is shared.
     names: Option<FxHashMap<usize, NodeId>>,
-}
-
-/// Which nodes of a tree differ from those of the tree that it was made of.
-#[derive(Clone, Debug)]
-pub(super) struct Lineage {
-    /// All nodes of that tree.
-    pub(super) from: Arc<[CheckedNode]>,
-    /// Ascending.
-    pub(super) changed: Arc<[NodeId]>,
 }
 
 /// The part of the nodes up to which an edit is checked node by node.
