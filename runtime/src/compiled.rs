@@ -28,6 +28,8 @@ use crate::kernel::{Engine, Kernel, Purpose};
 use crate::program::{AnswerProgram, ModelProgram};
 use crate::prune::program::RangeProgram;
 
+use patch::PresentPrograms;
+
 /// A compiled model: programs for whatever is asked of it.
 ///
 /// It is `Send + Sync`, and a clone is another handle to the same programs. A program is compiled when it is
@@ -114,10 +116,50 @@ impl<T: ModelProgram> ProgramSlot<T> {
         self.made.get()?.as_ref().ok()
     }
 
+    /// Puts a program here, where none has been asked for.
+    fn give(&self, program: Arc<T>) {
+        // Nobody else has the place yet.
+        let _ = self.made.set(Ok(program));
+    }
+
     /// The place of the same program of another model.
     fn renewed(&self) -> Self {
         let present = self.present().map(|program| program.kernel());
         Self { made: OnceLock::new(), earlier: present.or(self.earlier.as_ref()).cloned() }
+    }
+}
+
+impl CompiledParts {
+    /// Gives an edited model its programs, if it is known what has changed, and if this takes less than to
+    /// lower it. Otherwise they are made when they are asked for.
+    fn hand_on(&self, edited: &Self) {
+        let Some(changed) = edited.tree.changed_since(&self.tree) else { return };
+        let answers: Vec<&Arc<AnswerProgram>> =
+            self.in_regions.iter().filter_map(ProgramSlot::present).collect();
+        if changed.is_empty() {
+            // Nothing but parameters that nothing depends on.
+            if let Some(ranges) = self.ranges.present() {
+                edited.ranges.give(Arc::clone(ranges));
+            }
+            answers.into_iter().for_each(|program| self.give(edited, Arc::clone(program)));
+            return;
+        }
+        let present = PresentPrograms { tree: &self.tree, ranges: self.ranges.present(), answers };
+        if let Some(patched) = patch::patch(&present, (&edited.compiler, &edited.tree), changed) {
+            edited.ranges.give(Arc::new(patched.ranges));
+            patched.answers.into_iter().for_each(|program| self.give(edited, Arc::new(program)));
+        }
+    }
+
+    /// Gives an edited model its program for regions. Points anywhere have the same one, if they have no
+    /// straight code.
+    fn give(&self, edited: &Self, program: Arc<AnswerProgram>) {
+        let query = program.query.index();
+        let [anywhere, regions] = [&self.anywhere, &self.in_regions].map(|slots| slots[query].present());
+        if anywhere.zip(regions).is_some_and(|(anywhere, regions)| Arc::ptr_eq(anywhere, regions)) {
+            edited.anywhere[query].give(Arc::clone(&program));
+        }
+        edited.in_regions[query].give(program);
     }
 }
 
@@ -152,7 +194,7 @@ impl Compiled {
             in_regions: self.0.in_regions.each_ref().map(ProgramSlot::renewed),
             ranges: self.0.ranges.renewed(),
         };
-        patch::patch(&self.0, &parts);
+        self.0.hand_on(&parts);
         Self(Arc::new(parts))
     }
 

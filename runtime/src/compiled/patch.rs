@@ -6,10 +6,10 @@
 //!                                     └─ lowered: the same function? then its rows are the changed rows
 //! ```
 //!
-//! Children of an operator that differ in numbers alone are rows of a table, so a model with fewer of them has
-//! the same code, and a row of it has the numbers that it has in the whole. Whether the code is the same is
-//! not guessed but compared, and so are the rows. Where anything differs, the edited model is lowered as a
-//! whole, when it is asked for.
+//! Children of an operator that differ in numbers alone are rows of a table, so a model with fewer of them
+//! has the same code, and a row of it has the numbers that it has in the whole. Whether the code is the same
+//! is not guessed but compared, and so are the nodes behind the rows. Where anything differs, the edited
+//! model is lowered as a whole, when it is asked for.
 
 use std::ops::RangeInclusive;
 use std::sync::Arc;
@@ -19,9 +19,8 @@ use jbt_lower::prune_info::{PruneInfo, Support};
 use jbt_lower::{Lowered, Lowering, RangeFunction};
 use jbt_model::check::{CheckedTree, NodeId};
 use jbt_model::kind::NodeKind;
-use jbt_model::query::Query;
 
-use super::CompiledParts;
+use crate::compiler::Compiler;
 use crate::program::{AnswerProgram, ModelProgram as _};
 use crate::prune::program::RangeProgram;
 
@@ -48,34 +47,28 @@ struct ChangedRows {
     pairs: Vec<Vec<(usize, usize)>>,
 }
 
-/// Makes the programs of an edited model that were made of the model before, if that takes less than to lower
-/// it.
-pub(super) fn patch(before: &CompiledParts, edited: &CompiledParts) {
-    let Some(changed) = edited.tree.changed_since(&before.tree) else { return };
-    if changed.is_empty() {
-        share(before, edited);
-    } else {
-        // If it cannot be done, programs are made when they are asked for.
-        let _ = write(before, edited, changed);
-    }
+/// The programs of a model that are there.
+pub(super) struct PresentPrograms<'a> {
+    pub(super) tree: &'a CheckedTree,
+    pub(super) ranges: Option<&'a Arc<RangeProgram>>,
+    /// Those for regions.
+    pub(super) answers: Vec<&'a Arc<AnswerProgram>>,
 }
 
-/// Nothing has changed but parameters that nothing depends on.
-fn share(before: &CompiledParts, edited: &CompiledParts) {
-    if let Some(ranges) = before.ranges.present() {
-        let _ = edited.ranges.made.set(Ok(Arc::clone(ranges)));
-    }
-    let slots = before.anywhere.iter().zip(&edited.anywhere);
-    for (before, edited) in slots.chain(before.in_regions.iter().zip(&edited.in_regions)) {
-        if let Some(present) = before.present() {
-            let _ = edited.made.set(Ok(Arc::clone(present)));
-        }
-    }
+/// The same programs of an edited model.
+pub(super) struct PatchedPrograms {
+    pub(super) ranges: RangeProgram,
+    pub(super) answers: Vec<AnswerProgram>,
 }
 
-fn write(before: &CompiledParts, edited: &CompiledParts, changed: &[NodeId]) -> Option<()> {
-    let old = before.ranges.present()?;
-    let edit = ChildrenEdit::new(&before.tree, &edited.tree, changed, old)?;
+/// The programs of a model in which these nodes have changed; `None` if it has to be lowered as a whole.
+pub(super) fn patch(
+    before: &PresentPrograms<'_>,
+    (compiler, edited): (&Compiler, &CheckedTree),
+    changed: &[NodeId],
+) -> Option<PatchedPrograms> {
+    let old = before.ranges?;
+    let edit = ChildrenEdit::new(before.tree, edited, changed, old)?;
     let lowering = Lowering::new(&edit.small);
     let RangeFunction { function, tables, info } = lowering.ranges().ok()?;
     if function != old.kernel().lowered {
@@ -83,31 +76,18 @@ fn write(before: &CompiledParts, edited: &CompiledParts, changed: &[NodeId]) -> 
     }
     let rows = edit.rows(old.info(), &info, (old.tables(), &tables))?;
     let numbers = rows.written(&function, old.tables(), &tables);
-    let supports = rows.supports(&info);
-    let ranges = old.patched(&edited.compiler, numbers, &supports);
-    let mut programs = Vec::new();
-    for query in Query::EVERY {
-        let Some(present) = before.in_regions[query.index()].present() else { continue };
-        let Lowered { function, tables } = lowering.answers(query).ok()?;
+    let mut answers = Vec::with_capacity(before.answers.len());
+    for present in &before.answers {
+        let Lowered { function, tables } = lowering.answers(present.query).ok()?;
         if function != present.bound.kernel.lowered {
             return None;
         }
         let numbers = rows.written(&function, present.bound.tables(), &tables);
-        let bound = edited.compiler.bind(&present.bound.kernel, numbers);
-        programs.push((query, Arc::new(AnswerProgram::new(&edited.tree, query, bound))));
+        let bound = compiler.bind(&present.bound.kernel, numbers);
+        answers.push(AnswerProgram::new(edited, present.query, bound));
     }
-    edited.compiler.count_patched();
-    let _ = edited.ranges.made.set(Ok(Arc::new(ranges)));
-    for (query, program) in programs {
-        // Points anywhere have the same program, if they have no straight code.
-        let [anywhere, regions] =
-            [&before.anywhere, &before.in_regions].map(|slots| slots[query.index()].present());
-        if anywhere.zip(regions).is_some_and(|(anywhere, regions)| Arc::ptr_eq(anywhere, regions)) {
-            let _ = edited.anywhere[query.index()].made.set(Ok(Arc::clone(&program)));
-        }
-        let _ = edited.in_regions[query.index()].made.set(Ok(program));
-    }
-    Some(())
+    compiler.count_patched();
+    Some(PatchedPrograms { ranges: old.patched(compiler, numbers, &rows.supports(&info)), answers })
 }
 
 impl ChildrenEdit {
@@ -203,8 +183,8 @@ fn is_same(before: &CheckedTree, edited: &CheckedTree, id: NodeId) -> bool {
     was == is && format!("{was:?}") == format!("{is:?}")
 }
 
-/// Nodes whose rows the small model has to have, for its code to be that of the whole. `None` if a row depends
-/// on all children.
+/// Nodes whose rows the small model has to have, for its code to be that of the whole. `None` if a row
+/// depends on all children.
 fn kept_nodes(old: &RangeProgram, root: NodeId) -> Option<Vec<NodeId>> {
     let mut kept = Vec::new();
     for (table, info) in old.info().tables.iter() {

@@ -48,10 +48,10 @@ use crate::support::{NoBox, around};
 ///
 /// # Buffers
 ///
-/// [`buffers`](Self::buffers) are made for a GPU. Each brick of the lattice has a range of vertices and one of
-/// triangles, with room to grow, and keeps them until it has outgrown them. Triangles that belong to no brick
-/// are `[0, 0, 0]`, which draws nothing, so the whole buffer may be drawn at once. A [`LiveChange`] says which
-/// ranges an edit has written.
+/// [`buffers`](Self::buffers) are made for a GPU. Each brick of the lattice has a range of vertices and one
+/// of triangles, with room to grow, and keeps them until it has outgrown them. Triangles that belong to no
+/// brick are `[0, 0, 0]`, which draws nothing, so the whole buffer may be drawn at once. A [`LiveChange`]
+/// says which ranges an edit has written.
 ///
 /// # Cost
 ///

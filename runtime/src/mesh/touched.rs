@@ -99,7 +99,7 @@ fn spans(axes: &[Vec<f32>; 3], edge: usize, bounds: &Box3) -> Option<[[u32; 2]; 
         let coordinates = &axes[axis];
         let cells = coordinates.len() - 1;
         let (low, high) = (bounds.low[axis], bounds.high[axis]);
-        // Bricks are closed: one that ends where the box begins is met. Not `<`: what is NaN meets everything.
+        // Bricks are closed: one that ends where the box begins is met. A NaN meets everything.
         if coordinates[0] > high || coordinates[cells] < low {
             return None;
         }

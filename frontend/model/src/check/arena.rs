@@ -27,6 +27,15 @@ pub struct CheckedNode {
     pub span: Option<Span>,
 }
 
+/// Which nodes of a tree differ from those of the tree that it was made of.
+#[derive(Clone, Debug)]
+pub(super) struct Lineage {
+    /// All nodes of that tree.
+    pub(super) from: Arc<[CheckedNode]>,
+    /// Ascending.
+    pub(super) changed: Arc<[NodeId]>,
+}
+
 /// How many paths lead from the root to each node: see [`CheckedTree::uses`](super::CheckedTree::uses) and
 /// [`asked`](super::CheckedTree::asked).
 #[derive(Clone, Debug)]

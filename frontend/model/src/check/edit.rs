@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::arena::{CheckedNode, NodeId};
+use super::arena::{CheckedNode, Lineage, NodeId};
 use super::groups::{share_name, widths};
 use super::node::check_node;
 use super::numbers::check_words;
@@ -63,7 +63,6 @@ pub(super) struct Lineage {
     /// Ascending.
     pub(super) changed: Arc<[NodeId]>,
 }
-
 /// The part of the nodes up to which an edit is checked node by node.
 const LARGEST_PART: usize = 4;
 

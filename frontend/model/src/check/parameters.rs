@@ -4,8 +4,7 @@ use std::sync::Arc;
 
 use jbt_ir::limits;
 
-use super::arena::{CheckedNode, NodeId, Paths, check_instances};
-use super::edit::Lineage;
+use super::arena::{CheckedNode, Lineage, NodeId, Paths, check_instances};
 use super::groups::widths;
 use super::node::check_node;
 use super::numbers::check_number;

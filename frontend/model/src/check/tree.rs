@@ -5,9 +5,8 @@ use std::sync::Arc;
 
 use glam::DAffine3;
 
-use super::arena::{CheckedNode, Children, NodeId, Paths};
+use super::arena::{CheckedNode, Children, Lineage, NodeId, Paths};
 use super::dependence::Dependence;
-use super::edit::Lineage;
 use crate::affine;
 use crate::attribute::AttributeGroup;
 use crate::bounds::Bounds;

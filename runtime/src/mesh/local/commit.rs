@@ -4,8 +4,9 @@ use std::ops::Range;
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
+use super::bricks::{BrickMesh, BrickPlace, KeptBrick, octet};
 use super::join::Join;
-use super::{BrickMesh, BrickPlace, KeptBrick, Renewal, octet};
+use super::renewal::Renewal;
 use crate::mesh::indexed::{Attribute, Mesh};
 
 /// What has changed of a brick.

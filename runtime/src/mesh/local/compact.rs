@@ -1,6 +1,6 @@
 //! The kept bricks as one mesh without gaps.
 
-use super::{BrickMesh, BrickPlace};
+use super::bricks::{BrickMesh, BrickPlace};
 use crate::mesh::indexed::{Attribute, Mesh};
 
 impl BrickMesh {

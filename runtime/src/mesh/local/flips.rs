@@ -7,15 +7,15 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::{BrickMesh, BrickPlace, beside, linked};
+use super::bricks::{BrickMesh, BrickPlace, beside, linked};
 use crate::mesh::brick::{Bricks, morton, place};
 use crate::mesh::cell::default_sheets;
 use crate::mesh::crossing::{CrossedCell, UnflippedCells, flip};
 use crate::mesh::lattice::Lattice;
-use crate::mesh::local::Touched;
+use crate::mesh::touched::Touched;
 
 /// What flips depend on.
-pub(super) struct Chain<'a> {
+pub(super) struct FlipChain<'a> {
     pub(super) mesh: &'a BrickMesh,
     /// That of the new bricks.
     pub(super) lattice: &'a Lattice,
@@ -28,7 +28,7 @@ pub(super) struct Chain<'a> {
 /// Cells of a brick, and those of them that have a low face which is pinched by default.
 type Pinched<'a> = (&'a [CrossedCell], Vec<u32>);
 
-impl Chain<'_> {
+impl FlipChain<'_> {
     /// Flips faces of the new bricks. If faces of other bricks are flipped otherwise than before, it returns
     /// the places of these bricks, from the first one of the lattice.
     pub(super) fn flip(&self, found: &mut UnflippedCells) -> Vec<[u32; 3]> {

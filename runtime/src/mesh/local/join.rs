@@ -2,7 +2,7 @@
 
 use rustc_hash::FxHashSet;
 
-use super::{BrickMesh, BrickPlace, KeptBrick, linked, octet};
+use super::bricks::{BrickMesh, BrickPlace, KeptBrick, linked, octet};
 use crate::mesh::brick::place as number_place;
 use crate::mesh::crossing::Crossings;
 use crate::mesh::report::Sides;

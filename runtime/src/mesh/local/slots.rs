@@ -3,7 +3,7 @@
 
 /// The part of a buffer that a brick has.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-pub(crate) struct Slot {
+pub(crate) struct BufferSlot {
     /// Where it begins.
     pub(crate) start: usize,
     /// How much of it is used.
@@ -12,7 +12,7 @@ pub(crate) struct Slot {
     capacity: usize,
 }
 
-impl Slot {
+impl BufferSlot {
     /// What is used.
     pub(crate) fn range(&self) -> std::ops::Range<usize> {
         self.start..self.start + self.len
@@ -25,7 +25,7 @@ impl Slot {
 /// class, and a third of a slot is unused at most. Freed slots are never joined: the buffer ends where the
 /// slots of all classes ended at their most.
 #[derive(Clone, Default)]
-pub(crate) struct Slots {
+pub(crate) struct BufferSlots {
     /// By class: where free slots begin, the last one freed at the end.
     free: Vec<Vec<usize>>,
     end: usize,
@@ -42,38 +42,38 @@ fn class(len: usize) -> (usize, usize) {
     if len <= below && power > SMALLEST { (octave - 1, below) } else { (octave, power) }
 }
 
-impl Slots {
+impl BufferSlots {
     /// Where the last slot ends.
     pub(crate) fn end(&self) -> usize {
         self.end
     }
 
     /// Room for so much: a free slot, or the end of the buffer.
-    pub(crate) fn take(&mut self, len: usize) -> Slot {
+    pub(crate) fn take(&mut self, len: usize) -> BufferSlot {
         if len == 0 {
-            return Slot::default();
+            return BufferSlot::default();
         }
         let (class, capacity) = class(len);
         if let Some(start) = self.free.get_mut(class).and_then(Vec::pop) {
-            return Slot { start, len, capacity };
+            return BufferSlot { start, len, capacity };
         }
         let start = self.end;
         self.end += capacity;
-        Slot { start, len, capacity }
+        BufferSlot { start, len, capacity }
     }
 
     /// The same slot if there is room for so much, and not three times as much; else another one. The old one
     /// is free then.
-    pub(crate) fn resize(&mut self, slot: Slot, len: usize) -> Slot {
+    pub(crate) fn resize(&mut self, slot: BufferSlot, len: usize) -> BufferSlot {
         if len > 0 && len <= slot.capacity && class(len).1 > slot.capacity / 3 {
-            return Slot { len, ..slot };
+            return BufferSlot { len, ..slot };
         }
         self.put_back(slot);
         self.take(len)
     }
 
     /// Frees a slot.
-    pub(crate) fn put_back(&mut self, slot: Slot) {
+    pub(crate) fn put_back(&mut self, slot: BufferSlot) {
         if slot.capacity > 0 {
             let (class, _) = class(slot.capacity);
             self.free.resize(self.free.len().max(class + 1), Vec::new());
@@ -95,11 +95,11 @@ mod tests {
         assert!((1..5_000).all(|len| class(len).1 >= len && class(class(len).1) == class(len)));
     }
 
-    /// Slots that are in use never overlap, and what is freed is used again.
+    /// BufferSlots that are in use never overlap, and what is freed is used again.
     #[test]
     fn slots_are_apart() {
         let mut random = fastrand::Rng::with_seed(5);
-        let (mut slots, mut used) = (Slots::default(), Vec::<Slot>::new());
+        let (mut slots, mut used) = (BufferSlots::default(), Vec::<BufferSlot>::new());
         for _ in 0..2_000 {
             let len = random.usize(0..200);
             match random.u8(0..3) {

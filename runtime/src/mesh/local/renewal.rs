@@ -1,0 +1,115 @@
+//! Bricks are made anew where the field has changed.
+
+use jbt_ir::limits::MAX_BRICKS;
+
+use super::bricks::BrickMesh;
+use super::flips::FlipChain;
+use crate::job::Hook;
+use crate::mesh::brick::Bricks;
+use crate::mesh::crossing::{self, Crossings};
+use crate::mesh::divide::{self, BrickDivision};
+use crate::mesh::error::MeshError;
+use crate::mesh::field::Field;
+use crate::mesh::indexed::Mesh;
+use crate::mesh::lattice::Lattice;
+use crate::mesh::options::Options;
+use crate::mesh::sample;
+use crate::mesh::touched::Touched;
+use crate::mesh::vertex;
+use crate::mesh::vertex::batch::VertexSource;
+use crate::progress::{EACH, Progress};
+
+/// Bricks that were made anew, before they take the places of old ones.
+pub(crate) struct Renewal {
+    pub(super) lattice: Lattice,
+    pub(super) bricks: Bricks,
+    pub(super) crossings: Crossings,
+    /// For each brick, the cells with a low face that is pinched by default.
+    pub(super) suspects: Vec<Vec<u32>>,
+    /// Vertices, with their first normals.
+    pub(super) mesh: Mesh,
+    /// Of the mesh, ascending.
+    pub(super) doubtful: Vec<u32>,
+    /// The bricks that may be made anew, in units of bricks from the first one; `None` for all.
+    pub(super) touched: Option<Touched>,
+}
+
+impl BrickMesh {
+    /// Makes bricks anew: those that are touched, or all. The lattice is the present one or a grown one.
+    pub(crate) fn renewal<F: Field>(
+        &self,
+        field: &F,
+        lattice: &Lattice,
+        (options, touched): (&Options, Option<Touched>),
+        hook: Hook<'_>,
+    ) -> Result<Renewal, MeshError<F::Error>> {
+        options.check()?;
+        let progress = Progress::new(hook, EACH);
+        let mut touched = touched;
+        // Bricks keep their size, and so their names.
+        let brick = if self.edge > 0 { Some(self.edge) } else { options.brick };
+        let options = Options { brick, thin_parts: false, ..options.clone() };
+        loop {
+            let axes = lattice.axes();
+            let division = divide::divide(field, axes, (&options, touched.as_ref()), MAX_BRICKS, &progress)?;
+            let BrickDivision { bricks, regions, boxes: _, chunks: _ } = division;
+            let samples = sample::sample(field, &bricks, &regions, &progress)?;
+            let mut found = crossing::look(&bricks, &samples, options.iso);
+            drop(samples);
+            let flipped = match &mut touched {
+                None => crossing::flip(&bricks, &found.starts, &mut found.cells, &found.suspects),
+                Some(touched) => {
+                    let chain = FlipChain { mesh: self, lattice, bricks: &bricks, touched };
+                    let others = chain.flip(&mut found);
+                    if !others.is_empty() {
+                        // Rare: their vertices need the field again.
+                        others.into_iter().for_each(|place| touched.add(place));
+                        continue;
+                    }
+                    0
+                }
+            };
+            let suspects = suspects(bricks.len(), &found.starts, &found.suspects);
+            let crossings = found.numbered(&bricks, flipped);
+            self.check_limits(&bricks, &crossings, touched.as_ref())?;
+            let source = VertexSource {
+                field,
+                options: &options,
+                bricks: &bricks,
+                regions: &regions,
+                crossings: &crossings,
+            };
+            let (mesh, done) = vertex::finish(&source, &progress)?;
+            progress.finish()?;
+            let (lattice, doubtful) = (lattice.clone(), done.doubtful);
+            return Ok(Renewal { lattice, bricks, crossings, suspects, mesh, doubtful, touched });
+        }
+    }
+
+    /// Whether the numbers of bricks and vertices stay within their limits.
+    fn check_limits<E: std::error::Error + 'static>(
+        &self,
+        bricks: &Bricks,
+        crossings: &Crossings,
+        touched: Option<&Touched>,
+    ) -> Result<(), MeshError<E>> {
+        let kept = if touched.is_some() { self.bricks.len() } else { 0 };
+        if kept + bricks.len() > MAX_BRICKS {
+            return Err(MeshError::TooManyBricks { limit: MAX_BRICKS });
+        }
+        // Slots are at most half as large again as what is in them, but for the smallest ones.
+        let vertices = self.vertex_slots.end() as u64 + 2 * crossings.vertex_count() as u64;
+        let triangles = self.triangle_slots.end() as u64 + 4 * crossings.quad_count() as u64;
+        if vertices.max(triangles) + 64 * bricks.len() as u64 > u64::from(u32::MAX) {
+            return Err(MeshError::TooManyVertices { vertices });
+        }
+        Ok(())
+    }
+}
+
+/// The suspects of each brick, counted from its first cell.
+fn suspects(bricks: usize, starts: &[usize], all: &[(usize, usize)]) -> Vec<Vec<u32>> {
+    let mut suspects = vec![Vec::new(); bricks];
+    all.iter().for_each(|&(brick, cell)| suspects[brick].push((cell - starts[brick]) as u32));
+    suspects
+}
