@@ -36,7 +36,9 @@ struct Program {
 impl Program {
     fn new() -> Self {
         let mut program = Self { text: String::new(), lines: 0 };
-        ["var-x", "var-y", "var-z"].map(|axis| program.line(axis));
+        for axis in ["var-x", "var-y", "var-z"] {
+            program.line(axis);
+        }
         program
     }
 
