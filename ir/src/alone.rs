@@ -40,12 +40,12 @@ pub struct RowFunction {
 
 /// A row, among those that a lane looks at.
 #[derive(Clone, Debug)]
-struct RowPlace {
+struct LaneRows {
     /// Of each lane; `None` where the lane has no such row.
     rows: Vec<Option<u32>>,
 }
 
-struct Writer<'a> {
+struct RowWriter<'a> {
     function: &'a Function,
     tables: &'a Tables,
     builder: FunctionBuilder,
@@ -56,7 +56,7 @@ struct Writer<'a> {
     /// What values have become.
     values: HashMap<Value, Value>,
     /// By table, the current row.
-    places: Vec<Option<RowPlace>>,
+    places: Vec<Option<LaneRows>>,
     lanes: usize,
     numbers: Vec<Vec<f32>>,
     distances: u64,
@@ -76,7 +76,7 @@ impl RowFunction {
             data.results.iter().for_each(|result| definitions[result.index()] = Some(inst));
         }
         let lanes = tables.tables[table].len();
-        let mut writer = Writer {
+        let mut writer = RowWriter {
             function,
             tables,
             builder: FunctionBuilder::new("row", &[]),
@@ -113,7 +113,7 @@ fn path(function: &Function, table: Table) -> Option<Vec<Inst>> {
     (function.inputs.len() == POINT_PLANES).then_some(path)
 }
 
-impl Writer<'_> {
+impl RowWriter<'_> {
     /// Marks what a value is made of. `None` if that is an accumulator of a fold around it.
     fn want(&mut self, value: Value) -> Option<()> {
         let mut stack = vec![value];
@@ -143,7 +143,7 @@ impl Writer<'_> {
         let mut rows: Vec<Option<u32>> = (0..self.lanes as u32).map(Some).collect();
         let mut table = table;
         loop {
-            self.places[table.index()] = Some(RowPlace { rows: rows.clone() });
+            self.places[table.index()] = Some(LaneRows { rows: rows.clone() });
             let Some(parent) = self.function.tables[table].parent else { return };
             let mut owners = vec![None; self.tables.tables[table].len()];
             for owner in 0..self.tables.tables[parent].len() {
@@ -228,7 +228,7 @@ impl Writer<'_> {
                 owners.rows.iter().map(|owner| owned(owner).get(copy).copied()).collect();
             let is_there = rows.iter().all(Option::is_some);
             let there = rows.iter().map(|row| if row.is_some() { 1.0 } else { 0.0 }).collect();
-            self.places[fold.table.index()] = Some(RowPlace { rows });
+            self.places[fold.table.index()] = Some(LaneRows { rows });
             let before = so_far.take()?;
             for (&param, &value) in body.params.iter().zip(&before) {
                 self.values.insert(param, value);

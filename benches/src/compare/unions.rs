@@ -28,15 +28,17 @@ const CHECKED: usize = 500;
 const VERTICES_OFF: f64 = 2e-3;
 
 /// Instructions, one a line.
-struct Program {
+struct InstructionList {
     text: String,
     lines: usize,
 }
 
-impl Program {
+impl InstructionList {
     fn new() -> Self {
         let mut program = Self { text: String::new(), lines: 0 };
-        ["var-x", "var-y", "var-z"].map(|axis| program.line(axis));
+        for axis in ["var-x", "var-y", "var-z"] {
+            program.line(axis);
+        }
         program
     }
 
@@ -78,16 +80,16 @@ fn spheres() -> Vec<([f64; 3], f64)> {
 
 /// Their union, one minimum after the other.
 fn chain() -> String {
-    let mut program = Program::new();
+    let mut program = InstructionList::new();
     let all = spheres();
     let distances: Vec<usize> = all.iter().map(|&(centre, radius)| program.sphere(centre, radius)).collect();
     distances.into_iter().reduce(|all, one| program.op("min", &[all, one])).expect("there are spheres");
     program.text
 }
 
-/// Menger's sponge in the cube of half the domain's side: three levels of crosses, each cut from what is left.
+/// Menger's sponge in the cube of half the domain's side: three levels of crosses, each cut from the rest.
 fn sponge() -> String {
-    let mut program = Program::new();
+    let mut program = InstructionList::new();
     let half = program.number(0.5);
     let sides = [0, 1, 2].map(|axis| program.op("abs", &[axis]));
     let widest = program.op("max", &sides[..2]);

@@ -38,7 +38,7 @@ use super::columns;
 use super::instance::{FieldId, InstanceId, InstanceKind, Scene, SpaceId};
 use super::mixing::{Answer, Operator, State, difference, mapped};
 use super::names::ComputedId;
-use super::prune_info::{Contest, ContestGroup, Decision, DecisionKind};
+use super::prune_info::{ContestGroup, Decision, DecisionKind, RowContest};
 use super::recipe::{Member, RowPlace, RowPlaces, RowStep};
 use super::shape::Shapes;
 use jbt_model::attribute::{AttributeGroup, Mixing};
@@ -53,7 +53,7 @@ pub(super) struct Code {
     pub(super) tables: Vec<TableCode>,
     /// Of a range function; others have none.
     pub(super) decisions: Vec<Decision>,
-    pub(super) contests: Vec<Contest>,
+    pub(super) contests: Vec<RowContest>,
 }
 
 /// What the code says about a table.

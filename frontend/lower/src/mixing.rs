@@ -22,7 +22,7 @@ use jbt_ir::{Domain, FunctionBuilder, InstKind, Value};
 
 pub(super) use self::group::GroupAnswer;
 use self::group::{GroupState, group_states};
-use crate::prune_info::{Contest, ContestGroup, ContestKind};
+use crate::prune_info::{ContestGroup, ContestKind, RowContest};
 use jbt_model::attribute::Mixing;
 use jbt_model::combine::{Extreme, Met, ReduceCode, Setting};
 use jbt_model::expression::LARGEST_FIELD;
@@ -76,7 +76,7 @@ impl Operator {
     }
 
     /// The contest of these operands, if one of them wins.
-    pub(super) fn contest(&self, mut groups: Vec<ContestGroup>, d: &FunctionBuilder) -> Option<Contest> {
+    pub(super) fn contest(&self, mut groups: Vec<ContestGroup>, d: &FunctionBuilder) -> Option<RowContest> {
         let (extreme, kind) = match self.code {
             ReduceCode::Fold(_) => return None,
             ReduceCode::Choice(extreme) => {
@@ -94,7 +94,7 @@ impl Operator {
             }
         };
         let any = groups.iter().any(|group| group.rows);
-        any.then_some(Contest { extreme, kind, groups, node: None })
+        any.then_some(RowContest { extreme, kind, groups, node: None })
     }
 
     /// Whether operands need their place in the file: something is decided among several groups, and somebody

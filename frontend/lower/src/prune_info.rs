@@ -38,7 +38,7 @@ pub struct PruneInfo {
     /// What may be left out because it does not decide. Operators come after their operands.
     pub decisions: Vec<Decision>,
     /// Rows of which one wins. Operators come after their operands.
-    pub contests: Vec<Contest>,
+    pub contests: Vec<RowContest>,
     /// Twice the iso-value, as the program has it, for complements (`2 iso - field`): see [`DecisionKind`].
     pub iso2: f32,
 }
@@ -92,7 +92,7 @@ pub struct Decision {
 /// Operands of one operator, of which one wins at each point: rows that win nowhere in a box may be left out
 /// there, because no bit of an answer comes from them.
 #[derive(Clone, PartialEq, Debug)]
-pub struct Contest {
+pub struct RowContest {
     /// Which of the fields wins; of equal ones in one table, that of the first row.
     pub extreme: Extreme,
     /// Who wins.
@@ -103,11 +103,11 @@ pub struct Contest {
     pub node: Option<usize>,
 }
 
-/// Who wins a [`Contest`].
+/// Who wins a [`RowContest`].
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum ContestKind {
-    /// The extreme of all fields and of this number, if there is one: for a union without negative operands it
-    /// is 0.
+    /// The extreme of all fields and of this number, if there is one: for a union without negative operands
+    /// it is 0.
     All(Option<f32>),
     /// Of each operand and the result so far the extreme, if they are apart by this column of the operator's
     /// row. The result is the extreme of all, or beyond it by less than that column. Groups are in the order
@@ -115,7 +115,7 @@ pub enum ContestKind {
     Steps(Table, usize),
 }
 
-/// Operands of a [`Contest`].
+/// Operands of a [`RowContest`].
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct ContestGroup {
     /// The table.
@@ -132,8 +132,8 @@ pub struct ContestGroup {
 pub enum DecidedRows {
     /// All rows: that of a guard.
     All,
-    /// Each row is an operand: run it without the others of its table, and the probe tells about it alone. They are rows
-    /// of a [`Contest`] too.
+    /// Each row is an operand: run it without the others of its table, and the probe tells about it alone.
+    /// They are rows of a [`RowContest`] too.
     Each {
         /// Whether it needs no rows but those above and under it.
         free: bool,

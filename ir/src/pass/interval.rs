@@ -34,8 +34,8 @@ pub fn interval(function: &Function) -> Function {
     enclosed(function, function.inputs.len())
 }
 
-/// As [`interval()`], for the function of one row ([`crate::alone`]): the point becomes ranges, and the inputs
-/// behind it stay numbers, one plane each.
+/// As [`interval()`], for the function of one row ([`crate::alone`]): the point becomes ranges, and the
+/// inputs behind it stay numbers, one plane each.
 #[must_use]
 pub fn row_interval(function: &Function) -> Function {
     enclosed(function, POINT_PLANES)

@@ -19,7 +19,7 @@
 use std::sync::OnceLock;
 
 use jbt_ir::{Entity as _, RowFunction, Selection, Table, Tables};
-use jbt_lower::prune_info::{Contest, ContestGroup, ContestKind, PruneInfo};
+use jbt_lower::prune_info::{ContestGroup, ContestKind, PruneInfo, RowContest};
 use jbt_model::combine::Extreme;
 
 use super::decide::firsts;
@@ -48,7 +48,7 @@ pub(super) struct Contests {
 }
 
 struct ContestRows {
-    contest: Contest,
+    contest: RowContest,
     /// By group: made when it is first asked for. `None` if no ranges of the rows can be had.
     groups: Vec<OnceLock<Option<RowRanges>>>,
 }
@@ -77,15 +77,15 @@ struct RowInBox {
 
 impl Contests {
     pub(super) fn new(compiler: &Compiler, info: &PruneInfo, tables: &Tables) -> Self {
-        let rows = |contest: &Contest| -> usize {
+        let rows = |contest: &RowContest| -> usize {
             let operands = contest.groups.iter().filter(|group| group.rows);
             operands.map(|group| tables.tables[group.table].len()).sum()
         };
-        let is_tried = |contest: &Contest| {
+        let is_tried = |contest: &RowContest| {
             let tried = |group: &ContestGroup| info.decisions.iter().any(|it| it.table == group.table);
             contest.groups.iter().any(tried)
         };
-        let mut worth: Vec<&Contest> = info
+        let mut worth: Vec<&RowContest> = info
             .contests
             .iter()
             .filter(|contest| {
@@ -95,7 +95,7 @@ impl Contests {
             .collect();
         worth.sort_by_key(|contest| std::cmp::Reverse(rows(contest)));
         worth.truncate(MOST_CONTESTS);
-        let with_rows = |contest: &Contest| ContestRows {
+        let with_rows = |contest: &RowContest| ContestRows {
             groups: contest.groups.iter().map(|_| OnceLock::new()).collect(),
             contest: contest.clone(),
         };
@@ -131,7 +131,7 @@ impl Contests {
             let enter = |group| entries(group, selection, &firsts, masks);
             let mut entered: Vec<Vec<RowInBox>> = contest.groups.iter().map(enter).collect();
             leave_few(contest, &mut entered);
-            let mut round = Round::default();
+            let mut round = ContestRound::default();
             for (index, (group, entered)) in contest.groups.iter().zip(&entered).enumerate() {
                 if entered.is_empty() {
                     continue;
@@ -179,7 +179,7 @@ fn entries(group: &ContestGroup, selection: &Selection, firsts: &[usize], masks:
 }
 
 /// Leaves boxes with few operands alone.
-fn leave_few(contest: &Contest, entered: &mut [Vec<RowInBox>]) {
+fn leave_few(contest: &RowContest, entered: &mut [Vec<RowInBox>]) {
     let mut counts = [0; MAX_PARTS];
     for (_, entered) in contest.groups.iter().zip(&*entered).filter(|(group, _)| group.rows) {
         entered.iter().for_each(|entry| counts[entry.part as usize] += 1);
@@ -191,7 +191,7 @@ fn leave_few(contest: &Contest, entered: &mut [Vec<RowInBox>]) {
 
 /// One contest in some boxes.
 #[derive(Default)]
-struct Round {
+struct ContestRound {
     met: Vec<MetRow>,
 }
 
@@ -204,7 +204,7 @@ struct MetRow {
     high: f32,
 }
 
-impl Round {
+impl ContestRound {
     /// An operand with its range comes to the contest.
     fn meet(&mut self, extreme: Extreme, group: usize, entry: RowInBox, [low, high]: Range) {
         let [low, high] = match extreme {
@@ -217,7 +217,7 @@ impl Round {
     /// Clears the masks of rows that win nowhere.
     fn finish(
         mut self,
-        contest: &Contest,
+        contest: &RowContest,
         (selection, tables): (&Selection, &Tables),
         probes: Option<ProbeRanges<'_>>,
         masks: &mut [u8],

@@ -4,7 +4,7 @@ use jbt_ir::{Rule, Table, Value};
 use rustc_hash::FxHashMap as HashMap;
 
 use crate::names::SpaceId;
-use crate::prune_info::{Contest, DecidedRows, Decision, DecisionKind};
+use crate::prune_info::{DecidedRows, Decision, DecisionKind, RowContest};
 use jbt_model::combine::{Extreme, ReduceCode};
 
 /// The field of a guard whose row is left out.
@@ -97,7 +97,7 @@ pub(super) struct Probes {
     pub(super) operands: Vec<Operand>,
     pub(super) outer: Vec<usize>,
     pub(super) decisions: Vec<Decision>,
-    pub(super) contests: Vec<Contest>,
+    pub(super) contests: Vec<RowContest>,
     /// In the end: the values behind the scene's row.
     pub(super) results: Vec<Probe>,
 }

@@ -9,7 +9,7 @@ use jbt_ir::{Table, Value};
 use super::parts::{Operand, Probe, Probes};
 use super::{Emitter, TableCode};
 use crate::instance::{InstanceId, SpaceId};
-use crate::prune_info::{Contest, DecidedRows, Decision, DecisionKind};
+use crate::prune_info::{DecidedRows, Decision, DecisionKind, RowContest};
 use jbt_model::combine::{Extreme, ReduceCode};
 
 impl Probes {
@@ -31,7 +31,7 @@ impl Probes {
         self,
         outputs: &mut Vec<(String, Value)>,
         tables: &mut [TableCode],
-    ) -> (Vec<Decision>, Vec<Contest>) {
+    ) -> (Vec<Decision>, Vec<RowContest>) {
         let mut used = vec![false; self.count];
         for first in tables.iter().filter_map(|table| table.probe) {
             used[first..first + 3].fill(true);
@@ -64,7 +64,7 @@ impl Probes {
         };
         let contests = self.contests.into_iter();
         let contests =
-            contests.map(|contest| Contest { node: contest.node.map(|node| names[node]), ..contest });
+            contests.map(|contest| RowContest { node: contest.node.map(|node| names[node]), ..contest });
         (self.decisions.into_iter().map(rename).collect(), contests.collect())
     }
 }
@@ -144,7 +144,7 @@ impl Emitter<'_> {
 
     /// The field of the operator whose operands have been met, and the rows of which one has won, if there
     /// are any.
-    pub(super) fn end_operator(&mut self, field: Value, contest: Option<Contest>) {
+    pub(super) fn end_operator(&mut self, field: Value, contest: Option<RowContest>) {
         let Some(probes) = &mut self.probes else { return };
         let first = probes.outer.pop().expect("the operator has begun");
         if probes.operands.len() == first {
@@ -152,7 +152,7 @@ impl Emitter<'_> {
             return;
         }
         let node = probes.take(field);
-        probes.contests.extend(contest.map(|contest| Contest { node: Some(node), ..contest }));
+        probes.contests.extend(contest.map(|contest| RowContest { node: Some(node), ..contest }));
         for Operand { table, rows, kind, name } in probes.operands.split_off(first) {
             probes.decisions.push(Decision { table, rows, operand: name, node, kind });
         }

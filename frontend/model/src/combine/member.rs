@@ -217,9 +217,9 @@ pub trait Step: Operator {
     /// What may be done with right sides that are rows and zero; `non_negative`: no field can be negative.
     fn rule(code: Self::Code, non_negative: bool) -> Rule;
 
-    /// Which of two sides is the result, with its attributes and to the bit, where they are further apart than
-    /// the first number of the row. The result is never on the other side of it, and beyond it by that number
-    /// at most. `None` if neither is.
+    /// Which of two sides is the result, to the bit and with its attributes, if they are apart by the first
+    /// number of the row. The result is never on the other side of it, and beyond it by that number at most.
+    /// `None` if neither is.
     fn takes_apart(_: Self::Code) -> Option<Extreme> {
         None
     }

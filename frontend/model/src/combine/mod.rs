@@ -186,7 +186,8 @@ macro_rules! operators {
                 match self { $( Self::$step(code) => <$step as Step>::rule(code, non_negative), )+ }
             }
 
-            /// See [`Step::takes_apart`].
+            /// Which of two sides is the result where they are apart by the first number of the row, if
+            /// either is. The result is beyond that side by that number at most.
             pub fn takes_apart(self) -> Option<Extreme> {
                 match self { $( Self::$step(code) => <$step as Step>::takes_apart(code), )+ }
             }
