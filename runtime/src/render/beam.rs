@@ -68,8 +68,8 @@ impl Beam {
         Some(Self { planes, origins })
     }
 
-    /// For each box that reaches into the beam a bound of its distance from where the beam begins; infinity for
-    /// the others.
+    /// For each box that reaches into the beam a bound of its distance from where the beam begins;
+    /// infinity for the others.
     #[inline(always)]
     pub fn enter(&self, node: &BoxNode) -> EightLanes {
         let mut outside = [0_u32; WIDE];
@@ -83,12 +83,12 @@ impl Beam {
         }
         let mut square = [0.0_f32; WIDE];
         for axis in 0..3 {
-            for i in 0..WIDE {
+            for (i, square) in square.iter_mut().enumerate() {
                 let below = node.low[axis][i] - self.origins[1][axis];
                 let above = self.origins[0][axis] - node.high[axis][i];
                 let gap = if below > above { below } else { above };
                 let gap = if gap > 0.0 { gap } else { 0.0 };
-                square[i] += gap * gap;
+                *square += gap * gap;
             }
         }
         let mut distances = [f32::INFINITY; WIDE];

@@ -7,8 +7,8 @@
 //! ```
 //!
 //! The mesher writes triangles in the order of their cells, which is Morton order. So neighbours in the list
-//! are neighbours in space, and nothing is sorted: to build the hierarchy is to compute boxes. A ray is tested
-//! against eight boxes, or eight triangles, at once.
+//! are neighbours in space, and nothing is sorted: to build the hierarchy is to compute boxes. A ray is
+//! tested against eight boxes, or eight triangles, at once.
 //!
 //! Clusters, boxes and the order of a walk depend on the mesh alone, and no product is fused with a sum. So
 //! answers have the same bits for every instruction set and any number of threads.
@@ -301,8 +301,8 @@ fn first_in(cluster: &TriangleCluster, segment: &Segment, reach: f32, met: &mut 
     best
 }
 
-/// Notes whether a segment meets a cluster: see [`Hierarchy::any_of`]. Returns the distance up to which to look
-/// on: less than 0 if it does.
+/// Notes whether a segment meets a cluster: see [`Hierarchy::any_of`]. Returns the distance up to which to
+/// look on: less than 0 if it does.
 #[inline(always)]
 fn any_in(cluster: &TriangleCluster, segment: &Segment, (depth, reach): (f32, f32), met: &mut bool) -> f32 {
     let (distances, behind) = cluster.meet(segment, segment.reach);

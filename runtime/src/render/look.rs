@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!  eye ──────────────────────x──────                       x  the ray meets the mesh
-//!                           ·│ f, g                        Newton's steps along the ray, by the field and its
+//!                           ·│ f, g                        Newton's steps along the ray, by the field and the
 //!                          · o──                           gradient there, lead to o, where the field is iso
 //! ```
 //!
