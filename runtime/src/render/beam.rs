@@ -8,13 +8,13 @@ const STRAIGHT: f32 = 0.9;
 const ROUNDING: f32 = 1e-5;
 
 /// The space that some segments go through: what is on the inner side of four planes, and where they begin.
-pub struct Beam {
+pub struct SegmentBeam {
     /// Normals, outwards, and the largest product of a point of the beam with each.
     planes: [([f32; 3], f32); 4],
     origins: Corners,
 }
 
-impl Beam {
+impl SegmentBeam {
     /// The beam of segments that go about the same way; `None` if they do not.
     ///
     /// Along the mean direction, `across(t) = across(0) + t * slope` for each segment, so the largest of all

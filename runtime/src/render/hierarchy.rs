@@ -13,7 +13,7 @@
 //! Clusters, boxes and the order of a walk depend on the mesh alone, and no product is fused with a sum. So
 //! answers have the same bits for every instruction set and any number of threads.
 
-use super::beam::Beam;
+use super::beam::SegmentBeam;
 use super::boxes::{
     BoxNode, Corners, EightLanes, NOWHERE, Segment, WIDE, cross, finite_lanes, inverse, joined,
 };
@@ -206,7 +206,7 @@ impl Hierarchy {
 
     /// Collects the clusters whose boxes reach into a beam. Whether there are few enough.
     #[inline(always)]
-    fn near_beam(&self, beam: &Beam, near: &mut NearClusters) -> bool {
+    fn near_beam(&self, beam: &SegmentBeam, near: &mut NearClusters) -> bool {
         near.clusters.clear();
         near.boxes.clear();
         let mut waiting = [(self.levels.len() as u32 - 1, 0_u32); WAITING];
@@ -321,7 +321,7 @@ fn any_in(cluster: &TriangleCluster, segment: &Segment, (depth, reach): (f32, f3
 fn first_all(hierarchy: &Hierarchy, segments: &[Segment], met: &mut [Option<MeshMeeting>]) {
     let mut near = NearClusters::default();
     for (segments, met) in segments.chunks(BUNDLE).zip(met.chunks_mut(BUNDLE)) {
-        let is_narrow = Beam::new(segments).is_some_and(|beam| hierarchy.near_beam(&beam, &mut near));
+        let is_narrow = SegmentBeam::new(segments).is_some_and(|beam| hierarchy.near_beam(&beam, &mut near));
         for (segment, met) in segments.iter().zip(met) {
             if is_narrow {
                 near.walk(hierarchy, segment, |cluster, reach| first_in(cluster, segment, reach, met));
@@ -336,7 +336,7 @@ fn first_all(hierarchy: &Hierarchy, segments: &[Segment], met: &mut [Option<Mesh
 fn any_all(hierarchy: &Hierarchy, segments: &[Segment], depth: f32, met: &mut [bool]) {
     let mut near = NearClusters::default();
     for (segments, met) in segments.chunks(BUNDLE).zip(met.chunks_mut(BUNDLE)) {
-        let is_narrow = Beam::new(segments).is_some_and(|beam| hierarchy.near_beam(&beam, &mut near));
+        let is_narrow = SegmentBeam::new(segments).is_some_and(|beam| hierarchy.near_beam(&beam, &mut near));
         for (segment, met) in segments.iter().zip(met) {
             if is_narrow {
                 near.walk(hierarchy, segment, |cluster, reach| any_in(cluster, segment, (depth, reach), met));
