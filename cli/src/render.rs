@@ -56,11 +56,11 @@ pub fn run(arguments: &RenderArguments, quiet: bool, start: Instant) -> Result<(
     told.report(&destination.path, || report.json().to_string(), |name| report.text(name))
 }
 
-/// The trouble for a file: a draft is looked at once.
+/// The trouble for a file: less than a tenth of the time that its picture takes.
 fn effort(quality: Quality) -> PngEffort {
     match quality {
-        Quality::Draft => PngEffort::Quick,
-        Quality::Good | Quality::Best => PngEffort::Small,
+        Quality::Draft | Quality::Good => PngEffort::Quick,
+        Quality::Best => PngEffort::Small,
     }
 }
 

@@ -95,7 +95,8 @@ pub const MAX_PICTURE_SIDE: usize = 1 << 14;
 pub const MAX_GUIDE_TRIANGLES: usize = 1 << 21;
 /// Cells of that mesh along the longest side of the model.
 pub const MAX_GUIDE_CELLS: usize = 1 << 10;
-/// Pixels of a band of a picture whose light is gathered and smoothed at once: each keeps 150 bytes meanwhile.
+/// Pixels of a band of a picture whose light is gathered and smoothed at once: each keeps 150 bytes
+/// meanwhile.
 pub const MAX_BAND_PIXELS: usize = 1 << 22;
 /// Pixels of one picture: each keeps 16 bytes while it is made.
 pub const MAX_PICTURE_PIXELS: usize = 1 << 26;

@@ -8,13 +8,13 @@ const STRAIGHT: f32 = 0.9;
 const ROUNDING: f32 = 1e-5;
 
 /// The space that some segments go through: what is on the inner side of four planes, and where they begin.
-pub struct Beam {
+pub struct SegmentBeam {
     /// Normals, outwards, and the largest product of a point of the beam with each.
     planes: [([f32; 3], f32); 4],
     origins: Corners,
 }
 
-impl Beam {
+impl SegmentBeam {
     /// The beam of segments that go about the same way; `None` if they do not.
     ///
     /// Along the mean direction, `across(t) = across(0) + t * slope` for each segment, so the largest of all
@@ -68,8 +68,8 @@ impl Beam {
         Some(Self { planes, origins })
     }
 
-    /// For each box that reaches into the beam a bound of its distance from where the beam begins; infinity for
-    /// the others.
+    /// For each box that reaches into the beam a bound of its distance from where the beam begins;
+    /// infinity for the others.
     #[inline(always)]
     pub fn enter(&self, node: &BoxNode) -> EightLanes {
         let mut outside = [0_u32; WIDE];
@@ -83,12 +83,12 @@ impl Beam {
         }
         let mut square = [0.0_f32; WIDE];
         for axis in 0..3 {
-            for i in 0..WIDE {
+            for (i, square) in square.iter_mut().enumerate() {
                 let below = node.low[axis][i] - self.origins[1][axis];
                 let above = self.origins[0][axis] - node.high[axis][i];
                 let gap = if below > above { below } else { above };
                 let gap = if gap > 0.0 { gap } else { 0.0 };
-                square[i] += gap * gap;
+                *square += gap * gap;
             }
         }
         let mut distances = [f32::INFINITY; WIDE];

@@ -3,8 +3,8 @@
 //! ```text
 //! coarse mesh: a few thousand triangles   how the model fills the picture, where the ground is,
 //!                                         how many triangles a fine mesh will have
-//! fine mesh:   cells of some pixels       light meets it instead of the field; the eye's rays take the field's
-//!                                         word near it
+//! fine mesh:   cells of some pixels       light meets it instead of the field; near it, the eye's rays
+//!                                         take the field's word
 //! ```
 //!
 //! The lattices follow from the settings of the picture and from the model. So a mesh, and whatever is traced

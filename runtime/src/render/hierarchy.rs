@@ -7,13 +7,13 @@
 //! ```
 //!
 //! The mesher writes triangles in the order of their cells, which is Morton order. So neighbours in the list
-//! are neighbours in space, and nothing is sorted: to build the hierarchy is to compute boxes. A ray is tested
-//! against eight boxes, or eight triangles, at once.
+//! are neighbours in space, and nothing is sorted: to build the hierarchy is to compute boxes. A ray is
+//! tested against eight boxes, or eight triangles, at once.
 //!
 //! Clusters, boxes and the order of a walk depend on the mesh alone, and no product is fused with a sum. So
 //! answers have the same bits for every instruction set and any number of threads.
 
-use super::beam::Beam;
+use super::beam::SegmentBeam;
 use super::boxes::{
     BoxNode, Corners, EightLanes, NOWHERE, Segment, WIDE, cross, finite_lanes, inverse, joined,
 };
@@ -206,7 +206,7 @@ impl Hierarchy {
 
     /// Collects the clusters whose boxes reach into a beam. Whether there are few enough.
     #[inline(always)]
-    fn near_beam(&self, beam: &Beam, near: &mut NearClusters) -> bool {
+    fn near_beam(&self, beam: &SegmentBeam, near: &mut NearClusters) -> bool {
         near.clusters.clear();
         near.boxes.clear();
         let mut waiting = [(self.levels.len() as u32 - 1, 0_u32); WAITING];
@@ -301,8 +301,8 @@ fn first_in(cluster: &TriangleCluster, segment: &Segment, reach: f32, met: &mut 
     best
 }
 
-/// Notes whether a segment meets a cluster: see [`Hierarchy::any_of`]. Returns the distance up to which to look
-/// on: less than 0 if it does.
+/// Notes whether a segment meets a cluster: see [`Hierarchy::any_of`]. Returns the distance up to which to
+/// look on: less than 0 if it does.
 #[inline(always)]
 fn any_in(cluster: &TriangleCluster, segment: &Segment, (depth, reach): (f32, f32), met: &mut bool) -> f32 {
     let (distances, behind) = cluster.meet(segment, segment.reach);
@@ -321,7 +321,7 @@ fn any_in(cluster: &TriangleCluster, segment: &Segment, (depth, reach): (f32, f3
 fn first_all(hierarchy: &Hierarchy, segments: &[Segment], met: &mut [Option<MeshMeeting>]) {
     let mut near = NearClusters::default();
     for (segments, met) in segments.chunks(BUNDLE).zip(met.chunks_mut(BUNDLE)) {
-        let is_narrow = Beam::new(segments).is_some_and(|beam| hierarchy.near_beam(&beam, &mut near));
+        let is_narrow = SegmentBeam::new(segments).is_some_and(|beam| hierarchy.near_beam(&beam, &mut near));
         for (segment, met) in segments.iter().zip(met) {
             if is_narrow {
                 near.walk(hierarchy, segment, |cluster, reach| first_in(cluster, segment, reach, met));
@@ -336,7 +336,7 @@ fn first_all(hierarchy: &Hierarchy, segments: &[Segment], met: &mut [Option<Mesh
 fn any_all(hierarchy: &Hierarchy, segments: &[Segment], depth: f32, met: &mut [bool]) {
     let mut near = NearClusters::default();
     for (segments, met) in segments.chunks(BUNDLE).zip(met.chunks_mut(BUNDLE)) {
-        let is_narrow = Beam::new(segments).is_some_and(|beam| hierarchy.near_beam(&beam, &mut near));
+        let is_narrow = SegmentBeam::new(segments).is_some_and(|beam| hierarchy.near_beam(&beam, &mut near));
         for (segment, met) in segments.iter().zip(met) {
             if is_narrow {
                 near.walk(hierarchy, segment, |cluster, reach| any_in(cluster, segment, (depth, reach), met));

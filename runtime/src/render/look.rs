@@ -2,8 +2,8 @@
 //!
 //! ```text
 //!  eye ──────────────────────x──────                       x  the ray meets the mesh
-//!                           ·│ f, g                        Newton's steps along the ray, by the field and its
-//!                          · o──                           gradient there, lead to o, where the field is iso
+//!                           ·│ f, g                        Newton's steps along the ray, by the field and
+//!                          · o──                           its gradient, lead to o, where the field is iso
 //! ```
 //!
 //! Rays whose steps do not end near a place of the surface are traced exactly.

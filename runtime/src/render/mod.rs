@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! frame:   tight bounds ── a coarse mesh ── the camera that it fills, the ground          (framing, camera)
-//! guide:   a mesh with cells of some pixels ── boxes around its triangles                 (guide, hierarchy, beam)
+//! guide:   a mesh with cells of some pixels ── boxes around its triangles          (guide, hierarchy, beam)
 //! sheet:   rays that the mesh leads to the surface ── position, normal, attributes        (look)
 //!          from each hit: rays to the key light, rays to the sky, against the mesh         (gather)
 //!          the mean of light over neighbours that see the same                             (smooth)

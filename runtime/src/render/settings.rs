@@ -121,8 +121,8 @@ impl Quality {
         }
     }
 
-    /// The tolerance of exact rays to the light and the sky, in pixels: shadows are soft, so thinner parts may cast
-    /// none.
+    /// The tolerance of exact rays to the light and the sky, in pixels: shadows are soft, so thinner
+    /// parts may cast none.
     pub(super) fn softness(self) -> f64 {
         match self {
             Self::Draft => 16.0,

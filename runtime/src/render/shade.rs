@@ -81,8 +81,8 @@ pub fn surface(frame: &Frame<'_>, met: &CastHit, light: Light, looking: Vector) 
     })
 }
 
-/// The exponent and the brightness of the highlight on a surface of this roughness, after Blinn and Phong: the
-/// narrower, the brighter.
+/// The exponent and the brightness of the highlight on a surface of this roughness, after Blinn and Phong:
+/// the narrower, the brighter.
 fn shine(rough: f32) -> (f64, f32) {
     let exponent = 2.0 / rough.max(SMOOTHEST).powi(4) - 2.0;
     (f64::from(exponent), (SHINE * (exponent + 2.0)).min(BRIGHTEST_SHINE))

@@ -1,8 +1,9 @@
 //! Smoothing of light: what neighbouring pixels have gathered, where they see the same surface.
 //!
-//! Three passes with holes that grow (Dammertz et al., Edge-avoiding à-trous wavelet transform for fast global
-//! illumination filtering, 2010). A neighbour counts as much as it lies in the plane of the pixel and looks
-//! the same way; in the later passes, the share of the key light counts too, so that rims of shadows stay.
+//! Three passes with holes that grow (Dammertz et al., Edge-avoiding à-trous wavelet transform for fast
+//! global illumination filtering, 2010). A neighbour counts as much as it lies in the plane of the pixel and
+//! looks the same way; in the later passes, the share of the key light counts too, so that rims of shadows
+//! stay.
 
 use super::gather::Light;
 use super::seen::{Seen, SeenKind};
