@@ -31,7 +31,7 @@ pub struct CheckedNode {
 #[derive(Clone, Debug)]
 pub(super) struct Lineage {
     /// All nodes of that tree.
-    pub(super) from: Arc<[CheckedNode]>,
+    pub(super) from: Arc<Vec<CheckedNode>>,
     /// Ascending.
     pub(super) changed: Arc<[NodeId]>,
 }

@@ -55,14 +55,6 @@ pub struct CheckedModel {
     names: Option<FxHashMap<usize, NodeId>>,
 }
 
-/// Which nodes of a tree differ from those of the tree that it was made of.
-#[derive(Clone, Debug)]
-pub(super) struct Lineage {
-    /// All nodes of that tree.
-    pub(super) from: Arc<Vec<CheckedNode>>,
-    /// Ascending.
-    pub(super) changed: Arc<[NodeId]>,
-}
 /// The part of the nodes up to which an edit is checked node by node.
 const LARGEST_PART: usize = 4;
 

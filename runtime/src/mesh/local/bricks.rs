@@ -3,12 +3,12 @@
 use rustc_hash::FxHashMap;
 
 use super::slots::{BufferSlot, BufferSlots};
+use crate::boxes::Box3;
 use crate::mesh::brick::{Bricks, NONE, direction, morton};
 use crate::mesh::crossing::CrossedCell;
 use crate::mesh::indexed::Mesh;
 use crate::mesh::lattice::Lattice;
 use crate::mesh::touched::Touched;
-use crate::boxes::Box3;
 
 /// The place of a brick in units of bricks, counted from the lattice's anchor.
 pub(crate) type BrickPlace = [i32; 3];

@@ -29,23 +29,6 @@ mod join;
 mod renewal;
 mod slots;
 
-use jbt_ir::limits::MAX_BRICKS;
-use rustc_hash::FxHashMap;
-use super::brick::{Bricks, NONE, direction, morton};
-use super::crossing::{self, CrossedCell, Crossings};
-use super::divide::{self, BrickDivision};
-use super::error::MeshError;
-use super::field::Field;
-use super::indexed::Mesh;
-use super::lattice::Lattice;
-use super::options::Options;
-use super::sample;
-pub(crate) use super::touched::Touched;
-use super::vertex;
-use super::vertex::batch::VertexSource;
-use crate::boxes::Box3;
-use crate::job::Hook;
-use crate::progress::{EACH, Progress};
 pub(crate) use bricks::{BrickMesh, BrickPlace};
 pub(crate) use commit::BrickChanges;
 
