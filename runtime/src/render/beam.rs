@@ -1,6 +1,6 @@
 //! Beams: the space around rays that go about the same way.
 
-use super::boxes::{BoxNode, Corners, EightLanes, NOWHERE, SLACK, Segment, WIDE, cross, dot, joined};
+use super::boxes::{BoxNode, Corners, EightLanes, NOWHERE, RayPart, SLACK, WIDE, cross, dot, joined};
 
 /// The least mean of unit directions of a bundle.
 const STRAIGHT: f32 = 0.9;
@@ -20,7 +20,7 @@ impl SegmentBeam {
     /// Along the mean direction, `across(t) = across(0) + t * slope` for each segment, so the largest of all
     /// at both ends bounds them between.
     #[inline(always)]
-    pub fn new(segments: &[Segment]) -> Option<Self> {
+    pub fn new(segments: &[RayPart]) -> Option<Self> {
         let mut mean = [0.0_f32; 3];
         for segment in segments {
             mean = [0, 1, 2].map(|axis| mean[axis] + segment.direction[axis]);

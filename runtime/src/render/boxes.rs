@@ -14,7 +14,7 @@ const FAR_AWAY: f32 = f32::MAX;
 
 /// A part of a ray that begins at its origin, relative to the model's origin.
 #[derive(Clone, Copy)]
-pub struct Segment {
+pub struct RayPart {
     pub origin: [f32; 3],
     /// A unit vector.
     pub direction: [f32; 3],

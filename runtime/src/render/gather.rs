@@ -7,7 +7,7 @@
 //!    ──────o────────o──────
 //! ```
 
-use super::boxes::Segment;
+use super::boxes::RayPart;
 use super::cast::start;
 use super::color::Rgb;
 use super::error::RenderError;
@@ -211,7 +211,7 @@ fn blocked(
     *count += some.len() as u64;
     let found = match &frame.guide {
         Some(guide) => {
-            let segments: Vec<Segment> = some.iter().map(segment).collect();
+            let segments: Vec<RayPart> = some.iter().map(segment).collect();
             guide.hierarchy.any_of(&segments, (BURIED * guide.cell) as f32)
         }
         None => {

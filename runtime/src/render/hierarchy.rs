@@ -15,7 +15,7 @@
 
 use super::beam::SegmentBeam;
 use super::boxes::{
-    BoxNode, Corners, EightLanes, NOWHERE, Segment, WIDE, cross, finite_lanes, inverse, joined,
+    BoxNode, Corners, EightLanes, NOWHERE, RayPart, WIDE, cross, finite_lanes, inverse, joined,
 };
 use crate::parallel::*;
 
@@ -72,7 +72,7 @@ impl TriangleCluster {
     ///
     /// After Möller and Trumbore, Fast, minimum storage ray/triangle intersection (1997).
     #[inline(always)]
-    fn meet(&self, ray: &Segment, reach: f32) -> (EightLanes, [u32; WIDE]) {
+    fn meet(&self, ray: &RayPart, reach: f32) -> (EightLanes, [u32; WIDE]) {
         let (mut distances, mut behind) = ([f32::INFINITY; WIDE], [0; WIDE]);
         let [dx, dy, dz] = ray.direction;
         let [[ax, ay, az], [bx, by, bz]] = &self.edges;
@@ -120,7 +120,7 @@ impl NearClusters {
     fn walk(
         &self,
         hierarchy: &Hierarchy,
-        segment: &Segment,
+        segment: &RayPart,
         mut visit: impl FnMut(&TriangleCluster, f32) -> f32,
     ) {
         let (inverse, mut reach) = (inverse(segment.direction), segment.reach);
@@ -190,7 +190,7 @@ impl Hierarchy {
 
     /// Where each segment meets the mesh first, from either side. It is fast where neighbours in the list are
     /// neighbours in space.
-    pub fn first_of(&self, segments: &[Segment]) -> Vec<Option<MeshMeeting>> {
+    pub fn first_of(&self, segments: &[RayPart]) -> Vec<Option<MeshMeeting>> {
         let mut met = vec![None; segments.len()];
         first_all(self, segments, &mut met);
         met
@@ -198,7 +198,7 @@ impl Hierarchy {
 
     /// Which segments meet the mesh. Triangles that a segment meets from behind count only at distances
     /// beyond `depth`: a segment that begins a little below the surface leaves it again.
-    pub fn any_of(&self, segments: &[Segment], depth: f32) -> Vec<bool> {
+    pub fn any_of(&self, segments: &[RayPart], depth: f32) -> Vec<bool> {
         let mut met = vec![false; segments.len()];
         any_all(self, segments, depth, &mut met);
         met
@@ -249,7 +249,7 @@ impl Hierarchy {
     /// Shows `visit` the clusters that a ray may meet, the nearest first, roughly. It returns the distance up
     /// to which the walk goes on, or less than 0 to end it.
     #[inline(always)]
-    fn walk(&self, ray: &Segment, mut visit: impl FnMut(&TriangleCluster, f32) -> f32) {
+    fn walk(&self, ray: &RayPart, mut visit: impl FnMut(&TriangleCluster, f32) -> f32) {
         let (inverse, mut reach) = (inverse(ray.direction), ray.reach);
         let mut waiting =
             [WaitingNode { near: 0.0, level: self.levels.len() as u32 - 1, number: 0 }; WAITING];
@@ -285,7 +285,7 @@ impl Hierarchy {
 
 /// Looks for a nearer meeting in a cluster. Returns the distance up to which to look on.
 #[inline(always)]
-fn first_in(cluster: &TriangleCluster, segment: &Segment, reach: f32, met: &mut Option<MeshMeeting>) -> f32 {
+fn first_in(cluster: &TriangleCluster, segment: &RayPart, reach: f32, met: &mut Option<MeshMeeting>) -> f32 {
     let (distances, _) = cluster.meet(segment, reach);
     let mut mask = finite_lanes(&distances);
     let mut best = reach;
@@ -304,7 +304,7 @@ fn first_in(cluster: &TriangleCluster, segment: &Segment, reach: f32, met: &mut 
 /// Notes whether a segment meets a cluster: see [`Hierarchy::any_of`]. Returns the distance up to which to
 /// look on: less than 0 if it does.
 #[inline(always)]
-fn any_in(cluster: &TriangleCluster, segment: &Segment, (depth, reach): (f32, f32), met: &mut bool) -> f32 {
+fn any_in(cluster: &TriangleCluster, segment: &RayPart, (depth, reach): (f32, f32), met: &mut bool) -> f32 {
     let (distances, behind) = cluster.meet(segment, segment.reach);
     let mut counts = 0;
     for i in 0..WIDE {
@@ -318,7 +318,7 @@ fn any_in(cluster: &TriangleCluster, segment: &Segment, (depth, reach): (f32, f3
 // What is called from the loops below is always inlined: it takes their instruction set.
 
 #[cfg_attr(feature = "levels", multiversion::multiversion(targets("x86_64+avx2")))]
-fn first_all(hierarchy: &Hierarchy, segments: &[Segment], met: &mut [Option<MeshMeeting>]) {
+fn first_all(hierarchy: &Hierarchy, segments: &[RayPart], met: &mut [Option<MeshMeeting>]) {
     let mut near = NearClusters::default();
     for (segments, met) in segments.chunks(BUNDLE).zip(met.chunks_mut(BUNDLE)) {
         let is_narrow = SegmentBeam::new(segments).is_some_and(|beam| hierarchy.near_beam(&beam, &mut near));
@@ -333,7 +333,7 @@ fn first_all(hierarchy: &Hierarchy, segments: &[Segment], met: &mut [Option<Mesh
 }
 
 #[cfg_attr(feature = "levels", multiversion::multiversion(targets("x86_64+avx2")))]
-fn any_all(hierarchy: &Hierarchy, segments: &[Segment], depth: f32, met: &mut [bool]) {
+fn any_all(hierarchy: &Hierarchy, segments: &[RayPart], depth: f32, met: &mut [bool]) {
     let mut near = NearClusters::default();
     for (segments, met) in segments.chunks(BUNDLE).zip(met.chunks_mut(BUNDLE)) {
         let is_narrow = SegmentBeam::new(segments).is_some_and(|beam| hierarchy.near_beam(&beam, &mut near));
@@ -368,7 +368,7 @@ mod tests {
             let triangles: Vec<[u32; 3]> = (0..count).map(|n| [3 * n, 3 * n + 1, 3 * n + 2]).collect();
             let hierarchy = Hierarchy::new(&positions, &triangles).unwrap();
             let mut hits = 0;
-            let segments: Vec<Segment> = (0..400)
+            let segments: Vec<RayPart> = (0..400)
                 .map(|index| {
                     let (to, from) = ([number(), number(), number()], [number(), number(), number()]);
                     let way = [0, 1, 2].map(|axis| to[axis] - from[axis]);
@@ -377,7 +377,7 @@ mod tests {
                     if index % 7 == 0 {
                         direction = [0.0, 0.0, -1.0];
                     }
-                    Segment { origin: from, direction, reach: 3.0 * (number() + 1.0) }
+                    RayPart { origin: from, direction, reach: 3.0 * (number() + 1.0) }
                 })
                 .collect();
             let firsts = hierarchy.first_of(&segments);

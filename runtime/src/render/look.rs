@@ -8,7 +8,7 @@
 //!
 //! Rays whose steps do not end near a place of the surface are traced exactly.
 
-use super::boxes::Segment;
+use super::boxes::RayPart;
 use super::cast::{CastHit, Meetings, SurfacePaint, cast, cuts};
 use super::color::Rgb;
 use super::error::RenderError;
@@ -38,8 +38,8 @@ struct Approach {
 }
 
 /// The part of a ray in its span, in f32.
-pub fn segment(ray: &Ray) -> Segment {
-    Segment {
+pub fn segment(ray: &Ray) -> RayPart {
+    RayPart {
         origin: along(ray.origin, ray.span[0], ray.direction).map(|x| x as f32),
         direction: ray.direction.map(|x| x as f32),
         reach: (ray.span[1] - ray.span[0]) as f32,
@@ -54,7 +54,7 @@ pub fn look(frame: &Frame<'_>, guide: &Guide, casts: &[Ray]) -> Result<Meetings,
     let mut is_cut = vec![false; casts.len()];
     met.iter().for_each(|met| is_cut[met.cast] = true);
     let open: Vec<usize> = (0..casts.len()).filter(|&cast| !is_cut[cast]).collect();
-    let segments: Vec<Segment> = open.iter().map(|&cast| segment(&casts[cast])).collect();
+    let segments: Vec<RayPart> = open.iter().map(|&cast| segment(&casts[cast])).collect();
     let meetings = guide.hierarchy.first_of(&segments);
     let mut approaches: Vec<Approach> = Vec::new();
     for (&cast, meeting) in open.iter().zip(meetings) {

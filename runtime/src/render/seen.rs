@@ -21,7 +21,7 @@ pub enum SeenKind {
 /// What a pixel, or a ray of it, sees. Numbers relative to the model's origin, in f32: they decide about
 /// likeness and light, not about places.
 #[derive(Clone, Copy)]
-pub struct Seen {
+pub struct SeenPoint {
     pub kind: SeenKind,
     pub position: [f32; 3],
     pub normal: [f32; 3],
@@ -39,7 +39,7 @@ fn product(a: [f32; 3], b: [f32; 3]) -> f32 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-impl Seen {
+impl SeenPoint {
     pub const NOTHING: Self = Self {
         kind: SeenKind::Nothing,
         position: [0.0; 3],

@@ -19,7 +19,7 @@ use super::frame::Frame;
 use super::gather::{Light, RayBudget, Spot, gather, unshadowed};
 use super::guide::Guide;
 use super::look::look;
-use super::seen::{Seen, SeenKind};
+use super::seen::{SeenKind, SeenPoint};
 use super::settings::{Quality, RenderMode};
 use super::smooth::{SMOOTH_ROWS, smooth};
 use super::telling::Telling;
@@ -42,7 +42,7 @@ const BESIDE: u32 = 2;
 const AGREE: f64 = 4.0;
 
 /// Rows of a picture that are made together, and what they take.
-struct Sheet<'a> {
+struct PictureSheet<'a> {
     frame: &'a Frame<'a>,
     guide: &'a Guide,
     /// The first row, and the row behind the last one.
@@ -50,7 +50,7 @@ struct Sheet<'a> {
     tiles: Vec<TileArea>,
     /// For each tile, whether the mesh misses something there: all of its rays are exact.
     is_exact: Vec<bool>,
-    seen: Vec<Seen>,
+    seen: Vec<SeenPoint>,
     lights: Vec<Light>,
     cost: Tile,
 }
@@ -71,7 +71,7 @@ pub fn expose(
         let (first, count) = (band as u32 * each, kept.len() as u32 / width);
         let beside = if bands > 1 { SMOOTH_ROWS + 1 } else { 0 };
         let rows = [first.saturating_sub(beside), (first + count + beside).min(height)];
-        let mut sheet = Sheet::new(frame, guide, rows);
+        let mut sheet = PictureSheet::new(frame, guide, rows);
         let part = |of: f32| begin + (1.0 - begin) * (band as f32 + of) / bands as f32;
         let started = Instant::now();
         sheet.look(telling, part(0.3))?;
@@ -134,7 +134,7 @@ fn sights(
     frame: &Frame<'_>,
     places: &[[f64; 2]],
     trace: impl Fn(&[Ray]) -> Result<Meetings, RenderError>,
-) -> Result<(Vec<Seen>, u64, f64), RenderError> {
+) -> Result<(Vec<SeenPoint>, u64, f64), RenderError> {
     let casts: Vec<Option<Ray>> = places.iter().map(|&[x, y]| frame.cast(x, y)).collect();
     let rays: Vec<Ray> = casts.iter().flatten().copied().collect();
     let meetings = trace(&rays)?;
@@ -146,7 +146,7 @@ fn sights(
             ray += 1;
             met.next_if(|met| met.cast == ray - 1)
         });
-        seen.push(hit.map_or_else(|| Seen::behind(frame, place), |hit| Seen::surface(frame, hit)));
+        seen.push(hit.map_or_else(|| SeenPoint::behind(frame, place), |hit| SeenPoint::surface(frame, hit)));
     }
     let evaluations = meetings.evaluations.iter().map(|&count| f64::from(count)).sum();
     Ok((seen, rays.len() as u64, evaluations))
@@ -155,13 +155,13 @@ fn sights(
 /// What a tile sees.
 struct TileSight {
     /// Row by row.
-    seen: Vec<Seen>,
+    seen: Vec<SeenPoint>,
     is_exact: bool,
     rays: u64,
     evaluations: f64,
 }
 
-impl<'a> Sheet<'a> {
+impl<'a> PictureSheet<'a> {
     fn new(frame: &'a Frame<'a>, guide: &'a Guide, rows: [u32; 2]) -> Self {
         let width = frame.render.size[0];
         let tiles = TileArea::of_rows(width, rows, 1);
@@ -171,7 +171,7 @@ impl<'a> Sheet<'a> {
             rows,
             is_exact: Vec::new(),
             tiles,
-            seen: vec![Seen::NOTHING; ((rows[1] - rows[0]) * width) as usize],
+            seen: vec![SeenPoint::NOTHING; ((rows[1] - rows[0]) * width) as usize],
             lights: Vec::new(),
             cost: Tile::default(),
         }
@@ -266,7 +266,7 @@ impl<'a> Sheet<'a> {
             let some: Vec<[f64; 2]> = watched.iter().map(|&at| places[at]).collect();
             let (exact, more, cost) = sights(frame, &some, exactly)?;
             (rays, evaluations) = (rays + more, evaluations + cost);
-            let misses = |(&at, exact): (&usize, &Seen)| self.misses(&pixels, &seen, pixels[at], exact);
+            let misses = |(&at, exact): (&usize, &SeenPoint)| self.misses(&pixels, &seen, pixels[at], exact);
             is_exact = watched.iter().zip(&exact).any(misses);
             if is_exact {
                 let (exact, more, cost) = sights(frame, &places, exactly)?;
@@ -277,8 +277,8 @@ impl<'a> Sheet<'a> {
     }
 
     /// Whether what an exact ray sees is not seen at its pixel, nor at any pixel beside.
-    fn misses(&self, pixels: &[[u32; 2]], seen: &[Seen], pixel: [u32; 2], exact: &Seen) -> bool {
-        let agrees = |other: &Seen| match (exact.kind, other.kind) {
+    fn misses(&self, pixels: &[[u32; 2]], seen: &[SeenPoint], pixel: [u32; 2], exact: &SeenPoint) -> bool {
+        let agrees = |other: &SeenPoint| match (exact.kind, other.kind) {
             (SeenKind::Surface, SeenKind::Surface) => {
                 let [a, b] = [exact, other].map(|seen| seen.position.map(f64::from));
                 length(sub(a, b)) <= AGREE * self.guide.cell
@@ -403,7 +403,7 @@ impl<'a> Sheet<'a> {
     }
 
     /// The light of a ray of a pixel: that of the nine pixels around, as far as they see the same.
-    fn light_near(&self, [x, y]: [u32; 2], seen: &Seen) -> Light {
+    fn light_near(&self, [x, y]: [u32; 2], seen: &SeenPoint) -> Light {
         let mut sum = ([0.0; 5], 0.0);
         let spot = seen.spot(self.frame, [x, y]);
         if self.lights.is_empty() || seen.kind == SeenKind::Nothing {

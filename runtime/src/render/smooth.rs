@@ -6,7 +6,7 @@
 //! stay.
 
 use super::gather::Light;
-use super::seen::{Seen, SeenKind};
+use super::seen::{SeenKind, SeenPoint};
 use crate::parallel::*;
 
 /// The distances of neighbours in pixels, and the difference of key light that halves a neighbour's weight.
@@ -40,7 +40,7 @@ impl LightSum {
 }
 
 /// The smoothed light of rows of pixels of this width. `facing` is left 0.
-pub fn smooth(seen: &[Seen], mut lights: Vec<Light>, width: usize) -> Vec<Light> {
+pub fn smooth(seen: &[SeenPoint], mut lights: Vec<Light>, width: usize) -> Vec<Light> {
     for (step, halving) in PASSES {
         let rows: Vec<Vec<Light>> = (0..seen.len() / width)
             .into_par_iter()
@@ -52,7 +52,7 @@ pub fn smooth(seen: &[Seen], mut lights: Vec<Light>, width: usize) -> Vec<Light>
 }
 
 fn smooth_row(
-    seen: &[Seen],
+    seen: &[SeenPoint],
     lights: &[Light],
     width: usize,
     row: usize,
