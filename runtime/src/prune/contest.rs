@@ -32,7 +32,7 @@ use crate::kernel::{BoundKernel, Purpose};
 /// A contest of fewer rows, over the whole model, is not worth a program.
 const FEWEST_ROWS: usize = 8;
 /// The same of rows that are tried by the range program as well ([`super::decide::Alone`]).
-const FEWEST_TRIED_ROWS: usize = 48;
+const FEWEST_TRIED_ROWS: usize = 65;
 /// Fewer rows in a box are not looked at.
 const FEWEST_IN_BOX: usize = 3;
 /// The most contests of a model that have programs: those of the most rows.
