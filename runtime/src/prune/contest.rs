@@ -22,17 +22,16 @@ use jbt_ir::{Entity as _, RowFunction, Selection, Table, Tables};
 use jbt_lower::prune_info::{ContestGroup, ContestKind, PruneInfo, RowContest};
 use jbt_model::combine::Extreme;
 
-use super::decide::firsts;
+use super::decide::{MOST_ALONE, firsts};
 use super::ranges::ProbeRanges;
 use crate::boxes::{ANYTHING, Box3, MAX_PARTS, Range};
 use crate::compiler::Compiler;
 use crate::error::EvalError;
 use crate::kernel::{BoundKernel, Purpose};
 
-/// A contest of fewer rows, over the whole model, is not worth a program.
+/// A contest of fewer rows, over the whole model, is not worth a program. Rows that the range program tries
+/// ([`super::decide::Alone`]) do not count.
 const FEWEST_ROWS: usize = 8;
-/// The same of rows that are tried by the range program as well ([`super::decide::Alone`]).
-const FEWEST_TRIED_ROWS: usize = 65;
 /// Fewer rows in a box are not looked at.
 const FEWEST_IN_BOX: usize = 3;
 /// The most contests of a model that have programs: those of the most rows.
@@ -77,22 +76,15 @@ struct RowInBox {
 
 impl Contests {
     pub(super) fn new(compiler: &Compiler, info: &PruneInfo, tables: &Tables) -> Self {
+        let count = |group: &ContestGroup| tables.tables[group.table].len();
+        let is_tried = |group: &ContestGroup| {
+            count(group) <= MOST_ALONE && info.decisions.iter().any(|it| it.table == group.table)
+        };
         let rows = |contest: &RowContest| -> usize {
-            let operands = contest.groups.iter().filter(|group| group.rows);
-            operands.map(|group| tables.tables[group.table].len()).sum()
+            contest.groups.iter().filter(|group| group.rows && !is_tried(group)).map(count).sum()
         };
-        let is_tried = |contest: &RowContest| {
-            let tried = |group: &ContestGroup| info.decisions.iter().any(|it| it.table == group.table);
-            contest.groups.iter().any(tried)
-        };
-        let mut worth: Vec<&RowContest> = info
-            .contests
-            .iter()
-            .filter(|contest| {
-                let fewest = if is_tried(contest) { FEWEST_TRIED_ROWS } else { FEWEST_ROWS };
-                rows(contest) >= fewest
-            })
-            .collect();
+        let mut worth: Vec<&RowContest> =
+            info.contests.iter().filter(|contest| rows(contest) >= FEWEST_ROWS).collect();
         worth.sort_by_key(|contest| std::cmp::Reverse(rows(contest)));
         worth.truncate(MOST_CONTESTS);
         let with_rows = |contest: &RowContest| ContestRows {

@@ -46,7 +46,7 @@ pub(super) fn leave_out(info: &PruneInfo, probes: ProbeRanges<'_>, selection: &S
 /// With fewer operands than this, one run with all of them is faster than one run for each.
 const FEWEST: usize = 64;
 /// The most rows of a table that are run one by one.
-const MOST_ALONE: usize = 64;
+pub(super) const MOST_ALONE: usize = 64;
 /// The most additional row runs that are allowed: rows that are no operands run in every selection.
 const MOST_REPEATED: usize = 512;
 
