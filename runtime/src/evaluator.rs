@@ -18,12 +18,13 @@ use crate::buffer::{Layout, Samples};
 use crate::compiled::{Compiled, PointScope};
 use crate::compiler::Compiler;
 use crate::counter::{Counters, SharedCounters};
+use crate::divide::Edit;
 use crate::error::{CompileError, EvalError};
 use crate::finite_points;
 use crate::kernel::{BoundKernel, Engine};
 use crate::points::{AsPoints, Points};
 use crate::program::AnswerProgram;
-use crate::prune::Region;
+use crate::prune::{Pruner, Region};
 
 impl Compiler {
     /// An evaluator for a model and a query, of which nothing else is asked: see [`Compiled::evaluator`].
@@ -138,13 +139,23 @@ impl Evaluator {
     }
 
     /// The numbers of what runs points of regions.
-    pub(crate) fn regional_tables(&self) -> &Tables {
+    fn regional_tables(&self) -> &Tables {
         self.regional().tables()
     }
 
     /// Whether another evaluator runs the same code at points of regions, and lays its answers out alike.
-    pub(crate) fn is_alike(&self, other: &Self) -> bool {
+    fn is_alike(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.regional().kernel, &other.regional().kernel) && self.layout() == other.layout()
+    }
+
+    /// Where the field, or what is answered in regions, may differ from that of an earlier model. Each has a
+    /// pruner.
+    pub(crate) fn edit(&self, pruner: &Pruner, (before, pruner_before): (&Self, &Pruner)) -> Edit {
+        if !self.is_alike(before) {
+            return Edit::Everywhere;
+        }
+        let tables = [before, self].map(Self::regional_tables);
+        pruner.edit(pruner_before).and(pruner.edit_of(pruner_before, tables))
     }
 
     /// The query that it answers.

@@ -17,6 +17,7 @@ use super::roots::{CutEdge, solve};
 use super::slicer::Slicer;
 use crate::error::EvalError;
 use crate::prune::Region;
+use crate::touched::Touched;
 
 /// The name of an edge of the lattice: the axis that it is along, then the row, then the column of the point
 /// at its upper end. One that leads to the lattice from beyond it has 0 along its axis, and one that leads
@@ -65,6 +66,24 @@ pub(super) struct Segments {
     pub(super) list: Vec<ContourSegment>,
     /// Plane by plane.
     pub(super) attributes: Vec<Vec<f32>>,
+}
+
+impl Segments {
+    /// Whether both have the same bits.
+    pub(super) fn is_same(&self, other: &Self) -> bool {
+        let bits = |segment: &ContourSegment| {
+            let ContourSegment { from, to, place, low_inside, border } = *segment;
+            (from, to, place.map(f32::to_bits), low_inside, border)
+        };
+        let attributes = |segments: &Self| -> Vec<Vec<u32>> {
+            segments
+                .attributes
+                .iter()
+                .map(|plane| plane.iter().map(|value| value.to_bits()).collect())
+                .collect()
+        };
+        self.list.iter().map(bits).eq(other.list.iter().map(bits)) && attributes(self) == attributes(other)
+    }
 }
 
 /// A block of cells with the field at its points.
@@ -285,6 +304,33 @@ pub(super) fn border(
         push(left(b), below(a), [a, b], false);
     }
     if list.is_empty() { Ok(None) } else { with_attributes(slicer, region, list).map(Some) }
+}
+
+/// The smallest squares of a square that lie along the border of the lattice, and are touched.
+pub(super) fn along_border(
+    square: &CellSquare,
+    leaf: u32,
+    (grid, touched): (&Grid, Option<&Touched<2>>),
+) -> Vec<CellSquare> {
+    let last = grid.points().map(|points| points as u32 - 1);
+    let starts = |axis: usize| (square.first[axis]..square.end[axis]).step_by(leaf as usize);
+    let is_at_side = |axis: usize, first: u32| first == 0 || first + leaf >= last[axis];
+    let ends: Vec<u32> = starts(0).filter(|&u| is_at_side(0, u)).collect();
+    let mut along = Vec::new();
+    for v in starts(1) {
+        let us: &mut dyn Iterator<Item = u32> =
+            if is_at_side(1, v) { &mut starts(0) } else { &mut ends.iter().copied() };
+        along.extend(us.map(|u| CellSquare {
+            first: [u, v],
+            end: [(u + leaf).min(square.end[0]), (v + leaf).min(square.end[1])],
+            size: leaf,
+        }));
+    }
+    let has = |part: &CellSquare| {
+        touched.is_none_or(|touched| touched.has_brick(part.first.map(|cell| cell / leaf)))
+    };
+    along.retain(has);
+    along
 }
 
 fn with_attributes(

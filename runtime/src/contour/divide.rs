@@ -23,6 +23,7 @@ use crate::boxes::{Box3, Range};
 use crate::error::EvalError;
 use crate::progress::Progress;
 use crate::prune::{Pruner, Region};
+use crate::touched::Touched;
 
 /// A square of cells, cut off where the grid ends.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -130,13 +131,14 @@ pub(super) trait SquareWork: Sync {
     /// Whether a square is done with, by the range of the field in it.
     fn verdict(&self, range: Range) -> Verdict;
 
-    /// A square that is done with. `around` is the region of a square around it.
+    /// Adds what a square leaves that is done with. `around` is the region of a square around it.
     fn dropped(
         &self,
         square: &CellSquare,
         inside: bool,
         around: &Region,
-    ) -> Result<Option<Self::Piece>, EvalError>;
+        pieces: &mut Vec<Self::Piece>,
+    ) -> Result<(), EvalError>;
 
     /// Whether a square is a leaf before it is small, because its points are evaluated sooner than it is
     /// divided.
@@ -147,8 +149,8 @@ pub(super) trait SquareWork: Sync {
 }
 
 /// How to divide.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct DivisionPlan {
+#[derive(Clone, Copy)]
+pub(super) struct DivisionPlan<'a> {
     /// Cells along u and v.
     pub(super) cells: [u32; 2],
     /// Cells along the side of leaves: a power of two.
@@ -157,6 +159,17 @@ pub(super) struct DivisionPlan {
     pub(super) step: u32,
     /// Whether to keep all squares.
     pub(super) keep: bool,
+    /// The leaves to look at, if not all.
+    pub(super) touched: Option<&'a Touched<2>>,
+}
+
+impl DivisionPlan<'_> {
+    fn is_touched(&self, square: &CellSquare) -> bool {
+        let has = |touched: &Touched<2>| {
+            touched.has(square.first.map(|first| first as usize), square.size as usize)
+        };
+        self.touched.is_none_or(has)
+    }
 }
 
 /// What came out.
@@ -213,7 +226,7 @@ impl FateCounts {
 struct SquareDivider<'a, 'hook, W> {
     pruner: &'a Pruner,
     work: &'a W,
-    plan: DivisionPlan,
+    plan: DivisionPlan<'a>,
     /// Halvings from the whole to one cell.
     depth: u32,
     progress: &'a Progress<'hook>,
@@ -228,7 +241,7 @@ const PARALLEL: u32 = 2;
 pub(super) fn divide<W: SquareWork>(
     pruner: &Pruner,
     work: &W,
-    plan: DivisionPlan,
+    plan: DivisionPlan<'_>,
     progress: &Progress<'_>,
 ) -> Result<Divided<W::Piece>, SliceError> {
     let most = plan.cells[0].max(plan.cells[1]);
@@ -237,7 +250,8 @@ pub(super) fn divide<W: SquareWork>(
     let (leaves, tallies) = (AtomicU64::new(0), Default::default());
     let run = SquareDivider { pruner, work, plan, depth, progress, leaves, tallies };
     let whole = CellSquare { first: [0; 2], end: plan.cells, size };
-    let mut divided = run.parts(&pruner.everywhere(), &[whole])?;
+    let mut divided =
+        if plan.is_touched(&whole) { run.parts(&pruner.everywhere(), &[whole])? } else { Divided::new() };
     let levels = run.tallies.iter().enumerate().take(1 + depth as usize);
     divided.levels = levels.map(|(depth, tally)| tally.level(depth, size >> depth)).collect();
     divided.levels.retain(|level| level.squares() > 0);
@@ -289,7 +303,7 @@ impl<W: SquareWork> SquareDivider<'_, '_, W> {
         let Some(region) = region else {
             let inside = self.work.verdict(range) == Verdict::Inside;
             self.note(&mut found, square, if inside { Fate::Inside } else { Fate::Outside });
-            found.pieces.extend(self.work.dropped(square, inside, around)?);
+            self.work.dropped(square, inside, around, &mut found.pieces)?;
             self.finish(square)?;
             return Ok(found);
         };
@@ -304,7 +318,10 @@ impl<W: SquareWork> SquareDivider<'_, '_, W> {
             return Ok(found);
         }
         self.note(&mut found, square, Fate::Divided);
-        found.append(self.parts(region, &self.split(square))?);
+        let parts = self.split(square);
+        if !parts.is_empty() {
+            found.append(self.parts(region, &parts)?);
+        }
         Ok(found)
     }
 
@@ -314,7 +331,7 @@ impl<W: SquareWork> SquareDivider<'_, '_, W> {
         Ok(self.progress.add(square.cells() / all)?)
     }
 
-    /// The parts of a square that are in the grid, u fastest.
+    /// The parts of a square that are in the grid, and are touched, u fastest.
     fn split(&self, square: &CellSquare) -> Vec<CellSquare> {
         let size = (square.size >> self.plan.step).max(self.plan.leaf).min(square.size / 2);
         let starts = |axis: usize| (square.first[axis]..square.end[axis]).step_by(size as usize);
@@ -322,6 +339,7 @@ impl<W: SquareWork> SquareDivider<'_, '_, W> {
             let end = [(u + size).min(square.end[0]), (v + size).min(square.end[1])];
             CellSquare { first: [u, v], end, size }
         };
-        starts(1).flat_map(|v| starts(0).map(move |u| part(u, v))).collect()
+        let parts = starts(1).flat_map(|v| starts(0).map(move |u| part(u, v)));
+        parts.filter(|part| self.plan.is_touched(part)).collect()
     }
 }

@@ -95,26 +95,51 @@ pub(super) struct Grid {
     pub(super) spacing: f64,
 }
 
-/// Square cells over a rectangle, as a lattice of one layer.
-fn lattice(rectangle: &Rectangle, fineness: Fineness) -> Result<Lattice, LatticeError> {
-    let sides = rectangle.sides();
-    let longest = usize::from(sides[1] > sides[0]);
-    let spacing = match fineness {
-        Fineness::Cell(cell) if cell > 0.0 => cell,
-        Fineness::Cell(spacing) => return Err(LatticeError::Spacing { spacing }),
-        Fineness::Resolution(0) => return Err(LatticeError::Cells { axis: longest, cells: 0 }),
-        Fineness::Resolution(cells) => sides[longest] / cells as f64,
-    };
-    let ([low_u, low_v], [high_u, high_v]) = (rectangle.low, rectangle.high);
-    Lattice::covering([low_u, low_v, 0.0], [high_u, high_v, spacing], spacing)
+/// Square cells in a plane: the lattice of a contour, in coordinates from the [origin](super::Slicer::origin)
+/// of its slicer.
+#[derive(Clone, PartialEq, Debug)]
+pub struct ContourLattice(Lattice);
+
+impl ContourLattice {
+    /// Cells over a rectangle: a lattice of one layer.
+    pub(super) fn covering(rectangle: &Rectangle, fineness: Fineness) -> Result<Self, LatticeError> {
+        let sides = rectangle.sides();
+        let longest = usize::from(sides[1] > sides[0]);
+        let spacing = match fineness {
+            Fineness::Cell(cell) if cell > 0.0 => cell,
+            Fineness::Cell(spacing) => return Err(LatticeError::Spacing { spacing }),
+            Fineness::Resolution(0) => return Err(LatticeError::Cells { axis: longest, cells: 0 }),
+            Fineness::Resolution(cells) => sides[longest] / cells as f64,
+        };
+        let ([low_u, low_v], [high_u, high_v]) = (rectangle.low, rectangle.high);
+        Lattice::covering([low_u, low_v, 0.0], [high_u, high_v, spacing], spacing).map(Self)
+    }
+
+    /// The same cells, and more of them on any side, so that they cover a rectangle: see [`Lattice::grown`].
+    pub(super) fn grown(&self, rectangle: &Rectangle) -> Result<Self, LatticeError> {
+        let ([low_u, low_v], [high_u, high_v]) = (rectangle.low, rectangle.high);
+        self.0.grown([low_u, low_v, 0.0], [high_u, high_v, self.0.spacing()]).map(Self)
+    }
+
+    /// The edge of a cell.
+    #[must_use]
+    pub fn spacing(&self) -> f64 {
+        self.0.spacing()
+    }
+
+    /// Cells along u and v.
+    #[must_use]
+    pub fn cells(&self) -> [usize; 2] {
+        let [u, v, _] = self.0.cells();
+        [u, v]
+    }
 }
 
 impl Grid {
-    /// The corners of cells that fill a rectangle.
-    pub(super) fn corners(rectangle: &Rectangle, fineness: Fineness) -> Result<Self, LatticeError> {
-        let lattice = lattice(rectangle, fineness)?;
-        let [u, v, _] = lattice.axes();
-        Ok(Self { axes: [u, v], spacing: lattice.spacing() })
+    /// The corners of cells.
+    pub(super) fn corners(lattice: &ContourLattice) -> Self {
+        let [u, v, _] = lattice.0.axes();
+        Self { axes: [u, v], spacing: lattice.spacing() }
     }
 
     /// Pixels that fill a rectangle, with `samples` x `samples` points each, in the middles of its equal
@@ -124,7 +149,7 @@ impl Grid {
         fineness: Fineness,
         samples: usize,
     ) -> Result<Option<Self>, LatticeError> {
-        let lattice = lattice(rectangle, fineness)?;
+        let ContourLattice(lattice) = ContourLattice::covering(rectangle, fineness)?;
         let [width, height, _] = lattice.cells();
         let points = width.checked_mul(height).and_then(|pixels| pixels.checked_mul(samples * samples));
         if points.is_none_or(|points| points > MAX_PIXELS) {
@@ -181,7 +206,7 @@ mod tests {
     #[test]
     fn corners_and_pixels() {
         let rectangle = Rectangle::new([0.0, 0.0], [2.0, 1.0]).unwrap();
-        let corners = Grid::corners(&rectangle, Fineness::Resolution(4)).unwrap();
+        let corners = Grid::corners(&ContourLattice::covering(&rectangle, Fineness::Resolution(4)).unwrap());
         assert_eq!(corners.axes, [vec![0.0, 0.5, 1.0, 1.5, 2.0], vec![0.0, 0.5, 1.0]]);
         let pixels = Grid::pixels(&rectangle, Fineness::Resolution(2), 2).unwrap().unwrap();
         assert_eq!(pixels.axes, [vec![0.25, 0.75, 1.25, 1.75], vec![0.25, 0.75]]);
@@ -199,10 +224,11 @@ mod tests {
         };
         assert!(fits(edge / 4, 4) && !fits(edge / 4 + 1, 4));
         for fineness in [Fineness::Resolution(0), Fineness::Resolution((1 << 20) + 1)] {
-            assert!(matches!(Grid::corners(&square, fineness), Err(LatticeError::Cells { .. })));
+            let made = ContourLattice::covering(&square, fineness);
+            assert!(matches!(made, Err(LatticeError::Cells { .. })));
         }
         for cell in [0.0, -1.0, f64::NAN] {
-            let made = Grid::corners(&square, Fineness::Cell(cell));
+            let made = ContourLattice::covering(&square, Fineness::Cell(cell));
             assert!(matches!(made, Err(LatticeError::Spacing { .. })), "{made:?}");
         }
     }

@@ -108,9 +108,10 @@ impl<'a> Canvas<'a> {
         self.grid.points().map(|points| points / self.samples)
     }
 
-    fn plan(&self) -> DivisionPlan {
+    fn plan(&self) -> DivisionPlan<'static> {
         let leaf = smallest(self.slicer.field.block());
-        DivisionPlan { cells: self.pixels().map(|pixels| pixels as u32), leaf, step: STEP, keep: false }
+        let cells = self.pixels().map(|pixels| pixels as u32);
+        DivisionPlan { cells, leaf, step: STEP, keep: false, touched: None }
     }
 
     /// The points of a square: the first one, and those behind the last one.
@@ -152,8 +153,8 @@ impl<'a> Canvas<'a> {
     }
 }
 
-fn tile<T>(square: &CellSquare, values: Vec<T>) -> Option<RasterTile<T>> {
-    Some(RasterTile { square: *square, values })
+fn tile<T>(square: &CellSquare, values: Vec<T>) -> RasterTile<T> {
+    RasterTile { square: *square, values }
 }
 
 /// Which part of each pixel is inside, of 255.
@@ -175,8 +176,12 @@ impl SquareWork for PixelCoverage<'_> {
         square: &CellSquare,
         inside: bool,
         _: &Region,
-    ) -> Result<Option<RasterTile<u8>>, EvalError> {
-        Ok(if inside { tile(square, vec![u8::MAX]) } else { None })
+        tiles: &mut Vec<RasterTile<u8>>,
+    ) -> Result<(), EvalError> {
+        if inside {
+            tiles.push(tile(square, vec![u8::MAX]));
+        }
+        Ok(())
     }
 
     fn is_told(&self, square: &CellSquare, region: &Region) -> bool {
@@ -194,7 +199,7 @@ impl SquareWork for PixelCoverage<'_> {
         let iso = self.0.slicer.iso;
         if self.0.samples == 1 {
             let side = |&value: &f32| if value >= iso { u8::MAX } else { 0 };
-            return Ok((tile(square, values.iter().map(side).collect()), false));
+            return Ok((Some(tile(square, values.iter().map(side).collect())), false));
         }
         let points = self.0.samples * self.0.samples;
         let mut counts = vec![0_usize; values.len() / points];
@@ -202,7 +207,7 @@ impl SquareWork for PixelCoverage<'_> {
             counts[pixel] += usize::from(*value >= iso);
         }
         let share = |count: &usize| ((count * 255 + points / 2) / points) as u8;
-        Ok((tile(square, counts.iter().map(share).collect()), false))
+        Ok((Some(tile(square, counts.iter().map(share).collect())), false))
     }
 }
 
@@ -227,11 +232,13 @@ impl SquareWork for PixelFields<'_> {
         square: &CellSquare,
         _: bool,
         around: &Region,
-    ) -> Result<Option<RasterTile<f32>>, EvalError> {
+        tiles: &mut Vec<RasterTile<f32>>,
+    ) -> Result<(), EvalError> {
         let [u, v] = self.0.block(&CellSquare { end: square.first.map(|pixel| pixel + 1), ..*square });
         let mut values = Vec::new();
         self.0.slicer.values(around, [&u, &v], &mut values)?;
-        Ok(tile(square, values))
+        tiles.push(tile(square, values));
+        Ok(())
     }
 
     fn is_told(&self, square: &CellSquare, region: &Region) -> bool {
@@ -246,7 +253,7 @@ impl SquareWork for PixelFields<'_> {
         let [u, v] = self.0.block(square);
         let mut values = Vec::new();
         self.0.slicer.values(region, [&u, &v], &mut values)?;
-        Ok((tile(square, values), false))
+        Ok((Some(tile(square, values)), false))
     }
 }
 
@@ -277,8 +284,9 @@ impl SquareWork for Painted<'_> {
         _: &CellSquare,
         _: bool,
         _: &Region,
-    ) -> Result<Option<RasterTile<[f32; 4]>>, EvalError> {
-        Ok(None)
+        _: &mut Vec<RasterTile<[f32; 4]>>,
+    ) -> Result<(), EvalError> {
+        Ok(())
     }
 
     fn is_told(&self, square: &CellSquare, region: &Region) -> bool {
@@ -308,7 +316,7 @@ impl SquareWork for Painted<'_> {
             }
             *count /= points as f32;
         }
-        Ok((tile(square, pixels), false))
+        Ok((Some(tile(square, pixels)), false))
     }
 }
 

@@ -57,20 +57,21 @@ pub(super) struct Linked {
 
 /// Links all segments. Panics if they are no closed loops: the field was on both sides of the iso-value at
 /// one point.
-pub(super) fn link(pieces: Vec<Segments>, planes: usize) -> Linked {
+pub(super) fn link<'a>(pieces: impl Iterator<Item = &'a Segments> + Clone, planes: usize) -> Linked {
     let mut segments: Vec<ContourSegment> =
-        Vec::with_capacity(pieces.iter().map(|piece| piece.list.len()).sum());
+        Vec::with_capacity(pieces.clone().map(|piece| piece.list.len()).sum());
     let mut attributes = vec![Vec::with_capacity(segments.capacity()); planes];
-    for mut piece in pieces {
-        segments.append(&mut piece.list);
+    for piece in pieces {
+        segments.extend_from_slice(&piece.list);
         for (all, plane) in attributes.iter_mut().zip(&piece.attributes) {
             all.extend_from_slice(plane);
         }
     }
-    let next = following(&segments);
+    let (begins, next) = following(&segments);
     let mut of_segment = vec![usize::MAX; segments.len()];
     let mut drafts = Vec::new();
-    for first in 0..segments.len() {
+    // By their edges, so that the order of pieces does not matter.
+    for first in begins {
         if of_segment[first] == usize::MAX {
             drafts.extend(follow(first, &segments, &next, &mut of_segment));
         }
@@ -85,8 +86,8 @@ pub(super) fn link(pieces: Vec<Segments>, planes: usize) -> Linked {
     Linked { loops: loops(&drafts, &parents, &positions), positions, attributes }
 }
 
-/// For each segment the one that begins where it ends.
-fn following(segments: &[ContourSegment]) -> Vec<usize> {
+/// All segments by the edges that they begin at, and for each segment the one that begins where it ends.
+fn following(segments: &[ContourSegment]) -> (Vec<usize>, Vec<usize>) {
     let sorted = |key: fn(&ContourSegment) -> EdgeKey| {
         let mut order: Vec<usize> = (0..segments.len()).collect();
         order.par_sort_unstable_by_key(|&segment| key(&segments[segment]));
@@ -99,7 +100,7 @@ fn following(segments: &[ContourSegment]) -> Vec<usize> {
         assert!(fits, "a field has one value at a point, and is within its ranges");
         next[end] = begin;
     }
-    next
+    (begins, next)
 }
 
 /// The loop of a segment, if it encloses anything.

@@ -42,6 +42,7 @@ mod circles;
 mod divide;
 mod grid;
 mod image;
+mod kept;
 mod link;
 mod plane;
 mod raster;
@@ -55,15 +56,17 @@ use jbt_ir::limits::MAX_CONTOUR_VERTICES;
 
 pub use circles::circles;
 pub use divide::{ContourLevel, DividedSquare, Fate};
-pub use grid::{Rectangle, RectangleError};
+pub use grid::{ContourLattice, Rectangle, RectangleError};
 pub use image::{ImageDetail, ImageMode, MAX_SAMPLES};
 pub use link::Loop;
 pub use plane::{Plane, PlaneError};
 pub use raster::Raster;
 pub use slicer::{SliceError, Slicer};
 
-use cells::{CellBlock, Segments, border};
-use divide::{CellSquare, DivisionPlan, SquareWork, Verdict, divide};
+pub(crate) use kept::KeptContour;
+
+use cells::{CellBlock, Segments, along_border, border};
+use divide::{CellSquare, Divided, DivisionPlan, SquareWork, Verdict, divide};
 use grid::Grid;
 
 use crate::boxes::{Box3, Range};
@@ -73,6 +76,7 @@ use crate::mesh::Attribute;
 use crate::polygonize::Fineness;
 use crate::progress::{Progress, SOME};
 use crate::prune::Region;
+use crate::touched::Touched;
 
 /// The largest [`Detail::block`].
 pub const MAX_BLOCK: usize = 64;
@@ -152,12 +156,29 @@ impl Contour {
     }
 }
 
+impl Detail {
+    /// Cells along the side of the smallest squares.
+    fn leaf(&self) -> Result<u32, SliceError> {
+        let block = self.block.unwrap_or(8);
+        let fits = block.is_power_of_two() && block <= MAX_BLOCK;
+        if fits { Ok(block as u32) } else { Err(SliceError::Block { block }) }
+    }
+}
+
 /// What a contour is made of, square by square.
 struct Contouring<'a> {
     slicer: &'a Slicer,
     grid: &'a Grid,
+    /// Cells along the side of the smallest squares.
+    leaf: u32,
+    /// Whether all segments are to be told by the smallest squares, so that each of these may be replaced,
+    /// and which ones are wanted. Otherwise the border of a larger square comes in one piece.
+    by_leaves: Option<Option<&'a Touched<2>>>,
     vertices: AtomicU64,
 }
+
+/// The segments in a square, and the lowest cell of the square.
+type ContourPiece = ([u32; 2], Segments);
 
 impl Contouring<'_> {
     fn counted(&self, segments: Segments) -> Result<Segments, SliceError> {
@@ -167,10 +188,22 @@ impl Contouring<'_> {
         }
         Ok(segments)
     }
+
+    /// Divides the lattice.
+    fn run(&self, detail: &Detail, progress: &Progress<'_>) -> Result<Divided<ContourPiece>, SliceError> {
+        let plan = DivisionPlan {
+            cells: self.grid.points().map(|points| points as u32 - 1),
+            leaf: self.leaf,
+            step: if detail.quadtree { 1 } else { 2 },
+            keep: detail.quadtree,
+            touched: self.by_leaves.flatten(),
+        };
+        divide(&self.slicer.pruner, self, plan, progress)
+    }
 }
 
 impl SquareWork for Contouring<'_> {
-    type Piece = Segments;
+    type Piece = ContourPiece;
 
     fn bounds(&self, square: &CellSquare) -> Box3 {
         self.slicer.bounds(self.grid.bounds(square.first, square.end))
@@ -185,18 +218,33 @@ impl SquareWork for Contouring<'_> {
         square: &CellSquare,
         inside: bool,
         around: &Region,
-    ) -> Result<Option<Segments>, EvalError> {
-        if inside { border(self.slicer, self.grid, square, around) } else { Ok(None) }
+        pieces: &mut Vec<ContourPiece>,
+    ) -> Result<(), EvalError> {
+        if !inside {
+            return Ok(());
+        }
+        let parts = match self.by_leaves {
+            None => vec![*square],
+            Some(touched) => along_border(square, self.leaf, (self.grid, touched)),
+        };
+        for part in parts {
+            pieces.extend(
+                border(self.slicer, self.grid, &part, around)?.map(|segments| (part.first, segments)),
+            );
+        }
+        Ok(())
     }
 
     fn is_told(&self, _: &CellSquare, _: &Region) -> bool {
         false
     }
 
-    fn leaf(&self, square: &CellSquare, region: &Region) -> Result<(Option<Segments>, bool), SliceError> {
+    fn leaf(&self, square: &CellSquare, region: &Region) -> Result<(Option<ContourPiece>, bool), SliceError> {
         let segments = CellBlock::new(self.slicer, self.grid, square, region)?.segments(region)?;
-        let crossed = !segments.list.is_empty();
-        Ok((crossed.then(|| self.counted(segments)).transpose()?, crossed))
+        if segments.list.is_empty() {
+            return Ok((None, false));
+        }
+        Ok((Some((square.first, self.counted(segments)?)), true))
     }
 }
 
@@ -210,51 +258,93 @@ impl Slicer {
     /// If the field has two values at one point, or leaves a range of its own: a defect of jbt.
     pub fn contour(&self, rectangle: &Rectangle, detail: &Detail) -> Job<'_, Contour, SliceError> {
         let (rectangle, detail) = (*rectangle, *detail);
-        Job::new(move |hook| self.contour_hooked(&rectangle, &detail, hook))
+        Job::new(move |hook| self.contour_hooked(&self.lattice(&rectangle, detail.fineness)?, &detail, hook))
+    }
+
+    /// The contour over a lattice, as that of a [live contour](crate::LiveContour). Of the detail, the
+    /// fineness is not asked.
+    ///
+    /// # Errors
+    /// See [`SliceError`].
+    ///
+    /// # Panics
+    /// As [`contour`](Self::contour).
+    pub fn contour_over<'a>(
+        &'a self,
+        lattice: &'a ContourLattice,
+        detail: &Detail,
+    ) -> Job<'a, Contour, SliceError> {
+        let detail = *detail;
+        Job::new(move |hook| self.contour_hooked(lattice, &detail, hook))
+    }
+
+    /// The lattice of a contour in a rectangle of the plane.
+    ///
+    /// # Errors
+    /// A lattice that cannot be, or is beyond a limit.
+    pub fn lattice(&self, rectangle: &Rectangle, fineness: Fineness) -> Result<ContourLattice, SliceError> {
+        Ok(ContourLattice::covering(&self.local(rectangle)?, fineness)?)
+    }
+
+    /// The lattice with the same cells that covers a rectangle of the plane as well.
+    pub(crate) fn grown(
+        &self,
+        lattice: &ContourLattice,
+        rectangle: &Rectangle,
+    ) -> Result<ContourLattice, SliceError> {
+        Ok(lattice.grown(&self.local(rectangle)?)?)
     }
 
     fn contour_hooked(
         &self,
-        rectangle: &Rectangle,
+        lattice: &ContourLattice,
         detail: &Detail,
         hook: Hook<'_>,
     ) -> Result<Contour, SliceError> {
-        let block = detail.block.unwrap_or(8);
-        if !block.is_power_of_two() || block > MAX_BLOCK {
-            return Err(SliceError::Block { block });
-        }
-        let grid = Grid::corners(&self.local(rectangle)?, detail.fineness)?;
-        let cells = grid.points().map(|points| points - 1);
-        let plan = DivisionPlan {
-            cells: cells.map(|cells| cells as u32),
-            leaf: block as u32,
-            step: if detail.quadtree { 1 } else { 2 },
-            keep: detail.quadtree,
-        };
-        let work = Contouring { slicer: self, grid: &grid, vertices: AtomicU64::new(0) };
-        let divided = divide(&self.pruner, &work, plan, &Progress::new(hook, SOME))?;
-        let planes = self.attributes().map(|(_, width)| width).sum();
-        let cut_sides = cut_sides(&divided.pieces, cells);
+        let grid = Grid::corners(lattice);
+        let vertices = AtomicU64::new(0);
+        let work = Contouring { slicer: self, grid: &grid, leaf: detail.leaf()?, by_leaves: None, vertices };
+        let divided = work.run(detail, &Progress::new(hook, SOME))?;
         let squares = divided.squares.iter().map(|(square, depth, fate)| {
             let [low, high] = grid.bounds(square.first, square.end);
             DividedSquare { low, high, depth: *depth, fate: *fate }
         });
         let squares = squares.collect();
-        let linked = link::link(divided.pieces, planes);
-        let corner =
-            |last: bool| [0, 1].map(|axis| f64::from(grid.axes[axis][if last { cells[axis] } else { 0 }]));
-        Ok(Contour {
+        let pieces = divided.pieces.iter().map(|(_, segments)| segments);
+        let outline = self.outline(&grid)?;
+        Ok(Contour { levels: divided.levels, squares, ..self.linked(&grid, outline, pieces) })
+    }
+
+    /// The rectangle of a lattice.
+    fn outline(&self, grid: &Grid) -> Result<Rectangle, RectangleError> {
+        let corner = |end: fn(&Vec<f32>) -> Option<&f32>| {
+            grid.axes.each_ref().map(|axis| f64::from(*end(axis).expect("it has a cell")))
+        };
+        Rectangle::new(corner(|axis| axis.first()), corner(|axis| axis.last()))?.moved(self.origin())
+    }
+
+    /// The contour of all segments over a lattice.
+    fn linked<'a>(
+        &self,
+        grid: &Grid,
+        outline: Rectangle,
+        pieces: impl Iterator<Item = &'a Segments> + Clone,
+    ) -> Contour {
+        let cells = grid.points().map(|points| points - 1);
+        let cut_sides = cut_sides(pieces.clone(), cells);
+        let linked = link::link(pieces, self.attributes().map(|(_, width)| width).sum());
+        Contour {
             attributes: self.interleaved(&linked.attributes, linked.positions.len()),
             positions: linked.positions,
             loops: linked.loops,
             origin: self.origin(),
-            rectangle: Rectangle::new(corner(false), corner(true))?.moved(self.origin())?,
+            rectangle: outline,
             cell: grid.spacing,
             cells,
             cut_sides,
-            levels: divided.levels,
-            squares,
-        })
+            levels: Vec::new(),
+            squares: Vec::new(),
+        }
     }
 
     /// Attributes from their planes.
@@ -270,9 +360,9 @@ impl Slicer {
 }
 
 /// The sides of the lattice with a point inside: left, below, right, above.
-fn cut_sides(pieces: &[Segments], cells: [usize; 2]) -> [bool; 4] {
+fn cut_sides<'a>(pieces: impl Iterator<Item = &'a Segments>, cells: [usize; 2]) -> [bool; 4] {
     let mut sides = [false; 4];
-    for segment in pieces.iter().flat_map(|piece| &piece.list).filter(|segment| segment.border) {
+    for segment in pieces.flat_map(|piece| &piece.list).filter(|segment| segment.border) {
         let axis = segment.from.axis();
         let place = if axis == 0 { segment.from.column() } else { segment.from.row() };
         sides[if place == 0 { axis } else { 2 + axis }] |= place == 0 || place as usize == cells[axis] + 1;

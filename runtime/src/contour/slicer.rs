@@ -1,6 +1,7 @@
 //! A model that can be looked at in a plane, again and again.
 
 use jbt_model::check::CheckedTree;
+use jbt_model::diagnostic::Diagnostics;
 use jbt_model::query::{AnswerKind, Query};
 use thiserror::Error;
 
@@ -11,6 +12,7 @@ use crate::compiled::{Compiled, Need, PointScope};
 use crate::compiler::Compiler;
 use crate::counter::Counters;
 use crate::debug::brief_debug;
+use crate::divide::Edit;
 use crate::error::{Classified, CompileError, ErrorKind, EvalError};
 use crate::evaluator::Evaluator;
 use crate::kernel::Engine;
@@ -113,6 +115,9 @@ pub enum SliceError {
         /// What there is.
         names: Vec<String>,
     },
+    /// The model could not be compiled.
+    #[error(transparent)]
+    Compile(#[from] CompileError),
     /// The field could not be evaluated.
     #[error("the field cannot be evaluated: {0}")]
     Eval(#[from] EvalError),
@@ -132,9 +137,14 @@ impl Classified for SliceError {
             }
             Self::Rectangle(error) => error.kind(),
             Self::Lattice(error) => error.kind(),
+            Self::Compile(error) => error.kind(),
             Self::Eval(error) => error.kind(),
             Self::Cancelled => ErrorKind::Cancelled,
         }
+    }
+
+    fn diagnostics(&self) -> Option<&Diagnostics> {
+        if let Self::Compile(error) = self { error.diagnostics() } else { None }
     }
 }
 
@@ -289,6 +299,28 @@ impl Slicer {
             corner
         };
         Box3::new(corner(low), corner(high))
+    }
+
+    /// The part of the plane in a box; `None` if the plane is beside the box.
+    fn flat(&self, Box3 { low, high }: &Box3) -> Option<[[f32; 2]; 2]> {
+        let across = 3 - self.view.axes[0] - self.view.axes[1];
+        // A NaN meets everything.
+        let is_beside = low[across] > self.view.at || high[across] < self.view.at;
+        (!is_beside).then(|| [low, high].map(|corner| self.view.axes.map(|axis| corner[axis])))
+    }
+
+    /// The rectangles, in coordinates from the origin, in which the contour may differ from that of an
+    /// earlier model; `None` if that is anywhere.
+    pub(crate) fn edit(&self, before: &Self) -> Option<Vec<[[f32; 2]; 2]>> {
+        if self.iso.to_bits() != before.iso.to_bits() || self.origin != before.origin {
+            return None;
+        }
+        let (now, old) =
+            (self.full.as_ref().unwrap_or(&self.field), before.full.as_ref().unwrap_or(&before.field));
+        match now.edit(&self.pruner, (old, &before.pruner)) {
+            Edit::Boxes(boxes) => Some(boxes.iter().filter_map(|bounds| self.flat(bounds)).collect()),
+            Edit::Everywhere => None,
+        }
     }
 
     /// Evaluates points of the plane in a region.

@@ -25,6 +25,15 @@ impl Edit {
             Self::Everywhere => true,
         }
     }
+
+    /// The part of space in which either edit may make a difference.
+    pub(crate) fn and(self, other: Self) -> Self {
+        match (self, other) {
+            (Self::Boxes(boxes), Self::Boxes(others)) if boxes == others => Self::Boxes(boxes),
+            (Self::Boxes(boxes), Self::Boxes(others)) => Self::Boxes([boxes, others].concat()),
+            (Self::Everywhere, _) | (_, Self::Everywhere) => Self::Everywhere,
+        }
+    }
 }
 
 /// A division before an edit.

@@ -1,19 +1,20 @@
 //! The live mesh.
 
-use jbt_model::check::{CheckedModel, CheckedTree};
-use jbt_model::model::Model;
+use jbt_model::check::CheckedTree;
 
 use super::change::{BrickRanges, BrickUpdate, LiveChange};
+use super::model::{LastModel, ModelState};
 use crate::compiled::Compiled;
 use crate::compiler::Compiler;
 use crate::debug::brief_debug;
 use crate::divide::Edit;
 use crate::error::CompileError;
 use crate::job::{Hook, Job};
-use crate::mesh::local::{BrickChanges, BrickMesh, BrickPlace, Touched};
+use crate::mesh::local::{BrickChanges, BrickMesh, BrickPlace};
 use crate::mesh::{Lattice, Mesh, Options};
 use crate::polygonize::{Kernels, Polygonize, PolygonizeError};
 use crate::support::{NoBox, around};
+use crate::touched::Touched;
 
 /// A mesh that follows the edits of its model: after each of them it is the mesh of the edited model, made in
 /// time that grows with what has changed.
@@ -61,8 +62,7 @@ use crate::support::{NoBox, around};
 /// read as a whole.
 pub struct LiveMesh {
     settings: Polygonize,
-    /// The model and its check, if it was given as a model. It may be one that could not be meshed.
-    checked: Option<CheckedModel>,
+    model: LastModel,
     compiled: Compiled,
     kernels: Kernels,
     mesh: BrickMesh,
@@ -70,39 +70,13 @@ pub struct LiveMesh {
 
 brief_debug!(LiveMesh, "LiveMesh", this: bricks = this.mesh.len());
 
-/// A state of a model that a live mesh takes: a [`Model`], or its check.
-///
-/// A model whose tree shares most of its nodes with the model before is checked, and lowered, where it
-/// differs ([`CheckedModel`]). A check of a model says nothing about another one, so a [`CheckedTree`] is
-/// lowered as a whole, unless it was made of the present one by
-/// [parameters](CheckedTree::with_parameters).
-#[derive(Clone, Copy, Debug)]
-pub enum ModelState<'a> {
-    /// A model, which is to be checked.
-    Model(&'a Model),
-    /// A checked model.
-    Checked(&'a CheckedTree),
-}
-
-impl<'a> From<&'a Model> for ModelState<'a> {
-    fn from(model: &'a Model) -> Self {
-        Self::Model(model)
-    }
-}
-
-impl<'a> From<&'a CheckedTree> for ModelState<'a> {
-    fn from(tree: &'a CheckedTree) -> Self {
-        Self::Checked(tree)
-    }
-}
-
 /// An edited model, before its bricks are made.
 struct EditedModel {
     compiled: Compiled,
     kernels: Kernels,
     lattice: Lattice,
     options: Options,
-    touched: Option<Touched>,
+    touched: Option<Touched<3>>,
 }
 
 impl LiveMesh {
@@ -117,15 +91,9 @@ impl LiveMesh {
     ) -> Job<'a, Self, PolygonizeError> {
         let model = model.into();
         Job::new(move |hook| {
-            let compiler = compiler.clone().for_edits();
-            match model {
-                ModelState::Checked(tree) => Self::start(&compiler.compile(tree), settings, hook),
-                ModelState::Model(model) => {
-                    let checked = CheckedModel::new(model).map_err(CompileError::from)?;
-                    let live = Self::start(&compiler.compile(checked.tree()), settings, hook)?;
-                    Ok(Self { checked: Some(checked), ..live })
-                }
-            }
+            let mut last = LastModel::default();
+            let compiled = compiler.clone().for_edits().compile(&last.check(model)?);
+            Ok(Self { model: last, ..Self::start(&compiled, settings, hook)? })
         })
     }
 
@@ -144,7 +112,7 @@ impl LiveMesh {
         let options = settings.options(compiled.tree());
         let renewal = mesh.renewal(&kernels, &lattice, (&options, None), hook)?;
         mesh.commit(renewal);
-        Ok(Self { settings, checked: None, compiled: compiled.clone(), kernels, mesh })
+        Ok(Self { settings, model: LastModel::default(), compiled: compiled.clone(), kernels, mesh })
     }
 
     /// Sets parameters of the model: see [`CheckedTree::with_parameters`]. Parameters that are not named keep
@@ -172,24 +140,9 @@ impl LiveMesh {
     ) -> Job<'a, LiveChange, PolygonizeError> {
         let model = model.into();
         Job::new(move |hook| {
-            let tree = match model {
-                ModelState::Checked(tree) => tree.clone(),
-                ModelState::Model(model) => self.check(model)?,
-            };
+            let tree = self.model.check(model)?;
             self.follow(&tree, hook)
         })
-    }
-
-    /// The check of a model: of what differs from the last one.
-    fn check(&mut self, model: &Model) -> Result<CheckedTree, CompileError> {
-        let checked = match &mut self.checked {
-            Some(checked) => {
-                checked.edit(model)?;
-                checked
-            }
-            none => none.insert(CheckedModel::new(model)?),
-        };
-        Ok(checked.tree().clone())
     }
 
     fn follow(&mut self, tree: &CheckedTree, hook: Hook<'_>) -> Result<LiveChange, PolygonizeError> {

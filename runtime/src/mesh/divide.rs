@@ -22,9 +22,9 @@ use super::field::Field;
 use super::options::Options;
 use super::report::Sides;
 use super::stage::MeshStage;
-use super::touched::Touched;
 use crate::boxes::{ANYTHING, Box3, MAX_PARTS};
 use crate::progress::Progress;
+use crate::touched::Touched;
 
 /// The result of the division.
 pub(crate) struct BrickDivision<R> {
@@ -107,7 +107,7 @@ struct BrickDivider<'a, 'hook, F: Field> {
     field: &'a F,
     axes: &'a [Vec<f32>; 3],
     /// The boxes that are looked at; all, if there are none.
-    touched: Option<&'a Touched>,
+    touched: Option<&'a Touched<3>>,
     iso: f32,
     limit: usize,
     progress: &'a Progress<'hook>,
@@ -118,7 +118,7 @@ struct BrickDivider<'a, 'hook, F: Field> {
 pub(crate) fn divide<F: Field>(
     field: &F,
     axes: [Vec<f32>; 3],
-    (options, touched): (&Options, Option<&Touched>),
+    (options, touched): (&Options, Option<&Touched<3>>),
     limit: usize,
     progress: &Progress<'_>,
 ) -> Result<BrickDivision<F::Region>, MeshError<F::Error>> {

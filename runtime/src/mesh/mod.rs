@@ -55,7 +55,6 @@ mod settle;
 mod stage;
 mod surface;
 mod thin;
-mod touched;
 mod vertex;
 
 use jbt_ir::limits::MAX_BRICKS;

@@ -47,16 +47,7 @@ impl Kernels {
 
     /// Where the field or an attribute of this model may differ from those of an earlier one.
     pub(crate) fn edit(&self, before: &Self) -> Edit {
-        if !self.all.is_alike(&before.all) {
-            return Edit::Everywhere;
-        }
-        let tables = [before, self].map(|kernels| kernels.all.regional_tables());
-        let (field, all) = (self.pruner.edit(&before.pruner), self.pruner.edit_of(&before.pruner, tables));
-        match (field, all) {
-            (Edit::Boxes(field), Edit::Boxes(all)) if field == all => Edit::Boxes(all),
-            (Edit::Boxes(field), Edit::Boxes(all)) => Edit::Boxes([field, all].concat()),
-            (Edit::Everywhere, _) | (_, Edit::Everywhere) => Edit::Everywhere,
-        }
+        self.all.edit(&self.pruner, (&before.all, &before.pruner))
     }
 
     /// Distances that the field takes at a point, with all rows.

@@ -8,7 +8,7 @@ use crate::mesh::brick::{Bricks, NONE, direction, morton};
 use crate::mesh::crossing::CrossedCell;
 use crate::mesh::indexed::Mesh;
 use crate::mesh::lattice::Lattice;
-use crate::mesh::touched::Touched;
+use crate::touched::Touched;
 
 /// The place of a brick in units of bricks, counted from the lattice's anchor.
 pub(crate) type BrickPlace = [i32; 3];
@@ -70,8 +70,11 @@ impl BrickMesh {
     }
 
     /// The bricks of a lattice that boxes meet; `None` if that is best said as everywhere.
-    pub(crate) fn touched(&self, lattice: &Lattice, boxes: &[Box3]) -> Option<Touched> {
-        if self.edge == 0 { None } else { Touched::by(&lattice.axes(), self.edge, boxes) }
+    pub(crate) fn touched(&self, lattice: &Lattice, boxes: &[Box3]) -> Option<Touched<3>> {
+        if self.edge == 0 {
+            return None;
+        }
+        Touched::by(&lattice.axes(), self.edge, boxes.iter().map(|bounds| [bounds.low, bounds.high]))
     }
 
     /// The bricks of a lattice from its first brick to its anchor.

@@ -12,7 +12,7 @@ use crate::mesh::brick::{Bricks, morton, place};
 use crate::mesh::cell::default_sheets;
 use crate::mesh::crossing::{CrossedCell, UnflippedCells, flip};
 use crate::mesh::lattice::Lattice;
-use crate::mesh::touched::Touched;
+use crate::touched::Touched;
 
 /// What flips depend on.
 pub(super) struct FlipChain<'a> {
@@ -22,7 +22,7 @@ pub(super) struct FlipChain<'a> {
     /// The new bricks.
     pub(super) bricks: &'a Bricks,
     /// The places in which bricks are new, or no more.
-    pub(super) touched: &'a Touched,
+    pub(super) touched: &'a Touched<3>,
 }
 
 /// Cells of a brick, and those of them that have a low face which is pinched by default.

@@ -31,5 +31,3 @@ mod slots;
 
 pub(crate) use bricks::{BrickMesh, BrickPlace};
 pub(crate) use commit::BrickChanges;
-
-pub(crate) use super::touched::Touched;

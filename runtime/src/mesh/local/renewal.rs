@@ -14,10 +14,10 @@ use crate::mesh::indexed::Mesh;
 use crate::mesh::lattice::Lattice;
 use crate::mesh::options::Options;
 use crate::mesh::sample;
-use crate::mesh::touched::Touched;
 use crate::mesh::vertex;
 use crate::mesh::vertex::batch::VertexSource;
 use crate::progress::{EACH, Progress};
+use crate::touched::Touched;
 
 /// Bricks that were made anew, before they take the places of old ones.
 pub(crate) struct Renewal {
@@ -31,7 +31,7 @@ pub(crate) struct Renewal {
     /// Of the mesh, ascending.
     pub(super) doubtful: Vec<u32>,
     /// The bricks that may be made anew, in units of bricks from the first one; `None` for all.
-    pub(super) touched: Option<Touched>,
+    pub(super) touched: Option<Touched<3>>,
 }
 
 impl BrickMesh {
@@ -40,7 +40,7 @@ impl BrickMesh {
         &self,
         field: &F,
         lattice: &Lattice,
-        (options, touched): (&Options, Option<Touched>),
+        (options, touched): (&Options, Option<Touched<3>>),
         hook: Hook<'_>,
     ) -> Result<Renewal, MeshError<F::Error>> {
         options.check()?;
@@ -91,7 +91,7 @@ impl BrickMesh {
         &self,
         bricks: &Bricks,
         crossings: &Crossings,
-        touched: Option<&Touched>,
+        touched: Option<&Touched<3>>,
     ) -> Result<(), MeshError<E>> {
         let kept = if touched.is_some() { self.bricks.len() } else { 0 };
         if kept + bricks.len() > MAX_BRICKS {

@@ -1,4 +1,5 @@
-//! The boxes of a division that an edit touches: bricks, and every larger box that has one of them.
+//! The parts of a lattice that an edit touches: its smallest squares or bricks, and every larger one that has
+//! one of them.
 //!
 //! ```text
 //! +-------+-------+     x  bricks that are touched
@@ -11,15 +12,13 @@
 use jbt_ir::limits::MAX_RESOLUTION;
 use rustc_hash::FxHashSet;
 
-use crate::boxes::Box3;
-
-/// Bricks of a lattice, and the boxes around them.
+/// Bricks of a lattice with so many axes (squares, if there are two), and the boxes around them.
 #[derive(Clone)]
-pub(crate) struct Touched {
+pub(crate) struct Touched<const AXES: usize> {
     /// The edge of bricks, in cells.
     edge: usize,
     /// By the logarithm of a box's edge in bricks: the places of boxes, in units of their size.
-    levels: Vec<FxHashSet<[u32; 3]>>,
+    levels: Vec<FxHashSet<[u32; AXES]>>,
 }
 
 /// The most bricks that the boxes of an edit are followed to, one by one. Beyond, everything counts as
@@ -28,14 +27,19 @@ const MOST_TOUCHED: u64 = 1 << 18;
 /// Sizes of boxes: from bricks of one cell to the root of the largest lattice.
 const LEVELS: usize = MAX_RESOLUTION.ilog2() as usize + 1;
 
-impl Touched {
+impl<const AXES: usize> Touched<AXES> {
     /// No brick.
     pub(crate) fn new(edge: usize) -> Self {
         Self { edge, levels: vec![FxHashSet::default(); LEVELS] }
     }
 
-    /// The bricks of a lattice that meet any of these boxes; `None` if they are very many.
-    pub(crate) fn by(axes: &[Vec<f32>; 3], edge: usize, boxes: &[Box3]) -> Option<Self> {
+    /// The bricks of a lattice that meet any of these boxes, each from a corner to another one; `None` if
+    /// they are very many.
+    pub(crate) fn by(
+        axes: &[Vec<f32>; AXES],
+        edge: usize,
+        boxes: impl IntoIterator<Item = [[f32; AXES]; 2]>,
+    ) -> Option<Self> {
         let mut touched = Self::new(edge);
         let mut work = 0_u64;
         for bounds in boxes {
@@ -46,18 +50,24 @@ impl Touched {
             if work > MOST_TOUCHED {
                 return None;
             }
-            let [xs, ys, zs] = spans.map(|[low, high]| low..high);
-            let places = zs.flat_map(|z| {
-                let xs = xs.clone();
-                ys.clone().flat_map(move |y| xs.clone().map(move |x| [x, y, z]))
-            });
-            places.for_each(|place| touched.add(place));
+            let mut place = spans.map(|[low, _]| low);
+            for _ in 0..count {
+                touched.add(place);
+                // The next place, as a counter with a digit for each axis.
+                for (digit, [low, high]) in place.iter_mut().zip(spans) {
+                    *digit += 1;
+                    if *digit < high {
+                        break;
+                    }
+                    *digit = low;
+                }
+            }
         }
         Some(touched)
     }
 
     /// Adds a brick by its place, in units of bricks.
-    pub(crate) fn add(&mut self, place: [u32; 3]) {
+    pub(crate) fn add(&mut self, place: [u32; AXES]) {
         let mut place = place;
         for level in &mut self.levels {
             // Whoever is known is known with everything around it.
@@ -74,18 +84,18 @@ impl Touched {
     }
 
     /// The bricks.
-    pub(crate) fn bricks(&self) -> impl Iterator<Item = [u32; 3]> {
+    pub(crate) fn bricks(&self) -> impl Iterator<Item = [u32; AXES]> {
         self.levels[0].iter().copied()
     }
 
     /// Whether a brick is touched.
-    pub(crate) fn has_brick(&self, place: [u32; 3]) -> bool {
+    pub(crate) fn has_brick(&self, place: [u32; AXES]) -> bool {
         self.levels[0].contains(&place)
     }
 
     /// Whether any brick of a box of the division is touched. The box begins at a cell and has an edge of so
     /// many cells: of a brick, or of a power of two more.
-    pub(crate) fn has(&self, first: [usize; 3], size: usize) -> bool {
+    pub(crate) fn has(&self, first: [usize; AXES], size: usize) -> bool {
         let level = (size / self.edge).ilog2() as usize;
         self.levels[level.min(LEVELS - 1)].contains(&first.map(|index| (index / size) as u32))
     }
@@ -93,12 +103,16 @@ impl Touched {
 
 /// The bricks that a box meets, along each axis: from one to before another. `None` if it is beside the
 /// lattice.
-fn spans(axes: &[Vec<f32>; 3], edge: usize, bounds: &Box3) -> Option<[[u32; 2]; 3]> {
-    let mut spans = [[0; 2]; 3];
+fn spans<const AXES: usize>(
+    axes: &[Vec<f32>; AXES],
+    edge: usize,
+    [low, high]: [[f32; AXES]; 2],
+) -> Option<[[u32; 2]; AXES]> {
+    let mut spans = [[0; 2]; AXES];
     for (axis, span) in spans.iter_mut().enumerate() {
         let coordinates = &axes[axis];
         let cells = coordinates.len() - 1;
-        let (low, high) = (bounds.low[axis], bounds.high[axis]);
+        let (low, high) = (low[axis], high[axis]);
         // Bricks are closed: one that ends where the box begins is met. A NaN meets everything.
         if coordinates[0] > high || coordinates[cells] < low {
             return None;
@@ -112,8 +126,8 @@ fn spans(axes: &[Vec<f32>; 3], edge: usize, bounds: &Box3) -> Option<[[u32; 2]; 
 
 #[cfg(test)]
 mod tests {
-    use super::super::brick::box_of;
     use super::*;
+    use crate::boxes::Box3;
 
     /// Compared with the boxes of all bricks.
     #[test]
@@ -126,13 +140,15 @@ mod tests {
             let side = |random: &mut fastrand::Rng| 0.25 * random.i32(-20..60) as f32;
             let low: [f32; 3] = std::array::from_fn(|_| side(&mut random));
             let bounds = Box3::new(low, low.map(|low| low + 0.25 * random.u32(0..12) as f32));
-            let touched = Touched::by(&axes, edge, &[bounds]).unwrap();
+            let touched = Touched::by(&axes, edge, [[bounds.low, bounds.high]]).unwrap();
             let bricks = axes.each_ref().map(|axis| (axis.len() - 1).div_ceil(edge));
             let mut any = false;
             for index in 0..bricks.iter().product::<usize>() {
                 let place = [index % bricks[0], index / bricks[0] % bricks[1], index / bricks[0] / bricks[1]];
                 let first = place.map(|index| index * edge);
-                let meets = box_of(&axes, first, first.map(|index| index + edge)).meets(&bounds);
+                let corner = |of: &dyn Fn(usize) -> usize| std::array::from_fn(|axis| axes[axis][of(axis)]);
+                let end = |axis: usize| (first[axis] + edge).min(axes[axis].len() - 1);
+                let meets = Box3::new(corner(&|axis| first[axis]), corner(&end)).meets(&bounds);
                 assert_eq!(touched.has_brick(place.map(|index| index as u32)), meets, "{place:?} {bounds:?}");
                 assert!(
                     !meets
@@ -147,7 +163,7 @@ mod tests {
             Touched::by(
                 &[0; 3].map(|_| (0..=4096).map(|i| i as f32).collect()),
                 8,
-                &[Box3::new([0.0; 3], [4096.0; 3])]
+                [[[0.0; 3], [4096.0; 3]]]
             )
             .is_none()
         );

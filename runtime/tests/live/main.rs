@@ -1,0 +1,5 @@
+//! Meshes and contours that follow edits.
+
+mod contour;
+mod mesh;
+mod scene;
