@@ -390,6 +390,14 @@ impl SheetEdges {
     pub(crate) fn have_quad(self, sides: u8) -> bool {
         self.mask() & inner_edges(sides) != 0
     }
+
+    /// Whether the mesh has a rim in a cell that touches these sides of the lattice. The edges of a sheet are
+    /// a cycle, of which each two in a row share an edge of the mesh: where one has a quad and the next one
+    /// has none, that edge has triangles on one side alone.
+    #[inline(always)]
+    pub(crate) fn have_rim(self, sides: u8) -> bool {
+        self.have_quad(sides) && self.mask() & !inner_edges(sides) != 0
+    }
 }
 
 /// The edges of the sheets of every case without flipped faces.

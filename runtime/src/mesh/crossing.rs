@@ -9,7 +9,7 @@
 use crate::parallel::*;
 
 use super::brick::{Bricks, NONE, cell_sides, direction, number, place, split, starts};
-use super::cell::{default_edges, default_sheets, sheets, sheets_with_quads};
+use super::cell::{SheetEdges, default_edges, default_sheets, edges, sheets};
 use super::report::Sides;
 use super::sample::BrickSamples;
 
@@ -42,6 +42,8 @@ pub(crate) struct Crossings {
     pub(crate) flipped_faces: u64,
     /// The sides of the lattice with a point inside.
     pub(crate) cut: Sides,
+    /// Whether the mesh has a rim, at sides of the lattice. Otherwise it is closed.
+    pub(crate) is_open: bool,
 }
 
 impl Crossings {
@@ -91,8 +93,11 @@ impl UnflippedCells {
     /// Numbers the vertices, once faces are flipped.
     pub(crate) fn numbered(self, bricks: &Bricks, flipped_faces: u64) -> Crossings {
         let Self { mut cells, corners, starts, suspects: _, cut } = self;
-        let (vertices, quads) = number_vertices(bricks, &starts, &mut cells);
-        Crossings { cells, corners, starts, vertices, quads, flipped_faces, cut }
+        let counts = number_vertices(bricks, &starts, &mut cells);
+        let vertices = self::starts(counts.iter().map(|count| count.vertices as usize));
+        let quads = self::starts(counts.iter().map(|count| count.quads));
+        let is_open = counts.iter().any(|count| count.is_open);
+        Crossings { cells, corners, starts, vertices, quads, flipped_faces, cut, is_open }
     }
 }
 
@@ -346,13 +351,21 @@ fn below(
     found.ok().map(|index| range.start + index)
 }
 
-/// Numbers the vertices of each brick in the order of its cells. Returns where the vertices and the quads of
-/// each brick begin.
+/// What a brick has.
+#[derive(Clone, Copy, Default)]
+struct BrickCounts {
+    vertices: u32,
+    quads: usize,
+    /// Whether the mesh has a rim here.
+    is_open: bool,
+}
+
+/// Numbers the vertices of each brick in the order of its cells. Returns what each brick has.
 fn number_vertices(
     bricks: &Bricks,
     starts_of_cells: &[usize],
     cells: &mut [CrossedCell],
-) -> (Vec<usize>, Vec<usize>) {
+) -> Vec<BrickCounts> {
     let group = bricks.group();
     let groups = split(cells, starts_of_cells, group, 1);
     let counts = groups.into_par_iter().enumerate().flat_map_iter(|(index, mut cells)| {
@@ -364,8 +377,7 @@ fn number_vertices(
             number_brick(bricks, brick, mine)
         })
     });
-    let (vertices, quads): (Vec<usize>, Vec<usize>) = counts.unzip();
-    (starts(vertices.into_iter()), starts(quads.into_iter()))
+    counts.collect()
 }
 
 /// The counts of a cell without flipped faces inside the lattice: sheets, and crossed edges at its low
@@ -390,25 +402,30 @@ static COUNTS: [CellCounts; 256] = {
 };
 
 /// Numbers the vertices of a brick, and counts them and the quads.
-fn number_brick(bricks: &Bricks, brick: usize, cells: &mut [CrossedCell]) -> (usize, usize) {
+fn number_brick(bricks: &Bricks, brick: usize, cells: &mut [CrossedCell]) -> BrickCounts {
     let (sides, extent) = (bricks.sides(brick), bricks.extent(brick));
-    let (mut vertices, mut quads) = (0, 0);
+    let mut counts = BrickCounts::default();
     for cell in cells {
-        cell.vertex = vertices;
+        cell.vertex = counts.vertices;
         if sides == 0 && cell.flips == 0 {
-            let CellCounts { sheets, quads: more } = COUNTS[usize::from(cell.signs)];
-            (vertices, quads) = (vertices + u32::from(sheets), quads + usize::from(more));
+            let CellCounts { sheets, quads } = COUNTS[usize::from(cell.signs)];
+            counts.vertices += u32::from(sheets);
+            counts.quads += usize::from(quads);
             continue;
         }
         let differs = |corner: u8| usize::from((cell.signs ^ cell.signs >> corner) & 1);
         let sides = cell_sides(sides, extent, bricks.at(cell.number).place());
-        vertices += if cell.flips == 0 {
-            default_edges(cell.signs).iter().filter(|sheet| sheet.have_quad(sides)).count() as u32
-        } else {
-            sheets_with_quads(cell.signs, cell.flips, sides).count()
+        let mut count = |sheets: &[SheetEdges]| {
+            counts.vertices += sheets.iter().filter(|sheet| sheet.have_quad(sides)).count() as u32;
+            counts.is_open |= sheets.iter().any(|sheet| sheet.have_rim(sides));
         };
+        if cell.flips == 0 {
+            count(default_edges(cell.signs))
+        } else {
+            count(&edges(cell.signs, cell.flips))
+        }
         let [x, y, z] = [0, 2, 4].map(|side| usize::from(sides >> side & 1 == 0));
-        quads += differs(1) * y * z + differs(2) * z * x + differs(4) * x * y;
+        counts.quads += differs(1) * y * z + differs(2) * z * x + differs(4) * x * y;
     }
-    (vertices as usize, quads)
+    counts
 }

@@ -115,12 +115,10 @@ pub(crate) fn extract_hooked<F: Field>(
         report.thin = Some(thin::find(field, &division, (&crossings, &mesh), options.iso, &progress)?);
     }
     drop((division, crossings));
-    // Where no side of the lattice cuts the body, the mesh is closed by construction.
-    report.closed = if options.verify || report.cut_sides.any() {
-        is_closed(mesh.positions.len(), &mesh.triangles)
-    } else {
-        true
-    };
+    // Otherwise it is known by construction.
+    if options.verify {
+        report.closed = is_closed(mesh.positions.len(), &mesh.triangles);
+    }
     progress.finish()?;
     Ok((mesh, report))
 }
@@ -158,7 +156,7 @@ fn polygonize<F: Field>(
         crowded: vertex::is_crowded(&bricks.axes),
         crossing_cells: crossings.cells.len() as u64,
         flipped_faces: crossings.flipped_faces,
-        closed: false,
+        closed: !crossings.is_open,
         thin: None,
     };
     report.cut_sides.add(boxes.cut);

@@ -18,8 +18,8 @@ pub struct Options {
     /// [`MAX_BRICK`]. Small ones waste fewer points far from the surface, large ones fewer calls. It changes
     /// what is evaluated, but no bit of the mesh. `None`: 8, or 4 where a point takes long.
     pub brick: Option<usize>,
-    /// Whether to check every edge of the mesh to find out whether it is closed. Where no side of the lattice
-    /// cuts the body, the mesh is closed by construction.
+    /// Whether to look at every edge of the mesh to find out whether it is closed. Without that, it follows
+    /// from the cells at the sides of the lattice.
     pub verify: bool,
     /// Whether to search for parts that are thinner than a cell: see
     /// [`MeshReport::thin`](super::MeshReport::thin). The search needs a field that knows ranges of boxes,

@@ -50,8 +50,8 @@ impl fmt::Display for Sides {
 #[non_exhaustive]
 pub struct MeshReport {
     /// Whether every edge has exactly two triangles, in opposite directions. A mesh without triangles is
-    /// closed. Every edge is looked at if [`Options::verify`](super::Options::verify) is set, or if a side of
-    /// the lattice cuts the body; otherwise the mesh is closed by construction.
+    /// closed. Every edge is looked at if [`Options::verify`](super::Options::verify) is set; otherwise it
+    /// follows from the cells at the sides of the lattice: elsewhere a mesh is closed by construction.
     pub closed: bool,
     /// The sides of the lattice that cut the body: some lattice point on that side is inside. Without any,
     /// the mesh is closed.

@@ -1,6 +1,6 @@
 //! Closed and manifold for any signs whatever, and the same bits however the work is divided.
 
-use jbt::mesh::{Lattice, Mesh, MeshReport, Options, check_manifold, extract};
+use jbt::mesh::{Lattice, Mesh, MeshReport, Options, check_manifold, extract, is_closed};
 
 use crate::fields::{Closed, Sample, cubic, hash, signs, sphere, torus, union};
 
@@ -76,6 +76,24 @@ fn noise_is_closed_and_manifold() {
         assert!(mesh.triangles.len() > 1000);
     }
     assert!(flipped > 1000, "{flipped}");
+}
+
+/// By construction, as by looking at every edge.
+#[test]
+fn a_closed_mesh_is_told_from_an_open_one() {
+    let mut seen = [[0; 2]; 2];
+    for seed in 0..4000 {
+        let density = [3, 10, 50, 97][seed as usize % 4];
+        let cells = [0, 1, 2].map(|axis| 1 + (hash(seed, [axis, 7, 7]) % 7) as usize);
+        let lattice = Lattice::new([0.0; 3], 1.0, cells).unwrap();
+        let field = Closed(signs(|p| hash(seed, p) % 100 < density));
+        let options = Options { verify: false, brick: Some(2 << (seed % 3)), ..Options::default() };
+        let (mesh, report) = extract(&field, &lattice, &options).run().unwrap();
+        assert_eq!(report.closed, is_closed(mesh.positions.len(), &mesh.triangles), "seed {seed}");
+        let is_some = !mesh.triangles.is_empty() && report.cut_sides.any();
+        seen[usize::from(is_some)][usize::from(report.closed)] += 1;
+    }
+    assert!(seen[1].into_iter().all(|count| count > 50) && seen[0][1] > 50, "{seen:?}");
 }
 
 #[test]

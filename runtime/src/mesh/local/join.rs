@@ -46,6 +46,7 @@ impl BrickMesh {
             quads: vec![0],
             flipped_faces: 0,
             cut: Sides::default(),
+            is_open: false,
         };
         let (mut positions, mut names, mut quads) = (Vec::new(), Vec::new(), 0);
         for (_, place) in &join.bricks {
