@@ -420,9 +420,9 @@ fn number_brick(bricks: &Bricks, brick: usize, cells: &mut [CrossedCell]) -> Bri
             counts.is_open |= sheets.iter().any(|sheet| sheet.have_rim(sides));
         };
         if cell.flips == 0 {
-            count(default_edges(cell.signs))
+            count(default_edges(cell.signs));
         } else {
-            count(&edges(cell.signs, cell.flips))
+            count(&edges(cell.signs, cell.flips));
         }
         let [x, y, z] = [0, 2, 4].map(|side| usize::from(sides >> side & 1 == 0));
         counts.quads += differs(1) * y * z + differs(2) * z * x + differs(4) * x * y;
