@@ -41,6 +41,11 @@ pub struct Arguments {
     /// Print no summaries, warnings or progress: errors alone.
     #[arg(long, short, global = true)]
     pub quiet: bool,
+    /// Write a timeline of the work to this file, as trace events (JSON) that Perfetto and Chrome show
+    ///
+    /// Each thread has a row, with a bar for each stage of the work and for each part of a stage.
+    #[arg(long, value_name = "FILE.json", global = true)]
+    pub trace: Option<PathBuf>,
 }
 
 const EXIT_CODES: &str = "\

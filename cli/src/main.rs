@@ -7,6 +7,7 @@
 //! | [`mesh`], [`render`], [`contour`], [`sample`], [`eval`], [`show`], [`count`], [`stats`], [`check`], [`manual`] | one command each |
 //! | [`formats`] | the kinds of files that each command writes |
 //! | [`output`], [`progress`], [`logger`] | what comes out, and where |
+//! | [`timeline`] | which thread did what when |
 //! | [`failure`], [`message`] | what went wrong, and the exit code for it |
 
 mod arguments;
@@ -32,6 +33,7 @@ mod stages;
 mod standard;
 mod stats;
 mod threads;
+mod timeline;
 
 use std::process::ExitCode;
 use std::time::Instant;
@@ -50,7 +52,12 @@ fn main() -> ExitCode {
     };
     let quiet = arguments.quiet;
     logger::install(quiet);
-    match run(&arguments.command, quiet, start) {
+    let work = || run(&arguments.command, quiet, start);
+    let done = match &arguments.trace {
+        Some(path) => timeline::record(path, work),
+        None => work(),
+    };
+    match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             output::report(&failure);

@@ -27,6 +27,7 @@ use crate::error::CompileError;
 use crate::kernel::{Engine, Kernel, Purpose};
 use crate::program::{AnswerProgram, ModelProgram};
 use crate::prune::program::RangeProgram;
+use crate::span::span;
 
 use patch::PresentPrograms;
 
@@ -365,6 +366,7 @@ impl Compiled {
         lowering: Option<&Lowering<'t>>,
         ask: impl FnOnce(&Lowering<'t>) -> Result<T, Vec<Diagnostic>>,
     ) -> Result<T, CompileError> {
+        span!("lower");
         let answer = match lowering {
             Some(lowering) => ask(lowering),
             None => ask(&Lowering::new(self.tree())),

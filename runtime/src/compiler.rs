@@ -9,6 +9,7 @@ use jbt_model::check::CheckedTree;
 
 use crate::error::CompileError;
 use crate::kernel::{BoundKernel, Engine, Kernel, Purpose, Wish, optimise, optimise_straight, straighten};
+use crate::span::span;
 
 /// Makes [compiled models](crate::Compiled), and remembers the code of every shape that it has met: models of
 /// one shape share it.
@@ -137,6 +138,7 @@ impl Compiler {
         purpose: Purpose,
         present: Option<&Arc<Kernel>>,
     ) -> Option<Arc<Kernel>> {
+        span!("straighten");
         let fits = |kernel: &Kernel| {
             let straight = kernel.straight.as_ref();
             kernel.lowered == *function && straight.is_some_and(|straight| straight.tables(tables).is_some())
@@ -176,6 +178,7 @@ impl Compiler {
         if let Some(kernel) = present.or_else(|| self.find(purpose, fits)) {
             return Ok(kernel);
         }
+        span!("code");
         let verified = optimise(function.clone(), purpose, &mut |_, _| {})?;
         let kernel = Arc::new(Kernel::new(function, None, verified, self.wish)?);
         self.remember(purpose, &kernel);

@@ -25,6 +25,7 @@ use crate::kernel::{BoundKernel, Engine};
 use crate::points::{AsPoints, Points};
 use crate::program::AnswerProgram;
 use crate::prune::{Pruner, Region};
+use crate::span::span;
 
 impl Compiler {
     /// An evaluator for a model and a query, of which nothing else is asked: see [`Compiled::evaluator`].
@@ -270,6 +271,7 @@ impl Evaluator {
         mut count: usize,
         mut answers: Vec<&mut [f32]>,
     ) -> Result<(), EvalError> {
+        span!("points");
         let moves = points.origin() != self.origin();
         if let Some(planes) = points.planes().filter(|_| !moves) {
             return self.eval_planes(planes.map(|plane| &plane[start..][..count]), &mut answers);

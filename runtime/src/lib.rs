@@ -64,6 +64,7 @@
 //! | `levels` (default) | loops of the mesher in AVX2 where the CPU has it, with the same bits |
 //! | `export` (default) | files: meshes, contours, pictures, atomic replacement |
 //! | `listing` | machine code as text |
+//! | `trace` | stages of long work as spans of the crate `tracing`, for timelines |
 //! | `glam` | vectors and affine maps of glam 0.34 wherever numbers and points go |
 //! | `mint` | the same for mint 0.5, for any other library of vectors |
 //! | `serde` | meshes, points, samples, settings and reports can be written, and read where nothing can be wrong with them |
@@ -144,6 +145,7 @@ pub mod render;
 pub mod sample;
 mod scene;
 pub mod solid;
+mod span;
 pub mod srgb;
 pub mod statistics;
 mod support;

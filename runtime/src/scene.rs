@@ -1,5 +1,6 @@
 //! Scene files: a path or bytes become a model, by the ending of the name.
 
+use crate::span::span;
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
@@ -163,6 +164,7 @@ impl Scene {
     }
 
     fn read(name: &str, bytes: &[u8], options: &Options) -> Result<Self, Diagnostics> {
+        span!("read");
         let format = SceneFormat::of_name(name)?.unwrap_or_else(|| SceneFormat::of_content(bytes));
         if bytes.len() > MAX_SCENE_BYTES {
             return Err(too_large(name));
@@ -191,6 +193,7 @@ impl Scene {
     /// # Errors
     /// Those of [`Model::check`], with the places in the file.
     pub fn check(&self) -> Result<CheckedTree, Diagnostics> {
+        span!("check");
         self.model.check()
     }
 }

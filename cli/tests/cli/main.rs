@@ -9,3 +9,4 @@ mod hostile;
 mod manual;
 mod outputs;
 mod render;
+mod timeline;

@@ -24,6 +24,7 @@ use crate::picture::Picture;
 use crate::polygonize::Fineness;
 use crate::progress::{Progress, SOME};
 use crate::prune::Region;
+use crate::span::span;
 
 /// The largest [`ImageDetail::samples`].
 pub const MAX_SAMPLES: usize = 8;
@@ -146,6 +147,7 @@ impl<'a> Canvas<'a> {
     }
 
     fn raster<T: Copy>(&self, divided: &Divided<RasterTile<T>>, value: T) -> Raster<T> {
+        span!("raster");
         let [width, height] = self.pixels();
         let mut raster = Raster::new(width, height, value);
         divided.pieces.iter().for_each(|tile| raster.put(tile));

@@ -12,6 +12,7 @@
 //! ```
 
 use crate::parallel::*;
+use crate::span::span;
 
 use super::cells::{ContourSegment, EdgeKey, Segments};
 
@@ -58,6 +59,7 @@ pub(super) struct Linked {
 /// Links all segments. Panics if they are no closed loops: the field was on both sides of the iso-value at
 /// one point.
 pub(super) fn link<'a>(pieces: impl Iterator<Item = &'a Segments> + Clone, planes: usize) -> Linked {
+    span!("loops");
     let mut segments: Vec<ContourSegment> =
         Vec::with_capacity(pieces.clone().map(|piece| piece.list.len()).sum());
     let mut attributes = vec![Vec::with_capacity(segments.capacity()); planes];

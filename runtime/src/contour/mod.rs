@@ -76,6 +76,7 @@ use crate::mesh::Attribute;
 use crate::polygonize::Fineness;
 use crate::progress::{Progress, SOME};
 use crate::prune::Region;
+use crate::span::span;
 use crate::touched::Touched;
 
 /// The largest [`Detail::block`].
@@ -240,6 +241,7 @@ impl SquareWork for Contouring<'_> {
     }
 
     fn leaf(&self, square: &CellSquare, region: &Region) -> Result<(Option<ContourPiece>, bool), SliceError> {
+        span!("square");
         let segments = CellBlock::new(self.slicer, self.grid, square, region)?.segments(region)?;
         if segments.list.is_empty() {
             return Ok((None, false));

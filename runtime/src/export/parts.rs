@@ -8,6 +8,7 @@ use thiserror::Error;
 use crate::parallel::*;
 
 use crate::mesh::{Attribute, Mesh};
+use crate::span::span;
 
 /// Why a writer stopped.
 #[derive(Debug, Error)]
@@ -95,6 +96,7 @@ pub(super) fn write_items(
     bytes: impl Fn(usize, &mut Vec<u8>) -> io::Result<()> + Sync,
 ) -> io::Result<()> {
     let block = |first: usize| {
+        span!("bytes");
         let mut block = Vec::new();
         (first..count.min(first + BLOCK)).try_for_each(|item| bytes(item, &mut block))?;
         Ok(block)

@@ -4,6 +4,7 @@
 use std::io::{self, Write};
 
 use crate::picture::Picture;
+use crate::span::span;
 
 /// How much trouble a file of a picture takes.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -29,6 +30,7 @@ pub fn write_png(picture: &Picture, out: &mut dyn Write) -> io::Result<()> {
 /// # Errors
 /// Those of the writer.
 pub fn write_png_with(picture: &Picture, effort: PngEffort, out: &mut dyn Write) -> io::Result<()> {
+    span!("bytes");
     let opaque = picture.pixels().iter().all(|pixel| pixel[3] == u8::MAX);
     let mut encoder = png::Encoder::new(out, picture.width(), picture.height());
     encoder.set_color(if opaque { png::ColorType::Rgb } else { png::ColorType::Rgba });

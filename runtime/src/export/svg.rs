@@ -8,6 +8,7 @@ use std::io::{self, Write};
 
 use crate::contour::{Contour, Fate, Loop};
 use crate::mesh::Attribute;
+use crate::span::span;
 
 /// What lines or areas are painted with.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -60,6 +61,7 @@ impl Default for Style {
 /// Those of the writer; an attribute that the contour does not have ([`io::ErrorKind::InvalidInput`]), before
 /// anything is written.
 pub fn write_svg(contour: &Contour, style: &Style, out: &mut dyn Write) -> io::Result<()> {
+    span!("bytes");
     let [stroke, fill] = [&style.stroke, &style.fill].map(|paint| resolve(contour, paint));
     let (stroke, fill) = (stroke?, fill?);
     let ([left, low], sides) = (contour.rectangle.low(), contour.rectangle.sides());

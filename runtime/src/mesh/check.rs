@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use crate::parallel::*;
+use crate::span::span;
 use thiserror::Error;
 
 /// What keeps a mesh from being a closed manifold.
@@ -120,6 +121,7 @@ impl DirectedEdges {
 ///
 /// Each thread looks at the edges whose lower vertex is in its part of the vertices.
 pub fn is_closed(vertices: usize, triangles: &[[u32; 3]]) -> bool {
+    span!("closed");
     let part = vertices.div_ceil(thread_count().clamp(1, MAX_SPLIT)).max(1);
     let parts: Vec<Range<usize>> =
         (0..vertices.max(1)).step_by(part).map(|first| first..vertices.min(first + part)).collect();

@@ -7,6 +7,7 @@
 //! such faces are rare.
 
 use crate::parallel::*;
+use crate::span::span;
 
 use super::brick::{Bricks, NONE, cell_sides, direction, number, place, split, starts};
 use super::cell::{SheetEdges, default_edges, default_sheets, edges, sheets};
@@ -92,6 +93,7 @@ pub(crate) struct UnflippedCells {
 impl UnflippedCells {
     /// Numbers the vertices, once faces are flipped.
     pub(crate) fn numbered(self, bricks: &Bricks, flipped_faces: u64) -> Crossings {
+        span!("number");
         let Self { mut cells, corners, starts, suspects: _, cut } = self;
         let counts = number_vertices(bricks, &starts, &mut cells);
         let vertices = self::starts(counts.iter().map(|count| count.vertices as usize));
@@ -103,11 +105,13 @@ impl UnflippedCells {
 
 /// Finds the crossing cells.
 pub(crate) fn look(bricks: &Bricks, samples: &BrickSamples, iso: f32) -> UnflippedCells {
+    span!("cross");
     let group = bricks.group();
     let groups = bricks.len().div_ceil(group);
     let found = (0..groups).into_par_iter().map_init(
         || Signs::new(bricks),
         |signs, index| {
+            span!("cells of some bricks");
             let mut found = FoundCells::with_room(group * bricks.edge.pow(3) / 4);
             for brick in index * group..bricks.len().min((index + 1) * group) {
                 samples.gather(bricks, brick, &mut signs.values);
@@ -302,6 +306,7 @@ pub(crate) fn flip(
     cells: &mut [CrossedCell],
     suspects: &[(usize, usize)],
 ) -> u64 {
+    span!("flip");
     let mut count = 0;
     for &(brick, upper) in suspects {
         for axis in 0..3 {

@@ -24,6 +24,7 @@ use super::report::Sides;
 use super::stage::MeshStage;
 use crate::boxes::{ANYTHING, Box3, MAX_PARTS};
 use crate::progress::Progress;
+use crate::span::span;
 use crate::touched::Touched;
 
 /// The result of the division.
@@ -122,6 +123,7 @@ pub(crate) fn divide<F: Field>(
     limit: usize,
     progress: &Progress<'_>,
 ) -> Result<BrickDivision<F::Region>, MeshError<F::Error>> {
+    span!("divide");
     let mut edge = options.brick.unwrap_or(DEFAULT_BRICK);
     let divider = BrickDivider { field, axes: &axes, touched, iso: options.iso, limit, progress };
     let most = axes.iter().map(|axis| axis.len() - 1).fold(1, usize::max);
@@ -218,6 +220,7 @@ impl<F: Field> BrickDivider<'_, '_, F> {
         regions: &[F::Region],
         size: usize,
     ) -> Result<BoxChildren<F::Region>, MeshError<F::Error>> {
+        span!("boxes");
         let mut children = BoxChildren {
             masks: Vec::with_capacity(places.len()),
             regions: Vec::with_capacity(4 * places.len()),

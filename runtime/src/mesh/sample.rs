@@ -24,6 +24,7 @@ use super::error::MeshError;
 use super::field::Field;
 use super::stage::MeshStage;
 use crate::progress::Progress;
+use crate::span::span;
 
 /// Marks a class of points that a brick does not own.
 const FOREIGN: u16 = u16::MAX;
@@ -139,6 +140,7 @@ pub(crate) fn sample<F: Field>(
     regions: &[F::Region],
     progress: &Progress<'_>,
 ) -> Result<BrickSamples, MeshError<F::Error>> {
+    span!("sample");
     let (rims, counts): (Vec<[u16; 27]>, Vec<usize>) =
         (0..bricks.len()).into_par_iter().with_min_len(64).map(|brick| rim(bricks, brick)).unzip();
     let starts = starts(counts.into_iter());
@@ -150,6 +152,7 @@ pub(crate) fn sample<F: Field>(
     groups.into_par_iter().enumerate().try_for_each_init(
         BrickPoints::default,
         |points, (index, values)| {
+            span!("samples of some bricks");
             let first = index * group;
             for brick in first..bricks.len().min(first + group) {
                 let mine = starts[brick] - starts[first]..starts[brick + 1] - starts[first];

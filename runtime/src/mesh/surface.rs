@@ -5,6 +5,7 @@
 //! each low side, filled from those bricks.
 
 use crate::parallel::*;
+use crate::span::span;
 
 use super::brick::{Bricks, NONE, cell_sides, direction, number, split};
 use super::cell::{EDGE_CORNERS, SheetNumbers, default_numbers, sheets_with_quads};
@@ -13,12 +14,14 @@ use super::indexed::Mesh;
 
 /// The triangles of all quads, in the order of the cells that own them.
 pub(crate) fn triangles(bricks: &Bricks, crossings: &Crossings, positions: &[[f32; 3]]) -> Vec<[u32; 3]> {
+    span!("triangles");
     let group = bricks.group();
     let mut triangles = vec![[0; 3]; 2 * crossings.quad_count()];
     let groups = split(&mut triangles, &crossings.quads, group, 2);
     groups.into_par_iter().enumerate().for_each_init(
         || Around::new(bricks),
         |around, (index, triangles)| {
+            span!("triangles of some bricks");
             let mut rest = triangles.as_chunks_mut().0;
             let first = index * group;
             for brick in first..bricks.len().min(first + group) {
@@ -199,6 +202,7 @@ fn halves([p, q, r, s]: [u32; 4], positions: &[[f32; 3]]) -> [[u32; 3]; 2] {
 
 /// Repairs the normals of some vertices, given in ascending order, by their triangles: see [`judged`].
 pub(crate) fn repair_normals(mesh: &mut Mesh, bricks: &Bricks, crossings: &Crossings, vertices: &[u32]) {
+    span!("normals");
     if vertices.is_empty() {
         return;
     }

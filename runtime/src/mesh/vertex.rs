@@ -24,6 +24,7 @@ use super::indexed::{Attribute, Mesh};
 use super::pull::{LANES, VertexLanes, pull_lanes};
 use super::stage::MeshStage;
 use crate::progress::Progress;
+use crate::span::span;
 
 use batch::{Done, VertexBatch, VertexPlanes, VertexSource, lane, lanes};
 use normal::normals_of;
@@ -45,6 +46,7 @@ pub(crate) fn finish<F: Field>(
     source: &VertexSource<'_, F>,
     progress: &Progress<'_>,
 ) -> Result<(Mesh, Done), MeshError<F::Error>> {
+    span!("vertices");
     let count = source.crossings.vertex_count();
     let attributes = source.field.attributes();
     if let Some((name, width)) =
@@ -102,6 +104,7 @@ fn finish_group<F: Field>(
     mut target: MeshTarget<'_>,
     batch: &mut VertexBatch,
 ) -> Result<Done, F::Error> {
+    span!("vertices of some bricks");
     let starts = &source.crossings.vertices;
     let (first, mut done) = (starts[bricks.start], Done::default());
     for brick in bricks {

@@ -4,6 +4,7 @@ use super::color::{Rgb, byte, decode, encode, inferno, viridis};
 use super::settings::{Background, FilmMeaning};
 use crate::parallel::*;
 use crate::picture::Picture;
+use crate::span::span;
 
 /// The mean over the rays of a pixel: three numbers, multiplied by the share of the rays that have values,
 /// and this share.
@@ -16,6 +17,7 @@ pub fn develop(
     meaning: FilmMeaning,
     background: Background,
 ) -> (Picture, Option<[f32; 2]>) {
+    span!("develop");
     let range = match meaning {
         FilmMeaning::Light | FilmMeaning::Screen => None,
         FilmMeaning::Number | FilmMeaning::Distance => range(film, |_| true),

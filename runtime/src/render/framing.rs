@@ -14,6 +14,7 @@ use super::telling::Telling;
 use super::vector::{Vector, add, dot, length, scale, sub, tangents};
 use crate::boxes::Box3;
 use crate::solid::TightBounds;
+use crate::span::span;
 use crate::trace::Ray;
 
 /// The tolerance of the bounds, as a part of the region's longest side: rays refine them.
@@ -34,6 +35,7 @@ impl<'a> Frame<'a> {
         renderer: &'a Renderer,
         telling: &mut Telling<'_>,
     ) -> Result<Option<Self>, RenderError> {
+        span!("frame");
         let Some(region) = render.looked_at(renderer.tree())? else { return Ok(None) };
         let tight = renderer.solid.tight_bounds(Some(region), COARSE * region.longest_side())?;
         let Some(bounds) = tight.outer else { return Ok(None) };

@@ -17,6 +17,7 @@ use super::look::segment;
 use super::noise::{Sequence, above, around};
 use super::report::Rays;
 use super::vector::{Vector, along, dot};
+use crate::span::span;
 use crate::trace::Ray;
 
 /// A place to be lit.
@@ -71,6 +72,7 @@ pub fn gather(
     spots: &[Spot],
     budget: RayBudget,
 ) -> Result<(Vec<Light>, Cost), RenderError> {
+    span!("light");
     let [key_rays, sky_rays] = budget.spot;
     let mut cost = Cost::default();
     let mut lights: Vec<Light> = spots.iter().map(|spot| unshadowed(frame, spot)).collect();

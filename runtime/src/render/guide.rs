@@ -17,6 +17,7 @@ use super::surface_field::SurfaceField;
 use crate::boxes::Box3;
 use crate::job::Hook;
 use crate::mesh::{self, Lattice, Mesh, MeshError, MeshReport};
+use crate::span::span;
 
 use jbt_ir::limits::{MAX_GUIDE_CELLS, MAX_GUIDE_TRIANGLES};
 
@@ -53,6 +54,7 @@ pub struct Guide {
 impl CoarseMesh {
     /// The mesh of what is in the bounds; `None` if there is none.
     pub fn new(renderer: &Renderer, bounds: &Box3, hook: Hook<'_>) -> Result<Option<Self>, RenderError> {
+        span!("guide");
         let cell = f64::from(bounds.longest_side()) / COARSE_CELLS;
         let Some((mesh, report, _)) = meshed(renderer, bounds, cell, hook)? else { return Ok(None) };
         Ok(Some(Self { mesh, cell, is_cut: report.cut_sides.any() }))

@@ -19,6 +19,7 @@ use super::settings::Quality;
 use super::vector::{Vector, along, dot, scale, unit};
 use crate::boxes::{Box3, Divisible as _, MAX_PARTS};
 use crate::prune::Region;
+use crate::span::span;
 use crate::trace::Ray;
 
 /// Rays whose answers are evaluated together, in a region of their own. Neighbours in a list of rays are
@@ -48,6 +49,7 @@ pub fn segment(ray: &Ray) -> RayPart {
 
 /// Finds the first hits of rays, led by a mesh. Directions are unit vectors.
 pub fn look(frame: &Frame<'_>, guide: &Guide, casts: &[Ray]) -> Result<Meetings, RenderError> {
+    span!("look");
     let paint = SurfacePaint::new(frame);
     let mut evaluations = vec![0.0; casts.len()];
     let mut met = if guide.is_cut { cuts(frame, casts, &paint, &mut evaluations)? } else { Vec::new() };

@@ -8,6 +8,7 @@
 use super::gather::Light;
 use super::seen::{SeenKind, SeenPoint};
 use crate::parallel::*;
+use crate::span::span;
 
 /// The distances of neighbours in pixels, and the difference of key light that halves a neighbour's weight.
 const PASSES: [(usize, f32); 3] = [(1, 4.0), (2, 0.8), (4, 0.45)];
@@ -41,6 +42,7 @@ impl LightSum {
 
 /// The smoothed light of rows of pixels of this width. `facing` is left 0.
 pub fn smooth(seen: &[SeenPoint], mut lights: Vec<Light>, width: usize) -> Vec<Light> {
+    span!("smooth");
     for (step, halving) in PASSES {
         let rows: Vec<Vec<Light>> = (0..seen.len() / width)
             .into_par_iter()

@@ -9,6 +9,7 @@ use super::frame::Frame;
 use super::report::Rays;
 use super::settings::{Quality, RenderMode};
 use super::shade::{GroundSpot, fade, shadows, surfaces};
+use crate::span::span;
 use crate::trace::Ray;
 
 /// The approximate number of rays of a full tile.
@@ -101,6 +102,7 @@ struct Exposure<'a> {
 
 /// Exposes a tile.
 pub fn expose(frame: &Frame<'_>, place: &TileArea) -> Result<Tile, RenderError> {
+    span!("tile");
     let begin = Instant::now();
     let (aims, casts) = aim(frame, place);
     let aim_of = (0..aims.len()).filter(|&aim| aims[aim].cast.is_some()).collect();

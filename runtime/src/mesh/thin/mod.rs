@@ -26,6 +26,7 @@ use super::indexed::Mesh;
 use super::report::{MAX_NEAR, ThinReport};
 use super::stage::MeshStage;
 use crate::progress::Progress;
+use crate::span::span;
 
 use alarm::{ALARM, Alarm};
 use crossed::{CrossedBlocks, EDGE, step};
@@ -40,6 +41,7 @@ pub(super) fn find<F: Field>(
     iso: f32,
     progress: &Progress<'_>,
 ) -> Result<ThinReport, MeshError<F::Error>> {
+    span!("thin parts");
     let bricks = &division.bricks;
     let crossed = CrossedBlocks::new(bricks, crossings);
     let (edge, places, regions) = match &division.chunks {
