@@ -33,6 +33,11 @@ impl EdgeKey {
         Self((axis as u64) << (2 * BITS) | u64::from(row) << BITS | u64::from(column))
     }
 
+    /// The name of the edge after so many columns and rows were added below.
+    fn moved(self, [columns, rows]: [u32; 2]) -> Self {
+        Self::new(self.axis(), self.column() + columns, self.row() + rows)
+    }
+
     /// The axis that it is along: 0 is u.
     pub(super) fn axis(self) -> usize {
         (self.0 >> (2 * BITS)) as usize
@@ -69,6 +74,16 @@ pub(super) struct Segments {
 }
 
 impl Segments {
+    /// The segments after so many columns and rows were added below the lattice.
+    pub(super) fn moved(&self, below: [u32; 2]) -> Self {
+        let moved = |segment: &ContourSegment| ContourSegment {
+            from: segment.from.moved(below),
+            to: segment.to.moved(below),
+            ..*segment
+        };
+        Self { list: self.list.iter().map(moved).collect(), attributes: self.attributes.clone() }
+    }
+
     /// Whether both have the same bits.
     pub(super) fn is_same(&self, other: &Self) -> bool {
         let bits = |segment: &ContourSegment| {

@@ -121,6 +121,11 @@ impl ContourLattice {
         self.0.grown([low_u, low_v, 0.0], [high_u, high_v, self.0.spacing()]).map(Self)
     }
 
+    /// How many columns and rows of cells were added below when this lattice grew from an earlier one.
+    pub(super) fn growth(&self, from: &Self) -> [u32; 2] {
+        [0, 1].map(|axis| (from.0.first()[axis] - self.0.first()[axis]) as u32)
+    }
+
     /// The edge of a cell.
     #[must_use]
     pub fn spacing(&self) -> f64 {

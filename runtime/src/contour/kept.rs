@@ -39,6 +39,15 @@ impl KeptContour {
         &self.lattice
     }
 
+    /// The same squares in a lattice that [grew](ContourLattice::grown) from this one. A lattice grows by
+    /// multiples of 32 cells: larger squares are other ones then, and count as changed.
+    pub(crate) fn grown(&self, lattice: &ContourLattice) -> Self {
+        let below = lattice.growth(&self.lattice);
+        let moved = |place: &[u32; 2]| [0, 1].map(|axis| place[axis] + below[axis]);
+        let pieces = self.pieces.iter().map(|(place, piece)| (moved(place), piece.moved(below))).collect();
+        Self { lattice: lattice.clone(), grid: Grid::corners(lattice), leaf: self.leaf, pieces }
+    }
+
     /// The squares of a slicer in which rectangles of an edit lie, made anew; all, if there is no edit. What
     /// is kept does not change.
     pub(crate) fn renewal(

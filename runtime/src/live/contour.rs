@@ -42,7 +42,7 @@ pub struct ContourChange {
 }
 
 impl ContourChange {
-    /// Whether nothing has changed.
+    /// Whether the contour is as it was; its lattice may have grown.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.squares.is_empty()
@@ -131,8 +131,9 @@ impl LiveContour {
     /// Takes another model, usually an edited one. Its coordinates count from the
     /// [origin](CheckedTree::origin) of the first model.
     ///
-    /// # Errors See [`SliceError`]; the contour, and its model, stay as they were. A model without a field is
-    /// no error: its contour is empty.
+    /// # Errors
+    /// See [`SliceError`]; the contour, and its model, stay as they were. A model without a field is no error:
+    /// its contour is empty.
     pub fn replace<'a>(&'a mut self, model: impl Into<ModelState<'a>>) -> Job<'a, ContourChange, SliceError> {
         let model = model.into();
         Job::new(move |hook| {
@@ -147,7 +148,7 @@ impl LiveContour {
         let lattice = self.lattice_for(&slicer)?;
         let has_grown = lattice != *self.lattice();
         let detail = &self.section.detail;
-        let mut grown = has_grown.then(|| KeptContour::new(&lattice, detail)).transpose()?;
+        let mut grown = has_grown.then(|| self.kept.grown(&lattice));
         let edit = if has_grown { None } else { slicer.edit(&self.slicer) };
         let kept = grown.as_ref().unwrap_or(&self.kept);
         let renewal = kept.renewal(&slicer, (detail, edit), hook)?;
