@@ -132,8 +132,8 @@ impl LiveContour {
     /// [origin](CheckedTree::origin) of the first model.
     ///
     /// # Errors
-    /// See [`SliceError`]; the contour, and its model, stay as they were. A model without a field is no error:
-    /// its contour is empty.
+    /// See [`SliceError`]; the contour, and its model, stay as they were. A model without a field is no
+    /// error: its contour is empty.
     pub fn replace<'a>(&'a mut self, model: impl Into<ModelState<'a>>) -> Job<'a, ContourChange, SliceError> {
         let model = model.into();
         Job::new(move |hook| {

@@ -11,6 +11,7 @@
 //! `jbt_lower::prune_info::Support`).
 
 use jbt_lower::prune_info::{LARGEST_COORDINATE, Support};
+use wide::f32x8;
 
 use crate::boxes::{Box3, MAX_PARTS};
 
@@ -28,10 +29,10 @@ struct SupportRow {
     radius_squared: f32,
 }
 
-/// Up to eight boxes, by coordinates.
+/// Up to eight boxes, by coordinates, a lane each.
 pub(super) struct Boxes {
-    low: [[f32; MAX_PARTS]; 3],
-    high: [[f32; MAX_PARTS]; 3],
+    low: [f32x8; 3],
+    high: [f32x8; 3],
     /// A bit for each box.
     all: u8,
     /// The boxes so far out that supports say nothing about them, a bit each.
@@ -40,22 +41,18 @@ pub(super) struct Boxes {
 
 impl Boxes {
     pub(super) fn new(boxes: &[Box3]) -> Self {
-        let mut result = Self {
-            low: [[0.0; MAX_PARTS]; 3],
-            high: [[0.0; MAX_PARTS]; 3],
-            all: u8::MAX >> (MAX_PARTS - boxes.len()),
-            far: 0,
-        };
+        let (mut low, mut high, mut far) = ([[0.0; MAX_PARTS]; 3], [[0.0; MAX_PARTS]; 3], 0);
         for (lane, bounds) in boxes.iter().enumerate() {
             for axis in 0..3 {
-                result.low[axis][lane] = bounds.low[axis];
-                result.high[axis][lane] = bounds.high[axis];
+                low[axis][lane] = bounds.low[axis];
+                high[axis][lane] = bounds.high[axis];
             }
             let near = -LARGEST_COORDINATE..=LARGEST_COORDINATE;
             let is_near = bounds.low.iter().chain(&bounds.high).all(|side| near.contains(side));
-            result.far |= u8::from(!is_near) << lane;
+            far |= u8::from(!is_near) << lane;
         }
-        result
+        let all = u8::MAX >> (MAX_PARTS - boxes.len());
+        Self { low: low.map(f32x8::new), high: high.map(f32x8::new), all, far }
     }
 
     /// One set bit for each box.
@@ -85,20 +82,16 @@ impl RowSupports {
     #[inline(always)]
     pub(super) fn reach(&self, row: u32, boxes: &Boxes) -> u8 {
         let row = &self.rows[row as usize];
-        let mut square = [0.0_f32; MAX_PARTS];
+        let mut square = f32x8::ZERO;
         for axis in 0..3 {
-            let sides = boxes.low[axis].iter().zip(&boxes.high[axis]);
-            for (square, (low, high)) in square.iter_mut().zip(sides) {
-                let (before, behind) = (row.low[axis] - high, low - row.high[axis]);
-                let gap = if before > behind { before } else { behind };
-                let gap = if gap > 0.0 { gap } else { 0.0 };
-                *square += gap * gap;
-            }
+            let before = f32x8::splat(row.low[axis]) - boxes.high[axis];
+            let behind = boxes.low[axis] - f32x8::splat(row.high[axis]);
+            // Not `max`, which leaves open what becomes of a NaN (inf - inf): here it is a gap of 0.
+            let gap = before.simd_gt(behind).select(before, behind);
+            let gap = gap.simd_gt(f32x8::ZERO).select(gap, f32x8::ZERO);
+            square += gap * gap;
         }
-        // Not `<=`: a distance that is NaN (inf - inf) counts as reached.
-        let misses = square.map(|square| square > row.radius_squared);
-        let misses =
-            misses.iter().enumerate().fold(0_u8, |bits, (lane, &miss)| bits | u8::from(miss) << lane);
+        let misses = square.simd_gt(f32x8::splat(row.radius_squared)).to_bitmask() as u8;
         boxes.all & (!misses | boxes.far)
     }
 
