@@ -12,10 +12,11 @@ use tempfile::TempPath;
 
 /// The new contents of a file, which appear whole or not at all.
 ///
-/// On Linux they have no name before [`finish`](Self::finish), so that a process that is killed leaves nothing
-/// where nothing was. While a file is replaced they have one for an instant, `.jbt-0-NAME` beside it, which
-/// the next one that writes `NAME` removes. Where files need a name, they have a temporary one that begins
-/// with `.jbt-`, and dropping this removes it. Whoever drops this before `finish` leaves the file as it was.
+/// On Linux they have no name before [`finish`](Self::finish), so that a process that is killed leaves
+/// nothing where nothing was. While a file is replaced they have one for an instant, `.jbt-0-NAME` beside it,
+/// which the next one that writes `NAME` removes. Where files need a name, they have a temporary one that
+/// begins with `.jbt-`, and dropping this removes it. Whoever drops this before `finish` leaves the file as
+/// it was.
 ///
 /// A file that is there already keeps its permissions, a new one gets those that files usually get. A link is
 /// followed. What is not a file but can be written to (a pipe, a device) is written to as the bytes come.
@@ -48,8 +49,8 @@ impl AtomicFile {
     ///
     /// # Errors
     ///
-    /// Whatever the system refuses; a folder, a file that is read-only, and a path whose folder is not there or
-    /// lets nobody create files, even if the file itself could be written to.
+    /// Whatever the system refuses; a folder, a file that is read-only, and a path whose folder is not there
+    /// or lets nobody create files, even if the file itself could be written to.
     pub fn create(path: &Path, replace: bool) -> io::Result<Self> {
         match PathKind::at(path)? {
             PathKind::Direct(path) => {
