@@ -52,7 +52,8 @@ const EXIT_CODES: &str = "\
 A SCENE is a .jbt text, a ParsIP scene (.blob, .scene) or a program of instructions (.vm); `-` reads it from the standard
 input, where its first line tells which. Without -o a result is called like the scene, in the current folder.
 
-Exit codes: 0 done, 1 the scene has errors, 2 usage, 3 a limit was hit, 4 a file could not be read or written.
+Exit codes: 0 done, 1 the scene has errors, 2 usage, 3 a limit was hit, 4 a file could not be read or written,
+130 and 143 stopped by SIGINT or SIGTERM.
 
 Examples:
   jbt mesh examples/hero.jbt -o hero.glb

@@ -18,6 +18,7 @@ use crate::lattice;
 use crate::output::{Output, grouped, plural, warn};
 use crate::progress::ProgressLine;
 use crate::scene::LoadedScene;
+use crate::signals;
 
 /// Runs the command. `start` is when the process began, for the total time.
 pub fn run(arguments: &ContourArguments, quiet: bool, start: Instant) -> Result<(), Failure> {
@@ -40,7 +41,7 @@ pub fn run(arguments: &ContourArguments, quiet: bool, start: Instant) -> Result<
     };
     let mut progress = ProgressLine::new("slicing", quiet);
     let mut work = || make(arguments, drawing, &slicer, &rectangle, fineness, &mut progress);
-    let made = arguments.work.run(&mut work)?.map_err(|error| scene.failure(&error))?;
+    let made = arguments.work.run(&mut work).map_err(|error| scene.failure(&error))?;
     drop(progress);
 
     let mut output = Output::open(&destination)?;
@@ -160,13 +161,22 @@ fn make(
         SliceKind::Svg => {
             let block = arguments.quadtree.then_some(1);
             let detail = Detail { fineness, block, quadtree: arguments.quadtree };
-            slicer.contour(rectangle, &detail).on_progress(watch).run().map(Made::Contour)
+            slicer
+                .contour(rectangle, &detail)
+                .on_progress(watch)
+                .cancel(signals::token())
+                .run()
+                .map(Made::Contour)
         }
         SliceKind::Png => {
             let samples = arguments.samples.map_or(1, usize::from);
             let (mode, _) = mode(arguments);
             let detail = ImageDetail { fineness, samples };
-            let picture = slicer.picture(rectangle, &mode, &detail).on_progress(watch).run()?;
+            let picture = slicer
+                .picture(rectangle, &mode, &detail)
+                .on_progress(watch)
+                .cancel(signals::token())
+                .run()?;
             Ok(Made::Picture { picture, rectangle: *rectangle })
         }
     }

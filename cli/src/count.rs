@@ -34,6 +34,7 @@ use crate::lattice;
 use crate::output::{grouped, plural, print, warn};
 use crate::progress::ProgressLine;
 use crate::scene::LoadedScene;
+use crate::signals;
 use crate::stages;
 
 /// How the evaluations of separate walks add up.
@@ -111,7 +112,11 @@ fn supports(
     quiet: bool,
 ) -> Result<SupportCounts, Failure> {
     let mut progress = ProgressLine::new("counting", quiet);
-    let counted = statistics.supports(&Compiler::new(), lattice).on_progress(|part| progress.set(part)).run();
+    let counted = statistics
+        .supports(&Compiler::new(), lattice)
+        .on_progress(|part| progress.set(part))
+        .cancel(signals::token())
+        .run();
     counted.map_err(|error| scene.failure(&error))
 }
 
@@ -123,7 +128,11 @@ fn mesh(
     quiet: bool,
 ) -> Result<MeshCounters, Failure> {
     let mut progress = ProgressLine::new("meshing", quiet);
-    let made = settings.mesh(&Compiler::new(), tree).on_progress(|part| progress.set(part)).run();
+    let made = settings
+        .mesh(&Compiler::new(), tree)
+        .on_progress(|part| progress.set(part))
+        .cancel(signals::token())
+        .run();
     made.map(|made| made.counters).map_err(|error| scene.failure(&error))
 }
 

@@ -34,7 +34,7 @@ pub fn run(arguments: &EvalArguments, quiet: bool) -> Result<(), Failure> {
     scene.warn(quiet);
     let tree = scene.check()?;
     let evaluator = scene.evaluator(&arguments.engine.compiler()?.compile(&tree), arguments.query)?;
-    let threads = Threads::new(arguments.threads)?;
+    let threads = Threads::new(arguments.threads);
     if is_standard(&arguments.points) {
         return stream(
             &evaluator,

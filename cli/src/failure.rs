@@ -7,6 +7,7 @@
 //! | 2 | the command line makes no sense |
 //! | 3 | a limit was hit |
 //! | 4 | a file could not be read or written |
+//! | 128 + n | signal n has stopped the work: 130 is an interrupt of the keyboard |
 
 use std::fmt;
 use std::io;
@@ -15,6 +16,7 @@ use jbt::diagnostic::{Diagnostic, Diagnostics, Severity, Source, escape};
 use jbt::{Classified, ErrorKind};
 
 use crate::message::Message;
+use crate::signals;
 
 /// Why a command did not do its work.
 #[derive(Debug)]
@@ -42,6 +44,8 @@ pub enum Failure {
         /// Its exit code.
         code: u8,
     },
+    /// A signal has stopped the work: its number.
+    Signal(i32),
     /// Whoever read our output has had enough of it: no error.
     BrokenPipe,
 }
@@ -96,8 +100,9 @@ impl Failure {
             ErrorKind::Argument => Self::Usage(message),
             ErrorKind::Unbounded => Self::Usage(format!("{message}; --region gives it one")),
             ErrorKind::Limit => Self::Limit(message),
-            // Files are opened and written elsewhere, and no command cancels its work.
-            ErrorKind::System | ErrorKind::Cancelled | ErrorKind::Internal => Self::Defect(message),
+            // Signals alone cancel work. Files are opened and written elsewhere.
+            ErrorKind::Cancelled => signals::caught().map_or(Self::Defect(message), Self::Signal),
+            ErrorKind::System | ErrorKind::Internal => Self::Defect(message),
         }
     }
 
@@ -118,6 +123,7 @@ impl Failure {
             Self::Usage(_) => 2,
             Self::Limit(_) => 3,
             Self::Io { .. } => 4,
+            Self::Signal(signal) => signals::code(*signal),
             Self::Told { code } => *code,
         }
     }
@@ -136,6 +142,7 @@ impl fmt::Display for Failure {
                 f.write_str(&lines.join("\n"))
             }
             Self::Io { what, error } => write!(f, "{}: {error}", escape(what)),
+            Self::Signal(signal) => write!(f, "{}: nothing was written", signals::name(*signal)),
             Self::Told { .. } => f.write_str("something is wrong, as has been told"),
             Self::BrokenPipe => f.write_str("the reader of the output went away"),
         }

@@ -7,6 +7,7 @@
 //! | [`mesh`], [`render`], [`contour`], [`sample`], [`eval`], [`show`], [`count`], [`stats`], [`check`], [`manual`] | one command each |
 //! | [`formats`] | the kinds of files that each command writes |
 //! | [`output`], [`progress`], [`logger`] | what comes out, and where |
+//! | [`signals`], [`threads`] | what stops the work, and what does it |
 //! | [`timeline`] | which thread did what when |
 //! | [`failure`], [`message`] | what went wrong, and the exit code for it |
 
@@ -29,12 +30,14 @@ mod render;
 mod sample;
 mod scene;
 mod show;
+mod signals;
 mod stages;
 mod standard;
 mod stats;
 mod threads;
 mod timeline;
 
+use std::io::Write as _;
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -46,12 +49,14 @@ use failure::Failure;
 
 fn main() -> ExitCode {
     let start = Instant::now();
+    signals::install();
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => return usage(&error),
     };
     let quiet = arguments.quiet;
     logger::install(quiet);
+    threads::prepare();
     let work = || run(&arguments.command, quiet, start);
     let done = match &arguments.trace {
         Some(path) => timeline::record(path, work),
@@ -60,6 +65,8 @@ fn main() -> ExitCode {
     match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
+            // What fails once a signal has come, fails because of it.
+            let failure = signals::caught().map_or(failure, Failure::Signal);
             output::report(&failure);
             ExitCode::from(failure.code())
         }
@@ -107,7 +114,8 @@ fn usage(error: &clap::Error) -> ExitCode {
         output::tell(&lines.join("\n"));
     } else {
         // A reader of the help may go away before its end.
-        let full = error.print().is_err_and(|error| error.kind() != std::io::ErrorKind::BrokenPipe);
+        let printed = error.print().and_then(|()| std::io::stdout().flush());
+        let full = printed.is_err_and(|error| error.kind() != std::io::ErrorKind::BrokenPipe);
         if full && !error.use_stderr() {
             return ExitCode::from(4);
         }

@@ -14,6 +14,7 @@ use crate::lattice;
 use crate::output::{Output, grouped, plural, warn};
 use crate::progress::ProgressLine;
 use crate::scene::LoadedScene;
+use crate::signals;
 use crate::stages;
 
 /// Runs the command. `start` is when the process began, for the total time.
@@ -32,15 +33,17 @@ pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(),
     let compiler = arguments.work.compiler()?;
 
     let mut progress = ProgressLine::new("meshing", quiet);
-    let mut work = || settings.mesh(&compiler, &tree).on_progress(|part| progress.set(part)).run();
-    let made = arguments.work.run(&mut work)?.map_err(|error| scene.failure(&error))?;
+    let mut work = || {
+        settings.mesh(&compiler, &tree).on_progress(|part| progress.set(part)).cancel(signals::token()).run()
+    };
+    let made = arguments.work.run(&mut work).map_err(|error| scene.failure(&error))?;
     drop(progress);
 
     // The file is written while the mesh is measured.
     let mut output = Output::open(&destination)?;
     let mut write = || export::write_with(&made.mesh, destination.kind, &options, &mut output);
     let mut both = || rayon::join(&mut write, || MeshMeasures::new(&made));
-    let (written, measures) = arguments.work.run(&mut both)?;
+    let (written, measures) = arguments.work.run(&mut both);
     written.map_err(|error| match error {
         ExportError::Write(error) => output.failure(error),
         error => scene.failure(&error),

@@ -9,6 +9,7 @@ use jbt::diagnostic::{Severity, escape};
 use jbt::export::AtomicFile;
 
 use crate::failure::Failure;
+use crate::signals;
 use crate::standard::is_standard;
 
 /// Where a result goes, once that is decided.
@@ -58,7 +59,9 @@ impl Output {
             OutputTarget::Standard(io::stdout())
         } else {
             let file = AtomicFile::create(path, destination.replace);
-            OutputTarget::File(file.map_err(|error| Failure::io("write", &name, error))?)
+            let file = file.map_err(|error| Failure::io("write", &name, error))?;
+            file.temporary().into_iter().for_each(signals::begin);
+            OutputTarget::File(file)
         };
         Ok(Self { writer: BufWriter::with_capacity(1 << 16, target), name })
     }
@@ -79,17 +82,22 @@ impl Output {
         let (target, _) = writer.into_parts();
         match target {
             OutputTarget::Standard(_) => Ok(()),
-            OutputTarget::File(file) => file.finish().map_err(|error| Failure::io("write", name, error)),
+            OutputTarget::File(file) => {
+                let put = || signals::check().and_then(|()| file.finish());
+                signals::unstopped(put).map_err(|error| Failure::io("write", name, error))
+            }
         }
     }
 }
 
 impl Write for Output {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        signals::check()?;
         self.writer.write(bytes)
     }
 
     fn flush(&mut self) -> io::Result<()> {
+        signals::check()?;
         self.writer.flush()
     }
 }
@@ -165,6 +173,7 @@ pub fn report(failure: &Failure) {
             return;
         }
         Failure::Usage(_) | Failure::Io { .. } => "jbt: error",
+        Failure::Signal(_) => "jbt: stopped",
         Failure::Limit(_) => "jbt: limit",
         Failure::Defect(_) => "jbt: defect",
     };

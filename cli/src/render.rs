@@ -15,6 +15,7 @@ use crate::lattice;
 use crate::output::{Output, grouped, plural, warn};
 use crate::progress::ProgressLine;
 use crate::scene::LoadedScene;
+use crate::signals;
 
 /// Runs the command. `start` is when the process began, for the total time.
 pub fn run(arguments: &RenderArguments, quiet: bool, start: Instant) -> Result<(), Failure> {
@@ -28,8 +29,14 @@ pub fn run(arguments: &RenderArguments, quiet: bool, start: Instant) -> Result<(
     let compiler = arguments.work.compiler()?;
 
     let mut progress = ProgressLine::new("rendering", quiet);
-    let mut work = || settings.picture(&compiler, &tree).on_progress(|part| progress.set(part)).run();
-    let made = arguments.work.run(&mut work)?.map_err(|error| scene.failure(&error))?;
+    let mut work = || {
+        settings
+            .picture(&compiler, &tree)
+            .on_progress(|part| progress.set(part))
+            .cancel(signals::token())
+            .run()
+    };
+    let made = arguments.work.run(&mut work).map_err(|error| scene.failure(&error))?;
     drop(progress);
 
     let mut output = Output::open(&destination)?;

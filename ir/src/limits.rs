@@ -89,6 +89,8 @@ pub const MAX_RAY_WORK: u64 = 1 << 22;
 pub const MAX_DIVISION_DEPTH: usize = 96;
 /// Boxes of one division: each keeps about 64 bytes.
 pub const MAX_DIVISION_BOXES: u64 = 1 << 24;
+/// Threads that the commands start: more than any machine has use for, few enough for its memory.
+pub const MAX_THREADS: usize = 256;
 /// Pixels along one side of a picture.
 pub const MAX_PICTURE_SIDE: usize = 1 << 14;
 /// Triangles of the mesh that guides the rays of a picture, about: each keeps 80 bytes while it is made.

@@ -41,8 +41,8 @@ impl WorkArguments {
     }
 
     /// Does it on so many threads.
-    pub fn run<T: Send>(&self, work: &mut (impl FnMut() -> T + Send)) -> Result<T, Failure> {
-        Ok(Threads::new(self.threads)?.run(work))
+    pub fn run<T: Send>(&self, work: &mut (impl FnMut() -> T + Send)) -> T {
+        Threads::new(self.threads).run(work)
     }
 
     /// How to tell what has been done.

@@ -90,6 +90,19 @@ fn scenes_over_the_limit_are_refused_unread() {
 }
 
 #[test]
+fn formulas_over_the_limit_have_one_exit_code_in_every_format() {
+    let steps = jbt::limits::MAX_EXPRESSION_STEPS + 1;
+    let mut program = "_0 var-x\n_1 var-y\n".to_owned();
+    for line in 2..steps + 2 {
+        program += &format!("_{line} add _{} _{}\n", line - 1, line - 2);
+    }
+    let text = format!("jbt 1 expression {{ x{} }}", " + y".repeat(steps));
+    let folder = folder().with("long.vm", program).with("long.jbt", text);
+    folder.jbt(&["check", "long.vm"]).code(3).says("the expression has").says(" operations");
+    folder.jbt(&["check", "long.jbt"]).code(3).says("the expression has").says(" operations");
+}
+
+#[test]
 fn lattices_over_the_limit_are_refused() {
     let folder = folder();
     folder.jbt(&["mesh", "scene.jbt", "-o", "a.glb", "--cell", "1e-5"]).code(3).says("jbt: limit: ");

@@ -9,4 +9,5 @@ mod hostile;
 mod manual;
 mod outputs;
 mod render;
+mod signals;
 mod timeline;

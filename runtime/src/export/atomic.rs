@@ -1,18 +1,25 @@
 //! Files that are replaced as a whole.
 
+#[cfg(target_os = "linux")]
+mod nameless;
+
 use std::fs::{self, File, Permissions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use jbt_model::diagnostic::escape;
-use tempfile::{NamedTempFile, TempPath};
+use tempfile::TempPath;
 
 /// The new contents of a file, which appear whole or not at all.
 ///
-/// They are written beside the file, under a temporary name that begins with `.jbt-`, and
-/// [`finish`](Self::finish) renames them; whoever drops this before, leaves the file as it was. A file that
-/// is there already keeps its permissions, a new one gets those that files usually get. A link is followed.
-/// What is not a file but can be written to (a pipe, a device) is written to as the bytes come.
+/// On Linux they have no name before [`finish`](Self::finish), so that a process that is killed leaves
+/// nothing where nothing was. While a file is replaced they have one for an instant, `.jbt-0-NAME` beside it,
+/// which the next one that writes `NAME` removes. Where files need a name, they have a temporary one that
+/// begins with `.jbt-`, and dropping this removes it. Whoever drops this before `finish` leaves the file as
+/// it was.
+///
+/// A file that is there already keeps its permissions, a new one gets those that files usually get. A link is
+/// followed. What is not a file but can be written to (a pipe, a device) is written to as the bytes come.
 #[derive(Debug)]
 pub struct AtomicFile {
     file: File,
@@ -22,7 +29,8 @@ pub struct AtomicFile {
 
 #[derive(Debug)]
 struct PendingFile {
-    temporary: TempPath,
+    /// The temporary name, if the file has one.
+    temporary: Option<TempPath>,
     path: PathBuf,
     replace: bool,
 }
@@ -41,7 +49,8 @@ impl AtomicFile {
     ///
     /// # Errors
     ///
-    /// Whatever the system refuses; a folder, a file that is read-only, and a path whose folder is not there.
+    /// Whatever the system refuses; a folder, a file that is read-only, and a path whose folder is not there
+    /// or lets nobody create files, even if the file itself could be written to.
     pub fn create(path: &Path, replace: bool) -> io::Result<Self> {
         match PathKind::at(path)? {
             PathKind::Direct(path) => {
@@ -49,7 +58,9 @@ impl AtomicFile {
                 Ok(Self { file, target: None })
             }
             PathKind::File { path, folder, old } => {
-                let (file, temporary) = temporary(&folder)?.into_parts();
+                #[cfg(target_os = "linux")]
+                nameless::remove_left(&path);
+                let (file, temporary) = begin(&folder)?;
                 if let Some(old) = old {
                     file.set_permissions(old)?;
                 }
@@ -67,8 +78,14 @@ impl AtomicFile {
         match PathKind::at(path)? {
             // To open a pipe is to wait for its reader.
             PathKind::Direct(_) => Ok(()),
-            PathKind::File { folder, .. } => temporary(&folder).map(drop),
+            PathKind::File { folder, .. } => begin(&folder).map(drop),
         }
+    }
+
+    /// The temporary name of the contents, if they have one: for a program that ends without dropping this.
+    #[must_use]
+    pub fn temporary(&self) -> Option<&Path> {
+        self.target.as_ref()?.temporary.as_deref()
     }
 
     /// Puts the contents in their place, once they are on the disk.
@@ -79,6 +96,7 @@ impl AtomicFile {
     pub fn finish(self) -> io::Result<()> {
         let Some(PendingFile { temporary, path, replace }) = self.target else { return Ok(()) };
         self.file.sync_all()?;
+        let Some(temporary) = temporary else { return put_nameless(&self.file, &path, replace) };
         let put = if replace { temporary.persist(path) } else { temporary.persist_noclobber(path) };
         put.map_err(|error| error.error)
     }
@@ -117,10 +135,42 @@ impl PathKind {
     }
 }
 
-/// A new file with the permissions that the process gives to any new file.
-fn temporary(folder: &Path) -> io::Result<NamedTempFile> {
+/// A new file with the permissions that the process gives to any new file, and its temporary name if it needs
+/// one.
+fn begin(folder: &Path) -> io::Result<(File, Option<TempPath>)> {
+    #[cfg(target_os = "linux")]
+    if let Some(file) = nameless::create(folder) {
+        return Ok((file, None));
+    }
     let mut builder = tempfile::Builder::new();
     builder.prefix(".jbt-");
     // The system's own words about a file that cannot be made: the temporary name means nothing to anybody.
-    builder.make_in(folder, |path| File::options().read(true).write(true).create_new(true).open(path))
+    let made =
+        builder.make_in(folder, |path| File::options().read(true).write(true).create_new(true).open(path));
+    let (file, temporary) = made.map_err(|error| about_folder(folder, error))?.into_parts();
+    Ok((file, Some(temporary)))
+}
+
+/// Says that it is the folder that lets nobody create files: the file itself may be fine.
+fn about_folder(folder: &Path, error: io::Error) -> io::Error {
+    match error.kind() {
+        io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
+            let folder = escape(&folder.display().to_string());
+            let message =
+                format!("{error}: contents are written beside the file, and {folder} takes no new file");
+            io::Error::new(error.kind(), message)
+        }
+        _ => error,
+    }
+}
+
+#[cfg(target_os = "linux")]
+fn put_nameless(file: &File, path: &Path, replace: bool) -> io::Result<()> {
+    nameless::put(file, path, replace)
+}
+
+/// Elsewhere every file has a name.
+#[cfg(not(target_os = "linux"))]
+fn put_nameless(_: &File, _: &Path, _: bool) -> io::Result<()> {
+    Err(io::ErrorKind::Unsupported.into())
 }

@@ -164,13 +164,14 @@ pub(super) fn check_formula(
     form: &Form,
     numbers: &[f64],
 ) -> bool {
+    if form.steps() > limits::MAX_EXPRESSION_STEPS {
+        let message = format!("{what} has {} operations", form.steps());
+        let expected = format!("expected at most {}", limits::MAX_EXPRESSION_STEPS);
+        report.add(|| Diagnostic::limit(span, message).expected(expected));
+    }
     let mut error = |message: String, expected: String| {
         report.add(|| Diagnostic::error(span, message).expected(expected));
     };
-    if form.steps() > limits::MAX_EXPRESSION_STEPS {
-        let most = limits::MAX_EXPRESSION_STEPS;
-        error(format!("{what} has {} operations", form.steps()), format!("expected at most {most}"));
-    }
     if numbers.len() != form.numbers() {
         error(format!("{what} has {} numbers", numbers.len()), format!("expected {}", form.numbers()));
         return false;
