@@ -9,6 +9,7 @@
 //! a >= 0, b >= 0     al bl      ah bh
 //! a >= 0, b <= 0     ah bl      al bh
 //! a >= 0, any b      (bl < 0 ? ah : al) bl    (bh < 0 ? al : ah) bh
+//! x^m * x^n          of the x at the low end, at the high end         where one of m and n is odd; of x^3, say
 //! point p, any b     p (p < 0 ? bh : bl)      p (p < 0 ? bl : bh)
 //! else               the least and the greatest of al bl, al bh, ah bl, ah bh
 //! ```
@@ -19,7 +20,7 @@ use crate::facts::Fact as _;
 use crate::op::{Domain, Op};
 
 use super::facts::{Facts, Sign};
-use super::value::{Interval, Range, of_both, of_one, same};
+use super::value::{Interval, Range, RangePower, as_power, of_both, of_one, same};
 
 /// Two factors.
 type RealPair<D> = (<D as Domain>::Real, <D as Domain>::Real);
@@ -33,16 +34,45 @@ enum Ends<D: Domain> {
     Among([RealPair<D>; 4], D::Real),
 }
 
+/// Whether one side is an odd power of a value of any sign, the other one an even power.
+fn is_odd_power<D: Domain>(a: Range<D>, b: Range<D>) -> bool {
+    let (a_power, b_power) = (as_power(a), as_power(b));
+    a_power.base == b_power.base && (a_power.squarings == 0) != (b_power.squarings == 0)
+}
+
+/// What power a product is. Where the sign of the base is known, other forms are as sharp.
+fn power<D: Domain>(a: Range<D>, b: Range<D>, product: Range<D>) -> Option<RangePower<D>> {
+    let known = as_power(a);
+    if is_odd_power(a, b) {
+        return Some(RangePower { ends: [product.low, product.high], squarings: 0, ..known });
+    }
+    let any = a.power.is_some() || (a.facts.sign == Sign::Unknown && !a.facts.point);
+    (same(a, b) && any).then_some(RangePower { squarings: known.squarings + 1, ..known })
+}
+
 impl<D: Domain> Interval<D> {
     pub(super) fn product(&mut self, a: Range<D>, b: Range<D>) -> Range<D> {
         let facts = of_both(Op::Mul, a, b);
-        match self.ends(a, b) {
+        let product = match self.ends(a, b) {
             Ends::At(low, high) => self.bounds(facts, |d| d.mul(low.0, low.1), |d| d.mul(high.0, high.1)),
             Ends::Among(pairs, guard) => {
                 let products = pairs.map(|(x, y)| self.domain.mul(x, y));
                 self.between(facts, products, products, guard)
             }
+        };
+        Range { power: power(a, b, product), ..product }
+    }
+
+    /// The ends of the product of an odd and an even power of one value, which is an odd power.
+    fn odd_power(&mut self, a: Range<D>, b: Range<D>) -> Option<Ends<D>> {
+        if !is_odd_power(a, b) {
+            return None;
         }
+        let [[a_low, a_high], [b_low, b_high]] = [a, b].map(|side| {
+            let RangePower { ends, squarings, .. } = as_power(side);
+            (0..squarings).fold(ends, |ends, _| ends.map(|end| self.domain.mul(end, end)))
+        });
+        Some(Ends::At((a_low, b_low), (a_high, b_high)))
     }
 
     pub(super) fn fused(&mut self, a: Range<D>, b: Range<D>, c: Range<D>) -> Range<D> {
@@ -76,6 +106,9 @@ impl<D: Domain> Interval<D> {
         if same(a, b) {
             let (near, far) = self.near_and_far(a);
             return Ends::At((near, near), (far, far));
+        }
+        if let Some(ends) = self.odd_power(a, b) {
+            return ends;
         }
         if b.facts.point {
             return self.scaled(a, b);

@@ -71,6 +71,74 @@ fn squares_are_not_negative() {
 }
 
 #[test]
+fn odd_powers_grow() {
+    type Power = fn(&mut FunctionBuilder, Value, Value, Value) -> Value;
+    let cube: Power = |b, x, _, _| {
+        let square = b.mul(x, x);
+        b.mul(square, x)
+    };
+    let fifth: Power = |b, x, y, z| {
+        let (cube, square) = (cube_of(b, x, y, z), b.mul(x, x));
+        b.mul(square, cube)
+    };
+    let seventh: Power = |b, x, y, z| {
+        let (cube, square) = (cube_of(b, x, y, z), b.mul(x, x));
+        let fourth = b.mul(square, square);
+        b.fma(cube, fourth, y)
+    };
+    fn cube_of(b: &mut FunctionBuilder, x: Value, _: Value, _: Value) -> Value {
+        let square = b.mul(x, x);
+        b.mul(x, square)
+    }
+    assert_eq!(range_of(&[[-2.0, 1.0]], cube), [-8.0, 1.0]);
+    assert_eq!(range_of(&[[-2.0, 1.0]], cube_of), [-8.0, 1.0]);
+    assert_eq!(range_of(&[[-2.0, 3.0]], fifth), [-32.0, 243.0]);
+    assert_eq!(range_of(&[[-1.0, 2.0], [1.0, 1.0]], seventh), [0.0, 129.0]);
+    assert_eq!(range_of(&[[-2.0, -1.0]], cube), [-8.0, -1.0]);
+    // The square of an odd power, and a value that only looks like the base.
+    let sixth: Power = |b, x, y, z| {
+        let cube = cube_of(b, x, y, z);
+        b.mul(cube, cube)
+    };
+    assert_eq!(range_of(&[[-2.0, 1.0]], sixth), [0.0, 64.0]);
+    let other: Power = |b, x, y, _| {
+        let square = b.mul(x, x);
+        b.mul(square, y)
+    };
+    assert_eq!(range_of(&[[-2.0, 1.0], [-2.0, 1.0]], other), [-8.0, 4.0]);
+    for none in [ALL, [1.0, 0.0], [f32::NAN, 1.0]] {
+        assert_eq!(range_of(&[none], cube), ALL, "{none:?} admits NaN");
+    }
+    assert_eq!(range_of(&[[-1e20, 1.0]], cube), ALL, "infinity is no finite bound");
+}
+
+#[test]
+fn odd_powers_hold_what_they_compute() {
+    // Random numbers of any size: where x^5 rounds, overflows or vanishes.
+    let mut rng = fastrand::Rng::with_seed(5);
+    let mut bounded = 0;
+    for _ in 0..2000 {
+        let scale = [1.0, 1e-9, 1e-14, 1e-20, 1e7, 1e9][rng.usize(0..6)];
+        let mut ends = [(); 2].map(|()| scale * (2.0 * rng.f32() - 1.0));
+        ends.sort_by(f32::total_cmp);
+        let fifth = |b: &mut FunctionBuilder, x, _, _| {
+            let square = b.mul(x, x);
+            let cube = b.mul(x, square);
+            b.mul(cube, square)
+        };
+        let [low, high] = range_of(&[ends], fifth);
+        bounded += u32::from([low, high] != ALL);
+        for part in 0..=20 {
+            let x = (ends[0] + (ends[1] - ends[0]) * part as f32 / 20.0).clamp(ends[0], ends[1]);
+            let square = x * x;
+            let value = (x * square) * square;
+            assert!(low <= value && value <= high, "{value:e} at {x:e} in [{low:e}, {high:e}]");
+        }
+    }
+    assert!(bounded > 1000, "{bounded}");
+}
+
+#[test]
 fn everything_and_what_is_made_of_it() {
     let square = |b: &mut FunctionBuilder, x, _, _| b.mul(x, x);
     for none in [ALL, [1.0, 0.0], [f32::NAN, 1.0], [0.0, f32::NAN]] {

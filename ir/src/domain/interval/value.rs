@@ -13,6 +13,20 @@ pub struct Range<D: Domain> {
     pub high: D::Real,
     pub(super) facts: Facts,
     pub(super) identity: usize,
+    /// If it is a power of another value.
+    pub(super) power: Option<RangePower<D>>,
+}
+
+/// What a power knows of the value that it is a power of, its *base*. The products of which odd powers are
+/// made grow with the base, in f32 too; those of even ones grow with its magnitude.
+#[derive(Debug)]
+pub struct RangePower<D: Domain> {
+    /// The identity of the base.
+    pub(super) base: usize,
+    /// An odd power, where the base is at its low and at its high bound.
+    pub(super) ends: [D::Real; 2],
+    /// How often that has been squared.
+    pub(super) squarings: u32,
 }
 
 /// A mask: at most one of the two fields holds.
@@ -41,7 +55,7 @@ macro_rules! copies {
     )+ };
 }
 
-copies!(Range Certainty Known);
+copies!(Range RangePower Certainty Known);
 
 /// The interval domain over `D`.
 #[derive(Debug)]
@@ -90,7 +104,7 @@ impl<D: Domain> Interval<D> {
     pub(super) fn range(&mut self, low: D::Real, high: D::Real, facts: Facts) -> Range<D> {
         let identity = self.next;
         self.next += 1;
-        Range { low, high, facts, identity }
+        Range { low, high, facts, identity, power: None }
     }
 
     /// A new value with these bounds; of a point only the low one is computed.
@@ -140,6 +154,11 @@ impl<D: Domain> Interval<D> {
     ) -> Known<D> {
         Known(a.0.zip(b.0).map(|(a, b)| op(&mut self.domain, a, b)))
     }
+}
+
+/// A value as a power; one that is none is the first power of itself.
+pub(super) fn as_power<D: Domain>(a: Range<D>) -> RangePower<D> {
+    a.power.unwrap_or(RangePower { base: a.identity, ends: [a.low, a.high], squarings: 0 })
 }
 
 pub(super) fn same<D: Domain>(a: Range<D>, b: Range<D>) -> bool {
