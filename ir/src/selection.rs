@@ -15,15 +15,16 @@
 //! others nothing is kept, and nobody looks at them.
 //!
 //! Engines follow these lists blindly. So a selection is made in few ways only: from tables
-//! ([`Selection::new`]), and from another selection by leaving rows out ([`Selection::narrow`]), by giving
-//! them other indices ([`Selection::shifted`]) or by following tables whose active rows have changed
-//! ([`Selection::switched`]). All keep this:
+//! ([`Selection::new`]), and from another selection by leaving rows out ([`Selection::narrow`],
+//! [`Selection::picked`]), by giving them other indices ([`Selection::shifted`]) or by following tables whose
+//! active rows have changed ([`Selection::switched`]). All keep this:
 //!
 //! * active rows exist in their table, and ascend in the range of one row of the parent;
 //! * a table has one start for each active row of its parent (for the one imaginary row, if it has no
 //!   parent), from 0, and the end.
 
 use std::collections::HashMap;
+use std::ops::Range;
 use std::sync::Arc;
 
 use crate::entity::{Entity, Table};
@@ -256,6 +257,40 @@ impl Selection {
         }
     }
 
+    /// A shorter selection, in a time that goes by the rows that stay and not by those that there are. `pick`
+    /// is called for a table that is present and for what one active row of its parent owns: a range of
+    /// positions among [`active`](Self::active). It appends the positions that stay, ascending. Rows that
+    /// hang under one that is left out go with it.
+    ///
+    /// Panics if a position is outside of its range, or positions do not ascend.
+    #[must_use]
+    pub fn picked(&self, mut pick: impl FnMut(Table, Range<u32>, &mut Vec<u32>)) -> Self {
+        let mut result = Self::default();
+        result.clear(&self.extent);
+        // By table, the positions that stay.
+        let mut kept: Vec<Vec<u32>> = vec![Vec::new(); self.spans.len()];
+        for &table in &self.present {
+            let above = self.parent(table).map_or_else(|| vec![0], |parent| kept[parent.index()].clone());
+            let Some(first) = result.begin(table, above.len()) else { continue };
+            let (starts, active) = (self.starts(table), self.active(table));
+            let mut stay = Vec::new();
+            for (next, &owner) in above.iter().enumerate() {
+                let (owned, before) = (starts[owner as usize]..starts[owner as usize + 1], stay.len());
+                pick(table, owned.clone(), &mut stay);
+                let picked = &stay[before..];
+                assert!(picked.is_sorted_by(|a, b| a < b), "positions ascend");
+                let inside = picked.first().zip(picked.last());
+                let inside = inside.is_none_or(|(a, b)| owned.start <= *a && *b < owned.end);
+                assert!(inside, "positions are those of one owner");
+                result.words[first - above.len() + next] = word(stay.len());
+            }
+            result.words.extend(stay.iter().map(|&position| active[position as usize]));
+            result.end(table);
+            kept[table.index()] = stay;
+        }
+        result
+    }
+
     /// The same rows in other tables of the same family, where some rows have other indices: for each table,
     /// where they begin to, and by how much. Panics if a row is not there.
     #[must_use]
@@ -444,6 +479,22 @@ mod tests {
         again[0].narrow(&mut [0, 1], &mut nothing);
         assert_eq!((nothing[0].present(), nothing[0].len()), (&[parent][..], 0));
         assert_eq!((nothing[0].active(child), nothing[0].starts(child)), (&[][..], &[0][..]));
+    }
+
+    #[test]
+    fn picked_rows_are_those_that_masks_keep() {
+        let (function, tables) = family();
+        let all = Selection::new(&function, &tables);
+        for bits in 0..1_u32 << 7 {
+            let mut masks: [u8; 7] = std::array::from_fn(|row| (bits >> row & 1) as u8);
+            let picked = all.picked(|table, owned, stay| {
+                let first = 3 * table.index() as u32;
+                stay.extend(owned.filter(|position| bits >> (first + position) & 1 != 0));
+            });
+            let mut parts = vec![Selection::default()];
+            all.narrow(&mut masks, &mut parts);
+            assert_eq!(picked, parts[0], "{bits:b}");
+        }
     }
 
     #[test]

@@ -94,6 +94,11 @@ impl Contests {
         Self { compiler: compiler.clone(), all: worth.into_iter().map(with_rows).collect() }
     }
 
+    /// Whether no contest is worth it.
+    pub(super) fn is_empty(&self) -> bool {
+        self.all.is_empty()
+    }
+
     /// Whether the rows of a table meet in a contest.
     pub(super) fn meet(&self, table: Table) -> bool {
         self.all.iter().flat_map(|it| &it.contest.groups).any(|group| group.rows && group.table == table)

@@ -55,6 +55,11 @@ impl Boxes {
         Self { low: low.map(f32x8::new), high: high.map(f32x8::new), all, far }
     }
 
+    /// Whether supports say nothing about any of the boxes.
+    pub(super) fn are_far(&self) -> bool {
+        self.far == self.all
+    }
+
     /// One set bit for each box.
     pub(super) fn all(&self) -> u8 {
         self.all
@@ -93,6 +98,19 @@ impl RowSupports {
         }
         let misses = square.simd_gt(f32x8::splat(row.radius_squared)).to_bitmask() as u8;
         boxes.all & (!misses | boxes.far)
+    }
+
+    /// A box that meets every box that the row [`reach`](Self::reach)es, whatever `reach` rounds: squares of
+    /// tiny gaps are 0.
+    pub(super) fn reach_box(&self, row: u32) -> Box3 {
+        let SupportRow { low, high, radius_squared } = self.rows[row as usize];
+        let radius = radius_squared.sqrt().max(1e-18) * (1.0 + 4.0 * f32::EPSILON);
+        // A difference of infinities is NaN, and counts as reached.
+        let side = |side: f32, open: f32| if side.is_nan() { open } else { side };
+        Box3 {
+            low: low.map(|low| side((low - radius).next_down(), f32::NEG_INFINITY)),
+            high: high.map(|high| side((high + radius).next_up(), f32::INFINITY)),
+        }
     }
 
     /// The box around the support of a row, rounded outwards.

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! ranges:  one call of the interval kernel, boxes as lanes, with the rows of the region around them
+//! region:  of all rows, those whose supports reach one box; if small boxes are asked for, by a tree   (root, tree)
 //! narrow:  for each table, row by row: the boxes that the row's support reaches              (cull)
 //!          the rule of the operator says which of the zero rows may go                        (rule)
 //!          operands of a union below its field in the whole box cannot win: left out (an intersection: above);
@@ -25,8 +26,10 @@ mod decide;
 mod edit;
 pub(crate) mod program;
 mod ranges;
+mod root;
 mod rule;
 mod survey;
+mod tree;
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -318,8 +321,16 @@ impl Divisible for Pruner {
     type Region = Region;
 
     fn region(&self, bounds: Box3) -> Result<Region, EvalError> {
+        let mut region = self.everywhere();
+        if region.rows() > MAX_RANGED_ROWS {
+            // Supports first: they tell of most rows, and ranges are computed of few rows only.
+            region = Region { bounds, selection: Arc::new(self.program.reaching(&bounds)) };
+            if region.rows() > MAX_RANGED_ROWS && self.program.contests.is_empty() {
+                return Ok(region);
+            }
+        }
         let mut parts = Vec::with_capacity(1);
-        self.narrow(&self.everywhere(), &[bounds], &mut parts)?;
+        self.narrow(&region, &[bounds], &mut parts)?;
         Ok(parts.pop().expect("one box has one region"))
     }
 

@@ -7,6 +7,7 @@ use jbt_lower::prune_info::{PruneInfo, RangeFunction, Rule, Support, TablePruneI
 
 use super::contest::Contests;
 use super::cull::RowSupports;
+use super::root::RowTrees;
 use crate::compiler::Compiler;
 use crate::error::CompileError;
 use crate::kernel::{BoundKernel, Kernel, Purpose};
@@ -19,6 +20,7 @@ pub(crate) struct RangeProgram {
     /// By table; `None` where rows are not left out by their supports.
     pub(super) supports: Vec<Option<RowSupports>>,
     pub(super) contests: Contests,
+    pub(super) trees: RowTrees,
 }
 
 impl RangeProgram {
@@ -31,7 +33,8 @@ impl RangeProgram {
         let kernel = compiler.kernel(function, Purpose::Ranges, present)?;
         let supports = info.tables.values().map(supports).collect();
         let contests = Contests::new(compiler, &info, &tables);
-        Ok(Self { bound: compiler.bind(&kernel, tables), info, supports, contests })
+        let trees = RowTrees::new(tables.tables.len());
+        Ok(Self { bound: compiler.bind(&kernel, tables), info, supports, contests, trees })
     }
 }
 
@@ -62,7 +65,10 @@ impl RangeProgram {
             }
         }
         let contests = Contests::new(compiler, &info, &tables);
-        Self { bound: compiler.bind(&self.bound.kernel, tables), info, supports, contests }
+        let bound = compiler.bind(&self.bound.kernel, tables);
+        let rows = changed.iter().map(|&(table, row, _)| (table, row));
+        let trees = self.refitted((&info, &supports, bound.all()), rows);
+        Self { bound, info, supports, contests, trees }
     }
 }
 

@@ -117,7 +117,7 @@ impl Solid {
         let mut order: Vec<usize> = (0..points.len()).collect();
         let mut found = vec![Membership::Outside; points.len()];
         if !order.is_empty() {
-            question.group(&self.pruner.everywhere(), &mut order, &mut found)?;
+            question.group(None, &mut order, &mut found)?;
         }
         let mut answers = found.clone();
         for (&index, &answer) in order.iter().zip(&found) {
@@ -151,10 +151,10 @@ impl MembershipQuestion<'_> {
         )
     }
 
-    /// Answers for some points, which are put into another order with their answers.
+    /// Answers for some points of a region, which are put into another order with their answers.
     fn group(
         &self,
-        around: &Region,
+        around: Option<&Region>,
         order: &mut [usize],
         answers: &mut [Membership],
     ) -> Result<(), EvalError> {
@@ -163,7 +163,10 @@ impl MembershipQuestion<'_> {
             Box3::new(low, [0, 1, 2].map(|axis| all.high[axis].max(cube.high[axis])))
         });
         let Some(hull) = hull else { return Ok(()) };
-        let region = self.narrowed(around, hull)?;
+        let region = match around {
+            Some(around) => self.narrowed(around, hull)?,
+            None => self.solid.pruner.region(hull)?,
+        };
         let mut range = [ANYTHING];
         self.solid.pruner.ranges(&region, &[hull], &mut range)?;
         if let Some(inside) = self.solid.side(range[0]) {
@@ -184,8 +187,8 @@ impl MembershipQuestion<'_> {
         let (answers, others) = answers.split_at_mut(middle);
         // As deep as the number of points has binary digits.
         let (below, above) = crate::parallel::join(
-            || self.group(&region, order, answers),
-            || self.group(&region, rest, others),
+            || self.group(Some(&region), order, answers),
+            || self.group(Some(&region), rest, others),
         );
         below.and(above)
     }

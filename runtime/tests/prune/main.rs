@@ -11,6 +11,7 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+mod large;
 mod unions;
 
 use std::sync::atomic::{AtomicU64, Ordering};

@@ -1,0 +1,120 @@
+//! The rows that reach one box, of all rows of a model.
+//!
+//! Whoever divides space asks once about all of it, and then goes from region to region, each of which knows
+//! its rows. Rays, points and small parts begin with all rows again and again. So after a few questions about
+//! small parts there is a tree over the rows ([`RowTree`]), and such a question costs what it finds. A model
+//! of which nobody asks that never pays for a tree; an edited one keeps it.
+
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use jbt_ir::{Entity as _, Selection, Table};
+use jbt_lower::prune_info::{PruneInfo, SupportSpace};
+
+use super::cull::{Boxes, RowSupports};
+use super::program::RangeProgram;
+use super::rule;
+use super::tree::RowTree;
+use crate::boxes::Box3;
+
+/// Tables of fewer rows have no tree.
+const FEWEST_ROWS: usize = 1024;
+/// A part is small if at most one of so many rows reaches it.
+const SMALL: usize = 16;
+/// A tree costs about as much as so many passes over all rows.
+const PASSES: usize = 8;
+/// With more edits at once a new tree is made when it is wanted.
+const MOST_REFITTED: usize = 64;
+
+/// The trees over the rows of a model.
+pub(super) struct RowTrees {
+    /// By table.
+    trees: Vec<OnceLock<RowTree>>,
+    /// How many passes over all rows have been made for small parts.
+    passes: AtomicUsize,
+}
+
+impl RowTrees {
+    pub(super) fn new(tables: usize) -> Self {
+        Self { trees: (0..tables).map(|_| OnceLock::new()).collect(), passes: AtomicUsize::new(0) }
+    }
+}
+
+impl RangeProgram {
+    /// The supports of a table in the world, if rows may be left out by them.
+    fn world_supports(&self, table: Table) -> Option<&RowSupports> {
+        match self.info.tables[table].space {
+            SupportSpace::World => self.supports[table.index()].as_ref(),
+            SupportSpace::Probed(_) | SupportSpace::Unknown => None,
+        }
+    }
+
+    /// The rows whose supports in the world reach a box, and what rules keep of the others.
+    pub(super) fn reaching(&self, bounds: &Box3) -> Selection {
+        let all = self.bound.all();
+        let boxes = Boxes::new(&[*bounds]);
+        let pays = self.trees.passes.load(Ordering::Relaxed) >= PASSES && !boxes.are_far();
+        let reaches = |supports: &RowSupports, active: &[u32], position: u32| {
+            supports.reach(active[position as usize], &boxes) != 0
+        };
+        let listed = |table: Table| {
+            let (supports, active) = (self.world_supports(table)?, all.active(table));
+            if !pays || active.len() < FEWEST_ROWS {
+                return None;
+            }
+            let tree = self.trees.trees[table.index()].get_or_init(|| RowTree::new(supports, active));
+            tree.reached(bounds, |position| reaches(supports, active, position))
+        };
+        let lists: Vec<Option<Vec<u32>>> = (0..all.tables()).map(|table| listed(Table::new(table))).collect();
+        let selection = all.picked(|table, owned, stay| {
+            let Some(supports) = self.world_supports(table) else {
+                stay.extend(owned);
+                return;
+            };
+            let before = stay.len();
+            match &lists[table.index()] {
+                Some(list) => {
+                    let first = list.partition_point(|&position| position < owned.start);
+                    stay.extend(list[first..].iter().take_while(|&&position| position < owned.end));
+                }
+                None => {
+                    let active = all.active(table);
+                    stay.extend(owned.clone().filter(|&position| reaches(supports, active, position)));
+                }
+            }
+            rule::complete(self.info.tables[table].rule, owned, before, stay);
+        });
+        if !pays && selection.len() <= all.len() / SMALL {
+            self.trees.passes.fetch_add(1, Ordering::Relaxed);
+        }
+        selection
+    }
+
+    /// The trees for a program with the same rows, some of which have other supports.
+    pub(super) fn refitted(
+        &self,
+        (info, supports, all): (&PruneInfo, &[Option<RowSupports>], &Selection),
+        changed: impl ExactSizeIterator<Item = (Table, usize)> + Clone,
+    ) -> RowTrees {
+        let trees = RowTrees::new(self.trees.trees.len());
+        if changed.len() > MOST_REFITTED {
+            return trees;
+        }
+        trees.passes.store(self.trees.passes.load(Ordering::Relaxed), Ordering::Relaxed);
+        for table in info.tables.keys() {
+            let (tree, active) = (self.trees.trees[table.index()].get(), all.active(table));
+            let Some((tree, supports)) = tree.zip(supports[table.index()].as_ref()) else { continue };
+            if active != self.bound.all().active(table) {
+                continue;
+            }
+            let mut tree = tree.clone();
+            for (_, row) in changed.clone().filter(|&(it, _)| it == table) {
+                let position = active.iter().position(|&it| it as usize == row);
+                position.into_iter().for_each(|position| tree.refit(position as u32, supports, active));
+            }
+            // The lock is new.
+            let _ = trees.trees[table.index()].set(tree);
+        }
+        trees
+    }
+}
