@@ -324,7 +324,8 @@ impl Divisible for Pruner {
         let mut region = self.everywhere();
         if region.rows() > MAX_RANGED_ROWS {
             // Supports first: they tell of most rows, and ranges are computed of few rows only.
-            region = Region { bounds, selection: Arc::new(self.program.reaching(&bounds)) };
+            let selection = self.program.trees.reaching(self.program.bounded_rows(), &bounds);
+            region = Region { bounds, selection: Arc::new(selection) };
             if region.rows() > MAX_RANGED_ROWS && self.program.contests.is_empty() {
                 return Ok(region);
             }

@@ -7,7 +7,7 @@ use jbt_lower::prune_info::{PruneInfo, RangeFunction, Rule, Support, TablePruneI
 
 use super::contest::Contests;
 use super::cull::RowSupports;
-use super::root::RowTrees;
+use super::root::{BoundedRows, RowTrees};
 use crate::compiler::Compiler;
 use crate::error::CompileError;
 use crate::kernel::{BoundKernel, Kernel, Purpose};
@@ -39,6 +39,11 @@ impl RangeProgram {
 }
 
 impl RangeProgram {
+    /// All rows, and what leaves them out.
+    pub(super) fn bounded_rows(&self) -> BoundedRows<'_> {
+        BoundedRows { all: self.bound.all(), info: &self.info, supports: &self.supports }
+    }
+
     /// What is known about the rows.
     pub(crate) fn info(&self) -> &PruneInfo {
         &self.info
@@ -67,7 +72,8 @@ impl RangeProgram {
         let contests = Contests::new(compiler, &info, &tables);
         let bound = compiler.bind(&self.bound.kernel, tables);
         let rows = changed.iter().map(|&(table, row, _)| (table, row));
-        let trees = self.refitted((&info, &supports, bound.all()), rows);
+        let now = BoundedRows { all: bound.all(), info: &info, supports: &supports };
+        let trees = self.trees.refitted([self.bounded_rows(), now], rows);
         Self { bound, info, supports, contests, trees }
     }
 }

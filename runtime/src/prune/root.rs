@@ -12,7 +12,6 @@ use jbt_ir::{Entity as _, Selection, Table};
 use jbt_lower::prune_info::{PruneInfo, SupportSpace};
 
 use super::cull::{Boxes, RowSupports};
-use super::program::RangeProgram;
 use super::rule;
 use super::tree::RowTree;
 use crate::boxes::Box3;
@@ -21,7 +20,8 @@ use crate::boxes::Box3;
 const FEWEST_ROWS: usize = 1024;
 /// A part is small if at most one of so many rows reaches it.
 const SMALL: usize = 16;
-/// A tree costs about as much as so many passes over all rows.
+/// After so many passes for small parts a tree is made. A million rows take 5 ms a pass, and 0.3 s for the
+/// tree: whoever asks so often will ask more.
 const PASSES: usize = 8;
 /// With more edits at once a new tree is made when it is wanted.
 const MOST_REFITTED: usize = 64;
@@ -34,40 +34,49 @@ pub(super) struct RowTrees {
     passes: AtomicUsize,
 }
 
-impl RowTrees {
-    pub(super) fn new(tables: usize) -> Self {
-        Self { trees: (0..tables).map(|_| OnceLock::new()).collect(), passes: AtomicUsize::new(0) }
-    }
+/// Rows that may be left out by their supports: what is known of them, and their supports, by table.
+#[derive(Clone, Copy)]
+pub(super) struct BoundedRows<'a> {
+    pub(super) all: &'a Selection,
+    pub(super) info: &'a PruneInfo,
+    /// `None` where rows are not left out by their supports.
+    pub(super) supports: &'a [Option<RowSupports>],
 }
 
-impl RangeProgram {
+impl BoundedRows<'_> {
     /// The supports of a table in the world, if rows may be left out by them.
-    fn world_supports(&self, table: Table) -> Option<&RowSupports> {
+    fn in_world(&self, table: Table) -> Option<&RowSupports> {
         match self.info.tables[table].space {
             SupportSpace::World => self.supports[table.index()].as_ref(),
             SupportSpace::Probed(_) | SupportSpace::Unknown => None,
         }
     }
+}
+
+impl RowTrees {
+    pub(super) fn new(tables: usize) -> Self {
+        Self { trees: (0..tables).map(|_| OnceLock::new()).collect(), passes: AtomicUsize::new(0) }
+    }
 
     /// The rows whose supports in the world reach a box, and what rules keep of the others.
-    pub(super) fn reaching(&self, bounds: &Box3) -> Selection {
-        let all = self.bound.all();
+    pub(super) fn reaching(&self, rows: BoundedRows<'_>, bounds: &Box3) -> Selection {
+        let all = rows.all;
         let boxes = Boxes::new(&[*bounds]);
-        let pays = self.trees.passes.load(Ordering::Relaxed) >= PASSES && !boxes.are_far();
+        let pays = self.passes.load(Ordering::Relaxed) >= PASSES && !boxes.are_far();
         let reaches = |supports: &RowSupports, active: &[u32], position: u32| {
             supports.reach(active[position as usize], &boxes) != 0
         };
         let listed = |table: Table| {
-            let (supports, active) = (self.world_supports(table)?, all.active(table));
+            let (supports, active) = (rows.in_world(table)?, all.active(table));
             if !pays || active.len() < FEWEST_ROWS {
                 return None;
             }
-            let tree = self.trees.trees[table.index()].get_or_init(|| RowTree::new(supports, active));
+            let tree = self.trees[table.index()].get_or_init(|| RowTree::new(supports, active));
             tree.reached(bounds, |position| reaches(supports, active, position))
         };
         let lists: Vec<Option<Vec<u32>>> = (0..all.tables()).map(|table| listed(Table::new(table))).collect();
         let selection = all.picked(|table, owned, stay| {
-            let Some(supports) = self.world_supports(table) else {
+            let Some(supports) = rows.in_world(table) else {
                 stay.extend(owned);
                 return;
             };
@@ -82,10 +91,10 @@ impl RangeProgram {
                     stay.extend(owned.clone().filter(|&position| reaches(supports, active, position)));
                 }
             }
-            rule::complete(self.info.tables[table].rule, owned, before, stay);
+            rule::complete(rows.info.tables[table].rule, owned, before, stay);
         });
         if !pays && selection.len() <= all.len() / SMALL {
-            self.trees.passes.fetch_add(1, Ordering::Relaxed);
+            self.passes.fetch_add(1, Ordering::Relaxed);
         }
         selection
     }
@@ -93,18 +102,18 @@ impl RangeProgram {
     /// The trees for a program with the same rows, some of which have other supports.
     pub(super) fn refitted(
         &self,
-        (info, supports, all): (&PruneInfo, &[Option<RowSupports>], &Selection),
+        [before, now]: [BoundedRows<'_>; 2],
         changed: impl ExactSizeIterator<Item = (Table, usize)> + Clone,
-    ) -> RowTrees {
-        let trees = RowTrees::new(self.trees.trees.len());
+    ) -> Self {
+        let trees = Self::new(self.trees.len());
         if changed.len() > MOST_REFITTED {
             return trees;
         }
-        trees.passes.store(self.trees.passes.load(Ordering::Relaxed), Ordering::Relaxed);
-        for table in info.tables.keys() {
-            let (tree, active) = (self.trees.trees[table.index()].get(), all.active(table));
-            let Some((tree, supports)) = tree.zip(supports[table.index()].as_ref()) else { continue };
-            if active != self.bound.all().active(table) {
+        trees.passes.store(self.passes.load(Ordering::Relaxed), Ordering::Relaxed);
+        for table in now.info.tables.keys() {
+            let (tree, active) = (self.trees[table.index()].get(), now.all.active(table));
+            let Some((tree, supports)) = tree.zip(now.supports[table.index()].as_ref()) else { continue };
+            if active != before.all.active(table) {
                 continue;
             }
             let mut tree = tree.clone();
