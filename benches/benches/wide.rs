@@ -144,6 +144,9 @@ fn smooth_wide([depths, lights]: [Rows<'_>; 2], row: &mut [f32]) {
     }
 }
 
+/// Three ways to do the same, by name.
+type Ways<'a, T> = [(&'static str, &'a dyn Fn(&mut [T])); 3];
+
 fn numbers(rng: &mut Rng, count: usize) -> Vec<f32> {
     (0..count).map(|_| rng.f32()).collect()
 }
@@ -153,7 +156,7 @@ fn contest<T: Clone + PartialEq>(
     c: &mut Criterion,
     name: &str,
     (elements, empty): (usize, Vec<T>),
-    ways: [(&str, &dyn Fn(&mut [T])); 3],
+    ways: Ways<'_, T>,
 ) {
     let mut group = c.benchmark_group(name);
     group.throughput(Throughput::Elements(elements as u64));
@@ -183,7 +186,7 @@ fn host(c: &mut Criterion) {
         low: [0, 1, 2].map(|axis| eight.map(|(low, _)| low[axis])),
         high: [0, 1, 2].map(|axis| eight.map(|(_, high)| high[axis])),
     };
-    let ways: [(&str, &dyn Fn(&mut [u8])); 3] = [
+    let ways: Ways<'_, u8> = [
         ("plain", &|bits| reach_plain(black_box(&rows), &boxes, bits)),
         ("levels", &|bits| reach_levels(black_box(&rows), &boxes, bits)),
         ("wide", &|bits| reach_wide(black_box(&rows), &boxes, bits)),
@@ -191,7 +194,7 @@ fn host(c: &mut Criterion) {
     contest(c, "wide/rows against boxes", (ROWS, vec![0; ROWS]), ways);
 
     let samples = numbers(&mut rng, SAMPLES);
-    let ways: [(&str, &dyn Fn(&mut [u8])); 3] = [
+    let ways: Ways<'_, u8> = [
         ("plain", &|bits| sides_plain(black_box(&samples), 0.5, bits)),
         ("levels", &|bits| sides_levels(black_box(&samples), 0.5, bits)),
         ("wide", &|bits| sides_wide(black_box(&samples), 0.5, bits)),
@@ -201,7 +204,7 @@ fn host(c: &mut Criterion) {
     let planes = [(); 6].map(|()| numbers(&mut rng, PIXELS));
     let [a, b, c_, d, e, f] = planes.each_ref().map(Vec::as_slice);
     let picture = [[a, b, c_], [d, e, f]];
-    let ways: [(&str, &dyn Fn(&mut [f32])); 3] = [
+    let ways: Ways<'_, f32> = [
         ("plain", &|row| smooth_plain(black_box(picture), row)),
         ("levels", &|row| smooth_levels(black_box(picture), row)),
         ("wide", &|row| smooth_wide(black_box(picture), row)),

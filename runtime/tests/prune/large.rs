@@ -32,14 +32,14 @@ fn small_parts_of_large_models_have_the_rows_that_a_pass_finds() {
         let (tree, edited) = (check(0.0), check(0.5));
         let pruner = Pruner::new(&compiler, &tree).expect("it compiles");
         let mut rng = Rng::with_seed(4);
-        let boxes: Vec<Box3> = (0..48).map(|_| small_box(&mut rng)).collect();
+        let boxes: Vec<Box3> = (0..112).map(|_| small_box(&mut rng)).collect();
         let region = |pruner: &Pruner, bounds: &Box3| pruner.region(*bounds).expect("a region");
         let before: Vec<Region> = boxes.iter().map(|bounds| region(&pruner, bounds)).collect();
         let evaluator = compiler.evaluator(&tree, Query::ALL).expect("it compiles");
         let model = large(operator, 6000, 0.0);
         let mut rows = 0;
         for (bounds, found) in boxes.iter().zip(&before) {
-            // The first questions are answered by passes.
+            // The first 64 questions are answered by passes.
             let fresh = Pruner::new(&compiler, &tree).expect("it compiles");
             assert_eq!(found.selection(), region(&fresh, bounds).selection(), "{operator} {bounds:?}");
             let points = points_in(&mut rng, bounds, 4);
