@@ -1,7 +1,7 @@
 //! The rows that reach one box, of all rows of a model.
 //!
 //! Whoever divides space asks once about all of it, and then goes from region to region, each of which knows
-//! its rows. Rays, points and small parts begin with all rows again and again. So after a few questions about
+//! its rows. Rays, points and small parts begin with all rows again and again. So after many questions about
 //! small parts there is a tree over the rows ([`RowTree`]), and such a question costs what it finds. A model
 //! of which nobody asks that never pays for a tree; an edited one keeps it.
 

@@ -1,4 +1,4 @@
-//! Small parts of large models: after a few questions there is a tree over the rows, and it changes nothing.
+//! Small parts of large models: after many questions there is a tree over the rows, and it changes nothing.
 
 use super::*;
 
