@@ -18,7 +18,6 @@ use crate::lattice;
 use crate::output::{Output, grouped, plural, warn};
 use crate::progress::ProgressLine;
 use crate::scene::LoadedScene;
-use crate::signals;
 
 /// Runs the command. `start` is when the process began, for the total time.
 pub fn run(arguments: &ContourArguments, quiet: bool, start: Instant) -> Result<(), Failure> {
@@ -156,27 +155,17 @@ fn make(
     fineness: Fineness,
     progress: &mut ProgressLine,
 ) -> Result<Made, SliceError> {
-    let watch = |part| progress.set(part);
     match drawing {
         SliceKind::Svg => {
             let block = arguments.quadtree.then_some(1);
             let detail = Detail { fineness, block, quadtree: arguments.quadtree };
-            slicer
-                .contour(rectangle, &detail)
-                .on_progress(watch)
-                .cancel(signals::token())
-                .run()
-                .map(Made::Contour)
+            progress.run(slicer.contour(rectangle, &detail)).map(Made::Contour)
         }
         SliceKind::Png => {
             let samples = arguments.samples.map_or(1, usize::from);
             let (mode, _) = mode(arguments);
             let detail = ImageDetail { fineness, samples };
-            let picture = slicer
-                .picture(rectangle, &mode, &detail)
-                .on_progress(watch)
-                .cancel(signals::token())
-                .run()?;
+            let picture = progress.run(slicer.picture(rectangle, &mode, &detail))?;
             Ok(Made::Picture { picture, rectangle: *rectangle })
         }
     }

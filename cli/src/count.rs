@@ -34,7 +34,6 @@ use crate::lattice;
 use crate::output::{grouped, plural, print, warn};
 use crate::progress::ProgressLine;
 use crate::scene::LoadedScene;
-use crate::signals;
 use crate::stages;
 
 /// How the evaluations of separate walks add up.
@@ -112,11 +111,7 @@ fn supports(
     quiet: bool,
 ) -> Result<SupportCounts, Failure> {
     let mut progress = ProgressLine::new("counting", quiet);
-    let counted = statistics
-        .supports(&Compiler::new(), lattice)
-        .on_progress(|part| progress.set(part))
-        .cancel(signals::token())
-        .run();
+    let counted = progress.run(statistics.supports(&Compiler::new(), lattice));
     counted.map_err(|error| scene.failure(&error))
 }
 
@@ -128,11 +123,7 @@ fn mesh(
     quiet: bool,
 ) -> Result<MeshCounters, Failure> {
     let mut progress = ProgressLine::new("meshing", quiet);
-    let made = settings
-        .mesh(&Compiler::new(), tree)
-        .on_progress(|part| progress.set(part))
-        .cancel(signals::token())
-        .run();
+    let made = progress.run(settings.mesh(&Compiler::new(), tree));
     made.map(|made| made.counters).map_err(|error| scene.failure(&error))
 }
 

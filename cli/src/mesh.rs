@@ -14,7 +14,6 @@ use crate::lattice;
 use crate::output::{Output, grouped, plural, warn};
 use crate::progress::ProgressLine;
 use crate::scene::LoadedScene;
-use crate::signals;
 use crate::stages;
 
 /// Runs the command. `start` is when the process began, for the total time.
@@ -33,9 +32,7 @@ pub fn run(arguments: &MeshArguments, quiet: bool, start: Instant) -> Result<(),
     let compiler = arguments.work.compiler()?;
 
     let mut progress = ProgressLine::new("meshing", quiet);
-    let mut work = || {
-        settings.mesh(&compiler, &tree).on_progress(|part| progress.set(part)).cancel(signals::token()).run()
-    };
+    let mut work = || progress.run(settings.mesh(&compiler, &tree));
     let made = arguments.work.run(&mut work).map_err(|error| scene.failure(&error))?;
     drop(progress);
 

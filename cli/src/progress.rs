@@ -4,6 +4,9 @@ use std::io::{self, IsTerminal as _};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
+use jbt::Job;
+
+use crate::signals;
 
 /// How long nobody needs a bar.
 const PATIENCE: Duration = Duration::from_millis(500);
@@ -23,6 +26,11 @@ impl ProgressLine {
     /// The beginning of some work.
     pub fn new(what: &'static str, quiet: bool) -> Self {
         Self { start: Instant::now(), what, shown: !quiet && io::stderr().is_terminal(), bar: None }
+    }
+
+    /// Does the work, shows how far it is, and stops it where a signal comes.
+    pub fn run<'a, T, E>(&'a mut self, job: Job<'a, T, E>) -> Result<T, E> {
+        job.on_progress(|part| self.set(part)).cancel(signals::token()).run()
     }
 
     /// The part of the work that is done, from 0 to 1.

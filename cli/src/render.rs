@@ -15,7 +15,6 @@ use crate::lattice;
 use crate::output::{Output, grouped, plural, warn};
 use crate::progress::ProgressLine;
 use crate::scene::LoadedScene;
-use crate::signals;
 
 /// Runs the command. `start` is when the process began, for the total time.
 pub fn run(arguments: &RenderArguments, quiet: bool, start: Instant) -> Result<(), Failure> {
@@ -29,13 +28,7 @@ pub fn run(arguments: &RenderArguments, quiet: bool, start: Instant) -> Result<(
     let compiler = arguments.work.compiler()?;
 
     let mut progress = ProgressLine::new("rendering", quiet);
-    let mut work = || {
-        settings
-            .picture(&compiler, &tree)
-            .on_progress(|part| progress.set(part))
-            .cancel(signals::token())
-            .run()
-    };
+    let mut work = || progress.run(settings.picture(&compiler, &tree));
     let made = arguments.work.run(&mut work).map_err(|error| scene.failure(&error))?;
     drop(progress);
 

@@ -14,7 +14,6 @@ use crate::lattice;
 use crate::output::{Output, grouped};
 use crate::progress::ProgressLine;
 use crate::scene::LoadedScene;
-use crate::signals;
 
 /// Runs the command. `start` is when the process began, for the total time.
 pub fn run(arguments: &SampleArguments, quiet: bool, start: Instant) -> Result<(), Failure> {
@@ -28,8 +27,7 @@ pub fn run(arguments: &SampleArguments, quiet: bool, start: Instant) -> Result<(
     let compiler = arguments.work.compiler()?;
     let sampler = Sampler::new(&compiler, &tree, arguments.query).map_err(|error| scene.failure(&error))?;
     let mut progress = ProgressLine::new("sampling", quiet);
-    let mut work =
-        || sampler.dense(&lattice).on_progress(|part| progress.set(part)).cancel(signals::token()).run();
+    let mut work = || progress.run(sampler.dense(&lattice));
     let planes = arguments.work.run(&mut work).map_err(|error| scene.failure(&error))?;
     drop(progress);
 

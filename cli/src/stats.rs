@@ -22,7 +22,6 @@ use crate::lattice;
 use crate::output::{grouped, plural, print, warn};
 use crate::progress::ProgressLine;
 use crate::scene::LoadedScene;
-use crate::signals;
 
 /// The tolerance of the bounds when nothing else is said, as a part of the region's longest side.
 const TOLERANCE: f32 = 1.0 / 1024.0;
@@ -36,8 +35,7 @@ pub fn run(arguments: &StatsArguments, quiet: bool, start: Instant) -> Result<()
     let settings = settings(arguments, &asked, tree.origin());
     let solid = Solid::new(&Compiler::new(), &tree).map_err(|error| scene.failure(&error))?;
     let mut progress = ProgressLine::new("measuring", quiet);
-    let measured =
-        solid.measure(&settings).on_progress(|part| progress.set(part)).cancel(signals::token()).run();
+    let measured = progress.run(solid.measure(&settings));
     let measures = measured.map_err(|error| scene.failure(&error))?;
     drop(progress);
     let tolerance = arguments.tolerance.unwrap_or(TOLERANCE * measures.region.longest_side());

@@ -133,6 +133,7 @@ mod job;
 mod kernel;
 pub mod live;
 pub mod mesh;
+mod morton;
 mod parallel;
 mod picture;
 mod points;

@@ -45,24 +45,6 @@ pub(crate) fn number(place: [usize; 3]) -> u16 {
     (spread(place[0]) | spread(place[1]) << 1 | spread(place[2]) << 2) as u16
 }
 
-/// The number of a place in Morton order: the bits of x, y and z interleaved, x lowest. Of 21 bits each.
-pub(crate) fn morton(place: [u32; 3]) -> u64 {
-    let spread = |index: u32| {
-        let mut bits = u64::from(index);
-        for (shift, mask) in [
-            (32, 0x001f_0000_0000_ffff),
-            (16, 0x001f_0000_ff00_00ff),
-            (8, 0x100f_00f0_0f00_f00f),
-            (4, 0x10c3_0c30_c30c_30c3),
-            (2, 0x1249_2492_4924_9249),
-        ] {
-            bits = (bits | bits << shift) & mask;
-        }
-        bits
-    };
-    spread(place[0]) | spread(place[1]) << 1 | spread(place[2]) << 2
-}
-
 /// The bricks of a lattice, in Morton order.
 pub(crate) struct Bricks {
     /// Cells along an edge: 2, 4, 8, 16 or 32.

@@ -14,6 +14,7 @@ use std::ops::Range;
 
 use super::cull::RowSupports;
 use crate::boxes::Box3;
+use crate::morton::morton;
 use crate::parallel::*;
 
 /// Rows under a box of the lowest level.
@@ -45,7 +46,7 @@ impl RowTree {
             .filter(is_finite)
             .fold(NOTHING, |hull, &at| union(&hull, &Box3 { low: at, high: at }));
         let mut places: Vec<(u64, u32)> =
-            middles.iter().zip(0..).map(|(middle, position)| (morton(middle, &around), position)).collect();
+            middles.iter().zip(0..).map(|(middle, position)| (code(middle, &around), position)).collect();
         places.par_sort_unstable_by_key(|&place| place);
         let order = places.into_iter().map(|(_, position)| position).collect();
         let mut tree = Self { order, levels: Vec::new() };
@@ -131,30 +132,16 @@ fn union(a: &Box3, b: &Box3) -> Box3 {
     }
 }
 
-/// The place on the Morton curve through a box. What is not finite comes last.
-fn morton(at: &[f32; 3], around: &Box3) -> u64 {
+/// The place of a point on the Morton curve through a box. What is not finite comes last.
+fn code(at: &[f32; 3], around: &Box3) -> u64 {
     if !at.iter().all(|side| side.is_finite()) {
         return u64::MAX;
     }
-    (0..3).fold(0, |code, axis| {
+    morton(std::array::from_fn(|axis| {
         let (low, high) = (f64::from(around.low[axis]), f64::from(around.high[axis]));
         let part = (f64::from(at[axis]) - low) / (high - low).max(f64::MIN_POSITIVE);
-        let cells = f64::from((1_u32 << BITS) - 1);
-        code | spread((part * cells) as u64) << axis
-    })
-}
-
-/// The lower 21 bits with two zeros between any two.
-fn spread(bits: u64) -> u64 {
-    [
-        (32, 0x1f_0000_0000_ffff),
-        (16, 0x1f_0000_ff00_00ff),
-        (8, 0x100f_00f0_0f00_f00f),
-        (4, 0x10c3_0c30_c30c_30c3),
-        (2, 0x1249_2492_4924_9249),
-    ]
-    .into_iter()
-    .fold(bits, |bits, (by, mask)| (bits | bits << by) & mask)
+        (part * f64::from((1_u32 << BITS) - 1)) as u32
+    }))
 }
 
 #[cfg(test)]
@@ -213,12 +200,5 @@ mod tests {
             }
         }
         assert!(narrow > 400, "{narrow}");
-    }
-
-    #[test]
-    fn bits_are_spread() {
-        assert_eq!(spread(0b111), 0b100_1001);
-        assert_eq!(spread((1 << BITS) - 1).count_ones(), BITS);
-        assert_eq!(spread(1 << (BITS - 1)), 1 << (3 * (BITS - 1)));
     }
 }

@@ -42,11 +42,14 @@ pub(super) fn put(file: &File, path: &Path, replace: bool) -> io::Result<()> {
     // Where files cannot be locked, nobody takes the temporary name for one that is left over.
     let _ = file.try_lock();
     for name in temporary_names(path) {
-        match link(file, &name) {
-            Err(error) if error.kind() == ErrorKind::AlreadyExists && !remove_if_left(&name) => {}
-            Err(error) if error.kind() == ErrorKind::AlreadyExists => link(file, &name)?,
-            Err(error) => return Err(error),
-            Ok(()) => {}
+        let taken = |error: &io::Error| error.kind() == ErrorKind::AlreadyExists;
+        let linked = match link(file, &name) {
+            Err(error) if taken(&error) && remove_if_left(&name) => link(file, &name),
+            linked => linked,
+        };
+        match linked {
+            Err(error) if taken(&error) => continue,
+            linked => linked?,
         }
         if !is_at(file, &name) {
             continue;

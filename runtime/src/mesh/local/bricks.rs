@@ -4,10 +4,11 @@ use rustc_hash::FxHashMap;
 
 use super::slots::{BufferSlot, BufferSlots};
 use crate::boxes::Box3;
-use crate::mesh::brick::{Bricks, NONE, direction, morton};
+use crate::mesh::brick::{Bricks, NONE, direction};
 use crate::mesh::crossing::CrossedCell;
 use crate::mesh::indexed::Mesh;
 use crate::mesh::lattice::Lattice;
+use crate::morton::morton;
 use crate::touched::Touched;
 
 /// The place of a brick in units of bricks, counted from the lattice's anchor.

@@ -8,10 +8,11 @@
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::bricks::{BrickMesh, BrickPlace, beside, linked};
-use crate::mesh::brick::{Bricks, morton, place};
+use crate::mesh::brick::{Bricks, place};
 use crate::mesh::cell::default_sheets;
 use crate::mesh::crossing::{CrossedCell, UnflippedCells, flip};
 use crate::mesh::lattice::Lattice;
+use crate::morton::morton;
 use crate::touched::Touched;
 
 /// What flips depend on.

@@ -12,8 +12,9 @@
 //!
 //! All of this depends only on the signs of lattice points, so it is the same for bricks of any size.
 
-use crate::mesh::brick::{Bricks, morton, place};
+use crate::mesh::brick::{Bricks, place};
 use crate::mesh::crossing::{CrossedCell, Crossings};
+use crate::morton::morton;
 
 /// Cells along the edge of a block.
 pub(super) const EDGE: usize = 4;

@@ -17,7 +17,6 @@ mod shreds;
 
 use crate::parallel::*;
 
-use super::brick::morton;
 use super::crossing::Crossings;
 use super::divide::BrickDivision;
 use super::error::MeshError;
@@ -25,6 +24,7 @@ use super::field::Field;
 use super::indexed::Mesh;
 use super::report::{MAX_NEAR, ThinReport};
 use super::stage::MeshStage;
+use crate::morton::morton;
 use crate::progress::Progress;
 use crate::span::span;
 

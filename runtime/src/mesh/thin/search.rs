@@ -16,9 +16,10 @@
 
 use super::crossed::{CrossedBlocks, EDGE, bits};
 use crate::boxes::{ANYTHING, Box3, MAX_PARTS, Range};
-use crate::mesh::brick::{box_of, morton, place};
+use crate::mesh::brick::{box_of, place};
 use crate::mesh::error::MeshError;
 use crate::mesh::field::Field;
+use crate::morton::morton;
 
 /// The most steps of eight boxes for a block. A speck usually takes nine: two down to its cell, and one for
 /// each halving.

@@ -18,11 +18,12 @@ use crate::parallel::*;
 use super::alarm::{ALARM, Alarm};
 use super::crossed::CrossedBlocks;
 use crate::boxes::Box3;
-use crate::mesh::brick::{Bricks, morton};
+use crate::mesh::brick::Bricks;
 use crate::mesh::crossing::Crossings;
 use crate::mesh::error::MeshError;
 use crate::mesh::field::Field;
 use crate::mesh::indexed::Mesh;
+use crate::morton::morton;
 
 /// Vertices are tested where at least one of this many crossed edges in a block is lone. A sheet of nine
 /// tenths of a cell, across a diagonal of the lattice, has twice as many lone edges.
