@@ -32,6 +32,7 @@ mod lights;
 mod look;
 mod material;
 mod noise;
+mod raster;
 mod renderer;
 mod report;
 mod seen;
@@ -140,7 +141,7 @@ impl Render {
             tolerance: frame.as_ref().map_or(0.0, |frame| frame.tolerance),
             rays: done.rays,
             evaluations: done.evaluations.round() as u64 + mesh_evaluations,
-            triangles: guide.map_or(0, |guide| guide.triangles),
+            triangles: guide.map_or(0, |guide| guide.mesh.triangles.len() as u64),
             range,
             engine: renderer.evaluator.engine(),
             notice,

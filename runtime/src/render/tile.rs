@@ -30,9 +30,14 @@ impl TileArea {
         Self::of_rows(width, [0, height], antialias)
     }
 
+    /// Pixels along a side of a full tile.
+    pub fn side(antialias: u32) -> u32 {
+        ((f64::from(PACKET).sqrt() / f64::from(antialias)) as u32).max(2)
+    }
+
     /// The tiles of some rows of a picture, from the first one up to the end.
     pub fn of_rows(width: u32, [first, end]: [u32; 2], antialias: u32) -> Vec<Self> {
-        let side = ((f64::from(PACKET).sqrt() / f64::from(antialias)) as u32).max(2);
+        let side = Self::side(antialias);
         let mut places = Vec::new();
         for y in (first..end).step_by(side as usize) {
             for x in (0..width).step_by(side as usize) {
