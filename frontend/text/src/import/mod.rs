@@ -5,8 +5,11 @@
 
 mod imported;
 mod parsip;
+mod rib;
+mod tally;
 mod vm;
 
 pub use imported::Imported;
 pub use parsip::parsip;
+pub use rib::rib;
 pub use vm::vm;
