@@ -2,6 +2,8 @@
 
 use std::fs;
 
+use jbt_model::orientation::{Handed, ModelUp, Orientation};
+
 use super::*;
 
 /// A tetrahedron with awkward colours and attributes.
@@ -14,6 +16,7 @@ fn tetrahedron() -> Mesh {
     let third = 1.0_f32 / 3.0;
     Mesh {
         origin: [0.0; 3],
+        orientation: Orientation::default(),
         positions: vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.1], [0.0, 1.0, 0.0], [-0.0, third, 1e-7]],
         normals: vec![[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
         attributes: vec![

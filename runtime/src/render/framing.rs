@@ -41,9 +41,9 @@ impl<'a> Frame<'a> {
         let Some(bounds) = tight.outer else { return Ok(None) };
         let corners = corners(&bounds);
         let (low, high) = (bounds.low.map(f64::from), bounds.high.map(f64::from));
-        let up = render.view.upwards();
+        let up = render.view.upwards(renderer.tree().orientation());
         let view = render.view.about(renderer.tree().origin());
-        let camera = view.camera(render.aspect(), &corners)?;
+        let camera = view.camera(render.aspect(), &corners, renderer.tree().orientation())?;
         let mut frame = Self {
             render,
             renderer,
@@ -68,7 +68,7 @@ impl<'a> Frame<'a> {
         let places = coarse.as_ref().map(|coarse| frame.places(coarse, &tight)).transpose()?.flatten();
         if is_framed {
             match &places {
-                Some(places) => frame.camera = frame.view.camera(render.aspect(), places)?,
+                Some(places) => frame.camera = frame.view.camera(render.aspect(), places, renderer.tree().orientation())?,
                 None => frame.fit(&corners)?,
             }
         }
@@ -186,7 +186,7 @@ impl<'a> Frame<'a> {
     /// the whole model.
     fn fit(&mut self, corners: &[Vector]) -> Result<(), RenderError> {
         let view = View { zoom: 1.0, ..self.view };
-        self.camera = view.camera(self.render.aspect(), corners)?;
+        self.camera = view.camera(self.render.aspect(), corners, self.renderer.tree().orientation())?;
         self.set_tolerance(SCOUTS, 1.0)?;
         let aspect = self.render.aspect();
         let [columns, rows] = [aspect.min(1.0), (1.0 / aspect).min(1.0)]
@@ -204,7 +204,7 @@ impl<'a> Frame<'a> {
         let seen: Vec<Vec<Vector>> = (0..rows).into_par_iter().map(scouted).collect::<Result<_, _>>()?;
         let seen = seen.concat();
         let points = if seen.is_empty() { corners } else { &seen };
-        self.camera = self.view.camera(aspect, points)?;
+        self.camera = self.view.camera(aspect, points, self.renderer.tree().orientation())?;
         Ok(())
     }
 

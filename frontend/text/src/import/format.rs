@@ -67,6 +67,8 @@ macro_rules! formats {
 }
 
 formats! {
+    /// A RenderMan scene: see [`rib`](fn@super::rib).
+    Rib = rib,
     /// A ParsIP scene: see [`parsip`](fn@super::parsip).
     Parsip = parsip,
     /// A program of instructions: see [`vm`](fn@super::vm).

@@ -22,5 +22,5 @@ fn every_sample_agrees_with_its_table() {
         let table = folder.join(name.replace(".rib", ".oracle.csv"));
         compare(&imported.model, &table, ["r", "g", "b"], &|_| true);
     }
-    assert_eq!(files.len(), 11);
+    assert_eq!(files.len(), 12);
 }

@@ -28,6 +28,7 @@ use jbt_ir::limits::{MAX_BLOCK_DEPTH, MAX_SCENE_BYTES};
 use jbt_model::combine::{Combinator, Union};
 use jbt_model::diagnostic::{Diagnostic, Diagnostics, Span};
 use jbt_model::model::Model;
+use jbt_model::orientation::Orientation;
 use jbt_model::report::{Report, clip, nearest};
 use jbt_model::tree::Tree;
 
@@ -35,7 +36,18 @@ use self::blobby::{ISO, LeafColors, Program, affine, placed};
 use self::request::{Block, Request};
 use self::scan::{Argument, Scanner, Values};
 use super::Imported;
+use super::format::{SceneFormatRow, first_line};
 use super::tally::Tally;
+
+/// A comment that names RenderMan, or a request, comes first.
+pub(crate) const FORMAT: SceneFormatRow = SceneFormatRow {
+    recognizes: |bytes| {
+        let mut words = first_line(bytes).split(u8::is_ascii_whitespace);
+        let word = String::from_utf8_lossy(words.next().unwrap_or_default());
+        bytes.starts_with(b"##RenderMan RIB") || request::find(&word).is_some()
+    },
+    ..SceneFormatRow::new(&["rib"], "a RenderMan scene", |bytes, _| rib(bytes))
+};
 
 /// The model of the `Blobby` requests of a RenderMan scene or archive (`.rib`).
 ///
@@ -414,7 +426,7 @@ impl<'a> Reader<'a> {
             return Err([self.errors.finish(), warnings].concat());
         }
         let root = if self.trees.len() == 1 { self.trees.remove(0) } else { Tree::union(self.trees) };
-        Ok((Model { iso: ISO.into(), ..Model::new(root) }, warnings))
+        Ok((Model { iso: ISO.into(), orientation: Orientation::Y_LEFT, ..Model::new(root) }, warnings))
     }
 }
 
