@@ -102,12 +102,15 @@ impl Orientation {
         }
     }
 
-    /// Where a direction of right-handed axes with z up is in the axes of the model.
+    /// A direction in the axes of the model, by how far it goes to the front, to the left and up.
+    ///
+    /// The front is x where z is up. Where y is up, it is z, as of glTF, and -z in left-handed axes, where
+    /// cameras look along z.
     #[must_use]
-    pub fn from_upright(self, [x, y, z]: [f64; 3]) -> [f64; 3] {
+    pub fn direction(self, [front, left, up]: [f64; 3]) -> [f64; 3] {
         let turned = match self.up {
-            ModelUp::Y => [x, z, 0.0 - y],
-            ModelUp::Z => [x, y, z],
+            ModelUp::Y => [left, up, front],
+            ModelUp::Z => [front, left, up],
         };
         self.right_handed(turned)
     }
@@ -120,14 +123,14 @@ mod tests {
     #[test]
     fn axes_of_known_programs() {
         let at = [1.0, 2.0, 3.0];
-        assert_eq!(Orientation::default().from_upright(at), at);
-        // glTF: the model's -y is the front, +z.
-        assert_eq!(Orientation::Y_RIGHT.from_upright(at), [1.0, 3.0, -2.0]);
-        // POV-Ray: z leads away from the front.
-        assert_eq!(Orientation::Y_LEFT.from_upright(at), [1.0, 3.0, 2.0]);
+        assert_eq!(Orientation::default().direction(at), at);
+        // glTF: whoever looks at the front has the model's left at the right.
+        assert_eq!(Orientation::Y_RIGHT.direction(at), [2.0, 3.0, 1.0]);
+        // POV-Ray: z leads away from whoever looks.
+        assert_eq!(Orientation::Y_LEFT.direction(at), [2.0, 3.0, -1.0]);
         assert_eq!(Orientation::Y_LEFT.right_handed(at), [1.0, 2.0, -3.0]);
         let z_left = Orientation { up: ModelUp::Z, handed: Handed::Left };
-        assert_eq!(z_left.from_upright(at), [1.0, -2.0, 3.0]);
+        assert_eq!(z_left.direction(at), [1.0, -2.0, 3.0]);
         assert_eq!(Handed::Left.other().other(), Handed::Left);
     }
 }

@@ -54,9 +54,8 @@ impl Mesh {
         if self.orientation.handed == Handed::Right {
             return Cow::Borrowed(self);
         }
-        let mirrored = |points: &[[f32; 3]]| {
-            points.iter().map(|&point| self.orientation.right_handed(point)).collect()
-        };
+        let mirrored =
+            |points: &[[f32; 3]]| points.iter().map(|&point| self.orientation.right_handed(point)).collect();
         Cow::Owned(Self {
             origin: self.orientation.right_handed(self.origin),
             orientation: Orientation { handed: Handed::Right, ..self.orientation },

@@ -15,7 +15,8 @@ use jbt_model::origin::ModelOrigin;
 use super::vector::{Vector, add, along, cross, dot, is_finite, length, scale, sub, unit};
 use crate::error::{Classified, ErrorKind};
 
-/// The views with names, and the directions that they look from. A model faces along x, and z is up.
+/// The views with names, and the directions that they look from. A model with z up faces
+/// along x; see [`Orientation::direction`] for others.
 pub const VIEWS: [(&str, Vector); 8] = [
     ("three-quarter", THREE_QUARTER),
     ("iso", [1.0, -1.0, 1.0]),
@@ -34,8 +35,8 @@ const THREE_QUARTER: Vector = [1.0, -0.62, 0.5];
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Stance {
     /// It looks at the model from this direction, of any length, from where the model fills the picture.
-    /// The direction is that of right-handed axes with z up, however the model
-    /// [stands](jbt_model::orientation).
+    /// It goes to the front, to the left and up: x, y and z of a model with z up, see
+    /// [`Orientation::direction`].
     From([f64; 3]),
     /// It stands at a point and looks at another point.
     At {
@@ -192,7 +193,7 @@ impl View {
 
     /// The direction that is up in space: the picture's up, if it was given, or the model's.
     pub(super) fn upwards(&self, model: Orientation) -> Vector {
-        self.up.and_then(unit).unwrap_or_else(|| model.from_upright([0.0, 0.0, 1.0]))
+        self.up.and_then(unit).unwrap_or_else(|| model.direction([0.0, 0.0, 1.0]))
     }
 
     /// Right, up and back, in the axes of a model that stands so. In left-handed axes right is on the other
@@ -204,7 +205,7 @@ impl View {
             Stance::From(direction) => {
                 finite("direction", &direction)?;
                 let direction = unit(direction).ok_or(CameraError::Zero { what: "direction" })?;
-                model.from_upright(direction)
+                model.direction(direction)
             }
             Stance::At { eye, target } => {
                 finite("eye", &eye)?;
@@ -219,8 +220,8 @@ impl View {
                 let upwards = unit(up).ok_or(CameraError::Zero { what: "up" })?;
                 right_of(upwards, back).ok_or(CameraError::Up { up })?
             }
-            None => right_of(model.from_upright([0.0, 0.0, 1.0]), back)
-                .or_else(|| right_of(model.from_upright([0.0, 1.0, 0.0]), back))
+            None => right_of(model.direction([0.0, 0.0, 1.0]), back)
+                .or_else(|| right_of(model.direction([0.0, 1.0, 0.0]), back))
                 .expect("no direction is that of two axes"),
         };
         Ok([right, scale(cross(back, right), hand), back])
@@ -393,7 +394,8 @@ mod tests {
 
     #[test]
     fn a_ray_goes_through_the_point_that_is_seen_there() {
-        let camera = View { zoom: 0.7, ..View::default() }.camera(1.5, &cube(), Orientation::default()).unwrap();
+        let camera =
+            View { zoom: 0.7, ..View::default() }.camera(1.5, &cube(), Orientation::default()).unwrap();
         let point = [0.3, -0.8, 0.9];
         let [x, y] = seen(&camera, point);
         let (origin, direction) = camera.ray(x, y);

@@ -68,7 +68,10 @@ impl<'a> Frame<'a> {
         let places = coarse.as_ref().map(|coarse| frame.places(coarse, &tight)).transpose()?.flatten();
         if is_framed {
             match &places {
-                Some(places) => frame.camera = frame.view.camera(render.aspect(), places, renderer.tree().orientation())?,
+                Some(places) => {
+                    frame.camera =
+                        frame.view.camera(render.aspect(), places, renderer.tree().orientation())?
+                }
                 None => frame.fit(&corners)?,
             }
         }

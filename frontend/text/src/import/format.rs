@@ -67,6 +67,8 @@ macro_rules! formats {
 }
 
 formats! {
+    /// A POV-Ray scene: see [`pov`](fn@super::pov).
+    Pov = pov,
     /// A RenderMan scene: see [`rib`](fn@super::rib).
     Rib = rib,
     /// A ParsIP scene: see [`parsip`](fn@super::parsip).

@@ -17,11 +17,17 @@ pub(super) struct Tally {
 impl Tally {
     /// Counts one more of the things about which this is said.
     pub(super) fn note(&mut self, span: Span, message: &str) {
-        if let Some(&place) = self.places.get(message) {
+        self.note_as(span, message, || message.to_owned());
+    }
+
+    /// Counts one more of the things of a name. What is said of them is made once, and not at all where there
+    /// is no room.
+    pub(super) fn note_as(&mut self, span: Span, name: &str, make: impl FnOnce() -> String) {
+        if let Some(&place) = self.places.get(name) {
             self.noted[place].2 += 1;
         } else if self.noted.len() < MAX_ERRORS {
-            self.places.insert(message.to_owned(), self.noted.len());
-            self.noted.push((message.to_owned(), span, 1));
+            self.places.insert(name.to_owned(), self.noted.len());
+            self.noted.push((make(), span, 1));
         } else {
             self.others += 1;
         }

@@ -125,7 +125,8 @@ pub fn ends(read: Read, bytes: &[u8]) -> Duration {
         }
         Err(errors) => {
             let shown = messages(bytes, &errors);
-            let located = errors.iter().any(|error| error.span.is_some() || error.severity == Severity::Limit);
+            let located =
+                errors.iter().any(|error| error.span.is_some() || error.severity == Severity::Limit);
             assert!(located, "{shown}");
         }
     }
@@ -144,7 +145,8 @@ pub fn truncated(read: Read, bytes: &[u8]) {
 /// The files of a folder of samples that have an ending, by name.
 pub fn files(folder: &Path, ending: &str) -> Vec<(String, Vec<u8>)> {
     let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
-    let mut paths: Vec<_> = entries.filter(|path| path.extension().is_some_and(|own| own == ending)).collect();
+    let mut paths: Vec<_> =
+        entries.filter(|path| path.extension().is_some_and(|own| own == ending)).collect();
     paths.sort();
     let name = |path: &Path| path.file_name().unwrap().to_string_lossy().into_owned();
     paths.iter().map(|path| (name(path), std::fs::read(path).unwrap())).collect()

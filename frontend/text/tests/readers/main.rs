@@ -4,4 +4,5 @@
 //! The samples are those of the folders `rib`, `pov` and `threejs`, see `jbt_testkit::samples`.
 
 mod common;
+mod pov;
 mod rib;

@@ -100,7 +100,10 @@ impl Program<'_> {
                     };
                     count.saturating_add(1)
                 }
-                _ => return self.error(format!("instruction {number} has the code {code}, which is not known")),
+                _ => {
+                    return self
+                        .error(format!("instruction {number} has the code {code}, which is not known"));
+                }
             };
             let Some((operands, after)) = after.split_at_checked(count) else {
                 return self.error(format!("the codes end within instruction {number}"));
@@ -187,7 +190,13 @@ impl Program<'_> {
     }
 
     /// A sum, product, maximum or minimum.
-    fn several(&self, number: usize, code: u32, operands: &[f64], results: &[Part]) -> Result<Part, Diagnostic> {
+    fn several(
+        &self,
+        number: usize,
+        code: u32,
+        operands: &[f64],
+        results: &[Part],
+    ) -> Result<Part, Diagnostic> {
         if operands.is_empty() {
             return self.error(format!("instruction {number} has no operands"));
         }
@@ -289,7 +298,8 @@ fn index(number: f64) -> Option<usize> {
 /// The map of a matrix by rows for row vectors, the last row of which is the shift. `None` if it is no affine
 /// map, or has no inverse.
 pub(super) fn affine(numbers: &[f64]) -> Option<DAffine3> {
-    let rows: [[f64; 4]; 4] = std::array::from_fn(|row| std::array::from_fn(|column| numbers[4 * row + column]));
+    let rows: [[f64; 4]; 4] =
+        std::array::from_fn(|row| std::array::from_fn(|column| numbers[4 * row + column]));
     let last = rows.map(|row| row[3]);
     if last[..3] != [0.0; 3] || last[3] == 0.0 {
         return None;

@@ -126,7 +126,7 @@ impl<'a> Reader<'a> {
         while let Some(span) = self.scanner.request()? {
             let word = self.scanner.text(span);
             let Some(request) = request::find(&word) else {
-                self.left_out.note(span, &unknown(&word));
+                self.left_out.note_as(span, &word, || unknown(&word));
                 continue;
             };
             if self.is_later_moment(request, span) {
@@ -335,7 +335,8 @@ impl<'a> Reader<'a> {
         if count.as_slice() != [leaves as f64] {
             let said = count.first().copied().unwrap_or(f64::NAN);
             let message = format!("the Blobby says that it has {said} leaves, and has {leaves}");
-            self.warnings.extend((self.warnings.len() < 50).then(|| Diagnostic::warning(Some(span), message)));
+            self.warnings
+                .extend((self.warnings.len() < 50).then(|| Diagnostic::warning(Some(span), message)));
         }
         let (colors, common) = self.colors(leaves, parameters)?;
         let field = program.field(&instructions, &colors)?;
@@ -433,7 +434,8 @@ impl<'a> Reader<'a> {
 /// The strings of a `Blobby`, if it has them, and its parameters: a lone string before another one is an
 /// array of one.
 fn strings(rest: &[Argument]) -> (&[Span], &[Argument]) {
-    let is_name = |argument: Option<&Argument>| argument.is_none_or(|one| matches!(one.values, Values::Texts(_)));
+    let is_name =
+        |argument: Option<&Argument>| argument.is_none_or(|one| matches!(one.values, Values::Texts(_)));
     match rest {
         [Argument { values: Values::Texts(texts), is_lone, .. }, rest @ ..]
             if !is_lone || is_name(rest.first()) =>

@@ -4,6 +4,9 @@ use jbt_ir::limits::MAX_LIST_NUMBERS;
 use jbt_model::diagnostic::{Diagnostic, Span};
 use jbt_model::report::clip;
 
+/// What an argument takes beside its values, in numbers.
+const ARGUMENT: usize = 8;
+
 /// A part of the file.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) enum Token {
@@ -94,7 +97,7 @@ impl<'a> Scanner<'a> {
                 Token::Close => return Err(Diagnostic::error(Some(span), "no array is open here")),
                 Token::Word => unreachable!("words end the arguments"),
             });
-            room = room.checked_sub(1).ok_or_else(|| too_many(span))?;
+            room = room.checked_sub(ARGUMENT).ok_or_else(|| too_many(span))?;
         }
         Ok(all)
     }
@@ -150,7 +153,9 @@ impl<'a> Scanner<'a> {
             }
             b'"' => self.string(start).map(Some),
             _ => {
-                self.skip(|byte| !byte.is_ascii_whitespace() && !matches!(byte, b'"' | b'[' | b']' | b'#' | 0));
+                self.skip(|byte| {
+                    !byte.is_ascii_whitespace() && !matches!(byte, b'"' | b'[' | b']' | b'#' | 0)
+                });
                 let span = span(self.at);
                 if !matches!(first, b'0'..=b'9' | b'+' | b'-' | b'.') {
                     return Ok(Some((Token::Word, span)));
