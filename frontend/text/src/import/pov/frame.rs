@@ -198,7 +198,9 @@ impl Script<'_> {
                 match self.scanner.peek()?.0 {
                     Token::Mark(b'{') => {
                         self.scanner.next()?;
-                        self.left_out.note(span, &format!("{word} is left out"));
+                        if word != "global_settings" {
+                            self.left_out.note(span, &format!("{word} is left out"));
+                        }
                         self.open(Frame::skip(word), span)
                     }
                     Token::Mark(b'(') => {
@@ -731,11 +733,11 @@ impl Script<'_> {
                 skip.depth -= 1;
                 if skip.depth == 0 {
                     let word = std::mem::take(&mut skip.word);
-                    self.frames.pop();
+                    let begin = self.frames.pop().map_or(span, |(_, begin)| begin);
                     let is_shape = SHAPES.contains(&word.as_str());
                     let shapes = || Value::Shapes(Arc::new(Shapes::other(&word)));
                     let value = if is_shape { shapes() } else { Value::Other };
-                    return self.deliver(value, span);
+                    return self.deliver(value, begin);
                 }
             }
             Token::Word => match self.scanner.word(span) {
