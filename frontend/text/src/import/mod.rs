@@ -9,7 +9,9 @@ mod jbt;
 mod parsip;
 mod pov;
 mod rib;
+mod srgb;
 mod tally;
+mod threejs;
 mod vm;
 
 pub use format::SceneFormat;
@@ -17,4 +19,5 @@ pub use imported::Imported;
 pub use parsip::parsip;
 pub use pov::pov;
 pub use rib::rib;
+pub use threejs::threejs;
 pub use vm::vm;

@@ -6,3 +6,4 @@
 mod common;
 mod pov;
 mod rib;
+mod threejs;

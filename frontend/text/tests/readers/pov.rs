@@ -50,7 +50,7 @@ fn every_sample_agrees_with_its_table() {
             };
             println!("{name} {chosen}\n{}", messages(bytes, &imported.warnings));
             let positive = is_positive(&imported.model);
-            compare(&imported.model, &folder.join(table), ["r", "g", "b"], &positive);
+            compare(&imported.model, &folder.join(table), ["r", "g", "b"], 1e-8, &positive);
             tables += 1;
         }
     }

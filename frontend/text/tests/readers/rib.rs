@@ -23,7 +23,7 @@ fn every_sample_agrees_with_its_table() {
         let imported = good(rib, bytes);
         println!("{name}: {}", messages(bytes, &imported.warnings));
         let table = folder.join(name.replace(".rib", ".oracle.csv"));
-        compare(&imported.model, &table, ["r", "g", "b"], &|_| true);
+        compare(&imported.model, &table, ["r", "g", "b"], 1e-8, &|_| true);
     }
     assert_eq!(files.len(), 12);
 }

@@ -6,6 +6,7 @@ use super::amount::Amount;
 use super::scan::Token;
 use super::script::{Script, Value};
 use super::shape::Color;
+use crate::import::srgb;
 
 /// Words that begin a colour, and whether its numbers are encoded as screens have them.
 const BEGINNINGS: [(&str, bool); 10] = [
@@ -60,7 +61,9 @@ impl Script<'_> {
             if encoded {
                 // To light, and then to what the scene takes numbers for.
                 let inverse = self.gamma.recip();
-                color[..3].iter_mut().for_each(|channel| *channel = decoded(*channel).max(0.0).powf(inverse));
+                color[..3]
+                    .iter_mut()
+                    .for_each(|channel| *channel = srgb::decoded(*channel).max(0.0).powf(inverse));
             }
         }
         Ok(Amount::Vector(color, 5))
@@ -113,11 +116,6 @@ impl Script<'_> {
         let (token, _) = self.scanner.peek()?;
         Ok(token == Token::Mark(b'<') || self.scanner.peek_word()?.is_some_and(begins))
     }
-}
-
-/// The light of a number as screens have it (IEC 61966-2-1).
-pub(in crate::import) fn decoded(encoded: f64) -> f64 {
-    if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }
 
 /// The names of POV-Ray's own file of colours, `colors.inc`: red, green and blue.
