@@ -35,7 +35,7 @@ impl SceneOptions {
     }
 }
 
-fn definition(text: &str) -> Result<(String, f64), String> {
+pub(super) fn definition(text: &str) -> Result<(String, f64), String> {
     let (name, value) = text.split_once('=').ok_or("expected NAME=VALUE")?;
     let name = name.trim();
     if name.is_empty() {

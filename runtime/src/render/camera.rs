@@ -360,6 +360,8 @@ pub(super) fn is_usable(camera: &Camera) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use jbt_model::orientation::ModelUp;
+
     use super::*;
 
     fn cube() -> Vec<Vector> {
@@ -390,6 +392,25 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// The front is seen with up above and left at the right, however the model stands.
+    #[test]
+    fn every_model_is_seen_upright() {
+        for up in ModelUp::ALL {
+            for handed in Handed::ALL {
+                let model = Orientation { up, handed };
+                let camera = View::named("front").unwrap().camera(1.5, &cube(), model).unwrap();
+                assert_eq!(camera.back, model.direction([1.0, 0.0, 0.0]), "{model:?}");
+                assert_eq!(camera.up, model.direction([0.0, 0.0, 1.0]), "{model:?}");
+                assert_eq!(camera.right, model.direction([0.0, 1.0, 0.0]), "{model:?}");
+                assert_eq!(View::default().upwards(model), camera.up);
+            }
+        }
+        // POV-Ray's usual camera: on -z, x to the right, y up.
+        let stance = Stance::At { eye: [0.0, 0.0, -5.0], target: [0.0; 3] };
+        let camera = View { stance, ..View::default() }.camera(1.0, &cube(), Orientation::Y_LEFT).unwrap();
+        assert_eq!((camera.right, camera.up), ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0]));
     }
 
     #[test]

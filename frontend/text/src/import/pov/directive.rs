@@ -5,31 +5,9 @@ use jbt_model::diagnostic::{Diagnostic, Span};
 
 use super::amount::Amount;
 use super::colors;
-use super::frame::Frame;
+use super::open::{Block, Frame};
 use super::scan::Token;
 use super::script::{Script, Value};
-
-/// A directive that ends with `#end`.
-pub(super) enum Block {
-    /// A branch that is taken.
-    If,
-    /// A case that is taken.
-    Switch,
-    While {
-        /// The place of the condition.
-        condition: usize,
-        /// Whether the condition asked for nothing that can change.
-        constant: bool,
-    },
-    For {
-        name: String,
-        value: f64,
-        last: f64,
-        step: f64,
-        /// The place behind the head.
-        body: usize,
-    },
-}
 
 /// How far beyond its last value a loop may go, for rounding.
 const SLACK: f64 = 1e-10;

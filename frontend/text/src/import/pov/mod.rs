@@ -23,10 +23,15 @@
 //! Coordinates are those of the scene: y is up, and axes are left-handed.
 
 mod amount;
+mod blob;
 mod colors;
 mod directive;
 mod expression;
 mod frame;
+mod group;
+mod look;
+mod modifier;
+mod open;
 mod scan;
 mod scene;
 mod script;

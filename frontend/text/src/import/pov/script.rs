@@ -8,8 +8,7 @@ use jbt_ir::limits::{MAX_BLOCK_DEPTH, MAX_SCRIPT_STEPS};
 use jbt_model::diagnostic::{Diagnostic, Span};
 
 use super::amount::{Amount, Streams, vector};
-use super::directive::Block;
-use super::frame::Frame;
+use super::open::{Block, Frame};
 use super::scan::Scanner;
 use super::shape::Shapes;
 use crate::import::tally::Tally;

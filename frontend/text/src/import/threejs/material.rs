@@ -7,7 +7,7 @@ use jbt_model::term::Term;
 use jbt_model::tree::Tree;
 
 use super::json::{JsonKind, JsonValue};
-use super::reader::Reader;
+use super::reader::{Reader, SURFACE};
 use crate::import::srgb;
 
 /// A linear colour, roughness and metalness.
@@ -17,15 +17,8 @@ pub(super) struct Material {
     surface: [f64; SURFACE.len()],
 }
 
-/// What materials have beside a colour: the members of a file and the attributes. An attribute is there if
-/// any material has a number other than 0.
-const SURFACE: [(&str, &str); 2] = [("roughness", "rough"), ("metalness", "metal")];
-
 /// What the library takes for a material that says nothing.
 const GREY: f64 = 170.0 / 255.0;
-
-/// Which attributes of [`SURFACE`] there are.
-pub(super) type Surface = [bool; SURFACE.len()];
 
 impl Reader<'_> {
     /// Finds out which attributes the materials of the file ask for.

@@ -4,8 +4,14 @@ use glam::DVec3;
 use jbt_model::diagnostic::Diagnostic;
 
 use super::json::{Json, JsonKind, JsonValue};
-use super::material::Surface;
 use crate::import::tally::Tally;
+
+/// What materials have beside a colour: the members of a file and the attributes. An attribute is there if
+/// any material has a number other than 0.
+pub(super) const SURFACE: [(&str, &str); 2] = [("roughness", "rough"), ("metalness", "metal")];
+
+/// Which attributes of [`SURFACE`] there are.
+pub(super) type Surface = [bool; SURFACE.len()];
 
 /// A file that is being read.
 pub(super) struct Reader<'a> {
