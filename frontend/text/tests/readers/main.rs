@@ -4,6 +4,7 @@
 //! The samples are those of the folders `rib`, `pov` and `threejs`, see `jbt_testkit::samples`.
 
 mod common;
+mod mutation;
 mod pov;
 mod rib;
 mod threejs;
